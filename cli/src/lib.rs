@@ -10,9 +10,12 @@
 //! | [`bisect`] | the commit since which a run is another |
 //! | [`diff`] | where two recordings or snapshots part, and why |
 //! | [`regress`] | all cases run, compared with reviewed snapshots, reported |
+//! | [`why`] | the way from a signal back to the statement in which two runs part |
+//! | [`repository`] | what a scenario was at other commits |
 //! | [`snapshot`] | trajectories as small text, compared |
 //! | [`run`] | runs of a scenario: in lockstep or not, recorded, reported |
 //! | [`freewheel`] | running without lockstep, to show what it is good for |
+//! | [`access`] | who may take part in sessions over a network |
 //! | [`session`] | part in a session that another process serves |
 //! | [`plc`] | a soft PLC as a process of its own |
 //! | [`browse`] | what a real PLC has |
@@ -31,6 +34,7 @@
 //! Invariants. This is the only crate that starts processes and prints. What a session computes is decided
 //! in the crates below; nothing here can change a digest.
 
+pub mod access;
 pub mod bisect;
 pub mod browse;
 pub mod check;
@@ -49,8 +53,10 @@ pub mod new;
 pub mod plant;
 pub mod plc;
 pub mod regress;
+pub mod repository;
 pub mod review;
 pub mod run;
 pub mod session;
 pub mod snapshot;
+pub mod why;
 pub mod wiring;

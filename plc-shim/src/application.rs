@@ -2,6 +2,7 @@
 
 mod builder;
 mod constant;
+mod declaration;
 mod front;
 pub(crate) mod identity;
 mod instance_path;
@@ -36,6 +37,7 @@ use crate::syntax::{FileId, SourceMap};
 pub use builder::{BuildError, Builder};
 pub use constant::ConstantError;
 use constant::{Constants, Setting};
+pub use declaration::Declaration;
 pub(crate) use front::{Front, Parsed};
 use identity::code::Code;
 use identity::layout::Layout;

@@ -46,8 +46,8 @@ pub mod stubs;
 pub mod syntax;
 
 pub use application::{
-    Application, BuildError, Builder, CodeDifference, ConstantError, Program, Radix, UnknownVariable, Variable,
-    VariableAccess, VariableDifference, WriteError, ZeroTerminated, without_home,
+    Application, BuildError, Builder, CodeDifference, ConstantError, Declaration, Program, Radix, UnknownVariable,
+    Variable, VariableAccess, VariableDifference, WriteError, ZeroTerminated, without_home,
 };
 pub use compile::fault::FaultKind;
 pub use coverage::Coverage;
@@ -58,6 +58,6 @@ pub use ir::{MemoryLimit, MemoryLimitError};
 pub use lint::{inspect, inspect_within};
 pub use onescan_base::{ElementaryType, SignalType, TimeSpan, VirtualTime};
 pub use run::{
-    CodePolicy, FaultSite, PlanDifference, PlcFault, RestoreError, RunError, SoftPlc, Task, TaskPlan, Way, WayId,
-    WriteSite,
+    Act, CodePolicy, FaultSite, PlanDifference, PlcFault, RestoreError, RunError, SoftPlc, Statement, StatementId,
+    Task, TaskPlan, Way, WayId, WriteSite, Wrote,
 };

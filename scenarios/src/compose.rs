@@ -18,6 +18,7 @@ use super::case::value::bytes_of;
 use super::error::{PlcReport, ScenarioError, SceneReport};
 use super::file::{ClientFile, TaskFile};
 use super::load::Scenario;
+use super::permission;
 
 /// A client of a scenario.
 pub enum Member {
@@ -139,6 +140,7 @@ impl Scenario {
             }
             None => SourceKind::Text,
         };
+        permission::granted().check(self.folder(), &path)?;
         let bytes = regular::read(&path, Limit::TEXT).map_err(|source| ScenarioError::Unreadable {
             path,
             source,
@@ -157,6 +159,7 @@ impl Scenario {
     /// A file that cannot be read or is no scene.
     pub fn scene_of(&self, file: &str) -> Result<Scene, ScenarioError> {
         let path = self.folder().join(file);
+        permission::granted().check(self.folder(), &path)?;
         let text = read(&path)?;
         let named = path.display().to_string();
         let scene = Scene::parse(&text, &named).map_err(|error| Box::new(report(&error, &named, &text)))?;
@@ -166,6 +169,7 @@ impl Scenario {
     /// The scene of plant `name` as the case wants it.
     fn scene_in_case(&self, name: &ClientName, file: &str) -> Result<Scene, ScenarioError> {
         let path = self.folder().join(file);
+        permission::granted().check(self.folder(), &path)?;
         let (text, named) = (read(&path)?, path.display().to_string());
         let error = |error: &SceneError| ScenarioError::from(Box::new(report(error, &named, &text)));
         let overrides = self.overrides(name);
@@ -198,10 +202,10 @@ impl Scenario {
         bind: &BTreeMap<String, String>,
     ) -> Result<Compiled, ScenarioError> {
         let inputs = self.inputs(name, sources, dialect)?;
-        let built = match (self.writers(), self.coverage()) {
-            (Some(_), _) => self.built(name, &inputs, Builder::traced),
-            (None, Some(_)) => self.built(name, &inputs, Builder::covered),
-            (None, None) => self.built(name, &inputs, |plain| plain),
+        let built = match (self.is_traced(), self.coverage()) {
+            (true, _) => self.built(name, &inputs, Builder::traced),
+            (false, Some(_)) => self.built(name, &inputs, Builder::covered),
+            (false, None) => self.built(name, &inputs, |plain| plain),
         };
         let application = built?.map_err(|findings| Box::new(PlcReport { client: name.clone(), findings }))?;
         for warning in application.warnings().iter() {
@@ -228,6 +232,9 @@ impl Scenario {
         }
         if let Some((signals, sink)) = self.writers() {
             client.trace(signals, sink.clone());
+        }
+        if let Some(journalling) = self.journalling() {
+            client.journal(journalling);
         }
         if let Some(watched) = &self.watched {
             let (watches, changes, sink) = watched.of(name);
@@ -257,7 +264,10 @@ impl Scenario {
     }
 
     /// Which signal is which variable of the PLC.
-    pub(crate) fn bindings(
+    ///
+    /// # Errors
+    /// A signal without a variable, or with one of another type.
+    pub fn bindings(
         &self,
         name: &ClientName,
         application: &Application,

@@ -24,6 +24,20 @@ pub enum ScenarioError {
         #[help]
         help: Option<String>,
     },
+    /// A file that the scenario may not read.
+    #[error("{} is outside of the scenario's folder{}", path.display(), leads(path, real))]
+    #[diagnostic(
+        code(scenario::outside),
+        help(
+            "a scenario reads its own folder; allow more with `--allow-path PATH` or ONESCAN_ALLOW_PATH (docs/security.md)"
+        )
+    )]
+    Outside {
+        /// The file, as it is named.
+        path: PathBuf,
+        /// Where it is.
+        real: PathBuf,
+    },
     /// A place in `scenario.toml` that is wrong.
     #[error("{message}")]
     #[diagnostic(code(scenario::wrong))]
@@ -69,6 +83,10 @@ pub enum ScenarioError {
         /// Why.
         fault: LinkFault,
     },
+}
+
+fn leads(path: &Path, real: &Path) -> String {
+    if path == real { String::new() } else { format!(": it is {}", real.display()) }
 }
 
 /// An error at a place of a file.

@@ -47,6 +47,9 @@ pub struct ScenarioFile {
     /// The session's clients by name.
     #[schemars(with = "BTreeMap<String, ClientFile>")]
     pub clients: BTreeMap<ClientName, Spanned<ClientFile>>,
+    /// Variables of the environment that the programs of `command` are to see beside those that programs need.
+    #[serde(default)]
+    pub pass_env: Vec<String>,
     /// What every run must show.
     #[serde(default)]
     pub expect: Vec<ExpectFile>,

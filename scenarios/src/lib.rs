@@ -6,6 +6,7 @@
 //! |---|---|
 //! | `form` | the forms of values in the files, for schemas |
 //! | [`file`] | `scenario.toml` as it is written |
+//! | [`permission`] | which files it may read, and whether it may start programs |
 //! | [`load`] | `scenario.toml` read and checked |
 //! | `arrays` | signals written as arrays and patterns |
 //! | [`expectations`] | what it expects of every run |
@@ -35,6 +36,7 @@ mod form;
 pub mod gateway;
 pub mod load;
 pub mod mode;
+pub mod permission;
 mod refusal;
 pub mod schema;
 pub mod watch;

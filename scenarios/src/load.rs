@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use onescan_base::regular;
 use onescan_clients::gateway::Settings;
+use onescan_clients::soft_plc::journal::{Journalling, Wanted};
 use onescan_clients::soft_plc::watch::Sightings;
 use onescan_clients::soft_plc::{CoverageSink, TraceSink};
 use onescan_server::plan::{Coupling, PlanError, SessionPlan};
@@ -50,6 +51,8 @@ pub struct Scenario {
     coverage: Option<CoverageSink>,
     /// Where soft PLCs tell which statements wrote these signals, if that is asked for.
     writers: Option<(BTreeSet<SignalName>, TraceSink)>,
+    /// What soft PLCs hand over of their scans, if that is asked for.
+    journalling: Option<Journalling>,
     /// The soft PLCs that a real one stands in for, with its URL where the file's does not count.
     pub(crate) gateways: BTreeMap<ClientName, Option<String>>,
     /// Their links, where files of their own say them.
@@ -109,6 +112,7 @@ impl Scenario {
             applied: None,
             coverage: None,
             writers: None,
+            journalling: None,
             gateways: BTreeMap::new(),
             links: BTreeMap::new(),
             watched: None,
@@ -155,6 +159,11 @@ impl Scenario {
         sink
     }
 
+    /// Lets soft PLCs hand over what their scans do.
+    pub fn journal(&mut self, journalling: Journalling) {
+        self.journalling = Some(journalling);
+    }
+
     /// Lets soft PLCs look at variables, at all their changes if `changes`, else at what they are last.
     ///
     /// # Errors
@@ -175,6 +184,16 @@ impl Scenario {
     /// The signals whose writers are asked for, and where they are told.
     pub fn writers(&self) -> Option<&(BTreeSet<SignalName>, TraceSink)> {
         self.writers.as_ref()
+    }
+
+    /// What soft PLCs hand over of their scans.
+    pub(crate) fn journalling(&self) -> Option<&Journalling> {
+        self.journalling.as_ref()
+    }
+
+    /// True if statements tell what they do.
+    pub(crate) fn is_traced(&self) -> bool {
+        self.writers.is_some() || self.journalling.as_ref().is_some_and(|each| matches!(each.wanted, Wanted::Acts(_)))
     }
 
     /// What soft PLCs have executed, if they note it; complete once they are gone.

@@ -112,7 +112,7 @@ pub trait Applicant {
     /// `reply_timeout` (wall clock) has failed.
     ///
     /// # Errors
-    /// The connection cannot be used at all.
+    /// It has gone meanwhile, or its connection cannot be used.
     fn admit(
         self: Box<Self>,
         inputs: &PortLayout,

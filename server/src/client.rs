@@ -2,9 +2,12 @@
 
 use std::fmt;
 
+use onescan_base::foreign::{deserialize_line, one_line};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+use crate::end::FailureCause;
+pub use crate::fault::{ClientFault, SourcePlace};
 use crate::signal::{ClientName, Port};
 use crate::time::{TimeSpan, VirtualTime};
 
@@ -159,13 +162,14 @@ pub enum ClientOperation {
 
 impl fmt::Display for ClientOperation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Fail { component, mode } => write!(f, "`{component}` fails: {mode}"),
-            Self::Repair { component, mode } => write!(f, "`{component}` is repaired: {mode}"),
-            Self::WriteVariable { variable, value } => write!(f, "`{variable}` is set to {value}"),
-            Self::ForceVariable { variable, value } => write!(f, "`{variable}` is forced to {value}"),
-            Self::ReleaseVariable { variable } => write!(f, "`{variable}` is released"),
-        }
+        let text = match self {
+            Self::Fail { component, mode } => format!("`{component}` fails: {mode}"),
+            Self::Repair { component, mode } => format!("`{component}` is repaired: {mode}"),
+            Self::WriteVariable { variable, value } => format!("`{variable}` is set to {value}"),
+            Self::ForceVariable { variable, value } => format!("`{variable}` is forced to {value}"),
+            Self::ReleaseVariable { variable } => format!("`{variable}` is released"),
+        };
+        f.write_str(&one_line(&text))
     }
 }
 
@@ -178,7 +182,7 @@ pub enum OperationRefused {
     Unsupported,
     /// It has, but not this: the reason, with a hint where there is one.
     #[error("{0}")]
-    Because(String),
+    Because(#[serde(deserialize_with = "deserialize_line")] String),
 }
 
 /// What can be seen of clients beside their signals.
@@ -206,46 +210,15 @@ pub struct Pose {
     pub rotation_xyzw: [f64; 4],
 }
 
-/// A place in a source file that a client runs, counted from 1.
-#[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct SourcePlace {
-    /// The file, as the scenario names it.
-    pub file: String,
-    /// Line, from 1.
-    pub line: u32,
-    /// Column in characters, from 1.
-    pub column: u32,
-}
-
-impl fmt::Display for SourcePlace {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}:{}:{}", self.file, self.line, self.column)
-    }
-}
-
-/// Why a client cannot go on.
-#[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Error)]
-#[serde(deny_unknown_fields)]
-#[error("{message}{}", place.as_ref().map(|place| format!(" at {place}")).unwrap_or_default())]
-pub struct ClientFault {
-    /// What happened, in one line.
-    pub message: String,
-    /// Where in the client's own sources, if it has any.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub place: Option<SourcePlace>,
-}
-
-impl ClientFault {
-    /// A fault without a place.
-    pub fn new(message: impl Into<String>) -> Self {
-        Self { message: message.into(), place: None }
-    }
-}
-
 /// Why a state cannot be saved or taken back.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum StateError {
+    /// The client says why it does not; it goes on.
+    #[error("it does not: {0}")]
+    Refused(ClientFault),
+    /// The client is lost: it is gone, or has broken the protocol.
+    #[error("{0}")]
+    Lost(FailureCause),
     /// The client has no state that can be saved.
     #[error("this client cannot save its state")]
     Unsupported,

@@ -1,9 +1,10 @@
 //! How a session ends, and who is to blame.
 
+use onescan_base::foreign::deserialize_line;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::client::ClientFault;
+use crate::fault::ClientFault;
 use crate::signal::{BadValue, ClientName, SignalName};
 use crate::state::ClientState;
 use crate::time::{StepCount, VirtualTime};
@@ -75,10 +76,10 @@ pub enum FailureCause {
     Disconnected,
     /// What it sent cannot be understood.
     #[error("{0}")]
-    Wire(String),
+    Wire(#[serde(deserialize_with = "deserialize_line")] String),
     /// It could not hand out or take back its state.
     #[error("{0}")]
-    State(String),
+    State(#[serde(deserialize_with = "deserialize_line")] String),
 }
 
 /// A rule of the cycle that a client broke.
@@ -129,6 +130,7 @@ pub enum Violation {
         /// The signal.
         signal: SignalName,
         /// What is wrong.
+        #[serde(deserialize_with = "deserialize_line")]
         reason: String,
     },
     /// A wake-up in the past or off the grid.

@@ -5,14 +5,16 @@ use std::time::{Duration, Instant};
 use thiserror::Error;
 
 use crate::carrier::{Applicant, Carrier, Door, InProcess};
-use crate::client::{Client, ClientId, JoinRequest};
+use crate::client::{Client, ClientId};
+use crate::end::{FailureCause, SessionEnd};
 use crate::join::JoinRefusal;
+use crate::lobby::{Seating, Verdict};
 use crate::lockstep::Lockstep;
 use crate::mailbox::{Mailbox, Request};
 use crate::operation::{Control, Operation};
 use crate::plan::SessionPlan;
-use crate::session::Session;
 use crate::signal::PortLayout;
+use crate::time::VirtualTime;
 
 /// A session in state `start`, and how its clients are reached.
 ///
@@ -55,9 +57,22 @@ use crate::signal::PortLayout;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Formation {
-    session: Session,
-    carriers: Vec<Option<Box<dyn Carrier>>>,
+    seating: Seating,
+    carriers: Joined,
     mailbox: Mailbox,
+}
+
+/// The ways to those who have joined, by the rank of their names. Who is still here when the session comes to nothing
+/// hears that it is over.
+#[derive(Default)]
+struct Joined(Vec<Option<Box<dyn Carrier>>>);
+
+impl Drop for Joined {
+    fn drop(&mut self) {
+        let end = SessionEnd::Stopped { t_v: VirtualTime::ZERO };
+        self.0.iter_mut().flatten().for_each(|carrier| carrier.end(&end));
+        self.0.iter_mut().flatten().for_each(|carrier| carrier.farewell());
+    }
 }
 
 /// Why a session cannot begin.
@@ -85,9 +100,6 @@ pub enum FormationError {
     /// A signal that nobody writes.
     #[error("signal {0} has no writer: no client that joined writes it")]
     Unwritten(String),
-    /// A connection that cannot be used.
-    #[error("cannot set up the TCP transport: {0}")]
-    Connection(#[from] std::io::Error),
 }
 
 fn sent_away(refused: Option<&String>) -> String {
@@ -100,9 +112,9 @@ pub type WhileWaiting<'a> = &'a mut dyn FnMut(&str) -> bool;
 impl Formation {
     /// Nobody has joined.
     pub fn new(plan: SessionPlan) -> Self {
-        let session = Session::new(plan);
-        let carriers = session.clients().map(|_| None).collect();
-        Self { session, carriers, mailbox: Mailbox::new() }
+        let seating = Seating::new(plan);
+        let carriers = Joined(seating.session().clients().map(|_| None).collect());
+        Self { seating, carriers, mailbox: Mailbox::new() }
     }
 
     /// Takes wishes of operators from `mailbox` while it waits: how the session is, and its end. All others wait for
@@ -116,8 +128,8 @@ impl Formation {
     /// # Errors
     /// The session's plan has no place for it.
     pub fn join(&mut self, client: Box<dyn Client>) -> Result<ClientId, JoinRefusal> {
-        let id = self.session.join(&client.join())?;
-        self.carriers[id.index()] = Some(Box::new(InProcess::new(client)));
+        let id = self.seating.apply(&client.join(), "this process")?;
+        self.carriers.0[id.index()] = Some(Box::new(InProcess::new(client)));
         Ok(id)
     }
 
@@ -135,29 +147,28 @@ impl Formation {
     ) -> Result<(), FormationError> {
         // How often `while_waiting` is asked, so that Ctrl-C is heard at once.
         const LOOK_UP: Duration = Duration::from_millis(50);
-        // Whoever comes and is sent away, however often, does not hold the wait open.
-        let (begun, mut refused, mut later) = (Instant::now(), None, Vec::new());
+        let (begun, mut later) = (Instant::now(), Vec::new());
         loop {
             // A session does not begin with one who has gone meanwhile.
-            if self.session.missing_clients().next().is_none() {
-                match self.let_go_who_left() {
-                    None => break,
-                    gone => refused = gone,
-                }
+            if self.seating.is_complete() && !self.let_go_who_left() {
+                break;
             }
-            if !while_waiting(&self.missing()) || self.is_called_off(&mut later) {
-                return Err(FormationError::Interrupted { missing: self.missing() });
+            if !while_waiting(&self.seating.missing()) || self.is_called_off(&mut later) {
+                return Err(FormationError::Interrupted { missing: self.seating.missing() });
             }
             match door.next_applicant(LOOK_UP) {
                 Some(applicant) => {
                     // Who comes back may be there before it is seen that it had gone.
-                    let gone = if self.is_in(applicant.request()) { self.let_go_who_left() } else { None };
-                    refused = self.admit(applicant, reply_timeout)?.or(gone).or(refused);
+                    if self.seating.is_taken(applicant.request()) {
+                        self.let_go_who_left();
+                    }
+                    self.admit(applicant, reply_timeout);
                 }
-                None => refused = self.let_go_who_left().or(refused),
+                None => drop(self.let_go_who_left()),
             }
-            if begun.elapsed() >= patience {
-                return Err(FormationError::Missing { missing: self.missing(), patience, refused });
+            if let Verdict::TooLate { sent_away } = self.seating.verdict(begun.elapsed(), patience) {
+                let missing = self.seating.missing();
+                return Err(FormationError::Missing { missing, patience, refused: sent_away });
             }
         }
         door.shut();
@@ -176,7 +187,7 @@ impl Formation {
                 continue;
             }
             if let Some(reply) = request.reply
-                && reply.send(Ok(self.session.status())).is_err()
+                && reply.send(Ok(self.seating.session().status())).is_err()
             {
                 tracing::debug!("the operator left before it heard how the session is");
             }
@@ -187,66 +198,56 @@ impl Formation {
         false
     }
 
-    fn is_in(&self, request: &JoinRequest) -> bool {
-        let id = self.session.plan().client_id(&request.name);
-        id.is_some_and(|id| self.session.member(id).is_some())
-    }
-
-    /// Frees the places of clients that have gone since they joined; who went last, and why.
-    fn let_go_who_left(&mut self) -> Option<String> {
-        let mut last = None;
-        for (id, carrier) in (0..).map(ClientId::from_index).zip(&mut self.carriers) {
+    /// Frees the places of clients that have gone since they joined; true if there are any.
+    fn let_go_who_left(&mut self) -> bool {
+        let mut any = false;
+        for (id, carrier) in (0..).map(ClientId::from_index).zip(&mut self.carriers.0) {
             let Some(cause) = carrier.as_mut().and_then(|carrier| carrier.find_lost()) else { continue };
-            let Some(name) = self.session.plan().clients().get(id.index()).cloned() else { continue };
-            if self.session.leave(id) {
-                tracing::warn!(client = %name, %cause, "has gone before the session began");
-                last = Some(format!("`{name}` had joined, and has gone: {cause}"));
-                *carrier = None;
+            if self.seating.left(id, &cause) {
+                tracing::warn!(client = id.index(), %cause, "has gone before the session began");
+                (any, *carrier) = (true, None);
             }
         }
-        last
+        any
     }
 
-    /// Gives why the applicant was sent away, if it was.
-    fn admit(
-        &mut self,
-        applicant: Box<dyn Applicant>,
-        reply_timeout: Duration,
-    ) -> Result<Option<String>, FormationError> {
+    /// Gives an applicant its seat, or sends it away.
+    fn admit(&mut self, applicant: Box<dyn Applicant>, reply_timeout: Duration) {
         let (origin, name) = (applicant.origin(), applicant.request().name.clone());
-        match self.session.join(applicant.request()) {
+        match self.seating.apply(applicant.request(), &origin) {
             Ok(id) => {
                 tracing::info!(client = %name, %origin, "joined");
                 let inputs = PortLayout::new(applicant.request().reads.clone());
                 let outputs = PortLayout::new(applicant.request().writes.clone());
-                self.carriers[id.index()] = Some(applicant.admit(&inputs, &outputs, reply_timeout)?);
-                Ok(None)
+                match applicant.admit(&inputs, &outputs, reply_timeout) {
+                    Ok(carrier) => self.carriers.0[id.index()] = Some(carrier),
+                    Err(error) => {
+                        tracing::warn!(client = %name, %origin, %error, "has gone before it had its seat");
+                        self.seating.left(id, &FailureCause::Disconnected);
+                    }
+                }
             }
             Err(refusal) => {
                 tracing::warn!(client = %name, %origin, %refusal, "refused");
                 applicant.refuse(&refusal.to_string());
-                Ok(Some(format!("somebody tried and was refused: `{name}` from {origin}: {refusal}")))
             }
         }
-    }
-
-    fn missing(&self) -> String {
-        let names: Vec<String> = self.session.missing_clients().map(|name| format!("`{name}`")).collect();
-        names.join(", ")
     }
 
     /// The session begins: everybody is in and every signal has its writer.
     ///
     /// # Errors
     /// Somebody is missing, or a signal has no writer.
-    pub fn start(self) -> Result<Lockstep, FormationError> {
-        if self.session.missing_clients().next().is_some() {
-            return Err(FormationError::Missing { missing: self.missing(), patience: Duration::ZERO, refused: None });
+    pub fn start(mut self) -> Result<Lockstep, FormationError> {
+        if !self.seating.is_complete() {
+            let missing = self.seating.missing();
+            return Err(FormationError::Missing { missing, patience: Duration::ZERO, refused: None });
         }
-        let unwritten: Vec<String> = self.session.unwritten_signals().map(|name| format!("`{name}`")).collect();
+        let session = self.seating.into_session();
+        let unwritten: Vec<String> = session.unwritten_signals().map(|name| format!("`{name}`")).collect();
         if !unwritten.is_empty() {
             return Err(FormationError::Unwritten(unwritten.join(", ")));
         }
-        Ok(Lockstep::new(self.session, self.carriers.into_iter().flatten().collect()))
+        Ok(Lockstep::new(session, std::mem::take(&mut self.carriers.0).into_iter().flatten().collect()))
     }
 }

@@ -7,6 +7,7 @@
 //! |---|---|
 //! | [`time`] | virtual time, integer nanoseconds |
 //! | [`signal`] | typed values with one writer, and the ports through which clients see them |
+//! | [`fault`] | why a client cannot go on |
 //! | [`client`] | the interface of everything that takes part |
 //! | [`plan`] | a session before anybody joins |
 //! | [`operation`] | what is done to a session from outside, as data |
@@ -25,6 +26,8 @@
 //! | [`carrier`] | how a client is reached |
 //! | [`checkpoint`] | a session as a value |
 //! | [`lockstep`] | the driver of a running session |
+//! | [`access`] | tokens: who may do what |
+//! | [`lobby`] | who comes, who may stay, and for how long: machines without a socket or a clock |
 //! | [`formation`] | clients come together |
 //! | [`wire`] | the protocol of clients outside this process |
 //! | [`transport`] | a carrier of its frames: TCP |
@@ -33,17 +36,20 @@
 //! number, no iteration in hash order, and after the start nothing is allocated by a step. Nothing
 //! here knows what a PLC or a plant is, nor how a scenario is written.
 
+pub mod access;
 pub mod carrier;
 pub mod checkpoint;
 pub mod client;
 pub mod cycle;
 pub mod digest;
 pub mod end;
+pub mod fault;
 pub mod formation;
 pub mod image;
 mod interference;
 pub mod join;
 pub mod layout;
+pub mod lobby;
 pub mod lockstep;
 pub mod mailbox;
 pub mod observer;

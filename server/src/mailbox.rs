@@ -54,6 +54,11 @@ impl Mailbox {
         self.post(Request { operation: Some(control.into()), reply: None });
     }
 
+    /// True if nobody has left anything.
+    pub fn is_empty(&self) -> bool {
+        !self.inner.waiting.load(Ordering::Acquire)
+    }
+
     /// The oldest wish, if any.
     pub(crate) fn take(&self) -> Option<Request> {
         if !self.inner.waiting.load(Ordering::Acquire) {

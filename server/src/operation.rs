@@ -7,6 +7,7 @@
 
 use std::fmt;
 
+use onescan_base::foreign::one_line;
 use onescan_base::value::BadText;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -203,8 +204,8 @@ impl fmt::Display for Operation {
             return write!(f, "{operation} (client `{client}`)");
         }
         match self {
-            Self::Write { signal, value } => write!(f, "`{signal}` is set to {value}"),
-            Self::Force { signal, value } => write!(f, "`{signal}` is forced to {value}"),
+            Self::Write { signal, value } => write!(f, "`{signal}` is set to {}", one_line(value)),
+            Self::Force { signal, value } => write!(f, "`{signal}` is forced to {}", one_line(value)),
             Self::Release { signal } => write!(f, "`{signal}` is released"),
             Self::Disturb { signal, fault } => write!(f, "`{signal}` is disturbed: {fault}"),
             Self::Mend { signal } => write!(f, "`{signal}` is mended"),
@@ -228,7 +229,7 @@ impl fmt::Display for SignalFault {
         match self {
             Self::Stuck => f.write_str("stuck"),
             Self::Inverted => f.write_str("inverted"),
-            Self::Offset { by } => write!(f, "offset by {by}"),
+            Self::Offset { by } => write!(f, "offset by {}", one_line(by)),
             Self::Late { by } => write!(f, "late by {by}"),
         }
     }

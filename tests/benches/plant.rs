@@ -60,10 +60,12 @@ fn place(column: usize, row: usize, layer: usize) -> [f64; 3] {
 fn bare() -> (PhysicsWorld, Vec<RigidBodyHandle>) {
     let mut physics = PhysicsWorld::new();
     physics.gravity = Vector::new(0.0, 0.0, -9.81);
+    let usual = SpringCoefficients::<f64>::contact_static_defaults();
     physics.integration_parameters = IntegrationParameters {
         dt: STEP_MS as f64 * 1e-3,
+        static_contact_softness: SpringCoefficients { natural_frequency: 8.0 / (0.6 * STEP_MS as f64 * 1e-3), ..usual },
         num_solver_iterations: 8,
-        num_internal_pgs_iterations: 4,
+        num_internal_pgs_iterations: 1,
         warmstart_joints: true,
         ..IntegrationParameters::default()
     };

@@ -1,9 +1,8 @@
 //! `onescan diff` and `onescan bisect`: where runs part, and which statement did it.
 
 use std::path::Path;
-use std::process::Command;
 
-use crate::typed::{copied_shear, edit, typed};
+use crate::typed::{copied_shear, edit, git, typed};
 
 /// A comparison in the low level control that matters: the blade goes down from the second stroke on.
 const BEFORE: &str = "Actuator_1_Down := ixDown AND Position_1 > LowerLimit AND Strokes > 0;";
@@ -171,18 +170,6 @@ fn digests_and_values_agree() {
     assert_eq!((&by_digest["basis"], &by_value["basis"]), (&"digests".into(), &"values".into()));
     assert_eq!(by_digest["step_a"], by_value["step_a"]);
     assert_eq!(by_digest["signals"], by_value["signals"]);
-}
-
-fn git(folder: &Path, words: &[&str]) {
-    let output = Command::new("git")
-        .current_dir(folder)
-        .args(["-c", "user.name=An Engineer", "-c", "user.email=engineer@example.com", "-c", "commit.gpgsign=false"])
-        .args(words)
-        .env("GIT_AUTHOR_DATE", "2024-05-06T07:08:09Z")
-        .env("GIT_COMMITTER_DATE", "2024-05-06T07:08:09Z")
-        .output()
-        .expect("git is on the machine");
-    assert!(output.status.success(), "{words:?} {}", String::from_utf8_lossy(&output.stderr));
 }
 
 fn commit(folder: &Path, subject: &str, from: &str, to: &str) {

@@ -1,6 +1,8 @@
 //! The program as a user types it: commands, files, messages, exit codes.
 
+mod access;
 mod cases;
+mod cause;
 mod check;
 mod checkpoint;
 mod compare;
@@ -51,6 +53,7 @@ mod suites;
 mod test_manager;
 mod third_party;
 mod twincat;
+mod two_hosts;
 mod typed;
 mod unit_tests;
 mod venv;

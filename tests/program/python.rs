@@ -50,6 +50,24 @@ fn outputs(csv: &str, signals: &[(&str, SignalType)]) -> Vec<Vec<u8>> {
 }
 
 #[test]
+fn a_plant_in_python_shows_its_token_under_tls() {
+    let shear = copied_shear();
+    let plant = package().join("examples/shear.py");
+    let command = format!("[\"python3\", \"-B\", \"{}\", \"--server\", \"{{server}}\"]", plant.display());
+    let external = format!("kind = \"external\"\ncommand = {command}");
+    edit(shear.path(), "scenario.toml", "kind = \"plant\"\nscene = \"plant.toml\"", &external);
+    let run = |more: &[&str]| {
+        let words = ["run", ".", "--until", "1s", "--format", "json"];
+        let mut command = onescan(shear.path());
+        let output = command.args(words).args(more).env("PYTHONPATH", package().join("src")).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        digests(&[serde_json::from_slice::<Value>(&output.stdout).expect("JSON")])
+    };
+    let (place, _) = crate::access::access(&[], &[]);
+    assert_eq!(run(&["--access", place.path().to_str().unwrap()]), run(&[]));
+}
+
+#[test]
 fn a_plant_in_python_is_as_good_as_its_recording() {
     let shear = copied_shear();
     let plant = package().join("examples/shear.py");
@@ -85,4 +103,35 @@ fn a_plant_in_python_is_as_good_as_its_recording() {
     let replayed = run(formation.start().unwrap(), at_ms(3_000));
     assert_eq!(replayed.digest.expect("a digest").to_string(), digests[0]);
     assert!(csv.lines().count() == 302 && csv.contains(",1,"), "the blade has moved");
+}
+
+/// A shear in Python that cannot save its state, and that tells in a file how the session ended.
+const FORGETFUL: &str = "\
+import sys
+import shear
+class Forgetful(shear.Shear):
+    def save(self):
+        raise ValueError('it has forgotten \\x1b[2J everything')
+end = Forgetful('plant').take_part(sys.argv[1])
+open('end.txt', 'w').write(end['status'])
+";
+
+#[test]
+fn a_plant_that_cannot_be_saved_stays_to_the_end() {
+    let shear = copied_shear();
+    std::fs::write(shear.path().join("forgetful.py"), FORGETFUL).unwrap();
+    let external = "kind = \"external\"\ncommand = [\"python3\", \"-B\", \"forgetful.py\", \"{server}\"]";
+    edit(shear.path(), "scenario.toml", "kind = \"plant\"\nscene = \"plant.toml\"", external);
+    let paths = std::env::join_paths([package().join("src"), package().join("examples")]).unwrap();
+    let words = ["run", ".", "--until", "1s", "--save-at", "500ms", "--save", "shear.checkpoint"];
+    let output = onescan(shear.path()).args(words).env("PYTHONPATH", paths).output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(3), "{said}");
+    assert!(
+        said.contains("cannot save the session: client `plant`: it does not: it has forgotten \\u{1b}[2J everything"),
+        "{said}"
+    );
+    assert!(said.contains("the session goes on") && !said.contains('\u{1b}'), "{said}");
+    assert_eq!(std::fs::read_to_string(shear.path().join("end.txt")).unwrap(), "completed");
+    assert!(!shear.path().join("shear.checkpoint").exists());
 }

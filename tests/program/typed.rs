@@ -94,3 +94,16 @@ pub(crate) fn edit(folder: &Path, file: &str, from: &str, to: &str) {
     assert!(text.contains(from), "{file} has no {from:?}");
     std::fs::write(path, text.replace(from, to)).expect("a file");
 }
+
+/// Lets git do something in a folder, always at the same time by the same author.
+pub(crate) fn git(folder: &Path, words: &[&str]) {
+    let output = Command::new("git")
+        .current_dir(folder)
+        .args(["-c", "user.name=An Engineer", "-c", "user.email=engineer@example.com", "-c", "commit.gpgsign=false"])
+        .args(words)
+        .env("GIT_AUTHOR_DATE", "2024-05-06T07:08:09Z")
+        .env("GIT_COMMITTER_DATE", "2024-05-06T07:08:09Z")
+        .output()
+        .expect("git is on the machine");
+    assert!(output.status.success(), "{words:?} {}", String::from_utf8_lossy(&output.stderr));
+}

@@ -15,6 +15,7 @@
 
 mod barrier;
 mod graph;
+mod lobby;
 mod network;
 mod shim;
 mod stamped;

@@ -4,6 +4,7 @@ use onescan_report::{FileError, OutputError};
 
 use crate::diff::DiffError;
 use crate::error::{Usage, sum_of_errors};
+use crate::repository::RepositoryError;
 
 sum_of_errors! {
     /// Why no commit was found.
@@ -11,6 +12,9 @@ sum_of_errors! {
         /// What was typed is wrong.
         #[diagnostic(transparent)]
         Usage(Usage),
+        /// The repository does not answer.
+        #[diagnostic(transparent)]
+        Repository(RepositoryError),
         /// Two recordings cannot be compared.
         #[diagnostic(transparent)]
         Diff(DiffError),

@@ -8,12 +8,10 @@ mod error;
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
 
 use onescan_recording::Recording;
 use onescan_report::FileError;
 use onescan_report::OutputError;
-use onescan_report::file;
 use onescan_server::digest::Digest;
 use onescan_server::time::VirtualTime;
 use serde_json::json;
@@ -26,6 +24,7 @@ use crate::error::Usage;
 
 use crate::format::Format;
 use crate::interrupt::Interrupt;
+use crate::repository::Repository;
 use crate::run::config::RecordRequest;
 use crate::run::{RunConfig, execute};
 
@@ -148,7 +147,7 @@ impl Search<'_> {
 
     fn run(&self, folder: &Path) -> Result<(PathBuf, Option<Digest>), String> {
         let record = folder.join("record");
-        let scenario = folder.join("tree").join(&self.repository.scenario);
+        let scenario = folder.join("tree").join(&self.repository.scenario());
         let mut config = RunConfig::headless(scenario, None);
         config.subject.until = self.config.until;
         config.reports.record = Some(RecordRequest { folder: record.clone(), ..RecordRequest::default() });
@@ -202,78 +201,4 @@ impl Found {
 
 fn short(commit: &str) -> &str {
     commit.get(..12).unwrap_or(commit)
-}
-
-/// The repository that a scenario is in.
-struct Repository {
-    root: PathBuf,
-    /// The scenario's folder in it.
-    scenario: PathBuf,
-}
-
-impl Repository {
-    fn of(scenario: &Path) -> Result<Self, BisectError> {
-        let folder = if scenario.is_dir() { scenario } else { scenario.parent().unwrap_or(Path::new(".")) };
-        let folder = if folder == Path::new("") { Path::new(".") } else { folder };
-        let root = git(folder, &["rev-parse", "--show-toplevel"])?;
-        let prefix = git(folder, &["rev-parse", "--show-prefix"])?;
-        Ok(Self { root: PathBuf::from(root.trim_end()), scenario: PathBuf::from(prefix.trim_end()) })
-    }
-
-    /// The commits from `good` to `bad`, both included, by the first parent: the good one first.
-    fn between(&self, good: &str, bad: &str) -> Result<Vec<String>, BisectError> {
-        let commit =
-            |name: &str| git(&self.root, &["rev-parse", "--verify", "--end-of-options", &format!("{name}^{{commit}}")]);
-        let (good, bad) = (commit(good)?.trim_end().to_owned(), commit(bad)?.trim_end().to_owned());
-        let range = format!("{good}..{bad}");
-        let list = git(&self.root, &["rev-list", "--first-parent", "--reverse", &range])?;
-        let mut commits = vec![good];
-        commits.extend(list.lines().map(str::to_owned));
-        if commits.len() < 2 {
-            let message = "there is no commit after the good one on the way to the bad one".to_owned();
-            return Err(Usage::new(message, Some("name the older commit with `--good`".to_owned())).into());
-        }
-        Ok(commits)
-    }
-
-    /// Hash, author, date and subject.
-    fn about(&self, commit: &str) -> Result<[String; 4], BisectError> {
-        let text = git(&self.root, &["show", "--no-patch", "--format=%H%n%an <%ae>%n%aI%n%s", commit])?;
-        let mut lines = text.lines().map(str::to_owned);
-        Ok(std::array::from_fn(|_| lines.next().unwrap_or_default()))
-    }
-
-    /// Writes the files of a commit into `folder`. The inner error says why it has no scenario.
-    fn take_out(&self, commit: &str, folder: &Path) -> Result<Result<(), String>, BisectError> {
-        file::create_folder(folder)?;
-        let archive = Command::new("git")
-            .current_dir(&self.root)
-            .args(["archive", "--format=tar", commit])
-            .stdout(Stdio::piped())
-            .stderr(Stdio::null())
-            .spawn();
-        let mut archive = archive.map_err(|source| spawn("git", &source))?;
-        let Some(tar) = archive.stdout.take() else { return Ok(Err("git gives no archive".to_owned())) };
-        let unpacked = Command::new("tar").arg("-xf").arg("-").arg("-C").arg(folder).stdin(tar).output();
-        let unpacked = unpacked.map_err(|source| spawn("tar", &source))?;
-        let archived = archive.wait().map_err(|source| spawn("git", &source))?;
-        let whole = archived.success() && unpacked.status.success();
-        Ok(if whole { Ok(()) } else { Err(String::from_utf8_lossy(&unpacked.stderr).trim().to_owned()) })
-    }
-}
-
-fn spawn(program: &str, source: &io::Error) -> Usage {
-    Usage::new(format!("cannot start `{program}`: {source}"), Some("bisect needs git and tar".to_owned()))
-}
-
-/// What git says.
-fn git(folder: &Path, words: &[&str]) -> Result<String, BisectError> {
-    let output = Command::new("git").current_dir(folder).args(words).output();
-    let output = output.map_err(|source| spawn("git", &source))?;
-    if output.status.success() {
-        return Ok(String::from_utf8_lossy(&output.stdout).into_owned());
-    }
-    let said = String::from_utf8_lossy(&output.stderr);
-    let line = said.lines().next().unwrap_or("it does not say why").trim_start_matches("fatal: ").to_owned();
-    Err(Usage::new(format!("git: {line}"), None).into())
 }

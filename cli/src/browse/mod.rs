@@ -11,6 +11,7 @@ use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::PathBuf;
 
+use onescan_base::foreign::one_line;
 use onescan_clients::gateway::Settings;
 use onescan_clients::gateway::link::Found;
 use onescan_report::OutputError;
@@ -87,8 +88,10 @@ fn declared(scenario: &Scenario, name: &ClientName) -> Result<Settings, BrowseEr
 }
 
 fn human(found: &[Found], out: &mut dyn Write) -> std::io::Result<()> {
-    let width = found.iter().map(|found| found.name.chars().count()).max().unwrap_or(0);
+    let width = found.iter().map(|found| one_line(&found.name).chars().count()).max().unwrap_or(0);
     for Found { name, address, ty, is_writable } in found {
+        // What a PLC calls its variables is text of others.
+        let (name, address) = (one_line(name), one_line(address));
         let ty = ty.map_or_else(|| "?".to_owned(), |ty| ty.to_string());
         let access = if *is_writable { "read, write" } else { "read" };
         writeln!(out, "{name:width$}  {ty:8} {access:11}  {address}")?;

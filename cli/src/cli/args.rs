@@ -1,7 +1,12 @@
 //! What may be typed, and who does it.
 
+use std::path::PathBuf;
+
 use clap::{ArgAction, Parser, Subcommand};
 
+use onescan_scenario::permission::Permission;
+
+use super::access::{CertificateArgs, TokenArgs};
 use super::compare::CompareArgs;
 use super::error::CommandError;
 use super::plant::{ComponentsArgs, DescribeArgs, NewArgs, WiringArgs};
@@ -11,7 +16,7 @@ use super::run::RunArgs;
 use super::session::{ControlArgs, JoinArgs};
 use super::source::{CheckArgs, ExplainArgs, InstrumentArgs};
 use super::test::{ReviewArgs, TestArgs, WorkerArgs};
-use super::{compare, plant, plc, recording, run, session, source, test};
+use super::{access, compare, plant, plc, recording, run, session, source, test};
 use crate::error::ExitCode;
 
 /// Deterministic lockstep virtual commissioning.
@@ -27,6 +32,22 @@ pub struct Args {
     /// Say more on standard error: -v what happens, -vv why, -vvv everything
     #[arg(short, long, action = ArgAction::Count, global = true)]
     pub verbose: u8,
+    /// Let scenarios read this file or folder, too; may be given several times [default: their own folder only]
+    #[arg(long = "allow-path", env = "ONESCAN_ALLOW_PATH", hide_env_values = true, value_name = "PATH", global = true, value_delimiter = PATHS)]
+    pub allowed_paths: Vec<PathBuf>,
+    /// Do not start the programs that scenarios name as `command`
+    #[arg(long, env = "ONESCAN_NO_COMMANDS", hide_env_values = true, global = true, value_parser = clap::builder::FalseyValueParser::new(), action = ArgAction::SetTrue)]
+    pub no_commands: bool,
+}
+
+/// Between the paths of a variable.
+const PATHS: char = if cfg!(windows) { ';' } else { ':' };
+
+impl Args {
+    /// What scenarios may do.
+    pub fn permission(&self) -> Permission {
+        Permission { paths: self.allowed_paths.clone(), no_commands: self.no_commands }
+    }
 }
 
 const EXIT_CODES: &str = "Exit codes:
@@ -59,6 +80,10 @@ pub enum Command {
     Join(JoinArgs),
     /// Ask a running session (see `run --listen`) how it is, or to pause, step, go on, reset or stop
     Control(ControlArgs),
+    /// Make, list and revoke the tokens with which others take part in sessions over a network (`run --access`)
+    Token(TokenArgs),
+    /// Make the certificate of sessions over a network
+    Certificate(CertificateArgs),
     /// Write a recording's trajectory as CSV, Parquet or MCAP
     Export(ExportArgs),
     /// Compare two recordings: where they first differ, in which signals, and which statement wrote them
@@ -104,6 +129,8 @@ pub fn dispatch(command: Command) -> Result<ExitCode, CommandError> {
         Command::Guard => Ok(session::guard()),
         Command::Join(args) => session::join(&args),
         Command::Control(args) => session::control(&args),
+        Command::Token(args) => access::token(args),
+        Command::Certificate(args) => access::certificate(args),
         Command::Export(args) => recording::export(args),
         Command::Diff(args) => recording::diff(args),
         Command::Bisect(args) => recording::bisect(args),

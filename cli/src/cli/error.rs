@@ -2,6 +2,7 @@
 
 use onescan_report::OutputError;
 
+use crate::access::AccessError;
 use crate::bisect::BisectError;
 use crate::browse::BrowseError;
 use crate::check::CheckError;
@@ -67,6 +68,9 @@ sum_of_errors! {
         /// `join` or `control` came to nothing.
         #[diagnostic(transparent)]
         Session(SessionError),
+        /// `token` or `certificate` came to nothing, or nothing can be shown to a session.
+        #[diagnostic(transparent)]
+        Access(AccessError),
         /// What was typed is wrong.
         #[diagnostic(transparent)]
         Usage(Usage),

@@ -9,10 +9,12 @@
 //! | [`recording`] | what was recorded |
 //! | [`source`] | PLC sources |
 //! | [`plc`] | PLCs |
+//! | [`access`] | who may take part: tokens, certificates |
 //! | [`opcua`] | who is let in over OPC UA |
 //! | [`plant`] | scenes |
 //! | [`value`] | words that several commands know |
 
+pub mod access;
 pub mod args;
 pub mod compare;
 mod error;
@@ -30,6 +32,7 @@ pub mod value;
 use std::io::Write;
 
 use clap::Parser;
+use onescan_base::foreign::for_terminal;
 use onescan_report::OutputError;
 
 pub use error::CommandError;
@@ -40,6 +43,7 @@ use crate::error::{Exit, ExitCode};
 pub fn main() -> std::process::ExitCode {
     let args = args::Args::parse();
     logging::start(args.verbose);
+    onescan_scenario::permission::grant(args.permission());
     render_errors_in_one_piece();
     // What is still buffered must not be lost in silence when the process ends.
     let done = args::dispatch(args.command)
@@ -60,7 +64,7 @@ pub fn main() -> std::process::ExitCode {
 /// Errors go to standard error, with the place in the source where there is one.
 fn report(error: CommandError) {
     // Where standard error takes nothing either, the exit code still says it.
-    let _ = writeln!(std::io::stderr(), "{:?}", miette::Report::new(error));
+    let _ = writeln!(std::io::stderr(), "{}", for_terminal(&format!("{:?}", miette::Report::new(error))));
 }
 
 /// Messages of this program hold their causes, so that they read well anywhere; a list of causes

@@ -1,11 +1,13 @@
 //! Who is let in to an OPC UA server of this program, for commands that serve one.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use clap::Args as ClapArgs;
 use onescan_clients::opcua_server::Access;
 
 use super::error::CommandError;
+use crate::access::folder::Folder;
 use crate::error::Usage;
 
 /// Options of commands that serve OPC UA.
@@ -26,11 +28,28 @@ pub struct AccessArgs {
     #[arg(long, requires = "opcua_pki")]
     pub opcua_foreign_uri: bool,
     /// Let a user's password come over a connection without security, where everybody on the way can read it
-    #[arg(long, requires = "opcua_user")]
+    #[arg(long)]
     pub opcua_plain_password: bool,
 }
 
 impl AccessArgs {
+    /// Who is let in where tokens of `folder` count: their holders, with the token as password.
+    ///
+    /// # Errors
+    /// Tokens would come in plain text, or the folder cannot be used.
+    pub fn access_with_tokens(self, folder: &Path) -> Result<Access, CommandError> {
+        if self.opcua_user.is_some() {
+            let help = Some("make a token for this user: `onescan token new NAME --role operator`".to_owned());
+            return Err(Usage::new("with `--access` users over OPC UA are those of its tokens", help).into());
+        }
+        if self.opcua_pki.is_none() && !self.opcua_plain_password {
+            let help = "encrypt them with certificates, `--opcua-pki DIR`, or permit it with `--opcua-plain-password`";
+            return Err(Usage::new("tokens would come over OPC UA in plain text", Some(help.to_owned())).into());
+        }
+        let register = Some(Arc::new(Folder(folder).register()?));
+        Ok(Access { register, ..self.access()? })
+    }
+
     /// Who is let in.
     ///
     /// # Errors
@@ -52,6 +71,12 @@ impl AccessArgs {
                 Some((user, password))
             }
         };
-        Ok(Access { user, pki: self.opcua_pki, trust_clients: self.opcua_trust, foreign_uris: self.opcua_foreign_uri })
+        Ok(Access {
+            user,
+            register: None,
+            pki: self.opcua_pki,
+            trust_clients: self.opcua_trust,
+            foreign_uris: self.opcua_foreign_uri,
+        })
     }
 }

@@ -17,6 +17,7 @@ use onescan_server::time::{TimeSpan, VirtualTime};
 use super::error::CommandError;
 use super::opcua::AccessArgs;
 use super::value::{FormatArg, client_name, plane, signal_name};
+use crate::access::admission::Admission;
 use crate::check::collect::Reading;
 use crate::check::stubs;
 use crate::error::ExitCode;
@@ -107,6 +108,13 @@ pub struct RunArgs {
     /// Where clients and operators may connect [default: a free port of this machine, if one is needed]
     #[arg(long, value_name = "ADDRESS:PORT")]
     pub listen: Option<SocketAddr>,
+    /// Let in whoever shows a token of this folder, under TLS if it has a certificate (`onescan token`, `onescan
+    /// certificate`)
+    #[arg(long, value_name = "DIR", conflicts_with = "listen_insecure")]
+    pub access: Option<PathBuf>,
+    /// Let in whoever reaches the address of `--listen`, also from other machines: without TLS, without a token
+    #[arg(long, requires = "listen")]
+    pub listen_insecure: bool,
     /// Serve the session over OPC UA at this address, for operators and clients (`docs/opcua.md`) [default: a free
     /// port of this machine, if a client needs one]
     #[arg(long, value_name = "ADDRESS:PORT")]
@@ -116,7 +124,7 @@ pub struct RunArgs {
     pub opcua_clients: Vec<ClientName>,
     /// Who is let in over OPC UA
     #[command(flatten)]
-    pub access: AccessArgs,
+    pub opcua_access: AccessArgs,
     /// How long to wait for clients to join
     #[arg(long, default_value = "60s", value_name = "TIME")]
     pub join_timeout: TimeSpan,
@@ -242,7 +250,15 @@ pub fn run(args: RunArgs) -> Result<ExitCode, CommandError> {
 }
 
 fn config(args: RunArgs) -> Result<RunConfig, CommandError> {
-    let access = args.access.access()?;
+    let access = match &args.access {
+        Some(folder) if args.opcua.is_some() => args.opcua_access.access_with_tokens(folder)?,
+        _ => args.opcua_access.access()?,
+    };
+    let admission = match args.access {
+        Some(folder) => Admission::Holders(folder),
+        None if args.listen_insecure => Admission::Anybody,
+        None => Admission::ThisMachine,
+    };
     let format = args.format.into();
     let record = args.record.map(|folder| RecordRequest {
         folder,
@@ -265,7 +281,7 @@ fn config(args: RunArgs) -> Result<RunConfig, CommandError> {
             reply_timeout: Duration::from_nanos(args.reply_timeout.as_nanos()),
             latency: args.latency,
         },
-        doors: Doors { listen: args.listen, opcua: args.opcua, access },
+        doors: Doors { listen: args.listen, admission, opcua: args.opcua, access },
         course: Course {
             pace: args.pace,
             resume: args.resume,

@@ -7,6 +7,7 @@ use clap::{Args as ClapArgs, ValueEnum};
 use onescan_server::operation::Operation;
 use onescan_server::signal::{ClientName, SignalName};
 
+use super::access::EntranceArgs;
 use super::error::CommandError;
 use super::value::{FormatArg, client_name, signal_name};
 use crate::error::{ExitCode, Usage};
@@ -26,6 +27,9 @@ pub struct JoinArgs {
     /// The case that the server runs [default: the scenario as it is]
     #[arg(long, value_name = "NAME")]
     pub case: Option<String>,
+    /// What is shown to the session
+    #[command(flatten)]
+    pub entrance: EntranceArgs,
 }
 
 /// Takes part in a session.
@@ -33,7 +37,8 @@ pub struct JoinArgs {
 /// # Errors
 /// See [`CommandError`].
 pub fn join(args: &JoinArgs) -> Result<ExitCode, CommandError> {
-    session::join(&args.scenario, args.case.as_deref(), &args.client, args.server)?;
+    let entrance = args.entrance.entrance(args.server)?;
+    session::join(&args.scenario, args.case.as_deref(), &args.client, entrance)?;
     Ok(ExitCode::Ok)
 }
 
@@ -60,6 +65,9 @@ pub struct ControlArgs {
     /// For people, or a JSON object for machines
     #[arg(long, value_enum, default_value_t)]
     pub format: FormatArg,
+    /// What is shown to the session
+    #[command(flatten)]
+    pub entrance: EntranceArgs,
 }
 
 /// What an operator may ask for.
@@ -115,6 +123,11 @@ impl ControlArgs {
 /// See [`CommandError`].
 pub fn control(args: &ControlArgs) -> Result<ExitCode, CommandError> {
     let operation = args.operation().map_err(|message| Usage::new(message, None))?;
-    session::control(args.server, operation, args.format.into(), &mut std::io::stdout().lock())?;
+    session::control(
+        args.entrance.entrance(args.server)?,
+        operation,
+        args.format.into(),
+        &mut std::io::stdout().lock(),
+    )?;
     Ok(ExitCode::Ok)
 }

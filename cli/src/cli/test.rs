@@ -46,13 +46,17 @@ pub struct TestArgs {
     /// For CI: write no snapshot, and fail if one is missing
     #[arg(long)]
     pub check: bool,
+    /// The commit with the reviewed program, to name the statement in which a test parts from it [default: HEAD,
+    /// else the commit that last changed the snapshot]
+    #[arg(long, value_name = "COMMIT")]
+    pub against: Option<String>,
     /// For people; or a JSON object a test, and one for all
     #[arg(long, value_enum, default_value_t)]
     pub format: FormatArg,
     /// Write a report in the format of `JUnit`
     #[arg(long, value_name = "FILE")]
     pub junit: Option<PathBuf>,
-    /// Write PLC faults and failed asserts with their places as a SARIF 2.1.0 log
+    /// Write PLC faults, failed asserts and where a PLC parts from what was reviewed as a SARIF 2.1.0 log
     #[arg(long, value_name = "FILE")]
     pub sarif: Option<PathBuf>,
     /// Write a page with trajectories, expectations, events and coverage, all in one file
@@ -101,6 +105,7 @@ impl TestArgs {
             },
             progress: format == Format::Human && std::io::IsTerminal::is_terminal(&std::io::stderr()),
             format,
+            against: self.against,
             scan: self.scan,
             until: self.until,
             dialect: self.dialect,

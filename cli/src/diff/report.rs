@@ -11,6 +11,8 @@ use super::cause::{Cause, Causes};
 use super::first::{Around, Basis, Divergence};
 use super::parting::Parting;
 use super::sources::FileDifference;
+use crate::why;
+use crate::why::report::Runs;
 
 /// Signals that are listed for people.
 const LISTED: usize = 20;
@@ -71,6 +73,9 @@ impl Report {
         }
         for parting in &self.causes.partings {
             write_parting(parting, out)?;
+        }
+        if let Some(way_back) = &self.causes.why {
+            why::report::write(way_back, &Runs::named(NAMES), out)?;
         }
         for (name, why) in NAMES.iter().zip(&self.causes.unknown) {
             if let Some(why) = why {
@@ -172,6 +177,7 @@ impl Report {
             object.insert("signals".to_owned(), self.json_signals(found));
             let partings: Vec<Value> = self.causes.partings.iter().map(json_parting).collect();
             object.insert("partings".to_owned(), json!(partings));
+            object.insert("why".to_owned(), json!(self.causes.why.as_ref().map(why::report::json)));
             let unknown = &self.causes.unknown;
             object.insert("statements_unknown".to_owned(), json!({ "a": unknown[0], "b": unknown[1] }));
         }

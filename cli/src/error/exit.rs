@@ -107,9 +107,12 @@ impl Exit for ScenarioError {
     fn exit_code(&self) -> ExitCode {
         match self {
             Self::Link { .. } => ExitCode::Fault,
-            Self::Unreadable { .. } | Self::Wrong { .. } | Self::UnknownCase { .. } | Self::Scene(_) | Self::Plc(_) => {
-                ExitCode::WrongInput
-            }
+            Self::Unreadable { .. }
+            | Self::Outside { .. }
+            | Self::Wrong { .. }
+            | Self::UnknownCase { .. }
+            | Self::Scene(_)
+            | Self::Plc(_) => ExitCode::WrongInput,
         }
     }
 }
@@ -132,7 +135,7 @@ impl Exit for SettingsFault {
 impl Exit for FormationError {
     fn exit_code(&self) -> ExitCode {
         match self {
-            Self::Missing { .. } | Self::Interrupted { .. } | Self::Connection(_) => ExitCode::Fault,
+            Self::Missing { .. } | Self::Interrupted { .. } => ExitCode::Fault,
             Self::Refused(_) | Self::Unwritten(_) => ExitCode::WrongInput,
         }
     }

@@ -36,6 +36,8 @@ pub struct TestConfig {
     pub timeout: TimeSpan,
     /// What becomes of snapshots.
     pub policy: Policy,
+    /// The commit with the reviewed program; found in the repository if absent.
+    pub against: Option<String>,
     /// For whom the output is.
     pub format: Format,
     /// The cycle of test programs.

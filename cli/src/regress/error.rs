@@ -7,6 +7,7 @@ use thiserror::Error;
 
 use crate::check::CheckError;
 use crate::error::{Exit, ExitCode, SpawnError, Unreadable, Usage, sum_of_errors};
+use crate::repository::RepositoryError;
 use crate::run::RunError;
 use crate::snapshot::StoreError;
 
@@ -33,6 +34,9 @@ sum_of_errors! {
         /// Sources with test programs do not compile.
         #[diagnostic(transparent)]
         Sources(Box<SourcesReport>),
+        /// The repository does not answer.
+        #[diagnostic(transparent)]
+        Repository(RepositoryError),
         /// A process cannot be started.
         Spawn(SpawnError),
         /// A file cannot be written.

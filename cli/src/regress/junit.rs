@@ -16,6 +16,7 @@ pub fn text(report: &Report) -> String {
 
 fn case(outcome: &Outcome) -> Case {
     let place = outcome.asserts.first().map(|failed| &failed.place).or(outcome.place.as_ref());
+    let place = place.or_else(|| outcome.cause.as_ref()?.place.as_ref());
     let trouble = || Trouble { word: outcome.status.word(), lines: details(outcome) };
     // CI servers show the suite, which stands before the name, as a class.
     let own = outcome.class.as_ref().and_then(|class| outcome.name.strip_prefix(class.as_str())?.strip_prefix('@'));

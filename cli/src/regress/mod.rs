@@ -24,6 +24,7 @@
 //! who was done first. `--check` writes nothing beside a scenario.
 
 mod attributes;
+pub mod cause;
 pub mod config;
 pub mod coverage;
 mod declared;
@@ -37,6 +38,7 @@ pub mod page;
 pub mod plan;
 pub mod pool;
 pub mod ran;
+mod reference;
 pub mod sarif;
 pub mod selection;
 pub mod summary;
@@ -92,6 +94,7 @@ pub fn test(config: &TestConfig, out: &mut dyn Write) -> Result<ExitCode, TestEr
     if outcomes.is_empty() {
         return Err(plan::none_chosen("none of the tests").into());
     }
+    cause::explain(config, &units, &mut outcomes)?;
     let orphans = plan::orphans(config, &units)?;
     let executed = coverage::merged(&units, &worked);
     let coverage = config.coverage.is_some().then(|| [executed.lines(), executed.branches()]);

@@ -6,6 +6,7 @@ use std::time::Duration;
 use onescan_server::client::SourcePlace;
 use serde::Serialize;
 
+use super::cause::Cause;
 use super::config::{Policy, TestConfig};
 use super::error::TestError;
 use super::plan::{CaseUnit, Unit, shown};
@@ -108,6 +109,9 @@ pub struct Outcome {
     /// What else there is to say.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,
+    /// Why it is not what was reviewed, if the reviewed program is known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cause: Option<Cause>,
     /// What went wrong, in words.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<String>,
@@ -211,6 +215,7 @@ fn outcome(suite: &str, ran: &Ran, folder: &str, status: Status) -> Outcome {
         asserts: ran.asserts.clone(),
         asserts_made: None,
         notes: ran.notes.clone(),
+        cause: None,
         error: ran.error.clone(),
         place: ran.place.as_ref().map(found),
         step_ns: ran.step_ns,

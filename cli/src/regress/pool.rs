@@ -86,6 +86,7 @@ fn one(config: &TestConfig, unit: &Unit) -> Result<Worked, TestError> {
 fn command(config: &TestConfig, unit: &Unit, program: &Path) -> Command {
     let mut command = Command::new(program);
     command.arg("test-worker");
+    command.envs(onescan_scenario::permission::granted().variables());
     match unit {
         Unit::Case(unit) => {
             command.arg("--scenario").arg(&unit.place.scenario);

@@ -95,6 +95,7 @@ pub fn details(outcome: &Outcome) -> Vec<String> {
     if let Some(more @ 1..) = outcome.differences.len().checked_sub(SHOWN) {
         lines.push(format!("... and {more} more signals"));
     }
+    lines.extend(outcome.cause.iter().flat_map(|cause| cause.lines.iter().cloned()));
     lines
 }
 

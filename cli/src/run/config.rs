@@ -15,6 +15,7 @@ use onescan_server::signal::{ClientName, SignalName};
 use onescan_server::time::VirtualTime;
 
 use super::coverage::CoverageRequest;
+use crate::access::admission::Admission;
 use crate::format::Format;
 
 /// All options of a run.
@@ -84,6 +85,8 @@ pub struct Reach {
 pub struct Doors {
     /// Where clients and operators may connect.
     pub listen: Option<SocketAddr>,
+    /// Who is let in there.
+    pub admission: Admission,
     /// Where the session is served over OPC UA.
     pub opcua: Option<SocketAddr>,
     /// Who is let in there.

@@ -12,6 +12,7 @@ use onescan_server::observer::RecordError;
 use onescan_server::time::VirtualTime;
 use thiserror::Error;
 
+use crate::access::AccessError;
 use crate::error::{Exit, ExitCode, ListenError, SpawnError, Unreadable, Usage};
 
 /// Why nothing came of a run.
@@ -42,6 +43,10 @@ pub enum RunError {
     /// The address cannot be listened on.
     #[error(transparent)]
     Listen(#[from] ListenError),
+    /// Anybody could take part, or nobody can be let in.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Access(#[from] AccessError),
     /// A recording cannot be written.
     #[error(transparent)]
     Record(#[from] RecordError),
@@ -92,6 +97,7 @@ impl Exit for RunError {
             Self::Formation(error) => error.exit_code(),
             Self::Spawn(error) => error.exit_code(),
             Self::Listen(error) => error.exit_code(),
+            Self::Access(error) => error.exit_code(),
             Self::Record(error) => error.exit_code(),
             Self::RecordCut { source, .. } => source.exit_code(),
             Self::Recording(error) => error.exit_code(),

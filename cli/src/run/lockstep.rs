@@ -2,11 +2,12 @@
 
 use std::net::{Ipv4Addr, SocketAddr};
 
+use onescan_base::foreign::one_line;
 use onescan_base::regular::{self, Limit};
 use onescan_recording::{Recording, event};
 use onescan_report::file;
-use onescan_scenario::Scenario;
 use onescan_scenario::compose::Member;
+use onescan_scenario::{Scenario, permission};
 use onescan_server::checkpoint::Checkpoint;
 use onescan_server::formation::{Formation, FormationError};
 use onescan_server::lockstep::{Lockstep, Outcome, Reached};
@@ -15,13 +16,14 @@ use onescan_server::signal::ClientName;
 use onescan_server::timeline::Timeline;
 use onescan_server::transport::tcp::Lobby;
 
-use super::config::{Doors, Reach, RunConfig, SaveRequest, Transport};
+use super::config::{Reach, RunConfig, SaveRequest, Transport};
 use super::error::RunError;
-use super::processes::Processes;
+use super::processes::{Passed, Processes};
 use super::progress::Progress;
 use super::seats::{Desk, Seats};
 use super::session_log::SessionLog;
-use crate::error::{ListenError, Unreadable};
+use crate::access::admission::{Doorstep, Shown, from_here};
+use crate::error::{ListenError, Unreadable, Usage};
 use crate::interrupt::Interrupt;
 
 /// What is said here is for the user, also without `--verbose`.
@@ -59,10 +61,16 @@ pub(super) fn run(
     if let Some(path) = &config.course.resume {
         resume(&mut lockstep, path)?;
     }
-    if let Some(request) = &config.course.save {
-        save(&mut lockstep, request)?;
+    let saved = match &config.course.save {
+        Some(request) => save(&mut lockstep, request),
+        None => Ok(()),
+    };
+    if let Err(error) = &saved {
+        // The run is what was asked for first: it goes on to its end.
+        tracing::error!("{error}; the session goes on");
     }
-    Ok(lockstep.run()?)
+    let outcome = lockstep.run()?;
+    saved.map(|()| outcome)
 }
 
 /// A session that is about to begin, and what stays open for operators.
@@ -86,7 +94,7 @@ fn form(
     for name in scenario.plan().clients() {
         // Also a client that will run in its own process is made here: its faults are found at once.
         match (scenario.member(name)?, config.reach.transport) {
-            (Member::Seated { request, command }, _) => seats.add(request, command),
+            (Member::Seated { request, command }, _) => seats.add(request, permitted(name, command)?),
             (Member::Gateway(client) | Member::Plant(client) | Member::Plc(client), _)
                 if config.reach.opcua_clients.contains(name) =>
             {
@@ -98,7 +106,7 @@ fn form(
                 formation.join(client).map_err(|refusal| scenario.refused(&request, &refusal))?;
             }
             (Member::Plant(_) | Member::Plc(_), Transport::Tcp) => remote.push((name, None)),
-            (Member::External(command), _) => remote.push((name, Some(command))),
+            (Member::External(command), _) => remote.push((name, Some(permitted(name, command)?))),
         }
     }
     interrupt.heed();
@@ -109,13 +117,30 @@ fn form(
             let client = if config.reach.is_watched() { log.watch(client) } else { client };
             formation.join(client).map_err(|refusal| scenario.refused(&request, &refusal))?;
         }
-        desk.start(scenario.folder(), processes)?;
+        desk.start(scenario.folder(), &scenario.file().pass_env, processes)?;
     }
     let lobby = admit_remote(config, scenario, &mut formation, &remote, interrupt, processes)?;
     if let Some(desk) = &desk {
         desk.wait(config.reach.join_timeout, interrupt, processes)?;
     }
     Ok(Formed { lockstep: formation.start()?, lobby, desk })
+}
+
+/// The command of a client, if scenarios may start programs. Whoever runs it is told that it does.
+fn permitted(name: &ClientName, command: Vec<String>) -> Result<Vec<String>, RunError> {
+    if command.is_empty() {
+        return Ok(command);
+    }
+    let words = command.join(" ");
+    let shown = one_line(&words);
+    if permission::granted().no_commands {
+        let help = "start it yourself and take `command` out of the scenario, or allow it: leave `--no-commands` away";
+        let message =
+            format!("the scenario starts a program for client `{name}`, which `--no-commands` forbids: {shown}");
+        return Err(Usage::new(message, Some(help.to_owned())).into());
+    }
+    tracing::info!(target: NOTICE, "starting the scenario's program for client `{name}`: {shown}");
+    Ok(command)
 }
 
 /// Lets in those that come over TCP, if there are any or `--listen` asks for it. The lobby stays open for operators.
@@ -130,11 +155,25 @@ fn admit_remote(
     if remote.is_empty() && config.doors.listen.is_none() {
         return Ok(None);
     }
-    let lobby = open_lobby(&config.doors, scenario, interrupt)?;
+    let address = config.doors.listen.unwrap_or(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)));
+    let mut doorstep = Doorstep::open(&config.doors.admission, address)?;
+    let mut shown = Vec::new();
     for (name, command) in remote {
+        // Nobody waits for a program that somebody else starts with a token of his own.
+        let is_ours = command.as_ref().is_none_or(|words| !words.is_empty());
+        shown.push(if is_ours { doorstep.shown_by(name)? } else { Shown::new() });
+    }
+    let lobby = Lobby::open_house(address, scenario.plan(), interrupt.mailbox(), doorstep.into_house())
+        .map_err(ListenError::on(address))?;
+    let server = from_here(lobby.address());
+    for ((name, command), shown) in remote.iter().zip(shown) {
         match command {
-            None => processes.start_client(name, &config.subject, lobby.address())?,
-            Some(words) => processes.start_command(name, words, scenario.folder(), &lobby.address().to_string())?,
+            None => processes.start_client(name, &config.subject, server, shown)?,
+            Some(words) => {
+                let named = &scenario.file().pass_env;
+                let pass = Passed { named, shown };
+                processes.start_command(name, words, scenario.folder(), &server.to_string(), pass)?;
+            }
         }
     }
     if config.doors.listen.is_some() {
@@ -145,12 +184,6 @@ fn admit_remote(
     }
     wait_for_clients(&config.reach, formation, &lobby, interrupt, processes)?;
     Ok(Some(lobby))
-}
-
-fn open_lobby(doors: &Doors, scenario: &Scenario, interrupt: &Interrupt) -> Result<Lobby, RunError> {
-    let address = doors.listen.unwrap_or(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)));
-    let lobby = Lobby::open(address, scenario.plan(), interrupt.mailbox()).map_err(ListenError::on(address))?;
-    Ok(lobby)
 }
 
 fn wait_for_clients(

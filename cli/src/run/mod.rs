@@ -9,6 +9,7 @@
 //! | [`lockstep`] | one run in lockstep |
 //! | [`processes`] | clients as processes of their own |
 //! | [`guard`] | who ends these if this process cannot |
+//! | `environment` | what they see of the environment |
 //! | [`freewheel`] | one run without lockstep |
 //! | [`progress`] | a bar on a terminal |
 //! | `chosen` | signals chosen by name, as numbers |
@@ -26,7 +27,8 @@ mod check;
 mod chosen;
 pub mod config;
 pub mod coverage;
-pub mod error;
+mod environment;
+mod error;
 pub mod expectation;
 mod freewheel;
 pub(crate) mod guard;

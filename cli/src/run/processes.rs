@@ -8,8 +8,10 @@ use std::time::{Duration, Instant};
 use onescan_server::signal::ClientName;
 
 use super::config::Subject;
+use super::environment;
 use super::error::RunError;
 use super::guard::{Group, Guard};
+use crate::access::admission::Shown;
 use crate::error::SpawnError;
 
 /// How long a process may take to leave once the session is over.
@@ -17,6 +19,14 @@ const LEAVE_TIMEOUT: Duration = Duration::from_secs(5);
 
 /// What stands for the server's address in a command.
 const SERVER: &str = "{server}";
+
+/// What a scenario's own program sees of the environment.
+pub(super) struct Passed<'p> {
+    /// The variables that the scenario names.
+    pub(super) named: &'p [String],
+    /// What it shows to the session.
+    pub(super) shown: Shown,
+}
 
 /// The processes of a session, and what they started themselves; none outlives it. Whatever ends this one, the
 /// [`Guard`] ends them.
@@ -33,6 +43,7 @@ impl Processes {
         name: &ClientName,
         subject: &Subject,
         server: SocketAddr,
+        shown: Shown,
     ) -> Result<(), RunError> {
         let program = std::env::current_exe().map_err(|source| SpawnError {
             client: name.to_string(),
@@ -44,6 +55,7 @@ impl Processes {
         if let Some(case) = &subject.case {
             command.arg("--case").arg(case);
         }
+        command.envs(shown);
         self.start(name, command)
     }
 
@@ -54,6 +66,7 @@ impl Processes {
         words: &[String],
         folder: &Path,
         server: &str,
+        pass: Passed<'_>,
     ) -> Result<(), RunError> {
         let Some((program, arguments)) = words.split_first() else { return Ok(()) };
         let mut command = Command::new(program);
@@ -61,6 +74,8 @@ impl Processes {
         if folder != Path::new("") {
             command.current_dir(folder);
         }
+        environment::confine(&mut command, pass.named);
+        command.envs(pass.shown);
         self.start(name, command)
     }
 

@@ -8,7 +8,7 @@ use onescan_recording::recorder::{EVENTS, HEADER};
 use onescan_recording::{Provenance, Recorder, Recording, SourceFile};
 use onescan_report::OutputError;
 use onescan_report::{FileError, file};
-use onescan_scenario::{Mode, Scenario, ScenarioError};
+use onescan_scenario::{Mode, Scenario, ScenarioError, permission};
 use onescan_server::time::VirtualTime;
 
 use super::config::{RecordRequest, Subject};
@@ -109,6 +109,7 @@ fn copy_scenario(scenario: &Scenario, target: &Path) -> Result<(String, Vec<Sour
     let mut copied = Vec::new();
     for file in files {
         let path = scenario.folder().join(&file);
+        permission::granted().check(scenario.folder(), &path)?;
         let bytes = regular::read(&path, Limit::DATA).map_err(|source| ScenarioError::Unreadable {
             path,
             source,

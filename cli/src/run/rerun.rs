@@ -6,6 +6,7 @@ use onescan_server::digest::Digest;
 use onescan_server::formation::Formation;
 use onescan_server::operation::OperatorInput;
 use onescan_server::time::{StepCount, VirtualTime};
+use onescan_server::timeline::Timeline;
 
 use super::error::RunError;
 use crate::error::Usage;
@@ -45,6 +46,9 @@ pub fn rerun(scenario: &Scenario, until: VirtualTime, inputs: Vec<OperatorInput>
     }
     let mut lockstep = formation.start()?;
     lockstep.set_until(Some(until));
+    // What a case does is part of the scenario, not of what an operator did.
+    let timeline = Timeline::new(scenario.timeline().to_vec(), lockstep.session()).map_err(RunError::Timeline)?;
+    lockstep.set_timeline(timeline);
     lockstep.replay(inputs);
     let outcome = lockstep.run()?;
     Ok(Rerun { steps: outcome.steps, digest: outcome.digest })

@@ -15,7 +15,7 @@ use onescan_server::published::Published;
 
 use super::config::Doors;
 use super::error::RunError;
-use super::processes::Processes;
+use super::processes::{Passed, Processes};
 use crate::error::{ListenError, Usage};
 use crate::interrupt::Interrupt;
 
@@ -94,10 +94,11 @@ impl Desk {
     }
 
     /// Starts those that have a command.
-    pub(super) fn start(&self, folder: &Path, processes: &mut Processes) -> Result<(), RunError> {
+    pub(super) fn start(&self, folder: &Path, named: &[String], processes: &mut Processes) -> Result<(), RunError> {
         let url = self.service.url();
         for Expected { request, command } in &self.expected {
-            processes.start_command(&request.name, command, folder, &url)?;
+            let pass = Passed { named, shown: Vec::new() };
+            processes.start_command(&request.name, command, folder, &url, pass)?;
             if command.is_empty() {
                 tracing::info!(target: NOTICE, "waiting at {url} for client `{}`", request.name);
             }

@@ -61,7 +61,7 @@ impl Desk {
         match self.never {}
     }
 
-    pub(super) fn start(&self, _folder: &Path, _processes: &mut Processes) -> Result<(), RunError> {
+    pub(super) fn start(&self, _folder: &Path, _named: &[String], _processes: &mut Processes) -> Result<(), RunError> {
         match self.never {}
     }
 

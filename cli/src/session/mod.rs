@@ -3,7 +3,6 @@
 mod error;
 
 use std::io::{self, Write};
-use std::net::SocketAddr;
 use std::path::Path;
 use std::time::Duration;
 
@@ -12,6 +11,7 @@ use onescan_scenario::Scenario;
 use onescan_scenario::compose::Member;
 use onescan_server::operation::Operation;
 use onescan_server::signal::ClientName;
+use onescan_server::transport::tcp::Entrance;
 use onescan_server::transport::tcp::operator::operate;
 use onescan_server::transport::tcp::participant::take_part;
 
@@ -27,7 +27,7 @@ const OPERATOR_PATIENCE: Duration = Duration::from_secs(30);
 ///
 /// # Errors
 /// The scenario is wrong or has no such client for this program, or the session could not be had to its end.
-pub fn join(scenario: &Path, case: Option<&str>, name: &ClientName, server: SocketAddr) -> Result<(), SessionError> {
+pub fn join(scenario: &Path, case: Option<&str>, name: &ClientName, server: Entrance) -> Result<(), SessionError> {
     let scenario = Scenario::load_case(scenario, case)?;
     let mut client = match scenario.member(name)? {
         Member::Plant(client) | Member::Plc(client) | Member::Gateway(client) => client,
@@ -49,7 +49,7 @@ pub fn join(scenario: &Path, case: Option<&str>, name: &ClientName, server: Sock
 /// # Errors
 /// The session does not answer, or does not want it.
 pub fn control(
-    server: SocketAddr,
+    server: Entrance,
     operation: Option<Operation>,
     format: Format,
     out: &mut dyn Write,

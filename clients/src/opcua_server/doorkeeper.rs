@@ -1,29 +1,56 @@
 //! Who comes in with which user, and who was sent away and why.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::time::{SystemTime, UNIX_EPOCH};
 
 use async_trait::async_trait;
+use onescan_base::foreign::one_line;
+use onescan_server::access::{Day, Register, Role};
 use opcua::crypto::Thumbprint;
 use opcua::server::authenticator::{AuthManager, DefaultAuthenticator, Password, UserToken};
 use opcua::server::{ServerEndpoint, ServerUserToken};
-use opcua::types::{ByteString, Error, UserTokenPolicy};
+use opcua::types::{ByteString, Error, StatusCode, UserTokenPolicy};
 
 use super::Refusals;
 
 /// The users of a server.
 pub(super) struct Doorkeeper {
     users: DefaultAuthenticator,
+    /// Tokens that are good, in place of the users.
+    register: Option<Arc<Register>>,
     refusals: Refusals,
 }
 
 impl Doorkeeper {
-    pub(super) fn new(users: BTreeMap<String, ServerUserToken>, refusals: Refusals) -> Self {
-        Self { users: DefaultAuthenticator::new(users), refusals }
+    pub(super) fn new(
+        users: BTreeMap<String, ServerUserToken>,
+        register: Option<Arc<Register>>,
+        refusals: Refusals,
+    ) -> Self {
+        Self { users: DefaultAuthenticator::new(users), register, refusals }
     }
 
     fn noted<T>(&self, who: &str, done: Result<T, Error>) -> Result<T, Error> {
         done.inspect_err(|error| self.refusals.note(format!("{who}: {}", error.status())))
     }
+}
+
+/// The user whose token is the password. Whoever is in over OPC UA may do everything, so a token must be an operator's.
+fn holder_of(register: &Register, username: &str, token: &str) -> Result<UserToken, Error> {
+    let today = Day::of(SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default());
+    let refused = |why: String| Error::new(StatusCode::BadIdentityTokenRejected, why);
+    let holder = register.holder(Some(token), today).map_err(|refusal| refused(refusal.to_string()))?;
+    if holder.name != username {
+        return Err(refused(format!("the token is good for another user than `{}`", one_line(username))));
+    }
+    if holder.role != Role::Operator {
+        return Err(refused(format!(
+            "token `{}` is good for `{}`: over OPC UA it must be an operator's",
+            holder.name, holder.role
+        )));
+    }
+    Ok(UserToken(holder.name))
 }
 
 #[async_trait]
@@ -39,8 +66,11 @@ impl AuthManager for Doorkeeper {
         username: &str,
         password: &Password,
     ) -> Result<UserToken, Error> {
-        let done = self.users.authenticate_username_identity_token(endpoint, username, password).await;
-        self.noted(&format!("user `{username}` over OPC UA"), done)
+        let done = match &self.register {
+            Some(register) => holder_of(register, username, password.get()),
+            None => self.users.authenticate_username_identity_token(endpoint, username, password).await,
+        };
+        self.noted(&format!("user `{}` over OPC UA", one_line(username)), done)
     }
 
     async fn authenticate_x509_identity_token(

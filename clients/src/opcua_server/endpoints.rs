@@ -97,6 +97,10 @@ async fn own_port(handle: &ServerHandle, inside: u16, outside: u16) {
     port.store(outside, Ordering::Relaxed);
 }
 
+/// Stands for whoever has a token, where endpoints name their users. No password is good for it: the doorkeeper looks
+/// at the token.
+const HOLDER: &str = "holder";
+
 fn builder(address: SocketAddr, name: &str, access: &Access, refusals: &Refusals, pki: &Pki) -> ServerBuilder {
     let mut builder = ServerBuilder::new()
         .application_name(format!("onescan {name}"))
@@ -105,7 +109,7 @@ fn builder(address: SocketAddr, name: &str, access: &Access, refusals: &Refusals
         .host(address.ip().to_string())
         .port(address.port())
         .discovery_urls(vec!["/".to_owned()])
-        .create_sample_keypair(access.pki.is_some() || access.user.is_some())
+        .create_sample_keypair(access.pki.is_some() || access.user.is_some() || access.register.is_some())
         .pki_dir(pki.path())
         .trust_client_certs(access.trust_clients)
         .subscription_poll_interval_ms(SUBSCRIPTIONS_MS);
@@ -114,7 +118,8 @@ fn builder(address: SocketAddr, name: &str, access: &Access, refusals: &Refusals
     limits.min_sampling_interval_ms = 0.0;
     let mut known = BTreeMap::new();
     let mut users = Vec::new();
-    match &access.user {
+    let holder = access.register.is_some().then(|| (HOLDER.to_owned(), String::new()));
+    match holder.as_ref().or(access.user.as_ref()) {
         Some((user, password)) => {
             let token = ServerUserToken::user_pass(user, password);
             builder = builder.add_user_token("user", token.clone());
@@ -123,7 +128,7 @@ fn builder(address: SocketAddr, name: &str, access: &Access, refusals: &Refusals
         }
         None => users.push(ANONYMOUS_USER_TOKEN_ID),
     }
-    builder = builder.with_authenticator(Arc::new(Doorkeeper::new(known, refusals.clone())));
+    builder = builder.with_authenticator(Arc::new(Doorkeeper::new(known, access.register.clone(), refusals.clone())));
     if access.pki.is_none() {
         let none = ("/", SecurityPolicy::None, MessageSecurityMode::None, &users[..]);
         return builder.add_endpoint("none", none);

@@ -25,6 +25,7 @@ pub(crate) mod pki;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
+use onescan_server::access::Register;
 use thiserror::Error;
 
 #[cfg(not(feature = "opcua"))]
@@ -43,6 +44,9 @@ pub(crate) use endpoints::*;
 pub struct Access {
     /// User and password; without them anybody is let in.
     pub user: Option<(String, String)>,
+    /// Tokens: who has one of an operator's is let in by its name, with the token as password. They count in place of
+    /// `user`.
+    pub register: Option<Arc<Register>>,
     /// The folder with the server's certificates and those of clients it trusts; with it there are no endpoints
     /// without security.
     pub pki: Option<PathBuf>,

@@ -20,10 +20,10 @@ use super::coupled::Coupled;
 use super::effort::{Drives, Mark, Motion};
 use super::fitting::Fitting;
 use super::machine::Misfit;
-use super::mechanism::{Coordinates, Link, Mechanism, Surroundings, mechanisms};
+use super::mechanism::{Coordinates, Guided, Link, Mechanism, Surroundings, guided, mechanisms};
 use super::scene::Scene;
 use super::scene::model::JointKind;
-use super::world::{World, local_frames, measured_axis};
+use super::world::{SWEEPS_WITH_JOINTS, World, local_frames, measured_axis};
 
 /// Mechanisms, fittings of joints, and how joints were measured last.
 pub(super) struct Articulation {
@@ -37,6 +37,10 @@ pub(super) struct Articulation {
     /// The scene's joints.
     links: Vec<Link>,
     couplings: Vec<Coupled>,
+    /// Robots without dynamics, whose joints are not among those of mechanisms and of the engine.
+    guided: Vec<Guided>,
+    /// Whether each of the scene's joints is of one of these.
+    is_guided: Vec<bool>,
 }
 
 /// A mechanism and the shapes of its bodies that collide.
@@ -61,6 +65,8 @@ impl Articulation {
             motions: Vec::new(),
             links: Vec::new(),
             couplings: Vec::new(),
+            guided: Vec::new(),
+            is_guided: Vec::new(),
         }
     }
 
@@ -76,8 +82,19 @@ impl Articulation {
             let frames = local_frames(&world.physics, joint, bodies[0], bodies[1]);
             Link { joint: Some(index), handle: world.joint(index), kind: joint.kind, bodies, frames }
         });
+        let links: Vec<_> = links.collect();
+        let is_guided: Vec<_> = scene.joints.iter().map(|joint| joint.guided).collect();
+        let ours: Vec<_> = links.iter().zip(&is_guided).filter(|(_, guided)| **guided).map(|(link, _)| *link).collect();
+        let follows: Vec<_> = scene.joints.iter().map(|joint| joint.follows).collect();
+        for link in &ours {
+            if let Some(joint) = world.physics.impulse_joints.get_mut(link.handle, false) {
+                joint.data.set_enabled(false);
+            }
+        }
         Self {
-            links: links.collect(),
+            guided: guided(&ours, &follows, &world.physics.bodies),
+            is_guided,
+            links,
             couplings: Coupled::all(scene),
             fittings: (0..scene.joints.len()).map(|joint| Fitting::new(scene, joint)).collect(),
             gauges: scene.joints.iter().map(|joint| Gauge::new(world, joint)).collect(),
@@ -99,7 +116,8 @@ impl Articulation {
         physics: &PhysicsWorld,
         actuators: &[Actuator],
     ) {
-        let links: Vec<_> = self.links.iter().chain(holds).copied().collect();
+        let moved = self.links.iter().zip(&self.is_guided).filter(|(_, guided)| !**guided).map(|(link, _)| link);
+        let links: Vec<_> = moved.chain(holds).copied().collect();
         let last = |joint: usize| self.motions[joint].position - self.fittings[joint].initial;
         let (found, others) = mechanisms(&links, &self.couplings, &physics.bodies, last);
         self.others = others;
@@ -164,11 +182,16 @@ impl World {
         }
     }
 
-    /// The first coupling whose joints are in no mechanism, which alone keeps couplings; its index.
-    pub(super) fn uncoupled(&self) -> Option<usize> {
-        let Articulation { mechanisms, couplings, .. } = &self.articulation;
-        let kept = |joint: usize| mechanisms.iter().any(|member| member.mechanism.coupled().any(|own| own == joint));
-        couplings.iter().position(|coupled| !kept(coupled.joint))
+    /// The first coupling of the scene whose joints are in no mechanism, which alone keeps couplings; its
+    /// index.
+    pub(super) fn uncoupled(&self, scene: &Scene) -> Option<usize> {
+        scene.couplings.iter().position(|coupling| !self.keeps(coupling.joint))
+    }
+
+    /// Whether a mechanism keeps the joint to a coupling.
+    pub(super) fn keeps(&self, joint: usize) -> bool {
+        let mut mechanisms = self.articulation.mechanisms.iter();
+        mechanisms.any(|member| member.mechanism.coupled().any(|own| own == joint))
     }
 
     /// The coordinate and velocity of a joint.
@@ -193,9 +216,16 @@ impl World {
     pub(super) fn substep(&mut self, part: [f64; 2], drives: &mut dyn Drives) {
         let dt_s = self.physics.integration_parameters.dt;
         self.arm(part, dt_s, drives);
+        self.guide(part[1], dt_s);
         self.physics.step();
         let Self { physics, actuators, articulation, .. } = self;
-        let Articulation { mechanisms, others, fittings, gauges, motions, .. } = articulation;
+        let Articulation { mechanisms, others, fittings, gauges, motions, guided, .. } = articulation;
+        for robot in guided {
+            robot.put(&mut physics.bodies);
+            for (joint, position, velocity) in robot.joints() {
+                motions[joint] = Mark { position: fittings[joint].initial + position, velocity };
+            }
+        }
         let iterations = physics.integration_parameters.num_solver_iterations;
         let follow = |index: usize, to: Mark, from: Mark, actuators: &mut [Actuator], drives: &mut dyn Drives| {
             let actuator = &mut actuators[index];
@@ -242,10 +272,20 @@ impl World {
         }
     }
 
+    /// Sends robots without dynamics on their way.
+    fn guide(&mut self, part: f64, dt_s: f64) {
+        let Self { physics, actuators, articulation, .. } = self;
+        let Articulation { guided, fittings, .. } = articulation;
+        for robot in guided {
+            robot.lead((part, dt_s), actuators, fittings, &mut physics.bodies);
+        }
+    }
+
     /// Makes all actuators motors of the engine.
     fn arm(&mut self, part: [f64; 2], dt_s: f64, drives: &dyn Drives) {
         let Self { physics, actuators, articulation, frictions, .. } = self;
-        let mut moves = vec![true; actuators.len()];
+        let is_guided = &articulation.is_guided;
+        let mut moves: Vec<_> = actuators.iter().map(|actuator| !is_guided[actuator.joint]).collect();
         for member in &mut articulation.mechanisms {
             let near = member.meets(&physics.narrow_phase, |pair| may_touch(pair, physics));
             if member.attached != Some(near) {
@@ -258,6 +298,8 @@ impl World {
                 moves[*index] = false;
             }
         }
+        let jointed = physics.impulse_joints.iter().any(|(_, joint)| joint.data.is_enabled());
+        physics.integration_parameters.num_internal_pgs_iterations = if jointed { SWEEPS_WITH_JOINTS } else { 1 };
         let detached =
             |joint: usize| actuators.iter().zip(&moves).any(|(actuator, moves)| actuator.joint == joint && !moves);
         for (joint, friction) in frictions.iter().filter(|(joint, _)| !detached(*joint)) {
@@ -295,6 +337,10 @@ impl World {
             return Err(Misfit("it has other joints and drives".to_owned()));
         }
         self.articulation.motions = memory.motions;
+        let Articulation { guided, motions, fittings, .. } = &mut self.articulation;
+        for robot in guided {
+            robot.restore(motions, fittings);
+        }
         self.find_mechanisms();
         let members = &mut self.articulation.mechanisms;
         if members.len() != memory.mechanisms.len()

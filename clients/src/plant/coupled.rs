@@ -37,9 +37,17 @@ struct Knot {
 }
 
 impl Coupled {
-    /// The couplings of a scene.
+    /// The couplings of a scene; behind them those of joints that follow others, which stand where these
+    /// take them.
     pub(crate) fn all(scene: &Scene) -> Vec<Self> {
-        scene.couplings.iter().map(|coupling| Self::new(coupling, scene)).collect()
+        let written = scene.couplings.iter().map(|coupling| Self::new(coupling, scene));
+        let moved = scene.joints.iter().enumerate().filter(|(_, joint)| !joint.guided);
+        let follows = moved.filter_map(|(joint, described)| {
+            let follows = described.follows?;
+            let of = vec![Of { joint: follows.joint, law: Law::Ratio(follows.factor) }];
+            Some(Self { joint, of, backlash: 0.0 })
+        });
+        written.chain(follows).collect()
     }
 
     /// Whether it is about this joint.

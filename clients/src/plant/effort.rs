@@ -87,6 +87,14 @@ impl Path {
         let ends = rest * rest * (1.0 + 2.0 * part) * from.position + part * part * (3.0 - 2.0 * part) * to.position;
         ends + part * rest * turn_s * (rest * from.velocity - part * to.velocity)
     }
+
+    /// How fast it goes there, m/s or rad/s.
+    pub(crate) fn velocity(&self, part: f64) -> f64 {
+        let Self { from, to, turn_s } = *self;
+        let rest = 1.0 - part;
+        let way = 6.0 * part * rest * (to.position - from.position) / turn_s;
+        way + rest * (1.0 - 3.0 * part) * from.velocity + part * (3.0 * part - 2.0) * to.velocity
+    }
 }
 
 #[cfg(test)]
@@ -104,6 +112,7 @@ mod tests {
         };
         for part in [0.0, 0.3, 0.5, 1.0] {
             assert!((path.at(part) - at(0.2 * part)).abs() < 1e-16, "{part}");
+            assert!((path.velocity(part) - (1.0 + 3.0 * 0.2 * part)).abs() < 1e-14, "{part}");
         }
     }
 }

@@ -1,6 +1,7 @@
 //! A joint that follows another, as the fingers of a gripper follow the one that is driven: `factor` times
-//! the other's coordinate, and `offset`. It is led and does not lead: what holds the follower does not
-//! hold its leader.
+//! the other's coordinate, and `offset`. In a mechanism the two are coupled, and what holds one holds the
+//! other. Where the engine moves the joints, as in a loop or on a base that floats, a motor leads the
+//! follower: what holds it does not hold its leader then.
 
 use onescan_server::client::ClientFault;
 
@@ -36,6 +37,7 @@ impl Follower {
         let (position, velocity) = (factor * position + offset, factor * velocity);
         let from = Setpoint { position, velocity };
         let to = Setpoint { position: position + velocity * dt_s, velocity };
-        self.motor.follow(Path { from, to, turn_s: dt_s }, None, world)
+        let most = if world.keeps(self.motor.joint()) { 0.0 } else { f64::INFINITY };
+        self.motor.follow(Path { from, to, turn_s: dt_s }, Some(most), world)
     }
 }

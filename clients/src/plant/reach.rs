@@ -32,17 +32,20 @@ impl Reach {
     }
 
     /// How far a body reaches; without end if it is not known.
+    #[inline]
     fn radius_m(&self, handle: RigidBodyHandle) -> f64 {
         self.radii_m.get(handle.0.into_raw_parts().0 as usize).copied().unwrap_or(f64::INFINITY)
     }
 
     /// False only if a body whose origin is at a place cannot touch a ball.
+    #[inline]
     pub(super) fn meets_ball(&self, handle: RigidBodyHandle, origin: Vector, centre: Vector, radius_m: f64) -> bool {
         let reach_m = self.radius_m(handle) + radius_m;
         (origin - centre).length_squared() <= reach_m * reach_m
     }
 
     /// False only if a body whose origin is at a place cannot be met by a ray of unit length.
+    #[inline]
     pub(super) fn meets_ray(&self, handle: RigidBodyHandle, origin: Vector, ray: &Ray) -> bool {
         let (away, reach_m) = (origin - ray.origin, self.radius_m(handle));
         let along = away.dot(ray.dir);

@@ -65,6 +65,21 @@ pub(super) fn attach(
     physics.insert_collider(collider, Some(body))
 }
 
+/// Takes the shapes of a body that nothing collides with from the engine's search for contacts, in which
+/// each would be moved with its body and compared with what is near, and gives their masses to the body.
+pub(super) fn leave_alone(physics: &mut PhysicsWorld, body: &Body, handle: RigidBodyHandle) {
+    let mut mass = stated(body);
+    let shapes: Vec<_> = physics.bodies[handle].colliders().to_vec();
+    let alone = |shape: &Collider| shape.collision_groups().memberships == Group::NONE;
+    for shape in shapes {
+        let Some(shape) = physics.colliders.get_mut(shape).filter(|shape| alone(shape)) else { continue };
+        let local = shape.position_wrt_parent().copied().unwrap_or(Pose::IDENTITY);
+        mass += shape.mass_properties().transform_by(&local);
+        shape.set_enabled(false);
+    }
+    physics.bodies[handle].set_additional_mass_properties(mass, false);
+}
+
 fn collider(body: &Body, shape: &Shape) -> ColliderBuilder {
     let builder = form(shape);
     let builder = match body.mass {

@@ -12,16 +12,23 @@ use super::machine::Misfit;
 use super::pose;
 use super::reach::Reach;
 use super::scene::model::{Joint, JointKind, Scene};
-use super::solid::{attach, insert_body};
+use super::solid::{attach, insert_body, leave_alone};
 
-/// Sweeps over all joints and contacts in one solver iteration.
-const SWEEPS: usize = 4;
+/// Sweeps over all joints and contacts in one solver iteration while the engine has joints: one between a
+/// light and a heavy body needs several to carry the load. Contacts alone need one, as the engine is made.
+pub(super) const SWEEPS_WITH_JOINTS: usize = 4;
+/// The spring by which a contact with a fixed body keeps bodies apart swings once in so many of the solver's
+/// iterations. The engine gives it a stiffness by the mass that presses, so that a light plate under a strong
+/// press would sink in; by iterations, it sinks in by a part of the way that the force would move it in one.
+const FIRM_ITERATIONS: f64 = 0.6;
 
 /// A body, or one shape of it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Surface {
     pub(super) body: RigidBodyHandle,
-    pub(super) shape: Option<ColliderHandle>,
+    shape: Option<ColliderHandle>,
+    /// A ball around it, as the body sees it; none for a body without a shape.
+    ball: Option<BoundingSphere>,
 }
 
 /// The rigid bodies of a plant, and where each thing of the scene is in them.
@@ -55,6 +62,9 @@ impl World {
         let ground = physics.insert_body(RigidBodyBuilder::fixed());
         let bodies: Vec<_> = scene.bodies.iter().map(|body| insert_body(&mut physics, body)).collect();
         let shapes = scene.shapes.iter().map(|shape| attach(&mut physics, shape, scene, bodies[shape.body])).collect();
+        for (body, handle) in scene.bodies.iter().zip(&bodies) {
+            leave_alone(&mut physics, body, *handle);
+        }
         let joints = scene
             .joints
             .iter()
@@ -98,7 +108,7 @@ impl World {
     /// # Errors
     /// A body whose state is no longer finite or that has left the world.
     pub(super) fn step(&mut self, scene: &Scene, drives: &mut dyn Drives) -> Result<(), ClientFault> {
-        if let Some(index) = self.uncoupled() {
+        if let Some(index) = self.uncoupled(scene) {
             let name = &scene.couplings[index].name;
             return Err(ClientFault::new(format!(
                 "coupling `{name}`: its joints must be in trees that stand on the ground or on fixed bodies; \
@@ -220,14 +230,20 @@ impl World {
         self.reach.meets_ray(handle, self.body(handle).translation(), ray)
     }
 
-    /// A ball around a surface; none for one without a shape.
-    pub(super) fn ball_around(&self, one: Surface) -> Option<BoundingSphere> {
-        let alone = one.shape.and_then(|shape| self.physics.colliders.get(shape)).map(|collider| {
+    /// A body, or one shape of it.
+    pub(super) fn surface(&self, body: RigidBodyHandle, shape: Option<ColliderHandle>) -> Surface {
+        let own = self.body(body).colliders().iter().filter(|own| shape.is_none_or(|shape| shape == **own));
+        let balls = own.filter_map(|own| self.physics.colliders.get(*own)).map(|collider| {
             let local = collider.position_wrt_parent().copied().unwrap_or(Pose::IDENTITY);
-            collider.shape().compute_bounding_sphere(&(*self.body(one.body).position() * local))
+            collider.shape().compute_bounding_sphere(&local)
         });
-        let all = || self.shapes(one.body).map(|(pose, shape)| shape.compute_bounding_sphere(&pose));
-        alone.or_else(|| all().reduce(|one, other| one.merged(&other)))
+        Surface { body, shape, ball: balls.reduce(|one, other| one.merged(&other)) }
+    }
+
+    /// A ball around a surface; none for one without a shape, and for one that is out of the world.
+    pub(super) fn ball_around(&self, one: Surface) -> Option<BoundingSphere> {
+        let body = self.body(one.body);
+        one.ball.filter(|_| body.is_enabled()).map(|ball| ball.transform_by(body.position()))
     }
 
     /// False only if a body cannot touch anything in a ball.
@@ -249,15 +265,19 @@ impl World {
         }
     }
 
-    /// True if a shape touches a body. Spheres around both come first: most bodies are far away.
+    /// True if a shape touches a body. Of a body with several shapes most are far away: spheres tell so.
     fn meets(&self, pose: &Pose, shape: &dyn rapier3d::parry::shape::Shape, other: RigidBodyHandle) -> bool {
         use rapier3d::parry::query::intersection_test;
+        // the engine's shapes all know how to meet each other
+        let meet = |place, met| intersection_test(pose, shape, &place, met).is_ok_and(|met| met.intersecting);
+        if self.body(other).colliders().len() == 1 {
+            return self.shapes(other).any(|(place, met)| meet(place, met));
+        }
         let sphere = shape.compute_bounding_sphere(pose);
-        self.shapes(other).any(|(place, met)| {
-            // the engine's shapes all know how to meet each other
-            met.compute_bounding_sphere(&place).intersects(&sphere)
-                && intersection_test(pose, shape, &place, met).is_ok_and(|met| met.intersecting)
-        })
+        let near = |place: &Pose, met: &dyn rapier3d::parry::shape::Shape| {
+            met.compute_bounding_sphere(place).intersects(&sphere)
+        };
+        self.shapes(other).any(|(place, met)| near(&place, met) && meet(place, met))
     }
 
     /// How many pairs of these bodies, which are in rising order, are in contact.
@@ -351,11 +371,17 @@ impl World {
 }
 
 fn integration(scene: &Scene, period: TimeSpan) -> IntegrationParameters {
+    let dt = period.as_secs_f64() / f64::from(scene.substeps);
+    let frequency_hz = f64::from(scene.solver_iterations) / (FIRM_ITERATIONS * dt);
+    let usual = SpringCoefficients::<f64>::contact_static_defaults();
     IntegrationParameters {
-        dt: period.as_secs_f64() / f64::from(scene.substeps),
+        dt,
+        static_contact_softness: SpringCoefficients {
+            natural_frequency: usual.natural_frequency.max(frequency_hz),
+            ..usual
+        },
         num_solver_iterations: scene.solver_iterations as usize,
-        // a joint between a light and a heavy body needs several sweeps to carry the load
-        num_internal_pgs_iterations: SWEEPS,
+        num_internal_pgs_iterations: 1,
         // without it a motor below a load converges over many steps and lets the load sag meanwhile
         warmstart_joints: true,
         ..IntegrationParameters::default()

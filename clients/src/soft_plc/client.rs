@@ -14,6 +14,7 @@ use onescan_server::signal::{ClientName, Port, SignalName};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
 use super::bind::{Bindings, Bound, Place};
+use super::journal::{Journalling, Keeper};
 use super::trace::{TraceSink, Tracing};
 use super::watch::{SightingSink, Watch, Watcher};
 
@@ -48,6 +49,7 @@ pub struct SoftPlcClient {
     /// Where what was executed goes when the client's part is over.
     coverage: Option<CoverageSink>,
     tracing: Option<Tracing>,
+    journal: Option<Keeper>,
     watcher: Option<Watcher>,
 }
 
@@ -81,6 +83,7 @@ impl SoftPlcClient {
             presets: Vec::new(),
             coverage: None,
             tracing: None,
+            journal: None,
             watcher: None,
         })
     }
@@ -133,6 +136,12 @@ impl SoftPlcClient {
             (port.name.clone(), (offset..offset + run.memory.size(run.len), bit))
         });
         self.tracing = Some(Tracing::start(&self.request.name, &mut self.plc, signals, outputs, sink));
+    }
+
+    /// Hands over what each scan does. The application must have been compiled for tracing if acts are wanted, and
+    /// [`Self::trace`] is not for the same run then.
+    pub fn journal(&mut self, journalling: &Journalling) {
+        self.journal = Keeper::new(&self.request.name, journalling);
     }
 
     /// Looks at variables after the set-up and after every turn, all changes if `changes`, else for what
@@ -263,7 +272,13 @@ impl Client for SoftPlcClient {
         for run in &self.inputs {
             run.give(inputs, memory);
         }
+        if let Some(journal) = &mut self.journal {
+            journal.begin(&mut self.plc, t_v);
+        }
         let scanned = self.plc.scan(t_v);
+        if let Some(journal) = &self.journal {
+            journal.end(&self.plc, t_v);
+        }
         if let Some(tracing) = &self.tracing {
             tracing.note(&self.plc, t_v);
         }

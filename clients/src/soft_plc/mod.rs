@@ -4,12 +4,14 @@
 //! |---|---|
 //! | [`bind`] | which signal is which variable of the PLC |
 //! | `client` | inputs in, scan, outputs out |
+//! | [`journal`] | what it does scan by scan, handed over |
 //! | [`trace`] | which statements wrote its outputs, which ways decisions went |
 //! | `variables` | variables written and forced by path |
 //! | [`watch`] | variables that somebody looks at |
 
 pub mod bind;
 mod client;
+pub mod journal;
 pub mod trace;
 mod variables;
 pub mod watch;

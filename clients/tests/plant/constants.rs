@@ -59,15 +59,26 @@ fn what_cannot_act_is_told_with_its_place() {
     insta::assert_snapshot!(told.join("\n"));
 }
 
-/// A parameter of the same name takes precedence, so no constant can be written for such an input.
-const HIDDEN: &[(&str, &str)] = &[("hydraulic_cylinder", "command"), ("servo_axis", "speed_m_s")];
+#[test]
+fn an_input_that_a_parameter_hides_takes_a_constant_too() {
+    let scene = "version = 1\n[[component]]\nname = \"press\"\nkind = \"hydraulic_cylinder\"\n\
+                 command = \"velocity\"\ncommand_constant = 0.05\nvelocity_m_s_signal = \"Speed\"\n\
+                 [[component]]\nname = \"axis\"\nkind = \"servo_axis\"\nneeds_homing = false\nspeed_m_s = 1.0\n\
+                 speed_m_s_constant = 0.2\nenable = true\njog_forward = true\nvelocity_m_s_signal = \"Jog\"\n";
+    let mut bench = Bench::new(scene);
+    bench.run_us(500_000);
+    assert!((bench.read::<f64>("Speed") - 0.05).abs() < 1e-3, "{}", bench.read::<f64>("Speed"));
+    assert!((bench.read::<f64>("Jog") - 0.2).abs() < 1e-6, "{}", bench.read::<f64>("Jog"));
+    let refused = refusal(&scene.replace("command_constant = 0.05", "command_constant = \"slow\""));
+    assert!(refused.contains("command_constant"), "{refused}");
+}
 
 #[test]
-fn every_input_takes_a_constant_but_those_that_are_listed() {
+fn every_input_has_a_key_of_its_own_for_a_constant() {
     for kind in onescan_clients::plant::component::kinds() {
         for input in &kind.inputs {
-            let hidden = HIDDEN.contains(&(kind.name, input.key));
-            assert_eq!(kind.takes_constant(input.key), !hidden, "{} {}", kind.name, input.key);
+            let key = kind.constant_key(input.key);
+            assert!(kind.parameters.iter().all(|parameter| parameter.key != key), "{} {key}", kind.name);
         }
     }
 }

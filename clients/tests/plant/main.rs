@@ -12,6 +12,7 @@ mod failures;
 mod faults;
 mod fittings;
 mod friction;
+mod guided;
 mod handling;
 mod holding;
 mod measuring;

@@ -115,3 +115,51 @@ fn a_pendulum_stops_at_its_limit_and_stays() {
         assert!((x - f64::cos(1.0)).abs() < 1e-12 && (z + f64::sin(1.0)).abs() < 1e-12, "{period_us}: {x} {z}");
     }
 }
+
+/// A bar between two joints, with a mass; turned about y.
+fn bar(name: &str, [x0, z0]: [f64; 2], [x1, z1]: [f64; 2], kg: f64) -> String {
+    let (dx, dz) = (x1 - x0, z1 - z0);
+    let (length_m, pitch_deg) = (dx.hypot(dz), -dz.atan2(dx).to_degrees());
+    format!(
+        "[[body]]\nname = \"{name}\"\nkind = \"dynamic\"\nshape = \"box\"\nsize_m = [{length_m:?}, 0.05, 0.05]\n\
+         mass_kg = {kg:?}\nposition_m = [{:?}, 0.0, {:?}]\nrpy_deg = [0.0, {pitch_deg:?}, 0.0]\ngroup = \"bars\"\n",
+        0.5 * (x0 + x1),
+        0.5 * (z0 + z1)
+    )
+}
+
+fn pin(name: &str, parent: &str, child: &str, [x, z]: [f64; 2]) -> String {
+    format!(
+        "[[joint]]\nname = \"{name}\"\nkind = \"revolute\"\nparent = \"{parent}\"\nchild = \"{child}\"\n\
+         anchor_m = [{x:?}, 0.0, {z:?}]\naxis = [0.0, 1.0, 0.0]\n"
+    )
+}
+
+#[test]
+fn a_position_drive_of_a_closed_loop_rests_on_its_target() {
+    let [a, b, c, d] = [[0.0, 0.0], [0.0, 0.5], [1.0, 0.5], [1.0, 0.0]];
+    let bars = bar("crank", a, b, 2.0) + &bar("coupler", b, c, 4.0) + &bar("rocker", d, c, 2.0);
+    let pins = pin("drive", "ground", "crank", a) + &pin("left", "crank", "coupler", b);
+    let pins = pins + &pin("right", "coupler", "rocker", c) + &pin("foot", "ground", "rocker", d);
+    let scene = format!(
+        "version = 1\n{bars}{pins}[[axis]]\nname = \"drive\"\njoint = \"drive\"\ndrive = \"position\"\n\
+         command_signal = \"To\"\nposition_signal = \"Is\"\nspeed_rad_s = 1.0\nacceleration_rad_s2 = 4.0\n"
+    );
+    // what an engine's step leaves over, moving and at rest, rad: it grows with the square of the step
+    for (period_us, moving, resting) in [(100, 4e-7, 3e-7), (1_000, 4e-5, 3e-5), (10_000, 4e-3, 3e-3)] {
+        let mut bench = Bench::at_us(&scene, period_us);
+        bench.command("To", 0.8);
+        let mut worst = 0.0_f64;
+        for turn in 1..=1_000_000 / period_us {
+            bench.turn();
+            // a quarter of a second at 4 rad/s², then 1 rad/s, and the same backwards from 0.8 s on
+            let t_s = (turn * period_us) as f64 * 1e-6;
+            let ramp = |s: f64| if s < 0.25 { 2.0 * s * s } else { s - 0.125 };
+            let path = if t_s < 0.8 { ramp(t_s) } else { 0.8 - ramp((1.05 - t_s).max(0.0)) };
+            worst = worst.max((bench.read::<f64>("Is") - path).abs());
+        }
+        bench.run_us(1_000_000);
+        let rest = (bench.read::<f64>("Is") - 0.8).abs();
+        assert!(worst < moving && rest < resting, "{period_us}: {worst} {rest}");
+    }
+}

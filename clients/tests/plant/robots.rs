@@ -270,3 +270,58 @@ fn all_that_is_wrong_with_a_robot_is_told_at_once_in_its_own_file() {
     all.retain(|said| !said.is_empty());
     insta::assert_snapshot!(all.join("\n---\n"));
 }
+
+/// A slide that lifts a finger: half a metre for each metre.
+const LIFT: &str = r#"<robot name="lift">
+  <link name="base"/>
+  <link name="cart"><inertial><mass value="1"/><inertia ixx="0.1" iyy="0.1" izz="0.1"/></inertial></link>
+  <link name="load"><inertial><mass value="2"/><inertia ixx="0.1" iyy="0.1" izz="0.1"/></inertial></link>
+  <joint name="drive" type="prismatic">
+    <parent link="base"/><child link="cart"/><axis xyz="1 0 0"/><limit lower="0" upper="1" effort="9" velocity="9"/>
+  </joint>
+  <joint name="lift" type="prismatic">
+    <parent link="base"/><child link="load"/><axis xyz="0 0 1"/><limit lower="0" upper="1" effort="9" velocity="9"/>
+    <mimic joint="drive" multiplier="0.5"/>
+  </joint>
+</robot>"#;
+
+const LIFTING: &str = r#"
+version = 1
+
+[[urdf]]
+name = "clock"
+file = "robots/urdf/pendulum.urdf"
+
+[[axis]]
+name = "drive"
+joint = "clock.drive"
+drive = "position"
+command_signal = "To"
+position_signal = "Is"
+force_signal = "Force"
+speed_m_s = 1.0
+acceleration_m_s2 = 2.0
+"#;
+
+#[test]
+fn what_follows_weighs_on_what_it_follows() {
+    let mut plant = plant(LIFTING, LIFT).expect("a scene");
+    let join = plant.join();
+    let (reads, writes) = (PortLayout::new(join.reads), PortLayout::new(join.writes));
+    let (mut inputs, mut outputs) = (vec![0; reads.size()], vec![0; writes.size()]);
+    plant.setup(&mut outputs).expect("a set-up");
+    reads.slot::<f64>("To").expect("an input").set(&mut inputs, 0.4);
+    let mut run = |from: u64, to: u64| {
+        for k in from..=to {
+            plant.turn(VirtualTime::from_nanos(k * 10_000_000), &inputs, &mut outputs).expect("a turn");
+        }
+        ["Is", "Force"].map(|name| writes.slot::<f64>(name).expect("an output").get(&outputs))
+    };
+    let [_, starts_n] = run(1, 20);
+    // 1 kg and 0.5² of 2 kg at 2 m/s², and half of the weight
+    assert!((starts_n - (1.5 * 2.0 + 9.81)).abs() < 1e-6, "{starts_n}");
+    let [is_m, rests_n] = run(21, 300);
+    assert!((is_m - 0.4).abs() < 1e-9 && (rests_n - 9.81).abs() < 1e-6, "{is_m} {rests_n}");
+    let load = plant.poses().find(|pose| pose.name == "clock.load").expect("a body").position_m;
+    assert!((load[2] - 0.2).abs() < 1e-9, "{load:?}");
+}

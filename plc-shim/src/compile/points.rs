@@ -53,9 +53,14 @@ impl Points {
         self.traced
     }
 
+    /// True for the user's text.
+    pub(crate) fn is_own(&self, span: Span) -> bool {
+        !self.library.contains(&span.file)
+    }
+
     /// The point's number; nothing if it is not the user's.
     pub(crate) fn index(&mut self, kind: PointKind, unit: &str, span: Span) -> Option<u32> {
-        if self.library.contains(&span.file) {
+        if !self.is_own(span) {
             return None;
         }
         let next = self.list.len() as u32;

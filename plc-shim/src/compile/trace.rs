@@ -1,5 +1,6 @@
 //! Statements tell the host when they begin and end, and decisions which way they go, so that it can
-//! say which statement wrote a byte, and why that one.
+//! say which statement wrote a byte, and why that one. What statements read is reported, too: it leads
+//! back to the statement that a value comes from.
 //!
 //! The end of an assignment says what it has written, as far as that is known; what other
 //! statements write the host finds by comparing. Statements of the library are silent: what they
@@ -18,8 +19,11 @@ pub(crate) const END: &str = "end";
 /// A statement, by its point, goes one of its ways, by the outcome's point.
 pub(crate) const CHOOSE: &str = "choose";
 
+/// A place is read; address and size follow.
+pub(crate) const READ: &str = "read";
+
 /// The imports, in their order behind all others, with their numbers of parameters.
-pub(crate) const IMPORTS: [(&str, usize); 3] = [(BEGIN, 1), (END, 3), (CHOOSE, 2)];
+pub(crate) const IMPORTS: [(&str, usize); 4] = [(BEGIN, 1), (END, 3), (CHOOSE, 2), (READ, 2)];
 
 /// Parameters of an import; there is no result.
 pub(crate) fn parameters(count: usize) -> Vec<ValType> {

@@ -313,6 +313,7 @@ features! {
     ComputedInitialValues "an initial value that is no constant",
     BitArithmetic "a bit string as a number, or a number as a bit string",
     EnumerationsAsIntegers "an enumeration as an integer, or an integer as an enumeration",
+    NamedValues "named values as numbers of their type, and the other way, `TYPE C : INT (A := 1);`",
     SignChange "an integer as one of the other sign, without conversion",
     LossyReals "a REAL from an LREAL or a wide integer, without conversion",
     CharactersAsBytes "characters `s[0]` as BYTE, with a 0 behind the last",
@@ -353,6 +354,12 @@ features! {
     RepeatedArguments "a parameter given twice in a call: the last value counts",
     EmptyArrays "an array without elements, `ARRAY [0..-1]`",
     LooseUnderscores "two underscores between the digits of a number",
+    Views "a view of another variable's memory, `b AT a : DWORD`",
+    ElseColon "`ELSE:` in a `CASE`",
+    LooseParts "a bit of an enumeration's number, or `.0` of a BOOL",
+    OutputsHandedOn "an instance's output for a `VAR_IN_OUT`",
+    EmptyBases "a comma behind the last base, `EXTENDS A,`",
+    ShiftedLiterals "a shift of a literal without a type, `SHL(1, n)`",
     GenericConstants "generic blocks: `VAR_GENERIC CONSTANT`, `FB<8>`",
 }
 

@@ -48,6 +48,11 @@ pub const FEATURES: &[FeatureRow] = &[
     row(Feature::ComputedInitialValues, &[Codesys, TwinCat], "CODESYS and TwinCAT: initialization of variables"),
     row(Feature::BitArithmetic, &[Codesys, TwinCat], "CODESYS and TwinCAT: integer data types list BYTE to LWORD"),
     row(Feature::EnumerationsAsIntegers, &[Codesys, TwinCat], "CODESYS and TwinCAT: enumerations that are not strict"),
+    row(
+        Feature::NamedValues,
+        &[Iec3, Codesys, TwinCat],
+        "3rd ed. 6.4.4.3; CODESYS and TwinCAT: enumerations that are not strict",
+    ),
     row(Feature::SignChange, &[Codesys, TwinCat], "CODESYS and TwinCAT: implicit conversion, a warning only"),
     row(Feature::LossyReals, &[Codesys, TwinCat], "CODESYS and TwinCAT: implicit conversion, a warning only"),
     row(
@@ -56,7 +61,11 @@ pub const FEATURES: &[FeatureRow] = &[
         "CODESYS and TwinCAT: STRING, index access; else 3rd ed. 6.4.2.2",
     ),
     row(Feature::VendorParameters, &[Codesys, TwinCat], "CODESYS: library Standard; TwinCAT: Tc2_Standard"),
-    row(Feature::GenericInputs, &[Codesys, TwinCat], "CODESYS and TwinCAT: data types ANY and ANY_<type>"),
+    row(
+        Feature::GenericInputs,
+        &[Codesys, TwinCat, SiemensScl],
+        "CODESYS and TwinCAT: data types ANY and ANY_<type>; S7-SCL V5.3: parameter type ANY, of VAR_INPUT here",
+    ),
     row(Feature::IntegerShifts, &[Codesys, TwinCat, SiemensScl], "CODESYS V2.3, TwinCAT 2: SHR; TIA Portal: SHR, ROR"),
     row(Feature::ClockFunctions, &[Codesys, TwinCat], "CODESYS and TwinCAT: operators TIME, LTIME"),
     row(
@@ -124,6 +133,20 @@ pub const FEATURES: &[FeatureRow] = &[
     row(Feature::RepeatedArguments, &[Codesys, TwinCat], "TwinCAT: accepts it, as public projects show"),
     row(Feature::EmptyArrays, &[Codesys, TwinCat], "TwinCAT: accepts it, as public projects show"),
     row(Feature::LooseUnderscores, &[TwinCat], "TwinCAT: accepts it, as public projects show"),
+    row(Feature::Views, &[SiemensScl], "S7-SCL V5.3: declaration of views; TIA Portal: overlaying tags with AT"),
+    row(Feature::ElseColon, &[SiemensScl], "S7-SCL V5.3: CASE statement"),
+    row(
+        Feature::LooseParts,
+        &[Codesys, TwinCat],
+        "CODESYS and TwinCAT: bit access in variables, of integers; accept it, as public projects show",
+    ),
+    row(Feature::OutputsHandedOn, &[Codesys, TwinCat], "TwinCAT: accepts it, as public projects show"),
+    row(Feature::EmptyBases, &[Codesys, TwinCat], "TwinCAT: accepts it, as public projects show"),
+    row(
+        Feature::ShiftedLiterals,
+        &[Codesys, TwinCat],
+        "CODESYS and TwinCAT: SHL, \"the number of bits for the arithmetic operation is given by the data type of the input\"; constants, the smallest type",
+    ),
     row(Feature::GenericConstants, &[Codesys, TwinCat], "CODESYS and TwinCAT: VAR_GENERIC CONSTANT"),
 ];
 

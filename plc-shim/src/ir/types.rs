@@ -50,6 +50,8 @@ pub(crate) enum Type {
         name: String,
         base: ElementaryType,
         values: Vec<(String, i128)>,
+        /// The declaration says the base type: its other values are of the type as well (3rd ed. 6.4.4.3).
+        has_base: bool,
     },
     Array {
         dimensions: Vec<Dimension>,
@@ -248,11 +250,18 @@ impl TypeTable {
         id
     }
 
-    pub(crate) fn enumeration(&mut self, name: String, base: ElementaryType, values: Vec<(String, i128)>) -> TypeId {
+    /// An enumeration; without a base type in its declaration, of INT.
+    pub(crate) fn enumeration(
+        &mut self,
+        name: String,
+        base: Option<ElementaryType>,
+        values: Vec<(String, i128)>,
+    ) -> TypeId {
+        let (base, has_base) = (base.unwrap_or(ElementaryType::Int), base.is_some());
         // A variable begins with the first value (2nd ed. Table 13).
         let first = values.first().map_or(0, |(_, value)| *value);
         let image = super::Value::Int(first).bytes()[..base.size() as usize].into();
-        self.add(Type::Enumeration { name, base, values }, base.size(), base.size(), image)
+        self.add(Type::Enumeration { name, base, values, has_base }, base.size(), base.size(), image)
     }
 
     /// The array type; `size` is that of the whole array.

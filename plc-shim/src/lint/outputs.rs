@@ -23,8 +23,12 @@ fn writes_outputs(units: &[Unit<'_>]) -> bool {
 }
 
 pub(super) fn lint(unit: &Unit<'_>, units: &[Unit<'_>], findings: &mut Vec<Diagnostic>) {
+    // It may be written through a view.
+    let declared = unit.pou.sections.iter().flat_map(|section| &section.variables);
+    let viewed: Vec<String> = declared.filter_map(Variable::viewed).map(Ident::key).collect();
     for section in &unit.pou.sections {
         let is_output = |variable: &Variable| match section.kind {
+            _ if variable.viewed().is_some() => false,
             SectionKind::Output => true,
             SectionKind::External | SectionKind::InOut => false,
             _ => is_located_output(variable) && !writes_outputs(units),
@@ -32,7 +36,8 @@ pub(super) fn lint(unit: &Unit<'_>, units: &[Unit<'_>], findings: &mut Vec<Diagn
         for name in section.variables.iter().filter(|variable| is_output(variable)).flat_map(|each| &each.names) {
             let uses = unit.usage.get(&name.key());
             // ENO is written by the call itself (2nd ed. 2.5.1.2).
-            if name.key() != "ENO" && uses.written.is_none() && !uses.is_passed && !uses.is_called {
+            let is_viewed = viewed.contains(&name.key());
+            if !is_viewed && name.key() != "ENO" && uses.written.is_none() && !uses.is_passed && !uses.is_called {
                 report(name, findings);
             }
         }

@@ -5,6 +5,7 @@ use std::num::NonZeroUsize;
 use wasmtime::{Config, Engine, Global, Instance, Linker, Memory, Module, Store, Trap, TypedFunc, Val, WasmBacktrace};
 
 use super::fault::MAX_CALLERS;
+use super::journal::Journal;
 use super::plan::RunError;
 use super::row;
 use super::text::link::{HostState, link};
@@ -134,8 +135,23 @@ impl Machine {
     /// A scan begins.
     pub(super) fn begin_trace(&mut self) {
         if let Some(mut trace) = self.store.data_mut().trace.take() {
-            trace.begin_scan(self.memory());
+            trace.begin_scan(self.memory.data(&self.store));
             self.store.data_mut().trace = Some(trace);
+        }
+    }
+
+    /// A scan is over.
+    pub(super) fn end_trace(&mut self) {
+        if let Some(mut trace) = self.store.data_mut().trace.take() {
+            trace.end_scan(self.memory.data(&self.store));
+            self.store.data_mut().trace = Some(trace);
+        }
+    }
+
+    /// Keeps a journal of what a traced scan does, or no longer.
+    pub(super) fn keep_journal(&mut self, is_kept: bool) {
+        if let Some(trace) = &mut self.store.data_mut().trace {
+            trace.journal = is_kept.then(Journal::default);
         }
     }
 

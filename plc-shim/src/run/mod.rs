@@ -15,11 +15,13 @@
 //! | `text` | functions on character strings |
 //! | `state` | its state as bytes |
 //! | `trace`, `way` | which statement wrote a byte; which ways decisions went |
+//! | `journal` | all that a scan did |
 
 mod asserts;
 mod configured;
 mod fault;
 mod force;
+mod journal;
 mod machine;
 mod plan;
 mod row;
@@ -33,6 +35,7 @@ mod way;
 
 pub use asserts::{Asserts, FailedAssert};
 pub use fault::{FaultSite, PlcFault, WriteSite};
+pub use journal::{Act, Statement, StatementId, Wrote};
 pub use plan::{RunError, Task, TaskPlan};
 pub use soft_plc::SoftPlc;
 pub use state::{CodePolicy, PlanDifference, RestoreError};

@@ -7,6 +7,7 @@ use onescan_base::{TimeSpan, VirtualTime};
 
 use super::fault::{self, PlcFault, WriteSite, explain};
 use super::force::Forces;
+use super::journal::{Act, Journal};
 use super::machine::{Machine, Occasion, Trapped};
 use super::plan::{Resolved, RunError, TaskPlan, resolve};
 use super::scheduler::Scheduler;
@@ -185,6 +186,7 @@ impl SoftPlc {
             self.enter(None);
             self.run_entry(self.background[at])?;
         }
+        self.machine.end_trace();
         Ok(())
     }
 
@@ -309,6 +311,16 @@ impl SoftPlc {
     /// watched. What they are is in [`Application::ways`].
     pub fn ways(&self) -> impl Iterator<Item = WayId> {
         self.machine.trace().into_iter().flat_map(|trace| trace.ways.iter().copied().map(WayId))
+    }
+
+    /// Keeps a journal of each scan from here on, or no longer. Places must be watched, be it none.
+    pub fn keep_journal(&mut self, is_kept: bool) {
+        self.machine.keep_journal(is_kept);
+    }
+
+    /// What the last scan did; empty unless the journal is kept. A scan that ended in a fault is in it up to there.
+    pub fn journal(&self) -> &[Act] {
+        self.machine.trace().and_then(|trace| trace.journal.as_ref()).map_or(&[], Journal::acts)
     }
 
     /// The complete state as bytes.

@@ -1,11 +1,13 @@
-//! Who wrote what is watched: the last statement, and the calls and decisions that led to it.
+//! Who wrote what is watched: the last statement, and the calls and decisions that led to it. And all that a scan
+//! did, if its journal is kept.
 
 use std::ops::Range;
 
 use wasmtime::{Caller, Error, Linker, WasmBacktrace};
 
+use super::journal::Journal;
 use super::text::link::HostState;
-use crate::compile::trace::{BEGIN, CHOOSE, END, MODULE};
+use crate::compile::trace::{BEGIN, CHOOSE, END, MODULE, READ};
 
 /// Bytes of memory that are watched.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -35,6 +37,8 @@ pub(in crate::run) struct Trace {
     active: Vec<(u32, Option<u32>)>,
     /// The ways of all decisions of the scan, in their order.
     pub(super) ways: Vec<u32>,
+    /// What the scan does, if that is asked for.
+    pub(super) journal: Option<Journal>,
 }
 
 impl Watched {
@@ -72,11 +76,24 @@ impl Trace {
             watched.look(memory);
             watched.writer = None;
         }
+        if let Some(journal) = &mut self.journal {
+            journal.begin(memory);
+        }
+    }
+
+    /// A scan is over: what changed last, no statement may have written.
+    pub(super) fn end_scan(&mut self, memory: &[u8]) {
+        if let Some(journal) = &mut self.journal {
+            journal.wrote(None, memory, Vec::new);
+        }
     }
 
     /// A unit that a task runs begins: nothing is around its statements.
     pub(in crate::run) fn begin_unit(&mut self) {
         self.active.clear();
+        if let Some(journal) = &mut self.journal {
+            journal.unit_begins();
+        }
     }
 
     /// The statement `statement` goes a way. What began in it and was left early is over.
@@ -90,6 +107,9 @@ impl Trace {
 
     /// The statement `point` has just done something; `stored` is what it says that it has written.
     fn look(&mut self, point: Option<u32>, stored: &Range<usize>, memory: &[u8], frames: impl Fn() -> Frames) {
+        if let Some(journal) = &mut self.journal {
+            journal.wrote(point, memory, &frames);
+        }
         for watched in &mut self.watched {
             let changed = watched.look(memory);
             if let Some(point) = point.filter(|_| changed || watched.is_within(stored)) {
@@ -100,7 +120,7 @@ impl Trace {
     }
 }
 
-type Frames = Vec<(u32, Option<u32>)>;
+pub(super) type Frames = Vec<(u32, Option<u32>)>;
 
 /// The functions that are active, innermost first, each with the offset in its body.
 fn frames(caller: &Caller<'_, HostState>) -> Frames {
@@ -122,6 +142,9 @@ fn begin(mut caller: Caller<'_, HostState>, point: u32) {
         let around = trace.active.last().map(|(statement, _)| *statement);
         trace.look(around, &(0..0), memory, || frames(caller));
         trace.active.push((point, None));
+        if let Some(journal) = &mut trace.journal {
+            journal.statement_begins(point);
+        }
     });
 }
 
@@ -132,12 +155,25 @@ fn end(mut caller: Caller<'_, HostState>, point: u32, address: u32, size: u32) {
         if let Some(at) = trace.active.iter().rposition(|(active, _)| *active == point) {
             trace.active.truncate(at);
         }
+        if let Some(journal) = &mut trace.journal {
+            journal.statement_ends(point);
+        }
     });
 }
 
 fn choose(mut caller: Caller<'_, HostState>, statement: u32, way: u32) {
-    if let Some(trace) = &mut caller.data_mut().trace {
+    with_trace(&mut caller, |trace, memory, caller| {
+        if let Some(journal) = &mut trace.journal {
+            journal.wrote(Some(statement), memory, || frames(caller));
+            journal.chose(statement, way);
+        }
         trace.choose(statement, way);
+    });
+}
+
+fn read(mut caller: Caller<'_, HostState>, address: u32, size: u32) {
+    if let Some(journal) = caller.data_mut().trace.as_mut().and_then(|trace| trace.journal.as_mut()) {
+        journal.read(address, size);
     }
 }
 
@@ -146,5 +182,6 @@ pub(super) fn link(linker: &mut Linker<HostState>) -> Result<(), Error> {
     linker.func_wrap(MODULE, BEGIN, begin)?;
     linker.func_wrap(MODULE, END, end)?;
     linker.func_wrap(MODULE, CHOOSE, choose)?;
+    linker.func_wrap(MODULE, READ, read)?;
     Ok(())
 }

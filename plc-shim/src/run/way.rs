@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
+use std::ops::Range;
 
 use crate::application::Application;
 use crate::compile::points::PointKind;
@@ -81,6 +82,13 @@ impl Application {
     pub(super) fn shown(&self, span: Span) -> String {
         on_one_line(self.sources().text(span))
     }
+
+    /// The conditions of a statement that has other statements in it.
+    pub(super) fn conditions(&self, span: Span) -> Option<String> {
+        let heads = heads(self.sources().text(span));
+        let whole = heads.iter().map(|head| on_one_line(head)).collect::<Vec<_>>().join(" … ");
+        (!whole.is_empty()).then_some(whole)
+    }
 }
 
 /// Blanks drawn together; the beginning of a long text.
@@ -109,43 +117,78 @@ fn words(statement: &str, outcome: u32, is_last: bool) -> (String, String) {
     (question, answer)
 }
 
-/// The statement's own conditions with the word before each: up to THEN, OF or DO, but for those of
-/// statements inside it. Comments are part of none.
+/// The statement's own conditions with the word before each, but for those of statements inside it. Comments are
+/// part of none.
 fn heads(statement: &str) -> Vec<String> {
+    let of = |range: &Range<usize>| {
+        let tokens = tokenize(statement)
+            .into_iter()
+            .filter(|token| range.start <= token.start as usize && token.end as usize <= range.end);
+        let text = tokens.map(|token| match token.kind {
+            TokenKind::BlockComment | TokenKind::LineComment => " ",
+            _ => statement.get(token.start as usize..token.end as usize).unwrap_or(""),
+        });
+        text.collect()
+    };
+    conditions(statement).iter().map(of).collect()
+}
+
+/// Where the statement's own conditions stand: from the word before each up to THEN, OF or DO, or the end.
+fn conditions(statement: &str) -> Vec<Range<usize>> {
     use Keyword as K;
-    let mut heads = Vec::new();
-    let (mut depth, mut open) = (0_usize, false);
+    let mut found = Vec::new();
+    let (mut depth, mut open) = (0_usize, None);
     for token in tokenize(statement) {
-        let text = statement.get(token.start as usize..token.end as usize).unwrap_or("");
-        let TokenKind::Keyword(keyword) = token.kind else {
-            if let Some(head) = heads.last_mut().filter(|_| open) {
-                let as_blank = matches!(token.kind, TokenKind::BlockComment | TokenKind::LineComment);
-                String::push_str(head, if as_blank { " " } else { text });
-            }
-            continue;
-        };
+        let TokenKind::Keyword(keyword) = token.kind else { continue };
+        let (start, end) = (token.start as usize, token.end as usize);
         match keyword {
             K::If | K::Case | K::For | K::While | K::Repeat => {
                 depth += 1;
-                if depth == 1 {
-                    heads.push(text.to_owned());
-                    open = keyword != K::Repeat;
+                if depth == 1 && keyword == K::Repeat {
+                    found.push(start..end);
+                } else if depth == 1 {
+                    open = Some(start);
                 }
             }
-            K::EndIf | K::EndCase | K::EndFor | K::EndWhile | K::EndRepeat => depth = depth.saturating_sub(1),
-            K::Elsif if depth == 1 => {
-                heads.push(text.to_owned());
-                open = true;
-            }
-            K::Then | K::Of | K::Do if depth == 1 => open = false,
-            _ => {
-                if let Some(head) = heads.last_mut().filter(|_| open) {
-                    head.push_str(text);
+            K::EndIf | K::EndCase | K::EndFor | K::EndWhile | K::EndRepeat => {
+                depth = depth.saturating_sub(1);
+                if depth == 0 {
+                    found.extend(open.take().map(|open| open..start));
                 }
             }
+            K::Elsif | K::Until if depth == 1 => open = Some(start),
+            K::Then | K::Of | K::Do if depth == 1 => found.extend(open.take().map(|open| open..start)),
+            _ => {}
         }
     }
-    heads
+    found.extend(open.map(|open| open..statement.len()));
+    found
+}
+
+/// What a statement says itself, line by line from `first` on: all of it, or its conditions if it has statements in
+/// it. Comments are no part of it.
+pub(super) fn rows(statement: &str, first: u32) -> Vec<(u32, String)> {
+    let mut own = conditions(statement);
+    if own.is_empty() {
+        own.push(0..statement.len());
+    }
+    let mut rows: Vec<(u32, String)> = Vec::new();
+    let mut line = first;
+    for token in tokenize(statement) {
+        let range = token.start as usize..token.end as usize;
+        let text = statement.get(range.clone()).unwrap_or("");
+        if !token.kind.is_trivia() && own.iter().any(|own| own.start <= range.start && range.end <= own.end) {
+            match rows.last_mut().filter(|(last, _)| *last == line) {
+                Some((_, row)) => {
+                    row.push(' ');
+                    row.push_str(text);
+                }
+                None => rows.push((line, text.to_owned())),
+            }
+        }
+        line += text.matches('\n').count() as u32;
+    }
+    rows
 }
 
 #[cfg(test)]
@@ -168,5 +211,16 @@ mod tests {
         assert_eq!(named("FOR i := 1 TO 3 DO a; END_FOR", 0, false), "FOR i := 1 TO 3: a turn");
         assert_eq!(named("REPEAT a; UNTIL b END_REPEAT", 1, true), "REPEAT: its end");
         assert_eq!(named("no statement of these", 0, false), ": THEN");
+    }
+
+    #[test]
+    fn the_rows_of_a_statement_are_its_own() {
+        let told = |text| rows(text, 7).into_iter().map(|(line, row)| format!("{line}: {row}")).collect::<Vec<_>>();
+        assert_eq!(
+            told("IF a (* or b *)\n  AND c THEN\n x := 1;\nELSIF d THEN\n y; END_IF"),
+            ["7: IF a", "8: AND c", "10: ELSIF d"]
+        );
+        assert_eq!(told("f(a := 1, // one\n\n  b := 2)"), ["7: f ( a := 1 ,", "9: b := 2 )"]);
+        assert_eq!(told("REPEAT\n x := 1;\nUNTIL x > 3\nEND_REPEAT"), ["7: REPEAT", "9: UNTIL x > 3"]);
     }
 }

@@ -29,7 +29,11 @@ impl<'a> Collector<'a> {
             ExprKind::DirectAddress(_) | ExprKind::Type(_) | ExprKind::Error => Ty::Unknown,
             ExprKind::Member(base, name) => self.member_expression(expr, base, name, access, scope),
             ExprKind::Part(base, part) => {
-                self.infer(base, scope);
+                let whole = self.infer(base, scope);
+                if let (Ty::Slot(slot), true) = (&whole, part.text.contains('%')) {
+                    // So written, only a bit string has parts.
+                    self.slots.given(*slot, &elementary(E::Dword));
+                }
                 let is_bit = part
                     .text
                     .trim_start_matches(['.', '%'])
@@ -242,6 +246,8 @@ fn joined(known_left: Ty, known_right: Ty, left: Ty, right: Ty) -> Ty {
             let weight = |ty: &E| (ty.is_duration() || ty.is_calendar(), ty.is_real(), ty.size());
             elementary(if weight(other) > weight(one) { *other } else { *one })
         }
+        // An integer beside a literal with a point is reckoned with as a real number.
+        (Ty::Elementary(found), Ty::Real) | (Ty::Real, Ty::Elementary(found)) if found.is_integer() => Ty::Real,
         (Ty::Elementary(_) | Ty::Pointer(..) | Ty::Text(_) | Ty::Declared(_), _) => known_left,
         (_, Ty::Elementary(_) | Ty::Pointer(..) | Ty::Text(_) | Ty::Declared(_)) => known_right,
         (Ty::Real, _) | (_, Ty::Real) => Ty::Real,

@@ -86,6 +86,10 @@ impl Printer<'_, '_> {
                 added += 1;
             }
         }
+        for name in self.collector.world.missing_namespaces() {
+            let _ = writeln!(libraries, "{{external}}\nNAMESPACE {name} END_NAMESPACE");
+            added += 1;
+        }
         for (key, found) in &needs.types {
             if found.extends_stub {
                 let edit = self.addition(key, found, text, file);
@@ -280,7 +284,7 @@ impl Printer<'_, '_> {
                 others.push_str(&self.method(name, signature, *result));
             } else if member.is_constant && !member.written_inside && !member.written_outside {
                 let number = FIRST_CONSTANT + constants.lines().count();
-                let _ = writeln!(constants, "    {name} : DINT := {number};");
+                let _ = writeln!(constants, "    {name} : INT := {number};");
             } else {
                 let ty = self.slot_text(member.field, name);
                 if member.via_super && member.written_below {
@@ -348,6 +352,13 @@ impl Printer<'_, '_> {
             let lines = sections.entry((list.to_owned(), is_constant)).or_default();
             let _ = writeln!(lines, "    {name} : {ty}{value};");
             *added += 1;
+        }
+        for (key, (name, spec)) in self.collector.world.missing_globals() {
+            if !self.collector.needs.globals.contains_key(&key) {
+                let lines = sections.entry((String::new(), false)).or_default();
+                let _ = writeln!(lines, "    {} : {};", name.text, self.copied(spec));
+                *added += 1;
+            }
         }
         for ((list, is_constant), lines) in sections {
             let word = if is_constant { " CONSTANT" } else { "" };

@@ -47,6 +47,13 @@ impl<'a> Collector<'a> {
                     self.wanted(value, &target, scope);
                 }
             }
+            StatementKind::SetReset(targets, value) => {
+                for (_, target) in targets {
+                    let target = self.place(target, Access::Write, scope);
+                    self.flow(&elementary(ElementaryType::Bool), &target);
+                }
+                self.condition(value, scope);
+            }
             StatementKind::Call(call) => {
                 self.call(call, false, scope);
             }

@@ -317,3 +317,13 @@ fn an_enumeration_holds_the_numbers_that_go_into_it() {
     );
     assert!(text.contains("TYPE E_Command : (Stop) UDINT; END_TYPE"), "{text}");
 }
+
+#[test]
+fn globals_and_namespaces_that_are_named_only() {
+    let text = stubs(
+        "USING System.Math;
+PROGRAM P VAR_EXTERNAL far : STRING[20]; list : ARRAY [0..3] OF INT; END_VAR list[0] := LEN(far); END_PROGRAM",
+    );
+    assert!(text.contains("{external}\nNAMESPACE System.Math END_NAMESPACE"), "{text}");
+    assert!(text.contains("    far : STRING[20];\n    list : ARRAY [0..3] OF INT;\n"), "{text}");
+}

@@ -69,6 +69,8 @@ pub(super) struct World<'a> {
     open: OpenNames,
     namespaces: BTreeSet<String>,
     libraries: BTreeSet<String>,
+    /// The namespaces that `USING` names, by their keys.
+    using: BTreeMap<String, String>,
     /// The types of values of enumerations, by the value's name.
     pub(super) enumerators: BTreeMap<String, String>,
     /// Values of enumerations without names, in lists of globals.
@@ -91,6 +93,7 @@ impl<'a> World<'a> {
             open: OpenNames::default(),
             namespaces: BTreeSet::new(),
             libraries: BTreeSet::new(),
+            using: BTreeMap::new(),
             enumerators: BTreeMap::new(),
             loose_values: BTreeSet::new(),
             loose: Vec::new(),
@@ -101,11 +104,41 @@ impl<'a> World<'a> {
             for declaration in &unit.declarations {
                 if let Declaration::Using(names) = declaration {
                     home.using.extend(names.iter().map(Ident::key));
+                    world.note_using(names);
                 }
             }
             world.add_all(&unit.declarations, &home, library.contains(file));
         }
         world
+    }
+
+    fn note_using(&mut self, names: &[Ident]) {
+        self.using.extend(names.iter().map(|name| (name.key(), name.text.clone())));
+    }
+
+    /// The namespaces that `USING` names and nobody declares.
+    pub(super) fn missing_namespaces(&self) -> impl Iterator<Item = &str> {
+        let is_known = |key: &str| {
+            let below = format!("{key}.");
+            self.namespaces.iter().any(|known| known == key || known.starts_with(&below))
+        };
+        self.using.iter().filter(move |(key, _)| !is_known(key)).map(|(_, name)| name.as_str())
+    }
+
+    /// The globals that `VAR_EXTERNAL` names and nobody declares, with their types as written there.
+    pub(super) fn missing_globals(&self) -> BTreeMap<String, (&Ident, &TypeSpec)> {
+        let mut found = BTreeMap::new();
+        for unit in self.units.values().filter(|unit| !unit.library) {
+            let external = unit.pou.sections.iter().filter(|section| section.kind == SectionKind::External);
+            for variable in external.flat_map(|section| &section.variables) {
+                for name in &variable.names {
+                    if self.global_key(&unit.home, &name.key()).is_none() {
+                        found.entry(name.key()).or_insert((name, &variable.spec));
+                    }
+                }
+            }
+        }
+        found
     }
 
     fn add_all(&mut self, list: &'a [Declaration], home: &Home, library: bool) {
@@ -129,6 +162,7 @@ impl<'a> World<'a> {
         let mut inner = home.clone();
         inner.namespace = joined(&home.namespace, &namespace.name.key());
         inner.using.extend(namespace.using.iter().map(Ident::key));
+        self.note_using(&namespace.using);
         if namespace.external || home.namespace.is_empty() && is_library(namespace) {
             self.libraries.insert(inner.namespace.clone());
         }
@@ -151,6 +185,7 @@ impl<'a> World<'a> {
         OpenNames::note(&mut self.open.units, home, &pou.name, &key);
         let mut home = home.clone();
         home.using.extend(pou.object.using.iter().map(Ident::key));
+        self.note_using(&pou.object.using);
         let mut members = BTreeMap::new();
         for member in &pou.object.members {
             let part = match member.kind {

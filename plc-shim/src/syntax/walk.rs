@@ -75,6 +75,13 @@ fn statement(kind: &StatementKind, visitor: &mut impl Visitor) {
             target(place, visitor);
             expression(value, visitor);
         }
+        StatementKind::SetReset(places, value) => {
+            for (_, place) in places {
+                expression(place, visitor);
+                target(place, visitor);
+            }
+            expression(value, visitor);
+        }
         StatementKind::Call(inner) => call(inner, visitor),
         StatementKind::Value(value) => expression(value, visitor),
         StatementKind::Try(inner) => {

@@ -103,6 +103,27 @@ fn use_of(feature: Feature) -> &'static str {
 /// The same of what projects brought to light.
 fn use_in_projects(feature: Feature) -> &'static str {
     match feature {
+        Feature::NamedValues => {
+            "TYPE C : INT (A := 1, B := 2); END_TYPE PROGRAM P VAR c1 : C; i : INT; END_VAR i := c1; c1 := i; END_PROGRAM"
+        }
+        Feature::Views => {
+            "PROGRAM P VAR a : DWORD; b AT a : ARRAY [0..3] OF BYTE; c : BYTE; END_VAR c := b[0]; END_PROGRAM"
+        }
+        Feature::ElseColon => {
+            "PROGRAM P VAR a : INT; END_VAR CASE a OF 1: a := 2; ELSE: a := 3; END_CASE; END_PROGRAM"
+        }
+        Feature::LooseParts => {
+            "TYPE C : (Red, Green); END_TYPE PROGRAM P VAR c1 : C; b : BOOL; END_VAR b := c1.0; END_PROGRAM"
+        }
+        Feature::OutputsHandedOn => {
+            "FUNCTION F : BOOL VAR_IN_OUT b : BOOL; END_VAR F := b; END_FUNCTION
+             PROGRAM P VAR t : TON; b : BOOL; END_VAR b := F(t.Q); END_PROGRAM"
+        }
+        Feature::EmptyBases => {
+            "INTERFACE I END_INTERFACE
+             FUNCTION_BLOCK F IMPLEMENTS I, END_FUNCTION_BLOCK PROGRAM P VAR f1 : F; END_VAR f1(); END_PROGRAM"
+        }
+        Feature::ShiftedLiterals => "PROGRAM P VAR b : BYTE; n : INT; END_VAR b := SHL(1, n); END_PROGRAM",
         Feature::ReadableInOuts => {
             "FUNCTION_BLOCK F VAR_IN_OUT n : INT; END_VAR n := n + 1; END_FUNCTION_BLOCK
              PROGRAM P VAR f1 : F; a, b : INT; END_VAR f1(n := a); b := f1.n; END_PROGRAM"
@@ -167,7 +188,11 @@ fn every_construct_is_for_its_dialects_alone() {
 }
 
 /// Constructs whose absence is no syntax of its own: another error says it.
-const TOLD_OTHERWISE: [Feature; 37] = [
+const TOLD_OTHERWISE: [Feature; 41] = [
+    Feature::NamedValues,
+    Feature::LooseParts,
+    Feature::OutputsHandedOn,
+    Feature::ShiftedLiterals,
     Feature::LooseUnderscores,
     Feature::RepeatedArguments,
     Feature::Recursion,

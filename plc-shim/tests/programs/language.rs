@@ -1,4 +1,6 @@
-use crate::rig::{Rig, result};
+use onescan_plc_shim::Dialect;
+
+use crate::rig::{Rig, findings_in, result};
 
 /// Declarations, statements, the value of `r`.
 const TABLE: &[(&str, &str, i64)] = &[
@@ -155,4 +157,17 @@ fn instances_are_independent_also_in_arrays() {
     assert_eq!(rig.int("P.sum"), 313);
     assert_eq!(rig.int("P.t[2].CV"), 3);
     assert!(rig.bool("P.s.Q1"));
+}
+
+#[test]
+fn a_type_with_named_values_has_the_other_values_of_its_type_too() {
+    // 3rd ed. 6.4.4.3: names do not limit the values.
+    let text = "TYPE Status : WORD (Ok := 16#7000, Wrong := 16#8001); END_TYPE
+        PROGRAM P VAR s : Status; w : WORD; n : INT; END_VAR
+          s := Status#Wrong; w := s; s := 16#1234; IF s = Status#Ok OR w = Status#Wrong THEN n := 1; END_IF; w := s; END_PROGRAM";
+    let mut rig = Rig::in_dialect(Dialect::Iec3, text);
+    rig.scan().expect("no fault");
+    assert_eq!((rig.int("P.w"), rig.int("P.n")), (0x1234, 1));
+    let plain = "TYPE Colour : (Red, Green); END_TYPE PROGRAM P VAR c : Colour; END_VAR c := 1; END_PROGRAM";
+    assert!(findings_in(Dialect::Iec3, plain).iter().any(|found| found.code.text() == "T0201"));
 }

@@ -48,6 +48,7 @@ mod partial_access;
 mod plcopen;
 mod program_instances;
 mod project_code;
+mod project_lines;
 mod random_programs;
 mod recovery;
 mod recursion;

@@ -8,7 +8,7 @@ use crate::rig::{Rig, findings_in};
 const VENDORS: [Dialect; 2] = [Codesys, TwinCat];
 
 /// What `P.r` is after one scan.
-fn gives(text: &str, expected: i64) {
+pub(crate) fn gives(text: &str, expected: i64) {
     for dialect in VENDORS {
         let mut rig = Rig::in_dialect(dialect, text);
         rig.scan().expect("no fault");

@@ -1,6 +1,6 @@
 //! SCL as classic STEP 7, PCS 7 and TIA Portal have it beside what `scl` shows.
 
-use onescan_plc_shim::Dialect::SiemensScl;
+use onescan_plc_shim::Dialect::{self, SiemensScl};
 
 use crate::rig::{Rig, findings_in};
 
@@ -85,14 +85,85 @@ fn a_dint_becomes_a_real_by_itself() {
         BEGIN n := ROUND(n + 0.4); r := d; i := REAL_TO_DINT(r); END_PROGRAM";
     let rig = after_a_scan(text);
     assert_eq!((rig.real("P.n"), rig.int("P.i")), (7.0, 16_777_216));
+    let beside = "PROGRAM P VAR d : DINT := 3; r, q : REAL := 4.5; END_VAR BEGIN r := (q - r) / d + q * d; END_PROGRAM";
+    assert_eq!(after_a_scan(beside).real("P.r"), 13.5);
     let lossy = "PROGRAM P VAR l : LREAL; r : REAL; END_VAR BEGIN r := l; END_PROGRAM";
     assert!(findings_in(SiemensScl, lossy).iter().any(|found| found.code.text() == "T0201"));
 }
 
+/// What a block makes of views, where the highest byte of a value is its first.
 #[test]
-fn a_view_of_other_memory_is_refused_with_a_way_out() {
-    let text = "FUNCTION_BLOCK F VAR_INPUT a : STRUCT hi : DINT; lo : DINT; END_STRUCT;
-          v AT a : STRUCT x0 : DWORD; x1 : DWORD; END_STRUCT; END_VAR
-        VAR n : INT; END_VAR BEGIN IF v.x0 = DW#16#0 THEN n := 1; END_IF; END_FUNCTION_BLOCK";
-    insta::assert_snapshot!(findings_in(SiemensScl, text), @"test.st:2:16: error[L0501]: a view `AT` of the memory of `a` is not supported (there a value begins with its highest byte, here with its lowest: take it apart with SHR and conversions, or member by member)");
+fn views_show_bytes_and_bits_as_siemens_has_them() {
+    let text = "PROGRAM P VAR d : DWORD := DW#16#12345678; n : INT; hi, lo : BYTE; w : WORD; bits : ARRAY [0..7] OF BOOL; i : INT; END_VAR
+        VAR bytes AT d : ARRAY [0..3] OF BYTE; flags AT d : ARRAY [0..31] OF BOOL;
+          parts AT d : STRUCT first : WORD; second : INT; END_STRUCT; END_VAR
+        BEGIN hi := bytes[0]; lo := bytes[3]; w := parts.first; n := parts.second;
+          FOR i := 0 TO 7 DO bits[i] := flags[i + 8]; END_FOR; END_PROGRAM";
+    let rig = after_a_scan(text);
+    assert_eq!(["hi", "lo", "w", "n"].map(|name| rig.int(&format!("P.{name}"))), [0x12, 0x78, 0x1234, 0x5678]);
+    // Byte 1 is 16#34.
+    let bits = [0, 1, 2, 3, 4, 5, 6, 7].map(|bit| rig.bool(&format!("P.bits[{bit}]")));
+    assert_eq!(bits, [false, false, true, false, true, true, false, false]);
+}
+
+#[test]
+fn what_is_written_through_a_view_is_in_the_variable_and_in_its_other_views() {
+    let text = "FUNCTION Packed : DWORD VAR_INPUT a : BYTE; b : BYTE; END_VAR
+          VAR_TEMP d : DWORD; bytes AT d : ARRAY [0..3] OF BYTE; flags AT d : ARRAY [0..31] OF BOOL; END_VAR
+          BEGIN d := 0; bytes[0] := a; bytes[3] := b; flags[8] := TRUE; d := d OR DW#16#0000_0100; Packed := d; END_FUNCTION
+        FUNCTION_BLOCK Swap VAR_INPUT on : BOOL; END_VAR VAR_IN_OUT r : STRUCT x : INT; y : INT; END_STRUCT; END_VAR
+          VAR_TEMP v AT r : STRUCT y : INT; x : INT; END_STRUCT; k : INT; END_VAR
+          BEGIN IF on THEN k := v.x; v.x := v.y; v.y := k; END_IF; END_FUNCTION_BLOCK
+        PROGRAM P VAR d : DWORD; s : Swap; r : STRUCT x : INT := 3; y : INT := 40; END_STRUCT; f : REAL := 1.0; w : WORD;
+          words AT f : ARRAY [0..1] OF WORD; END_VAR
+          BEGIN d := Packed(a := 16#AB, b := 16#CD); s(on := TRUE, r := r); w := words[0]; words[1] := 1; END_PROGRAM";
+    let rig = after_a_scan(text);
+    assert_eq!(rig.int("P.d"), 0xAB01_01CD);
+    assert_eq!(["r.x", "r.y", "w"].map(|name| rig.int(&format!("P.{name}"))), [40, 3, 0x3f80]);
+    assert!((rig.real("P.f") - f64::from(f32::from_bits(0x3f80_0001))).abs() < f64::EPSILON);
+}
+
+#[test]
+fn an_output_is_written_through_its_view() {
+    let text = "FUNCTION_BLOCK F VAR_OUTPUT q : WORD; flags AT q : ARRAY [0..15] OF BOOL; END_VAR
+          BEGIN flags[0] := TRUE; END_FUNCTION_BLOCK
+        PROGRAM P VAR f1 : F; w : WORD; END_VAR BEGIN f1(q => w); END_PROGRAM";
+    assert_eq!(after_a_scan(text).int("P.w"), 0x0100);
+    assert!(findings_in(SiemensScl, text).is_empty());
+}
+
+#[test]
+fn a_view_of_one_byte() {
+    let text = "PROGRAM P VAR b : BYTE := B#16#81; flags AT b : ARRAY [0..7] OF BOOL; r : BOOL; one : BOOL; ob AT one : ARRAY [0..0] OF BOOL; END_VAR
+        BEGIN r := flags[7]; flags[0] := FALSE; ob[0] := TRUE; END_PROGRAM";
+    let rig = after_a_scan(text);
+    assert_eq!((rig.int("P.b"), rig.bool("P.r"), rig.bool("P.one")), (0x80, true, true));
+}
+
+#[test]
+fn a_call_writes_through_a_view() {
+    let text = "FUNCTION Fill : VOID VAR_OUTPUT q : BYTE; END_VAR VAR_IN_OUT list : ARRAY [0..1] OF BYTE; END_VAR
+          BEGIN q := 5; list[0] := 1; list[1] := 2; END_FUNCTION
+        PROGRAM P VAR w : WORD; k : WORD; bytes AT w : ARRAY [0..1] OF BYTE; kb AT k : ARRAY [0..1] OF BYTE; END_VAR
+          BEGIN Fill(list := bytes, q => kb[1]); END_PROGRAM";
+    let rig = after_a_scan(text);
+    assert_eq!((rig.int("P.w"), rig.int("P.k")), (0x0102, 5));
+}
+
+#[test]
+fn views_that_would_show_something_else_are_refused() {
+    let text = "FUNCTION_BLOCK F VAR a : STRING[9]; c : WORD; i : INT; END_VAR VAR ab AT a : ARRAY [0..9] OF BYTE;
+          big AT c : DWORD; none AT x : WORD; t AT i : BYTE; END_VAR
+        BEGIN FOR i := 1 TO 2 DO ab[0] := 1; END_FOR; END_FUNCTION_BLOCK
+        FUNCTION G : VOID VAR_IN_OUT a : WORD; b : WORD; END_VAR BEGIN a := b; END_FUNCTION
+        FUNCTION_BLOCK H VAR a : WORD; b AT a : WORD; END_VAR BEGIN G(a := a, b := b); END_FUNCTION_BLOCK";
+    insta::assert_snapshot!(findings_in(SiemensScl, text), @r"
+    test.st:1:74: error[L0501]: a view `AT` of or as STRING[9] is not supported (BOOL, bit strings, integers, reals, CHAR, and arrays and structures of them have the same form there)
+    test.st:2:11: error[R0902]: `big` has 4 bytes, and `c` 2 (a view is no larger than what it looks at)
+    test.st:2:37: error[N0101]: `x` is no variable of this block
+    test.st:3:19: error[L0501]: `i` has a view, and counts turns (count with another variable)
+    test.st:5:69: error[L0501]: A, B lie in the same memory, and each may be written here (write one of them, or hand over a copy)
+    ");
+    let other = "PROGRAM P VAR a : WORD; b AT a : BYTE; END_VAR b := 1; END_PROGRAM";
+    insta::assert_snapshot!(findings_in(Dialect::Iec3, other), @"test.st:1:30: error[S0110]: a view of another variable's memory, `b AT a : DWORD` is not part of iec3 (it is part of siemens-scl: --dialect chooses)");
 }

@@ -13,6 +13,7 @@ use super::matrix::{Axis, COMBINATIONS_MAX, combinations};
 use super::{Case, DEFAULT, FILE_NAME, Setting};
 use crate::arrays;
 use crate::error::{ScenarioError, wrong};
+use crate::permission;
 
 /// All cases of a scenario.
 #[derive(Clone, Debug, Default)]
@@ -30,6 +31,7 @@ impl Catalogue {
     /// `cases.toml` cannot be read or is wrong, each with its place.
     pub fn load(folder: &Path) -> Result<Self, ScenarioError> {
         let path = folder.join(FILE_NAME);
+        permission::granted().check(folder, &path)?;
         match regular::read_text(&path) {
             Ok(text) => Self::parse(path, text),
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => {

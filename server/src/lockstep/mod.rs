@@ -362,17 +362,22 @@ impl Lockstep {
         }
     }
 
+    /// Tells every client that the session is over, and how.
+    fn part(&mut self) -> SessionEnd {
+        self.closed = true;
+        let end = self.session.end().cloned().unwrap_or(SessionEnd::Stopped { t_v: self.session.t_v() });
+        // All are told before anybody is waited for.
+        self.berths.iter_mut().for_each(|berth| berth.carrier.end(&end));
+        self.berths.iter_mut().for_each(|berth| berth.carrier.farewell());
+        end
+    }
+
     /// Tells everybody that the session is over, and ends the recordings, whatever came before.
     fn close(&mut self, reached: Result<Reached, RecordError>) -> Result<Reached, RecordError> {
         if self.closed {
             return reached;
         }
-        self.closed = true;
-        let t_v = self.session.t_v();
-        let end = self.session.end().cloned().unwrap_or(SessionEnd::Stopped { t_v });
-        // All are told before anybody is waited for.
-        self.berths.iter_mut().for_each(|berth| berth.carrier.end(&end));
-        self.berths.iter_mut().for_each(|berth| berth.carrier.farewell());
+        let end = self.part();
         self.publish_end(&end);
         let mut result = reached;
         for observer in &mut self.observers {
@@ -380,5 +385,14 @@ impl Lockstep {
             result = result.and_then(|reached| ended.map(|()| reached));
         }
         result
+    }
+}
+
+impl Drop for Lockstep {
+    /// A session that is given up, as one that cannot be resumed, is over for its clients, too.
+    fn drop(&mut self) {
+        if !self.closed {
+            self.part();
+        }
     }
 }

@@ -2,6 +2,8 @@
 
 use super::Lockstep;
 use crate::checkpoint::{Checkpoint, CheckpointError, Makeup, PlanSummary};
+use crate::client::StateError;
+use crate::end::FailureCause;
 
 impl Lockstep {
     /// Says what the session is made of, for checkpoints that are taken of it and by it.
@@ -12,7 +14,8 @@ impl Lockstep {
     /// Takes a checkpoint at the boundary at which the session is.
     ///
     /// # Errors
-    /// Not at a boundary, or a client cannot save.
+    /// Not at a boundary, or a client cannot save. One that says so stays, and the session goes on; one that is lost
+    /// meanwhile has failed, which the next [`run_to`](Self::run_to) finds.
     pub fn checkpoint(&mut self) -> Result<Checkpoint, CheckpointError> {
         let session = self.session.save().ok_or(CheckpointError::NotNow)?;
         let digest = self.digest.clone().ok_or(CheckpointError::NotNow)?;
@@ -21,7 +24,12 @@ impl Lockstep {
         for (berth, client) in self.berths.iter_mut().zip(names) {
             match berth.carrier.save() {
                 Ok(state) => clients.push((client, state)),
-                Err(source) => return Err(CheckpointError::Client { client, source }),
+                Err(source) => {
+                    if let StateError::Lost(cause) = &source {
+                        self.session.fail(berth.id, cause.clone());
+                    }
+                    return Err(CheckpointError::Client { client, source });
+                }
             }
         }
         let plan = PlanSummary::of(self.session.plan());
@@ -55,7 +63,14 @@ impl Lockstep {
         let (steps, t_v) = (self.session.cycle().steps(), self.session.t_v());
         for (berth, (client, state)) in self.berths.iter_mut().zip(&checkpoint.clients) {
             let restored = berth.carrier.restore(steps, t_v, state);
-            restored.map_err(|source| CheckpointError::Client { client: client.clone(), source })?;
+            if let Err(source) = restored {
+                let cause = match &source {
+                    StateError::Lost(cause) => cause.clone(),
+                    refused => FailureCause::State(refused.to_string()),
+                };
+                self.session.fail(berth.id, cause);
+                return Err(CheckpointError::Client { client: client.clone(), source });
+            }
             self.session.read_back(berth.id, &mut berth.outputs);
         }
         self.digest = Some(checkpoint.digest.clone());

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use onescan_base::foreign::one_line;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -11,8 +12,9 @@ pub const NAME_BYTES_MAX: usize = 128;
 /// Why a text cannot name a signal or client.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error(
-    "`{0}` is not a name: use letters, digits, `_`, `.`, `-`, `[` and `]`, beginning with a letter or `_`, \
-     128 characters at most"
+    "`{}` is not a name: use letters, digits, `_`, `.`, `-`, `[` and `]`, beginning with a letter or `_`, \
+     128 characters at most",
+    one_line(.0)
 )]
 pub struct BadName(pub String);
 

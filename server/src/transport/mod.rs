@@ -3,5 +3,7 @@
 //! | module | subject |
 //! |---|---|
 //! | [`tcp`] | clients and operators over TCP |
+//! | [`tls`] | certificates, and who is trusted |
 
 pub mod tcp;
+pub mod tls;

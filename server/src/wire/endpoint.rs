@@ -2,6 +2,7 @@
 //! brings, and whether it may come now. It keeps a client from acting in a wrong step even if the
 //! server or the network is at fault.
 
+use onescan_base::foreign::one_line;
 use thiserror::Error;
 
 use super::frame::Frame;
@@ -120,7 +121,8 @@ impl Endpoint {
     pub fn receive(&mut self, frame: Frame) -> Result<Duty, EndpointError> {
         match frame {
             Frame::Json(text) => {
-                let message = serde_json::from_slice(&text).map_err(|e| EndpointError::Message(e.to_string()))?;
+                let message = serde_json::from_slice(&text)
+                    .map_err(|e| EndpointError::Message(one_line(&e.to_string()).into_owned()))?;
                 self.receive_message(message)
             }
             Frame::Grant { sequence, t_v, inputs } => self.receive_grant(sequence, t_v, inputs),

@@ -1,5 +1,6 @@
 //! Join and control messages. Each is one JSON object with one key, its kind.
 
+use onescan_base::foreign::deserialize_line;
 use serde::{Deserialize, Serialize};
 
 use super::VersionRange;
@@ -31,7 +32,11 @@ pub enum ClientMessage {
         /// Client or operator.
         role: Role,
         /// Program and version, for logs.
+        #[serde(deserialize_with = "deserialize_line")]
         agent: String,
+        /// The token of whoever connects, where the session asks for one.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        token: Option<String>,
     },
     /// Second message of a client.
     Join(JoinRequest),
@@ -62,6 +67,7 @@ pub enum ServerMessage {
         /// The version spoken from here on.
         protocol: u32,
         /// The server's program and version.
+        #[serde(deserialize_with = "deserialize_line")]
         agent: String,
         /// The step of the session.
         #[serde(rename = "step_ns")]
@@ -85,6 +91,7 @@ pub enum ServerMessage {
     /// Answer to `hello` or `join`; the connection ends.
     Refused {
         /// Why, in one line.
+        #[serde(deserialize_with = "deserialize_line")]
         message: String,
     },
     /// Take the initial state; answer with a turn of sequence 0.

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import json
 import socket
+import ssl
 import struct
 from abc import ABC, abstractmethod
 from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple
@@ -84,8 +85,11 @@ def _slots(signals: Signals) -> Tuple[int, List[Fields]]:
 class LockstepClient:
     """One connection to a server: `connect`, `join` and `run`, in this order."""
 
-    def __init__(self, host: str, port: int) -> None:
+    def __init__(self, host: str, port: int, token: Optional[str] = None, tls_ca: Optional[str] = None) -> None:
+        """`token` is shown if the session asks for one; with `tls_ca`, a file of certificates, it speaks TLS and
+        trusts what these have signed (section 7)."""
         self._address, self._sock = (host, port), socket.socket()
+        self._token, self._tls_ca = token, tls_ca
         self._limit = 1 << 26  # section 2: what a client takes and, once it has joined, may send
         self._reads: Signals = []
         self._writes: Signals = []
@@ -147,9 +151,16 @@ class LockstepClient:
             self._sock.close()
             self._sock = socket.create_connection(self._address, timeout=5.0)  # until joined
             self._sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+            if self._tls_ca is not None:
+                context = ssl.create_default_context(cafile=self._tls_ca)
+                context.minimum_version = ssl.TLSVersion.TLSv1_2
+                self._sock = context.wrap_socket(self._sock, server_hostname=self._address[0])
         except OSError as error:
             raise LostServer(f"no connection to {self._address}: {error}") from error
-        self._send_message("hello", {"protocol": {"min": 1, "max": 1}, "role": "client", "agent": agent})
+        hello: Fields = {"protocol": {"min": 1, "max": 1}, "role": "client", "agent": agent}
+        if self._token is not None:
+            hello["token"] = self._token
+        self._send_message("hello", hello)
         welcome = self._expect("welcome")
         if welcome["protocol"] != 1:
             raise ProtocolError(f"the server chose version {welcome['protocol']}")

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import sys
 from typing import Any, Dict, Generic, List, Optional, Sequence, Tuple, Type, TypeVar, Union, overload
 
@@ -120,10 +121,11 @@ class Simulation(Participant):
 
     # ---- taking part
 
-    def take_part(self, server: str) -> Fields:
-        """Takes part in the session at `HOST:PORT` to its end, and gives the fields of `end`."""
+    def take_part(self, server: str, token: Optional[str] = None, tls_ca: Optional[str] = None) -> Fields:
+        """Takes part in the session at `HOST:PORT` to its end, and gives the fields of `end`. `token` and `tls_ca`
+        are those of `LockstepClient`."""
         host, port = address(server)
-        with LockstepClient(host, port) as client:
+        with LockstepClient(host, port, token, tls_ca) as client:
             welcome = client.connect(f"onescan-client 0.1.0 ({type(self).__name__})")
             period_ns = self._period_ns or welcome["step_ns"]
             self.dt_s = period_ns / 1e9
@@ -133,11 +135,17 @@ class Simulation(Participant):
 
     def main(self, words: Optional[Sequence[str]] = None) -> None:
         """Takes part in the session that `--server HOST:PORT` names, and exits: 0 if it was completed or
-        stopped, 2 if the server refused, 3 if the session failed or the server was lost."""
+        stopped, 2 if the server refused, 3 if the session failed or the server was lost. What it shows to the
+        session is in `--token` and `--tls-ca`, or in ONESCAN_TOKEN and ONESCAN_TLS_CA."""
         parser = argparse.ArgumentParser(description=type(self).__doc__)
         parser.add_argument("--server", required=True, metavar="HOST:PORT", help="where the session is")
+        parser.add_argument("--token", default=os.environ.get("ONESCAN_TOKEN"),
+                            help="the token to show (better in ONESCAN_TOKEN, where no list of processes has it)")
+        parser.add_argument("--tls-ca", default=os.environ.get("ONESCAN_TLS_CA"), metavar="FILE",
+                            help="speak TLS, and trust what this authority has signed")
+        typed = parser.parse_args(words)
         try:
-            self.take_part(parser.parse_args(words).server)
+            self.take_part(typed.server, typed.token, typed.tls_ca)
         except Refused as error:
             print(f"refused: {error}", file=sys.stderr)
             sys.exit(2)

@@ -30,6 +30,8 @@ pub(crate) trait Component: Sized + Send + 'static {
     const SOURCE: &'static str;
     /// Which inputs mean nothing unless another one is driven.
     const DEPENDENCES: &'static [Dependence] = &[];
+    /// Whether it has no `drive`, so that it need not look at the world before that has moved.
+    const ONLY_SENSES: bool = false;
     /// What describes one of its kind.
     type Parameters: ParameterSet;
     /// What it takes.
@@ -195,10 +197,12 @@ impl<C: Component> Runner<C> {
 
 impl<C: Component> Running for Runner<C> {
     fn drive(&mut self, inputs: &[Value], around: &Surroundings<'_>, world: &mut World) -> Result<(), ClientFault> {
-        let turn = self.turn(around, world);
-        let inputs = C::Inputs::read(inputs);
-        self.component.drive(&mut self.state, &inputs, &turn);
-        self.turn = Some((inputs, turn));
+        if !C::ONLY_SENSES {
+            let turn = self.turn(around, world);
+            let inputs = C::Inputs::read(inputs);
+            self.component.drive(&mut self.state, &inputs, &turn);
+            self.turn = Some((inputs, turn));
+        }
         let effect = self.component.effect(&self.state);
         self.tie.apply(effect, around.measured, around.dt_s, world)
     }

@@ -300,11 +300,17 @@ pub(crate) use failures;
 
 /// The types of a component, which every kind calls the same: `Parameters`, `Inputs`, `Outputs`,
 /// `Failure` and `State`, those of its own file; and its tie to the world:
-/// `own_types!()` for none, `own_types!(sees Ray)` for one that it does nothing with,
+/// `own_types!()` for none, `own_types!(senses Ray)` for that of a sensor, whose `drive` is never called,
+/// `own_types!(sees Slides)` for another that it does nothing with,
 /// `own_types!(moves Slides)` for one whose effect it then states itself.
 macro_rules! own_types {
     () => {
         $crate::plant::component::declare::own_types!(sees $crate::plant::coupling::Nothing);
+    };
+    (senses $tie:ty) => {
+        $crate::plant::component::declare::own_types!(sees $tie);
+
+        const ONLY_SENSES: bool = true;
     };
     (sees $tie:ty) => {
         $crate::plant::component::declare::own_types!(moves $tie);

@@ -30,10 +30,11 @@ pub struct Kind {
 }
 
 impl Kind {
-    /// True if a scene may give an input a constant: `INPUT = value`. A parameter of the same name takes
-    /// precedence.
-    pub fn takes_constant(&self, input: &str) -> bool {
-        self.parameters.iter().all(|parameter| parameter.key != input)
+    /// The key by which a scene gives an input a constant: that of the input, or `INPUT_constant` where a
+    /// parameter has the same.
+    pub fn constant_key(&self, input: &str) -> String {
+        let hidden = self.parameters.iter().any(|parameter| parameter.key == input);
+        if hidden { format!("{input}_constant") } else { input.to_owned() }
     }
 }
 

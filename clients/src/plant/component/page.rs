@@ -58,6 +58,12 @@ fn inputs(page: &mut String, kind: &Kind) {
         let preset = preset.as_ref().map_or_else(String::new, ToString::to_string);
         let _ = writeln!(page, "| `{key}` | {values} | {preset} | {unit} | {about} |");
     }
+    for Signal { key, .. } in &kind.inputs {
+        let by_value = kind.constant_key(key);
+        if by_value != *key {
+            let _ = writeln!(page, "\nA constant for the input `{key}` is written `{by_value}`.");
+        }
+    }
     for Dependence { inputs, on } in kind.dependences {
         let _ = writeln!(page, "\nWithout {} nothing comes of {}.", any_of(on), any_of(inputs));
     }

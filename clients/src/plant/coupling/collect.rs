@@ -35,7 +35,7 @@ impl Tie for Collect {
 
     fn bind(bound: &Bound, _: &Scene, world: &mut World) -> Result<Self, Unbound> {
         let body = world.handle(Some(wanted(bound.body, "body")?));
-        Ok(Self { surface: Surface { body, shape: None }, targets: handles(world, &bound.targets) })
+        Ok(Self { surface: world.surface(body, None), targets: handles(world, &bound.targets) })
     }
 
     fn see(&self, _: Measured<'_>, world: &World) -> Targets {

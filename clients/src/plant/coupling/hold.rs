@@ -2,7 +2,8 @@
 //!
 //! # Load
 //! Holding a body of mass m takes the force `F = m (a - g)`: a is the acceleration of its centre of mass,
-//! from its velocity over a period, smoothed as pads and lips smooth it. What else carries the body is not
+//! from its velocity over a period, smoothed by the time constant of pads and lips: a blow that is shorter does
+//! not tear them apart. What else carries the body is not
 //! taken off: a load that rests on a table counts as if it hung.
 
 use onescan_server::client::ClientFault;
@@ -16,10 +17,6 @@ use crate::plant::coordinate::Measured;
 use crate::plant::scene::Scene;
 use crate::plant::scene::model::Bound;
 use crate::plant::world::World;
-
-/// Time constant of what lies between holder and part, lips and pads of rubber: a blow shorter than this does
-/// not tear them apart.
-const YIELD_S: f64 = 0.02;
 
 const TOUCHED: [BindingKey; 3] = keys(Which::Dynamic);
 
@@ -35,7 +32,7 @@ pub(crate) struct Holds {
 /// What a holder sees.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Grasp {
-    /// What touches it.
+    /// What it holds; what touches it, if it holds nothing.
     pub(crate) targets: Targets,
     /// What the held body asks for, or the first that touches it if none is held.
     pub(crate) load: Load,
@@ -62,8 +59,12 @@ impl Load {
 }
 
 /// Holds a target fast, by its place among the targets; releases any other.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Hold(pub(crate) Option<u32>);
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Hold {
+    pub(crate) target: Option<u32>,
+    /// Time constant of what lies between holder and part.
+    pub(crate) yield_s: f64,
+}
 
 /// A body that is held, by which joint, and how it moves.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -76,6 +77,7 @@ pub(crate) struct Held {
     acceleration_m_s2: [f64; 3],
     /// How long the period is.
     dt_s: f64,
+    yield_s: f64,
 }
 
 impl Held {
@@ -86,7 +88,7 @@ impl Held {
             return before;
         }
         let now = (world.body(body).linvel() - Vector::from_array(self.velocity_m_s)) / self.dt_s;
-        now + (before - now) * libm::exp(-self.dt_s / YIELD_S)
+        now + (before - now) * libm::exp(-self.dt_s / self.yield_s)
     }
 }
 
@@ -134,20 +136,19 @@ impl Tie for Holds {
     }
 
     fn see(&self, _: Measured<'_>, world: &World) -> Grasp {
+        if let Some(held) = self.held {
+            let body = target(&self.touched.targets, held.target);
+            let acceleration = body.map_or(Vector::ZERO, |body| held.acceleration(world, body));
+            let targets = Targets { first: Some(held.target), count: 1 };
+            return Grasp { targets, load: self.load(held.target, acceleration, world) };
+        }
         let targets = self.touched.see(world);
-        let load = match (self.held, targets.first) {
-            (Some(held), _) => {
-                let body = target(&self.touched.targets, held.target);
-                let acceleration = body.map_or(Vector::ZERO, |body| held.acceleration(world, body));
-                self.load(held.target, acceleration, world)
-            }
-            (None, Some(first)) => self.load(first, Vector::ZERO, world),
-            (None, None) => Load::default(),
-        };
+        let load = targets.first.map_or_else(Load::default, |first| self.load(first, Vector::ZERO, world));
         Grasp { targets, load }
     }
 
-    fn apply(&mut self, Hold(wanted): Hold, _: Measured<'_>, dt_s: f64, world: &mut World) -> Result<(), ClientFault> {
+    fn apply(&mut self, hold: Hold, _: Measured<'_>, dt_s: f64, world: &mut World) -> Result<(), ClientFault> {
+        let Hold { target: wanted, yield_s } = hold;
         if let Some(held) = self.held.take_if(|held| Some(held.target) != wanted) {
             world.let_go(held.joint)?;
         }
@@ -159,10 +160,10 @@ impl Tie for Holds {
         let caught_m_s = holder.velocity_at_point(world.body(body).center_of_mass()).to_array();
         self.held = Some(if let Some(held) = self.held {
             let acceleration_m_s2 = held.acceleration(world, body).to_array();
-            Held { velocity_m_s, acceleration_m_s2, dt_s, ..held }
+            Held { velocity_m_s, acceleration_m_s2, dt_s, yield_s, ..held }
         } else {
             let joint = world.hold(self.touched.surface.body, body);
-            Held { target: place, joint, velocity_m_s: caught_m_s, acceleration_m_s2: [0.0; 3], dt_s }
+            Held { target: place, joint, velocity_m_s: caught_m_s, acceleration_m_s2: [0.0; 3], dt_s, yield_s }
         });
         Ok(())
     }

@@ -44,7 +44,7 @@ impl Tie for Place {
         for target in &targets {
             world.take_out(*target).map_err(|_| Unbound("target in the world"))?;
         }
-        Ok(Self { surface: Surface { body, shape: None }, targets })
+        Ok(Self { surface: world.surface(body, None), targets })
     }
 
     fn see(&self, _: Measured<'_>, world: &World) -> Targets {

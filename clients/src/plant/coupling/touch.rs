@@ -33,7 +33,7 @@ pub(super) struct Touched {
 impl Touched {
     pub(super) fn bind(bound: &Bound, world: &World) -> Result<Self, Unbound> {
         let body = world.handle(Some(wanted(bound.body, "body")?));
-        let surface = Surface { body, shape: bound.shape.map(|shape| world.shape(shape)) };
+        let surface = world.surface(body, bound.shape.map(|shape| world.shape(shape)));
         Ok(Self { surface, targets: handles(world, &bound.targets) })
     }
 

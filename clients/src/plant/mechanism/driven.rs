@@ -11,6 +11,7 @@ use super::dynamics::{normalise, rates};
 use super::rows::Row;
 use super::{Mechanism, Surroundings, matrix};
 use crate::plant::actuator::{Acts, Actuator};
+use crate::plant::component::dynamics::substeps;
 use crate::plant::effort::Motion;
 use crate::plant::fitting::Fitting;
 
@@ -24,12 +25,6 @@ pub(crate) const CORRECTED_A_TURN: f64 = 0.25;
 const EXPLICIT_MAX: f64 = 0.05;
 /// A stop is looked at from this near on, m or rad.
 const NEAR: f64 = 1e-6;
-
-/// How many equal parts of at most `longest` make `whole`.
-fn parts(whole: f64, longest: f64) -> u32 {
-    // a whole number of parts is not one more for a rounding
-    (whole / longest - 1e-9).ceil().clamp(1.0, 1e6) as u32
-}
 
 impl Mechanism {
     /// Moves by a step; false, and unmoved, if its equations cannot be solved.
@@ -50,9 +45,8 @@ impl Mechanism {
             Acts::Along(_) => PART_S,
         });
         let longest_s = longest.fold(PART_S, f64::min);
-        let count = parts(dt_s, PART_S);
-        let part_s = dt_s / f64::from(count);
-        let finer = parts(part_s, longest_s);
+        let (count, part_s) = substeps(dt_s, PART_S);
+        let (finer, finer_s) = substeps(part_s, longest_s);
         for index in 0..count {
             if !self.prepare(part_s, around) {
                 return false;
@@ -62,7 +56,7 @@ impl Mechanism {
                 let [from, to] = around.part;
                 let at = |step: u32| from + (to - from) * f64::from(step) / whole;
                 let step = index * finer + inner;
-                self.substep(part_s / f64::from(finer), [at(step), at(step + 1)], &own, around);
+                self.substep(finer_s, [at(step), at(step + 1)], &own, around);
             }
         }
         for (_, actuator) in &own {
@@ -85,17 +79,17 @@ impl Mechanism {
         let room = &mut self.room;
         room.q.clone_from(&self.now.q);
         room.rates[0].resize(self.tree.positions, 0.0);
-        rates(&self.tree, &self.now.q, &self.now.v, &mut room.rates[0]);
+        rates(&self.lumps, &self.now.q, &self.now.v, &mut room.rates[0]);
         for (q, rate) in room.q.iter_mut().zip(&room.rates[0]) {
             *q += 0.5 * part_s * rate;
         }
-        normalise(&self.tree, &mut room.q);
-        self.equations.evaluate(&self.tree, &room.q, &self.now.v, around.gravity);
-        if !self.equations.factor(&self.tree) {
+        normalise(&self.lumps, &mut room.q);
+        self.moving.evaluate(&self.lumps, &room.q, &self.now.v, around.gravity);
+        if !self.moving.factor(&self.lumps) {
             return false;
         }
         room.inverse.resize(n * n, 0.0);
-        matrix::inverse(&self.equations.mass, n, &mut room.inverse);
+        matrix::inverse(&self.moving.mass, n, &mut room.inverse);
         true
     }
 
@@ -107,7 +101,7 @@ impl Mechanism {
         for k in 0..n {
             let (position, joint) = self.axes[k];
             let (q, v) = (self.now.q[position], self.now.v[k]);
-            self.room.force[k] = -self.equations.bias[k];
+            self.room.force[k] = -self.moving.bias[k];
             if let Some(fitting) = joint.map(|joint| &around.fittings[joint]) {
                 self.room.force[k] += fitting.force(q);
                 self.resist(k, fitting.dry(v), fitting.damping, dt_s);
@@ -209,15 +203,15 @@ impl Mechanism {
     /// What is driven or stopped goes on with its new velocity, by which it comes to where it is to be;
     /// the rest with the mean of old and new, which is of second order.
     fn go(&mut self, dt_s: f64, fittings: &[Fitting]) {
-        let Self { tree, now, axes, room, .. } = self;
+        let Self { lumps, now, axes, room, .. } = self;
         for (k, exact) in room.exact.iter().enumerate() {
             now.v[k] = if *exact { room.v[k] } else { 0.5 * (now.v[k] + room.v[k]) };
         }
-        rates(tree, &now.q, &now.v, &mut room.rates[0]);
+        rates(lumps, &now.q, &now.v, &mut room.rates[0]);
         for (q, rate) in now.q.iter_mut().zip(&room.rates[0]) {
             *q += dt_s * rate;
         }
-        normalise(tree, &mut now.q);
+        normalise(lumps, &mut now.q);
         now.v.copy_from_slice(&room.v);
         for ((position, joint), v) in axes.iter().zip(&mut now.v) {
             let Some(fitting) = joint.map(|joint| &fittings[joint]) else { continue };

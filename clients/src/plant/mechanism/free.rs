@@ -24,9 +24,9 @@ impl Mechanism {
                 add(&mut room.q, way, &room.rates[stage - 1]);
                 add(&mut room.v, way, &room.accelerations[stage - 1]);
             }
-            rates(&self.tree, &room.q, &room.v, &mut room.rates[stage]);
-            self.equations.evaluate(&self.tree, &room.q, &room.v, around.gravity);
-            if !self.equations.factor(&self.tree) {
+            rates(&self.lumps, &room.q, &room.v, &mut room.rates[stage]);
+            self.moving.evaluate(&self.lumps, &room.q, &room.v, around.gravity);
+            if !self.moving.factor(&self.lumps) {
                 return false;
             }
             for k in 0..n {
@@ -35,9 +35,9 @@ impl Mechanism {
                     let fitting = &around.fittings[joint];
                     fitting.force(room.q[position]) - fitting.damping * room.v[k]
                 });
-                room.force[k] = fitted - self.equations.bias[k];
+                room.force[k] = fitted - self.moving.bias[k];
             }
-            matrix::solve(&self.equations.mass, n, &mut room.force);
+            matrix::solve(&self.moving.mass, n, &mut room.force);
             room.accelerations[stage].copy_from_slice(&room.force);
         }
         room.q.clone_from(&self.now.q);
@@ -46,7 +46,7 @@ impl Mechanism {
             add(&mut room.q, weight * dt_s / 6.0, &room.rates[stage]);
             add(&mut room.v, weight * dt_s / 6.0, &room.accelerations[stage]);
         }
-        normalise(&self.tree, &mut room.q);
+        normalise(&self.lumps, &mut room.q);
         let stopped = |(position, joint): &(usize, Option<usize>)| {
             joint.is_some_and(|joint| around.fittings[joint].stops(room.q[*position]))
         };

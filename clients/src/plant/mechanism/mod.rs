@@ -10,9 +10,11 @@
 //! | `spatial` | motions, forces and inertias as vectors of six |
 //! | `matrix` | symmetric matrices of a few rows |
 //! | `tree` | which bodies hang together |
+//! | `lump` | what is welded together as one body |
 //! | `dynamics` | the equations of motion of a tree |
 //! | `rows` | drives, friction and stops within their bounds |
 //! | `coupled` | gears, racks, screws, differentials, cams between joints |
+//! | `guided` | robots without dynamics |
 //! | `free` | steps of what only smooth forces move: Runge-Kutta of order 4 |
 //! | `driven` | steps with drives, friction, stops |
 //!
@@ -24,6 +26,8 @@ mod coupled;
 mod driven;
 mod dynamics;
 mod free;
+mod guided;
+mod lump;
 mod matrix;
 mod rows;
 mod spatial;
@@ -40,6 +44,7 @@ use super::scene::model::JointKind;
 use coupled::Bond;
 pub(crate) use driven::CORRECTED_A_TURN;
 use dynamics::Equations;
+pub(crate) use guided::{Guided, guided};
 use rows::Rows;
 use spatial::Twist;
 pub(crate) use tree::Link;
@@ -57,6 +62,9 @@ pub(crate) struct Mechanism {
     tree: Tree,
     now: Coordinates,
     equations: Equations,
+    /// The tree with what is welded together as one body, by which it moves, and its equations.
+    lumps: Tree,
+    moving: Equations,
     /// For each velocity: its position and the joint of the scene that it is the coordinate of.
     axes: Vec<(usize, Option<usize>)>,
     bonds: Vec<Bond>,
@@ -98,7 +106,7 @@ pub(crate) fn mechanisms(
     bodies: &RigidBodySet,
     last: impl Fn(usize) -> f64,
 ) -> (Vec<Mechanism>, Vec<usize>) {
-    let forest = tree::forest(links, couplings, bodies);
+    let forest = tree::forest(links, couplings, bodies, &|handle| bodies[handle].is_dynamic());
     let mechanisms = forest.trees.into_iter().map(|tree| {
         let mut mechanism = Mechanism::new(tree);
         mechanism.bind(couplings);
@@ -129,9 +137,12 @@ impl Mechanism {
             }
         }
         let now = Coordinates { q: vec![0.0; tree.positions], v: vec![0.0; tree.velocities] };
+        let lumps = tree.lumped();
         Self {
             now,
             equations: Equations::new(&tree),
+            moving: Equations::new(&lumps),
+            lumps,
             tree,
             axes,
             bonds: Vec::new(),

@@ -15,24 +15,29 @@ pub(super) struct Twist {
 
 impl Twist {
     /// Of a turn about an axis through a point.
+    #[inline]
     pub(super) fn turning(axis: Vector, through: Vector) -> Self {
         Self { angular: axis, linear: through.cross(axis) }
     }
 
     /// Of a translation.
+    #[inline]
     pub(super) fn sliding(axis: Vector) -> Self {
         Self { angular: Vector::ZERO, linear: axis }
     }
 
+    #[inline]
     pub(super) fn plus(self, other: Self) -> Self {
         Self { angular: self.angular + other.angular, linear: self.linear + other.linear }
     }
 
+    #[inline]
     pub(super) fn times(self, factor: f64) -> Self {
         Self { angular: self.angular * factor, linear: self.linear * factor }
     }
 
     /// How `moved` changes as it is carried along by this motion.
+    #[inline]
     pub(super) fn carries(self, moved: Self) -> Self {
         Self {
             angular: self.angular.cross(moved.angular),
@@ -41,6 +46,7 @@ impl Twist {
     }
 
     /// How a force or a momentum changes as it is carried along by this motion.
+    #[inline]
     pub(super) fn carries_force(self, force: Wrench) -> Wrench {
         Wrench {
             moment: self.angular.cross(force.moment) + self.linear.cross(force.force),
@@ -49,6 +55,7 @@ impl Twist {
     }
 
     /// The power of a force in this motion.
+    #[inline]
     pub(super) fn power(self, force: Wrench) -> f64 {
         self.angular.dot(force.moment) + self.linear.dot(force.force)
     }
@@ -62,6 +69,7 @@ pub(super) struct Wrench {
 }
 
 impl Wrench {
+    #[inline]
     pub(super) fn plus(self, other: Self) -> Self {
         Self { moment: self.moment + other.moment, force: self.force + other.force }
     }
@@ -78,6 +86,7 @@ pub(super) struct Inertia {
 
 impl Inertia {
     /// Of a mass with its centre, and its tensor about that centre.
+    #[inline]
     pub(super) fn of(mass: f64, centre: Vector, tensor: DMat3) -> Self {
         let [x, y, z] = centre.to_array();
         let square = centre.length_squared();
@@ -89,11 +98,13 @@ impl Inertia {
         Self { mass, first: centre * mass, about: tensor + offset * mass }
     }
 
+    #[inline]
     pub(super) fn plus(self, other: Self) -> Self {
         Self { mass: self.mass + other.mass, first: self.first + other.first, about: self.about + other.about }
     }
 
     /// The momentum in a motion, or the force for an acceleration.
+    #[inline]
     pub(super) fn times(&self, motion: Twist) -> Wrench {
         Wrench {
             moment: self.about * motion.angular + self.first.cross(motion.linear),

@@ -159,20 +159,24 @@ pub(super) struct Forest {
     pub(super) others: Vec<usize>,
 }
 
-/// The forest of these joints.
-pub(super) fn forest(links: &[Link], couplings: &[Coupled], bodies: &RigidBodySet) -> Forest {
+/// The forest of these joints, of bodies that are `moved`.
+pub(super) fn forest(
+    links: &[Link],
+    couplings: &[Coupled],
+    bodies: &RigidBodySet,
+    moved: &impl Fn(RigidBodyHandle) -> bool,
+) -> Forest {
     let mut forest = Forest { trees: Vec::new(), others: Vec::new() };
-    let moved = |handle: RigidBodyHandle| bodies[handle].is_dynamic();
     let mut done = vec![false; links.len()];
     for start in 0..links.len() {
         if done[start] {
             continue;
         }
-        let together = together(links, couplings, start, &moved);
+        let together = together(links, couplings, start, moved);
         for index in &together {
             done[*index] = true;
         }
-        match grown(links, &together, bodies, &moved) {
+        match grown(links, &together, bodies, moved) {
             Some(tree) => forest.trees.push(tree),
             None => forest.others.extend(together.iter().filter_map(|index| links[*index].joint)),
         }

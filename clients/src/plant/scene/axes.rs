@@ -66,6 +66,19 @@ fn drivable(
         faults.add(name.span(), twice);
         return None;
     }
+    if table.guided {
+        let keys = [
+            ("force_max_n", written.force_max_n.as_ref().map(Placed::span)),
+            ("torque_max_nm", written.torque_max_nm.as_ref().map(Placed::span)),
+            ("force_signal", written.force_signal.as_ref().map(Placed::span)),
+            ("torque_signal", written.torque_signal.as_ref().map(Placed::span)),
+            ("limit_signal", written.limit_signal.as_ref().map(Placed::span)),
+        ];
+        let whose = format!("axis `{}` of a kinematic robot", text(&written.name));
+        for (key, span) in keys.into_iter().filter_map(|(key, span)| span.map(|span| (key, span))) {
+            faults.add(span, SceneFaultKind::Misplaced { whose: whose.clone(), key });
+        }
+    }
     let kind = *table.kind.get_ref();
     if let (JointKind::Prismatic | JointKind::Revolute, Some(unit)) = (kind, unit(kind)) {
         return Some((Moved::Joint(joint), unit));

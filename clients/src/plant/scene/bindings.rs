@@ -7,7 +7,7 @@ use super::components::Keys;
 use super::error::{SceneFaultKind, Thing};
 use super::faults::Faults;
 use super::format::{BodyKind, JointKind, SceneFile};
-use super::joints::{kind_name, unit};
+use super::joints::{kind_name, refuse_guided, unit};
 use super::model::{Axis, Bound, Driven, Moved};
 use super::names::Names;
 use super::text;
@@ -99,6 +99,9 @@ impl Lookup<'_> {
     ) -> Option<Driven> {
         let name = keys.text(key, "the name of a joint", faults)?;
         let (joint, kind) = self.joint(&name, faults)?;
+        if refuse_guided(self.file.joint[joint].get_ref(), &name, faults) {
+            return None;
+        }
         if kind != wanted {
             let undrivable = SceneFaultKind::Undrivable { joint: text(&name).to_owned(), kind: kind_name(kind) };
             let hint = format!("a {} drives a {} joint", text(&keys.kind), kind_name(wanted));

@@ -148,7 +148,7 @@ fn refuse_unknown_keys(one: &Known<'_>, faults: &mut Faults<'_>) {
     right.extend(kind.coupling.keys().iter().map(|binding| binding.key.to_owned()));
     right.extend(kind.parameters.iter().map(|parameter| parameter.key.to_owned()));
     right.extend(kind.inputs.iter().flat_map(|input| [format!("{}_signal", input.key), format!("{}_from", input.key)]));
-    right.extend(kind.inputs.iter().map(|input| input.key.to_owned()));
+    right.extend(kind.inputs.iter().map(|input| kind.constant_key(input.key)));
     right.extend(kind.outputs.iter().map(|output| format!("{}_signal", output.key)));
     for key in keys.table.keys().filter(|key| !right.contains(key.get_ref())) {
         let wrong = SceneFaultKind::ComponentKey { whose: keys.whose(), key: key.get_ref().clone() };
@@ -232,7 +232,8 @@ fn inputs(
     let mut wires = Vec::new();
     for input in &one.kind.inputs {
         let (by_signal, by_wire) = (format!("{}_signal", input.key), format!("{}_from", input.key));
-        let written = one.keys.get(input.key).filter(|_| one.kind.takes_constant(input.key));
+        let by_value = one.kind.constant_key(input.key);
+        let written = one.keys.get(&by_value);
         let sources = [written, one.keys.get(&by_signal), one.keys.get(&by_wire)];
         if let Some(second) = sources.into_iter().flatten().nth(1) {
             faults.add(second.span(), SceneFaultKind::WiredTwice { whose: one.keys.whose(), input: input.key });
@@ -240,7 +241,7 @@ fn inputs(
         let signal = one.keys.text(&by_signal, SIGNAL, faults);
         let from = one.keys.text(&by_wire, "\"component.output\"", faults);
         let wire = match (written, signal, from) {
-            (Some(value), ..) => constant(input, value, faults),
+            (Some(value), ..) => constant(input, by_value, value, faults),
             (None, Some(name), _) => signals.read(&name, elementary(input.values, number), faults).map(Wire::Signal),
             (None, None, Some(from)) => output_of(&from, &by_wire, input.values, known, faults),
             (None, None, None) => None,
@@ -251,10 +252,10 @@ fn inputs(
     wires
 }
 
-fn constant(input: &Signal, value: &Placed<Value>, faults: &mut Faults<'_>) -> Option<Wire> {
+fn constant(input: &Signal, key: String, value: &Placed<Value>, faults: &mut Faults<'_>) -> Option<Wire> {
     let constant = input.constant(value.get_ref());
     if constant.is_none() {
-        faults.add(value.span(), SceneFaultKind::Text { key: input.key.to_owned(), wanted: input.values.in_words() });
+        faults.add(value.span(), SceneFaultKind::Text { key, wanted: input.values.in_words() });
     }
     constant.map(Wire::Constant)
 }
@@ -263,7 +264,7 @@ fn constant(input: &Signal, value: &Placed<Value>, faults: &mut Faults<'_>) -> O
 fn refuse_idle(one: &Known<'_>, wires: &[Wire], faults: &mut Faults<'_>) {
     let Known { keys, kind, .. } = one;
     let written = |input: &str| {
-        let ways = [input.to_owned(), format!("{input}_signal"), format!("{input}_from")];
+        let ways = [kind.constant_key(input), format!("{input}_signal"), format!("{input}_from")];
         ways.into_iter().find_map(|key| keys.get(&key).map(|value| (key, value.span())))
     };
     let open = |key: &str| kind.inputs.iter().zip(wires).any(|(input, wire)| input.key == key && *wire == Wire::Open);

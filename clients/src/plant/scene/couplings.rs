@@ -3,7 +3,7 @@
 use super::error::{SceneFaultKind, Thing};
 use super::faults::Faults;
 use super::format::{CouplingTable, JointKind, SceneFile};
-use super::joints::{kind_name, unit};
+use super::joints::{kind_name, refuse_guided, unit};
 use super::model::{Coupling, CouplingLaw, Joint, Share};
 use super::names::Names;
 use super::number::{Allowed, Entry, Unit};
@@ -74,6 +74,9 @@ fn coordinate(
     faults: &mut Faults<'_>,
 ) -> Option<(usize, Unit)> {
     let joint = joints.find(name, faults)?;
+    if refuse_guided(file.joint[joint].get_ref(), name, faults) {
+        return None;
+    }
     let kind = *file.joint[joint].get_ref().kind.get_ref();
     if let (JointKind::Prismatic | JointKind::Revolute, Some(unit)) = (kind, unit(kind)) {
         return Some((joint, unit));

@@ -227,6 +227,9 @@ pub enum SceneFaultKind {
     /// A joint whose two bodies cannot be moved by it.
     #[error("joint `{0}` joins two bodies that no force moves")]
     Immovable(String),
+    /// Something but an axis that is to act on a joint of a robot without dynamics.
+    #[error("joint `{0}` is one of a kinematic robot, on which no force acts")]
+    Guided(String),
     /// A slot whose slide is not across its axis.
     #[error("`slide` of slot `{0}` is not at a right angle to its `axis`")]
     Oblique(String),

@@ -5,7 +5,7 @@ use onescan_server::signal::SignalType;
 use super::error::{SceneFaultKind, Thing};
 use super::faults::Faults;
 use super::format::{FittingTable, JointKind, SceneFile};
-use super::joints::{kind_name, unit};
+use super::joints::{kind_name, refuse_guided, unit};
 use super::model::{Brake, Fitting};
 use super::names::Names;
 use super::number::{Allowed, Entry, Unit};
@@ -37,6 +37,9 @@ fn fitting(
     faults: &mut Faults<'_>,
 ) -> Option<Fitting> {
     let joint = joints.find(&written.joint, faults)?;
+    if refuse_guided(file.joint[joint].get_ref(), &written.joint, faults) {
+        return None;
+    }
     let kind = *file.joint[joint].get_ref().kind.get_ref();
     let (JointKind::Prismatic | JointKind::Revolute, Some(unit)) = (kind, unit(kind)) else {
         let unfit = SceneFaultKind::Undrivable { joint: text(&written.joint).to_owned(), kind: kind_name(kind) };

@@ -193,6 +193,7 @@ pub(super) struct UrdfTable {
     pub(super) position_m: Option<Triple>,
     pub(super) rpy_deg: Option<Triple>,
     pub(super) fixed: Option<bool>,
+    pub(super) kinematic: Option<Placed<bool>>,
     pub(super) collides: Option<bool>,
     pub(super) friction: Option<Placed<f64>>,
     pub(super) density_kg_m3: Option<Placed<f64>>,
@@ -237,6 +238,9 @@ pub(super) struct JointTable {
     pub(super) upper_m: Option<Placed<f64>>,
     pub(super) upper_rad: Option<Placed<f64>>,
     pub(super) contacts: Option<bool>,
+    /// Whether it is of a robot without dynamics.
+    #[serde(skip)]
+    pub(super) guided: bool,
     /// What a joint of a robot follows.
     #[serde(skip)]
     pub(super) follows: Option<FollowTable>,

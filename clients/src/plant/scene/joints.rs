@@ -80,6 +80,7 @@ fn joint(
         lower: coordinate.lower,
         upper: coordinate.upper,
         contacts: written.contacts.unwrap_or(false),
+        guided: written.guided,
         follows: None,
     })
 }
@@ -104,12 +105,21 @@ fn joined(
         return None;
     }
     let moved = |index: usize| body_tables[index].get_ref().kind == BodyKind::Dynamic;
-    if !moved(child) && !parent.is_some_and(moved) {
+    if !written.guided && !moved(child) && !parent.is_some_and(moved) {
         let hint = Some("make one of the bodies dynamic".to_owned());
         faults.add_hinted(written.child.span(), SceneFaultKind::Immovable(name), hint);
         return None;
     }
     Some((parent, child))
+}
+
+/// Refuses what would act on a joint of a robot without dynamics, which only an `[[axis]]` moves; true if so.
+pub(super) fn refuse_guided(joint: &JointTable, name: &Placed<String>, faults: &mut Faults<'_>) -> bool {
+    if joint.guided {
+        let hint = Some("leave `kinematic` out of the robot's table, or move the joint by an `[[axis]]`".to_owned());
+        faults.add_hinted(name.span(), SceneFaultKind::Guided(text(name).to_owned()), hint);
+    }
+    joint.guided
 }
 
 /// Axis and slide of a joint, perpendicular and of unit length.

@@ -212,6 +212,9 @@ pub struct Joint {
     pub upper: Option<f64>,
     /// Whether the joined bodies collide with each other.
     pub contacts: bool,
+    /// Whether it is of a robot without dynamics: where its axis sets it.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub guided: bool,
     /// The joint that it follows, whatever drives that one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub follows: Option<Follows>,

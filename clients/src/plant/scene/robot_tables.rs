@@ -70,7 +70,8 @@ impl Tables<'_> {
                 let on = self.named(&self.robot.links[body].name);
                 match self.shape([name, on], shape, &place, shape.collides && mark == "shape") {
                     Ok(mut table) => {
-                        if parts[body] == Part::Moves && self.robot.links[body].inertial.is_none() {
+                        let weighs = parts[body] == Part::Moves && !self.is_kinematic();
+                        if weighs && self.robot.links[body].inertial.is_none() {
                             self.weigh(shape, &mut table);
                         }
                         written.shape.push(self.at(table));
@@ -85,6 +86,11 @@ impl Tables<'_> {
             written.joint.extend(self.joint(index, joint, &parts, &poses).map(|table| self.at(table)));
         }
         if faults.is_empty() { Ok(remarks) } else { Err(faults) }
+    }
+
+    /// Whether its joints are where they are set, without dynamics.
+    fn is_kinematic(&self) -> bool {
+        self.table.kinematic.as_ref().is_some_and(|kinematic| *kinematic.get_ref())
     }
 
     fn at<T>(&self, value: T) -> Placed<T> {
@@ -131,7 +137,8 @@ impl Tables<'_> {
         let on =
             |index: usize| (0..all.len()).filter(move |other| *other == index || all[*other] == Part::FrameOn(index));
         let massless = |(index, part): &(usize, &Part)| {
-            let needs = **part == Part::Moves && self.robot.links[*index].inertial.is_none();
+            let moves = **part == Part::Moves && !self.is_kinematic();
+            let needs = moves && self.robot.links[*index].inertial.is_none();
             needs && self.density_kg_m3.is_none() && !on(*index).any(weighed)
         };
         let hint = "`density_kg_m3 = 2700` in the table of this robot gives each such link the mass of its shapes";
@@ -169,11 +176,16 @@ impl Tables<'_> {
         let link = &self.robot.links[index];
         let moves = part == Part::Moves;
         let (position, rpy) = spot(place);
-        let inertial = if moves { self.inertial(index, remarks) } else { None };
+        let moves_freely = moves && !self.is_kinematic();
+        let inertial = if moves_freely { self.inertial(index, remarks) } else { None };
         let centre = inertial.map(|inertial| (*place * pose(&inertial.origin)).translation.to_array());
         BodyTable {
             name: self.named(&link.name),
-            kind: if moves { BodyKind::Dynamic } else { BodyKind::Fixed },
+            kind: match (moves, self.is_kinematic()) {
+                (false, _) => BodyKind::Fixed,
+                (true, true) => BodyKind::Kinematic,
+                (true, false) => BodyKind::Dynamic,
+            },
             shape: None,
             size_m: None,
             radius_m: None,
@@ -196,7 +208,7 @@ impl Tables<'_> {
             group: Some(self.at(format!("urdf {}", self.table.name.get_ref()))),
             turn_about_m: None,
             step_m: None,
-            weighed_by_shapes: moves && inertial.is_none(),
+            weighed_by_shapes: moves_freely && inertial.is_none(),
         }
     }
 
@@ -327,6 +339,7 @@ impl Tables<'_> {
             upper_m: bound(1, false),
             upper_rad: bound(1, true),
             contacts: None,
+            guided: self.is_kinematic(),
             follows,
         })
     }

@@ -36,6 +36,13 @@ pub(super) fn expand(written: &mut SceneFile, faults: &mut Faults<'_>) -> Vec<St
 fn one(table: &UrdfTable, written: &mut SceneFile, faults: &mut Faults<'_>) -> Option<Vec<String>> {
     let file = table.file.get_ref();
     let path = faults.beside(file);
+    if let (Some(kinematic), Some(false)) = (&table.kinematic, table.fixed)
+        && *kinematic.get_ref()
+    {
+        let whose = format!("kinematic robot `{}`, whose root rests,", table.name.get_ref());
+        faults.add(kinematic.span(), SceneFaultKind::Misplaced { whose, key: "fixed" });
+        return None;
+    }
     let packages = packages(table, faults);
     let arguments = arguments(table, faults)?;
     let reading = Reading { file, packages: &packages, arguments: &arguments };

@@ -85,9 +85,7 @@ fn component(kind: &Kind) -> Value {
         properties.insert(parameter.key.to_owned(), setting(parameter));
     }
     for input in &kind.inputs {
-        if kind.takes_constant(input.key) {
-            properties.insert(input.key.to_owned(), constant(input));
-        }
+        properties.insert(kind.constant_key(input.key), constant(input));
         properties.insert(format!("{}_signal", input.key), described(text(), &input.about));
         let wire = json!({ "type": TEXT, "pattern": r"^.+\..+$" });
         properties.insert(format!("{}_from", input.key), described(wire, &input.about));

@@ -39,7 +39,7 @@ impl Application {
                 let inside = value.as_int().is_some_and(|value| (*low..=*high).contains(&value));
                 if inside { Ok(plain(value)) } else { Err(format!("it is outside of {low}..{high}")) }
             }
-            Type::Enumeration { name, base, values } => enumerated(name, *base, values, text).map(plain),
+            Type::Enumeration { name, base, values, .. } => enumerated(name, *base, values, text).map(plain),
             Type::Text(shape) => string(*shape, text),
             Type::Array { .. } => Err("an array is written by its elements".to_owned()),
             _ => Err("it is written by its members".to_owned()),

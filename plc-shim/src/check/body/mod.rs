@@ -15,6 +15,7 @@
 //! | [`text`] | character strings |
 //! | [`chart`] | Sequential Function Charts |
 //! | [`start`] | what runs before the first scan |
+//! | [`view`] | the memory of a variable seen as another type |
 
 mod call;
 mod chart;
@@ -26,10 +27,12 @@ mod start;
 mod statement;
 mod text;
 mod unit;
+mod view;
 
 use std::collections::BTreeMap;
 
 use self::statement::jump::Labels;
+use self::view::View;
 use crate::check::declare::{Declarations, Scope};
 use crate::diagnostic::Diagnostic;
 use crate::ir::{ElementaryType, Place, PouId, TypeId};
@@ -68,6 +71,8 @@ pub(super) struct Body<'c, 'a> {
     instruction_wires: u32,
     /// The structure in one of whose initial values the expression stands.
     surrounding: Option<Surrounding>,
+    /// Views of the unit's variables.
+    views: Vec<View>,
 }
 
 impl<'c, 'a> Body<'c, 'a> {
@@ -93,6 +98,7 @@ impl<'c, 'a> Body<'c, 'a> {
             instruction_wires: 0,
             network: None,
             surrounding: None,
+            views: Vec::new(),
         }
     }
 

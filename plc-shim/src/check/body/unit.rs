@@ -36,6 +36,7 @@ impl Body<'_, '_> {
         } else if let Some((owner, occasion)) = self.declarations.stage_of(id) {
             statements.extend(self.staged(owner, occasion));
         } else {
+            statements.extend(self.open_views(id));
             statements.extend(self.chart(ast));
             statements.extend(self.statements(&ast.body));
         }

@@ -38,7 +38,7 @@ impl<'a> Declarations<'a> {
             constant: elementary.filter(|_| is_constant).map(|ty| decode(ty, &declared.image)),
             is_constant,
             retention: Retention::of(qualifiers),
-            address: ast.address.as_ref().map(|address| address.text.clone()),
+            address: ast.address.as_ref().filter(|_| ast.viewed().is_none()).map(|address| address.text.clone()),
             span: name.span,
             image: declared.image.clone(),
             edge: None,

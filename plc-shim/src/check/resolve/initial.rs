@@ -10,7 +10,10 @@ use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::dialect::Feature;
 use crate::ir::{self, Dimension, Field, PouId, Storage, Type, TypeId};
 use crate::syntax::Span;
-use crate::syntax::ast::{ElementInit, Expr, ExprKind, Initialiser, InitialiserKind, ReferenceKind, StructureInit};
+use crate::syntax::ast::{
+    Argument, ElementInit, Expr, ExprKind, Ident, Initialiser, InitialiserKind, ReferenceKind, StructureInit,
+};
+use crate::syntax::walk::root;
 
 /// A variable's initial value while it is made.
 struct Making<'a> {
@@ -118,6 +121,10 @@ impl<'a> Written<'_, 'a> {
     }
 
     fn fill_elementary(&mut self, spot: Spot, expr: &'a Expr, making: &mut Making<'a>) -> Option<()> {
+        if self.refers_to_later(spot.ty, expr) {
+            self.begins_with(spot, expr, making);
+            return Some(());
+        }
         let typed = self.body.beginning(expr, spot.ty)?;
         if matches!(fold(self.declarations().types(), &typed), Err(NoValue::NotConstant(_)))
             && self.may_be_computed(&typed)
@@ -139,6 +146,27 @@ impl<'a> Written<'_, 'a> {
         }
         making.image.get_mut(range)?.iter_mut().zip(value.bytes()).for_each(|(target, source)| *target = source);
         Some(())
+    }
+
+    /// True for a reference to a variable of the unit that is declared behind it, as vendors have it: where that lies is
+    /// known at the start, when the value is checked and made.
+    fn refers_to_later(&self, ty: TypeId, expr: &Expr) -> bool {
+        let types = self.declarations().types();
+        let refers = matches!(types.get(ty), Type::Reference { .. } | Type::Interface { .. });
+        let Some(unit) = self.body.unit().filter(|_| refers) else { return false };
+        let place = match &expr.kind {
+            ExprKind::Call(call) => match &call.arguments[..] {
+                [Argument::Positional(place)] => place,
+                _ => return false,
+            },
+            _ => expr,
+        };
+        let Some(name) = root(place).map(Ident::key).filter(|name| !self.body.scope().declares(name)) else {
+            return false;
+        };
+        let declared = self.declarations().pou(unit).ast().sections.iter().flat_map(|section| &section.variables);
+        let is_later = declared.flat_map(|variable| &variable.names).any(|each| each.key() == name);
+        is_later && self.declarations().dialect(expr.span).has(Feature::ComputedInitialValues)
     }
 
     /// A reference may begin with `REF` of any variable (3rd ed. 6.4.4.10.2).

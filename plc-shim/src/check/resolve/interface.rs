@@ -139,12 +139,14 @@ impl<'c, 'a> Interface<'c, 'a> {
             self.declare_result(ast);
             let of_callers = [SectionKind::Input, SectionKind::InOut, SectionKind::Output];
             self.declare_sections(ast, |kind| !of_callers.contains(&kind));
+            self.declare_views(ast);
         } else {
             // The first parameter is the instance's address.
             self.scope_mut().register(POINTER);
             self.scope_mut().end_parameters();
             self.inherit();
             self.declare_sections(ast, |_| true);
+            self.declare_views(ast);
             self.declare_charts(ast);
             self.keep_for_methods(ast);
         }
@@ -152,8 +154,29 @@ impl<'c, 'a> Interface<'c, 'a> {
 
     fn declare_sections(&mut self, ast: &'a ast::Pou, accept: impl Fn(SectionKind) -> bool) {
         for section in ast.sections.iter().filter(|section| accept(section.kind)) {
-            for variable in &section.variables {
+            for variable in section.variables.iter().filter(|variable| variable.viewed().is_none()) {
                 self.declare_variables(section, variable);
+            }
+        }
+    }
+
+    /// A view has memory of its own for one call, and is no parameter whatever its section.
+    fn declare_views(&mut self, ast: &'a ast::Pou) {
+        let declared = ast.sections.iter().flat_map(|section| &section.variables);
+        for view in declared.filter(|variable| variable.viewed().is_some()) {
+            let declared = self.written.declared(view, Need::Size);
+            for name in &view.names {
+                if let Some(first) = self.declared_before(name) {
+                    self.declarations_mut().report_duplicate(name, Some(first));
+                    continue;
+                }
+                let placed = declared.clone().and_then(|declared| Some((self.temporary(&declared, name)?, declared)));
+                let Some((storage, declared)) = placed else {
+                    self.declare_broken(name);
+                    continue;
+                };
+                let variable = self.declarations().variable(name, view, SectionKind::Temp, &[], &declared, storage);
+                self.add(name, variable);
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::syntax::ast::{Argument, Call, Expr, ExprKind, InitialiserKind, Pou};
+use crate::syntax::ast::{Argument, Call, Expr, ExprKind, Ident, InitialiserKind, Pou};
 use crate::syntax::walk::{self, Visitor, root};
 
 /// Keys of the names that `REF`, `ADR` or `REF=` is used on in a unit's body and initial values.
@@ -13,6 +13,13 @@ pub(in crate::check) fn referred(unit: &Pou) -> BTreeSet<String> {
     for initial in declared.filter_map(|variable| variable.initial.as_ref()) {
         if let InitialiserKind::Value(value) = &initial.kind {
             walk::expression(value, &mut collector);
+        }
+    }
+    // What is seen through a view, and the view itself, are taken byte by byte.
+    for variable in unit.sections.iter().flat_map(|section| &section.variables) {
+        if let Some(viewed) = variable.viewed() {
+            collector.0.insert(viewed.key());
+            collector.0.extend(variable.names.iter().map(Ident::key));
         }
     }
     collector.0
@@ -34,6 +41,6 @@ impl Visitor for Collector {
     }
 
     fn referred(&mut self, place: &Expr) {
-        self.0.extend(root(place).map(crate::syntax::ast::Ident::key));
+        self.0.extend(root(place).map(Ident::key));
     }
 }

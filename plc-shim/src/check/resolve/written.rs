@@ -207,7 +207,8 @@ impl<'a> Written<'_, 'a> {
         base: Option<&Ident>,
         qualified: bool,
     ) -> Option<TypedImage<'a>> {
-        let base = base.map_or(Some(ElementaryType::Int), |base| self.integer_base(base))?;
+        let said = base.map(|base| self.integer_base(base).ok_or(())).transpose().ok()?;
+        let base = said.unwrap_or(ElementaryType::Int);
         let mut values: Vec<(String, i128)> = Vec::new();
         let mut next = 0;
         for each in ast {
@@ -230,7 +231,7 @@ impl<'a> Written<'_, 'a> {
             values.push((each.name.text.clone(), next));
             next += 1;
         }
-        let ty = self.declarations_mut().types_mut().enumeration(name.to_owned(), base, values.clone());
+        let ty = self.declarations_mut().types_mut().enumeration(name.to_owned(), said, values.clone());
         // Values of vendors' system are known by their type only: projects have values of the same names.
         let of_library = ast.first().is_some_and(|each| self.declarations().is_in_library(each.name.span));
         let qualified_only = self.declarations().home().namespace == SYSTEM || of_library && is_qualified_only(name);

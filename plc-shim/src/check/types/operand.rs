@@ -15,6 +15,11 @@ pub(in crate::check) enum Operand {
 }
 
 impl Operand {
+    /// The value, if it has a type.
+    pub(in crate::check) fn typed(&self) -> Option<&Expr> {
+        if let Self::Typed(expr) = self { Some(expr) } else { None }
+    }
+
     pub(in crate::check) fn span(&self) -> Span {
         match self {
             Self::Typed(expr) => expr.span,

@@ -14,8 +14,14 @@ impl Emitter<'_, '_> {
                 let ty = self.held_as(expr.ty);
                 self.constant(ty, *value);
             }
-            ExprKind::Load(place) => self.load(place),
-            ExprKind::Address(place) => self.full_address(place),
+            ExprKind::Load(place) => {
+                self.trace_read(place, expr.span);
+                self.load(place);
+            }
+            ExprKind::Address(place) => {
+                self.trace_read(place, expr.span);
+                self.full_address(place);
+            }
             ExprKind::Unary(Unary::Negate, operand) => self.negate(operand),
             ExprKind::Unary(Unary::Not, operand) => self.complement(operand),
             ExprKind::Binary(operator, left, right) => {

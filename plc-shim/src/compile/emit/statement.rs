@@ -29,6 +29,7 @@ impl Emitter<'_, '_> {
             StatementKind::Assign(target, value) => self.assign(target, value),
             StatementKind::Copy(target, source) => self.copy(target, source),
             StatementKind::Bind(pointer, place) => {
+                self.trace_read(place, statement.span);
                 self.store(pointer, |emitter| emitter.full_address(place));
             }
             StatementKind::Initialise(place, image) => self.initialise(place, image),
@@ -98,6 +99,10 @@ impl Emitter<'_, '_> {
         self.point(call.pointer, address);
         // The inputs and outputs are part of the call: a fault in one points at itself.
         self.side_statements(&call.inputs);
+        if self.is_of_library(call.pou) {
+            // What a library's block does with its own variables nobody reports but its caller.
+            self.trace_read(&call.instance, call.instance.span);
+        }
         let global = matches!(call.instance.storage, Storage::Absolute(_) | Storage::AbsolutePointer(_));
         let callee = if global { Callee::Global } else { Callee::Inner };
         if let Some(pou) = self.inlinable(call.pou).filter(|_| call.dispatch == Dispatch::Direct) {

@@ -1,4 +1,4 @@
-//! Statements tell the host when they begin and end, and decisions which way they go.
+//! Statements tell the host when they begin and end and what they read, and decisions which way they go.
 
 use wasm_encoder::Instruction;
 
@@ -6,7 +6,8 @@ use super::emitter::Emitter;
 use crate::compile::analyse::{Address, Extent};
 use crate::compile::points::{PointKind, Points};
 use crate::compile::trace::index;
-use crate::ir::{Statement, StatementKind};
+use crate::ir::{Expr, ExprKind, Place, PouId, Statement, StatementKind, Step, Storage};
+use crate::syntax::Span;
 
 impl Emitter<'_, '_> {
     /// Tells that a point's statement begins.
@@ -24,6 +25,32 @@ impl Emitter<'_, '_> {
             emitter.emit(Instruction::I32Const(outcome as i32));
             emitter.emit(Instruction::Call(index(2)));
         });
+    }
+
+    /// Tells that a place is read, if the program is traced. What a library reads is its own business.
+    pub(crate) fn trace_read(&mut self, place: &Place, span: Span) {
+        if !self.shared().points().is_some_and(|points| points.is_traced() && points.is_own(span)) {
+            return;
+        }
+        // A register is no place that a variable outlives its unit in. What calls something must not do so twice.
+        if matches!(place.storage, Storage::Register(_)) || !is_pure(place) {
+            return;
+        }
+        let size = self.size_of(place.ty);
+        self.free_of_charge(|emitter| {
+            match emitter.fixed_address(place) {
+                Some(address) => emitter.push_address(address),
+                None => emitter.full_address(place),
+            }
+            emitter.emit(Instruction::I32Const(size as i32));
+            emitter.emit(Instruction::Call(index(3)));
+        });
+    }
+
+    /// True if a unit is no user's.
+    pub(crate) fn is_of_library(&self, pou: PouId) -> bool {
+        let span = self.program().pou(pou).map(|pou| pou.span);
+        self.shared().points().is_some_and(|points| span.is_some_and(|span| !points.is_own(span)))
     }
 
     /// Tells that a statement ends, if the program is traced.
@@ -47,5 +74,26 @@ impl Emitter<'_, '_> {
             }
             emitter.emit(Instruction::Call(index(1)));
         });
+    }
+}
+
+/// True if the way to a place does nothing but read and reckon.
+fn is_pure(place: &Place) -> bool {
+    place.steps.iter().all(|step| match step {
+        Step::Offset(_) => true,
+        Step::Index { index, .. } => is_pure_value(index),
+        Step::Pointer { .. } | Step::Open { .. } => true,
+    })
+}
+
+fn is_pure_value(expr: &Expr) -> bool {
+    match &expr.kind {
+        ExprKind::Constant(_) => true,
+        ExprKind::Load(place) => is_pure(place),
+        ExprKind::Unary(_, operand) | ExprKind::Convert(_, operand) | ExprKind::Limited(_, _, operand) => {
+            is_pure_value(operand)
+        }
+        ExprKind::Binary(_, left, right) => is_pure_value(left) && is_pure_value(right),
+        _ => false,
     }
 }

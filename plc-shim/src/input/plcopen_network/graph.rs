@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::element::{Kind, Node, attribute};
+use super::order::key;
 use crate::diagnostic::Code;
 
 /// Something that is wrong with a network, and the element it is wrong with.
@@ -109,7 +110,7 @@ fn root(parent: &mut [usize], mut index: usize) -> usize {
 
 /// Cuts every loop where a feedback variable keeps the value of the evaluation before (3rd ed. 8.1.4.3):
 /// at an output of an instance, or at a variable in the line. Of several in one loop the one that is
-/// evaluated last feeds back; `executionOrderId` says which that is.
+/// evaluated last feeds back: `executionOrderId` says which that is, and where it does not, where they stand.
 pub(super) fn cut_loops(nodes: &[Node<'_>], sources: &mut [Vec<usize>]) -> Vec<Fault> {
     let mut faults = Vec::new();
     loop {
@@ -153,9 +154,12 @@ fn last_of(nodes: &[Node<'_>], inside: &[usize], faults: &mut Vec<Fault>) -> usi
             keepers.iter().max_by_key(|(_, node)| node.order).map_or(first, |(index, _)| *index)
         }
         [(one, node), ..] => {
-            let message = "several elements keep values in this loop: `executionOrderId` says which comes first".into();
+            let message =
+                "several elements keep values in this loop, and `executionOrderId` does not say of each when it \
+                           comes: those without come last, the highest first, then the one furthest left"
+                    .into();
             faults.push(Fault { place: node.place(), code: Code::FeedbackWithoutOrder, message });
-            *one
+            keepers.iter().map(|(index, _)| *index).max_by_key(|index| key(nodes, *index)).unwrap_or(*one)
         }
     }
 }

@@ -25,6 +25,7 @@ use self::element::{Input, Modifiers, Node, nodes};
 use super::plcopen::Writer;
 use super::statement;
 use super::xml::Element;
+use crate::diagnostic::Code;
 
 /// Which elements of a body are evaluated.
 enum Wanted<'e> {
@@ -69,7 +70,16 @@ impl Writer<'_> {
             });
         }
         for fault in faults {
-            self.taken.report(fault.place, fault.code, &fault.message);
+            if fault.code == Code::FeedbackWithoutOrder {
+                self.taken.warn(
+                    fault.place,
+                    fault.code,
+                    &fault.message,
+                    Some("give each of them an `executionOrderId`"),
+                );
+            } else {
+                self.taken.report(fault.place, fault.code, &fault.message);
+            }
         }
         self.bodies += 1;
         let number = self.bodies;

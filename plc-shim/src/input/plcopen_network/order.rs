@@ -14,9 +14,9 @@ use super::element::{Kind, Node};
 use super::graph::finished;
 
 /// Where an element comes if nothing else says so.
-type Key = (u32, (i64, i64), usize);
+pub(super) type Key = (u32, (i64, i64), usize);
 
-fn key(nodes: &[Node<'_>], index: usize) -> Key {
+pub(super) fn key(nodes: &[Node<'_>], index: usize) -> Key {
     let node = nodes.get(index);
     let order = node.and_then(|node| node.order).unwrap_or(u32::MAX);
     (order, node.map_or((0, 0), |node| node.position), index)

@@ -118,7 +118,9 @@ impl Visitor for Refused {
                 ("an assignment of a reference", "hand the variable over as VAR_IN_OUT")
             }
             StatementKind::Chain(..) => ("an assignment to several variables", "write one for each"),
-            StatementKind::Update(..) => ("an assignment that computes", "write a := a + b"),
+            StatementKind::Update(..) | StatementKind::SetReset(..) => {
+                ("an assignment that computes", "write a := a + b")
+            }
             StatementKind::Try(_) => ("`__TRY`", "check what may fail before it does"),
             StatementKind::Continue => ("CONTINUE", "write an IF around the rest of the loop"),
             StatementKind::Instruction(_) => ("an instruction list under a shim", "write it in Structured Text"),

@@ -205,7 +205,7 @@ impl Visitor for Body<'_, '_> {
             StatementKind::Refer(..) | StatementKind::Attempt(..) => {
                 ("references of this kind", "pass the variable as VAR_IN_OUT")
             }
-            StatementKind::Update(UpdateOp::Set | UpdateOp::Reset, ..) => {
+            StatementKind::Update(UpdateOp::Set | UpdateOp::Reset, ..) | StatementKind::SetReset(..) => {
                 ("assignments S= and R=", "write IF .. THEN a := TRUE; END_IF")
             }
             StatementKind::Try(_) => ("`__TRY`", "check what may fail before it does"),

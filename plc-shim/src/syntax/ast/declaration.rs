@@ -138,7 +138,7 @@ impl Section {
 pub struct Variable {
     /// The names, at least one.
     pub names: Vec<Ident>,
-    /// The direct address, as written.
+    /// The direct address, as written; or, in SCL, the name of the variable whose memory it looks at.
     pub address: Option<Ident>,
     /// The type.
     pub spec: TypeSpec,
@@ -146,6 +146,13 @@ pub struct Variable {
     pub edge: Option<Edge>,
     /// The initial value.
     pub initial: Option<Initialiser>,
+}
+
+impl Variable {
+    /// The variable whose memory this one looks at: `b AT a : DWORD` of SCL.
+    pub fn viewed(&self) -> Option<&Ident> {
+        self.address.as_ref().filter(|address| !address.text.starts_with('%'))
+    }
 }
 
 /// What of an input its unit sees (2nd ed. 2.5.2.2, Table 33).

@@ -22,6 +22,8 @@ pub enum StatementKind {
     Chain(Vec<Expr>, Expr),
     /// `a += b`, `a S= b` (vendors).
     Update(UpdateOp, Expr, Expr),
+    /// `a S= b R= c`: the targets in their order, at least two, each set or reset by the value at the end (vendors).
+    SetReset(Vec<(UpdateOp, Expr)>, Expr),
     /// `a REF= b` of vendors: `a` refers to `b` from now on
     Refer(Expr, Expr),
     /// `a ?= b` (3rd ed. 6.6.6.7)

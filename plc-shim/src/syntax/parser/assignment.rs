@@ -40,6 +40,9 @@ impl Cursor<'_> {
         if let Some((operator, at)) = self.take_update() {
             let value = self.expression();
             self.require_update(operator, at, &target, &value);
+            if matches!(operator, UpdateOp::Set | UpdateOp::Reset) && self.at_set_or_reset() {
+                return self.set_and_reset((operator, target), value);
+            }
             return StatementKind::Update(operator, target, value);
         }
         if let ExprKind::Call(call) = target.kind {
@@ -114,6 +117,23 @@ impl Cursor<'_> {
         };
         self.advance();
         Some((operator, span))
+    }
+
+    fn at_set_or_reset(&self) -> bool {
+        self.peek_ahead(1) == Some(TokenKind::Punctuation(Punctuation::Equal))
+            && (self.at_word("S") || self.at_word("R"))
+    }
+
+    /// `a S= b R= c`
+    fn set_and_reset(&mut self, first: (UpdateOp, Expr), mut value: Expr) -> StatementKind {
+        let mut targets = vec![first];
+        while self.at_set_or_reset()
+            && let Some((operator, _)) = self.take_update()
+        {
+            let target = std::mem::replace(&mut value, self.expression());
+            targets.push((operator, target));
+        }
+        StatementKind::SetReset(targets, value)
     }
 
     /// Reports `+=` and the like where the dialect lacks them.

@@ -263,7 +263,7 @@ impl Cursor<'_> {
     }
 
     fn variable(&mut self, variables: &mut Vec<Variable>) {
-        let mut known = self.reported();
+        let known = self.reported();
         let is_nameless = self.at_keyword(Keyword::At) && self.peek_ahead(1) == Some(TokenKind::DirectAddress);
         if matches!(self.peek(), Some(TokenKind::Keyword(_))) && !is_nameless {
             self.report_keyword_as_name();
@@ -274,12 +274,7 @@ impl Cursor<'_> {
             self.pass_count();
         }
         let address = match self.take_keyword(Keyword::At) {
-            true if self.at_view() => {
-                let none = self.pass_view();
-                // What is told of it says nothing about the type behind.
-                known = self.reported();
-                none
-            }
+            true if self.peek() == Some(TokenKind::Identifier) => self.viewed(),
             true => self.address(),
             false => None,
         };

@@ -236,18 +236,17 @@ impl Cursor<'_> {
         }
         loop {
             arguments.extend(self.given_argument());
-            let comma = self.span();
-            if !self.take_mark(Punctuation::Comma) {
-                break;
-            }
-            if self.at_mark(Punctuation::RightParen) && self.dialect().has(Feature::EmptyArguments) {
-                // What would stand behind the comma is left as it is.
-                self.require(Feature::EmptyArguments, comma);
+            if !self.take_mark(Punctuation::Comma) || self.passes_last_comma() {
                 break;
             }
         }
         self.expect_mark(Punctuation::RightParen);
         arguments
+    }
+
+    /// True behind a comma with nothing after it: what would stand there is left as it is.
+    fn passes_last_comma(&mut self) -> bool {
+        self.at_mark(Punctuation::RightParen) && self.dialect().has(Feature::EmptyArguments)
     }
 
     /// `(a := 1)` or, as an error, `(0..10)`.
@@ -271,7 +270,7 @@ impl Cursor<'_> {
             } else {
                 arguments.push(argument);
             }
-            if !self.take_mark(Punctuation::Comma) {
+            if !self.take_mark(Punctuation::Comma) || self.passes_last_comma() {
                 break;
             }
         }

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use super::cursor::Cursor;
 use super::declaration::{UnitParts, begins_declaration, ends_unit};
 use crate::diagnostic::{Code, Diagnostic};
+use crate::dialect::Feature;
 use crate::source::Span;
 use crate::syntax::ast::{
     Declaration, Expr, ExprKind, Ident, Literal, Member, MemberKind, Modifier, Namespace, NamespaceKind, Object, Pou,
@@ -126,7 +127,12 @@ impl Cursor<'_> {
             let Some(name) = self.expect_identifier(what) else { return list };
             let name = self.qualified(name);
             list.push(self.with_constants(name));
+            let comma = self.span();
             if !self.take_mark(Punctuation::Comma) {
+                return list;
+            }
+            if self.peek() != Some(TokenKind::Identifier) {
+                self.require(Feature::EmptyBases, comma);
                 return list;
             }
         }

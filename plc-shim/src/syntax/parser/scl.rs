@@ -60,19 +60,19 @@ impl Cursor<'_> {
         into.push(Declaration::Globals(section));
     }
 
-    /// True at the other variable of `a AT b : DWORD`.
-    pub(super) fn at_view(&self) -> bool {
-        self.dialect() == Dialect::SiemensScl && self.peek() == Some(TokenKind::Identifier)
+    /// `ELSE:` of a CASE.
+    pub(super) fn pass_colon_of_else(&mut self) {
+        let colon = self.span();
+        if self.take_mark(Punctuation::Colon) {
+            self.require(Feature::ElseColon, colon);
+        }
     }
 
-    /// Refuses a view of another variable and passes its name, so that the rest is read.
-    pub(super) fn pass_view(&mut self) -> Option<Ident> {
+    /// The other variable of `a AT b : DWORD`; nothing at a direct address.
+    pub(super) fn viewed(&mut self) -> Option<Ident> {
         let other = self.take_identifier()?;
-        let message = format!("a view `AT` of the memory of `{}` is not supported", other.text);
-        let help = "there a value begins with its highest byte, here with its lowest: take it apart with SHR and \
-                    conversions, or member by member";
-        self.report(Diagnostic::error(Code::UnsupportedFeature, other.span, message).with_help(help));
-        None
+        self.require(Feature::Views, other.span);
+        Some(other)
     }
 
     /// `VAR .. END_VAR` of a data block.

@@ -218,7 +218,12 @@ impl Cursor<'_> {
                 self.advance();
             }
         }
-        let otherwise = if self.take_keyword(Keyword::Else) { self.statements() } else { Vec::new() };
+        let otherwise = if self.take_keyword(Keyword::Else) {
+            self.pass_colon_of_else();
+            self.statements()
+        } else {
+            Vec::new()
+        };
         self.expect_end(Keyword::EndCase);
         StatementKind::Case(CaseStatement { selector, branches, otherwise })
     }

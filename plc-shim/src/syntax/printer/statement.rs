@@ -51,6 +51,15 @@ impl Printer {
                 self.word(" ");
                 self.expression(value);
             }
+            StatementKind::SetReset(targets, value) => {
+                for (operator, target) in targets {
+                    self.expression(target);
+                    self.word(" ");
+                    self.word(operator.text());
+                    self.word(" ");
+                }
+                self.expression(value);
+            }
             StatementKind::Refer(target, value) => {
                 self.expression(target);
                 self.head(" REF= ", value, "");

@@ -2,8 +2,14 @@
 //!
 //! | module | subject |
 //! |---|---|
-//! | [`lobby`] | the listener: handshakes, applicants, operators; a thread of its own, asynchronous |
-//! | `stream` | frames over a blocking socket |
+//! | [`lobby`] | the listener; a thread of its own, asynchronous |
+//! | `order`, `host` | what is to be done with its connections; what they share |
+//! | `attend` | one of them |
+//! | `guest` | a client that waits for a seat, seen from the session's thread |
+//! | `error` | why nobody could take part |
+//! | [`entrance`] | where a session is, and what it takes to be let in |
+//! | `socket` | a blocking socket, in plain text or under TLS |
+//! | `stream` | frames over it |
 //! | `remote` | a joined client, seen from the session's thread |
 //! | [`participant`] | the client's side: join and take part |
 //! | [`operator`] | the operator's side: one wish, one answer |
@@ -12,25 +18,30 @@
 //! waited for by exactly one thread on either side, so from there on sockets block: see
 //! `docs/decisions/002-blocking-steps.md`.
 
+mod attend;
+pub mod entrance;
+mod error;
+mod guest;
+mod host;
 pub mod lobby;
 pub mod operator;
+mod order;
 pub mod participant;
 mod remote;
+mod socket;
 mod stream;
 
 use std::time::Duration;
 
+use onescan_base::foreign::one_line;
 use thiserror::Error;
 
-pub use lobby::Lobby;
+pub use entrance::Entrance;
+pub use lobby::{House, Lobby};
 
 use crate::wire::FrameError;
 
-/// How long the other side may take for a message of the handshake.
-pub const HANDSHAKE_TIMEOUT: Duration = Duration::from_secs(5);
-
-/// How long the other side may take to close after a last message.
-const FAREWELL_TIMEOUT: Duration = Duration::from_secs(1);
+pub use crate::lobby::reception::{FAREWELL_TIMEOUT, HANDSHAKE_TIMEOUT};
 
 /// What this program calls itself to the other side.
 const AGENT: &str = concat!("onescan ", env!("CARGO_PKG_VERSION"));
@@ -51,7 +62,7 @@ pub enum ReceiveError {
     #[error("a binary frame where a JSON message is due")]
     NotJson,
     /// JSON that is no message of the protocol.
-    #[error("not a message of this protocol: {0}")]
+    #[error("not a message of this protocol: {}", one_line(&.0.to_string()))]
     Message(#[from] serde_json::Error),
 }
 

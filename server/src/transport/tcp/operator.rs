@@ -1,25 +1,26 @@
 //! The operator's side of TCP: one wish, one answer.
 
-use std::net::SocketAddr;
 use std::time::Duration;
 
-use super::participant::{ParticipantError, connect, greet};
+use super::entrance::{Entrance, connect};
+use super::participant::{ParticipantError, greet};
 use crate::operation::Operation;
 use crate::wire::message::{Role, Status};
 use crate::wire::{ClientMessage, ServerMessage};
 
-/// Asks the session at `address` for `operation`, or with `None` only how it is, and gives its status
+/// Asks the session behind `entrance` for `operation`, or with `None` only how it is, and gives its status
 /// at the step boundary at which the wish was taken.
 ///
 /// # Errors
 /// Nobody there, a signal or value that the session has not, no answer within `patience`, or an answer that is none.
 pub fn operate(
-    address: SocketAddr,
+    entrance: impl Into<Entrance>,
     operation: Option<Operation>,
     patience: Duration,
 ) -> Result<Status, ParticipantError> {
-    let mut connection = connect(address)?;
-    greet(&mut connection, Role::Operator)?;
+    let entrance = entrance.into();
+    let mut connection = connect(&entrance)?;
+    greet(&mut connection, Role::Operator, &entrance)?;
     let wish = match operation {
         None => ClientMessage::Status {},
         // What a server of any version knows goes as it always did.

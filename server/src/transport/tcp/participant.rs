@@ -1,9 +1,8 @@
 //! The client's side of TCP: joins a session and takes part until it ends.
 
-use std::net::{SocketAddr, TcpStream};
+pub use super::error::ParticipantError;
 
-use thiserror::Error;
-
+use super::entrance::{Entrance, connect};
 use super::stream::FrameStream;
 use super::{AGENT, HANDSHAKE_TIMEOUT, ReceiveError};
 use crate::client::{Client, ClientFault, Wake};
@@ -11,69 +10,24 @@ use crate::end::SessionEnd;
 use crate::signal::PortLayout;
 use crate::time::{StepCount, VirtualTime};
 use crate::wire::message::Role;
-use crate::wire::{
-    ClientMessage, Duty, Endpoint, EndpointError, FRAME_BYTES_MAX, Frame, FrameError, FrameRef, ServerMessage, VERSIONS,
-};
+use crate::wire::{ClientMessage, Duty, Endpoint, Frame, FrameError, FrameRef, ServerMessage, VERSIONS};
 
-/// Why a client did not stay to the end.
-#[derive(Debug, Error)]
-pub enum ParticipantError {
-    /// Nobody there.
-    #[error("cannot connect to the server at {address}: {source}")]
-    Connect {
-        /// Where.
-        address: SocketAddr,
-        /// Why.
-        source: std::io::Error,
-    },
-    /// The server does not want it.
-    #[error("the server refused: {0}")]
-    Refused(String),
-    /// The server is gone or silent in the handshake.
-    #[error("in the handshake: {0}")]
-    Handshake(ReceiveError),
-    /// The connection broke in the session.
-    #[error("lost the server at t_v = {t_v}: {source}")]
-    Lost {
-        /// Virtual time of the last grant.
-        t_v: VirtualTime,
-        /// Why.
-        source: ReceiveError,
-    },
-    /// The server broke the protocol.
-    #[error(transparent)]
-    Server(#[from] EndpointError),
-    /// The client itself could not go on; the server has been told.
-    #[error("at t_v = {t_v}: {fault}")]
-    Fault {
-        /// Virtual time of the turn.
-        t_v: VirtualTime,
-        /// What happened.
-        fault: ClientFault,
-    },
-}
-
-/// Joins the session at `address` as `client` and takes part until it ends.
+/// Joins the session behind `entrance` as `client` and takes part until it ends.
 ///
 /// # Errors
 /// See [`ParticipantError`].
-pub fn take_part(client: &mut dyn Client, address: SocketAddr) -> Result<SessionEnd, ParticipantError> {
-    let mut connection = connect(address)?;
-    shake_hands(&mut connection, client)?;
+pub fn take_part(client: &mut dyn Client, entrance: impl Into<Entrance>) -> Result<SessionEnd, ParticipantError> {
+    let entrance = entrance.into();
+    let mut connection = connect(&entrance)?;
+    shake_hands(&mut connection, client, &entrance)?;
     serve(connection, client)
 }
 
-/// A connection, not yet greeted.
-pub(super) fn connect(address: SocketAddr) -> Result<FrameStream, ParticipantError> {
-    let refused = |source| ParticipantError::Connect { address, source };
-    let stream = TcpStream::connect_timeout(&address, HANDSHAKE_TIMEOUT).map_err(refused)?;
-    FrameStream::new(stream, FRAME_BYTES_MAX, HANDSHAKE_TIMEOUT).map_err(refused)
-}
-
 /// `hello` and its answer.
-pub(super) fn greet(connection: &mut FrameStream, role: Role) -> Result<(), ParticipantError> {
+pub(super) fn greet(connection: &mut FrameStream, role: Role, entrance: &Entrance) -> Result<(), ParticipantError> {
     let broken = |e: FrameError| ParticipantError::Handshake(e.into());
-    let hello = ClientMessage::Hello { protocol: VERSIONS, role, agent: AGENT.to_owned() };
+    let token = entrance.token.as_ref().map(|token| token.reveal().to_owned());
+    let hello = ClientMessage::Hello { protocol: VERSIONS, role, agent: AGENT.to_owned(), token };
     connection.send_message(&hello).map_err(broken)?;
     match connection.receive_message(HANDSHAKE_TIMEOUT).map_err(ParticipantError::Handshake)? {
         ServerMessage::Welcome { .. } => Ok(()),
@@ -83,8 +37,8 @@ pub(super) fn greet(connection: &mut FrameStream, role: Role) -> Result<(), Part
 }
 
 /// `hello` and `join`. The answer to `join` may take as long as the session takes to form.
-fn shake_hands(connection: &mut FrameStream, client: &dyn Client) -> Result<(), ParticipantError> {
-    greet(connection, Role::Client)?;
+fn shake_hands(connection: &mut FrameStream, client: &dyn Client, entrance: &Entrance) -> Result<(), ParticipantError> {
+    greet(connection, Role::Client, entrance)?;
     let broken = |e: FrameError| ParticipantError::Handshake(e.into());
     connection.send_message(&ClientMessage::Join(client.join())).map_err(broken)?;
     let Frame::Json(text) = connection.receive(None).map_err(ParticipantError::Handshake)? else {

@@ -82,22 +82,25 @@ impl Carrier for Remote {
     fn show(&self, _view: &mut ClientView) {}
 
     fn save(&mut self) -> Result<Vec<u8>, StateError> {
-        self.connection.send_message(&ServerMessage::Save {}).map_err(|e| corrupt(&e))?;
+        self.connection.send_message(&ServerMessage::Save {}).map_err(|e| lost(&e.into()))?;
         match self.connection.receive(Some(self.reply_timeout)) {
             Ok(Frame::State(state)) => Ok(state.to_vec()),
-            Ok(frame) => Err(StateError::Corrupt(broken_promise(&frame, None).to_string())),
-            Err(error) => Err(corrupt(&error)),
+            Ok(frame) => Err(match broken_promise(&frame, None) {
+                FailureCause::Fault(fault) => StateError::Refused(fault),
+                cause => StateError::Lost(cause),
+            }),
+            Err(error) => Err(lost(&error)),
         }
     }
 
     fn restore(&mut self, steps: StepCount, t_v: VirtualTime, state: &[u8]) -> Result<(), StateError> {
-        self.connection.send_message(&ServerMessage::Restore { t_v, steps }).map_err(|e| corrupt(&e))?;
-        self.connection.send(FrameRef::State(state)).map_err(|e| corrupt(&e))?;
+        self.connection.send_message(&ServerMessage::Restore { t_v, steps }).map_err(|e| lost(&e.into()))?;
+        self.connection.send(FrameRef::State(state)).map_err(|e| lost(&e.into()))?;
         match self.connection.receive_message(self.reply_timeout) {
             Ok(ClientMessage::Restored {}) => Ok(()),
-            Ok(ClientMessage::Fault(fault)) => Err(StateError::Corrupt(fault.to_string())),
-            Ok(_) => Err(StateError::Corrupt("it answered `restore` with another message".to_owned())),
-            Err(error) => Err(corrupt(&error)),
+            Ok(ClientMessage::Fault(fault)) => Err(StateError::Refused(fault)),
+            Ok(_) => Err(StateError::Lost(FailureCause::Wire("it answered `restore` with another message".to_owned()))),
+            Err(error) => Err(lost(&error)),
         }
     }
 
@@ -121,8 +124,8 @@ impl Carrier for Remote {
     }
 }
 
-fn corrupt(error: &impl ToString) -> StateError {
-    StateError::Corrupt(error.to_string())
+fn lost(error: &ReceiveError) -> StateError {
+    StateError::Lost(cause_of(error))
 }
 
 fn cause_of(error: &ReceiveError) -> FailureCause {
@@ -139,7 +142,7 @@ fn broken_promise(frame: &Frame, broken: Option<FailureCause>) -> FailureCause {
         return match serde_json::from_slice(text) {
             Ok(ClientMessage::Fault(fault)) => FailureCause::Fault(fault),
             Ok(_) => FailureCause::Wire("it sent a message of the handshake in the middle of the session".to_owned()),
-            Err(error) => FailureCause::Wire(format!("not a message of this protocol: {error}")),
+            Err(error) => cause_of(&ReceiveError::from(error)),
         };
     }
     broken.unwrap_or_else(|| match frame {

@@ -4,7 +4,6 @@
 //! loop would ask the operating system three times where this asks once.
 
 use std::io::{ErrorKind, Read, Write};
-use std::net::TcpStream;
 use std::time::{Duration, Instant};
 
 use bytes::BytesMut;
@@ -12,6 +11,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use tokio_util::codec::{Decoder, Encoder};
 
+use super::socket::Socket;
 use super::{FAREWELL_TIMEOUT, ReceiveError};
 use crate::wire::{Frame, FrameCodec, FrameError, FrameRef};
 
@@ -20,7 +20,7 @@ const READ_BYTES: usize = 64 * 1024;
 
 /// A socket and the frames on their way.
 pub(super) struct FrameStream {
-    stream: TcpStream,
+    stream: Socket,
     codec: FrameCodec,
     incoming: BytesMut,
     outgoing: BytesMut,
@@ -32,11 +32,12 @@ pub(super) struct FrameStream {
 impl FrameStream {
     /// Frames over `stream`, none with a length over `limit`. A write that makes no progress for
     /// `write_timeout` fails.
-    pub(super) fn new(stream: TcpStream, limit: usize, write_timeout: Duration) -> std::io::Result<Self> {
-        stream.set_nonblocking(false)?;
-        stream.set_nodelay(true)?;
-        stream.set_read_timeout(None)?;
-        stream.set_write_timeout(Some(write_timeout))?;
+    pub(super) fn new(stream: Socket, limit: usize, write_timeout: Duration) -> std::io::Result<Self> {
+        let tcp = stream.tcp();
+        tcp.set_nonblocking(false)?;
+        tcp.set_nodelay(true)?;
+        tcp.set_read_timeout(None)?;
+        tcp.set_write_timeout(Some(write_timeout))?;
         Ok(Self {
             stream,
             codec: FrameCodec::new(limit),
@@ -52,6 +53,7 @@ impl FrameStream {
         self.outgoing.clear();
         self.codec.encode(frame, &mut self.outgoing)?;
         self.stream.write_all(&self.outgoing)?;
+        self.stream.flush()?;
         Ok(())
     }
 
@@ -102,7 +104,7 @@ impl FrameStream {
     /// unread bytes would make the operating system take the last message back.
     pub(super) fn farewell(&mut self) {
         let begun = Instant::now();
-        if self.stream.shutdown(std::net::Shutdown::Write).is_err() {
+        if self.stream.shut_down().is_err() {
             return;
         }
         while let Some(rest) = FAREWELL_TIMEOUT.checked_sub(begun.elapsed()).filter(|rest| !rest.is_zero()) {

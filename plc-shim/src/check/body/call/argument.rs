@@ -116,10 +116,18 @@ impl Body<'_, '_> {
     }
 
     /// What a `VAR_IN_OUT` may be given: what may be written, and of an instance what it keeps for itself, which
-    /// vendors let be handed on.
+    /// vendors let be handed on; its outputs, too.
     fn given_place(&mut self, expr: &ast::Expr) -> Option<Place> {
         let located = self.place(expr)?;
-        if located.access == Access::Internal { Some(located.place) } else { self.writable(located, expr.span) }
+        match located.access {
+            Access::Internal => Some(located.place),
+            Access::InstanceOutput if self.declarations.dialect(expr.span).has(Feature::OutputsHandedOn) => {
+                let message = "an output is written by its own instance; what is written to it here does not last";
+                self.report(Diagnostic::warning(Code::NotAssignable, expr.span, message));
+                Some(located.place)
+            }
+            _ => self.writable(located, expr.span),
+        }
     }
 
     /// `VAR_IN_OUT CONSTANT` takes constants and values as well, which the unit reads only (CODESYS, TwinCAT).

@@ -6,7 +6,7 @@ use crate::check::standard::{conversion, text_conversion};
 use crate::check::types::number::as_bits;
 use crate::check::types::operand::{Operand, constant, converted};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::dialect::Selection;
+use crate::dialect::{Feature, Selection};
 use crate::ir::{Binary, ElementaryType, Expr, ExprKind, Intrinsic, Rounding, Type, TypeId, Value};
 use crate::syntax::Span;
 use crate::syntax::ast::{Argument, BinaryOp, Ident};
@@ -206,6 +206,7 @@ impl Body<'_, '_> {
         if operands.iter().any(|operand| self.is_text(operand)) {
             return self.unify_texts(operands, span);
         }
+        let operands = self.numbers_beside_enumerations(operands);
         let typed = operands.iter().find_map(|operand| match operand {
             Operand::Typed(expr) => Some(expr.ty),
             _ => None,
@@ -234,12 +235,24 @@ impl Body<'_, '_> {
         Some((all.collect::<Option<_>>()?, ty))
     }
 
-    /// Values of any type that can be assigned (2nd ed. Table 27: ANY): all of one structure or array type, or
+    /// The operands, enumerations as their numbers if there are other types among them.
+    fn numbers_beside_enumerations(&self, operands: Vec<Operand>) -> Vec<Operand> {
+        let types: Vec<_> = operands.iter().filter_map(Operand::typed).map(|expr| expr.ty).collect();
+        if types.iter().all(|ty| *ty == types[0]) {
+            return operands;
+        }
+        let number = |operand| match operand {
+            Operand::Typed(expr) => Operand::Typed(self.as_number(expr)),
+            other => other,
+        };
+        operands.into_iter().map(number).collect()
+    }
+
+    /// Values of any type that can be assigned (2nd ed. Table 27: ANY): all of one structure, array or pointer type, or
     /// what [`Self::unify_all`] takes.
     fn selected_values(&mut self, operands: Vec<Operand>, span: Span) -> Option<(Vec<Expr>, TypeId)> {
         let aggregate = operands.iter().find_map(|operand| match operand {
-            Operand::Typed(expr) => Some(expr.ty)
-                .filter(|ty| matches!(self.declarations.types().get(*ty), Type::Struct { .. } | Type::Array { .. })),
+            Operand::Typed(expr) => Some(expr.ty).filter(|ty| self.is_selected_whole(*ty)),
             _ => None,
         });
         let Some(ty) = aggregate else {
@@ -247,6 +260,11 @@ impl Body<'_, '_> {
         };
         let all = operands.into_iter().map(|operand| self.coerce(operand, ty));
         Some((all.collect::<Option<_>>()?, ty))
+    }
+
+    fn is_selected_whole(&self, ty: TypeId) -> bool {
+        let ty = self.declarations.types().get(ty);
+        matches!(ty, Type::Struct { .. } | Type::Array { .. } | Type::Reference { .. })
     }
 
     fn extreme(&mut self, kind: Intrinsic, operands: Vec<Operand>, span: Span) -> Option<Operand> {
@@ -315,6 +333,9 @@ impl Body<'_, '_> {
                 let Operand::Typed(shifted) = self.shift(kind, Operand::Typed(bits), count, span)? else { return None };
                 return Some(Operand::Typed(converted(shifted, ty, Rounding::NearestEven)));
             }
+            Operand::Integer { value, span } if self.declarations.dialect(span).has(Feature::ShiftedLiterals) => {
+                self.shifted_literal(value, span)?
+            }
             Operand::Integer { value, span } => {
                 let message = "a bit string is wanted, this is an integer";
                 let help = format!("say how many bits are shifted, as in WORD#{}", value.max(0));
@@ -329,5 +350,17 @@ impl Body<'_, '_> {
         let count = self.integer_as_lint(count)?;
         let ty = value.ty;
         Some(Self::intrinsic(kind, vec![value, count], ty, span))
+    }
+
+    /// A literal that is shifted has the smallest type that holds it, whatever its result is assigned to.
+    fn shifted_literal(&mut self, value: i128, span: Span) -> Option<Expr> {
+        let types = [ElementaryType::Byte, ElementaryType::Word, ElementaryType::Dword, ElementaryType::Lword];
+        let Some(ty) = types.into_iter().find(|ty| ty.wrap(value) == value) else {
+            return self.mismatch("a bit string", "a negative integer", span);
+        };
+        let message = format!("{value} is shifted as {ty}, the smallest type that holds it");
+        let help = format!("say how many bits are shifted, as in DWORD#{value}");
+        self.report(Diagnostic::warning(Code::LossyConversion, span, message).with_help(help));
+        Some(constant(Value::Int(value), ty, span))
     }
 }

@@ -195,7 +195,14 @@ impl Body<'_, '_> {
             let (one, other) = if left.is_real() { (left, right) } else { (right, left) };
             (has && one.is_real() && other.is_integer()).then_some(one)
         };
-        left.common(right).or_else(numbers).or_else(unsigned).or_else(real)
+        // Where a DINT becomes a REAL by itself, it does so beside one.
+        let narrow = {
+            let (one, other) = if left.is_real() { (left, right) } else { (right, left) };
+            let dialect = self.declarations.dialect(span);
+            let has = dialect.has(Feature::IntegersAsReals) && !dialect.has(Feature::LossyReals);
+            (has && one == E::Real && other.is_integer() && other.size() <= one.size()).then_some(one)
+        };
+        narrow.or_else(|| left.common(right)).or_else(numbers).or_else(unsigned).or_else(real)
     }
 
     /// `AND_THEN`, `OR_ELSE`: the right operand is evaluated only if the left one does not tell.

@@ -10,12 +10,10 @@ use crate::syntax::{Span, ast};
 
 impl Body<'_, '_> {
     pub(in crate::check::body) fn base_of_enumeration(&self, ty: TypeId, span: Span) -> Option<ElementaryType> {
-        match self.declarations.types().get(ty) {
-            Type::Enumeration { base, .. } if self.declarations.dialect(span).has(Feature::EnumerationsAsIntegers) => {
-                Some(*base)
-            }
-            _ => None,
-        }
+        let Type::Enumeration { base, has_base, .. } = self.declarations.types().get(ty) else { return None };
+        let dialect = self.declarations.dialect(span);
+        let is_number = dialect.has(Feature::EnumerationsAsIntegers) || *has_base && dialect.has(Feature::NamedValues);
+        is_number.then_some(*base)
     }
 
     /// Runs `check` where the place wants a value of this type, which tells values apart that several enumerations have.

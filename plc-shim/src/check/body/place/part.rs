@@ -3,6 +3,7 @@
 use super::Located;
 use crate::check::body::Body;
 use crate::diagnostic::{Code, Diagnostic};
+use crate::dialect::Feature;
 use crate::ir::{ElementaryType, Part, Place, Storage, Type};
 use crate::syntax::Span;
 use crate::syntax::ast::{self, Ident};
@@ -35,8 +36,11 @@ impl Body<'_, '_> {
 
     /// `plain` is true without a `%`: so written, integers have bits too.
     fn part_at(&mut self, base: Located, width: Width, number: u64, plain: bool, span: Span) -> Option<Located> {
+        let loose = plain && self.declarations.dialect(span).has(Feature::LooseParts);
         let ty = match self.declarations.types().get(base.place.ty) {
+            Type::Elementary(ElementaryType::Bool) if loose && width == Width::Bit && number == 0 => return Some(base),
             Type::Elementary(ty) => Some(*ty),
+            Type::Enumeration { base, .. } if loose => Some(*base),
             _ => None,
         };
         let bits = |ty: &ElementaryType| ty.is_bits() && *ty != ElementaryType::Bool;

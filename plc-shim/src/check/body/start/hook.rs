@@ -28,7 +28,10 @@ impl Body<'_, '_> {
         pou: PouId,
         given: &[Argument],
     ) -> Vec<Statement> {
-        let hooks = self.declarations.hooks(pou, Occasion::Start);
+        let mut hooks = self.declarations.hooks(pou, Occasion::Start);
+        // That of a stub does nothing, and its inputs may be guessed.
+        let last = hooks.last().copied();
+        hooks.retain(|hook| Some(*hook) == last || !self.declarations.is_external(*hook));
         let Some(last) = hooks.last() else { return Vec::new() };
         let Some(named) = self.named(*last, given, place.span) else { return Vec::new() };
         if hooks.iter().any(|hook| self.passes_all(*hook, *last, place.span).is_none()) {

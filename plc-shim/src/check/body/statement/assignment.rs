@@ -44,6 +44,21 @@ impl Body<'_, '_> {
         Some(self.assignment(place, after, span))
     }
 
+    /// `a S= b R= c`: the value at the end, evaluated once, sets or resets each target.
+    pub(super) fn set_and_reset(
+        &mut self,
+        targets: &[(UpdateOp, ast::Expr)],
+        value: &ast::Expr,
+        span: Span,
+    ) -> Vec<Statement> {
+        let condition = self.condition(value).map(|condition| self.once(condition));
+        let (mut checked, condition) = condition.map_or((Vec::new(), None), |(before, again)| (before, Some(again)));
+        for (operator, target) in targets {
+            checked.extend(self.set_if(*operator, target, condition.clone(), span));
+        }
+        checked
+    }
+
     fn set_or_reset(
         &mut self,
         operator: UpdateOp,
@@ -51,7 +66,19 @@ impl Body<'_, '_> {
         value: &ast::Expr,
         span: Span,
     ) -> Option<Statement> {
-        let (place, condition) = (self.target(target), self.condition(value));
+        let condition = self.condition(value);
+        self.set_if(operator, target, condition, span)
+    }
+
+    /// Sets or resets a target if the condition, where that is right, holds.
+    fn set_if(
+        &mut self,
+        operator: UpdateOp,
+        target: &ast::Expr,
+        condition: Option<Expr>,
+        span: Span,
+    ) -> Option<Statement> {
+        let place = self.target(target);
         let (place, condition) = (place?, condition?);
         if self.elementary(place.ty) != Some(ElementaryType::Bool) {
             let message = format!("{} is for BOOL, not {}", operator.text(), self.type_name(place.ty));

@@ -43,9 +43,13 @@ impl Body<'_, '_> {
                 ast::StatementKind::Chain(targets, value) => {
                     checked.extend(self.chained(targets, value, statement.span));
                 }
+                ast::StatementKind::SetReset(targets, value) => {
+                    checked.extend(self.set_and_reset(targets, value, statement.span));
+                }
                 ast::StatementKind::Try(inner) => checked.extend(self.try_statement(inner, statement.span)),
                 _ => checked.extend(self.statement(statement)),
             }
+            checked.extend(self.seen_again(statement));
         }
         checked
     }
@@ -57,6 +61,7 @@ impl Body<'_, '_> {
             ast::StatementKind::Empty
             | ast::StatementKind::Error
             | ast::StatementKind::Chain(..)
+            | ast::StatementKind::SetReset(..)
             | ast::StatementKind::Try(_)
             | ast::StatementKind::Label(_) => return None,
             ast::StatementKind::Update(operator, target, value) => {

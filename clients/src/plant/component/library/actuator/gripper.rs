@@ -33,6 +33,8 @@ parameters! {
         pad_m: f64 = 0.02 => 1e-4, 10.0;
         /// reserve: a part is lost at this part of the force; 1 is where it really slips
         safety_ratio: f64 = 1.0 => 1.0, 100.0;
+        /// over this time the pads spread a blow; 2 kg on 5 N/mm give √(m/k) = 0.02
+        yield_s: f64 = 0.02 => 0.0, 10.0;
     }
 }
 
@@ -131,7 +133,7 @@ impl Component for Gripper {
     }
 
     fn effect(&self, state: &State) -> Hold {
-        Hold(state.held)
+        Hold { target: state.held, yield_s: self.p.yield_s }
     }
 
     fn sense(&self, state: &mut State, _: &Inputs, turn: &Turn<Grasp>) -> Outputs {

@@ -37,6 +37,8 @@ parameters! {
         friction: f64 = 0.5 => 0.01, 10.0;
         /// reserve: a part is lost at this part of the force; 1 is where it really falls
         safety_ratio: f64 = 1.0 => 1.0, 100.0;
+        /// over this time the lip spreads a blow; 2 kg on 5 N/mm give √(m/k) = 0.02
+        yield_s: f64 = 0.02 => 0.0, 10.0;
         /// the vacuum switch closes here
         switch_bar: f64 = 0.4 => 0.0, 1.0;
     }
@@ -134,7 +136,7 @@ impl Component for VacuumCup {
     }
 
     fn effect(&self, state: &State) -> Hold {
-        Hold(state.held)
+        Hold { target: state.held, yield_s: self.p.yield_s }
     }
 
     fn sense(&self, state: &mut State, _: &Inputs, turn: &Turn<Grasp>) -> Outputs {

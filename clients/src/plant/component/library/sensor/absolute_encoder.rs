@@ -68,7 +68,7 @@ impl Component for AbsoluteEncoder {
     const SUMMARY: &'static str = "absolute encoder: position as a binary or a Gray number";
     const FORMULA: &'static [&'static str] = &["n = floor(2^b (x - x_0)/X) mod 2^b", "Gray: n xor (n >> 1)"];
     const SOURCE: &'static str = "F. Gray, US patent 2632058 (1953)";
-    own_types!(sees Measures);
+    own_types!(senses Measures);
 
     fn new(p: Parameters) -> Self {
         Self { p }

@@ -80,7 +80,7 @@ impl Component for Accelerometer {
     const FORMULA: &'static [&'static str] =
         &["τ df/dt = a - g - f", "y = q round((f + b + N(0, σ))/q), within ± range"];
     const SOURCE: &'static str = "IEEE Std 1293-2018 (bias, range, noise)";
-    own_types!(sees Motion);
+    own_types!(senses Motion);
 
     fn new(p: Parameters) -> Self {
         Self { p }

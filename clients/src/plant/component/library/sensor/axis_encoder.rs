@@ -86,7 +86,7 @@ impl Component for AxisEncoder {
     const FORMULA: &'static [&'static str] = &["x = q floor(s (ξ - ξ_0)/q) + N(0, σ)", "τ dv/dt = dx/dt - v"];
     const SOURCE: &'static str =
         "closed form; Brown et al., IEEE Trans. Ind. Electron. 39 (1992) (velocity of a quantised position)";
-    own_types!(sees Measures);
+    own_types!(senses Measures);
 
     fn new(p: Parameters) -> Self {
         Self { p }

@@ -116,7 +116,7 @@ impl Component for Camera {
     const FORMULA: &'static [&'static str] =
         &["a picture every frame_s, its result latency_s later", "x = q round((x + N(0, σ))/q)"];
     const SOURCE: &'static str = "closed form; EMVA 1288 (noise); VDI/VDE/VDMA 2632-2 (frame, latency)";
-    own_types!(sees Field);
+    own_types!(senses Field);
 
     fn new(p: Parameters) -> Self {
         Self { p }

@@ -68,7 +68,7 @@ impl Component for CapacitiveSensor {
     const SUMMARY: &'static str = "capacitive proximity switch, which sees any material";
     const FORMULA: &'static [&'static str] = &["s = s_n (ε - 1)/(ε + 1)", "on at s, off at s (1 + h)"];
     const SOURCE: &'static str = "IEC 60947-5-2; J. D. Jackson, Classical Electrodynamics, 4.4";
-    own_types!(sees Ray);
+    own_types!(senses Ray);
 
     fn new(p: Parameters) -> Self {
         Self { p }

@@ -58,7 +58,7 @@ impl Component for CollisionMonitor {
     const SUMMARY: &'static str = "collision monitor: counts contacts between bodies that should never meet";
     const FORMULA: &'static [&'static str] = &["collisions += max(0, touching - touching a scan ago)"];
     const SOURCE: &'static str = "closed form; crash of packages in the filling machine (Sivtoft 2002, 5.1)";
-    own_types!(sees Meet);
+    own_types!(senses Meet);
 
     fn new(_: Parameters) -> Self {
         Self

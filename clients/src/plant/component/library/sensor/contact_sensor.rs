@@ -59,7 +59,7 @@ impl Component for ContactSensor {
     const SUMMARY: &'static str = "contact sensor: a body that others touch, as a level and as a pulse";
     const FORMULA: &'static [&'static str] = &["power = touched", "pulse = touched and not touched a scan ago"];
     const SOURCE: &'static str = "class Sensor of the filling machine (Sivtoft 2002, 4.2.3 and A6)";
-    own_types!(sees Contact);
+    own_types!(senses Contact);
 
     fn new(_: Parameters) -> Self {
         Self

@@ -78,7 +78,7 @@ impl Component for Inclinometer {
     const FORMULA: &'static [&'static str] =
         &["τ df/dt = a - g - f", "roll = atan2(f_y, f_z), pitch = atan2(-f_x, √(f_y² + f_z²))"];
     const SOURCE: &'static str = "M. Pedley, Tilt Sensing Using a Three-Axis Accelerometer, NXP AN3461, 2013";
-    own_types!(sees Motion);
+    own_types!(senses Motion);
 
     fn new(p: Parameters) -> Self {
         Self { p }

@@ -70,7 +70,7 @@ impl Component for IncrementalEncoder {
     const SUMMARY: &'static str = "incremental encoder: tracks A and B in quadrature, zero pulse, count";
     const FORMULA: &'static [&'static str] = &["n = floor(4 N x / X)", "A: n mod 4 in {1, 2}, B: n mod 4 in {2, 3}"];
     const SOURCE: &'static str = "IEC 61800-7-1, annex on encoder feedback";
-    own_types!(sees Measures);
+    own_types!(senses Measures);
 
     fn new(p: Parameters) -> Self {
         Self { p }

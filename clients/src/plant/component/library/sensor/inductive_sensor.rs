@@ -98,7 +98,7 @@ impl Component for InductiveSensor {
     const SUMMARY: &'static str = "inductive proximity switch, which sees metal";
     const FORMULA: &'static [&'static str] = &["s = s_n k(metal)", "on at s, off at s (1 + h)"];
     const SOURCE: &'static str = "IEC 60947-5-2";
-    own_types!(sees Ray);
+    own_types!(senses Ray);
 
     fn new(p: Parameters) -> Self {
         Self { p }

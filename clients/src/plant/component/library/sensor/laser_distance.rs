@@ -84,7 +84,7 @@ impl Component for LaserDistance {
         "I = 4 mA + 16 mA (y - near)/(far - near), 20.5 mA beyond",
     ];
     const SOURCE: &'static str = "IEC 60947-5-7 (analogue output); NAMUR NE 43 (current on failure)";
-    own_types!(sees Ray);
+    own_types!(senses Ray);
 
     fn new(p: Parameters) -> Self {
         Self { p }

@@ -75,7 +75,7 @@ impl Component for LightBarrier {
     const FORMULA: &'static [&'static str] =
         &["dark while a target is within range_m of the beam, after on_s and off_s"];
     const SOURCE: &'static str = "IEC 60947-5-2";
-    own_types!(sees Ray);
+    own_types!(senses Ray);
 
     fn new(p: Parameters) -> Self {
         Self { p }

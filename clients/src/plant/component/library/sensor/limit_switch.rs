@@ -86,7 +86,7 @@ impl Component for LimitSwitch {
     const FORMULA: &'static [&'static str] =
         &["operated in [from, to], released outside [from - d, to + d]", "bounces for bounce_s after a change"];
     const SOURCE: &'static str = "IEC 60947-5-1";
-    own_types!(sees Measures);
+    own_types!(senses Measures);
 
     fn new(p: Parameters) -> Self {
         Self { p }

@@ -81,7 +81,7 @@ impl Component for LineScanner {
     const SUMMARY: &'static str = "line scanner or camera: counts what is in its field on a trigger";
     const FORMULA: &'static [&'static str] = &["answer after latency_s: count in [least, most]"];
     const SOURCE: &'static str = "closed form; errors are Bernoulli trials of the scenario's seed";
-    own_types!(sees Touch);
+    own_types!(senses Touch);
 
     fn new(p: Parameters) -> Self {
         Self { p }

@@ -97,7 +97,7 @@ impl Component for PoseSensor {
     const SUMMARY: &'static str = "pose sensor: position, angles and speed of a body";
     const FORMULA: &'static [&'static str] = &["y = q round((x + N(0, σ))/q)"];
     const SOURCE: &'static str = "closed form; ISO 9787:2013 (angles)";
-    own_types!(sees Motion);
+    own_types!(senses Motion);
 
     fn new(p: Parameters) -> Self {
         Self { p }

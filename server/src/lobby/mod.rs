@@ -1,0 +1,20 @@
+//! Who comes to a session, who may stay, and for how long: machines without a socket, a clock or a thread.
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`reception`] | connections, from the first byte until they take part, ask as operators, or are sent away |
+//! | `visitor` | one connection in the reception |
+//! | `places` | how many operators are in, by address |
+//! | [`seating`] | the seats of a session that forms: who has one, who is missing, how long that may take |
+//!
+//! What happens comes in as calls with the time at which it happened; what is to be done comes out as [`Action`]s.
+//! [`transport::tcp`](crate::transport::tcp) and [`formation`](crate::formation) do it with sockets and a clock; the proofs
+//! (`tests/proofs/lobby`) move the same machines through every order of what clients, operators and strangers may do.
+
+mod places;
+pub mod reception;
+pub mod seating;
+mod visitor;
+
+pub use reception::{Action, Now, Reception, Terms, Visitor};
+pub use seating::{Seating, Verdict};

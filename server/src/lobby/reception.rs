@@ -1,0 +1,416 @@
+//! The reception: connections, from the first byte until they take part, ask as operators, or are sent away.
+
+use std::collections::BTreeMap;
+use std::hash::{Hash, Hasher};
+use std::net::IpAddr;
+use std::sync::Arc;
+use std::time::Duration;
+
+use onescan_base::foreign::one_line;
+
+use super::places::Places;
+use super::visitor::{Guest, Said, Stage};
+use crate::access::{Day, Register, Role as Right, TokenRefusal};
+use crate::client::JoinRequest;
+use crate::operation::Operation;
+use crate::wire::message::{Role, Status};
+use crate::wire::{ClientMessage, FRAME_BYTES_MAX, HANDSHAKE_FRAME_BYTES_MAX, ServerMessage, VERSIONS, VersionRange};
+
+/// Connections that may be there at once before they take part or are operators.
+pub const GUESTS_MAX: usize = 64;
+/// Connections that may take their time to close after a last message; the others are closed at once.
+pub const LEAVING_MAX: usize = 128;
+
+/// How long a connection may take for a message of the handshake.
+pub const HANDSHAKE_TIMEOUT: Duration = Duration::from_secs(5);
+/// How long it may take to close after a last message.
+pub const FAREWELL_TIMEOUT: Duration = Duration::from_secs(1);
+/// How long an operator may be silent.
+const OPERATOR_PATIENCE: Duration = Duration::from_hours(24);
+
+/// The refusal of whoever comes when the session has begun.
+pub const BEGUN: &str = "the session has begun: nobody can join any more";
+
+/// One connection, by its number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Visitor(pub u64);
+
+/// When something happens.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Now {
+    /// How long the lobby has been open.
+    pub at: Duration,
+    /// The day of the calendar, for tokens.
+    pub today: Day,
+}
+
+/// What holds for everybody who comes.
+#[derive(Clone, Debug)]
+pub struct Terms {
+    /// The answer to a `hello` that is in order.
+    pub welcome: Arc<ServerMessage>,
+    /// Its bytes: a `join` may name all signals of it twice.
+    pub welcome_bytes: usize,
+    /// Tokens, if nobody is let in without.
+    pub register: Option<Arc<Register>>,
+}
+
+/// What is to be done, in this order.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Action {
+    /// Send this message.
+    Send(Visitor, Arc<ServerMessage>),
+    /// Give this client a seat or refuse it; then say so with [`Reception::seated`] or [`Reception::refused`].
+    Apply(Visitor, JoinRequest),
+    /// Ask the session for this, or only how it is; then say so with [`Reception::answered`].
+    Ask(Visitor, Option<Operation>),
+    /// Send no more, and read until the other side closes.
+    Part(Visitor),
+    /// Close at once.
+    Close(Visitor),
+}
+
+/// All connections that do not take part.
+#[derive(Clone, Debug)]
+pub struct Reception {
+    terms: Terms,
+    guests: BTreeMap<Visitor, Guest>,
+    places: Places,
+    /// The session has begun.
+    is_shut: bool,
+    /// The session is over.
+    is_closing: bool,
+}
+
+impl Hash for Reception {
+    fn hash<H: Hasher>(&self, hasher: &mut H) {
+        for (visitor, guest) in &self.guests {
+            (visitor, guest.key()).hash(hasher);
+        }
+        (&self.places, self.is_shut, self.is_closing).hash(hasher);
+    }
+}
+
+impl PartialEq for Reception {
+    /// Of two receptions with the same terms.
+    fn eq(&self, other: &Self) -> bool {
+        let guests = self.guests.iter().map(|(visitor, guest)| (visitor, guest.key()));
+        guests.eq(other.guests.iter().map(|(visitor, guest)| (visitor, guest.key())))
+            && (&self.places, self.is_shut, self.is_closing) == (&other.places, other.is_shut, other.is_closing)
+    }
+}
+
+impl Eq for Reception {}
+
+impl Reception {
+    /// Nobody is there.
+    pub fn new(terms: Terms) -> Self {
+        Self { terms, guests: BTreeMap::new(), places: Places::default(), is_shut: false, is_closing: false }
+    }
+
+    /// How many connections there are.
+    pub fn guests(&self) -> usize {
+        self.guests.len()
+    }
+
+    /// How many operators are in.
+    pub fn operators(&self) -> usize {
+        self.places.taken()
+    }
+
+    /// True if the connection is known here.
+    pub fn knows(&self, visitor: Visitor) -> bool {
+        self.guests.contains_key(&visitor)
+    }
+
+    /// When the connection's stage ends whatever happens.
+    pub fn deadline_of(&self, visitor: Visitor) -> Option<Duration> {
+        self.guests.get(&visitor)?.until
+    }
+
+    /// When [`clock`](Self::clock) has something to do, if nothing else happens.
+    pub fn next_deadline(&self) -> Option<Duration> {
+        self.guests.values().filter_map(|guest| guest.until).min()
+    }
+
+    /// A connection was opened.
+    pub fn opened(&mut self, visitor: Visitor, address: IpAddr, now: Now) -> Vec<Action> {
+        let mut actions = Vec::new();
+        self.guests.insert(visitor, Guest::new(address, now.at + HANDSHAKE_TIMEOUT));
+        let before_session = |guest: &&Guest| matches!(guest.stage, Stage::Greeting | Stage::Applying | Stage::Waiting);
+        if self.guests.values().filter(before_session).count() > GUESTS_MAX {
+            let slowest = self.slowest();
+            self.refuse(slowest, "too many connections are waiting in the lobby", now, &mut actions);
+        }
+        actions
+    }
+
+    /// Who has been silent the longest: a client that means to join speaks at once, and is not kept out by those who do
+    /// not. The one who came last if all others have done their part.
+    fn slowest(&self) -> Visitor {
+        let silent = |stage: &Stage| matches!(stage, Stage::Greeting | Stage::Applying);
+        let waits = self.guests.iter().filter(|(_, guest)| silent(&guest.stage));
+        let slowest = waits.min_by_key(|(visitor, guest)| (guest.until, **visitor));
+        // There is one at least: who has just come.
+        slowest.map_or(Visitor(0), |(visitor, _)| *visitor)
+    }
+
+    /// Bytes came.
+    pub fn received(&mut self, visitor: Visitor, bytes: &[u8], now: Now) -> Vec<Action> {
+        let mut actions = Vec::new();
+        let Some(guest) = self.guests.get_mut(&visitor) else { return actions };
+        if guest.stage != Stage::Leaving {
+            guest.take_in(bytes);
+        }
+        match guest.stage {
+            Stage::Greeting if guest.speaks_tls() => {
+                self.refuse(visitor, "it speaks TLS, and this session has no certificate", now, &mut actions);
+            }
+            Stage::Waiting => {
+                self.refuse(visitor, "a client must wait for the answer to `join`", now, &mut actions);
+            }
+            Stage::Asking if guest.says_too_much() => {
+                self.refuse(visitor, "an operator must wait for the answer to what it asked", now, &mut actions);
+            }
+            _ => self.read(visitor, now, &mut actions),
+        }
+        actions
+    }
+
+    /// Looks at what a connection has said, as far as it is its turn to speak.
+    fn read(&mut self, visitor: Visitor, now: Now, actions: &mut Vec<Action>) {
+        while let Some(guest) = self.guests.get_mut(&visitor) {
+            if !matches!(guest.stage, Stage::Greeting | Stage::Applying | Stage::Operating) {
+                return;
+            }
+            let message = match guest.next() {
+                Said::Nothing => return,
+                Said::Nonsense(why) => return self.refuse(visitor, &why, now, actions),
+                Said::Message(message) => message,
+            };
+            match guest.stage {
+                Stage::Greeting => self.greet(visitor, message, now, actions),
+                Stage::Applying => self.apply(visitor, message, now, actions),
+                Stage::Operating => self.ask(visitor, message, now, actions),
+                Stage::Waiting | Stage::Asking | Stage::Leaving => {}
+            }
+        }
+    }
+
+    fn greet(&mut self, visitor: Visitor, message: ClientMessage, now: Now, actions: &mut Vec<Action>) {
+        let ClientMessage::Hello { protocol, role, agent, token } = message else {
+            return self.refuse(visitor, "the first message must be `hello`", now, actions);
+        };
+        tracing::debug!(?visitor, %agent, ?role, "hello");
+        if let Err(why) = self.let_in(visitor, protocol, role, &agent, token.as_deref(), now) {
+            return self.refuse(visitor, &why, now, actions);
+        }
+        let Some(guest) = self.guests.get_mut(&visitor) else { return };
+        guest.set_limit((HANDSHAKE_FRAME_BYTES_MAX + 2 * self.terms.welcome_bytes).min(FRAME_BYTES_MAX));
+        (guest.stage, guest.until) = match role {
+            Role::Client => (Stage::Applying, Some(now.at + HANDSHAKE_TIMEOUT)),
+            Role::Operator => (Stage::Operating, Some(now.at + OPERATOR_PATIENCE)),
+        };
+        actions.push(Action::Send(visitor, Arc::clone(&self.terms.welcome)));
+    }
+
+    /// Whether somebody may go on after `hello`, or why not.
+    fn let_in(
+        &mut self,
+        visitor: Visitor,
+        protocol: VersionRange,
+        role: Role,
+        agent: &str,
+        token: Option<&str>,
+        now: Now,
+    ) -> Result<(), String> {
+        if VERSIONS.common(protocol).is_none() {
+            return Err(format!(
+                "no common protocol version: this server speaks {VERSIONS}, {agent} speaks {protocol}"
+            ));
+        }
+        let Some(guest) = self.guests.get_mut(&visitor) else { return Ok(()) };
+        if let Some(register) = &self.terms.register {
+            let holder = register.admit(token, role, now.today).map_err(|refusal| refusal.to_string())?;
+            guest.holder = Some(holder);
+        }
+        if role == Role::Operator && !self.places.take(guest.address) {
+            return Err("too many operators are connected".to_owned());
+        }
+        Ok(())
+    }
+
+    fn apply(&mut self, visitor: Visitor, message: ClientMessage, now: Now, actions: &mut Vec<Action>) {
+        let ClientMessage::Join(request) = message else {
+            return self.refuse(visitor, "the second message of a client must be `join`", now, actions);
+        };
+        let Some(guest) = self.guests.get_mut(&visitor) else { return };
+        if guest.has_more() {
+            return self.refuse(visitor, "a client must wait for the answer to `join`", now, actions);
+        }
+        if let Some(holder) = &guest.holder
+            && holder.role != Right::Client(request.name.clone())
+        {
+            let (name, role) = (holder.name.clone(), holder.role.clone());
+            let refusal = TokenRefusal::OtherClient { name, role, wanted: request.name };
+            return self.refuse(visitor, &refusal.to_string(), now, actions);
+        }
+        if self.is_shut {
+            return self.refuse(visitor, BEGUN, now, actions);
+        }
+        (guest.stage, guest.until) = (Stage::Waiting, None);
+        actions.push(Action::Apply(visitor, request));
+    }
+
+    fn ask(&mut self, visitor: Visitor, message: ClientMessage, now: Now, actions: &mut Vec<Action>) {
+        let operation = match message {
+            ClientMessage::Control(control) => Some(control.into()),
+            ClientMessage::Operate(operation) => Some(operation),
+            ClientMessage::Status {} => None,
+            _ => return self.refuse(visitor, "an operator may send `control`, `operate` and `status`", now, actions),
+        };
+        let Some(guest) = self.guests.get_mut(&visitor) else { return };
+        if let Some(holder) = &guest.holder
+            && operation.is_some()
+            && holder.role != Right::Operator
+        {
+            let refusal = TokenRefusal::LooksOnly { name: holder.name.clone() };
+            return self.refuse(visitor, &refusal.to_string(), now, actions);
+        }
+        (guest.stage, guest.until) = (Stage::Asking, None);
+        actions.push(Action::Ask(visitor, operation));
+    }
+
+    /// A client gets its seat, and its connection goes over to the session; false if it waits for none any more.
+    pub fn seated(&mut self, visitor: Visitor) -> bool {
+        let waits = self.guests.get(&visitor).is_some_and(|guest| guest.stage == Stage::Waiting);
+        if waits {
+            self.guests.remove(&visitor);
+        }
+        waits
+    }
+
+    /// Somebody is sent away: a client that got no seat, or one who does not speak TLS where it must.
+    pub fn refused(&mut self, visitor: Visitor, why: &str, now: Now) -> Vec<Action> {
+        let mut actions = Vec::new();
+        if self.knows(visitor) {
+            self.refuse(visitor, why, now, &mut actions);
+        }
+        actions
+    }
+
+    /// The session has answered an operator: how it is, or why it does not do what was asked; nothing if it is over.
+    pub fn answered(&mut self, visitor: Visitor, answer: Option<Result<Status, String>>, now: Now) -> Vec<Action> {
+        let mut actions = Vec::new();
+        let Some(guest) = self.guests.get_mut(&visitor).filter(|guest| guest.stage == Stage::Asking) else {
+            return actions;
+        };
+        match answer {
+            Some(Ok(status)) => {
+                (guest.stage, guest.until) = (Stage::Operating, Some(now.at + OPERATOR_PATIENCE));
+                actions.push(Action::Send(visitor, Arc::new(ServerMessage::Status(status))));
+                if self.is_closing {
+                    self.part(visitor, now, &mut actions);
+                } else {
+                    self.read(visitor, now, &mut actions);
+                }
+            }
+            Some(Err(why)) => self.refuse(visitor, &why, now, &mut actions),
+            None => self.part(visitor, now, &mut actions),
+        }
+        actions
+    }
+
+    /// The other side says no more. One that waits for an answer may still read it; false if nobody is there any more.
+    pub fn hung_up(&mut self, visitor: Visitor) -> bool {
+        let waits = |guest: &Guest| matches!(guest.stage, Stage::Waiting | Stage::Asking);
+        let stays = self.guests.get(&visitor).is_some_and(waits);
+        if !stays {
+            self.gone(visitor);
+        }
+        stays
+    }
+
+    /// The other side has closed, or the connection has broken.
+    pub fn gone(&mut self, visitor: Visitor) {
+        if let Some(guest) = self.guests.remove(&visitor) {
+            self.free_place(&guest);
+        }
+    }
+
+    /// Time has passed: who has had time enough is sent away.
+    pub fn clock(&mut self, now: Now) -> Vec<Action> {
+        let mut actions = Vec::new();
+        let late = |guest: &Guest| guest.until.is_some_and(|until| until <= now.at);
+        let late: Vec<_> =
+            self.guests.iter().filter(|(_, guest)| late(guest)).map(|(v, g)| (*v, g.stage.clone())).collect();
+        for (visitor, stage) in late {
+            match stage {
+                Stage::Greeting | Stage::Applying => {
+                    let why = format!("no answer within {} ms", HANDSHAKE_TIMEOUT.as_millis());
+                    self.refuse(visitor, &why, now, &mut actions);
+                }
+                _ => self.close(visitor, &mut actions),
+            }
+        }
+        actions
+    }
+
+    /// The session begins: who comes later, or still waits for a seat, hears that.
+    pub fn shut(&mut self, now: Now) -> Vec<Action> {
+        self.is_shut = true;
+        let mut actions = Vec::new();
+        for visitor in self.all_in(&[Stage::Waiting]) {
+            self.refuse(visitor, BEGUN, now, &mut actions);
+        }
+        actions
+    }
+
+    /// The session is over. Who waits for an answer, or for the other side to close, is waited for; nobody else.
+    pub fn closing(&mut self, now: Now) -> Vec<Action> {
+        let mut actions = self.shut(now);
+        self.is_closing = true;
+        for visitor in self.all_in(&[Stage::Greeting, Stage::Applying, Stage::Operating]) {
+            self.close(visitor, &mut actions);
+        }
+        actions
+    }
+
+    fn all_in(&self, stages: &[Stage]) -> Vec<Visitor> {
+        self.guests.iter().filter(|(_, guest)| stages.contains(&guest.stage)).map(|(visitor, _)| *visitor).collect()
+    }
+
+    /// Says why, then parts.
+    fn refuse(&mut self, visitor: Visitor, why: &str, now: Now, actions: &mut Vec<Action>) {
+        let message = one_line(why).into_owned();
+        tracing::warn!(?visitor, why = %message, "sent away");
+        actions.push(Action::Send(visitor, Arc::new(ServerMessage::Refused { message })));
+        self.part(visitor, now, actions);
+    }
+
+    /// The other side gets the time to read the last message; not where too many do.
+    fn part(&mut self, visitor: Visitor, now: Now, actions: &mut Vec<Action>) {
+        if self.guests.values().filter(|guest| guest.stage == Stage::Leaving).count() >= LEAVING_MAX {
+            return self.close(visitor, actions);
+        }
+        let Some(guest) = self.guests.get_mut(&visitor) else { return };
+        guest.turn_deaf();
+        let had_place = matches!(guest.stage, Stage::Operating | Stage::Asking).then_some(guest.address);
+        (guest.stage, guest.until) = (Stage::Leaving, Some(now.at + FAREWELL_TIMEOUT));
+        if let Some(address) = had_place {
+            self.places.give_back(address);
+        }
+        actions.push(Action::Part(visitor));
+    }
+
+    fn close(&mut self, visitor: Visitor, actions: &mut Vec<Action>) {
+        self.gone(visitor);
+        actions.push(Action::Close(visitor));
+    }
+
+    fn free_place(&mut self, guest: &Guest) {
+        if matches!(guest.stage, Stage::Operating | Stage::Asking) {
+            self.places.give_back(guest.address);
+        }
+    }
+}

@@ -1,0 +1,185 @@
+//! One connection of the lobby: its bytes go to the reception, and what that decides is done.
+
+use std::net::SocketAddr;
+use std::sync::Arc;
+
+use bytes::BytesMut;
+use rustls::StreamOwned;
+use tokio::io::{AsyncReadExt, AsyncWriteExt};
+use tokio::net::TcpStream;
+use tokio::sync::mpsc::UnboundedReceiver;
+use tokio::sync::oneshot;
+use tokio::time::{Instant, sleep_until, timeout};
+use tokio_rustls::TlsAcceptor;
+use tokio_rustls::server::TlsStream;
+use tokio_util::codec::Encoder;
+use tokio_util::either::Either;
+
+use super::host::Host;
+use super::order::{Application, Order};
+use super::socket::Socket;
+use super::{FAREWELL_TIMEOUT, HANDSHAKE_TIMEOUT};
+use crate::lobby::Visitor;
+use crate::mailbox::Request;
+use crate::operation::{Operation, OperationError};
+use crate::transport::tls::reason;
+use crate::wire::message::Status;
+use crate::wire::{FRAME_BYTES_MAX, FrameCodec, FrameRef, ServerMessage};
+
+/// Bytes taken at once.
+const READ_BYTES: usize = 16 * 1024;
+/// The type of the record with which TLS begins.
+const TLS_HANDSHAKE: u8 = 0x16;
+
+/// The answer of the session to an operator.
+type Answer = oneshot::Receiver<Result<Status, OperationError>>;
+
+/// A connection, in plain text or under TLS.
+pub(super) struct Connection(Either<TcpStream, Box<TlsStream<TcpStream>>>);
+
+impl Connection {
+    /// For the session's thread.
+    fn into_socket(self) -> std::io::Result<Socket> {
+        match self.0 {
+            Either::Left(stream) => Ok(Socket::Plain(stream.into_std()?)),
+            Either::Right(tls) => {
+                let (stream, session) = tls.into_inner();
+                Ok(Socket::Serving(Box::new(StreamOwned::new(session, stream.into_std()?))))
+            }
+        }
+    }
+
+    /// False if that did not go, as to one who does not read.
+    async fn send_in_time(&mut self, message: &ServerMessage) -> bool {
+        matches!(timeout(HANDSHAKE_TIMEOUT, self.send(message)).await, Ok(Ok(())))
+    }
+
+    /// False if the connection is of no use any more.
+    async fn say_no_more(&mut self) -> bool {
+        matches!(timeout(FAREWELL_TIMEOUT, self.0.shutdown()).await, Ok(Ok(())))
+    }
+
+    async fn send(&mut self, message: &ServerMessage) -> std::io::Result<()> {
+        let json = crate::wire::frame::to_json(message)?;
+        let mut bytes = BytesMut::new();
+        FrameCodec::new(FRAME_BYTES_MAX)
+            .encode(FrameRef::Json(&json), &mut bytes)
+            .map_err(|error| std::io::Error::other(error.to_string()))?;
+        self.0.write_all(&bytes).await?;
+        self.0.flush().await
+    }
+}
+
+/// Attends to a connection that was just opened.
+pub(super) async fn newcomer(
+    stream: TcpStream,
+    peer: SocketAddr,
+    visitor: Visitor,
+    orders: UnboundedReceiver<Order>,
+    host: Arc<Host>,
+) {
+    let connection = match &host.acceptor {
+        None => Connection(Either::Left(stream)),
+        Some(acceptor) => match timeout(HANDSHAKE_TIMEOUT, secure(stream, acceptor)).await {
+            Ok(Ok(Either::Left(stream))) => {
+                let why = "this session speaks TLS only: say whom you trust with `--tls-ca`";
+                host.act(|reception, now| reception.refused(visitor, why, now));
+                Connection(Either::Left(stream))
+            }
+            Ok(Ok(secured)) => Connection(secured),
+            Ok(Err(error)) => {
+                tracing::warn!(%peer, why = %reason(&error), "no TLS came about: sent away");
+                return go(visitor, &host);
+            }
+            Err(_) => {
+                tracing::warn!(%peer, "no TLS came about: it is silent");
+                return go(visitor, &host);
+            }
+        },
+    };
+    attend(connection, peer, visitor, orders, host).await;
+}
+
+/// TLS over the connection, if that is what the other side begins with.
+async fn secure(
+    stream: TcpStream,
+    acceptor: &TlsAcceptor,
+) -> std::io::Result<Either<TcpStream, Box<TlsStream<TcpStream>>>> {
+    let mut first = [0; 3];
+    let count = stream.peek(&mut first).await?;
+    match first[..count] {
+        // A frame may begin with that byte, too; then its third is no version of TLS.
+        [TLS_HANDSHAKE] | [TLS_HANDSHAKE, 3] | [TLS_HANDSHAKE, 3, 1..=4] => {
+            Ok(Either::Right(Box::new(acceptor.accept(stream).await?)))
+        }
+        _ => Ok(Either::Left(stream)),
+    }
+}
+
+/// The connection is gone.
+fn go(visitor: Visitor, host: &Host) {
+    host.act(|reception, _| {
+        reception.gone(visitor);
+        Vec::new()
+    });
+    host.leave(visitor);
+}
+
+/// Attends to a connection until it takes part or is gone.
+pub(super) async fn attend(
+    mut connection: Connection,
+    peer: SocketAddr,
+    visitor: Visitor,
+    mut orders: UnboundedReceiver<Order>,
+    host: Arc<Host>,
+) {
+    let (mut buffer, mut answer, mut is_open) = (vec![0; READ_BYTES], None, true);
+    loop {
+        let deadline = host.deadline_of(visitor).unwrap_or_else(|| Instant::now() + HANDSHAKE_TIMEOUT);
+        tokio::select! {
+            // Orders first: what is read may change them.
+            biased;
+            order = orders.recv() => match order {
+                Some(Order::Apply(request)) => {
+                    host.wait_for_seat(Application { visitor, request, peer });
+                }
+                Some(Order::HandOver(to)) => {
+                    // Whoever waits for it has the error, if it is one.
+                    let _ = to.send(connection.into_socket());
+                    return host.leave(visitor);
+                }
+                Some(Order::Ask(operation)) => answer = Some(ask(operation, &host)),
+                Some(Order::Send(message)) if connection.send_in_time(&message).await => {}
+                // Where the other side has closed already, this is the end.
+                Some(Order::Part) if connection.say_no_more().await && is_open => {}
+                Some(Order::Send(_) | Order::Part | Order::Close) | None => return go(visitor, &host),
+            },
+            answered = come_in(&mut answer) => {
+                answer = None;
+                let answered = answered.map(|result| result.map_err(|error| error.to_string()));
+                host.act(|reception, now| reception.answered(visitor, answered, now));
+            }
+            read = connection.0.read(&mut buffer), if is_open => match read {
+                Ok(0) if host.hung_up(visitor) => is_open = false,
+                Ok(count) if count > 0 => host.act(|reception, now| reception.received(visitor, &buffer[..count], now)),
+                _ => return go(visitor, &host),
+            },
+            () = sleep_until(deadline) => host.act(crate::lobby::Reception::clock),
+        }
+    }
+}
+
+/// Leaves a wish for the next step boundary.
+fn ask(operation: Option<Operation>, host: &Host) -> Answer {
+    let (reply, answer) = oneshot::channel();
+    host.mailbox.post(Request { operation, reply: Some(reply) });
+    answer
+}
+
+/// The answer once it comes; nothing if the session is over. Never, if nothing was asked.
+async fn come_in(answer: &mut Option<Answer>) -> Option<Result<Status, OperationError>> {
+    match answer {
+        Some(answer) => answer.await.ok(),
+        None => std::future::pending().await,
+    }
+}

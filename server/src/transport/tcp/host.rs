@@ -1,0 +1,112 @@
+//! What the connections of the lobby share: the reception, and where the orders for each of them go.
+
+use std::collections::BTreeMap;
+use std::sync::mpsc::{SendError, Sender, channel};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
+use tokio::time::Instant;
+use tokio_rustls::TlsAcceptor;
+
+use super::order::{Application, Order};
+use super::socket::Socket;
+use crate::access::Day;
+use crate::lobby::reception::BEGUN;
+use crate::lobby::{Action, Now, Reception, Terms, Visitor};
+use crate::mailbox::Mailbox;
+
+/// What the tasks of all connections share.
+pub(super) struct Host {
+    reception: Mutex<Reception>,
+    /// Where the orders for each connection go.
+    lines: Mutex<BTreeMap<Visitor, UnboundedSender<Order>>>,
+    opened: Instant,
+    applicants: Sender<Application>,
+    pub(super) mailbox: Mailbox,
+    pub(super) acceptor: Option<TlsAcceptor>,
+}
+
+impl Host {
+    /// Nobody is there; clients that want a seat go to `applicants`.
+    pub(super) fn new(
+        terms: Terms,
+        applicants: Sender<Application>,
+        mailbox: Mailbox,
+        acceptor: Option<TlsAcceptor>,
+    ) -> Self {
+        let (reception, lines) = (Mutex::new(Reception::new(terms)), Mutex::default());
+        Self { reception, lines, opened: Instant::now(), applicants, mailbox, acceptor }
+    }
+
+    /// Where the orders for a connection go from here on.
+    pub(super) fn open_line(&self, visitor: Visitor) -> UnboundedReceiver<Order> {
+        let (line, orders) = unbounded_channel();
+        self.lines().insert(visitor, line);
+        orders
+    }
+
+    /// What time it is. The clock of the wall says the day only, which no session knows.
+    fn now(&self) -> Now {
+        let since_epoch = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+        Now { at: self.opened.elapsed(), today: Day::of(since_epoch) }
+    }
+
+    fn reception(&self) -> MutexGuard<'_, Reception> {
+        self.reception.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn lines(&self) -> MutexGuard<'_, BTreeMap<Visitor, UnboundedSender<Order>>> {
+        self.lines.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Tells the reception what has happened, and passes on what is to be done.
+    pub(super) fn act(&self, happened: impl FnOnce(&mut Reception, Now) -> Vec<Action>) {
+        let mut reception = self.reception();
+        let actions = happened(&mut reception, self.now());
+        let lines = self.lines();
+        for action in actions {
+            let (visitor, order) = Order::of(action);
+            if let Some(line) = lines.get(&visitor) {
+                // A connection that is gone has nothing left to do.
+                let _ = line.send(order);
+            }
+        }
+    }
+
+    /// When the stage of a connection ends.
+    pub(super) fn deadline_of(&self, visitor: Visitor) -> Option<Instant> {
+        self.reception().deadline_of(visitor).map(|deadline| self.opened + deadline)
+    }
+
+    /// The other side says no more; true if it still waits for an answer.
+    pub(super) fn hung_up(&self, visitor: Visitor) -> bool {
+        self.reception().hung_up(visitor)
+    }
+
+    /// The connection is no longer attended to.
+    pub(super) fn leave(&self, visitor: Visitor) {
+        self.lines().remove(&visitor);
+    }
+
+    /// A client waits for the session's thread to decide.
+    pub(super) fn wait_for_seat(&self, application: Application) {
+        if let Err(SendError(Application { visitor, .. })) = self.applicants.send(application) {
+            self.act(|reception, now| reception.refused(visitor, BEGUN, now));
+        }
+    }
+
+    /// The connection of a client that has got its seat; nothing if it is gone, or has been sent away meanwhile.
+    pub(super) fn hand_over(&self, visitor: Visitor) -> Option<Socket> {
+        let (sender, receiver) = channel();
+        {
+            let mut reception = self.reception();
+            if !reception.seated(visitor) {
+                return None;
+            }
+            self.lines().get(&visitor)?.send(Order::HandOver(sender)).ok()?;
+        }
+        // The task of a connection that has gone drops the sender.
+        receiver.recv().ok()?.ok()
+    }
+}

@@ -1,0 +1,309 @@
+//! Reception and seats with connections around them, moved as the TCP lobby and the formation move them, and what must
+//! never be.
+
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use std::net::IpAddr;
+use std::sync::Arc;
+use std::time::Duration;
+
+use onescan_server::access::{Day, Pass, Register, Role, Token};
+use onescan_server::client::{ClientId, JoinRequest};
+use onescan_server::end::FailureCause;
+use onescan_server::lobby::{Action, Now, Reception, Seating, Terms, Visitor};
+use onescan_server::plan::{Coupling, SessionPlan};
+use onescan_server::signal::SignalType;
+use onescan_server::wire::{ServerMessage, VERSIONS};
+use onescan_tests::{client, plan, port, span_ms};
+
+/// What the other side of a connection has seen of it.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
+pub(super) struct Line {
+    /// What the server has said, by kind: `w`elcome, `j`oined, `r`efused, `s`tatus.
+    pub(super) heard: String,
+    /// The server says no more.
+    pub(super) parted: bool,
+    /// The server has closed it.
+    pub(super) closed: bool,
+    /// The other side has closed it.
+    pub(super) hung_up: bool,
+}
+
+impl Line {
+    /// True if the other side need not wait for anything any more.
+    pub(super) fn is_settled(&self) -> bool {
+        self.parted || self.closed || self.hung_up
+    }
+}
+
+/// Everything that the lobby is, without its sockets, its clock and its threads.
+#[derive(Clone, Debug)]
+pub(super) struct Hall {
+    pub(super) reception: Reception,
+    pub(super) seating: Seating,
+    pub(super) now: Duration,
+    pub(super) lines: BTreeMap<Visitor, Line>,
+    /// Connections behind which are those who may get in.
+    pub(super) let_in: BTreeSet<Visitor>,
+    /// What waits for the session's thread.
+    pub(super) applications: VecDeque<(Visitor, JoinRequest)>,
+    pub(super) wishes: VecDeque<Visitor>,
+    /// Who has which seat.
+    pub(super) seats: BTreeMap<usize, Visitor>,
+    pub(super) is_begun: bool,
+    /// What must not be.
+    pub(super) broken: Option<&'static str>,
+}
+
+/// A plan of so many clients, each of which writes a signal.
+pub(super) fn plan_of(clients: usize) -> SessionPlan {
+    let names: Vec<String> = (0..clients).map(|number| format!("c{number}")).collect();
+    let signals: Vec<String> = names.iter().map(|name| format!("{name}.out")).collect();
+    let declared: Vec<_> =
+        signals.iter().zip(&names).map(|(signal, name)| (signal.as_str(), SignalType::BYTE, name.as_str())).collect();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    plan(span_ms(10), &Coupling::Parallel, &declared, &names)
+}
+
+/// The `join` of a client of that plan.
+pub(super) fn request(number: usize) -> JoinRequest {
+    let (name, signal) = (format!("c{number}"), format!("c{number}.out"));
+    let writes = vec![port(&signal, SignalType::BYTE)];
+    JoinRequest { name: client(&name), period: span_ms(10), reads: Vec::new(), writes }
+}
+
+/// Tokens: one for each client, one for operators, and one of a client that is too old.
+pub(super) struct Tokens {
+    pub(super) register: Register,
+    pub(super) clients: Vec<String>,
+    pub(super) operator: String,
+    pub(super) expired: String,
+}
+
+impl Tokens {
+    pub(super) fn new(clients: usize) -> Self {
+        let mut register = Register::default();
+        let mut made = |name: &str, role: Role, expires: Option<Day>| {
+            let token = Token::generate().expect("random numbers");
+            let pass = Pass { name: name.to_owned(), role, expires, hash: token.hash() };
+            register.add(pass).expect("a name of its own");
+            token.reveal().to_owned()
+        };
+        let clients = (0..clients).map(|number| {
+            let name = format!("c{number}");
+            made(&name, Role::Client(client(&name)), None)
+        });
+        let clients = clients.collect();
+        let operator = made("operator", Role::Operator, None);
+        let expired = made("expired", Role::Client(client("c0")), Some(Day::EPOCH));
+        Self { register, clients, operator, expired }
+    }
+}
+
+/// The day of all that is explored.
+pub(super) fn today() -> Day {
+    Day::EPOCH.later(1)
+}
+
+impl Hall {
+    pub(super) fn new(clients: usize, register: Option<&Arc<Register>>) -> Self {
+        let plan = plan_of(clients);
+        let welcome = ServerMessage::Welcome {
+            protocol: VERSIONS.max,
+            agent: "hall".to_owned(),
+            step: plan.step(),
+            frame_bytes_max: 1 << 26,
+            signals: plan.signals().to_vec(),
+        };
+        let terms = Terms { welcome: Arc::new(welcome), welcome_bytes: 1 << 10, register: register.cloned() };
+        Self {
+            reception: Reception::new(terms),
+            seating: Seating::new(plan),
+            now: Duration::ZERO,
+            lines: BTreeMap::new(),
+            let_in: BTreeSet::new(),
+            applications: VecDeque::new(),
+            wishes: VecDeque::new(),
+            seats: BTreeMap::new(),
+            is_begun: false,
+            broken: None,
+        }
+    }
+
+    fn moment(&self) -> Now {
+        Now { at: self.now, today: today() }
+    }
+
+    pub(super) fn open(&mut self, visitor: Visitor, address: IpAddr, is_let_in: bool) {
+        self.lines.insert(visitor, Line::default());
+        if is_let_in {
+            self.let_in.insert(visitor);
+        }
+        let actions = self.reception.opened(visitor, address, self.moment());
+        self.act(actions);
+    }
+
+    pub(super) fn bytes(&mut self, visitor: Visitor, bytes: &[u8]) {
+        let actions = self.reception.received(visitor, bytes, self.moment());
+        self.act(actions);
+    }
+
+    /// The other side closes, in order or by a reset.
+    pub(super) fn hang_up(&mut self, visitor: Visitor) {
+        if let Some(line) = self.lines.get_mut(&visitor) {
+            line.hung_up = true;
+        }
+        // One that waits for an answer may still hear it; if it is a seat, it is found out that it has gone.
+        self.reception.hung_up(visitor);
+    }
+
+    /// Time passes, to the next deadline of the reception at most.
+    pub(super) fn pass(&mut self, to: Duration) {
+        self.now = to;
+        let actions = self.reception.clock(self.moment());
+        self.act(actions);
+        if self.reception.next_deadline().is_some_and(|deadline| deadline <= self.now) {
+            self.broken = Some("a deadline has passed and nothing came of it");
+        }
+    }
+
+    /// The session's thread looks at the next application.
+    pub(super) fn decide(&mut self) {
+        let Some((visitor, request)) = self.applications.pop_front() else { return };
+        if self.seating.is_taken(&request) {
+            self.notice_gone();
+        }
+        match self.seating.apply(&request, "somewhere") {
+            Err(refusal) => {
+                let actions = self.reception.refused(visitor, &refusal.to_string(), self.moment());
+                self.act(actions);
+            }
+            Ok(id) if self.reception.seated(visitor) => {
+                self.seats.insert(id.index(), visitor);
+                self.hear(visitor, 'j');
+            }
+            Ok(id) => {
+                self.seating.left(id, &FailureCause::Disconnected);
+            }
+        }
+    }
+
+    /// The session's thread finds out which clients have gone since they joined.
+    pub(super) fn notice_gone(&mut self) {
+        let gone = |visitor: &Visitor| self.lines.get(visitor).is_none_or(|line| line.hung_up);
+        let left: Vec<usize> = self.seats.iter().filter(|(_, visitor)| gone(visitor)).map(|(seat, _)| *seat).collect();
+        for seat in left {
+            self.seats.remove(&seat);
+            if !self.seating.left(ClientId::from_index(seat), &FailureCause::Disconnected) {
+                self.broken = Some("a seat is not free again");
+            }
+        }
+    }
+
+    /// The session answers what operators have asked.
+    pub(super) fn answer(&mut self) {
+        let status = self.seating.session().status();
+        while let Some(visitor) = self.wishes.pop_front() {
+            let actions = self.reception.answered(visitor, Some(Ok(status.clone())), self.moment());
+            self.act(actions);
+        }
+    }
+
+    /// The session begins.
+    pub(super) fn begin(&mut self) {
+        self.is_begun = true;
+        while let Some((visitor, _)) = self.applications.pop_front() {
+            let actions = self.reception.refused(visitor, "the session has begun", self.moment());
+            self.act(actions);
+        }
+        let actions = self.reception.shut(self.moment());
+        self.act(actions);
+    }
+
+    /// The session is over.
+    pub(super) fn close(&mut self) {
+        let actions = self.reception.closing(self.moment());
+        self.act(actions);
+        while let Some(visitor) = self.wishes.pop_front() {
+            let actions = self.reception.answered(visitor, None, self.moment());
+            self.act(actions);
+        }
+    }
+
+    fn act(&mut self, actions: Vec<Action>) {
+        for action in actions {
+            match action {
+                Action::Send(visitor, message) => self.hear(visitor, kind(&message)),
+                Action::Apply(visitor, request) => self.applications.push_back((visitor, request)),
+                Action::Ask(visitor, _) => self.wishes.push_back(visitor),
+                Action::Part(visitor) => {
+                    self.line(visitor).parted = true;
+                    if self.line(visitor).hung_up {
+                        self.reception.gone(visitor);
+                    }
+                }
+                Action::Close(visitor) => self.line(visitor).closed = true,
+            }
+        }
+    }
+
+    fn line(&mut self, visitor: Visitor) -> &mut Line {
+        self.lines.entry(visitor).or_default()
+    }
+
+    fn hear(&mut self, visitor: Visitor, what: char) {
+        let line = self.line(visitor);
+        line.heard.push(what);
+        let is_settled = line.parted || line.closed;
+        if is_settled {
+            self.broken = Some("something is said after the last message");
+        }
+        if matches!(what, 'j' | 's') && !self.let_in.contains(&visitor) {
+            self.broken = Some("a stranger is let in");
+        }
+    }
+
+    /// What must hold at any time.
+    pub(super) fn check(&mut self) {
+        let session = self.seating.session();
+        for seat in 0..session.plan().clients().len() {
+            if session.member(ClientId::from_index(seat)).is_some() != self.seats.contains_key(&seat) {
+                self.broken = Some("a seat is lost, or taken by nobody");
+            }
+        }
+        let known =
+            |visitor: &Visitor| self.reception.knows(*visitor) || self.seats.values().any(|seat| seat == visitor);
+        let forgotten = |(visitor, line): &(&Visitor, &Line)| !known(visitor) && !line.closed && !line.hung_up;
+        if self.lines.iter().any(|each| forgotten(&each)) {
+            self.broken = Some("a connection is forgotten: neither answered nor closed");
+        }
+    }
+}
+
+fn kind(message: &ServerMessage) -> char {
+    match message {
+        ServerMessage::Welcome { .. } => 'w',
+        ServerMessage::Joined { .. } => 'j',
+        ServerMessage::Refused { .. } => 'r',
+        ServerMessage::Status(_) => 's',
+        _ => '?',
+    }
+}
+
+/// A frame with a message of these words.
+pub(super) fn frame(json: &str) -> Vec<u8> {
+    let mut bytes = (json.len() as u32 + 1).to_le_bytes().to_vec();
+    bytes.push(b'J');
+    bytes.extend_from_slice(json.as_bytes());
+    bytes
+}
+
+/// `hello` as `role`, with a token if there is one.
+pub(super) fn hello(role: &str, token: Option<&str>) -> Vec<u8> {
+    let token = token.map(|token| format!(r#","token":"{token}""#)).unwrap_or_default();
+    frame(&format!(r#"{{"hello":{{"protocol":{{"min":1,"max":1}},"role":"{role}","agent":"a"{token}}}}}"#))
+}
+
+/// `join` as a client.
+pub(super) fn join(request: &JoinRequest) -> Vec<u8> {
+    frame(&format!(r#"{{"join":{}}}"#, serde_json::to_string(request).expect("its own words")))
+}

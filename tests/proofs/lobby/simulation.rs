@@ -1,0 +1,367 @@
+//! Histories of a lobby by a seed: a network with many around it, on virtual time. Messages come in pieces of any length
+//! and with any delay, in their order on one connection and in any order between connections; connections break; some are
+//! silent, some say half a message, some flood.
+//!
+//! `ONESCAN_LOBBY_HISTORIES` says how many; a history that fails names its seed, and `ONESCAN_LOBBY_SEED` repeats it alone.
+
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BinaryHeap};
+use std::net::IpAddr;
+use std::sync::Arc;
+use std::time::Duration;
+
+use onescan_server::access::Register;
+use onescan_server::lobby::{Verdict, Visitor};
+
+use super::hall::{Hall, Tokens, frame, hello, join, request};
+use crate::stamped::report;
+
+const HISTORIES: u64 = 3_000;
+/// How long the session waits for its clients.
+const PATIENCE: Duration = Duration::from_secs(30);
+/// How often the session's thread looks up.
+const LOOK_UP: Duration = Duration::from_millis(50);
+/// Most clients of a session.
+const CLIENTS_MAX: usize = 4;
+
+/// Numbers by a seed: splitmix64.
+struct Chance(u64);
+
+impl Chance {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut mixed = self.0;
+        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        mixed ^ (mixed >> 31)
+    }
+
+    fn below(&mut self, bound: u64) -> u64 {
+        self.next() % bound
+    }
+
+    fn one_in(&mut self, n: u64) -> bool {
+        self.below(n) == 0
+    }
+
+    fn within_ms(&mut self, ms: u64) -> Duration {
+        Duration::from_micros(self.below(ms * 1_000))
+    }
+}
+
+/// Who is behind a connection.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Who {
+    /// The client of this number; comes again until it takes part.
+    Client(usize),
+    /// Asks how it is, now and then.
+    Operator,
+    /// Comes once.
+    Stranger(Manner),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Manner {
+    /// Says nothing.
+    Silent,
+    /// Says half a `hello`, and then nothing.
+    Half,
+    /// Says bytes that mean nothing.
+    Garbage,
+    /// Wants to be a client that is not expected, or one whose token it has not.
+    Pretender,
+    /// Says `hello` as a client, and then nothing.
+    Hesitant,
+    /// An operator that never asks.
+    Idle,
+    /// Says everything at once and does not wait for answers.
+    Hasty,
+}
+
+const MANNERS: [Manner; 7] =
+    [Manner::Silent, Manner::Half, Manner::Garbage, Manner::Pretender, Manner::Hesitant, Manner::Idle, Manner::Hasty];
+
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Event {
+    Comes(usize),
+    Bytes(Visitor, Vec<u8>),
+    /// Whoever is behind it looks at what it has heard.
+    Looks(Visitor),
+    HangsUp(Visitor),
+    /// The session's thread looks up.
+    LookUp,
+}
+
+/// One history.
+struct History<'t> {
+    hall: Hall,
+    chance: Chance,
+    tokens: &'t Tokens,
+    asks_tokens: bool,
+    clients: usize,
+    /// The client that never comes, if one does not.
+    absent: Option<usize>,
+    people: Vec<Who>,
+    behind: BTreeMap<Visitor, usize>,
+    /// When the last bytes of a connection come: its own stay in their order.
+    last: BTreeMap<Visitor, Duration>,
+    events: BinaryHeap<Reverse<(Duration, u64, Event)>>,
+    number: u64,
+    visitors: u64,
+    verdict: Option<(Duration, Verdict)>,
+}
+
+impl<'t> History<'t> {
+    fn new(seed: u64, tokens: &'t Tokens, registers: &[Arc<Register>]) -> Self {
+        let mut chance = Chance(seed);
+        let clients = 1 + chance.below(CLIENTS_MAX as u64) as usize;
+        let asks_tokens = chance.one_in(2);
+        let hall = Hall::new(clients, asks_tokens.then(|| &registers[0]));
+        let absent = chance.one_in(8).then(|| chance.below(clients as u64) as usize);
+        let mut people: Vec<Who> = (0..clients).map(Who::Client).collect();
+        people.extend((0..chance.below(4)).map(|_| Who::Operator));
+        let strangers = if chance.one_in(16) { chance.below(200) } else { chance.below(12) };
+        let manner = chance.one_in(3).then(|| MANNERS[chance.below(7) as usize]);
+        for _ in 0..strangers {
+            let own = MANNERS[chance.below(7) as usize];
+            people.push(Who::Stranger(manner.unwrap_or(own)));
+        }
+        let (events, last, behind) = (BinaryHeap::new(), BTreeMap::new(), BTreeMap::new());
+        let mut history = Self {
+            hall,
+            chance,
+            tokens,
+            asks_tokens,
+            clients,
+            absent,
+            people,
+            behind,
+            last,
+            events,
+            number: 0,
+            visitors: 0,
+            verdict: None,
+        };
+        for index in 0..history.people.len() {
+            if history.people[index] != Who::Client(absent.unwrap_or(usize::MAX)) {
+                let at = history.chance.within_ms(10_000);
+                history.at(at, Event::Comes(index));
+            }
+        }
+        history.at(LOOK_UP, Event::LookUp);
+        history
+    }
+
+    fn at(&mut self, at: Duration, event: Event) {
+        self.number += 1;
+        self.events.push(Reverse((at, self.number, event)));
+    }
+
+    /// Sends bytes in pieces, with the delays of a network.
+    fn send(&mut self, visitor: Visitor, mut bytes: &[u8]) {
+        let mut at = self.hall.now.max(self.last.get(&visitor).copied().unwrap_or_default());
+        while !bytes.is_empty() {
+            let all = self.chance.one_in(2);
+            let length = if all { bytes.len() } else { 1 + self.chance.below(bytes.len() as u64) as usize };
+            let (piece, rest) = bytes.split_at(length);
+            at += self.chance.within_ms(200);
+            self.at(at, Event::Bytes(visitor, piece.to_vec()));
+            bytes = rest;
+        }
+        self.last.insert(visitor, at);
+        let looks = at + self.chance.within_ms(200) + Duration::from_millis(1);
+        self.at(looks, Event::Looks(visitor));
+    }
+
+    fn token(&self, who: Who) -> Option<&'t str> {
+        match who {
+            Who::Client(number) if self.asks_tokens => Some(&self.tokens.clients[number]),
+            Who::Operator if self.asks_tokens => Some(&self.tokens.operator),
+            _ => None,
+        }
+    }
+
+    fn comes(&mut self, index: usize) {
+        let visitor = Visitor(self.visitors);
+        self.visitors += 1;
+        self.behind.insert(visitor, index);
+        let who = self.people[index];
+        let address = IpAddr::from([10, 0, 0, if matches!(who, Who::Stranger(_)) { 9 } else { 1 }]);
+        let is_let_in = match who {
+            Who::Client(_) | Who::Operator => true,
+            Who::Stranger(manner) => !self.asks_tokens && matches!(manner, Manner::Idle | Manner::Hasty),
+        };
+        self.hall.open(visitor, address, is_let_in);
+        let role = match who {
+            Who::Operator | Who::Stranger(Manner::Idle | Manner::Hasty) => "operator",
+            _ => "client",
+        };
+        let greeting = hello(role, self.token(who));
+        match who {
+            Who::Stranger(Manner::Silent) => {}
+            Who::Stranger(Manner::Half) => self.send(visitor, &greeting[..greeting.len() / 2]),
+            Who::Stranger(Manner::Garbage) => {
+                let garbage: Vec<u8> = (0..64).map(|_| self.chance.next() as u8).collect();
+                self.send(visitor, &garbage);
+            }
+            Who::Stranger(Manner::Pretender) => {
+                let stolen = match self.chance.below(3) {
+                    0 => None,
+                    1 => Some(self.tokens.expired.as_str()),
+                    _ => Some(self.tokens.operator.as_str()),
+                };
+                // Where nobody asks for tokens, whoever has a client's name and ports is that client.
+                let number = if self.asks_tokens { 0 } else { CLIENTS_MAX };
+                self.send(visitor, &[hello("client", stolen), join(&request(number))].concat());
+            }
+            Who::Stranger(Manner::Hasty) => {
+                let wishes = frame(r#"{"status":{}}"#).repeat(3);
+                self.send(visitor, &[greeting, wishes].concat());
+            }
+            _ => self.send(visitor, &greeting),
+        }
+        if matches!(who, Who::Stranger(_)) && self.chance.one_in(3) || self.chance.one_in(20) {
+            let breaks = self.hall.now + self.chance.within_ms(8_000);
+            self.at(breaks, Event::HangsUp(visitor));
+        }
+    }
+
+    /// Whoever is behind a connection reads what has come, and goes on.
+    fn looks(&mut self, visitor: Visitor) {
+        let (Some(line), Some(&index)) = (self.hall.lines.get(&visitor).cloned(), self.behind.get(&visitor)) else {
+            return;
+        };
+        let who = self.people[index];
+        if line.hung_up {
+            return;
+        }
+        if line.parted || line.closed {
+            self.hall.hang_up(visitor);
+            if let Who::Client(_) = who {
+                let again = self.hall.now + self.chance.within_ms(500);
+                self.at(again, Event::Comes(index));
+            }
+            return;
+        }
+        match (who, line.heard.as_str()) {
+            (Who::Client(number), "w") => self.send(visitor, &join(&request(number))),
+            (Who::Client(_), "wj") => {}
+            (Who::Operator, heard) if heard.ends_with(['w', 's']) && heard.len() < 4 => {
+                self.send(visitor, &frame(r#"{"status":{}}"#));
+            }
+            _ => {
+                let later = self.hall.now + Duration::from_millis(300);
+                self.at(later, Event::Looks(visitor));
+            }
+        }
+    }
+
+    fn hangs_up(&mut self, visitor: Visitor) {
+        let settled = self.hall.lines.get(&visitor).is_none_or(|line| line.closed || line.hung_up);
+        if settled || self.hall.is_begun {
+            return;
+        }
+        self.hall.hang_up(visitor);
+        if let Some(&index) = self.behind.get(&visitor)
+            && let Who::Client(_) = self.people[index]
+        {
+            let again = self.hall.now + self.chance.within_ms(500);
+            self.at(again, Event::Comes(index));
+        }
+    }
+
+    /// The session's thread: as `Formation::admit_from` does it.
+    fn look_up(&mut self) {
+        self.hall.notice_gone();
+        self.hall.answer();
+        self.hall.decide();
+        let verdict = self.hall.seating.verdict(self.hall.now, PATIENCE);
+        match verdict {
+            Verdict::Waiting => {
+                let soon =
+                    self.hall.now + if self.hall.applications.is_empty() { LOOK_UP } else { Duration::from_micros(50) };
+                self.at(soon, Event::LookUp);
+            }
+            verdict => {
+                self.hall.notice_gone();
+                if verdict == Verdict::Complete && !self.hall.seating.is_complete() {
+                    let soon = self.hall.now + LOOK_UP;
+                    return self.at(soon, Event::LookUp);
+                }
+                self.verdict = Some((self.hall.now, verdict));
+                self.hall.begin();
+            }
+        }
+    }
+
+    /// Runs to the end; what was wrong.
+    fn run(mut self) -> Result<u64, String> {
+        while let Some(Reverse((at, _, event))) = self.events.pop() {
+            while let Some(deadline) = self.hall.reception.next_deadline().filter(|deadline| *deadline <= at) {
+                self.hall.pass(deadline.max(self.hall.now));
+            }
+            self.hall.now = at;
+            if self.verdict.as_ref().is_some_and(|(since, _)| at > *since + Duration::from_secs(5)) {
+                break;
+            }
+            match event {
+                Event::Comes(index) => self.comes(index),
+                Event::Bytes(visitor, bytes) => {
+                    if self.hall.lines.get(&visitor).is_some_and(|line| !line.hung_up && !line.closed) {
+                        self.hall.bytes(visitor, &bytes);
+                    }
+                }
+                Event::Looks(visitor) => self.looks(visitor),
+                Event::HangsUp(visitor) => self.hangs_up(visitor),
+                Event::LookUp => self.look_up(),
+            }
+            self.hall.check();
+            if let Some(broken) = self.hall.broken {
+                return Err(broken.to_owned());
+            }
+        }
+        self.judge()
+    }
+
+    fn judge(mut self) -> Result<u64, String> {
+        let Some((when, verdict)) = self.verdict.take() else { return Err("the session is stuck".to_owned()) };
+        match (&verdict, self.absent) {
+            (Verdict::Complete, None) => {}
+            (Verdict::TooLate { .. }, Some(_)) if when < PATIENCE + 2 * LOOK_UP => {}
+            _ => return Err(format!("{verdict:?} after {when:?}, absent: {:?}", self.absent)),
+        }
+        if verdict == Verdict::Complete && self.hall.seats.len() != self.clients {
+            return Err("a seat is lost".to_owned());
+        }
+        self.hall.close();
+        self.hall.pass(self.hall.now + Duration::from_secs(1));
+        match (self.hall.broken, self.hall.reception.guests()) {
+            (Some(broken), _) => Err(broken.to_owned()),
+            (None, 0) => Ok(self.visitors),
+            (None, left) => Err(format!("{left} connections are left when all is over")),
+        }
+    }
+}
+
+fn setting(name: &str) -> Option<u64> {
+    std::env::var(name).ok().map(|text| text.parse().expect("a number"))
+}
+
+#[test]
+fn histories_by_a_seed_end_as_they_must() {
+    let tokens = Tokens::new(CLIENTS_MAX);
+    // The names of the smaller sessions are among those of the largest.
+    let registers = [Arc::new(tokens.register.clone())];
+    let seeds = match setting("ONESCAN_LOBBY_SEED") {
+        Some(seed) => seed..seed + 1,
+        None => 0..setting("ONESCAN_LOBBY_HISTORIES").unwrap_or(HISTORIES),
+    };
+    let (mut connections, count) = (0, seeds.end - seeds.start);
+    for seed in seeds {
+        match History::new(seed, &tokens, &registers).run() {
+            Ok(came) => connections += came,
+            Err(wrong) => panic!("history {seed}: {wrong}; repeat it with ONESCAN_LOBBY_SEED={seed}"),
+        }
+    }
+    report(format_args!("lobby: {count} histories with {connections} connections"));
+}

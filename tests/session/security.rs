@@ -1,0 +1,200 @@
+//! Sessions over TLS with tokens: who is let in, who is not and why, and that nobody who is sent away leaves a trace.
+
+use std::io::{Read as _, Write as _};
+use std::net::{SocketAddr, TcpStream};
+use std::thread::JoinHandle;
+
+use onescan::access::certificate;
+use onescan::access::folder::{AUTHORITY, Folder};
+use onescan_server::access::{Day, Pass, Register, Role, Token};
+use onescan_server::formation::Formation;
+use onescan_server::lockstep::{Lockstep, Outcome};
+use onescan_server::mailbox::Mailbox;
+use onescan_server::operation::{Control, Operation};
+use onescan_server::plan::Coupling;
+use onescan_server::transport::tcp::operator::operate;
+use onescan_server::transport::tcp::participant::take_part;
+use onescan_server::transport::tcp::{Entrance, House, Lobby};
+use onescan_server::transport::tls::Trust;
+use onescan_tests::at_ms;
+use onescan_tests::run::{Fate, PATIENCE, boxed, in_process, loopback, run};
+use onescan_tests::toy::{RING, ring, ring_plan};
+
+use crate::wire::{HELLO, frame, send};
+
+/// A folder with a certificate, and whom those trust who have its authority.
+fn certified() -> (tempfile::TempDir, Trust) {
+    let place = tempfile::tempdir().expect("a folder");
+    let folder = Folder(place.path());
+    certificate::new(folder, &[], onescan::access::tokens::today(), 30).expect("a certificate");
+    let trust = Trust::from_pem(&std::fs::read(folder.file(AUTHORITY)).expect("written")).expect("an authority");
+    (place, trust)
+}
+
+/// Tokens of the ring's clients, and of others.
+struct Tokens {
+    register: Register,
+    clients: Vec<Token>,
+    operator: Token,
+    viewer: Token,
+    expired: Token,
+}
+
+fn tokens() -> Tokens {
+    let mut register = Register::default();
+    let mut made = |name: &str, role: &str, expires: Option<Day>| {
+        let (token, role) = (Token::generate().expect("random numbers"), role.parse::<Role>().expect("a role"));
+        register.add(Pass { name: name.to_owned(), role, expires, hash: token.hash() }).expect("a name of its own");
+        token
+    };
+    let clients = RING.map(|(name, _)| made(name, &format!("client:{name}"), None)).to_vec();
+    let (operator, viewer) = (made("anna", "operator", None), made("wall", "viewer", None));
+    let expired = made("old", "operator", Some(Day::EPOCH));
+    Tokens { register, clients, operator, viewer, expired }
+}
+
+/// A session of the ring over TLS, ready to run, with everybody's way in.
+struct Secured {
+    lobby: Lobby,
+    lockstep: Lockstep,
+    threads: Vec<JoinHandle<Fate>>,
+    tokens: Tokens,
+    trust: Trust,
+    mailbox: Mailbox,
+}
+
+impl Secured {
+    fn new() -> Self {
+        let (place, trust) = certified();
+        let tokens = tokens();
+        let identity = Folder(place.path()).identity().expect("it can be used");
+        let house = House { register: Some(tokens.register.clone()), identity };
+        let (plan, mailbox) = (ring_plan(&Coupling::Parallel), Mailbox::new());
+        let lobby = Lobby::open_house(loopback(), &plan, mailbox.clone(), house).expect("a free port");
+        let address = lobby.address();
+        let part = |(mut client, token): (Box<dyn onescan_server::client::Client>, &Token)| {
+            let entrance = Entrance { address, token: Some(token.clone()), trust: Some(trust.clone()) };
+            std::thread::spawn(move || take_part(client.as_mut(), entrance))
+        };
+        let threads = boxed(ring()).into_iter().zip(&tokens.clients).map(part).collect();
+        let mut formation = Formation::new(plan);
+        formation.set_mailbox(mailbox.clone());
+        formation.admit_from(&lobby, PATIENCE, PATIENCE, &mut |_| true).expect("all come");
+        let mut lockstep = formation.start().expect("all have joined");
+        lockstep.set_mailbox(mailbox.clone());
+        Self { lobby, lockstep, threads, tokens, trust, mailbox }
+    }
+
+    fn address(&self) -> SocketAddr {
+        self.lobby.address()
+    }
+
+    fn entrance(&self, token: Option<&Token>) -> Entrance {
+        Entrance { address: self.address(), token: token.cloned(), trust: Some(self.trust.clone()) }
+    }
+
+    /// Runs to the end; all clients hear the same.
+    fn ends(self) -> Outcome {
+        let outcome = run(self.lockstep, at_ms(200));
+        for thread in self.threads {
+            assert_eq!(thread.join().expect("no panic").expect("it has taken part"), outcome.end);
+        }
+        outcome
+    }
+}
+
+fn undisturbed() -> Outcome {
+    run(in_process(ring_plan(&Coupling::Parallel), boxed(ring())), at_ms(200))
+}
+
+#[test]
+fn over_tls_with_tokens_the_digest_is_the_same() {
+    assert_eq!(Secured::new().ends(), undisturbed());
+}
+
+/// What an operator with this entrance hears.
+fn asked(entrance: Entrance) -> String {
+    match operate(entrance, Some(Operation::from(Control::Pause)), PATIENCE) {
+        Ok(status) => format!("let in: {status:?}"),
+        Err(error) => error.to_string(),
+    }
+}
+
+#[test]
+fn whoever_is_sent_away_hears_why_and_leaves_no_trace() {
+    let session = Secured::new();
+    let stranger = certified().1;
+    let unknown = Token::generate().expect("random numbers");
+    let strange = Entrance { trust: Some(stranger), ..session.entrance(Some(&session.tokens.operator)) };
+    let plain = Entrance { trust: None, ..session.entrance(Some(&session.tokens.operator)) };
+    for (entrance, why) in [
+        (session.entrance(None), "lets nobody in without a token"),
+        (session.entrance(Some(&unknown)), "the token is not one of this session's"),
+        (session.entrance(Some(&session.tokens.expired)), "token `old` expired: its last day was 1970-01-01"),
+        (
+            session.entrance(Some(&session.tokens.clients[0])),
+            "token `alpha` is good for `client:alpha`, not to be an operator",
+        ),
+        (session.entrance(Some(&session.tokens.viewer)), "token `wall` lets its holder look, and change nothing"),
+        (strange, "its certificate is a stranger's: no trusted authority has signed it"),
+        (plain, "this session speaks TLS only"),
+    ] {
+        let said = asked(entrance);
+        assert!(said.contains(why), "{why:?} is not in {said:?}");
+    }
+    assert!(session.mailbox.is_empty(), "nothing of it has reached the session");
+    assert_eq!(session.ends(), undisturbed());
+}
+
+/// `ClientHello` of TLS 1.1: a version of 3.2, one way of encryption, one way of signing.
+fn hello_of_tls_1_1() -> Vec<u8> {
+    let mut body = vec![3, 2];
+    body.extend([7; 32]);
+    body.extend([0, 0, 2, 0, 0x2f, 1, 0]);
+    body.extend([0, 8, 0, 13, 0, 4, 0, 2, 4, 3]);
+    let mut message = vec![1, 0, 0, body.len() as u8];
+    message.extend(body);
+    let mut record = vec![0x16, 3, 1, 0, message.len() as u8];
+    record.extend(message);
+    record
+}
+
+#[test]
+fn an_old_version_of_tls_is_refused_by_name() {
+    let session = Secured::new();
+    let mut stream = TcpStream::connect(session.address()).expect("it listens");
+    stream.set_read_timeout(Some(PATIENCE)).expect("a time-out");
+    stream.write_all(&hello_of_tls_1_1()).expect("it takes them");
+    let mut answer = Vec::new();
+    // It may be reset after its last word.
+    let _ = stream.read_to_end(&mut answer);
+    // A fatal alert of type 70: `protocol_version`.
+    assert!(answer.starts_with(&[0x15, 3]) && answer.get(5..7) == Some(&[2, 70]), "{answer:?}");
+    assert_eq!(session.ends(), undisturbed());
+}
+
+#[test]
+fn tls_where_there_is_none_is_told_so() {
+    let plan = ring_plan(&Coupling::Parallel);
+    let lobby = Lobby::open(loopback(), &plan, Mailbox::new()).expect("a free port");
+    let entrance = Entrance { address: lobby.address(), token: None, trust: Some(certified().1) };
+    let said = asked(entrance);
+    assert!(said.contains("the other side does not speak TLS"), "{said}");
+    let said = send(lobby.address(), &hello_of_tls_1_1());
+    assert!(said.contains("it speaks TLS, and this session has no certificate"), "{said}");
+}
+
+#[test]
+fn a_token_is_good_for_its_own_client_only() {
+    let tokens = tokens();
+    let house = House { register: Some(tokens.register), identity: None };
+    let plan = ring_plan(&Coupling::Parallel);
+    let lobby = Lobby::open_house(loopback(), &plan, Mailbox::new(), house).expect("a free port");
+    let with = |token: &Token| HELLO.replace("\"agent\"", &format!("\"token\":\"{}\",\"agent\"", token.reveal()));
+    let beta =
+        r#"{"join":{"name":"beta","period_ns":20000000,"reads":[],"writes":[{"name":"beta.out","type":"ULINT"}]}}"#;
+    let said = send(lobby.address(), &[frame(&with(&tokens.clients[0])), frame(beta)].concat());
+    assert!(said.contains("token `alpha` is good for `client:alpha`, not for client `beta`"), "{said}");
+    let said = send(lobby.address(), &[frame(&with(&tokens.viewer)), frame(beta)].concat());
+    assert!(said.contains("token `wall` is good for `viewer`, not to be a client"), "{said}");
+}
