@@ -3,9 +3,7 @@
 use std::collections::VecDeque;
 
 use super::formula::Window;
-use super::judge::TraceEnd;
-use super::monitor::Demand;
-use super::sample::{Certain, Judged, Sample};
+use super::sample::{Certain, Demand, Judged, Sample, TraceEnd};
 use super::sliding::{All, Any, Joined, Reached, Sliding};
 use super::truth::{Scale, Worth};
 

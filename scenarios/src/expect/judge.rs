@@ -6,18 +6,9 @@ use onescan_server::time::VirtualTime;
 
 use super::bind::Expectation;
 use super::monitor::Monitor;
-use super::sample::{Block, Judged};
+use super::sample::{Block, Judged, TraceEnd};
 use super::truth::{Margin, Scale, Truth};
 use super::verdict::{Outcome, Verdict};
-
-/// How a run ends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TraceEnd {
-    /// It was over: nothing comes after it.
-    Complete,
-    /// It was stopped or failed: something would have come.
-    Cut,
-}
 
 /// Samples that are judged at a time.
 const BLOCK_LEN: usize = 256;

@@ -56,6 +56,7 @@ mod verdict;
 pub use bind::{Expectation, KnownSignal};
 pub use condition::condition;
 pub use error::FormulaError;
-pub use judge::{Judge, TraceEnd};
+pub use judge::Judge;
+pub use sample::TraceEnd;
 pub use truth::Margin;
 pub use verdict::{Outcome, Verdict};

@@ -8,18 +8,10 @@ use std::collections::VecDeque;
 use super::ahead::Ahead;
 use super::back::Back;
 use super::formula::{Comparison, Edge, Formula};
-use super::judge::TraceEnd;
-use super::sample::{Block, Certain, Judged};
+use super::sample::{Block, Certain, Demand, Judged, TraceEnd};
 use super::sliding::{All, Any, Reached, Since};
 use super::term::Number;
 use super::truth::{Scale, Worth};
-
-/// Of which samples a part is asked.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Demand {
-    First,
-    Every,
-}
 
 /// A formula, or a part of one.
 #[derive(Clone, Debug)]

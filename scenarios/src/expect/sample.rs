@@ -2,6 +2,22 @@
 
 use super::truth::Worth;
 
+/// How a run ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TraceEnd {
+    /// It was over: nothing comes after it.
+    Complete,
+    /// It was stopped or failed: something would have come.
+    Cut,
+}
+
+/// Of which samples a part of a formula is asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Demand {
+    First,
+    Every,
+}
+
 /// A sample: its number and its time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Sample {

@@ -1,6 +1,6 @@
 //! The signals that formulas need, sample by sample.
 
-use crate::expect::judge::TraceEnd;
+use crate::expect::sample::TraceEnd;
 
 /// Columns of samples over virtual time.
 #[derive(Clone, Debug)]
