@@ -14,7 +14,7 @@ use onescan_server::time::VirtualTime;
 use super::abreast::Pair;
 use super::pairs::{Declarations, Leaves, Statements, names};
 use super::record::{Origin, Place, Record, What};
-use super::tree::{Item, Node, tree};
+use super::tree::{Item, NOTHING, Node, tree};
 
 /// Variables that were written, with who did so last in each run.
 type Written<'n> = BTreeMap<usize, [Option<&'n Wrote>; 2]>;
@@ -191,16 +191,14 @@ impl Walk<'_> {
         let decided = match progress.cause().filter(|_| known) {
             Some(cause) => cause,
             None => {
-                let mut nodes = [child, child];
-                let nothing = Node::default();
-                nodes[1 - side] = &nothing;
+                let mut nodes = [&NOTHING; 2];
+                nodes[side] = child;
                 self.parting(nodes, What::Run, None)
             }
         };
         let mut written = Written::new();
         self.collect(side, &child.items, &mut written);
-        let nothing = Node::default();
-        self.settle([&nothing, &nothing], &written, Some(decided));
+        self.settle([&NOTHING; 2], &written, Some(decided));
         progress.decided = progress.decided.or(Some(decided));
         progress.at[side] += 1;
     }

@@ -16,6 +16,9 @@ pub(super) struct Node {
     pub(super) items: Vec<Item>,
 }
 
+/// A statement of a run that has not executed it.
+pub(super) static NOTHING: Node = Node { statement: None, items: Vec::new() };
+
 /// One thing that a statement did.
 #[derive(Debug)]
 pub(super) enum Item {

@@ -31,6 +31,7 @@ mod generic_blocks;
 mod il;
 mod index_ranges;
 mod inputs;
+mod journal;
 mod language;
 mod ld;
 mod legal_code;
