@@ -8,15 +8,17 @@
 //! | [`signal_type`] | the types that a signal can have: the elementary types, and strings with a length |
 //! | [`value`] | values of these types: their bytes, and the text that recordings hold |
 //! | [`nearest`] | the name that was probably meant |
+//! | [`regular`] | files that are read: regular ones, up to a limit |
 //! | [`foreign`] | text from outside, made fit to be shown |
 //!
-//! Invariants: plain data and pure functions. No clock, no file, no random number, no iteration in hash order, and
-//! no dependency except serde, thiserror and strsim.
+//! Invariants: plain data and pure functions, but for [`regular`], which reads files. No clock, no random number,
+//! no iteration in hash order, and no dependency except serde, thiserror and strsim.
 
 pub mod duration;
 pub mod elementary;
 pub mod foreign;
 pub mod nearest;
+pub mod regular;
 pub mod signal_type;
 pub mod time;
 pub mod value;

@@ -1,5 +1,6 @@
 //! Ctrl-C: the run stops at the next step boundary, with recordings and reports whole. Another one
-//! after a while ends the process at once.
+//! after a while ends the process at once; so does the first, as long as there is no session that could stop: while
+//! files are read, checked and compiled.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -11,10 +12,15 @@ use onescan_server::operation::Control;
 /// A second signal before this is an echo of the first: some programs signal a process and its group.
 const IMPATIENCE: Duration = Duration::from_secs(1);
 
+/// The exit code of a program that was ended by Ctrl-C, as shells have it.
+const INTERRUPTED: i32 = 130;
+
 /// A wish to stop, seen by all runs of a process.
 #[derive(Clone, Debug, Default)]
 pub struct Interrupt {
     raised: Arc<AtomicBool>,
+    /// Set when there is a session that takes heed of it.
+    heeded: Arc<AtomicBool>,
     mailbox: Mailbox,
 }
 
@@ -32,9 +38,12 @@ impl Interrupt {
             None => {
                 first = Some(Instant::now());
                 interrupt.raised.store(true, Ordering::SeqCst);
+                if !interrupt.heeded.load(Ordering::SeqCst) {
+                    std::process::exit(INTERRUPTED);
+                }
                 interrupt.mailbox.control(Control::Stop);
             }
-            Some(first) if first.elapsed() > IMPATIENCE => std::process::exit(130),
+            Some(first) if first.elapsed() > IMPATIENCE => std::process::exit(INTERRUPTED),
             Some(_) => {}
         };
         if let Err(error) = ctrlc::set_handler(handler) {
@@ -45,6 +54,11 @@ impl Interrupt {
     /// True once somebody asked to stop.
     pub fn is_raised(&self) -> bool {
         self.raised.load(Ordering::SeqCst)
+    }
+
+    /// From now on somebody looks whether a stop was asked for, and brings things to an end.
+    pub(super) fn heed(&self) {
+        self.heeded.store(true, Ordering::SeqCst);
     }
 
     /// The flag itself, for those who spin on it.

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use miette::{NamedSource, SourceSpan};
+use onescan_base::regular::{self, Limit};
 use onescan_clients::operator::Operator;
 use onescan_clients::plant::{Inside, Plant, Scene, SceneError, SceneFault};
 use onescan_clients::soft_plc::{Bindings, SoftPlcClient, bind};
@@ -140,7 +141,11 @@ impl Scenario {
             None => SourceKind::Text,
         };
         permission::granted().check(self.folder(), &path)?;
-        let bytes = std::fs::read(&path).map_err(|source| ScenarioError::Unreadable { path, source, help: None })?;
+        let bytes = regular::read(&path, Limit::TEXT).map_err(|source| ScenarioError::Unreadable {
+            path,
+            source,
+            help: None,
+        })?;
         let input = Input::read(source, kind, &bytes);
         Ok(match dialect {
             Some(dialect) => input.in_dialect(dialect),
@@ -327,7 +332,7 @@ fn task(file: &TaskFile) -> Task {
 }
 
 fn read(path: &PathBuf) -> Result<String, ScenarioError> {
-    std::fs::read_to_string(path).map_err(|source| ScenarioError::Unreadable { path: path.clone(), source, help: None })
+    regular::read_text(path).map_err(|source| ScenarioError::Unreadable { path: path.clone(), source, help: None })
 }
 
 /// A scene's faults, the first in front.

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use onescan_base::regular;
 use onescan_clients::gateway::exchange::{Direction, SystemWords};
 use onescan_clients::gateway::layout_number::layout_number;
 use onescan_clients::gateway::mapping::{self, Variables};
@@ -22,7 +23,7 @@ use serde::Deserialize;
 use super::compose::{Compiled, Paths, plan_of};
 use super::error::{PlcReport, ScenarioError};
 use super::file::ClientFile;
-use super::load::Scenario;
+use super::load::{LinkSource, Scenario};
 use super::mode::Mode;
 
 /// What a real PLC of a scenario runs.
@@ -106,9 +107,12 @@ impl Scenario {
         }
         match url {
             Some(path) if is_file(&path) => {
-                let settings = self.settings_in(name, &path)?;
-                self.links.insert(name.clone(), settings);
+                let link = self.link_in(name, &path)?;
+                self.links.insert(name.clone(), link);
                 self.gateways.insert(name.clone(), None);
+                if let Some(fault) = mapping::malformed(&self.declared(name).map) {
+                    return Err(self.wrong_mapping(name, fault));
+                }
             }
             url => {
                 self.gateways.insert(name.clone(), url);
@@ -118,22 +122,21 @@ impl Scenario {
     }
 
     /// The link of PLC `name` in a file of its own, as `onescan instrument` and `onescan map` write one.
-    fn settings_in(&self, name: &ClientName, path: &str) -> Result<Settings, ScenarioError> {
+    fn link_in(&self, name: &ClientName, path: &str) -> Result<LinkSource, ScenarioError> {
         let wrong = |why: String, help: &str| self.wrong_client(name, format!("{path}: {why}"), Some(help.to_owned()));
-        let text = std::fs::read_to_string(path)
+        let text = regular::read_text(Path::new(path))
             .map_err(|error| wrong(error.to_string(), "name a file with the table `[clients.NAME.gateway]`"))?;
-        let mut file: LinkFile = toml::from_str(&text)
-            .map_err(|error| wrong(error.to_string(), "write what `[clients.NAME.gateway]` of a scenario has"))?;
+        let mut file: LinkFile = toml::from_str(&text).map_err(|error| {
+            let help = "write what `[clients.NAME.gateway]` of a scenario has".to_owned();
+            super::error::wrong(Path::new(path), &text, error.message().trim().to_owned(), error.span(), Some(help))
+        })?;
         let link = file.clients.remove(name).ok_or_else(|| {
             let known = file.clients.keys().map(ClientName::as_str);
             let help = did_you_mean(name.as_str(), known);
             let help = help.unwrap_or_else(|| format!("write `[clients.{name}.gateway]`"));
             wrong(format!("there is no link of client `{name}`"), &help)
         })?;
-        match mapping::malformed(&link.gateway.map) {
-            Some(fault) => Err(wrong(fault.message, &fault.help.unwrap_or_default())),
-            None => Ok(link.gateway),
-        }
+        Ok(LinkSource { settings: link.gateway, path: path.into(), text })
     }
 
     /// The client that speaks for the PLC `name`, connected.
@@ -247,8 +250,8 @@ impl Scenario {
 
     /// What the scenario says of the link of PLC `name`.
     pub fn declared(&self, name: &ClientName) -> Settings {
-        if let Some(settings) = self.links.get(name) {
-            return settings.clone();
+        if let Some(link) = self.links.get(name) {
+            return link.settings.clone();
         }
         match self.file().clients.get(name).map(toml::Spanned::get_ref) {
             Some(ClientFile::SoftPlc { gateway, .. }) => gateway.clone().unwrap_or_default(),
@@ -375,10 +378,8 @@ impl Scenario {
 
     /// An error at the line of the mapping that is wrong; at the client if the signal is not mapped.
     pub(crate) fn wrong_mapping(&self, name: &ClientName, fault: MappingFault) -> ScenarioError {
-        match self.place_of_mapping(name, &fault.point) {
-            Some(place) => self.wrong_place(place, fault.message, fault.help),
-            None => self.wrong_client(name, fault.message, fault.help),
-        }
+        let wrong = self.wrong_entry(name, &fault.point, (&fault.message, fault.help.as_ref()));
+        wrong.unwrap_or_else(|| self.wrong_client(name, fault.message, fault.help))
     }
 
     /// An error of a link, at its place in the file if it has one.

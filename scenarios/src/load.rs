@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use onescan_base::regular;
 use onescan_clients::gateway::Settings;
 use onescan_clients::soft_plc::journal::{Journalling, Wanted};
 use onescan_clients::soft_plc::watch::Sightings;
@@ -55,7 +56,7 @@ pub struct Scenario {
     /// The soft PLCs that a real one stands in for, with its URL where the file's does not count.
     pub(crate) gateways: BTreeMap<ClientName, Option<String>>,
     /// Their links, where files of their own say them.
-    pub(crate) links: BTreeMap<ClientName, Settings>,
+    pub(crate) links: BTreeMap<ClientName, LinkSource>,
     /// What soft PLCs look at, if that is asked for.
     pub(crate) watched: Option<Watched>,
 }
@@ -67,7 +68,7 @@ impl Scenario {
     /// See [`ScenarioError`].
     pub fn load(path: &Path) -> Result<Self, ScenarioError> {
         let path = if path.is_dir() { path.join(FILE_NAME) } else { path.to_owned() };
-        let text = std::fs::read_to_string(&path).map_err(|source| ScenarioError::Unreadable {
+        let text = regular::read_text(&path).map_err(|source| ScenarioError::Unreadable {
             path: path.clone(),
             help: (source.kind() == std::io::ErrorKind::NotFound)
                 .then(|| format!("a scenario is a folder with a `{FILE_NAME}`; give the folder")),
@@ -249,17 +250,20 @@ impl Scenario {
         wrong(&self.path, &self.text, message, place, help)
     }
 
-    /// An error at a place of the file.
-    pub(crate) fn wrong_place(&self, place: Range<usize>, message: String, help: Option<String>) -> ScenarioError {
-        wrong(&self.path, &self.text, message, Some(place), help)
-    }
-
-    /// The line of `key` in the mapping of client `name`.
-    pub(crate) fn place_of_mapping(&self, name: &ClientName, key: &str) -> Option<Range<usize>> {
-        // The entries of a client's table lose their places because its kind is one of its keys.
-        let lines: Lines = toml::from_str(&self.text).ok()?;
-        let map = lines.clients.get(name.as_str())?.gateway.as_ref()?.map.as_ref()?;
-        map.iter().find(|(known, _)| known.get_ref() == key).map(|(known, value)| known.span().start..value.span().end)
+    /// An error at the line of `key` in the mapping of client `name`: in the file of its link, or in the scenario. Nothing if
+    /// it is not mapped there.
+    pub(crate) fn wrong_entry(
+        &self,
+        name: &ClientName,
+        key: &str,
+        (message, help): (&str, Option<&String>),
+    ) -> Option<ScenarioError> {
+        let (path, text) = match self.links.get(name) {
+            Some(link) => (&link.path, &link.text),
+            None => (&self.path, &self.text),
+        };
+        let place = place_of_mapping(text, name, key)?;
+        Some(wrong(path, text, message.to_owned(), Some(place), help.cloned()))
     }
 
     /// An error of an option, which has no place in the file.
@@ -274,7 +278,23 @@ impl Scenario {
     }
 }
 
-/// The mappings of a `scenario.toml` with their places.
+/// The link of a PLC from a file of its own.
+#[derive(Clone, Debug)]
+pub(crate) struct LinkSource {
+    pub(crate) settings: Settings,
+    pub(crate) path: PathBuf,
+    pub(crate) text: String,
+}
+
+/// The line of `key` in the mapping of client `name`.
+fn place_of_mapping(text: &str, name: &ClientName, key: &str) -> Option<Range<usize>> {
+    // The entries of a client's table lose their places because its kind is one of its keys.
+    let lines: Lines = toml::from_str(text).ok()?;
+    let map = lines.clients.get(name.as_str())?.gateway.as_ref()?.map.as_ref()?;
+    map.iter().find(|(known, _)| known.get_ref() == key).map(|(known, value)| known.span().start..value.span().end)
+}
+
+/// The mappings of a `scenario.toml`, or of a file with links alone, with their places.
 #[derive(Deserialize)]
 struct Lines {
     clients: BTreeMap<String, ClientLines>,

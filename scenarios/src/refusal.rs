@@ -1,5 +1,6 @@
 //! A client of the scenario that its session does not let in: where it says so, and what to write.
 
+use onescan_base::regular;
 use onescan_server::client::JoinRequest;
 use onescan_server::join::JoinRefusal;
 use onescan_server::signal::{ClientName, SignalName};
@@ -50,7 +51,7 @@ impl Scenario {
     ) -> Option<ScenarioError> {
         let ClientFile::Plant { scene, .. } = self.file().clients.get(name)?.get_ref() else { return None };
         let path = self.folder().join(scene);
-        let text = std::fs::read_to_string(&path).ok()?;
+        let text = regular::read_text(&path).ok()?;
         let named = format!("\"{signal}\"");
         let start = text.find(&named)?;
         Some(wrong(&path, &text, message.to_owned(), Some(start..start + named.len()), help))

@@ -10,7 +10,7 @@ use crate::tokens::{Token, tokens};
 const STANDS_ON: &[(&str, &[&str])] = &[
     ("base", &[]),
     ("server", &["onescan-base"]),
-    ("server/recording", &["onescan-server"]),
+    ("server/recording", &["onescan-base", "onescan-server"]),
     ("plc-shim", &["onescan-base"]),
     ("report", &[]),
     ("clients", &["onescan-base", "onescan-plc-shim", "onescan-server"]),
@@ -49,6 +49,10 @@ const HARMLESS: &[(&str, &str)] = &[
     ("clients/src/information_model/manager.rs", "the library's interface; looked up by key, never iterated"),
     ("server/src/access/token.rs", "a new token: on which nothing that a session computes depends"),
 ];
+
+/// Where a file is read otherwise than by `onescan_base::regular`, which refuses what has no end.
+const READS: &[(&str, &str)] =
+    &[("base/src/regular.rs", "it is this one"), ("clients/src/published.rs", "what is published, compared by tests")];
 
 fn rust_files(folder: &Path, found: &mut Vec<PathBuf>) {
     let entries = std::fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
@@ -119,6 +123,32 @@ fn crates_stand_on_each_other_in_one_order() {
 #[test]
 fn clocks_are_read_where_they_must_be_and_nowhere_else() {
     let found = against(&places_of(&["Instant", "SystemTime"]), CLOCKS);
+    assert!(found.is_empty(), "\n{found}");
+}
+
+/// Calls that read a file of any kind and size, outside of tests beside the code.
+#[test]
+fn files_are_read_in_one_way() {
+    let mut found = String::new();
+    let mut files = Vec::new();
+    for (folder, _) in STANDS_ON {
+        rust_files(&root().join(folder).join("src"), &mut files);
+    }
+    files.sort();
+    for path in files {
+        let text = std::fs::read_to_string(&path).expect("a source that can be read");
+        let file = path.strip_prefix(root()).expect("below the root").display().to_string();
+        if READS.iter().any(|(place, _)| *place == file) {
+            continue;
+        }
+        let code = text.split("#[cfg(test)]").next().unwrap_or_default();
+        for (line, text) in (1..).zip(code.lines()) {
+            let reads = ["fs::read(", "fs::read_to_string(", "File::open("];
+            if reads.iter().any(|call| text.contains(call)) && !text.trim_start().starts_with("//") {
+                found += &format!("    {file}:{line}: {}\n", text.trim());
+            }
+        }
+    }
     assert!(found.is_empty(), "\n{found}");
 }
 

@@ -25,7 +25,8 @@ fn configured(tasks: &str, configuration: &str) -> tempfile::TempDir {
 }
 
 fn trajectory(folder: &Path) -> String {
-    let said = typed(folder, &["run", ".", "--until", "2s", "--record-also", "csv", "--record", "record"]);
+    let words = ["run", ".", "--until", "2s", "--record-also", "csv", "--record", "record", "--overwrite"];
+    let said = typed(folder, &words);
     assert_eq!(said.code, Some(0), "{said:?}");
     std::fs::read_to_string(folder.join("record/run-1/trajectory.csv")).expect("a record")
 }

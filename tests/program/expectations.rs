@@ -5,7 +5,7 @@ use std::io::Write as _;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use onescan_scenario::expect::{Expectation, KnownSignal, Trace};
+use onescan_scenario::expect::{Expectation, Judge, KnownSignal, TraceEnd};
 use onescan_server::signal::SignalType;
 use serde_json::json;
 
@@ -106,11 +106,11 @@ fn margins_are_those_of_rtamt() {
         );
         let mut columns = vec!["a".to_owned(), "b".to_owned()];
         let expectation = Expectation::parse(&our_formula, &[signal("a"), signal("b")], &mut columns).unwrap();
-        let mut trace = Trace::new(2);
+        let mut judge = Judge::new([expectation], 2);
         for (step, (a, b)) in (0..).zip(a.iter().zip(&b)) {
-            trace.push(step * STEP_NS, [*a, *b]);
+            judge.push(step * STEP_NS, [*a, *b]);
         }
-        ours.push((their_formula.clone(), expectation.judge(&trace).margin));
+        ours.push((their_formula.clone(), judge.finish(TraceEnd::Complete)[0].margin));
         writeln!(cases, "{}", json!({ "formula": their_formula, "a": a, "b": b })).unwrap();
     }
     let theirs = ask(&cases);

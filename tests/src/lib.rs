@@ -1,6 +1,7 @@
 //! Fixtures of the end-to-end tests, proofs and benches: plans and small clients.
 
 pub mod bench;
+pub mod large;
 pub mod run;
 pub mod toy;
 

@@ -3,6 +3,7 @@
 use std::net::SocketAddr;
 use std::path::Path;
 
+use onescan_base::regular::{self, Limit};
 use onescan_server::access::Token;
 use onescan_server::transport::tcp::Entrance;
 use onescan_server::transport::tls::Trust;
@@ -21,6 +22,6 @@ pub fn entrance(address: SocketAddr, token: Option<&str>, authority: Option<&Pat
 }
 
 fn trust(path: &Path) -> Result<Trust, AccessError> {
-    let bytes = std::fs::read(path).map_err(Unreadable::at(path))?;
+    let bytes = regular::read(path, Limit::TEXT).map_err(Unreadable::at(path))?;
     Trust::from_pem(&bytes).map_err(|source| AccessError::Certificate { path: path.to_owned(), source })
 }

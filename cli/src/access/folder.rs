@@ -3,6 +3,7 @@
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
+use onescan_base::regular::{self, Limit};
 use onescan_report::file;
 use onescan_server::access::{Pass, Register};
 use onescan_server::transport::tls::Identity;
@@ -108,7 +109,7 @@ impl Folder<'_> {
 }
 
 fn read_if_there(path: &Path) -> Result<Option<Vec<u8>>, AccessError> {
-    match std::fs::read(path) {
+    match regular::read(path, Limit::TEXT) {
         Ok(bytes) => Ok(Some(bytes)),
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
         Err(error) => Err(Unreadable::at(path)(error).into()),

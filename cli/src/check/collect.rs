@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use onescan_base::regular::{self, Limit};
 use onescan_plc_shim::input::kind::{EXTENSIONS, FileKind};
 use onescan_plc_shim::input::needed;
 use onescan_plc_shim::input::project;
@@ -129,7 +130,7 @@ impl Files {
     }
 
     fn file(&mut self, path: &Path, kind: FileKind) -> Result<(), CheckError> {
-        let bytes = std::fs::read(path).map_err(Unreadable::at(path))?;
+        let bytes = regular::read(path, Limit::TEXT).map_err(Unreadable::at(path))?;
         self.read(path, kind, &bytes)
     }
 
@@ -183,7 +184,7 @@ impl Files {
                     if self.part != Part::Own && is_task(&file) {
                         continue;
                     }
-                    match std::fs::read(&file) {
+                    match regular::read(&file, Limit::TEXT) {
                         Ok(bytes) => self.read(&file, kind, &bytes)?,
                         // What is there is checked all the same.
                         Err(error) if error.kind() == std::io::ErrorKind::NotFound => missing.push(listed),
@@ -238,13 +239,13 @@ fn is_task(path: &Path) -> bool {
 /// True for XML that is not PLCopen's: folders hold much of it.
 fn is_other_xml(path: &Path) -> bool {
     let is_xml = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("xml"));
-    is_xml && !std::fs::read(path).is_ok_and(|bytes| bytes.windows(11).any(|part| part == b"plcopen.org"))
+    is_xml && !regular::read(path, Limit::TEXT).is_ok_and(|bytes| bytes.windows(11).any(|part| part == b"plcopen.org"))
 }
 
 /// True for a project with its shim that `instrument` wrote as one file.
 fn is_whole(path: &Path) -> bool {
     let is_own = path.file_stem().is_some_and(|stem| stem.eq_ignore_ascii_case("sdsp"));
-    is_own && std::fs::read(path).is_ok_and(|bytes| instrument::is_whole(&String::from_utf8_lossy(&bytes)))
+    is_own && regular::read(path, Limit::TEXT).is_ok_and(|bytes| instrument::is_whole(&String::from_utf8_lossy(&bytes)))
 }
 
 /// Why neither files nor targets of Logix controllers are taken: `docs/decisions/007`.

@@ -3,6 +3,7 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use onescan_base::regular;
 use onescan_plc_shim::stubs::{self, MARK};
 use onescan_plc_shim::{Code, Dialect, Finding, Input, inspect};
 use onescan_report::OutputError;
@@ -69,7 +70,7 @@ fn present(path: &Path) -> Result<Option<String>, CheckError> {
     if !path.exists() {
         return Ok(None);
     }
-    let text = std::fs::read_to_string(path).map_err(Unreadable::at(path))?;
+    let text = regular::read_text(path).map_err(Unreadable::at(path))?;
     if text.starts_with(MARK) {
         return Ok(Some(text));
     }

@@ -73,6 +73,9 @@ pub enum Command {
     /// One test, for `test`
     #[command(hide = true)]
     TestWorker(WorkerArgs),
+    /// Ends the processes of a session that cannot do so itself
+    #[command(hide = true)]
+    Guard,
     /// Take part in a session that another process serves, as one client of a scenario
     Join(JoinArgs),
     /// Ask a running session (see `run --listen`) how it is, or to pause, step, go on, reset or stop
@@ -123,6 +126,7 @@ pub fn dispatch(command: Command) -> Result<ExitCode, CommandError> {
         Command::Test(args) => test::test(*args),
         Command::Review(args) => test::review(args),
         Command::TestWorker(args) => test::work(args),
+        Command::Guard => Ok(session::guard()),
         Command::Join(args) => session::join(&args),
         Command::Control(args) => session::control(&args),
         Command::Token(args) => access::token(args),

@@ -70,6 +70,9 @@ pub struct RunArgs {
     /// Record these signals only: a name, or a pattern with `*` and `?`; may be given several times
     #[arg(long = "record-signals", value_name = "PATTERN", requires = "record")]
     pub record_signals: Vec<SignalPattern>,
+    /// Replace an earlier recording in this folder
+    #[arg(long, requires = "record")]
+    pub overwrite: bool,
     /// Repeat what an operator did: a recording, or a file like its `events.jsonl`
     #[arg(long, value_name = "PATH")]
     pub replay_operator: Option<PathBuf>,
@@ -259,6 +262,7 @@ fn config(args: RunArgs) -> Result<RunConfig, CommandError> {
     let format = args.format.into();
     let record = args.record.map(|folder| RecordRequest {
         folder,
+        overwrite: args.overwrite,
         choice: Choice {
             signals: args.record_signals,
             csv: args.record_also.contains(&RecordAlso::Csv),

@@ -42,6 +42,12 @@ pub fn join(args: &JoinArgs) -> Result<ExitCode, CommandError> {
     Ok(ExitCode::Ok)
 }
 
+/// Stands guard over the processes of a session, until it is dismissed or the session's own process has died.
+pub fn guard() -> ExitCode {
+    crate::run::guard::stand(std::io::stdin().lock());
+    ExitCode::Ok
+}
+
 /// Options of `control`.
 #[derive(Debug, ClapArgs)]
 pub struct ControlArgs {

@@ -37,6 +37,9 @@ pub struct TestArgs {
     /// How many tests at a time, each in a process of its own [default: as many as there are processors]
     #[arg(short, long, value_name = "N")]
     pub jobs: Option<NonZeroUsize>,
+    /// Time that one test, or all test programs of one call, may take; what takes longer is ended and has failed
+    #[arg(long, default_value = "10min", value_name = "TIME")]
+    pub timeout: TimeSpan,
     /// Accept every snapshot that is new or has changed, unseen
     #[arg(long, conflicts_with = "check")]
     pub bless: bool,
@@ -93,6 +96,7 @@ impl TestArgs {
         TestConfig {
             paths: self.paths,
             selection: Selection { filters: self.filters, tags: self.tags, skipped_tags: self.skipped_tags },
+            timeout: self.timeout,
             jobs: self.jobs.unwrap_or_else(|| std::thread::available_parallelism().unwrap_or(one)),
             policy: match (self.bless, self.check) {
                 (true, _) => Policy::Bless,

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use onescan_base::regular;
 use onescan_recording::Recording;
 use serde::Serialize;
 
@@ -41,10 +42,9 @@ pub(super) fn differing(recordings: &[Recording; 2]) -> Vec<FileDifference> {
 }
 
 fn changed_lines(recordings: &[Recording; 2], path: &str) -> Vec<(char, usize, String)> {
-    let texts = recordings.each_ref().map(|recording| {
-        let bytes = std::fs::read(recording.folder().join("scenario").join(Path::new(path)));
-        bytes.ok().and_then(|bytes| String::from_utf8(bytes).ok())
-    });
+    let texts = recordings
+        .each_ref()
+        .map(|recording| regular::read_text(&recording.folder().join("scenario").join(Path::new(path))).ok());
     let [Some(a), Some(b)] = &texts else { return Vec::new() };
     between_common_ends(&a.lines().collect::<Vec<_>>(), &b.lines().collect::<Vec<_>>())
 }

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use onescan_base::regular::{self, Limit};
 use onescan_plc_shim::instrument::Project;
 use onescan_report::file::Write as FileWrite;
 
@@ -40,7 +41,7 @@ pub(super) fn deleted(config: &InstrumentConfig, project: &Project) -> Result<Op
 }
 
 fn is_own(path: &Path) -> Result<bool, InstrumentError> {
-    let bytes = std::fs::read(path).map_err(Unreadable::at(path))?;
+    let bytes = regular::read(path, Limit::TEXT).map_err(Unreadable::at(path))?;
     Ok(bytes.starts_with(MARK.as_bytes()))
 }
 

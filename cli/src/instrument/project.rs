@@ -2,6 +2,7 @@
 
 use std::path::{Component, Path, PathBuf};
 
+use onescan_base::regular::{self, Limit};
 use onescan_plc_shim::Input;
 use onescan_plc_shim::input::encoding::{Charset, Encoding, encode};
 use onescan_plc_shim::input::kind::{FileKind, SourceKind};
@@ -56,7 +57,7 @@ fn add_manifests(path: &Path, inputs: &mut Vec<Input>) -> Result<(), InstrumentE
         let inner = |entry: &&PathBuf| !entry.is_symlink() && (entry.is_dir() || is_manifest(entry));
         entries.iter().filter(inner).try_for_each(|entry| add_manifests(entry, inputs))
     } else if is_manifest(path) {
-        let bytes = std::fs::read(path).map_err(&unreadable)?;
+        let bytes = regular::read(path, Limit::TEXT).map_err(&unreadable)?;
         let name = path.strip_prefix(".").unwrap_or(path).display().to_string();
         inputs.push(Input::read(&name, SourceKind::Text, &bytes));
         Ok(())
@@ -89,7 +90,7 @@ fn add_own(inputs: &mut Vec<Input>) -> Result<(), InstrumentError> {
     own.sort();
     for path in own {
         if let Some(FileKind::Source(kind)) = FileKind::of(&path) {
-            let bytes = std::fs::read(&path).map_err(Unreadable::at(&path))?;
+            let bytes = regular::read(&path, Limit::TEXT).map_err(Unreadable::at(&path))?;
             inputs.push(Input::read(&path.display().to_string(), kind, &bytes));
         }
     }

@@ -38,6 +38,7 @@ mod xml;
 
 use std::path::{Path, PathBuf};
 
+use onescan_base::regular::{self, Limit};
 use onescan_server::time::TimeSpan;
 
 pub use error::ListError;
@@ -173,7 +174,7 @@ fn bytes_of(path: &Path) -> Result<Vec<u8>, ListError> {
     if size > BYTES_MAX {
         return Err(ListError::TooLarge { file: path.display().to_string(), mib: BYTES_MAX >> 20 });
     }
-    Ok(std::fs::read(path).map_err(Unreadable::at(path))?)
+    Ok(regular::read(path, Limit::TEXT).map_err(Unreadable::at(path))?)
 }
 
 /// The only TwinCAT project in a folder or in the folders in it.

@@ -3,6 +3,7 @@
 use std::io::{self, Write};
 use std::path::Path;
 
+use onescan_base::regular;
 use onescan_clients::plant::component::{kinds, open_inputs};
 use onescan_clients::plant::scene::model::{Body, BodyKind, Component, Mass, Moved, Scene, Sensing, Shape, Wire};
 use onescan_report::OutputError;
@@ -42,7 +43,7 @@ pub fn write(path: &Path, format: Format, out: &mut dyn Write) -> Result<(), Pla
 
 fn one_scene(path: &Path, format: Format, out: &mut dyn Write) -> Result<(), PlantError> {
     let file = path.display().to_string();
-    let text = std::fs::read_to_string(path).map_err(|source| {
+    let text = regular::read_text(path).map_err(|source| {
         let help = Some("give a scene, as `my-cell/plant.toml`, or the folder of its scenario".to_owned());
         PlantError::Scenario(ScenarioError::Unreadable { path: path.to_owned(), source, help })
     })?;

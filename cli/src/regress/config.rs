@@ -32,6 +32,8 @@ pub struct TestConfig {
     pub selection: Selection,
     /// How many processes at a time.
     pub jobs: NonZeroUsize,
+    /// How long a process may take.
+    pub timeout: TimeSpan,
     /// What becomes of snapshots.
     pub policy: Policy,
     /// The commit with the reviewed program; found in the repository if absent.

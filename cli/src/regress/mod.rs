@@ -9,6 +9,7 @@
 //! | [`selection`] | which tests are meant, by name and tag |
 //! | [`plan`] | units of work, filtered |
 //! | [`pool`] | units in processes of their own, several at a time |
+//! | `limited` | a process that may take so long and no longer |
 //! | [`worker`] | one unit, in such a process |
 //! | `declared`, `attributes` | tests as sources declare them, and what stands before them |
 //! | [`unit_test`], `memory_text` | test programs in ST, each in a fresh PLC |
@@ -30,6 +31,7 @@ mod declared;
 pub mod discover;
 mod error;
 pub mod junit;
+mod limited;
 mod memory_text;
 pub mod outcome;
 pub mod page;

@@ -1,15 +1,17 @@
 //! Units in processes of their own, several at a time: one that crashes takes no other with it.
 
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::Command;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::Selection;
 use super::config::TestConfig;
 use super::error::TestError;
+use super::limited::Limited;
 use super::plan::Unit;
 use super::ran::Worked;
 use crate::error::ExitCode;
@@ -62,7 +64,13 @@ fn one(config: &TestConfig, unit: &Unit) -> Result<Worked, TestError> {
     }
     let spawn = |source| SpawnError { client: "test".to_owned(), command: "onescan".to_owned(), source };
     let program = std::env::current_exe().map_err(spawn)?;
-    let output = command(config, unit, &program).output().map_err(spawn)?;
+    let limit = Duration::from_nanos(config.timeout.as_nanos());
+    let Some(output) =
+        Limited::start(&mut command(config, unit, &program)).map_err(spawn)?.output(limit).map_err(spawn)?
+    else {
+        let error = format!("not done within {}, which is the limit: it was ended (see `--timeout`)", config.timeout);
+        return Ok(Worked { error: Some((error, ExitCode::Fault as i32)), ..Worked::default() });
+    };
     let said = || String::from_utf8_lossy(&output.stderr).trim_end().to_owned();
     match (output.status.code(), serde_json::from_slice::<Worked>(&output.stdout)) {
         (Some(0), Ok(worked)) => Ok(worked),
@@ -77,7 +85,7 @@ fn one(config: &TestConfig, unit: &Unit) -> Result<Worked, TestError> {
 /// What the process of a unit is given.
 fn command(config: &TestConfig, unit: &Unit, program: &Path) -> Command {
     let mut command = Command::new(program);
-    command.arg("test-worker").stdin(Stdio::null());
+    command.arg("test-worker");
     command.envs(onescan_scenario::permission::granted().variables());
     match unit {
         Unit::Case(unit) => {

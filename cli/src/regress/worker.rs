@@ -11,6 +11,7 @@ use onescan_scenario::case::{Catalogue, DEFAULT};
 
 use super::TestError;
 use super::config::WorkerConfig;
+use super::limited::end_with_parent;
 use super::ran::{Covered, Ran, Worked};
 use super::unit_test;
 use crate::interrupt::Interrupt;
@@ -24,6 +25,7 @@ use crate::snapshot::take::{Choice, Taker};
 /// # Errors
 /// The input is wrong.
 pub fn work(config: &WorkerConfig, out: &mut dyn Write) -> Result<(), TestError> {
+    end_with_parent();
     let worked = match &config.scenario {
         Some(scenario) => case(config, scenario)?,
         None => unit_test::run(config)?,

@@ -177,6 +177,8 @@ pub struct Reports {
 pub struct RecordRequest {
     /// The folder of all runs.
     pub folder: PathBuf,
+    /// Whether an earlier recording there may be replaced.
+    pub overwrite: bool,
     /// Signals and forms.
     pub choice: Choice,
 }

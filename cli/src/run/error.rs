@@ -50,6 +50,14 @@ pub enum RunError {
     /// A recording cannot be written.
     #[error(transparent)]
     Record(#[from] RecordError),
+    /// A recording could not be written to its end.
+    #[error("{source}; {kept}")]
+    RecordCut {
+        /// Why.
+        source: RecordError,
+        /// What there is of it.
+        kept: String,
+    },
     /// A recording cannot be read.
     #[error(transparent)]
     Recording(#[from] RecordingError),
@@ -91,6 +99,7 @@ impl Exit for RunError {
             Self::Listen(error) => error.exit_code(),
             Self::Access(error) => error.exit_code(),
             Self::Record(error) => error.exit_code(),
+            Self::RecordCut { source, .. } => source.exit_code(),
             Self::Recording(error) => error.exit_code(),
             Self::Unreadable(error) => error.exit_code(),
             Self::File(error) => error.exit_code(),

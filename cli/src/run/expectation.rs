@@ -6,7 +6,7 @@ use std::rc::Rc;
 
 use onescan_report::Verdict;
 use onescan_scenario::Scenario;
-use onescan_scenario::expect::{self, Expectation, Trace};
+use onescan_scenario::expect::{self, Judge, TraceEnd};
 use onescan_server::digest::TrajectoryDigest;
 use onescan_server::observer::{Observer, RecordError};
 use onescan_server::session::Session;
@@ -66,10 +66,9 @@ impl ExpectationReport {
     }
 }
 
-/// What all expectations say to a trace.
-pub(super) fn judge(scenario: &Scenario, trace: &Trace) -> Vec<ExpectationReport> {
-    let report = |(name, expectation): &(String, Expectation)| {
-        let outcome = expectation.judge(trace);
+/// What came of all expectations.
+pub(super) fn reports(scenario: &Scenario, judge: Judge, end: TraceEnd) -> Vec<ExpectationReport> {
+    let report = |(name, outcome): (String, expect::Outcome)| {
         // A margin of -0, which negation gives, reads as if something were missing.
         let margin = outcome.margin.greatest + 0.0;
         let exact = margin.is_finite() && margin == outcome.margin.least;
@@ -79,31 +78,39 @@ pub(super) fn judge(scenario: &Scenario, trace: &Trace) -> Vec<ExpectationReport
             expect::Verdict::Violated { at, values } => (Verdict::Violated, Some(at), values),
         };
         let values = values.into_iter().map(|(signal, value)| SignalValue { signal, value }).collect();
-        ExpectationReport { name: name.clone(), verdict, at, values, margin: exact.then_some(margin) }
+        ExpectationReport { name, verdict, at, values, margin: exact.then_some(margin) }
     };
-    scenario.expectations().named.iter().map(report).collect()
+    let names = scenario.expectations().named.iter().map(|(name, _)| name.clone());
+    names.zip(judge.finish(end)).map(report).collect()
 }
 
-/// Takes the samples that expectations are judged by.
+/// A judge of a run that has not begun.
+pub(super) fn judge(scenario: &Scenario) -> Judge {
+    let expected = scenario.expectations();
+    Judge::new(expected.named.iter().map(|(_, expectation)| expectation.clone()), expected.signals.len())
+}
+
+/// Shows a run to the judge of its expectations.
 pub(super) struct Witness {
-    trace: Rc<RefCell<Trace>>,
+    judge: Rc<RefCell<Judge>>,
     chosen: Chosen,
 }
 
 impl Witness {
-    pub(super) fn new(trace: Rc<RefCell<Trace>>, names: &[SignalName]) -> Self {
-        Self { trace, chosen: Chosen::new(names) }
+    pub(super) fn new(judge: Rc<RefCell<Judge>>, names: &[SignalName]) -> Self {
+        Self { judge, chosen: Chosen::new(names) }
     }
 }
 
 impl Observer for Witness {
     fn begin(&mut self, session: &Session, digest: &TrajectoryDigest) -> Result<(), RecordError> {
-        self.trace.replace(Trace::new(self.chosen.find(session)));
+        self.chosen.find(session);
+        self.judge.borrow_mut().begin();
         self.step(session, digest)
     }
 
     fn step(&mut self, session: &Session, _digest: &TrajectoryDigest) -> Result<(), RecordError> {
-        self.trace.borrow_mut().push(session.t_v().as_nanos(), self.chosen.numbers(session));
+        self.judge.borrow_mut().push(session.t_v().as_nanos(), self.chosen.numbers(session));
         Ok(())
     }
 

@@ -38,6 +38,7 @@ pub(super) fn run(
             }
         }
     }
+    interrupt.heed();
     let Trace { mut replay, reached, failed } = spin(config, scenario, number, interrupt, clients)?;
     replay.set_until(Some(reached));
     watch(&mut replay);

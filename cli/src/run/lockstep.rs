@@ -3,6 +3,7 @@
 use std::net::{Ipv4Addr, SocketAddr};
 
 use onescan_base::foreign::one_line;
+use onescan_base::regular::{self, Limit};
 use onescan_recording::{Recording, event};
 use onescan_report::file;
 use onescan_scenario::compose::Member;
@@ -108,6 +109,7 @@ fn form(
             (Member::External(command), _) => remote.push((name, Some(permitted(name, command)?))),
         }
     }
+    interrupt.heed();
     let desk = seats.open(&config.doors, scenario.plan(), interrupt)?;
     if let Some(desk) = &desk {
         for client in desk.clients(config.reach.reply_timeout) {
@@ -212,7 +214,7 @@ fn operator_inputs(path: &std::path::Path) -> Result<Vec<OperatorInput>, RunErro
 }
 
 fn resume(lockstep: &mut Lockstep, path: &std::path::Path) -> Result<(), RunError> {
-    let bytes = std::fs::read(path).map_err(Unreadable::at(path))?;
+    let bytes = regular::read(path, Limit::DATA).map_err(Unreadable::at(path))?;
     let wrong = |source| RunError::Resume { path: path.to_owned(), source };
     lockstep.resume(&Checkpoint::from_bytes(&bytes).map_err(wrong)?).map_err(wrong)
 }

@@ -8,6 +8,7 @@
 //! | [`error`] | why nothing came of it |
 //! | [`lockstep`] | one run in lockstep |
 //! | [`processes`] | clients as processes of their own |
+//! | [`guard`] | who ends these if this process cannot |
 //! | `environment` | what they see of the environment |
 //! | [`freewheel`] | one run without lockstep |
 //! | [`progress`] | a bar on a terminal |
@@ -30,6 +31,7 @@ mod environment;
 mod error;
 pub mod expectation;
 mod freewheel;
+pub(crate) mod guard;
 mod lockstep;
 pub mod page;
 mod processes;
@@ -54,7 +56,7 @@ use std::time::Instant;
 use onescan_report::OutputError;
 use onescan_report::file;
 use onescan_report::plot::Plot;
-use onescan_scenario::expect::{Trace, TraceEnd};
+use onescan_scenario::expect::TraceEnd;
 use onescan_scenario::{Mode, Scenario};
 use onescan_server::lockstep::Lockstep;
 use onescan_server::observer::Observer;
@@ -67,7 +69,7 @@ pub use report::{RunReport, RunStatus, Verdict};
 use crate::interrupt::Interrupt;
 use expectation::Witness;
 use page::Event;
-use recorded::Recorded;
+use recorded::{Recorded, refuse_to_overwrite};
 use sampler::{Sampler, Samples};
 use session_log::SessionLog;
 use watch::WatchReport;
@@ -89,6 +91,9 @@ pub fn execute(config: &RunConfig, interrupt: &Interrupt, out: &mut dyn Write) -
         scenario.commission(client, url.clone())?;
     }
     config.check(&scenario)?;
+    if let Some(request) = &config.reports.record {
+        refuse_to_overwrite(request, config.runs)?;
+    }
     if !config.watch.variables.is_empty() {
         scenario.watch(&config.watch.variables, config.watch.on == WatchOn::Change)?;
     }
@@ -157,7 +162,7 @@ pub(crate) fn one_run(
 ) -> Result<(RunReport, Samples), RunError> {
     let started = Instant::now();
     let samples = Rc::new(RefCell::new(Samples::new(&config.picture.sampled(scenario))));
-    let trace = Rc::new(RefCell::new(Trace::default()));
+    let judge = Rc::new(RefCell::new(expectation::judge(scenario)));
     let recorded = config
         .reports
         .record
@@ -173,7 +178,7 @@ pub(crate) fn one_run(
         }
         let expected = scenario.expectations();
         if !expected.named.is_empty() {
-            lockstep.observe(Box::new(Witness::new(Rc::clone(&trace), &expected.signals)));
+            lockstep.observe(Box::new(Witness::new(Rc::clone(&judge), &expected.signals)));
         }
         if let Some(recorder) = recorder {
             lockstep.observe(Box::new(recorder));
@@ -181,14 +186,17 @@ pub(crate) fn one_run(
     };
     let log = SessionLog::default();
     let outcome = match config.mode {
-        Mode::Lockstep => lockstep::run(config, scenario, number, interrupt, &log, watch)?,
-        Mode::Freewheel | Mode::Halt | Mode::Follow => freewheel::run(config, scenario, number, interrupt, watch)?,
+        Mode::Lockstep => lockstep::run(config, scenario, number, interrupt, &log, watch),
+        Mode::Freewheel | Mode::Halt | Mode::Follow => freewheel::run(config, scenario, number, interrupt, watch),
     };
+    let outcome = outcome.map_err(|error| match (&recorded, error) {
+        (Some(recorded), RunError::Record(source)) => RunError::RecordCut { source, kept: recorded.kept() },
+        (_, error) => error,
+    })?;
     let mut report = RunReport::new(config, scenario, number, &outcome, started.elapsed());
     report.latency = log.latencies();
-    let mut trace = trace.replace(Trace::default());
-    trace.set_end(if report.status == RunStatus::Completed { TraceEnd::Complete } else { TraceEnd::Cut });
-    report.expectations = expectation::judge(scenario, &trace);
+    let end = if report.status == RunStatus::Completed { TraceEnd::Complete } else { TraceEnd::Cut };
+    report.expectations = expectation::reports(scenario, judge.replace(expectation::judge(scenario)), end);
     report.watched = WatchReport::take(&config.watch, scenario);
     if let Some(recorded) = &recorded {
         recorded.end(&report)?;

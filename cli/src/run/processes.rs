@@ -10,6 +10,7 @@ use onescan_server::signal::ClientName;
 use super::config::Subject;
 use super::environment;
 use super::error::RunError;
+use super::guard::{Group, Guard};
 use crate::access::admission::Shown;
 use crate::error::SpawnError;
 
@@ -27,10 +28,12 @@ pub(super) struct Passed<'p> {
     pub(super) shown: Shown,
 }
 
-/// The processes of a session; none outlives it.
+/// The processes of a session, and what they started themselves; none outlives it. Whatever ends this one, the
+/// [`Guard`] ends them.
 #[derive(Default)]
 pub(super) struct Processes {
     children: Vec<(ClientName, Child)>,
+    guard: Option<Guard>,
 }
 
 impl Processes {
@@ -77,15 +80,23 @@ impl Processes {
     }
 
     fn start(&mut self, name: &ClientName, mut command: Command) -> Result<(), RunError> {
+        let spawn = |command: &str| {
+            let (client, command) = (name.to_string(), command.to_owned());
+            move |source| SpawnError { client, command, source }
+        };
+        if self.guard.is_none() {
+            self.guard = Some(Guard::start().map_err(spawn("onescan"))?);
+        }
         command.stdin(Stdio::null()).stdout(Stdio::null());
-        // Ctrl-C is for the server, which ends the session in order; clients leave when it does.
+        // Ctrl-C is for the server, which ends the session in order; clients leave when it does. What a client
+        // starts is in its group and ends with it.
         #[cfg(unix)]
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
-        let child = command.spawn().map_err(|source| SpawnError {
-            client: name.to_string(),
-            command: command.get_program().to_string_lossy().into_owned(),
-            source,
-        })?;
+        let program = command.get_program().to_string_lossy().into_owned();
+        let child = command.spawn().map_err(spawn(&program))?;
+        if let Some(guard) = &mut self.guard {
+            guard.watch(Group::led_by(&child));
+        }
         self.children.push((name.clone(), child));
         Ok(())
     }
@@ -100,18 +111,20 @@ impl Processes {
 }
 
 impl Drop for Processes {
-    /// The server has asked everybody to leave; a process that does not is killed.
+    /// The server has asked everybody to leave; what does not is killed, and what is left of its group.
     fn drop(&mut self) {
         let patience = Instant::now() + LEAVE_TIMEOUT;
         for (_, child) in &mut self.children {
-            while matches!(child.try_wait(), Ok(None)) {
-                if Instant::now() > patience {
-                    // It may have ended by itself meanwhile; then there is nothing to do.
-                    let _ = child.kill();
-                    let _ = child.wait();
-                }
+            while matches!(child.try_wait(), Ok(None)) && Instant::now() <= patience {
                 std::thread::sleep(Duration::from_millis(1));
             }
+            Group::led_by(child).kill();
+            // It may have ended by itself meanwhile; then there is nothing to do.
+            let _ = child.kill();
+            let _ = child.wait();
+        }
+        if let Some(guard) = self.guard.take() {
+            guard.dismiss();
         }
     }
 }

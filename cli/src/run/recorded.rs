@@ -2,9 +2,10 @@
 
 use std::path::{Component, Path, PathBuf};
 
+use onescan_base::regular::{self, Limit};
 use onescan_recording::event::{self, Event, EventKind};
-use onescan_recording::recorder::EVENTS;
-use onescan_recording::{Provenance, Recorder, SourceFile};
+use onescan_recording::recorder::{EVENTS, HEADER};
+use onescan_recording::{Provenance, Recorder, Recording, SourceFile};
 use onescan_report::OutputError;
 use onescan_report::{FileError, file};
 use onescan_scenario::{Mode, Scenario, ScenarioError, permission};
@@ -13,6 +14,7 @@ use onescan_server::time::VirtualTime;
 use super::config::{RecordRequest, Subject};
 use super::error::RunError;
 use super::report::RunReport;
+use crate::error::Usage;
 
 /// Name of the folder with the scenario's files.
 const SCENARIO: &str = "scenario";
@@ -31,7 +33,7 @@ impl Recorded {
         scenario: &Scenario,
         number: u32,
     ) -> Result<(Self, Recorder), RunError> {
-        let folder = file::create_folder(&request.folder.join(format!("run-{number}")))?;
+        let folder = file::create_folder(&folder_of(request, number))?;
         // What an earlier run left here would be taken for this one's.
         remove(&folder.join("run.json"))?;
         let (own_folder, files) = copy_scenario(scenario, &folder.join(SCENARIO))?;
@@ -49,6 +51,15 @@ impl Recorded {
         Ok((Self { folder }, recorder))
     }
 
+    /// What there is of a recording that was cut off, in words.
+    pub(super) fn kept(&self) -> String {
+        let folder = self.folder.display();
+        match Recording::open(&self.folder).ok().and_then(|recording| Some(*recording.steps()?.end())) {
+            Some(last) => format!("steps 0 to {last} are kept in {folder}"),
+            None => format!("nothing could be kept in {folder}"),
+        }
+    }
+
     /// Adds what came of the run.
     pub(super) fn end(&self, report: &RunReport) -> Result<(), RunError> {
         let violated = |expectation: &super::expectation::ExpectationReport| {
@@ -61,6 +72,23 @@ impl Recorded {
         let mut text = serde_json::to_vec_pretty(report).map_err(|e| OutputError(e.into()))?;
         text.push(b'\n');
         Ok(file::write_whole(&self.folder.join("run.json"), &text)?)
+    }
+}
+
+fn folder_of(request: &RecordRequest, number: u32) -> PathBuf {
+    request.folder.join(format!("run-{number}"))
+}
+
+/// Refuses to record over earlier runs, unless that is asked for.
+pub(super) fn refuse_to_overwrite(request: &RecordRequest, runs: u32) -> Result<(), Usage> {
+    let is_recording = |number: &u32| folder_of(request, *number).join(HEADER).exists();
+    match (1..=runs).find(is_recording) {
+        Some(number) if !request.overwrite => {
+            let folder = folder_of(request, number);
+            let help = "record into another folder, or replace what is there with `--overwrite`".to_owned();
+            Err(Usage::new(format!("{} holds an earlier recording", folder.display()), Some(help)))
+        }
+        _ => Ok(()),
     }
 }
 
@@ -82,7 +110,11 @@ fn copy_scenario(scenario: &Scenario, target: &Path) -> Result<(String, Vec<Sour
     for file in files {
         let path = scenario.folder().join(&file);
         permission::granted().check(scenario.folder(), &path)?;
-        let bytes = std::fs::read(&path).map_err(|source| ScenarioError::Unreadable { path, source, help: None })?;
+        let bytes = regular::read(&path, Limit::DATA).map_err(|source| ScenarioError::Unreadable {
+            path,
+            source,
+            help: None,
+        })?;
         match within(&own_folder, &file) {
             Some(place) => {
                 let to = target.join(&place);

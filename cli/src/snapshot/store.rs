@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use onescan_base::regular::{self, Limit};
 use onescan_report::{FileError, file};
 
 use super::Snapshot;
@@ -89,7 +90,7 @@ impl Place {
 /// # Errors
 /// It cannot be read, or is none.
 pub fn read(path: &Path) -> Result<Option<Snapshot>, StoreError> {
-    let bytes = match std::fs::read(path) {
+    let bytes = match regular::read(path, Limit::TEXT) {
         Ok(bytes) => bytes,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
         Err(source) => return Err(Unreadable { path: path.to_owned(), source }.into()),

@@ -25,6 +25,7 @@ use std::ops::Range;
 
 use onescan_clients::soft_plc::{Bindings, Bound};
 use onescan_plc_shim::Application;
+use onescan_plc_shim::run::ACTS_MAX;
 use onescan_scenario::compose::Compiled;
 use onescan_scenario::file::ClientFile;
 use onescan_scenario::{Scenario, ScenarioError};
@@ -86,6 +87,10 @@ pub fn explain(
     let mut found: Option<(SignalName, usize)> = None;
     abreast::acts(sides, from, until, |pair| {
         let (Some(flow), Some(both)) = (flows.get_mut(&pair.client), plcs.get(&pair.client)) else { return true };
+        if pair.acts.iter().any(|acts| acts.len() >= ACTS_MAX) {
+            // The rest of the scan is not known, so nothing after it can be explained.
+            return false;
+        }
         flow.scan(pair, &mut records);
         let outputs = both.bindings.outputs.iter();
         let differing = outputs.filter_map(|bound| {

@@ -19,6 +19,7 @@ use super::link::{Found, Link};
 use super::modbus::{self, ModbusLink};
 use super::opcua::{self, OpcUaLink};
 use super::s7::{self, S7Link};
+use super::socket::REQUEST_TIMEOUT;
 use super::tcp::{Declaration, Layouts, TcpLink};
 
 /// A PLC's link as a scenario declares it, `[clients.NAME.gateway]`.
@@ -35,6 +36,8 @@ pub struct Settings {
     pub reconnect_timeout: Option<Text<TimeSpan>>,
     /// How long a PLC that must be started cold is waited for.
     pub start_timeout: Option<Text<TimeSpan>>,
+    /// How long a connection may take to come about, and the PLC to answer a request.
+    pub request_timeout: Option<Text<TimeSpan>>,
     /// Addresses of signals and words that do not lie where the link looks for them: one; or, for a signal that several
     /// variables read, a list in the order of their paths, or a table by path.
     pub map: BTreeMap<String, Addresses>,
@@ -127,6 +130,11 @@ impl Settings {
         }
     }
 
+    /// How long a request waits.
+    fn timeout(&self) -> Duration {
+        self.request_timeout.map_or(REQUEST_TIMEOUT, |text| Duration::from_nanos(text.0.as_nanos()))
+    }
+
     /// Scheme and rest of the URL.
     ///
     /// # Errors
@@ -150,13 +158,13 @@ impl Settings {
     /// # Errors
     /// See [`SettingsFault`].
     pub fn link(&self, exchange: &Exchange) -> Result<Box<dyn Link>, SettingsFault> {
-        let (scheme, address) = self.scheme()?;
+        let ((scheme, address), timeout) = (self.scheme()?, self.timeout());
         Ok(match scheme {
-            "modbus" => Box::new(ModbusLink::new(address, self.modbus, exchange)?),
-            "opc.tcp" => Box::new(OpcUaLink::new(&self.url, self.opcua.clone(), exchange)?),
-            "ads" => Box::new(AdsLink::new(address, self.ads.clone(), exchange)),
-            "s7" => Box::new(S7Link::new(address, self.s7, exchange, Layouts::new(&self.layout, exchange)?)),
-            _ => Box::new(TcpLink::new(address, Layouts::new(&self.layout, exchange)?)),
+            "modbus" => Box::new(ModbusLink::new(address, self.modbus, exchange, timeout)?),
+            "opc.tcp" => Box::new(OpcUaLink::new(&self.url, self.opcua.clone(), exchange, timeout)?),
+            "ads" => Box::new(AdsLink::new(address, self.ads.clone(), exchange, timeout)),
+            "s7" => Box::new(S7Link::new(address, self.s7, exchange, Layouts::new(&self.layout, exchange)?, timeout)),
+            _ => Box::new(TcpLink::new(address, Layouts::new(&self.layout, exchange)?, timeout)),
         })
     }
 
@@ -167,8 +175,8 @@ impl Settings {
     pub fn browse(&self) -> Result<Vec<Found>, SettingsFault> {
         let nothing = Exchange::new(&[], &[], SystemWords::Absent, &BTreeMap::new());
         match self.scheme()?.0 {
-            "opc.tcp" => Ok(OpcUaLink::new(&self.url, self.opcua.clone(), &nothing)?.browse()?),
-            "ads" => Ok(AdsLink::new(self.scheme()?.1, self.ads.clone(), &nothing).browse()?),
+            "opc.tcp" => Ok(OpcUaLink::new(&self.url, self.opcua.clone(), &nothing, self.timeout())?.browse()?),
+            "ads" => Ok(AdsLink::new(self.scheme()?.1, self.ads.clone(), &nothing, self.timeout()).browse()?),
             scheme => {
                 let text = format!("nothing can be browsed over {scheme}: its values have addresses and no names");
                 Err(LinkFault::Setting(text).into())

@@ -3,8 +3,8 @@
 use std::net::{TcpStream, ToSocketAddrs};
 use std::time::Duration;
 
-/// How long a connection may take to come about, and a request to be taken.
-pub(super) const TIMEOUT: Duration = Duration::from_secs(3);
+/// How long a connection may take to come about, and a request to be answered, if the scenario does not say.
+pub(super) const REQUEST_TIMEOUT: Duration = Duration::from_secs(3);
 
 /// The host and the port of `address`, `usual` where it has none.
 ///
@@ -21,12 +21,12 @@ pub(super) fn host_and_port(address: &str, usual: u16) -> Result<(&str, u16), St
 ///
 /// # Errors
 /// Why the last of them does not, for people.
-pub(super) fn connect(addresses: impl ToSocketAddrs) -> Result<TcpStream, String> {
+pub(super) fn connect(addresses: impl ToSocketAddrs, timeout: Duration) -> Result<TcpStream, String> {
     let mut reason = "no such host".to_owned();
     for address in addresses.to_socket_addrs().map_err(|error| error.to_string())? {
-        match TcpStream::connect_timeout(&address, TIMEOUT) {
+        match TcpStream::connect_timeout(&address, timeout) {
             Ok(stream) => {
-                let prepared = stream.set_nodelay(true).and_then(|()| stream.set_write_timeout(Some(TIMEOUT)));
+                let prepared = stream.set_nodelay(true).and_then(|()| stream.set_write_timeout(Some(timeout)));
                 return prepared.map(|()| stream).map_err(|error| error.to_string());
             }
             Err(error) => reason = error.to_string(),

@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use onescan_base::regular;
 use onescan_server::client::{
     Client, ClientFault, ClientOperation, ClientView, JoinRequest, OperationRefused, Pose, StateError, Wake,
 };
@@ -61,7 +62,7 @@ impl Plant {
     /// A file that cannot be read or is not a scene.
     pub fn load(path: &Path, name: ClientName, period: TimeSpan) -> Result<Self, SceneError> {
         let file = path.display().to_string();
-        match std::fs::read_to_string(path) {
+        match regular::read_text(path) {
             Ok(text) => Self::parse(&text, &file, name, period),
             Err(error) => Err(SceneError::Unreadable { file, cause: error.to_string() }),
         }

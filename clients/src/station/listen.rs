@@ -2,6 +2,7 @@
 
 use std::net::{Shutdown, SocketAddr, TcpListener, TcpStream};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 use super::controller::Controller;
@@ -10,6 +11,11 @@ use super::controller::Controller;
 pub(super) const GLANCE: Duration = Duration::from_millis(100);
 /// A client that does not take what is sent to it for so long is left.
 const WRITE_TIMEOUT: Duration = Duration::from_secs(3);
+
+/// A client that says nothing for so long is left; one that comes back is let in again.
+const IDLE_TIMEOUT: Duration = Duration::from_mins(10);
+/// Clients of one server at a time: each has a thread.
+const CLIENTS_MAX: usize = 64;
 
 /// Hands each client to `attend`, until all is over.
 pub(super) fn accept(listener: &TcpListener, controller: &Controller, mut attend: impl FnMut(TcpStream, SocketAddr)) {
@@ -36,9 +42,15 @@ pub(super) fn serve_each<Server: Send + Sync + 'static>(
     protocol: &'static str,
     attend: fn(&Server, &TcpStream) -> std::io::Result<()>,
 ) {
+    let present = Arc::new(AtomicUsize::new(0));
     accept(listener, controller, |stream, peer| {
+        let Some(seat) = Seat::taken(&present) else {
+            tracing::info!(%peer, "refused over {protocol}: {CLIENTS_MAX} clients are connected");
+            return;
+        };
         let server = Arc::clone(server);
         std::thread::spawn(move || {
+            let _seat = seat;
             if let Err(error) = attend(&server, &stream) {
                 tracing::info!(%peer, %error, "a client over {protocol} has gone");
             }
@@ -48,9 +60,44 @@ pub(super) fn serve_each<Server: Send + Sync + 'static>(
     });
 }
 
+/// A client's place among those that are served; it is free again when this is dropped.
+struct Seat(Arc<AtomicUsize>);
+
+impl Seat {
+    /// Nothing if all are taken. Only the thread that accepts clients takes any.
+    fn taken(present: &Arc<AtomicUsize>) -> Option<Self> {
+        if present.load(Ordering::Acquire) >= CLIENTS_MAX {
+            return None;
+        }
+        present.fetch_add(1, Ordering::AcqRel);
+        Some(Self(Arc::clone(present)))
+    }
+}
+
+impl Drop for Seat {
+    fn drop(&mut self) {
+        self.0.fetch_sub(1, Ordering::AcqRel);
+    }
+}
+
 /// For requests that are answered one by one, by a thread of their own.
 fn prepare(stream: &TcpStream) -> std::io::Result<()> {
     stream.set_nonblocking(false)?;
     stream.set_nodelay(true)?;
+    stream.set_read_timeout(Some(IDLE_TIMEOUT))?;
     stream.set_write_timeout(Some(WRITE_TIMEOUT))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_seat_is_free_again_when_its_client_has_gone() {
+        let present = Arc::new(AtomicUsize::new(0));
+        let mut seats: Vec<_> = (0..CLIENTS_MAX).map(|_| Seat::taken(&present).unwrap()).collect();
+        assert!(Seat::taken(&present).is_none());
+        seats.pop();
+        assert!(Seat::taken(&present).is_some());
+    }
 }

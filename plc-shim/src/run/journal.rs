@@ -69,6 +69,9 @@ pub(in crate::run) struct Journal {
     last: Vec<u8>,
 }
 
+/// Most acts that are kept of a scan: a program may run in a loop for as long as its budget lasts.
+pub const ACTS_MAX: usize = 1_000_000;
+
 /// Bytes that are compared at once.
 const BLOCK: usize = 1024;
 
@@ -80,23 +83,29 @@ impl Journal {
     }
 
     pub(super) fn unit_begins(&mut self) {
-        self.acts.push(Act::Unit);
+        self.add(Act::Unit);
     }
 
     pub(super) fn statement_begins(&mut self, point: u32) {
-        self.acts.push(Act::Begin(StatementId(point)));
+        self.add(Act::Begin(StatementId(point)));
     }
 
     pub(super) fn statement_ends(&mut self, point: u32) {
-        self.acts.push(Act::End(StatementId(point)));
+        self.add(Act::End(StatementId(point)));
     }
 
     pub(super) fn chose(&mut self, statement: u32, way: u32) {
-        self.acts.push(Act::Choice(StatementId(statement), WayId(way)));
+        self.add(Act::Choice(StatementId(statement), WayId(way)));
     }
 
     pub(super) fn read(&mut self, address: u32, size: u32) {
-        self.acts.push(Act::Read(address..address.saturating_add(size)));
+        self.add(Act::Read(address..address.saturating_add(size)));
+    }
+
+    fn add(&mut self, act: Act) {
+        if self.acts.len() < ACTS_MAX {
+            self.acts.push(act);
+        }
     }
 
     /// Notes what has changed in `memory` since it was last looked at, as written by `statement`.
@@ -112,7 +121,7 @@ impl Journal {
             self.last[*at as usize..][..bytes.len()].copy_from_slice(bytes);
         }
         let frames = if statement.is_some() { frames() } else { Vec::new() };
-        self.acts.push(Act::Wrote(Wrote { statement: statement.map(StatementId), frames, changes }));
+        self.add(Act::Wrote(Wrote { statement: statement.map(StatementId), frames, changes }));
     }
 
     pub(super) fn acts(&self) -> &[Act] {

@@ -35,7 +35,7 @@ mod way;
 
 pub use asserts::{Asserts, FailedAssert};
 pub use fault::{FaultSite, PlcFault, WriteSite};
-pub use journal::{Act, Statement, StatementId, Wrote};
+pub use journal::{ACTS_MAX, Act, Statement, StatementId, Wrote};
 pub use plan::{RunError, Task, TaskPlan};
 pub use soft_plc::SoftPlc;
 pub use state::{CodePolicy, PlanDifference, RestoreError};

@@ -318,7 +318,8 @@ impl SoftPlc {
         self.machine.keep_journal(is_kept);
     }
 
-    /// What the last scan did; empty unless the journal is kept. A scan that ended in a fault is in it up to there.
+    /// What the last scan did; empty unless the journal is kept. It ends early
+    /// where a scan does more than [`ACTS_MAX`](crate::run::ACTS_MAX) things. A scan that ended in a fault is in it up to there.
     pub fn journal(&self) -> &[Act] {
         self.machine.trace().and_then(|trace| trace.journal.as_ref()).map_or(&[], Journal::acts)
     }

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use onescan_base::regular;
 use toml::de::{DeTable, DeValue};
 use toml::{Spanned, Value};
 
@@ -31,7 +32,7 @@ impl Catalogue {
     pub fn load(folder: &Path) -> Result<Self, ScenarioError> {
         let path = folder.join(FILE_NAME);
         permission::granted().check(folder, &path)?;
-        match std::fs::read_to_string(&path) {
+        match regular::read_text(&path) {
             Ok(text) => Self::parse(path, text),
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
                 Ok(Self { path, cases: vec![default_case()], ..Self::default() })

@@ -13,11 +13,19 @@
 //! | [`unit`] | units of measurement, and numbers carried from one to another |
 //! | [`bind`] | names to signals, units to factors |
 //! | [`condition`] | formulas of the present, which a running session can judge |
-//! | [`trace`] | the signals a formula needs, sample by sample |
 //! | [`truth`] | three-valued truth, and the margin by which a formula holds |
-//! | [`window`] | greatest and least values in windows of time |
-//! | [`evaluate`] | a formula over a trace |
 //! | [`verdict`] | met, violated and when, or still open at the end |
+//! | [`sample`] | what a formula is worth at a sample, and blocks of samples |
+//! | [`term`] | terms, sample by sample |
+//! | [`sliding`] | what is joined over windows that move, in a time that does not depend on their lengths |
+//! | [`ahead`], [`back`] | operators on the future and on the past |
+//! | [`monitor`] | a formula as the run goes |
+//! | [`judge`] | all expectations of a run, and the samples that a verdict may still name |
+//!
+//! A run is judged as it goes. What is kept of it is what windows reach over, times the signals that are named.
+//! Operators without an end keep a number each where they stand outermost, also under `and`, `or`, `not`,
+//! `implies`; within other windows they keep what they have seen, because each of its samples may matter until
+//! the end. The tests hold all of it against `offline`, which looks at a whole run.
 //!
 //! Semantics. A signal holds its value from one sample to the next. Windows that reach beyond the
 //! end of a run leave a formula open, unless what was seen decides it; an operator without a window
@@ -26,22 +34,29 @@
 //! there, `historically` true. Margins are the robustness of Donzé and Maler (FORMATS 2010); a BOOL
 //! that holds does so by an infinite margin.
 
+mod ahead;
+mod back;
 mod bind;
 mod condition;
 mod error;
-mod evaluate;
 mod formula;
+mod judge;
+mod monitor;
+#[cfg(test)]
+mod offline;
 mod parser;
+mod sample;
+mod sliding;
+mod term;
 mod token;
-mod trace;
 mod truth;
 mod unit;
 mod verdict;
-mod window;
 
 pub use bind::{Expectation, KnownSignal};
 pub use condition::condition;
 pub use error::FormulaError;
-pub use trace::{Trace, TraceEnd};
+pub use judge::Judge;
+pub use sample::TraceEnd;
 pub use truth::Margin;
 pub use verdict::{Outcome, Verdict};

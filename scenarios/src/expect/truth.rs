@@ -106,3 +106,41 @@ impl Scale for Margin {
         Self { least: self.least.max(other.least), greatest: self.greatest.max(other.greatest) }
     }
 }
+
+/// Both at once.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Worth {
+    pub(super) truth: Truth,
+    pub(super) margin: Margin,
+}
+
+impl Worth {
+    pub(super) fn is_false(self) -> bool {
+        self.truth == Truth::False
+    }
+}
+
+impl Scale for Worth {
+    const TOP: Self = Self { truth: Truth::TOP, margin: Margin::TOP };
+    const BOTTOM: Self = Self { truth: Truth::BOTTOM, margin: Margin::BOTTOM };
+    const UNKNOWN: Self = Self { truth: Truth::UNKNOWN, margin: Margin::UNKNOWN };
+
+    fn of_comparison(comparison: Comparison, left: f64, right: f64) -> Self {
+        Self {
+            truth: Truth::of_comparison(comparison, left, right),
+            margin: Margin::of_comparison(comparison, left, right),
+        }
+    }
+
+    fn not(self) -> Self {
+        Self { truth: self.truth.not(), margin: self.margin.not() }
+    }
+
+    fn and(self, other: Self) -> Self {
+        Self { truth: self.truth.and(other.truth), margin: self.margin.and(other.margin) }
+    }
+
+    fn or(self, other: Self) -> Self {
+        Self { truth: self.truth.or(other.truth), margin: self.margin.or(other.margin) }
+    }
+}

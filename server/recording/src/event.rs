@@ -4,6 +4,7 @@ use std::fs::{File, OpenOptions};
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
 
+use onescan_base::regular;
 use serde::{Deserialize, Serialize};
 
 use onescan_server::end::{Failure, SessionEnd};
@@ -116,7 +117,7 @@ pub fn append(path: &Path, events: &[Event]) -> Result<(), RecordError> {
 /// The file cannot be read, or a line before the last is no event.
 pub fn read(path: &Path) -> std::io::Result<Vec<Event>> {
     let mut events = Vec::new();
-    let mut reader = BufReader::new(File::open(path)?);
+    let mut reader = BufReader::new(regular::open(path)?);
     let mut line = String::new();
     while reader.read_line(&mut line)? > 0 {
         if !line.ends_with('\n') {

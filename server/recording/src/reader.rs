@@ -7,6 +7,7 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use onescan_base::regular::{self, Limit};
 use thiserror::Error;
 
 use onescan_server::digest::Digest;
@@ -141,7 +142,7 @@ impl Recording {
             let path = path.to_owned();
             move |source| RecordingError::Damaged { path, source }
         };
-        let text = std::fs::read(&path).map_err(damaged(&path))?;
+        let text = regular::read(&path, Limit::TEXT).map_err(damaged(&path))?;
         let version: Versioned = serde_json::from_slice(&text).map_err(|e| damaged(&path)(e.into()))?;
         if version.recording != FORMAT {
             return Err(RecordingError::Version { path: folder.to_owned(), version: version.recording });

@@ -2,12 +2,13 @@
 
 use std::io::Write;
 use std::net::{IpAddr, Ipv4Addr, TcpStream};
+use std::time::Duration;
 
 use super::command::{self, meaning};
 use super::frame::{AmsAddress, Bytes, Frame, Kind, NetId};
 use super::options::Options;
 use crate::gateway::fault::LinkFault;
-use crate::gateway::socket::{TIMEOUT, connect, host_and_port};
+use crate::gateway::socket::{connect, host_and_port};
 
 /// Where AMS routers listen.
 const TCP_PORT: u16 = 48_898;
@@ -49,20 +50,22 @@ pub(super) struct Connection {
     target: AmsAddress,
     source: AmsAddress,
     invoke_id: u32,
+    /// For an answer.
+    timeout: Duration,
 }
 
 impl Connection {
     /// Connects to `address`, a host and perhaps a port.
-    pub(super) fn open(address: &str, options: &Options) -> Result<Self, LinkFault> {
+    pub(super) fn open(address: &str, options: &Options, timeout: Duration) -> Result<Self, LinkFault> {
         let unreachable = |reason: String| LinkFault::Unreachable { url: format!("ads://{address}"), reason };
-        let stream = host_and_port(address, TCP_PORT).and_then(connect).map_err(unreachable)?;
-        stream.set_read_timeout(Some(TIMEOUT)).map_err(|error| unreachable(error.to_string()))?;
+        let stream = host_and_port(address, TCP_PORT).and_then(|at| connect(at, timeout)).map_err(unreachable)?;
+        stream.set_read_timeout(Some(timeout)).map_err(|error| unreachable(error.to_string()))?;
         let ends = stream.local_addr().and_then(|local| Ok((local.ip(), stream.peer_addr()?.ip())));
         let (local, peer) = ends.map_err(|error| unreachable(error.to_string()))?;
         let target = AmsAddress { net_id: options.net_id.unwrap_or_else(|| usual(peer)), port: options.port };
         let net_id = options.source_net_id.unwrap_or_else(|| usual(local));
         let source = AmsAddress { net_id, port: options.source_port };
-        Ok(Self { stream, target, source, invoke_id: 0 })
+        Ok(Self { stream, target, source, invoke_id: 0, timeout })
     }
 
     /// Who this side says that it is.
@@ -75,10 +78,11 @@ impl Connection {
         self.invoke_id = self.invoke_id.wrapping_add(1);
         let (target, source, invoke_id) = (self.target, self.source, self.invoke_id);
         let request = Frame { target, source, command, kind: Kind::Request, error: 0, invoke_id, data: parts.concat() };
+        let timeout = self.timeout;
         let lost = |error: std::io::Error| match error.kind() {
             std::io::ErrorKind::InvalidData => LinkFault::Nonsense(error.to_string()),
             std::io::ErrorKind::WouldBlock | std::io::ErrorKind::TimedOut => {
-                LinkFault::Lost(format!("no answer within {TIMEOUT:?}"))
+                LinkFault::Lost(format!("no answer within {timeout:?}"))
             }
             _ => LinkFault::Lost(error.to_string()),
         };

@@ -27,6 +27,7 @@ pub struct AdsLink {
     /// The sum commands of a step, by direction.
     writes: Vec<Sum>,
     reads: Vec<Sum>,
+    timeout: Duration,
 }
 
 /// A sum command for some points of a direction, one behind the other.
@@ -56,9 +57,10 @@ impl Sum {
 
 impl AdsLink {
     /// A link to `address`, a host and perhaps a port.
-    pub fn new(address: &str, options: Options, exchange: &Exchange) -> Self {
+    pub fn new(address: &str, options: Options, exchange: &Exchange, timeout: Duration) -> Self {
         let exchange = exchange.clone();
-        Self { address: address.to_owned(), options, exchange, connection: None, writes: Vec::new(), reads: Vec::new() }
+        let (writes, reads) = (Vec::new(), Vec::new());
+        Self { address: address.to_owned(), options, exchange, connection: None, writes, reads, timeout }
     }
 
     /// Everything that the PLC has.
@@ -85,7 +87,7 @@ impl AdsLink {
     fn open(&mut self) -> Result<u16, LinkFault> {
         // The old connection goes first: a router has room for one.
         self.connection = None;
-        let mut connection = Connection::open(&self.address, &self.options)?;
+        let mut connection = Connection::open(&self.address, &self.options, self.timeout)?;
         let (url, source) = (format!("ads://{}", self.address), connection.source());
         let state = connection.state().map_err(|refusal| match refusal {
             Refusal::Link(LinkFault::Lost(reason)) => LinkFault::Refused {

@@ -13,7 +13,6 @@ use crate::gateway::byte_order::ByteOrder;
 use crate::gateway::exchange::Exchange;
 use crate::gateway::fault::{LinkFault, MappingFault};
 use crate::gateway::link::Link;
-use crate::gateway::socket::TIMEOUT;
 
 /// A PLC that is busy is asked again after this.
 const BUSY: Duration = Duration::from_millis(50);
@@ -27,6 +26,8 @@ pub struct ModbusLink {
     reads: Vec<Span>,
     runtime: Runtime,
     context: Option<Context>,
+    /// For a connection, for an answer, and for a PLC that is busy.
+    timeout: Duration,
 }
 
 /// A request that came to nothing.
@@ -44,13 +45,13 @@ impl ModbusLink {
     ///
     /// # Errors
     /// A point without a place.
-    pub fn new(address: &str, options: Options, exchange: &Exchange) -> Result<Self, LinkFault> {
+    pub fn new(address: &str, options: Options, exchange: &Exchange, timeout: Duration) -> Result<Self, LinkFault> {
         let map = RegisterMap::new(&options, exchange)?;
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
         let runtime = runtime.map_err(|error| LinkFault::Lost(format!("no runtime: {error}")))?;
         let (writes, reads) = (map.writes(), map.reads());
         let address = if address.contains(':') { address.to_owned() } else { format!("{address}:502") };
-        Ok(Self { address, options, map, writes, reads, runtime, context: None })
+        Ok(Self { address, options, map, writes, reads, runtime, context: None, timeout })
     }
 
     fn url(&self) -> String {
@@ -63,11 +64,11 @@ impl ModbusLink {
             let slave = Slave(self.options.unit);
             let connected = self
                 .runtime
-                .block_on(async { tokio::time::timeout(TIMEOUT, tcp::connect_slave(address, slave)).await });
+                .block_on(async { tokio::time::timeout(self.timeout, tcp::connect_slave(address, slave)).await });
             match connected {
                 Ok(Ok(context)) => return Ok(context),
                 Ok(Err(error)) => reason = error.to_string(),
-                Err(_) => reason = format!("no answer within {TIMEOUT:?}"),
+                Err(_) => reason = format!("no answer within {:?}", self.timeout),
             }
         }
         Err(reason)
@@ -78,7 +79,7 @@ impl ModbusLink {
         let begun = Instant::now();
         loop {
             match request(self) {
-                Err(Failed::Refused(code)) if is_busy(code) && begun.elapsed() < TIMEOUT => {
+                Err(Failed::Refused(code)) if is_busy(code) && begun.elapsed() < self.timeout => {
                     std::thread::sleep(BUSY);
                 }
                 done => return done,
@@ -103,13 +104,14 @@ impl ModbusLink {
     }
 
     fn read_span(&mut self, span: Span) -> Result<Vec<u16>, Failed> {
+        let timeout = self.timeout;
         let Some(context) = self.context.as_mut() else {
             return Err(Failed::Lost("there is no connection".to_owned()));
         };
         let Span { table, at, count } = span;
         let bits = |bits: Vec<bool>| bits.into_iter().map(u16::from).collect::<Vec<u16>>();
         let answer = self.runtime.block_on(async {
-            tokio::time::timeout(TIMEOUT, async {
+            tokio::time::timeout(timeout, async {
                 match table {
                     Table::Coil => context.read_coils(at, count).await.map(|answer| answer.map(bits)),
                     Table::DiscreteInput => {
@@ -121,7 +123,7 @@ impl ModbusLink {
             })
             .await
         });
-        let words = checked(answer)?;
+        let words = checked(answer, timeout)?;
         if words.len() < usize::from(count) {
             return Err(Failed::Nonsense(format!("{} values came where {count} were asked for", words.len())));
         }
@@ -129,11 +131,12 @@ impl ModbusLink {
     }
 
     fn write_span(&mut self, span: Span, words: &[u16]) -> Result<(), Failed> {
+        let timeout = self.timeout;
         let Some(context) = self.context.as_mut() else {
             return Err(Failed::Lost("there is no connection".to_owned()));
         };
         let answer = self.runtime.block_on(async {
-            tokio::time::timeout(TIMEOUT, async {
+            tokio::time::timeout(timeout, async {
                 if span.table == Table::Coil {
                     let coils: Vec<bool> = words.iter().map(|word| *word != 0).collect();
                     context.write_multiple_coils(span.at, &coils).await
@@ -143,7 +146,7 @@ impl ModbusLink {
             })
             .await
         });
-        checked(answer)
+        checked(answer, timeout)
     }
 
     fn fault(&mut self, failed: Failed, span: Span) -> LinkFault {
@@ -171,7 +174,7 @@ fn is_of_the_address(code: ExceptionCode) -> bool {
 
 type Answer<T> = Result<Result<Result<T, ExceptionCode>, Error>, tokio::time::error::Elapsed>;
 
-fn checked<T>(answer: Answer<T>) -> Result<T, Failed> {
+fn checked<T>(answer: Answer<T>, timeout: Duration) -> Result<T, Failed> {
     match answer {
         Ok(Ok(Ok(value))) => Ok(value),
         Ok(Ok(Err(code))) => Err(Failed::Refused(code)),
@@ -180,7 +183,7 @@ fn checked<T>(answer: Answer<T>) -> Result<T, Failed> {
         }
         Ok(Err(Error::Transport(error))) => Err(Failed::Lost(error.to_string())),
         Ok(Err(Error::Protocol(error))) => Err(Failed::Nonsense(error.to_string())),
-        Err(_) => Err(Failed::Lost(format!("no answer within {TIMEOUT:?}"))),
+        Err(_) => Err(Failed::Lost(format!("no answer within {timeout:?}"))),
     }
 }
 

@@ -19,7 +19,7 @@ impl OpcUaLink {
     ///
     /// # Errors
     /// Always.
-    pub fn new(_url: &str, _options: Options, _exchange: &Exchange) -> Result<Self, LinkFault> {
+    pub fn new(_url: &str, _options: Options, _exchange: &Exchange, _timeout: Duration) -> Result<Self, LinkFault> {
         Err(LinkFault::Setting(ABSENT.to_owned()))
     }
 

@@ -16,7 +16,6 @@ use crate::gateway::fault::LinkFault;
 use crate::opcua_server::pki::Pki;
 
 /// How long a session may take to come about, and a request to be answered.
-const TIMEOUT: Duration = Duration::from_secs(5);
 
 /// A session, and the task that carries its messages.
 pub struct Connection {
@@ -38,15 +37,21 @@ impl Connection {
     ///
     /// # Errors
     /// Nobody is there, or who is there does not let this client in.
-    pub fn open(runtime: &Runtime, url: &str, options: &Options, pki: &Pki) -> Result<Self, LinkFault> {
+    pub fn open(
+        runtime: &Runtime,
+        url: &str,
+        options: &Options,
+        pki: &Pki,
+        timeout: Duration,
+    ) -> Result<Self, LinkFault> {
         let (policy, mode) = options.security()?;
         let identity = options.identity()?;
-        let mut client = client(options, pki)?;
+        let mut client = client(options, pki, timeout)?;
         let endpoint: EndpointDescription = (url, policy.to_uri(), mode, UserTokenPolicy::anonymous()).into();
         runtime.block_on(async {
             let matched = client.connect_to_matching_endpoint(endpoint, identity);
-            let matched = tokio::time::timeout(TIMEOUT, matched).await;
-            let matched = matched.map_err(|_| unreachable(url, format!("no answer within {TIMEOUT:?}")))?;
+            let matched = tokio::time::timeout(timeout, matched).await;
+            let matched = matched.map_err(|_| unreachable(url, format!("no answer within {timeout:?}")))?;
             let (session, event_loop) = matched.map_err(|error| {
                 // The server has said which endpoints it has.
                 if error.status().sub_code() == StatusCode::BadTcpEndpointUrlInvalid.sub_code() {
@@ -57,9 +62,9 @@ impl Connection {
             })?;
             let mut task = event_loop.spawn();
             let connected = tokio::select! {
-                connected = tokio::time::timeout(TIMEOUT, session.wait_for_connection()) => match connected {
+                connected = tokio::time::timeout(timeout, session.wait_for_connection()) => match connected {
                     Ok(true) => Ok(()),
-                    _ => Err(unreachable(url, format!("no session within {TIMEOUT:?}"))),
+                    _ => Err(unreachable(url, format!("no session within {timeout:?}"))),
                 },
                 status = &mut task => Err(of_status(url, status.unwrap_or(StatusCode::BadConnectionClosed), "")),
             };
@@ -94,7 +99,7 @@ impl Connection {
     }
 }
 
-fn client(options: &Options, pki: &Pki) -> Result<Client, LinkFault> {
+fn client(options: &Options, pki: &Pki, timeout: Duration) -> Result<Client, LinkFault> {
     let builder = ClientBuilder::new()
         .application_name("onescan")
         .application_uri("urn:onescan:client")
@@ -103,7 +108,7 @@ fn client(options: &Options, pki: &Pki) -> Result<Client, LinkFault> {
         .verify_server_certs(!options.trust_server)
         .create_sample_keypair(options.is_secured())
         .pki_dir(pki.path())
-        .request_timeout(TIMEOUT)
+        .request_timeout(timeout)
         // A connection that is lost is made anew by the gateway, which knows what was under way.
         .session_retry_limit(0)
         .max_message_size(16 * 1024 * 1024);
@@ -123,9 +128,15 @@ fn of_error(url: &str, error: &Error) -> LinkFault {
     of_status(url, error.status(), &error.to_string())
 }
 
+/// What the operating system said, without the form in which a library shows it: `Os { code: 111, …, message: "…" }`.
+fn for_people(text: &str) -> String {
+    let message = |rest: &str| Some(rest.split_once("message: \"")?.1.split_once("\" }")?.0.to_owned());
+    text.split_once("Os { code: ").and_then(|(_, rest)| message(rest)).unwrap_or_else(|| text.to_owned())
+}
+
 /// Who is let in is the server's decision; everything else may be otherwise in a moment.
 fn of_status(url: &str, status: StatusCode, text: &str) -> LinkFault {
-    let reason = if text.is_empty() { status.to_string() } else { text.to_owned() };
+    let reason = if text.is_empty() { status.to_string() } else { for_people(text) };
     let is_refusal = [
         StatusCode::BadIdentityTokenInvalid,
         StatusCode::BadIdentityTokenRejected,

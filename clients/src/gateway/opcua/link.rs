@@ -25,6 +25,7 @@ pub struct OpcUaLink {
     to_plc: Vec<NodeId>,
     reads: Vec<ReadValueId>,
     runtime: Runtime,
+    timeout: Duration,
 }
 
 impl OpcUaLink {
@@ -32,7 +33,7 @@ impl OpcUaLink {
     ///
     /// # Errors
     /// There is no runtime, or the options are wrong.
-    pub fn new(url: &str, options: Options, exchange: &Exchange) -> Result<Self, LinkFault> {
+    pub fn new(url: &str, options: Options, exchange: &Exchange, timeout: Duration) -> Result<Self, LinkFault> {
         options.security()?;
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
         let runtime = runtime.map_err(|error| LinkFault::Setting(format!("no runtime: {error}")))?;
@@ -40,7 +41,7 @@ impl OpcUaLink {
         let pki = pki.map_err(|error| LinkFault::Setting(format!("no folder for certificates: {error}")))?;
         let exchange = exchange.clone();
         let (to_plc, reads) = (Vec::new(), Vec::new());
-        Ok(Self { url: url.to_owned(), options, pki, exchange, connection: None, to_plc, reads, runtime })
+        Ok(Self { url: url.to_owned(), options, pki, exchange, connection: None, to_plc, reads, runtime, timeout })
     }
 
     fn connected(&self) -> Result<&Connection, LinkFault> {
@@ -120,7 +121,7 @@ impl OpcUaLink {
     /// # Errors
     /// The server cannot be reached, or does not let this client in.
     pub fn browse(&mut self) -> Result<Vec<Found>, LinkFault> {
-        self.connection = Some(Connection::open(&self.runtime, &self.url, &self.options, &self.pki)?);
+        self.connection = Some(Connection::open(&self.runtime, &self.url, &self.options, &self.pki, self.timeout)?);
         self.runtime.block_on(browse::variables(&self.connected()?.session))
     }
 }
@@ -139,7 +140,7 @@ impl Drop for OpcUaLink {
 impl Link for OpcUaLink {
     fn connect(&mut self) -> Result<(), LinkFault> {
         self.connection = None;
-        self.connection = Some(Connection::open(&self.runtime, &self.url, &self.options, &self.pki)?);
+        self.connection = Some(Connection::open(&self.runtime, &self.url, &self.options, &self.pki, self.timeout)?);
         self.to_plc = self.check(self.exchange.to_plc(), Direction::ToPlc)?;
         let from_plc = self.check(self.exchange.from_plc(), Direction::FromPlc)?;
         self.reads = from_plc.into_iter().map(ReadValueId::new_value).collect();

@@ -2,13 +2,13 @@
 
 use std::io::{ErrorKind, Read, Write};
 use std::net::TcpStream;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use super::iso::{self, Incoming, Message};
 use super::options::Options;
 use super::pdu::{self, Answer, Item};
 use crate::gateway::fault::LinkFault;
-use crate::gateway::socket::{TIMEOUT, connect, host_and_port};
+use crate::gateway::socket::{connect, host_and_port};
 
 /// Bytes asked for in one read of the socket.
 const READ_BYTES: usize = 4096;
@@ -37,6 +37,8 @@ pub(super) struct Connection {
     incoming: Incoming,
     number: u16,
     pdu: u16,
+    /// For an answer.
+    timeout: Duration,
 }
 
 impl Connection {
@@ -44,12 +46,12 @@ impl Connection {
     ///
     /// # Errors
     /// Nobody is there, or who is there does not let this client in.
-    pub(super) fn open(address: &str, options: Options) -> Result<Self, LinkFault> {
+    pub(super) fn open(address: &str, options: Options, timeout: Duration) -> Result<Self, LinkFault> {
         let url = || format!("s7://{address}");
         let unreachable = |reason: String| LinkFault::Unreachable { url: url(), reason };
-        let stream = host_and_port(address, iso::PORT).and_then(connect).map_err(unreachable)?;
-        stream.set_read_timeout(Some(TIMEOUT)).map_err(|error| unreachable(error.to_string()))?;
-        let mut connection = Self { stream, incoming: Incoming::default(), number: 0, pdu: pdu::PDU_MIN };
+        let stream = host_and_port(address, iso::PORT).and_then(|at| connect(at, timeout)).map_err(unreachable)?;
+        stream.set_read_timeout(Some(timeout)).map_err(|error| unreachable(error.to_string()))?;
+        let mut connection = Self { stream, incoming: Incoming::default(), number: 0, pdu: pdu::PDU_MIN, timeout };
         // A CPU that has no connection left closes it as one does that is not in this slot.
         let unanswered = |fault: LinkFault| match fault {
             LinkFault::Lost(reason) => unreachable(format!("{reason}; are rack and slot right?")),
@@ -82,7 +84,7 @@ impl Connection {
     }
 
     fn send(&mut self, telegram: &[u8]) -> Result<(), LinkFault> {
-        self.stream.write_all(telegram).map_err(|error| lost(&error))
+        self.stream.write_all(telegram).map_err(|error| lost(&error, self.timeout))
     }
 
     /// The next whole message, however many segments it comes in.
@@ -97,11 +99,11 @@ impl Connection {
                 Ok(0) => return Err(LinkFault::Lost("closed by the PLC".to_owned())),
                 Ok(count) => self.incoming.take(&buffer[..count]),
                 Err(error) if error.kind() == ErrorKind::Interrupted => {}
-                Err(error) => return Err(lost(&error)),
+                Err(error) => return Err(lost(&error, self.timeout)),
             }
             // An answer may come in parts, but not for ever.
-            if begun.elapsed() > TIMEOUT {
-                return Err(late());
+            if begun.elapsed() > self.timeout {
+                return Err(late(self.timeout));
             }
         }
     }
@@ -120,8 +122,8 @@ impl Connection {
             };
             match pdu::answer(&message) {
                 // What has been answered may be answered twice.
-                Some((number, _)) if number != self.number && begun.elapsed() < TIMEOUT => {}
-                Some((number, _)) if number != self.number => return Err(late().into()),
+                Some((number, _)) if number != self.number && begun.elapsed() < self.timeout => {}
+                Some((number, _)) if number != self.number => return Err(late(self.timeout).into()),
                 Some((_, Some(Answer::Refused(code)))) => return Err(Refusal::Request(code)),
                 Some((_, Some(Answer::NotRead(code)))) => return Err(Refusal::Value(code)),
                 Some((_, Some(answer))) => return Ok(answer),
@@ -160,13 +162,13 @@ impl Connection {
     }
 }
 
-fn late() -> LinkFault {
-    LinkFault::Lost(format!("no answer within {TIMEOUT:?}"))
+fn late(timeout: Duration) -> LinkFault {
+    LinkFault::Lost(format!("no answer within {timeout:?}"))
 }
 
-fn lost(error: &std::io::Error) -> LinkFault {
+fn lost(error: &std::io::Error, timeout: Duration) -> LinkFault {
     match error.kind() {
-        ErrorKind::WouldBlock | ErrorKind::TimedOut => late(),
+        ErrorKind::WouldBlock | ErrorKind::TimedOut => late(timeout),
         ErrorKind::ConnectionReset | ErrorKind::BrokenPipe => LinkFault::Lost("closed by the PLC".to_owned()),
         _ => LinkFault::Lost(error.to_string()),
     }

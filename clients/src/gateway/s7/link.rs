@@ -29,11 +29,12 @@ pub struct S7Link {
     grant: Range<usize>,
     connection: Option<Connection>,
     block: Vec<u8>,
+    timeout: Duration,
 }
 
 impl S7Link {
     /// A link to `address`, a host and perhaps a port.
-    pub fn new(address: &str, options: Options, exchange: &Exchange, layouts: Layouts) -> Self {
+    pub fn new(address: &str, options: Options, exchange: &Exchange, layouts: Layouts, timeout: Duration) -> Self {
         let (owned, grant) = (layouts.to_plc.owned(), layouts.to_plc.last());
         Self {
             address: address.to_owned(),
@@ -45,6 +46,7 @@ impl S7Link {
             layouts,
             connection: None,
             block: Vec::new(),
+            timeout,
         }
     }
 
@@ -117,7 +119,7 @@ impl Link for S7Link {
     fn connect(&mut self) -> Result<(), LinkFault> {
         // The old connection goes first: a CPU has few.
         self.connection = None;
-        self.connection = Some(Connection::open(&self.address, self.options)?);
+        self.connection = Some(Connection::open(&self.address, self.options, self.timeout)?);
         let mut scratch = vec![0; self.exchange.size(Direction::FromPlc)];
         self.read_block(&mut scratch)?;
         // What is to be written is there if it can be read.

@@ -27,11 +27,13 @@ pub struct TcpLink {
     block: Vec<u8>,
     buffer: Vec<u8>,
     patience: Option<Duration>,
+    /// For the connection to come about, and for a block to be taken.
+    timeout: Duration,
 }
 
 impl TcpLink {
     /// A link to `address`, a host and a port.
-    pub fn new(address: &str, layouts: Layouts) -> Self {
+    pub fn new(address: &str, layouts: Layouts, timeout: Duration) -> Self {
         Self {
             address: address.to_owned(),
             codec: BlockCodec::new(layouts.from_plc.size()),
@@ -42,6 +44,7 @@ impl TcpLink {
             outgoing: BytesMut::new(),
             buffer: vec![0; READ_BYTES],
             patience: None,
+            timeout,
         }
     }
 }
@@ -57,8 +60,8 @@ impl Link for TcpLink {
         self.incoming.clear();
         self.patience = None;
         let url = || format!("tcp://{}", self.address);
-        let stream =
-            socket::connect(&self.address[..]).map_err(|reason| LinkFault::Unreachable { url: url(), reason })?;
+        let stream = socket::connect(&self.address[..], self.timeout)
+            .map_err(|reason| LinkFault::Unreachable { url: url(), reason })?;
         self.stream = Some(stream);
         Ok(())
     }

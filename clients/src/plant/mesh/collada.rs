@@ -119,6 +119,7 @@ impl<'d> File<'d> {
             let kind = faces.tag_name().name();
             if matches!(kind, "triangles" | "polylist" | "polygons" | "trifans" | "tristrips") {
                 self.faces(faces, kind, place)?;
+                self.mesh.bounded()?;
             }
         }
         Ok(())

@@ -5,10 +5,11 @@
 
 use std::path::Path;
 
+use onescan_base::regular::{self, Limit};
 use rapier3d::glamx::{DMat3, DQuat, DVec3};
 use serde::Deserialize;
 
-use super::{Mesh, MeshError};
+use super::{CORNERS_MAX, Mesh, MeshError};
 
 /// Deepest nesting of nodes.
 const DEPTH_MAX: usize = 64;
@@ -164,7 +165,7 @@ fn contents(buffer: &Buffer, binary: Option<&[u8]>, path: &Path) -> Result<Vec<u
         return encoded.and_then(base64).ok_or_else(|| wrong("has a buffer that is no base64"));
     }
     let file = path.parent().unwrap_or_else(|| Path::new("")).join(uri);
-    std::fs::read(&file).map_err(|error| wrong(format!("needs `{uri}`, which cannot be read: {error}")))
+    regular::read(&file, Limit::DATA).map_err(|error| wrong(format!("needs `{uri}`, which cannot be read: {error}")))
 }
 
 /// RFC 4648, 4.
@@ -224,7 +225,7 @@ impl File {
         }
         self.mesh.corners.extend(added.corners);
         self.mesh.triangles.extend(added.triangles);
-        Ok(())
+        self.mesh.bounded()
     }
 
     /// The numbers of an accessor whose elements have so many each.
@@ -241,6 +242,10 @@ impl File {
             5125 | FLOAT => 4,
             other => return Err(wrong(format!("has numbers of type {other}, which is not read"))),
         };
+        // Elements may lie in one place: no number of bytes says how many there are.
+        if accessor.count > CORNERS_MAX {
+            return Err(wrong(format!("has {} numbers, which is too many", accessor.count)));
+        }
         let stride = view.byte_stride.unwrap_or(size * each);
         let mut numbers = Vec::new();
         for element in 0..accessor.count {
@@ -279,6 +284,7 @@ impl NodeFields {
 
 #[cfg(test)]
 mod tests {
+    use super::super::TRIANGLES_MAX;
     use super::*;
 
     /// A triangle: three corners of three `f32` in base64, with `node` for its node.
@@ -320,6 +326,10 @@ mod tests {
     fn what_does_not_go_together_is_told() {
         let told = |from: &str, to: &str| mesh_of(triangle("").replacen(from, to, 1).as_bytes()).unwrap_err();
         assert_eq!(told("\"count\":3", "\"count\":4"), "has numbers that are not there");
+        let count = told("\"count\":3}", "\"count\":9000000000}");
+        assert_eq!(count, "has 9000000000 numbers, which is too many");
+        let nodes = format!("\"nodes\":[{}0]", "0,".repeat(TRIANGLES_MAX));
+        assert_eq!(told("\"nodes\":[0]", &nodes), "has nodes that are nested too deep, or too many");
         assert_eq!(told("\"nodes\":[0]", "\"nodes\":[1]"), "has no node 1");
         assert_eq!(told("base64,AAAA", "base64,AA!A"), "has a buffer that is no base64");
         assert_eq!(

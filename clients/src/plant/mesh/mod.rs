@@ -9,10 +9,13 @@ mod gltf;
 
 use std::path::Path;
 
+use onescan_base::regular::{self, Limit};
 use thiserror::Error;
 
 /// Most triangles of a mesh: beyond, contacts would take longer than any step.
 const TRIANGLES_MAX: usize = 200_000;
+/// Most corners of a mesh.
+const CORNERS_MAX: usize = 3 * TRIANGLES_MAX;
 /// Bytes before the triangles of a binary STL: a title, and how many there are.
 const STL_HEAD: usize = 84;
 /// Bytes of a triangle: a normal, three corners, two bytes without meaning.
@@ -77,8 +80,14 @@ impl Mesh {
             Some("gltf" | "glb") => gltf::read,
             _ => return Err(MeshError::Kind),
         };
-        let bytes = std::fs::read(path).map_err(|error| MeshError::Unreadable(error.to_string()))?;
+        let bytes = regular::read(path, Limit::DATA).map_err(|error| MeshError::Unreadable(error.to_string()))?;
         reader(&bytes, path)?.checked()
+    }
+
+    /// A part that is in many places is there many times: what is too much is not collected to its end.
+    fn bounded(&self) -> Result<(), MeshError> {
+        let is_bounded = self.triangles.len() <= TRIANGLES_MAX && self.corners.len() <= CORNERS_MAX;
+        if is_bounded { Ok(()) } else { Err(MeshError::Count(self.triangles.len().max(TRIANGLES_MAX + 1))) }
     }
 
     fn checked(self) -> Result<Self, MeshError> {

@@ -4,6 +4,8 @@
 
 use std::path::{Path, PathBuf};
 
+use onescan_base::regular;
+
 /// How many folders up from a file a package is looked for.
 const UP_MAX: usize = 8;
 
@@ -69,7 +71,7 @@ impl Packages {
 
 /// Whether a folder is the package of a name.
 fn is_package(folder: &Path, name: &str) -> bool {
-    let Ok(text) = std::fs::read_to_string(folder.join("package.xml")) else { return false };
+    let Ok(text) = regular::read_text(&folder.join("package.xml")) else { return false };
     let written = text.split_once("<name>").and_then(|(_, rest)| rest.split_once("</name>"));
     written.is_some_and(|(written, _)| written.trim() == name)
 }

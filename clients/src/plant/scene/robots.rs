@@ -8,6 +8,7 @@
 use std::path::{Path, PathBuf};
 
 use onescan_base::did_you_mean;
+use onescan_base::regular;
 
 use super::error::{Inside, SceneFaultKind};
 use super::faults::Faults;
@@ -45,7 +46,7 @@ fn one(table: &UrdfTable, written: &mut SceneFile, faults: &mut Faults<'_>) -> O
     let packages = packages(table, faults);
     let arguments = arguments(table, faults)?;
     let reading = Reading { file, packages: &packages, arguments: &arguments };
-    let text = std::fs::read_to_string(&path);
+    let text = regular::read_text(&path);
     let text = text.map_err(|error| {
         let cause = format!("cannot be read: {error}");
         faults.add(table.file.span(), SceneFaultKind::Urdf { file: file.clone(), cause });

@@ -1,9 +1,9 @@
 //! Parts read back as blocks: the very bytes that an image had.
 
-use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use onescan_base::regular;
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::DataType;
 use parquet::errors::{ParquetError, Result};
@@ -31,7 +31,7 @@ fn wrong(message: &str) -> ParquetError {
 impl Part {
     /// Reads a part's footer.
     pub(crate) fn open(path: &Path) -> io::Result<Self> {
-        let reader = SerializedFileReader::new(File::open(path)?)?;
+        let reader = SerializedFileReader::new(regular::open(path)?)?;
         let metadata = reader.metadata().file_metadata();
         let first_step = metadata.key_value_metadata().into_iter().flatten().find(|pair| pair.key == FIRST_STEP);
         let first_step = first_step.and_then(|pair| pair.value.as_ref()?.parse().ok());
@@ -48,7 +48,7 @@ impl Part {
         columns: &[(usize, Column)],
         each: &mut dyn FnMut(&Block) -> io::Result<()>,
     ) -> io::Result<()> {
-        let reader = SerializedFileReader::new(File::open(&self.path)?)?;
+        let reader = SerializedFileReader::new(regular::open(&self.path)?)?;
         let mut block = Block { first_step: self.first_step, ..Block::default() };
         for index in 0..reader.num_row_groups() {
             let group = reader.get_row_group(index)?;

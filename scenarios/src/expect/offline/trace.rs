@@ -1,18 +1,10 @@
 //! The signals that formulas need, sample by sample.
 
-/// How a trace ends.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum TraceEnd {
-    /// The run was over: nothing comes after it.
-    #[default]
-    Complete,
-    /// The run was stopped or failed: something would have come.
-    Cut,
-}
+use crate::expect::sample::TraceEnd;
 
 /// Columns of samples over virtual time.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Trace {
+#[derive(Clone, Debug)]
+pub(in crate::expect) struct Trace {
     end: TraceEnd,
     t_ns: Vec<u64>,
     columns: Vec<Vec<f64>>,
@@ -20,18 +12,18 @@ pub struct Trace {
 
 impl Trace {
     /// A trace of so many signals without samples.
-    pub fn new(columns: usize) -> Self {
+    pub(in crate::expect) fn new(columns: usize) -> Self {
         Self { end: TraceEnd::Complete, t_ns: Vec::new(), columns: vec![Vec::new(); columns] }
     }
 
     /// Says how the trace ends.
-    pub fn set_end(&mut self, end: TraceEnd) {
+    pub(in crate::expect) fn set_end(&mut self, end: TraceEnd) {
         self.end = end;
     }
 
     /// Takes a sample: a value for each column. Times that do not increase are not taken: the
     /// sample before them stands.
-    pub fn push(&mut self, t_ns: u64, values: impl IntoIterator<Item = f64>) {
+    pub(in crate::expect) fn push(&mut self, t_ns: u64, values: impl IntoIterator<Item = f64>) {
         if self.t_ns.last().is_some_and(|last| *last >= t_ns) {
             return;
         }

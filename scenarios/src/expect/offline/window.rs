@@ -1,7 +1,7 @@
 //! Greatest and least values in windows of time.
 
-use super::formula::Window;
 use super::trace::Trace;
+use crate::expect::formula::Window;
 
 /// The samples that a window shows from one sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,9 +1,9 @@
 //! A formula over a trace: its worth at every sample.
 
-use super::formula::{Arithmetic, Edge, Formula, Term, TermKind, Window};
 use super::trace::Trace;
-use super::truth::Scale;
 use super::window::{Span, joined};
+use crate::expect::formula::{Arithmetic, Edge, Formula, Term, TermKind, Window};
+use crate::expect::truth::Scale;
 
 /// What the formula is worth at each sample of the trace.
 pub(super) fn evaluate<S: Scale>(formula: &Formula<usize>, trace: &Trace) -> Vec<S> {

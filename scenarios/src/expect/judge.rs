@@ -1,0 +1,232 @@
+//! All expectations of a run, judged as it goes.
+
+use std::collections::VecDeque;
+
+use onescan_server::time::VirtualTime;
+
+use super::bind::Expectation;
+use super::monitor::Monitor;
+use super::sample::{Block, Judged, TraceEnd};
+use super::truth::{Margin, Scale, Truth};
+use super::verdict::{Outcome, Verdict};
+
+/// Samples that are judged at a time.
+const BLOCK_LEN: usize = 256;
+
+/// Takes the samples of a run and judges it by expectations.
+#[derive(Clone, Debug)]
+pub struct Judge {
+    expectations: Vec<(Expectation, Monitor)>,
+    /// Judged, and may still be told of.
+    kept: VecDeque<Block>,
+    /// Not judged yet.
+    open: Block,
+    /// Emptied, to be filled again.
+    free: Vec<Block>,
+    columns: usize,
+    newest_ns: Option<u64>,
+}
+
+impl Judge {
+    /// A judge of a run that begins; `columns` are the signals of all expectations.
+    pub fn new(expectations: impl IntoIterator<Item = Expectation>, columns: usize) -> Self {
+        let monitored = |expectation: Expectation| {
+            let monitor = Monitor::new(expectation.formula());
+            (expectation, monitor)
+        };
+        Self {
+            expectations: expectations.into_iter().map(monitored).collect(),
+            kept: VecDeque::new(),
+            open: Block::new(columns),
+            free: Vec::new(),
+            columns,
+            newest_ns: None,
+        }
+    }
+
+    /// Forgets all samples: the run begins anew.
+    pub fn begin(&mut self) {
+        let expectations = std::mem::take(&mut self.expectations);
+        *self = Self::new(expectations.into_iter().map(|(expectation, _)| expectation), self.columns);
+    }
+
+    /// Takes a sample: a value for each column. Times that do not increase are not taken: the
+    /// sample before them stands.
+    pub fn push(&mut self, t_ns: u64, values: impl IntoIterator<Item = f64>) {
+        if self.newest_ns.is_some_and(|newest_ns| newest_ns >= t_ns) {
+            return;
+        }
+        self.newest_ns = Some(t_ns);
+        self.open.push(t_ns, values);
+        if self.open.len() >= BLOCK_LEN {
+            self.judge_open();
+            self.forget();
+        }
+    }
+
+    /// What came of each expectation. Without a sample nothing is decided.
+    pub fn finish(mut self, end: TraceEnd) -> Vec<Outcome> {
+        self.judge_open();
+        for (_, monitor) in &mut self.expectations {
+            monitor.finish(end);
+        }
+        self.expectations.iter().map(|(expectation, monitor)| self.outcome(expectation, monitor.first())).collect()
+    }
+
+    fn judge_open(&mut self) {
+        for (_, monitor) in &mut self.expectations {
+            monitor.push(&self.open);
+        }
+        let mut next = self.free.pop().unwrap_or_else(|| Block::new(self.columns));
+        next.begin(self.open.end());
+        self.kept.push_back(std::mem::replace(&mut self.open, next));
+    }
+
+    /// Gives away the blocks that no verdict will name: the last one may always be.
+    fn forget(&mut self) {
+        let mut others = Vec::new();
+        let first = self.expectations.iter().map(|(_, monitor)| monitor.keeps(&mut others)).min();
+        let first = first.unwrap_or(u64::MAX).min(self.open_first().saturating_sub(1));
+        let mut index = 0;
+        while let Some(block) = self.kept.get(index) {
+            if block.end() > first || others.iter().any(|number| block.holds(*number)) {
+                index += 1;
+            } else if let Some(block) = self.kept.remove(index) {
+                self.free.push(block);
+            }
+        }
+    }
+
+    /// The number of the first sample that is not judged yet.
+    fn open_first(&self) -> u64 {
+        self.open.end() - self.open.len() as u64
+    }
+
+    fn outcome(&self, expectation: &Expectation, judged: Option<&Judged>) -> Outcome {
+        let Some(judged) = judged else { return Outcome { verdict: Verdict::Open, margin: Margin::UNKNOWN } };
+        let verdict = match judged.worth.truth {
+            Truth::True => Verdict::Met,
+            Truth::Unknown => Verdict::Open,
+            Truth::False => Verdict::Violated {
+                at: VirtualTime::from_nanos(judged.certain.at_ns),
+                values: self.values(expectation, judged.certain.sample),
+            },
+        };
+        Outcome { verdict, margin: judged.worth.margin }
+    }
+
+    /// What the signals of an expectation were at a sample.
+    fn values(&self, expectation: &Expectation, number: u64) -> Vec<(String, f64)> {
+        let Some(block) = self.kept.iter().find(|block| block.holds(number)) else { return Vec::new() };
+        let value = |(name, column): &(String, usize)| Some((name.clone(), block.value_at(*column, number)?));
+        expectation.signals().iter().filter_map(value).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use onescan_server::signal::SignalType;
+    use proptest::prelude::*;
+
+    use super::super::bind::KnownSignal;
+    use super::super::offline::Trace;
+    use super::*;
+
+    fn window() -> impl Strategy<Value = String> {
+        prop_oneof![
+            2 => Just(String::new()),
+            4 => (0_u64..9, 0_u64..12).prop_map(|(from, length)| format!("[{from}ns,{}ns]", from + length)),
+            1 => (0_u64..9).prop_map(|from| format!("[{from}ns,]")),
+        ]
+    }
+
+    fn formula() -> impl Strategy<Value = String> {
+        let signs = prop::sample::select(vec!["<", "<=", ">", ">=", "=", "<>"]);
+        let terms = prop::sample::select(vec!["a", "b", "rate(a)", "abs(b) - a", "max(a, b)"]);
+        let leaf = prop_oneof![
+            6 => (terms, signs, -4_i32..5).prop_map(|(term, sign, limit)| format!("({term} {sign} {limit})")),
+            2 => Just("c".to_owned()),
+            1 => prop::sample::select(vec!["true", "false"]).prop_map(str::to_owned),
+        ];
+        leaf.prop_recursive(4, 20, 2, |inner| {
+            let one = prop::sample::select(vec!["always", "eventually", "historically", "once"]);
+            let two = prop::sample::select(vec!["and", "or", "implies", "iff"]);
+            let path = prop::sample::select(vec!["until", "since"]);
+            let edge = prop::sample::select(vec!["rose", "fell", "changed"]);
+            prop_oneof![
+                4 => (one, window(), inner.clone()).prop_map(|(word, window, f)| format!("({word}{window} {f})")),
+                2 => (inner.clone(), two, inner.clone()).prop_map(|(f, word, g)| format!("({f} {word} {g})")),
+                2 => (inner.clone(), path, window(), inner.clone())
+                    .prop_map(|(f, word, window, g)| format!("({f} {word}{window} {g})")),
+                1 => inner.clone().prop_map(|f| format!("(not {f})")),
+                1 => (edge, inner).prop_map(|(word, f)| format!("{word}({f})")),
+            ]
+        })
+    }
+
+    fn known() -> Vec<KnownSignal> {
+        let signal = |name: &str, ty| KnownSignal { name: name.to_owned(), ty, unit: None };
+        vec![signal("a", SignalType::LREAL), signal("b", SignalType::LREAL), signal("c", SignalType::BOOL)]
+    }
+
+    fn expectation(text: &str) -> Expectation {
+        Expectation::parse(text, &known(), &mut ["a", "b", "c"].map(str::to_owned).to_vec()).unwrap()
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(2_000))]
+        /// The same verdicts, margins, times and values as by looking at the whole run.
+        #[test]
+        fn a_run_is_judged_as_it_goes_like_as_a_whole(
+            formulas in prop::collection::vec(formula(), 1..4),
+            samples in prop::collection::vec((1_u64..5, -9_i32..10, prop::num::i8::ANY, any::<bool>()), 0..60),
+            start_ns in prop_oneof![Just(0_u64), 0_u64..30],
+            cut in any::<bool>(),
+            repeat in 1_usize..12,
+        ) {
+            let end = if cut { TraceEnd::Cut } else { TraceEnd::Complete };
+            let expectations: Vec<_> = formulas.iter().map(|text| expectation(text)).collect();
+            let mut judge = Judge::new(expectations.clone(), 3);
+            let mut trace = Trace::new(3);
+            let mut t_ns = start_ns;
+            // Runs longer than a block, too.
+            for (dt_ns, a, b, c) in samples.iter().cycle().take(samples.len() * repeat) {
+                let b = if *b == i8::MIN { f64::NAN } else { f64::from(*b % 8) };
+                let values = [f64::from(*a) / 2.0, b, f64::from(u8::from(*c))];
+                judge.push(t_ns, values);
+                trace.push(t_ns, values);
+                t_ns += dt_ns;
+            }
+            trace.set_end(end);
+            for ((expectation, text), outcome) in expectations.iter().zip(&formulas).zip(judge.finish(end)) {
+                let expected = expectation.judge_offline(&trace);
+                prop_assert_eq!(format!("{outcome:?}"), format!("{expected:?}"), "{}", text);
+            }
+        }
+    }
+
+    /// What is kept does not grow with the run, where operators without an end stand outermost.
+    #[test]
+    fn what_is_kept_depends_on_windows_only() {
+        let texts = [
+            "always a < 100",
+            "always (rose(c) implies eventually[0,50ns] b > 3)",
+            "(always a < 3) or eventually (a > 100 and once[0,90ns] b > 0)",
+            "(a < 100) until (b > 100)",
+            "always ((historically b < 9) implies not (c since[3ns,70ns] b > 6))",
+            "eventually[200ns,500ns] changed(c)",
+            "always[0,100ns] eventually[0,30ns] c",
+        ];
+        let judged = |steps: u64| {
+            let mut judge = Judge::new(texts.map(expectation), 3);
+            for step in 0..steps {
+                judge.push(step, [(step % 7) as f64, (step % 11) as f64, (step % 2) as f64]);
+            }
+            (judge.kept.len(), judge.free.len(), judge.expectations.iter().map(|(_, m)| m.held()).sum::<usize>())
+        };
+        let (short, long) = (judged(256 * 40), judged(256 * 400));
+        assert_eq!((short.0, short.1), (long.0, long.1), "blocks");
+        // Two stacks hold a window's members up to twice.
+        assert!(short.2 < 1_000 && long.2 < 1_000, "{short:?}, {long:?}");
+    }
+}
