@@ -31,6 +31,7 @@ use crate::run::{RunConfig, Transport, execute};
 
 /// Options of `run`.
 #[derive(Debug, ClapArgs)]
+#[expect(clippy::struct_excessive_bools, reason = "switches, as they are typed")]
 pub struct RunArgs {
     /// The scenario: a folder with a `scenario.toml`
     pub scenario: PathBuf,

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use super::formula::Window;
 use super::sample::{Certain, Demand, Judged, Sample, TraceEnd};
-use super::sliding::{All, Any, Joined, Reached, Sliding};
+use super::sliding::{All, Any, Joined, Pursuit, Sliding};
 use super::truth::{Scale, Worth};
 
 /// What an operator says of a window.
@@ -26,7 +26,7 @@ impl Foresight for Any {
     }
 }
 
-impl Foresight for Reached {
+impl Foresight for Pursuit {
     /// What comes may still reach it, as long as the left one has held.
     fn say(lead: Self, seen: Self, open: bool, _: Certain, passed: Certain) -> (Worth, Certain) {
         let reached = lead.held.and(seen.reached);

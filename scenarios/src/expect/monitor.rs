@@ -9,7 +9,7 @@ use super::ahead::Ahead;
 use super::back::Back;
 use super::formula::{Comparison, Edge, Formula};
 use super::sample::{Block, Certain, Demand, Judged, TraceEnd};
-use super::sliding::{All, Any, Reached, Since};
+use super::sliding::{All, Any, Pursuit, Since};
 use super::term::Number;
 use super::truth::{Scale, Worth};
 
@@ -33,7 +33,7 @@ enum Part {
     Pair(fn(&Judged, &Judged) -> Judged, Box<[Monitor; 2]>),
     Always(Ahead<All>, Box<Monitor>),
     Eventually(Ahead<Any>, Box<Monitor>),
-    Until(Ahead<Reached>, Box<[Monitor; 2]>),
+    Until(Ahead<Pursuit>, Box<[Monitor; 2]>),
     Historically(Back<All>, Box<Monitor>),
     Once(Back<Any>, Box<Monitor>),
     Since(Back<Since>, Box<[Monitor; 2]>),
@@ -160,7 +160,7 @@ impl Monitor {
                 operand.said.drain(..).for_each(|of| ahead.push(of.sample, Any::of(&of), said));
             }
             Part::Until(ahead, operands) => {
-                pairs(operands, |left, right| ahead.push(left.sample, Reached::of(left, right), said));
+                pairs(operands, |left, right| ahead.push(left.sample, Pursuit::of(left, right), said));
             }
             Part::Historically(back, operand) => said.extend(
                 operand.said.drain(..).map(|of| Judged::here(of.sample, back.push(of.sample, All::of(&of)).0.worth)),

@@ -71,7 +71,7 @@ impl Joined for Any {
 
 /// The right one is reached, and the left one held until then.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Reached {
+pub(super) struct Pursuit {
     pub(super) reached: Worth,
     /// The left one held all the time.
     pub(super) held: Worth,
@@ -81,7 +81,7 @@ pub(super) struct Reached {
     stopped: bool,
 }
 
-impl Reached {
+impl Pursuit {
     pub(super) fn of(left: &Judged, right: &Judged) -> Self {
         let stopped = !right.worth.is_false();
         let broken = if stopped { None } else { left.if_false() };
@@ -89,7 +89,7 @@ impl Reached {
     }
 }
 
-impl Joined for Reached {
+impl Joined for Pursuit {
     const NOTHING: Self = Self { reached: Worth::BOTTOM, held: Worth::TOP, broken: None, stopped: false };
 
     fn then(self, later: Self) -> Self {
