@@ -1,7 +1,7 @@
 //! A scenario's clients: its files read, checked and made to run.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::Path;
 
 use miette::{NamedSource, SourceSpan};
 use onescan_base::regular::{self, Limit};
@@ -331,8 +331,8 @@ fn task(file: &TaskFile) -> Task {
     }
 }
 
-fn read(path: &PathBuf) -> Result<String, ScenarioError> {
-    regular::read_text(path).map_err(|source| ScenarioError::Unreadable { path: path.clone(), source, help: None })
+fn read(path: &Path) -> Result<String, ScenarioError> {
+    regular::read_text(path).map_err(|source| ScenarioError::Unreadable { path: path.to_owned(), source, help: None })
 }
 
 /// A scene's faults, the first in front.

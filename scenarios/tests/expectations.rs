@@ -1,6 +1,6 @@
 //! Signal temporal logic over traces: what formulas are worth, by hand and against a peer.
 
-use onescan_scenario::expect::{Expectation, FormulaError, KnownSignal, Outcome, Trace, TraceEnd, Verdict};
+use onescan_scenario::expect::{Expectation, FormulaError, Judge, KnownSignal, Outcome, TraceEnd, Verdict};
 use onescan_server::signal::SignalType;
 use onescan_server::time::VirtualTime;
 
@@ -20,17 +20,17 @@ fn known() -> Vec<KnownSignal> {
 
 /// Judges samples 100 ms apart of the signals in the order in which the formula names them.
 fn judge(formula: &str, samples: &[&[f64]]) -> Outcome {
-    let mut columns = Vec::new();
-    let expectation = Expectation::parse(formula, &known(), &mut columns).expect("a formula");
-    expectation.judge(&trace(samples))
+    judge_until(formula, samples, TraceEnd::Complete)
 }
 
-fn trace(samples: &[&[f64]]) -> Trace {
-    let mut trace = Trace::new(samples.first().map_or(0, |sample| sample.len()));
+fn judge_until(formula: &str, samples: &[&[f64]], end: TraceEnd) -> Outcome {
+    let mut columns = Vec::new();
+    let expectation = Expectation::parse(formula, &known(), &mut columns).expect("a formula");
+    let mut judge = Judge::new([expectation], columns.len());
     for (step, sample) in (0..).zip(samples) {
-        trace.push(step * 100_000_000, sample.iter().copied());
+        judge.push(step * 100_000_000, sample.iter().copied());
     }
-    trace
+    judge.finish(end).pop().expect("an outcome for each expectation")
 }
 
 fn refused(formula: &str) -> FormulaError {
@@ -71,12 +71,9 @@ fn what_a_run_cuts_off_is_open_unless_it_is_decided() {
 
 #[test]
 fn without_a_window_a_run_s_end_decides_and_a_cut_does_not() {
-    let mut columns = Vec::new();
-    let expectation = Expectation::parse("eventually done", &known(), &mut columns).unwrap();
-    let mut run = trace(&[&[0.], &[0.]]);
-    assert_eq!(violated_at(&expectation.judge(&run)), Some(1), "it could have come until the end");
-    run.set_end(TraceEnd::Cut);
-    assert_eq!(expectation.judge(&run).verdict, Verdict::Open);
+    let samples: &[&[f64]] = &[&[0.], &[0.]];
+    assert_eq!(violated_at(&judge("eventually done", samples)), Some(1), "it could have come until the end");
+    assert_eq!(judge_until("eventually done", samples, TraceEnd::Cut).verdict, Verdict::Open);
 }
 
 #[test]

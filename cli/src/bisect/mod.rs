@@ -147,7 +147,7 @@ impl Search<'_> {
 
     fn run(&self, folder: &Path) -> Result<(PathBuf, Option<Digest>), String> {
         let record = folder.join("record");
-        let scenario = folder.join("tree").join(&self.repository.scenario());
+        let scenario = folder.join("tree").join(self.repository.scenario());
         let mut config = RunConfig::headless(scenario, None);
         config.subject.until = self.config.until;
         config.reports.record = Some(RecordRequest { folder: record.clone(), ..RecordRequest::default() });

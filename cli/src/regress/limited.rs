@@ -68,7 +68,7 @@ mod tests {
     use super::*;
 
     fn shell(script: &str) -> Limited {
-        Limited::start(Command::new("sh").args(["-c", script])).unwrap()
+        Limited::start(Command::new("sh").args(["-c", script])).expect("a shell")
     }
 
     #[test]

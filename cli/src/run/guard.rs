@@ -99,14 +99,14 @@ mod tests {
     fn family() -> Child {
         let mut command = Command::new("sh");
         command.args(["-c", "sleep 300 & sleep 300"]).stdout(Stdio::piped()).process_group(0);
-        command.spawn().unwrap()
+        command.spawn().expect("a process")
     }
 
     /// Ends when nobody of the family is left to write.
     fn wait_for_all(mut child: Child) {
         let mut said = Vec::new();
-        child.stdout.take().unwrap().read_to_end(&mut said).unwrap();
-        assert!(!child.wait().unwrap().success());
+        child.stdout.take().expect("a pipe").read_to_end(&mut said).expect("what it says");
+        assert!(!child.wait().expect("an end").success());
     }
 
     #[test]

@@ -113,7 +113,7 @@ impl Walk<'_> {
                     if !self.flow.statements.same_way(ways) {
                         let answers = [0, 1].map(|side| {
                             let way = self.flow.statements.ways[side].get(&ways[side]);
-                            way.map(|way| way.answer.clone()).unwrap_or_else(|| "another way".to_owned())
+                            way.map_or_else(|| "another way".to_owned(), |way| way.answer.clone())
                         });
                         let decided = self.parting(nodes, What::Way(answers), progress.cause());
                         self.rest(nodes, progress.at, decided);
@@ -135,8 +135,8 @@ impl Walk<'_> {
     /// What both read and write up to the next statement or decision.
     fn plain(&mut self, nodes: [&Node; 2], progress: &mut Progress) {
         let mut written = Written::new();
-        for side in 0..2 {
-            while let Some(item) = nodes[side].items.get(progress.at[side]) {
+        for (side, node) in nodes.into_iter().enumerate() {
+            while let Some(item) = node.items.get(progress.at[side]) {
                 match item {
                     Item::Read(range) => progress.read = progress.read.or_else(|| self.read(side, range.clone())),
                     Item::Wrote(wrote) => self.apply(side, wrote, &mut written),
@@ -175,12 +175,11 @@ impl Walk<'_> {
             ahead.iter().position(|item| matches!(item, Item::Child(child) if child.statement == Some(partner)))
         };
         // The side whose statement the other has not, or has later, goes ahead alone.
-        let side = match ([known(0), known(1)], [comes(0), comes(1)]) {
-            ([false, _], _) => 0,
-            ([_, false], _) => 1,
-            (_, [Some(a), Some(b)]) => usize::from(a <= b),
-            (_, [Some(_), None]) => 1,
-            (_, [None, _]) => 0,
+        let side = match [comes(0), comes(1)] {
+            _ if !known(0) => 0,
+            _ if !known(1) => 1,
+            [Some(a), Some(b)] => usize::from(a <= b),
+            [came, _] => usize::from(came.is_some()),
         };
         self.only(side, children[side], progress);
     }
@@ -188,14 +187,11 @@ impl Walk<'_> {
     /// A statement that only one run executes here.
     fn only(&mut self, side: usize, child: &Node, progress: &mut Progress) {
         let known = child.statement.is_some_and(|statement| self.flow.statements.has_partner(side, statement));
-        let decided = match progress.cause().filter(|_| known) {
-            Some(cause) => cause,
-            None => {
-                let mut nodes = [&NOTHING; 2];
-                nodes[side] = child;
-                self.parting(nodes, What::Run, None)
-            }
-        };
+        let decided = progress.cause().filter(|_| known).unwrap_or_else(|| {
+            let mut nodes = [&NOTHING; 2];
+            nodes[side] = child;
+            self.parting(nodes, What::Run, None)
+        });
         let mut written = Written::new();
         self.collect(side, &child.items, &mut written);
         self.settle([&NOTHING; 2], &written, Some(decided));
@@ -257,7 +253,7 @@ impl Walk<'_> {
             }
             let origin = match cause {
                 Some(cause) => Origin::Earlier(cause),
-                None if at.iter().all(Option::is_none) => self.from_outside(leaf),
+                None if at.iter().all(Option::is_none) => self.outside(leaf),
                 None => self.here(nodes),
             };
             let record = self.add(at, what, origin);
@@ -266,7 +262,7 @@ impl Walk<'_> {
     }
 
     /// Where a value comes from that no statement has written.
-    fn from_outside(&mut self, leaf: usize) -> Origin {
+    fn outside(&mut self, leaf: usize) -> Origin {
         match (self.flow.inputs.contains(&leaf), self.records.is_empty()) {
             (true, true) => Origin::Input,
             (true, false) => Origin::Feedback(0),

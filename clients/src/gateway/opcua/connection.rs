@@ -15,8 +15,6 @@ use super::options::Options;
 use crate::gateway::fault::LinkFault;
 use crate::opcua_server::pki::Pki;
 
-/// How long a session may take to come about, and a request to be answered.
-
 /// A session, and the task that carries its messages.
 pub struct Connection {
     /// The session.
