@@ -94,7 +94,7 @@ fn list(name: &str) -> String {
 /// What was said, without where the lists are.
 fn placeless(text: &str) -> String {
     let folder = list("press.st").replace("press.st", "");
-    text.replace(&folder, "")
+    text.replace(&folder, "").replace(folder.trim_end_matches('/'), "lists")
 }
 
 #[test]
@@ -106,11 +106,14 @@ fn a_scenario_made_of_a_list_runs_and_checks_at_once() {
         let said = typed(folder.path(), &["new", "press", "--from", &list(name)]);
         assert_eq!((said.code, said.err.as_str()), (Some(0), ""), "{name}");
         insta::assert_snapshot!(format!("new_from_{name}"), placeless(&said.out));
-        let said = typed(folder.path(), &["run", "press", "--until", "100ms", "--runs", "2"]);
+        // What comes next says what it takes to read sources that are elsewhere.
+        let next = said.out.rsplit_once("next: onescan run press").expect("what comes next").1.to_owned();
+        let allowed: Vec<&str> = next.split_whitespace().collect();
+        let said = typed(folder.path(), &[&["run", "press", "--until", "100ms", "--runs", "2"], &allowed[..]].concat());
         assert_eq!(said.code, Some(0), "{name}: {said:?}");
-        let said = typed(folder.path(), &["check", "press"]);
+        let said = typed(folder.path(), &[&["check", "press"], &allowed[..]].concat());
         assert_eq!(said.code, Some(0), "{name}: {said:?}");
-        let said = typed(folder.path(), &["wiring", "press"]);
+        let said = typed(folder.path(), &[&["wiring", "press"], &allowed[..]].concat());
         assert_eq!(said.code, Some(0), "{name}: {said:?}");
         let again = typed(folder.path(), &["new", "press", "--from", &list(name)]);
         assert_eq!(again.code, Some(2), "{name}: {again:?}");
@@ -169,6 +172,8 @@ fn sources_that_a_list_was_read_from_run() {
         text.replace("kind = \"operator\"", plant).replace("[clients.plant]", &format!("{expect}\n[clients.plant]"));
     std::fs::write(&file, text).unwrap();
     let said = typed(folder, &["run", "line/press", "--until", "100ms"]);
+    assert_eq!((said.code, said.err.contains("--allow-path")), (Some(2), true), "the sources are outside: {said:?}");
+    let said = typed(folder, &["run", "line/press", "--until", "100ms", "--allow-path", "."]);
     assert_eq!(said.code, Some(0), "{said:?}");
 }
 

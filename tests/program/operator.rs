@@ -49,7 +49,19 @@ fn what_an_operator_did_is_repeated_to_the_same_digest() {
     let live: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(live["status"], "stopped");
     for source in ["live", "live/run-1/events.jsonl"] {
-        let words = ["run", ".", "--format", "json", "--until", "1h", "--replay-operator", source, "--record", "again"];
+        let words = [
+            "run",
+            ".",
+            "--format",
+            "json",
+            "--until",
+            "1h",
+            "--replay-operator",
+            source,
+            "--record",
+            "again",
+            "--overwrite",
+        ];
         let said = typed(folder.path(), &words);
         let again: serde_json::Value = serde_json::from_str(&said.out).unwrap_or_else(|_| panic!("{said:?}"));
         assert_eq!((&again["digest"], &again["steps"]), (&live["digest"], &live["steps"]), "{source}");
@@ -66,8 +78,19 @@ fn inputs_can_be_written_by_hand() {
     let folder = copied_shear();
     let inputs = "{\"step\":5,\"t_v_ns\":50000000,\"event\":\"operator\",\"action\":\"force\",\"signal\":\"Sensor_1\",\"value\":\"TRUE\"}\n";
     std::fs::write(folder.path().join("inputs.jsonl"), inputs).unwrap();
-    let words =
-        ["run", ".", "--until", "200ms", "--replay-operator", "inputs.jsonl", "--record", "r", "--record-also", "csv"];
+    let words = [
+        "run",
+        ".",
+        "--until",
+        "200ms",
+        "--replay-operator",
+        "inputs.jsonl",
+        "--record",
+        "r",
+        "--record-also",
+        "csv",
+        "--overwrite",
+    ];
     assert!(typed(folder.path(), &words).code.is_some());
     let csv = std::fs::read_to_string(folder.path().join("r/run-1/trajectory.csv")).unwrap();
     let rows: Vec<Vec<&str>> = csv.lines().map(|row| row.split(',').collect()).collect();

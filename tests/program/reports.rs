@@ -100,7 +100,7 @@ fn coverage_of_all_cases_is_that_of_each_together() {
     };
     let all = lcov(&[]);
     assert!(all.contains("SF:plc/shear.st"), "{all}");
-    assert!(all.lines().any(|line| line.starts_with("DA:") && line.ends_with(",5")), "five cases: {all}");
+    assert!(all.lines().any(|line| line.starts_with("DA:") && line.ends_with(",6")), "six cases: {all}");
     assert_eq!(lcov(&["--jobs", "1"]), all);
 }
 

@@ -1,6 +1,6 @@
 //! What was taken over from an I/O list, and what was not.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Write};
 use std::path::Path;
 
@@ -114,7 +114,17 @@ fn human(listed: &Listed, out: &mut dyn Write) -> io::Result<()> {
         format!("{}: {name}: {}", entry.at, entry.why)
     });
     section("left out", &left_out.collect::<Vec<_>>(), out)?;
-    writeln!(out, "\nnext: onescan run {}", listed.folder.display())
+    writeln!(out, "\nnext: onescan run {}{}", listed.folder.display(), allowance(list))
+}
+
+/// What a command needs so that the scenario may read sources that stay where they are, outside of its folder.
+pub(super) fn allowance(list: &IoList) -> String {
+    let files = list.sources.iter().flat_map(|sources| &sources.files);
+    let folders: BTreeSet<String> = files
+        .filter_map(|file| file.parent())
+        .map(|folder| if folder == Path::new("") { ".".to_owned() } else { folder.display().to_string() })
+        .collect();
+    folders.iter().map(|folder| format!(" --allow-path {folder}")).collect()
 }
 
 fn section(title: &str, lines: &[String], out: &mut dyn Write) -> io::Result<()> {

@@ -6,6 +6,7 @@ use onescan_server::time::TimeSpan;
 use serde_json::Value;
 
 use super::from_list::{Plc, Signal};
+use super::listed::allowance;
 use crate::io_list::{Direction, IoList, ListLink};
 use crate::map::Fragment;
 use crate::map::fragment::{Entry, Place};
@@ -204,9 +205,9 @@ Made of {from} ({title}).
 | `scenario.toml` | the session: the signals of the list, the clients |
 {main}
 ```sh
-onescan run {name}       # run it: all inputs of the PLC are 0 and FALSE
-onescan wiring {name}    # show which signal connects what
-onescan check {name}     # check the PLC's sources
+onescan run {name}{allowance}       # run it: all inputs of the PLC are 0 and FALSE
+onescan wiring {name}{allowance}    # show which signal connects what
+onescan check {name}{allowance}     # check the PLC's sources
 ```
 
 What to do next:
@@ -217,5 +218,6 @@ What to do next:
 ",
         from = file_name(list),
         title = list.kind.title(),
+        allowance = allowance(list),
     )
 }

@@ -84,7 +84,8 @@ impl Judge {
 
     /// Gives away the blocks that no verdict will name: the last one may always be.
     fn forget(&mut self) {
-        let mut others = Vec::new();
+        // What a formula is worth is what it is worth at the first sample, which a negation names whenever it is decided.
+        let mut others = vec![0];
         let first = self.expectations.iter().map(|(_, monitor)| monitor.keeps(&mut others)).min();
         let first = first.unwrap_or(u64::MAX).min(self.open_first().saturating_sub(1));
         let mut index = 0;
