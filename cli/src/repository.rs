@@ -93,15 +93,17 @@ impl Repository {
         Ok(std::array::from_fn(|_| lines.next().unwrap_or_default()))
     }
 
-    /// Writes the files of a commit into `folder`. The inner error says why it has no scenario.
+    /// Writes the files of a commit that are in `part` of the repository into `folder`, all of them where `part` is
+    /// empty. The inner error says why it has no such files.
     ///
     /// # Errors
     /// Git or tar cannot be started, or the folder cannot be made.
-    pub fn take_out(&self, commit: &str, folder: &Path) -> Result<Result<(), String>, RepositoryError> {
+    pub fn take_out(&self, commit: &str, part: &Path, folder: &Path) -> Result<Result<(), String>, RepositoryError> {
         file::create_folder(folder)?;
         let archive = Command::new("git")
             .current_dir(&self.root)
             .args(["archive", "--format=tar", commit])
+            .args((part != Path::new("")).then_some(part))
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
             .spawn();

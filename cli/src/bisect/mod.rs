@@ -133,7 +133,8 @@ impl Search<'_> {
             return Err(Usage::new("interrupted", None).into());
         }
         let folder = self.folder.path().join(commit);
-        let run = self.repository.take_out(commit, &folder.join("tree"))?.and_then(|()| self.run(&folder));
+        let run =
+            self.repository.take_out(commit, Path::new(""), &folder.join("tree"))?.and_then(|()| self.run(&folder));
         let said = match &run {
             Ok((_, Some(digest))) => digest.to_string()[..16].to_owned(),
             Ok((_, None)) => "no digest".to_owned(),

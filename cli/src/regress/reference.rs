@@ -19,12 +19,20 @@ use crate::run::{RunConfig, watched};
 use crate::snapshot::take::Taker;
 use crate::snapshot::{Snapshot, compare};
 
-/// Commits that have been taken out, by the scenario's folder; kept until the tests are over.
+/// Scenarios of commits that have been taken out; kept until the tests are over.
 #[derive(Debug)]
 pub(super) struct References {
     /// The commit that the user names.
     named: Option<String>,
-    taken: Vec<(String, TempDir)>,
+    taken: Vec<Taken>,
+}
+
+/// A scenario's folder as it was at a commit.
+#[derive(Debug)]
+struct Taken {
+    commit: String,
+    scenario: PathBuf,
+    folder: TempDir,
 }
 
 /// A program with the reviewed behaviour.
@@ -80,16 +88,19 @@ impl References {
 
     /// The files of a commit; nothing if they cannot be had.
     fn tree(&mut self, repository: &Repository, commit: &str) -> Result<Option<PathBuf>, TestError> {
-        if let Some((_, folder)) = self.taken.iter().find(|(known, _)| known == commit) {
-            return Ok(Some(folder.path().to_owned()));
+        let scenario = repository.scenario();
+        let is_it = |taken: &&Taken| taken.commit == commit && taken.scenario == scenario;
+        if let Some(taken) = self.taken.iter().find(is_it) {
+            return Ok(Some(taken.folder.path().to_owned()));
         }
         let folder = tempfile::tempdir().map_err(|source| FileError { path: std::env::temp_dir(), source })?;
-        if let Err(why) = repository.take_out(commit, folder.path())? {
+        // A scenario reads its own folder.
+        if let Err(why) = repository.take_out(commit, scenario, folder.path())? {
             tracing::debug!(commit, why, "a commit cannot be taken out");
             return Ok(None);
         }
         let path = folder.path().to_owned();
-        self.taken.push((commit.to_owned(), folder));
+        self.taken.push(Taken { commit: commit.to_owned(), scenario: scenario.to_owned(), folder });
         Ok(Some(path))
     }
 }
