@@ -50,6 +50,30 @@ pub(crate) const MOTION: [(&str, &str); 16] = [
     ("iec/motion/velocity.st", include_str!("../../iec/motion/velocity.st")),
 ];
 
+/// Coordinated motion (part 4, 1.0), for programs that name a group of axes.
+pub(crate) const GROUPS: [(&str, &str); 20] = [
+    ("iec/motion/group/arm.st", include_str!("../../iec/motion/group/arm.st")),
+    ("iec/motion/group/build.st", include_str!("../../iec/motion/group/build.st")),
+    ("iec/motion/group/circular.st", include_str!("../../iec/motion/group/circular.st")),
+    ("iec/motion/group/curve.st", include_str!("../../iec/motion/group/curve.st")),
+    ("iec/motion/group/direct.st", include_str!("../../iec/motion/group/direct.st")),
+    ("iec/motion/group/enable.st", include_str!("../../iec/motion/group/enable.st")),
+    ("iec/motion/group/halt.st", include_str!("../../iec/motion/group/halt.st")),
+    ("iec/motion/group/home.st", include_str!("../../iec/motion/group/home.st")),
+    ("iec/motion/group/kinematics.st", include_str!("../../iec/motion/group/kinematics.st")),
+    ("iec/motion/group/linear.st", include_str!("../../iec/motion/group/linear.st")),
+    ("iec/motion/group/members.st", include_str!("../../iec/motion/group/members.st")),
+    ("iec/motion/group/order.st", include_str!("../../iec/motion/group/order.st")),
+    ("iec/motion/group/path.st", include_str!("../../iec/motion/group/path.st")),
+    ("iec/motion/group/speed.st", include_str!("../../iec/motion/group/speed.st")),
+    ("iec/motion/group/status.st", include_str!("../../iec/motion/group/status.st")),
+    ("iec/motion/group/stop.st", include_str!("../../iec/motion/group/stop.st")),
+    ("iec/motion/group/transform.st", include_str!("../../iec/motion/group/transform.st")),
+    ("iec/motion/group/turn.st", include_str!("../../iec/motion/group/turn.st")),
+    ("iec/motion/group/types.st", include_str!("../../iec/motion/group/types.st")),
+    ("iec/motion/group/way.st", include_str!("../../iec/motion/group/way.st")),
+];
+
 /// The library for a program of these files: nobody pays for motion control or asserts but who uses them.
 pub(crate) fn for_program<'s>(files: impl Iterator<Item = &'s SourceFile>) -> Vec<SourceFile> {
     let texts: Vec<(&str, Dialect)> = files.map(|file| (&**file.text(), file.dialect())).collect();
@@ -60,8 +84,10 @@ pub(crate) fn for_program<'s>(files: impl Iterator<Item = &'s SourceFile>) -> Ve
         Motion::TwinCat if vendors.iter().any(Part::stands_on_an_axis) => twincat_motion::core(),
         Motion::TwinCat | Motion::None => &[],
     };
+    let groups: &[_] = if motion == Motion::Plcopen && names_groups(&texts) { &GROUPS } else { &[] };
     let asserts = texts.iter().any(|(text, _)| mentions_assert(text)).then_some(&ASSERTS);
-    let own = FILES.iter().chain(core).chain(asserts).map(|(name, text)| (*name, *text, Dialect::default()));
+    let own =
+        FILES.iter().chain(core).chain(groups).chain(asserts).map(|(name, text)| (*name, *text, Dialect::default()));
     let vendors = vendors.into_iter().map(|Part { name, text, dialect, .. }| (name, text, dialect));
     own.chain(vendors).map(|(name, text, dialect)| SourceFile::new(name, text).in_dialect(dialect)).collect()
 }
@@ -85,28 +111,33 @@ fn mentions_twincat_motion(text: &str) -> bool {
 
 fn motion_for(texts: &[(&str, Dialect)]) -> Motion {
     let is_twincat = texts.iter().any(|(_, dialect)| *dialect == Dialect::TwinCat);
-    match texts.iter().filter_map(|(text, _)| axis_in(text)).max() {
-        Some(Axis::Used) if is_twincat => Motion::TwinCat,
-        Some(Axis::Used) => Motion::Plcopen,
+    match texts.iter().filter_map(|(text, _)| named_in(text, "AXIS_REF")).max() {
+        Some(Named::Used) if is_twincat => Motion::TwinCat,
+        Some(Named::Used) => Motion::Plcopen,
         None if is_twincat && texts.iter().any(|(text, _)| mentions_twincat_motion(text)) => Motion::TwinCat,
         // A project with an axis of its own has its own blocks for it.
-        Some(Axis::Declared) | None => Motion::None,
+        Some(Named::Declared) | None => Motion::None,
     }
 }
 
-/// What a file has to do with the type of an axis.
+/// What a file has to do with the type of an axis, or of a group of axes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Axis {
+enum Named {
     Used,
     /// The project brings its own, and the blocks for it.
     Declared,
 }
 
-fn axis_in(text: &str) -> Option<Axis> {
-    const NAME: &str = "AXIS_REF";
-    let is_it = |written: Option<&str>| written.is_some_and(|written| written.eq_ignore_ascii_case(NAME));
+/// Whether a program has groups of axes that it does not declare itself.
+fn names_groups(texts: &[(&str, Dialect)]) -> bool {
+    texts.iter().filter_map(|(text, _)| named_in(text, "AXES_GROUP_REF")).max() == Some(Named::Used)
+}
+
+/// `name` begins with four letters and a `_`.
+fn named_in(text: &str, name: &str) -> Option<Named> {
+    let is_it = |written: Option<&str>| written.is_some_and(|written| written.eq_ignore_ascii_case(name));
     let mut somewhere = text.match_indices('_').filter_map(|(at, _)| at.checked_sub(4));
-    if !somewhere.any(|at| is_it(text.get(at..at + NAME.len()))) {
+    if !somewhere.any(|at| is_it(text.get(at..at + name.len()))) {
         return None;
     }
     let tokens: Vec<_> = tokenize(text).into_iter().filter(|token| !token.kind.is_trivia()).collect();
@@ -118,7 +149,7 @@ fn axis_in(text: &str) -> Option<Axis> {
         kind(at + 1) == Some(TokenKind::Punctuation(Punctuation::Colon))
             || at.checked_sub(1).and_then(kind) == Some(TokenKind::Keyword(Keyword::FunctionBlock))
     };
-    names.map(|(at, _)| if declares(at) { Axis::Declared } else { Axis::Used }).max()
+    names.map(|(at, _)| if declares(at) { Named::Declared } else { Named::Used }).max()
 }
 
 #[cfg(test)]
@@ -130,16 +161,29 @@ mod tests {
         for (text, found) in [
             ("PROGRAM P VAR a : TON; END_VAR END_PROGRAM", None),
             ("PROGRAM P (* AXIS_REF *) VAR my_AXIS_REFs, _ : INT; END_VAR END_PROGRAM", None),
-            ("PROGRAM P VAR a : Axis_Ref; END_VAR END_PROGRAM", Some(Axis::Used)),
-            ("PROGRAM P VAR a : AXIS_REF := (Linked := TRUE); END_VAR END_PROGRAM", Some(Axis::Used)),
-            ("TYPE AXIS_REF : STRUCT a : INT; END_STRUCT END_TYPE", Some(Axis::Declared)),
-            ("VAR_GLOBAL x : AXIS_REF; END_VAR FUNCTION_BLOCK AXIS_REF END_FUNCTION_BLOCK", Some(Axis::Declared)),
+            ("PROGRAM P VAR a : Axis_Ref; END_VAR END_PROGRAM", Some(Named::Used)),
+            ("PROGRAM P VAR a : AXIS_REF := (Linked := TRUE); END_VAR END_PROGRAM", Some(Named::Used)),
+            ("TYPE AXIS_REF : STRUCT a : INT; END_STRUCT END_TYPE", Some(Named::Declared)),
+            ("VAR_GLOBAL x : AXIS_REF; END_VAR FUNCTION_BLOCK AXIS_REF END_FUNCTION_BLOCK", Some(Named::Declared)),
         ] {
-            assert_eq!(axis_in(text), found, "{text}");
+            assert_eq!(named_in(text, "AXIS_REF"), found, "{text}");
             let file = SourceFile::new("a.st", text);
             let count = for_program([&file].into_iter()).len();
-            let motion = if found == Some(Axis::Used) { MOTION.len() } else { 0 };
+            let motion = if found == Some(Named::Used) { MOTION.len() } else { 0 };
             assert_eq!(count, FILES.len() + motion, "{text}");
+        }
+    }
+
+    #[test]
+    fn coordinated_motion_is_for_who_names_a_group() {
+        for (text, expected) in [
+            ("VAR a : AXIS_REF; g : Axes_Group_Ref; END_VAR", GROUPS.len()),
+            ("VAR a : AXIS_REF; g : AXES_GROUP_REFS; END_VAR", 0),
+            ("VAR a : AXIS_REF; END_VAR TYPE AXES_GROUP_REF : STRUCT n : INT; END_STRUCT END_TYPE", 0),
+        ] {
+            let file = SourceFile::new("a.st", text);
+            let count = for_program([&file].into_iter()).len();
+            assert_eq!(count, FILES.len() + MOTION.len() + expected, "{text}");
         }
     }
 
@@ -161,7 +205,7 @@ mod tests {
 
     #[test]
     fn every_source_of_motion_control_says_what_it_follows() {
-        for (name, text) in MOTION {
+        for (name, text) in MOTION.iter().chain(&GROUPS) {
             assert!(text.starts_with("(* ") && text.contains("Function blocks for motion control"), "{name}");
         }
     }

@@ -60,6 +60,8 @@ macro_rules! twincat_motion {
 /// Projects go from one of the two to the other, and take what they name along.
 const BOTH: &[Dialect] = &[Dialect::Codesys, Dialect::TwinCat];
 const SCL: &[Dialect] = &[Dialect::SiemensScl];
+const AX: &[Dialect] = &[Dialect::Iec3];
+const MATIEC: &[Dialect] = &[Dialect::Matiec];
 
 const PARTS: &[Part] = parts![
     Iec3 &Dialect::ALL, "generic_inputs";
@@ -83,13 +85,19 @@ const PARTS: &[Part] = parts![
     SiemensScl SCL, "siemens_conversion";
     SiemensScl SCL, "siemens_time";
     Iec3 SCL, "siemens_clock";
+    Codesys AX, "ax_unit";
+    Matiec MATIEC, "matiec_control";
+    Matiec MATIEC, "beremiz_hmi";
+    Matiec MATIEC, "beremiz_runtime";
 ];
 
 /// Files that words of the language ask for, which no file declares: of what inputs of generic types are inside, and
-/// of the memory of `__NEW`.
-const BY_WORDS: [(&str, &[&str]); 2] = [
+/// of the memory of `__NEW`, and a namespace that is named as a whole.
+const BY_WORDS: [(&str, &[&str]); 3] = [
     ("iec/vendor/generic_inputs.st", &["ANY", "ANY_BIT", "ANY_DATE", "ANY_NUM", "ANY_REAL", "ANY_INT", "ANY_STRING"]),
     ("iec/vendor/dynamic_memory.st", &["__NEW", "__DELETE"]),
+    // Named by `USING AxUnit;`, and then only in parts.
+    ("iec/vendor/ax_unit.st", &["AXUNIT"]),
 ];
 
 const TWINCAT_TYPES: &str = "iec/vendor/tc2_mc2_types.st";
@@ -430,8 +438,10 @@ mod tests {
     fn no_name_is_declared_twice() {
         let index = Index::get();
         for (name, homes) in &index.by_name {
-            let motions: BTreeSet<_> = homes.iter().map(|at| format!("{:?}", index.parts[*at].motion)).collect();
-            assert!(motions.len() == homes.len(), "{name}");
+            // Those of several dialects are never there together.
+            let kind = |part: &Part| format!("{:?} {:?}", part.motion, part.homes.contains(&Dialect::Matiec));
+            let kinds: BTreeSet<_> = homes.iter().map(|at| kind(&index.parts[*at])).collect();
+            assert!(kinds.len() == homes.len(), "{name}");
         }
     }
 

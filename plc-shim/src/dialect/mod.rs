@@ -360,6 +360,10 @@ features! {
     OutputsHandedOn "an instance's output for a `VAR_IN_OUT`",
     EmptyBases "a comma behind the last base, `EXTENDS A,`",
     ShiftedLiterals "a shift of a literal without a type, `SHL(1, n)`",
+    IntegerParts "a part of an integer, `i.%X3`, `i.%B0`",
+    LoneOutputs "the only parameter of a function without its name, where that is an output",
+    ProgramInOuts "a `VAR_IN_OUT` of a program that nobody calls",
+    CCode "C code that sets variables, `{{ SetFbVar(a, 1); }}`",
     GenericConstants "generic blocks: `VAR_GENERIC CONSTANT`, `FB<8>`",
 }
 

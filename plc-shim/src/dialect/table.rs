@@ -70,12 +70,16 @@ pub const FEATURES: &[FeatureRow] = &[
     row(Feature::ClockFunctions, &[Codesys, TwinCat], "CODESYS and TwinCAT: operators TIME, LTIME"),
     row(
         Feature::OwnStandardBlocks,
-        &[Codesys, TwinCat],
-        "CODESYS and TwinCAT: a project's own objects go before those of libraries",
+        &[Codesys, TwinCat, Matiec],
+        "CODESYS and TwinCAT: a project's own objects go before those of libraries; Beremiz: its library files declare them",
     ),
     row(Feature::QuotedNames, &[SiemensScl], "S7-1200 System Manual: SCL, addressing of tags"),
     row(Feature::Blocks, &[SiemensScl], "TIA Portal: external source files, SCL"),
-    row(Feature::InstanceInternals, &[SiemensScl], "TIA Portal: addressing instance data blocks"),
+    row(
+        Feature::InstanceInternals,
+        &[SiemensScl, Matiec],
+        "TIA Portal: addressing instance data blocks; MatIEC: accepts it",
+    ),
     row(
         Feature::BitsAsReals,
         &[Iec2, Codesys, TwinCat, Matiec],
@@ -99,8 +103,8 @@ pub const FEATURES: &[FeatureRow] = &[
     row(Feature::InstanceCopies, &[Codesys, TwinCat], "CODESYS and TwinCAT: assignment of instances, a copy"),
     row(
         Feature::ReadableInternals,
-        &[Codesys, TwinCat, SiemensScl],
-        "CODESYS: VAR, local variables; TwinCAT: local variables; TIA Portal: addressing instance data blocks",
+        &[Codesys, TwinCat, SiemensScl, Matiec],
+        "CODESYS: VAR, local variables; TwinCAT: local variables; TIA Portal: addressing instance data blocks; MatIEC: accepts it",
     ),
     row(Feature::ProgramInstances, &[Codesys, TwinCat], "CODESYS and TwinCAT: object PROGRAM, calling a program"),
     row(Feature::DynamicMemory, &[Codesys, TwinCat], "CODESYS and TwinCAT: operators __NEW, __DELETE"),
@@ -118,8 +122,8 @@ pub const FEATURES: &[FeatureRow] = &[
     ),
     row(
         Feature::ValuesByContext,
-        &[Codesys, TwinCat],
-        "CODESYS and TwinCAT: enumerations; accept it where a value is assigned or compared",
+        &[Iec3, Codesys, TwinCat],
+        "3rd ed. 6.4.4.2, an error if nothing says which is meant; CODESYS and TwinCAT: enumerations",
     ),
     row(Feature::ValueStatements, &[Codesys, TwinCat], "CODESYS and TwinCAT: compile it, with a warning"),
     row(Feature::Exceptions, &[Codesys, TwinCat], "CODESYS and TwinCAT: operators __TRY, __CATCH, __FINALLY, __ENDTRY"),
@@ -146,6 +150,18 @@ pub const FEATURES: &[FeatureRow] = &[
         Feature::ShiftedLiterals,
         &[Codesys, TwinCat],
         "CODESYS and TwinCAT: SHL, \"the number of bits for the arithmetic operation is given by the data type of the input\"; constants, the smallest type",
+    ),
+    row(
+        Feature::IntegerParts,
+        &[Iec3, SiemensScl],
+        "S7-1200 System Manual: accessing a slice of a tag; SIMATIC AX: accepts it; 3rd ed. Table 17, bit strings alone",
+    ),
+    row(Feature::LoneOutputs, &[SiemensScl], "TIA Portal: calling functions, a block with one parameter"),
+    row(Feature::ProgramInOuts, &[Matiec], "MatIEC: accepts it; CODESYS and TwinCAT: for programs that others call"),
+    row(
+        Feature::CCode,
+        &[Matiec],
+        "Beremiz: C code between braces, GetFbVar and SetFbVar; done elsewhere, as a stub is",
     ),
     row(Feature::GenericConstants, &[Codesys, TwinCat], "CODESYS and TwinCAT: VAR_GENERIC CONSTANT"),
 ];

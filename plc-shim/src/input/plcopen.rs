@@ -7,6 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use super::Taken;
+use super::plcopen_object::sections_of;
 use super::xml::{Element, XmlError, parse};
 use crate::diagnostic::Code;
 use crate::dialect::{Dialect, Feature};
@@ -15,6 +16,7 @@ use crate::dialect::{Dialect, Feature};
 pub(super) fn extract(file: &str) -> Result<Taken, XmlError> {
     let root = parse(file)?;
     let mut writer = Writer::new(file, dialect(file, &root), programs(&root));
+    writer.strings = strings(&root);
     if root.name != "project" {
         let message = "`<project>` is wanted here: only PLCopen XML is read";
         writer.taken.report(root.open.clone(), Code::MalformedXml, message);
@@ -49,18 +51,50 @@ fn programs(root: &Element) -> BTreeSet<String> {
     found
 }
 
+/// What values of a string type stand between; nothing for other types.
+fn quote(ty: &Element, known: &BTreeMap<String, char>) -> Option<char> {
+    match ty.name.as_str() {
+        "string" => Some('\''),
+        "wstring" => Some('"'),
+        "derived" => known.get(&ty.attribute("name")?.value.to_ascii_uppercase()).copied(),
+        _ => None,
+    }
+}
+
+/// Types of strings that the file declares, each behind those that it is made of, and the one that Beremiz gives.
+fn strings(root: &Element) -> BTreeMap<String, char> {
+    let mut found = BTreeMap::from([("HMI_STRING".to_owned(), '\'')]);
+    let types = root.child("types").and_then(|types| types.child("dataTypes"));
+    for declared in types.into_iter().flat_map(Element::elements) {
+        let base = declared.child("baseType").and_then(|base| base.elements().next());
+        if let (Some(name), Some(quote)) = (declared.attribute("name"), base.and_then(|base| quote(base, &found))) {
+            found.insert(name.value.to_ascii_uppercase(), quote);
+        }
+    }
+    found
+}
+
 /// How the editor of Beremiz, which OpenPLC's is made of, names the schema once more. It writes no name of its own.
-const BEREMIZ_NAMESPACE: &str = "xmlns:ns1=\"http://www.plcopen.org/xml/tc6_0201\"";
+const BEREMIZ_NAMESPACE: &str = "xmlns:ns1=\"http://www.plcopen.org/xml/tc6";
+
+/// C code in a file can only be for `MatIEC`: it names the block's data so.
+const BEREMIZ_C_CODE: &str = "(data__->,";
 
 /// The dialect of the tool that wrote the file: its name, or CODESYS' own data in it.
 fn dialect(file: &str, root: &Element) -> Dialect {
-    let product = root.child("fileHeader").and_then(|header| header.attribute("productName"));
+    let header = root.child("fileHeader");
+    let product = header.and_then(|header| header.attribute("productName"));
     let product = product.map_or_else(String::new, |name| name.value.to_ascii_uppercase());
+    // What it was made with, by whom and what it is.
+    let about = header.into_iter().flat_map(|header| &header.attributes);
+    let about: String = about.map(|attribute| attribute.value.to_ascii_uppercase() + " ").collect();
     if product.contains("TWINCAT") {
         Dialect::TwinCat
     } else if product.contains("CODESYS") || file.contains("3s-software.com/plcopenxml/") {
         Dialect::Codesys
-    } else if product.contains("BEREMIZ") || product.contains("OPENPLC") || file.contains(BEREMIZ_NAMESPACE) {
+    } else if ["BEREMIZ", "OPENPLC"].iter().any(|name| about.contains(name))
+        || [BEREMIZ_NAMESPACE, BEREMIZ_C_CODE].iter().any(|mark| file.contains(mark))
+    {
         Dialect::Matiec
     } else {
         Dialect::default()
@@ -76,6 +110,10 @@ pub(super) struct Writer<'a> {
     pub(super) triggers: BTreeMap<u32, String>,
     /// How many networks have been written.
     pub(super) bodies: u32,
+    /// The transition whose body is being written, by its name in the file, and the one it has in the text.
+    pub(super) transition: Option<(String, String)>,
+    /// The file's own types of strings, as keys, and what their values stand between.
+    strings: BTreeMap<String, char>,
 }
 
 /// Sections of an interface and their keywords (TC6 2.01, `interface`).
@@ -96,7 +134,8 @@ const QUALIFIERS: [(&str, &str); 4] =
 impl<'a> Writer<'a> {
     fn new(file: &'a str, dialect: Dialect, programs: BTreeSet<String>) -> Self {
         let taken = Taken { dialect, ..Taken::default() };
-        Self { taken, file, programs, triggers: BTreeMap::new(), bodies: 0 }
+        let (triggers, strings) = (BTreeMap::new(), BTreeMap::new());
+        Self { taken, file, programs, triggers, bodies: 0, transition: None, strings }
     }
 }
 
@@ -210,6 +249,14 @@ impl Writer<'_> {
     }
 
     fn section_called(&mut self, element: &Element, instead: Option<&'static str>) {
+        let parts = sections_of(element);
+        if !parts.is_empty() {
+            // CODESYS: the list has variables of several kinds, and the attributes of the whole are those of some.
+            for part in parts {
+                self.section_called(part, instead);
+            }
+            return;
+        }
         let name = element.name.as_str();
         let known = SECTIONS.iter().find(|(known, _)| *known == name).map(|(_, keyword)| *keyword);
         let Some(keyword) = instead.or(known) else {
@@ -344,8 +391,23 @@ impl Writer<'_> {
     fn initial_value(&mut self, element: &Element) {
         if let Some(value) = element.child("initialValue") {
             self.write(" := ", &value.open);
-            self.value_in(value);
+            if !self.bare_string(element, value) {
+                self.value_in(value);
+            }
         }
+    }
+
+    /// Beremiz' editor takes strings without quotes, and its generator puts them there. True if it was one.
+    fn bare_string(&mut self, element: &Element, value: &Element) -> bool {
+        let ty = ["type", "baseType"].iter().find_map(|name| element.child(name)?.elements().next());
+        let quote = ty.and_then(|ty| quote(ty, &self.strings)).filter(|_| self.taken.dialect == Dialect::Matiec);
+        let text = value.child("simpleValue").and_then(|simple| simple.attribute("value"));
+        let (Some(quote), Some(text)) = (quote, text) else { return false };
+        if text.value.starts_with(quote) || text.value.ends_with(quote) {
+            return false;
+        }
+        self.write(&format!("{quote}{}{quote}", text.value), &text.span);
+        true
     }
 
     fn value_in(&mut self, holder: &Element) {

@@ -58,11 +58,13 @@ impl Writer<'_> {
                 self.write(" :\n", open);
                 self.network_value(chart, holder, name);
             }
-            Condition::Body { body, negated, .. } => {
+            Condition::Body { name: own, body, negated } => {
                 let Some(text) = body.child("ST") else {
                     // A network assigns to the transition's name; a list of instructions leaves its result.
                     self.write(" :\n", open);
+                    self.transition = own.clone().map(|own| (own, name.to_owned()));
                     self.body(body);
+                    self.transition = None;
                     match (body.child("IL").is_some(), negated) {
                         (true, false) => self.write(&format!("ST {name}\n"), open),
                         (true, true) => self.write(&format!("STN {name}\n"), open),
@@ -89,6 +91,13 @@ impl Writer<'_> {
                 }
             }
         }
+    }
+
+    /// What the text has for the name of the transition whose body is being written: a second one with the same body
+    /// has another.
+    pub(super) fn transition_named(&self, name: &str) -> Option<String> {
+        let (own, instead) = self.transition.as_ref()?;
+        own.eq_ignore_ascii_case(name).then(|| instead.clone())
     }
 
     fn leaf(&mut self, leaf: &Leaf) {

@@ -17,6 +17,12 @@ fn additions<'e>(element: &'e Element, kind: &'static str) -> impl Iterator<Item
     named.flat_map(Element::elements)
 }
 
+/// The sections of a list that has variables of several kinds, as `VAR_GLOBAL CONSTANT` beside `VAR_GLOBAL`; none if
+/// the list itself is the only one.
+pub(crate) fn sections_of(list: &Element) -> Vec<&Element> {
+    additions(list, "mixedattrsvarlist").flat_map(Element::elements).collect()
+}
+
 /// The text of an element without markup.
 pub(crate) fn inner_text(file: &str, element: &Element) -> String {
     let piece = |node: &Node| match node {
@@ -223,6 +229,9 @@ impl Writer<'_> {
         self.write("INTERFACE ", &interface.open);
         self.attribute(interface, "name");
         self.names(interface, "Extends", " EXTENDS ");
+        if let Some(inheritance) = interface.child("Inheritance") {
+            self.names(inheritance, "Extends", " EXTENDS ");
+        }
         self.heritage(Some(interface));
         self.write("\n", &interface.open);
         for list in interface.elements() {

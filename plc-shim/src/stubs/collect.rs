@@ -139,8 +139,14 @@ impl<'a> Collector<'a> {
                         (Some(low), Some(high)) => format!("{low}..{high}"),
                         _ => super::ty::ANY_BOUNDS.to_owned(),
                     });
-                Ty::Array(bounds.collect::<Vec<_>>(), Box::new(self.type_of(inner, home, depth)))
+                let bounds = bounds.collect::<Vec<_>>();
+                match self.type_of(inner, home, depth) {
+                    Ty::Any => Ty::Any,
+                    element => Ty::Array(bounds, Box::new(element)),
+                }
             }
+            // A structure without a name goes to no other parameter.
+            TypeSpecKind::Struct(_) => Ty::Any,
             TypeSpecKind::OpenArray(count, inner) => {
                 let bounds = (0..*count).map(|_| super::ty::ANY_BOUNDS.to_owned()).collect();
                 Ty::Array(bounds, Box::new(self.type_of(inner, home, depth)))

@@ -344,8 +344,10 @@ impl Printer<'_, '_> {
             let (list, name) = global.name.rsplit_once('.').unwrap_or(("", &global.name));
             let ty = self.collector.slots.last_choice(global.slot);
             let is_number = matches!(&ty, Ty::Elementary(found) if found.is_number() || found.is_bits() && *found != ElementaryType::Bool);
-            let is_constant = global.is_constant && is_number && !global.written;
-            let narrow = self.collector.slots.narrowest(global.slot);
+            // A label that the project's own enumeration does not have stands for a number.
+            let is_label = global.is_constant && self.is_own_enumeration(&ty);
+            let is_constant = global.is_constant && (is_number || is_label) && !global.written;
+            let narrow = if is_label { ElementaryType::Int } else { self.collector.slots.narrowest(global.slot) };
             let value = if is_constant { format!(" := {}", value_of(narrow, constants)) } else { String::new() };
             constants += usize::from(is_constant);
             let ty = if is_constant { narrow.name().to_owned() } else { self.type_text(&ty, name) };
@@ -372,6 +374,12 @@ impl Printer<'_, '_> {
                 inner.push_str(&text);
             }
         }
+    }
+
+    fn is_own_enumeration(&self, ty: &Ty) -> bool {
+        let Ty::Declared(key) = ty else { return false };
+        let named = self.collector.world.types.get(key).filter(|named| !named.ast.external);
+        named.is_some_and(|named| matches!(named.ast.spec.kind, TypeSpecKind::Enumeration(..)))
     }
 
     pub(super) fn slot_text(&self, slot: Option<Slot>, name: &str) -> String {

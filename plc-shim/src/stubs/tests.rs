@@ -327,3 +327,41 @@ PROGRAM P VAR_EXTERNAL far : STRING[20]; list : ARRAY [0..3] OF INT; END_VAR lis
     assert!(text.contains("{external}\nNAMESPACE System.Math END_NAMESPACE"), "{text}");
     assert!(text.contains("    far : STRING[20];\n    list : ARRAY [0..3] OF INT;\n"), "{text}");
 }
+
+#[test]
+fn what_is_referred_to_and_given_a_value_is_no_reference() {
+    let text = stubs(
+        "FUNCTION_BLOCK Own VAR set : FB_Value := (fValue := 5); seen : REFERENCE TO REAL REF= set.fValue; END_VAR
+  IF seen > 3.0 THEN set(); END_IF
+END_FUNCTION_BLOCK
+PROGRAM P VAR o : Own; END_VAR o(); END_PROGRAM",
+    );
+    assert!(text.contains("fValue : REAL") && !text.contains("REFERENCE TO"), "{text}");
+}
+
+#[test]
+fn a_label_that_the_project_s_enumeration_lacks_is_a_number() {
+    let text = "TYPE E : (Idle, Busy); END_TYPE
+PROGRAM P VAR s : ST_Far; e1 : E; END_VAR
+  s.state := e1; s.state := OPEN; IF s.state = OPEN THEN e1 := Busy; END_IF
+  CASE s.state OF OPEN: e1 := Idle; END_CASE
+END_PROGRAM";
+    let written = write(&[input(text)], None);
+    assert!(written.text.contains("VAR_GLOBAL CONSTANT\n    OPEN : INT := "), "{}", written.text);
+    let own = Input::from_text("stubs.st", SourceKind::Text, written.text.as_str());
+    let findings = inspect([input(text), own], None);
+    assert!(findings.findings().iter().all(|found| found.diagnostic().severity != Severity::Error), "{findings}");
+}
+
+/// Nobody else can name the type of such a structure.
+#[test]
+fn a_structure_without_a_name_is_given_for_any() {
+    let text =
+        "FUNCTION_BLOCK \"F\" VAR s : STRUCT a : INT; END_STRUCT; list : ARRAY [0..3] OF STRUCT b : INT; END_STRUCT;
+  n : INT; END_VAR BEGIN #n := RD_FAR(INFO := #s, ALL := #list); END_FUNCTION_BLOCK";
+    let project = || Input::from_text("main.scl", SourceKind::Text, text).in_dialect(Dialect::SiemensScl);
+    let written = write(&[project()], None);
+    assert!(written.text.contains("INFO : ANY;") && written.text.contains("ALL : ANY;"), "{}", written.text);
+    let findings = inspect([project(), Input::from_text("stubs.st", SourceKind::Text, written.text.as_str())], None);
+    assert!(findings.findings().iter().all(|found| found.diagnostic().severity != Severity::Error), "{findings}");
+}

@@ -194,6 +194,15 @@ impl Slots {
         if from.iter().any(is_pointer) && from.iter().any(is_number) {
             return Some(Ty::Elementary(ElementaryType::Lword));
         }
+        // A reference to it is made here, and a value goes into it there: it is no reference itself.
+        let is_value = |ty: &Ty| matches!(ty, Ty::Elementary(_) | Ty::Integer | Ty::Wide(_) | Ty::Real | Ty::Text(_));
+        let referred = to.iter().find_map(|ty| match ty {
+            Ty::Pointer(ReferenceKind::Reference, inner) if matches!(**inner, Ty::Elementary(_)) => Some(&**inner),
+            _ => None,
+        });
+        if let Some(inner) = referred.filter(|_| from.iter().any(is_value)) {
+            return Some(inner.clone());
+        }
         let built = |ty: &&Ty| matches!(ty, Ty::Array(..) | Ty::Pointer(..));
         // One that a declaration tells goes before one that is only indexed or followed.
         let told = |ty: &&Ty| match ty {

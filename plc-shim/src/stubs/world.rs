@@ -129,7 +129,9 @@ impl<'a> World<'a> {
     pub(super) fn missing_globals(&self) -> BTreeMap<String, (&Ident, &TypeSpec)> {
         let mut found = BTreeMap::new();
         for unit in self.units.values().filter(|unit| !unit.library) {
-            let external = unit.pou.sections.iter().filter(|section| section.kind == SectionKind::External);
+            let inner = unit.pou.object.members.iter().flat_map(|member| &member.pou.sections);
+            let sections = unit.pou.sections.iter().chain(inner);
+            let external = sections.filter(|section| section.kind == SectionKind::External);
             for variable in external.flat_map(|section| &section.variables) {
                 for name in &variable.names {
                     if self.global_key(&unit.home, &name.key()).is_none() {

@@ -23,6 +23,7 @@ mod untyped_constant;
 use self::cursor::Cursor;
 use super::ast::{CompilationUnit, Expr, Initialiser};
 use super::lexer::{tokenize, tokenize_in};
+use super::pragma::sets_by_c;
 use super::token::{Token, TokenKind};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::{Dialect, Feature};
@@ -112,11 +113,16 @@ pub(crate) fn parse_expression(text: &str) -> Option<Expr> {
 /// Says that C code, which `MatIEC` takes between braces, is not carried out: what it sets would be missing.
 fn report_c_code(cursor: &mut Cursor<'_>, span: Span) {
     let text = cursor.text(span.start, span.end);
-    let sets = ["__SET_VAR(", "__SET_EXTERNAL(", "__SET_LOCATED(", "SetFbVar("].iter().any(|call| text.contains(call));
-    if sets {
+    let sets = sets_by_c(text);
+    if sets && cursor.dialect().has(Feature::CCode) {
+        let message = "C code is a stub: the variables that it sets keep their values";
+        let found = Diagnostic::warning(Code::StubUsed, span, message);
+        cursor.report(found.with_help("write in Structured Text what it does"));
+    } else if sets {
         let message = "C code that sets variables is not carried out";
         let found = Diagnostic::error(Code::VendorRuntime, span, message);
-        cursor.report(found.with_help("write in Structured Text what it does"));
+        let help = format!("write in Structured Text what it does; {}", Feature::CCode.help());
+        cursor.report(found.with_help(help));
     } else if text.starts_with("{{") {
         let found = Diagnostic::warning(Code::VendorRuntime, span, "C code is not carried out");
         cursor.report(found.with_help("it sets no variable, so the values are the same without it"));

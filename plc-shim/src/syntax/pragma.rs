@@ -17,3 +17,8 @@ pub(crate) fn behind_pragma(tokens: &[Token], text: &str, is_it: impl Fn(&str) -
     }
     found
 }
+
+/// True for C code that sets variables, which `MatIEC` takes between braces.
+pub(crate) fn sets_by_c(pragma: &str) -> bool {
+    ["__SET_VAR(", "__SET_EXTERNAL(", "__SET_LOCATED(", "SetFbVar("].iter().any(|call| pragma.contains(call))
+}

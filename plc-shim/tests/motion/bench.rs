@@ -93,8 +93,13 @@ fn application() -> &'static Application {
 impl Bench {
     /// Nothing has power yet.
     pub(crate) fn cold() -> Self {
-        let plan = TaskPlan::single(application(), TimeSpan::millis::<1>());
-        Self { plc: SoftPlc::new(application(), &plan).expect("the plan suits"), now_ns: 0, step_ns: 10 * MS }
+        Self::on(application())
+    }
+
+    /// Another program `P`.
+    pub(crate) fn on(application: &Application) -> Self {
+        let plan = TaskPlan::single(application, TimeSpan::millis::<1>());
+        Self { plc: SoftPlc::new(application, &plan).expect("the plan suits"), now_ns: 0, step_ns: 10 * MS }
     }
 
     /// Both axes have power and stand still.
@@ -209,6 +214,13 @@ impl Bench {
             self.scan();
         }
         panic!("{output} stays FALSE");
+    }
+
+    /// A PLC with the state of this one, which goes on from here.
+    pub(crate) fn resumed(&self, application: &Application) -> Self {
+        let mut bench = Self { now_ns: self.now_ns, step_ns: self.step_ns, ..Self::on(application) };
+        bench.plc.restore(&self.plc.save()).expect("its own state");
+        bench
     }
 
     /// The state of the PLC as bytes.

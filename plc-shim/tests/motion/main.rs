@@ -4,6 +4,7 @@ mod bench;
 mod blending;
 mod coupling;
 mod drive;
+mod group;
 mod laws;
 mod outputs;
 mod profiles;

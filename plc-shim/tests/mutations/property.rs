@@ -1,7 +1,5 @@
 //! What holds for any bytes in a source file of any kind: the front end neither panics nor hangs, and what parses is
 //! printed so that it parses to the same text again.
-//!
-//! The fuzz target asks the same.
 
 use onescan_plc_shim::Input;
 use onescan_plc_shim::input::kind::SourceKind;

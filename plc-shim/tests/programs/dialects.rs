@@ -128,6 +128,15 @@ fn use_in_projects(feature: Feature) -> &'static str {
             "FUNCTION_BLOCK F VAR_IN_OUT n : INT; END_VAR n := n + 1; END_FUNCTION_BLOCK
              PROGRAM P VAR f1 : F; a, b : INT; END_VAR f1(n := a); b := f1.n; END_PROGRAM"
         }
+        Feature::LoneOutputs => {
+            "FUNCTION F : INT VAR_OUTPUT q : INT; END_VAR q := 3; F := 1; END_FUNCTION
+             PROGRAM P VAR a, b : INT; END_VAR a := F(b); END_PROGRAM"
+        }
+        Feature::IntegerParts => "PROGRAM P VAR i : INT; x : BOOL; END_VAR x := i.%X3; END_PROGRAM",
+        Feature::ProgramInOuts => {
+            "PROGRAM P VAR_IN_OUT n : INT; END_VAR n := n + 1; END_PROGRAM"
+        }
+        Feature::CCode => "PROGRAM P VAR a : INT; END_VAR {{ SetFbVar(a, 1); }} a := a + 1; END_PROGRAM",
         Feature::ConditionalReturns => "PROGRAM P VAR b : BOOL; END_VAR RETURN (b); b := TRUE; END_PROGRAM",
         Feature::LooseLast => "PROGRAM P VAR b : BOOL; END_VAR IF b THEN b := FALSE END_IF; END_PROGRAM",
         Feature::DbSpecific => {
@@ -188,7 +197,11 @@ fn every_construct_is_for_its_dialects_alone() {
 }
 
 /// Constructs whose absence is no syntax of its own: another error says it.
-const TOLD_OTHERWISE: [Feature; 41] = [
+const TOLD_OTHERWISE: [Feature; 45] = [
+    Feature::LoneOutputs,
+    Feature::IntegerParts,
+    Feature::ProgramInOuts,
+    Feature::CCode,
     Feature::NamedValues,
     Feature::LooseParts,
     Feature::OutputsHandedOn,

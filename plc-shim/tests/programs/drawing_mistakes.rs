@@ -53,7 +53,7 @@ fn a_value_that_is_wanted_before_it_is_there() {
 fn a_chart_whose_order_is_not_stored() {
     let properties = "<ObjectProperties><XmlArchive><Data><o xml:space=\"preserve\" t=\"CFCProperty\">\
                       <v n=\"UseExplicitExecutionOrder\">false</v></o></Data></XmlArchive></ObjectProperties></POU>";
-    insta::assert_snapshot!(told(LEVEL, "</POU>", properties), @"Drawing.TcPOU:1024:39: error[L0501]: a chart that TwinCAT orders by the flow of its data (set `Explicit Execution Order` in its properties, which stores the order) is not supported yet");
+    insta::assert_snapshot!(told(LEVEL, "</POU>", properties), @"Drawing.TcPOU:1024:39: error[L0501]: a chart with a loop or a jump that TwinCAT orders by the flow of its data (set `Explicit Execution Order` in its properties, which stores the order) is not supported yet");
 }
 
 #[test]

@@ -22,7 +22,7 @@ pub(crate) fn inputs(text: &str) -> [Input; 2] {
     ]
 }
 
-fn rig(text: &str) -> Rig {
+pub(crate) fn rig(text: &str) -> Rig {
     let application = match Application::from_inputs(inputs(text)) {
         Ok(application) => application,
         Err(found) => panic!("{found}"),

@@ -1,10 +1,12 @@
 //! Programs in, traces out: the whole way from text to a scanning PLC.
 
 mod any_inputs;
+mod ax_projects;
 mod bit_strings;
 mod cascades;
 mod chains;
 mod characters;
+mod codesys_xml;
 mod configurations;
 mod constants;
 mod conversions;
@@ -15,6 +17,7 @@ mod diagnostics;
 mod diagram;
 mod dialects;
 mod direct_addresses;
+mod drawing_flow;
 mod drawing_mistakes;
 mod drawings;
 mod dtl;
@@ -39,6 +42,7 @@ mod lints;
 mod lockstep;
 mod many_values;
 mod matiec;
+mod matiec_projects;
 mod memory;
 mod mistakes;
 mod namespaces;

@@ -65,7 +65,7 @@ fn wrong_parts_are_told() {
             "x := w.%X99999999999;",
             "test.st:2:8: error[R0903]: `%X99999999999` is no part: write %X, %B, %W or %D and a number",
         ),
-        ("x := i.%X0;", "test.st:2:6: error[R0903]: BYTE, WORD, DWORD and LWORD have parts, this is INT"),
+        ("x := i.%X16;", "test.st:2:6: error[R0903]: INT has the parts 0 to 15 of this width, not 16"),
         ("x := i.16;", "test.st:2:6: error[R0903]: INT has the parts 0 to 15 of this width, not 16"),
         ("x := r.0;", "test.st:2:6: error[R0903]: BYTE, WORD, DWORD and LWORD have parts, this is REAL"),
         ("x := x.0;", "test.st:2:6: error[R0903]: BYTE, WORD, DWORD and LWORD have parts, this is BOOL"),

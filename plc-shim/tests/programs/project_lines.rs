@@ -3,7 +3,7 @@
 use onescan_plc_shim::Dialect::{Codesys, TwinCat};
 
 use crate::project_code::gives;
-use crate::rig::findings_in;
+use crate::rig::{Rig, findings_in};
 
 #[test]
 fn one_value_sets_and_resets_several() {
@@ -115,4 +115,17 @@ fn a_reference_begins_at_a_variable_that_is_declared_later() {
     // The value of a later variable is not there yet.
     let value = "PROGRAM P VAR a : DINT := b; b : DINT := 5; END_VAR a := b; END_PROGRAM";
     insta::assert_snapshot!(findings_in(TwinCat, value), @"test.st:1:27: error[N0101]: `b` is not declared");
+}
+
+#[test]
+fn a_constant_says_how_many_structures_there_are() {
+    let text = "TYPE S : STRUCT a : INT; b : INT := 2; END_STRUCT END_TYPE
+        PROGRAM P VAR CONSTANT many : INT := 3; END_VAR
+        VAR list : ARRAY [1..many] OF S := [many((a := 4, b := 5))]; sum, i : INT; END_VAR
+          sum := 0; FOR i := 1 TO many DO sum := sum + list[i].a * list[i].b; END_FOR END_PROGRAM";
+    for dialect in [Codesys, TwinCat] {
+        let mut rig = Rig::in_dialect(dialect, text);
+        rig.scan().expect("no fault");
+        assert_eq!(rig.int("P.sum"), 60, "{dialect}");
+    }
 }

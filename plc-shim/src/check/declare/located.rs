@@ -64,6 +64,9 @@ impl Declarations<'_> {
             self.require_open_width(address, declared.ty, name)?;
             return Some(Placement::Free);
         };
+        if address.width == Width::Bit && self.is_apart_from_bit(declared.ty, name) {
+            return Some(Placement::Free);
+        }
         self.require_width(address.width, declared.ty, name)?;
         let size = self.types.size(declared.ty);
         if location.offset + size > AREA_LIMIT {
@@ -73,6 +76,19 @@ impl Declarations<'_> {
         let (image, explicit) = (declared.image.clone(), ast.initial.is_some());
         self.located.push(Initial { location, image, explicit });
         Some(Placement::At(Storage::Located(location)))
+    }
+
+    /// True for a structure or the like at a bit, where `MatIEC` accepts it: nothing of it is at the address.
+    fn is_apart_from_bit(&mut self, ty: TypeId, address: &Ident) -> bool {
+        let whole = matches!(self.types.get(ty), Type::FunctionBlock { .. } | Type::Nothing);
+        let loose = self.dialect(address.span).has(Feature::LooseWidths);
+        let apart = loose && !whole && self.types.elementary(ty).is_none();
+        if apart {
+            let found = self.types.name(ty);
+            let message = format!("`{}` is a bit, so {found} lies elsewhere: nothing connects the two", address.text);
+            self.report(Diagnostic::warning(Code::UnsuitableAddress, address.span, message));
+        }
+        apart
     }
 
     /// A hierarchical address has a place of its own, wherever it is named.

@@ -204,6 +204,11 @@ impl<'a> Declarations<'a> {
         if self.namespaces.contains_key(&key) || LIBRARIES.contains(&key.as_str()) {
             return;
         }
+        // `NAMESPACE a.b` declares `a` as well.
+        let below = format!("{key}.");
+        if self.namespaces.range(below.clone()..).next().is_some_and(|(known, _)| known.starts_with(&below)) {
+            return;
+        }
         let help = did_you_mean(&name.text, self.namespaces.values().map(String::as_str));
         let message = format!("there is no namespace `{}`", name.text);
         let found = Diagnostic::error(Code::UnknownNamespace, name.span, message);

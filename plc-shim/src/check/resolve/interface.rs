@@ -206,7 +206,8 @@ impl<'c, 'a> Interface<'c, 'a> {
             self.report(Diagnostic::error(Code::WrongSection, span, message));
             return;
         }
-        let need = if section.kind == SectionKind::InOut { Need::Reference } else { Need::Size };
+        let kind = if self.is_own_in_out(section) { SectionKind::Output } else { section.kind };
+        let need = if kind == SectionKind::InOut { Need::Reference } else { Need::Size };
         // Every name has the same type; an error in it is told once.
         let declared = match self.written.generic_input(self.kind, section.kind, &ast.spec) {
             Some(generic) => generic,
@@ -231,7 +232,7 @@ impl<'c, 'a> Interface<'c, 'a> {
                 continue;
             };
             self.note_starts(section, name, declared, storage);
-            let (kind, qualifiers) = (section.kind, &section.qualifiers);
+            let qualifiers = &section.qualifiers;
             let mut variable = self.declarations().variable(name, ast, kind, qualifiers, declared, storage);
             if let Some(edge) = ast.edge {
                 variable.edge = self.edge_detection(edge, &variable);

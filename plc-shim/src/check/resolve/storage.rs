@@ -41,6 +41,9 @@ impl Interface<'_, '_> {
                 }
                 self.temporary(declared, name)
             }
+            (PouKind::Program, SectionKind::InOut) if self.is_own_in_out(section) => {
+                Some(Storage::Instance(self.in_instance(declared, span)?))
+            }
             // Where nobody calls a program, nobody could give the variable.
             (PouKind::Program, SectionKind::InOut)
                 if !self.declarations().dialect(span).has(Feature::ProgramInstances) =>
@@ -57,6 +60,13 @@ impl Interface<'_, '_> {
             }
             _ => Some(Storage::Instance(self.in_instance(declared, span)?)),
         }
+    }
+
+    /// True for a `VAR_IN_OUT` that nobody can give: one of a program as `MatIEC` has it, a variable like any other.
+    pub(super) fn is_own_in_out(&self, section: &Section) -> bool {
+        section.kind == SectionKind::InOut
+            && self.kind == PouKind::Program
+            && self.declarations().dialect(section.span).has(Feature::ProgramInOuts)
     }
 
     /// The trigger of an input with `R_EDGE` or `F_EDGE`.

@@ -1,7 +1,7 @@
 //! Continuous Function Charts to statements.
 //!
 //! Boxes, outputs, jumps and returns are evaluated in the order in which the archive has them, which is the one that
-//! the user numbered them in. An input is read where its line ends. An output of an instance is read when it is wanted:
+//! the user numbered them in, or in that of [`super::flow`]. An input is read where its line ends. An output of an instance is read when it is wanted:
 //! before the instance is called it is the one of the cycle before.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -10,13 +10,24 @@ use std::ops::Range;
 use super::archive::Object;
 use super::call::{Argument, Block, Callee, Output, Taker};
 use super::cfc_element::{BoxKind, Element, Elements, Kind, Pin};
+use super::flow;
 use super::sheet::{Sheet, Signal, Storing, is_name};
 use crate::diagnostic::Code;
 use crate::input::statement::Text;
 
-/// Appends the statements of a chart.
-pub(super) fn read(sheet: &mut Sheet<'_>, chart: Object<'_>) {
+/// Appends the statements of a chart; `flow` is where it says that its user did not order it.
+pub(super) fn read(sheet: &mut Sheet<'_>, chart: Object<'_>, flow: Option<&Range<u32>>) {
     let read = Elements::read(sheet.file, chart);
+    let as_stored = || (0..read.elements.len()).collect();
+    let order = match flow {
+        None => as_stored(),
+        Some(place) => flow::order(&read).unwrap_or_else(|| {
+            let what = "a chart with a loop or a jump that TwinCAT orders by the flow of its data (set `Explicit \
+                        Execution Order` in its properties, which stores the order)";
+            sheet.unsupported(place, what);
+            as_stored()
+        }),
+    };
     let mut owners = BTreeMap::new();
     for (index, element) in read.elements.iter().enumerate() {
         for (output, pin) in element.outputs.iter().enumerate() {
@@ -29,8 +40,8 @@ pub(super) fn read(sheet: &mut Sheet<'_>, chart: Object<'_>) {
     let used: BTreeSet<&str> = read.sources.values().flatten().map(String::as_str).collect();
     let mut chart =
         Chart { sheet, read: &read, owners, used, wires: BTreeMap::new(), composed: BTreeMap::new(), depth: 0 };
-    for (index, element) in read.elements.iter().enumerate() {
-        chart.evaluate(index, element);
+    for index in order {
+        chart.evaluate(index, &read.elements[index]);
     }
 }
 

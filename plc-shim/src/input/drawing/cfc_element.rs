@@ -61,6 +61,9 @@ pub(super) struct Element<'e> {
     pub(super) type_in_archive: &'e str,
     pub(super) id: String,
     pub(super) place: Range<u32>,
+    /// Where it stands in the chart, from the left and from the top.
+    pub(super) left: i64,
+    pub(super) top: i64,
     pub(super) text: Option<Written>,
     pub(super) inputs: Vec<Pin>,
     pub(super) outputs: Vec<Pin>,
@@ -95,8 +98,13 @@ impl<'e> Elements<'e> {
 }
 
 fn element<'e>(file: &str, object: Object<'e>) -> Element<'e> {
+    let bounds = object.word(file, "Bounds");
+    let mut bounds = bounds.split(',').map(|number| number.trim().parse().unwrap_or(0));
+    let (left, top) = (bounds.next().unwrap_or(0), bounds.next().unwrap_or(0));
     let mut read = Element {
         kind: Kind::Unknown,
+        left,
+        top,
         type_in_archive: object.kind,
         id: object.id(file),
         place: object.place(),

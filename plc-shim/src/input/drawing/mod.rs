@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`archive`] | the objects of an archive and their values |
 //! | [`cfc_element`], [`cfc`] | Continuous Function Charts to statements |
+//! | [`flow`] | the order of a chart that its user did not order |
 //! | [`network`], [`network_box`] | networks in LD and FBD to statements |
 //! | [`chart_element`], [`chart`] | Sequential Function Charts to steps and transitions |
 //! | [`call`] | a box to the call that it is |
@@ -18,6 +19,7 @@ mod cfc;
 mod cfc_element;
 mod chart;
 mod chart_element;
+mod flow;
 mod network;
 mod network_box;
 mod sheet;
@@ -153,12 +155,8 @@ fn drawn(file: &str, holder: &Element, language: &Element, number: usize, memori
             actions = chart::read(&mut sheet, body, &bodies);
         }
         Some(body) => {
-            if let Some(place) = cfc::ordered_by_data_flow(file, holder) {
-                let what = "a chart that TwinCAT orders by the flow of its data (set `Explicit Execution Order` in \
-                            its properties, which stores the order)";
-                sheet.unsupported(&place, what);
-            }
-            cfc::read(&mut sheet, body);
+            let flow = cfc::ordered_by_data_flow(file, holder);
+            cfc::read(&mut sheet, body, flow.as_ref());
         }
     }
     let (lines, names, faults, notices) = sheet.finish();

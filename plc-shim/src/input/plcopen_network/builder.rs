@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use super::element::{Edge, Input, Kind, Link, Modifiers, Node, Storage, attribute};
 use crate::diagnostic::Code;
+use crate::dialect::Dialect;
 use crate::input::plcopen::Writer;
 use crate::input::statement::{Line, Piece, Text};
 use crate::input::xml::{Element, Node as Content};
@@ -132,7 +133,8 @@ impl<'w, 'f, 'n> Builder<'w, 'f, 'n> {
             self.report(&place, Code::UnexpectedToken, &format!("`{}` is no variable", plain.trim()));
             return None;
         }
-        Some(text)
+        let place = holder.child(name).map_or_else(|| holder.open.clone(), |inner| inner.open.clone());
+        Some(self.writer.transition_named(plain.trim()).map_or(text, |instead| Text::word(instead, &place)))
     }
 
     /// The value of an output.
@@ -239,7 +241,11 @@ impl<'w, 'f, 'n> Builder<'w, 'f, 'n> {
         let arriving = self.arriving(input);
         if arriving.is_none() {
             let message = format!("nothing is connected to this `<{}>`", node.element.name);
-            self.report(&node.place(), Code::Unconnected, &message);
+            if node.kind == Kind::OutVariable && self.writer.taken.dialect == Dialect::Matiec {
+                self.writer.taken.warn(node.place(), Code::Unconnected, &format!("{message}: it does nothing"), None);
+            } else {
+                self.report(&node.place(), Code::Unconnected, &message);
+            }
         }
         let modifiers = Modifiers { storage: Storage::None, ..input.modifiers };
         Some(self.modified(arriving?, node.element, modifiers))

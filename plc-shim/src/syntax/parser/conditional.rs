@@ -9,6 +9,7 @@ use super::cursor::Cursor;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Feature;
 use crate::source::Span;
+use crate::syntax::pragma::sets_by_c;
 use crate::syntax::token::{Token, TokenKind};
 
 /// One `{IF}` that has not ended.
@@ -60,7 +61,7 @@ impl Conditions<'_, '_> {
         let span = Span::new(self.cursor.file(), token.start, token.end);
         let text = self.cursor.text(token.start, token.end);
         // C code of MatIEC has conditions of its own.
-        if text.starts_with("{{") {
+        if text.starts_with("{{") || sets_by_c(text) {
             return;
         }
         let text = text.trim_matches(['{', '}']).trim();

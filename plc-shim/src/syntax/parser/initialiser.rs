@@ -84,7 +84,7 @@ impl Cursor<'_> {
         let start = self.span();
         let repeated = self.peek() == Some(TokenKind::Integer)
             && self.peek_ahead(1) == Some(TokenKind::Punctuation(Punctuation::LeftParen));
-        if !repeated {
+        if !repeated && !self.at_named_count() {
             return self.initialiser();
         }
         let count = Box::new(self.primary());
@@ -93,6 +93,17 @@ impl Cursor<'_> {
         let value = if absent { None } else { Some(Box::new(self.initialiser())) };
         self.expect_mark(Punctuation::RightParen);
         Initialiser { kind: InitialiserKind::Repeat(count, value), span: self.span_from(start) }
+    }
+
+    /// `count((member := ..))`, where a constant says how many structures there are (CODESYS, TwinCAT).
+    fn at_named_count(&self) -> bool {
+        let open = Some(TokenKind::Punctuation(Punctuation::LeftParen));
+        self.dialect().has(Feature::ComputedInitialValues)
+            && self.peek() == Some(TokenKind::Identifier)
+            && self.peek_ahead(1) == open
+            && self.peek_ahead(2) == open
+            && self.peek_ahead(3) == Some(TokenKind::Identifier)
+            && self.peek_ahead(4) == Some(TokenKind::Punctuation(Punctuation::Assign))
     }
 
     fn structure_initialiser(&mut self) -> InitialiserKind {

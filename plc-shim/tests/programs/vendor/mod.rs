@@ -1,6 +1,7 @@
 //! Vendors' libraries: values as their makers document them.
 
 mod codesys;
+mod matiec;
 mod siemens;
 mod tc2_mc2;
 mod tc2_standard;

@@ -7,7 +7,9 @@ use crate::check::types::build::assign;
 use crate::check::types::generic::{Generic, class_of};
 use crate::check::types::operand::constant;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::ir::{Argument, ElementaryType, Expr, ExprKind, Place, Type, TypeId, Value, Variable};
+use crate::ir::{
+    Argument, ElementaryType, Expr, ExprKind, Place, Statement, StatementKind, Type, TypeId, Value, Variable,
+};
 use crate::syntax::ast::{self, ReferenceKind};
 
 impl Body<'_, '_> {
@@ -19,6 +21,9 @@ impl Body<'_, '_> {
         expr: &ast::Expr,
         passing: &mut Passing,
     ) -> Option<Argument> {
+        if parameter.owner.is_some_and(|owner| self.declarations.is_external(owner)) {
+            return self.ignored_argument(parameter, expr, passing).map(Argument::Value);
+        }
         let variable = self.place(expr)?.place;
         let span = expr.span;
         if self.declarations.generic(variable.ty).is_some() && (generic == Generic::Any || variable.ty == parameter.ty)
@@ -46,6 +51,17 @@ impl Body<'_, '_> {
             passing.before.push(assign(&member, value));
         }
         Some(Argument::Value(Expr { kind: ExprKind::Load(Place { span, ..given }), ty: parameter.ty, span }))
+    }
+
+    /// A stub does nothing with what it is given, so it takes values, too.
+    fn ignored_argument(&mut self, parameter: &Variable, expr: &ast::Expr, passing: &mut Passing) -> Option<Expr> {
+        let operand = self.within(None, |body| body.expression(expr))?;
+        let value = self.settle(operand)?;
+        if self.elementary(value.ty).is_some() {
+            passing.before.push(Statement { kind: StatementKind::Evaluate(value), span: expr.span });
+        }
+        let given = self.temporary(parameter.ty, expr.span)?;
+        Some(Expr { kind: ExprKind::Load(given), ty: parameter.ty, span: expr.span })
     }
 
     /// The class of a type, if variables of it are taken.

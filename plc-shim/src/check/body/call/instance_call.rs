@@ -8,6 +8,7 @@ use crate::check::body::Body;
 use crate::check::declare::Scope;
 use crate::check::types::parameter::ENO;
 use crate::diagnostic::{Code, Diagnostic};
+use crate::dialect::Feature;
 use crate::ir::{Argument, ElementaryType, InstanceCall, Place, Statement, StatementKind, Storage, Type, Variable};
 use crate::syntax::Span;
 use crate::syntax::ast::{Call, SectionKind};
@@ -62,7 +63,9 @@ impl Body<'_, '_> {
             let given = matched.inputs.get(&parameter.name.to_ascii_uppercase()).copied();
             let Some(expr) = given else {
                 // An input that is not given keeps its value; a reference must be given anew.
-                if parameter.section == SectionKind::InOut {
+                if parameter.section == SectionKind::InOut
+                    && !self.declarations.dialect(span).has(Feature::ReadableInOuts)
+                {
                     self.missing_argument::<()>(&parameter.name, span);
                     sound = false;
                 }

@@ -258,6 +258,9 @@ impl Body<'_, '_> {
                     }
                     if let Some(variable) = scope.positional().nth(index) {
                         (variable.name.to_ascii_uppercase(), expr.span, expr)
+                    } else if let Some(only) = self.only_output(scope, call, expr.span) {
+                        matched.outputs.push(Wanted { variable: only, negated: false, target: expr });
+                        continue;
                     } else {
                         let count = scope.positional().count();
                         let message = format!("`{callee}` takes {count} arguments");
@@ -297,6 +300,14 @@ impl Body<'_, '_> {
             }
         }
         sound.then_some(matched)
+    }
+
+    /// Where a unit has one parameter, its name is left out, even if it is an output: `RD_SYS_T(now)`.
+    fn only_output(&self, scope: &Scope, call: &Call, span: Span) -> Option<Variable> {
+        let is_alone = call.arguments.len() == 1 && scope.positional().next().is_none();
+        let leaves_out = self.declarations.dialect(span).has(Feature::LoneOutputs);
+        let mut outputs = scope.outputs().filter(|_| is_alone && leaves_out);
+        outputs.next().filter(|_| outputs.next().is_none()).cloned()
     }
 
     /// Reports `t(IN = q)`, which is a comparison with what the caller does not know.

@@ -26,7 +26,9 @@ impl Body<'_, '_> {
             return self.apply(form, operands, span);
         }
         let conversion = conversion::find(&key);
-        let operands = self.within(None, |body| body.operands(name, Form::Absolute, arguments, span));
+        // `INT_TO_BYTE(TRUNC(x))`: what takes the type that its place wants is an INT there.
+        let wanted = conversion.and_then(|conversion| conversion.from);
+        let operands = self.within(wanted, |body| body.operands(name, Form::Absolute, arguments, span));
         let operand = operands?.into_iter().next()?;
         match (conversion, text_conversion::find(&key)) {
             (Some(conversion), _) => self.conversion(conversion, operand, span),

@@ -1,4 +1,5 @@
-//! A `VAR_IN_OUT` of an instance, read from outside, as `MatIEC` has it: its instances hold what they were given last.
+//! A `VAR_IN_OUT` of an instance, read and written from outside, as `MatIEC` has it: its instances hold what they were
+//! given last, by a call or by an assignment.
 
 use crate::check::body::call::instance_call::member_place;
 use crate::check::body::{Body, Meant};
@@ -15,7 +16,50 @@ impl Body<'_, '_> {
     /// The value of the variable that the instance was given last; the initial one before its first call.
     pub(super) fn in_out_of_instance(&mut self, base: &ast::Expr, name: &Ident, span: Span) -> Meant<Operand> {
         let variable = self.in_out_named(base, name, span)?;
+        if self.elementary(variable.ty).is_none() {
+            return Some(self.led_to_last(base, &variable, span));
+        }
         Some(self.given_last(base, &variable, span))
+    }
+
+    /// `instance.name := value`: a variable of its own, which the instance keeps until it is given another.
+    pub(in crate::check::body) fn in_out_given(
+        &mut self,
+        target: &ast::Expr,
+        value: &ast::Expr,
+        span: Span,
+    ) -> Meant<Statement> {
+        let ast::ExprKind::Member(base, name) = &target.kind else { return None };
+        let variable = self.in_out_named(base, name, target.span)?;
+        Some(self.given_copy(base, &variable, value, span))
+    }
+
+    fn given_copy(
+        &mut self,
+        base: &ast::Expr,
+        variable: &Variable,
+        value: &ast::Expr,
+        span: Span,
+    ) -> Option<Statement> {
+        let base = self.base_place(base)?.place;
+        let context = self.elementary(variable.ty);
+        let value = self.within(context, |body| body.expression(value))?;
+        let value = self.coerce(value, variable.ty)?;
+        let copy = self.temporary(variable.ty, span)?;
+        let body = vec![
+            self.assignment(copy.clone(), value, span),
+            Statement { kind: StatementKind::Bind(member_place(&base, variable, span), copy), span },
+        ];
+        let condition = constant(Value::Bool(true), ElementaryType::Bool, span);
+        Some(Statement { kind: StatementKind::If(vec![IfBranch { condition, body }], Vec::new()), span })
+    }
+
+    /// What an instance was given last, of a type that no register holds.
+    fn led_to_last(&mut self, base: &ast::Expr, variable: &Variable, span: Span) -> Option<Operand> {
+        let base = self.base_place(base)?.place;
+        let address: TypeId = ElementaryType::Udint.into();
+        let pointer = Expr { kind: ExprKind::Load(member_place(&base, variable, span)), ty: address, span };
+        Some(Operand::Typed(loaded(Self::led_to(pointer, variable.ty, span).place)))
     }
 
     fn in_out_named(&mut self, base: &ast::Expr, name: &Ident, span: Span) -> Option<Variable> {
@@ -26,8 +70,7 @@ impl Body<'_, '_> {
         let ty = self.scope.find(&instance.key())?.ty;
         let Type::FunctionBlock { pou, .. } = *self.declarations.types().get(ty) else { return None };
         let scope = self.declarations.interface(pou, span)?;
-        let found = scope.find(&name.key()).filter(|variable| variable.section == SectionKind::InOut)?;
-        self.elementary(found.ty).is_some().then(|| found.clone())
+        scope.find(&name.key()).filter(|variable| variable.section == SectionKind::InOut).cloned()
     }
 
     fn given_last(&mut self, base: &ast::Expr, variable: &Variable, span: Span) -> Option<Operand> {

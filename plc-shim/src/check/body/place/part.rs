@@ -34,7 +34,7 @@ impl Body<'_, '_> {
         self.part_at(base, Width::Bit, u64::try_from(number).unwrap_or(u64::MAX), true, span)
     }
 
-    /// `plain` is true without a `%`: so written, integers have bits too.
+    /// `plain` is true without a `%`: so written, integers have bits everywhere.
     fn part_at(&mut self, base: Located, width: Width, number: u64, plain: bool, span: Span) -> Option<Located> {
         let loose = plain && self.declarations.dialect(span).has(Feature::LooseParts);
         let ty = match self.declarations.types().get(base.place.ty) {
@@ -44,7 +44,8 @@ impl Body<'_, '_> {
             _ => None,
         };
         let bits = |ty: &ElementaryType| ty.is_bits() && *ty != ElementaryType::Bool;
-        let Some(whole) = ty.filter(|ty| bits(ty) || plain && ty.is_integer()) else {
+        let integers = plain || self.declarations.dialect(span).has(Feature::IntegerParts);
+        let Some(whole) = ty.filter(|ty| bits(ty) || integers && ty.is_integer()) else {
             let found = self.type_name(base.place.ty);
             let message = format!("BYTE, WORD, DWORD and LWORD have parts, this is {found}");
             self.report(Diagnostic::error(Code::InvalidPart, span, message));

@@ -127,6 +127,9 @@ impl Body<'_, '_> {
         if let Some(assigned) = self.character_assignment(target, value, span) {
             return assigned;
         }
+        if let Some(given) = self.in_out_given(target, value, span) {
+            return given;
+        }
         if let Some(name) = self.new_wire(target) {
             return self.first_value(name, value, span);
         }

@@ -1,0 +1,81 @@
+//! What CODESYS adds to PLCopen XML in `addData`: lists with constants and variables, interfaces with a base.
+
+use onescan_plc_shim::input::kind::SourceKind;
+use onescan_plc_shim::{Application, Input, TaskPlan, TimeSpan};
+
+use crate::plcopen::program;
+use crate::rig::Rig;
+
+const VENDOR: &str = "http://www.3s-software.com/plcopenxml/";
+
+fn data(kind: &str, content: &str) -> String {
+    format!("<data name=\"{VENDOR}{kind}\" handleUnknown=\"implementation\">{content}</data>")
+}
+
+fn rig(statements: &str, variables: &str, additions: &str) -> Rig {
+    let body = format!("<xhtml xmlns=\"http://www.w3.org/1999/xhtml\">{statements}</xhtml>");
+    let text = program(variables, "ST", &body);
+    let text = text.replace("</project>", &format!("<addData>{additions}</addData></project>"));
+    let input = Input::from_text("plc.xml", SourceKind::PlcOpen, text);
+    let application = match Application::from_inputs([input]) {
+        Ok(application) => application,
+        Err(found) => panic!("{found}"),
+    };
+    Rig::with_plan(&application, &TaskPlan::single(&application, TimeSpan::millis::<10>()))
+}
+
+#[test]
+fn a_list_has_constants_and_variables() {
+    let variable = |name: &str, value: &str| {
+        format!(
+            "<variable name=\"{name}\"><type><INT/></type><initialValue><simpleValue value=\"{value}\"/></initialValue></variable>"
+        )
+    };
+    let (most, index) = (variable("most", "10"), variable("index", "3"));
+    let parts = format!(
+        "<MixedAttrsVarList><globalVars name=\"Lists\" constant=\"true\">{most}</globalVars>\
+         <globalVars name=\"Lists\">{index}</globalVars></MixedAttrsVarList>"
+    );
+    let parts = data("mixedattrsvarlist", &parts);
+    // The whole list says `constant`, as its first section does.
+    let list =
+        format!("<globalVars name=\"Lists\" constant=\"true\">{most}{index}<addData>{parts}</addData></globalVars>");
+    let mut rig =
+        rig("Lists.index := Lists.index + Lists.most; r := index;", "local r : INT", &data("globalvars", &list));
+    rig.scan().expect("no fault");
+    assert_eq!(rig.int("P.r"), 13);
+}
+
+#[test]
+fn an_interface_has_a_base() {
+    let method = |name: &str| {
+        format!(
+            "<Methods><Method name=\"{name}\"><interface><returnType><INT/></returnType></interface></Method></Methods>"
+        )
+    };
+    let first = format!("<Interface name=\"IFirst\">{}</Interface>", method("One"));
+    let second = format!(
+        "<Interface name=\"ISecond\">{}<Inheritance><Extends>IFirst</Extends></Inheritance></Interface>",
+        method("Two")
+    );
+    let body = |value: u32| {
+        format!(
+            "<interface><returnType><INT/></returnType></interface><body><ST><xhtml xmlns=\"http://www.w3.org/1999/xhtml\">{value}</xhtml></ST></body>"
+        )
+    };
+    let own = |name: &str, value: u32| {
+        let text = body(value).replace(&format!("{value}<"), &format!("{name} := {value};<"));
+        data("method", &format!("<Method name=\"{name}\">{text}</Method>"))
+    };
+    let inheritance = data("pouinheritance", "<Inheritance><Implements>ISecond</Implements></Inheritance>");
+    let block = format!(
+        "<pou name=\"F\" pouType=\"functionBlock\"><interface><addData>{inheritance}</addData></interface>\
+         <body><ST><xhtml xmlns=\"http://www.w3.org/1999/xhtml\"></xhtml></ST></body><addData>{}{}</addData></pou>",
+        own("One", 4),
+        own("Two", 5)
+    );
+    let additions = [data("interface", &first), data("interface", &second), data("pou", &block)].concat();
+    let mut rig = rig("i := f1; r := i.One() + i.Two();", "local f1 : F, i : ISecond, r : INT", &additions);
+    rig.scan().expect("no fault");
+    assert_eq!(rig.int("P.r"), 9);
+}
