@@ -5,7 +5,7 @@
 
 use std::fs::File;
 use std::io::{Error, ErrorKind, Read, Result};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// How much of a file is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,6 +73,76 @@ pub fn read(path: &Path, limit: Limit) -> Result<Vec<u8>> {
 pub fn read_text(path: &Path) -> Result<String> {
     String::from_utf8(read(path, Limit::TEXT)?)
         .map_err(|_| Error::new(ErrorKind::InvalidData, "stream did not contain valid UTF-8"))
+}
+
+/// The folders and files that may be read, wherever links lead: what is found elsewhere is not opened.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Within {
+    places: Option<Vec<PathBuf>>,
+}
+
+impl Within {
+    /// Everything: for files that the user names, not another file.
+    pub fn anywhere() -> Self {
+        Self::default()
+    }
+
+    /// These folders with all that is in them, and these files; an empty path is the folder in which the program runs.
+    pub fn places(places: Vec<PathBuf>) -> Self {
+        Self { places: Some(places) }
+    }
+
+    /// Where `path` is, without links.
+    ///
+    /// # Errors
+    /// It is not there, or it lies elsewhere, which the error names.
+    pub fn find(&self, path: &Path) -> std::result::Result<PathBuf, NotWithin> {
+        let real = path.canonicalize().map_err(NotWithin::Missing)?;
+        let Some(places) = &self.places else { return Ok(real) };
+        let holds = |place: &PathBuf| {
+            let place = if place.as_os_str().is_empty() { Path::new(".") } else { place };
+            place.canonicalize().is_ok_and(|place| real.starts_with(place))
+        };
+        if places.iter().any(holds) { Ok(real) } else { Err(NotWithin::Elsewhere(real)) }
+    }
+
+    /// As [`read`].
+    ///
+    /// # Errors
+    /// As [`read`], or the file lies elsewhere.
+    pub fn read(&self, path: &Path, limit: Limit) -> Result<Vec<u8>> {
+        read(&self.find(path)?, limit)
+    }
+
+    /// As [`read_text`].
+    ///
+    /// # Errors
+    /// As [`read_text`], or the file lies elsewhere.
+    pub fn read_text(&self, path: &Path) -> Result<String> {
+        read_text(&self.find(path)?)
+    }
+}
+
+/// Why a file is not within what may be read.
+#[derive(Debug)]
+pub enum NotWithin {
+    /// It is not there, or cannot be looked for.
+    Missing(Error),
+    /// It is here.
+    Elsewhere(PathBuf),
+}
+
+impl From<NotWithin> for Error {
+    fn from(not: NotWithin) -> Self {
+        match not {
+            NotWithin::Missing(error) => error,
+            NotWithin::Elsewhere(real) => {
+                let text =
+                    format!("it is {}, outside of the scenario's folder; `--allow-path` allows more", real.display());
+                Self::new(ErrorKind::PermissionDenied, text)
+            }
+        }
+    }
 }
 
 #[cfg(test)]

@@ -10,8 +10,8 @@ use crate::end::{FailureCause, SessionEnd};
 use crate::join::JoinRefusal;
 use crate::lobby::{Seating, Verdict};
 use crate::lockstep::Lockstep;
-use crate::mailbox::{Mailbox, Request};
-use crate::operation::{Control, Operation};
+use crate::mailbox::{Mailbox, Request, Wish};
+use crate::operation::Control;
 use crate::plan::SessionPlan;
 use crate::signal::PortLayout;
 use crate::time::VirtualTime;
@@ -181,13 +181,17 @@ impl Formation {
     /// Answers operators; true if one of them has ended the session. What acts on a session that runs is left for `later`.
     fn is_called_off(&self, later: &mut Vec<Request>) -> bool {
         while let Some(request) = self.mailbox.take() {
-            let ends = request.operation.as_ref().and_then(Operation::control) == Some(Control::Stop);
-            if !ends && request.operation.is_some() {
-                later.push(request);
-                continue;
-            }
+            let (ends, signals) = match &request.wish {
+                Wish::Do(operation) if operation.control() == Some(Control::Stop) => (true, &[][..]),
+                Wish::Do(_) => {
+                    later.push(request);
+                    continue;
+                }
+                Wish::Look(signals) => (false, &signals[..]),
+            };
+            let status = self.seating.session().look(signals);
             if let Some(reply) = request.reply
-                && reply.send(Ok(self.seating.session().status())).is_err()
+                && reply.send(status).is_err()
             {
                 tracing::debug!("the operator left before it heard how the session is");
             }

@@ -17,6 +17,7 @@
 //! | [`join`] | who may join, and why not |
 //! | [`state`] | the states of \[SDSP\], Figs. 8 and 9 |
 //! | [`cycle`] | the barrier: states, virtual time, delays |
+//! | [`nusmv`] | the same as a model for NuSMV |
 //! | [`end`] | how a session ends |
 //! | [`session`] | all of these as one machine |
 //! | [`digest`] | the hash of a run |
@@ -52,6 +53,7 @@ pub mod layout;
 pub mod lobby;
 pub mod lockstep;
 pub mod mailbox;
+pub mod nusmv;
 pub mod observer;
 pub mod operation;
 pub mod pacing;

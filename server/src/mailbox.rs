@@ -12,13 +12,30 @@ use std::time::Duration;
 use tokio::sync::oneshot;
 
 use crate::operation::{Control, Operation, OperationError};
+use crate::signal::SignalName;
 use crate::wire::message::Status;
+
+/// What is asked of a session at a step boundary.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Wish {
+    /// How it is, and what these signals are.
+    Look(Vec<SignalName>),
+    /// That something be done.
+    Do(Operation),
+}
+
+impl From<Option<Operation>> for Wish {
+    /// Nothing to be done asks how the session is.
+    fn from(operation: Option<Operation>) -> Self {
+        operation.map_or_else(|| Self::Look(Vec::new()), Self::Do)
+    }
+}
 
 /// A wish, and who wants to hear how things are once it is taken.
 #[derive(Debug)]
 pub struct Request {
-    /// What is asked; `None` asks only for the status.
-    pub operation: Option<Operation>,
+    /// What is asked.
+    pub wish: Wish,
     /// Where the status goes, or why what is asked cannot be done.
     pub reply: Option<oneshot::Sender<Result<Status, OperationError>>>,
 }
@@ -51,7 +68,7 @@ impl Mailbox {
 
     /// Leaves a wish nobody wants an answer to.
     pub fn control(&self, control: Control) {
-        self.post(Request { operation: Some(control.into()), reply: None });
+        self.post(Request { wish: Wish::Do(control.into()), reply: None });
     }
 
     /// True if nobody has left anything.
@@ -93,8 +110,8 @@ mod tests {
         mailbox.control(Control::Pause);
         mailbox.clone().control(Control::Step);
         mailbox.wait(Duration::from_mins(1));
-        assert_eq!(mailbox.take().and_then(|r| r.operation), Some(Operation::Pause));
-        assert_eq!(mailbox.take().and_then(|r| r.operation), Some(Operation::Step));
+        assert_eq!(mailbox.take().map(|r| r.wish), Some(Wish::Do(Operation::Pause)));
+        assert_eq!(mailbox.take().map(|r| r.wish), Some(Wish::Do(Operation::Step)));
         assert!(mailbox.take().is_none());
     }
 }

@@ -32,6 +32,10 @@ pub enum ServerState {
 }
 
 impl ServerState {
+    /// Every state, in the order in which a session enters them.
+    pub const ALL: [Self; 6] =
+        [Self::Start, Self::InitialWrite, Self::PreRead, Self::Read, Self::PreWrite, Self::Write];
+
     /// The state that follows when the clients are synchronised.
     pub const fn next(self) -> Self {
         match self {
@@ -85,6 +89,11 @@ pub enum ClientState {
     Run,
     /// Its outputs are in the image. A client whose delay has not run out sleeps here.
     Write,
+}
+
+impl ClientState {
+    /// Every state, in the order in which a client enters them.
+    pub const ALL: [Self; 6] = [Self::Start, Self::Setup, Self::Ready, Self::Read, Self::Run, Self::Write];
 }
 
 impl fmt::Display for ClientState {

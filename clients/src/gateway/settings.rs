@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use onescan_base::did_you_mean;
@@ -51,6 +52,16 @@ pub struct Settings {
     pub ads: ads::Options,
     /// Security and namespace of an OPC UA link.
     pub opcua: opcua::Options,
+}
+
+impl Settings {
+    /// The files and folders that it names.
+    pub fn files(&self) -> impl Iterator<Item = &Path> {
+        [&self.opcua.user_certificate, &self.opcua.user_key, &self.opcua.pki]
+            .into_iter()
+            .flatten()
+            .map(PathBuf::as_path)
+    }
 }
 
 /// A value written as text with a unit.

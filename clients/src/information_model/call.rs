@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use onescan_server::mailbox::Request;
+use onescan_server::mailbox::{Request, Wish};
 use onescan_server::operation::Operation;
 use onescan_server::signal::SignalName;
 use onescan_server::state::ServerState;
@@ -34,7 +34,7 @@ pub(super) async fn operate(board: &Board, method: u32, arguments: &[Variant]) -
         return StatusCode::BadInvalidState;
     }
     let (reply, answer) = oneshot::channel();
-    board.mailbox().post(Request { operation: Some(operation), reply: Some(reply) });
+    board.mailbox().post(Request { wish: Wish::Do(operation), reply: Some(reply) });
     if !has_begun {
         return StatusCode::GoodCompletesAsynchronously;
     }

@@ -57,8 +57,9 @@ pub fn serve(address: SocketAddr, board: &Arc<Board>, access: &Access) -> Result
     let sent_away = (!access.foreign_uris).then(|| refusals.clone());
     let channels = Channels::default();
     let open = channels.clone();
+    let register = access.register.clone();
     let build = move |context: ServerContext, space: &mut AddressSpace| {
-        Admitted::new(SessionNodes::new(nodes, open, &context, space), sent_away)
+        Admitted::new(SessionNodes::new(nodes, open, &context, space), sent_away, register)
     };
     let manager = InMemoryNodeManagerBuilder::new(build);
     let running = opcua_server::start(address, "session", access, &refusals, &channels, manager, |_| Ok(()))?;

@@ -1,6 +1,9 @@
-//! Nodes that only clients with a certificate of their own may write and call.
+//! Nodes that only clients with a certificate of their own, and no viewers, may write and call.
+
+use std::sync::Arc;
 
 use async_trait::async_trait;
+use onescan_server::access::{Register, Role};
 use opcua::server::CreateMonitoredItem;
 use opcua::server::address_space::AddressSpace;
 use opcua::server::diagnostics::NamespaceMetadata;
@@ -18,11 +21,13 @@ pub(crate) struct Admitted<T> {
     inner: T,
     /// Where it is noted whose certificate is that of another application; nothing if such a client is let in.
     sent_away: Option<Refusals>,
+    /// Tokens, where users show one.
+    register: Option<Arc<Register>>,
 }
 
 impl<T> Admitted<T> {
-    pub(crate) fn new(inner: T, sent_away: Option<Refusals>) -> Self {
-        Self { inner, sent_away }
+    pub(crate) fn new(inner: T, sent_away: Option<Refusals>, register: Option<Arc<Register>>) -> Self {
+        Self { inner, sent_away, register }
     }
 
     pub(crate) fn inner(&self) -> &T {
@@ -30,7 +35,13 @@ impl<T> Admitted<T> {
     }
 
     /// Refuses a client whose certificate was made for another application (OPC 10000-4 6.1.3, `Bad_CertificateUriInvalid`).
+    /// And a viewer, who changes nothing.
     fn admit(&self, context: &RequestContext) -> Result<(), StatusCode> {
+        if let Some(register) = &self.register
+            && !register.passes().iter().any(|pass| pass.name == context.token.0 && pass.role == Role::Operator)
+        {
+            return Err(StatusCode::BadUserAccessDenied);
+        }
         let Some(sent_away) = &self.sent_away else { return Ok(()) };
         let session = context.session.read();
         let Some(certificate) = session.client_certificate() else { return Ok(()) };

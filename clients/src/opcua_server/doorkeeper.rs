@@ -6,7 +6,8 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use async_trait::async_trait;
 use onescan_base::foreign::one_line;
-use onescan_server::access::{Day, Register, Role};
+use onescan_server::access::{Day, Register};
+use onescan_server::wire::message;
 use opcua::crypto::Thumbprint;
 use opcua::server::authenticator::{AuthManager, DefaultAuthenticator, Password, UserToken};
 use opcua::server::{ServerEndpoint, ServerUserToken};
@@ -36,7 +37,7 @@ impl Doorkeeper {
     }
 }
 
-/// The user whose token is the password. Whoever is in over OPC UA may do everything, so a token must be an operator's.
+/// The user whose token is the password: an operator's, or a viewer's, who reads and changes nothing.
 fn holder_of(register: &Register, username: &str, token: &str) -> Result<UserToken, Error> {
     let today = Day::of(SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default());
     let refused = |why: String| Error::new(StatusCode::BadIdentityTokenRejected, why);
@@ -44,9 +45,9 @@ fn holder_of(register: &Register, username: &str, token: &str) -> Result<UserTok
     if holder.name != username {
         return Err(refused(format!("the token is good for another user than `{}`", one_line(username))));
     }
-    if holder.role != Role::Operator {
+    if !holder.role.admits(message::Role::Operator) {
         return Err(refused(format!(
-            "token `{}` is good for `{}`: over OPC UA it must be an operator's",
+            "token `{}` is good for `{}`: over OPC UA it must be an operator's or a viewer's",
             holder.name, holder.role
         )));
     }

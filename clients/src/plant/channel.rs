@@ -1,8 +1,8 @@
-//! What happens to signals between the plant and the PLC: sampling, noise, quantisation, delay and
-//! jitter, scaling to raw values. What is real about a signal is modelled; nothing else remains.
+//! What happens to signals between the plant and the PLC: sampling, lost changes, noise, quantisation,
+//! delay and jitter, scaling to raw values, inverted bits. What is real about a signal is modelled; nothing else remains.
 //!
-//! A signal that the plant writes passes, in this order: sample, noise, quantum, delay, scale. One
-//! that it reads is scaled back first, and then passes the same. Signals without a `[[signal]]` in
+//! A signal that the plant writes passes, in this order: sample, loss, noise, quantum, delay, scale,
+//! inverted bit. One that it reads passes the last two first, the other way round, and then the others. Signals without a `[[signal]]` in
 //! the scene are copied. Delayed values arrive in the order in which they were sent, as on a wire.
 
 use std::collections::VecDeque;
@@ -11,9 +11,13 @@ use onescan_server::client::ClientFault;
 use onescan_server::signal::{Port, SignalType};
 use serde::{Deserialize, Serialize};
 
+use super::lateness::late_ns;
 use super::random::{Random, seed_for};
 use super::scene::Scene;
 use super::scene::model::Condition;
+
+/// Bytes of the longest value that a `[[signal]]` conditions.
+const LONGEST: usize = 8;
 
 /// The ports as the plant's inside has them.
 pub(super) fn inner_ports(outer: &[Port], conditions: &[Condition]) -> Vec<Port> {
@@ -36,6 +40,10 @@ struct Channel {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct ChannelMemory {
     random: Random,
+    /// What it was at the last look; none before the first.
+    looked: Option<f64>,
+    /// The last of these that was not lost.
+    held: f64,
     /// When the signal is looked at again.
     next_sample_ns: u64,
     /// What is on its way, and when it arrives.
@@ -76,6 +84,8 @@ impl Channels {
                     inner: (inner, condition.inner),
                     memory: ChannelMemory {
                         random: Random::new(seed_for(seed, "signal", port.name.as_str())),
+                        looked: None,
+                        held: 0.0,
                         next_sample_ns: 0,
                         sent: VecDeque::new(),
                         arrived: 0.0,
@@ -127,7 +137,11 @@ impl Channels {
             self.inner[*to..to + size].copy_from_slice(&outer[*from..from + size]);
         }
         for channel in &mut self.conditioned {
-            let raw = channel.read(channel.outer, outer)?;
+            let mut raw = [0; LONGEST];
+            let size = channel.outer.1.size();
+            raw[..size].copy_from_slice(&outer[channel.outer.0..][..size]);
+            channel.flip(&mut raw[..size]);
+            let raw = channel.read((0, channel.outer.1), &raw)?;
             let value = channel.pass(now_ns, channel.condition.scaled_back(raw));
             channel.write(channel.inner, &mut self.inner, value)?;
         }
@@ -143,6 +157,8 @@ impl Channels {
             let value = channel.read(channel.inner, &self.inner)?;
             let passed = channel.pass(now_ns, value);
             channel.write(channel.outer, outer, channel.condition.scaled(passed))?;
+            let (at, ty) = channel.outer;
+            channel.flip(&mut outer[at..at + ty.size()]);
         }
         Ok(())
     }
@@ -155,6 +171,7 @@ impl Channels {
         }
         for channel in &mut self.conditioned {
             let value = channel.read(channel.inner, &self.inner)?;
+            (channel.memory.looked, channel.memory.held) = (Some(value), value);
             channel.memory.arrived = channel.disturbed(value);
             let raw = channel.condition.scaled(channel.memory.arrived);
             channel.write(channel.outer, outer, raw)?;
@@ -178,6 +195,28 @@ impl Channel {
         ClientFault::new(format!("signal `{}` is {ty}, which no `[[signal]]` can condition", self.condition.signal))
     }
 
+    /// What is seen of a sample where changes may be lost: the last change that was not.
+    fn kept(&mut self, value: f64) -> f64 {
+        let Condition { lost_rate, .. } = self.condition;
+        let changed = self.memory.looked.is_some_and(|looked| looked.to_bits() != value.to_bits());
+        let lost = changed && lost_rate > 0.0 && self.memory.random.uniform() <= lost_rate;
+        if self.memory.looked.is_none() || (changed && !lost) {
+            self.memory.held = value;
+        }
+        self.memory.looked = Some(value);
+        self.memory.held
+    }
+
+    /// Inverts a bit of the raw value, where it is this turn's turn.
+    fn flip(&mut self, raw: &mut [u8]) {
+        let Condition { flip_rate, .. } = self.condition;
+        if flip_rate > 0.0 && self.memory.random.uniform() <= flip_rate {
+            let bits = if self.outer.1 == SignalType::BOOL { 1 } else { 8 * raw.len() as u64 };
+            let bit = (self.memory.random.bits() % bits) as usize;
+            raw[bit / 8] ^= 1 << (bit % 8);
+        }
+    }
+
     /// A sample with its noise, rounded to the quantum.
     fn disturbed(&mut self, value: f64) -> f64 {
         let Condition { quantum, noise_mean, noise_sigma, .. } = self.condition;
@@ -192,13 +231,11 @@ impl Channel {
             if let Some(passed) = now_ns.checked_div(self.condition.sample_ns) {
                 self.memory.next_sample_ns = (passed + 1) * self.condition.sample_ns;
             }
-            let sent = self.disturbed(value);
-            let late_ns = match self.condition.jitter_ns {
-                0 => 0,
-                jitter_ns => (jitter_ns as f64 * self.memory.random.uniform()) as u64,
-            };
+            let kept = self.kept(value);
+            let sent = self.disturbed(kept);
+            let late_ns = late_ns(&self.condition, &mut self.memory.random);
             let last_ns = self.memory.sent.back().map_or(0, |(at, _)| *at);
-            self.memory.sent.push_back(((now_ns + self.condition.delay_ns + late_ns).max(last_ns), sent));
+            self.memory.sent.push_back(((now_ns + late_ns).max(last_ns), sent));
         }
         while let Some((at, value)) = self.memory.sent.front().copied()
             && at <= now_ns
@@ -262,10 +299,13 @@ mod tests {
             scale: None,
             delay_ns: 0,
             jitter_ns: 0,
+            delay_sigma_ns: 0,
             sample_ns: 0,
             quantum: 0.0,
             noise_mean: 0.0,
             noise_sigma: 0.0,
+            lost_rate: 0.0,
+            flip_rate: 0.0,
         }
     }
 
@@ -319,6 +359,66 @@ mod tests {
         assert!((mean - 3.0).abs() < 0.025 && (variance / 0.25 - 1.0).abs() < 0.071, "{mean} {variance}");
     }
 
+    /// Counts that are binomial: of 10⁶, within 5 σ.
+    fn assert_is_part(count: u32, rate: f64) {
+        let (n, k) = (1e6, f64::from(count));
+        assert!((k - n * rate).abs() < 5.0 * (n * rate * (1.0 - rate)).sqrt(), "{k} of {n}, not {rate}");
+    }
+
+    /// What arrives of a BOOL that changes in each of 10⁶ turns.
+    fn toggled(condition: &Condition) -> Vec<(bool, bool)> {
+        let ports = [Port { name: condition.signal.clone(), ty: SignalType::BOOL }];
+        let mut channels = Channels::new(&ports, std::slice::from_ref(condition), 5);
+        let mut outer = [0];
+        let mut turn = |k: u64| {
+            channels.inner_mut()[0] = (k % 2) as u8;
+            channels.give(k * 1_000_000, &mut outer).expect("a BOOL");
+            (k % 2 == 1, outer[0] == 1)
+        };
+        turn(0);
+        (1..=1_000_000).map(&mut turn).collect()
+    }
+
+    #[test]
+    fn so_many_changes_are_lost_as_the_rate_says() {
+        for rate in [0.001, 0.25] {
+            let lossy = Condition { lost_rate: rate, ..plain(SignalType::LREAL) };
+            let seen = ramp(&lossy, 1_000_000);
+            assert_is_part(seen.iter().zip(1..).filter(|(seen, k)| **seen != f64::from(*k)).count() as u32, rate);
+        }
+        let never = Condition { lost_rate: 1.0, ..plain(SignalType::BOOL) };
+        assert!(toggled(&never).iter().all(|(_, seen)| !seen), "the first value stands");
+        assert!(toggled(&plain(SignalType::BOOL)).iter().all(|(sent, seen)| sent == seen));
+    }
+
+    #[test]
+    fn a_lost_change_is_seen_with_the_next_one() {
+        let lossy = Condition { lost_rate: 0.5, ..plain(SignalType::LREAL) };
+        let arrived = ramp(&lossy, 200);
+        assert!(arrived.iter().zip(1..).all(|(seen, k)| *seen <= f64::from(k)));
+        assert!(arrived.windows(2).all(|pair| pair[0] == pair[1] || pair[1] > pair[0]));
+        let behind = arrived.iter().zip(1..).filter(|(seen, k)| **seen < f64::from(*k)).count();
+        assert!((60..140).contains(&behind), "{behind}");
+    }
+
+    #[test]
+    fn a_bit_is_inverted_for_a_turn_as_often_as_the_rate_says() {
+        let shaky = Condition { flip_rate: 0.01, ..plain(SignalType::BOOL) };
+        assert_is_part(toggled(&shaky).iter().filter(|(sent, seen)| sent != seen).count() as u32, 0.01);
+        let word = Condition { flip_rate: 1.0, ..plain(SignalType::WORD) };
+        let ports = [Port { name: word.signal.clone(), ty: SignalType::WORD }];
+        let mut channels = Channels::new(&ports, &[word], 1);
+        let mut seen = [0_u32; 16];
+        for k in 1..=1_600 {
+            channels.take(k * 1_000_000, &0x5aa5_u16.to_le_bytes()).expect("a word");
+            let changed = u16::from_le_bytes([channels.inner()[0], channels.inner()[1]]) ^ 0x5aa5;
+            assert_eq!(changed.count_ones(), 1);
+            seen[changed.trailing_zeros() as usize] += 1;
+        }
+        // 100 each, with a deviation of 9.7
+        assert!(seen.iter().all(|count| (52..148).contains(count)), "{seen:?}");
+    }
+
     #[test]
     fn raw_values_are_scaled_limited_and_scaled_back() {
         let scaled =
@@ -336,6 +436,8 @@ mod tests {
         let all = Condition {
             delay_ns: 2_000_000,
             jitter_ns: 3_000_000,
+            delay_sigma_ns: 1_000_000,
+            lost_rate: 0.3,
             noise_sigma: 1.0,
             sample_ns: 2_000_000,
             ..plain(SignalType::LREAL)

@@ -29,6 +29,7 @@
 //! | `part` | a component of the scene, bound to signals, other components and the world |
 //! | `machine` | all of these, one turn at a time |
 //! | `random` | random numbers from the scenario's seed |
+//! | `lateness` | how late a value arrives: a constant, an even part, a normal part |
 //! | `channel` | what happens to signals between the plant and the PLC |
 //! | `failure` | why a failure or a repair of a running plant is refused |
 //! | `identity` | whose state it is: what a plant is made of, and what differs from another |
@@ -61,9 +62,11 @@ mod failure;
 mod fitting;
 mod follower;
 mod identity;
+mod lateness;
 mod machine;
 mod mechanism;
 pub mod mesh;
+mod outline;
 mod part;
 mod placement;
 mod pose;
@@ -79,5 +82,6 @@ mod world;
 
 pub use client::Plant;
 pub use failure::FailureRefused;
+pub use outline::{Outline, Surface};
 pub use placement::{BodyPose, Placement};
 pub use scene::{Inside, Scene, SceneError, SceneFault, SceneFaultKind, UnknownFailure};

@@ -28,7 +28,7 @@ pub fn serve(address: SocketAddr, controller: &Arc<Controller>, access: &Access)
     let refusals = Refusals::default();
     let sent_away = (!access.foreign_uris).then(|| refusals.clone());
     let manager = InMemoryNodeManagerBuilder::new(move |context: ServerContext, space: &mut AddressSpace| {
-        Admitted::new(SimpleNodeManagerBuilder::new(namespace, "plc").build(context, space), sent_away)
+        Admitted::new(SimpleNodeManagerBuilder::new(namespace, "plc").build(context, space), sent_away, None)
     });
     opcua_server::start(address, "plc", access, &refusals, &Channels::default(), manager, |handle| {
         let missing = |what: &str| ServeError::Setup(format!("{what} is missing"));

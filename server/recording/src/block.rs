@@ -1,7 +1,8 @@
 //! Blocks of steps: what goes from a session's thread to the one that encodes.
 //!
 //! A block takes the images as they are, one behind the other: on the session's path recording is a
-//! copy. Blocks end by the count of steps alone, so that equal runs give equal files.
+//! copy. Blocks end by the count of steps alone, so that equal runs give equal files. The one that grows is shared with the
+//! encoder's thread, which looks at it when it is time to write what there is.
 
 use std::borrow::Cow;
 use std::ops::RangeInclusive;
@@ -89,6 +90,18 @@ impl Block {
                 width: self.width,
                 ends_part: self.ends_part,
             })
+        })
+    }
+
+    /// A copy of the rows from the one with this index on; nothing if there is none.
+    pub(super) fn rows_from(&self, index: usize) -> Option<Self> {
+        (index < self.rows()).then(|| Self {
+            first_step: self.first_step + index as u64,
+            t_v_ns: self.t_v_ns[index..].to_vec(),
+            digests: self.digests.get(index..).unwrap_or_default().to_vec(),
+            images: self.images[index * self.width..].to_vec(),
+            width: self.width,
+            ends_part: false,
         })
     }
 

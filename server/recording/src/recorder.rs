@@ -14,7 +14,7 @@
 //! the process leaves all steps up to the last of these.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use onescan_server::digest::TrajectoryDigest;
 use onescan_server::observer::{Observer, RecordError};
@@ -30,6 +30,7 @@ use super::event::{Event, EventKind, EventLog};
 use super::header::{Header, Provenance};
 use super::mcap::McapSink;
 use super::parquet::ParquetSink;
+use super::rhythm::Rhythm;
 use super::sink::{Encoder, Shape, Sink, failed};
 
 /// Name of the header's file.
@@ -56,7 +57,9 @@ pub struct Recorder {
     choice: Choice,
     encoder: Option<Encoder>,
     events: Option<EventLog>,
-    block: Block,
+    /// The block that grows.
+    block: Arc<Mutex<Block>>,
+    rhythm: Rhythm,
     schedule: Schedule,
     /// The last step that was seen.
     last: (StepCount, VirtualTime),
@@ -71,10 +74,23 @@ impl Recorder {
             choice,
             encoder: None,
             events: None,
-            block: Block::default(),
+            block: Arc::default(),
+            rhythm: Rhythm::default(),
             schedule: Schedule::new(1, 1),
             last: (StepCount::default(), VirtualTime::ZERO),
         }
+    }
+
+    /// The same, with another rhythm in which steps reach the disk.
+    #[must_use]
+    pub fn writing(mut self, rhythm: Rhythm) -> Self {
+        self.rhythm = rhythm;
+        self
+    }
+
+    fn block(&self) -> MutexGuard<'_, Block> {
+        // A thread that ended in the middle has its own error, which is reported.
+        self.block.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn start(&mut self, session: &Session, digest: &TrajectoryDigest) -> std::io::Result<()> {
@@ -84,10 +100,13 @@ impl Recorder {
         text.push(b'\n');
         std::fs::write(self.folder.join(HEADER), text)?;
         self.schedule = Schedule::new(session.step().as_nanos(), session.image().len());
-        self.block = Block::default();
         let rows = self.schedule.block_rows() as usize;
-        self.block.reserve(rows, session.image().len());
-        self.encoder = Some(Encoder::start(self.sinks(columns)?, digest.clone())?);
+        // One of its own for each start: the thread of the trajectory before may still look at its block.
+        let mut block = Block::default();
+        block.reserve(rows, session.image().len());
+        self.block = Arc::new(Mutex::new(block));
+        let first = (session.cycle().steps().0, digest.clone());
+        self.encoder = Some(Encoder::start(self.sinks(columns)?, first, Arc::clone(&self.block), self.rhythm)?);
         Ok(())
     }
 
@@ -106,25 +125,29 @@ impl Recorder {
 
     fn row(&mut self, session: &Session) -> Result<(), RecordError> {
         let Some(encoder) = &self.encoder else { return Ok(()) };
-        self.block.push(session);
         self.last = (session.cycle().steps(), session.t_v());
-        let (block, part) = self.schedule.row();
-        if !block {
-            return Ok(());
+        let (is_full, part) = self.schedule.row();
+        let full = {
+            let mut block = self.block();
+            block.push(session);
+            block.ends_part = part;
+            is_full.then(|| std::mem::take(&mut *block))
+        };
+        let mut done = match full {
+            Some(full) => encoder.exchange(full).map(|empty| *self.block() = empty),
+            None => Some(()),
+        };
+        if let Rhythm::Steps(steps) = self.rhythm
+            && self.last.0.0.is_multiple_of(steps.max(1))
+        {
+            done = done.and_then(|()| encoder.write());
         }
-        self.block.ends_part = part;
-        match encoder.exchange(std::mem::take(&mut self.block)) {
-            Some(empty) => {
-                self.block = empty;
-                Ok(())
-            }
-            None => self.finish(),
-        }
+        if done.is_some() { Ok(()) } else { self.finish() }
     }
 
     /// Waits for the thread, and reports why it ended if it did so early.
     fn finish(&mut self) -> Result<(), RecordError> {
-        let block = std::mem::take(&mut self.block);
+        let block = std::mem::take(&mut *self.block());
         let last = (block.rows() > 0).then_some(block);
         match self.encoder.take() {
             Some(encoder) => encoder.finish(last).map_err(failed(&self.folder)),

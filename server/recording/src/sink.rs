@@ -5,8 +5,8 @@
 
 use std::io;
 use std::path::PathBuf;
-use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
 use onescan_server::digest::TrajectoryDigest;
@@ -14,6 +14,8 @@ use onescan_server::observer::RecordError;
 
 use super::block::Block;
 use super::column::Column;
+use super::early::Early;
+use super::rhythm::{Beat, Rhythm};
 
 /// One that fills, one that waits, one that is encoded.
 const BLOCKS: usize = 3;
@@ -22,6 +24,11 @@ const BLOCKS: usize = 3;
 pub(crate) trait Sink: Send {
     /// Takes the steps of a block; whole blocks are what a kill leaves.
     fn block(&mut self, block: &Block) -> io::Result<()>;
+    /// Takes steps before their block does, or before it is complete on the disk, so that a kill leaves them, too. Their
+    /// block has them once more. A form whose bytes would be others for it leaves them out.
+    fn early(&mut self, _rows: &Block) -> io::Result<()> {
+        Ok(())
+    }
     /// Everything has come.
     fn end(&mut self) -> io::Result<()>;
 }
@@ -33,51 +40,130 @@ pub(super) struct Shape {
     pub(super) folder: PathBuf,
 }
 
+/// What goes to the thread.
+#[derive(Debug)]
+enum Message {
+    /// A full block.
+    Block(Block),
+    /// Write what the growing block has, and say when that is done.
+    Write,
+}
+
 /// The thread, and the channels to and from it.
 #[derive(Debug)]
 pub(super) struct Encoder {
-    filled: SyncSender<Block>,
+    to_encode: SyncSender<Message>,
     emptied: Receiver<Block>,
+    written: Receiver<()>,
     thread: JoinHandle<io::Result<()>>,
 }
 
 impl Encoder {
-    /// Starts the thread. `digest` is that of the first row, which the session has taken in already.
-    pub(super) fn start(mut sinks: Vec<Box<dyn Sink>>, mut digest: TrajectoryDigest) -> io::Result<Self> {
-        let (filled, to_encode) = sync_channel::<Block>(BLOCKS);
+    /// Starts the thread. `digest` is that of the first row, the step `first_step`, which the session has taken in already; `growing` is the block
+    /// that the session fills.
+    pub(super) fn start(
+        sinks: Vec<Box<dyn Sink>>,
+        (first_step, digest): (u64, TrajectoryDigest),
+        growing: Arc<Mutex<Block>>,
+        rhythm: Rhythm,
+    ) -> io::Result<Self> {
+        let (to_encode, messages) = sync_channel(BLOCKS);
         let (back, emptied) = sync_channel::<Block>(BLOCKS);
+        let (done, written) = sync_channel(1);
         for _ in 1..BLOCKS {
             // The channel has room for all of them, and its receiver is here.
             back.send(Block::default()).map_err(io::Error::other)?;
         }
+        let (early, beat) = (Early::default(), Beat::new(rhythm));
+        let mut encoding = Encoding { sinks, digest, known: 1, next_step: first_step, growing, early, beat };
         let encode = move || {
-            let mut known = 1;
-            for mut block in &to_encode {
-                block.digest(&mut digest, std::mem::take(&mut known));
-                sinks.iter_mut().try_for_each(|sink| sink.block(&block))?;
-                block.clear();
-                // A session that ends does not want it back; what it sent before is still encoded.
-                let _wanted = back.send(block);
+            while let Ok(message) = encoding.beat.next(&messages) {
+                match message {
+                    Some(Message::Block(block)) => {
+                        let empty = encoding.full(block)?;
+                        // A session that ends does not want it back; what it sent before is still encoded.
+                        let _wanted = back.send(empty);
+                        if encoding.beat.is_due() {
+                            encoding.write()?;
+                        }
+                    }
+                    Some(Message::Write) => {
+                        encoding.write()?;
+                        // Who asked waits, or has ended.
+                        let _wanted = done.send(());
+                    }
+                    None => encoding.write()?,
+                }
             }
-            sinks.iter_mut().try_for_each(|sink| sink.end())
+            encoding.sinks.iter_mut().try_for_each(|sink| sink.end())
         };
         let thread = std::thread::Builder::new().name("recorder".to_owned()).spawn(encode)?;
-        Ok(Self { filled, emptied, thread })
+        Ok(Self { to_encode, emptied, written, thread })
     }
 
     /// Gives a block away and gets an empty one, waiting for it if need be; nothing if the thread
     /// has failed.
     pub(super) fn exchange(&self, block: Block) -> Option<Block> {
-        self.filled.send(block).ok()?;
+        self.to_encode.send(Message::Block(block)).ok()?;
         self.emptied.recv().ok()
+    }
+
+    /// Waits until what the growing block has is written; nothing if the thread has failed.
+    pub(super) fn write(&self) -> Option<()> {
+        self.to_encode.send(Message::Write).ok()?;
+        self.written.recv().ok()
     }
 
     /// Waits until everything is written.
     pub(super) fn finish(self, last: Option<Block>) -> io::Result<()> {
         // If it is not taken the thread has failed, which its own result reports below.
-        let _taken = last.map_or(Ok(()), |block| self.filled.send(block));
-        drop(self.filled);
+        let _taken = last.map_or(Ok(()), |block| self.to_encode.send(Message::Block(block)));
+        drop(self.to_encode);
         self.thread.join().unwrap_or_else(|_| Err(io::Error::other("the recorder's thread ended early")))
+    }
+}
+
+/// What the thread does.
+struct Encoding {
+    sinks: Vec<Box<dyn Sink>>,
+    /// The digest before the growing block.
+    digest: TrajectoryDigest,
+    /// Rows of that block that the digest has taken in.
+    known: usize,
+    /// The first step of that block.
+    next_step: u64,
+    growing: Arc<Mutex<Block>>,
+    early: Early,
+    beat: Beat,
+}
+
+impl Encoding {
+    /// Takes a full block; gives it back empty.
+    fn full(&mut self, mut block: Block) -> io::Result<Block> {
+        block.digest(&mut self.digest, std::mem::take(&mut self.known));
+        self.sinks.iter_mut().try_for_each(|sink| sink.block(&block))?;
+        self.early.full(&block);
+        self.next_step = block.first_step + block.rows() as u64;
+        if block.ends_part {
+            self.beat.written();
+        }
+        block.clear();
+        Ok(block)
+    }
+
+    /// Writes what has come of a block that is not full yet.
+    fn write(&mut self) -> io::Result<()> {
+        self.beat.written();
+        let growing = {
+            let growing = self.growing.lock().unwrap_or_else(PoisonError::into_inner);
+            // One that comes after blocks which are still on their way here would be written before them.
+            growing
+                .rows_from(self.early.rows())
+                .filter(|rows| rows.first_step == self.next_step + self.early.rows() as u64)
+        };
+        let sinks = &mut self.sinks;
+        let mut write = |rows: &Block| sinks.iter_mut().try_for_each(|sink| sink.early(rows));
+        self.early.write(growing, (&self.digest, self.known), &mut write)
     }
 }
 

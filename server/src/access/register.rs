@@ -1,5 +1,7 @@
 //! All tokens that are good for a session, and the question whether one lets somebody in.
 
+use std::fmt;
+
 use onescan_base::foreign::one_line;
 use subtle::{Choice, ConditionallySelectable};
 use thiserror::Error;
@@ -26,13 +28,50 @@ pub struct Pass {
     pub hash: TokenHash,
 }
 
-/// Somebody whose token was good.
+/// With what somebody has shown who he is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Proof {
+    /// A token.
+    Token,
+    /// A certificate that an authority of the session has signed.
+    Certificate,
+}
+
+impl fmt::Display for Proof {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Token => "token",
+            Self::Certificate => "certificate",
+        })
+    }
+}
+
+/// Somebody whose token or certificate was good.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Holder {
-    /// The name of the token.
+    /// The name of the token, or that in the certificate.
     pub name: String,
     /// What it is good for.
     pub role: Role,
+    /// Which of them.
+    pub proof: Proof,
+}
+
+impl Holder {
+    /// The same, if it is good for somebody who says `hello` as `role`.
+    ///
+    /// # Errors
+    /// It is good for something else.
+    pub fn admitted(self, role: message::Role) -> Result<Self, TokenRefusal> {
+        if self.role.admits(role) {
+            return Ok(self);
+        }
+        let wanted = match role {
+            message::Role::Client => "a client",
+            message::Role::Operator => "an operator",
+        };
+        Err(TokenRefusal::OtherRole { proof: self.proof, name: self.name, role: self.role, wanted })
+    }
 }
 
 /// All tokens that are good for a session.
@@ -75,8 +114,10 @@ pub enum TokenRefusal {
         last: Day,
     },
     /// For something else.
-    #[error("token `{name}` is good for `{role}`, not to be {wanted}")]
+    #[error("{proof} `{name}` is good for `{role}`, not to be {wanted}")]
     OtherRole {
+        /// What was shown.
+        proof: Proof,
         /// Its name.
         name: String,
         /// What it is good for.
@@ -85,8 +126,10 @@ pub enum TokenRefusal {
         wanted: &'static str,
     },
     /// For another client.
-    #[error("token `{name}` is good for `{role}`, not for client `{wanted}`")]
+    #[error("{proof} `{name}` is good for `{role}`, not for client `{wanted}`")]
     OtherClient {
+        /// What was shown.
+        proof: Proof,
         /// Its name.
         name: String,
         /// What it is good for.
@@ -95,8 +138,10 @@ pub enum TokenRefusal {
         wanted: ClientName,
     },
     /// To look only.
-    #[error("token `{name}` lets its holder look, and change nothing")]
+    #[error("{proof} `{name}` lets its holder look, and change nothing")]
     LooksOnly {
+        /// What was shown.
+        proof: Proof,
         /// Its name.
         name: String,
     },
@@ -145,15 +190,7 @@ impl Register {
     /// # Errors
     /// See [`TokenRefusal`].
     pub fn admit(&self, shown: Option<&str>, role: message::Role, today: Day) -> Result<Holder, TokenRefusal> {
-        let holder = self.holder(shown, today)?;
-        if holder.role.admits(role) {
-            return Ok(holder);
-        }
-        let wanted = match role {
-            message::Role::Client => "a client",
-            message::Role::Operator => "an operator",
-        };
-        Err(TokenRefusal::OtherRole { name: holder.name, role: holder.role, wanted })
+        self.holder(shown, today)?.admitted(role)
     }
 
     /// Whose token was shown, if it is good today. All are compared, in constant time, whichever it is.
@@ -172,7 +209,7 @@ impl Register {
         let Pass { name, role, expires, .. } = pass.ok_or(TokenRefusal::Unknown)?.clone();
         match expires {
             Some(last) if today > last => Err(TokenRefusal::Expired { name, last }),
-            _ => Ok(Holder { name, role }),
+            _ => Ok(Holder { name, role, proof: Proof::Token }),
         }
     }
 }

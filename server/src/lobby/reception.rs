@@ -10,9 +10,9 @@ use onescan_base::foreign::one_line;
 
 use super::places::Places;
 use super::visitor::{Guest, Said, Stage};
-use crate::access::{Day, Register, Role as Right, TokenRefusal};
+use crate::access::{Day, Holder, Register, Role as Right, TokenRefusal};
 use crate::client::JoinRequest;
-use crate::operation::Operation;
+use crate::mailbox::Wish;
 use crate::wire::message::{Role, Status};
 use crate::wire::{ClientMessage, FRAME_BYTES_MAX, HANDSHAKE_FRAME_BYTES_MAX, ServerMessage, VERSIONS, VersionRange};
 
@@ -63,7 +63,7 @@ pub enum Action {
     /// Give this client a seat or refuse it; then say so with [`Reception::seated`] or [`Reception::refused`].
     Apply(Visitor, JoinRequest),
     /// Ask the session for this, or only how it is; then say so with [`Reception::answered`].
-    Ask(Visitor, Option<Operation>),
+    Ask(Visitor, Wish),
     /// Send no more, and read until the other side closes.
     Part(Visitor),
     /// Close at once.
@@ -143,6 +143,13 @@ impl Reception {
             self.refuse(slowest, "too many connections are waiting in the lobby", now, &mut actions);
         }
         actions
+    }
+
+    /// A connection has shown a certificate that is good.
+    pub fn certified(&mut self, visitor: Visitor, holder: Holder) {
+        if let Some(guest) = self.guests.get_mut(&visitor).filter(|guest| guest.stage == Stage::Greeting) {
+            guest.holder = Some(holder);
+        }
     }
 
     /// Who has been silent the longest: a client that means to join speaks at once, and is not kept out by those who do
@@ -230,10 +237,13 @@ impl Reception {
             ));
         }
         let Some(guest) = self.guests.get_mut(&visitor) else { return Ok(()) };
-        if let Some(register) = &self.terms.register {
-            let holder = register.admit(token, role, now.today).map_err(|refusal| refusal.to_string())?;
-            guest.holder = Some(holder);
-        }
+        // Who has shown a certificate needs no token.
+        let holder = match (guest.holder.take(), &self.terms.register) {
+            (Some(certified), _) => Some(certified.admitted(role)),
+            (None, Some(register)) => Some(register.admit(token, role, now.today)),
+            (None, None) => None,
+        };
+        guest.holder = holder.transpose().map_err(|refusal| refusal.to_string())?;
         if role == Role::Operator && !self.places.take(guest.address) {
             return Err("too many operators are connected".to_owned());
         }
@@ -251,8 +261,8 @@ impl Reception {
         if let Some(holder) = &guest.holder
             && holder.role != Right::Client(request.name.clone())
         {
-            let (name, role) = (holder.name.clone(), holder.role.clone());
-            let refusal = TokenRefusal::OtherClient { name, role, wanted: request.name };
+            let Holder { name, role, proof } = holder.clone();
+            let refusal = TokenRefusal::OtherClient { proof, name, role, wanted: request.name };
             return self.refuse(visitor, &refusal.to_string(), now, actions);
         }
         if self.is_shut {
@@ -263,22 +273,22 @@ impl Reception {
     }
 
     fn ask(&mut self, visitor: Visitor, message: ClientMessage, now: Now, actions: &mut Vec<Action>) {
-        let operation = match message {
-            ClientMessage::Control(control) => Some(control.into()),
-            ClientMessage::Operate(operation) => Some(operation),
-            ClientMessage::Status {} => None,
+        let wish = match message {
+            ClientMessage::Control(control) => Wish::Do(control.into()),
+            ClientMessage::Operate(operation) => Wish::Do(operation),
+            ClientMessage::Status { signals } => Wish::Look(signals),
             _ => return self.refuse(visitor, "an operator may send `control`, `operate` and `status`", now, actions),
         };
         let Some(guest) = self.guests.get_mut(&visitor) else { return };
         if let Some(holder) = &guest.holder
-            && operation.is_some()
+            && matches!(wish, Wish::Do(_))
             && holder.role != Right::Operator
         {
-            let refusal = TokenRefusal::LooksOnly { name: holder.name.clone() };
+            let refusal = TokenRefusal::LooksOnly { proof: holder.proof, name: holder.name.clone() };
             return self.refuse(visitor, &refusal.to_string(), now, actions);
         }
         (guest.stage, guest.until) = (Stage::Asking, None);
-        actions.push(Action::Ask(visitor, operation));
+        actions.push(Action::Ask(visitor, wish));
     }
 
     /// A client gets its seat, and its connection goes over to the session; false if it waits for none any more.

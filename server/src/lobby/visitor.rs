@@ -33,7 +33,7 @@ pub(super) struct Guest {
     pub(super) stage: Stage,
     /// When the stage ends whatever happens; it does not in those in which the session is to act.
     pub(super) until: Option<Duration>,
-    /// Whose token it showed, where tokens are asked for.
+    /// Whose certificate it showed, or, from `hello` on, whose token where tokens are asked for.
     pub(super) holder: Option<Holder>,
     limit: usize,
     incoming: BytesMut,

@@ -4,6 +4,7 @@ use onescan_base::did_you_mean;
 
 use super::Lockstep;
 use crate::client::{ClientId, ClientOperation};
+use crate::mailbox::Wish;
 use crate::observer::RecordError;
 use crate::operation::{Author, Operation, OperationError, OperatorInput};
 use crate::signal::ClientName;
@@ -23,12 +24,12 @@ impl Lockstep {
         while !self.session.is_about_to_act()
             && let Some(request) = self.mailbox.take()
         {
-            let done = match request.operation {
-                None => Ok(()),
-                Some(operation) => self.operate(operation, Author::Operator)?,
+            let status = match request.wish {
+                Wish::Look(signals) => self.session.look(&signals),
+                Wish::Do(operation) => self.operate(operation, Author::Operator)?.map(|()| self.status()),
             };
             if let Some(reply) = request.reply
-                && reply.send(done.map(|()| self.status())).is_err()
+                && reply.send(status).is_err()
             {
                 tracing::debug!("the operator left before it heard what came of its wish");
             }

@@ -76,7 +76,7 @@ impl Session {
         Err(OperationError::FaultType { signal: signal.clone(), ty, fault: fault.clone() })
     }
 
-    fn known(&self, signal: &SignalName) -> Result<SignalId, OperationError> {
+    pub(super) fn known(&self, signal: &SignalName) -> Result<SignalId, OperationError> {
         self.signal_id(signal.as_str()).ok_or_else(|| {
             let names = self.plan.signals().iter().map(|known| known.name.as_str());
             OperationError::Unknown { signal: signal.clone(), nearest: did_you_mean(signal.as_str(), names) }

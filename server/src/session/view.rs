@@ -1,13 +1,16 @@
 //! What can be seen of a session.
 
+use std::collections::BTreeMap;
+
 use super::{Mode, Session};
 use crate::client::ClientId;
 use crate::cycle::Cycle;
 use crate::end::SessionEnd;
 use crate::join::Membership;
 use crate::layout::ImageLayout;
+use crate::operation::OperationError;
 use crate::plan::SessionPlan;
-use crate::signal::{ClientName, SignalId};
+use crate::signal::{ClientName, SignalId, SignalName};
 use crate::time::{TimeSpan, VirtualTime};
 use crate::wire::message::Status;
 
@@ -75,7 +78,21 @@ impl Session {
 
     /// How the session is.
     pub fn status(&self) -> Status {
-        Status { state: self.cycle.server(), t_v: self.t_v(), steps: self.cycle.steps(), held: self.is_held() }
+        let (state, steps, held) = (self.cycle.server(), self.cycle.steps(), self.is_held());
+        Status { state, t_v: self.t_v(), steps, held, values: BTreeMap::new() }
+    }
+
+    /// How the session is, and what these signals are, as text: what the readers of the next step see.
+    ///
+    /// # Errors
+    /// An unknown signal.
+    pub fn look(&self, signals: &[SignalName]) -> Result<Status, OperationError> {
+        let value = |signal: &SignalName| {
+            let id = self.known(signal)?;
+            Ok((signal.clone(), self.layout.ty(id).to_text(self.layout.bytes(id, self.image()))))
+        };
+        let values = signals.iter().map(value).collect::<Result<_, _>>()?;
+        Ok(Status { values, ..self.status() })
     }
 
     /// True if a single step or a reset has been asked for and not been done.

@@ -3,10 +3,15 @@
 use std::io;
 use std::sync::Arc;
 
+use rustls::client::WantsClientCert;
 use rustls::crypto::ring::default_provider;
 use rustls::pki_types::pem::PemObject as _;
 use rustls::pki_types::{CertificateDer, PrivateKeyDer};
-use rustls::{CertificateError, ClientConfig, InvalidMessage, RootCertStore, ServerConfig};
+use rustls::server::danger::ClientCertVerifier;
+use rustls::server::{VerifierBuilderError, WebPkiClientVerifier};
+use rustls::{
+    AlertDescription, CertificateError, ClientConfig, ConfigBuilder, InvalidMessage, RootCertStore, ServerConfig,
+};
 use thiserror::Error;
 
 /// The certificate with which a session shows who it is, and its key.
@@ -32,19 +37,21 @@ pub enum CertificateFault {
 }
 
 impl Identity {
-    /// The certificate, with those of its issuers behind it, and its key.
+    /// The certificate, with those of its issuers behind it, and its key. Whoever comes may show a certificate that one
+    /// of `clients`, authorities if they are given, has signed.
     ///
     /// # Errors
     /// See [`CertificateFault`].
-    pub fn from_pem(certificates: &[u8], key: &[u8]) -> Result<Self, CertificateFault> {
+    pub fn from_pem(certificates: &[u8], key: &[u8], clients: Option<&[u8]>) -> Result<Self, CertificateFault> {
         let chain = certificates_of(certificates)?;
         let key = PrivateKeyDer::from_pem_slice(key).map_err(|_| CertificateFault::NoKey)?;
         let builder = ServerConfig::builder_with_provider(Arc::new(default_provider()));
-        let config = builder
-            .with_safe_default_protocol_versions()
-            .and_then(|builder| builder.with_no_client_auth().with_single_cert(chain, key))
-            .map_err(CertificateFault::Unusable)?;
-        Ok(Self(Arc::new(config)))
+        let builder = builder.with_safe_default_protocol_versions().map_err(CertificateFault::Unusable)?;
+        let builder = match clients {
+            None => builder.with_no_client_auth(),
+            Some(authorities) => builder.with_client_cert_verifier(verifier(authorities)?),
+        };
+        Ok(Self(Arc::new(builder.with_single_cert(chain, key).map_err(CertificateFault::Unusable)?)))
     }
 }
 
@@ -54,14 +61,41 @@ impl Trust {
     /// # Errors
     /// See [`CertificateFault`].
     pub fn from_pem(authorities: &[u8]) -> Result<Self, CertificateFault> {
-        let mut roots = RootCertStore::empty();
-        for authority in certificates_of(authorities)? {
-            roots.add(authority).map_err(CertificateFault::Unusable)?;
-        }
-        let builder = ClientConfig::builder_with_provider(Arc::new(default_provider()));
-        let builder = builder.with_safe_default_protocol_versions().map_err(CertificateFault::Unusable)?;
-        Ok(Self(Arc::new(builder.with_root_certificates(roots).with_no_client_auth())))
+        Ok(Self(Arc::new(believing(authorities)?.with_no_client_auth())))
     }
+
+    /// The same, and shows a certificate of its own, with its key, to servers that ask for one.
+    ///
+    /// # Errors
+    /// See [`CertificateFault`].
+    pub fn showing(authorities: &[u8], certificates: &[u8], key: &[u8]) -> Result<Self, CertificateFault> {
+        let chain = certificates_of(certificates)?;
+        let key = PrivateKeyDer::from_pem_slice(key).map_err(|_| CertificateFault::NoKey)?;
+        let config = believing(authorities)?.with_client_auth_cert(chain, key).map_err(CertificateFault::Unusable)?;
+        Ok(Self(Arc::new(config)))
+    }
+}
+
+fn believing(authorities: &[u8]) -> Result<ConfigBuilder<ClientConfig, WantsClientCert>, CertificateFault> {
+    let builder = ClientConfig::builder_with_provider(Arc::new(default_provider()));
+    let builder = builder.with_safe_default_protocol_versions().map_err(CertificateFault::Unusable)?;
+    Ok(builder.with_root_certificates(roots(authorities)?))
+}
+
+fn roots(authorities: &[u8]) -> Result<RootCertStore, CertificateFault> {
+    let mut roots = RootCertStore::empty();
+    for authority in certificates_of(authorities)? {
+        roots.add(authority).map_err(CertificateFault::Unusable)?;
+    }
+    Ok(roots)
+}
+
+/// Lets in who shows no certificate, as a token may do instead, and nobody whose certificate is not good.
+fn verifier(authorities: &[u8]) -> Result<Arc<dyn ClientCertVerifier>, CertificateFault> {
+    let roots = Arc::new(roots(authorities)?);
+    let builder = WebPkiClientVerifier::builder_with_provider(roots, Arc::new(default_provider()));
+    let unusable = |error: VerifierBuilderError| CertificateFault::Unusable(rustls::Error::General(error.to_string()));
+    builder.allow_unauthenticated().build().map_err(unusable)
 }
 
 fn certificates_of(pem: &[u8]) -> Result<Vec<CertificateDer<'static>>, CertificateFault> {
@@ -87,9 +121,22 @@ pub(super) fn reason(error: &io::Error) -> String {
         rustls::Error::InvalidCertificate(CertificateError::Expired | CertificateError::ExpiredContext { .. }) => {
             "its certificate has expired".to_owned()
         }
-        rustls::Error::AlertReceived(rustls::AlertDescription::UnknownCA) => {
-            "the other side does not trust this certificate".to_owned()
+        rustls::Error::InvalidCertificate(
+            CertificateError::NotValidYet | CertificateError::NotValidYetContext { .. },
+        ) => "its certificate is not good yet".to_owned(),
+        rustls::Error::InvalidCertificate(
+            CertificateError::InvalidPurpose | CertificateError::InvalidPurposeContext { .. },
+        ) => "its certificate is not made for this: a client needs the purpose `clientAuth`, a server `serverAuth`"
+            .to_owned(),
+        rustls::Error::AlertReceived(
+            AlertDescription::UnknownCA | AlertDescription::BadCertificate | AlertDescription::DecryptError,
+        ) => "the other side does not trust this certificate".to_owned(),
+        rustls::Error::AlertReceived(AlertDescription::CertificateExpired) => {
+            "this certificate has expired, or is not good yet".to_owned()
         }
+        rustls::Error::AlertReceived(
+            AlertDescription::UnsupportedCertificate | AlertDescription::CertificateUnknown,
+        ) => "the other side cannot use this certificate: it may be made for something else".to_owned(),
         rustls::Error::PeerIncompatible(why) => {
             format!(
                 "the other side speaks no version of TLS from 1.2 on, or no way of encryption that is good: {why:?}"

@@ -1,5 +1,7 @@
 //! Join and control messages. Each is one JSON object with one key, its kind.
 
+use std::collections::BTreeMap;
+
 use onescan_base::foreign::deserialize_line;
 use serde::{Deserialize, Serialize};
 
@@ -55,7 +57,11 @@ pub enum ClientMessage {
     /// An operator writes, forces or releases a signal, or wishes as with `control`.
     Operate(Operation),
     /// An operator asks how things are.
-    Status {},
+    Status {
+        /// The signals whose values it wants; left out if none.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        signals: Vec<SignalName>,
+    },
 }
 
 /// From the server to a client or operator.
@@ -159,4 +165,7 @@ pub struct Status {
     pub steps: StepCount,
     /// True while virtual time is held.
     pub held: bool,
+    /// The signals that were asked for, as text; left out if none was.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub values: BTreeMap<SignalName, String>,
 }

@@ -85,11 +85,13 @@ def _slots(signals: Signals) -> Tuple[int, List[Fields]]:
 class LockstepClient:
     """One connection to a server: `connect`, `join` and `run`, in this order."""
 
-    def __init__(self, host: str, port: int, token: Optional[str] = None, tls_ca: Optional[str] = None) -> None:
+    def __init__(self, host: str, port: int, token: Optional[str] = None, tls_ca: Optional[str] = None,
+                 tls_own: Optional[Tuple[str, str]] = None) -> None:
         """`token` is shown if the session asks for one; with `tls_ca`, a file of certificates, it speaks TLS and
-        trusts what these have signed (section 7)."""
+        trusts what these have signed (section 7). `tls_own`, the files of a certificate and its key, is shown in
+        place of a token."""
         self._address, self._sock = (host, port), socket.socket()
-        self._token, self._tls_ca = token, tls_ca
+        self._token, self._tls_ca, self._tls_own = token, tls_ca, tls_own
         self._limit = 1 << 26  # section 2: what a client takes and, once it has joined, may send
         self._reads: Signals = []
         self._writes: Signals = []
@@ -154,6 +156,8 @@ class LockstepClient:
             if self._tls_ca is not None:
                 context = ssl.create_default_context(cafile=self._tls_ca)
                 context.minimum_version = ssl.TLSVersion.TLSv1_2
+                if self._tls_own is not None:
+                    context.load_cert_chain(*self._tls_own)
                 self._sock = context.wrap_socket(self._sock, server_hostname=self._address[0])
         except OSError as error:
             raise LostServer(f"no connection to {self._address}: {error}") from error

@@ -121,11 +121,12 @@ class Simulation(Participant):
 
     # ---- taking part
 
-    def take_part(self, server: str, token: Optional[str] = None, tls_ca: Optional[str] = None) -> Fields:
-        """Takes part in the session at `HOST:PORT` to its end, and gives the fields of `end`. `token` and `tls_ca`
-        are those of `LockstepClient`."""
+    def take_part(self, server: str, token: Optional[str] = None, tls_ca: Optional[str] = None,
+                  tls_own: Optional[Tuple[str, str]] = None) -> Fields:
+        """Takes part in the session at `HOST:PORT` to its end, and gives the fields of `end`. `token`, `tls_ca` and
+        `tls_own` are those of `LockstepClient`."""
         host, port = address(server)
-        with LockstepClient(host, port, token, tls_ca) as client:
+        with LockstepClient(host, port, token, tls_ca, tls_own) as client:
             welcome = client.connect(f"onescan-client 0.1.0 ({type(self).__name__})")
             period_ns = self._period_ns or welcome["step_ns"]
             self.dt_s = period_ns / 1e9
@@ -136,16 +137,24 @@ class Simulation(Participant):
     def main(self, words: Optional[Sequence[str]] = None) -> None:
         """Takes part in the session that `--server HOST:PORT` names, and exits: 0 if it was completed or
         stopped, 2 if the server refused, 3 if the session failed or the server was lost. What it shows to the
-        session is in `--token` and `--tls-ca`, or in ONESCAN_TOKEN and ONESCAN_TLS_CA."""
+        session is in `--token`, `--tls-ca`, `--tls-cert` and `--tls-key`, or in ONESCAN_TOKEN, ONESCAN_TLS_CA,
+        ONESCAN_TLS_CERT and ONESCAN_TLS_KEY."""
         parser = argparse.ArgumentParser(description=type(self).__doc__)
         parser.add_argument("--server", required=True, metavar="HOST:PORT", help="where the session is")
         parser.add_argument("--token", default=os.environ.get("ONESCAN_TOKEN"),
                             help="the token to show (better in ONESCAN_TOKEN, where no list of processes has it)")
         parser.add_argument("--tls-ca", default=os.environ.get("ONESCAN_TLS_CA"), metavar="FILE",
                             help="speak TLS, and trust what this authority has signed")
+        parser.add_argument("--tls-cert", default=os.environ.get("ONESCAN_TLS_CERT"), metavar="FILE",
+                            help="show this certificate in place of a token")
+        parser.add_argument("--tls-key", default=os.environ.get("ONESCAN_TLS_KEY"), metavar="FILE",
+                            help="the private key of --tls-cert")
         typed = parser.parse_args(words)
+        if (typed.tls_cert is None) != (typed.tls_key is None):
+            parser.error("--tls-cert and --tls-key go together")
+        own = (typed.tls_cert, typed.tls_key) if typed.tls_cert is not None else None
         try:
-            self.take_part(typed.server, typed.token, typed.tls_ca)
+            self.take_part(typed.server, typed.token, typed.tls_ca, own)
         except Refused as error:
             print(f"refused: {error}", file=sys.stderr)
             sys.exit(2)

@@ -17,6 +17,10 @@ use crate::gateway::fault::LinkFault;
 /// The namespace in which `onescan plc` has its variables.
 pub const NAMESPACE: &str = "urn:onescan:plc:variables";
 
+/// How the names of variables begin that hold passwords.
+#[cfg(feature = "opcua")]
+const PASSWORD_PREFIX: &str = "ONESCAN_OPCUA_";
+
 /// How a client presents itself, and where its variables are.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
@@ -31,7 +35,8 @@ pub struct Options {
     pub mode: String,
     /// The user; anonymous if absent.
     pub user: Option<String>,
-    /// Name of the environment variable that holds the user's password: it has no place in a file.
+    /// Name of the environment variable that holds the user's password: it has no place in a file. It begins with
+    /// `ONESCAN_OPCUA_`, so that a link cannot send other secrets of the environment to an address of its choice.
     pub password_env: String,
     /// The user's certificate, in place of a password.
     pub user_certificate: Option<PathBuf>,
@@ -105,8 +110,14 @@ impl Options {
                 )))
             }
             (None, None, Some(user)) => {
-                let password = std::env::var(&self.password_env).map_err(|_| {
-                    let name = &self.password_env;
+                let name = &self.password_env;
+                if !name.starts_with(PASSWORD_PREFIX) {
+                    return Err(LinkFault::Setting(format!(
+                        "`password_env` is `{name}`: a name that begins with `{PASSWORD_PREFIX}` is wanted, so that no \
+                         other variable of the environment leaves this machine"
+                    )));
+                }
+                let password = std::env::var(name).map_err(|_| {
                     LinkFault::Setting(format!("the environment variable `{name}` has no password for user `{user}`"))
                 })?;
                 Ok(IdentityToken::UserName(user.clone(), password.into()))
@@ -118,5 +129,19 @@ impl Options {
     /// True if certificates are needed at all.
     pub fn is_secured(&self) -> bool {
         self.policy != "None" || self.user_certificate.is_some()
+    }
+}
+
+#[cfg(all(test, feature = "opcua"))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_other_variable_of_the_environment_is_a_password() {
+        // A variable that every process has.
+        let user = Some("operator".to_owned());
+        let options = Options { user, password_env: "PATH".to_owned(), plain_password: true, ..Options::default() };
+        let refused = options.identity().map(|_| ()).expect_err("it is no password");
+        assert!(refused.to_string().contains("begins with `ONESCAN_OPCUA_`"), "{refused}");
     }
 }

@@ -5,7 +5,7 @@
 
 use std::path::Path;
 
-use onescan_base::regular::{self, Limit};
+use onescan_base::regular::{Limit, Within};
 use rapier3d::glamx::{DMat3, DQuat, DVec3};
 use serde::Deserialize;
 
@@ -114,7 +114,7 @@ fn wrong(cause: impl Into<String>) -> MeshError {
 ///
 /// # Errors
 /// Bytes that are no glTF, or that do not go together.
-pub(super) fn read(bytes: &[u8], path: &Path) -> Result<Mesh, MeshError> {
+pub(super) fn read(bytes: &[u8], path: &Path, within: &Within) -> Result<Mesh, MeshError> {
     let (json, binary) = if bytes.starts_with(MAGIC) { chunks(bytes)? } else { (bytes, None) };
     let document: Document = serde_json::from_slice(json)
         .map_err(|error| MeshError::Line { line: error.line(), cause: error.to_string() })?;
@@ -123,7 +123,7 @@ pub(super) fn read(bytes: &[u8], path: &Path) -> Result<Mesh, MeshError> {
     }
     let mut buffers = Vec::new();
     for buffer in &document.buffers {
-        buffers.push(contents(buffer, binary, path)?);
+        buffers.push(contents(buffer, binary, (path, within))?);
     }
     let mut file = File { document, buffers, mesh: Mesh::default(), budget: 100_000 };
     // y up becomes z up: a quarter turn about x
@@ -156,7 +156,7 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), MeshError> {
     json.map(|json| (json, binary)).ok_or_else(|| wrong("is a GLB without JSON"))
 }
 
-fn contents(buffer: &Buffer, binary: Option<&[u8]>, path: &Path) -> Result<Vec<u8>, MeshError> {
+fn contents(buffer: &Buffer, binary: Option<&[u8]>, (path, within): (&Path, &Within)) -> Result<Vec<u8>, MeshError> {
     let Some(uri) = &buffer.uri else {
         return binary.map(<[u8]>::to_vec).ok_or_else(|| wrong("has a buffer without bytes"));
     };
@@ -165,7 +165,7 @@ fn contents(buffer: &Buffer, binary: Option<&[u8]>, path: &Path) -> Result<Vec<u
         return encoded.and_then(base64).ok_or_else(|| wrong("has a buffer that is no base64"));
     }
     let file = path.parent().unwrap_or_else(|| Path::new("")).join(uri);
-    regular::read(&file, Limit::DATA).map_err(|error| wrong(format!("needs `{uri}`, which cannot be read: {error}")))
+    within.read(&file, Limit::DATA).map_err(|error| wrong(format!("needs `{uri}`, which cannot be read: {error}")))
 }
 
 /// RFC 4648, 4.
@@ -299,7 +299,7 @@ mod tests {
     }
 
     fn mesh_of(text: &[u8]) -> Result<Mesh, String> {
-        read(text, Path::new("part.gltf")).map_err(|error| error.to_string())
+        read(text, Path::new("part.gltf"), &Within::anywhere()).map_err(|error| error.to_string())
     }
 
     #[test]

@@ -9,7 +9,7 @@ mod gltf;
 
 use std::path::Path;
 
-use onescan_base::regular::{self, Limit};
+use onescan_base::regular::{Limit, Within};
 use thiserror::Error;
 
 /// Most triangles of a mesh: beyond, contacts would take longer than any step.
@@ -72,16 +72,24 @@ impl Mesh {
     /// # Errors
     /// See [`MeshError`].
     pub fn read(path: &Path) -> Result<Self, MeshError> {
+        Self::read_within(path, &Within::anywhere())
+    }
+
+    /// As [`Mesh::read`], where the file, and what it names, may be read.
+    ///
+    /// # Errors
+    /// See [`MeshError`].
+    pub fn read_within(path: &Path, within: &Within) -> Result<Self, MeshError> {
         let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
-        let reader: fn(&[u8], &Path) -> Result<Self, MeshError> = match ending.as_deref() {
-            Some("stl") => |bytes, _| Self::stl(bytes),
-            Some("obj") => |bytes, _| Self::obj(bytes),
-            Some("dae") => |bytes, _| collada::read(bytes),
+        let reader: fn(&[u8], &Path, &Within) -> Result<Self, MeshError> = match ending.as_deref() {
+            Some("stl") => |bytes, _, _| Self::stl(bytes),
+            Some("obj") => |bytes, _, _| Self::obj(bytes),
+            Some("dae") => |bytes, _, _| collada::read(bytes),
             Some("gltf" | "glb") => gltf::read,
             _ => return Err(MeshError::Kind),
         };
-        let bytes = regular::read(path, Limit::DATA).map_err(|error| MeshError::Unreadable(error.to_string()))?;
-        reader(&bytes, path)?.checked()
+        let bytes = within.read(path, Limit::DATA).map_err(|error| MeshError::Unreadable(error.to_string()))?;
+        reader(&bytes, path, within)?.checked()
     }
 
     /// A part that is in many places is there many times: what is too much is not collected to its end.

@@ -4,7 +4,7 @@
 
 use std::path::{Path, PathBuf};
 
-use onescan_base::regular;
+use onescan_base::regular::Within;
 
 /// How many folders up from a file a package is looked for.
 const UP_MAX: usize = 8;
@@ -13,12 +13,21 @@ const UP_MAX: usize = 8;
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Packages {
     named: Vec<(String, PathBuf)>,
+    within: Within,
 }
 
 impl Packages {
-    /// Packages by name, each with its folder.
-    pub fn new(named: Vec<(String, PathBuf)>) -> Self {
-        Self { named }
+    /// Packages by name, each with its folder; files of them and of robots are read where `within` allows it.
+    pub fn new(named: Vec<(String, PathBuf)>, within: Within) -> Self {
+        Self { named, within }
+    }
+
+    /// The text of a file that a robot's file names.
+    ///
+    /// # Errors
+    /// It cannot be read, or may not be.
+    pub(super) fn read_text(&self, path: &Path) -> std::io::Result<String> {
+        self.within.read_text(path)
     }
 
     /// The folder of a package that is named, or that is in a folder around `file`.
@@ -28,7 +37,7 @@ impl Packages {
         }
         let mut around = file.parent().unwrap_or_else(|| Path::new("")).to_path_buf();
         for _ in 0..UP_MAX {
-            if is_package(&around, name) {
+            if self.is_package(&around, name) {
                 return Some(around);
             }
             if let Some(beside) =
@@ -67,11 +76,11 @@ impl Packages {
              \"folder\" }}`"
         ))
     }
-}
 
-/// Whether a folder is the package of a name.
-fn is_package(folder: &Path, name: &str) -> bool {
-    let Ok(text) = regular::read_text(&folder.join("package.xml")) else { return false };
-    let written = text.split_once("<name>").and_then(|(_, rest)| rest.split_once("</name>"));
-    written.is_some_and(|(written, _)| written.trim() == name)
+    /// Whether a folder is the package of a name.
+    fn is_package(&self, folder: &Path, name: &str) -> bool {
+        let Ok(text) = self.read_text(&folder.join("package.xml")) else { return false };
+        let written = text.split_once("<name>").and_then(|(_, rest)| rest.split_once("</name>"));
+        written.is_some_and(|(written, _)| written.trim() == name)
+    }
 }

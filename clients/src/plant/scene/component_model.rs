@@ -113,6 +113,8 @@ pub struct Condition {
     pub delay_ns: u64,
     /// And by up to so much more, ns.
     pub jitter_ns: u64,
+    /// And by a time from N(0, σ) with this σ, ns.
+    pub delay_sigma_ns: u64,
     /// Looked at so often, ns; in every period if 0.
     pub sample_ns: u64,
     /// Rounded to a multiple of this; not if 0.
@@ -121,6 +123,10 @@ pub struct Condition {
     pub noise_mean: f64,
     /// Standard deviation of the noise.
     pub noise_sigma: f64,
+    /// How probable it is that a change is lost.
+    pub lost_rate: f64,
+    /// How probable it is, in each turn, that a bit arrives inverted.
+    pub flip_rate: f64,
 }
 
 /// A range in a signal's unit, and the raw values of its ends.

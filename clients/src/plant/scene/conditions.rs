@@ -17,6 +17,9 @@ use super::text;
 /// Longest delay: what is on its way is part of the plant's state.
 const TIME_S: Allowed = Allowed::Within(0.0, 60.0);
 
+/// A probability.
+const RATE: Allowed = Allowed::Within(0.0, 1.0);
+
 pub(super) fn check(tables: &[Placed<SignalTable>], signals: &mut Signals, faults: &mut Faults<'_>) -> Vec<Condition> {
     Names::gather(Thing::Signal, tables.iter().map(|table| &table.get_ref().name), faults);
     tables.iter().filter_map(|table| condition(table.get_ref(), signals, faults)).collect()
@@ -32,28 +35,36 @@ fn condition(table: &SignalTable, signals: &mut Signals, faults: &mut Faults<'_>
     if port.ty == SignalType::BOOL {
         refuse_number_keys(table, faults);
     }
-    if let Some(ty) = ty(table, faults) {
+    let outer = ty(table, faults);
+    if let Some(ty) = outer {
         signals.retype(&port.name, ty);
     }
+    refuse_bits_of_fractions(table, outer.unwrap_or(port.ty), faults);
     let mut number = |key: &'static str, value: Option<&Placed<f64>>, allowed: Allowed| {
         faults.number(Entry::new(key, value), allowed).unwrap_or(0.0)
     };
     let delay_s = number("delay_s", table.delay_s.as_ref(), TIME_S);
     let jitter_s = number("jitter_s", table.jitter_s.as_ref(), TIME_S);
+    let delay_sigma_s = number("delay_sigma_s", table.delay_sigma_s.as_ref(), TIME_S);
     let sample_s = number("sample_s", table.sample_s.as_ref(), TIME_S);
     let quantum = number("quantum", table.quantum.as_ref(), Allowed::NotNegative);
     let noise_mean = number("noise_mean", table.noise_mean.as_ref(), Allowed::Finite);
     let noise_sigma = number("noise_sigma", table.noise_sigma.as_ref(), Allowed::NotNegative);
+    let lost_rate = number("lost_rate", table.lost_rate.as_ref(), RATE);
+    let flip_rate = number("flip_rate", table.flip_rate.as_ref(), RATE);
     Some(Condition {
         signal: port.name,
         inner: port.ty,
         scale: scale(table, faults),
         delay_ns: nanoseconds(delay_s),
         jitter_ns: nanoseconds(jitter_s),
+        delay_sigma_ns: nanoseconds(delay_sigma_s),
         sample_ns: nanoseconds(sample_s),
         quantum,
         noise_mean,
         noise_sigma,
+        lost_rate,
+        flip_rate,
     })
 }
 
@@ -72,6 +83,15 @@ fn refuse_number_keys(table: &SignalTable, faults: &mut Faults<'_>) {
             let name = text(&table.name).to_owned();
             faults.add(span, SceneFaultKind::SignalKey { name, ty: "BOOL".to_owned(), key });
         }
+    }
+}
+
+/// An inverted bit of a number with a fraction may be its sign, its exponent or nothing that one could
+/// see, and it may leave no number at all.
+fn refuse_bits_of_fractions(table: &SignalTable, ty: SignalType, faults: &mut Faults<'_>) {
+    if let (Some(written), SignalType::REAL | SignalType::LREAL) = (&table.flip_rate, ty) {
+        let name = text(&table.name).to_owned();
+        faults.add(written.span(), SceneFaultKind::SignalKey { name, ty: ty.to_string(), key: "flip_rate" });
     }
 }
 

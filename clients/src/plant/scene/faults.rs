@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::placed::Placed;
 use onescan_base::nearest;
+use onescan_base::regular::Within;
 use onescan_server::client::SourcePlace;
 
 use super::error::{Inside, SceneError, SceneFault, SceneFaultKind, Thing};
@@ -14,14 +15,16 @@ use super::overrides::index_of;
 pub(super) struct Faults<'t> {
     text: &'t str,
     file: &'t str,
+    /// What the files that it names may be.
+    within: &'t Within,
     found: Vec<SceneFault>,
     /// Beginnings of names that are not there because a robot was refused.
     lost: Vec<String>,
 }
 
 impl<'t> Faults<'t> {
-    pub(super) fn new(text: &'t str, file: &'t str) -> Self {
-        Self { text, file, found: Vec::new(), lost: Vec::new() }
+    pub(super) fn new(text: &'t str, file: &'t str, within: &'t Within) -> Self {
+        Self { text, file, within, found: Vec::new(), lost: Vec::new() }
     }
 
     /// The file's text.
@@ -47,6 +50,11 @@ impl<'t> Faults<'t> {
             line: before.matches('\n').count() as u32 + 1,
             column: before[line_start..].chars().count() as u32 + 1,
         }
+    }
+
+    /// What the files that it names may be.
+    pub(super) fn within(&self) -> &'t Within {
+        self.within
     }
 
     /// A file that the scene names, found beside its own.

@@ -72,10 +72,13 @@ pub(super) struct SignalTable {
     pub(super) raw: Option<Placed<[f64; 2]>>,
     pub(super) delay_s: Option<Placed<f64>>,
     pub(super) jitter_s: Option<Placed<f64>>,
+    pub(super) delay_sigma_s: Option<Placed<f64>>,
     pub(super) sample_s: Option<Placed<f64>>,
     pub(super) quantum: Option<Placed<f64>>,
     pub(super) noise_mean: Option<Placed<f64>>,
     pub(super) noise_sigma: Option<Placed<f64>>,
+    pub(super) lost_rate: Option<Placed<f64>>,
+    pub(super) flip_rate: Option<Placed<f64>>,
 }
 
 /// How a body moves.

@@ -53,7 +53,7 @@ impl MeshKeys<'_> {
             faults.add(written.span(), SceneFaultKind::OpenSurface(of.whose()));
         }
         let file = name.get_ref().clone();
-        let mesh = match Mesh::read(&faults.beside(&file)) {
+        let mesh = match Mesh::read_within(&faults.beside(&file), faults.within()) {
             Ok(mesh) => mesh,
             Err(cause) => {
                 faults.add(name.span(), SceneFaultKind::Mesh { file, cause: cause.to_string() });

@@ -112,7 +112,9 @@
 //! | `sample_s` | looked at only so often |
 //! | `noise_mean`, `noise_sigma` | N(µ, σ) is added, in the signal's unit |
 //! | `quantum` | rounded to a multiple of this |
-//! | `delay_s`, `jitter_s` | arrives so much later, and up to the jitter later than that, in order |
+//! | `lost_rate` | a change is lost with this probability |
+//! | `delay_s`, `jitter_s`, `delay_sigma_s` | arrives so much later, up to the jitter later than that, and by N(0, σ), in order |
+//! | `flip_rate` | in a turn, a bit arrives inverted with this probability |
 //! | `range`, `raw`, `type` | the range in the signal's unit, as it is in the PLC's type: scaled and limited |
 //!
 //! # Arrays
@@ -168,6 +170,7 @@ mod sensors;
 mod shapes;
 mod signals;
 
+use onescan_base::regular::Within;
 use placed::Placed;
 use serde::Deserialize;
 use toml::de::DeTable;
@@ -199,15 +202,16 @@ impl Scene {
     /// # Errors
     /// [`SceneError::Faulty`] with every fault that was found.
     pub fn parse(text: &str, file: &str) -> Result<Self, SceneError> {
-        Self::parse_with(text, file, &[])
+        Self::parse_with(text, file, &[], &Within::anywhere())
     }
 
-    /// Reads a scene as [`Scene::parse`] does, with `overrides` in the place of the file's own values.
+    /// Reads a scene as [`Scene::parse`] does, with `overrides` in the place of the file's own values. Meshes, robots and
+    /// what these name are read only where `within` allows it.
     ///
     /// # Errors
     /// [`SceneError::Faulty`] with every fault that was found; those of an override say which.
-    pub fn parse_with(text: &str, file: &str, overrides: &[Override]) -> Result<Self, SceneError> {
-        let mut faults = Faults::new(text, file);
+    pub fn parse_with(text: &str, file: &str, overrides: &[Override], within: &Within) -> Result<Self, SceneError> {
+        let mut faults = Faults::new(text, file, within);
         let mut document = match DeTable::parse(text) {
             Ok(document) => document,
             Err(error) => return Err(faults.into_form_error(&error)),

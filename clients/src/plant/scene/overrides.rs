@@ -50,14 +50,17 @@ pub(super) fn apply<'i>(root: &mut DeTable<'i>, overrides: &'i [Override], fault
         let span = span_of(index, faults.text());
         let (table, key) = match path.rsplit_once('.') {
             None => (&mut *root, path.as_str()),
-            Some((owner, key)) => match find(root, owner, &span, faults) {
-                Some((section, position)) => match entry(root, section, position) {
-                    Some(table) => (table, key),
-                    // `find` has just seen it.
+            Some((owner, key)) => {
+                condition_signal(root, owner, &span);
+                match find(root, owner, &span, faults) {
+                    Some((section, position)) => match entry(root, section, position) {
+                        Some(table) => (table, key),
+                        // `find` has just seen it.
+                        None => continue,
+                    },
                     None => continue,
-                },
-                None => continue,
-            },
+                }
+            }
         };
         let Some(value) = DeValue::parse(value).ok().and_then(|value| placed(value.into_inner(), &span)) else {
             let wanted = "a number, a truth value, a text or a list of these";
@@ -67,6 +70,22 @@ pub(super) fn apply<'i>(root: &mut DeTable<'i>, overrides: &'i [Override], fault
         // The key comes along, so that an unknown one is the override's fault.
         table.remove(key);
         table.insert(Spanned::new(span.clone(), DeString::from(key.to_owned())), Spanned::new(span, value));
+    }
+}
+
+/// Adds the `[[signal]]` of `signal.NAME` if there is none yet: what a signal is conditioned with can be set whether or
+/// not the scene's own conditions name it. A name that is no signal's is found with the other conditions'.
+fn condition_signal<'i>(root: &mut DeTable<'i>, owner: &'i str, span: &Range<usize>) {
+    let Some(signal) = owner.strip_prefix("signal.") else { return };
+    if names(root).any(|(section, _, name)| section == "signal" && name == signal) {
+        return;
+    }
+    let at = |value: DeValue<'i>| Spanned::new(span.clone(), value);
+    let key = |text: &'static str| Spanned::new(span.clone(), DeString::from(text));
+    let table: DeTable<'i> = [(key("name"), at(DeValue::String(DeString::from(signal))))].into_iter().collect();
+    let section = root.entry(key("signal")).or_insert_with(|| at(DeValue::Array(DeArray::new())));
+    if let DeValue::Array(entries) = section.get_mut() {
+        entries.push(at(DeValue::Table(table)));
     }
 }
 
@@ -132,6 +151,7 @@ fn placed<'i>(value: DeValue<'i>, span: &Range<usize>) -> Option<DeValue<'i>> {
 mod tests {
     use super::*;
     use crate::plant::scene::Scene;
+    use onescan_base::regular::Within;
     use toml::Value;
 
     const SCENE: &str = "version = 1\nextent_m = 5.0\n[[body]]\nname = \"base\"\nkind = \"fixed\"\nfriction = 0.5\n\
@@ -140,7 +160,7 @@ mod tests {
 
     fn with(path: &str, value: impl Into<Value>) -> Result<Scene, String> {
         let overrides = [Override::new(path, &value.into())];
-        Scene::parse_with(SCENE, "", &overrides).map_err(|error| {
+        Scene::parse_with(SCENE, "", &overrides, &Within::anywhere()).map_err(|error| {
             let fault = &error.faults()[0];
             assert_eq!(fault.overridden, Some(0), "{fault:?}");
             format!("{}; {}", fault.kind, fault.hint.clone().unwrap_or_default())
@@ -154,6 +174,20 @@ mod tests {
         let scene = with("body.base.friction", 0.25).unwrap();
         assert_ne!(scene, Scene::parse(SCENE, "").unwrap());
         assert_eq!(scene, Scene::parse(&SCENE.replace("0.5\n", "0.25\n"), "").unwrap());
+    }
+
+    #[test]
+    fn a_signal_is_conditioned_without_a_table_of_its_own() {
+        let scene = with("signal.Level.delay_s", 0.5).unwrap();
+        let conditioned = format!("{SCENE}[[signal]]\nname = \"Level\"\ndelay_s = 0.5\n");
+        assert_eq!(scene, Scene::parse(&conditioned, "").unwrap());
+        let delayed = conditioned.replace("delay_s = 0.5", "delay_s = 0.25");
+        let twice = [("signal.Level.delay_s", 0.5), ("signal.Level.jitter_s", 0.1)];
+        let twice = twice.map(|(path, value)| Override::new(path, &Value::from(value)));
+        let scene = Scene::parse_with(&delayed, "", &twice, &Within::anywhere()).unwrap();
+        assert_eq!(scene, Scene::parse(&format!("{conditioned}jitter_s = 0.1\n"), "").unwrap());
+        let unknown = with("signal.Lvel.delay_s", 0.5).expect_err("refused");
+        assert_eq!(unknown, "the plant neither reads nor writes a signal `Lvel`; did you mean `Level`?");
     }
 
     #[test]

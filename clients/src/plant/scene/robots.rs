@@ -8,7 +8,6 @@
 use std::path::{Path, PathBuf};
 
 use onescan_base::did_you_mean;
-use onescan_base::regular;
 
 use super::error::{Inside, SceneFaultKind};
 use super::faults::Faults;
@@ -46,7 +45,7 @@ fn one(table: &UrdfTable, written: &mut SceneFile, faults: &mut Faults<'_>) -> O
     let packages = packages(table, faults);
     let arguments = arguments(table, faults)?;
     let reading = Reading { file, packages: &packages, arguments: &arguments };
-    let text = regular::read_text(&path);
+    let text = faults.within().read_text(&path);
     let text = text.map_err(|error| {
         let cause = format!("cannot be read: {error}");
         faults.add(table.file.span(), SceneFaultKind::Urdf { file: file.clone(), cause });
@@ -106,7 +105,7 @@ fn packages(table: &UrdfTable, faults: &mut Faults<'_>) -> Packages {
         }
         named.push((name.clone(), path));
     }
-    Packages::new(named)
+    Packages::new(named, faults.within().clone())
 }
 
 /// The arguments of a xacro, as text.

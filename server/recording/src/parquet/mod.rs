@@ -9,7 +9,8 @@
 //! | [`read`] | parts read back |
 //!
 //! A part grows under a name that begins with a dot, which readers of data sets leave out, and takes
-//! its own when its footer is written.
+//! its own when its footer is written. What has come of it meanwhile is in small files of their own, `part-000003.000001.parquet`
+//! and so on, whose place the part takes.
 
 mod chunk;
 mod encode;
@@ -17,6 +18,7 @@ pub(crate) mod read;
 pub(crate) mod schema;
 mod transpose;
 
+use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -43,6 +45,18 @@ pub(crate) const FIRST_STEP: &str = "onescan.first_step";
 /// The name of a part, counted from 1.
 fn part_name(number: u64) -> String {
     format!("part-{number:06}.parquet")
+}
+
+/// The name of a file with the next steps of a part that is not complete.
+fn early_name(number: u64, file: usize) -> String {
+    format!("part-{number:06}.{file:06}.parquet")
+}
+
+/// The part that takes the place of a file; nothing if that is a part itself.
+fn part_of(path: &Path) -> Option<PathBuf> {
+    let name = path.file_name()?.to_str()?;
+    let (part, _) = name.strip_suffix(".parquet")?.split_once('.')?;
+    Some(path.with_file_name(format!("{part}.parquet")))
 }
 
 /// One file: a schema, row groups, a footer.
@@ -127,6 +141,8 @@ pub(super) struct ParquetSink {
     signals: Arc<[Column]>,
     part: Option<ParquetFile<BufWriter<File>>>,
     number: u64,
+    /// Files with what has come of the part in progress; the part takes their place.
+    early: Vec<PathBuf>,
 }
 
 impl ParquetSink {
@@ -140,7 +156,7 @@ impl ParquetSink {
                 std::fs::remove_file(entry.path())?;
             }
         }
-        Ok(Self { folder, signals: shape.columns.clone(), part: None, number: 0 })
+        Ok(Self { folder, signals: shape.columns.clone(), part: None, number: 0, early: Vec::new() })
     }
 
     fn partial(&self) -> PathBuf {
@@ -150,7 +166,8 @@ impl ParquetSink {
     fn end_part(&mut self) -> io::Result<()> {
         let Some(mut part) = self.part.take() else { return Ok(()) };
         part.finish()?;
-        std::fs::rename(self.partial(), self.folder.join(part_name(self.number)))
+        std::fs::rename(self.partial(), self.folder.join(part_name(self.number)))?;
+        self.early.drain(..).try_for_each(std::fs::remove_file)
     }
 }
 
@@ -167,12 +184,25 @@ impl Sink for ParquetSink {
         if block.ends_part { self.end_part() } else { Ok(()) }
     }
 
+    fn early(&mut self, rows: &Block) -> io::Result<()> {
+        let number = if self.part.is_some() { self.number } else { self.number + 1 };
+        let name = early_name(number, self.early.len() + 1);
+        let (growing, whole) = (self.folder.join(format!(".{name}.partial")), self.folder.join(name));
+        let file = BufWriter::new(File::create(&growing)?);
+        let mut early = ParquetFile::new(file, self.signals.clone(), rows.first_step)?;
+        early.rows(rows)?;
+        early.finish()?;
+        std::fs::rename(growing, &whole)?;
+        self.early.push(whole);
+        Ok(())
+    }
+
     fn end(&mut self) -> io::Result<()> {
         self.end_part()
     }
 }
 
-/// The parts in `folder` in their order.
+/// The parts in `folder` in their order, and behind them what there is of one that never became whole.
 pub(crate) fn parts(folder: &Path) -> io::Result<Vec<PathBuf>> {
     let mut parts = Vec::new();
     for entry in std::fs::read_dir(folder)? {
@@ -183,5 +213,8 @@ pub(crate) fn parts(folder: &Path) -> io::Result<Vec<PathBuf>> {
         }
     }
     parts.sort();
+    // A kill may have come when the part was there and what it takes the place of was not gone yet.
+    let whole: BTreeSet<PathBuf> = parts.iter().cloned().collect();
+    parts.retain(|part| part_of(part).is_none_or(|of| !whole.contains(&of)));
     Ok(parts)
 }

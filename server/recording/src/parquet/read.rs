@@ -1,13 +1,15 @@
 //! Parts read back as blocks: the very bytes that an image had.
 
-use std::io;
+use std::fs::File;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
+use bytes::Bytes;
 use onescan_base::regular;
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::DataType;
 use parquet::errors::{ParquetError, Result};
-use parquet::file::reader::{FileReader, RowGroupReader, SerializedFileReader};
+use parquet::file::reader::{ChunkReader, FileReader, Length, RowGroupReader, SerializedFileReader};
 
 use onescan_server::signal::SignalType as T;
 
@@ -24,6 +26,44 @@ pub(crate) struct Part {
     pub(crate) rows: u64,
 }
 
+/// A file in which reading beyond the end is an error. Where the library passes over what it does not know, it does not
+/// notice the end, and a count of billions keeps it busy for minutes.
+struct Ended(File);
+
+/// Such a file, read from some place on.
+struct EndedRead<R>(R);
+
+impl Length for Ended {
+    fn len(&self) -> u64 {
+        Length::len(&self.0)
+    }
+}
+
+impl ChunkReader for Ended {
+    type T = EndedRead<<File as ChunkReader>::T>;
+
+    fn get_read(&self, start: u64) -> Result<Self::T> {
+        self.0.get_read(start).map(EndedRead)
+    }
+
+    fn get_bytes(&self, start: u64, length: usize) -> Result<Bytes> {
+        // Room is made for them before they are read.
+        if start.saturating_add(length as u64) > Length::len(&self.0) {
+            return Err(wrong("it ends before what it says it has"));
+        }
+        self.0.get_bytes(start, length)
+    }
+}
+
+impl<R: Read> Read for EndedRead<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        match self.0.read(buffer)? {
+            0 if !buffer.is_empty() => Err(io::ErrorKind::UnexpectedEof.into()),
+            count => Ok(count),
+        }
+    }
+}
+
 fn wrong(message: &str) -> ParquetError {
     ParquetError::General(message.to_owned())
 }
@@ -31,7 +71,7 @@ fn wrong(message: &str) -> ParquetError {
 impl Part {
     /// Reads a part's footer.
     pub(crate) fn open(path: &Path) -> io::Result<Self> {
-        let reader = SerializedFileReader::new(regular::open(path)?)?;
+        let reader = SerializedFileReader::new(Ended(regular::open(path)?))?;
         let metadata = reader.metadata().file_metadata();
         let first_step = metadata.key_value_metadata().into_iter().flatten().find(|pair| pair.key == FIRST_STEP);
         let first_step = first_step.and_then(|pair| pair.value.as_ref()?.parse().ok());
@@ -48,7 +88,7 @@ impl Part {
         columns: &[(usize, Column)],
         each: &mut dyn FnMut(&Block) -> io::Result<()>,
     ) -> io::Result<()> {
-        let reader = SerializedFileReader::new(regular::open(&self.path)?)?;
+        let reader = SerializedFileReader::new(Ended(regular::open(&self.path)?))?;
         let mut block = Block { first_step: self.first_step, ..Block::default() };
         for index in 0..reader.num_row_groups() {
             let group = reader.get_row_group(index)?;
@@ -150,4 +190,44 @@ fn text_bytes(ty: T, text: &str) -> Vec<u8> {
     bytes[..2].copy_from_slice(&(count as u16).to_le_bytes());
     bytes.resize(ty.size().max(2), 0);
     bytes
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::{Seek, SeekFrom, Write};
+    use std::sync::Arc;
+
+    use super::super::ParquetFile;
+    use super::*;
+
+    /// The head of a page of a kind that nobody writes, with a list of 2³¹ - 1 numbers in it that nobody knows.
+    const ENDLESS: [u8; 15] =
+        [0x15, 0x02, 0x15, 0x00, 0x15, 0x00, 0x4c, 0x19, 0xf7, 0xff, 0xff, 0xff, 0xff, 0x07, 0x00];
+
+    #[test]
+    fn what_goes_on_beyond_the_end_is_refused_at_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("part-000001.parquet");
+        let block = Block { t_v_ns: vec![0, 10], digests: vec![[7; 32]; 2], ..Block::default() };
+        let mut file = ParquetFile::new(File::create(&path).unwrap(), Arc::from([]), 0).unwrap();
+        file.rows(&block).unwrap();
+        file.finish().unwrap();
+        let count = |part: &Part| {
+            let mut rows = 0;
+            part.blocks(&[], &mut |block| {
+                rows += block.rows();
+                Ok(())
+            })
+            .map(|()| rows)
+        };
+        assert_eq!(count(&Part::open(&path).unwrap()).unwrap(), 2);
+        let at = {
+            let reader = SerializedFileReader::new(File::open(&path).unwrap()).unwrap();
+            reader.metadata().row_group(0).column(1).byte_range().0
+        };
+        let mut changed = std::fs::OpenOptions::new().write(true).open(&path).unwrap();
+        changed.seek(SeekFrom::Start(at)).unwrap();
+        changed.write_all(&ENDLESS).unwrap();
+        assert!(count(&Part::open(&path).unwrap()).is_err());
+    }
 }

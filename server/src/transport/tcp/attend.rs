@@ -19,9 +19,10 @@ use super::host::Host;
 use super::order::{Application, Order};
 use super::socket::Socket;
 use super::{FAREWELL_TIMEOUT, HANDSHAKE_TIMEOUT};
+use crate::access::Holder;
 use crate::lobby::Visitor;
-use crate::mailbox::Request;
-use crate::operation::{Operation, OperationError};
+use crate::mailbox::{Request, Wish};
+use crate::operation::OperationError;
 use crate::transport::tls::reason;
 use crate::wire::message::Status;
 use crate::wire::{FRAME_BYTES_MAX, FrameCodec, FrameRef, ServerMessage};
@@ -86,7 +87,10 @@ pub(super) async fn newcomer(
                 host.act(|reception, now| reception.refused(visitor, why, now));
                 Connection(Either::Left(stream))
             }
-            Ok(Ok(secured)) => Connection(secured),
+            Ok(Ok(Either::Right(secured))) => {
+                introduce(&secured, visitor, &host);
+                Connection(Either::Right(secured))
+            }
             Ok(Err(error)) => {
                 tracing::warn!(%peer, why = %reason(&error), "no TLS came about: sent away");
                 return go(visitor, &host);
@@ -100,6 +104,23 @@ pub(super) async fn newcomer(
     attend(connection, peer, visitor, orders, host).await;
 }
 
+/// Tells the reception whose certificate was shown, if one was.
+fn introduce(secured: &TlsStream<TcpStream>, visitor: Visitor, host: &Host) {
+    let shown = secured.get_ref().1.peer_certificates().and_then(<[_]>::first);
+    match shown.map(|certificate| Holder::of_certificate(certificate)) {
+        None => {}
+        Some(Ok(holder)) => host.act(|reception, _| {
+            reception.certified(visitor, holder);
+            Vec::new()
+        }),
+        Some(Err(why)) => {
+            host.act(|reception, now| {
+                reception.refused(visitor, &format!("this certificate lets nobody in: {why}"), now)
+            });
+        }
+    }
+}
+
 /// TLS over the connection, if that is what the other side begins with.
 async fn secure(
     stream: TcpStream,
@@ -110,10 +131,27 @@ async fn secure(
     match first[..count] {
         // A frame may begin with that byte, too; then its third is no version of TLS.
         [TLS_HANDSHAKE] | [TLS_HANDSHAKE, 3] | [TLS_HANDSHAKE, 3, 1..=4] => {
-            Ok(Either::Right(Box::new(acceptor.accept(stream).await?)))
+            match acceptor.accept(stream).into_fallible().await {
+                Ok(secured) => Ok(Either::Right(Box::new(secured))),
+                Err((error, stream)) => {
+                    linger(stream).await;
+                    Err(error)
+                }
+            }
         }
         _ => Ok(Either::Left(stream)),
     }
+}
+
+/// Lets the other side read the alert that says why: closing with unread bytes would take it back.
+async fn linger(mut stream: TcpStream) {
+    let mut rest = [0; 1024];
+    let read_out = async {
+        // Who cannot be told is gone.
+        let _ = stream.shutdown().await;
+        while matches!(stream.read(&mut rest).await, Ok(1..)) {}
+    };
+    let _ = timeout(FAREWELL_TIMEOUT, read_out).await;
 }
 
 /// The connection is gone.
@@ -148,7 +186,7 @@ pub(super) async fn attend(
                     let _ = to.send(connection.into_socket());
                     return host.leave(visitor);
                 }
-                Some(Order::Ask(operation)) => answer = Some(ask(operation, &host)),
+                Some(Order::Ask(wish)) => answer = Some(ask(wish, &host)),
                 Some(Order::Send(message)) if connection.send_in_time(&message).await => {}
                 // Where the other side has closed already, this is the end.
                 Some(Order::Part) if connection.say_no_more().await && is_open => {}
@@ -170,9 +208,9 @@ pub(super) async fn attend(
 }
 
 /// Leaves a wish for the next step boundary.
-fn ask(operation: Option<Operation>, host: &Host) -> Answer {
+fn ask(wish: Wish, host: &Host) -> Answer {
     let (reply, answer) = oneshot::channel();
-    host.mailbox.post(Request { operation, reply: Some(reply) });
+    host.mailbox.post(Request { wish, reply: Some(reply) });
     answer
 }
 

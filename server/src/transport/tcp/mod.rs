@@ -68,7 +68,7 @@ pub enum ReceiveError {
 
 impl ReceiveError {
     /// True for an end of the connection, in whatever way the operating system puts it.
-    pub(crate) fn is_disconnect(&self) -> bool {
+    pub fn is_disconnect(&self) -> bool {
         use std::io::ErrorKind::{BrokenPipe, ConnectionAborted, ConnectionReset, UnexpectedEof};
         match self {
             Self::Closed | Self::Frame(FrameError::Cut) => true,

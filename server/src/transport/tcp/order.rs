@@ -6,7 +6,7 @@ use std::sync::{Arc, mpsc};
 use super::socket::Socket;
 use crate::client::JoinRequest;
 use crate::lobby::{Action, Visitor};
-use crate::operation::Operation;
+use crate::mailbox::Wish;
 use crate::wire::ServerMessage;
 
 /// A client that wants a seat.
@@ -22,7 +22,7 @@ pub(super) enum Order {
     Apply(JoinRequest),
     /// The connection goes over to the session's thread.
     HandOver(mpsc::Sender<std::io::Result<Socket>>),
-    Ask(Option<Operation>),
+    Ask(Wish),
     Part,
     Close,
 }
@@ -33,7 +33,7 @@ impl Order {
         match action {
             Action::Send(visitor, message) => (visitor, Self::Send(message)),
             Action::Apply(visitor, request) => (visitor, Self::Apply(request)),
-            Action::Ask(visitor, operation) => (visitor, Self::Ask(operation)),
+            Action::Ask(visitor, wish) => (visitor, Self::Ask(wish)),
             Action::Part(visitor) => (visitor, Self::Part),
             Action::Close(visitor) => (visitor, Self::Close),
         }

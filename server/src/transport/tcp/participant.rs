@@ -7,7 +7,7 @@ use super::stream::FrameStream;
 use super::{AGENT, HANDSHAKE_TIMEOUT, ReceiveError};
 use crate::client::{Client, ClientFault, Wake};
 use crate::end::SessionEnd;
-use crate::signal::PortLayout;
+use crate::signal::{PortLayout, SignalDecl};
 use crate::time::{StepCount, VirtualTime};
 use crate::wire::message::Role;
 use crate::wire::{ClientMessage, Duty, Endpoint, Frame, FrameError, FrameRef, ServerMessage, VERSIONS};
@@ -24,13 +24,17 @@ pub fn take_part(client: &mut dyn Client, entrance: impl Into<Entrance>) -> Resu
 }
 
 /// `hello` and its answer.
-pub(super) fn greet(connection: &mut FrameStream, role: Role, entrance: &Entrance) -> Result<(), ParticipantError> {
+pub(super) fn greet(
+    connection: &mut FrameStream,
+    role: Role,
+    entrance: &Entrance,
+) -> Result<Vec<SignalDecl>, ParticipantError> {
     let broken = |e: FrameError| ParticipantError::Handshake(e.into());
     let token = entrance.token.as_ref().map(|token| token.reveal().to_owned());
     let hello = ClientMessage::Hello { protocol: VERSIONS, role, agent: AGENT.to_owned(), token };
     connection.send_message(&hello).map_err(broken)?;
     match connection.receive_message(HANDSHAKE_TIMEOUT).map_err(ParticipantError::Handshake)? {
-        ServerMessage::Welcome { .. } => Ok(()),
+        ServerMessage::Welcome { signals, .. } => Ok(signals),
         ServerMessage::Refused { message } => Err(ParticipantError::Refused(message)),
         _ => Err(ParticipantError::Refused("its answer to `hello` is none".to_owned())),
     }

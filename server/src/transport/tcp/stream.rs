@@ -13,6 +13,7 @@ use tokio_util::codec::{Decoder, Encoder};
 
 use super::socket::Socket;
 use super::{FAREWELL_TIMEOUT, ReceiveError};
+use crate::transport::tls::reason;
 use crate::wire::{Frame, FrameCodec, FrameError, FrameRef};
 
 /// Bytes asked for in one read: many frames of an ordinary session.
@@ -79,7 +80,7 @@ impl FrameStream {
                 Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {
                     return Err(ReceiveError::TimedOut(patience.unwrap_or_default()));
                 }
-                Err(error) => return Err(FrameError::Io(error).into()),
+                Err(error) => return Err(FrameError::Io(named(error)).into()),
             }
         }
     }
@@ -115,6 +116,13 @@ impl FrameStream {
             }
         }
     }
+}
+
+/// An error of TLS says in words for people what is wrong; one that comes only now is what the other side thinks of the
+/// certificate that it was shown.
+fn named(error: std::io::Error) -> std::io::Error {
+    let is_tls = error.get_ref().and_then(|inner| inner.downcast_ref::<rustls::Error>()).is_some();
+    if is_tls { std::io::Error::new(error.kind(), reason(&error)) } else { error }
 }
 
 /// What is left of `patience`. The clock is read only from the second read on: one that comes in

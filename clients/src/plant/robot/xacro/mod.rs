@@ -26,7 +26,6 @@ use std::path::Path;
 use std::sync::Arc;
 
 use onescan_base::nearest;
-use onescan_base::regular;
 
 use super::Reading;
 use super::xml::{self, Attribute, Element, RobotFault, Source};
@@ -225,7 +224,10 @@ impl Expander<'_> {
         }
         let path = Path::new(&named);
         let path = if path.is_file() { path.to_path_buf() } else { self.scope.folder().join(path) };
-        let text = regular::read_text(&path)
+        let text = self
+            .scope
+            .packages
+            .read_text(&path)
             .map_err(|error| element.wrong_at("filename", format!("`{named}` cannot be read: {error}")))?;
         let source = Arc::new(Source { file: path.display().to_string(), text });
         let root = xml::parse(&source)?;

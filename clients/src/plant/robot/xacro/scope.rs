@@ -12,7 +12,6 @@ use super::value::Value;
 use super::yaml;
 use crate::plant::robot::Packages;
 use crate::plant::robot::xml::Element;
-use onescan_base::regular;
 
 /// Deepest chain of properties that are each written by another.
 const CHAIN_MAX: usize = 32;
@@ -42,7 +41,7 @@ pub(super) struct Scope<'r> {
     visible: usize,
     chain: Vec<String>,
     pub(super) arguments: Vec<(String, Value)>,
-    packages: &'r Packages,
+    pub(super) packages: &'r Packages,
     /// The file whose text is read now.
     pub(super) file: std::path::PathBuf,
 }
@@ -220,7 +219,7 @@ impl Names for Scope<'_> {
     fn yaml(&mut self, file: &str) -> Result<Value, String> {
         let path = Path::new(file);
         let path = if path.is_file() { path.to_path_buf() } else { self.folder().join(file) };
-        let text = regular::read_text(&path).map_err(|error| format!("`{file}` cannot be read: {error}"))?;
+        let text = self.packages.read_text(&path).map_err(|error| format!("`{file}` cannot be read: {error}"))?;
         yaml::parse(&text).map_err(|cause| format!("`{file}` {cause}"))
     }
 
