@@ -24,6 +24,7 @@
 //! | [`check`] | PLC sources checked without being run |
 //! | [`wiring`] | signals between clients, listed and drawn |
 //! | [`plant`] | scenes and components, described without a session |
+//! | [`model`] | the states of a session, as a table and for a model checker |
 //! | [`export`] | recordings in other forms |
 //! | [`new`] | scenarios to begin with |
 //! | [`io_list`] | inputs and outputs of a PLC, as engineering tools list them |
@@ -49,6 +50,7 @@ pub mod instrument;
 pub mod interrupt;
 pub mod io_list;
 pub mod map;
+pub mod model;
 pub mod new;
 pub mod plant;
 pub mod plc;

@@ -89,6 +89,7 @@ impl Repository {
     /// There is no such commit.
     pub fn about(&self, commit: &str) -> Result<[String; 4], RepositoryError> {
         let text = git(&self.root, &["show", "--no-patch", "--format=%H%n%an <%ae>%n%aI%n%s", commit])?;
+        // A commit may have no subject, which is then no line.
         let mut lines = text.lines().map(str::to_owned);
         Ok(std::array::from_fn(|_| lines.next().unwrap_or_default()))
     }

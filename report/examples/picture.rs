@@ -16,6 +16,7 @@ fn main() {
         signal: "speed".to_owned(),
         unit: Some("m/s".to_owned()),
         shape: Shape::Line,
+        names: Vec::new(),
         runs: vec![run(0.2), run(0.3)],
     };
     let plot = Plot {

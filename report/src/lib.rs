@@ -5,7 +5,9 @@
 //! | module | subject |
 //! |---|---|
 //! | [`verdict`], [`severity`] | words that several reports share |
+//! | [`number`] | numbers for people |
 //! | [`plot`] | trajectories as SVG |
+//! | [`view`] | a scene from one of its sides as SVG |
 //! | [`page`] | one HTML page with everything in it |
 //! | [`junit`] | tests, as CI servers read them |
 //! | [`sarif`] | findings with their places, as code hosts and editors read them |
@@ -17,12 +19,14 @@
 
 pub mod file;
 pub mod junit;
+pub mod number;
 pub mod output;
 pub mod page;
 pub mod plot;
 pub mod sarif;
 pub mod severity;
 pub mod verdict;
+pub mod view;
 
 pub use file::FileError;
 pub use output::OutputError;

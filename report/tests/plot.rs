@@ -9,7 +9,7 @@ fn every_ms(values: impl IntoIterator<Item = f64>) -> Trajectory {
 }
 
 fn panel(signal: &str, unit: Option<&str>, shape: Shape, runs: Vec<Trajectory>) -> Panel {
-    Panel { signal: signal.to_owned(), unit: unit.map(str::to_owned), shape, runs }
+    Panel { signal: signal.to_owned(), unit: unit.map(str::to_owned), shape, names: Vec::new(), runs }
 }
 
 fn small() -> Plot {
@@ -24,6 +24,10 @@ fn small() -> Plot {
             panel("belt.at_end", None, Shape::Step, vec![pulse(), pulse()]),
             panel("belt.count", None, Shape::Step, vec![gap(), gap()]),
             panel("belt.force", Some("N"), Shape::Line, Vec::new()),
+            Panel {
+                names: vec![(0, "Idle".to_owned()), (2, "Running".to_owned())],
+                ..panel("belt.state", None, Shape::Step, vec![every_ms([0.0, 0.0, 1.0, 2.0]); 2])
+            },
         ],
         marks: vec![Mark { t_ns: 7_000_000, label: "`at end` violated".to_owned() }],
     }
@@ -122,8 +126,9 @@ fn trajectory() -> impl Strategy<Value = Trajectory> {
 
 fn any_panel() -> impl Strategy<Value = Panel> {
     let shape = prop_oneof![Just(Shape::Line), Just(Shape::Step)];
-    (any::<String>(), any::<Option<String>>(), shape, prop::collection::vec(trajectory(), 0..9))
-        .prop_map(|(signal, unit, shape, runs)| Panel { signal, unit, shape, runs })
+    let names = prop::collection::vec((-3_i64..5, any::<String>()), 0..4);
+    (any::<String>(), any::<Option<String>>(), shape, names, prop::collection::vec(trajectory(), 0..9))
+        .prop_map(|(signal, unit, shape, names, runs)| Panel { signal, unit, shape, names, runs })
 }
 
 fn any_plot() -> impl Strategy<Value = Plot> {

@@ -21,6 +21,9 @@ pub const KEY: &str = "server-key.pem";
 /// The authority that has signed it: what those who take part are given.
 pub const AUTHORITY: &str = "ca.pem";
 
+/// The authorities of certificates that let in, too; nobody's certificate does without this file.
+pub const CLIENTS: &str = "clients-ca.pem";
+
 /// A folder of those who are let in.
 #[derive(Clone, Copy, Debug)]
 pub struct Folder<'f>(pub &'f Path);
@@ -99,8 +102,13 @@ impl Folder<'_> {
         match (read_if_there(&certificate)?, read_if_there(&key)?) {
             (None, None) => Ok(None),
             (Some(chain), Some(secret)) => {
-                let identity = Identity::from_pem(&chain, &secret);
-                identity.map(Some).map_err(|source| AccessError::Certificate { path: certificate, source })
+                let wrong = |path: PathBuf| move |source| AccessError::Certificate { path, source };
+                let identity = Identity::from_pem(&chain, &secret, None).map_err(wrong(certificate))?;
+                let path = self.file(CLIENTS);
+                match read_if_there(&path)? {
+                    None => Ok(Some(identity)),
+                    Some(clients) => Identity::from_pem(&chain, &secret, Some(&clients)).map(Some).map_err(wrong(path)),
+                }
             }
             (None, Some(_)) => Err(AccessError::Incomplete(certificate)),
             (Some(_), None) => Err(AccessError::Incomplete(key)),

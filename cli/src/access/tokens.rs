@@ -32,6 +32,9 @@ struct Listed<'p> {
 }
 
 /// The day of the calendar. Sessions do not know it; tokens and certificates end by it.
+///
+/// A clock before 1970 was never set: it counts as the first day, on which tokens have not ended, but no certificate is
+/// good yet, so that nobody comes in from elsewhere.
 pub fn today() -> Day {
     Day::of(SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default())
 }

@@ -9,7 +9,7 @@ use onescan_server::transport::tcp::Entrance;
 
 use super::error::CommandError;
 use super::value::FormatArg;
-use crate::access::entrance::entrance;
+use crate::access::entrance::{TlsFiles, entrance};
 use crate::access::folder::Folder;
 use crate::access::tokens::Lifetime;
 use crate::access::{certificate, tokens};
@@ -25,15 +25,31 @@ pub struct EntranceArgs {
     /// `--access` folder
     #[arg(long, env = "ONESCAN_TLS_CA", hide_env_values = true, value_name = "FILE")]
     pub tls_ca: Option<PathBuf>,
+    /// Show this certificate under TLS, in place of a token, to a session that lets certificates in; its key is in
+    /// `--tls-key`
+    #[arg(
+        long,
+        env = "ONESCAN_TLS_CERT",
+        hide_env_values = true,
+        value_name = "FILE",
+        requires = "tls_key",
+        requires = "tls_ca"
+    )]
+    pub tls_cert: Option<PathBuf>,
+    /// The private key of `--tls-cert`
+    #[arg(long, env = "ONESCAN_TLS_KEY", hide_env_values = true, value_name = "FILE", requires = "tls_cert")]
+    pub tls_key: Option<PathBuf>,
 }
 
 impl EntranceArgs {
     /// The way into the session at `server`.
     ///
     /// # Errors
-    /// The token is none, or the file cannot be used.
+    /// The token is none, or a file cannot be used.
     pub fn entrance(&self, server: SocketAddr) -> Result<Entrance, CommandError> {
-        Ok(entrance(server, self.token.as_deref(), self.tls_ca.as_deref())?)
+        let own = self.tls_cert.as_deref().zip(self.tls_key.as_deref());
+        let files = self.tls_ca.as_deref().map(|authority| TlsFiles { authority, own });
+        Ok(entrance(server, self.token.as_deref(), files)?)
     }
 }
 

@@ -9,6 +9,7 @@ use onescan_scenario::permission::Permission;
 use super::access::{CertificateArgs, TokenArgs};
 use super::compare::CompareArgs;
 use super::error::CommandError;
+use super::model::ModelArgs;
 use super::plant::{ComponentsArgs, DescribeArgs, NewArgs, WiringArgs};
 use super::plc::{BrowseArgs, MapArgs, PlcArgs};
 use super::recording::{BisectArgs, DiffArgs, ExportArgs};
@@ -16,7 +17,7 @@ use super::run::RunArgs;
 use super::session::{ControlArgs, JoinArgs};
 use super::source::{CheckArgs, ExplainArgs, InstrumentArgs};
 use super::test::{ReviewArgs, TestArgs, WorkerArgs};
-use super::{access, compare, plant, plc, recording, run, session, source, test};
+use super::{access, compare, model, plant, plc, recording, run, session, source, test};
 use crate::error::ExitCode;
 
 /// Deterministic lockstep virtual commissioning.
@@ -111,6 +112,8 @@ pub enum Command {
     Wiring(WiringArgs),
     /// Write a scenario that runs at once, to begin with: a small one, or one made of an I/O list
     New(NewArgs),
+    /// Show the states by which a session runs, or write them as a model for the model checker NuSMV
+    Model(ModelArgs),
     /// Explain a code of `check`, with an example that is wrong and one that is right
     Explain(ExplainArgs),
 }
@@ -143,6 +146,7 @@ pub fn dispatch(command: Command) -> Result<ExitCode, CommandError> {
         Command::Describe(args) => plant::describe(&args),
         Command::Wiring(args) => plant::wiring(args),
         Command::New(args) => plant::new(args),
+        Command::Model(args) => model::model(args),
         Command::Explain(args) => source::explain(&args),
     }
 }

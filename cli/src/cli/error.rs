@@ -11,6 +11,7 @@ use crate::error::{Usage, sum_of_errors};
 use crate::export::ExportError;
 use crate::instrument::InstrumentError;
 use crate::map::MapError;
+use crate::model::ModelError;
 use crate::new::NewError;
 use crate::plant::PlantError;
 use crate::plc::PlcError;
@@ -56,6 +57,9 @@ sum_of_errors! {
         /// `map` came to nothing.
         #[diagnostic(transparent)]
         Map(MapError),
+        /// `model` came to nothing.
+        #[diagnostic(transparent)]
+        Model(ModelError),
         /// `components` or `describe` came to nothing.
         #[diagnostic(transparent)]
         Plant(PlantError),

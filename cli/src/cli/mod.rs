@@ -12,6 +12,7 @@
 //! | [`access`] | who may take part: tokens, certificates |
 //! | [`opcua`] | who is let in over OPC UA |
 //! | [`plant`] | scenes |
+//! | [`model`] | the states of a session |
 //! | [`value`] | words that several commands know |
 
 pub mod access;
@@ -19,6 +20,7 @@ pub mod args;
 pub mod compare;
 mod error;
 mod logging;
+pub mod model;
 pub mod opcua;
 pub mod plant;
 pub mod plc;

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args as ClapArgs, ValueEnum};
+use onescan_report::view::Side;
 
 use super::error::CommandError;
 use super::value::FormatArg;
@@ -10,6 +11,7 @@ use crate::error::ExitCode;
 use crate::io_list::{ListKind, Wanted};
 use crate::new::from_list::FromListConfig;
 use crate::new::{self, Template};
+use crate::plant::describe::DescribeConfig;
 use crate::plant::{components, describe};
 use crate::wiring::{self, WiringConfig};
 
@@ -40,6 +42,43 @@ pub struct DescribeArgs {
     /// For people, or JSON for machines
     #[arg(long, value_enum, default_value_t)]
     pub format: FormatArg,
+    /// Draws the scene as it is set up to this file
+    #[arg(long, value_name = "FILE")]
+    pub svg: Option<PathBuf>,
+    /// From where the picture shows it
+    #[arg(long, value_enum, default_value_t, requires = "svg")]
+    pub view: ViewArg,
+}
+
+/// A side of a scene; x goes to the right of one who looks from the front, z is up.
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+pub enum ViewArg {
+    /// From above the corner between front and right
+    #[default]
+    Corner,
+    /// Along y
+    Front,
+    /// Against y
+    Back,
+    /// Along x
+    Left,
+    /// Against x
+    Right,
+    /// From above
+    Top,
+}
+
+impl From<ViewArg> for Side {
+    fn from(view: ViewArg) -> Self {
+        match view {
+            ViewArg::Corner => Self::Corner,
+            ViewArg::Front => Self::Front,
+            ViewArg::Back => Self::Back,
+            ViewArg::Left => Self::Left,
+            ViewArg::Right => Self::Right,
+            ViewArg::Top => Self::Top,
+        }
+    }
 }
 
 /// Tells what a scene is made of.
@@ -47,7 +86,13 @@ pub struct DescribeArgs {
 /// # Errors
 /// See [`CommandError`].
 pub fn describe(args: &DescribeArgs) -> Result<ExitCode, CommandError> {
-    describe::write(&args.scene, args.format.into(), &mut std::io::stdout().lock())?;
+    let config = DescribeConfig {
+        path: args.scene.clone(),
+        format: args.format.into(),
+        svg: args.svg.clone(),
+        side: args.view.into(),
+    };
+    describe::write(&config, &mut std::io::stdout().lock())?;
     Ok(ExitCode::Ok)
 }
 

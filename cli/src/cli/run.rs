@@ -24,7 +24,7 @@ use crate::error::ExitCode;
 use crate::format::Format;
 use crate::interrupt::Interrupt;
 use crate::run::config::{
-    Course, Doors, Drawing, Picture, Reach, RecordRequest, Reports, SaveRequest, Subject, Watch, WatchOn,
+    Course, Doors, Drawing, Picture, Reach, RecordRequest, Reports, RunsDrawn, SaveRequest, Subject, Watch, WatchOn,
 };
 use crate::run::coverage::{CoverageFormat, CoverageRequest};
 use crate::run::{RunConfig, Transport, execute};
@@ -86,6 +86,9 @@ pub struct RunArgs {
     /// A signal to draw; may be given several times [default: the scenario's choice]
     #[arg(long = "signal", value_name = "NAME", requires = "plot", value_parser = signal_name)]
     pub signals: Vec<SignalName>,
+    /// Draw each run in panels of its own, one run beneath the other
+    #[arg(long, requires = "plot", conflicts_with = "xy")]
+    pub apart: bool,
     /// Draw two signals against each other, across and up, as `x.position,z.position`: the paths of all runs
     #[arg(long, value_name = "X,Y", requires = "plot", conflicts_with = "signals", value_parser = plane)]
     pub xy: Option<[SignalName; 2]>,
@@ -293,6 +296,7 @@ fn config(args: RunArgs) -> Result<RunConfig, CommandError> {
             drawing: args.plot.map_or(Drawing::Nothing, Drawing::File),
             signals: args.signals,
             plane: args.xy,
+            runs: if args.apart { RunsDrawn::Apart } else { RunsDrawn::Overlaid },
         },
         watch: Watch { variables: args.watch, on: args.watch_on.into() },
         reports: Reports {

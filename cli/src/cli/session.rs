@@ -2,16 +2,18 @@
 
 use std::net::SocketAddr;
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::{Args as ClapArgs, ValueEnum};
 use onescan_server::operation::Operation;
 use onescan_server::signal::{ClientName, SignalName};
+use onescan_server::time::TimeSpan;
 
 use super::access::EntranceArgs;
 use super::error::CommandError;
 use super::value::{FormatArg, client_name, signal_name};
 use crate::error::{ExitCode, Usage};
-use crate::session;
+use crate::session::{self, Asked};
 
 /// Options of `join`.
 #[derive(Debug, ClapArgs)]
@@ -56,12 +58,16 @@ pub struct ControlArgs {
     /// What to ask for
     #[arg(value_enum, default_value_t)]
     pub wish: WishArg,
-    /// The signal to write, force or release
-    #[arg(required_if_eq_any([("wish", "write"), ("wish", "force"), ("wish", "release")]), value_parser = signal_name)]
+    /// The signal to get, watch, write, force or release
+    #[arg(required_if_eq_any([("wish", "get"), ("wish", "watch"), ("wish", "write"), ("wish", "force"), ("wish", "release")]),
+        value_parser = signal_name)]
     pub signal: Option<SignalName>,
-    /// Its value, as in `TRUE`, `-3` or `1.5`
-    #[arg(required_if_eq_any([("wish", "write"), ("wish", "force")]), allow_hyphen_values = true)]
-    pub value: Option<String>,
+    /// Its value, as in `TRUE`, `-3` or `1.5`; with `get` and `watch`, more signals
+    #[arg(required_if_eq_any([("wish", "write"), ("wish", "force")]), allow_negative_numbers = true)]
+    pub value: Vec<String>,
+    /// How often `watch` looks, in wall-clock time
+    #[arg(long, value_name = "TIME", default_value = "100ms")]
+    pub interval: TimeSpan,
     /// For people, or a JSON object for machines
     #[arg(long, value_enum, default_value_t)]
     pub format: FormatArg,
@@ -80,6 +86,10 @@ pub enum WishArg {
     Pause,
     /// Let it run again
     Resume,
+    /// What signals are, in the order in which they are named
+    Get,
+    /// What signals are, each time that one of them has changed, until the session is over
+    Watch,
     /// Run exactly one step, then hold
     Step,
     /// Begin anew at virtual time 0
@@ -95,25 +105,41 @@ pub enum WishArg {
 }
 
 impl ControlArgs {
-    /// What is asked, for the server; `None` asks only for the status.
+    /// What is asked.
     ///
     /// # Errors
-    /// A signal or a value where none belongs.
-    pub fn operation(&self) -> Result<Option<Operation>, String> {
-        let (signal, value) = (self.signal.clone(), self.value.clone());
-        Ok(Some(match (self.wish, signal, value) {
-            (WishArg::Write, Some(signal), Some(value)) => Operation::Write { signal, value },
-            (WishArg::Force, Some(signal), Some(value)) => Operation::Force { signal, value },
-            (WishArg::Release, Some(signal), None) => Operation::Release { signal },
-            (WishArg::Release, Some(_), Some(value)) => return Err(format!("`{value}` means nothing with `release`")),
+    /// A signal or a value where none belongs, or no name of a signal.
+    pub fn asked(&self) -> Result<Asked, String> {
+        let done = match (self.wish, self.signal.clone(), &self.value[..]) {
+            (WishArg::Get | WishArg::Watch, Some(first), more) => {
+                let more = more.iter().map(|name| signal_name(name)).collect::<Result<Vec<_>, _>>()?;
+                let signals: Vec<SignalName> = std::iter::once(first).chain(more).collect();
+                return Ok(match self.wish {
+                    WishArg::Get => Asked::Get(signals),
+                    _ => Asked::Watch(signals, Duration::from_nanos(self.interval.as_nanos())),
+                });
+            }
+            (WishArg::Write, Some(signal), [value]) => Operation::Write { signal, value: value.clone() },
+            (WishArg::Force, Some(signal), [value]) => Operation::Force { signal, value: value.clone() },
+            (WishArg::Write | WishArg::Force, Some(_), [_, more, ..]) | (WishArg::Release, Some(_), [more, ..]) => {
+                return Err(format!("`{more}` means nothing here"));
+            }
+            (WishArg::Release, Some(signal), []) => Operation::Release { signal },
             (_, Some(signal), _) => return Err(format!("`{signal}` means nothing here")),
             (WishArg::Pause, ..) => Operation::Pause,
             (WishArg::Resume, ..) => Operation::Resume,
             (WishArg::Step, ..) => Operation::Step,
             (WishArg::Reset, ..) => Operation::Reset,
             (WishArg::Stop, ..) => Operation::Stop,
-            (WishArg::Status | WishArg::Write | WishArg::Force | WishArg::Release, ..) => return Ok(None),
-        }))
+            // Signals that these need are asked for by the reader of the command line.
+            (
+                WishArg::Status | WishArg::Get | WishArg::Watch | WishArg::Write | WishArg::Force | WishArg::Release,
+                ..,
+            ) => {
+                return Ok(Asked::Status);
+            }
+        };
+        Ok(Asked::Do(done))
     }
 }
 
@@ -122,12 +148,7 @@ impl ControlArgs {
 /// # Errors
 /// See [`CommandError`].
 pub fn control(args: &ControlArgs) -> Result<ExitCode, CommandError> {
-    let operation = args.operation().map_err(|message| Usage::new(message, None))?;
-    session::control(
-        args.entrance.entrance(args.server)?,
-        operation,
-        args.format.into(),
-        &mut std::io::stdout().lock(),
-    )?;
+    let asked = args.asked().map_err(|message| Usage::new(message, None))?;
+    session::control(args.entrance.entrance(args.server)?, asked, args.format.into(), &mut std::io::stdout().lock())?;
     Ok(ExitCode::Ok)
 }

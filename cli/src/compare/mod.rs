@@ -15,7 +15,7 @@ use crate::format::Format;
 use crate::interrupt::Interrupt;
 use crate::run::config::{Drawing, Picture};
 use crate::run::sampler::{Samples, panel};
-use crate::run::{RunConfig, RunError, one_run};
+use crate::run::{Ran, RunConfig, RunError, one_run};
 
 /// The ways, lockstep first: the others are held against it.
 const MODES: [Mode; 4] = [Mode::Lockstep, Mode::Freewheel, Mode::Halt, Mode::Follow];
@@ -79,7 +79,7 @@ pub fn compare(config: &CompareConfig, interrupt: &Interrupt, out: &mut dyn Writ
         run.check(&scenario)?;
         let mut runs = Vec::new();
         for number in 1..=config.run.runs {
-            let (report, samples) = one_run(&run, &scenario, number, interrupt, Vec::new())?;
+            let Ran { report, samples, .. } = one_run(&run, &scenario, number, interrupt, Vec::new())?;
             if let Some(error) = &report.error {
                 return Err(Usage::new(format!("{}: {error}", mode.name()), None).into());
             }

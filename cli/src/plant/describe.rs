@@ -1,27 +1,73 @@
 //! A scene as a tree: what hangs on what, what moves it, what senses it, and every signal.
 
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use onescan_base::regular;
+use onescan_base::regular::Within;
 use onescan_clients::plant::component::{kinds, open_inputs};
 use onescan_clients::plant::scene::model::{Body, BodyKind, Component, Mass, Moved, Scene, Sensing, Shape, Wire};
 use onescan_report::OutputError;
+use onescan_report::file::write_whole;
+use onescan_report::view::Side;
 use onescan_scenario::compose::report;
 use onescan_scenario::file::ClientFile;
+use onescan_scenario::permission::granted;
 use onescan_scenario::{Scenario, ScenarioError};
 
+use super::drawing;
 use super::error::PlantError;
 use crate::error::Usage;
 use crate::format::Format;
 
-/// Reads the scene of a file, or those of a scenario's plants, and writes what it is made of.
+/// What to make of a scene.
+#[derive(Clone, Debug)]
+pub struct DescribeConfig {
+    /// A scene, or a scenario for the scenes of its plants.
+    pub path: PathBuf,
+    /// How to write what it is made of.
+    pub format: Format,
+    /// A file for its picture.
+    pub svg: Option<PathBuf>,
+    /// From where it is seen.
+    pub side: Side,
+}
+
+/// Reads the scene of a file, or those of a scenario's plants, and writes what it is made of; draws it if that is wanted.
 ///
 /// # Errors
-/// A file that cannot be read or is not a scene, a scenario without one; those of `out`.
-pub fn write(path: &Path, format: Format, out: &mut dyn Write) -> Result<(), PlantError> {
+/// A file that cannot be read or is not a scene, a scenario without one; a picture that cannot be written; those of
+/// `out`.
+pub fn write(config: &DescribeConfig, out: &mut dyn Write) -> Result<(), PlantError> {
+    let DescribeConfig { path, format, svg, side } = config;
+    let (scenes, within) = scenes(path)?;
+    if let (Some(_), [_, other, ..]) = (svg, &scenes[..]) {
+        let help = format!("give the scene to draw, as `onescan describe {} --svg FILE`", other.display());
+        return Err(Usage::new(format!("{} has several scenes", path.display()), Some(help)).into());
+    }
+    for path in &scenes {
+        if scenes.len() > 1 && *format == Format::Human {
+            writeln!(out, "{}", path.display()).map_err(OutputError)?;
+        }
+        let scene = read(path, &within)?;
+        if let Some(svg) = svg {
+            write_whole(svg, drawing::svg(&scene, &path.display().to_string(), *side).as_bytes())?;
+        }
+        match format {
+            Format::Json => {
+                serde_json::to_writer_pretty(&mut *out, &scene).map_err(io::Error::from).map_err(OutputError)?;
+                writeln!(out).map_err(OutputError)?;
+            }
+            Format::Human => tree(&scene, out).map_err(OutputError)?,
+        }
+    }
+    Ok(())
+}
+
+/// The scene files behind a path, and what they may read.
+fn scenes(path: &Path) -> Result<(Vec<PathBuf>, Within), PlantError> {
     if !path.is_dir() {
-        return one_scene(path, format, out);
+        let folder = path.parent().unwrap_or_else(|| Path::new(""));
+        return Ok((vec![path.to_owned()], granted().within(folder)));
     }
     let scenario = Scenario::load(path)?;
     let scenes = scenario.file().clients.values().filter_map(|client| match client.get_ref() {
@@ -29,33 +75,20 @@ pub fn write(path: &Path, format: Format, out: &mut dyn Write) -> Result<(), Pla
         _ => None,
     });
     let scenes: Vec<_> = scenes.collect();
-    for scene in &scenes {
-        if scenes.len() > 1 && format == Format::Human {
-            writeln!(out, "{}", scene.display()).map_err(OutputError)?;
-        }
-        one_scene(scene, format, out)?;
-    }
     if scenes.is_empty() {
         return Err(Usage::new(format!("no client of {} has a scene", path.display()), None).into());
     }
-    Ok(())
+    Ok((scenes, granted().within(scenario.folder())))
 }
 
-fn one_scene(path: &Path, format: Format, out: &mut dyn Write) -> Result<(), PlantError> {
+fn read(path: &Path, within: &Within) -> Result<Scene, PlantError> {
     let file = path.display().to_string();
-    let text = regular::read_text(path).map_err(|source| {
+    let text = within.read_text(path).map_err(|source| {
         let help = Some("give a scene, as `my-cell/plant.toml`, or the folder of its scenario".to_owned());
         PlantError::Scenario(ScenarioError::Unreadable { path: path.to_owned(), source, help })
     })?;
-    let scene =
-        Scene::parse(&text, &file).map_err(|error| ScenarioError::from(Box::new(report(&error, &file, &text))))?;
-    match format {
-        Format::Json => {
-            serde_json::to_writer_pretty(&mut *out, &scene).map_err(io::Error::from).map_err(OutputError)?;
-            Ok(writeln!(out).map_err(OutputError)?)
-        }
-        Format::Human => Ok(tree(&scene, out).map_err(OutputError)?),
-    }
+    let scene = Scene::parse_with(&text, &file, &[], within);
+    Ok(scene.map_err(|error| ScenarioError::from(Box::new(report(&error, &file, &text))))?)
 }
 
 fn tree(scene: &Scene, out: &mut dyn Write) -> io::Result<()> {

@@ -1,6 +1,6 @@
 //! Why a scene or the library cannot be described.
 
-use onescan_report::OutputError;
+use onescan_report::{FileError, OutputError};
 use onescan_scenario::ScenarioError;
 
 use crate::error::{Usage, sum_of_errors};
@@ -14,6 +14,8 @@ sum_of_errors! {
         /// What was typed is wrong.
         #[diagnostic(transparent)]
         Usage(Usage),
+        /// The picture cannot be written.
+        File(FileError),
         /// The report cannot be written.
         Output(OutputError),
     }

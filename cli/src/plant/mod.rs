@@ -3,10 +3,12 @@
 //! | module | subject |
 //! |---|---|
 //! | [`components`] | the kinds of component |
+//! | [`drawing`] | a scene as a picture |
 //! | [`describe`] | a scene as a tree: bodies, joints, what moves and senses, signals |
 
 pub mod components;
 pub mod describe;
+pub mod drawing;
 mod error;
 
 pub use error::PlantError;

@@ -5,6 +5,9 @@ use std::process::{Child, Command, Output, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
+/// How often it is looked whether a process that has closed its output has ended, which is at once but for a moment.
+const LOOK: Duration = Duration::from_millis(1);
+
 /// A process whose output is taken.
 pub(super) struct Limited {
     child: Child,
@@ -27,15 +30,30 @@ impl Limited {
         let stdout = match self.out.recv_timeout(limit) {
             Ok(stdout) => stdout,
             Err(RecvTimeoutError::Timeout) => {
-                self.child.kill()?;
-                self.child.wait()?;
+                self.end()?;
                 return Ok(None);
             }
+            // The thread that reads ends with a result, unless the system could not start one more: then the status says
+            // how it went.
             Err(RecvTimeoutError::Disconnected) => Vec::new(),
         };
-        let left = limit.saturating_sub(started.elapsed());
-        let stderr = self.err.recv_timeout(left).unwrap_or_default();
+        let left = || limit.saturating_sub(started.elapsed());
+        // What holds its standard error open beyond the limit, as a process that it left behind, is not waited for.
+        let stderr = self.err.recv_timeout(left()).unwrap_or_default();
+        // It may have closed its output and go on.
+        while self.child.try_wait()?.is_none() {
+            if left().is_zero() {
+                self.end()?;
+                return Ok(None);
+            }
+            std::thread::sleep(LOOK);
+        }
         Ok(Some(Output { status: self.child.wait()?, stdout, stderr }))
+    }
+
+    fn end(&mut self) -> io::Result<()> {
+        self.child.kill()?;
+        self.child.wait().map(drop)
     }
 }
 
@@ -45,7 +63,7 @@ fn taken(pipe: Option<impl Read + Send + 'static>) -> Receiver<Vec<u8>> {
     if let Some(mut pipe) = pipe {
         std::thread::spawn(move || {
             let mut bytes = Vec::new();
-            // What came before a pipe broke is what there is.
+            // What came before a pipe broke is what there is; that there is not all of it, the report shows, which is JSON.
             let _ = pipe.read_to_end(&mut bytes);
             // Nobody waits for it any more if the time was over.
             let _ = done.send(bytes);
@@ -58,6 +76,7 @@ fn taken(pipe: Option<impl Read + Send + 'static>) -> Receiver<Vec<u8>> {
 pub(super) fn end_with_parent() {
     std::thread::spawn(|| {
         let mut rest = Vec::new();
+        // Nothing is ever written to it. That it ends, or breaks, says that the other process has.
         let _ = io::stdin().lock().read_to_end(&mut rest);
         std::process::exit(1);
     });
@@ -81,5 +100,11 @@ mod tests {
     #[test]
     fn what_is_not_is_ended() {
         assert!(shell("exec sleep 300").output(Duration::from_millis(1)).unwrap().is_none());
+    }
+
+    #[test]
+    fn what_closes_its_output_and_goes_on_is_ended() {
+        let closed = shell("exec >&- 2>&-; exec sleep 300");
+        assert!(closed.output(Duration::from_millis(200)).unwrap().is_none());
     }
 }

@@ -86,6 +86,7 @@ pub fn deny_stubs(paths: &[PathBuf], reading: Reading) -> Result<(), TestError> 
 pub fn test(config: &TestConfig, out: &mut dyn Write) -> Result<ExitCode, TestError> {
     let started = std::time::Instant::now();
     let units = plan::units(config)?;
+    plan::tell_programs(&units);
     let worked = pool::work(config, &units)?;
     let mut outcomes: Vec<Outcome> = Vec::new();
     for (unit, worked) in units.iter().zip(&worked) {

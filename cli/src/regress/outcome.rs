@@ -14,6 +14,7 @@ use super::ran::{FailedAssert, Ran, Shown, Worked, within};
 use crate::error::ExitCode;
 use crate::run::RunStatus;
 use crate::run::page::Event;
+use crate::snapshot::overlay::overlay;
 use crate::snapshot::{Difference, Snapshot, compare};
 
 /// How a test ended.
@@ -130,6 +131,8 @@ pub struct Outcome {
 pub struct Picture {
     /// The trajectory, as SVG.
     pub svg: Option<String>,
+    /// The trajectory over the reviewed one where the two differ, as SVG.
+    pub against: Option<String>,
     /// The trajectory itself.
     pub snapshot: Option<Snapshot>,
     /// What happened from outside.
@@ -219,7 +222,7 @@ fn outcome(suite: &str, ran: &Ran, folder: &str, status: Status) -> Outcome {
         error: ran.error.clone(),
         place: ran.place.as_ref().map(found),
         step_ns: ran.step_ns,
-        shown: Picture { svg: ran.picture.clone(), snapshot: None, events: ran.events.clone() },
+        shown: Picture { svg: ran.picture.clone(), events: ran.events.clone(), ..Picture::default() },
     }
 }
 
@@ -285,5 +288,12 @@ fn held_against(
         (Policy::Check, Some(_)) => Status::Changed,
         (Policy::Check, None) => Status::Missing,
     };
-    Ok(Outcome { differences: differences.unwrap_or_default(), ..with(status) })
+    let mut outcome = with(status);
+    if let (Some(reviewed), Some(differences)) = (reviewed, differences) {
+        // Only a page has use for it.
+        let drawn = outcome.shown.svg.is_some();
+        outcome.shown.against = drawn.then(|| overlay(&outcome.name, Some(reviewed), taken, &differences).to_svg());
+        outcome.differences = differences;
+    }
+    Ok(outcome)
 }

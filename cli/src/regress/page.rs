@@ -1,7 +1,7 @@
 //! The page about all tests.
 
 use onescan_plc_shim::Coverage;
-use onescan_report::page::{Mood, Page, Section};
+use onescan_report::page::{Mood, Page, Picture, Section};
 use onescan_server::signal::SignalType;
 use onescan_server::time::VirtualTime;
 
@@ -40,23 +40,31 @@ fn section(outcome: &Outcome) -> Section {
         title: format!("{}: {}", outcome.suite, outcome.name),
         status: status.word().to_owned(),
         mood: if status.is_bad() || *status == Status::New { Mood::Bad } else { Mood::Good },
-        steps: *steps,
+        steps: Some(*steps),
         virtual_time: VirtualTime::from_nanos(*virtual_time_ns).to_string(),
         facts,
         lines: details(outcome),
         expectations: expectations.iter().map(shown).collect(),
         events: timeline(events, violations),
-        svg: outcome.shown.svg.clone(),
+        pictures: pictures(outcome),
     }
 }
 
-fn shown(Shown { name, verdict, at_ns, values, margin }: &Shown) -> onescan_report::page::Shown {
+/// The new trajectory over the reviewed one where the two differ, and the whole of it.
+fn pictures(outcome: &Outcome) -> Vec<Picture> {
+    let against = outcome.shown.against.iter().map(|svg| Picture { title: "reviewed and new", svg: svg.clone() });
+    let whole = outcome.shown.svg.iter().map(|svg| Picture { title: "trajectories", svg: svg.clone() });
+    against.chain(whole).collect()
+}
+
+fn shown(Shown { name, verdict, at_ns, values, margin, margin_unit }: &Shown) -> onescan_report::page::Shown {
     onescan_report::page::Shown {
         name: name.clone(),
         verdict: *verdict,
         at: at_ns.map(|at| VirtualTime::from_nanos(at).to_string()).unwrap_or_default(),
         values: values.clone(),
         margin: *margin,
+        unit: margin_unit.clone(),
     }
 }
 

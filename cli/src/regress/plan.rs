@@ -1,14 +1,19 @@
 //! Units of work: each is one process.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use onescan_base::foreign::one_line;
 use onescan_scenario::Scenario;
 use onescan_scenario::case::Catalogue;
+use onescan_scenario::file::ClientFile;
+use onescan_scenario::permission::granted;
 
 use super::config::TestConfig;
 use super::discover::Found;
 use super::error::TestError;
 use crate::error::Usage;
+use crate::run::NOTICE;
 use crate::snapshot::store::{Place, reviewed};
 use crate::snapshot::take::Choice;
 
@@ -104,6 +109,30 @@ pub fn units(config: &TestConfig) -> Result<Vec<Unit>, TestError> {
             Err(Usage::new("there is nothing to test here", Some(help)).into())
         }
         (true, _) => Err(none_chosen(&format!("none of {left_out} cases")).into()),
+    }
+}
+
+/// Says which programs scenarios will start, as `run` does; each once, however many cases there are.
+pub fn tell_programs(units: &[Unit]) {
+    if granted().no_commands {
+        return;
+    }
+    let scenarios = units.iter().filter_map(|unit| match unit {
+        Unit::Case(unit) => Some(&unit.place.scenario),
+        Unit::Sources(_) | Unit::Unreadable { .. } => None,
+    });
+    for folder in scenarios.collect::<BTreeSet<_>>() {
+        // One that cannot be read is told by its tests.
+        let Ok(scenario) = Scenario::load(folder) else { continue };
+        for (name, client) in &scenario.file().clients {
+            if let ClientFile::External { command } | ClientFile::OpcUa { command, .. } = client.get_ref()
+                && !command.is_empty()
+            {
+                let (words, folder) = (command.join(" "), shown(folder));
+                let program = one_line(&words);
+                tracing::info!(target: NOTICE, "tests of {folder} start a program for client `{name}`: {program}");
+            }
+        }
     }
 }
 

@@ -79,6 +79,9 @@ pub struct Shown {
     pub values: Vec<(String, f64)>,
     /// By how much it was met.
     pub margin: Option<f64>,
+    /// What the margin is measured in, if that is one unit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub margin_unit: Option<String>,
 }
 
 impl Shown {
@@ -187,6 +190,7 @@ impl Ran {
             at_ns: expectation.at.map(onescan_server::time::VirtualTime::as_nanos),
             values: expectation.values.iter().map(|SignalValue { signal, value }| (signal.clone(), *value)).collect(),
             margin: expectation.margin,
+            margin_unit: expectation.margin_unit.clone(),
         });
         Self {
             digest: report.digest.map(|digest| digest.to_string()),

@@ -67,6 +67,7 @@ impl References {
             names.push("HEAD".to_owned());
             let place = unit.place.reviewed();
             let file = place.strip_prefix(&unit.place.scenario).unwrap_or(&place);
+            // A snapshot that no commit has, or a history that is cut off, has no last change: HEAD remains.
             names.extend(repository.last_change(file).unwrap_or_default());
         }
         for name in names {

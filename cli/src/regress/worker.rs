@@ -45,7 +45,7 @@ fn case(config: &WorkerConfig, folder: &Path) -> Result<Worked, TestError> {
     let taker = Taker::new(&scenario, choice.clone(), Rc::clone(&snapshot));
     let mut run = RunConfig::headless(folder.to_owned(), config.case.clone());
     if config.draw {
-        run.picture = Picture { drawing: Drawing::Kept, signals: choice.signals, plane: None };
+        run.picture = Picture { drawing: Drawing::Kept, signals: choice.signals, ..Picture::default() };
     }
     let (report, plot) = watched(&run, &scenario, &Interrupt::new(), vec![Box::new(taker)])?;
     let mut ran = Ran::of(config.case.as_deref().unwrap_or(DEFAULT), &report, scenario.file().step.as_nanos());

@@ -11,21 +11,43 @@ const ROWS: usize = 4;
 /// Columns before a curve: the name of the row, and the values at its edges.
 const LABELS: usize = 18;
 
-/// The signal in lines of `width` columns, from 0 to `end`.
-pub fn lines(old: Option<&Track>, new: Option<&Track>, end: VirtualTime, width: usize) -> Vec<String> {
+/// A span of virtual time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Window {
+    /// Its begin.
+    pub from: VirtualTime,
+    /// Its end, not before its begin.
+    pub to: VirtualTime,
+}
+
+impl Window {
+    /// A whole run.
+    pub fn whole(end: VirtualTime) -> Self {
+        Self { from: VirtualTime::ZERO, to: end }
+    }
+
+    /// The instant after so many of all parts of it.
+    fn instant(self, part: usize, of: usize) -> VirtualTime {
+        let span = self.to.as_nanos().saturating_sub(self.from.as_nanos()).max(1);
+        let after = u128::from(span) * part as u128 / of.max(1) as u128;
+        VirtualTime::from_nanos(self.from.as_nanos().saturating_add(after as u64))
+    }
+}
+
+/// The signal in lines of `width` columns.
+pub fn lines(old: Option<&Track>, new: Option<&Track>, window: Window, width: usize) -> Vec<String> {
     let columns = width.saturating_sub(LABELS + 1).max(10);
     let Some(any) = new.or(old) else { return Vec::new() };
     match any.ty {
-        SignalType::BOOL => levels(old, new, end, columns),
+        SignalType::BOOL => levels(old, new, window, columns),
         ty if ty.as_f64(&vec![0; ty.size()]).is_none() => Vec::new(),
-        _ => curves(old, new, end, columns),
+        _ => curves(old, new, window, columns),
     }
 }
 
 /// Least and greatest value in each column of a curve.
-fn envelope(track: &Track, end: VirtualTime, columns: usize) -> Vec<Option<(f64, f64)>> {
-    let span = end.as_nanos().max(1);
-    let instant = |column: usize| VirtualTime::from_nanos((u128::from(span) * column as u128 / columns as u128) as u64);
+fn envelope(track: &Track, window: Window, columns: usize) -> Vec<Option<(f64, f64)>> {
+    let instant = |column: usize| window.instant(column, columns);
     let number = |bytes: &[u8]| track.ty.as_f64(bytes).filter(|value| value.is_finite());
     (0..columns)
         .map(|column| {
@@ -48,9 +70,9 @@ fn whole(envelopes: &[&[Option<(f64, f64)>]]) -> (f64, f64) {
     if low <= high { (low, high) } else { (0.0, 0.0) }
 }
 
-fn curves(old: Option<&Track>, new: Option<&Track>, end: VirtualTime, columns: usize) -> Vec<String> {
+fn curves(old: Option<&Track>, new: Option<&Track>, window: Window, columns: usize) -> Vec<String> {
     let dots = columns * 2;
-    let of = |track: Option<&Track>| track.map(|track| envelope(track, end, dots));
+    let of = |track: Option<&Track>| track.map(|track| envelope(track, window, dots));
     let (was, is) = (of(old), of(new));
     let both: Vec<&[Option<(f64, f64)>]> = [&was, &is].into_iter().flatten().map(Vec::as_slice).collect();
     let range = whole(&both);
@@ -61,26 +83,13 @@ fn curves(old: Option<&Track>, new: Option<&Track>, end: VirtualTime, columns: u
         }
     }
     if let (Some(old), Some(new)) = (old, new) {
-        let difference = envelope(&difference(old, new), end, dots);
+        let difference = envelope(&new.less(old), window, dots);
         let range = whole(&[&difference]);
         if range != (0.0, 0.0) {
             lines.extend(curve_lines("new - old", &difference, range, columns));
         }
     }
     lines
-}
-
-/// What is to be added to the old values to give the new ones, as LREAL.
-pub fn difference(old: &Track, new: &Track) -> Track {
-    let mut times: Vec<VirtualTime> = old.changes.iter().chain(&new.changes).map(|(since, _)| *since).collect();
-    times.sort_unstable();
-    times.dedup();
-    let number = |track: &Track, t_v| track.at(t_v).and_then(|bytes| track.ty.as_f64(bytes));
-    let changes = times.into_iter().filter_map(|t_v| {
-        let by = number(new, t_v)? - number(old, t_v)?;
-        Some((t_v, by.to_le_bytes().to_vec()))
-    });
-    Track { ty: SignalType::LREAL, changes: changes.collect(), ..new.clone() }
 }
 
 fn curve_lines(name: &str, curve: &[Option<(f64, f64)>], (low, high): (f64, f64), columns: usize) -> Vec<String> {
@@ -129,7 +138,7 @@ fn short(value: f64) -> String {
 }
 
 /// BOOLs: a row each, and one that points to where they differ.
-fn levels(old: Option<&Track>, new: Option<&Track>, end: VirtualTime, columns: usize) -> Vec<String> {
+fn levels(old: Option<&Track>, new: Option<&Track>, window: Window, columns: usize) -> Vec<String> {
     let level = |range: &Option<(f64, f64)>| match range {
         Some((0.0, 0.0)) => '▁',
         Some((1.0, 1.0)) => '█',
@@ -139,12 +148,12 @@ fn levels(old: Option<&Track>, new: Option<&Track>, end: VirtualTime, columns: u
     let row = |name: &str, curve: &[Option<(f64, f64)>]| {
         format!("{name:<17} {}", curve.iter().map(level).collect::<String>())
     };
-    let of = |track: Option<&Track>| track.map(|track| envelope(track, end, columns));
+    let of = |track: Option<&Track>| track.map(|track| envelope(track, window, columns));
     let (was, is) = (of(old), of(new));
     let mut lines: Vec<String> = was.iter().map(|curve| row("old", curve)).collect();
     lines.extend(is.iter().map(|curve| row("new", curve)));
     if let (Some(old), Some(new)) = (old, new) {
-        let curve = envelope(&difference(old, new), end, columns);
+        let curve = envelope(&new.less(old), window, columns);
         let mark = |range: &Option<(f64, f64)>| if range.is_some_and(|range| range != (0.0, 0.0)) { '^' } else { ' ' };
         let marks: String = curve.iter().map(mark).collect();
         if marks.contains('^') {
@@ -170,20 +179,24 @@ mod tests {
         let ramp: Vec<(u64, f64)> = (0..100).map(|ms| (ms, ms as f64 / 100.0)).collect();
         let bent: Vec<(u64, f64)> = ramp.iter().map(|(ms, value)| (*ms, value.min(0.5))).collect();
         let (old, new) = (track(SignalType::LREAL, &ramp), track(SignalType::LREAL, &bent));
-        insta::assert_snapshot!(lines(Some(&old), Some(&new), VirtualTime::from_nanos(100_000_000), 60).join("\n"));
+        insta::assert_snapshot!(
+            lines(Some(&old), Some(&new), Window::whole(VirtualTime::from_nanos(100_000_000)), 60).join("\n")
+        );
     }
 
     #[test]
     fn a_pulse_is_seen_and_pointed_to() {
         let old = track(SignalType::BOOL, &[(0, 0.0), (50, 1.0)]);
         let new = track(SignalType::BOOL, &[(0, 0.0), (20, 1.0), (21, 0.0), (50, 1.0)]);
-        insta::assert_snapshot!(lines(Some(&old), Some(&new), VirtualTime::from_nanos(100_000_000), 60).join("\n"));
+        insta::assert_snapshot!(
+            lines(Some(&old), Some(&new), Window::whole(VirtualTime::from_nanos(100_000_000)), 60).join("\n")
+        );
     }
 
     #[test]
     fn no_line_is_too_wide() {
         let wild = track(SignalType::LREAL, &[(0, -1e300), (1, 1e300), (2, f64::NAN), (3, 1e-300)]);
-        let all = lines(Some(&wild), Some(&wild), VirtualTime::from_nanos(4_000_000), 80);
+        let all = lines(Some(&wild), Some(&wild), Window::whole(VirtualTime::from_nanos(4_000_000)), 80);
         assert!(all.iter().all(|line| line.chars().count() <= 80), "{all:#?}");
     }
 }

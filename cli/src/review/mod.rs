@@ -4,11 +4,13 @@
 //! |---|---|
 //! | [`canvas`] | curves in braille dots |
 //! | [`chart`] | a signal on a terminal: old, new, difference |
+//! | `desk` | the review itself: what is shown, what was decided |
 //! | [`view`] | a pending snapshot on a terminal |
 //! | [`page`] | all of them as a page |
 
 pub mod canvas;
 pub mod chart;
+mod desk;
 mod error;
 pub mod page;
 pub mod view;
@@ -16,7 +18,7 @@ pub mod view;
 use std::io::{IsTerminal, Write};
 use std::path::PathBuf;
 
-use console::{Key, Term};
+use console::Term;
 use onescan_report::OutputError;
 use onescan_report::file;
 use onescan_scenario::Scenario;
@@ -31,6 +33,7 @@ use crate::snapshot::take;
 use crate::snapshot::{Difference, Snapshot, compare};
 
 use crate::error::ExitCode;
+use desk::{Desk, Go};
 
 /// Columns of a terminal that does not say how wide it is.
 const WIDTH: usize = 80;
@@ -98,34 +101,35 @@ pub fn review(config: &ReviewConfig, out: &mut dyn Write) -> Result<ExitCode, Re
         writeln!(out, "no snapshot waits for a review").map_err(OutputError)?;
         return Ok(ExitCode::Ok);
     }
-    let term = Term::stdout();
     let on_terminal = std::io::stdout().is_terminal();
     let colours = on_terminal && std::env::var_os("NO_COLOR").is_none();
-    for (index, one) in waiting.iter().enumerate() {
-        let what = match config.choice {
-            Choice::AcceptAll => Decision::Accept,
-            Choice::RejectAll => Decision::Reject,
-            // Who has a page looks at that.
-            Choice::List => Decision::Skip,
-            Choice::Ask => {
-                let width = if on_terminal { usize::from(term.size().1) } else { WIDTH };
-                out.write_all(view::text(one, width, colours).as_bytes()).map_err(OutputError)?;
-                if on_terminal && std::io::stdin().is_terminal() {
-                    ask(&term, index + 1, waiting.len(), out).map_err(OutputError)?
-                } else {
-                    Decision::Skip
-                }
-            }
-        };
+    let asks = config.choice == Choice::Ask && on_terminal && std::io::stdin().is_terminal();
+    let decisions = match config.choice {
+        Choice::AcceptAll => vec![Decision::Accept; waiting.len()],
+        Choice::RejectAll => vec![Decision::Reject; waiting.len()],
+        Choice::Ask if asks => {
+            let Some(decisions) = ask(&waiting, colours).map_err(OutputError)? else {
+                writeln!(out, "nothing is changed").map_err(OutputError)?;
+                return Ok(ExitCode::Ok);
+            };
+            decisions
+        }
+        // Who has a page looks at that.
+        Choice::Ask | Choice::List => vec![Decision::Skip; waiting.len()],
+    };
+    for (one, what) in waiting.iter().zip(decisions) {
+        if config.choice == Choice::Ask && !asks {
+            let width = if on_terminal { usize::from(Term::stdout().size().1) } else { WIDTH };
+            out.write_all(view::text(one, width, colours).as_bytes()).map_err(OutputError)?;
+        }
         match what {
             Decision::Accept => one.place.accept(&one.new)?,
             Decision::Reject => one.place.reject()?,
             Decision::Skip => {}
-            Decision::Quit => break,
         }
         tell(config, one, what, out).map_err(OutputError)?;
     }
-    if config.choice == Choice::Ask && !(on_terminal && std::io::stdin().is_terminal()) {
+    if config.choice == Choice::Ask && !asks {
         let how = "on a terminal, or with --accept-all or --reject-all";
         writeln!(out, "{} waiting: decide {how}", waiting.len()).map_err(OutputError)?;
     }
@@ -138,7 +142,6 @@ enum Decision {
     Accept,
     Reject,
     Skip,
-    Quit,
 }
 
 fn tell(config: &ReviewConfig, one: &Waiting, what: Decision, out: &mut dyn Write) -> std::io::Result<()> {
@@ -146,25 +149,31 @@ fn tell(config: &ReviewConfig, one: &Waiting, what: Decision, out: &mut dyn Writ
         (Choice::List, _) => writeln!(out, "{} {}", one.status(), one.name()),
         (_, Decision::Accept) => writeln!(out, "accepted {}", one.name()),
         (_, Decision::Reject) => writeln!(out, "rejected {}", one.name()),
-        (_, Decision::Skip | Decision::Quit) => Ok(()),
+        (_, Decision::Skip) => Ok(()),
     }
 }
 
-/// Waits for a key that means something.
-fn ask(term: &Term, number: usize, of: usize, out: &mut dyn Write) -> std::io::Result<Decision> {
-    write!(out, "[{number}/{of}]  a accept   r reject   s skip   q quit ")?;
-    out.flush()?;
-    let decision = loop {
-        match term.read_key()? {
-            Key::Char('a' | 'A' | 'y') => break Decision::Accept,
-            Key::Char('r' | 'R' | 'n') => break Decision::Reject,
-            Key::Char('s' | 'S') => break Decision::Skip,
-            Key::Char('q' | 'Q') | Key::Escape | Key::CtrlC => break Decision::Quit,
-            _ => {}
+/// Lets the user look at all of them, and gives what was decided; nothing if the review was given up.
+fn ask(waiting: &[Waiting], colours: bool) -> std::io::Result<Option<Vec<Decision>>> {
+    let term = Term::stdout();
+    let mut desk = Desk::new(waiting);
+    loop {
+        let (rows, width) = term.size();
+        let screen = desk.screen(usize::from(width), usize::from(rows), colours);
+        term.clear_screen()?;
+        term.write_str(&screen.join("\n"))?;
+        match desk.press(&term.read_key()?) {
+            Go::On => {}
+            Go::Over => {
+                term.clear_screen()?;
+                return Ok(Some(desk.decisions().to_vec()));
+            }
+            Go::Away => {
+                term.clear_screen()?;
+                return Ok(None);
+            }
         }
-    };
-    writeln!(out)?;
-    Ok(decision)
+    }
 }
 
 /// Everything that waits, in the order of scenarios and cases.

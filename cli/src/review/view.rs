@@ -4,17 +4,21 @@ use std::fmt::Write as _;
 
 use onescan_server::time::VirtualTime;
 
+use super::chart::Window;
 use super::{Waiting, chart};
-use crate::snapshot::{Difference, Track};
+use crate::snapshot::Track;
+use crate::snapshot::overlay::differing;
 
 /// So many signals are drawn; the page has all of them.
 const SIGNALS_MAX: usize = 8;
 /// A wider terminal shows no more.
 const WIDTH_MAX: usize = 120;
+/// A narrower one is not drawn for.
+const WIDTH_MIN: usize = 40;
 
 /// The snapshot as text: what differs in words, then each of these signals drawn; all of a new one.
 pub fn text(waiting: &Waiting, width: usize, colours: bool) -> String {
-    let width = width.clamp(40, WIDTH_MAX);
+    let width = width.clamp(WIDTH_MIN, WIDTH_MAX);
     let mut text = String::new();
     // Writing to a string cannot fail.
     let _ = write(waiting, width, colours, &mut text);
@@ -22,51 +26,48 @@ pub fn text(waiting: &Waiting, width: usize, colours: bool) -> String {
 }
 
 fn write(waiting: &Waiting, width: usize, colours: bool, text: &mut String) -> std::fmt::Result {
-    let bold = |words: &str| if colours { format!("\u{1b}[1m{words}\u{1b}[0m") } else { words.to_owned() };
-    writeln!(text, "{}", bold(&format!("{} {}", waiting.status(), waiting.name())))?;
+    writeln!(text, "{}", bold(&format!("{} {}", waiting.status(), waiting.name()), colours))?;
     for difference in &waiting.differences {
         writeln!(text, "  {difference}")?;
     }
-    let names = differing(waiting);
+    let names = differing(waiting.old.as_ref(), &waiting.new, &waiting.differences);
     for name in names.iter().take(SIGNALS_MAX) {
-        let of = |tracks: &'_ [Track]| tracks.iter().find(|track| track.name == *name).cloned();
-        let (old, new) = (waiting.old.as_ref().and_then(|old| of(&old.signals)), of(&waiting.new.signals));
-        let Some(any) = new.as_ref().or(old.as_ref()) else { continue };
-        writeln!(text, "\n{}", bold(&any.heading()))?;
-        for line in chart::lines(old.as_ref(), new.as_ref(), end(waiting), width) {
-            writeln!(text, "{}", painted(&line, colours))?;
+        for line in block(waiting, name, Window::whole(end(waiting)), width, colours) {
+            writeln!(text, "{line}")?;
         }
     }
     if names.len() > SIGNALS_MAX {
         writeln!(text, "\n... and {} more signals: see --html", names.len() - SIGNALS_MAX)?;
     }
-    writeln!(text, "{}\n", axis(end(waiting), width))
+    writeln!(text, "{}\n", axis(Window::whole(end(waiting)), width))
+}
+
+pub(super) fn bold(words: &str, colours: bool) -> String {
+    if colours { format!("\u{1b}[1m{words}\u{1b}[0m") } else { words.to_owned() }
+}
+
+/// A signal as it was and as it is: an empty line, its name, and the rows in which it is drawn.
+pub(super) fn block(waiting: &Waiting, name: &str, window: Window, width: usize, colours: bool) -> Vec<String> {
+    let of = |tracks: &'_ [Track]| tracks.iter().find(|track| track.name == name).cloned();
+    let (old, new) = (waiting.old.as_ref().and_then(|old| of(&old.signals)), of(&waiting.new.signals));
+    let Some(any) = new.as_ref().or(old.as_ref()) else { return Vec::new() };
+    let width = width.clamp(WIDTH_MIN, WIDTH_MAX);
+    let drawn = chart::lines(old.as_ref(), new.as_ref(), window, width);
+    let mut lines = vec![String::new(), bold(&any.heading(), colours)];
+    lines.extend(drawn.iter().map(|line| painted(line, colours)));
+    lines
 }
 
 /// The later end of the two.
-fn end(waiting: &Waiting) -> VirtualTime {
+pub(super) fn end(waiting: &Waiting) -> VirtualTime {
     waiting.old.as_ref().map_or(waiting.new.end, |old| old.end.max(waiting.new.end))
 }
 
-/// The signals to draw.
-pub(super) fn differing(waiting: &Waiting) -> Vec<String> {
-    if waiting.old.is_none() {
-        return waiting.new.signals.iter().map(|track| track.name.clone()).collect();
-    }
-    let names = waiting.differences.iter().map(|difference| match difference {
-        Difference::Frame { of, .. } => of.clone(),
-        Difference::Gone { signal }
-        | Difference::Added { signal }
-        | Difference::Values { signal, .. }
-        | Difference::Between { signal, .. } => signal.clone(),
-    });
-    names.collect()
-}
-
-fn axis(end: VirtualTime, width: usize) -> String {
-    let right = end.to_string();
-    let room = width.saturating_sub(18 + 3 + 1);
-    format!("{:18}0 s{right:>room$}", "")
+pub(super) fn axis(window: Window, width: usize) -> String {
+    let left = if window.from == VirtualTime::ZERO { "0 s".to_owned() } else { window.from.to_string() };
+    let right = window.to.to_string();
+    let room = width.clamp(WIDTH_MIN, WIDTH_MAX).saturating_sub(18 + left.chars().count() + 1);
+    format!("{:18}{left}{right:>room$}", "")
 }
 
 /// Old lines dim, new ones green, differences red.

@@ -124,6 +124,18 @@ pub struct Picture {
     pub signals: Vec<SignalName>,
     /// Two signals to be drawn against each other in the plot, across and up, in place of all over time.
     pub plane: Option<[SignalName; 2]>,
+    /// How several runs share it.
+    pub runs: RunsDrawn,
+}
+
+/// How several runs share a plot over time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum RunsDrawn {
+    /// Over each other, a panel a signal.
+    #[default]
+    Overlaid,
+    /// Each in panels of its own, one run beneath the other.
+    Apart,
 }
 
 /// Whether there is a plot, and where it goes.

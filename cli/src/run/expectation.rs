@@ -5,8 +5,9 @@ use std::io::Write;
 use std::rc::Rc;
 
 use onescan_report::Verdict;
+use onescan_report::number::short;
 use onescan_scenario::Scenario;
-use onescan_scenario::expect::{self, Judge, TraceEnd};
+use onescan_scenario::expect::{self, Expectation, Judge, TraceEnd};
 use onescan_server::digest::TrajectoryDigest;
 use onescan_server::observer::{Observer, RecordError};
 use onescan_server::session::Session;
@@ -15,6 +16,7 @@ use onescan_server::time::VirtualTime;
 use serde::Serialize;
 
 use super::chosen::Chosen;
+use crate::error::Usage;
 
 /// What came of one expectation. Its JSON form is a contract: fields are added, never changed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -32,6 +34,9 @@ pub struct ExpectationReport {
     /// By how much it was met, negative if it was not; absent where it is infinite, as for BOOLs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub margin: Option<f64>,
+    /// What the margin is measured in, if that is one unit.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub margin_unit: Option<String>,
 }
 
 /// A signal's value as a number; BOOLs are 0 or 1.
@@ -41,6 +46,27 @@ pub struct SignalValue {
     pub signal: String,
     /// What it was.
     pub value: f64,
+}
+
+/// Steps of a run that expectations may keep together: some 200 bytes each.
+const KEPT_STEPS_MAX: u64 = 2_000_000;
+
+/// Refuses a run that is too long for an expectation that keeps every step of it.
+pub(super) fn check(scenario: &Scenario, until: VirtualTime) -> Result<(), Usage> {
+    let all = &scenario.expectations().named;
+    let keeping: Vec<&str> =
+        all.iter().filter(|(_, each)| each.keeps_every_sample()).map(|(name, _)| name.as_str()).collect();
+    let steps = until.as_nanos() / scenario.plan().step().as_nanos().max(1);
+    let Some(first) = keeping.first().filter(|_| steps.saturating_mul(keeping.len() as u64) > KEPT_STEPS_MAX) else {
+        return Ok(());
+    };
+    let message = format!(
+        "expectation `{first}` keeps every step until the end of the run, which has {steps}: {KEPT_STEPS_MAX} may be kept, by \
+         all expectations together"
+    );
+    let help = "within another operator, give `always`, `eventually` or `until` a window, as in `always (a implies within \
+                10s b)`, or run less (docs/expectations.md)";
+    Err(Usage::new(message, Some(help.to_owned())))
 }
 
 impl ExpectationReport {
@@ -59,8 +85,9 @@ impl ExpectationReport {
         for (index, SignalValue { signal, value }) in self.values.iter().enumerate() {
             write!(out, "{} {signal} = {value}", if index == 0 { ":" } else { "," })?;
         }
+        let unit = self.margin_unit.as_ref().map(|unit| format!(" {unit}")).unwrap_or_default();
         match self.margin {
-            Some(margin) => writeln!(out, " (margin {margin:.3e})"),
+            Some(margin) => writeln!(out, " (margin {}{unit})", short(margin)),
             None => writeln!(out),
         }
     }
@@ -68,7 +95,7 @@ impl ExpectationReport {
 
 /// What came of all expectations.
 pub(super) fn reports(scenario: &Scenario, judge: Judge, end: TraceEnd) -> Vec<ExpectationReport> {
-    let report = |(name, outcome): (String, expect::Outcome)| {
+    let report = |((name, expectation), outcome): (&(String, Expectation), expect::Outcome)| {
         // A margin of -0, which negation gives, reads as if something were missing.
         let margin = outcome.margin.greatest + 0.0;
         let exact = margin.is_finite() && margin == outcome.margin.least;
@@ -78,10 +105,10 @@ pub(super) fn reports(scenario: &Scenario, judge: Judge, end: TraceEnd) -> Vec<E
             expect::Verdict::Violated { at, values } => (Verdict::Violated, Some(at), values),
         };
         let values = values.into_iter().map(|(signal, value)| SignalValue { signal, value }).collect();
-        ExpectationReport { name, verdict, at, values, margin: exact.then_some(margin) }
+        let margin_unit = expectation.unit().filter(|_| exact).map(str::to_owned);
+        ExpectationReport { name: name.clone(), verdict, at, values, margin: exact.then_some(margin), margin_unit }
     };
-    let names = scenario.expectations().named.iter().map(|(name, _)| name.clone());
-    names.zip(judge.finish(end)).map(report).collect()
+    scenario.expectations().named.iter().zip(judge.finish(end)).map(report).collect()
 }
 
 /// A judge of a run that has not begun.

@@ -24,6 +24,7 @@ impl Group {
     /// Ends all of its processes at once; whatever is gone is gone.
     #[cfg(unix)]
     pub(super) fn kill(self) {
+        // A number that is none of a process, as from a guard's input that was cut off, is nobody; 0 and 1 would be everybody.
         let group = i32::try_from(self.0).ok().filter(|id| *id > 1).and_then(rustix::process::Pid::from_raw);
         if let Some(group) = group {
             // That nobody is left in it is what is wanted.
@@ -72,6 +73,7 @@ impl Guard {
         // If it is gone already, it need not be told.
         let _ = writeln!(told, "{DISMISSED}");
         drop(told);
+        // Its status says nothing that anybody could act on: the processes that it guarded have ended.
         let _ = process.wait();
     }
 }
@@ -82,7 +84,9 @@ pub(crate) fn stand(input: impl BufRead) {
     for line in input.lines() {
         match line {
             Ok(line) if line == DISMISSED => return,
+            // A line that the server's death has cut off is no number, or that of a process that was never told of whole.
             Ok(line) => groups.extend(line.parse().ok().map(Group)),
+            // Input that cannot be read any more has ended too early, as with a dead server.
             Err(_) => break,
         }
     }

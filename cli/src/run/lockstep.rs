@@ -27,9 +27,10 @@ use crate::error::{ListenError, Unreadable, Usage};
 use crate::interrupt::Interrupt;
 
 /// What is said here is for the user, also without `--verbose`.
-const NOTICE: &str = "onescan::notice";
+pub(crate) const NOTICE: &str = "onescan::notice";
 
-/// Runs the scenario once; `watch` adds observers before it begins.
+/// Runs the scenario once; `watch` adds observers before it begins. Beside the outcome, why there is no checkpoint that
+/// was asked for: a run that could not be saved has been run all the same.
 pub(super) fn run(
     config: &RunConfig,
     scenario: &Scenario,
@@ -37,7 +38,7 @@ pub(super) fn run(
     interrupt: &Interrupt,
     log: &SessionLog,
     watch: impl FnOnce(&mut Lockstep),
-) -> Result<Outcome, RunError> {
+) -> Result<(Outcome, Option<RunError>), RunError> {
     let mut processes = Processes::default();
     let Formed { mut lockstep, lobby: _lobby, desk } = form(config, scenario, interrupt, log, &mut processes)?;
     lockstep.set_until(Some(config.subject.end(scenario)));
@@ -69,8 +70,7 @@ pub(super) fn run(
         // The run is what was asked for first: it goes on to its end.
         tracing::error!("{error}; the session goes on");
     }
-    let outcome = lockstep.run()?;
-    saved.map(|()| outcome)
+    Ok((lockstep.run()?, saved.err()))
 }
 
 /// A session that is about to begin, and what stays open for operators.

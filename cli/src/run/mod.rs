@@ -56,6 +56,7 @@ use std::time::Instant;
 use onescan_report::OutputError;
 use onescan_report::file;
 use onescan_report::plot::Plot;
+use onescan_report::view::Side;
 use onescan_scenario::expect::TraceEnd;
 use onescan_scenario::{Mode, Scenario};
 use onescan_server::lockstep::Lockstep;
@@ -64,9 +65,11 @@ use onescan_server::observer::Observer;
 use config::{Drawing, WatchOn};
 pub use config::{RunConfig, Transport};
 pub use error::RunError;
+pub(crate) use lockstep::NOTICE;
 pub use report::{RunReport, RunStatus, Verdict};
 
 use crate::interrupt::Interrupt;
+use crate::plant::drawing;
 use expectation::Witness;
 use page::Event;
 use recorded::{Recorded, refuse_to_overwrite};
@@ -98,12 +101,13 @@ pub fn execute(config: &RunConfig, interrupt: &Interrupt, out: &mut dyn Write) -
         scenario.watch(&config.watch.variables, config.watch.on == WatchOn::Change)?;
     }
     let mut reports: Vec<RunReport> = Vec::new();
-    let mut samples = Vec::new();
+    let (mut samples, mut unsaved) = (Vec::new(), None);
     for number in 1..=config.runs {
-        let (report, sampled) = one_run(config, &scenario, number, interrupt, Vec::new())?;
-        report.write(config.reports.format, config.runs, out).map_err(OutputError)?;
-        reports.push(report);
-        samples.push(sampled);
+        let ran = one_run(config, &scenario, number, interrupt, Vec::new())?;
+        ran.report.write(config.reports.format, config.runs, out).map_err(OutputError)?;
+        reports.push(ran.report);
+        samples.push(ran.samples);
+        unsaved = unsaved.or(ran.unsaved);
         if interrupt.is_raised() || reports.iter().any(RunReport::is_failed) {
             break;
         }
@@ -123,7 +127,7 @@ pub fn execute(config: &RunConfig, interrupt: &Interrupt, out: &mut dyn Write) -
     }
     let verdict = Verdict::of(config.mode, &reports);
     verdict.write(config.reports.format, &reports, out).map_err(OutputError)?;
-    Ok(verdict)
+    unsaved.map_or(Ok(verdict), Err)
 }
 
 /// The page about all runs.
@@ -131,7 +135,8 @@ fn page_of(scenario: &Scenario, reports: &[RunReport], plot: &Plot) -> String {
     let events: Vec<Event> = scenario.case_events().into_iter().map(|(at_ns, text)| Event { at_ns, text }).collect();
     let coverage =
         scenario.coverage().map(|sink| sink.lock().unwrap_or_else(std::sync::PoisonError::into_inner).clone());
-    page::of_runs(reports, &events, plot, &coverage.unwrap_or_default()).to_html()
+    let scenes = drawing::of_scenario(scenario, Side::default());
+    page::of_runs(reports, &events, (plot, scenes), &coverage.unwrap_or_default()).to_html()
 }
 
 /// One run that others watch, and its plot; without signals unless the run has a plot.
@@ -144,12 +149,21 @@ pub(crate) fn watched(
     interrupt: &Interrupt,
     observers: Vec<Box<dyn Observer>>,
 ) -> Result<(RunReport, Plot), RunError> {
-    let (report, samples) = one_run(config, scenario, 1, interrupt, observers)?;
+    let Ran { report, samples, unsaved } = one_run(config, scenario, 1, interrupt, observers)?;
     let plot = sampler::plot(scenario, config.mode, &config.picture, &[samples], std::slice::from_ref(&report));
-    Ok((report, plot))
+    unsaved.map_or(Ok((report, plot)), Err)
 }
 
-/// One run, and what a plot needs of it.
+/// What came of a run.
+pub(crate) struct Ran {
+    pub(crate) report: RunReport,
+    /// What a plot needs of it.
+    pub(crate) samples: Samples,
+    /// Why there is no checkpoint that was asked for.
+    unsaved: Option<RunError>,
+}
+
+/// One run.
 ///
 /// # Errors
 /// See [`RunError`].
@@ -159,7 +173,8 @@ pub(crate) fn one_run(
     number: u32,
     interrupt: &Interrupt,
     observers: Vec<Box<dyn Observer>>,
-) -> Result<(RunReport, Samples), RunError> {
+) -> Result<Ran, RunError> {
+    expectation::check(scenario, config.subject.end(scenario))?;
     let started = Instant::now();
     let samples = Rc::new(RefCell::new(Samples::new(&config.picture.sampled(scenario))));
     let judge = Rc::new(RefCell::new(expectation::judge(scenario)));
@@ -187,9 +202,11 @@ pub(crate) fn one_run(
     let log = SessionLog::default();
     let outcome = match config.mode {
         Mode::Lockstep => lockstep::run(config, scenario, number, interrupt, &log, watch),
-        Mode::Freewheel | Mode::Halt | Mode::Follow => freewheel::run(config, scenario, number, interrupt, watch),
+        Mode::Freewheel | Mode::Halt | Mode::Follow => {
+            freewheel::run(config, scenario, number, interrupt, watch).map(|outcome| (outcome, None))
+        }
     };
-    let outcome = outcome.map_err(|error| match (&recorded, error) {
+    let (outcome, unsaved) = outcome.map_err(|error| match (&recorded, error) {
         (Some(recorded), RunError::Record(source)) => RunError::RecordCut { source, kept: recorded.kept() },
         (_, error) => error,
     })?;
@@ -201,6 +218,5 @@ pub(crate) fn one_run(
     if let Some(recorded) = &recorded {
         recorded.end(&report)?;
     }
-    let sampled = samples.replace(Samples::default());
-    Ok((report, sampled))
+    Ok(Ran { report, samples: samples.replace(Samples::default()), unsaved })
 }

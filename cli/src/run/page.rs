@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use onescan_plc_shim::Coverage;
 use onescan_plc_shim::coverage::{Counted, Row};
-use onescan_report::page::{self, CoveredFile, Mood, Page, Section, Shown};
+use onescan_report::page::{self, CoveredFile, Mood, Page, Picture, Section, Shown};
 use onescan_report::plot::Plot;
 use onescan_server::time::{TimeSpan, VirtualTime};
 use serde::{Deserialize, Serialize};
@@ -23,11 +23,19 @@ pub struct Event {
 }
 
 /// The page of the runs of one scenario, with what happened to each from outside.
-pub(super) fn of_runs(reports: &[RunReport], events: &[Event], plot: &Plot, coverage: &Coverage) -> Page {
+pub(super) fn of_runs(
+    reports: &[RunReport],
+    events: &[Event],
+    (plot, scenes): (&Plot, Vec<String>),
+    coverage: &Coverage,
+) -> Page {
+    // All runs are in one picture, which stands with the first.
+    let scenes = scenes.into_iter().map(|svg| Picture { title: "the machine", svg });
+    let mut pictures: Vec<Picture> = scenes.collect();
+    pictures.push(Picture { title: "trajectories", svg: plot.to_svg() });
     let wall: f64 = reports.iter().map(|report| report.wall_time_s).sum();
     let sections = reports.iter().enumerate().map(|(index, report)| {
-        // All runs are in one picture, which stands with the first.
-        section(report, events.to_vec(), (index == 0).then(|| plot.to_svg()))
+        section(report, events.to_vec(), if index == 0 { pictures.clone() } else { Vec::new() })
     });
     Page {
         title: reports.first().map_or_else(String::new, |report| report.scenario.clone()),
@@ -38,33 +46,44 @@ pub(super) fn of_runs(reports: &[RunReport], events: &[Event], plot: &Plot, cove
     }
 }
 
-fn section(report: &RunReport, events: Vec<Event>, svg: Option<String>) -> Section {
+fn section(report: &RunReport, events: Vec<Event>, pictures: Vec<Picture>) -> Section {
     let is_bad = report.status == RunStatus::Failed || report.is_unmet();
     let digest = report.digest.map(|digest| digest.to_string());
     let violations = report.expectations.iter().filter(|expectation| expectation.is_violated());
     let violations = violations.filter_map(|violated| Some((violated.at?.as_nanos(), violated.name.as_str())));
     Section {
         title: format!("run {}", report.run),
-        status: report.status.word().to_owned(),
+        status: status(report),
         mood: if is_bad { Mood::Bad } else { Mood::Good },
-        steps: report.steps.0,
+        steps: Some(report.steps.0),
         virtual_time: report.virtual_time.to_string(),
         facts: statistics(report.steps.0, report.step.as_nanos(), report.virtual_time.as_nanos(), digest.as_ref()),
         lines: report.error.iter().cloned().collect(),
         expectations: report.expectations.iter().map(shown).collect(),
         events: timeline(events, violations),
-        svg,
+        pictures,
+    }
+}
+
+/// How a run ended, and whether it showed what it had to.
+fn status(report: &RunReport) -> String {
+    let word = report.status.word();
+    match report.expectations.iter().filter(|expectation| expectation.is_violated()).count() {
+        0 => word.to_owned(),
+        1 => format!("{word}, an expectation is violated"),
+        violated => format!("{word}, {violated} expectations are violated"),
     }
 }
 
 fn shown(expectation: &ExpectationReport) -> Shown {
-    let ExpectationReport { name, verdict, at, values, margin } = expectation;
+    let ExpectationReport { name, verdict, at, values, margin, margin_unit } = expectation;
     Shown {
         name: name.clone(),
         verdict: *verdict,
         at: at.map(|at| at.to_string()).unwrap_or_default(),
         values: values.iter().map(|SignalValue { signal, value }| (signal.clone(), *value)).collect(),
         margin: *margin,
+        unit: margin_unit.clone(),
     }
 }
 

@@ -11,7 +11,7 @@ use onescan_server::session::Session;
 use onescan_server::signal::{SignalName, SignalType};
 
 use super::chosen::Chosen;
-use super::config::Picture;
+use super::config::{Picture, RunsDrawn};
 use super::report::RunReport;
 
 /// Chosen signals of one run.
@@ -72,9 +72,26 @@ pub(super) fn picture(
     reports: &[RunReport],
 ) -> String {
     let plot = plot(scenario, mode, picture, runs, reports);
-    let Some(plane) = &picture.plane else { return plot.to_svg() };
+    let Some(plane) = &picture.plane else {
+        return match picture.runs {
+            RunsDrawn::Overlaid => plot.to_svg(),
+            RunsDrawn::Apart => apart(plot).to_svg(),
+        };
+    };
     let panels = plane.iter().map(|name| panel(scenario, name, runs.iter())).collect();
     Plot { panels, ..plot }.to_plane_svg().unwrap_or_default()
+}
+
+/// The same with each run in panels of its own.
+fn apart(plot: Plot) -> Plot {
+    let Plot { title, runs, panels, marks } = plot;
+    let of_run = |run: usize, name: &str, panel: &Panel| Panel {
+        signal: format!("{name}: {}", panel.signal),
+        runs: panel.runs.get(run).cloned().into_iter().collect(),
+        ..panel.clone()
+    };
+    let each = runs.iter().enumerate().flat_map(|(run, name)| panels.iter().map(move |panel| of_run(run, name, panel)));
+    Plot { title, panels: each.collect(), runs: vec!["a run each".to_owned()], marks }
 }
 
 /// A signal of several runs.
@@ -88,6 +105,7 @@ pub(crate) fn panel<'r>(scenario: &Scenario, name: &SignalName, runs: impl Itera
     Panel {
         shape: signal.map_or(Shape::Line, |signal| shape(signal.ty)),
         unit: signal.and_then(|signal| signal.unit.clone()),
+        names: signal.map(|signal| signal.names.pairs()).unwrap_or_default(),
         signal: name.to_string(),
         runs: runs.map(trajectory).collect(),
     }

@@ -6,14 +6,17 @@ use std::io::{self, Write};
 use std::path::Path;
 use std::time::Duration;
 
+use onescan_base::foreign::one_line;
 use onescan_report::OutputError;
 use onescan_scenario::Scenario;
 use onescan_scenario::compose::Member;
+use onescan_server::mailbox::Wish;
 use onescan_server::operation::Operation;
-use onescan_server::signal::ClientName;
+use onescan_server::signal::{ClientName, SignalName, SignalType};
 use onescan_server::transport::tcp::Entrance;
-use onescan_server::transport::tcp::operator::operate;
-use onescan_server::transport::tcp::participant::take_part;
+use onescan_server::transport::tcp::operator::OperatorConnection;
+use onescan_server::transport::tcp::participant::{ParticipantError, take_part};
+use onescan_server::wire::message::Status;
 
 pub use error::SessionError;
 
@@ -44,23 +47,102 @@ pub fn join(scenario: &Path, case: Option<&str>, name: &ClientName, server: Entr
     Ok(())
 }
 
-/// Asks a session for something, or only how it is, and writes how it is then to `out`.
+/// What somebody asks of a session.
+#[derive(Clone, Debug)]
+pub enum Asked {
+    /// How it is.
+    Status,
+    /// That something be done.
+    Do(Operation),
+    /// What signals are.
+    Get(Vec<SignalName>),
+    /// What signals are whenever one has changed, looked at so often.
+    Watch(Vec<SignalName>, Duration),
+}
+
+/// Asks a session and writes what it says to `out`.
 ///
 /// # Errors
 /// The session does not answer, or does not want it.
-pub fn control(
-    server: Entrance,
-    operation: Option<Operation>,
-    format: Format,
-    out: &mut dyn Write,
-) -> Result<(), SessionError> {
-    let status = operate(server, operation, OPERATOR_PATIENCE)?;
+pub fn control(server: Entrance, asked: Asked, format: Format, out: &mut dyn Write) -> Result<(), SessionError> {
+    let mut session = OperatorConnection::open(server)?;
+    let wish = match asked {
+        Asked::Status => Wish::Look(Vec::new()),
+        Asked::Do(operation) => Wish::Do(operation),
+        Asked::Get(signals) => {
+            let status = session.ask(Wish::Look(signals.clone()), OPERATOR_PATIENCE)?;
+            let written = match format {
+                Format::Json => json(&status, out),
+                Format::Human => values(&session, &signals, &status, out),
+            };
+            return Ok(written.map_err(OutputError)?);
+        }
+        Asked::Watch(signals, interval) => return watch(&mut session, &signals, interval, format, out),
+    };
+    let status = session.ask(wish, OPERATOR_PATIENCE)?;
     let written = match format {
-        Format::Json => serde_json::to_writer(&mut *out, &status).map_err(io::Error::from).and_then(|()| writeln!(out)),
+        Format::Json => json(&status, out),
         Format::Human => {
             let held = if status.held { "held" } else { "running" };
             writeln!(out, "{held} in state {} after step {}, t_v = {}", status.state, status.steps, status.t_v)
         }
     };
     Ok(written.map_err(OutputError)?)
+}
+
+fn json(status: &Status, out: &mut dyn Write) -> io::Result<()> {
+    serde_json::to_writer(&mut *out, status).map_err(io::Error::from)?;
+    writeln!(out)
+}
+
+/// A line for each signal.
+fn values(
+    session: &OperatorConnection,
+    signals: &[SignalName],
+    status: &Status,
+    out: &mut dyn Write,
+) -> io::Result<()> {
+    let width = signals.iter().map(|signal| signal.as_str().len()).max().unwrap_or(0);
+    for signal in signals {
+        let declared = session.signals().iter().find(|declared| declared.name == *signal);
+        let is_bool = declared.is_some_and(|declared| declared.ty == SignalType::BOOL);
+        let value = match status.values.get(signal).map_or("", String::as_str) {
+            "0" if is_bool => "FALSE",
+            "1" if is_bool => "TRUE",
+            value => value,
+        };
+        let unit = declared.and_then(|declared| declared.unit.as_ref()).map(|unit| format!(" {unit}"));
+        writeln!(out, "{:width$} = {}{}", signal.as_str(), one_line(value), unit.unwrap_or_default())?;
+    }
+    Ok(())
+}
+
+/// Writes a block whenever a signal has changed, until the session is over.
+fn watch(
+    session: &mut OperatorConnection,
+    signals: &[SignalName],
+    interval: Duration,
+    format: Format,
+    out: &mut dyn Write,
+) -> Result<(), SessionError> {
+    let mut before: Option<Status> = None;
+    loop {
+        let status = match session.ask(Wish::Look(signals.to_vec()), OPERATOR_PATIENCE) {
+            Ok(status) => status,
+            // Its connection ends with the session.
+            Err(ParticipantError::Handshake(error)) if before.is_some() && error.is_disconnect() => return Ok(()),
+            Err(error) => return Err(error.into()),
+        };
+        if before.as_ref().is_none_or(|before| before.values != status.values) {
+            let written = match format {
+                Format::Json => json(&status, out),
+                Format::Human => {
+                    writeln!(out, "t_v = {}", status.t_v).and_then(|()| values(session, signals, &status, out))
+                }
+            };
+            written.and_then(|()| out.flush()).map_err(OutputError)?;
+        }
+        before = Some(status);
+        std::thread::sleep(interval);
+    }
 }

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use onescan_report::number::short;
 use onescan_server::time::VirtualTime;
 use serde::{Deserialize, Serialize};
 
@@ -72,6 +73,17 @@ pub struct Furthest {
 }
 
 impl Difference {
+    /// The signal, or what else it is of.
+    pub fn subject(&self) -> &str {
+        match self {
+            Self::Frame { of: subject, .. }
+            | Self::Gone { signal: subject }
+            | Self::Added { signal: subject }
+            | Self::Values { signal: subject, .. }
+            | Self::Between { signal: subject, .. } => subject,
+        }
+    }
+
     /// When it begins; what has no instant comes first.
     pub fn at_ns(&self) -> u64 {
         if let Self::Values { at_ns, .. } = self { *at_ns } else { 0 }
@@ -98,7 +110,7 @@ impl std::fmt::Display for Difference {
                 }
                 match furthest {
                     Some(Furthest { at_ns: most, by }) if most != at_ns => {
-                        write!(f, ", most at {}, by {by:.3e}", VirtualTime::from_nanos(*most))
+                        write!(f, ", most at {}, by {}", VirtualTime::from_nanos(*most), short(*by))
                     }
                     _ => Ok(()),
                 }
@@ -201,7 +213,7 @@ mod tests {
     fn the_first_and_the_furthest_difference_are_told() {
         let (one, other) = (snapshot(&[0.0, 1.0, 2.0, 3.0], 1), snapshot(&[0.0, 1.5, 2.0, 5.0], 2));
         assert_eq!(told(&one, &one, None), [""; 0]);
-        let all = "x (m) at 0.010 s: expected 1.0, found 1.5; 2 of 4 instants differ, most at 0.030 s, by 2.000e0";
+        let all = "x (m) at 0.010 s: expected 1.0, found 1.5; 2 of 4 instants differ, most at 0.030 s, by 2";
         assert_eq!(told(&one, &other, None), [all]);
         let some = "x (m) at 0.030 s: expected 3.0, found 5.0";
         assert_eq!(told(&one, &other, Some(0.5)), [some]);

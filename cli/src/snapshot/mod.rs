@@ -7,6 +7,7 @@
 //! | [`write`] | a snapshot as text |
 //! | [`read`] | text as a snapshot |
 //! | [`compare`] | where two differ |
+//! | [`overlay`] | a new trajectory over the reviewed one, as a picture |
 //! | [`store`] | the files: reviewed ones, pending ones |
 //!
 //! # The format
@@ -36,6 +37,7 @@
 
 pub mod compare;
 mod error;
+pub mod overlay;
 pub mod read;
 pub mod store;
 pub mod take;
@@ -98,6 +100,19 @@ impl Track {
     pub fn at(&self, t_v: VirtualTime) -> Option<&[u8]> {
         let next = self.changes.partition_point(|(since, _)| *since <= t_v);
         self.changes.get(next.checked_sub(1)?).map(|(_, bytes)| bytes.as_slice())
+    }
+
+    /// What is to be added to the values of `old` to give these, as LREAL.
+    pub fn less(&self, old: &Self) -> Self {
+        let mut times: Vec<VirtualTime> = old.changes.iter().chain(&self.changes).map(|(since, _)| *since).collect();
+        times.sort_unstable();
+        times.dedup();
+        let number = |track: &Self, t_v| track.at(t_v).and_then(|bytes| track.ty.as_f64(bytes));
+        let changes = times.into_iter().filter_map(|t_v| {
+            let by = number(self, t_v)? - number(old, t_v)?;
+            Some((t_v, by.to_le_bytes().to_vec()))
+        });
+        Self { ty: SignalType::LREAL, changes: changes.collect(), ..self.clone() }
     }
 
     /// The name with its unit.

@@ -1,7 +1,7 @@
 //! The map as SVG: a column for each client, a line with its signal's name from the writer to every
 //! reader. What is wrong is drawn in red, what nobody reads ends beside its writer.
 
-use onescan_report::plot::lettering::{FONT_FAMILY, NAME_PX, TITLE_PX, shortened, width_px};
+use onescan_report::plot::lettering::{NAME_PX, TITLE_PX, shortened, width_px};
 use onescan_report::plot::palette::{ALARM, AXIS, FAINT_INK, GROUND, INK};
 use onescan_report::plot::svg::Document;
 
@@ -32,22 +32,8 @@ pub(super) fn svg(map: &Map, title: &str) -> String {
     let stubs = stubs.map(|row| x_of(row.writer) + STUB_PX + 6 + width_px(&label(row), NAME_PX)).max();
     let width = boxes.max(stubs.unwrap_or_default()) + MARGIN_PX;
     let height = TOP_PX + ROW_PX * (rows.len() as i64 + 1);
-    let mut document = Document::default();
-    let view = format!("0 0 {width} {height}");
-    document.open(
-        "svg",
-        &[
-            ("xmlns", &"http://www.w3.org/2000/svg"),
-            ("width", &width),
-            ("height", &height),
-            ("viewBox", &view),
-            ("role", &"img"),
-            ("font-family", &FONT_FAMILY),
-            ("font-size", &NAME_PX),
-        ],
-    );
-    document.text("title", &[], &format!("{title}: wiring"));
-    document.empty("rect", &[("width", &width), ("height", &height), ("fill", &GROUND)]);
+    let mut document = Document::picture(width, height, &format!("{title}: wiring"), "");
+    document.open("g", &[("font-size", &NAME_PX)]);
     let heading: [(&str, &dyn std::fmt::Display); 5] =
         [("x", &MARGIN_PX), ("y", &30), ("font-size", &TITLE_PX), ("font-weight", &"bold"), ("fill", &INK)];
     document.text("text", &heading, &format!("{title}: wiring"));

@@ -117,7 +117,7 @@ impl Map {
         let mut found: Vec<(ClientName, Option<Ends>)> = Vec::new();
         for (name, entry) in &scenario.file().clients {
             let (kind, ends) = match entry.get_ref() {
-                ClientFile::Plant { scene, .. } => ("plant", Some(of_plant(&scenario.scene_of(scene)?))),
+                ClientFile::Plant { scene, .. } => ("plant", Some(of_plant(&scenario.scene_of(name, scene)?))),
                 ClientFile::SoftPlc { sources, dialect, bind, .. } => {
                     let Compiled { application, paths, .. } = scenario.compiled(name, sources, *dialect, bind)?;
                     ("soft-plc", Some(of_plc(&application, name, scenario.plan().signals(), &paths)))

@@ -13,7 +13,7 @@ pub mod section;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 pub use coverage::CoveredFile;
-pub use section::{Event, Mood, Section, Shown};
+pub use section::{Event, Mood, Picture, Section, Shown};
 
 const STYLE: &str = include_str!("style.css");
 
@@ -46,6 +46,7 @@ impl Page {
                 head { (LINE)
                     meta charset="utf-8"; (LINE)
                     meta name="viewport" content="width=device-width, initial-scale=1"; (LINE)
+                    meta name="color-scheme" content="light dark"; (LINE)
                     title { (title) } (LINE)
                     style { (LINE) (PreEscaped(STYLE)) } (LINE)
                 } (LINE)
@@ -76,7 +77,7 @@ fn contents(sections: &[Section]) -> Markup {
                     td { a href=(format!("#t{index}")) { (section.title) } }
                     td class=(section.mood.class()) { (section.status) }
                     td { (section.virtual_time) }
-                    td { (section.steps) }
+                    td { @if let Some(steps) = section.steps { (steps) } }
                 } (LINE)
             }
         }

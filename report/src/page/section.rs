@@ -3,6 +3,7 @@
 use maud::{Markup, PreEscaped, html};
 
 use super::LINE;
+use crate::number::short;
 use crate::verdict::Verdict;
 
 /// So many events are listed; a machine's signals change often.
@@ -17,8 +18,8 @@ pub struct Section {
     pub status: String,
     /// How that is taken.
     pub mood: Mood,
-    /// Steps or scans.
-    pub steps: u64,
+    /// Steps or scans, if they are known.
+    pub steps: Option<u64>,
     /// Virtual time of the last of them, with its unit.
     pub virtual_time: String,
     /// Names and values.
@@ -29,8 +30,17 @@ pub struct Section {
     pub expectations: Vec<Shown>,
     /// What happened, in the order of time.
     pub events: Vec<Event>,
-    /// Its trajectories, as an SVG document.
-    pub svg: Option<String>,
+    /// Its trajectories and what else is drawn of it.
+    pub pictures: Vec<Picture>,
+}
+
+/// A picture and what it shows.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Picture {
+    /// What it shows, in a word or two.
+    pub title: &'static str,
+    /// An SVG document of this program.
+    pub svg: String,
 }
 
 /// How a status is taken.
@@ -78,6 +88,8 @@ pub struct Shown {
     pub values: Vec<(String, f64)>,
     /// By how much it was met; absent where that is infinite or not known.
     pub margin: Option<f64>,
+    /// What the margin is measured in, if that is one unit.
+    pub unit: Option<String>,
 }
 
 /// Something that happened.
@@ -100,7 +112,13 @@ impl Section {
                 } (LINE)
                 @if !self.expectations.is_empty() { (expectations(&self.expectations)) (LINE) }
                 // The picture is a document of this program, whose own text is escaped.
-                @if let Some(svg) = &self.svg { h3 { "trajectories" } (LINE) (PreEscaped(svg)) (LINE) }
+                @if !self.pictures.is_empty() {
+                    div class="pictures" { (LINE)
+                        @for picture in &self.pictures {
+                            figure { figcaption { h3 { (picture.title) } } (PreEscaped(&picture.svg)) } (LINE)
+                        }
+                    } (LINE)
+                }
                 @if !self.events.is_empty() { (events(&self.events)) (LINE) }
             }
         }
@@ -109,7 +127,8 @@ impl Section {
 
 fn expectations(all: &[Shown]) -> Markup {
     let values = |shown: &Shown| -> String {
-        let values: Vec<String> = shown.values.iter().map(|(signal, value)| format!("{signal} = {value}")).collect();
+        let values: Vec<String> =
+            shown.values.iter().map(|(signal, value)| format!("{signal} = {}", short(*value))).collect();
         values.join(", ")
     };
     html! {
@@ -122,11 +141,16 @@ fn expectations(all: &[Shown]) -> Markup {
                     td class=(Mood::from(shown.verdict).class()) { (shown.verdict.word()) }
                     td { (shown.at) }
                     td class="value" { (values(shown)) }
-                    td { @if let Some(margin) = shown.margin { (format!("{margin:.3e}")) } }
+                    td { (margin(shown)) }
                 } (LINE)
             }
         }
     }
+}
+
+fn margin(shown: &Shown) -> String {
+    let unit = shown.unit.as_ref().map(|unit| format!(" {unit}")).unwrap_or_default();
+    shown.margin.map(|margin| format!("{}{unit}", short(margin))).unwrap_or_default()
 }
 
 fn events(all: &[Event]) -> Markup {

@@ -17,10 +17,26 @@ impl Agreement {
         Self { first_equal: runs.iter().enumerate().map(first).collect() }
     }
 
-    /// The number of runs after `run` that are identical with it.
-    pub(super) fn equals_after(&self, run: usize) -> usize {
-        let first = self.first_equal.get(run);
-        self.first_equal.iter().skip(run + 1).filter(|other| Some(*other) == first).count()
+    /// Which runs are the same in all of several panels.
+    pub(super) fn of_all(all: &[&Self], run_count: usize) -> Self {
+        let same = |a: usize, b: usize| all.iter().all(|one| one.first_equal.get(a) == one.first_equal.get(b));
+        let first = |run| (0..run).find(|&earlier| same(earlier, run)).unwrap_or(run);
+        Self { first_equal: (0..run_count).map(first).collect() }
+    }
+
+    /// Whether no run before this one is identical with it: only such runs are drawn.
+    pub(super) fn is_first(&self, run: usize) -> bool {
+        self.first_equal.get(run) == Some(&run)
+    }
+
+    /// The runs that are identical with one another, in the order of their first ones.
+    pub(super) fn groups(&self) -> Vec<Vec<usize>> {
+        let firsts = (0..self.first_equal.len()).filter(|&run| self.is_first(run));
+        let equals = |first: usize| {
+            let all = self.first_equal.iter().enumerate();
+            all.filter(|(_, equal)| **equal == first).map(|(run, _)| run).collect()
+        };
+        firsts.map(equals).collect()
     }
 
     /// The result in words; nothing if there are not several runs.
@@ -50,7 +66,7 @@ mod tests {
     fn agreement(values: &[f64]) -> Agreement {
         let run = |&value: &f64| Trajectory { t_ns: vec![0], values: vec![value] };
         let runs = values.iter().map(run).collect();
-        Agreement::of(&Panel { signal: String::new(), unit: None, shape: Shape::Line, runs })
+        Agreement::of(&Panel { signal: String::new(), unit: None, shape: Shape::Line, names: Vec::new(), runs })
     }
 
     #[test]
@@ -64,8 +80,10 @@ mod tests {
     }
 
     #[test]
-    fn later_equals_are_counted() {
-        let agreement = agreement(&[1.0, 2.0, 1.0, 1.0]);
-        assert_eq!([0, 1, 2, 3, 4].map(|run| agreement.equals_after(run)), [2, 0, 1, 0, 0]);
+    fn equal_runs_are_a_group_if_they_are_so_in_all_panels() {
+        let (one, other) = (agreement(&[1.0, 2.0, 1.0, 1.0]), agreement(&[0.0, 0.0, 0.0, 5.0]));
+        assert_eq!(one.groups(), [vec![0, 2, 3], vec![1]]);
+        assert_eq!(Agreement::of_all(&[&one, &other], 4).groups(), [vec![0, 2], vec![1], vec![3]]);
+        assert_eq!(Agreement::of_all(&[], 2).groups(), [vec![0, 1]]);
     }
 }

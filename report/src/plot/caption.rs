@@ -11,6 +11,16 @@ pub(super) fn run_labels(plot: &Plot) -> Vec<String> {
     (0..count).map(|run| plot.runs.get(run).cloned().unwrap_or_else(|| format!("run {}", run + 1))).collect()
 }
 
+/// What a line is that stands for several runs, which are equal.
+pub(super) fn together(runs: &[&str]) -> String {
+    match runs {
+        [] => String::new(),
+        [one] => (*one).to_owned(),
+        [one, other] => format!("{one} and {other}, equal"),
+        [first, .., last] => format!("{first} to {last}, {} equal runs", runs.len()),
+    }
+}
+
 /// The name of a signal and its unit.
 pub(super) fn heading(panel: &Panel, exponent: i32) -> String {
     format!("{}{}", panel.signal, in_unit(panel.unit.as_deref(), exponent))

@@ -1,9 +1,11 @@
 //! Where everything goes, in pixels.
 //!
-//! From top to bottom: the title, the legend in as many rows as it takes, then each panel beneath
-//! its heading, and the time axis beneath the last one.
+//! From top to bottom: the title, the legend in as many rows as it takes, the texts of marks, then each panel beneath
+//! its heading, and the time axis beneath the last one. Where a picture is so tall that this axis is out of reach,
+//! its labels are also beneath panels in between.
 
 use super::lettering::{NAME_PX, TICK_PX, shortened, width_px};
+use super::mark::{NUMBERS_PX, TEXT_ROW_PX};
 use super::trace::Area;
 
 /// The width of every picture: that of a README's column.
@@ -24,6 +26,9 @@ const ANALOG_HEIGHT_PX: i64 = 128;
 const BOOL_HEIGHT_PX: i64 = 34;
 const PANEL_GAP_PX: i64 = 12;
 const TIME_AXIS_ROOM_PX: i64 = 40;
+const TIME_LABELS_ROOM_PX: i64 = 14;
+/// The labels of the time axis come again after this much of panels.
+const TIME_LABELS_EVERY_PX: i64 = 520;
 
 /// How high a panel is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,14 +55,21 @@ pub(super) struct Layout {
     pub(super) height_px: i64,
     pub(super) title_baseline_px: i64,
     pub(super) legend: Vec<LegendEntry>,
+    /// Where the texts of marks go.
+    pub(super) texts: Area,
     pub(super) panels: Vec<Area>,
+    /// The panels before the last one that have the labels of the time axis beneath them.
+    pub(super) time_labels: Vec<Area>,
 }
 
 /// What a layout has to find room for.
 #[derive(Debug)]
 pub(super) struct Contents<'a> {
     pub(super) title: &'a str,
+    /// What the lines of the legend are.
     pub(super) run_labels: &'a [String],
+    /// How many texts of marks there are.
+    pub(super) texts: usize,
     /// The widest label of a value.
     pub(super) value_label_px: i64,
     pub(super) panels: &'a [Height],
@@ -77,7 +89,14 @@ impl Layout {
         let (legend, legend_height_px) = legend(contents.run_labels, left_px, width_px, top_px);
         top_px += legend_height_px + LEGEND_ROOM_BELOW_PX;
 
-        let mut panels = Vec::new();
+        let texts_px = contents.texts as i64 * TEXT_ROW_PX;
+        let texts = Area { left_px, top_px, width_px, height_px: texts_px };
+        if texts_px > 0 {
+            top_px += texts_px + NUMBERS_PX;
+        }
+
+        let (mut panels, mut time_labels) = (Vec::new(), Vec::new());
+        let mut labels_at_px = top_px;
         for height in contents.panels {
             let height_px = match height {
                 Height::Analog => ANALOG_HEIGHT_PX,
@@ -86,8 +105,19 @@ impl Layout {
             };
             panels.push(Area { left_px, top_px: top_px + HEADING_ROOM_PX, width_px, height_px });
             top_px += HEADING_ROOM_PX + height_px + PANEL_GAP_PX;
+            if let (Some(area), true) = (panels.last(), top_px - labels_at_px > TIME_LABELS_EVERY_PX) {
+                labels_at_px = top_px;
+                time_labels.push(*area);
+                top_px += TIME_LABELS_ROOM_PX;
+            }
         }
-        Self { height_px: top_px + TIME_AXIS_ROOM_PX, title_baseline_px, legend, panels }
+        // The last panel has the whole axis.
+        if time_labels.last().is_some_and(|area| panels.last() == Some(area)) {
+            time_labels.pop();
+            top_px -= TIME_LABELS_ROOM_PX;
+        }
+        let height_px = top_px + TIME_AXIS_ROOM_PX;
+        Self { height_px, title_baseline_px, legend, texts, panels, time_labels }
     }
 
     /// The left edge of all panels.

@@ -1,8 +1,8 @@
 //! Trajectories as a picture: panels over one time axis, several runs on top of each other.
 //!
 //! A plot is plain data and its picture a pure function of it: the same data give the same bytes on
-//! every machine. The picture is SVG on a white ground, so that it reads the same on a light page
-//! and on a dark one.
+//! every machine. The picture is SVG on a ground of its own, white or, where the reader prefers dark
+//! pages, dark; so it reads well on any page.
 //!
 //! Modules in the order in which data flows through them:
 //!
@@ -38,6 +38,7 @@
 //!         signal: "belt.position".to_owned(),
 //!         unit: Some("m".to_owned()),
 //!         shape: Shape::Line,
+//!         names: Vec::new(),
 //!         runs: vec![Trajectory { t_ns: vec![0, 1_000_000, 2_000_000], values: vec![0.0, 0.1, 0.3] }],
 //!     }],
 //!     marks: Vec::new(),
@@ -91,6 +92,8 @@ pub struct Panel {
     pub unit: Option<String>,
     /// How it moves between samples.
     pub shape: Shape,
+    /// Values with a name, which stands at the axis in place of the number.
+    pub names: Vec<(i64, String)>,
     /// One trajectory for each run, in the same order in all panels.
     pub runs: Vec<Trajectory>,
 }

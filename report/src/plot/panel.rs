@@ -35,6 +35,7 @@ impl<'a> Axis<'a> {
         let ticks = match panel.shape {
             Shape::Step if is_two_valued(panel) => Ticks::of_bool(),
             _ if is_empty(panel) => Ticks::default(),
+            _ if let Some(named) = Ticks::named(values, &panel.names) => named,
             Shape::Step if is_whole(panel) => Ticks::within(values, TICKS, Numbers::Whole),
             _ => Ticks::within(values, TICKS, Numbers::Real),
         };
@@ -52,8 +53,10 @@ impl<'a> Axis<'a> {
     }
 
     /// Draws the panel of a picture with `run_count` runs.
-    pub(super) fn draw(&self, document: &mut Document, area: Area, time: &TimeAxis, run_count: usize) {
-        self.draw_heading(document, area);
+    ///
+    /// The heading stands `above_px` above the panel.
+    pub(super) fn draw(&self, document: &mut Document, area: Area, above_px: i64, time: &TimeAxis, run_count: usize) {
+        self.draw_heading(document, area, above_px);
         let frame = Frame { area, times: time.range, values: self.values };
         self.draw_grid(document, &frame, time);
         if is_empty(self.panel) {
@@ -63,15 +66,16 @@ impl<'a> Axis<'a> {
         }
         document.open("g", &[("fill", &"none"), ("stroke-linejoin", &"round")]);
         for (run, trajectory) in self.panel.runs.iter().enumerate() {
-            let stroke = stroke(run, run_count, self.agreement.equals_after(run));
-            draw_pieces(document, &pieces(trajectory, self.panel.shape, &frame), stroke);
+            if self.agreement.is_first(run) {
+                draw_pieces(document, &pieces(trajectory, self.panel.shape, &frame), stroke(run, run_count));
+            }
         }
         document.close();
     }
 
     /// The name of the signal to the left, how its runs compare to the right.
-    fn draw_heading(&self, document: &mut Document, area: Area) {
-        let baseline_px = area.top_px - 7;
+    fn draw_heading(&self, document: &mut Document, area: Area, above_px: i64) {
+        let baseline_px = area.top_px - 7 - above_px;
         let remark = self.agreement.remark().unwrap_or_default();
         let room_px = area.width_px - width_px(&remark, TICK_PX) - 10;
         let name = shortened(&caption::heading(self.panel, self.ticks.exponent), NAME_PX, room_px);

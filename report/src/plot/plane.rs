@@ -5,10 +5,10 @@
 
 use super::agreement::Agreement;
 use super::caption;
-use super::figure::{draw_legend, draw_title, open};
-use super::layout::{Contents, Height, LABEL_GAP_PX, Layout};
+use super::figure::{Legend, draw_title};
+use super::layout::{Contents, Height, LABEL_GAP_PX, Layout, WIDTH_PX};
 use super::lettering::{NAME_PX, TICK_PX, width_px};
-use super::palette::{AXIS, FAINT_INK, GRID, GROUND, stroke};
+use super::palette::{AXIS, FAINT_INK, GRID, stroke};
 use super::panel::draw_pieces;
 use super::range::{ValueRange, is_empty};
 use super::reduce::{PIXEL_CPX, Point};
@@ -29,12 +29,16 @@ const STRETCH: usize = 64;
 /// Draws the paths of `along` and `up`; a run's samples of both belong together one by one.
 pub(super) fn draw(plot: &Plot, along: &Panel, up: &Panel) -> String {
     let (x, y) = (ValueRange::of(along), ValueRange::of(up));
-    let run_labels = caption::run_labels(plot);
+    let runs = caption::run_labels(plot);
+    let agreements = [Agreement::of(along), Agreement::of(up)];
+    let agreements = [&agreements[0], &agreements[1]];
+    let legend = Legend::of(&agreements, &runs);
     let ticks = |range| Ticks::within(range, TICKS, Numbers::Real);
     let layout = |value_label_px, height_px| {
         Layout::of(&Contents {
             title: &plot.title,
-            run_labels: &run_labels,
+            run_labels: &legend.labels,
+            texts: 0,
             value_label_px,
             panels: &[Height::Plane(height_px)],
         })
@@ -46,24 +50,23 @@ pub(super) fn draw(plot: &Plot, along: &Panel, up: &Panel) -> String {
     let Some(&area) = layout.panels.first() else { return String::new() };
     let plane = Plane { area, x, y };
 
-    let mut document = Document::default();
-    open(&mut document, layout.height_px);
-    document.text("title", &[], if plot.title.is_empty() { "Paths" } else { &plot.title });
+    let title = if plot.title.is_empty() { "Paths" } else { &plot.title };
     let (across, upwards) = (caption::heading(along, 0), caption::heading(up, 0));
-    document.text("desc", &[], &caption::of_plane(&upwards, &across, &run_labels));
-    document.empty("rect", &[("width", &super::layout::WIDTH_PX), ("height", &layout.height_px), ("fill", &GROUND)]);
+    let description = caption::of_plane(&upwards, &across, &runs);
+    let mut document = Document::picture(WIDTH_PX, layout.height_px, title, &description);
     draw_title(&mut document, &plot.title, &layout);
-    draw_legend(&mut document, &layout);
+    legend.draw(&mut document, &layout);
     plane.draw_axes(&mut document, (&ticks(x), along), (&ticks(y), up));
     if is_empty(along) || is_empty(up) {
         draw_note(&mut document, area.left_px + area.width_px / 2, area.top_px + height_px / 2 + 4, "no samples");
         return document.finish();
     }
-    let agreements = [Agreement::of(along), Agreement::of(up)];
+    let agreement = Agreement::of_all(&agreements, runs.len());
     document.open("g", &[("fill", &"none"), ("stroke-linejoin", &"round")]);
     for (run, (across, upwards)) in along.runs.iter().zip(&up.runs).enumerate() {
-        let equals = agreements.iter().map(|agreement| agreement.equals_after(run)).min().unwrap_or(0);
-        draw_pieces(&mut document, &plane.pieces(across, upwards), stroke(run, run_labels.len(), equals));
+        if agreement.is_first(run) {
+            draw_pieces(&mut document, &plane.pieces(across, upwards), stroke(run, runs.len()));
+        }
     }
     document.finish()
 }

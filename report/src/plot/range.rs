@@ -116,7 +116,7 @@ mod tests {
     fn range(values: &[f64]) -> ValueRange {
         let t_ns = (0..values.len() as u64).collect();
         let runs = vec![Trajectory { t_ns, values: values.to_vec() }];
-        ValueRange::of(&Panel { signal: String::new(), unit: None, shape: Shape::Line, runs })
+        ValueRange::of(&Panel { signal: String::new(), unit: None, shape: Shape::Line, names: Vec::new(), runs })
     }
 
     #[test]

@@ -2,8 +2,8 @@
 
 use std::fmt::{self, Display, Write as _};
 
-use super::lettering::TICK_PX;
-use super::palette::{FAINT_INK, Stroke};
+use super::lettering::{FONT_FAMILY, TICK_PX};
+use super::palette::{FAINT_INK, GROUND, INK, Stroke, dark_style};
 use super::reduce::{PIXEL_CPX, Point};
 
 /// An attribute of an element.
@@ -17,6 +17,31 @@ pub struct Document {
 }
 
 impl Document {
+    /// A picture of this size, in pixels, with its ground. The title and the description are for readers who do not see
+    /// it.
+    pub fn picture(width_px: i64, height_px: i64, title: &str, description: &str) -> Self {
+        let mut document = Self::default();
+        document.open(
+            "svg",
+            &[
+                ("xmlns", &"http://www.w3.org/2000/svg"),
+                ("width", &width_px),
+                ("height", &height_px),
+                ("viewBox", &format!("0 0 {width_px} {height_px}")),
+                ("role", &"img"),
+                ("font-family", &FONT_FAMILY),
+                ("fill", &INK),
+            ],
+        );
+        document.text("title", &[], title);
+        if !description.is_empty() {
+            document.text("desc", &[], description);
+        }
+        document.text("style", &[], &dark_style());
+        document.empty("rect", &[("width", &width_px), ("height", &height_px), ("fill", &GROUND)]);
+        document
+    }
+
     /// Opens an element; what follows is inside of it until [`Self::close`].
     pub fn open(&mut self, name: &'static str, attributes: &[Attribute<'_>]) {
         self.tag(name, attributes);

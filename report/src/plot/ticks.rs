@@ -4,10 +4,16 @@
 //! written 0.30000000000000004. The exponent is read off the number's decimal form, which is exact
 //! on every machine; a logarithm is not.
 
+use super::lettering::{TICK_PX, shortened};
 use super::range::ValueRange;
 
 /// Beyond this many steps from zero, a double no longer tells ticks apart.
 const STEPS_FROM_ZERO_MAX: f64 = 1e14;
+
+/// So many names have room beside each other on an axis.
+const NAMES_MAX: usize = 9;
+/// The room of a name.
+const NAME_MAX_PX: i64 = 150;
 
 /// Which numbers may be ticks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -45,6 +51,20 @@ impl Ticks {
     pub(super) fn of_bool() -> Self {
         let mark = |value: f64, label: &str| Tick { value, label: label.to_owned() };
         Self { marks: vec![mark(0.0, "0"), mark(1.0, "1")], exponent: 0 }
+    }
+
+    /// A tick at each value that has a name; nothing if there are too many of them to be told apart.
+    pub(super) fn named(range: ValueRange, names: &[(i64, String)]) -> Option<Self> {
+        let shown = |(value, _): &&(i64, String)| (range.low..=range.high).contains(&(*value as f64));
+        let mut names: Vec<&(i64, String)> = names.iter().filter(shown).collect();
+        names.sort();
+        names.dedup_by_key(|(value, _)| *value);
+        let mark = |(value, name): &(i64, String)| Tick {
+            value: *value as f64,
+            label: shortened(&format!("{value} {name}"), TICK_PX, NAME_MAX_PX),
+        };
+        let fits = (1..=NAMES_MAX).contains(&names.len());
+        fits.then(|| Self { marks: names.into_iter().map(mark).collect(), exponent: 0 })
     }
 
     fn round(range: ValueRange, count: u32, numbers: Numbers) -> Option<Self> {

@@ -30,18 +30,23 @@ impl TimeAxis {
         self.ticks.marks.iter().map(move |mark| Pixels(area.x_cpx(seconds.fraction(mark.value))))
     }
 
-    /// Draws labels beneath the last panel.
+    /// Draws the labels and the name beneath the last panel.
     pub(super) fn draw(&self, document: &mut Document, area: Area) {
-        document.open("g", &[("font-size", &TICK_PX), ("fill", &FAINT_INK), ("text-anchor", &"middle")]);
-        for (mark, x) in self.ticks.marks.iter().zip(self.positions(area)) {
-            document.text("text", &[("x", &x), ("y", &(area.bottom_px() + 16))], &mark.label);
-        }
-        document.close();
+        self.draw_labels(document, area);
         let (middle_px, baseline_px) = (area.left_px + area.width_px / 2, area.bottom_px() + 36);
         document.text(
             "text",
             &[("x", &middle_px), ("y", &baseline_px), ("font-size", &NAME_PX), ("text-anchor", &"middle")],
             &caption::time(self.ticks.exponent),
         );
+    }
+
+    /// Draws the labels beneath a panel.
+    pub(super) fn draw_labels(&self, document: &mut Document, area: Area) {
+        document.open("g", &[("font-size", &TICK_PX), ("fill", &FAINT_INK), ("text-anchor", &"middle")]);
+        for (mark, x) in self.ticks.marks.iter().zip(self.positions(area)) {
+            document.text("text", &[("x", &x), ("y", &(area.bottom_px() + 16))], &mark.label);
+        }
+        document.close();
     }
 }
