@@ -77,8 +77,8 @@ impl Scenario {
             return Err(self.wrong_client(name, format!("the scenario has no client `{name}`"), help));
         };
         match entry.get_ref() {
-            ClientFile::Plant { scene, period } => {
-                let scene = self.scene_in_case(name, scene)?;
+            ClientFile::Plant { scene, period, .. } => {
+                let scene = self.scene_of(name, scene)?;
                 let plant = Plant::new(scene, name.clone(), period.unwrap_or(self.file().step));
                 Ok(Member::Plant(Box::new(plant.seeded(self.seed()))))
             }
@@ -153,32 +153,22 @@ impl Scenario {
         })
     }
 
-    /// The scene of a plant.
+    /// The scene of plant `name` as the scenario wants it, and the case if there is one.
     ///
     /// # Errors
-    /// A file that cannot be read or is no scene.
-    pub fn scene_of(&self, file: &str) -> Result<Scene, ScenarioError> {
-        let path = self.folder().join(file);
-        permission::granted().check(self.folder(), &path)?;
-        let text = read(&path)?;
-        let named = path.display().to_string();
-        let scene = Scene::parse(&text, &named).map_err(|error| Box::new(report(&error, &named, &text)))?;
-        Ok(scene)
-    }
-
-    /// The scene of plant `name` as the case wants it.
-    fn scene_in_case(&self, name: &ClientName, file: &str) -> Result<Scene, ScenarioError> {
+    /// A file that cannot be read or is no scene; a value that the scene cannot have.
+    pub fn scene_of(&self, name: &ClientName, file: &str) -> Result<Scene, ScenarioError> {
         let path = self.folder().join(file);
         permission::granted().check(self.folder(), &path)?;
         let (text, named) = (read(&path)?, path.display().to_string());
         let error = |error: &SceneError| ScenarioError::from(Box::new(report(error, &named, &text)));
-        let overrides = self.overrides(name);
-        let scene = match Scene::parse_with(&text, &named, &overrides) {
+        let (overrides, within) = (self.overrides(name), permission::granted().within(self.folder()));
+        let scene = match Scene::parse_with(&text, &named, &overrides, &within) {
             Ok(scene) => scene,
             Err(with) if overrides.is_empty() => return Err(error(&with)),
             Err(with) => {
                 // What is wrong with the scene itself comes first.
-                Scene::parse(&text, &named).map_err(|plain| error(&plain))?;
+                Scene::parse_with(&text, &named, &[], &within).map_err(|plain| error(&plain))?;
                 let fault = with.faults().first();
                 let message = fault.map_or_else(|| with.to_string(), |fault| fault.kind.to_string());
                 let (index, help) =

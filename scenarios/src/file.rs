@@ -12,7 +12,8 @@ use serde::{Deserialize, Deserializer};
 use toml::Spanned;
 
 use crate::expect::KnownSignal;
-use crate::form::{DialectName, Mebibytes, Name, Scalar, Time, Type};
+use crate::form::{DialectName, Mebibytes, Name, Scalar, Time, Type, Values};
+use crate::value_names::ValueNames;
 
 /// The only version of the format so far.
 pub const VERSION: u32 = 1;
@@ -91,6 +92,10 @@ pub struct SignalFile {
     pub unit: Option<String>,
     /// What it means, for readers.
     pub about: Option<String>,
+    /// The names of its values, as `{ 0 = "Idle", 1 = "Running" }`: plots show them.
+    #[serde(default)]
+    #[schemars(with = "BTreeMap<String, String>")]
+    pub names: ValueNames,
 }
 
 /// One client.
@@ -101,6 +106,10 @@ pub enum ClientFile {
     Plant {
         /// The scene file, relative to the scenario's folder.
         scene: String,
+        /// Values in the place of the scene's, as in `set.pump.speed_rad_s = 2.0`, so that scenarios share a scene.
+        #[serde(default)]
+        #[schemars(with = "Values")]
+        set: toml::Table,
         /// Virtual time of one turn; the session's step if absent.
         #[serde(default, deserialize_with = "from_optional_text")]
         #[schemars(with = "Option<Time>")]

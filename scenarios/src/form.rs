@@ -99,6 +99,12 @@ form!(
 );
 
 form!(
+    /// Values by path.
+    Values,
+    json_schema!({ "type": "object", "additionalProperties": true })
+);
+
+form!(
     /// Lists of values by path.
     Matrix,
     json_schema!({

@@ -25,6 +25,7 @@ use super::error::{PlcReport, ScenarioError};
 use super::file::ClientFile;
 use super::load::{LinkSource, Scenario};
 use super::mode::Mode;
+use super::permission;
 
 /// What a real PLC of a scenario runs.
 pub struct Instrumented {
@@ -263,6 +264,11 @@ impl Scenario {
     /// The link of PLC `name`, with the URL that counts.
     pub(crate) fn settings(&self, name: &ClientName) -> Result<Settings, ScenarioError> {
         let declared = self.declared(name);
+        for named in declared.files() {
+            // One that is not there yet is made in a folder that is.
+            let found = if named.exists() { named } else { named.parent().unwrap_or(named) };
+            permission::granted().check(self.folder(), found)?;
+        }
         let url = self.gateways.get(name).cloned().flatten().unwrap_or(declared.url);
         if url.is_empty() {
             let help =

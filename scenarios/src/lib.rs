@@ -6,6 +6,7 @@
 //! |---|---|
 //! | `form` | the forms of values in the files, for schemas |
 //! | [`file`] | `scenario.toml` as it is written |
+//! | [`value_names`] | names of a signal's values |
 //! | [`permission`] | which files it may read, and whether it may start programs |
 //! | [`load`] | `scenario.toml` read and checked |
 //! | `arrays` | signals written as arrays and patterns |
@@ -39,6 +40,7 @@ pub mod mode;
 pub mod permission;
 mod refusal;
 pub mod schema;
+pub mod value_names;
 pub mod watch;
 
 pub use error::ScenarioError;

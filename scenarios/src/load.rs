@@ -91,6 +91,11 @@ impl Scenario {
             let place = place_of_plan_error(&error, &file, &text);
             wrong(error.to_string(), place, None)
         })?;
+        for signal in file.signals.values() {
+            if let Some((message, help)) = signal.get_ref().names.misfit(signal.get_ref().ty) {
+                return Err(wrong(message, Some(signal.span()), Some(help)));
+            }
+        }
         for signal in &file.plot.signals {
             if !file.signals.contains_key(signal.get_ref()) {
                 let message = format!("the plot shows a signal `{}` that is not declared", signal.get_ref());

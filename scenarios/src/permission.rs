@@ -6,6 +6,8 @@
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
+use onescan_base::regular::{NotWithin, Within};
+
 use super::error::ScenarioError;
 
 /// The variable with the folders that scenarios may read beside their own, as a list of paths.
@@ -56,14 +58,16 @@ impl Permission {
     /// # Errors
     /// It lies elsewhere. Nothing of what is in it is said.
     pub fn check(&self, folder: &Path, path: &Path) -> Result<(), ScenarioError> {
-        // What is not there is told by whoever reads it; what cannot be resolved cannot be read.
-        let Ok(real) = path.canonicalize() else { return Ok(()) };
-        let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-        let mut allowed = std::iter::once(folder).chain(self.paths.iter().map(PathBuf::as_path));
-        if allowed.any(|allowed| allowed.canonicalize().is_ok_and(|allowed| real.starts_with(allowed))) {
-            return Ok(());
+        match self.within(folder).find(path) {
+            // What is not there is told by whoever reads it; what cannot be resolved cannot be read.
+            Ok(_) | Err(NotWithin::Missing(_)) => Ok(()),
+            Err(NotWithin::Elsewhere(real)) => Err(ScenarioError::Outside { path: path.to_owned(), real }),
         }
-        Err(ScenarioError::Outside { path: path.to_owned(), real })
+    }
+
+    /// What a scenario of `folder` may read, for those who read for it.
+    pub fn within(&self, folder: &Path) -> Within {
+        Within::places(std::iter::once(folder.to_owned()).chain(self.paths.iter().cloned()).collect())
     }
 }
 

@@ -13,7 +13,19 @@ use super::{settings_of, wrong_case};
 use crate::case::value::{literal_of, quoted};
 use crate::case::{Applied, DEFAULT, Setting};
 use crate::error::ScenarioError;
+use crate::file::ClientFile;
 use crate::load::Scenario;
+
+/// The values of a table and of those within, each with its path.
+fn leaves(path: &str, table: &toml::Table, found: &mut Vec<Override>) {
+    for (key, value) in table {
+        let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
+        match value {
+            toml::Value::Table(inner) => leaves(&path, inner, found),
+            value => found.push(Override::new(path, value)),
+        }
+    }
+}
 
 /// What is behind the client's name in a setting's path.
 fn own_path(setting: &Setting) -> &str {
@@ -21,14 +33,24 @@ fn own_path(setting: &Setting) -> &str {
 }
 
 impl Scenario {
-    /// What the case sets in the scene of plant `name`.
+    /// What the scenario sets in the scene of plant `name`, and then what the case does.
     pub(crate) fn overrides(&self, name: &ClientName) -> Vec<Override> {
         let settings = self.applied().into_iter().flat_map(|applied| settings_of(applied, name));
-        settings.map(|setting| Override::new(own_path(setting), &setting.value)).collect()
+        let of_case = settings.map(|setting| Override::new(own_path(setting), &setting.value));
+        self.set_by_scenario(name).into_iter().chain(of_case).collect()
+    }
+
+    /// What the scenario itself sets in the scene of plant `name`.
+    fn set_by_scenario(&self, name: &ClientName) -> Vec<Override> {
+        let mut found = Vec::new();
+        if let Some(ClientFile::Plant { set, .. }) = self.file().clients.get(name).map(toml::Spanned::get_ref) {
+            leaves("", set, &mut found);
+        }
+        found
     }
 
     /// The error of override `index` of plant `name`; the last one's if none is named, since without
-    /// them the scene was right.
+    /// them the scene was right. Nothing if there are none.
     pub(crate) fn wrong_override(
         &self,
         name: &ClientName,
@@ -36,9 +58,15 @@ impl Scenario {
         message: String,
         help: Option<String>,
     ) -> Option<ScenarioError> {
-        let applied = self.applied()?;
-        let settings: Vec<&Setting> = settings_of(applied, name).collect();
-        let setting = index.and_then(|index| settings.get(index)).or(settings.last())?;
+        let own = self.set_by_scenario(name).len();
+        let settings: Vec<&Setting> = self.applied().into_iter().flat_map(|case| settings_of(case, name)).collect();
+        let of_case = match index {
+            Some(index) => index.checked_sub(own).and_then(|index| settings.get(index)),
+            None => settings.last(),
+        };
+        let (Some(setting), Some(applied)) = (of_case, self.applied()) else {
+            return (own > 0).then(|| self.wrong_client(name, message, help));
+        };
         Some(wrong_case(applied, message, setting.place.clone(), help))
     }
 

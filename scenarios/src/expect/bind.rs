@@ -27,6 +27,7 @@ pub struct KnownSignal {
 pub struct Expectation {
     formula: Formula<usize>,
     signals: Vec<(String, usize)>,
+    unit: Option<String>,
 }
 
 impl Expectation {
@@ -36,18 +37,30 @@ impl Expectation {
     /// # Errors
     /// The text is no formula, or names what is not known.
     pub fn parse(text: &str, known: &[KnownSignal], columns: &mut Vec<String>) -> Result<Self, FormulaError> {
-        let mut binder = Binder { known, columns, signals: Vec::new() };
+        let mut binder = Binder { known, columns, signals: Vec::new(), compared: Vec::new() };
         let formula = binder.formula(parse(text)?)?;
-        Ok(Self { formula, signals: binder.signals })
+        let mut units = binder.compared.iter().map(Measure::name);
+        let unit = units.next().filter(|unit| !unit.is_empty() && units.all(|other| other == *unit));
+        Ok(Self { formula, signals: binder.signals, unit })
     }
 
     pub(super) fn formula(&self) -> &Formula<usize> {
         &self.formula
     }
 
+    /// True if memory for it grows with every step of a run; it then says little more than one with a window.
+    pub fn keeps_every_sample(&self) -> bool {
+        self.formula.keeps_every_sample()
+    }
+
     /// The names and columns of its signals, in the order in which they are written.
     pub fn signals(&self) -> &[(String, usize)] {
         &self.signals
+    }
+
+    /// What its margin is measured in, if all that it compares has one unit.
+    pub fn unit(&self) -> Option<&str> {
+        self.unit.as_deref()
     }
 }
 
@@ -95,6 +108,8 @@ struct Binder<'a> {
     known: &'a [KnownSignal],
     columns: &'a mut Vec<String>,
     signals: Vec<(String, usize)>,
+    /// What each comparison so far is made in.
+    compared: Vec<Measure>,
 }
 
 type Measured = (Box<Term<usize>>, Measure);
@@ -108,7 +123,8 @@ impl<'a> Binder<'a> {
             Formula::Constant(value) => Formula::Constant(value),
             Formula::Signal(signal) => Formula::Signal(self.bool_signal(&signal)?),
             Formula::Compare(comparison, left, right) => {
-                let (left, right, _) = self.alike(*left, *right)?;
+                let (left, right, measure) = self.alike(*left, *right)?;
+                self.compared.push(measure);
                 Formula::Compare(comparison, left, right)
             }
             Formula::Not(inner) => Formula::Not(boxed(self, inner)?),

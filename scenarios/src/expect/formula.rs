@@ -30,6 +30,29 @@ pub(super) enum Formula<S> {
     Edge(Edge, Box<Self>),
 }
 
+impl<S> Formula<S> {
+    /// True if every sample of a run may matter until its end: an operator on the future without an end stands within
+    /// another operator on time. Where such operators stand outermost, what they have seen is one number.
+    pub(super) fn keeps_every_sample(&self) -> bool {
+        self.keeps(true)
+    }
+
+    fn keeps(&self, is_outermost: bool) -> bool {
+        let endless = |window: &Window| window.to_ns.is_none() && !is_outermost;
+        match self {
+            Self::Constant(_) | Self::Signal(_) | Self::Compare(..) => false,
+            Self::Not(inner) => inner.keeps(is_outermost),
+            Self::And(one, other) | Self::Or(one, other) | Self::Implies(one, other) | Self::Iff(one, other) => {
+                one.keeps(is_outermost) || other.keeps(is_outermost)
+            }
+            Self::Always(window, inner) | Self::Eventually(window, inner) => endless(window) || inner.keeps(false),
+            Self::Until(window, one, other) => endless(window) || one.keeps(false) || other.keeps(false),
+            Self::Historically(_, inner) | Self::Once(_, inner) | Self::Edge(_, inner) => inner.keeps(false),
+            Self::Since(_, one, other) => one.keeps(false) || other.keeps(false),
+        }
+    }
+}
+
 /// How a formula differs from the sample before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Edge {
