@@ -33,6 +33,7 @@ const STANDS_ON: &[(&str, &[&str])] = &[
 const CLOCKS: &[(&str, &str)] = &[
     ("server/src/pacing.rs", "virtual time beside wall time, if it is asked for"),
     ("server/src/formation.rs", "how long clients are waited for"),
+    ("server/recording/src/rhythm.rs", "when steps reach the disk, never what they are"),
     ("server/src/transport", "how long an answer is waited for"),
     ("clients/src/gateway", "how long a PLC is waited for"),
     ("clients/src/station", "a PLC on a clock of its own"),

@@ -8,7 +8,7 @@ import os
 import pty
 import sys
 
-PROMPT = b"q quit "
+PROMPT = b"q done"
 
 groups = sys.argv[1].split(",")
 process, terminal = pty.fork()

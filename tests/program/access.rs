@@ -36,7 +36,7 @@ pub(crate) fn access(hosts: &[&str], tokens: &[(&str, &str)]) -> (tempfile::Temp
 }
 
 /// What was said, without the ends of lines that the width of a terminal makes.
-fn flat(text: &str) -> String {
+pub(crate) fn flat(text: &str) -> String {
     text.replace('│', " ").split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
@@ -157,6 +157,13 @@ fn a_scenarios_program_sees_no_secrets() {
 fn programs_can_be_forbidden() {
     let shear = copied_shear();
     with_program(shear.path(), "");
+    let told = typed(shear.path(), &["test", "."]);
+    assert!(
+        flat(&told.err).contains("tests of . start a program for client `plant`: sh -c env > seen.txt"),
+        "{told:?}"
+    );
+    assert!(shear.path().join("seen.txt").exists(), "it was started");
+    std::fs::remove_file(shear.path().join("seen.txt")).unwrap();
     for words in [["run", ".", "--no-commands"], ["test", ".", "--no-commands"]] {
         let said = typed(shear.path(), &words);
         assert_ne!(said.code, Some(0), "{said:?}");

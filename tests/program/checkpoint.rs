@@ -10,7 +10,7 @@ use onescan_server::lockstep::{Lockstep, Reached};
 use onescan_tests::at_ms;
 use onescan_tests::run::run;
 
-use crate::typed::{digests, run_shear, scenario};
+use crate::typed::{digests, run_shear, scenario, typed};
 
 fn shear() -> Lockstep {
     let scenario = Scenario::load(&scenario("shear")).unwrap();
@@ -67,4 +67,19 @@ fn a_cut_checkpoint_is_wrong_input() {
     let (_, said) = run_shear(&["--resume", file.to_str().unwrap()]);
     assert_eq!(said.code, Some(2));
     assert!(said.err.contains("damaged: its check sum does not fit its bytes"), "{said:?}");
+}
+
+/// A checkpoint that cannot be written takes nothing from the run: it is reported, and then why there is none.
+#[test]
+fn a_run_that_cannot_be_saved_is_reported_all_the_same() {
+    let folder = tempfile::tempdir().unwrap();
+    let (file, record) = (folder.path().join("no/such/folder"), folder.path().join("out"));
+    let words =
+        ["run", ".", "--format", "json", "--until", "1s", "--save-at", "500ms", "--save", file.to_str().unwrap()];
+    let said = typed(&scenario("shear"), &[&words[..], &["--record", record.to_str().unwrap()]].concat());
+    assert_eq!(said.code, Some(2), "a folder that is not there: {said:?}");
+    let report: serde_json::Value = serde_json::from_str(&said.out).unwrap_or_else(|_| panic!("{said:?}"));
+    let (undisturbed, _) = run_shear(&["--until", "1s"]);
+    assert_eq!(digests(&[report]), digests(&undisturbed));
+    assert!(record.join("run-1/run.json").is_file() && said.err.contains("no/such/folder"), "{said:?}");
 }

@@ -58,8 +58,29 @@ fn a_session_is_paused_stepped_reset_and_released_without_a_trace() {
     assert_eq!(ask("status")["steps"], 0);
     let people = typed(&here, &["control", &address]);
     assert_eq!(people.out, "held in state initial-write after step 0, t_v = 0.000 s\n");
+    let values = typed(&here, &["control", &address, "get", "Position_1", "Aligned"]);
+    assert_eq!(values.out, "Position_1 = -0.05 m\nAligned    = FALSE\n");
+    let unknown = typed(&here, &["control", &address, "get", "Positon_1"]);
+    assert!(
+        unknown.code == Some(2) && unknown.err.contains("did you mean") && unknown.err.contains("`Position_1`?"),
+        "{unknown:?}"
+    );
+    let words = ["control", &address, "watch", "Strokes", "Aligned", "--format", "json", "--interval", "1ms"];
+    let mut watcher = begun(&here, &words);
+    let mut watched = BufReader::new(watcher.stdout.take().unwrap());
+    let mut first = String::new();
+    watched.read_line(&mut first).unwrap();
     ask("resume");
     let output = server.wait_with_output().unwrap();
+    let rest: Vec<String> = watched.lines().map(|line| line.unwrap()).collect();
+    let ended = watcher.wait_with_output().unwrap();
+    assert!(ended.status.success(), "it ends with the session: {}", String::from_utf8_lossy(&ended.stderr));
+    let strokes = |line: &str| -> String {
+        let status: serde_json::Value = serde_json::from_str(line).unwrap();
+        status["values"]["Strokes"].as_str().unwrap().to_owned()
+    };
+    assert_eq!(strokes(&first), "0");
+    assert!(rest.iter().any(|line| strokes(line) == "1"), "a change is told: {rest:?}");
     assert!(plant.wait().unwrap().success());
     let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     let (undisturbed, _) = run_shear(&["--until", "2s"]);

@@ -22,6 +22,12 @@ macro_rules! error_snapshot {
 }
 
 error_snapshot!(misspelt_key, "scenario.toml", "until = ", "untill = ");
+error_snapshot!(
+    misspelt_key_of_what_is_set_in_a_scene,
+    "scenario.toml",
+    "scene = \"plant.toml\"",
+    "scene = \"plant.toml\"\nset.actuator_1.speed_ms = 1.0"
+);
 error_snapshot!(misspelt_kind, "scenario.toml", "kind = \"soft-plc\"", "kind = \"soft-plv\"");
 error_snapshot!(
     misspelt_writer,
@@ -44,6 +50,26 @@ error_snapshot!(missing_source, "scenario.toml", "plc/alignment.st", "plc/aligne
 error_snapshot!(error_in_the_plc_source, "plc/alignment.st", "a.Q AND b.Q", "a.Q AND bb.Q");
 error_snapshot!(misspelt_joint_in_the_scene, "plant.toml", "joint = \"guide_1\"", "joint = \"gudie_1\"");
 error_snapshot!(misspelt_signal_in_the_scene, "plant.toml", "signal = \"Sensor_1\"", "signal = \"Senosr_1\"");
+
+/// What stops a run is what a terminal shows: it stands behind every warning.
+#[test]
+fn run_puts_the_error_last_not_before_72_warnings() {
+    let folder = copied_shear();
+    edit(folder.path(), "plc/alignment.st", "a.Q AND b.Q", "a.Q AND bb.Q");
+    let path = folder.path().join("plc/alignment.st");
+    let own = "    given := 1;\n".repeat(72);
+    let block = format!("\nFUNCTION_BLOCK Idle\nVAR_INPUT given : INT; END_VAR\n{own}END_FUNCTION_BLOCK\n");
+    let text = std::fs::read_to_string(&path).unwrap();
+    // The block stands before what is wrong and behind it.
+    std::fs::write(&path, format!("{}{text}{block}", block.replace("Idle", "First"))).unwrap();
+    let said = typed(folder.path(), &["run", ".", "--until", "50ms"]);
+    assert_eq!((said.code, said.out.as_str()), (Some(2), ""), "{said:?}");
+    let of = |code: &str| said.err.match_indices(code).map(|(at, _)| at).collect::<Vec<_>>();
+    let (warnings, errors) = (of("Warning: D0402"), of("Error: N0101"));
+    assert_eq!((warnings.len(), errors.len()), (144, 1), "{said:?}");
+    assert!(warnings.last() < errors.first(), "{}", said.err);
+    assert!(said.err.trim_end().ends_with("1 error, 144 warnings"), "{}", said.err);
+}
 
 #[test]
 fn a_file_cut_in_half_is_an_error_and_never_a_panic() {

@@ -161,7 +161,7 @@ fn a_margin_of_nothing_has_no_sign() {
     let folder = shear_that_expects("no more than itself", "not (Position_1 > Position_1)");
     let said = typed(folder.path(), &["run", ".", "--until", "100ms"]);
     let line = said.out.lines().find(|line| line.contains("no more than itself")).expect("a line");
-    assert!(line.ends_with("met (margin 0.000e0)"), "{line}");
+    assert!(line.ends_with("met (margin 0 m)"), "{line}");
 }
 
 #[test]
@@ -184,4 +184,19 @@ fn a_wrong_formula_is_told_with_its_place() {
     insta::assert_snapshot!(wrong("always Positon_1 > -100 mm"));
     insta::assert_snapshot!(wrong("always (Position_1 > -100 bar)"));
     insta::assert_snapshot!(wrong("always (Aligned implies within Aligned)"));
+}
+
+/// What would keep every step of a long run is refused before it runs, and says what to write.
+#[test]
+fn an_expectation_that_keeps_every_step_of_a_long_run_is_refused() {
+    let shear = copied_shear();
+    let add = "[freewheel]";
+    let formula = |formula: &str| format!("[[expect]]\nname = \"new\"\nformula = \"{formula}\"\n\n{add}");
+    edit(shear.path(), "scenario.toml", add, &formula("always (Sensor_1 implies eventually Sensor_2)"));
+    assert_eq!(typed(shear.path(), &["run", ".", "--until", "100ms"]).code, Some(0));
+    let said = typed(shear.path(), &["run", ".", "--until", "6h"]);
+    let text = crate::access::flat(&said.err);
+    assert_eq!(said.code, Some(2), "{said:?}");
+    assert!(text.contains("expectation `new` keeps every step until the end of the run, which has 2160000"), "{text}");
+    assert!(text.contains("`always (a implies within 10s b)`"), "{text}");
 }

@@ -81,6 +81,21 @@ fn the_drawn_chart_gives_the_same_digest() {
     assert_eq!(std::fs::read(&drawn).unwrap(), before);
 }
 
+/// `[Sivtoft]` 4.2.5: one scan in 250 ms, and 50 ms at least. The machine in slow motion carries as many packages in as
+/// many scans.
+#[test]
+fn at_the_rates_of_the_paper_the_machine_is_the_same() {
+    let folder = tempfile::tempdir().unwrap();
+    for (file, until) in [("scan-50ms.toml", "200s"), ("scan-250ms.toml", "1000s")] {
+        let record = folder.path().join(file);
+        let words = ["--until", until, "--record-also", "csv", "--record", record.to_str().unwrap()];
+        let (reports, said) = run(&scenario("filling-machine"), file, &words);
+        assert_eq!((reports.len(), said.code), (1, Some(0)), "{said:?}");
+        assert_eq!(reports[0]["steps"], 4_000, "{said:?}");
+        assert_eq!(last(&record, &COUNTS), [28, 13, 0, 0, 0]);
+    }
+}
+
 /// What the emergency drop is for: without it a package meets the one that waits on the conveyor.
 #[test]
 fn without_the_emergency_drop_packages_crash() {

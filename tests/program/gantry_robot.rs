@@ -97,6 +97,47 @@ fn free_wheeling_runs_differ() {
     assert!(distinct.len() > 1, "three equal runs without lockstep");
 }
 
+/// Both axes as a group (PLCopen, part 4): the same path, with its corners rounded off by 2 mm.
+#[test]
+fn a_group_follows_the_path_and_rounds_its_corners_off() {
+    let folder = tempfile::tempdir().unwrap();
+    let record = folder.path().to_str().unwrap();
+    let words = ["run", "group.toml", "--format", "json", "--record-also", "csv", "--record", record];
+    let said = typed(&scenario("gantry-robot"), &words);
+    assert_eq!(said.code, Some(0), "{said:?}");
+    let report: serde_json::Value = serde_json::from_str(said.out.trim()).expect("a report");
+    insta::assert_snapshot!("gantry_robot_group_digest", digests(&[report])[0]);
+    let rows = recorded(folder.path(), 1, &["X_Set", "Z_Set", "X_Position", "Z_Position", "Cycles", "Point"]);
+    // What is set leaves the lines at corners only, and passes them by no more than 2 mm.
+    let set: Vec<[f64; 2]> = rows.iter().filter(|row| row[5] > 0.0).map(|row| [row[0], row[1]]).collect();
+    for corner in &PATH[1..] {
+        let nearest = set.iter().map(|at| (at[0] - corner[0]).hypot(at[1] - corner[1])).fold(f64::MAX, f64::min);
+        assert!(nearest < 0.0065, "{nearest} m from {corner:?}, where a cycle is 10 mm of the path");
+    }
+    let furthest = set.iter().map(|at| off_the_path(*at)).fold(0.0, f64::max);
+    assert!((0.0005..0.002).contains(&furthest), "set values are {furthest} m off the path");
+    let furthest = rows.iter().map(|row| off_the_path([row[2], row[3]])).fold(0.0, f64::max);
+    assert!(furthest < 0.007, "the tool is {furthest} m off the path, as without a group");
+    assert!(rows.last().is_some_and(|row| row[4] >= 1.0));
+}
+
+#[test]
+fn a_group_is_the_same_over_tcp_and_from_a_checkpoint() {
+    let folder = tempfile::tempdir().unwrap();
+    let saved = folder.path().join("half.checkpoint");
+    let saved = saved.to_str().unwrap();
+    let digest = |words: &[&str]| {
+        let all = [&["run", "group.toml", "--format", "json", "--until", "5s"], words].concat();
+        let said = typed(&scenario("gantry-robot"), &all);
+        let report: serde_json::Value = serde_json::from_str(said.out.trim()).unwrap_or_else(|_| panic!("{said:?}"));
+        digests(&[report])
+    };
+    // At 2.34 s it is in a curve.
+    let whole = digest(&["--save-at", "2340ms", "--save", saved]);
+    assert_eq!(digest(&["--transport", "tcp"]), whole);
+    assert_eq!(digest(&["--resume", saved]), whole);
+}
+
 /// Figs. 14 and 15: the path of the tool in the plane.
 #[test]
 fn its_path_is_drawn_in_the_plane() {

@@ -28,6 +28,40 @@ fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     found
 }
 
+/// `MatIEC` lets a project declare a function of the standard's own name. The shim for it uses that function, so the two do
+/// not go together: what would be written does not check.
+#[test]
+fn nothing_is_written_if_what_is_made_does_not_check() {
+    const PROJECT: &str = "{dialect 'matiec'}
+FUNCTION TIME_TO_LINT : LINT
+VAR_INPUT whole : TIME; part : INT; END_VAR
+    TIME_TO_LINT := part;
+END_FUNCTION
+
+PROGRAM P
+VAR t : TON; n : LINT; END_VAR
+    t(IN := TRUE, PT := T#1s);
+    n := TIME_TO_LINT(t.ET, 3);
+END_PROGRAM
+";
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("p.st"), PROJECT).unwrap();
+    assert_eq!(typed(folder.path(), &["check", "p.st"]).code, Some(0), "the project is right without the shim");
+    let before = files(folder.path());
+    for diff in [&[][..], &["--diff"]] {
+        let words = [&["p.st", "--target", "openplc", "-o", "out"], diff].concat();
+        let said = instrumented(folder.path(), &words);
+        assert_eq!(said.code, Some(2), "{words:?}: {said:?}");
+        assert!(said.out.contains("TIME_TO_LINT"), "the finding names it: {said:?}");
+        assert!(said.err.contains("would not check") && said.err.contains("nothing was written"), "{said:?}");
+        assert_eq!(files(folder.path()), before, "{words:?}");
+    }
+    // With another name it goes.
+    std::fs::write(folder.path().join("p.st"), PROJECT.replace("TIME_TO_LINT", "Whole_part")).unwrap();
+    assert_eq!(instrumented(folder.path(), &["p.st", "--target", "openplc", "-o", "out"]).code, Some(0));
+    assert!(files(folder.path()).len() > before.len());
+}
+
 #[test]
 fn a_scenario_is_instrumented_and_comes_back() {
     let folder = copied_shear();

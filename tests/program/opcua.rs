@@ -4,6 +4,7 @@ use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 
+use crate::access::access;
 use crate::typed::{Said, copied_shear, digests, edit, onescan, run_shear, scenario, typed};
 use crate::venv::python;
 
@@ -256,6 +257,27 @@ fn a_certificate_for_another_application_is_refused() {
         let url = plc.gateway("opc.tcp://").rsplit('=').next().expect("a URL").to_owned();
         assert_eq!(ended(begun("stranger.py", &[&url, "plc", &own, uri])).trim(), told, "{more:?} {uri}");
     }
+}
+
+/// Tokens over OPC UA: an operator's does everything, a viewer's reads, a client's and strangers' come to nothing.
+#[test]
+fn tokens_are_good_for_what_they_say() {
+    let (place, made) = access(&[], &[("anna", "operator"), ("wall", "viewer"), ("cell", "client:plc")]);
+    let folder = place.path().to_str().unwrap();
+    let words = ["--opcua-client", "plc", "--access", folder, "--opcua-plain-password"];
+    let mut server = Server::start(&scenario("shear"), &words);
+    let heard = |name: &str, token: &str| {
+        let said = ended(begun("holder.py", &[&server.url, name, token]));
+        said.lines().map(str::to_owned).collect::<Vec<_>>().join("; ")
+    };
+    let [operator, viewer, client] = [&made[0], &made[1], &made[2]];
+    assert_eq!(heard("wall", viewer), "read 10000000; Pause BadUserAccessDenied; Start BadUserAccessDenied");
+    for (name, token) in [("cell", client), ("anna", viewer), ("anna", &operator.replace(&operator[60..], "00"))] {
+        let said = heard(name, token);
+        assert!(said.starts_with("sent away Bad"), "{name}: {said}");
+    }
+    assert_eq!(heard("anna", operator), "read 10000000; Pause Good; Start Good");
+    server.stop();
 }
 
 #[test]

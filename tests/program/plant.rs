@@ -3,7 +3,7 @@
 use onescan_clients::plant::component::kind::Kind;
 use onescan_clients::plant::component::kinds;
 
-use crate::typed::{scenario, typed};
+use crate::typed::{copied_shear, edit, scenario, typed};
 
 const CELL: &str = r#"version = 1
 [[body]]
@@ -86,6 +86,41 @@ fn a_scenario_is_described_by_its_scenes() {
     assert_eq!((by_folder.code, by_folder.out), (Some(0), by_file.out));
     let said = typed(&shear, &["describe", "plnat.toml"]);
     assert!(said.code == Some(2) && said.err.contains("the folder of its scenario"), "{said:?}");
+}
+
+#[test]
+fn a_scene_is_drawn_from_all_sides() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("machine.svg");
+    let mut pictures = Vec::new();
+    for view in ["corner", "front", "back", "left", "right", "top"] {
+        let said = typed(&scenario("shear"), &["describe", ".", "--svg", &file.to_string_lossy(), "--view", view]);
+        assert_eq!(said.code, Some(0), "{said:?}");
+        let svg = std::fs::read_to_string(&file).expect("a picture");
+        assert!(svg.contains("<title>blade</title>") && svg.contains(&format!("from side `{view}`")), "{svg}");
+        pictures.push(svg);
+    }
+    pictures.sort();
+    pictures.dedup();
+    assert_eq!(pictures.len(), 6, "each side shows something else");
+    let said = typed(&scenario("shear"), &["describe", ".", "--view", "top"]);
+    assert!(said.code == Some(2) && said.err.contains("--svg"), "a side without a picture: {said:?}");
+}
+
+#[test]
+fn values_with_names_stand_at_the_axis() {
+    let folder = copied_shear();
+    let plot = folder.path().join("plot.svg");
+    let said = typed(
+        &scenario("filling-machine"),
+        &["run", ".", "--until", "5s", "--plot", &plot.to_string_lossy(), "--signal", "MachineStep"],
+    );
+    assert_eq!(said.code, Some(0), "{said:?}");
+    assert!(std::fs::read_to_string(&plot).expect("a plot").contains(">1 Motor_Setup</text>"));
+    let line = "Actuator_1_Up = { type = \"BOOL\", writer = \"plc\"";
+    edit(folder.path(), "scenario.toml", line, &format!("{line}, names = {{ 2 = \"Two\" }}"));
+    let said = typed(folder.path(), &["run", "."]);
+    assert!(said.code == Some(2) && said.err.contains("2 is no value of BOOL"), "{said:?}");
 }
 
 #[test]

@@ -37,7 +37,7 @@ fn the_number_of_jobs_changes_no_bit() {
     let (one, _) = tested(folder.path(), &["--check", "--jobs", "1"]);
     let (two, _) = tested(folder.path(), &["--check", "--jobs", "2"]);
     assert_eq!(one, two);
-    assert_eq!(digests(&one).len(), 6);
+    assert_eq!(digests(&one).len(), 11);
 }
 
 #[test]
@@ -120,8 +120,14 @@ fn cases_are_chosen_by_name_and_tag() {
         named.collect::<Vec<_>>()
     };
     assert_eq!(names(&["--filter", "uneven"]), ["uneven,speed_m_s=0.15", "uneven,speed_m_s=0.2"]);
-    assert_eq!(names(&["--tag", "fault", "--tag", "boundary"]), ["on-the-limit", "on-the-limit-2", "sensor-lost"]);
-    assert_eq!(names(&["--skip-tag", "plant", "--skip-tag", "fault"]), ["default", "on-the-limit", "on-the-limit-2"]);
+    assert_eq!(
+        names(&["--tag", "fault", "--tag", "boundary"]),
+        ["on-the-limit", "on-the-limit-2", "sensor-lost", "lost-edges", "flipped-bits"]
+    );
+    assert_eq!(
+        names(&["--skip-tag", "plant", "--skip-tag", "fault"]),
+        ["default", "on-the-limit", "on-the-limit-2", "slow-sampling", "sensor-jitter,seed=1", "sensor-jitter,seed=2"]
+    );
     let said = typed(folder.path(), &["test", ".", "--tag", "nightly"]);
     assert_eq!(said.code, Some(2));
     insta::assert_snapshot!(said.err);

@@ -87,6 +87,8 @@ fn the_page_is_whole_in_one_file() {
     let page = std::fs::read_to_string(folder.path().join("page.html")).expect("a page");
     assert!(page.contains("<svg") && page.contains("coverage of the PLC's code") && page.contains("on-the-limit"));
     assert!(page.contains("a &lt; b &amp; &quot;c&quot;"), "text stays text");
+    assert!(page.contains(">reviewed</text>") && page.contains("first difference: "), "new over reviewed");
+    assert!(page.contains("prefers-color-scheme: dark"), "it has a dark form");
     assert!(!page.contains("<script") && !page.contains("<link") && !page.contains(" src="), "it loads nothing");
 }
 
@@ -100,7 +102,7 @@ fn coverage_of_all_cases_is_that_of_each_together() {
     };
     let all = lcov(&[]);
     assert!(all.contains("SF:plc/shear.st"), "{all}");
-    assert!(all.lines().any(|line| line.starts_with("DA:") && line.ends_with(",6")), "six cases: {all}");
+    assert!(all.lines().any(|line| line.starts_with("DA:") && line.ends_with(",11")), "eleven cases: {all}");
     assert_eq!(lcov(&["--jobs", "1"]), all);
 }
 
@@ -117,10 +119,9 @@ fn a_run_has_a_page_too() {
     assert_eq!(said.code, Some(1), "{said:?}");
     let page = std::fs::read_to_string(folder.path().join("run.html")).expect("a page");
     assert!(page.contains("expectation `short` violated") && page.contains("Sensor_1 held at 0"), "{page}");
-    assert!(
-        page.contains("<svg") && page.contains("`short` violated</text>"),
-        "the violation is marked in the picture"
-    );
+    assert!(page.contains("<svg") && page.contains("`short` violated at "), "the violation is marked in the picture");
+    assert!(page.contains("completed, an expectation is violated"), "the heading says it in words");
+    assert!(page.contains("the machine") && page.contains("<title>blade</title>"), "the machine is drawn");
     let plain = typed(folder.path(), &["run", ".", "--case", "sensor-lost", "--format", "json"]);
     let report: serde_json::Value = serde_json::from_str(&plain.out).expect("JSON");
     let digest = report["digest"].as_str().expect("a digest");

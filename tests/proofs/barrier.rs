@@ -16,7 +16,7 @@ use crate::graph::explore;
 use crate::stamped::{DELAYS, STEP, formed, relative, report, stamp_bytes, stamps, view};
 
 /// The session with clients that do what they may, in any order.
-struct Barrier {
+pub(crate) struct Barrier {
     clients: usize,
     coupling: Coupling<ClientName>,
     /// Whether clients may also fail.
@@ -24,7 +24,7 @@ struct Barrier {
 }
 
 #[derive(Clone, Debug)]
-struct BarrierState {
+pub(crate) struct BarrierState {
     session: Session,
     /// When each client's next turn is, as the client itself reckons.
     expected: Vec<VirtualTime>,
@@ -35,7 +35,33 @@ struct BarrierState {
     broken: Option<&'static str>,
 }
 
+/// A state as other descriptions of the session know it: the server's, and for each client its state,
+/// whether it is ready, the steps that it still sleeps through, and those that it has asked for next.
+pub(crate) type Shown = (String, Vec<[String; 4]>);
+
 impl BarrierState {
+    pub(crate) fn shown(&self) -> Shown {
+        let (cycle, t_v) = (self.session.cycle(), self.session.t_v());
+        let word = |state: &dyn std::fmt::Display| state.to_string().replace('-', "_");
+        let client = |id: ClientId| {
+            let wake = relative(cycle.wake(id).as_nanos(), t_v);
+            let (due, ready) = (cycle.is_due(id), !cycle.is_awaited(id));
+            let asleep = match cycle.server() {
+                _ if due => 0,
+                // the step in which it would wake has not begun
+                ServerState::PreRead => wake - 1,
+                _ => wake,
+            };
+            let asked = match cycle.client(id) {
+                ClientState::Run if ready => relative(self.expected[id.index()].as_nanos(), t_v) - 1,
+                ClientState::Write if due => wake - 1,
+                _ => 0,
+            };
+            [word(&cycle.client(id)), ready.to_string(), asleep.to_string(), asked.to_string()]
+        };
+        (word(&cycle.server()), self.session.clients().map(client).collect())
+    }
+
     fn key(&self) -> impl Hash + Eq + use<> {
         let t_v = self.session.t_v();
         let expected: Vec<i64> = self.expected.iter().map(|t| relative(t.as_nanos(), t_v)).collect();
@@ -62,7 +88,7 @@ impl PartialEq for BarrierState {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-enum Act {
+pub(crate) enum Act {
     /// The server goes on.
     Advance,
     /// A client does what its state asks for; after a turn it sleeps for so many steps.
@@ -72,6 +98,11 @@ enum Act {
 }
 
 impl Barrier {
+    /// Clients of which none fails.
+    pub(crate) fn undisturbed(clients: usize, coupling: Coupling<ClientName>) -> Self {
+        Self { clients, coupling, failures: false }
+    }
+
     fn act(&self, state: &mut BarrierState, act: Act) {
         match act {
             Act::Advance => drop(state.session.advance()),

@@ -8,6 +8,9 @@
 //! A third, `shim`, holds what runs on a PLC that is no client itself: the scheduler POU and the execution
 //! controllers that `onescan instrument` emits, against a gateway whose messages come as they like.
 //!
+//! A fourth, `nusmv`, is the text that `onescan model --nusmv` writes: it is read back, explored, and reaches the
+//! same states as `barrier`.
+//!
 //! Time grows for ever, behaviour does not: two states that differ only in `t_v` behave alike, and so
 //! do two that differ only in the values clients wrote. The barrier model therefore compares and
 //! hashes states with all times relative to `t_v` and with each value only as right or wrong, which
@@ -17,5 +20,6 @@ mod barrier;
 mod graph;
 mod lobby;
 mod network;
+mod nusmv;
 mod shim;
 mod stamped;

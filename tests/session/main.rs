@@ -9,6 +9,7 @@ mod joining;
 mod leaving;
 mod lobby;
 mod peer;
+mod recorded;
 mod security;
 mod shim;
 mod targets;

@@ -5,7 +5,7 @@ use std::net::{SocketAddr, TcpStream};
 use std::thread::JoinHandle;
 
 use onescan::access::certificate;
-use onescan::access::folder::{AUTHORITY, Folder};
+use onescan::access::folder::{AUTHORITY, CLIENTS, Folder};
 use onescan_server::access::{Day, Pass, Register, Role, Token};
 use onescan_server::formation::Formation;
 use onescan_server::lockstep::{Lockstep, Outcome};
@@ -197,4 +197,89 @@ fn a_token_is_good_for_its_own_client_only() {
     assert!(said.contains("token `alpha` is good for `client:alpha`, not for client `beta`"), "{said}");
     let said = send(lobby.address(), &[frame(&with(&tokens.viewer)), frame(beta)].concat());
     assert!(said.contains("token `wall` is good for `viewer`, not to be a client"), "{said}");
+}
+
+/// An authority for clients, and the certificates that it gives.
+struct Authority {
+    issuer: rcgen::Issuer<'static, rcgen::KeyPair>,
+    pem: String,
+}
+
+impl Authority {
+    fn new() -> Self {
+        let mut params = rcgen::CertificateParams::default();
+        params.distinguished_name.push(rcgen::DnType::CommonName, "the plant's authority");
+        params.is_ca = rcgen::IsCa::Ca(rcgen::BasicConstraints::Unconstrained);
+        let key = rcgen::KeyPair::generate().expect("random numbers");
+        let pem = params.self_signed(&key).expect("a certificate").pem();
+        Self { issuer: rcgen::Issuer::new(params, key), pem }
+    }
+
+    /// Certificate and key of `name` in `unit`, good up to this year.
+    fn gives(&self, name: &str, unit: Option<&str>, last_year: i32) -> (String, String) {
+        let mut params = rcgen::CertificateParams::default();
+        params.distinguished_name = rcgen::DistinguishedName::new();
+        params.distinguished_name.push(rcgen::DnType::OrganizationName, "the plant");
+        if let Some(unit) = unit {
+            params.distinguished_name.push(rcgen::DnType::OrganizationalUnitName, unit);
+        }
+        params.distinguished_name.push(rcgen::DnType::CommonName, name);
+        params.extended_key_usages = vec![rcgen::ExtendedKeyUsagePurpose::ClientAuth];
+        (params.not_before, params.not_after) =
+            (rcgen::date_time_ymd(2020, 1, 1), rcgen::date_time_ymd(last_year, 1, 1));
+        let key = rcgen::KeyPair::generate().expect("random numbers");
+        (params.signed_by(&key, &self.issuer).expect("a certificate").pem(), key.serialize_pem())
+    }
+}
+
+/// A certificate is the other way in: the client's name is in it, and so is a role.
+#[test]
+fn certificates_let_in_as_tokens_do() {
+    let (place, _) = certified();
+    let folder = Folder(place.path());
+    let (ours, theirs) = (Authority::new(), Authority::new());
+    std::fs::write(folder.file(CLIENTS), &ours.pem).expect("a file");
+    let server = std::fs::read(folder.file(AUTHORITY)).expect("written");
+    let house = House { register: Some(tokens().register), identity: folder.identity().expect("it can be used") };
+    let (plan, mailbox) = (ring_plan(&Coupling::Parallel), Mailbox::new());
+    let lobby = Lobby::open_house(loopback(), &plan, mailbox.clone(), house).expect("a free port");
+    let with = |(certificate, key): (String, String)| Entrance {
+        address: lobby.address(),
+        token: None,
+        trust: Some(Trust::showing(&server, certificate.as_bytes(), key.as_bytes()).expect("they go together")),
+    };
+    for (certificate, why) in [
+        (theirs.gives("anna", Some("operator"), 2090), "the other side does not trust this certificate"),
+        (ours.gives("anna", Some("operator"), 2021), "this certificate has expired"),
+        (ours.gives("anna", Some("king"), 2090), "the organisational unit (OU) of its subject must be"),
+        (ours.gives("a b", None, 2090), "the common name (CN) of its subject is no client's name"),
+        (ours.gives("wall", Some("viewer"), 2090), "certificate `wall` lets its holder look, and change nothing"),
+        (ours.gives("alpha", None, 2090), "certificate `alpha` is good for `client:alpha`, not to be an operator"),
+    ] {
+        let said = asked(with(certificate));
+        assert!(said.contains(why), "{why:?} is not in {said:?}");
+    }
+    let mut clients = boxed(ring());
+    let mut second = clients.remove(1);
+    let other = take_part(second.as_mut(), with(ours.gives("alpha", None, 2090))).expect_err("another's").to_string();
+    assert!(other.contains("certificate `alpha` is good for `client:alpha`, not for client `beta`"), "{other}");
+    assert!(mailbox.is_empty(), "nothing of it has reached the session");
+
+    clients.insert(1, second);
+    let threads: Vec<_> = clients
+        .into_iter()
+        .zip(RING)
+        .map(|(mut client, (name, _))| {
+            let entrance = with(ours.gives(name, None, 2090));
+            std::thread::spawn(move || take_part(client.as_mut(), entrance))
+        })
+        .collect();
+    let mut formation = Formation::new(plan);
+    formation.set_mailbox(mailbox.clone());
+    formation.admit_from(&lobby, PATIENCE, PATIENCE, &mut |_| true).expect("all come");
+    let outcome = run(formation.start().expect("all have joined"), at_ms(200));
+    for thread in threads {
+        assert_eq!(thread.join().expect("no panic").expect("it has taken part"), outcome.end);
+    }
+    assert_eq!(outcome, undisturbed());
 }

@@ -1,0 +1,172 @@
+//! `docs/papers.md`, row by row: each command does what it says, each test is there, no figure is missing.
+
+use std::path::{Path, PathBuf};
+
+use crate::typed::{copied, scenario, typed};
+
+/// What must have a row of its own.
+const FIGURES: [(&str, &[&str]); 2] = [
+    (
+        "## [SDSP]",
+        &[
+            "Fig. 1",
+            "Fig. 2",
+            "Fig. 3",
+            "Fig. 4",
+            "Fig. 5",
+            "Fig. 6",
+            "Fig. 7",
+            "Fig. 8",
+            "Fig. 9",
+            "Fig. 10",
+            "Fig. 11",
+            "Fig. 12",
+            "Fig. 13",
+            "Fig. 14",
+            "Fig. 15",
+            "Appendix",
+            "Sec. III-A",
+            "Sec. III-B",
+            "Sec. III-C",
+            "sec. III-D",
+            "sec. III-E",
+            "sec. V-A",
+            "sec. V-B",
+            "Sec. V-C",
+            "Sec. VI-A",
+            "Sec. VII",
+            "Sec. VIII",
+        ],
+    ),
+    (
+        "## [Sivtoft]",
+        &[
+            "Fig. 2.1",
+            "Fig. 2.2",
+            "Fig. 2.3",
+            "Fig. 4.1",
+            "Fig. 4.2",
+            "Fig. 5.1",
+            "Fig. 5.2",
+            "Fig. 5.3",
+            "Fig. 5.4",
+            "Fig. 5.5",
+            "Sec. 1.2",
+            "Ch. 3",
+            "Sec. 4.2.3",
+            "Sec. 4.2.5",
+            "Sec. 5.1",
+            "Sec. 5.2",
+            "Sec. 5.3",
+            "Sec. 6.2",
+            "Sec. 6.3",
+        ],
+    ),
+];
+
+/// A row of one of the page's tables.
+struct Row {
+    paper: String,
+    here: String,
+    command: String,
+    test: String,
+}
+
+fn repository() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("a workspace").to_owned()
+}
+
+fn page() -> String {
+    std::fs::read_to_string(repository().join("docs/papers.md")).expect("the page")
+}
+
+fn rows(text: &str) -> Vec<Row> {
+    let cells = |line: &str| -> Option<[String; 4]> {
+        let inner = line.strip_prefix("| ")?.strip_suffix('|')?;
+        let cells: Vec<String> = inner.split('|').map(|cell| cell.trim().trim_matches('`').to_owned()).collect();
+        Some(cells.try_into().unwrap_or_else(|_| panic!("four cells: {line}")))
+    };
+    let all = text.lines().filter(|line| !line.starts_with("|---")).filter_map(cells);
+    let rows = all.filter(|[paper, ..]| paper != "paper");
+    rows.map(|[paper, here, command, test]| Row { paper, here, command, test }).collect()
+}
+
+#[test]
+fn no_figure_and_no_requirement_is_missing() {
+    let page = page();
+    for (heading, wanted) in FIGURES {
+        let from = page.find(heading).unwrap_or_else(|| panic!("{heading}"));
+        let part = &page[from..];
+        let part = &part[..part[1..].find("\n## ").map_or(part.len(), |end| end + 1)];
+        let papers: Vec<String> = rows(part).into_iter().map(|row| row.paper).collect();
+        let names = |paper: &String, figure: &str| {
+            paper.match_indices(figure).any(|(at, _)| {
+                let next = paper[at + figure.len()..].chars().next();
+                !next.is_some_and(|next| next.is_ascii_digit() || next == '-')
+            })
+        };
+        for figure in wanted {
+            assert!(papers.iter().any(|paper| names(paper, figure)), "{heading} has no row for {figure}");
+        }
+    }
+}
+
+#[test]
+fn each_row_has_a_command_and_a_test_or_says_why_not() {
+    let rows = rows(&page());
+    assert!(rows.len() > 60, "{}", rows.len());
+    for Row { paper, here, command, test } in rows {
+        if here.starts_with("Not here") {
+            assert!(command.is_empty() && test.is_empty() && here.len() > 20, "{paper}: {here}");
+            continue;
+        }
+        assert!(command.starts_with("onescan "), "{paper}: {command}");
+        let (file, name) = test.split_once(": ").unwrap_or_else(|| panic!("{paper}: FILE: NAME, not {test}"));
+        let source = std::fs::read_to_string(repository().join(file)).unwrap_or_else(|error| panic!("{file}: {error}"));
+        assert!(source.contains("#[test]\n") && source.contains(&format!("fn {name}()")), "{paper}: {test}");
+    }
+}
+
+/// Long runs end early: what is looked at here is that the row can be typed.
+fn shortened(words: &mut Vec<&str>) {
+    let runs = ["run", "compare"].contains(&words[1]) && !words.contains(&"--help");
+    if !runs {
+        return;
+    }
+    match words.iter().position(|word| *word == "--until") {
+        Some(at) => words[at + 1] = "50ms",
+        None => words.extend(["--until", "50ms"]),
+    }
+}
+
+#[test]
+fn each_command_can_be_typed() {
+    let folder = tempfile::tempdir().unwrap();
+    let scenarios = folder.path().join("scenarios");
+    std::fs::create_dir(&scenarios).unwrap();
+    for name in ["shear", "filling-machine", "gantry-robot", "robot-cell"] {
+        std::fs::rename(copied(name).keep(), scenarios.join(name)).unwrap();
+    }
+    let mut commands: Vec<String> =
+        rows(&page()).into_iter().map(|row| row.command).filter(|c| !c.is_empty()).collect();
+    commands.sort();
+    commands.dedup();
+    for command in commands {
+        let mut words: Vec<&str> = command.split_whitespace().collect();
+        shortened(&mut words);
+        let said = typed(folder.path(), &words[1..]);
+        // a run that is cut short, or that free-wheels, need not meet what is expected
+        let fine = if words[1] == "run" { matches!(said.code, Some(0 | 1)) } else { said.code == Some(0) };
+        assert!(fine, "{command}: {said:?}");
+        let _ = std::fs::remove_dir_all(folder.path().join("out"));
+    }
+}
+
+/// `[Sivtoft]` 4.2.3: 34 objects, of which five at the end of the conveyor are one sensor here.
+#[test]
+fn the_filling_machine_has_thirty_sensors() {
+    let said = typed(&scenario("filling-machine"), &["describe", "plant.toml", "--format", "json"]);
+    assert_eq!(said.code, Some(0), "{said:?}");
+    let kinds = said.out.matches("\"contact_sensor\"").count();
+    assert_eq!(kinds, 30, "{}", said.out);
+}
