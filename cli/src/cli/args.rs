@@ -103,7 +103,7 @@ pub enum Command {
     Browse(BrowseArgs),
     /// Tell where every signal and word lies in a real PLC: direction, address, signal, variable, type, layout number
     Map(MapArgs),
-    /// List the library of components, or describe one kind in full
+    /// List the library of components and kinds of your own, or describe one kind in full
     Components(ComponentsArgs),
     /// Tell what a scene is made of: bodies, joints, components, signals
     Describe(DescribeArgs),

@@ -11,6 +11,7 @@ use crate::error::ExitCode;
 use crate::io_list::{ListKind, Wanted};
 use crate::new::from_list::FromListConfig;
 use crate::new::{self, Template};
+use crate::plant::components::ComponentsConfig;
 use crate::plant::describe::DescribeConfig;
 use crate::plant::{components, describe};
 use crate::wiring::{self, WiringConfig};
@@ -20,17 +21,22 @@ use crate::wiring::{self, WiringConfig};
 pub struct ComponentsArgs {
     /// A kind, for its equations, parameters, signals and failure modes
     pub kind: Option<String>,
+    /// A folder with kinds of your own, as the `libraries` of a scene name it; may be given several times
+    #[arg(long, value_name = "FOLDER")]
+    pub library: Vec<PathBuf>,
     /// For people, or JSON for machines
     #[arg(long, value_enum, default_value_t)]
     pub format: FormatArg,
 }
 
-/// Tells of the library of components.
+/// Lists the library of components and kinds of the user's own.
 ///
 /// # Errors
 /// See [`CommandError`].
 pub fn components(args: &ComponentsArgs) -> Result<ExitCode, CommandError> {
-    components::write(args.kind.as_deref(), args.format.into(), &mut std::io::stdout().lock())?;
+    let config =
+        ComponentsConfig { kind: args.kind.clone(), libraries: args.library.clone(), format: args.format.into() };
+    components::write(&config, &mut std::io::stdout().lock())?;
     Ok(ExitCode::Ok)
 }
 

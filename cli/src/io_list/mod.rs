@@ -13,7 +13,6 @@
 //! | [`tia_xlsx`], [`tia_xml`], [`tia_text`] | the forms |
 //! | [`codesys`] | the I/O mapping that CODESYS writes as CSV |
 //! | [`sources`] | PLC sources with located variables: program text, PLCopen XML, TwinCAT objects |
-//! | `remark` | what sources say about their variables |
 //! | [`browsed`] | what a PLC says it has |
 //!
 //! Invariants. No file can make a reader fail otherwise than by an error, whatever is in it: sizes are bounded,
@@ -26,7 +25,6 @@ pub mod eni;
 pub mod error;
 pub mod flatten;
 pub mod point;
-mod remark;
 pub mod sources;
 pub mod tia;
 pub mod tia_text;

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use onescan_plc_shim::input::kind::FileKind;
+use onescan_plc_shim::syntax::remark::Remarks;
 use onescan_plc_shim::{Application, BuildError, Input, TaskPlan, Variable, VariableAccess};
 use onescan_server::time::TimeSpan;
 
@@ -11,7 +12,6 @@ use super::collect::{Collected, Entry};
 use super::error::ListError;
 use super::flatten::Nothing;
 use super::point::Direction;
-use super::remark::Remarks;
 use super::{IoList, ListKind};
 use crate::check::collect::{Reading, programs};
 

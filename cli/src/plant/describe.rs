@@ -4,7 +4,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use onescan_base::regular::Within;
-use onescan_clients::plant::component::{kinds, open_inputs};
+use onescan_clients::plant::component::open_inputs;
 use onescan_clients::plant::scene::model::{Body, BodyKind, Component, Mass, Moved, Scene, Sensing, Shape, Wire};
 use onescan_report::OutputError;
 use onescan_report::file::write_whole;
@@ -122,6 +122,7 @@ fn tree(scene: &Scene, out: &mut dyn Write) -> io::Result<()> {
             format!("{}: {what} -> {}", sensor.name, sensor.signal)
         }),
     )?;
+    section(out, "assemblies", scene.assemblies().iter().map(|(name, kind)| format!("{name}: {kind}")))?;
     section(out, "components", scene.components.iter().map(|component| one(component, scene)))?;
     section(out, "remarks", scene.remarks.iter().cloned())?;
     section(out, "reads", scene.reads.iter().map(|port| format!("{} : {}", port.name, port.ty)))?;
@@ -181,8 +182,8 @@ fn body(body: &Body) -> String {
 
 /// A component: what it is bound to, what of it is not preset, its wires, and its inputs without one.
 fn one(component: &Component, scene: &Scene) -> String {
-    let mut lines = vec![format!("{}: {}", component.name, component.kind)];
-    let Some(kind) = kinds().into_iter().find(|kind| kind.name == component.kind) else { return lines.concat() };
+    let mut lines = vec![format!("{}: {}", component.name, component.kind.name)];
+    let kind = &component.kind;
     let bound = kind.coupling.in_words(&component.bound, scene);
     if !bound.is_empty() {
         lines[0].push_str(", ");
@@ -200,8 +201,7 @@ fn one(component: &Component, scene: &Scene) -> String {
             Wire::Signal(name) => lines.push(format!("{} <- {name}", input.key)),
             Wire::Output { component, output } => {
                 let from = &scene.components[*component];
-                let key = kinds().into_iter().find(|kind| kind.name == from.kind).map(|kind| kind.outputs[*output].key);
-                lines.push(format!("{} <- {}.{}", input.key, from.name, key.unwrap_or_default()));
+                lines.push(format!("{} <- {}.{}", input.key, from.name, from.kind.outputs[*output].key));
             }
         }
     }

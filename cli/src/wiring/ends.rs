@@ -1,7 +1,7 @@
 //! Where signals begin and end inside of a client: at components of a scene, at variables of a PLC.
 
 use onescan_clients::plant::component::kind::Setting;
-use onescan_clients::plant::component::{kinds, open_inputs};
+use onescan_clients::plant::component::open_inputs;
 use onescan_clients::plant::scene::model::{Component, Drive, Scene, When, Wire};
 use onescan_clients::soft_plc::{BindError, bind};
 use onescan_plc_shim::Application;
@@ -77,9 +77,8 @@ fn places_of(scene: &Scene) -> Vec<(SignalName, String)> {
         axis.limit.iter().for_each(|signal| at(signal, "limit"));
     }
     places.extend(scene.sensors.iter().map(|sensor| (sensor.signal.clone(), sensor.name.clone())));
-    let kinds = kinds();
     for component in &scene.components {
-        let Some(kind) = kinds.iter().find(|kind| kind.name == component.kind) else { continue };
+        let kind = &component.kind;
         for (input, wire) in kind.inputs.iter().zip(&component.inputs) {
             if let Wire::Signal(signal) = wire {
                 places.push((signal.clone(), format!("{}.{}", component.name, input.key)));

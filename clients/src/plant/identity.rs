@@ -10,7 +10,6 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use super::component::kind::Kind;
-use super::component::library::entry;
 use super::scene::Scene;
 use super::scene::model::{Component, Wire};
 
@@ -87,22 +86,21 @@ fn tree(scene: &Scene) -> Result<Value, serde_json::Error> {
 fn name_values(described: &Component, tree: &mut Value) -> Result<(), serde_json::Error> {
     let Some(fields) = tree.as_object_mut() else { return Ok(()) };
     fields.remove("failures");
-    let Some(kind) = entry(described.kind).map(|entry| (entry.kind)()) else { return Ok(()) };
-    let Kind { parameters, inputs, outputs, .. } = kind;
+    let Kind { parameters, inputs, outputs, .. } = &*described.kind;
     let keyed =
         |keys: Vec<String>, values: Vec<Value>| Value::Object(keys.into_iter().zip(values).collect::<Map<_, _>>());
     let settings = described.settings.iter().map(serde_json::to_value).collect::<Result<Vec<_>, _>>()?;
     let settings = settings.into_iter().map(bare).collect();
-    let keys = parameters.iter().map(|parameter| parameter.key.to_owned()).collect();
+    let keys = parameters.iter().map(|parameter| parameter.key.to_string()).collect();
     fields.insert("settings".to_owned(), keyed(keys, settings));
     let wire = |wire: &Wire| match wire {
         Wire::Constant(setting) => serde_json::to_value(setting).map(bare),
         Wire::Open | Wire::Signal(_) | Wire::Output { .. } => serde_json::to_value(wire),
     };
     let wires = described.inputs.iter().map(wire).collect::<Result<_, _>>()?;
-    fields.insert("inputs".to_owned(), keyed(inputs.iter().map(|input| input.key.to_owned()).collect(), wires));
+    fields.insert("inputs".to_owned(), keyed(inputs.iter().map(|input| input.key.to_string()).collect(), wires));
     let wires = described.outputs.iter().map(serde_json::to_value).collect::<Result<_, _>>()?;
-    fields.insert("outputs".to_owned(), keyed(outputs.iter().map(|output| output.key.to_owned()).collect(), wires));
+    fields.insert("outputs".to_owned(), keyed(outputs.iter().map(|output| output.key.to_string()).collect(), wires));
     Ok(())
 }
 

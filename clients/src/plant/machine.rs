@@ -83,7 +83,7 @@ impl Machine {
             scene.sensors.iter().map(|sensor| Sensor::build(sensor, &world, &writes)).collect::<Result<Vec<_>, _>>()?;
         let mut parts = Vec::with_capacity(scene.components.len());
         for described in &scene.components {
-            parts.push(Part::build(described, scene, seed, &mut world, [&reads, &writes])?);
+            parts.push(Part::build(described, scene, (seed, period), &mut world, [&reads, &writes])?);
         }
         // now that all drives are known
         world.find_mechanisms();

@@ -32,6 +32,7 @@
 //! | `lateness` | how late a value arrives: a constant, an even part, a normal part |
 //! | `channel` | what happens to signals between the plant and the PLC |
 //! | `failure` | why a failure or a repair of a running plant is refused |
+//! | `file_place` | a place in a file that a scene names |
 //! | `identity` | whose state it is: what a plant is made of, and what differs from another |
 //! | `state` | the plant's state as bytes |
 //! | `placement` | where the bodies are, for recordings and pictures |
@@ -59,6 +60,7 @@ mod coupled;
 pub mod coupling;
 mod effort;
 mod failure;
+mod file_place;
 mod fitting;
 mod follower;
 mod identity;
@@ -82,6 +84,7 @@ mod world;
 
 pub use client::Plant;
 pub use failure::FailureRefused;
+pub use file_place::{Place, Source};
 pub use outline::{Outline, Surface};
 pub use placement::{BodyPose, Placement};
 pub use scene::{Inside, Scene, SceneError, SceneFault, SceneFaultKind, UnknownFailure};

@@ -2,6 +2,7 @@
 
 use onescan_server::client::ClientFault;
 use onescan_server::signal::{PortLayout, SignalName, Slot, SlotError};
+use onescan_server::time::TimeSpan;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -9,9 +10,8 @@ use super::command::NumberSlot;
 use super::component::behaviour::{Running, Surroundings};
 use super::component::declare::{Failed, Value};
 use super::component::kind::Values;
-use super::component::library::entry;
+use super::component::origin::{Making, Unmade};
 use super::coordinate::Measured;
-use super::coupling::Unbound;
 use super::effort::{Effort, Motion};
 use super::machine::Misfit;
 use super::random::seed_for;
@@ -25,10 +25,8 @@ pub(super) enum Unbuilt {
     /// A signal that the plant's ports do not have.
     #[error(transparent)]
     Slot(#[from] SlotError),
-    #[error("component `{0}` is of no kind in the library")]
-    UnknownKind(String),
     #[error("component `{0}`: {1}")]
-    Unbound(String, Unbound),
+    Unmade(String, Unmade),
 }
 
 /// A value in a port.
@@ -130,15 +128,13 @@ impl Part {
     pub(super) fn build(
         described: &model::Component,
         scene: &Scene,
-        seed: u64,
+        (seed, period): (u64, TimeSpan),
         world: &mut World,
         [reads, writes]: [&PortLayout; 2],
     ) -> Result<Self, Unbuilt> {
-        let name = || described.name.clone();
-        let entry = entry(described.kind).ok_or_else(|| Unbuilt::UnknownKind(name()))?;
-        let kind = (entry.kind)();
+        let kind = &described.kind;
         let mut feeds = Vec::new();
-        let mut taken = (entry.unconnected)();
+        let mut taken = kind.unconnected();
         for ((wire, input), value) in described.inputs.iter().zip(&kind.inputs).zip(&mut taken) {
             feeds.push(match wire {
                 Wire::Open => Feed::Unchanging,
@@ -156,9 +152,10 @@ impl Part {
             outputs.push(name.as_ref().map(slot).transpose()?);
         }
         let seed = seed_for(seed, "component", &described.name);
-        let running = (entry.start)(&described.settings, seed, &described.bound, scene, world);
+        let making = Making { seed, bound: &described.bound, scene, period };
+        let running = kind.make(&described.settings, &making, world);
         Ok(Self {
-            running: running.map_err(|unbound| Unbuilt::Unbound(name(), unbound))?,
+            running: running.map_err(|unmade| Unbuilt::Unmade(described.name.clone(), unmade))?,
             feeds,
             outputs,
             switches: switches(described, reads)?,
@@ -182,7 +179,10 @@ impl Part {
         self.take(described, moment, others)?;
         let around = self.surroundings(moment);
         let driven = self.running.drive(&self.taken, &around, world);
-        driven.map_err(|fault| ClientFault::new(format!("component `{}`: {fault}", described.name)))
+        driven.map_err(|ClientFault { message, place }| ClientFault {
+            place,
+            ..ClientFault::new(format!("component `{}`: {message}", described.name))
+        })
     }
 
     /// Second half of a turn, after the world has moved.
@@ -316,7 +316,7 @@ impl Part {
                 failed = failed.with(*mode);
             }
         }
-        Surroundings { dt_s: moment.dt_s, measured: moment.measured, failed }
+        Surroundings { t_v_ns: moment.t_v_ns, dt_s: moment.dt_s, measured: moment.measured, failed }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Orientations and joint frames. All angles go through `libm`.
 
-use rapier3d::glamx::{DMat3, DQuat};
+use rapier3d::glamx::{DMat3, DQuat, DVec3};
 use rapier3d::math::{Pose, Vector};
 
 /// The pose at a position, rolled about the world's x, then pitched about its y, then yawed about
@@ -33,6 +33,15 @@ pub(super) fn frame(anchor_m: [f64; 3], axis: [f64; 3], across: [f64; 3]) -> Pos
     let (x, y) = (Vector::from_array(axis), Vector::from_array(across));
     let rotation = DQuat::from_mat3(&DMat3::from_cols(x, y, x.cross(y)));
     Pose::from_parts(Vector::from_array(anchor_m), rotation)
+}
+
+/// A tensor of inertia `[ixx, iyy, izz, ixy, ixz, iyz]` along axes that are turned so, along the world's.
+pub(super) fn turned_tensor([xx, yy, zz, xy, xz, yz]: [f64; 6], rotation: DQuat) -> [f64; 6] {
+    let own = DMat3::from_cols(DVec3::new(xx, xy, xz), DVec3::new(xy, yy, yz), DVec3::new(xz, yz, zz));
+    let rotation = DMat3::from_quat(rotation);
+    let world = rotation * own * rotation.transpose();
+    let [x, y, z] = [world.x_axis, world.y_axis, world.z_axis];
+    [x.x, y.y, z.z, x.y, x.z, y.z]
 }
 
 #[cfg(test)]

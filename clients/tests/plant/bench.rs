@@ -27,6 +27,10 @@ impl Bench {
     pub(crate) fn with_period(scene: &str, period: TimeSpan) -> Self {
         let name = ClientName::new("plant").expect("a name");
         let plant = Plant::parse(scene, "scene.toml", name, period).unwrap_or_else(|error| panic!("{error}"));
+        Self::of(plant, period)
+    }
+
+    pub(crate) fn of(plant: Plant, period: TimeSpan) -> Self {
         let join = plant.join();
         let (reads, writes) = (PortLayout::new(join.reads), PortLayout::new(join.writes));
         let (inputs, outputs) = (vec![0; reads.size()], vec![0; writes.size()]);

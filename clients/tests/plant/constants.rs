@@ -77,7 +77,7 @@ fn an_input_that_a_parameter_hides_takes_a_constant_too() {
 fn every_input_has_a_key_of_its_own_for_a_constant() {
     for kind in onescan_clients::plant::component::kinds() {
         for input in &kind.inputs {
-            let key = kind.constant_key(input.key);
+            let key = kind.constant_key(&input.key);
             assert!(kind.parameters.iter().all(|parameter| parameter.key != key), "{} {key}", kind.name);
         }
     }

@@ -19,6 +19,7 @@ mod measuring;
 mod mechanism;
 mod meshes;
 mod motion;
+mod own_kinds;
 mod robots;
 mod robustness;
 mod sensors;

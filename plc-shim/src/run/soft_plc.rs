@@ -345,13 +345,20 @@ impl SoftPlc {
         self.restore_with(bytes, CodePolicy::SameCode)
     }
 
+    /// Checks that [`Self::restore`] would take these bytes.
+    ///
+    /// # Errors
+    /// Those of [`Self::restore`].
+    pub fn check_state(&self, bytes: &[u8]) -> Result<(), RestoreError> {
+        self.decoded(bytes, CodePolicy::SameCode).map(drop)
+    }
+
     /// Like [`Self::restore`], but `policy` says whether the sources must be the same.
     ///
     /// # Errors
     /// The bytes are not a state of a PLC with these variables and this plan, or of one that `policy` refuses.
     pub fn restore_with(&mut self, bytes: &[u8], policy: CodePolicy) -> Result<(), RestoreError> {
-        let decoder = Decoder { application: &self.application, plan: &self.plan, meaning: self.meaning(), policy };
-        let State { now, waiting, fault, forces, memory } = decoder.decode(bytes)?;
+        let State { now, waiting, fault, forces, memory } = self.decoded(bytes, policy)?;
         copy_to(self.machine.memory_mut(), 0, &memory);
         self.scheduler.set_waiting(&waiting);
         (self.now, self.fault, self.forces) = (now, fault, forces);
@@ -359,6 +366,11 @@ impl SoftPlc {
             (self.scanned_until, self.skipped_to) = (now, Some(now));
         }
         Ok(())
+    }
+
+    fn decoded(&self, bytes: &[u8], policy: CodePolicy) -> Result<State<Vec<u8>>, RestoreError> {
+        let (application, plan, meaning) = (&self.application, &self.plan, self.meaning());
+        Decoder { application, plan, meaning, policy }.decode(bytes)
     }
 
     fn meaning(&self) -> &Meaning {

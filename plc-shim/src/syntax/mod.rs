@@ -12,6 +12,7 @@
 //! | [`printer`] | a tree | text that parses to the same tree |
 //! | `pragma` | tokens | those that a pragma stands before |
 //! | `constant` | an expression of literals and constants | its value |
+//! | [`remark`] | a file | the comments beside its declarations |
 //! | `walk` | a body | each of its statements and expressions |
 //!
 //! Invariants: the texts of a file's tokens concatenated are the file; parsing never fails, it
@@ -27,6 +28,7 @@ pub mod parser;
 pub mod part;
 pub(crate) mod pragma;
 pub mod printer;
+pub mod remark;
 pub mod text_literal;
 pub mod token;
 pub(crate) mod walk;

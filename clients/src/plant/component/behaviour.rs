@@ -4,9 +4,11 @@
 //! 2. `sense`: looks at the world, after it has moved, and gives the outputs. At the set-up it does
 //!    so once with a period of 0.
 
+use onescan_plc_shim::RestoreError;
 use onescan_server::client::ClientFault;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+use thiserror::Error;
 
 use super::declare::{Failed, FailureSet, ParameterSet, SignalSet, Value};
 use super::dynamics::substeps;
@@ -129,6 +131,8 @@ pub(crate) struct Turn<Seen = ()> {
 /// What surrounds a component of any kind in a half turn.
 #[derive(Clone, Copy)]
 pub(crate) struct Surroundings<'s> {
+    /// Virtual time at the end of the turn, ns.
+    pub(crate) t_v_ns: u64,
     /// The period, s; 0 at the set-up.
     pub(crate) dt_s: f64,
     pub(crate) measured: Measured<'s>,
@@ -152,9 +156,18 @@ pub(crate) trait Running: Send {
     /// The state as bytes.
     fn save(&self) -> postcard::Result<Vec<u8>>;
     /// Checks that bytes are a state of such a component.
-    fn check(&self, bytes: &[u8]) -> postcard::Result<()>;
+    fn check(&self, bytes: &[u8]) -> Result<(), StateError>;
     /// Takes the state in that [`check`](Self::check) accepts.
-    fn restore(&mut self, bytes: &[u8]) -> postcard::Result<()>;
+    fn restore(&mut self, bytes: &[u8]) -> Result<(), StateError>;
+}
+
+/// Why bytes are no state of a component.
+#[derive(Debug, Error)]
+pub(crate) enum StateError {
+    #[error(transparent)]
+    Form(#[from] postcard::Error),
+    #[error(transparent)]
+    Program(#[from] RestoreError),
 }
 
 /// A component with its state and its tie to the world.
@@ -190,7 +203,7 @@ pub(super) fn run<C: Component>(
 
 impl<C: Component> Runner<C> {
     fn turn(&self, around: &Surroundings<'_>, world: &World) -> Turn<SeenBy<C>> {
-        let Surroundings { dt_s, measured, failed } = *around;
+        let Surroundings { dt_s, measured, failed, .. } = *around;
         Turn { dt_s, seen: self.tie.see(measured, world), failed }
     }
 }
@@ -241,11 +254,11 @@ impl<C: Component> Running for Runner<C> {
         postcard::to_stdvec(&(&self.state, self.tie.memory()))
     }
 
-    fn check(&self, bytes: &[u8]) -> postcard::Result<()> {
-        postcard::from_bytes::<Memory<C>>(bytes).map(|_| ())
+    fn check(&self, bytes: &[u8]) -> Result<(), StateError> {
+        Ok(postcard::from_bytes::<Memory<C>>(bytes).map(|_| ())?)
     }
 
-    fn restore(&mut self, bytes: &[u8]) -> postcard::Result<()> {
+    fn restore(&mut self, bytes: &[u8]) -> Result<(), StateError> {
         let (state, tie) = postcard::from_bytes::<Memory<C>>(bytes)?;
         self.state = state;
         self.tie.restore(tie);
@@ -256,10 +269,10 @@ impl<C: Component> Running for Runner<C> {
 /// The data of a kind.
 pub(super) fn kind<C: Component>() -> Kind {
     Kind {
-        name: C::NAME,
-        summary: C::SUMMARY,
+        name: C::NAME.into(),
+        summary: C::SUMMARY.into(),
         formula: C::FORMULA,
-        source: C::SOURCE,
+        source: C::SOURCE.into(),
         coupling: Coupling::of::<C::Tie>(),
         parameters: C::Parameters::table(),
         inputs: inputs::<C>(),

@@ -79,7 +79,7 @@ macro_rules! parameters {
         impl $crate::plant::component::declare::ParameterSet for $name {
             fn table() -> Vec<$crate::plant::component::kind::Parameter> {
                 vec![ $( $crate::plant::component::kind::Parameter {
-                    key: stringify!($key),
+                    key: stringify!($key).into(),
                     about: concat!($($about),+).trim().to_owned(),
                     form: {
                         #[allow(unused_mut, unused_assignments)]
@@ -239,7 +239,7 @@ macro_rules! signals {
         impl $crate::plant::component::declare::SignalSet for $name {
             fn table() -> Vec<$crate::plant::component::kind::Signal> {
                 vec![ $( $crate::plant::component::kind::Signal {
-                    key: stringify!($key),
+                    key: stringify!($key).into(),
                     about: concat!($($about),+).trim().to_owned(),
                     values: <$ty as $crate::plant::component::declare::SignalType>::VALUES,
                     preset: None,
@@ -285,7 +285,7 @@ macro_rules! failures {
         impl $crate::plant::component::declare::FailureSet for $name {
             fn table() -> Vec<$crate::plant::component::kind::Failure> {
                 vec![ $( $crate::plant::component::kind::Failure {
-                    mode: $mode,
+                    mode: $mode.into(),
                     about: concat!($($about),+).trim().to_owned(),
                 }, )+ ]
             }

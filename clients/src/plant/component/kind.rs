@@ -1,20 +1,25 @@
 //! What a kind of component is, as plain data: for the reader of scenes, for people, for the schema.
 
+use std::borrow::Cow;
+
 use serde::Serialize;
 
 use crate::plant::coupling::Coupling;
+
+/// A word or a line about a kind: of the library's it is part of the program, of the user's own it was read.
+pub type Text = Cow<'static, str>;
 
 /// A kind of component.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Kind {
     /// What a scene calls it.
-    pub name: &'static str,
+    pub name: Text,
     /// What it is, in one line.
-    pub summary: &'static str,
-    /// How it behaves: its equations, a line each.
+    pub summary: Text,
+    /// How it behaves: its equations, a line each; none of a kind of the user's own, which is its own description.
     pub formula: &'static [&'static str],
-    /// Where the equations come from.
-    pub source: &'static str,
+    /// Where the equations come from, or the file that has them.
+    pub source: Text,
     /// What of the scene it is bound to.
     pub coupling: Coupling,
     /// What describes one of its kind.
@@ -51,7 +56,7 @@ pub struct Dependence {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Parameter {
     /// Its key in a scene, with its unit.
-    pub key: &'static str,
+    pub key: Text,
     /// What it means.
     pub about: String,
     /// What it may be.
@@ -88,6 +93,7 @@ impl Form {
     /// What may be written, in words.
     pub fn in_words(&self) -> String {
         match self {
+            Self::Number { least, most } if Self::is_any(*least, *most) => "a finite number".to_owned(),
             Self::Number { least, most } => format!("a number from {least} to {most}"),
             Self::Count { least, most } => format!("a whole number from {least} to {most}"),
             Self::Flag => "`true` or `false`".to_owned(),
@@ -96,6 +102,11 @@ impl Form {
                 format!("one of {}", quoted.join(", "))
             }
         }
+    }
+
+    /// Whether bounds leave every finite number.
+    pub(crate) fn is_any(least: f64, most: f64) -> bool {
+        least == f64::MIN && most == f64::MAX
     }
 
     /// The setting that a value of a scene gives, if it is allowed.
@@ -146,7 +157,7 @@ impl std::fmt::Display for Setting {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Signal {
     /// Its name among the signals of its component, with its unit if it has one.
-    pub key: &'static str,
+    pub key: Text,
     /// What it means.
     pub about: String,
     /// What values it takes.
@@ -206,7 +217,7 @@ impl std::fmt::Display for Values {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Failure {
     /// What a scene calls it.
-    pub mode: &'static str,
+    pub mode: Text,
     /// What happens then.
     pub about: String,
 }

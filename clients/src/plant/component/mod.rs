@@ -9,6 +9,8 @@
 //! | `fluid` | flow of air and oil through orifices |
 //! | `profile` | motion from rest to rest within limits |
 //! | `library` | the kinds, a file each |
+//! | `program` | a kind of the user's own: a function block, run by the soft PLC |
+//! | [`origin`] | a kind of the library or of the user's own, and what makes components of it |
 //! | [`page`] | a kind as a page for people |
 //!
 //! # Invariants
@@ -22,8 +24,10 @@ pub(crate) mod dynamics;
 pub(crate) mod fluid;
 pub mod kind;
 pub(crate) mod library;
+pub mod origin;
 pub mod page;
 pub(crate) mod profile;
+pub(crate) mod program;
 #[cfg(test)]
 mod tests;
 

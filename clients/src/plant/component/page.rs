@@ -7,12 +7,14 @@ use super::library::kinds;
 
 /// The page of a kind.
 pub fn page(kind: &Kind) -> String {
-    let mut page = format!("## {}\n\n{}.\n\n", kind.name, kind.summary);
+    let mut page = format!("## {}\n\n{}.\n\n", kind.name, kind.summary.trim_end_matches('.'));
     for line in kind.formula {
         // a String grows without fail
         let _ = writeln!(page, "    {line}");
     }
-    let _ = writeln!(page, "\nSource: {}.", kind.source);
+    // the equations of a kind of the user's own are its source
+    let gap = if kind.formula.is_empty() { "" } else { "\n" };
+    let _ = writeln!(page, "{gap}Source: {}.", kind.source);
     let bindings = kind.coupling.keys();
     if !bindings.is_empty() {
         page.push_str("\n| bound to | |\n|---|---|\n");
@@ -31,7 +33,9 @@ pub fn page(kind: &Kind) -> String {
     }
     inputs(&mut page, kind);
     outputs(&mut page, &kind.outputs);
-    page.push_str("\n| failure mode | |\n|---|---|\n");
+    if !kind.failures.is_empty() {
+        page.push_str("\n| failure mode | |\n|---|---|\n");
+    }
     for failure in &kind.failures {
         let _ = writeln!(page, "| `{}` | {} |", failure.mode, failure.about);
     }
@@ -41,6 +45,7 @@ pub fn page(kind: &Kind) -> String {
 /// What may be written, in few words.
 fn range(form: &Form) -> String {
     match form {
+        Form::Number { least, most } if Form::is_any(*least, *most) => "finite".to_owned(),
         Form::Number { least, most } => format!("{least} … {most}"),
         Form::Count { least, most } => format!("{least} … {most}, whole"),
         Form::Flag => "true, false".to_owned(),

@@ -3,7 +3,7 @@
 use super::behaviour::{Component, SeenBy, Start, Turn};
 use super::declare::{Failed, FailureSet, SignalSet, Value};
 use super::kind::{Form, Setting, Values, unit};
-use super::library::{ENTRIES, entry, kinds};
+use super::library::{ENTRIES, kinds, origin};
 use crate::plant::coupling::{Coordinate, Grasp, Hit, InField, Load, Moving, Targets};
 use crate::plant::effort::Motion;
 use crate::plant::random::Random;
@@ -195,7 +195,7 @@ fn every_kind_keeps_the_laws() {
 fn every_kind_states_itself_well() {
     let words = |text: &str| text.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_');
     for (index, kind) in kinds().iter().enumerate() {
-        let name = kind.name;
+        let name = &*kind.name;
         assert!(words(name) && ENTRIES[..index].iter().all(|entry| entry.name != name), "{name}");
         assert!(!kind.summary.is_empty() && !kind.formula.is_empty() && !kind.source.is_empty(), "{name}");
         assert!(!kind.failures.is_empty() && kind.failures.len() <= 32, "{name}");
@@ -203,11 +203,11 @@ fn every_kind_states_itself_well() {
         let bindings = kind.coupling.keys().iter().map(|binding| binding.key);
         let mut keys: Vec<&str> = reserved.into_iter().chain(bindings).collect();
         for parameter in &kind.parameters {
-            assert!(words(parameter.key) && !parameter.about.is_empty(), "{name} {}", parameter.key);
-            keys.push(parameter.key);
+            assert!(words(&parameter.key) && !parameter.about.is_empty(), "{name} {}", parameter.key);
+            keys.push(&parameter.key);
         }
-        let inputs = kind.inputs.iter().map(|signal| signal.key);
-        let signals: Vec<&str> = inputs.chain(kind.outputs.iter().map(|signal| signal.key)).collect();
+        let inputs = kind.inputs.iter().map(|signal| &*signal.key);
+        let signals: Vec<&str> = inputs.chain(kind.outputs.iter().map(|signal| &*signal.key)).collect();
         for list in [keys, signals] {
             let mut sorted = list.clone();
             sorted.sort_unstable();
@@ -230,7 +230,7 @@ fn every_preset_is_allowed_and_goes_with_the_others() {
             };
             assert_eq!(parameter.form.read(&written), Some(parameter.preset), "{} {}", kind.name, parameter.key);
         }
-        assert_eq!((entry(kind.name).expect("known").conflict)(&settings), None, "{}", kind.name);
+        assert_eq!(origin(&kind.name).expect("known").conflict(&settings), None, "{}", kind.name);
     }
 }
 
@@ -255,7 +255,7 @@ fn every_number_has_its_unit_in_its_key() {
     for kind in kinds() {
         for parameter in &kind.parameters {
             let named =
-                unit(parameter.key).1.is_some() || WITHOUT_UNIT.iter().any(|word| parameter.key.ends_with(word));
+                unit(&parameter.key).1.is_some() || WITHOUT_UNIT.iter().any(|word| parameter.key.ends_with(word));
             assert!(!matches!(parameter.form, Form::Number { .. }) || named, "{} {}", kind.name, parameter.key);
         }
     }

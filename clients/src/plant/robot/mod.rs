@@ -23,7 +23,9 @@ use std::path::Path;
 use std::sync::Arc;
 
 pub use package::Packages;
-pub use xml::{Place, RobotFault, Source};
+pub use xml::RobotFault;
+
+pub use crate::plant::file_place::{Place, Source};
 
 /// A robot: a tree of links, its root first.
 #[derive(Clone, Debug, PartialEq)]

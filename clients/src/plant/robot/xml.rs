@@ -6,42 +6,14 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use onescan_server::client::SourcePlace;
 use roxmltree::{Document, Error, Node};
+
+use crate::plant::file_place::{Place, Source};
 
 /// Deepest nesting of elements; robots have a tenth of it.
 const DEPTH_MAX: usize = 128;
 
-/// A file that a robot was read from.
-#[derive(Debug, PartialEq, Eq)]
-pub struct Source {
-    /// What it is called in faults.
-    pub file: String,
-    /// Its text.
-    pub text: String,
-}
-
-/// A place in a file.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Place {
-    /// The file.
-    pub source: Arc<Source>,
-    /// Bytes of its text.
-    pub span: Range<usize>,
-}
-
 impl Place {
-    /// Line and column, from 1.
-    pub fn start(&self) -> SourcePlace {
-        let before = self.source.text.get(..self.span.start).unwrap_or(&self.source.text);
-        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-        SourcePlace {
-            file: self.source.file.clone(),
-            line: before.matches('\n').count() as u32 + 1,
-            column: before[line_start..].chars().count() as u32 + 1,
-        }
-    }
-
     /// A fault at this place.
     pub(super) fn wrong(&self, cause: impl Into<String>) -> RobotFault {
         RobotFault { place: self.clone(), cause: cause.into(), hint: None }

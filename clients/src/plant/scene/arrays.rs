@@ -205,6 +205,32 @@ impl Table for ComponentTable {
             *value.get_mut() = Value::String(name);
         }
     }
+
+    /// Only assemblies have a place; those that have none refuse the keys.
+    fn place(&mut self, k: usize, n: usize, faults: &mut Faults<'_>) {
+        let triple = |key: &str| -> Option<Triple> {
+            let value = self.get(key)?;
+            numbers(value.get_ref()).map(|numbers| Placed::new(value.span(), numbers))
+        };
+        let [mut position, mut rpy, turn_about, step] = ["position_m", "rpy_deg", "turn_about_m", "step_m"].map(triple);
+        if turn_about.is_none() && step.is_none() {
+            return;
+        }
+        placed((&mut position, &mut rpy), (turn_about.as_ref(), step.as_ref()), (k, n), faults);
+        for (key, spot) in [("position_m", position), ("rpy_deg", rpy)] {
+            if let Some(spot) = spot {
+                let value = Value::Array(spot.get_ref().map(Value::Float).to_vec());
+                self.insert(Placed::new(spot.span(), key.to_owned()), Placed::new(spot.span(), value));
+            }
+        }
+    }
+}
+
+/// Three numbers of a list.
+pub(super) fn numbers(value: &Value) -> Option<[f64; 3]> {
+    let number = |value: &Value| value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64));
+    let numbers: Option<Vec<_>> = value.as_array()?.iter().map(number).collect();
+    numbers?.try_into().ok()
 }
 
 fn count_in(value: &mut Value, index: usize) {

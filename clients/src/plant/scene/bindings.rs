@@ -10,6 +10,7 @@ use super::format::{BodyKind, JointKind, SceneFile};
 use super::joints::{kind_name, refuse_guided, unit};
 use super::model::{Axis, Bound, Driven, Moved};
 use super::names::Names;
+use super::own::Kinds;
 use super::text;
 use crate::plant::coupling::{BindingKey, Coupling, Names as Named, Which};
 
@@ -20,6 +21,7 @@ pub(super) struct Lookup<'s> {
     pub(super) shapes: &'s Names,
     pub(super) joints: &'s Names,
     pub(super) axes: &'s [Axis],
+    pub(super) kinds: &'s Kinds,
 }
 
 impl Lookup<'_> {

@@ -134,7 +134,7 @@ fn stated(written: &BodyTable, faults: &mut Faults<'_>) -> Option<Mass> {
     if !(xx > 0.0 && minor > 0.0 && determinant > 0.0 && determinant.is_finite()) {
         let wanted = "a tensor whose principal moments are above 0".to_owned();
         let value = format!("{inertia_kg_m2:?}");
-        faults.add(inertia.span(), SceneFaultKind::Number { key: "inertia_kg_m2", wanted, value });
+        faults.add(inertia.span(), SceneFaultKind::Number { key: "inertia_kg_m2".into(), wanted, value });
         return None;
     }
     if written.mass_kg.is_none() {

@@ -5,14 +5,18 @@ use serde::Serialize;
 
 use super::format::NumberType;
 use crate::plant::component::kind::Setting;
+use crate::plant::component::origin::Origin;
 
 /// One component.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Component {
     /// Its name.
     pub name: String,
-    /// Its kind, one of the library.
-    pub kind: &'static str,
+    /// Its kind, one of the library's or of the user's own.
+    pub kind: Origin,
+    /// A digest of the kind's source, if it is of the user's own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub code: Option<String>,
     /// Its settings, one for each parameter of its kind.
     pub settings: Vec<Setting>,
     /// What of the world it is bound to.

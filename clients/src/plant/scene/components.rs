@@ -6,17 +6,18 @@ use toml::Value;
 
 use super::placed::Placed;
 
-use super::arrays::listed;
+use super::arrays::{listed, numbers};
 use super::bindings::Lookup;
 use super::error::{SceneFaultKind, Thing};
 use super::faults::Faults;
 use super::format::{ComponentTable, NumberType};
 use super::model::{Bound, Component, Wire};
 use super::names::Names;
+use super::own::Kinds;
 use super::signals::Signals;
 use super::text;
 use crate::plant::component::kind::{Dependence, Kind, Parameter, Setting, Signal, Values, unit};
-use crate::plant::component::library::{ENTRIES, Entry, entry};
+use crate::plant::component::origin::Origin;
 
 /// One `[[component]]` with its name and kind.
 pub(super) struct Keys<'f> {
@@ -77,9 +78,7 @@ impl<'f> Keys<'f> {
     /// Three numbers behind a key.
     pub(super) fn triple(&self, key: &str, faults: &mut Faults<'_>) -> Option<Placed<[f64; 3]>> {
         let value = self.get(key)?;
-        let number = |value: &Value| value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64));
-        let numbers = value.get_ref().as_array().and_then(|list| list.iter().map(number).collect::<Option<Vec<_>>>());
-        let triple = numbers.and_then(|numbers| <[f64; 3]>::try_from(numbers).ok());
+        let triple = numbers(value.get_ref());
         if triple.is_none() {
             faults.add(value.span(), SceneFaultKind::Text { key: key.to_owned(), wanted: "three numbers" });
         }
@@ -90,8 +89,7 @@ impl<'f> Keys<'f> {
 /// A component whose kind is known.
 struct Known<'f> {
     keys: Keys<'f>,
-    kind: Kind,
-    entry: &'static Entry,
+    kind: Origin,
 }
 
 /// The components, and the names of those whose kind is not known, which nobody else shall miss.
@@ -104,7 +102,7 @@ pub(super) fn check(
     let keys: Vec<_> = tables.filter_map(|table| Keys::of(table, faults)).collect();
     Names::gather(Thing::Component, keys.iter().map(|keys| &keys.name), faults);
     let named: Vec<String> = keys.iter().map(|keys| text(&keys.name).to_owned()).collect();
-    let known: Vec<_> = keys.into_iter().filter_map(|keys| known(keys, faults)).collect();
+    let known: Vec<_> = keys.into_iter().filter_map(|keys| known(keys, placed.kinds, faults)).collect();
     let known_name = |name: &String| known.iter().any(|one| text(&one.keys.name) == name);
     let lost: Vec<String> = named.into_iter().filter(|name| !known_name(name)).collect();
     let mut bound: Vec<(String, Bound)> = Vec::new();
@@ -116,10 +114,13 @@ pub(super) fn check(
         let to = to.unwrap_or_default();
         bound.push((text(&one.keys.name).to_owned(), to.clone()));
         let number = number_type(&one.keys, faults);
+        let settings = settings(one, faults);
+        let kind = settled(one, &settings, faults);
         components.push(Component {
             name: text(&one.keys.name).to_owned(),
-            kind: one.entry.name,
-            settings: settings(one, faults),
+            code: kind.code().map(str::to_owned),
+            kind,
+            settings,
             bound: to,
             inputs: inputs(one, (&known, &lost), number, signals, faults),
             outputs: outputs(one, number, signals, faults),
@@ -130,25 +131,33 @@ pub(super) fn check(
     (components, lost)
 }
 
-fn known<'f>(keys: Keys<'f>, faults: &mut Faults<'_>) -> Option<Known<'f>> {
-    let Some(entry) = entry(text(&keys.kind)) else {
-        let near = nearest(text(&keys.kind), ENTRIES.iter().map(|entry| entry.name));
-        let hint = near
-            .map_or_else(|| "`onescan components` names them all".to_owned(), |near| format!("did you mean `{near}`?"));
-        faults.add_hinted(keys.kind.span(), SceneFaultKind::ComponentKind(text(&keys.kind).to_owned()), Some(hint));
-        return None;
-    };
-    Some(Known { keys, kind: (entry.kind)(), entry })
+fn known<'f>(keys: Keys<'f>, kinds: &Kinds, faults: &mut Faults<'_>) -> Option<Known<'f>> {
+    match kinds.find(text(&keys.kind)) {
+        Some(kind) => Some(Known { keys, kind }),
+        None => {
+            kinds.miss(&keys.kind, faults);
+            None
+        }
+    }
+}
+
+/// The kind as it is with a component's settings.
+fn settled(one: &Known<'_>, settings: &[Setting], faults: &mut Faults<'_>) -> Origin {
+    one.kind.clone().settled(settings).unwrap_or_else(|error| {
+        let wrong = SceneFaultKind::OwnKind { kind: text(&one.keys.kind).to_owned(), cause: error.to_string() };
+        faults.add(one.keys.kind.span(), wrong);
+        one.kind.clone()
+    })
 }
 
 /// Keys that the kind has not.
 fn refuse_unknown_keys(one: &Known<'_>, faults: &mut Faults<'_>) {
-    let Known { keys, kind, .. } = one;
+    let Known { keys, kind } = one;
     let mut right: Vec<String> = ["name", "kind", "signal_type"].map(str::to_owned).to_vec();
     right.extend(kind.coupling.keys().iter().map(|binding| binding.key.to_owned()));
-    right.extend(kind.parameters.iter().map(|parameter| parameter.key.to_owned()));
+    right.extend(kind.parameters.iter().map(|parameter| parameter.key.to_string()));
     right.extend(kind.inputs.iter().flat_map(|input| [format!("{}_signal", input.key), format!("{}_from", input.key)]));
-    right.extend(kind.inputs.iter().map(|input| kind.constant_key(input.key)));
+    right.extend(kind.inputs.iter().map(|input| kind.constant_key(&input.key)));
     right.extend(kind.outputs.iter().map(|output| format!("{}_signal", output.key)));
     for key in keys.table.keys().filter(|key| !right.contains(key.get_ref())) {
         let wrong = SceneFaultKind::ComponentKey { whose: keys.whose(), key: key.get_ref().clone() };
@@ -164,10 +173,10 @@ fn hint(wrong: &str, kind: &Kind, right: &[String]) -> Option<String> {
         (whole, None) => whole.rsplit_once('_').map_or(whole, |(stem, _)| stem).to_owned(),
     };
     let meant = |parameter: &&Parameter| {
-        unit(parameter.key).1.is_some() && (unit(parameter.key).0 == wrong || unit(parameter.key).0 == stem(wrong))
+        unit(&parameter.key).1.is_some() && (unit(&parameter.key).0 == wrong || unit(&parameter.key).0 == stem(wrong))
     };
     if let Some(parameter) = kind.parameters.iter().find(meant) {
-        let unit = unit(parameter.key).1.unwrap_or_default();
+        let unit = unit(&parameter.key).1.unwrap_or_default();
         return Some(format!("did you mean `{}`, in {unit}?", parameter.key));
     }
     nearest(wrong, right.iter().map(String::as_str)).map(|near| format!("did you mean `{near}`?"))
@@ -175,24 +184,25 @@ fn hint(wrong: &str, kind: &Kind, right: &[String]) -> Option<String> {
 
 /// Settings for all parameters: what is written, or the preset.
 fn settings(one: &Known<'_>, faults: &mut Faults<'_>) -> Vec<Setting> {
-    let Known { keys, kind, entry } = one;
+    let Known { keys, kind } = one;
     let mut whole = true;
     let mut settings = Vec::new();
     for parameter in &kind.parameters {
-        let setting = keys.get(parameter.key).map(|written| (written, parameter.form.read(written.get_ref())));
+        let setting = keys.get(&parameter.key).map(|written| (written, parameter.form.read(written.get_ref())));
         if let Some((written, None)) = &setting {
             let wanted = parameter.form.in_words();
             let value = written.get_ref().to_string();
-            faults.add(written.span(), SceneFaultKind::Number { key: parameter.key, wanted, value });
+            faults.add(written.span(), SceneFaultKind::Number { key: parameter.key.clone(), wanted, value });
             whole = false;
         }
         settings.push(setting.and_then(|(_, setting)| setting).unwrap_or(parameter.preset));
     }
-    if whole && let Some(conflict) = (entry.conflict)(&settings) {
+    if whole && let Some(conflict) = kind.conflict(&settings) {
         let span = keys.get(conflict.key).map_or_else(|| keys.kind.span(), Placed::span);
         let at = kind.parameters.iter().position(|parameter| parameter.key == conflict.key);
         let value = at.and_then(|at| settings.get(at)).map(ToString::to_string).unwrap_or_default();
-        faults.add(span, SceneFaultKind::Number { key: conflict.key, wanted: conflict.wanted.to_owned(), value });
+        faults
+            .add(span, SceneFaultKind::Number { key: conflict.key.into(), wanted: conflict.wanted.to_owned(), value });
     }
     settings
 }
@@ -232,11 +242,14 @@ fn inputs(
     let mut wires = Vec::new();
     for input in &one.kind.inputs {
         let (by_signal, by_wire) = (format!("{}_signal", input.key), format!("{}_from", input.key));
-        let by_value = one.kind.constant_key(input.key);
+        let by_value = one.kind.constant_key(&input.key);
         let written = one.keys.get(&by_value);
         let sources = [written, one.keys.get(&by_signal), one.keys.get(&by_wire)];
         if let Some(second) = sources.into_iter().flatten().nth(1) {
-            faults.add(second.span(), SceneFaultKind::WiredTwice { whose: one.keys.whose(), input: input.key });
+            faults.add(
+                second.span(),
+                SceneFaultKind::WiredTwice { whose: one.keys.whose(), input: input.key.to_string() },
+            );
         }
         let signal = one.keys.text(&by_signal, SIGNAL, faults);
         let from = one.keys.text(&by_wire, "\"component.output\"", faults);
@@ -262,7 +275,7 @@ fn constant(input: &Signal, key: String, value: &Placed<Value>, faults: &mut Fau
 
 /// Inputs that are driven and of which nothing comes, because nobody drives what they depend on.
 fn refuse_idle(one: &Known<'_>, wires: &[Wire], faults: &mut Faults<'_>) {
-    let Known { keys, kind, .. } = one;
+    let Known { keys, kind } = one;
     let written = |input: &str| {
         let ways = [kind.constant_key(input), format!("{input}_signal"), format!("{input}_from")];
         ways.into_iter().find_map(|key| keys.get(&key).map(|value| (key, value.span())))
@@ -303,7 +316,7 @@ fn output_of(
     };
     let outputs = &known[component].kind.outputs;
     let Some(index) = outputs.iter().position(|known| known.key == output) else {
-        let near = nearest(output, outputs.iter().map(|output| output.key));
+        let near = nearest(output, outputs.iter().map(|output| &*output.key));
         let kind =
             SceneFaultKind::ComponentPart { component: name.to_owned(), what: "output", name: output.to_owned() };
         faults.add_hinted(from.span(), kind, near.map(|near| format!("did you mean `{near}`?")));

@@ -115,7 +115,10 @@ fn scale(table: &SignalTable, faults: &mut Faults<'_>) -> Option<Range> {
         let good = low.is_finite() && high.is_finite() && low < high;
         if !good {
             let wanted = "two numbers, the lower one first".to_owned();
-            faults.add(written.span(), SceneFaultKind::Number { key, wanted, value: format!("[{low}, {high}]") });
+            faults.add(
+                written.span(),
+                SceneFaultKind::Number { key: key.into(), wanted, value: format!("[{low}, {high}]") },
+            );
         }
         good.then_some([low, high])
     };

@@ -40,7 +40,7 @@ fn coupling(written: &CouplingTable, file: &SceneFile, joints: &Names, faults: &
     if of.is_empty() || of.len() > LEADING_MAX || of.contains(&joint) || (of.len() == 2 && of[0] == of[1]) {
         let wanted = "one or two other joints".to_owned();
         let value = format!("{} names", of.len());
-        faults.add(written.name.span(), SceneFaultKind::Number { key: "of", wanted, value });
+        faults.add(written.name.span(), SceneFaultKind::Number { key: "of".into(), wanted, value });
         return None;
     }
     let metre = Entry::new("backlash_m", written.backlash_m.as_ref());
@@ -61,7 +61,7 @@ fn refuse_off(written: &CouplingTable, coupling: &Coupling, joints: &[Joint], fa
         if (on - y).abs() > OFF_MAX {
             let span = written.cam.as_ref().map_or_else(|| written.name.span(), Placed::span);
             let (wanted, value) = (format!("a curve with {y} at {x}, where the scene has the joints"), on.to_string());
-            faults.add(span, SceneFaultKind::Number { key: "cam", wanted, value });
+            faults.add(span, SceneFaultKind::Number { key: "cam".into(), wanted, value });
         }
     }
 }
@@ -97,7 +97,7 @@ fn laws(written: &CouplingTable, count: usize, whose: &str, faults: &mut Faults<
             }
             let wanted = format!("{count} numbers other than 0, one for each joint in `of`");
             let value = format!("{ratios_given:?}");
-            faults.add(ratios.span(), SceneFaultKind::Number { key: "ratio", wanted, value });
+            faults.add(ratios.span(), SceneFaultKind::Number { key: "ratio".into(), wanted, value });
         }
         (None, Some(cam)) => {
             let points = cam.get_ref();
@@ -109,7 +109,7 @@ fn laws(written: &CouplingTable, count: usize, whose: &str, faults: &mut Faults<
             let wanted =
                 "two points or more, [leading, led] in rising order of the first, of one leading joint".to_owned();
             let value = format!("{} points", points.len());
-            faults.add(cam.span(), SceneFaultKind::Number { key: "cam", wanted, value });
+            faults.add(cam.span(), SceneFaultKind::Number { key: "cam".into(), wanted, value });
         }
         (None, None) => {
             faults.add(written.name.span(), SceneFaultKind::Missing { whose: whose.to_owned(), key: "ratio" });

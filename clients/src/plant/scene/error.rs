@@ -7,6 +7,8 @@ use onescan_server::signal::BadName;
 use thiserror::Error;
 
 use crate::array::ArrayError;
+use crate::plant::component::kind::Text;
+use crate::plant::file_place::Place;
 
 /// Why a scene file is not a scene.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -62,7 +64,7 @@ pub struct Inside {
     /// What is wrong, for a reader who sees the place.
     pub told: String,
     /// Where.
-    pub place: crate::plant::robot::Place,
+    pub place: Place,
 }
 
 impl fmt::Display for SceneFault {
@@ -196,7 +198,7 @@ pub enum SceneFaultKind {
     #[error("`{key}` must be {wanted}, not {value}")]
     Number {
         /// The key.
-        key: &'static str,
+        key: Text,
         /// What it allows.
         wanted: String,
         /// The value in the file.
@@ -278,9 +280,25 @@ pub enum SceneFaultKind {
         /// The axis or component that drives it already.
         first: String,
     },
-    /// A component of a kind that is not in the library.
+    /// A component of a kind that is neither in the library nor in the scene's own.
     #[error("`{0}` is no kind of component")]
     ComponentKind(String),
+    /// A kind of the user's own that cannot be used.
+    #[error("kind `{kind}`: {cause}")]
+    OwnKind {
+        /// The kind.
+        kind: String,
+        /// What is wrong with it, or with its file.
+        cause: String,
+    },
+    /// A folder of kinds that cannot be used.
+    #[error("the folder of kinds `{folder}` {cause}")]
+    Kinds {
+        /// The folder.
+        folder: String,
+        /// What is wrong with it.
+        cause: String,
+    },
     /// A key that this kind of component has not.
     #[error("{whose} has no `{key}`")]
     ComponentKey {
@@ -325,7 +343,7 @@ pub enum SceneFaultKind {
         /// The component.
         whose: String,
         /// The input.
-        input: &'static str,
+        input: String,
     },
     /// An input that is driven and of which nothing comes.
     #[error("nothing comes of `{key}`: nobody drives `{on}` of {whose}")]

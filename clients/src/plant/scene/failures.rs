@@ -10,10 +10,9 @@ use super::faults::Faults;
 use super::format::FailureTable;
 use super::model::{Between, Component, FailureSwitch, Scene, When};
 use super::number::{Allowed, Entry};
+use super::own::Aliases;
 use super::signals::Signals;
 use super::text;
-use crate::plant::component::kind::Failure;
-use crate::plant::component::library::entry;
 
 /// A failure that a scene does not have.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -62,18 +61,31 @@ impl Scene {
 
     /// The mode of a component that these names mean.
     pub(in crate::plant) fn find_failure(&self, component: &str, mode: &str) -> Result<FoundMode, UnknownFailure> {
-        find(&self.components, component, mode)
+        find(&self.components, &self.aliases, component, mode)
+    }
+
+    /// The components that are assemblies of the user's own, each with its kind.
+    pub fn assemblies(&self) -> &[(String, String)] {
+        self.aliases.assemblies()
     }
 }
 
-fn find(components: &[Component], component: &str, mode: &str) -> Result<FoundMode, UnknownFailure> {
+fn find(components: &[Component], aliases: &Aliases, component: &str, mode: &str) -> Result<FoundMode, UnknownFailure> {
+    let (component, mode) = match aliases.mode(component, mode) {
+        Some(part) => part,
+        None if aliases.is_assembly(component) => {
+            let modes: Vec<&str> = aliases.modes_of(component).collect();
+            let hint = mode_hint(&modes, mode);
+            return Err(UnknownFailure::Mode { component: component.to_owned(), mode: mode.to_owned(), hint });
+        }
+        None => (component, mode),
+    };
     let Some(at) = components.iter().position(|known| known.name == component) else {
         let near = nearest(component, components.iter().map(|known| known.name.as_str()));
         return Err(UnknownFailure::Component { component: component.to_owned(), hint: near.map(did_you_mean) });
     };
-    // a checked component is of a kind in the library; one that is not fails in no way
-    let modes = entry(components[at].kind).map_or_else(Vec::new, |entry| (entry.kind)().failures);
-    match modes.iter().position(|known| known.mode == mode) {
+    let modes: Vec<&str> = components[at].kind.failures.iter().map(|failure| &*failure.mode).collect();
+    match modes.iter().position(|known| *known == mode) {
         Some(mode) => Ok(FoundMode { component: at, mode }),
         None => Err(UnknownFailure::Mode {
             component: component.to_owned(),
@@ -83,12 +95,12 @@ fn find(components: &[Component], component: &str, mode: &str) -> Result<FoundMo
     }
 }
 
-fn mode_hint(modes: &[Failure], wrong: &str) -> String {
+fn mode_hint(modes: &[&str], wrong: &str) -> String {
     let listed = || {
-        let listed: Vec<_> = modes.iter().map(|known| format!("`{}`", known.mode)).collect();
-        format!("it may be {}", listed.join(", "))
+        let listed: Vec<_> = modes.iter().map(|known| format!("`{known}`")).collect();
+        if listed.is_empty() { "it has none".to_owned() } else { format!("it may be {}", listed.join(", ")) }
     };
-    nearest(wrong, modes.iter().map(|known| known.mode)).map_or_else(listed, did_you_mean)
+    nearest(wrong, modes.iter().copied()).map_or_else(listed, did_you_mean)
 }
 
 fn did_you_mean(near: &str) -> String {
@@ -97,7 +109,7 @@ fn did_you_mean(near: &str) -> String {
 
 pub(super) fn check(
     tables: &[Placed<FailureTable>],
-    (components, lost): (&mut [Component], &[String]),
+    (components, lost, aliases): (&mut [Component], &[String], &Aliases),
     signals: &mut Signals,
     faults: &mut Faults<'_>,
 ) {
@@ -106,7 +118,7 @@ pub(super) fn check(
         if lost.iter().any(|lost| lost == text(&table.component)) {
             continue;
         }
-        match find(components, text(&table.component), text(&table.mode)) {
+        match find(components, aliases, text(&table.component), text(&table.mode)) {
             Ok(FoundMode { component, mode }) => {
                 if let Some(when) = when {
                     components[component].failures.push(FailureSwitch { mode, when });

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use super::placed::Placed;
 use onescan_base::nearest;
@@ -10,6 +11,7 @@ use onescan_server::client::SourcePlace;
 
 use super::error::{Inside, SceneError, SceneFault, SceneFaultKind, Thing};
 use super::overrides::index_of;
+use crate::plant::file_place::{Place, Source};
 
 /// The faults found so far in one file.
 pub(super) struct Faults<'t> {
@@ -20,11 +22,27 @@ pub(super) struct Faults<'t> {
     found: Vec<SceneFault>,
     /// Beginnings of names that are not there because a robot was refused.
     lost: Vec<String>,
+    /// Files whose tables are read as if they stood in the scene.
+    attached: Vec<Attached>,
 }
+
+/// A file whose places are those of the scene behind all of its own.
+struct Attached {
+    /// The kind of component that it defines.
+    kind: String,
+    source: Arc<Source>,
+    /// Where its places begin.
+    base: usize,
+    /// Where the scene names the kind.
+    named_at: Range<usize>,
+}
+
+/// Where the places of attached files begin: behind any scene, and behind the overrides.
+const ATTACHED: usize = 1 << 31;
 
 impl<'t> Faults<'t> {
     pub(super) fn new(text: &'t str, file: &'t str, within: &'t Within) -> Self {
-        Self { text, file, within, found: Vec::new(), lost: Vec::new() }
+        Self { text, file, within, found: Vec::new(), lost: Vec::new(), attached: Vec::new() }
     }
 
     /// The file's text.
@@ -37,8 +55,11 @@ impl<'t> Faults<'t> {
         self.found.is_empty()
     }
 
-    /// Line and column of a byte of the file.
+    /// Line and column of a byte of the file, or of one that is attached to it.
     pub(super) fn place(&self, byte: usize) -> SourcePlace {
+        if let Some(Attached { source, base, .. }) = self.attached.iter().rfind(|file| file.base <= byte) {
+            return Place { source: Arc::clone(source), span: byte - base..byte - base }.start();
+        }
         let mut end = byte.min(self.text.len());
         while !self.text.is_char_boundary(end) {
             end -= 1;
@@ -66,7 +87,40 @@ impl<'t> Faults<'t> {
         self.add_hinted(span, kind, None);
     }
 
+    /// Reads a file as if it stood in the scene, named at `named_at`; what is to be added to its places.
+    pub(super) fn attach(&mut self, kind: &str, source: &Arc<Source>, named_at: Range<usize>) -> usize {
+        let base = self.attached.last().map_or(ATTACHED, |last| last.base + last.source.text.len() + 1);
+        self.attached.push(Attached { kind: kind.to_owned(), source: Arc::clone(source), base, named_at });
+        base
+    }
+
     pub(super) fn add_hinted(&mut self, span: Range<usize>, kind: SceneFaultKind, hint: Option<String>) {
+        match self.attached.iter().rfind(|file| file.base <= span.start) {
+            None => self.add_own(span, kind, hint),
+            Some(Attached { kind: name, source, base, named_at }) => {
+                let span = span.start - base..span.end.saturating_sub(*base);
+                let place = Place { source: Arc::clone(source), span };
+                let is_there = |fault: &SceneFault| fault.inside.as_ref().is_some_and(|inside| inside.place == place);
+                if self.found.iter().any(is_there) {
+                    // another component of the same kind
+                    return;
+                }
+                let told = match kind {
+                    SceneFaultKind::OwnKind { cause, .. } => cause,
+                    kind => kind.to_string(),
+                };
+                let cause = format!("{} line {}: {told}", source.file, place.start().line);
+                let (kind, named_at) = (SceneFaultKind::OwnKind { kind: name.clone(), cause }, named_at.clone());
+                // an assembly within another is named in that one's file
+                self.add_hinted(named_at, kind, hint);
+                if let Some(fault) = self.found.last_mut() {
+                    fault.inside = Some(Inside { told, place });
+                }
+            }
+        }
+    }
+
+    fn add_own(&mut self, span: Range<usize>, kind: SceneFaultKind, hint: Option<String>) {
         let place = self.place(span.start);
         let overridden = index_of(&span, self.text);
         self.found.push(SceneFault { kind, place, span, hint, inside: None, overridden });
@@ -84,6 +138,13 @@ impl<'t> Faults<'t> {
         if let Some(fault) = self.found.last_mut() {
             fault.inside = Some(inside);
         }
+    }
+
+    /// The fault in the form of an attached file that the TOML reader stopped at; `base` is added to its place.
+    pub(super) fn add_form(&mut self, base: usize, error: &toml::de::Error) {
+        let (message, hint) = reworded(error.message());
+        let span = error.span().unwrap_or(0..0);
+        self.add_hinted(base + span.start..base + span.end, SceneFaultKind::Form(message), hint);
     }
 
     /// The fault in the form of a file that the TOML reader stopped at.
@@ -109,6 +170,16 @@ impl<'t> Faults<'t> {
     /// From now on nobody misses what begins so.
     pub(super) fn lose(&mut self, beginning: String) {
         self.lost.push(beginning);
+    }
+
+    /// How many were found so far.
+    pub(super) fn found_so_far(&self) -> usize {
+        self.found.len()
+    }
+
+    /// What was found.
+    pub(super) fn into_found(self) -> Vec<SceneFault> {
+        self.found
     }
 
     /// What was found so far, as an error.

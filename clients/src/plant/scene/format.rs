@@ -22,6 +22,8 @@ pub(super) struct SceneFile {
     pub(super) solver_iterations: Option<Placed<i64>>,
     pub(super) friction_rule: Option<FrictionRule>,
     #[serde(default)]
+    pub(super) libraries: Vec<Placed<String>>,
+    #[serde(default)]
     pub(super) body: Vec<Placed<BodyTable>>,
     #[serde(default)]
     pub(super) shape: Vec<Placed<ShapeTable>>,

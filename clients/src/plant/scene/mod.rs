@@ -12,6 +12,7 @@
 //! | `substeps` | world steps in a turn, 1 if absent |
 //! | `solver_iterations` | in a world step, 8 if absent |
 //! | `friction_rule` | of bodies that have none of their own, `mean` if absent |
+//! | `libraries` | folders with kinds of component of the user's own, beside the file of the scene |
 //!
 //! | `[[body]]` | meaning |
 //! |---|---|
@@ -137,6 +138,7 @@
 //! | `number`, `names` | what a number and a name must be |
 //! | `arrays` | one table for many things |
 //! | `robots`, `robot_tables` | robots' files, and the tables that one stands for |
+//! | [`own`] | kinds of component of the user's own |
 //! | `bodies`, `shapes`, `meshes`, `joints`, `fittings`, `couplings`, `axes`, `sensors`, `signals` | the second pass, one sort of table each |
 //! | `components`, `bindings`, `failures`, `conditions` | the same, for components and what surrounds them |
 //! | [`model`] | the checked scene |
@@ -162,6 +164,7 @@ pub mod model;
 mod names;
 mod number;
 pub mod overrides;
+pub mod own;
 mod placed;
 mod robot_tables;
 mod robots;
@@ -185,6 +188,7 @@ use faults::Faults;
 use format::SceneFile;
 use names::Names;
 use number::{Allowed, Entry};
+use own::{Aliases, Kinds};
 use signals::Signals;
 
 /// The version of the scene format.
@@ -224,8 +228,10 @@ impl Scene {
         match SceneFile::deserialize(toml::Deserializer::from(document)) {
             Ok(mut written) => {
                 arrays::expand(&mut written, &mut faults);
-                let remarks = robots::expand(&mut written, &mut faults);
-                let scene = Self { remarks, ..check(&written, &mut faults) };
+                let mut remarks = robots::expand(&mut written, &mut faults);
+                let own = own::expand(&mut written, &mut faults);
+                remarks.extend(own.remarks);
+                let scene = Self { remarks, ..check(&written, &own.kinds, own.aliases, &mut faults) };
                 faults.into_result(scene)
             }
             Err(error) => Err(faults.into_form_error(&error)),
@@ -234,7 +240,7 @@ impl Scene {
 }
 
 /// The checked scene; of no meaning where faults were found.
-fn check(written: &SceneFile, faults: &mut Faults<'_>) -> Scene {
+fn check(written: &SceneFile, kinds: &Kinds, aliases: Aliases, faults: &mut Faults<'_>) -> Scene {
     let version = *written.version.get_ref();
     if version != VERSION {
         let hint = Some(format!("this program reads version {VERSION}"));
@@ -253,9 +259,10 @@ fn check(written: &SceneFile, faults: &mut Faults<'_>) -> Scene {
     let couplings = couplings::check(written, &joints, &scene_joints, faults);
     let axes = axes::check(written, &bodies, &joints, &mut signals, faults);
     let sensors = sensors::check(written, &bodies, &joints, &mut signals, faults);
-    let placed = Lookup { file: written, bodies: &bodies, shapes: &shapes, joints: &joints, axes: &axes };
-    let (mut components, lost) = components::check(&placed, &mut signals, faults);
-    failures::check(&written.failure, (&mut components, &lost), &mut signals, faults);
+    let placed = Lookup { file: written, bodies: &bodies, shapes: &shapes, joints: &joints, axes: &axes, kinds };
+    let (mut components, mut lost) = components::check(&placed, &mut signals, faults);
+    lost.extend(aliases.lost().map(str::to_owned));
+    failures::check(&written.failure, (&mut components, &lost, &aliases), &mut signals, faults);
     let conditions = conditions::check(&written.signal, &mut signals, faults);
     let (reads, writes) = signals.into_ports(faults);
     Scene {
@@ -273,6 +280,7 @@ fn check(written: &SceneFile, faults: &mut Faults<'_>) -> Scene {
         axes,
         sensors,
         components,
+        aliases,
         conditions,
         remarks: Vec::new(),
         reads,

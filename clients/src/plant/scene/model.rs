@@ -5,6 +5,8 @@
 use onescan_server::signal::{Port, SignalName};
 use serde::Serialize;
 
+use super::own::Aliases;
+
 pub use super::component_model::{Between, Bound, Component, Condition, Driven, FailureSwitch, Range, When, Wire};
 pub use super::format::{BodyKind, FrictionRule, JointKind, NumberType};
 
@@ -39,6 +41,9 @@ pub struct Scene {
     pub sensors: Vec<Sensor>,
     /// Components in the file's order.
     pub components: Vec<Component>,
+    /// What the names of its assemblies stand for.
+    #[serde(skip)]
+    pub(in crate::plant) aliases: Aliases,
     /// What happens to signals between the plant and the session.
     pub conditions: Vec<Condition>,
     /// What of robots' files was read otherwise than it is written, for people.

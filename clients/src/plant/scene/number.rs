@@ -73,7 +73,7 @@ impl Faults<'_> {
         }
         self.add(
             written.span(),
-            SceneFaultKind::Number { key: entry.key, wanted: allowed.in_words(), value: value.to_string() },
+            SceneFaultKind::Number { key: entry.key.into(), wanted: allowed.in_words(), value: value.to_string() },
         );
         None
     }
@@ -86,7 +86,7 @@ impl Faults<'_> {
             let value = written.get_ref().to_string();
             self.add(
                 written.span(),
-                SceneFaultKind::Number { key, wanted: format!("a whole number from 1 to {max}"), value },
+                SceneFaultKind::Number { key: key.into(), wanted: format!("a whole number from 1 to {max}"), value },
             );
         }
         value
@@ -121,7 +121,7 @@ impl Faults<'_> {
             None => Some(value),
             Some(wrong) => {
                 let value = wrong.to_string();
-                self.add(written.span(), SceneFaultKind::Number { key, wanted: allowed.in_words(), value });
+                self.add(written.span(), SceneFaultKind::Number { key: key.into(), wanted: allowed.in_words(), value });
                 None
             }
         }
@@ -136,7 +136,7 @@ impl Faults<'_> {
         }
         let value = format!("[{x}, {y}, {z}]");
         let wanted = "a direction, of any length but 0".to_owned();
-        self.add(written.span(), SceneFaultKind::Number { key, wanted, value });
+        self.add(written.span(), SceneFaultKind::Number { key: key.into(), wanted, value });
         None
     }
 }

@@ -2,14 +2,14 @@
 
 use std::f64::consts::TAU;
 
-use rapier3d::glamx::{DMat3, DQuat, DVec3};
+use rapier3d::glamx::{DQuat, DVec3};
 use rapier3d::math::Pose;
 
 use super::format::{
     BodyKind, BodyTable, FollowTable, JointKind, JointTable, SceneFile, ShapeKind, ShapeTable, UrdfTable,
 };
 use super::placed::Placed;
-use crate::plant::pose::{from_rpy_deg, to_rpy_deg};
+use crate::plant::pose::{from_rpy_deg, to_rpy_deg, turned_tensor};
 use crate::plant::robot::{Collision, Freedom, Geometry, Inertial, Joint, Origin, Robot, RobotFault, Weight};
 
 /// What a link without any shape is taken for where it must have a mass: a ball.
@@ -392,10 +392,5 @@ fn tensor(inertial: &Inertial, link: &Pose, density_kg_m3: Option<f64>) -> [f64;
         let moment = 0.4 * inertial.mass_kg * radius_m * radius_m;
         return [moment, moment, moment, 0.0, 0.0, 0.0];
     };
-    let turned: DQuat = (*link * pose(&inertial.origin)).rotation;
-    let own = DMat3::from_cols(DVec3::new(xx, xy, xz), DVec3::new(xy, yy, yz), DVec3::new(xz, yz, zz));
-    let rotation = DMat3::from_quat(turned);
-    let world = rotation * own * rotation.transpose();
-    let [x, y, z] = [world.x_axis, world.y_axis, world.z_axis];
-    [x.x, y.y, z.z, x.y, x.z, y.z]
+    turned_tensor([xx, yy, zz, xy, xz, yz], (*link * pose(&inertial.origin)).rotation)
 }

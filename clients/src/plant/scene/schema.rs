@@ -6,6 +6,7 @@ use serde_json::{Map, Value, json};
 
 use super::VERSION;
 use super::format::SceneFile;
+use super::own::Header;
 use crate::plant::component::kind::{Form, Kind, Parameter, Setting, Signal, Values, unit};
 use crate::plant::component::library::kinds;
 use crate::plant::coupling::{BindingKey, Names};
@@ -17,8 +18,32 @@ pub fn schema() -> Value {
     without_null(&mut top);
     top["title"] = json!("onescan plant");
     top["properties"]["version"] = json!({ "const": VERSION });
-    let kinds: Vec<_> = kinds().iter().map(component).collect();
-    top["properties"]["component"] = json!({ "type": "array", "items": { "oneOf": kinds } });
+    let mut all: Vec<_> = kinds().iter().map(component).collect();
+    all.push(own_component());
+    top["properties"]["component"] = json!({ "type": "array", "items": { "oneOf": all } });
+    top
+}
+
+/// The table of a component of a kind of the user's own: its file says what it has.
+fn own_component() -> Value {
+    let library: Vec<_> = kinds().iter().map(|kind| &kind.name).collect();
+    let kind = json!({ "type": TEXT, "not": { "enum": library } });
+    json!({
+        "type": "object",
+        "description": "of a kind of the user's own, in a folder of `libraries`",
+        "required": ["name", "kind"],
+        "properties": { "name": text(), "kind": kind, "signal_type": { "enum": ["REAL", "LREAL"] } },
+    })
+}
+
+/// The schema of an assembly, a kind of component of the user's own (JSON Schema 2020-12).
+pub fn assembly() -> Value {
+    let settings = SchemaSettings::draft2020_12().with(|settings| settings.inline_subschemas = true);
+    let mut top = settings.into_generator().into_root_schema_for::<Header>().to_value();
+    without_null(&mut top);
+    top["title"] = json!("onescan assembly");
+    top["description"] = json!("a kind of component, made of parts of a scene");
+    top["properties"]["version"] = json!({ "const": VERSION });
     top
 }
 
@@ -82,10 +107,10 @@ fn component(kind: &Kind) -> Value {
         required.extend(needed.then_some(*key));
     }
     for parameter in &kind.parameters {
-        properties.insert(parameter.key.to_owned(), setting(parameter));
+        properties.insert(parameter.key.to_string(), setting(parameter));
     }
     for input in &kind.inputs {
-        properties.insert(kind.constant_key(input.key), constant(input));
+        properties.insert(kind.constant_key(&input.key), constant(input));
         properties.insert(format!("{}_signal", input.key), described(text(), &input.about));
         let wire = json!({ "type": TEXT, "pattern": r"^.+\..+$" });
         properties.insert(format!("{}_from", input.key), described(wire, &input.about));
@@ -103,7 +128,7 @@ fn setting(parameter: &Parameter) -> Value {
         Form::Flag => json!({ "type": FLAG }),
         Form::Choice(words) => json!({ "enum": words }),
     };
-    let about = match unit(parameter.key).1 {
+    let about = match unit(&parameter.key).1 {
         Some(unit) => format!("{}, {unit}", parameter.about),
         None => parameter.about.clone(),
     };
@@ -146,7 +171,9 @@ mod tests {
 
     #[test]
     fn the_published_schema_is_that_of_the_tables() {
-        let made = format!("{}\n", serde_json::to_string_pretty(&schema()).expect("JSON"));
-        is_published("docs/schemas/plant.schema.json", &made);
+        for (file, schema) in [("plant", schema()), ("assembly", assembly())] {
+            let made = format!("{}\n", serde_json::to_string_pretty(&schema).expect("JSON"));
+            is_published(&format!("docs/schemas/{file}.schema.json"), &made);
+        }
     }
 }

@@ -17,9 +17,12 @@
 //!
 //! `cargo fmt` does not see files behind a macro: `rustfmt --edition 2024 FILE` formats a kind.
 
+use std::sync::LazyLock;
+
 use super::behaviour::{self, Component, Conflict, Running};
 use super::declare::{ParameterSet, SignalSet, Value};
 use super::kind::{Kind, Setting};
+use super::origin::Origin;
 use crate::plant::coupling::Unbound;
 use crate::plant::scene::Scene;
 use crate::plant::scene::model::{self, Bound, Wire};
@@ -131,20 +134,22 @@ library! {
     }
 }
 
-/// Every kind of component.
-pub fn kinds() -> Vec<Kind> {
-    ENTRIES.iter().map(|entry| (entry.kind)()).collect()
+static KINDS: LazyLock<Vec<Kind>> = LazyLock::new(|| ENTRIES.iter().map(|entry| (entry.kind)()).collect());
+
+/// Every kind of component in the library.
+pub fn kinds() -> &'static [Kind] {
+    &KINDS
 }
 
 /// The inputs of a component that are of use and that nobody drives, each with what it is all the time.
-pub fn open_inputs(component: &model::Component) -> Vec<(&'static str, Setting)> {
-    let Some(entry) = entry(component.kind) else { return Vec::new() };
-    let inputs = (entry.kind)().inputs.into_iter().zip(&component.inputs).enumerate();
-    let open = inputs.filter(|(at, (_, wire))| **wire == Wire::Open && (entry.uses)(&component.settings, *at));
-    open.filter_map(|(_, (input, _))| Some((input.key, input.preset?))).collect()
+pub fn open_inputs(component: &model::Component) -> Vec<(&str, Setting)> {
+    let inputs = component.kind.inputs.iter().zip(&component.inputs).enumerate();
+    let open = inputs.filter(|(at, (_, wire))| **wire == Wire::Open && component.kind.uses(&component.settings, *at));
+    open.filter_map(|(_, (input, _))| Some((&*input.key, input.preset?))).collect()
 }
 
 /// The kind of this name.
-pub(crate) fn entry(name: &str) -> Option<&'static Entry> {
-    ENTRIES.iter().find(|entry| entry.name == name)
+pub(crate) fn origin(name: &str) -> Option<Origin> {
+    let mut known = ENTRIES.iter().zip(kinds());
+    known.find(|(entry, _)| entry.name == name).map(|(entry, kind)| Origin::library(entry, kind))
 }

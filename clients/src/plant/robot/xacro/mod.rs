@@ -28,7 +28,8 @@ use std::sync::Arc;
 use onescan_base::nearest;
 
 use super::Reading;
-use super::xml::{self, Attribute, Element, RobotFault, Source};
+use super::xml::{self, Attribute, Element, RobotFault};
+use crate::plant::file_place::Source;
 use parameter::{Parameter, Preset};
 use scope::{Property, Reach, Scope};
 use value::Value;

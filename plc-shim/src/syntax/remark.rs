@@ -1,14 +1,16 @@
-//! What sources say about their variables: the comment beside a declaration, and its line.
+//! What sources say about what they declare: the comment beside a variable, and its line; the comment in front of a
+//! unit.
 
 use std::collections::BTreeMap;
 
-use onescan_plc_shim::source::SourceFile;
-use onescan_plc_shim::syntax::token::{Keyword, Token, TokenKind};
-use onescan_plc_shim::syntax::tokenize_in;
+use super::token::{Keyword, Token, TokenKind};
+use super::tokenize_in;
+use crate::source::SourceFile;
 
-/// Comments and lines by unit and variable, in capitals; the unit of a global variable is empty.
+/// Comments and lines by unit and variable, in capitals; the unit of a global variable is empty, and so is the
+/// variable of a unit itself.
 #[derive(Debug, Default)]
-pub(super) struct Remarks(BTreeMap<(String, String), Remark>);
+pub struct Remarks(BTreeMap<(String, String), Remark>);
 
 #[derive(Debug)]
 struct Remark {
@@ -17,7 +19,8 @@ struct Remark {
 }
 
 impl Remarks {
-    pub(super) fn of<'f>(files: impl Iterator<Item = &'f SourceFile>) -> Self {
+    /// Those of some files.
+    pub fn of<'f>(files: impl Iterator<Item = &'f SourceFile>) -> Self {
         let mut remarks = Self::default();
         for file in files {
             remarks.file(file);
@@ -26,13 +29,18 @@ impl Remarks {
     }
 
     /// The line of the variable that a path begins with.
-    pub(super) fn line(&self, path: &str) -> Option<u32> {
+    pub fn line(&self, path: &str) -> Option<u32> {
         self.find(path).map(|remark| remark.line)
     }
 
     /// The comment of the variable that a path begins with.
-    pub(super) fn comment(&self, path: &str) -> Option<String> {
+    pub fn comment(&self, path: &str) -> Option<String> {
         self.find(path).and_then(|remark| remark.comment.clone())
+    }
+
+    /// The comment in front of a unit.
+    pub fn comment_on_unit(&self, unit: &str) -> Option<&str> {
+        self.0.get(&(unit.to_ascii_uppercase(), String::new()))?.comment.as_deref()
     }
 
     fn find(&self, path: &str) -> Option<&Remark> {
@@ -49,6 +57,7 @@ impl Remarks {
         let text = file.text();
         let tokens = tokenize_in(file.dialect(), text);
         let (mut unit, mut is_in_section, mut is_global) = (String::new(), false, false);
+        self.units(file, &tokens);
         let significant = tokens.into_iter().filter(|token| !token.kind.is_trivia());
         let significant = significant.filter_map(|Token { kind, start, end }| {
             let (start, end) = (start as usize, end as usize);
@@ -94,6 +103,46 @@ impl Remarks {
     }
 }
 
+impl Remarks {
+    /// The comment nearest in front of each unit, where nothing else stands between.
+    fn units(&mut self, file: &SourceFile, tokens: &[Token]) {
+        let text = file.text();
+        let piece = |token: &Token| text.get(token.start as usize..token.end as usize).unwrap_or_default();
+        let mut before: Vec<&str> = Vec::new();
+        let mut names = tokens.iter().filter(|token| token.kind == TokenKind::Identifier).peekable();
+        for token in tokens {
+            match token.kind {
+                TokenKind::BlockComment => before = vec![piece(token)],
+                TokenKind::LineComment => before.push(piece(token)),
+                TokenKind::Keyword(Keyword::Program | Keyword::FunctionBlock | Keyword::Function) => {
+                    while names.next_if(|name| name.start < token.end).is_some() {}
+                    let comment = paragraph(&std::mem::take(&mut before));
+                    if let (Some(name), false) = (names.peek(), comment.is_empty()) {
+                        let line = file.shown_line_column(token.start).line;
+                        let key = (piece(name).to_ascii_uppercase(), String::new());
+                        self.0.entry(key).or_insert(Remark { line, comment: Some(comment) });
+                    }
+                }
+                kind if kind.is_trivia() => {}
+                _ => before.clear(),
+            }
+        }
+    }
+}
+
+/// The first paragraph of comments as one line, without what makes them comments.
+fn paragraph(comments: &[&str]) -> String {
+    let lines = comments.iter().flat_map(|comment| {
+        let inside = [("(*", "*)"), ("/*", "*/"), ("//", "")].iter().find_map(|(open, close)| {
+            let inside = comment.strip_prefix(open)?;
+            Some(inside.strip_suffix(close).unwrap_or(inside))
+        });
+        inside.unwrap_or(comment).trim().lines().map(|line| line.trim().trim_start_matches('*').trim())
+    });
+    let lines = lines.skip_while(|line| line.is_empty()).take_while(|line| !line.is_empty());
+    lines.collect::<Vec<_>>().join(" ").trim_end_matches('.').to_owned()
+}
+
 /// The comment on the line of a declaration, or the documentation of a variable in PLCopen XML.
 fn comment(file: &SourceFile, name_end: usize) -> Option<String> {
     if file.origin().is_some() {
@@ -130,4 +179,22 @@ fn documentation(variable: &str) -> Option<String> {
     let entities = [("&lt;", "<"), ("&gt;", ">"), ("&quot;", "\""), ("&apos;", "'"), ("&amp;", "&")];
     let text = entities.iter().fold(text, |text, (entity, is)| text.replace(entity, is));
     Some(text.trim().to_owned()).filter(|text| !text.is_empty())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_and_variables_have_the_comments_beside_them() {
+        let text = "// Low pass\n// of first order.\nFUNCTION_BLOCK lag\nVAR_INPUT x : REAL; // what comes in\nEND_VAR\n\
+            END_FUNCTION_BLOCK\n(* Sums up.\n\n * More of it. *)\nFUNCTION_BLOCK sum END_FUNCTION_BLOCK\n\
+            FUNCTION_BLOCK bare END_FUNCTION_BLOCK";
+        let file = SourceFile::new("a.st", text);
+        let remarks = Remarks::of(std::iter::once(&file));
+        assert_eq!(remarks.comment_on_unit("LAG"), Some("Low pass of first order"));
+        assert_eq!(remarks.comment_on_unit("sum"), Some("Sums up"));
+        assert_eq!(remarks.comment_on_unit("bare"), None);
+        assert_eq!(remarks.comment("lag.x").as_deref(), Some("what comes in"));
+    }
 }
