@@ -32,6 +32,7 @@ mod opcua;
 mod openplc;
 mod operator;
 mod output;
+mod own_kinds;
 mod papers;
 mod plant;
 mod plc;

@@ -61,6 +61,8 @@ pub const TARGETS: &[Target] = &[
     Target { name: "certificate", about: "certificate and key in PEM", prepare: scenario::certificate },
     Target { name: "subject", about: "whom a client's certificate is for", prepare: scenario::subject },
     Target { name: "scene", about: "a scene, for three turns", prepare: plant::scene },
+    Target { name: "assembly", about: "an assembly, in a scene for three turns", prepare: plant::assembly },
+    Target { name: "block", about: "a function block as a component, for three turns", prepare: plant::block },
     Target { name: "stl", about: "a mesh, as a body", prepare: plant::stl },
     Target { name: "obj", about: "a mesh, as a body", prepare: plant::obj },
     Target { name: "collada", about: "a mesh, as a body", prepare: plant::collada },

@@ -49,6 +49,40 @@ pub(super) fn scene(scratch: &Path) -> Prepared {
     })
 }
 
+/// An assembly, of which a scene has two components.
+pub(super) fn assembly(scratch: &Path) -> Prepared {
+    let scene = "version = 1\nlibraries = [\"kinds\"]\n\
+        [[component]]\nname = \"part[0..1]\"\nkind = \"own\"\nstep_m = [0, 1, 0]\nrpy_deg = [0, 0, 90]\n";
+    own(scratch, scene, "own.toml", example("toml", "[[parameter]]"))
+}
+
+/// A function block as a kind of component.
+pub(super) fn block(scratch: &Path) -> Prepared {
+    let scene = "version = 1\nlibraries = [\"kinds\"]\n[[component]]\nname = \"part\"\nkind = \"oven\"\n";
+    own(scratch, scene, "oven.st", example("st", "FUNCTION_BLOCK oven"))
+}
+
+/// A kind of the user's own in a scene.
+fn own(scratch: &Path, scene: &str, file: &'static str, seeds: Vec<Vec<u8>>) -> Prepared {
+    std::fs::create_dir_all(scratch.join("kinds")).expect("a scratch folder");
+    std::fs::write(scratch.join("plant.toml"), scene).expect("a scratch folder");
+    let (scene, path): (PathBuf, PathBuf) = (scratch.join("plant.toml"), scratch.join("kinds").join(file));
+    Prepared::new(seeds, move |input| {
+        std::fs::write(&path, input).expect("a scratch folder");
+        moves(&scene)
+    })
+}
+
+/// The blocks of the manual of kinds in a language, those with a word in them.
+fn example(language: &str, word: &str) -> Vec<Vec<u8>> {
+    let pages = files("docs", &["kinds.md"]);
+    let pages: Vec<String> = pages.iter().map(|page| String::from_utf8_lossy(page).into_owned()).collect();
+    let opening = format!("```{language}\n");
+    let blocks = pages.iter().flat_map(|page| page.split(&opening).skip(1));
+    let blocks = blocks.filter_map(|block| block.split("```").next()).filter(|block| block.contains(word));
+    blocks.map(|block| block.as_bytes().to_vec()).collect()
+}
+
 /// The examples of the manual: each block of TOML with a body or a component, made a scene.
 fn pages() -> Vec<Vec<u8>> {
     let mut found = Vec::new();
