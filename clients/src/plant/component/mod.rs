@@ -31,4 +31,5 @@ pub(crate) mod program;
 #[cfg(test)]
 mod tests;
 
-pub use library::{kinds, open_inputs};
+pub use library::kinds;
+pub use origin::open_inputs;

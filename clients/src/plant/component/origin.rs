@@ -11,11 +11,11 @@ use thiserror::Error;
 use super::behaviour::{Conflict, Running};
 use super::declare::Value;
 use super::kind::{Kind, Setting};
-use super::library::Entry;
+use super::library::{ENTRIES, Entry, kinds};
 use super::program::{Program, ProgramError};
 use crate::plant::coupling::Unbound;
 use crate::plant::scene::Scene;
-use crate::plant::scene::model::Bound;
+use crate::plant::scene::model::{self, Bound, Wire};
 use crate::plant::world::World;
 
 /// A kind, which it dereferences to, and what makes components of it.
@@ -49,8 +49,10 @@ pub(crate) enum Unmade {
 }
 
 impl Origin {
-    pub(crate) fn library(entry: &'static Entry, kind: &'static Kind) -> Self {
-        Self(Source::Library { entry, kind })
+    /// The kind of the library of this name.
+    pub(crate) fn of_library(name: &str) -> Option<Self> {
+        let mut known = ENTRIES.iter().zip(kinds());
+        known.find(|(entry, _)| entry.name == name).map(|(entry, kind)| Self(Source::Library { entry, kind }))
     }
 
     pub(crate) fn program(program: Arc<Program>) -> Self {
@@ -145,4 +147,11 @@ impl Serialize for Origin {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.serialize_str(&self.name)
     }
+}
+
+/// The inputs of a component that are of use and that nobody drives, each with what it is all the time.
+pub fn open_inputs(component: &model::Component) -> Vec<(&str, Setting)> {
+    let inputs = component.kind.inputs.iter().zip(&component.inputs).enumerate();
+    let open = inputs.filter(|(at, (_, wire))| **wire == Wire::Open && component.kind.uses(&component.settings, *at));
+    open.filter_map(|(_, (input, _))| Some((&*input.key, input.preset?))).collect()
 }

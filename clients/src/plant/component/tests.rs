@@ -3,7 +3,8 @@
 use super::behaviour::{Component, SeenBy, Start, Turn};
 use super::declare::{Failed, FailureSet, SignalSet, Value};
 use super::kind::{Form, Setting, Values, unit};
-use super::library::{ENTRIES, kinds, origin};
+use super::library::{ENTRIES, kinds};
+use super::origin::Origin;
 use crate::plant::coupling::{Coordinate, Grasp, Hit, InField, Load, Moving, Targets};
 use crate::plant::effort::Motion;
 use crate::plant::random::Random;
@@ -230,7 +231,7 @@ fn every_preset_is_allowed_and_goes_with_the_others() {
             };
             assert_eq!(parameter.form.read(&written), Some(parameter.preset), "{} {}", kind.name, parameter.key);
         }
-        assert_eq!(origin(&kind.name).expect("known").conflict(&settings), None, "{}", kind.name);
+        assert_eq!(Origin::of_library(&kind.name).expect("known").conflict(&settings), None, "{}", kind.name);
     }
 }
 

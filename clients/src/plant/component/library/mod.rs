@@ -22,10 +22,9 @@ use std::sync::LazyLock;
 use super::behaviour::{self, Component, Conflict, Running};
 use super::declare::{ParameterSet, SignalSet, Value};
 use super::kind::{Kind, Setting};
-use super::origin::Origin;
 use crate::plant::coupling::Unbound;
 use crate::plant::scene::Scene;
-use crate::plant::scene::model::{self, Bound, Wire};
+use crate::plant::scene::model::Bound;
 use crate::plant::world::World;
 
 /// Makes a component of its settings, its seed and what it is bound to.
@@ -139,17 +138,4 @@ static KINDS: LazyLock<Vec<Kind>> = LazyLock::new(|| ENTRIES.iter().map(|entry| 
 /// Every kind of component in the library.
 pub fn kinds() -> &'static [Kind] {
     &KINDS
-}
-
-/// The inputs of a component that are of use and that nobody drives, each with what it is all the time.
-pub fn open_inputs(component: &model::Component) -> Vec<(&str, Setting)> {
-    let inputs = component.kind.inputs.iter().zip(&component.inputs).enumerate();
-    let open = inputs.filter(|(at, (_, wire))| **wire == Wire::Open && component.kind.uses(&component.settings, *at));
-    open.filter_map(|(_, (input, _))| Some((&*input.key, input.preset?))).collect()
-}
-
-/// The kind of this name.
-pub(crate) fn origin(name: &str) -> Option<Origin> {
-    let mut known = ENTRIES.iter().zip(kinds());
-    known.find(|(entry, _)| entry.name == name).map(|(entry, kind)| Origin::library(entry, kind))
 }

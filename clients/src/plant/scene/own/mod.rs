@@ -34,7 +34,7 @@ use super::faults::Faults;
 use super::format::{ComponentTable, SceneFile};
 use super::placed::Placed;
 use super::text;
-use crate::plant::component::library::{kinds, origin};
+use crate::plant::component::library::kinds;
 use crate::plant::component::origin::Origin;
 use crate::plant::component::program::{Program, ProgramError};
 use assembly::Assembly;
@@ -86,7 +86,7 @@ impl Kinds {
         match self.own.get(name) {
             Some(Own::Program(own)) => Some(own.clone()),
             Some(Own::Assembly(_) | Own::Faulty) => None,
-            None => origin(name),
+            None => Origin::of_library(name),
         }
     }
 
@@ -114,7 +114,7 @@ impl Kinds {
         let first = found.first()?;
         let told = found.iter().map(|file| format!("`{}`", file.named)).collect::<Vec<_>>().join(" and ");
         let cause = match found.len() {
-            _ if origin(name).is_some() => Some(format!("{told} is called like a kind of the library")),
+            _ if Origin::of_library(name).is_some() => Some(format!("{told} is called like a kind of the library")),
             1 => None,
             _ => Some(format!("{told} both define it")),
         };
