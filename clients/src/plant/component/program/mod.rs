@@ -21,8 +21,6 @@
 mod interface;
 mod running;
 mod socket;
-#[cfg(test)]
-mod tests;
 
 use std::sync::Arc;
 
