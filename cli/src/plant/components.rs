@@ -88,10 +88,10 @@ fn read(folder: &PathBuf) -> Result<Listing, PlantError> {
 
 /// All that is wrong, as with a scene.
 fn refuse(faults: Vec<SceneFault>) -> Result<(), PlantError> {
-    match faults.is_empty() {
-        true => Ok(()),
-        false => Err(ScenarioError::from(Box::new(report(&SceneError::Faulty(faults), "", ""))).into()),
+    if faults.is_empty() {
+        return Ok(());
     }
+    Err(ScenarioError::from(Box::new(report(&SceneError::Faulty(faults), "", ""))).into())
 }
 
 fn one(

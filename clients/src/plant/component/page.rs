@@ -105,7 +105,7 @@ pub fn catalogue() -> String {
         let _ = writeln!(all, "| [`{0}`](#{0}) | {1} |", kind.name, kind.summary);
     }
     for kind in kinds() {
-        let _ = write!(all, "\n{}", page(&kind));
+        let _ = write!(all, "\n{}", page(kind));
     }
     all
 }

@@ -132,13 +132,11 @@ pub(super) fn check(
 }
 
 fn known<'f>(keys: Keys<'f>, kinds: &Kinds, faults: &mut Faults<'_>) -> Option<Known<'f>> {
-    match kinds.find(text(&keys.kind)) {
-        Some(kind) => Some(Known { keys, kind }),
-        None => {
-            kinds.miss(&keys.kind, faults);
-            None
-        }
+    let kind = kinds.find(text(&keys.kind));
+    if kind.is_none() {
+        kinds.miss(&keys.kind, faults);
     }
+    kind.map(|kind| Known { keys, kind })
 }
 
 /// The kind as it is with a component's settings.

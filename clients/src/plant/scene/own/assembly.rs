@@ -352,9 +352,7 @@ impl ParameterTable {
                 && self.most.is_none_or(|most| number <= most)
         };
         match (self.preset.get_ref(), value) {
-            (Value::Integer(_), Value::Integer(whole)) | (Value::Float(_), Value::Integer(whole)) => {
-                within(*whole as f64)
-            }
+            (Value::Integer(_) | Value::Float(_), Value::Integer(whole)) => within(*whole as f64),
             (Value::Float(_), Value::Float(number)) => within(*number),
             (Value::Boolean(_), Value::Boolean(_)) => true,
             (Value::String(_), Value::String(word)) => self.choice.as_ref().is_none_or(|words| words.contains(word)),

@@ -44,9 +44,10 @@ impl Expansion {
             (Some(Own::Assembly(assembly)), Some(kind), Some(name)) => {
                 let contains_itself = self.within.contains(&assembly.name);
                 if contains_itself || self.components.len() >= PARTS_MAX {
-                    let cause = match contains_itself {
-                        true => format!("it contains itself: {} > {}", self.within.join(" > "), assembly.name),
-                        false => format!("the scene has more than {PARTS_MAX} components"),
+                    let cause = if contains_itself {
+                        format!("it contains itself: {} > {}", self.within.join(" > "), assembly.name)
+                    } else {
+                        format!("the scene has more than {PARTS_MAX} components")
                     };
                     faults.add(kind.span(), SceneFaultKind::OwnKind { kind: text(&kind).to_owned(), cause });
                     self.aliases.begin(&name, &assembly);

@@ -186,7 +186,7 @@ fn refuse(
     let part = parts.iter().find(|part| text_of(part.get_ref(), "name").is_some_and(|found| text(&found) == name));
     let (cause, hint) = match part {
         None => {
-            let near = nearest(name, names.iter().map(|name| text(name)));
+            let near = nearest(name, names.iter().map(text));
             (
                 format!("no part `{name}` in this assembly; it is to be \"part.{}\"", what.replace(' ', "_")),
                 near.map(str::to_owned),
