@@ -54,6 +54,7 @@ mod review;
 mod robot_cell;
 mod run;
 mod shear;
+mod shift;
 mod stubs;
 mod suites;
 mod test_manager;

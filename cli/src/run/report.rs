@@ -3,6 +3,7 @@
 use std::io::Write;
 use std::time::Duration;
 
+use onescan_scenario::report::Report;
 use onescan_scenario::{Mode, Scenario};
 use onescan_server::digest::Digest;
 use onescan_server::end::{Failure, SessionEnd};
@@ -12,6 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use super::config::{RunConfig, Transport};
 use super::expectation::ExpectationReport;
+use super::production::tables;
 use super::session_log::{self, ClientLatency};
 use super::watch::WatchReport;
 use crate::error::ExitCode;
@@ -51,6 +53,9 @@ pub struct RunReport {
     /// What came of the scenario's expectations.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub expectations: Vec<ExpectationReport>,
+    /// What it produced; absent unless the scenario has a `[report]`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub report: Option<Report>,
     /// How long the session waited for each client, if that was noted.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub latency: Vec<ClientLatency>,
@@ -114,6 +119,7 @@ impl RunReport {
             error: failure.as_ref().map(ToString::to_string),
             failure,
             expectations: Vec::new(),
+            report: None,
             latency: Vec::new(),
             watched: None,
             step: scenario.file().step,
@@ -155,6 +161,9 @@ impl RunReport {
                 }
                 for expectation in &self.expectations {
                     expectation.write(out)?;
+                }
+                if let Some(report) = &self.report {
+                    tables::write(report, out)?;
                 }
                 session_log::write(&self.latency, out)?;
                 if let Some(watched) = &self.watched {
