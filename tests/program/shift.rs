@@ -45,7 +45,8 @@ fn a_report_changes_no_digest() {
     let without = copied("filling-machine");
     let text = std::fs::read_to_string(without.path().join("scenario.toml")).expect("a file");
     let (begin, end) = (text.find("[report]").expect("a report"), text.find("[plot]").expect("a plot"));
-    std::fs::write(without.path().join("scenario.toml"), format!("{}{}", &text[..begin], &text[end..])).expect("a file");
+    std::fs::write(without.path().join("scenario.toml"), format!("{}{}", &text[..begin], &text[end..]))
+        .expect("a file");
     let words = ["run", ".", "--case", "stop-and-start", "--until", "20s", "--format", "json"];
     let plain: Value = serde_json::from_str(&typed(without.path(), &words).out).expect("JSON");
     assert_eq!(plain.get("report"), None);

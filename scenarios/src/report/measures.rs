@@ -107,7 +107,7 @@ impl<'a> Binder<'a> {
         };
         let Some(range) = range else {
             let help = (known.ty == SignalType::BOOL).then(|| format!("count its edges: `when = \"{name}\"`"));
-            return Err(wrong(format!("`{name}` is a {}, not a whole number that counts", known.ty), help));
+            return Err(wrong(format!("`{name}` has the type {}; a counter is a whole number", known.ty), help));
         };
         let column = self.columns.iter().position(|column| column == name).unwrap_or_else(|| {
             self.columns.push(name.to_owned());

@@ -122,7 +122,7 @@ mod tests {
         }
         assert_eq!(windows.until(36), Throughput { window_ns: 10, counts: vec![2, 1, 0, 1] });
         assert_eq!(windows.until(46).counts.len(), 5, "empty windows are windows");
-        assert_eq!(Windows::new(5, None, STEP).until(5).counts, []);
+        assert!(Windows::new(5, None, STEP).until(5).counts.is_empty());
     }
 
     #[test]
