@@ -46,7 +46,7 @@ proptest! {
     ) {
         let histogram = Histogram { title: text.clone(), remark: text.clone(), from_ns, bin_ns, counts };
         prop_assert!(histogram.to_svg().ends_with("</svg>\n"));
-        let bars = values.into_iter().map(|value| bar(&text, value, false)).collect();
-        prop_assert!(Bars { title: text.clone(), bars }.to_svg().ends_with("</svg>\n"));
+        let bars = Bars { bars: values.into_iter().map(|value| bar(&text, value, false)).collect(), title: text };
+        prop_assert!(bars.to_svg().ends_with("</svg>\n"));
     }
 }

@@ -48,10 +48,10 @@ pub(super) fn of_runs(
     }
 }
 
-fn section(report: &RunReport, events: Vec<Event>, mut shown: Vec<Picture>) -> Section {
+fn section(report: &RunReport, events: Vec<Event>, mut drawn: Vec<Picture>) -> Section {
     let is_bad = report.status == RunStatus::Failed || report.is_unmet();
     let digest = report.digest.map(|digest| digest.to_string());
-    shown.extend(report.report.iter().flat_map(pictures::of));
+    drawn.extend(report.report.iter().flat_map(pictures::of));
     let violations = report.expectations.iter().filter(|expectation| expectation.is_violated());
     let violations = violations.filter_map(|violated| Some((violated.at?.as_nanos(), violated.name.as_str())));
     Section {
@@ -69,7 +69,7 @@ fn section(report: &RunReport, events: Vec<Event>, mut shown: Vec<Picture>) -> S
             .flat_map(|report| tables::of(report).into_iter().chain(tables::occurrences(report)))
             .collect(),
         events: timeline(events, violations),
-        pictures: shown,
+        pictures: drawn,
     }
 }
 

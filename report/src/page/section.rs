@@ -161,7 +161,7 @@ fn told(table: &Table) -> Markup {
     };
     html! {
         @if table.is_folded {
-            details { summary { (table.rows.len()) " " (table.title) } (cells) }
+            details { summary { (table.title) } (cells) }
         } @else {
             (cells)
         }

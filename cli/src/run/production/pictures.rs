@@ -21,7 +21,9 @@ pub(crate) fn of(report: &Report) -> Vec<Picture> {
 fn throughput(report: &Report) -> Option<Plot> {
     let panels: Vec<Panel> = report.counts.iter().map(|count| panel(count, report.from_ns, report.to_ns)).collect();
     let seen = panels.iter().any(|panel| panel.runs.iter().any(|run| !run.values.is_empty()));
-    seen.then(|| Plot { title: String::new(), runs: Vec::new(), panels, marks: Vec::new() })
+    let window_ns = report.counts.first().map_or(0, |count| count.throughput.window_ns);
+    let line = format!("per hour, in windows of {}", seconds(window_ns));
+    seen.then(|| Plot { title: String::new(), runs: vec![line], panels, marks: Vec::new() })
 }
 
 /// Pieces in an hour, window by window. The last window may be shorter than the others.
@@ -37,7 +39,7 @@ fn panel(count: &CountReport, from_ns: u64, to_ns: u64) -> Panel {
         }
     }
     Panel {
-        signal: format!("{}, in windows of {}", count.name, seconds(window_ns)),
+        signal: count.name.clone(),
         unit: Some("1/h".to_owned()),
         shape: Shape::Step,
         names: Vec::new(),

@@ -64,7 +64,7 @@ fn cycles(cycles: &[CycleReport]) -> Table {
     };
     let abandoned = |cycle: &CycleReport| match cycle.abandoned {
         0 => None,
-        count => Some(format!("{}: {count} began once more before they had ended", cycle.name)),
+        count => Some(format!("{}: {count} abandoned, as the next one began first", cycle.name)),
     };
     Table {
         title: "cycle",
@@ -153,6 +153,7 @@ pub(super) fn seconds(length_ns: u64) -> String {
     format!("{} s", short(length_ns as f64 / 1e9))
 }
 
+/// A part of a whole in per cent, to two decimals.
 pub(super) fn per_cent(part: f64) -> String {
-    format!("{} %", short(part * 100.0))
+    format!("{} %", short((part * 1e4).round() / 1e2))
 }
