@@ -158,8 +158,8 @@ fn refused(folder: &Path) -> String {
 #[test]
 fn what_is_wrong_is_said_with_its_place() {
     let wrong = [
-        ("counter = \"Strokes\"", "counter = \"Stroke\""),
-        ("counter = \"Strokes\"", "counter = \"Sensor_1\""),
+        ("counter = \"AlignedCount\"", "counter = \"AlignedCout\""),
+        ("counter = \"AlignedCount\"", "counter = \"Sensor_1\""),
         ("not (Sensor_1 iff Sensor_2)", "not (Sensor_1 iff Sensor_3)"),
         ("from = \"Actuator_1_Down\"", "form = \"Actuator_1_Down\""),
         ("from = \"Actuator_1_Down\"", "from = \"rose(Actuator_1_Down)\""),

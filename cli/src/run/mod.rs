@@ -107,7 +107,7 @@ pub fn execute(config: &RunConfig, interrupt: &Interrupt, out: &mut dyn Write) -
     let (mut samples, mut unsaved) = (Vec::new(), None);
     for number in 1..=config.runs {
         let ran = one_run(config, &scenario, number, interrupt, Vec::new())?;
-        ran.report.write(config.reports.format, config.runs, out).map_err(OutputError)?;
+        ran.report.write(config.reports.format, config.runs, reports.last(), out).map_err(OutputError)?;
         reports.push(ran.report);
         samples.push(ran.samples);
         unsaved = unsaved.or(ran.unsaved);

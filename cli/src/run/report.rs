@@ -142,7 +142,14 @@ impl RunReport {
         self.expectations.iter().any(ExpectationReport::is_violated)
     }
 
-    pub(super) fn write(&self, format: Format, runs: u32, out: &mut dyn Write) -> std::io::Result<()> {
+    /// Writes what came of this run, which is one of so many; `before` is the last of them.
+    pub(super) fn write(
+        &self,
+        format: Format,
+        runs: u32,
+        before: Option<&Self>,
+        out: &mut dyn Write,
+    ) -> std::io::Result<()> {
         match format {
             Format::Json => {
                 serde_json::to_writer(&mut *out, self)?;
@@ -162,8 +169,11 @@ impl RunReport {
                 for expectation in &self.expectations {
                     expectation.write(out)?;
                 }
-                if let Some(report) = &self.report {
-                    tables::write(report, out)?;
+                match (&self.report, before) {
+                    (None, _) => {}
+                    // Equal runs say the same, and once is enough.
+                    (now, Some(before)) if *now == before.report => writeln!(out, "  report as in run {}", before.run)?,
+                    (Some(report), _) => tables::write(report, out)?,
                 }
                 session_log::write(&self.latency, out)?;
                 if let Some(watched) = &self.watched {
