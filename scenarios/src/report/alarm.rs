@@ -71,7 +71,7 @@ struct Came {
 /// Alarms while the run goes.
 #[derive(Clone, Debug)]
 pub(super) struct Alarms {
-    alarms: Vec<(Alarm, Spells)>,
+    all: Vec<(Alarm, Spells)>,
     first: Vec<Came>,
     last: VecDeque<Came>,
     left_out: u64,
@@ -79,14 +79,14 @@ pub(super) struct Alarms {
 
 impl Alarms {
     pub(super) fn new(alarms: &[Alarm]) -> Self {
-        let alarms = alarms.iter().map(|alarm| (alarm.clone(), Spells::default())).collect();
-        Self { alarms, first: Vec::new(), last: VecDeque::new(), left_out: 0 }
+        let all = alarms.iter().map(|alarm| (alarm.clone(), Spells::default())).collect();
+        Self { all, first: Vec::new(), last: VecDeque::new(), left_out: 0 }
     }
 
     /// Takes the image of `t_ns`. Those that come at one time come in the order of the scenario.
     pub(super) fn push(&mut self, t_ns: u64, values: &[f64]) {
-        for index in 0..self.alarms.len() {
-            let (alarm, spells) = &mut self.alarms[index];
+        for index in 0..self.all.len() {
+            let (alarm, spells) = &mut self.all[index];
             match spells.push(t_ns, alarm.when.holds(values)) {
                 Some(Change::Began) => self.came(Came { alarm: index, from_ns: t_ns, to_ns: None }),
                 Some(Change::Ended) => self.went(index, t_ns),
@@ -122,13 +122,13 @@ impl Alarms {
             AlarmTotal { name: alarm.name.clone(), count, total_ns, longest_ns, active: spells.is_on() }
         };
         let occurrence = |came: &Came| Occurrence {
-            name: self.alarms[came.alarm].0.name.clone(),
+            name: self.all[came.alarm].0.name.clone(),
             from_ns: came.from_ns,
             to_ns: came.to_ns,
             duration_ns: came.to_ns.unwrap_or(end_ns).saturating_sub(came.from_ns),
         };
-        (!self.alarms.is_empty()).then(|| AlarmReport {
-            totals: self.alarms.iter().map(total).collect(),
+        (!self.all.is_empty()).then(|| AlarmReport {
+            totals: self.all.iter().map(total).collect(),
             first: self.first.iter().map(occurrence).collect(),
             left_out: self.left_out,
             last: self.last.iter().map(occurrence).collect(),

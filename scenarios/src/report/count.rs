@@ -50,13 +50,13 @@ pub(super) struct Count {
     counted: Counted,
     edge: Edge,
     before: Option<i128>,
-    count: u64,
+    total: u64,
     windows: Windows,
 }
 
 impl Count {
     pub(super) fn new(counted: Counted, windows: Windows) -> Self {
-        Self { counted, edge: Edge::default(), before: None, count: 0, windows }
+        Self { counted, edge: Edge::default(), before: None, total: 0, windows }
     }
 
     /// Takes the image of `t_ns`: its values, and the whole number that a counter is.
@@ -72,7 +72,7 @@ impl Count {
             },
         };
         if more > 0 {
-            self.count = self.count.saturating_add(more);
+            self.total = self.total.saturating_add(more);
             self.windows.add(t_ns, more);
         }
     }
@@ -82,8 +82,8 @@ impl Count {
         CountReport {
             name: self.counted.name.clone(),
             quality: self.counted.quality,
-            count: self.count,
-            per_hour: (span_ns > 0).then(|| self.count as f64 * HOUR_NS / span_ns as f64),
+            count: self.total,
+            per_hour: (span_ns > 0).then(|| self.total as f64 * HOUR_NS / span_ns as f64),
             throughput: self.windows.until(end_ns),
         }
     }

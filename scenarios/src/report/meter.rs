@@ -80,9 +80,15 @@ impl Meter {
             let (_, ty) = measures.signals.get(column)?;
             ty.integer(image.get(offset..)?)
         };
-        counts.iter_mut().for_each(|count| count.push(t_ns, values, whole));
-        cycles.iter_mut().for_each(|cycles| cycles.push(t_ns, values));
-        down.iter_mut().for_each(|down| down.push(t_ns, values));
+        for count in counts {
+            count.push(t_ns, values, whole);
+        }
+        for cycles in cycles {
+            cycles.push(t_ns, values);
+        }
+        if let Some(down) = down {
+            down.push(t_ns, values);
+        }
         alarms.push(t_ns, values);
     }
 

@@ -49,13 +49,10 @@ fn panel(count: &CountReport, from_ns: u64, to_ns: u64) -> Panel {
 
 fn histogram(cycle: &CycleReport) -> Option<Histogram> {
     let (times, bins) = (cycle.times.as_ref()?, cycle.histogram.as_ref()?);
-    let mut remark =
-        format!("{} cycles, median {}, 95 % {}", cycle.count, seconds(times.median_ns), seconds(times.p95_ns));
-    for (outside, word) in [(bins.shorter, "shorter"), (bins.longer, "longer")] {
-        if outside > 0 {
-            remark.push_str(&format!(", {outside} {word} than shown"));
-        }
-    }
+    let outside = |count: u64, word: &str| (count > 0).then(|| format!(", {count} {word} than shown"));
+    let outside = [outside(bins.shorter, "shorter"), outside(bins.longer, "longer")].into_iter().flatten();
+    let (count, median, p95) = (cycle.count, seconds(times.median_ns), seconds(times.p95_ns));
+    let remark = format!("{count} cycles, median {median}, 95 % {p95}{}", outside.collect::<String>());
     Some(Histogram {
         title: cycle.name.clone(),
         remark,

@@ -31,7 +31,7 @@ pub(super) fn scenario(scratch: &Path) -> Prepared {
                 _ => drop(scenario.member(name)),
             }
         }
-        scenario.measures().is_none_or(|measures| is_reported(measures))
+        scenario.measures().is_none_or(is_reported)
     })
 }
 
