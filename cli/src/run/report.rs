@@ -169,15 +169,15 @@ impl RunReport {
                 for expectation in &self.expectations {
                     expectation.write(out)?;
                 }
+                session_log::write(&self.latency, out)?;
+                if let Some(watched) = &self.watched {
+                    watched.write(out)?;
+                }
                 match (&self.report, before) {
                     (None, _) => {}
                     // Equal runs say the same, and once is enough.
                     (now, Some(before)) if *now == before.report => writeln!(out, "  report as in run {}", before.run)?,
                     (Some(report), _) => tables::write(report, out)?,
-                }
-                session_log::write(&self.latency, out)?;
-                if let Some(watched) = &self.watched {
-                    watched.write(out)?;
                 }
             }
         }
