@@ -239,6 +239,28 @@ impl SignalType {
         }
     }
 
+    /// The value as a whole number: that of an integer, a bit string, a BOOL or a character, the nanoseconds of a time or
+    /// date; nothing for reals and strings. Unlike [`Self::as_f64`] it is exact beyond 2^53.
+    ///
+    /// # Panics
+    /// If `bytes` is shorter than [`SignalType::size`].
+    ///
+    /// ```
+    /// use onescan_base::SignalType;
+    ///
+    /// assert_eq!(SignalType::INT.integer(&(-7_i16).to_le_bytes()), Some(-7));
+    /// assert_eq!(SignalType::ULINT.integer(&u64::MAX.to_le_bytes()), Some(18_446_744_073_709_551_615));
+    /// assert_eq!(SignalType::REAL.integer(&1.0_f32.to_le_bytes()), None);
+    /// ```
+    #[must_use]
+    pub fn integer(self, bytes: &[u8]) -> Option<i128> {
+        let Self::Elementary(ty) = self else { return None };
+        ty.range()?;
+        let mut wide = [0; 16];
+        wide[..self.size()].copy_from_slice(&bytes[..self.size()]);
+        Some(ty.wrap(i128::from_le_bytes(wide)))
+    }
+
     /// The bytes of a whole number as a value of this type; nothing if the type has no whole numbers, or not this one.
     /// Times and dates are nanoseconds.
     ///

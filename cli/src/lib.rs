@@ -9,6 +9,7 @@
 //! | [`compare`] | lockstep beside the other ways of bringing plant and PLC together |
 //! | [`bisect`] | the commit since which a run is another |
 //! | [`diff`] | where two recordings or snapshots part, and why |
+//! | [`report`] | what a recorded run produced |
 //! | [`regress`] | all cases run, compared with reviewed snapshots, reported |
 //! | [`why`] | the way from a signal back to the statement in which two runs part |
 //! | [`repository`] | what a scenario was at other commits |
@@ -55,6 +56,7 @@ pub mod new;
 pub mod plant;
 pub mod plc;
 pub mod regress;
+pub mod report;
 pub mod repository;
 pub mod review;
 pub mod run;

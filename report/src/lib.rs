@@ -6,6 +6,7 @@
 //! |---|---|
 //! | [`verdict`], [`severity`] | words that several reports share |
 //! | [`number`] | numbers for people |
+//! | [`table`] | tables, for terminals and pages |
 //! | [`plot`] | trajectories as SVG |
 //! | [`view`] | a scene from one of its sides as SVG |
 //! | [`page`] | one HTML page with everything in it |
@@ -25,10 +26,12 @@ pub mod page;
 pub mod plot;
 pub mod sarif;
 pub mod severity;
+pub mod table;
 pub mod verdict;
 pub mod view;
 
 pub use file::FileError;
 pub use output::OutputError;
 pub use severity::Severity;
+pub use table::Table;
 pub use verdict::Verdict;

@@ -55,7 +55,7 @@ impl Expectations {
 
 /// The bytes of the file that hold `part` of a formula; all of the formula if it is written with
 /// escapes.
-fn place_within(formula: &Spanned<String>, text: &str, part: &Range<usize>) -> Range<usize> {
+pub(crate) fn place_within(formula: &Spanned<String>, text: &str, part: &Range<usize>) -> Range<usize> {
     let whole = formula.span();
     let offset = text.get(whole.clone()).and_then(|written| written.find(formula.get_ref().as_str()));
     match offset {

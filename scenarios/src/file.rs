@@ -1,7 +1,6 @@
 //! `scenario.toml` as it is written. Times are text with a unit, as in `"10ms"`.
 
 use std::collections::BTreeMap;
-use std::str::FromStr;
 
 use onescan_clients::gateway::Settings;
 use onescan_plc_shim::{Dialect, MemoryLimit};
@@ -12,7 +11,8 @@ use serde::{Deserialize, Deserializer};
 use toml::Spanned;
 
 use crate::expect::KnownSignal;
-use crate::form::{DialectName, Mebibytes, Name, Scalar, Time, Type, Values};
+use crate::form::{DialectName, Mebibytes, Name, Scalar, Time, Type, Values, from_optional_text, from_text};
+use crate::report_file::ReportFile;
 use crate::value_names::ValueNames;
 
 /// The only version of the format so far.
@@ -54,6 +54,9 @@ pub struct ScenarioFile {
     /// What every run must show.
     #[serde(default)]
     pub expect: Vec<ExpectFile>,
+    /// What is counted and timed in every run.
+    #[schemars(with = "Option<ReportFile>")]
+    pub report: Option<Spanned<ReportFile>>,
     /// How the signals travel when nothing is synchronised.
     #[serde(default)]
     pub freewheel: FreewheelFile,
@@ -264,24 +267,6 @@ pub struct PlotFile {
     #[serde(default)]
     #[schemars(with = "Vec<Name>")]
     pub signals: Vec<Spanned<SignalName>>,
-}
-
-pub(crate) fn from_text<'de, D, T>(deserializer: D) -> Result<T, D::Error>
-where
-    D: Deserializer<'de>,
-    T: FromStr,
-    T::Err: std::fmt::Display,
-{
-    String::deserialize(deserializer)?.parse().map_err(serde::de::Error::custom)
-}
-
-pub(crate) fn from_optional_text<'de, D, T>(deserializer: D) -> Result<Option<T>, D::Error>
-where
-    D: Deserializer<'de>,
-    T: FromStr,
-    T::Err: std::fmt::Display,
-{
-    from_text(deserializer).map(Some)
 }
 
 /// A number of MiB that a PLC can address.

@@ -1,7 +1,8 @@
 //! The forms of values in the files, for their JSON schemas: types of other crates are to an editor what a person
-//! writes.
+//! writes, and values that are written as text.
 
 use std::borrow::Cow;
+use std::str::FromStr;
 
 use onescan_base::ElementaryType;
 use onescan_clients::gateway::settings::Text;
@@ -9,6 +10,7 @@ use onescan_plc_shim::{Dialect, MemoryLimit};
 use onescan_server::signal::name::NAME_BYTES_MAX;
 use onescan_server::time::TimeSpan;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::{Deserialize, Deserializer};
 use serde_json::json;
 
 /// A time, as in `"10ms"`.
@@ -125,4 +127,24 @@ form!(
 
 fn seed(about: &str) -> serde_json::Value {
     json!({ "description": about, "type": "integer", "minimum": 0 })
+}
+
+/// A value that is written as text, as a time is.
+pub(crate) fn from_text<'de, D, T>(deserializer: D) -> Result<T, D::Error>
+where
+    D: Deserializer<'de>,
+    T: FromStr,
+    T::Err: std::fmt::Display,
+{
+    String::deserialize(deserializer)?.parse().map_err(serde::de::Error::custom)
+}
+
+/// The same for a key that may be absent.
+pub(crate) fn from_optional_text<'de, D, T>(deserializer: D) -> Result<Option<T>, D::Error>
+where
+    D: Deserializer<'de>,
+    T: FromStr,
+    T::Err: std::fmt::Display,
+{
+    from_text(deserializer).map(Some)
 }

@@ -6,6 +6,7 @@
 //! |---|---|
 //! | `form` | the forms of values in the files, for schemas |
 //! | [`file`] | `scenario.toml` as it is written |
+//! | [`report_file`] | its `[report]` as it is written |
 //! | [`value_names`] | names of a signal's values |
 //! | [`permission`] | which files it may read, and whether it may start programs |
 //! | [`load`] | `scenario.toml` read and checked |
@@ -19,6 +20,7 @@
 //! | [`watch`] | variables of its soft PLCs that a run looks at |
 //! | `refusal` | a client that its session does not let in |
 //! | [`expect`] | what a run must show: signal temporal logic |
+//! | [`report`] | what a run produced, and what held it up |
 //! | [`mode`] | in lockstep or not |
 //! | [`error`] | what can be wrong with it, and where |
 //!
@@ -39,6 +41,8 @@ pub mod load;
 pub mod mode;
 pub mod permission;
 mod refusal;
+pub mod report;
+pub mod report_file;
 pub mod schema;
 pub mod value_names;
 pub mod watch;

@@ -21,6 +21,7 @@ use super::case::{self, Applied};
 use super::error::{ScenarioError, wrong};
 use super::expectations::Expectations;
 use super::file::{ClientFile, CouplingFile, ScenarioFile, VERSION};
+use super::report::Measures;
 use super::watch::{WatchRequest, Watched};
 
 /// The file that makes a folder a scenario.
@@ -45,6 +46,7 @@ pub struct Scenario {
     file: ScenarioFile,
     plan: SessionPlan,
     expectations: Expectations,
+    measures: Option<Measures>,
     /// The case that is tried; nothing for the scenario as it is.
     applied: Option<Arc<Applied>>,
     /// Where soft PLCs give what they executed, if that is asked for.
@@ -105,6 +107,8 @@ impl Scenario {
         }
         let expectations =
             Expectations::bind(&file, &text).map_err(|found| wrong(found.message, Some(found.place), found.help))?;
+        let measures =
+            Measures::bind(&file, &text).map_err(|found| wrong(found.message, Some(found.place), found.help))?;
         let name = name_of(&path);
         let scenario = Self {
             name,
@@ -114,6 +118,7 @@ impl Scenario {
             file,
             plan,
             expectations,
+            measures,
             applied: None,
             coverage: None,
             writers: None,
@@ -247,6 +252,11 @@ impl Scenario {
     /// What every run must show.
     pub fn expectations(&self) -> &Expectations {
         &self.expectations
+    }
+
+    /// What is counted and timed in every run, if that is asked for.
+    pub fn measures(&self) -> Option<&Measures> {
+        self.measures.as_ref()
     }
 
     /// An error at the entry of client `name`.

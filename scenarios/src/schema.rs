@@ -1,5 +1,5 @@
-//! The JSON schemas of `scenario.toml` and `cases.toml`, for editors: made from the structs that the files are read
-//! into.
+//! The JSON schemas of `scenario.toml` and `cases.toml`, for editors, and of a run's report, for programs: made from the
+//! structs that are read and written.
 
 use schemars::generate::SchemaSettings;
 use schemars::transform::transform_subschemas;
@@ -9,6 +9,7 @@ use serde_json::{Value, json};
 use crate::case;
 use crate::case::file::CasesFile;
 use crate::file::{self, ScenarioFile};
+use crate::report::Report;
 
 /// The schema of `scenario.toml` (JSON Schema 2020-12).
 pub fn scenario() -> Value {
@@ -18,6 +19,16 @@ pub fn scenario() -> Value {
 /// The schema of `cases.toml` (JSON Schema 2020-12).
 pub fn cases() -> Value {
     schema::<CasesFile>("onescan cases", case::file::VERSION)
+}
+
+/// The schema of `report` in the line of a run, and of `onescan report` (JSON Schema 2020-12).
+pub fn report() -> Value {
+    let settings = SchemaSettings::draft2020_12().with(|settings| settings.inline_subschemas = true);
+    let mut top = settings.into_generator().into_root_schema_for::<Report>();
+    as_written(&mut top);
+    let mut top = top.to_value();
+    top["title"] = json!("onescan report");
+    top
 }
 
 fn schema<File: JsonSchema>(title: &str, version: u32) -> Value {
@@ -88,6 +99,7 @@ mod tests {
     fn the_published_schemas_are_those_of_the_structs() {
         is_published("scenario", &scenario());
         is_published("cases", &cases());
+        is_published("report", &report());
     }
 
     /// The keys without a description.
@@ -118,6 +130,7 @@ mod tests {
         let mut found = Vec::new();
         undescribed(&scenario(), "scenario", &mut found);
         undescribed(&cases(), "cases", &mut found);
+        undescribed(&report(), "report", &mut found);
         assert!(found.is_empty(), "{found:?}");
     }
 }

@@ -398,11 +398,5 @@ fn compared(ty: SignalType, left: &[u8], right: &[u8]) -> Option<Ordering> {
         };
         return real(left).partial_cmp(&real(right));
     }
-    let whole = |bytes: &[u8]| {
-        let negative = elementary.is_signed() && bytes.last().is_some_and(|byte| byte & 0x80 != 0);
-        let mut wide = [if negative { 0xff } else { 0 }; 16];
-        wide[..bytes.len()].copy_from_slice(bytes);
-        i128::from_le_bytes(wide)
-    };
-    Some(whole(left).cmp(&whole(right)))
+    Some(ty.integer(left)?.cmp(&ty.integer(right)?))
 }

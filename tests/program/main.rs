@@ -55,6 +55,7 @@ mod review;
 mod robot_cell;
 mod run;
 mod shear;
+mod shift;
 mod stubs;
 mod suites;
 mod test_manager;

@@ -91,7 +91,7 @@ fn the_machines_report_has_its_fields() {
     let (reports, _) = run_shear(&["--until", "1s"]);
     let report = reports[0].as_object().unwrap();
     let fields: Vec<&str> = report.keys().map(String::as_str).collect();
-    insta::assert_snapshot!(fields.join(" "), @"digest expectations mode run scenario status steps transport version virtual_time_ns wall_time_s");
+    insta::assert_snapshot!(fields.join(" "), @"digest expectations mode report run scenario status steps transport version virtual_time_ns wall_time_s");
     assert_eq!(report["steps"], 100);
     assert_eq!(report["virtual_time_ns"], 1_000_000_000);
     assert_eq!(report["status"], "completed");
@@ -102,12 +102,13 @@ fn people_get_lines_and_nothing_on_standard_error() {
     let said = typed(&scenario("shear"), &["run", ".", "--runs", "2", "--until", "1s"]);
     assert_eq!((said.code, said.err.as_str()), (Some(0), ""));
     let lines: Vec<&str> = said.out.lines().collect();
-    assert_eq!(lines.len(), 9, "{said:?}");
+    assert_eq!(lines.len(), 21, "{said:?}");
     assert!(lines[0].starts_with("run 1/2: completed, 100 steps, 1.000 s virtual in "));
-    assert!(lines[1].starts_with("  digest ") && lines[1] == lines[5]);
+    assert!(lines[1].starts_with("  digest ") && lines[1] == lines[16]);
     assert_eq!(
         lines[2..4],
         ["  expectation `both sides at once` met", "  expectation `strokes go on` open at the end of the run"]
     );
-    assert_eq!(lines[8], "2 runs, all digests equal");
+    assert_eq!(lines[4], "  report of 0.000 s to 1.000 s");
+    assert_eq!(lines[19..], ["  report as in run 1", "2 runs, all digests equal"]);
 }

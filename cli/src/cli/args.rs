@@ -12,7 +12,7 @@ use super::error::CommandError;
 use super::model::ModelArgs;
 use super::plant::{ComponentsArgs, DescribeArgs, NewArgs, WiringArgs};
 use super::plc::{BrowseArgs, MapArgs, PlcArgs};
-use super::recording::{BisectArgs, DiffArgs, ExportArgs};
+use super::recording::{BisectArgs, DiffArgs, ExportArgs, ReportArgs};
 use super::run::RunArgs;
 use super::session::{ControlArgs, JoinArgs};
 use super::source::{CheckArgs, ExplainArgs, InstrumentArgs};
@@ -89,6 +89,9 @@ pub enum Command {
     Export(ExportArgs),
     /// Compare two recordings: where they first differ, in which signals, and which statement wrote them
     Diff(DiffArgs),
+    /// Report what recorded runs produced: counts, throughput, cycle times, down time by cause, alarms, as their
+    /// scenario's `[report]` asks
+    Report(ReportArgs),
     /// Find the commit that first changed what a scenario does, and the statement that did
     Bisect(BisectArgs),
     /// Check PLC sources without running them
@@ -136,6 +139,7 @@ pub fn dispatch(command: Command) -> Result<ExitCode, CommandError> {
         Command::Certificate(args) => access::certificate(args),
         Command::Export(args) => recording::export(args),
         Command::Diff(args) => recording::diff(args),
+        Command::Report(args) => recording::report(args),
         Command::Bisect(args) => recording::bisect(args),
         Command::Check(args) => source::check(args),
         Command::Instrument(args) => source::instrument(*args),

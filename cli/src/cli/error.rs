@@ -16,6 +16,7 @@ use crate::new::NewError;
 use crate::plant::PlantError;
 use crate::plc::PlcError;
 use crate::regress::TestError;
+use crate::report::ReportError;
 use crate::review::ReviewError;
 use crate::run::RunError;
 use crate::session::SessionError;
@@ -39,6 +40,9 @@ sum_of_errors! {
         /// `diff` came to nothing.
         #[diagnostic(transparent)]
         Diff(DiffError),
+        /// `report` came to nothing.
+        #[diagnostic(transparent)]
+        Report(ReportError),
         /// `bisect` came to nothing.
         #[diagnostic(transparent)]
         Bisect(BisectError),

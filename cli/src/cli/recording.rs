@@ -1,4 +1,4 @@
-//! What is done with recordings: `onescan export`, `diff`, and `bisect`, which makes its own.
+//! What is done with recordings: `onescan export`, `diff`, `report`, and `bisect`, which makes its own.
 
 use std::path::PathBuf;
 
@@ -15,6 +15,7 @@ use crate::error::ExitCode;
 use crate::error::Usage;
 use crate::export::ExportConfig;
 use crate::interrupt::Interrupt;
+use crate::report::ReportConfig;
 
 /// Options of `export`.
 #[derive(Debug, ClapArgs)]
@@ -96,6 +97,34 @@ pub fn diff(args: DiffArgs) -> Result<ExitCode, CommandError> {
     let DiffArgs { a, b, since, signals, format } = args;
     let config = DiffConfig { recordings: [a, b], since, signals, format: format.into() };
     Ok(crate::diff::diff(&config, &mut std::io::stdout().lock())?)
+}
+
+/// Options of `report`.
+#[derive(Debug, ClapArgs)]
+pub struct ReportArgs {
+    /// Recordings: folders with a `recording.json`, or with one such folder in it
+    #[arg(required = true)]
+    pub recordings: Vec<PathBuf>,
+    /// Report what the `[report]` of this scenario asks for [default: the recorded scenario's own]
+    #[arg(long, value_name = "SCENARIO")]
+    pub scenario: Option<PathBuf>,
+    /// For people, or one JSON object a recording for machines
+    #[arg(long, value_enum, default_value_t)]
+    pub format: FormatArg,
+    /// Write a page with the reports of all recordings, all in one file
+    #[arg(long, value_name = "FILE")]
+    pub html: Option<PathBuf>,
+}
+
+/// Reports what recorded runs produced.
+///
+/// # Errors
+/// See [`CommandError`].
+pub fn report(args: ReportArgs) -> Result<ExitCode, CommandError> {
+    let ReportArgs { recordings, scenario, format, html } = args;
+    let config = ReportConfig { recordings, scenario, format: format.into(), html };
+    crate::report::report(&config, &mut std::io::stdout().lock())?;
+    Ok(ExitCode::Ok)
 }
 
 /// Options of `bisect`.

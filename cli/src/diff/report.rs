@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use onescan_clients::soft_plc::Written;
 use onescan_plc_shim::{FaultSite, Way};
 use onescan_recording::Recording;
+use onescan_report::table;
 use serde_json::{Value, json};
 
 use super::cause::{Cause, Causes};
@@ -146,7 +147,7 @@ impl Report {
             row.extend(values.iter().flatten().map(|value| value.clone().unwrap_or_else(|| "-".to_owned())));
             rows.push(row);
         }
-        table(&rows, out)
+        table::write(&rows, out)
     }
 
     /// Writes the report as one JSON object. Fields are added, never changed.
@@ -238,7 +239,7 @@ fn write_differences(found: &Divergence, out: &mut dyn Write) -> io::Result<()> 
         .collect();
     if !rows.is_empty() {
         let head = ["signal", "type", "writer", "A", "B"].map(str::to_owned);
-        table(&[vec![head.to_vec()], rows.into_iter().map(|row| row.to_vec()).collect()].concat(), out)?;
+        table::write(&[vec![head.to_vec()], rows.into_iter().map(|row| row.to_vec()).collect()].concat(), out)?;
     }
     match found.differences.len().saturating_sub(LISTED) {
         0 => Ok(()),
@@ -271,16 +272,4 @@ fn json_way(way: &Way) -> Value {
 fn json_parting(Parting { client, at, ways: [a, b] }: &Parting) -> Value {
     let way = |way: &Option<Way>| way.as_ref().map(json_way);
     json!({ "client": client, "t_v_ns": at.as_nanos(), "a": way(a), "b": way(b) })
-}
-
-/// Columns as wide as their widest cell.
-pub(super) fn table(rows: &[Vec<String>], out: &mut dyn Write) -> io::Result<()> {
-    let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
-    let width = |column: usize| rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max();
-    let widths: Vec<usize> = (0..columns).map(|column| width(column).unwrap_or(0)).collect();
-    for row in rows {
-        let cells: Vec<String> = row.iter().zip(&widths).map(|(cell, width)| format!("{cell:width$}")).collect();
-        writeln!(out, "  {}", cells.join("  ").trim_end())?;
-    }
-    Ok(())
 }

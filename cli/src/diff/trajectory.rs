@@ -4,13 +4,14 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Write};
 use std::path::Path;
 
+use onescan_report::table;
 use onescan_server::signal::SignalName;
 use onescan_server::signal::pattern::{SignalPattern, choose};
 use onescan_server::time::VirtualTime;
 use serde_json::{Value, json};
 
 use super::error::DiffError;
-use super::report::{NAMES, table};
+use super::report::NAMES;
 use crate::error::Usage;
 use crate::snapshot::store::read;
 use crate::snapshot::value::show;
@@ -99,7 +100,7 @@ impl TrajectoryReport {
             return Ok(());
         }
         let more = rows.len().saturating_sub(LISTED);
-        table(&std::iter::once(head.to_vec()).chain(rows.into_iter().take(LISTED)).collect::<Vec<_>>(), out)?;
+        table::write(&std::iter::once(head.to_vec()).chain(rows.into_iter().take(LISTED)).collect::<Vec<_>>(), out)?;
         if more > 0 { writeln!(out, "  and {more} more") } else { Ok(()) }
     }
 
@@ -139,7 +140,7 @@ impl TrajectoryReport {
             rows.push(row);
         }
         writeln!(out, "\naround it")?;
-        table(&rows, out)
+        table::write(&rows, out)
     }
 
     fn track(&self, index: usize, name: &str) -> Option<&Track> {

@@ -45,6 +45,7 @@ fn section(outcome: &Outcome) -> Section {
         facts,
         lines: details(outcome),
         expectations: expectations.iter().map(shown).collect(),
+        tables: Vec::new(),
         events: timeline(events, violations),
         pictures: pictures(outcome),
     }

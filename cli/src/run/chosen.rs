@@ -25,6 +25,11 @@ impl Chosen {
         self.signals.len()
     }
 
+    /// Their bytes now, in their order.
+    pub(super) fn bytes<'s>(&self, session: &'s Session) -> impl Iterator<Item = &'s [u8]> {
+        self.signals.iter().map(|signal| session.layout().bytes(*signal, session.image()))
+    }
+
     /// What they are now, in their order; texts are no numbers.
     pub(super) fn numbers(&self, session: &Session) -> impl Iterator<Item = f64> {
         self.signals.iter().map(|signal| {

@@ -17,6 +17,7 @@
 //! | [`recorded`] | a run's recording |
 //! | [`rerun`] | a recorded run once more |
 //! | [`expectation`] | what a run had to show |
+//! | [`production`] | what a run produced, by its scenario's `[report]` |
 //! | [`watch`] | what watched variables were |
 //! | [`page`] | all runs as a page |
 //! | [`report`] | what came of a run, for people and machines |
@@ -35,6 +36,7 @@ pub(crate) mod guard;
 mod lockstep;
 pub mod page;
 mod processes;
+pub(crate) mod production;
 mod progress;
 pub mod recorded;
 pub mod report;
@@ -72,6 +74,7 @@ use crate::interrupt::Interrupt;
 use crate::plant::drawing;
 use expectation::Witness;
 use page::Event;
+use production::Metered;
 use recorded::{Recorded, refuse_to_overwrite};
 use sampler::{Sampler, Samples};
 use session_log::SessionLog;
@@ -104,7 +107,7 @@ pub fn execute(config: &RunConfig, interrupt: &Interrupt, out: &mut dyn Write) -
     let (mut samples, mut unsaved) = (Vec::new(), None);
     for number in 1..=config.runs {
         let ran = one_run(config, &scenario, number, interrupt, Vec::new())?;
-        ran.report.write(config.reports.format, config.runs, out).map_err(OutputError)?;
+        ran.report.write(config.reports.format, config.runs, reports.last(), out).map_err(OutputError)?;
         reports.push(ran.report);
         samples.push(ran.samples);
         unsaved = unsaved.or(ran.unsaved);
@@ -178,6 +181,7 @@ pub(crate) fn one_run(
     let started = Instant::now();
     let samples = Rc::new(RefCell::new(Samples::new(&config.picture.sampled(scenario))));
     let judge = Rc::new(RefCell::new(expectation::judge(scenario)));
+    let (measures, metered) = (scenario.measures(), Metered::new(scenario.measures()));
     let recorded = config
         .reports
         .record
@@ -194,6 +198,9 @@ pub(crate) fn one_run(
         let expected = scenario.expectations();
         if !expected.named.is_empty() {
             lockstep.observe(Box::new(Witness::new(Rc::clone(&judge), &expected.signals)));
+        }
+        if let Some(metering) = metered.observer(measures) {
+            lockstep.observe(metering);
         }
         if let Some(recorder) = recorder {
             lockstep.observe(Box::new(recorder));
@@ -214,6 +221,7 @@ pub(crate) fn one_run(
     report.latency = log.latencies();
     let end = if report.status == RunStatus::Completed { TraceEnd::Complete } else { TraceEnd::Cut };
     report.expectations = expectation::reports(scenario, judge.replace(expectation::judge(scenario)), end);
+    report.report = metered.report();
     report.watched = WatchReport::take(&config.watch, scenario);
     if let Some(recorded) = &recorded {
         recorded.end(&report)?;

@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::coverage::share;
 use super::expectation::{ExpectationReport, SignalValue};
+use super::production::{pictures, tables};
 use super::report::{RunReport, RunStatus};
 
 /// Something that happened to a run from outside.
@@ -31,12 +32,13 @@ pub(super) fn of_runs(
 ) -> Page {
     // All runs are in one picture, which stands with the first.
     let scenes = scenes.into_iter().map(|svg| Picture { title: "the machine", svg });
-    let mut pictures: Vec<Picture> = scenes.collect();
-    pictures.push(Picture { title: "trajectories", svg: plot.to_svg() });
+    let mut shared: Vec<Picture> = scenes.collect();
+    shared.push(Picture { title: "trajectories", svg: plot.to_svg() });
     let wall: f64 = reports.iter().map(|report| report.wall_time_s).sum();
-    let sections = reports.iter().enumerate().map(|(index, report)| {
-        section(report, events.to_vec(), if index == 0 { pictures.clone() } else { Vec::new() })
-    });
+    let sections = reports
+        .iter()
+        .enumerate()
+        .map(|(index, report)| section(report, events.to_vec(), if index == 0 { shared.clone() } else { Vec::new() }));
     Page {
         title: reports.first().map_or_else(String::new, |report| report.scenario.clone()),
         totals: format!("{} run{}", reports.len(), if reports.len() == 1 { "" } else { "s" }),
@@ -46,9 +48,10 @@ pub(super) fn of_runs(
     }
 }
 
-fn section(report: &RunReport, events: Vec<Event>, pictures: Vec<Picture>) -> Section {
+fn section(report: &RunReport, events: Vec<Event>, mut drawn: Vec<Picture>) -> Section {
     let is_bad = report.status == RunStatus::Failed || report.is_unmet();
     let digest = report.digest.map(|digest| digest.to_string());
+    drawn.extend(report.report.iter().flat_map(pictures::of));
     let violations = report.expectations.iter().filter(|expectation| expectation.is_violated());
     let violations = violations.filter_map(|violated| Some((violated.at?.as_nanos(), violated.name.as_str())));
     Section {
@@ -60,8 +63,13 @@ fn section(report: &RunReport, events: Vec<Event>, pictures: Vec<Picture>) -> Se
         facts: statistics(report.steps.0, report.step.as_nanos(), report.virtual_time.as_nanos(), digest.as_ref()),
         lines: report.error.iter().cloned().collect(),
         expectations: report.expectations.iter().map(shown).collect(),
+        tables: report
+            .report
+            .iter()
+            .flat_map(|report| tables::of(report).into_iter().chain(tables::occurrences(report)))
+            .collect(),
         events: timeline(events, violations),
-        pictures,
+        pictures: drawn,
     }
 }
 

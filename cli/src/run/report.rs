@@ -3,6 +3,7 @@
 use std::io::Write;
 use std::time::Duration;
 
+use onescan_scenario::report::Report;
 use onescan_scenario::{Mode, Scenario};
 use onescan_server::digest::Digest;
 use onescan_server::end::{Failure, SessionEnd};
@@ -12,6 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use super::config::{RunConfig, Transport};
 use super::expectation::ExpectationReport;
+use super::production::tables;
 use super::session_log::{self, ClientLatency};
 use super::watch::WatchReport;
 use crate::error::ExitCode;
@@ -51,6 +53,9 @@ pub struct RunReport {
     /// What came of the scenario's expectations.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub expectations: Vec<ExpectationReport>,
+    /// What it produced; absent unless the scenario has a `[report]`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub report: Option<Report>,
     /// How long the session waited for each client, if that was noted.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub latency: Vec<ClientLatency>,
@@ -114,6 +119,7 @@ impl RunReport {
             error: failure.as_ref().map(ToString::to_string),
             failure,
             expectations: Vec::new(),
+            report: None,
             latency: Vec::new(),
             watched: None,
             step: scenario.file().step,
@@ -136,7 +142,14 @@ impl RunReport {
         self.expectations.iter().any(ExpectationReport::is_violated)
     }
 
-    pub(super) fn write(&self, format: Format, runs: u32, out: &mut dyn Write) -> std::io::Result<()> {
+    /// Writes what came of this run, which is one of so many; `before` is the last of them.
+    pub(super) fn write(
+        &self,
+        format: Format,
+        runs: u32,
+        before: Option<&Self>,
+        out: &mut dyn Write,
+    ) -> std::io::Result<()> {
         match format {
             Format::Json => {
                 serde_json::to_writer(&mut *out, self)?;
@@ -159,6 +172,12 @@ impl RunReport {
                 session_log::write(&self.latency, out)?;
                 if let Some(watched) = &self.watched {
                     watched.write(out)?;
+                }
+                match (&self.report, before) {
+                    (None, _) => {}
+                    // Equal runs say the same, and once is enough.
+                    (now, Some(before)) if *now == before.report => writeln!(out, "  report as in run {}", before.run)?,
+                    (Some(report), _) => tables::write(report, out)?,
                 }
             }
         }

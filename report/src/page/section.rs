@@ -4,6 +4,7 @@ use maud::{Markup, PreEscaped, html};
 
 use super::LINE;
 use crate::number::short;
+use crate::table::Table;
 use crate::verdict::Verdict;
 
 /// So many events are listed; a machine's signals change often.
@@ -28,6 +29,8 @@ pub struct Section {
     pub lines: Vec<String>,
     /// What it had to show.
     pub expectations: Vec<Shown>,
+    /// What it produced, and what else is counted of it.
+    pub tables: Vec<Table>,
     /// What happened, in the order of time.
     pub events: Vec<Event>,
     /// Its trajectories and what else is drawn of it.
@@ -111,6 +114,7 @@ impl Section {
                     @for (name, value) in &self.facts { tr { th { (name) } td class="value" { (value) } } (LINE) }
                 } (LINE)
                 @if !self.expectations.is_empty() { (expectations(&self.expectations)) (LINE) }
+                @for table in &self.tables { (told(table)) (LINE) }
                 // The picture is a document of this program, whose own text is escaped.
                 @if !self.pictures.is_empty() {
                     div class="pictures" { (LINE)
@@ -145,6 +149,23 @@ fn expectations(all: &[Shown]) -> Markup {
                 } (LINE)
             }
         }
+    }
+}
+
+fn told(table: &Table) -> Markup {
+    let cells = html! {
+        table {
+            thead { tr { th { (table.title) } @for head in &table.head { th { (head) } } } } (LINE)
+            @for row in &table.rows { tr { @for cell in row { td { (cell) } } } (LINE) }
+        }
+    };
+    html! {
+        @if table.is_folded {
+            details { summary { (table.title) } (cells) }
+        } @else {
+            (cells)
+        }
+        @for remark in &table.remarks { p { (remark) } (LINE) }
     }
 }
 

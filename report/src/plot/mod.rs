@@ -21,6 +21,8 @@
 //! | `panel`, `mark`, `time_axis` | the parts of the picture |
 //! | `figure` | all of these as one picture |
 //! | `plane` | two signals against each other |
+//! | `bars` | parts of a whole |
+//! | `histogram` | how many times of which length |
 //!
 //! Invariants. No input makes it panic, nothing is read from the machine (no clock, no fonts, no
 //! locale), and arithmetic is limited to the operations that IEEE 754 rounds exactly. Whatever is
@@ -47,8 +49,10 @@
 //! ```
 
 mod agreement;
+mod bars;
 mod caption;
 mod figure;
+mod histogram;
 mod layout;
 pub mod lettering;
 mod mark;
@@ -61,6 +65,9 @@ pub mod svg;
 mod ticks;
 mod time_axis;
 mod trace;
+
+pub use bars::{Bar, Bars};
+pub use histogram::Histogram;
 
 /// One signal in one run.
 ///

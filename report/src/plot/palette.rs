@@ -43,7 +43,7 @@ const DARK: [(&str, &str); 13] = [
 ];
 
 /// Neighbours differ in lightness, too.
-const COLOURS: [&str; 7] = ["#0072b2", "#e69f00", "#009e73", "#d55e00", "#56b4e9", "#cc79a7", "#6e6e6e"];
+pub(super) const COLOURS: [&str; 7] = ["#0072b2", "#e69f00", "#009e73", "#d55e00", "#56b4e9", "#cc79a7", "#6e6e6e"];
 /// The width of the last run's line, in hundredths of a pixel.
 const WIDTH_CPX: i64 = 130;
 /// How much wider a line is for each later run, and how much wider all of them make it.

@@ -8,8 +8,8 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use toml::Spanned;
 
-use crate::file::{ExpectFile, from_optional_text, from_text};
-use crate::form::{Amount, CaseName, Matrix, Name, Scalar, Settings, Time};
+use crate::file::ExpectFile;
+use crate::form::{Amount, CaseName, Matrix, Name, Scalar, Settings, Time, from_optional_text, from_text};
 
 /// The only version of the format so far.
 pub const VERSION: u32 = 1;

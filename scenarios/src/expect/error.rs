@@ -60,6 +60,9 @@ pub enum FormulaErrorKind {
     /// More than one image is needed to judge it.
     #[error("a condition is judged on one image: no windows, no edges, no arithmetic with signals")]
     NotNow,
+    /// It looks at more than one time.
+    #[error("this is judged on one image at a time: no windows, no edges, no `rate`")]
+    NotPresent,
     /// A unit that is unknown.
     #[error("`{0}` is no unit that is known here")]
     UnknownUnit(String),

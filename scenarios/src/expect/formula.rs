@@ -121,3 +121,17 @@ pub(super) enum Arithmetic {
     Min,
     Max,
 }
+
+impl Arithmetic {
+    /// What it does with two numbers.
+    pub(super) fn operation(self) -> fn(f64, f64) -> f64 {
+        match self {
+            Self::Add => |a, b| a + b,
+            Self::Subtract => |a, b| a - b,
+            Self::Multiply => |a, b| a * b,
+            Self::Divide => |a, b| a / b,
+            Self::Min => f64::min,
+            Self::Max => f64::max,
+        }
+    }
+}

@@ -13,6 +13,7 @@
 //! | [`unit`] | units of measurement, and numbers carried from one to another |
 //! | [`bind`] | names to signals, units to factors |
 //! | [`condition`] | formulas of the present, which a running session can judge |
+//! | [`present`] | the same with arithmetic, for who has the values at hand |
 //! | [`truth`] | three-valued truth, and the margin by which a formula holds |
 //! | [`verdict`] | met, violated and when, or still open at the end |
 //! | [`sample`] | what a formula is worth at a sample, and blocks of samples |
@@ -45,6 +46,7 @@ mod monitor;
 #[cfg(test)]
 mod offline;
 mod parser;
+mod present;
 mod sample;
 mod sliding;
 mod term;
@@ -57,6 +59,7 @@ pub use bind::{Expectation, KnownSignal};
 pub use condition::condition;
 pub use error::FormulaError;
 pub use judge::Judge;
+pub use present::Present;
 pub use sample::TraceEnd;
 pub use truth::Margin;
 pub use verdict::{Outcome, Verdict};

@@ -1,6 +1,6 @@
 //! Terms, sample by sample.
 
-use super::formula::{Arithmetic, Term, TermKind};
+use super::formula::{Term, TermKind};
 use super::sample::{Block, Sample};
 
 /// A term that remembers what `rate` needs.
@@ -26,17 +26,7 @@ impl Number {
             TermKind::Abs(inner) => Self::Changed(f64::abs, boxed(inner)),
             TermKind::Rate(inner) => Self::Rate(None, boxed(inner)),
             TermKind::Scaled(inner, times, by) => Self::Scaled(boxed(inner), *times, *by),
-            TermKind::Binary(operator, left, right) => {
-                let operation: fn(f64, f64) -> f64 = match operator {
-                    Arithmetic::Add => |a, b| a + b,
-                    Arithmetic::Subtract => |a, b| a - b,
-                    Arithmetic::Multiply => |a, b| a * b,
-                    Arithmetic::Divide => |a, b| a / b,
-                    Arithmetic::Min => f64::min,
-                    Arithmetic::Max => f64::max,
-                };
-                Self::Joined(operation, boxed(left), boxed(right))
-            }
+            TermKind::Binary(operator, left, right) => Self::Joined(operator.operation(), boxed(left), boxed(right)),
         }
     }
 

@@ -229,6 +229,25 @@ impl Recording {
         Ok(Rows { columns: columns.into_iter().map(|(_, column)| column).collect(), rows })
     }
 
+    /// Hands chosen signals over step by step, all signals without patterns, without holding more than a block of steps;
+    /// those that are not recorded are left out.
+    ///
+    /// # Errors
+    /// A part cannot be read, a pattern matches no signal.
+    pub fn each(
+        &self,
+        patterns: &[SignalPattern],
+        steps: RangeInclusive<u64>,
+        each: &mut dyn FnMut(&[Column], &Row),
+    ) -> Result<(), RecordingError> {
+        let places = self.columns(patterns)?;
+        let columns: Vec<Column> = places.iter().map(|(_, column)| column.clone()).collect();
+        self.each_row(&places, steps, &mut |row| {
+            each(&columns, &row);
+            Ok(())
+        })
+    }
+
     /// Calls `each` with every row of `steps`, without holding more than a block of them.
     fn each_row(
         &self,

@@ -1,0 +1,67 @@
+//! What a run produced, by its scenario's `[report]`: measured as the run goes, told to people and in pages.
+//!
+//! | module | subject |
+//! |---|---|
+//! | this file | a run shown to its meter |
+//! | [`tables`] | the report as tables, for terminals and pages |
+//! | [`pictures`] | the report as pictures |
+
+pub(crate) mod pictures;
+pub(crate) mod tables;
+
+use std::cell::RefCell;
+use std::rc::Rc;
+
+use onescan_scenario::report::{Measures, Meter, Report};
+use onescan_server::digest::TrajectoryDigest;
+use onescan_server::observer::{Observer, RecordError};
+use onescan_server::session::Session;
+
+use super::chosen::Chosen;
+
+/// The meter of a run; nothing if its scenario asks for no report.
+#[derive(Clone, Default)]
+pub(super) struct Metered(Option<Rc<RefCell<Meter>>>);
+
+impl Metered {
+    pub(super) fn new(measures: Option<&Measures>) -> Self {
+        Self(measures.map(|measures| Rc::new(RefCell::new(Meter::new(measures)))))
+    }
+
+    /// What shows it the run.
+    pub(super) fn observer(&self, measures: Option<&Measures>) -> Option<Box<dyn Observer>> {
+        let (meter, measures) = (self.0.as_ref()?, measures?);
+        let names: Vec<_> = measures.signals().map(|(name, _)| name.clone()).collect();
+        let chosen = Chosen::new(&names);
+        Some(Box::new(Metering { meter: Rc::clone(meter), measures: measures.clone(), chosen }))
+    }
+
+    /// What came of the run.
+    pub(super) fn report(&self) -> Option<Report> {
+        self.0.as_ref()?.borrow().report()
+    }
+}
+
+/// Shows a run to its meter.
+struct Metering {
+    meter: Rc<RefCell<Meter>>,
+    measures: Measures,
+    chosen: Chosen,
+}
+
+impl Observer for Metering {
+    fn begin(&mut self, session: &Session, digest: &TrajectoryDigest) -> Result<(), RecordError> {
+        self.chosen.find(session);
+        self.meter.replace(Meter::new(&self.measures));
+        self.step(session, digest)
+    }
+
+    fn step(&mut self, session: &Session, _digest: &TrajectoryDigest) -> Result<(), RecordError> {
+        self.meter.borrow_mut().push(session.t_v().as_nanos(), self.chosen.bytes(session));
+        Ok(())
+    }
+
+    fn end(&mut self, _session: &Session) -> Result<(), RecordError> {
+        Ok(())
+    }
+}

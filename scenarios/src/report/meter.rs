@@ -1,0 +1,106 @@
+//! All measures of a run, image by image.
+
+use super::alarm::Alarms;
+use super::count::Count;
+use super::cycle::Cycles;
+use super::down_time::DownTime;
+use super::measures::Measures;
+use super::result::{Outcome, Report};
+use super::throughput::Windows;
+
+/// Measures a run as it goes. What it keeps does not grow with the run.
+#[derive(Clone, Debug)]
+pub struct Meter {
+    measures: Measures,
+    /// The bytes of the signals, one behind the other, as they were last.
+    image: Vec<u8>,
+    /// The same as numbers.
+    values: Vec<f64>,
+    /// From the first image to the last.
+    span_ns: Option<(u64, u64)>,
+    counts: Vec<Count>,
+    cycles: Vec<Cycles>,
+    down: Option<DownTime>,
+    alarms: Alarms,
+}
+
+impl Meter {
+    /// A meter of a run that has not begun.
+    pub fn new(measures: &Measures) -> Self {
+        Self {
+            image: vec![0; measures.signals.iter().map(|(_, ty)| ty.size()).sum()],
+            values: vec![f64::NAN; measures.signals.len()],
+            span_ns: None,
+            counts: Vec::new(),
+            cycles: measures.cycles.iter().map(|timed| Cycles::new(timed.clone(), measures.step)).collect(),
+            down: measures.down.clone().map(DownTime::new),
+            alarms: Alarms::new(&measures.alarms),
+            measures: measures.clone(),
+        }
+    }
+
+    /// Takes the image of `t_ns`: the bytes of each signal, in the order of [`Measures::signals`]. A run begins with the
+    /// first image; times do not fall.
+    pub fn push<'b>(&mut self, t_ns: u64, bytes: impl Iterator<Item = &'b [u8]>) {
+        let is_first = self.span_ns.is_none();
+        let begin_ns = self.span_ns.map_or(t_ns, |(begin_ns, _)| begin_ns);
+        self.span_ns = Some((begin_ns, t_ns));
+        if is_first {
+            let windows = Windows::new(begin_ns, self.measures.window, self.measures.step);
+            let count = |counted: &super::count::Counted| Count::new(counted.clone(), windows.clone());
+            self.counts = self.measures.counts.iter().map(count).collect();
+        }
+        // Most images show nothing new, and all measures are of what changes.
+        if self.take(bytes) || is_first {
+            self.measure(t_ns);
+        }
+    }
+
+    /// Takes the bytes; true if they have changed.
+    fn take<'b>(&mut self, bytes: impl Iterator<Item = &'b [u8]>) -> bool {
+        let (mut changed, mut rest) = (false, self.image.as_mut_slice());
+        for (((_, ty), value), bytes) in self.measures.signals.iter().zip(&mut self.values).zip(bytes) {
+            let (own, others) = rest.split_at_mut(ty.size());
+            rest = others;
+            let bytes = &bytes[..ty.size()];
+            // A signal whose bytes are 0 from the start on must be read once.
+            if own != bytes || value.is_nan() {
+                own.copy_from_slice(bytes);
+                *value = ty.as_f64(bytes).unwrap_or(f64::NAN);
+                changed = true;
+            }
+        }
+        changed
+    }
+
+    fn measure(&mut self, t_ns: u64) {
+        let Self { measures, image, values, counts, cycles, down, alarms, .. } = self;
+        let whole = |column: usize| {
+            let offset: usize = measures.signals.iter().take(column).map(|(_, ty)| ty.size()).sum();
+            let (_, ty) = measures.signals.get(column)?;
+            ty.integer(image.get(offset..)?)
+        };
+        for count in counts {
+            count.push(t_ns, values, whole);
+        }
+        for cycles in cycles {
+            cycles.push(t_ns, values);
+        }
+        if let Some(down) = down {
+            down.push(t_ns, values);
+        }
+        alarms.push(t_ns, values);
+    }
+
+    /// What there is to report; nothing of a run without an image.
+    pub fn report(&self) -> Option<Report> {
+        let span_ns = self.span_ns?;
+        let outcome = Outcome {
+            counts: self.counts.iter().map(|count| count.until(span_ns)).collect(),
+            cycles: self.cycles.iter().map(Cycles::report).collect(),
+            down_time: self.down.as_ref().map(|down| down.until(span_ns)),
+            alarms: self.alarms.until(span_ns.1),
+        };
+        Some(Report::new(span_ns, outcome, self.measures.ideal_cycle))
+    }
+}
