@@ -116,10 +116,9 @@ pub fn execute(config: &RunConfig, interrupt: &Interrupt, out: &mut dyn Write) -
         request.write(sink)?;
     }
     if let Drawing::File(path) = &config.picture.drawing {
-        file::write_whole(
-            path,
-            sampler::picture(&scenario, config.mode, &config.picture, &samples, &reports).as_bytes(),
-        )?;
+        let (svg, not_there) = sampler::picture(&scenario, config.mode, &config.picture, &samples, &reports);
+        file::write_whole(path, svg.as_bytes())?;
+        unsaved = unsaved.or(not_there.map(Into::into));
     }
     if let Some(path) = &config.reports.html {
         let plot = sampler::plot(&scenario, config.mode, &config.picture, &samples, &reports);
