@@ -24,10 +24,11 @@ impl Group {
     /// Ends all of its processes at once; whatever is gone is gone.
     #[cfg(unix)]
     pub(super) fn kill(self) {
-        // A number that is none of a process, as from a guard's input that was cut off, is nobody; 0 and 1 would be everybody.
+        // The number may be wrong, for example if the guard's input was cut off. 0 would be this process's own group, and
+        // 1 every process.
         let group = i32::try_from(self.0).ok().filter(|id| *id > 1).and_then(rustix::process::Pid::from_raw);
         if let Some(group) = group {
-            // That nobody is left in it is what is wanted.
+            // An error means that no process is left in the group, which is the aim.
             let _ = rustix::process::kill_process_group(group, rustix::process::Signal::KILL);
         }
     }

@@ -120,8 +120,8 @@ impl Drop for Processes {
                 std::thread::sleep(Duration::from_millis(1));
             }
             Group::led_by(child).kill();
-            // It may have ended by itself meanwhile; then there is nothing to do. The session's outcome does not depend on how
-            // its processes left, so neither failure has anybody to be told to.
+            // It may have ended by itself meanwhile; then there is nothing to do. The outcome of the session does not depend on
+            // how its processes ended, so both errors are ignored.
             let _ = child.kill();
             let _ = child.wait();
         }
