@@ -85,7 +85,7 @@ pub(crate) fn stand(input: impl BufRead) {
     for line in input.lines() {
         match line {
             Ok(line) if line == DISMISSED => return,
-            // A line that the server's death has cut off is no number, or that of a process that was never told of whole.
+            // If the server died while it wrote a line, that line is not a number, or the number of another process.
             Ok(line) => groups.extend(line.parse().ok().map(Group)),
             // Input that cannot be read any more has ended too early, as with a dead server.
             Err(_) => break,

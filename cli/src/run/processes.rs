@@ -105,7 +105,7 @@ impl Processes {
     pub(super) fn first_ended(&mut self) -> Option<RunError> {
         self.children.iter_mut().find_map(|(name, child)| match child.try_wait() {
             Ok(Some(status)) => Some(RunError::ClientProcess { client: name.to_string(), status: status.to_string() }),
-            // One that runs, or cannot be asked: then its connection tells whether it is there.
+            // One that runs, or whose state cannot be read: its connection then shows whether it is there.
             Ok(None) | Err(_) => None,
         })
     }

@@ -8,7 +8,7 @@ use tempfile::TempDir;
 const PREFIX: &str = "onescan-pki-";
 
 /// Removes the passing folders of processes that were killed, and could not do so themselves: each has a private key.
-/// Where nothing tells whether a process is there, they stay.
+/// Where it cannot be found out whether a process is there, they stay.
 fn sweep(place: &Path) {
     let is_dead = |process: &str| {
         cfg!(target_os = "linux") && process.parse::<u32>().is_ok() && !Path::new("/proc").join(process).exists()
