@@ -7,6 +7,7 @@ use super::reduce::Point;
 use super::svg::{Document, Pixels};
 use super::trace::Area;
 use super::{Panel, Plot, Shape, Trajectory};
+use crate::number::short;
 
 /// A frame is at least this wide and high, so that it is seen.
 const FRAME_LEAST_CPX: i64 = 600;
@@ -175,7 +176,7 @@ pub(super) fn in_plane(
         return Ok([across, up]);
     }
     let of = |panel: &Panel| match finite_range(panel) {
-        Some(range) => format!("{} is from {} to {}", caption::heading(panel, 0), range.low, range.high),
+        Some(range) => format!("{} is from {} to {}", caption::heading(panel, 0), short(range.low), short(range.high)),
         None => format!("{} has no values", caption::heading(panel, 0)),
     };
     Err(NothingThere { drawn: format!("{}, {}", of(along), of(upwards)) })
