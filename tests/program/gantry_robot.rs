@@ -155,7 +155,7 @@ fn a_part_that_is_not_there_is_not_enlarged() {
         (vec!["--enlarge", "2s..2s"], "the range `2s..2s` is empty"),
         (vec!["--enlarge", "0..1,b..2"], "`b` is no number"),
         (vec!["--enlarge", "1s"], "write ranges, as in `2s..2.5s`"),
-        (vec!["--enlarge", "2s..3s"], "--enlarge: 2 s is not before the end of the run at 1 s"),
+        (vec!["--enlarge", "2s..3s"], "--enlarge: 2.000 s is not before the end of the run at 1.000 s"),
         (vec!["--enlarge", "0..1,0..1"], "write a range of time"),
         (vec!["--enlarge", "0s..1s", plane[0], plane[1]], "write a range of X_Position and one of Z_Position"),
     ] {
