@@ -128,7 +128,7 @@ impl Within {
 pub enum NotWithin {
     /// It is not there, or cannot be looked for.
     Missing(Error),
-    /// It is here.
+    /// It is at this path, which is outside.
     Elsewhere(PathBuf),
 }
 

@@ -1,6 +1,6 @@
 //! The picture of trajectories, from outside.
 
-use onescan_report::plot::{Mark, Panel, Plot, Shape, Trajectory};
+use onescan_report::plot::{Mark, Panel, Part, Plot, Shape, Trajectory};
 use proptest::prelude::*;
 
 fn every_ms(values: impl IntoIterator<Item = f64>) -> Trajectory {
@@ -39,14 +39,22 @@ fn a_small_picture() {
 }
 
 #[test]
-fn a_small_plane() {
+fn a_part_of_a_small_picture_is_enlarged() {
+    let part = Part::Times { from_ns: 5_500_000, until_ns: 9_000_000 };
+    insta::assert_snapshot!(small().to_svg_enlarging(part).expect("there are samples"));
+    let after = Part::Times { from_ns: 12_000_000, until_ns: 90_000_000 };
+    let nothing = small().to_svg_enlarging(after).expect_err("after the last sample");
+    assert_eq!(nothing.drawn, "time is from 0 s to 0.011 s");
+}
+
+fn small_plane() -> Plot {
     let circle = |radius: f64| {
         let places = [(1.0, 0.0), (0.7, 0.7), (0.0, 1.0), (-0.7, 0.7), (-1.0, 0.0), (f64::NAN, 0.0), (0.0, -1.0)];
         let (x, z): (Vec<f64>, Vec<f64>) = places.map(|(x, z)| (radius * x, radius * z)).into_iter().unzip();
         [every_ms(x), every_ms(z)]
     };
     let [[x, z], [wider_x, wider_z]] = [circle(1.0), circle(1.5)];
-    let plane = Plot {
+    Plot {
         title: "Tool".to_owned(),
         runs: vec!["first".to_owned(), "second".to_owned()],
         panels: vec![
@@ -54,9 +62,22 @@ fn a_small_plane() {
             panel("tool.z", Some("m"), Shape::Line, vec![z, wider_z]),
         ],
         marks: Vec::new(),
-    };
-    insta::assert_snapshot!(plane.to_plane_svg().expect("two signals"));
-    assert_eq!(Plot { panels: Vec::new(), ..plane }.to_plane_svg(), None);
+    }
+}
+
+#[test]
+fn a_small_plane() {
+    insta::assert_snapshot!(small_plane().to_plane_svg().expect("two signals"));
+    assert_eq!(Plot { panels: Vec::new(), ..small_plane() }.to_plane_svg(), None);
+}
+
+#[test]
+fn a_part_of_a_small_plane_is_enlarged() {
+    let part = |across, up| small_plane().to_svg_enlarging(Part::Plane { across, up });
+    insta::assert_snapshot!(part([0.5, 1.0], [0.2, 0.8]).expect("a path comes there"));
+    let nothing = part([5.0, 6.0], [0.0, 1.0]).expect_err("nobody comes there");
+    assert_eq!(nothing.drawn, "tool.x (m) is from -1.5 to 1.5, tool.z (m) is from -1.5 to 1.5");
+    assert!(part([1.0, 0.0], [0.0, 1.0]).is_err(), "an empty range");
 }
 
 #[test]
@@ -143,13 +164,21 @@ fn numbers(data: &str) -> impl Iterator<Item = f64> {
     data.split(|c: char| !(c.is_ascii_digit() || c == '.')).filter_map(|number| number.parse().ok())
 }
 
+fn any_part() -> impl Strategy<Value = Part> {
+    let times = prop_oneof![any::<[u64; 2]>(), (0_u64..1000, 0_u64..1000).prop_map(|(from, until)| [from, until])];
+    prop_oneof![
+        times.prop_map(|[from_ns, until_ns]| Part::Times { from_ns, until_ns }),
+        ([value(), value()], [value(), value()]).prop_map(|(across, up)| Part::Plane { across, up }),
+    ]
+}
+
 proptest! {
     #[test]
-    fn any_data_make_a_picture(plot in any_plot()) {
+    fn any_data_make_a_picture(plot in any_plot(), part in any_part()) {
         let svg = plot.to_svg();
         prop_assert_eq!(&svg, &plot.clone().to_svg());
         prop_assert_eq!(plot.to_plane_svg().is_some(), plot.panels.len() >= 2);
-        for svg in std::iter::once(svg).chain(plot.to_plane_svg()) {
+        for svg in std::iter::once(svg).chain(plot.to_plane_svg()).chain(plot.to_svg_enlarging(part).ok()) {
             prop_assert!(svg.starts_with("<svg ") && svg.ends_with("</svg>\n"));
             prop_assert_eq!(svg.matches("<g ").count(), svg.matches("</g>").count());
             prop_assert!(!svg.chars().any(|c| c < ' ' && c != '\n'), "a control character is not XML");

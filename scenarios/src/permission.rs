@@ -59,7 +59,7 @@ impl Permission {
     /// It lies elsewhere. Nothing of what is in it is said.
     pub fn check(&self, folder: &Path, path: &Path) -> Result<(), ScenarioError> {
         match self.within(folder).find(path) {
-            // What is not there is told by whoever reads it; what cannot be resolved cannot be read.
+            // Reading it reports that it is missing; what cannot be resolved cannot be read.
             Ok(_) | Err(NotWithin::Missing(_)) => Ok(()),
             Err(NotWithin::Elsewhere(real)) => Err(ScenarioError::Outside { path: path.to_owned(), real }),
         }

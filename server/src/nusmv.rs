@@ -33,7 +33,7 @@ pub enum SizeError {
     #[error("a client of a model sleeps for up to {max} steps, not {0}", max = Size::DELAY_MAX)]
     Delay(u32),
     /// Time that does not pass, or more of it than a checker can hold.
-    #[error("virtual time of a model begins anew after 1 to {max} steps, not {0}", max = Size::TV_MAX)]
+    #[error("virtual time of a model restarts after 1 to {max} steps, not {0}", max = Size::TV_MAX)]
     Time(u32),
 }
 
@@ -43,7 +43,7 @@ impl Size {
     const TV_MAX: u32 = 1_000_000;
 
     /// A model of `clients` clients, which sleep for up to `delay_max` steps after a turn, and of a virtual
-    /// time that begins anew after `tv_max` steps.
+    /// time that restarts after `tv_max` steps.
     ///
     /// # Errors
     /// More than a checker can hold, or nothing to check.

@@ -1,8 +1,6 @@
 //! The gantry robot: the same path in every run in lockstep, another in every run without.
 
-use std::path::Path;
-
-use crate::typed::{copied, digests, scenario, typed};
+use crate::typed::{copied, digests, is_the_same_over_tcp_and_resumed, rows, scenario, typed};
 
 /// Runs the robot; reports and the exit code.
 fn run(words: &[&str]) -> (Vec<serde_json::Value>, Option<i32>) {
@@ -11,20 +9,6 @@ fn run(words: &[&str]) -> (Vec<serde_json::Value>, Option<i32>) {
     let said = typed(&scenario("gantry-robot"), &all);
     let reports = said.out.lines().map(|line| serde_json::from_str(line).unwrap_or_else(|_| panic!("{said:?}")));
     (reports.collect(), said.code)
-}
-
-/// The rows of these signals in a recorded run.
-fn recorded(record: &Path, run: usize, signals: &[&str]) -> Vec<Vec<f64>> {
-    let text = std::fs::read_to_string(record.join(format!("run-{run}/trajectory.csv"))).expect("a recording");
-    let mut lines = text.lines();
-    let head: Vec<&str> = lines.next().expect("a head").split(',').collect();
-    let columns: Vec<usize> =
-        signals.iter().map(|name| head.iter().position(|known| known == name).expect("recorded")).collect();
-    let row = |line: &str| {
-        let cells: Vec<&str> = line.split(',').collect();
-        columns.iter().map(|at| cells[*at].parse().unwrap_or(f64::NAN)).collect()
-    };
-    lines.map(row).collect()
 }
 
 /// The path of `plc/robot.st` (Fig. 13), from where the robot begins.
@@ -64,10 +48,10 @@ fn in_lockstep_it_follows_its_path_in_every_run() {
     let digests = digests(&reports);
     assert!(digests.iter().all(|digest| *digest == digests[0]), "{digests:?}");
     insta::assert_snapshot!("gantry_robot_digest", digests[0]);
-    let rows = recorded(folder.path(), 1, &["X_Position", "Z_Position", "Point", "Cycles"]);
+    let rows = rows(&folder.path().join("run-1"), &["X_Position", "Z_Position", "Point", "Cycles"]);
     let furthest = rows.iter().map(|row| off_the_path([row[0], row[1]])).fold(0.0, f64::max);
     assert!(furthest < 0.03, "{furthest} m off the path");
-    // It has been at every point, and begun anew.
+    // It has been at every point, and has restarted.
     for point in PATH {
         let nearest = rows.iter().map(|row| (row[0] - point[0]).hypot(row[1] - point[1])).fold(f64::MAX, f64::min);
         assert!(nearest < 0.002, "{nearest} m from {point:?}");
@@ -77,14 +61,8 @@ fn in_lockstep_it_follows_its_path_in_every_run() {
 
 #[test]
 fn transport_and_checkpoints_do_not_matter() {
-    let folder = tempfile::tempdir().unwrap();
-    let saved = folder.path().join("half.checkpoint");
-    let saved = saved.to_str().unwrap();
-    let (whole, _) = run(&["--until", "6s", "--save-at", "3210ms", "--save", saved]);
-    let (remote, _) = run(&["--until", "6s", "--transport", "tcp"]);
-    let (resumed, _) = run(&["--until", "6s", "--resume", saved]);
-    assert_eq!(digests(&remote), digests(&whole));
-    assert_eq!(digests(&resumed), digests(&whole), "both axes are on their way");
+    // Both axes are on their way.
+    is_the_same_over_tcp_and_resumed("gantry-robot", ".", "6s", "3210ms");
 }
 
 #[test]
@@ -107,7 +85,7 @@ fn a_group_follows_the_path_and_rounds_its_corners_off() {
     assert_eq!(said.code, Some(0), "{said:?}");
     let report: serde_json::Value = serde_json::from_str(said.out.trim()).expect("a report");
     insta::assert_snapshot!("gantry_robot_group_digest", digests(&[report])[0]);
-    let rows = recorded(folder.path(), 1, &["X_Set", "Z_Set", "X_Position", "Z_Position", "Cycles", "Point"]);
+    let rows = rows(&folder.path().join("run-1"), &["X_Set", "Z_Set", "X_Position", "Z_Position", "Cycles", "Point"]);
     // What is set leaves the lines at corners only, and passes them by no more than 2 mm.
     let set: Vec<[f64; 2]> = rows.iter().filter(|row| row[5] > 0.0).map(|row| [row[0], row[1]]).collect();
     for corner in &PATH[1..] {
@@ -123,19 +101,8 @@ fn a_group_follows_the_path_and_rounds_its_corners_off() {
 
 #[test]
 fn a_group_is_the_same_over_tcp_and_from_a_checkpoint() {
-    let folder = tempfile::tempdir().unwrap();
-    let saved = folder.path().join("half.checkpoint");
-    let saved = saved.to_str().unwrap();
-    let digest = |words: &[&str]| {
-        let all = [&["run", "group.toml", "--format", "json", "--until", "5s"], words].concat();
-        let said = typed(&scenario("gantry-robot"), &all);
-        let report: serde_json::Value = serde_json::from_str(said.out.trim()).unwrap_or_else(|_| panic!("{said:?}"));
-        digests(&[report])
-    };
-    // At 2.34 s it is in a curve.
-    let whole = digest(&["--save-at", "2340ms", "--save", saved]);
-    assert_eq!(digest(&["--transport", "tcp"]), whole);
-    assert_eq!(digest(&["--resume", saved]), whole);
+    // It is in a curve.
+    is_the_same_over_tcp_and_resumed("gantry-robot", "group.toml", "5s", "2340ms");
 }
 
 /// Figs. 14 and 15: the path of the tool in the plane.
@@ -153,6 +120,52 @@ fn its_path_is_drawn_in_the_plane() {
     assert!(said.code == Some(2) && said.err.contains("`Z_Position`"), "{said:?}");
     let said = typed(&scenario("gantry-robot"), &["run", ".", "--xy", "X_Position", "--plot", "no.svg"]);
     assert!(said.code == Some(2) && said.err.contains("two signals with a comma"), "{said:?}");
+}
+
+/// Fig. 14: a corner of the path, enlarged, with a frame in the whole that shows where it is.
+#[test]
+fn a_corner_of_its_path_is_drawn_enlarged() {
+    let folder = tempfile::tempdir().unwrap();
+    let plot = folder.path().join("path.svg");
+    let plot = plot.to_str().unwrap();
+    let drawn = |words: &[&str]| {
+        typed(&scenario("gantry-robot"), &[&["run", ".", "--until", "6s", "--plot", plot, "--enlarge"], words].concat())
+    };
+    let said = drawn(&["0.96..1.06,0.87..0.93", "--xy", "X_Position,Z_Position"]);
+    assert_eq!(said.code, Some(0), "{said:?}");
+    let svg = std::fs::read_to_string(plot).unwrap();
+    assert!(svg.contains("Enlarged beside them: from 0.96 to 1.06 across, from 0.87 to 0.93 up.</desc>"), "{svg}");
+    let said = drawn(&["2s..2.5s"]);
+    assert_eq!(said.code, Some(0), "{said:?}");
+    let svg = std::fs::read_to_string(plot).unwrap();
+    assert!(svg.contains("Enlarged beside them: from 2 s to 2.5 s.</desc>"), "{svg}");
+}
+
+/// What cannot be enlarged is refused before anything runs, or, where only the run shows it, with the whole drawn.
+#[test]
+fn a_part_that_is_not_there_is_not_enlarged() {
+    let folder = tempfile::tempdir().unwrap();
+    let plot = folder.path().join("path.svg");
+    let said = |words: &[&str]| {
+        let all = [&["run", ".", "--until", "1s", "--plot", plot.to_str().unwrap()], words].concat();
+        typed(&scenario("gantry-robot"), &all)
+    };
+    let plane: [&str; 2] = ["--xy", "X_Position,Z_Position"];
+    for (words, wanted) in [
+        (vec!["--enlarge", "2s..2s"], "the range `2s..2s` is empty"),
+        (vec!["--enlarge", "0..1,b..2"], "`b` is no number"),
+        (vec!["--enlarge", "1s"], "write ranges, as in `2s..2.5s`"),
+        (vec!["--enlarge", "2s..3s"], "--enlarge: 2.000 s is not before the end of the run at 1.000 s"),
+        (vec!["--enlarge", "0..1,0..1"], "write a range of time"),
+        (vec!["--enlarge", "0s..1s", plane[0], plane[1]], "write a range of X_Position and one of Z_Position"),
+    ] {
+        let said = said(&words);
+        assert!(said.code == Some(2) && said.err.contains(wanted), "{words:?}: {said:?}");
+        assert!(!plot.exists(), "{words:?}");
+    }
+    let said = said(&["--enlarge", "5..6,5..6", plane[0], plane[1]]);
+    assert!(said.code == Some(2) && said.err.contains("X_Position (m) is from 0.2"), "{said:?}");
+    assert!(plot.exists() && said.out.contains("digest"), "the run is reported all the same: {said:?}");
 }
 
 /// Its motion control can be taken over as a whole, for any PLC.

@@ -7,21 +7,9 @@ use crate::typed::{begun, copied_shear, edit, typed};
 #[test]
 fn what_an_operator_did_is_repeated_to_the_same_digest() {
     let folder = copied_shear();
-    let words = [
-        "run",
-        ".",
-        "--format",
-        "json",
-        "--until",
-        "1h",
-        "--pace",
-        "20",
-        "--listen",
-        "127.0.0.1:0",
-        "--record",
-        "live",
-    ];
-    let mut server = begun(folder.path(), &words);
+    let hour = ["run", ".", "--format", "json", "--until", "1h"];
+    let words = ["--pace", "20", "--listen", "127.0.0.1:0", "--record", "live"];
+    let mut server = begun(folder.path(), &[hour, words].concat());
     let mut said = BufReader::new(server.stderr.take().unwrap());
     let mut line = String::new();
     said.read_line(&mut line).unwrap();
@@ -49,20 +37,8 @@ fn what_an_operator_did_is_repeated_to_the_same_digest() {
     let live: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(live["status"], "stopped");
     for source in ["live", "live/run-1/events.jsonl"] {
-        let words = [
-            "run",
-            ".",
-            "--format",
-            "json",
-            "--until",
-            "1h",
-            "--replay-operator",
-            source,
-            "--record",
-            "again",
-            "--overwrite",
-        ];
-        let said = typed(folder.path(), &words);
+        let words = ["--replay-operator", source, "--record", "again", "--overwrite"];
+        let said = typed(folder.path(), &[&hour[..], &words].concat());
         let again: serde_json::Value = serde_json::from_str(&said.out).unwrap_or_else(|_| panic!("{said:?}"));
         assert_eq!((&again["digest"], &again["steps"]), (&live["digest"], &live["steps"]), "{source}");
     }

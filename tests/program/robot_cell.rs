@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::typed::{digests, scenario, typed};
+use crate::typed::{digests, is_the_same_over_tcp_and_resumed, rows, scenario, typed};
 
 /// Runs a case, recorded; the digest and the rows of these signals.
 fn recorded(record: &Path, case: &str, signals: &[&str]) -> (String, Vec<Vec<f64>>) {
@@ -11,16 +11,7 @@ fn recorded(record: &Path, case: &str, signals: &[&str]) -> (String, Vec<Vec<f64
     let said = typed(&scenario("robot-cell"), &[&words[..], &[folder.to_str().expect("UTF-8")]].concat());
     assert_eq!(said.code, Some(0), "{said:?}");
     let report: serde_json::Value = serde_json::from_str(said.out.trim()).expect("a report");
-    let text = std::fs::read_to_string(folder.join("run-1/trajectory.csv")).expect("a recording");
-    let mut lines = text.lines();
-    let head: Vec<&str> = lines.next().expect("a head").split(',').collect();
-    let columns: Vec<usize> =
-        signals.iter().map(|name| head.iter().position(|known| known == name).expect("recorded")).collect();
-    let row = |line: &str| {
-        let cells: Vec<&str> = line.split(',').collect();
-        columns.iter().map(|at| cells[*at].parse().unwrap_or(f64::NAN)).collect()
-    };
-    (digests(&[report])[0].clone(), lines.map(row).collect())
+    (digests(&[report])[0].clone(), rows(&folder.join("run-1"), signals))
 }
 
 const TOOL: [&str; 4] = ["Tool_X", "Tool_Y", "Tool_Z", "Stopped"];
@@ -49,17 +40,6 @@ fn a_stop_does_not_change_the_path() {
 
 #[test]
 fn transport_and_checkpoints_do_not_matter() {
-    let folder = tempfile::tempdir().unwrap();
-    let saved = folder.path().join("curve.checkpoint");
-    let saved = saved.to_str().unwrap();
-    let digest = |words: &[&str]| {
-        let all = [&["run", ".", "--format", "json", "--until", "6s"], words].concat();
-        let said = typed(&scenario("robot-cell"), &all);
-        let report: serde_json::Value = serde_json::from_str(said.out.trim()).unwrap_or_else(|_| panic!("{said:?}"));
-        digests(&[report])
-    };
-    // In the curve after the first part was gripped.
-    let whole = digest(&["--save-at", "3.28s", "--save", saved]);
-    assert_eq!(digest(&["--transport", "tcp"]), whole);
-    assert_eq!(digest(&["--resume", saved]), whole);
+    // It is in the curve after the first part was gripped.
+    is_the_same_over_tcp_and_resumed("robot-cell", ".", "6s", "3.28s");
 }

@@ -62,6 +62,36 @@ pub(crate) fn digests(reports: &[serde_json::Value]) -> Vec<String> {
     reports.iter().map(digest).collect()
 }
 
+/// The values of these signals in each row that a run has recorded for spreadsheets.
+pub(crate) fn rows(run: &Path, signals: &[&str]) -> Vec<Vec<f64>> {
+    let text = std::fs::read_to_string(run.join("trajectory.csv")).expect("a recording");
+    let mut lines = text.lines();
+    let head: Vec<&str> = lines.next().expect("a head").split(',').collect();
+    let columns: Vec<usize> =
+        signals.iter().map(|name| head.iter().position(|known| known == name).expect("recorded")).collect();
+    let row = |line: &str| {
+        let cells: Vec<&str> = line.split(',').collect();
+        columns.iter().map(|at| cells[*at].parse().unwrap_or(f64::NAN)).collect()
+    };
+    lines.map(row).collect()
+}
+
+/// Runs a file of a scenario over TCP, and again from a checkpoint: both have the digest of the whole run in one process.
+pub(crate) fn is_the_same_over_tcp_and_resumed(name: &str, file: &str, until: &str, save_at: &str) {
+    let folder = tempfile::tempdir().unwrap();
+    let saved = folder.path().join("checkpoint");
+    let saved = saved.to_str().expect("UTF-8");
+    let digest = |words: &[&str]| {
+        let all = [&["run", file, "--format", "json", "--until", until], words].concat();
+        let said = typed(&scenario(name), &all);
+        let report: serde_json::Value = serde_json::from_str(said.out.trim()).unwrap_or_else(|_| panic!("{said:?}"));
+        digests(&[report])
+    };
+    let whole = digest(&["--save-at", save_at, "--save", saved]);
+    assert_eq!(digest(&["--transport", "tcp"]), whole, "{name}/{file} over TCP");
+    assert_eq!(digest(&["--resume", saved]), whole, "{name}/{file} from {save_at} on");
+}
+
 /// A copy of the shear in a folder of its own, to be broken.
 pub(crate) fn copied_shear() -> tempfile::TempDir {
     copied("shear")

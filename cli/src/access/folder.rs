@@ -103,6 +103,7 @@ impl Folder<'_> {
             (None, None) => Ok(None),
             (Some(chain), Some(secret)) => {
                 let wrong = |path: PathBuf| move |source| AccessError::Certificate { path, source };
+                // First without the authorities, so that a fault of the certificate is not reported as one of theirs.
                 let identity = Identity::from_pem(&chain, &secret, None).map_err(wrong(certificate))?;
                 let path = self.file(CLIENTS);
                 match read_if_there(&path)? {

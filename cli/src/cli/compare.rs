@@ -3,11 +3,12 @@
 use std::path::PathBuf;
 
 use clap::Args as ClapArgs;
+use onescan_report::plot::Part;
 use onescan_server::signal::SignalName;
 use onescan_server::time::VirtualTime;
 
 use super::error::CommandError;
-use super::value::{FormatArg, plane};
+use super::value::{FormatArg, part, plane};
 use crate::compare::CompareConfig;
 use crate::error::ExitCode;
 use crate::interrupt::Interrupt;
@@ -30,6 +31,9 @@ pub struct CompareArgs {
     /// Draw two signals against each other, across and up, as `x.position,z.position`
     #[arg(long, value_name = "X,Y", requires = "plot", value_parser = plane)]
     pub xy: Option<[SignalName; 2]>,
+    /// Draw a part of the plot enlarged beside the whole: `2s..2.5s`, or `0.9..1.2,0.3..0.5`, across and up, with `--xy`
+    #[arg(long, value_name = "RANGE[,RANGE]", requires = "plot", value_parser = part, allow_hyphen_values = true)]
+    pub enlarge: Option<Part>,
     /// For people, or one JSON object a way for machines
     #[arg(long, value_enum, default_value_t)]
     pub format: FormatArg,
@@ -46,6 +50,7 @@ pub fn compare(args: CompareArgs) -> Result<ExitCode, CommandError> {
     run.subject.until = args.until;
     run.runs = args.runs;
     run.picture.plane = args.xy;
+    run.picture.enlarged = args.enlarge;
     let config = CompareConfig { run, plot: args.plot, format: args.format.into() };
     crate::compare::compare(&config, &interrupt, &mut std::io::stdout().lock())?;
     Ok(ExitCode::Ok)

@@ -22,7 +22,7 @@ pub struct ModelArgs {
     /// How many steps a client may sleep through after a turn
     #[arg(long, default_value_t = 5, value_name = "N", requires = "nusmv")]
     pub delay_max: u32,
-    /// After how many steps virtual time begins anew
+    /// After how many steps virtual time restarts
     #[arg(long, default_value_t = 1000, value_name = "N", requires = "nusmv")]
     pub tv_max: u32,
     /// Write it into this file [default: standard output]

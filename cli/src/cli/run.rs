@@ -7,6 +7,7 @@ use std::time::Duration;
 
 use clap::{Args as ClapArgs, ValueEnum};
 use onescan_recording::Choice;
+use onescan_report::plot::Part;
 use onescan_scenario::Mode;
 use onescan_scenario::watch::WatchRequest;
 use onescan_server::pacing::Pace;
@@ -16,7 +17,7 @@ use onescan_server::time::{TimeSpan, VirtualTime};
 
 use super::error::CommandError;
 use super::opcua::AccessArgs;
-use super::value::{FormatArg, client_name, plane, signal_name};
+use super::value::{FormatArg, client_name, part, plane, signal_name};
 use crate::access::admission::Admission;
 use crate::check::collect::Reading;
 use crate::check::stubs;
@@ -92,6 +93,9 @@ pub struct RunArgs {
     /// Draw two signals against each other, across and up, as `x.position,z.position`: the paths of all runs
     #[arg(long, value_name = "X,Y", requires = "plot", conflicts_with = "signals", value_parser = plane)]
     pub xy: Option<[SignalName; 2]>,
+    /// Draw a part of the plot enlarged beside the whole: `2s..2.5s`, or `0.9..1.2,0.3..0.5`, across and up, with `--xy`
+    #[arg(long, value_name = "RANGE[,RANGE]", requires = "plot", value_parser = part, allow_hyphen_values = true)]
+    pub enlarge: Option<Part>,
     /// Write which statements and branches of the soft PLCs were executed, in all runs together
     #[arg(long, value_name = "FILE")]
     pub coverage: Option<PathBuf>,
@@ -296,6 +300,7 @@ fn config(args: RunArgs) -> Result<RunConfig, CommandError> {
             drawing: args.plot.map_or(Drawing::Nothing, Drawing::File),
             signals: args.signals,
             plane: args.xy,
+            enlarged: args.enlarge,
             runs: if args.apart { RunsDrawn::Apart } else { RunsDrawn::Overlaid },
         },
         watch: Watch { variables: args.watch, on: args.watch_on.into() },

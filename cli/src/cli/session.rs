@@ -79,20 +79,20 @@ pub struct ControlArgs {
 /// What an operator may ask for.
 #[derive(Clone, Copy, Debug, Default, ValueEnum)]
 pub enum WishArg {
-    /// How it is
+    /// Report its state and virtual time
     #[default]
     Status,
     /// Hold virtual time at the next step boundary
     Pause,
     /// Let it run again
     Resume,
-    /// What signals are, in the order in which they are named
+    /// Read signals, in the order in which they are named
     Get,
-    /// What signals are, each time that one of them has changed, until the session is over
+    /// Read signals each time that one of them has changed, until the session is over
     Watch,
     /// Run exactly one step, then hold
     Step,
-    /// Begin anew at virtual time 0
+    /// Restart at virtual time 0
     Reset,
     /// End the session
     Stop,

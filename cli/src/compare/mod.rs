@@ -14,7 +14,7 @@ use crate::error::Usage;
 use crate::format::Format;
 use crate::interrupt::Interrupt;
 use crate::run::config::{Drawing, Picture};
-use crate::run::sampler::{Samples, panel};
+use crate::run::sampler::{Samples, drawn, panel};
 use crate::run::{Ran, RunConfig, RunError, one_run};
 
 /// The ways, lockstep first: the others are held against it.
@@ -94,14 +94,14 @@ pub fn compare(config: &CompareConfig, interrupt: &Interrupt, out: &mut dyn Writ
     let types: Vec<SignalType> = scenario.file().signals.values().map(|signal| signal.get_ref().ty).collect();
     let rows: Vec<Row> =
         MODES.iter().zip(&all).map(|(mode, runs)| row(*mode, runs, &all[0][0].samples, &types)).collect();
+    let mut not_there = None;
     if let Some(path) = &config.plot {
-        let plot = plot(&config.run.picture, &scenario, &all);
-        let picture =
-            config.run.picture.plane.as_ref().and_then(|_| plot.to_plane_svg()).unwrap_or_else(|| plot.to_svg());
-        file::write_whole(path, picture.as_bytes())?;
+        let (svg, nothing) = drawn(&plot(&config.run.picture, &scenario, &all), &config.run.picture);
+        file::write_whole(path, svg.as_bytes())?;
+        not_there = nothing;
     }
     write(&rows, config.format, out).map_err(OutputError)?;
-    Ok(rows)
+    not_there.map_or(Ok(rows), |nothing| Err(nothing.into()))
 }
 
 fn row(mode: Mode, runs: &[Run], lockstep: &Samples, types: &[SignalType]) -> Row {

@@ -55,8 +55,8 @@ fn solid(outline: Outline<'_>, room_m: f64) -> Solid {
     Solid { name: body.to_owned(), kind, backdrop, surface }
 }
 
-/// The scenes of a scenario's plants, each as a picture. A scene that cannot be read by now has none: what ran is told by
-/// the rest of the page.
+/// The scenes of a scenario's plants, each as a picture. A scene that can no longer be read has none; the rest of the
+/// page still reports what ran.
 pub fn of_scenario(scenario: &Scenario, side: Side) -> Vec<String> {
     let drawn = scenario.file().clients.iter().filter_map(|(name, client)| {
         let ClientFile::Plant { scene, .. } = client.get_ref() else { return None };

@@ -5,7 +5,7 @@ use std::process::{Child, Command, Output, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
-/// How often it is looked whether a process that has closed its output has ended, which is at once but for a moment.
+/// How long to wait before checking again whether a process that has closed its output has ended; it usually has at once.
 const LOOK: Duration = Duration::from_millis(1);
 
 /// A process whose output is taken.
@@ -38,7 +38,8 @@ impl Limited {
             Err(RecvTimeoutError::Disconnected) => Vec::new(),
         };
         let left = || limit.saturating_sub(started.elapsed());
-        // What holds its standard error open beyond the limit, as a process that it left behind, is not waited for.
+        // A process that it left behind may hold its standard error open beyond the limit. It is not waited for: what was
+        // written there is then missing from the report, which still has the status and the output.
         let stderr = self.err.recv_timeout(left()).unwrap_or_default();
         // It may have closed its output and go on.
         while self.child.try_wait()?.is_none() {

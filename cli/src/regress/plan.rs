@@ -122,7 +122,7 @@ pub fn tell_programs(units: &[Unit]) {
         Unit::Sources(_) | Unit::Unreadable { .. } => None,
     });
     for folder in scenarios.collect::<BTreeSet<_>>() {
-        // One that cannot be read is told by its tests.
+        // One that cannot be read is reported by its tests.
         let Ok(scenario) = Scenario::load(folder) else { continue };
         for (name, client) in &scenario.file().clients {
             if let ClientFile::External { command } | ClientFile::OpcUa { command, .. } = client.get_ref()

@@ -14,9 +14,9 @@ const LABELS: usize = 18;
 /// A span of virtual time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Window {
-    /// Its begin.
+    /// The first instant that is shown.
     pub from: VirtualTime,
-    /// Its end, not before its begin.
+    /// The last instant that is shown, not before `from`.
     pub to: VirtualTime,
 }
 

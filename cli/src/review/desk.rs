@@ -9,7 +9,7 @@ use super::{Decision, Waiting};
 use crate::snapshot::Difference;
 use crate::snapshot::overlay::differing;
 
-/// So many differences are told in words; the rest is drawn.
+/// At most so many differences are listed in words; all of them are drawn.
 const DIFFERENCES_MAX: usize = 4;
 /// A window is not made shorter than so many steps.
 const STEPS_MIN: u64 = 10;
@@ -26,11 +26,11 @@ const HELP: &[&str] = &[
 /// Whether a review goes on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Go {
-    /// It does.
+    /// The next key is awaited.
     On,
-    /// It is over; what was decided is done.
+    /// It ends, and the decisions are carried out.
     Over,
-    /// It is given up; nothing is done.
+    /// It ends, and nothing changes.
     Away,
 }
 
@@ -81,6 +81,7 @@ impl<'w> Desk<'w> {
             Key::Char('?' | 'h') => self.helps = true,
             Key::Char('q' | 'Q') => return Go::Over,
             Key::Escape | Key::CtrlC => return Go::Away,
+            // A key without a meaning changes nothing, so that a slip of the finger does no harm.
             _ => {}
         }
         Go::On

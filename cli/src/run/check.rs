@@ -1,10 +1,12 @@
 //! Options that contradict each other or the scenario are refused before anything has begun.
 
+use onescan_report::plot::Part;
 use onescan_scenario::file::ClientFile;
 use onescan_scenario::{Mode, Scenario};
 use onescan_server::pacing::Pace;
 use onescan_server::signal::pattern::choose;
 use onescan_server::signal::{ClientName, SignalName, did_you_mean};
+use onescan_server::time::VirtualTime;
 
 use super::config::{RunConfig, Transport};
 use super::error::RunError;
@@ -20,6 +22,7 @@ impl RunConfig {
                 return Err(Usage::new(format!("the scenario has no signal `{signal}`"), help).into());
             }
         }
+        self.check_enlarged(scenario)?;
         if let Some(record) = &self.reports.record {
             choose(&record.choice.signals, scenario.file().signals.keys())
                 .map_err(|unmatched| Usage::new(format!("--record-signals: {unmatched}"), None))?;
@@ -40,6 +43,29 @@ impl RunConfig {
             Mode::Lockstep => Ok(()),
             Mode::Freewheel | Mode::Halt | Mode::Follow => self.check_freewheel(scenario),
         }
+    }
+
+    /// What is to be enlarged must be of what is drawn: instants of time, or places of a plane.
+    fn check_enlarged(&self, scenario: &Scenario) -> Result<(), RunError> {
+        let (wrong, help) = match (self.picture.enlarged, &self.picture.plane) {
+            (None, _) | (Some(Part::Plane { .. }), Some(_)) => return Ok(()),
+            (Some(Part::Times { from_ns, .. }), None) => {
+                let (from, end) = (VirtualTime::from_nanos(from_ns), self.subject.end(scenario));
+                if from < end {
+                    return Ok(());
+                }
+                (format!("--enlarge: {from} is not before the end of the run at {end}"), None)
+            }
+            (Some(Part::Times { .. }), Some([x, y])) => (
+                "--enlarge: a range of time is no part of a plane".to_owned(),
+                Some(format!("write a range of {x} and one of {y}, as in `0.9..1.2,0.3..0.5`")),
+            ),
+            (Some(Part::Plane { .. }), None) => (
+                "--enlarge: a picture over time has no ranges of values".to_owned(),
+                Some("write a range of time, as in `2s..2.5s`, or draw two signals with --xy".to_owned()),
+            ),
+        };
+        Err(Usage::new(wrong, help).into())
     }
 
     /// Who is to come over OPC UA must be somebody of the scenario, and come as he is.

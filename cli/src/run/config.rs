@@ -8,6 +8,7 @@ use std::time::Duration;
 
 use onescan_clients::opcua_server::Access;
 use onescan_recording::Choice;
+use onescan_report::plot::Part;
 use onescan_scenario::watch::WatchRequest;
 use onescan_scenario::{Mode, Scenario};
 use onescan_server::pacing::Pace;
@@ -116,7 +117,7 @@ pub struct SaveRequest {
 }
 
 /// What is drawn of the runs.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Picture {
     /// Whether there is a plot, and where it goes.
     pub drawing: Drawing,
@@ -124,6 +125,8 @@ pub struct Picture {
     pub signals: Vec<SignalName>,
     /// Two signals to be drawn against each other in the plot, across and up, in place of all over time.
     pub plane: Option<[SignalName; 2]>,
+    /// A part of the plot to be drawn enlarged beside the whole.
+    pub enlarged: Option<Part>,
     /// How several runs share it.
     pub runs: RunsDrawn,
 }

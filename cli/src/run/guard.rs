@@ -24,10 +24,11 @@ impl Group {
     /// Ends all of its processes at once; whatever is gone is gone.
     #[cfg(unix)]
     pub(super) fn kill(self) {
-        // A number that is none of a process, as from a guard's input that was cut off, is nobody; 0 and 1 would be everybody.
+        // The number may be wrong, for example if the guard's input was cut off. 0 would be this process's own group, and
+        // 1 every process.
         let group = i32::try_from(self.0).ok().filter(|id| *id > 1).and_then(rustix::process::Pid::from_raw);
         if let Some(group) = group {
-            // That nobody is left in it is what is wanted.
+            // An error means that no process is left in the group, which is the aim.
             let _ = rustix::process::kill_process_group(group, rustix::process::Signal::KILL);
         }
     }
@@ -84,7 +85,7 @@ pub(crate) fn stand(input: impl BufRead) {
     for line in input.lines() {
         match line {
             Ok(line) if line == DISMISSED => return,
-            // A line that the server's death has cut off is no number, or that of a process that was never told of whole.
+            // If the server died while it wrote a line, that line is not a number, or the number of another process.
             Ok(line) => groups.extend(line.parse().ok().map(Group)),
             // Input that cannot be read any more has ended too early, as with a dead server.
             Err(_) => break,

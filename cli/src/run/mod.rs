@@ -119,10 +119,9 @@ pub fn execute(config: &RunConfig, interrupt: &Interrupt, out: &mut dyn Write) -
         request.write(sink)?;
     }
     if let Drawing::File(path) = &config.picture.drawing {
-        file::write_whole(
-            path,
-            sampler::picture(&scenario, config.mode, &config.picture, &samples, &reports).as_bytes(),
-        )?;
+        let (svg, not_there) = sampler::picture(&scenario, config.mode, &config.picture, &samples, &reports);
+        file::write_whole(path, svg.as_bytes())?;
+        unsaved = unsaved.or(not_there.map(Into::into));
     }
     if let Some(path) = &config.reports.html {
         let plot = sampler::plot(&scenario, config.mode, &config.picture, &samples, &reports);
@@ -139,6 +138,7 @@ fn page_of(scenario: &Scenario, reports: &[RunReport], plot: &Plot) -> String {
     let coverage =
         scenario.coverage().map(|sink| sink.lock().unwrap_or_else(std::sync::PoisonError::into_inner).clone());
     let scenes = drawing::of_scenario(scenario, Side::default());
+    // Without soft PLCs, or with clients in other processes, no coverage is gathered: the page then has no part about it.
     page::of_runs(reports, &events, (plot, scenes), &coverage.unwrap_or_default()).to_html()
 }
 
@@ -160,7 +160,7 @@ pub(crate) fn watched(
 /// What came of a run.
 pub(crate) struct Ran {
     pub(crate) report: RunReport,
-    /// What a plot needs of it.
+    /// The samples of the signals that are drawn; empty if none are.
     pub(crate) samples: Samples,
     /// Why there is no checkpoint that was asked for.
     unsaved: Option<RunError>,

@@ -105,7 +105,7 @@ impl Processes {
     pub(super) fn first_ended(&mut self) -> Option<RunError> {
         self.children.iter_mut().find_map(|(name, child)| match child.try_wait() {
             Ok(Some(status)) => Some(RunError::ClientProcess { client: name.to_string(), status: status.to_string() }),
-            // One that runs, or cannot be asked: then its connection tells whether it is there.
+            // One that runs, or whose state cannot be read: its connection then shows whether it is there.
             Ok(None) | Err(_) => None,
         })
     }
@@ -120,8 +120,8 @@ impl Drop for Processes {
                 std::thread::sleep(Duration::from_millis(1));
             }
             Group::led_by(child).kill();
-            // It may have ended by itself meanwhile; then there is nothing to do. The session's outcome does not depend on how
-            // its processes left, so neither failure has anybody to be told to.
+            // It may have ended by itself meanwhile; then there is nothing to do. The outcome of the session does not depend on
+            // how its processes ended, so both errors are ignored.
             let _ = child.kill();
             let _ = child.wait();
         }

@@ -13,6 +13,7 @@ use onescan_server::signal::{SignalName, SignalType};
 use super::chosen::Chosen;
 use super::config::{Picture, RunsDrawn};
 use super::report::RunReport;
+use crate::error::Usage;
 
 /// Chosen signals of one run.
 #[derive(Clone, Debug, Default)]
@@ -64,22 +65,35 @@ impl Observer for Sampler {
 }
 
 /// The picture of a plot: over time, or in the plane that was asked for.
+///
+/// If no run comes to the part that was to be enlarged, it is the picture without it, and why.
 pub(super) fn picture(
     scenario: &Scenario,
     mode: Mode,
     picture: &Picture,
     runs: &[Samples],
     reports: &[RunReport],
-) -> String {
+) -> (String, Option<Usage>) {
     let plot = plot(scenario, mode, picture, runs, reports);
-    let Some(plane) = &picture.plane else {
-        return match picture.runs {
-            RunsDrawn::Overlaid => plot.to_svg(),
-            RunsDrawn::Apart => apart(plot).to_svg(),
-        };
+    let plot = match (&picture.plane, picture.runs) {
+        (Some(plane), _) => {
+            let panels = plane.iter().map(|name| panel(scenario, name, runs.iter())).collect();
+            Plot { panels, ..plot }
+        }
+        (None, RunsDrawn::Overlaid) => plot,
+        (None, RunsDrawn::Apart) => apart(plot),
     };
-    let panels = plane.iter().map(|name| panel(scenario, name, runs.iter())).collect();
-    Plot { panels, ..plot }.to_plane_svg().unwrap_or_default()
+    drawn(&plot, picture)
+}
+
+/// A plot as a picture, with a part of it enlarged if that was asked for; the whole and why if that part is empty.
+pub(crate) fn drawn(plot: &Plot, picture: &Picture) -> (String, Option<Usage>) {
+    let whole = || picture.plane.as_ref().and_then(|_| plot.to_plane_svg()).unwrap_or_else(|| plot.to_svg());
+    match picture.enlarged.map(|part| plot.to_svg_enlarging(part)) {
+        None => (whole(), None),
+        Some(Ok(svg)) => (svg, None),
+        Some(Err(nothing)) => (whole(), Some(Usage::new(format!("--enlarge: {nothing}"), Some(nothing.drawn)))),
+    }
 }
 
 /// The same with each run in panels of its own.

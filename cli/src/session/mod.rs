@@ -50,13 +50,13 @@ pub fn join(scenario: &Path, case: Option<&str>, name: &ClientName, server: Entr
 /// What somebody asks of a session.
 #[derive(Clone, Debug)]
 pub enum Asked {
-    /// How it is.
+    /// Its state and virtual time.
     Status,
-    /// That something be done.
+    /// An operation on it.
     Do(Operation),
-    /// What signals are.
+    /// The values of signals.
     Get(Vec<SignalName>),
-    /// What signals are whenever one has changed, looked at so often.
+    /// The values of signals whenever one has changed, read at this interval of wall-clock time.
     Watch(Vec<SignalName>, Duration),
 }
 

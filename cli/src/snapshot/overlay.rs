@@ -13,6 +13,7 @@ pub fn overlay(title: &str, old: Option<&Snapshot>, new: &Snapshot, differences:
         let of = |tracks: &[Track]| tracks.iter().find(|track| track.name == name).cloned();
         let (was, is) = (old.and_then(|old| of(&old.signals)), of(&new.signals));
         let Some(any) = is.as_ref().or(was.as_ref()) else { continue };
+        // A signal that only one of them has is drawn as a line without samples in the other.
         let run = |track: &Option<Track>| track.as_ref().map(|track| trajectory(new, track)).unwrap_or_default();
         let runs = if old.is_some() { vec![run(&was), run(&is)] } else { vec![run(&is)] };
         panels.push(Panel { signal: name.clone(), unit: any.unit.clone(), shape: shape(any), names: Vec::new(), runs });

@@ -8,11 +8,12 @@ use tempfile::TempDir;
 const PREFIX: &str = "onescan-pki-";
 
 /// Removes the passing folders of processes that were killed, and could not do so themselves: each has a private key.
-/// Where nothing tells whether a process is there, they stay.
+/// Where it cannot be found out whether a process is there, they stay.
 fn sweep(place: &Path) {
     let is_dead = |process: &str| {
         cfg!(target_os = "linux") && process.parse::<u32>().is_ok() && !Path::new("/proc").join(process).exists()
     };
+    // A place that cannot be listed has nothing that can be removed; making the new folder there reports why.
     for entry in std::fs::read_dir(place).into_iter().flatten().flatten() {
         let name = entry.file_name();
         let process = name.to_str().and_then(|name| name.strip_prefix(PREFIX)).and_then(|rest| rest.split('-').next());

@@ -48,11 +48,31 @@ pub(super) fn role(key: &str) -> Option<Role> {
     if library.types.contains_key(key) || VENDORS_TYPES.contains(&key) {
         return Some(Role::Vocabulary);
     }
+    if groups().contains(key) {
+        return Some(Role::Foreign("groups of axes move on virtual time in the soft PLC only"));
+    }
     if key.starts_with("AXIS_REF_") {
         return Some(Role::Foreign("an axis of a device tree is not in the text"));
     }
     let is_motion = key.starts_with("MC_") || key.starts_with("SMC_");
     is_motion.then_some(Role::Foreign("it moves its axis by the PLC's own clock"))
+}
+
+/// The blocks and types of coordinated motion, in capitals.
+fn groups() -> &'static BTreeSet<String> {
+    static GROUPS: OnceLock<BTreeSet<String>> = OnceLock::new();
+    GROUPS.get_or_init(|| {
+        let declarations = library::GROUPS.iter().flat_map(|(_, text)| parse(FileId(0), text).unit.declarations);
+        let name = |declaration: Declaration| match declaration {
+            Declaration::Pou(pou) => Some(pou.name.key()),
+            Declaration::Type(named) => Some(named.name.key()),
+            Declaration::Globals(_)
+            | Declaration::Configuration(_)
+            | Declaration::Namespace(_)
+            | Declaration::Using(_) => None,
+        };
+        declarations.filter_map(name).filter(|key| !key.starts_with("ONESCAN_")).collect()
+    })
 }
 
 /// Vendors' names of PLCopen's enumerations.
@@ -333,6 +353,9 @@ mod tests {
             ("TON", None),
         ] {
             assert_eq!(role(key), wanted, "{key}");
+        }
+        for key in ["MC_GROUPENABLE", "MC_MOVELINEARABSOLUTE", "AXES_GROUP_REF", "MC_KIN_REF", "MC_TRANSITION_MODE"] {
+            assert!(matches!(role(key), Some(Role::Foreign(why)) if why.starts_with("groups of axes")), "{key}");
         }
         for key in ["MC_CAMIN", "MC_CAM_REF", "MC_TOUCHPROBE", "SMC_FOLLOWPOSITION", "AXIS_REF_SM3"] {
             assert!(matches!(role(key), Some(Role::Foreign(_))), "{key}");

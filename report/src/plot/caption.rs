@@ -1,7 +1,7 @@
 //! The words of a picture: names, units, and a description for readers who do not see it.
 
 use super::agreement::Agreement;
-use super::range::TimeRange;
+use super::range::{TimeRange, ValueRange};
 use super::ticks::power_of_ten;
 use super::{Panel, Plot};
 
@@ -31,9 +31,10 @@ pub(super) fn time(exponent: i32) -> String {
     format!("time{}", in_unit(Some("s"), exponent))
 }
 
-/// What the picture shows: each panel, and how far its runs agree.
+/// What the picture shows: each panel, and how far its runs agree; and which part of it is enlarged.
 pub(super) fn description<'p>(
     times: TimeRange,
+    enlarged: Option<TimeRange>,
     panels: impl Iterator<Item = (&'p Panel, &'p Agreement)>,
     run_labels: &[String],
 ) -> String {
@@ -42,19 +43,18 @@ pub(super) fn description<'p>(
         format!("{}{remark}", heading(panel, 0))
     };
     let signals: Vec<String> = panels.map(signal).collect();
-    let seconds = times.seconds();
-    format!(
-        "Signals over time from {} s to {} s. Signals: {}. Runs: {}.",
-        seconds.low,
-        seconds.high,
-        listed(&signals),
-        listed(run_labels)
-    )
+    let over = |times: TimeRange| format!("from {} s to {} s", times.seconds().low, times.seconds().high);
+    let beside = enlarged.map_or_else(String::new, |part| format!(" Enlarged beside them: {}.", over(part)));
+    let (signals, runs) = (listed(&signals), listed(run_labels));
+    format!("Signals over time {}. Signals: {signals}. Runs: {runs}.{beside}", over(times))
 }
 
-/// What a picture of paths shows.
-pub(super) fn of_plane(up: &str, along: &str, run_labels: &[String]) -> String {
-    format!("{up} over {along}. Runs: {}.", listed(run_labels))
+/// What a picture of paths shows, and which part of it is enlarged: across and up.
+pub(super) fn of_plane(up: &str, along: &str, run_labels: &[String], enlarged: Option<[ValueRange; 2]>) -> String {
+    let part = |[x, y]: [ValueRange; 2]| {
+        format!(" Enlarged beside them: from {} to {} across, from {} to {} up.", x.low, x.high, y.low, y.high)
+    };
+    format!("{up} over {along}. Runs: {}.{}", listed(run_labels), enlarged.map_or_else(String::new, part))
 }
 
 /// A unit and a power of ten in parentheses, if there is one of them.

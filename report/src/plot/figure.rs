@@ -6,46 +6,95 @@ use super::lettering::{NAME_PX, TITLE_PX, shortened};
 use super::mark::{Marks, NUMBERS_PX};
 use super::palette::stroke;
 use super::panel::Axis;
+use super::part::{Cut, draw_edge, draw_frame};
+use super::range::{TimeRange, is_empty};
 use super::svg::{Document, draw_line, draw_note};
 use super::time_axis::TimeAxis;
+use super::trace::{Area, Frame};
 use super::{Plot, caption};
 
-/// Draws a plot.
-pub(super) fn draw(plot: &Plot) -> String {
-    let time = TimeAxis::of(plot);
+/// Draws a plot, with a part of it enlarged beside the whole if one is given.
+pub(super) fn draw(plot: &Plot, cut: Option<&Cut>) -> String {
+    let times = TimeRange::of(plot);
     let panels: Vec<Axis<'_>> = plot.panels.iter().map(Axis::of).collect();
+    let enlarged: Option<Vec<Axis<'_>>> = cut.map(|cut| cut.panels.iter().map(Axis::of).collect());
     let runs = caption::run_labels(plot);
     let agreements: Vec<&Agreement> = panels.iter().map(|axis| &axis.agreement).collect();
     let legend = Legend::of(&agreements, &runs);
     let heights: Vec<Height> = panels.iter().map(Axis::height).collect();
-    let marks = Marks::of(plot, time.range);
+    let marks = Marks::of(plot, times);
+    let widest = |axes: &Vec<Axis<'_>>| axes.iter().map(Axis::label_px).max().unwrap_or(0);
     let layout = Layout::of(&Contents {
         title: &plot.title,
         run_labels: &legend.labels,
         texts: marks.texts.len(),
-        value_label_px: panels.iter().map(Axis::label_px).max().unwrap_or(0),
+        value_label_px: widest(&panels),
+        beside_label_px: enlarged.as_ref().map(widest),
         panels: &heights,
     });
 
     let title = if plot.title.is_empty() { "Trajectories" } else { &plot.title };
     let signals = panels.iter().map(|axis| (axis.panel, &axis.agreement));
-    let description = caption::description(time.range, signals, &runs);
+    let description = caption::description(times, cut.map(|cut| cut.times), signals, &runs);
     let mut document = Document::picture(WIDTH_PX, layout.height_px, title, &description);
     draw_title(&mut document, &plot.title, &layout);
     legend.draw(&mut document, &layout);
     let numbers_px = if marks.texts.is_empty() { 0 } else { NUMBERS_PX };
-    for (index, (axis, &area)) in panels.iter().zip(&layout.panels).enumerate() {
-        axis.draw(&mut document, area, if index == 0 { numbers_px } else { 0 }, &time, runs.len());
-    }
-    marks.draw(&mut document, &layout.panels, layout.texts);
-    for &area in &layout.time_labels {
-        time.draw_labels(&mut document, area);
-    }
-    match layout.panels.last() {
-        Some(&area) => time.draw(&mut document, area),
-        None => draw_note(&mut document, WIDTH_PX / 2, layout.height_px - 2 * NAME_PX, "no signals"),
+    let time = if cut.is_some() { TimeAxis::of_column(times) } else { TimeAxis::of(times) };
+    let whole = Column { axes: &panels, time, areas: &layout.panels, labelled: &layout.time_labels, marks: &marks };
+    whole.draw(&mut document, &layout, numbers_px, runs.len());
+    if let (Some(cut), Some(enlarged), Some(beside)) = (cut, &enlarged, layout.beside) {
+        let areas = |areas: &[Area]| -> Vec<Area> { areas.iter().map(|area| beside.next_to(*area)).collect() };
+        let (right, labelled) = (areas(&layout.panels), areas(&layout.time_labels));
+        let (time, marks) = (TimeAxis::of_column(cut.times), marks.within(cut.times));
+        let column = Column { axes: enlarged, time, areas: &right, labelled: &labelled, marks: &marks };
+        column.draw(&mut document, &layout, numbers_px, runs.len());
+        whole.draw_frames(&mut document, &column);
     }
     document.finish()
+}
+
+/// Panels beneath each other, over one time axis.
+struct Column<'a> {
+    axes: &'a [Axis<'a>],
+    time: TimeAxis,
+    areas: &'a [Area],
+    /// Those that have the labels of the time axis beneath them, beside the last one.
+    labelled: &'a [Area],
+    marks: &'a Marks,
+}
+
+impl Column<'_> {
+    /// Draws all of it; `numbers_px` is the room for the numbers of marks above the first panel.
+    fn draw(&self, document: &mut Document, layout: &Layout, numbers_px: i64, run_count: usize) {
+        for (index, (axis, &area)) in self.axes.iter().zip(self.areas).enumerate() {
+            axis.draw(document, area, if index == 0 { numbers_px } else { 0 }, &self.time, run_count);
+        }
+        self.marks.draw(document, self.areas, layout.texts);
+        for &area in self.labelled {
+            self.time.draw_labels(document, area);
+        }
+        match self.areas.last() {
+            Some(&area) => self.time.draw(document, area),
+            None => draw_note(document, WIDTH_PX / 2, layout.height_px - 2 * NAME_PX, "no signals"),
+        }
+    }
+
+    /// Draws frames around what another column shows enlarged, here and there.
+    fn draw_frames(&self, document: &mut Document, enlarged: &Self) {
+        let here = self.axes.iter().zip(self.areas);
+        for ((axis, &area), (part, &edge)) in here.zip(enlarged.axes.iter().zip(enlarged.areas)) {
+            let frame = Frame { area, times: self.time.range, values: axis.values };
+            if !is_empty(part.panel) {
+                draw_frame(
+                    document,
+                    frame.place(enlarged.time.range.start_ns, part.values.low),
+                    frame.place(enlarged.time.range.end_ns, part.values.high),
+                );
+                draw_edge(document, edge);
+            }
+        }
+    }
 }
 
 pub(super) fn draw_title(document: &mut Document, title: &str, layout: &Layout) {

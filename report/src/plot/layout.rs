@@ -2,7 +2,7 @@
 //!
 //! From top to bottom: the title, the legend in as many rows as it takes, the texts of marks, then each panel beneath
 //! its heading, and the time axis beneath the last one. Where a picture is so tall that this axis is out of reach,
-//! its labels are also beneath panels in between.
+//! its labels are also beneath panels in between. What is enlarged has a column of its own beside the panels.
 
 use super::lettering::{NAME_PX, TICK_PX, shortened, width_px};
 use super::mark::{NUMBERS_PX, TEXT_ROW_PX};
@@ -14,6 +14,8 @@ pub(super) const WIDTH_PX: i64 = 880;
 pub(super) const LEGEND_LINE_PX: i64 = 26;
 /// Between a line in the legend and its label, and between a tick's label and its panel.
 pub(super) const LABEL_GAP_PX: i64 = 8;
+/// Between the panels and the labels of what is enlarged beside them.
+const BESIDE_GAP_PX: i64 = 16;
 /// From the edge of the picture to whatever is closest to it.
 const MARGIN_PX: i64 = 16;
 const LABEL_ROOM_MIN_PX: i64 = 40;
@@ -58,8 +60,24 @@ pub(super) struct Layout {
     /// Where the texts of marks go.
     pub(super) texts: Area,
     pub(super) panels: Vec<Area>,
+    /// Where what is enlarged goes, if something is.
+    pub(super) beside: Option<Column>,
     /// The panels before the last one that have the labels of the time axis beneath them.
     pub(super) time_labels: Vec<Area>,
+}
+
+/// A column of panels beside the others.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Column {
+    left_px: i64,
+    width_px: i64,
+}
+
+impl Column {
+    /// The place in this column beside another one.
+    pub(super) fn next_to(self, area: Area) -> Area {
+        Area { left_px: self.left_px, width_px: self.width_px, ..area }
+    }
 }
 
 /// What a layout has to find room for.
@@ -72,25 +90,36 @@ pub(super) struct Contents<'a> {
     pub(super) texts: usize,
     /// The widest label of a value.
     pub(super) value_label_px: i64,
+    /// The widest label of a value in what is enlarged, if something is.
+    pub(super) beside_label_px: Option<i64>,
     pub(super) panels: &'a [Height],
 }
 
 impl Layout {
     /// Places the contents from top to bottom.
     pub(super) fn of(contents: &Contents<'_>) -> Self {
-        let left_px = MARGIN_PX + (contents.value_label_px + LABEL_GAP_PX).clamp(LABEL_ROOM_MIN_PX, WIDTH_PX / 4);
-        let width_px = WIDTH_PX - MARGIN_PX - width_px("0000", TICK_PX) / 2 - left_px;
+        let label_room = |label_px: i64| (label_px + LABEL_GAP_PX).clamp(LABEL_ROOM_MIN_PX, WIDTH_PX / 4);
+        let left_px = MARGIN_PX + label_room(contents.value_label_px);
+        let room_px = WIDTH_PX - MARGIN_PX - width_px("0000", TICK_PX) / 2 - left_px;
+        let (width_px, beside) = match contents.beside_label_px {
+            None => (room_px, None),
+            Some(label_px) => {
+                let gap_px = BESIDE_GAP_PX + label_room(label_px);
+                let width_px = (room_px - gap_px) / 2;
+                (width_px, Some(Column { left_px: left_px + width_px + gap_px, width_px }))
+            }
+        };
 
         let mut top_px = MARGIN_PX;
         let title_baseline_px = top_px + 14;
         if !contents.title.is_empty() {
             top_px += TITLE_ROOM_PX;
         }
-        let (legend, legend_height_px) = legend(contents.run_labels, left_px, width_px, top_px);
+        let (legend, legend_height_px) = legend(contents.run_labels, left_px, room_px, top_px);
         top_px += legend_height_px + LEGEND_ROOM_BELOW_PX;
 
         let texts_px = contents.texts as i64 * TEXT_ROW_PX;
-        let texts = Area { left_px, top_px, width_px, height_px: texts_px };
+        let texts = Area { left_px, top_px, width_px: room_px, height_px: texts_px };
         if texts_px > 0 {
             top_px += texts_px + NUMBERS_PX;
         }
@@ -117,7 +146,7 @@ impl Layout {
             top_px -= TIME_LABELS_ROOM_PX;
         }
         let height_px = top_px + TIME_AXIS_ROOM_PX;
-        Self { height_px, title_baseline_px, legend, texts, panels, time_labels }
+        Self { height_px, title_baseline_px, legend, texts, panels, beside, time_labels }
     }
 
     /// The left edge of all panels.

@@ -23,6 +23,8 @@ const NEAR: f64 = 0.03;
 #[derive(Debug)]
 pub(super) struct Marks {
     times: TimeRange,
+    /// The number and the instant of each.
+    numbered: Vec<(usize, u64)>,
     /// When; each once.
     instants_ns: Vec<u64>,
     /// The instant above which a number stands, and the first and the last number there.
@@ -37,22 +39,33 @@ impl Marks {
         let within = |mark: &&Mark| (times.start_ns..=times.end_ns).contains(&mark.t_ns);
         let mut shown: Vec<&Mark> = plot.marks.iter().filter(within).collect();
         shown.sort_by_key(|mark| mark.t_ns);
-        let mut instants_ns: Vec<u64> = shown.iter().map(|mark| mark.t_ns).collect();
-        instants_ns.dedup();
-        let mut numbers: Vec<(u64, usize, usize)> = Vec::new();
-        for (number, mark) in (1..).zip(&shown) {
-            match numbers.last_mut() {
-                Some((at_ns, _, last)) if times.fraction(mark.t_ns) - times.fraction(*at_ns) < NEAR => *last = number,
-                _ => numbers.push((mark.t_ns, number, number)),
-            }
-        }
         let text =
             |(number, mark): (usize, &&Mark)| format!("({number}) {} at {} s", mark.label, mark.t_ns as f64 / 1e9);
         let mut texts: Vec<String> = (1..).zip(&shown).take(TEXTS_MAX).map(text).collect();
         if let Some(more @ 1..) = shown.len().checked_sub(TEXTS_MAX) {
             texts.push(format!("... and {more} more"));
         }
-        Self { times, instants_ns, numbers, texts }
+        Self { texts, ..Self::at(times, (1..).zip(shown.iter().map(|mark| mark.t_ns)).collect()) }
+    }
+
+    /// Those of them that lie within a part of the times, with the same numbers and without texts.
+    pub(super) fn within(&self, times: TimeRange) -> Self {
+        let within = |(_, t_ns): &&(usize, u64)| (times.start_ns..=times.end_ns).contains(t_ns);
+        Self::at(times, self.numbered.iter().filter(within).copied().collect())
+    }
+
+    /// Marks in the order of time.
+    fn at(times: TimeRange, numbered: Vec<(usize, u64)>) -> Self {
+        let mut instants_ns: Vec<u64> = numbered.iter().map(|(_, t_ns)| *t_ns).collect();
+        instants_ns.dedup();
+        let mut numbers: Vec<(u64, usize, usize)> = Vec::new();
+        for (number, t_ns) in &numbered {
+            match numbers.last_mut() {
+                Some((at_ns, _, last)) if times.fraction(*t_ns) - times.fraction(*at_ns) < NEAR => *last = *number,
+                _ => numbers.push((*t_ns, *number, *number)),
+            }
+        }
+        Self { times, numbered, instants_ns, numbers, texts: Vec::new() }
     }
 
     /// Draws the lines through all panels, the numbers above the first, and the texts.

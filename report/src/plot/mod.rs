@@ -19,6 +19,7 @@
 //! | `caption` | names, units and the description |
 //! | `svg` | elements, paths, escapes |
 //! | `panel`, `mark`, `time_axis` | the parts of the picture |
+//! | `part` | a part of the picture, cut out to be enlarged |
 //! | `figure` | all of these as one picture |
 //! | `plane` | two signals against each other |
 //! | `bars` | parts of a whole |
@@ -58,6 +59,7 @@ pub mod lettering;
 mod mark;
 pub mod palette;
 mod panel;
+mod part;
 mod plane;
 mod range;
 mod reduce;
@@ -68,6 +70,7 @@ mod trace;
 
 pub use bars::{Bar, Bars};
 pub use histogram::Histogram;
+pub use part::{NothingThere, Part};
 
 /// One signal in one run.
 ///
@@ -130,13 +133,30 @@ pub struct Mark {
 impl Plot {
     /// The picture as an SVG document: the same plot, the same bytes.
     pub fn to_svg(&self) -> String {
-        figure::draw(self)
+        figure::draw(self, None)
+    }
+
+    /// The same with a part enlarged beside the whole, over time or in a plane, whichever it is a part of.
+    ///
+    /// # Errors
+    /// Nothing is drawn in that part.
+    pub fn to_svg_enlarging(&self, part: Part) -> Result<String, NothingThere> {
+        match part {
+            Part::Times { from_ns, until_ns } => Ok(figure::draw(self, Some(&part::Cut::of(self, from_ns, until_ns)?))),
+            Part::Plane { across, up } => {
+                let [along, upwards, ..] = &self.panels[..] else {
+                    return Err(NothingThere { drawn: "there are not two signals".to_owned() });
+                };
+                let part = part::in_plane(along, upwards, [across, up])?;
+                Ok(plane::draw(self, along, upwards, Some(part)))
+            }
+        }
     }
 
     /// The first signal against the second, across and up, as an SVG document: the paths of all
     /// runs; nothing if there are not two signals. Marks have no place in it.
     pub fn to_plane_svg(&self) -> Option<String> {
         let [along, up, ..] = &self.panels[..] else { return None };
-        Some(plane::draw(self, along, up))
+        Some(plane::draw(self, along, up, None))
     }
 }

@@ -24,7 +24,7 @@ const DOT_EXTRA_CPX: i64 = 250;
 pub(super) struct Axis<'a> {
     pub(super) panel: &'a Panel,
     pub(super) agreement: Agreement,
-    values: ValueRange,
+    pub(super) values: ValueRange,
     ticks: Ticks,
 }
 

@@ -55,12 +55,7 @@ impl ValueRange {
         if is_two_valued(panel) {
             return Self { low: -0.2, high: 1.2 };
         }
-        let finite = || finite_values(panel);
-        let low = finite().fold(f64::INFINITY, f64::min);
-        let high = finite().fold(f64::NEG_INFINITY, f64::max);
-        if low > high {
-            return Self { low: 0.0, high: 1.0 };
-        }
+        let Some(Self { low, high }) = finite_range(panel) else { return Self { low: 0.0, high: 1.0 } };
         let half_span = high / 2.0 - low / 2.0;
         let magnitude = low.abs().max(high.abs());
         if half_span > magnitude * NOISE {
@@ -70,6 +65,11 @@ impl ValueRange {
         } else {
             Self::padded(low, high, magnitude * PADDING)
         }
+    }
+
+    /// Whether it is longer than nothing.
+    pub(super) fn is_stretch(self) -> bool {
+        self.low < self.high
     }
 
     fn padded(low: f64, high: f64, padding: f64) -> Self {
@@ -83,6 +83,13 @@ impl ValueRange {
         let fraction = (value / 2.0 - self.low / 2.0) / half_span;
         if fraction.is_finite() { fraction.clamp(0.0, 1.0) } else { 0.5 }
     }
+}
+
+/// The finite values of a panel from the least to the greatest; nothing if there are none.
+pub(super) fn finite_range(panel: &Panel) -> Option<ValueRange> {
+    let low = finite_values(panel).fold(f64::INFINITY, f64::min);
+    let high = finite_values(panel).fold(f64::NEG_INFINITY, f64::max);
+    (low <= high).then_some(ValueRange { low, high })
 }
 
 /// Whether a panel is a BOOL: steps between 0 and 1 and nothing else.

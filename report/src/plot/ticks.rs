@@ -53,7 +53,7 @@ impl Ticks {
         Self { marks: vec![mark(0.0, "0"), mark(1.0, "1")], exponent: 0 }
     }
 
-    /// A tick at each value that has a name; nothing if there are too many of them to be told apart.
+    /// A tick at each value that has a name; nothing if there are too many to be kept apart.
     pub(super) fn named(range: ValueRange, names: &[(i64, String)]) -> Option<Self> {
         let shown = |(value, _): &&(i64, String)| (range.low..=range.high).contains(&(*value as f64));
         let mut names: Vec<&(i64, String)> = names.iter().filter(shown).collect();

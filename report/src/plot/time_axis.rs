@@ -1,16 +1,17 @@
 //! The time axis that all panels share.
 
+use super::caption;
 use super::lettering::{NAME_PX, TICK_PX};
 use super::palette::FAINT_INK;
 use super::range::TimeRange;
 use super::svg::{Document, Pixels};
 use super::ticks::{Numbers, Ticks};
 use super::trace::Area;
-use super::{Plot, caption};
 
-const TICKS: u32 = 10;
+/// About how many ticks an axis has, and one of two beside each other.
+const TICKS: [u32; 2] = [10, 4];
 
-/// The times of a plot and the marks among them.
+/// Times and the marks among them.
 #[derive(Debug)]
 pub(super) struct TimeAxis {
     pub(super) range: TimeRange,
@@ -18,10 +19,14 @@ pub(super) struct TimeAxis {
 }
 
 impl TimeAxis {
-    /// The axis of all samples.
-    pub(super) fn of(plot: &Plot) -> Self {
-        let range = TimeRange::of(plot);
-        Self { range, ticks: Ticks::within(range.seconds(), TICKS, Numbers::Real) }
+    /// The axis of these times, over the whole width of the picture.
+    pub(super) fn of(range: TimeRange) -> Self {
+        Self { range, ticks: Ticks::within(range.seconds(), TICKS[0], Numbers::Real) }
+    }
+
+    /// The same where two columns share the width.
+    pub(super) fn of_column(range: TimeRange) -> Self {
+        Self { range, ticks: Ticks::within(range.seconds(), TICKS[1], Numbers::Real) }
     }
 
     /// Where the marks lie in a panel.

@@ -52,7 +52,8 @@ pub(super) struct Frame {
 }
 
 impl Frame {
-    fn place(&self, t_ns: u64, value: f64) -> Point {
+    /// Where a sample lies.
+    pub(super) fn place(&self, t_ns: u64, value: f64) -> Point {
         Point { x_cpx: self.area.x_cpx(self.times.fraction(t_ns)), y_cpx: self.area.y_cpx(self.values.fraction(value)) }
     }
 }

@@ -100,6 +100,7 @@ fn parts<'s>(
     match corners {
         [a, b, c] => return whole.parts([*a, *b, *c, *c], [edged, edged, false, edged]),
         [a, b, c, d] => return whole.parts([*a, *b, *c, *d], [edged; 4]),
+        // Fewer than three corners have been left out above; more than four follow.
         _ => {}
     }
     // Other faces are cut into triangles around their middle, which are patches with two corners in one place.

@@ -24,7 +24,7 @@ pub use side::Side;
 /// A form in the world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solid {
-    /// Whose it is; a reader who points at it is told.
+    /// Whose it is; shown to a reader who points at it.
     pub name: String,
     /// Which of the kinds in the legend it is.
     pub kind: usize,

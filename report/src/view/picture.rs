@@ -102,7 +102,7 @@ fn flat(at: [f64; 3], side: Side) -> [f64; 2] {
     [dot(at, right), dot(at, up)]
 }
 
-/// A group for each run of faces of one solid, so that its name is told once.
+/// A group for each run of faces of one solid, so that its name is there once.
 fn draw_faces(document: &mut Document, seen: &[Seen<'_>], frame: &Frame) {
     for group in seen.chunk_by(|a, b| std::ptr::eq(a.solid, b.solid) && a.light == b.light) {
         let Some(first) = group.first() else { continue };

@@ -98,6 +98,7 @@ impl Block {
         (index < self.rows()).then(|| Self {
             first_step: self.first_step + index as u64,
             t_v_ns: self.t_v_ns[index..].to_vec(),
+            // The digest of a row follows the row, so the last ones may not be there yet.
             digests: self.digests.get(index..).unwrap_or_default().to_vec(),
             images: self.images[index * self.width..].to_vec(),
             width: self.width,

@@ -161,3 +161,27 @@ fn arcs_are_joined_with_lines_by_tangents_and_by_curves() {
         assert!(apart(place(&bench), goal) < 1e-12);
     }
 }
+
+/// A move that is given too late to slow down for its curve, or for its end, is not blended: the axes keep to their limits.
+#[test]
+fn a_move_that_comes_too_late_is_not_blended() {
+    for scans in 30..48 {
+        let mut bench = standby(3);
+        let dynamics = |velocity, acceleration| {
+            [("Velocity", velocity), ("Acceleration", acceleration), ("Deceleration", acceleration)]
+        };
+        line(&mut bench, "Linear", &[0.66, 0.0, 0.74], &dynamics(2.3, 8.8));
+        bench.scans(scans);
+        six(&mut bench, "Linear2.TransitionParameter", &[0.18]);
+        let blended = [("BufferMode", BLENDING_LOW), ("TransitionMode", CORNER_DISTANCE)];
+        line(&mut bench, "Linear2", &[0.91, 0.0, 0.94], &[&dynamics(0.1, 0.5)[..], &blended].concat());
+        let mut last = velocity(&bench);
+        while !bench.get("Linear2.Done") {
+            bench.scan();
+            let now = velocity(&bench);
+            let change = apart(now, last);
+            assert!(change < 0.1, "{change} m/s in a scan after {scans}");
+            last = now;
+        }
+    }
+}

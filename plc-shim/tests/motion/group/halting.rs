@@ -1,8 +1,8 @@
 //! To rest on the path, and on again; what an override does.
 
 use super::bench::{
-    BLENDING_PREVIOUS, BUFFERED, CORNER_DISTANCE, GroupState, apart, application, axis_state, line, norm, off_line,
-    place, six, standby, state, trace, velocity,
+    BLENDING_LOW, BLENDING_PREVIOUS, BUFFERED, CORNER_DISTANCE, GroupState, START_VELOCITY, apart, application,
+    axis_state, line, norm, off_line, place, six, standby, state, trace, velocity,
 };
 use crate::bench::{Bench, State};
 
@@ -112,6 +112,28 @@ fn a_stop_may_be_harder_than_the_move() {
         let way = 0.5e-3 + 0.25 / (2.0 * expected);
         assert!((apart(place(&bench), at) - way).abs() < 1e-9, "{}, not {way}", apart(place(&bench), at));
     }
+}
+
+/// A slow curve behind the place where the axes can rest does not make a halt softer, nor does the group go on to it.
+#[test]
+fn a_curve_that_is_not_reached_does_not_soften_a_halt() {
+    let mut bench = standby(3);
+    let fast = [("Velocity", 2.0), ("Acceleration", 20.0), ("Deceleration", 20.0)];
+    line(&mut bench, "Linear", &[0.0, 1.7, 0.0], &fast);
+    bench.scan();
+    six(&mut bench, "Linear2.TransitionParameter", &[0.01]);
+    let slow = [("Velocity", 0.1), ("Acceleration", 0.5), ("Deceleration", 0.5)];
+    let blended = [("BufferMode", BLENDING_LOW), ("TransitionMode", START_VELOCITY)];
+    line(&mut bench, "Linear2", &[0.0, 0.0, -0.7], &[&slow[..], &blended].concat());
+    while place(&bench)[1] < 1.5 {
+        bench.scan();
+    }
+    let (at, begin) = (place(&bench), bench.now_s());
+    // 2 m to rest would be beyond the curve; the axes can do it in 0.1 m, in 0.1 s.
+    bench.start("Halt", &[("Deceleration", 1.0)]);
+    trace(&mut bench, "Halt.Done");
+    assert!((apart(place(&bench), at) - 0.12).abs() < 1e-6, "{:?} from {at:?}", place(&bench));
+    assert!(bench.now_s() - begin < 0.125, "{} s", bench.now_s() - begin);
 }
 
 #[test]

@@ -177,6 +177,8 @@ fn motion_control_that_cannot_be_replaced_is_told() {
         ("IF X.NcToPlc.Error THEN ; END_IF;", ""),
         ("cam(Axis := X);", "cam : MC_CamIn; t : MC_CAM_REF;"),
         ("", "Y : AXIS_REF_SM3;"),
+        ("", "g : AXES_GROUP_REF;"),
+        ("", "line : MC_MoveLinearAbsolute;"),
         ("IF on.Fault THEN ; END_IF;", ""),
     ] {
         let text = format!(

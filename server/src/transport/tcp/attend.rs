@@ -104,7 +104,7 @@ pub(super) async fn newcomer(
     attend(connection, peer, visitor, orders, host).await;
 }
 
-/// Tells the reception whose certificate was shown, if one was.
+/// Passes on to the reception whose certificate was shown, if one was.
 fn introduce(secured: &TlsStream<TcpStream>, visitor: Visitor, host: &Host) {
     let shown = secured.get_ref().1.peer_certificates().and_then(<[_]>::first);
     match shown.map(|certificate| Holder::of_certificate(certificate)) {
@@ -147,7 +147,7 @@ async fn secure(
 async fn linger(mut stream: TcpStream) {
     let mut rest = [0; 1024];
     let read_out = async {
-        // Who cannot be told is gone.
+        // A connection that cannot be written to is gone.
         let _ = stream.shutdown().await;
         while matches!(stream.read(&mut rest).await, Ok(1..)) {}
     };

@@ -37,7 +37,7 @@ impl OperatorConnection {
     /// Asks for something, and gives how the session is at the step boundary at which the wish was taken.
     ///
     /// # Errors
-    /// A signal or value that the session has not, no answer within `patience`, or an answer that is none.
+    /// The session does not have the signal or refuses the value, no answer comes within `patience`, or it cannot be read.
     pub fn ask(&mut self, wish: Wish, patience: Duration) -> Result<Status, ParticipantError> {
         let wish = match wish {
             Wish::Look(signals) => ClientMessage::Status { signals },
