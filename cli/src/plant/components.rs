@@ -1,7 +1,7 @@
 //! The library of components and the user's own kinds, listed, or one kind in full.
 
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use onescan_clients::plant::component::kind::Kind;
 use onescan_clients::plant::component::kinds;
@@ -66,7 +66,7 @@ impl Known<'_> {
 /// # Errors
 /// There is no such kind; a folder that cannot be read, or a file in it that is no kind; those of `out`.
 pub fn write(config: &ComponentsConfig, out: &mut dyn Write) -> Result<(), PlantError> {
-    let listings = config.libraries.iter().map(read).collect::<Result<Vec<_>, _>>()?;
+    let listings = config.libraries.iter().map(|folder| read(folder)).collect::<Result<Vec<_>, _>>()?;
     let library: Vec<Known<'_>> = kinds().iter().map(Known::Library).collect();
     let own = listings.iter().map(|listing| listing.kinds.iter().map(Known::Own).collect::<Vec<_>>());
     let shelves: Vec<Vec<Known<'_>>> = std::iter::once(library).chain(own).collect();
@@ -79,10 +79,10 @@ pub fn write(config: &ComponentsConfig, out: &mut dyn Write) -> Result<(), Plant
     refuse(faults)
 }
 
-fn read(folder: &PathBuf) -> Result<Listing, PlantError> {
+fn read(folder: &Path) -> Result<Listing, PlantError> {
     listing::read(folder, &granted().within(folder)).map_err(|source| {
         let help = Some("`--library` names a folder with files of kinds, as `components`".to_owned());
-        ScenarioError::Unreadable { path: folder.clone(), source, help }.into()
+        ScenarioError::Unreadable { path: folder.to_owned(), source, help }.into()
     })
 }
 

@@ -503,7 +503,7 @@ fn a_folder_of_kinds_is_listed() {
     let wrong = PRESS.replace("cylinder.extend", "cylinder.extnd");
     let folder = folder("", &[("press.toml", PRESS), ("oven.st", OVEN), ("wrong.toml", &wrong), ("notes.txt", "")]);
     let listing = listing::read(&folder.path().join("kinds"), &Within::anywhere()).expect("a folder");
-    let pages: Vec<String> = listing.kinds.iter().map(|kind| kind.page()).collect();
+    let pages: Vec<String> = listing.kinds.iter().map(listing::OwnKind::page).collect();
     let faults: Vec<String> = listing.faults.iter().map(ToString::to_string).collect();
     let all = format!("{}\n{}", pages.join("\n"), faults.join("\n"));
     insta::assert_snapshot!(all.replace(&format!("{}/", folder.path().display()), ""));
