@@ -56,6 +56,19 @@ fn as_written(schema: &mut Schema) {
     if let Some(Value::Array(choices)) = schema.get_mut("enum") {
         choices.retain(|choice| !choice.is_null());
     }
+    for key in ["anyOf", "oneOf"] {
+        let Some(Value::Array(choices)) = schema.get_mut(key) else { continue };
+        choices.retain(|choice| choice["type"] != "null");
+        if let [Value::Object(only)] = &choices[..] {
+            let only = only.clone();
+            schema.remove(key);
+            for (keyword, value) in only {
+                if schema.get(&keyword).is_none() {
+                    schema.insert(keyword, value);
+                }
+            }
+        }
+    }
     // The width of a number says nothing beside its bounds.
     schema.remove("format");
     if schema.get("default").is_some_and(|default| !is_told(default, schema.get("type"))) {

@@ -137,6 +137,10 @@ fn shortened(words: &mut Vec<&str>) {
         Some(at) => words[at + 1] = "50ms",
         None => words.extend(["--until", "50ms"]),
     }
+    // the part that is enlarged comes later
+    if let Some(at) = words.iter().position(|word| *word == "--enlarge") {
+        words.drain(at..at + 2);
+    }
 }
 
 #[test]
