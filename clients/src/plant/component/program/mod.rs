@@ -24,9 +24,8 @@ mod socket;
 
 use std::sync::Arc;
 
-use onescan_base::VirtualTime;
 use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::{Application, BuildError, Finding, Input, RunError, Severity, SoftPlc, TaskPlan};
+use onescan_plc_shim::{Application, BuildError, Finding, Input, RunError, Severity, SoftPlc, Task, TaskPlan};
 use onescan_server::time::TimeSpan;
 use thiserror::Error;
 
@@ -86,7 +85,7 @@ impl Program {
             format!("PROGRAM {HOLDER}\nVAR\n{INSTANCE} : {};\nEND_VAR\n{INSTANCE}();\nEND_PROGRAM\n", interface.block);
         let inputs = [input, Input::from_text("the component", SourceKind::Text, holder)];
         let application = compiled(&inputs, &[])?;
-        let plc = SoftPlc::new(&application, &plan(&application, TimeSpan::millis::<1>()))?;
+        let plc = SoftPlc::new(&application, &plan(TimeSpan::millis::<1>()))?;
         let interface = interface.with_presets(&plc)?;
         let code = blake3::hash(bytes).to_hex().to_string();
         Ok(Self { interface, inputs, code, application })
@@ -124,18 +123,16 @@ impl Program {
     /// # Errors
     /// None that a checked scene could cause.
     pub(crate) fn start(&self, period: TimeSpan) -> Result<Box<dyn Running>, ProgramError> {
-        let plc = SoftPlc::new(&self.application, &plan(&self.application, period))?;
+        let plc = SoftPlc::new(&self.application, &plan(period))?;
         let sockets = Sockets::find(&self.application, &self.interface)?;
         Ok(Box::new(Block::new(plc, sockets, self.interface.kind.clone())))
     }
 }
 
 /// One task with the plant's period.
-fn plan(application: &Application, period: TimeSpan) -> TaskPlan {
-    let single = TaskPlan::single(application, period);
-    let tasks =
-        single.tasks.into_iter().map(|task| onescan_plc_shim::Task { programs: vec![HOLDER.to_owned()], ..task });
-    TaskPlan::new(tasks.collect())
+fn plan(period: TimeSpan) -> TaskPlan {
+    let (name, programs) = ("plant".to_owned(), vec![HOLDER.to_owned()]);
+    TaskPlan::new(vec![Task { name, interval: Some(period), programs, ..Task::default() }])
 }
 
 fn compiled(inputs: &[Input; 2], constants: &[(String, String)]) -> Result<Application, ProgramError> {
@@ -164,9 +161,4 @@ fn fault(finding: &Finding) -> ProgramFault {
         cause: diagnostic.message.clone(),
         hint: diagnostic.help.clone(),
     }
-}
-
-/// The virtual time of a turn.
-fn time(t_v_ns: u64) -> VirtualTime {
-    VirtualTime::from_nanos(t_v_ns)
 }

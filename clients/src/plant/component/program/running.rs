@@ -1,10 +1,9 @@
 //! A function block at work: inputs in, one scan, outputs out.
 
-use onescan_plc_shim::{FaultSite, PlcFault, SoftPlc};
+use onescan_plc_shim::{FaultSite, PlcFault, SoftPlc, VirtualTime};
 use onescan_server::client::{ClientFault, SourcePlace};
 
 use super::socket::Sockets;
-use super::time;
 use crate::plant::component::behaviour::{Running, StateError, Surroundings};
 use crate::plant::component::declare::Value;
 use crate::plant::component::kind::Kind;
@@ -67,7 +66,7 @@ fn told(fault: &PlcFault) -> ClientFault {
 impl Running for Block {
     fn drive(&mut self, inputs: &[Value], around: &Surroundings<'_>, _: &mut World) -> Result<(), ClientFault> {
         self.feed(inputs, around)?;
-        self.plc.scan(time(around.t_v_ns)).map_err(|fault| told(&fault))?;
+        self.plc.scan(VirtualTime::from_nanos(around.t_v_ns)).map_err(|fault| told(&fault))?;
         for (value, output) in self.outputs().zip(&self.kind.outputs) {
             if let Value::Number(number) = value
                 && !number.is_finite()

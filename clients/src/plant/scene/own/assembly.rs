@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
-use onescan_base::did_you_mean;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Deserializer};
@@ -383,11 +382,6 @@ impl ParameterTable {
             (None, None) => sort.to_owned(),
         }
     }
-}
-
-/// A key that is not there, with the one that was meant.
-pub(super) fn hint<'n>(wrong: &str, right: impl IntoIterator<Item = &'n str>) -> Option<String> {
-    did_you_mean(wrong, right)
 }
 
 /// Every text that begins with `=`, without that, and where it stands.

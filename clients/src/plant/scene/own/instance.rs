@@ -4,10 +4,11 @@
 //! scene's own, in the order of the components; components come in the place of the one that they are parts of, so
 //! that a scene is evaluated as if it had been written out.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::assembly::{Assembly, OWN_KEYS, hint};
+use onescan_base::did_you_mean;
+
+use super::assembly::{Assembly, OWN_KEYS};
 use super::ports::{self, Aliases};
 use super::{Kinds, Own, parts, text_of};
 use crate::plant::scene::error::SceneFaultKind;
@@ -133,17 +134,6 @@ fn refuse_unknown_keys(
     for key in table.keys().filter(|key| !right.contains(key.get_ref())) {
         let whose = format!("{} `{}`", text(kind), text(name));
         let wrong = SceneFaultKind::ComponentKey { whose, key: key.get_ref().clone() };
-        faults.add_hinted(key.span(), wrong, hint(key.get_ref(), right.iter().map(String::as_str)));
+        faults.add_hinted(key.span(), wrong, did_you_mean(key.get_ref(), right.iter().map(String::as_str)));
     }
 }
-
-/// By its name, a table of a list.
-pub(super) fn named<'t>(
-    tables: &'t mut [Placed<ComponentTable>],
-    name: &str,
-) -> Option<&'t mut Placed<ComponentTable>> {
-    tables.iter_mut().find(|table| text_of(table.get_ref(), "name").is_some_and(|found| text(&found) == name))
-}
-
-/// What each of some names stands for.
-pub(super) type Named<T> = BTreeMap<String, T>;

@@ -1,11 +1,11 @@
 //! Inputs, outputs and failure modes of an assembly, as those of its parts.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use onescan_base::nearest;
 
 use super::assembly::{Assembly, FOREIGN};
-use super::instance::{Named, named};
 use super::{Kinds, Own, text_of};
 use crate::plant::scene::error::SceneFaultKind;
 use crate::plant::scene::faults::Faults;
@@ -19,9 +19,9 @@ pub(in crate::plant) struct Aliases {
     /// Components that are assemblies, and what those are called.
     assemblies: Vec<(String, String)>,
     /// `clamp.closed` is `clamp.cylinder.extended`.
-    outputs: Named<String>,
+    outputs: BTreeMap<String, String>,
     /// The mode of a component, as the mode of a part.
-    modes: Named<String>,
+    modes: BTreeMap<String, String>,
     /// Components whose parts are not there, because something is wrong.
     lost: Vec<String>,
 }
@@ -129,6 +129,11 @@ enum Side {
     Input,
     Output,
     Mode,
+}
+
+/// By its name, a part.
+fn named<'t>(parts: &'t mut [Placed<ComponentTable>], name: &str) -> Option<&'t mut Placed<ComponentTable>> {
+    parts.iter_mut().find(|part| text_of(part.get_ref(), "name").is_some_and(|found| text(&found) == name))
 }
 
 /// The part that `"part.port"` names, the key of a constant for the port, and the port; none if there is none.
