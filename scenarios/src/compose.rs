@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 
 use miette::{NamedSource, SourceSpan};
 use onescan_base::regular::{self, Limit};
@@ -327,17 +328,19 @@ fn read(path: &Path) -> Result<String, ScenarioError> {
 
 /// A scene's faults, the first in front.
 pub fn report(error: &SceneError, file: &str, text: &str) -> SceneReport {
+    // shared by all faults: a large file may have many
+    let text: Arc<str> = Arc::from(text);
     let one = |fault: &SceneFault| match &fault.inside {
         None => SceneReport {
             message: fault.kind.to_string(),
-            file: NamedSource::new(file, text.to_owned()),
+            file: NamedSource::new(file, Arc::clone(&text)),
             place: Some(SourceSpan::from(fault.span.clone())),
             help: fault.hint.clone(),
             others: Vec::new(),
         },
         Some(Inside { told, place }) => SceneReport {
             message: format!("{told} (named at {})", fault.place),
-            file: NamedSource::new(&place.source.file, place.source.text.clone()),
+            file: NamedSource::new(&place.source.file, Arc::clone(&place.source.text)),
             place: Some(SourceSpan::from(place.span.clone())),
             help: fault.hint.clone(),
             others: Vec::new(),
@@ -346,7 +349,7 @@ pub fn report(error: &SceneError, file: &str, text: &str) -> SceneReport {
     match error.faults() {
         [] => SceneReport {
             message: error.to_string(),
-            file: NamedSource::new(file, text.to_owned()),
+            file: NamedSource::new(file, Arc::clone(&text)),
             place: None,
             help: None,
             others: Vec::new(),

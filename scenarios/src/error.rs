@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use miette::{Diagnostic, NamedSource, SourceSpan};
 use onescan_clients::gateway::LinkFault;
@@ -130,7 +131,7 @@ pub struct SceneReport {
     pub message: String,
     /// The scene file.
     #[source_code]
-    pub file: NamedSource<String>,
+    pub file: NamedSource<Arc<str>>,
     /// Its place.
     #[label("here")]
     pub place: Option<SourceSpan>,

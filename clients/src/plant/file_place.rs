@@ -10,8 +10,8 @@ use onescan_server::client::SourcePlace;
 pub struct Source {
     /// What it is called in faults.
     pub file: String,
-    /// Its text.
-    pub text: String,
+    /// Its text, shared: a file may have many faults.
+    pub text: Arc<str>,
 }
 
 /// A place in a file.

@@ -458,6 +458,16 @@ fn what_is_wrong_with_a_block_has_its_place() {
     insta::assert_snapshot!(found.join("\n---\n"));
 }
 
+/// Each fault has a place in the file; the file is not kept as often.
+#[test]
+fn a_block_with_very_many_faults_names_the_first_ones() {
+    let unknown: String = (0..10_000).map(|k| format!("x{k} := TRUE;\n")).collect();
+    let wrong = OVEN.replace("END_FUNCTION_BLOCK\n", &format!("{unknown}END_FUNCTION_BLOCK\n"));
+    let lines = refused(OVENS, &[("oven.st", &wrong)]);
+    assert_eq!(lines.lines().count(), 50, "{}", &lines[..lines.len().min(2000)]);
+    assert!(lines.starts_with("plant.toml:14:8: kind `oven`: kinds/oven.st line 33: "), "{}", &lines[..200]);
+}
+
 #[test]
 fn what_is_wrong_with_an_assembly_has_its_place() {
     let [named, _] = presses();

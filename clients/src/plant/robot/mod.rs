@@ -189,7 +189,7 @@ impl Robot {
     /// # Errors
     /// Every fault that was found.
     pub fn read(path: &Path, text: String, reading: &Reading<'_>) -> Result<Self, Vec<RobotFault>> {
-        let source = Arc::new(Source { file: reading.file.to_owned(), text });
+        let source = Arc::new(Source { file: reading.file.to_owned(), text: text.into() });
         let root = xml::parse(&source).map_err(|fault| vec![fault])?;
         let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
         match root.name.as_str() {

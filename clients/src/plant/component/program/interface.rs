@@ -47,7 +47,7 @@ impl Interface {
     /// The file does not define it.
     pub(super) fn of(name: &str, input: &Input) -> Result<Self, ProgramError> {
         let file = input.file();
-        let source = Arc::new(Source { file: file.name().to_owned(), text: file.shown_text().to_string() });
+        let source = Arc::new(Source { file: file.name().to_owned(), text: Arc::clone(file.shown_text()) });
         let parsed = parse_source(FileId(0), file);
         let blocks: Vec<&Pou> = blocks(&parsed.unit.declarations).collect();
         let Some(block) = blocks.iter().find(|block| block.name.text.eq_ignore_ascii_case(name)) else {

@@ -141,24 +141,33 @@ fn compiled(inputs: &[Input; 2], constants: &[(String, String)]) -> Result<Appli
     builder.build().map_err(|error| match error {
         BuildError::Sources(found) => {
             let errors = found.findings().iter().filter(|finding| finding.diagnostic().severity == Severity::Error);
-            ProgramError::Source(errors.map(fault).collect())
+            ProgramError::Source(faults(inputs, errors))
         }
         BuildError::Constant(error) => {
-            let whole =
-                Source { file: inputs[0].file().name().to_owned(), text: inputs[0].file().shown_text().to_string() };
-            let place = Place { source: Arc::new(whole), span: 0..0 };
+            let place = Place { source: source(&inputs[0]), span: 0..0 };
             ProgramError::Source(vec![ProgramFault { place, cause: error.to_string(), hint: None }])
         }
     })
 }
 
-fn fault(finding: &Finding) -> ProgramFault {
-    let diagnostic = finding.diagnostic();
-    let source = Source { file: finding.file().to_owned(), text: finding.text().to_owned() };
-    let span = diagnostic.span.start as usize..diagnostic.span.end as usize;
-    ProgramFault {
-        place: Place { source: Arc::new(source), span },
-        cause: diagnostic.message.clone(),
-        hint: diagnostic.help.clone(),
-    }
+/// A file as its author sees it.
+fn source(input: &Input) -> Arc<Source> {
+    Arc::new(Source { file: input.file().name().to_owned(), text: Arc::clone(input.file().shown_text()) })
+}
+
+/// Most faults of one file that are reported: what follows from the first ones helps nobody.
+const FAULTS_MAX: usize = 50;
+
+/// What was found as faults of the files. All of a file share its text, which there may be much of.
+fn faults<'f>(inputs: &[Input; 2], found: impl Iterator<Item = &'f Finding>) -> Vec<ProgramFault> {
+    let sources = inputs.each_ref().map(source);
+    let faults = found.take(FAULTS_MAX).map(|finding| {
+        let diagnostic = finding.diagnostic();
+        let of_file = sources.iter().find(|source| source.file == finding.file());
+        let source = Arc::clone(of_file.unwrap_or(&sources[0]));
+        let span = diagnostic.span.start as usize..diagnostic.span.end as usize;
+        let place = Place { source, span };
+        ProgramFault { place, cause: diagnostic.message.clone(), hint: diagnostic.help.clone() }
+    });
+    faults.collect()
 }

@@ -230,7 +230,7 @@ impl Expander<'_> {
             .packages
             .read_text(&path)
             .map_err(|error| element.wrong_at("filename", format!("`{named}` cannot be read: {error}")))?;
-        let source = Arc::new(Source { file: path.display().to_string(), text });
+        let source = Arc::new(Source { file: path.display().to_string(), text: text.into() });
         let root = xml::parse(&source)?;
         let before = std::mem::replace(&mut self.scope.file, path);
         let expanded = self.nested(element, |this| this.all(&root.children));

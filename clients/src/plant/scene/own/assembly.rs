@@ -185,7 +185,7 @@ impl Assembly {
             faults.add(kind.span(), SceneFaultKind::OwnKind { kind: name.to_owned(), cause });
             return None;
         };
-        let source = Arc::new(Source { file: file.named.clone(), text });
+        let source = Arc::new(Source { file: file.named.clone(), text: text.into() });
         let base = faults.attach(name, &source, kind.span());
         let document = DeTable::parse(&source.text);
         let header = document.and_then(|document| Header::deserialize(toml::Deserializer::from(document)));
