@@ -369,7 +369,8 @@ fn may_touch(pair: &ContactPair, physics: &PhysicsWorld) -> bool {
 /// Gives the engine a joint, or takes it away; one of a body that is out of the world is not there.
 fn attach(joints: &mut ImpulseJointSet, bodies: &RigidBodySet, handle: ImpulseJointHandle, attached: bool) {
     let Some(joint) = joints.get(handle) else { return };
-    let whole = [joint.body1(), joint.body2()].iter().all(|body| bodies[*body].is_enabled());
+    let whole =
+        [joint.body1(), joint.body2()].into_iter().all(|body| bodies.get(body).is_some_and(RigidBody::is_enabled));
     if whole
         && joint.data.is_enabled() != attached
         && let Some(joint) = joints.get_mut(handle, false)

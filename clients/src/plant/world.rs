@@ -180,7 +180,10 @@ impl World {
             .chain(self.springs.iter().map(|(_, spring)| spring))
             .chain(self.frictions.iter().map(|(_, friction)| &friction.handle))
             .all(|handle| physics.impulse_joints.contains(*handle));
-        if bodies && shapes && joints {
+        // the engine takes the bodies of its joints for granted
+        let mut ends = physics.impulse_joints.iter().flat_map(|(_, joint)| [joint.body1(), joint.body2()]);
+        let joined = ends.all(|body| physics.bodies.contains(body));
+        if bodies && shapes && joints && joined {
             return Ok(());
         }
         Err(Misfit("it lacks a body, a shape or a joint of this plant".to_owned()))
