@@ -17,7 +17,7 @@ use onescan_clients::array;
 use onescan_server::signal::{SignalName, did_you_mean};
 use toml::Spanned;
 
-use super::file::{ScenarioFile, SignalFile};
+use super::file::ScenarioFile;
 
 /// What is wrong, where in the file if that is known, and what to do.
 pub(crate) struct Wrong {
@@ -30,19 +30,15 @@ impl Wrong {
     fn new(message: impl Into<String>, place: Option<std::ops::Range<usize>>) -> Self {
         Self { message: message.into(), place, help: None }
     }
+
+    /// Wrong at a place of the file.
+    pub(crate) fn at(message: impl Into<String>, place: std::ops::Range<usize>) -> Self {
+        Self::new(message, Some(place))
+    }
 }
 
-/// Expands the arrays among the declared signals and those of the plot.
-pub(crate) fn expand(file: &mut ScenarioFile) -> Result<(), Wrong> {
-    let mut all: BTreeMap<SignalName, Spanned<SignalFile>> = BTreeMap::new();
-    for (name, signal) in std::mem::take(&mut file.signals) {
-        for one in names(name.as_str(), signal.span())? {
-            if all.insert(one.clone(), signal.clone()).is_some() {
-                return Err(Wrong::new(format!("signal `{one}` is declared twice"), Some(signal.span())));
-            }
-        }
-    }
-    file.signals = all;
+/// Expands the arrays among the signals of the plot.
+pub(crate) fn expand_plot(file: &mut ScenarioFile) -> Result<(), Wrong> {
     let mut shown = Vec::new();
     for signal in &file.plot.signals {
         let names = names(signal.get_ref().as_str(), signal.span())?;

@@ -41,9 +41,15 @@ pub struct ScenarioFile {
     /// How clients see each other within a step.
     #[serde(default)]
     pub coupling: CouplingFile,
-    /// The session's signals by name.
+    /// Structures that signals may have, by name: their members, each `Name: TYPE`.
     #[serde(default)]
-    #[schemars(with = "BTreeMap<String, SignalFile>")]
+    pub structures: BTreeMap<String, Vec<String>>,
+    /// The session's signals by name, as they are written; none once they are written out.
+    #[serde(default, rename = "signals")]
+    #[schemars(with = "BTreeMap<String, DeclaredSignal>")]
+    pub(crate) declared: BTreeMap<SignalName, Spanned<DeclaredSignal>>,
+    /// The session's signals by name, arrays and structures written out.
+    #[serde(skip)]
     pub signals: BTreeMap<SignalName, Spanned<SignalFile>>,
     /// The session's clients by name.
     #[schemars(with = "BTreeMap<String, ClientFile>")]
@@ -81,13 +87,33 @@ pub enum CouplingFile {
 }
 
 /// One signal.
+#[derive(Clone, Debug)]
+pub struct SignalFile {
+    /// An elementary type of IEC 61131-3.
+    pub ty: SignalType,
+    /// The client that writes it.
+    pub writer: ClientName,
+    /// Its unit, as `"bar"` or `"mm"`.
+    pub unit: Option<String>,
+    /// What it means, for readers.
+    pub about: Option<String>,
+    /// The names of its values.
+    pub names: ValueNames,
+}
+
+/// One signal.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct SignalFile {
+#[schemars(rename = "SignalFile")]
+pub(crate) struct DeclaredSignal {
     /// An elementary type of IEC 61131-3: `BOOL`, `INT`, `LREAL`, `TIME`, `STRING[80]`.
-    #[serde(rename = "type")]
+    #[serde(default, rename = "type")]
     #[schemars(with = "Type")]
-    pub ty: SignalType,
+    pub ty: Option<SignalType>,
+    /// In place of a type, one of `[structures]`: the signal then stands for one signal a member.
+    #[serde(default)]
+    #[schemars(with = "Name")]
+    pub structure: Option<Spanned<String>>,
     /// The client that writes it; exactly one.
     #[schemars(with = "Name")]
     pub writer: ClientName,

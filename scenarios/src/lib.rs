@@ -44,6 +44,7 @@ mod refusal;
 pub mod report;
 pub mod report_file;
 pub mod schema;
+mod structure;
 pub mod value_names;
 pub mod watch;
 

@@ -16,13 +16,13 @@ use onescan_server::time::{TimeSpan, VirtualTime};
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::arrays;
 use super::case::{self, Applied};
 use super::error::{ScenarioError, wrong};
 use super::expectations::Expectations;
 use super::file::{ClientFile, CouplingFile, ScenarioFile, VERSION};
 use super::report::Measures;
 use super::watch::{WatchRequest, Watched};
+use super::{arrays, structure};
 
 /// The file that makes a folder a scenario.
 pub const FILE_NAME: &str = "scenario.toml";
@@ -88,7 +88,9 @@ impl Scenario {
             let message = format!("version {} of the scenario format is not known", file.version);
             return Err(wrong(message, place_of(&text, "version"), Some(format!("write `version = {VERSION}`"))));
         }
-        arrays::expand(&mut file).map_err(|found| wrong(found.message, found.place, found.help))?;
+        structure::expand(&mut file)
+            .and_then(|()| arrays::expand_plot(&mut file))
+            .map_err(|found| wrong(found.message, found.place, found.help))?;
         let plan = plan_of(&file).map_err(|error| {
             let place = place_of_plan_error(&error, &file, &text);
             wrong(error.to_string(), place, None)

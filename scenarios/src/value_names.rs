@@ -30,6 +30,11 @@ impl ValueNames {
         self.0.iter().map(|(value, name)| (*value, name.clone())).collect()
     }
 
+    /// Whether there are any.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
     /// Why a signal of this type cannot have these names, and what to do.
     pub(crate) fn misfit(&self, ty: SignalType) -> Option<(String, String)> {
         if self.0.is_empty() {

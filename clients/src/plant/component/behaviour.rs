@@ -12,7 +12,7 @@ use thiserror::Error;
 
 use super::declare::{Failed, FailureSet, ParameterSet, SignalSet, Value};
 use super::dynamics::substeps;
-use super::kind::{Dependence, Kind, Signal};
+use super::kind::{Dependence, Frames, Kind, Signal};
 use crate::plant::coordinate::Measured;
 use crate::plant::coupling::{Coupling, Tie, Unbound};
 use crate::plant::effort::{Effort, Motion};
@@ -32,6 +32,8 @@ pub(crate) trait Component: Sized + Send + 'static {
     const SOURCE: &'static str;
     /// Which inputs mean nothing unless another one is driven.
     const DEPENDENCES: &'static [Dependence] = &[];
+    /// Which of its signals a scene may bind together.
+    const FRAMES: Frames = Frames::NONE;
     /// Whether it has no `drive`, so that it need not look at the world before that has moved.
     const ONLY_SENSES: bool = false;
     /// What describes one of its kind.
@@ -278,6 +280,7 @@ pub(super) fn kind<C: Component>() -> Kind {
         inputs: inputs::<C>(),
         outputs: C::Outputs::table(),
         dependences: C::DEPENDENCES,
+        frames: C::FRAMES,
         failures: C::Failure::table(),
     }
 }

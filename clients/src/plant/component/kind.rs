@@ -30,6 +30,8 @@ pub struct Kind {
     pub outputs: Vec<Signal>,
     /// Which inputs mean nothing without another one.
     pub dependences: &'static [Dependence],
+    /// Which of its signals travel together, as a PLC that speaks frames has them.
+    pub frames: Frames,
     /// How it may fail.
     pub failures: Vec<Failure>,
 }
@@ -40,6 +42,29 @@ impl Kind {
     pub fn constant_key(&self, input: &str) -> String {
         let hidden = self.parameters.iter().any(|parameter| parameter.key == input);
         if hidden { format!("{input}_constant") } else { input.to_owned() }
+    }
+}
+
+/// The inputs and outputs of a kind that a scene binds with one key each: a structure of signals, one a member.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Frames {
+    /// Inputs, in the order of the frame, by their keys.
+    pub command: &'static [&'static str],
+    /// Outputs, in the order of the frame, by their keys.
+    pub feedback: &'static [&'static str],
+}
+
+impl Frames {
+    /// A kind whose signals are bound one by one.
+    pub const NONE: Self = Self { command: &[], feedback: &[] };
+
+    /// The member of a structure that is a signal of a component: `TargetPosition` is `target_position`.
+    pub fn member(key: &str) -> String {
+        let capital = |word: &str| {
+            let mut letters = word.chars();
+            letters.next().map(|first| first.to_ascii_uppercase()).into_iter().chain(letters).collect::<String>()
+        };
+        key.split('_').map(capital).collect()
     }
 }
 

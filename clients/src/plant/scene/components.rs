@@ -16,7 +16,7 @@ use super::names::Names;
 use super::own::Kinds;
 use super::signals::Signals;
 use super::text;
-use crate::plant::component::kind::{Dependence, Kind, Parameter, Setting, Signal, Values, unit};
+use crate::plant::component::kind::{Dependence, Frames, Kind, Parameter, Setting, Signal, Values, unit};
 use crate::plant::component::origin::Origin;
 
 /// One `[[component]]` with its name and kind.
@@ -157,6 +157,8 @@ fn refuse_unknown_keys(one: &Known<'_>, faults: &mut Faults<'_>) {
     right.extend(kind.inputs.iter().flat_map(|input| [format!("{}_signal", input.key), format!("{}_from", input.key)]));
     right.extend(kind.inputs.iter().map(|input| kind.constant_key(&input.key)));
     right.extend(kind.outputs.iter().map(|output| format!("{}_signal", output.key)));
+    let frames = [(COMMAND, kind.frames.command), (FEEDBACK, kind.frames.feedback)];
+    right.extend(frames.into_iter().filter(|(_, signals)| !signals.is_empty()).map(|(key, _)| key.to_owned()));
     for key in keys.table.keys().filter(|key| !right.contains(key.get_ref())) {
         let wrong = SceneFaultKind::ComponentKey { whose: keys.whose(), key: key.get_ref().clone() };
         faults.add_hinted(key.span(), wrong, hint(key.get_ref(), kind, &right));
@@ -229,6 +231,17 @@ fn elementary(values: Values, number: NumberType) -> SignalType {
 }
 
 const SIGNAL: &str = "the name of a signal";
+const STRUCTURE: &str = "the name of a structure of signals";
+/// The structure whose members are the inputs of a command frame.
+const COMMAND: &str = "command_signals";
+/// The structure whose members are the outputs of a feedback frame.
+const FEEDBACK: &str = "feedback_signals";
+
+/// The member of a structure of signals that an input or output is, if its kind has it in a frame.
+fn member(structure: Option<&Placed<String>>, frame: &[&str], key: &str) -> Option<Placed<String>> {
+    let structure = structure.filter(|_| frame.contains(&key))?;
+    Some(Placed::new(structure.span(), format!("{}.{}", text(structure), Frames::member(key))))
+}
 
 fn inputs(
     one: &Known<'_>,
@@ -238,6 +251,7 @@ fn inputs(
     faults: &mut Faults<'_>,
 ) -> Vec<Wire> {
     let mut wires = Vec::new();
+    let frame = one.keys.text(COMMAND, STRUCTURE, faults);
     for input in &one.kind.inputs {
         let (by_signal, by_wire) = (format!("{}_signal", input.key), format!("{}_from", input.key));
         let by_value = one.kind.constant_key(&input.key);
@@ -255,7 +269,10 @@ fn inputs(
             (Some(value), ..) => constant(input, by_value, value, faults),
             (None, Some(name), _) => signals.read(&name, elementary(input.values, number), faults).map(Wire::Signal),
             (None, None, Some(from)) => output_of(&from, &by_wire, input.values, known, faults),
-            (None, None, None) => None,
+            (None, None, None) => {
+                let member = member(frame.as_ref(), one.kind.frames.command, &input.key);
+                member.and_then(|name| signals.read(&name, elementary(input.values, number), faults)).map(Wire::Signal)
+            }
         };
         wires.push(wire.unwrap_or(Wire::Open));
     }
@@ -336,8 +353,10 @@ fn outputs(
     faults: &mut Faults<'_>,
 ) -> Vec<Option<SignalName>> {
     let mut names = Vec::new();
+    let frame = one.keys.text(FEEDBACK, STRUCTURE, faults);
     for output in &one.kind.outputs {
-        let name = one.keys.text(&format!("{}_signal", output.key), SIGNAL, faults);
+        let own = one.keys.text(&format!("{}_signal", output.key), SIGNAL, faults);
+        let name = own.or_else(|| member(frame.as_ref(), one.kind.frames.feedback, &output.key));
         names.push(name.and_then(|name| signals.write(&name, elementary(output.values, number), faults)));
     }
     names

@@ -89,6 +89,7 @@ library! {
         pneumatic_cylinder::PneumaticCylinder,
         hydraulic_cylinder::HydraulicCylinder,
         servo_axis::ServoAxis,
+        command_axis::CommandAxis,
         asynchronous_motor::AsynchronousMotor,
         conveyor::Conveyor,
         arm::Arm,

@@ -12,7 +12,7 @@ use onescan_plc_shim::{Input, SoftPlc};
 
 use super::socket::Socket;
 use super::{ProgramError, ProgramFault};
-use crate::plant::component::kind::{Failure, Form, Kind, Parameter, Setting, Signal, Values};
+use crate::plant::component::kind::{Failure, Form, Frames, Kind, Parameter, Setting, Signal, Values};
 use crate::plant::coupling::{Coupling, Nothing};
 use crate::plant::file_place::{Place, Source};
 
@@ -68,6 +68,7 @@ impl Interface {
             inputs: Vec::new(),
             outputs: Vec::new(),
             dependences: &[],
+            frames: Frames::NONE,
             failures: Vec::new(),
         };
         let block_name = block.name.text.clone();
