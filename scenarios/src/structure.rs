@@ -133,7 +133,7 @@ mod tests {
 
     fn expanded(rest: &str) -> Result<Vec<(String, String)>, String> {
         let mut file = scenario(rest);
-        expand(&mut file).map_err(|wrong| format!("{}; {}", wrong.message, wrong.help.unwrap_or_default()))?;
+        expand(&mut file).map_err(|wrong| [Some(wrong.message), wrong.help].into_iter().flatten().collect::<Vec<_>>().join("; "))?;
         Ok(file.signals.iter().map(|(name, signal)| (name.to_string(), signal.get_ref().ty.to_string())).collect())
     }
 
@@ -167,6 +167,13 @@ mod tests {
         ]
         .map(one)
         .to_vec();
-        insta::assert_snapshot!(wrong.join("\n"), @"");
+        insta::assert_snapshot!(wrong.join("\n"), @r#"
+        signal `A` has no `type`; write `type = "BOOL"`, or a `structure` of `[structures]`
+        `Axes` is no structure of `[structures]`; did you mean `Axis`?
+        `Loop` lies in more than 8 structures; does it contain itself?
+        member `x` of structure `Bad` is not `Name: TYPE`
+        signal `A` has both `type` and `structure`
+        signal `A` is a structure, which has no `unit`
+        "#);
     }
 }

@@ -249,6 +249,9 @@ pub struct Failure {
 
 /// Endings of keys and the units they stand for.
 const UNITS: &[(&str, &str)] = &[
+    ("_units_s2", "units/s²"),
+    ("_units_s", "units/s"),
+    ("_units", "units"),
     ("_m3_kg", "m³/kg"),
     ("_m3_s", "m³/s"),
     ("_kg_m3", "kg/m³"),
@@ -261,6 +264,7 @@ const UNITS: &[(&str, &str)] = &[
     ("_m_s2", "m/s²"),
     ("_m_s", "m/s"),
     ("_n_s_m", "N·s/m"),
+    ("_n_m", "N/m"),
     ("_nm_s", "N·m·s"),
     ("_l_min", "l/min"),
     ("_l_s_bar", "l/(s·bar)"),

@@ -122,6 +122,7 @@ library! {
         heater::Heater,
         workpiece_source::WorkpieceSource,
         workpiece_sink::WorkpieceSink,
+        veneer_lathe::VeneerLathe,
     }
     panel {
         push_button::PushButton,

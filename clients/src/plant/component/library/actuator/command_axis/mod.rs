@@ -67,41 +67,41 @@ parameters! {
     /// An axis and its drive. Positions in units of the axis.
     Parameters {
         /// least position
-        lower: f64 = 0.0 => -1e9, 1e9;
+        lower_units: f64 = 0.0 => -1e9, 1e9;
         /// greatest position
-        upper: f64 = 65000.0 => -1e9, 1e9;
+        upper_units: f64 = 65000.0 => -1e9, 1e9;
         /// where it stands at the set-up
-        initial: f64 = 0.0 => -1e9, 1e9;
+        initial_units: f64 = 0.0 => -1e9, 1e9;
         /// it turns without ends, and its position begins at 0 again here; 0 for an axis with ends
-        modulo: f64 = 0.0 => 0.0, 1e9;
+        modulo_units: f64 = 0.0 => 0.0, 1e9;
         /// so close to its target it is in position
-        window: f64 = 5.0 => 0.0, 1e9;
+        window_units: f64 = 5.0 => 0.0, 1e9;
         /// speed under torque, by the flow of the pump
-        stroke_speed: f64 = 30000.0 => 1e-3, 1e9;
+        stroke_units_s: f64 = 30000.0 => 1e-3, 1e9;
         /// acceleration and deceleration where a command has none
-        braking: f64 = 100000.0 => 1e-3, 1e12;
+        braking_units_s2: f64 = 100000.0 => 1e-3, 1e12;
         /// what tracking means: "none", "per_turn", "offset", "rate" or "curve"
         track: Track = Track::None;
         /// units of the other axis that are one turn of it
-        turn: f64 = 100.0 => 1e-6, 1e9;
+        turn_units: f64 = 100.0 => 1e-6, 1e9;
         /// where the position of the other axis begins at 0 again; 0 if it does not
-        turn_modulo: f64 = 0.0 => 0.0, 1e9;
+        turn_modulo_units: f64 = 0.0 => 0.0, 1e9;
         /// units of this axis for one of the other
         ratio: f64 = 1.0 => -1e6, 1e6;
         /// of a curve: the other axis at the first point
-        curve_from: f64 = 0.0 => -1e9, 1e9;
+        curve_from_units: f64 = 0.0 => -1e9, 1e9;
         /// of a curve: this axis at the first point
-        curve_at_from: f64 = 0.0 => -1e9, 1e9;
+        curve_at_from_units: f64 = 0.0 => -1e9, 1e9;
         /// of a curve: the other axis at the second point
-        curve_to: f64 = 65000.0 => -1e9, 1e9;
+        curve_to_units: f64 = 65000.0 => -1e9, 1e9;
         /// of a curve: this axis at the second point
-        curve_at_to: f64 = 0.0 => -1e9, 1e9;
+        curve_at_to_units: f64 = 0.0 => -1e9, 1e9;
         /// what moves it: "ideal" or "valve"
         drive: Drive = Drive::Ideal;
         /// speed at 10 V: flow of the valve over the area of the piston
-        full_speed: f64 = 100000.0 => 1e-3, 1e9;
+        full_units_s: f64 = 100000.0 => 1e-3, 1e9;
         /// speed at the knee of the flow
-        knee_speed: f64 = 10000.0 => 1e-6, 1e9;
+        knee_units_s: f64 = 10000.0 => 1e-6, 1e9;
         /// voltage at the knee of the flow
         knee_v: f64 = 3.0 => 0.0, 10.0;
         /// voltage at which flow begins
@@ -115,7 +115,7 @@ parameters! {
         /// gain of the position loop
         gain_1_s: f64 = 12.0 => 0.0, 1000.0;
         /// what a transducer that drifts adds in a second
-        drift_speed: f64 = 20.0 => -1e6, 1e6;
+        drift_units_s: f64 = 20.0 => -1e6, 1e6;
     }
 }
 
@@ -235,7 +235,8 @@ pub(crate) struct CommandAxis {
 
 impl Component for CommandAxis {
     const NAME: &'static str = "command_axis";
-    const SUMMARY: &'static str = "axis with a motion controller that takes command frames: position, speed, torque, tracking";
+    const SUMMARY: &'static str =
+        "axis with a motion controller that takes command frames: position, speed, torque, tracking";
     const FORMULA: &'static [&'static str] = &[
         "position: trapezoid or triangle of speed from v, a, d",
         "per_turn: dx/dφ = -s/2π",
@@ -261,26 +262,25 @@ impl Component for CommandAxis {
     own_types!();
 
     fn new(p: Parameters) -> Self {
-        let table = FlowTable { dead_v: p.dead_v, knee_v: p.knee_v, knee: p.knee_speed, full: p.full_speed };
-        let valve = Valve {
-            table,
-            spool_s: p.spool_s,
-            natural_hz: p.natural_hz,
-            damping: p.damping,
-            gain_1_s: p.gain_1_s,
-        };
+        let table = FlowTable { dead_v: p.dead_v, knee_v: p.knee_v, knee: p.knee_units_s, full: p.full_units_s };
+        let valve =
+            Valve { table, spool_s: p.spool_s, natural_hz: p.natural_hz, damping: p.damping, gain_1_s: p.gain_1_s };
         Self { p, valve }
     }
 
     fn conflict(p: &Parameters) -> Option<Conflict> {
-        let turns = p.modulo > 0.0;
+        let turns = p.modulo_units > 0.0;
         let checks = [
-            (p.lower >= p.upper && !turns, "lower", "a number below `upper`"),
-            (!(p.lower..=p.upper).contains(&p.initial) && !turns, "initial", "a number from `lower` to `upper`"),
+            (p.lower_units >= p.upper_units && !turns, "lower_units", "a number below `upper_units`"),
+            (
+                !(p.lower_units..=p.upper_units).contains(&p.initial_units) && !turns,
+                "initial_units",
+                "a number from `lower_units` to `upper_units`",
+            ),
             (p.dead_v >= p.knee_v, "dead_v", "a number below `knee_v`"),
             (p.knee_v >= 10.0, "knee_v", "a number below 10"),
-            (p.knee_speed >= p.full_speed, "knee_speed", "a number below `full_speed`"),
-            (p.curve_from == p.curve_to, "curve_to", "another number than `curve_from`"),
+            (p.knee_units_s >= p.full_units_s, "knee_units_s", "a number below `full_units_s`"),
+            (p.curve_from_units == p.curve_to_units, "curve_to_units", "another number than `curve_from_units`"),
         ];
         let wrong = checks.into_iter().find(|(wrong, ..)| *wrong);
         wrong.map(|(_, key, wanted)| Conflict { key, wanted })
@@ -292,18 +292,18 @@ impl Component for CommandAxis {
     }
 
     fn initial(&self, _: &Start) -> State {
-        let rest = Setpoint { position: self.p.initial, velocity: 0.0 };
+        let rest = Setpoint { position: self.p.initial_units, velocity: 0.0 };
         State {
             mode: Mode::Idle,
             executed: false,
             ramps: Ramps::default(),
             since_s: 0.0,
-            target: self.p.initial,
+            target: self.p.initial_units,
             set: rest,
             actual: rest,
             oil: Oil::REST,
             tracked: 0.0,
-            braking: self.p.braking,
+            braking: self.p.braking_units_s2,
             in_position: false,
             pressing_pct: 0.0,
             drift: 0.0,

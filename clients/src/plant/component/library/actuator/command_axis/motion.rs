@@ -52,12 +52,12 @@ fn finite(value: f64) -> f64 {
 
 impl Parameters {
     fn turns(&self) -> bool {
-        self.modulo > 0.0
+        self.modulo_units > 0.0
     }
 
     /// The position nearest to `wanted` that the axis has.
     fn within(&self, wanted: f64) -> f64 {
-        if self.turns() { wanted } else { wanted.clamp(self.lower, self.upper) }
+        if self.turns() { wanted } else { wanted.clamp(self.lower_units, self.upper_units) }
     }
 }
 
@@ -65,9 +65,9 @@ impl CommandAxis {
     fn limits(&self, inputs: &Inputs) -> Limits {
         let p = &self.p;
         Limits {
-            speed: or(inputs.target_speed, p.stroke_speed),
-            acceleration: or(inputs.target_acceleration, p.braking),
-            deceleration: or(inputs.target_deceleration, p.braking),
+            speed: or(inputs.target_speed, p.stroke_units_s),
+            acceleration: or(inputs.target_acceleration, p.braking_units_s2),
+            deceleration: or(inputs.target_deceleration, p.braking_units_s2),
         }
     }
 
@@ -115,7 +115,7 @@ impl CommandAxis {
             return;
         }
         if turn.failed.has(Failure::Drifting) {
-            state.drift += self.p.drift_speed * dt_s;
+            state.drift += self.p.drift_units_s * dt_s;
         }
         let stuck = [Failure::Dead, Failure::Jammed].into_iter().any(|mode| turn.failed.has(mode));
         if stuck || (turn.failed.has(Failure::NoPressure) && self.p.drive == Drive::Ideal) {
@@ -149,7 +149,7 @@ impl CommandAxis {
 
     /// Limits of a move that is taken up again.
     fn slow(&self, state: &State) -> Limits {
-        Limits { speed: self.p.stroke_speed, acceleration: state.braking, deceleration: state.braking }
+        Limits { speed: self.p.stroke_units_s, acceleration: state.braking, deceleration: state.braking }
     }
 
     /// Where the control wants the axis at the end of the period.
@@ -186,7 +186,7 @@ impl CommandAxis {
             return state.set.towards_velocity(wanted, &Bounds::unlimited(f64::INFINITY, rate), dt_s);
         }
         let bounds = Bounds::unlimited(limits.speed, limits.deceleration.min(rate));
-        let end = if target > 0.0 { self.p.upper } else { self.p.lower };
+        let end = if target > 0.0 { self.p.upper_units } else { self.p.lower_units };
         self.bounded(state.set.towards_position(self.p.within(end), &bounds, dt_s))
     }
 
@@ -195,26 +195,27 @@ impl CommandAxis {
         let p = &self.p;
         let ahead = finite(inputs.tracked) + finite(inputs.tracked_speed) * dt_s;
         let set = state.set;
-        let fastest = or(inputs.target_speed, p.stroke_speed);
+        let fastest = or(inputs.target_speed, p.stroke_units_s);
         let position = match p.track {
             Track::None => return Setpoint { velocity: 0.0, ..set },
             Track::Rate => {
-                let bounds = Bounds::unlimited(fastest, or(inputs.target_acceleration, p.braking));
+                let bounds = Bounds::unlimited(fastest, or(inputs.target_acceleration, p.braking_units_s2));
                 return set.towards_velocity(p.ratio * finite(inputs.tracked_speed), &bounds, dt_s);
             }
             Track::PerTurn => {
                 let mut moved = ahead - state.tracked;
-                if p.turn_modulo > 0.0 {
-                    moved -= (moved / p.turn_modulo).round() * p.turn_modulo;
+                if p.turn_modulo_units > 0.0 {
+                    moved -= (moved / p.turn_modulo_units).round() * p.turn_modulo_units;
                 }
                 state.tracked = ahead;
-                set.position - finite(inputs.target_torque) * moved / p.turn
+                set.position - finite(inputs.target_torque) * moved / p.turn_units
             }
             Track::Offset => p.ratio * ahead + finite(inputs.target_position),
             Track::Curve => {
-                let slope = (p.curve_at_to - p.curve_at_from) / (p.curve_to - p.curve_from);
-                let part = ahead.clamp(p.curve_from.min(p.curve_to), p.curve_from.max(p.curve_to));
-                p.curve_at_from + slope * (part - p.curve_from) + finite(inputs.target_position)
+                let slope = (p.curve_at_to_units - p.curve_at_from_units) / (p.curve_to_units - p.curve_from_units);
+                let part =
+                    ahead.clamp(p.curve_from_units.min(p.curve_to_units), p.curve_from_units.max(p.curve_to_units));
+                p.curve_at_from_units + slope * (part - p.curve_from_units) + finite(inputs.target_position)
             }
         };
         let most = fastest * dt_s;
@@ -254,7 +255,7 @@ impl CommandAxis {
             Mode::Idle | Mode::Speed | Mode::Torque | Mode::Stopping => false,
         };
         // once it was, it stays until the next command
-        state.in_position |= reached && (state.actual.position - state.target).abs() <= self.p.window;
+        state.in_position |= reached && (state.actual.position - state.target).abs() <= self.p.window_units;
     }
 
     /// Torque control: towards an end until the piston meets something.
@@ -268,13 +269,14 @@ impl CommandAxis {
             // both at once make no sense, and neither is what a lost supply looks like
             (true, true) | (false, false) => 0.0,
         };
-        let obstacle = if finite(inputs.obstacle) > p.lower { inputs.obstacle.min(p.upper) } else { p.lower };
-        let end = if way < 0.0 { obstacle.min(state.actual.position) } else { p.upper };
+        let obstacle =
+            if finite(inputs.obstacle) > p.lower_units { inputs.obstacle.min(p.upper_units) } else { p.lower_units };
+        let end = if way < 0.0 { obstacle.min(state.actual.position) } else { p.upper_units };
         let still = way == 0.0 || torque == 0.0;
-        let moved = if still { 0.0 } else { way * p.stroke_speed * turn.dt_s };
+        let moved = if still { 0.0 } else { way * p.stroke_units_s * turn.dt_s };
         let met = !still && (end - state.actual.position).abs() <= moved.abs();
         let position = if met { end } else { state.actual.position + moved };
-        let velocity = if met || still { 0.0 } else { way * p.stroke_speed };
+        let velocity = if met || still { 0.0 } else { way * p.stroke_units_s };
         state.actual = Setpoint { position, velocity };
         let pressing = match (still, met) {
             (true, _) => 0.0,
@@ -290,7 +292,7 @@ impl CommandAxis {
 
     /// An axis that turns begins at 0 again.
     fn wrap(&self, state: &mut State) {
-        let modulo = self.p.modulo;
+        let modulo = self.p.modulo_units;
         if modulo <= 0.0 || state.mode == Mode::Position || (0.0..modulo).contains(&state.actual.position) {
             return;
         }

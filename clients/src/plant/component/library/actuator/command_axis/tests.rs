@@ -24,7 +24,7 @@ fn rig(p: Parameters) -> Rig<CommandAxis> {
 }
 
 fn feeder() -> Rig<CommandAxis> {
-    rig(Parameters { upper: 14_000.0, ..Parameters::default() })
+    rig(Parameters { upper_units: 14_000.0, ..Parameters::default() })
 }
 
 #[test]
@@ -48,7 +48,8 @@ fn a_position_move_takes_its_closed_form_to_a_step() {
             assert!(steps < 1000, "{out:?}");
         }
         assert!((f64::from(steps) * 0.01 - exact_s).abs() <= 0.01, "{target}: {steps}");
-        assert!(fastest <= peak && fastest > 0.995 * peak, "{fastest}");
+        // a triangle's peak lies between two steps
+        assert!(fastest <= peak && fastest >= peak - 150.0, "{fastest}");
         assert!((area - target).abs() < 1e-9 && before.velocity == 0.0, "{area}");
         assert!(peak < 8000.0 || fastest == 8000.0);
     }
@@ -62,14 +63,18 @@ fn only_an_edge_is_a_command_and_a_new_one_takes_its_place() {
     assert_eq!(rig.run(Inputs { target_position: 100.0, ..FEEDER }, 0.01, 200).position, 6300.0);
     rig.run(REST, 0.01, 1);
     let moving = rig.run(Inputs { target_position: 100.0, ..FEEDER }, 0.01, 50);
-    assert!(!moving.in_position && moving.speed == -7500.0);
+    assert!(!moving.in_position && (moving.speed + 7500.0).abs() < 1e-9);
     rig.run(REST, 0.01, 1);
     // back again, in motion: it brakes and turns
     let out = rig.run(FEEDER, 0.01, 300);
     assert!(out.in_position && out.position == 6300.0, "{out:?}");
     assert!(!rig.run(Inputs { enable: false, ..REST }, 0.01, 1).enabled);
     rig.run(Inputs { enable: false, ..FEEDER }, 0.01, 10);
-    assert_eq!(rig.run(Inputs { target_position: 0.0, ..FEEDER }, 0.01, 300).position, 6300.0, "an edge without enable");
+    assert_eq!(
+        rig.run(Inputs { target_position: 0.0, ..FEEDER }, 0.01, 300).position,
+        6300.0,
+        "an edge without enable"
+    );
 }
 
 #[test]
@@ -78,7 +83,8 @@ fn a_joystick_runs_the_axis_until_it_is_let_go_or_at_its_end() {
     let mut rig = feeder();
     assert_eq!(rig.run(joystick, 0.01, 100).speed, 8000.0);
     let out = rig.run(Inputs { speed_control: false, ..joystick }, 0.01, 100);
-    assert!(out.speed == 0.0 && (out.position - 7866.67).abs() < 0.01, "{out:?}");
+    // 5866.67 units in a second, and 2133.33 until it stands; ramps that end within a step cost 0.2 units
+    assert!(out.speed == 0.0 && (out.position - 8000.0).abs() < 0.5, "{out:?}");
     rig.run(Inputs { execute: false, ..joystick }, 0.01, 1);
     let out = rig.run(joystick, 0.01, 300);
     assert!(out.speed == 0.0 && out.position == 14_000.0, "{out:?}");
@@ -86,7 +92,7 @@ fn a_joystick_runs_the_axis_until_it_is_let_go_or_at_its_end() {
 
 #[test]
 fn torque_closes_on_a_block_holds_it_and_opens() {
-    let p = Parameters { upper: 30_000.0, initial: 30_000.0, ..Parameters::default() };
+    let p = Parameters { upper_units: 30_000.0, initial_units: 30_000.0, ..Parameters::default() };
     let close = Inputs { tracking: true, target_torque: 100.0, obstacle: 10_000.0, ..FEEDER };
     let mut axis = rig(p.clone());
     let out = axis.run(close, 0.01, 80);
@@ -107,18 +113,24 @@ fn torque_closes_on_a_block_holds_it_and_opens() {
 fn it_tracks_a_turn_an_offset_a_rate_and_a_curve() {
     let tracking = Inputs { tracking: true, target_speed: 1e6, ..FEEDER };
     // 5 turns a second of 100 units, 150 units a turn
-    let knife = Parameters { track: Track::PerTurn, initial: 30_000.0, turn_modulo: 6000.0, ..Parameters::default() };
+    let knife = Parameters {
+        track: Track::PerTurn,
+        initial_units: 30_000.0,
+        turn_modulo_units: 6000.0,
+        ..Parameters::default()
+    };
     let mut rig_ = rig(knife);
     let mut at = 5900.0;
     for _ in 0..200 {
-        let inputs = Inputs { tracked: at, tracked_speed: 500.0, target_torque: 150.0, target_position: 0.0, ..tracking };
+        let inputs =
+            Inputs { tracked: at, tracked_speed: 500.0, target_torque: 150.0, target_position: 0.0, ..tracking };
         rig_.run(inputs, 0.01, 1);
         at = (at + 5.0) % 6000.0;
     }
     // a hundred additions of some thousands
     assert!((rig_.state.actual.position - 28_500.0).abs() < 1e-8, "{:?}", rig_.state.actual);
     let one = |track: Track, inputs: Inputs| {
-        let curve = Parameters { curve_at_from: 100.0, curve_at_to: 750.0, track, ..Parameters::default() };
+        let curve = Parameters { curve_at_from_units: 100.0, curve_at_to_units: 750.0, track, ..Parameters::default() };
         rig(curve).run(inputs, 0.01, 100)
     };
     let near = Inputs { tracked: 9000.0, tracked_speed: 100.0, target_position: 40.0, ..tracking };
@@ -130,7 +142,7 @@ fn it_tracks_a_turn_an_offset_a_rate_and_a_curve() {
 
 #[test]
 fn a_valve_follows_with_an_error_that_is_stated_and_ends_in_position() {
-    let p = Parameters { drive: Drive::Valve, full_speed: 12_000.0, knee_speed: 2000.0, ..Parameters::default() };
+    let p = Parameters { drive: Drive::Valve, full_units_s: 12_000.0, knee_units_s: 2000.0, ..Parameters::default() };
     let mut rig = rig(p);
     let mut worst = 0.0_f64;
     let mut volt = 0.0_f64;
@@ -148,7 +160,7 @@ fn a_valve_follows_with_an_error_that_is_stated_and_ends_in_position() {
 #[test]
 fn each_failure_has_its_effect() {
     let run = |mode: Failure, drive: Drive| {
-        let p = Parameters { drive, full_speed: 12_000.0, knee_speed: 2000.0, ..Parameters::default() };
+        let p = Parameters { drive, full_units_s: 12_000.0, knee_units_s: 2000.0, ..Parameters::default() };
         rig(p).failing(mode).run(FEEDER, 0.01, 200)
     };
     for drive in [Drive::Ideal, Drive::Valve] {
@@ -161,7 +173,8 @@ fn each_failure_has_its_effect() {
         assert_eq!(run(Failure::FrozenFeedback, drive).actual_position, 0.0);
     }
     let worn = run(Failure::WornValve, Drive::Valve);
-    let new = rig(Parameters { drive: Drive::Valve, full_speed: 12_000.0, knee_speed: 2000.0, ..Parameters::default() })
-        .run(FEEDER, 0.01, 200);
+    let new =
+        rig(Parameters { drive: Drive::Valve, full_units_s: 12_000.0, knee_units_s: 2000.0, ..Parameters::default() })
+            .run(FEEDER, 0.01, 200);
     assert!((worn.position - 6300.0).abs() > (new.position - 6300.0).abs());
 }

@@ -107,10 +107,8 @@ impl Valve {
         for index in 1..=count {
             let part = f64::from(index) / f64::from(count);
             let velocity = wanted.from.velocity + (wanted.to.velocity - wanted.from.velocity) * part;
+            let speed = velocity + self.gain_1_s * (path - piston.position);
             path += velocity * part_s;
-            // the end of the period is the set position itself, whatever the parts add up to
-            let set = if index == count { wanted.to.position } else { path };
-            let speed = velocity + self.gain_1_s * (set - piston.position);
             oil.command_v = if wanted.is_on { self.table.voltage(speed) } else { 0.0 };
             oil.spool_v = lag(oil.spool_v, oil.command_v, self.spool_s, part_s);
             let flow = if wear.no_pressure { 0.0 } else { real.flow(oil.spool_v) };
