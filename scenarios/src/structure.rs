@@ -133,7 +133,8 @@ mod tests {
 
     fn expanded(rest: &str) -> Result<Vec<(String, String)>, String> {
         let mut file = scenario(rest);
-        expand(&mut file).map_err(|wrong| [Some(wrong.message), wrong.help].into_iter().flatten().collect::<Vec<_>>().join("; "))?;
+        expand(&mut file)
+            .map_err(|wrong| [Some(wrong.message), wrong.help].into_iter().flatten().collect::<Vec<_>>().join("; "))?;
         Ok(file.signals.iter().map(|(name, signal)| (name.to_string(), signal.get_ref().ty.to_string())).collect())
     }
 

@@ -55,8 +55,18 @@ pub struct Frames {
 }
 
 impl Frames {
+    /// The key of a scene that binds the inputs.
+    pub const COMMAND: &str = "command_signals";
+    /// The key of a scene that binds the outputs.
+    pub const FEEDBACK: &str = "feedback_signals";
+
     /// A kind whose signals are bound one by one.
     pub const NONE: Self = Self { command: &[], feedback: &[] };
+
+    /// The keys of a scene, each with the signals that it binds.
+    pub const fn by_key(self) -> [(&'static str, &'static [&'static str]); 2] {
+        [(Self::COMMAND, self.command), (Self::FEEDBACK, self.feedback)]
+    }
 
     /// The member of a structure that is a signal of a component: `TargetPosition` is `target_position`.
     pub fn member(key: &str) -> String {

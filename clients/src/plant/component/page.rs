@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::kind::{Dependence, Form, Kind, Parameter, Signal, unit};
+use super::kind::{Dependence, Form, Frames, Kind, Parameter, Signal, unit};
 use super::library::kinds;
 
 /// The page of a kind.
@@ -33,6 +33,7 @@ pub fn page(kind: &Kind) -> String {
     }
     inputs(&mut page, kind);
     outputs(&mut page, &kind.outputs);
+    frames(&mut page, kind.frames);
     if !kind.failures.is_empty() {
         page.push_str("\n| failure mode | |\n|---|---|\n");
     }
@@ -71,6 +72,14 @@ fn inputs(page: &mut String, kind: &Kind) {
     }
     for Dependence { inputs, on } in kind.dependences {
         let _ = writeln!(page, "\nWithout {} nothing comes of {}.", any_of(on), any_of(inputs));
+    }
+}
+
+/// The keys that bind the signals of a frame together.
+fn frames(page: &mut String, frames: Frames) {
+    for (key, signals) in frames.by_key().into_iter().filter(|(_, signals)| !signals.is_empty()) {
+        let members: Vec<_> = signals.iter().map(|signal| format!("`{}`", Frames::member(signal))).collect();
+        let _ = writeln!(page, "\n`{key}` names a structure of signals with the members {}.", members.join(", "));
     }
 }
 

@@ -157,8 +157,7 @@ fn refuse_unknown_keys(one: &Known<'_>, faults: &mut Faults<'_>) {
     right.extend(kind.inputs.iter().flat_map(|input| [format!("{}_signal", input.key), format!("{}_from", input.key)]));
     right.extend(kind.inputs.iter().map(|input| kind.constant_key(&input.key)));
     right.extend(kind.outputs.iter().map(|output| format!("{}_signal", output.key)));
-    let frames = [(COMMAND, kind.frames.command), (FEEDBACK, kind.frames.feedback)];
-    right.extend(frames.into_iter().filter(|(_, signals)| !signals.is_empty()).map(|(key, _)| key.to_owned()));
+    right.extend(kind.frames.by_key().into_iter().filter(|(_, signals)| !signals.is_empty()).map(|(key, _)| key.to_owned()));
     for key in keys.table.keys().filter(|key| !right.contains(key.get_ref())) {
         let wrong = SceneFaultKind::ComponentKey { whose: keys.whose(), key: key.get_ref().clone() };
         faults.add_hinted(key.span(), wrong, hint(key.get_ref(), kind, &right));
@@ -232,10 +231,6 @@ fn elementary(values: Values, number: NumberType) -> SignalType {
 
 const SIGNAL: &str = "the name of a signal";
 const STRUCTURE: &str = "the name of a structure of signals";
-/// The structure whose members are the inputs of a command frame.
-const COMMAND: &str = "command_signals";
-/// The structure whose members are the outputs of a feedback frame.
-const FEEDBACK: &str = "feedback_signals";
 
 /// The member of a structure of signals that an input or output is, if its kind has it in a frame.
 fn member(structure: Option<&Placed<String>>, frame: &[&str], key: &str) -> Option<Placed<String>> {
@@ -251,7 +246,7 @@ fn inputs(
     faults: &mut Faults<'_>,
 ) -> Vec<Wire> {
     let mut wires = Vec::new();
-    let frame = one.keys.text(COMMAND, STRUCTURE, faults);
+    let frame = one.keys.text(Frames::COMMAND, STRUCTURE, faults);
     for input in &one.kind.inputs {
         let (by_signal, by_wire) = (format!("{}_signal", input.key), format!("{}_from", input.key));
         let by_value = one.kind.constant_key(&input.key);
@@ -353,7 +348,7 @@ fn outputs(
     faults: &mut Faults<'_>,
 ) -> Vec<Option<SignalName>> {
     let mut names = Vec::new();
-    let frame = one.keys.text(FEEDBACK, STRUCTURE, faults);
+    let frame = one.keys.text(Frames::FEEDBACK, STRUCTURE, faults);
     for output in &one.kind.outputs {
         let own = one.keys.text(&format!("{}_signal", output.key), SIGNAL, faults);
         let name = own.or_else(|| member(frame.as_ref(), one.kind.frames.feedback, &output.key));

@@ -97,6 +97,7 @@
 //! | its parameters | by their keys, each with a preset |
 //! | `joint`, `belt`, `body`, … | what it is bound to, as its kind has it |
 //! | `INPUT_signal`, `OUTPUT_signal` | the session's signal for an input or an output of its kind |
+//! | `command_signals`, `feedback_signals` | a structure of signals whose members are the inputs or outputs of a kind that takes frames |
 //! | `INPUT_from` | `"component.output"`: another component's output for an input |
 //! | `INPUT` | a constant for an input, its preset if nothing is written |
 //! | `signal_type` | `LREAL` or `REAL`, of all its number signals; `LREAL` if absent |

@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 use super::VERSION;
 use super::format::SceneFile;
 use super::own::Header;
-use crate::plant::component::kind::{Form, Kind, Parameter, Setting, Signal, Values, unit};
+use crate::plant::component::kind::{Form, Frames, Kind, Parameter, Setting, Signal, Values, unit};
 use crate::plant::component::library::kinds;
 use crate::plant::coupling::{BindingKey, Names};
 
@@ -88,6 +88,11 @@ fn component(kind: &Kind) -> Value {
     properties.insert("name".to_owned(), text());
     properties.insert("kind".to_owned(), json!({ "const": kind.name, "description": kind.summary }));
     properties.insert("signal_type".to_owned(), json!({ "enum": ["REAL", "LREAL"] }));
+    for (key, signals) in kind.frames.by_key().into_iter().filter(|(_, signals)| !signals.is_empty()) {
+        let members: Vec<_> = signals.iter().map(|signal| Frames::member(signal)).collect();
+        let description = format!("a structure of signals with the members {}", members.join(", "));
+        properties.insert(key.to_owned(), json!({ "type": TEXT, "description": description }));
+    }
     let mut required = vec!["name", "kind"];
     for BindingKey { key, about, names, needed } in kind.coupling.keys() {
         let ty = match names {

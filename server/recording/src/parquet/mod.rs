@@ -6,6 +6,7 @@
 //! | [`transpose`] | rows to columns |
 //! | [`encode`] | values to pages |
 //! | [`chunk`] | pages to column chunks |
+//! | [`guard`] | what the library panics at is an error |
 //! | [`read`] | parts read back |
 //!
 //! A part grows under a name that begins with a dot, which readers of data sets leave out, and takes
@@ -14,6 +15,7 @@
 
 mod chunk;
 mod encode;
+mod guard;
 pub(crate) mod read;
 pub(crate) mod schema;
 mod transpose;

@@ -16,6 +16,7 @@ use onescan_server::signal::SignalType as T;
 use super::super::block::Block;
 use super::super::column::Column;
 use super::FIRST_STEP;
+use super::guard::guarded;
 use super::schema::{DIGEST_BYTES, LEADING};
 
 /// A part: which steps it holds.
@@ -71,7 +72,8 @@ fn wrong(message: &str) -> ParquetError {
 impl Part {
     /// Reads a part's footer.
     pub(crate) fn open(path: &Path) -> io::Result<Self> {
-        let reader = SerializedFileReader::new(Ended(regular::open(path)?))?;
+        let file = regular::open(path)?;
+        let reader = guarded(|| SerializedFileReader::new(Ended(file)))?;
         let metadata = reader.metadata().file_metadata();
         let first_step = metadata.key_value_metadata().into_iter().flatten().find(|pair| pair.key == FIRST_STEP);
         let first_step = first_step.and_then(|pair| pair.value.as_ref()?.parse().ok());
@@ -88,12 +90,13 @@ impl Part {
         columns: &[(usize, Column)],
         each: &mut dyn FnMut(&Block) -> io::Result<()>,
     ) -> io::Result<()> {
-        let reader = SerializedFileReader::new(Ended(regular::open(&self.path)?))?;
+        let file = regular::open(&self.path)?;
+        let reader = guarded(|| SerializedFileReader::new(Ended(file)))?;
         let mut block = Block { first_step: self.first_step, ..Block::default() };
         for index in 0..reader.num_row_groups() {
-            let group = reader.get_row_group(index)?;
+            let group = guarded(|| reader.get_row_group(index))?;
             let rows = usize::try_from(group.metadata().num_rows()).map_err(io::Error::other)?;
-            fill(&mut block, group.as_ref(), rows, columns)?;
+            guarded(|| fill(&mut block, group.as_ref(), rows, columns))?;
             block.ends_part = index + 1 == reader.num_row_groups();
             each(&block)?;
             block.first_step += rows as u64;
@@ -204,27 +207,52 @@ mod tests {
     const ENDLESS: [u8; 15] =
         [0x15, 0x02, 0x15, 0x00, 0x15, 0x00, 0x4c, 0x19, 0xf7, 0xff, 0xff, 0xff, 0xff, 0x07, 0x00];
 
-    #[test]
-    fn what_goes_on_beyond_the_end_is_refused_at_once() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("part-000001.parquet");
+    /// A part of two rows in a folder, and where the pages of its times begin and end.
+    fn two_rows(folder: &Path) -> (PathBuf, u64, u64) {
+        let path = folder.join("part-000001.parquet");
         let block = Block { t_v_ns: vec![0, 10], digests: vec![[7; 32]; 2], ..Block::default() };
         let mut file = ParquetFile::new(File::create(&path).unwrap(), Arc::from([]), 0).unwrap();
         file.rows(&block).unwrap();
         file.finish().unwrap();
-        let count = |part: &Part| {
-            let mut rows = 0;
-            part.blocks(&[], &mut |block| {
-                rows += block.rows();
-                Ok(())
-            })
-            .map(|()| rows)
-        };
+        let reader = SerializedFileReader::new(File::open(&path).unwrap()).unwrap();
+        let (at, length) = reader.metadata().row_group(0).column(1).byte_range();
+        (path, at, length)
+    }
+
+    fn count(part: &Part) -> io::Result<usize> {
+        let mut rows = 0;
+        part.blocks(&[], &mut |block| {
+            rows += block.rows();
+            Ok(())
+        })
+        .map(|()| rows)
+    }
+
+    #[test]
+    fn no_byte_of_a_page_makes_the_library_panic() {
+        let folder = tempfile::tempdir().unwrap();
+        let (path, at, length) = two_rows(folder.path());
+        let part = Part::open(&path).unwrap();
+        let whole = std::fs::read(&path).unwrap();
+        let mut changed = std::fs::OpenOptions::new().write(true).open(&path).unwrap();
+        let mut refused = 0;
+        for place in at..at + length.min(40) {
+            for value in 0..=255_u8 {
+                changed.seek(SeekFrom::Start(place)).unwrap();
+                changed.write_all(&[value]).unwrap();
+                refused += u32::from(count(&part).is_err());
+            }
+            changed.seek(SeekFrom::Start(place)).unwrap();
+            changed.write_all(&whole[place as usize..=place as usize]).unwrap();
+        }
+        assert!(refused > 0 && count(&part).unwrap() == 2, "{refused}");
+    }
+
+    #[test]
+    fn what_goes_on_beyond_the_end_is_refused_at_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let (path, at, _) = two_rows(folder.path());
         assert_eq!(count(&Part::open(&path).unwrap()).unwrap(), 2);
-        let at = {
-            let reader = SerializedFileReader::new(File::open(&path).unwrap()).unwrap();
-            reader.metadata().row_group(0).column(1).byte_range().0
-        };
         let mut changed = std::fs::OpenOptions::new().write(true).open(&path).unwrap();
         changed.seek(SeekFrom::Start(at)).unwrap();
         changed.write_all(&ENDLESS).unwrap();

@@ -388,7 +388,7 @@ mod tests {
         assert!((out.gap_top_m - (0.001 - 0.000_375)).abs() < 1e-9, "{out:?}");
         assert!((out.gap_bottom_m - (0.001 - 0.000_75)).abs() < 1e-9, "{out:?}");
         assert!(out.bending_m < 0.0, "the nosebar alone");
-        assert!(at(WHOLE - 100.0).bending_m > 0.0, "rolls that press");
+        assert!(at(WHOLE - 200.0).bending_m > 0.0, "rolls that press");
         let nosebar_n = 20_000.0 * 1.3 * (1.0 - 1.3 / 1.5);
         let square_m2 = WHOLE * 1e-5 * WHOLE * 1e-5;
         let exact_m = -nosebar_n * 1.3 * 1.3 * 1.3 / (48.0 * 1e10 * PI * square_m2 * square_m2 / 4.0);
