@@ -4,8 +4,12 @@
 //! |---|---|
 //! | this file | the case's own keys, and its expectations |
 //! | `settings` | parameters of plants, constants and initial values of PLCs |
+//! | `period` | when something begins and ends |
+//! | `disturbance` | faults on the way of signals |
 //! | `timeline` | what a case does while a session runs, as operations |
 
+mod disturbance;
+mod period;
 mod settings;
 mod timeline;
 

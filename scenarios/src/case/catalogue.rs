@@ -13,6 +13,7 @@ use super::matrix::{Axis, COMBINATIONS_MAX, combinations};
 use super::{Case, DEFAULT, FILE_NAME, Setting};
 use crate::arrays;
 use crate::error::{ScenarioError, wrong};
+use crate::expectations::place_within;
 use crate::permission;
 
 /// All cases of a scenario.
@@ -172,6 +173,11 @@ impl Catalogue {
     /// The file's name and text.
     pub(crate) fn source(&self) -> (String, String) {
         (self.path.display().to_string(), self.text.clone())
+    }
+
+    /// The place of a part of a formula.
+    pub(crate) fn place_within(&self, formula: &Spanned<String>, part: &Range<usize>) -> Range<usize> {
+        place_within(formula, &self.text, part)
     }
 
     /// An error at a place of the file.

@@ -9,7 +9,9 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use crate::file::ExpectFile;
-use crate::form::{Amount, CaseName, Matrix, Name, Scalar, Settings, Time, from_optional_text, from_text};
+use crate::form::{
+    Amount, CaseName, Deviation, Matrix, Name, Ordinal, Rate, Scalar, Settings, Time, from_optional_text, from_text,
+};
 
 /// The only version of the format so far.
 pub const VERSION: u32 = 1;
@@ -138,9 +140,12 @@ pub struct FaultFile {
     #[serde(default, deserialize_with = "from_optional_text")]
     #[schemars(with = "Option<Time>")]
     pub until: Option<VirtualTime>,
-    /// A condition on signals: it begins in the step after the condition has come true.
+    /// A condition on signals, now and in the past: it begins in the step after the condition has come true.
     #[schemars(with = "Option<String>")]
     pub when: Option<Spanned<String>>,
+    /// Which time that the condition comes true; the first if absent.
+    #[schemars(with = "Option<Ordinal>")]
+    pub nth: Option<Spanned<u32>>,
     /// How long it lasts.
     #[serde(default, rename = "for", deserialize_with = "from_optional_text")]
     #[schemars(with = "Option<Time>")]
@@ -165,27 +170,43 @@ pub struct ForceFile {
     #[serde(default, deserialize_with = "from_optional_text")]
     #[schemars(with = "Option<Time>")]
     pub until: Option<VirtualTime>,
-    /// A condition on signals: it begins in the step after the condition has come true.
+    /// A condition on signals, now and in the past: it begins in the step after the condition has come true.
     #[schemars(with = "Option<String>")]
     pub when: Option<Spanned<String>>,
+    /// Which time that the condition comes true; the first if absent.
+    #[schemars(with = "Option<Ordinal>")]
+    pub nth: Option<Spanned<u32>>,
     /// How long it lasts.
     #[serde(default, rename = "for", deserialize_with = "from_optional_text")]
     #[schemars(with = "Option<Time>")]
     pub lasting: Option<TimeSpan>,
 }
 
-/// A fault on the way of a signal from its writer to its readers.
+/// A fault on the way of signals from their writer to their readers.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DisturbanceFile {
-    /// The signal's name.
-    #[schemars(with = "Name")]
-    pub signal: Spanned<SignalName>,
+    /// The signal's name; or `signals`, or `client`.
+    #[schemars(with = "Option<Name>")]
+    pub signal: Option<Spanned<SignalName>>,
+    /// Several signals, which are one frame; ranges are allowed.
+    #[serde(default)]
+    #[schemars(with = "Vec<Name>")]
+    pub signals: Vec<Spanned<SignalName>>,
+    /// A client: all signals that it writes are one frame.
+    #[schemars(with = "Option<Name>")]
+    pub client: Option<Spanned<String>>,
     /// What is wrong with the signal.
     pub kind: DisturbanceKind,
     /// By how much: a number of the signal's type for `offset`, a time as in `"20ms"` for `late`.
     #[schemars(with = "Option<Amount>")]
     pub by: Option<Spanned<toml::Value>>,
+    /// How often, from 0 to 1: of the changes for `lost` (of the steps, if it is a frame), of the steps for `flipped`.
+    #[schemars(with = "Option<Rate>")]
+    pub rate: Option<Spanned<f64>>,
+    /// Standard deviation of `noisy`, in the signal's unit.
+    #[schemars(with = "Option<Deviation>")]
+    pub sigma: Option<Spanned<f64>>,
     /// From when; from the start if absent. With `when`: from when on the condition counts.
     #[serde(default, deserialize_with = "from_optional_text")]
     #[schemars(with = "Option<Time>")]
@@ -194,9 +215,12 @@ pub struct DisturbanceFile {
     #[serde(default, deserialize_with = "from_optional_text")]
     #[schemars(with = "Option<Time>")]
     pub until: Option<VirtualTime>,
-    /// A condition on signals: it begins in the step after the condition has come true.
+    /// A condition on signals, now and in the past: it begins in the step after the condition has come true.
     #[schemars(with = "Option<String>")]
     pub when: Option<Spanned<String>>,
+    /// Which time that the condition comes true; the first if absent.
+    #[schemars(with = "Option<Ordinal>")]
+    pub nth: Option<Spanned<u32>>,
     /// How long it lasts.
     #[serde(default, rename = "for", deserialize_with = "from_optional_text")]
     #[schemars(with = "Option<Time>")]
@@ -207,7 +231,7 @@ pub struct DisturbanceFile {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum DisturbanceKind {
-    /// It keeps the value that it has.
+    /// It keeps the value that it has: it is frozen.
     Stuck,
     /// A BOOL arrives negated.
     Inverted,
@@ -215,6 +239,12 @@ pub enum DisturbanceKind {
     Offset,
     /// Values arrive late.
     Late,
+    /// Changes do not arrive; of a frame, the values of whole steps.
+    Lost,
+    /// A bit of the value is inverted for a step.
+    Flipped,
+    /// A normal deviate is added in each step.
+    Noisy,
 }
 
 /// A variable of a PLC is forced for a time, or written once.
@@ -242,9 +272,12 @@ pub struct VariableFile {
     #[serde(default, deserialize_with = "from_optional_text")]
     #[schemars(with = "Option<Time>")]
     pub until: Option<VirtualTime>,
-    /// A condition on signals: it begins in the step after the condition has come true.
+    /// A condition on signals, now and in the past: it begins in the step after the condition has come true.
     #[schemars(with = "Option<String>")]
     pub when: Option<Spanned<String>>,
+    /// Which time that the condition comes true; the first if absent.
+    #[schemars(with = "Option<Ordinal>")]
+    pub nth: Option<Spanned<u32>>,
     /// How long it is forced.
     #[serde(default, rename = "for", deserialize_with = "from_optional_text")]
     #[schemars(with = "Option<Time>")]

@@ -69,6 +69,8 @@ pub struct Applied {
     pub timeline: Vec<Scheduled>,
     /// Failures of components, which can be checked only when their plants are read.
     pub failures: Vec<FailureAt>,
+    /// Variables that it writes or forces, which can be checked only when their PLCs are made.
+    pub variables: Vec<VariableAt>,
     /// `cases.toml`, for errors that are found when clients are made.
     pub source: (String, String),
 }
@@ -82,6 +84,19 @@ pub struct FailureAt {
     pub component: String,
     /// How it fails.
     pub mode: String,
+    /// Where it stands in `cases.toml`.
+    pub place: Range<usize>,
+}
+
+/// A variable's value in a case.
+#[derive(Clone, Debug, PartialEq)]
+pub struct VariableAt {
+    /// The PLC.
+    pub client: ClientName,
+    /// The variable's path.
+    pub variable: String,
+    /// Its value, as a literal.
+    pub value: String,
     /// Where it stands in `cases.toml`.
     pub place: Range<usize>,
 }

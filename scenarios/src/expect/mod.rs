@@ -12,7 +12,7 @@
 //! | [`formula`] | formulas and terms |
 //! | [`unit`] | units of measurement, and numbers carried from one to another |
 //! | [`bind`] | names to signals, units to factors |
-//! | [`condition`] | formulas of the present, which a running session can judge |
+//! | [`condition`] | formulas without a future, which a running session can judge |
 //! | [`present`] | the same with arithmetic, for who has the values at hand |
 //! | [`truth`] | three-valued truth, and the margin by which a formula holds |
 //! | [`verdict`] | met, violated and when, or still open at the end |
