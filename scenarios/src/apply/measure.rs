@@ -10,6 +10,7 @@ use crate::arrays;
 use crate::case::{Campaign, Catalogue};
 use crate::error::ScenarioError;
 use crate::expect::{Expectation, Reaction};
+use crate::file::ClientFile;
 use crate::load::Scenario;
 
 /// What is read out of a run, and by which formulas it is measured.
@@ -69,6 +70,31 @@ impl Scenario {
         };
         let columns = columns.iter().filter_map(|column| SignalName::new(column.as_str()).ok()).collect();
         Ok(CampaignMeasures { readouts: self.readouts(catalogue, campaign)?, columns, told, safe, collision })
+    }
+
+    /// Refuses a campaign that names what the scenario does not have, before anything runs.
+    ///
+    /// # Errors
+    /// A formula, a signal, a component, its mode, a variable or its value is wrong, or an activation can never come.
+    pub fn check_campaign(&self, catalogue: &Catalogue, campaign: &Campaign) -> Result<(), ScenarioError> {
+        self.campaign_measures(catalogue, campaign)?;
+        let mut all = self.clone().with_case(catalogue, &campaign.healthy)?;
+        let mut applied = all.applied().cloned().unwrap_or_default();
+        for case in &campaign.cases {
+            let tried = self.clone().with_case(catalogue, case)?;
+            if let Some(of_case) = tried.applied() {
+                applied.failures.extend(of_case.failures.iter().cloned());
+                applied.variables.extend(of_case.variables.iter().cloned());
+            }
+        }
+        all.put_on(applied);
+        // Clients are made once with all that is asked of them: sources are compiled and scenes read only once.
+        for (name, client) in &self.file().clients {
+            if matches!(client.get_ref(), ClientFile::Plant { .. } | ClientFile::SoftPlc { .. }) {
+                all.member(name)?;
+            }
+        }
+        Ok(())
     }
 
     fn readouts(&self, catalogue: &Catalogue, campaign: &Campaign) -> Result<Vec<SignalName>, ScenarioError> {
