@@ -21,7 +21,7 @@ fault = [
     { name = "sensor-off", kind = "hardware", force = { signal = "Sensor_1", value = false } },
     { name = "frame-frozen", kind = "hardware", disturbance = { client = "plant", kind = "stuck" } },
     { name = "noisy", kind = "hardware", disturbance = { signals = ["Position_1", "Position_2"], kind = "noisy", sigma = 0.002 } },
-    { name = "jammed", kind = "model", fault = { component = "actuator_1", mode = "MODE" } },
+    { name = "held", kind = "model", force = { signal = "Position_2", value = -0.05 } },
     { name = "count", kind = "software", variable = { variable = "Shear.Strokes", value = 7 } },
 ]
 
@@ -34,7 +34,7 @@ activation = [
 
 fn shear_with(cases: &str) -> tempfile::TempDir {
     let folder = copied_shear();
-    std::fs::write(folder.path().join("cases.toml"), cases.replace("MODE", "jammed")).expect("a file");
+    std::fs::write(folder.path().join("cases.toml"), cases).expect("a file");
     folder
 }
 
@@ -47,7 +47,9 @@ fn every_fault_has_a_verdict_whatever_the_number_of_workers() {
     let folder = shear_with(CAMPAIGN);
     let campaign = |words: &[&str]| typed(folder.path(), &[&["campaign", "."], words].concat());
     let text = campaign(&["--jobs", "1", "--html", "campaign.html", "--junit", "campaign.xml"]);
-    insta::assert_snapshot!(text.out.replace(&folder.path().file_name().unwrap().to_string_lossy().into_owned(), "SHEAR"));
+    insta::assert_snapshot!(
+        text.out.replace(&folder.path().file_name().unwrap().to_string_lossy().into_owned(), "SHEAR")
+    );
     assert_eq!((text.code, text.err.as_str()), (Some(1), ""), "some are missed");
     assert_eq!(campaign(&["feedback", "--jobs", "3"]).out, text.out, "to the byte");
     let json = lines(&campaign(&["--format", "json", "--jobs", "3"]));
@@ -63,7 +65,7 @@ fn every_fault_has_a_verdict_whatever_the_number_of_workers() {
         assert_eq!(row["digest"], json[18]["healthy_digest"], "{row}");
     }
     let page = std::fs::read_to_string(folder.path().join("campaign.html")).expect("a page");
-    assert!(page.contains("feedback/jammed/second-stroke") && page.contains("not passed"));
+    assert!(page.contains("feedback/held/second-stroke") && page.contains("not passed"));
     let junit = std::fs::read_to_string(folder.path().join("campaign.xml")).expect("a report");
     assert!(junit.contains("tests=\"18\"") && junit.contains("onescan run"), "{junit}");
 }
@@ -89,8 +91,7 @@ fn what_is_wrong_with_a_campaign_is_told_before_anything_runs() {
         ("rate = 0.0", "rate = 1.5"),
         ("sigma = 0.002", "sigma = -1.0"),
         ("signal = \"Sensor_1\", value", "signal = \"Sensor_3\", value"),
-        ("component = \"actuator_1\"", "component = \"actuator_3\""),
-        ("mode = \"MODE\"", "mode = \"jamed\""),
+        ("force = { signal = \"Position_2\", value = -0.05 }", "fault = { component = \"gripper\", mode = \"stuck\" }"),
         ("variable = \"Shear.Strokes\"", "variable = \"Shear.Stroke\""),
         ("value = 7", "value = \"many\""),
         ("value = 7", "value = 7, at = \"1s\""),
@@ -178,7 +179,9 @@ fn disturbed_runs_are_the_same_in_every_way() {
 /// Another seed draws other numbers.
 #[test]
 fn what_is_drawn_follows_from_the_seed() {
-    let folder = shear_with(&format!("{DISTURBED}\n[[case]]\nname = \"seeded\"\nuntil = \"3s\"\nseed = 5\ndisturbance = [{{ client = \"plant\", kind = \"lost\", rate = 0.4, from = \"500ms\" }}]\n"));
+    let folder = shear_with(&format!(
+        "{DISTURBED}\n[[case]]\nname = \"seeded\"\nuntil = \"3s\"\nseed = 5\ndisturbance = [{{ client = \"plant\", kind = \"lost\", rate = 0.4, from = \"500ms\" }}]\n"
+    ));
     let said = typed(folder.path(), &["run", ".", "--case", "seeded", "--format", "json"]);
     assert_ne!(digests(&lines(&said))[0], of_case(folder.path(), "lost", &[]));
 }
