@@ -1,5 +1,7 @@
 //! What a process says of its run, as JSON on its standard output.
 
+use std::collections::BTreeMap;
+
 use onescan_server::client::SourcePlace;
 use serde::{Deserialize, Serialize};
 
@@ -20,6 +22,8 @@ pub struct Reading {
     pub safe: Option<bool>,
     /// Whether something came to harm; absent if the campaign does not say what that means.
     pub collision: Option<bool>,
+    /// How often each alarm of the scenario's `[report]` came, of those that did.
+    pub alarms: BTreeMap<String, u64>,
     /// A hash of the trajectory of each readout.
     pub readouts: Vec<String>,
 }

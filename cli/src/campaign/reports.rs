@@ -54,6 +54,7 @@ fn run(table: &Table, fault: &CampaignFault, row: &Row) -> Section {
         ("safe", row.safe.map(yes)),
         ("collision", row.collision.map(yes)),
         ("effect on", (!row.effects.is_empty()).then(|| effects(row))),
+        ("alarms", (!row.alarms.is_empty()).then(|| alarms(row))),
         ("digest", row.digest.clone()),
         ("again", Some(repeat(table, row))),
     ];
@@ -66,6 +67,10 @@ fn run(table: &Table, fault: &CampaignFault, row: &Row) -> Section {
         lines: fault.about.iter().cloned().chain(row.failure.iter().map(|failure| failure.text.clone())).collect(),
         ..Section::default()
     }
+}
+
+fn alarms(row: &Row) -> String {
+    row.alarms.iter().map(|(name, count)| format!("{name} ({count})")).collect::<Vec<_>>().join(", ")
 }
 
 fn effects(row: &Row) -> String {

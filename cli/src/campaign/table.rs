@@ -1,5 +1,7 @@
 //! The verdicts of a campaign, by fault and activation.
 
+use std::collections::BTreeMap;
+
 use onescan_scenario::case::campaign::CampaignFault;
 use onescan_scenario::case::{Campaign, CampaignVerdict, Case};
 use onescan_server::signal::SignalName;
@@ -53,6 +55,9 @@ pub struct Row {
     /// holds or disturbs.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub effects: Vec<String>,
+    /// How often each alarm of the scenario's `[report]` came, of those that did.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub alarms: BTreeMap<String, u64>,
     /// The failure that ended the run.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failure: Option<Failure>,
@@ -119,6 +124,7 @@ pub(super) fn row(
         safe: reading.safe,
         collision: reading.collision,
         effects,
+        alarms: reading.alarms,
         failure: reading.failure,
         digest: reading.digest,
         virtual_time_ns: reading.virtual_time_ns,

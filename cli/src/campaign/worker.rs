@@ -1,6 +1,7 @@
 //! One run of a campaign, in a process of its own.
 
 use std::cell::RefCell;
+use std::collections::BTreeMap;
 use std::io::Write;
 use std::rc::Rc;
 
@@ -9,6 +10,7 @@ use onescan_scenario::Scenario;
 use onescan_scenario::case::Catalogue;
 use onescan_scenario::expect::TraceEnd;
 use onescan_scenario::file::ClientFile;
+use onescan_scenario::report::Report;
 use onescan_server::end::{Failure as EndedBy, FailureCause};
 
 use super::CampaignError;
@@ -52,9 +54,16 @@ fn read(config: &WorkerConfig) -> Result<Reading, CampaignError> {
     Ok(Reading {
         digest: report.digest.map(|digest| digest.to_string()),
         virtual_time_ns: report.virtual_time.as_nanos(),
+        alarms: report.report.as_ref().map(came).unwrap_or_default(),
         failure: report.failure.as_ref().map(|failure| told(&scenario, failure)),
         ..seen.reading(&measures, end)
     })
+}
+
+/// The alarms that came, and how often.
+fn came(report: &Report) -> BTreeMap<String, u64> {
+    let totals = report.alarms.iter().flat_map(|alarms| &alarms.totals);
+    totals.filter(|alarm| alarm.count > 0).map(|alarm| (alarm.name.clone(), alarm.count)).collect()
 }
 
 fn told(scenario: &Scenario, failure: &EndedBy) -> Failure {

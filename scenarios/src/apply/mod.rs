@@ -64,12 +64,12 @@ impl Scenario {
         for setting in &case.settings {
             self.settable(catalogue, setting)?;
         }
-        if let Some(entry) = catalogue.entry(case) {
-            self.schedule(catalogue, entry, &mut applied)?;
+        if let Some(entry) = catalogue.entry(case)? {
+            self.schedule(catalogue, &entry, &mut applied)?;
             if let Some(injection) = &case.injection {
                 self.inject(catalogue, injection, &mut applied)?;
             }
-            self.adjust_expectations(catalogue, entry)?;
+            self.adjust_expectations(catalogue, &entry)?;
         }
         self.put_on(applied);
         Ok(self)
@@ -87,7 +87,7 @@ impl Scenario {
             ));
         }
         let mut healthy = Applied { case: applied.case.clone(), ..Applied::default() };
-        if let Some(entry) = catalogue.healthy_entry(injection) {
+        if let Some(entry) = catalogue.healthy_entry(&applied.case) {
             self.schedule(catalogue, entry, &mut healthy)?;
         }
         let mut injected = applied.timeline.clone();

@@ -52,8 +52,8 @@ pub struct CampaignFault {
 /// What the fault of a campaign is to its case.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Injection {
-    /// The entry of the run without the fault, if that is of a case.
-    pub(crate) healthy: Option<usize>,
+    /// Its campaign, and the fault and the activation in that.
+    pub(super) place: [usize; 3],
     /// When it comes, if that is by time, and where that is written.
     pub(crate) at: Option<(VirtualTime, Range<usize>)>,
 }
@@ -64,9 +64,8 @@ pub(super) fn is_name(name: &str) -> bool {
     !name.is_empty() && !name.starts_with('.') && name.chars().all(allowed)
 }
 
-/// The campaign of `file`, to which the faults of `base` come. `entries` are those of the cases; the ones of the
-/// campaign are added.
-pub(super) fn expanded(file: &CampaignFile, base: &Case, entries: &mut Vec<CaseFile>) -> Result<Campaign, Wrong> {
+/// The campaign of `file`, which is the one of this number in its file, and whose faults come to `base`.
+pub(super) fn expanded(file: &CampaignFile, base: &Case, number: usize) -> Result<Campaign, Wrong> {
     names(file.faults.iter().map(|fault| &fault.get_ref().name), "faults")?;
     names(file.activations.iter().map(|activation| &activation.get_ref().name), "activations")?;
     let place = file.name.span();
@@ -82,20 +81,18 @@ pub(super) fn expanded(file: &CampaignFile, base: &Case, entries: &mut Vec<CaseF
     let mut healthy = base.clone();
     healthy.until = file.until.or(base.until);
     let mut cases = Vec::with_capacity(file.faults.len() * file.activations.len());
-    for fault in &file.faults {
-        for activation in &file.activations {
+    for (row, fault) in file.faults.iter().enumerate() {
+        for (column, activation) in file.activations.iter().enumerate() {
             let (fault, activation) = (fault.get_ref(), activation.get_ref());
-            let mut entry = healthy.entry.and_then(|entry| entries.get(entry)).cloned().unwrap_or_else(|| empty(file));
-            let at = put(&mut entry, fault, activation)?;
+            // What is wrong is told now; the entry itself is made when its case is asked for.
+            let at = put(&mut empty(file), fault, activation)?;
             let path = [&file.name, &fault.name, &activation.name].map(|name| name.get_ref().as_str());
             cases.push(Case {
                 name: path.join("/"),
                 about: fault.about.clone(),
-                entry: Some(entries.len()),
-                injection: Some(Injection { healthy: healthy.entry, at }),
+                injection: Some(Injection { place: [number, row, column], at }),
                 ..healthy.clone()
             });
-            entries.push(entry);
         }
     }
     let fault = |fault: &Spanned<CampaignFaultFile>| {
@@ -112,6 +109,21 @@ pub(super) fn expanded(file: &CampaignFile, base: &Case, entries: &mut Vec<CaseF
         accepted: file.accept.clone().unwrap_or_else(|| ACCEPTED.to_vec()),
         file: file.clone(),
     })
+}
+
+impl Campaign {
+    /// What the case of an injection does: what `base` does, and the fault.
+    ///
+    /// # Errors
+    /// None for an injection of this campaign, which was checked when it was read.
+    pub(super) fn entry(&self, base: Option<&CaseFile>, injection: &Injection) -> Result<CaseFile, Wrong> {
+        let mut entry = base.cloned().unwrap_or_else(|| empty(&self.file));
+        let [_, row, column] = injection.place;
+        if let (Some(fault), Some(activation)) = (self.file.faults.get(row), self.file.activations.get(column)) {
+            put(&mut entry, fault.get_ref(), activation.get_ref())?;
+        }
+        Ok(entry)
+    }
 }
 
 fn wrong(message: String, place: Range<usize>, help: &str) -> Wrong {

@@ -1,5 +1,6 @@
 //! `cases.toml` read: all cases of a scenario, those of matrices one by one.
 
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -9,7 +10,7 @@ use onescan_server::signal::did_you_mean;
 use toml::de::{DeTable, DeValue};
 use toml::{Spanned, Value};
 
-use super::campaign::{self, Campaign, Injection};
+use super::campaign::{self, Campaign};
 use super::file::{CampaignFile, CaseFile, CasesFile, SnapshotFile, VERSION};
 use super::matrix::{Axis, COMBINATIONS_MAX, combinations};
 use super::{Case, DEFAULT, FILE_NAME, Setting};
@@ -25,8 +26,6 @@ pub struct Catalogue {
     text: String,
     file: CasesFile,
     cases: Vec<Case>,
-    /// What the cases do, also those of campaigns, as it is written.
-    entries: Vec<CaseFile>,
     campaigns: Vec<Campaign>,
 }
 
@@ -72,9 +71,8 @@ impl Catalogue {
         if cases.is_empty() {
             cases.push(default_case());
         }
-        let mut entries: Vec<CaseFile> = file.cases.iter().map(|entry| entry.get_ref().clone()).collect();
         let mut campaigns: Vec<Campaign> = Vec::new();
-        for entry in &file.campaigns {
+        for (number, entry) in file.campaigns.iter().enumerate() {
             let name = &entry.name;
             if !campaign::is_name(name.get_ref()) {
                 let help = "letters, digits, `-`, `_` and `.`".to_owned();
@@ -86,10 +84,10 @@ impl Catalogue {
                 return Err(this.wrong(message, Some(name.span()), None));
             }
             let base = this.base(entry, &cases)?;
-            let expanded = campaign::expanded(entry, &base, &mut entries);
+            let expanded = campaign::expanded(entry, &base, number);
             campaigns.push(expanded.map_err(|found| this.wrong(found.message, found.place, found.help))?);
         }
-        Ok(Self { file, cases, entries, campaigns, ..this })
+        Ok(Self { file, cases, campaigns, ..this })
     }
 
     /// The case to which the faults of a campaign come.
@@ -190,9 +188,9 @@ impl Catalogue {
         &self.campaigns
     }
 
-    /// The entry of the run to which a campaign's fault came.
-    pub(crate) fn healthy_entry(&self, injection: &Injection) -> Option<&CaseFile> {
-        self.entries.get(injection.healthy?)
+    /// The same without the fault of a campaign.
+    pub(crate) fn healthy_entry(&self, case: &Case) -> Option<&CaseFile> {
+        self.file.cases.get(case.entry?).map(Spanned::get_ref)
     }
 
     /// What snapshots hold.
@@ -206,9 +204,16 @@ impl Catalogue {
         self.cases.iter().chain(of_campaigns).find(|case| case.name == name)
     }
 
-    /// The entry of a case as it is written.
-    pub(crate) fn entry(&self, case: &Case) -> Option<&CaseFile> {
-        self.entries.get(case.entry?)
+    /// What a case does, as it is written; with the fault, if it is one of a campaign.
+    ///
+    /// # Errors
+    /// None for a case of this catalogue, which was checked when it was read.
+    pub(crate) fn entry(&self, case: &Case) -> Result<Option<Cow<'_, CaseFile>>, ScenarioError> {
+        let own = self.healthy_entry(case);
+        let Some(injection) = &case.injection else { return Ok(own.map(Cow::Borrowed)) };
+        let Some(campaign) = self.campaigns.get(injection.place[0]) else { return Ok(own.map(Cow::Borrowed)) };
+        let entry = campaign.entry(own, injection);
+        entry.map(|entry| Some(Cow::Owned(entry))).map_err(|found| self.wrong(found.message, found.place, found.help))
     }
 
     /// The file's name and text.
