@@ -149,7 +149,7 @@ disturbance = [{ signals = ["Sensor_1", "Position_1", "Strokes"], kind = "flippe
 name = "third"
 until = "3s"
 waive = ["both sides at once"]
-force = [{ signal = "Sensor_1", value = false, when = "Actuator_1_Up since[50ms,1s] rose(Actuator_1_Up)", nth = 2, for = "200ms" }]
+force = [{ signal = "Sensor_1", value = true, when = "Actuator_1_Up since[50ms,1s] rose(Actuator_1_Up)", nth = 2, for = "200ms" }]
 "#;
 
 fn of_case(folder: &Path, case: &str, words: &[&str]) -> String {
