@@ -53,7 +53,6 @@ impl Reaction {
     pub fn finish(mut self, end: TraceEnd) -> Option<u64> {
         self.inner.finish(end);
         self.look();
-        // The last sample holds on for what is left of the run, which is no more than the run.
         self.after_ns
     }
 
@@ -82,24 +81,24 @@ mod tests {
     use super::super::bind::KnownSignal;
     use super::*;
 
-    fn after(text: &str, values: &[f64]) -> Option<Option<u64>> {
+    fn after(text: &str, values: &[f64]) -> Result<Option<u64>, &'static str> {
         let known = [KnownSignal { name: "x".to_owned(), ty: SignalType::LREAL, unit: None }];
         let expectation = Expectation::parse(text, &known, &mut Vec::new()).expect("a formula");
-        let mut reaction = Reaction::new(&expectation)?;
+        let mut reaction = Reaction::new(&expectation).ok_or("waits for nothing")?;
         for (place, value) in values.iter().enumerate() {
             reaction.push(100 + 10 * place as u64, [*value]);
         }
-        Some(reaction.finish(TraceEnd::Complete))
+        Ok(reaction.finish(TraceEnd::Complete))
     }
 
     #[test]
     fn the_first_time_within_the_window_counts() {
         let values = [0.0, 1.0, 0.0, 2.0, 0.0];
-        assert_eq!(after("eventually x > 0", &values), Some(Some(10)));
-        assert_eq!(after("within 20ns x > 1", &values), Some(None), "30 ns are too late");
-        assert_eq!(after("eventually[0,30ns] x > 1", &values), Some(Some(30)));
-        assert_eq!(after("eventually[15ns,] x > 0", &values), Some(Some(15)), "the value that holds there counts");
-        assert_eq!(after("eventually[20ns,] x > 0", &values), Some(Some(30)));
-        assert_eq!(after("always x > 0", &values), None);
+        assert_eq!(after("eventually x > 0", &values), Ok(Some(10)));
+        assert_eq!(after("within 20ns x > 1", &values), Ok(None), "30 ns are too late");
+        assert_eq!(after("eventually[0,30ns] x > 1", &values), Ok(Some(30)));
+        assert_eq!(after("eventually[15ns,] x > 0", &values), Ok(Some(15)), "the value that holds there counts");
+        assert_eq!(after("eventually[20ns,] x > 0", &values), Ok(Some(30)));
+        assert_eq!(after("always x > 0", &values), Err("waits for nothing"));
     }
 }

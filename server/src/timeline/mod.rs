@@ -69,7 +69,7 @@ impl fmt::Display for When {
                 }
                 write!(f, "after `{condition}`")?;
                 if nth.get() > 1 {
-                    write!(f, " for the {}. time", nth)?;
+                    write!(f, " has come true {nth} times")?;
                 }
                 if *from > VirtualTime::ZERO { write!(f, " from {from} on") } else { Ok(()) }
             }
