@@ -125,6 +125,35 @@ pub enum SignalFault {
         #[serde(rename = "by_ns")]
         by: TimeSpan,
     },
+    /// Changes are lost: the readers keep the value before until a change arrives.
+    Lost {
+        /// How many of the changes, from 0 to 1, as text.
+        rate: String,
+        /// Seed of the draws, one for each change.
+        seed: u64,
+    },
+    /// The values of whole steps are lost: the readers keep those of the last step that arrived. Signals
+    /// with the same rate and seed, disturbed at the same boundary, lose the same steps: they are one frame.
+    LostSteps {
+        /// How many of the steps, from 0 to 1, as text.
+        rate: String,
+        /// Seed of the draws, one for each step.
+        seed: u64,
+    },
+    /// A bit of the value is inverted for a step; for REAL and LREAL only where that leaves a finite number.
+    Flipped {
+        /// In how many of the steps, from 0 to 1, as text.
+        rate: String,
+        /// Seed of the draws.
+        seed: u64,
+    },
+    /// A normal deviate is added in each step; integers are rounded and saturate at the bounds of their type.
+    Noisy {
+        /// Standard deviation, in the signal's own unit, as text.
+        sigma: String,
+        /// Seed of the draws, one for each step.
+        seed: u64,
+    },
 }
 
 impl Operation {
@@ -231,6 +260,10 @@ impl fmt::Display for SignalFault {
             Self::Inverted => f.write_str("inverted"),
             Self::Offset { by } => write!(f, "offset by {}", one_line(by)),
             Self::Late { by } => write!(f, "late by {by}"),
+            Self::Lost { rate, .. } => write!(f, "losing changes at a rate of {}", one_line(rate)),
+            Self::LostSteps { rate, .. } => write!(f, "losing frames at a rate of {}", one_line(rate)),
+            Self::Flipped { rate, .. } => write!(f, "flipped at a rate of {}", one_line(rate)),
+            Self::Noisy { sigma, .. } => write!(f, "noisy by {}", one_line(sigma)),
         }
     }
 }
