@@ -278,7 +278,9 @@ fn between(gateway: SocketAddr, trouble: Trouble) -> (SocketAddr, Wire) {
             let (a, b, one, two) =
                 (plc.try_clone().unwrap(), server.try_clone().unwrap(), Arc::clone(&noted), Arc::clone(&noted));
             let up = std::thread::spawn(move || carry(&a, &b, now, |bytes| one.lock().unwrap()[0].extend(bytes)));
-            std::thread::spawn(move || carry(&server, &plc, Trouble::None, |bytes| two.lock().unwrap()[1].extend(bytes)));
+            std::thread::spawn(move || {
+                carry(&server, &plc, Trouble::None, |bytes| two.lock().unwrap()[1].extend(bytes))
+            });
             up.join().expect("it carries");
         }
     });
@@ -455,8 +457,7 @@ fn bytes(hex: &str) -> Vec<u8> {
 #[test]
 fn what_cannot_be_is_told() {
     let taken = TcpListener::bind("127.0.0.1:0").unwrap();
-    let [here, beyond] =
-        [format!("tcp-listen://{}", taken.local_addr().unwrap()), "tcp-listen://0.0.0.0:0".to_owned()];
+    let [here, beyond] = [format!("tcp-listen://{}", taken.local_addr().unwrap()), "tcp-listen://0.0.0.0:0".to_owned()];
     let run = |urls: [&str; 2], handshake: &str, words: &[&str]| {
         let folder = line(urls, handshake);
         let path = folder.path().join("scenario.toml");
@@ -468,9 +469,21 @@ fn what_cannot_be_is_told() {
     let nobody = "tcp-listen://127.0.0.1:0";
     let all = [
         (run([&here, nobody], "words", &["--gateway", "charger"]), 3, "cannot listen on tcp-listen://127.0.0.1:"),
-        (run([&beyond, nobody], "words", &["--gateway", "charger"]), 2, "would let other machines connect to 0.0.0.0:0"),
-        (run([nobody, nobody], "frames", &["--gateway", "charger"]), 3, "no PLC has connected to tcp-listen://127.0.0.1:"),
-        (run([nobody, nobody], "words", &["--gateway", "charger=tcp-listen://plc"]), 2, "it has no IP address and port"),
+        (
+            run([&beyond, nobody], "words", &["--gateway", "charger"]),
+            2,
+            "would let other machines connect to 0.0.0.0:0",
+        ),
+        (
+            run([nobody, nobody], "frames", &["--gateway", "charger"]),
+            3,
+            "no PLC has connected to tcp-listen://127.0.0.1:",
+        ),
+        (
+            run([nobody, nobody], "words", &["--gateway", "charger=tcp-listen://plc"]),
+            2,
+            "it has no IP address and port",
+        ),
         (run([nobody, nobody], "frames", &["--gateway", "charger=modbus://127.0.0.1"]), 2, "modbus has none"),
         (run([nobody, nobody], "words", &["--gateway", "charger=s7://127.0.0.1"]), 2, "`SDSP_Session` is in parts"),
     ];
