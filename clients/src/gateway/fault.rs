@@ -5,7 +5,16 @@ use std::time::Duration;
 use thiserror::Error;
 
 use super::answer::Answer;
-use super::tcp::Partial;
+
+/// A block of which not everything has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error("{got} of the {whole} bytes of a block")]
+pub struct Partial {
+    /// Bytes that have come.
+    pub got: usize,
+    /// Bytes of the block.
+    pub whole: usize,
+}
 
 /// Why a link cannot do what it is to do.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]

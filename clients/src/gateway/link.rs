@@ -4,8 +4,7 @@ use std::time::Duration;
 
 use onescan_server::signal::SignalType;
 
-use super::fault::LinkFault;
-use super::tcp::Partial;
+use super::fault::{LinkFault, Partial};
 
 /// A way to write and read the points of an [`super::Exchange`], whatever the protocol.
 ///

@@ -7,16 +7,7 @@ use bytes::{Bytes, BytesMut};
 use thiserror::Error;
 
 use super::layout::{Layout, Stray};
-
-/// A block of which not everything has come.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[error("{got} of the {whole} bytes of a block")]
-pub struct Partial {
-    /// Bytes that have come.
-    pub got: usize,
-    /// Bytes of the block.
-    pub whole: usize,
-}
+use crate::gateway::fault::Partial;
 
 /// What a stream shows when both sides do not cut it alike.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]

@@ -101,19 +101,16 @@ fn attend(listener: &TcpListener, address: SocketAddr, shared: &Shared) {
 
 fn admit(stream: TcpStream, peer: SocketAddr, address: SocketAddr, shared: &Shared) {
     let mut state = shared.lock();
-    match state.inside {
-        // Its end is closed when it is dropped.
-        Some(plc) => {
-            if state.strangers.len() < STRANGERS_MAX && state.strangers.insert(peer.ip()) {
-                tracing::info!(target: NOTICE, "a second connection to tcp-listen://{address}, from {peer}, is closed: the PLC is connected from {plc}");
-            }
+    if let Some(plc) = state.inside {
+        // The connection is closed when it is dropped.
+        if state.strangers.len() < STRANGERS_MAX && state.strangers.insert(peer.ip()) {
+            tracing::info!(target: NOTICE, "a second connection to tcp-listen://{address}, from {peer}, is closed: the PLC is connected from {plc}");
         }
-        None => {
-            tracing::info!(%peer, "a PLC has connected");
-            (state.waiting, state.inside) = (Some(stream), Some(peer));
-            shared.came.notify_all();
-        }
+        return;
     }
+    tracing::info!(%peer, "a PLC has connected");
+    (state.waiting, state.inside) = (Some(stream), Some(peer));
+    shared.came.notify_all();
 }
 
 #[cfg(test)]

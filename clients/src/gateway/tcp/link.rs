@@ -4,10 +4,10 @@ use std::io::{ErrorKind, Read, Write};
 use std::net::{SocketAddr, TcpStream};
 use std::time::Duration;
 
-use super::codec::{BlockCodec, Partial, StreamFault};
+use super::codec::{BlockCodec, StreamFault};
 use super::door::Door;
 use super::layout::Layouts;
-use crate::gateway::fault::LinkFault;
+use crate::gateway::fault::{LinkFault, Partial};
 use crate::gateway::link::Link;
 use crate::gateway::socket;
 

@@ -18,6 +18,6 @@ pub mod layout;
 pub mod link;
 mod place;
 
-pub use codec::{BlockCodec, Partial, StreamFault};
+pub use codec::{BlockCodec, StreamFault};
 pub use layout::{Declaration, Layout, Layouts};
 pub use link::TcpLink;
