@@ -247,13 +247,13 @@ fn free() -> SocketAddr {
 /// What went from a PLC and to it.
 type Wire = Arc<Mutex<[Vec<u8>; 2]>>;
 
-/// What is done with the bytes of a PLC: those before `after` pass, then `missing` are left out, or the connection ends.
+/// What is done, once, with the bytes of a PLC.
 #[derive(Clone, Copy)]
 enum Trouble {
     None,
-    /// Closed after so many bytes from the PLC, once.
+    /// The connection is closed after so many.
     Closed(usize),
-    /// After so many bytes, so many are left out, once.
+    /// After so many, so many are left out.
     LeftOut(usize, usize),
 }
 
@@ -279,7 +279,7 @@ fn between(gateway: SocketAddr, trouble: Trouble) -> (SocketAddr, Wire) {
                 (plc.try_clone().unwrap(), server.try_clone().unwrap(), Arc::clone(&noted), Arc::clone(&noted));
             let up = std::thread::spawn(move || carry(&a, &b, now, |bytes| one.lock().unwrap()[0].extend(bytes)));
             std::thread::spawn(move || {
-                carry(&server, &plc, Trouble::None, |bytes| two.lock().unwrap()[1].extend(bytes))
+                carry(&server, &plc, Trouble::None, |bytes| two.lock().unwrap()[1].extend(bytes));
             });
             up.join().expect("it carries");
         }
@@ -303,7 +303,7 @@ fn carry(mut from: &TcpStream, mut to: &TcpStream, mut trouble: Trouble, note: i
                 bytes.drain(start..(start + missing).min(count));
                 trouble = Trouble::None;
             }
-            _ => {}
+            Trouble::None | Trouble::Closed(_) | Trouble::LeftOut(..) => {}
         }
         seen += count;
         note(&bytes);
