@@ -106,6 +106,30 @@ pub enum Operation {
     },
 }
 
+/// How long it is from one push of a frame to the next: normally distributed, held within bounds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct PushInterval {
+    /// Its mean.
+    #[serde(rename = "mean_ns")]
+    pub mean: TimeSpan,
+    /// Its standard deviation; none if all intervals are equal.
+    #[serde(rename = "sigma_ns")]
+    pub sigma: Option<TimeSpan>,
+    /// Its least.
+    #[serde(rename = "least_ns")]
+    pub least: TimeSpan,
+    /// Its greatest.
+    #[serde(rename = "most_ns")]
+    pub most: TimeSpan,
+}
+
+impl PushInterval {
+    /// Whether the bounds are in order around the mean.
+    pub fn is_in_order(&self) -> bool {
+        self.least <= self.mean && self.mean <= self.most
+    }
+}
+
 /// What can be wrong with a signal between its writer and its readers.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
@@ -138,6 +162,14 @@ pub enum SignalFault {
         /// How many of the steps, from 0 to 1, as text.
         rate: String,
         /// Seed of the draws, one for each step.
+        seed: u64,
+    },
+    /// Values travel in frames, which a side that runs by its own clock pushes: between two pushes the readers keep
+    /// those of the last one. Signals with the same interval and seed, disturbed at the same boundary, are one frame.
+    Pushed {
+        /// From push to push.
+        interval: PushInterval,
+        /// Seed of the draws, one for each push.
         seed: u64,
     },
     /// A bit of the value is inverted for a step; for REAL and LREAL only where that leaves a finite number.
@@ -262,6 +294,7 @@ impl fmt::Display for SignalFault {
             Self::Late { by } => write!(f, "late by {by}"),
             Self::Lost { rate, .. } => write!(f, "losing changes at a rate of {}", one_line(rate)),
             Self::LostSteps { rate, .. } => write!(f, "losing frames at a rate of {}", one_line(rate)),
+            Self::Pushed { interval, .. } => write!(f, "pushed every {}", interval.mean),
             Self::Flipped { rate, .. } => write!(f, "flipped at a rate of {}", one_line(rate)),
             Self::Noisy { sigma, .. } => write!(f, "noisy by {}", one_line(sigma)),
         }

@@ -2,14 +2,15 @@
 
 use std::ops::Range;
 
-use onescan_server::operation::SignalFault;
+use onescan_server::operation::{PushInterval, SignalFault};
 use onescan_server::random::seed_for;
 use onescan_server::signal::{SignalName, SignalType};
+use onescan_server::time::TimeSpan;
 use toml::{Spanned, Value};
 
 use crate::arrays;
 use crate::case::Catalogue;
-use crate::case::file::{DisturbanceFile, DisturbanceKind};
+use crate::case::file::{DisturbanceFile, DisturbanceKind, IntervalFile};
 use crate::error::ScenarioError;
 use crate::load::Scenario;
 
@@ -92,6 +93,19 @@ fn check_keys(catalogue: &Catalogue, disturbance: &DisturbanceFile, place: &Rang
         matches!(kind, DisturbanceKind::Lost | DisturbanceKind::Flipped),
         *kind == DisturbanceKind::Noisy,
     );
+    match (&disturbance.interval, *kind == DisturbanceKind::Pushed) {
+        (Some(interval), false) => {
+            return wrong("`interval` means nothing here", interval.span(), "it belongs to `pushed`");
+        }
+        (None, true) => {
+            let help = "write `interval = { mean = \"10ms\" }`, with `sigma`, `least` and `most` where it varies";
+            return wrong("how often frames are pushed is not said", place.clone(), help);
+        }
+        (Some(interval), true) if !interval_of(interval.get_ref()).is_in_order() => {
+            return wrong("the mean is not between `least` and `most`", interval.span(), "mend one of the three");
+        }
+        _ => {}
+    }
     match (by, rate, sigma) {
         (Some(by), ..) if !offset_or_late => {
             wrong("`by` means nothing here", by.span(), "it belongs to `offset` and `late`")
@@ -112,6 +126,19 @@ fn check_keys(catalogue: &Catalogue, disturbance: &DisturbanceFile, place: &Rang
             wrong(&message, sigma.span(), "it is a number from 0, in the unit of the signal")
         }
         _ => Ok(()),
+    }
+}
+
+/// An interval with its bounds: four standard deviations from the mean where they are not written, and above 0.
+fn interval_of(written: &IntervalFile) -> PushInterval {
+    let IntervalFile { mean, sigma, least, most } = *written;
+    let around_ns = sigma.map_or(0, |sigma| sigma.as_nanos().saturating_mul(4));
+    let span = |ns: u64| TimeSpan::from_nanos(ns.max(1)).unwrap_or(mean);
+    PushInterval {
+        mean,
+        sigma,
+        least: least.unwrap_or_else(|| span(mean.as_nanos().saturating_sub(around_ns))),
+        most: most.unwrap_or_else(|| span(mean.as_nanos().saturating_add(around_ns))),
     }
 }
 
@@ -140,6 +167,14 @@ impl Fault<'_> {
                 Some(frame) => SignalFault::LostSteps { rate: number(rate), seed: seed_of("frame lost", frame) },
                 None => SignalFault::Lost { rate: number(rate), seed: seed_of("signal lost", self.signal.as_str()) },
             },
+            DisturbanceKind::Pushed => {
+                let interval = self.disturbance.interval.as_ref().map(|interval| interval_of(interval.get_ref()));
+                let thing = seed_of("frame pushed", frame.unwrap_or(self.signal.as_str()));
+                match interval {
+                    Some(interval) => SignalFault::Pushed { interval, seed: thing },
+                    None => return Err(self.wrong("a frame is pushed at an `interval`")),
+                }
+            }
             DisturbanceKind::Flipped if self.ty == SignalType::BOOL || is_number(self.ty) => {
                 SignalFault::Flipped { rate: number(rate), seed: seed_of("signal flipped", self.signal.as_str()) }
             }

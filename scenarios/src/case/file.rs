@@ -210,6 +210,9 @@ pub struct DisturbanceFile {
     /// Standard deviation of `noisy`, in the signal's unit.
     #[schemars(with = "Option<Deviation>")]
     pub sigma: Option<Spanned<f64>>,
+    /// From push to push of `pushed`.
+    #[schemars(with = "Option<IntervalFile>")]
+    pub interval: Option<Spanned<IntervalFile>>,
     /// From when; from the start if absent. With `when`: from when on the condition counts.
     #[serde(default, deserialize_with = "from_optional_text")]
     #[schemars(with = "Option<Time>")]
@@ -230,6 +233,28 @@ pub struct DisturbanceFile {
     pub lasting: Option<TimeSpan>,
 }
 
+/// How long it is from one push of a frame to the next: normally distributed, held within bounds.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct IntervalFile {
+    /// Its mean.
+    #[serde(deserialize_with = "from_text")]
+    #[schemars(with = "Time")]
+    pub mean: TimeSpan,
+    /// Its standard deviation; all intervals are equal if absent.
+    #[serde(default, deserialize_with = "from_optional_text")]
+    #[schemars(with = "Option<Time>")]
+    pub sigma: Option<TimeSpan>,
+    /// Its least.
+    #[serde(default, deserialize_with = "from_optional_text")]
+    #[schemars(with = "Option<Time>")]
+    pub least: Option<TimeSpan>,
+    /// Its greatest.
+    #[serde(default, deserialize_with = "from_optional_text")]
+    #[schemars(with = "Option<Time>")]
+    pub most: Option<TimeSpan>,
+}
+
 /// What can be wrong with a signal on its way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
@@ -244,6 +269,8 @@ pub enum DisturbanceKind {
     Late,
     /// Changes do not arrive; of a frame, the values of whole steps.
     Lost,
+    /// Values travel in frames that are pushed by a clock of their own: between two pushes the last one holds.
+    Pushed,
     /// A bit of the value is inverted for a step.
     Flipped,
     /// A normal deviate is added in each step.

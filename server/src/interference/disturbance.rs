@@ -8,6 +8,7 @@ use std::collections::VecDeque;
 use serde::{Deserialize, Serialize};
 
 use super::number::{deviate, flip, has_bits, number, offset, shift};
+use super::push::Pushes;
 use crate::operation::SignalFault;
 use crate::random::{Random, seed_for};
 use crate::signal::SignalType;
@@ -50,6 +51,10 @@ pub(super) enum Disturbance {
         draws: Draws,
         /// Whether the values of the step under way are lost.
         lost: bool,
+        kept: Vec<u8>,
+    },
+    Pushed {
+        pushes: Pushes,
         kept: Vec<u8>,
     },
     Flipped {
@@ -124,6 +129,9 @@ impl Disturbance {
                 let lost = draws.happens();
                 Self::LostSteps { draws, lost, kept: committed.to_vec() }
             }
+            SignalFault::Pushed { interval, seed } => {
+                Self::Pushed { pushes: Pushes::new(*interval, *seed, onset)?, kept: committed.to_vec() }
+            }
             SignalFault::Flipped { rate, seed } => {
                 let mut draws = has_bits(ty).then(|| Draws::at_rate(rate, *seed, onset))??;
                 let at = draws.bit();
@@ -172,6 +180,15 @@ impl Disturbance {
                     *lost = draws.happens();
                 }
             }
+            Self::Pushed { pushes, kept } => {
+                if !pushes.is_due() {
+                    bytes.copy_from_slice(kept);
+                }
+                if ends_step {
+                    kept.copy_from_slice(bytes);
+                    pushes.next_step();
+                }
+            }
             Self::Flipped { draws, at } => {
                 if let Some(at) = at {
                     flip(ty, bytes, *at);
@@ -195,6 +212,7 @@ impl Disturbance {
         match self {
             Self::Stuck(bytes) | Self::LostSteps { kept: bytes, .. } => sized(bytes),
             Self::Late(values) => !values.is_empty() && values.iter().all(sized),
+            Self::Pushed { pushes, kept } => sized(kept) && pushes.fits(),
             Self::Inverted => ty == SignalType::BOOL,
             Self::Offset(_) | Self::Noisy { .. } => number(ty).is_some(),
             Self::Lost { looked, kept, .. } => sized(looked) && sized(kept),

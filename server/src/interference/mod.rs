@@ -10,10 +10,12 @@
 //! |---|---|
 //! | this file | the order of what lies over each other |
 //! | `disturbance` | faults on the way of a signal, at work |
+//! | `push` | frames that a side pushes by its own clock |
 //! | `number` | numbers shifted, and bits flipped, within their type |
 
 mod disturbance;
 mod number;
+mod push;
 
 use std::collections::BTreeMap;
 
