@@ -5,6 +5,7 @@
 //! | module | subject |
 //! |---|---|
 //! | [`cli`] | the command line |
+//! | [`campaign`] | faults by the table, each with a verdict |
 //! | [`review`] | snapshots looked at, accepted or rejected |
 //! | [`compare`] | lockstep beside the other ways of bringing plant and PLC together |
 //! | [`bisect`] | the commit since which a run is another |
@@ -39,6 +40,7 @@
 pub mod access;
 pub mod bisect;
 pub mod browse;
+pub mod campaign;
 pub mod check;
 pub mod cli;
 pub mod compare;

@@ -1,5 +1,6 @@
 //! Tables, for terminals and pages.
 
+use std::borrow::Cow;
 use std::io::{self, Write};
 
 /// A table with a head.
@@ -8,7 +9,7 @@ pub struct Table {
     /// What it is about; the head of its first column.
     pub title: &'static str,
     /// The heads of the other columns.
-    pub head: Vec<&'static str>,
+    pub head: Vec<Cow<'static, str>>,
     /// Its rows; the first cell is a name, the others are numbers with their units.
     pub rows: Vec<Vec<String>>,
     /// What there is to say about all of it, a line each.
@@ -23,7 +24,7 @@ impl Table {
     /// # Errors
     /// Those of the output.
     pub fn write(&self, out: &mut dyn Write) -> io::Result<()> {
-        let head = std::iter::once(self.title).chain(self.head.iter().copied()).map(str::to_owned).collect();
+        let head = std::iter::once(self.title).chain(self.head.iter().map(AsRef::as_ref)).map(str::to_owned).collect();
         let rows: Vec<Vec<String>> = std::iter::once(head).chain(self.rows.iter().cloned()).collect();
         write(&rows, out)?;
         self.remarks.iter().try_for_each(|remark| writeln!(out, "  {remark}"))
@@ -53,7 +54,7 @@ mod tests {
     fn columns_are_as_wide_as_their_widest_cell() {
         let table = Table {
             title: "cause",
-            head: vec!["times", "total"],
+            head: ["times", "total"].map(Into::into).into(),
             rows: vec![vec!["stopped".to_owned(), "2".to_owned(), "10 s".to_owned()]],
             remarks: vec!["availability 90 %".to_owned()],
             is_folded: false,

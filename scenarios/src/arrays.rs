@@ -20,6 +20,7 @@ use toml::Spanned;
 use super::file::ScenarioFile;
 
 /// What is wrong, where in the file if that is known, and what to do.
+#[derive(Debug)]
 pub(crate) struct Wrong {
     pub(crate) message: String,
     pub(crate) place: Option<std::ops::Range<usize>>,

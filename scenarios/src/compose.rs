@@ -218,6 +218,7 @@ impl Scenario {
         let mut client = SoftPlcClient::new(name.clone(), application, &plan, &bindings, self.file().step)
             .map_err(|error| self.wrong_client(name, error.to_string(), None))?;
         self.preset(&mut client, name, inputs)?;
+        self.check_variables(&client, name)?;
         if let Some(sink) = self.coverage() {
             client.cover(sink.clone());
         }

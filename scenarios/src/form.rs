@@ -91,6 +91,24 @@ form!(
 );
 
 form!(
+    /// How often something happens, as a part of all times.
+    Rate,
+    json_schema!({ "type": "number", "minimum": 0, "maximum": 1 })
+);
+
+form!(
+    /// A standard deviation.
+    Deviation,
+    json_schema!({ "type": "number", "minimum": 0 })
+);
+
+form!(
+    /// Which one, from 1.
+    Ordinal,
+    json_schema!({ "type": "integer", "minimum": 1 })
+);
+
+form!(
     /// Values by path. A path is a quoted key or tables in one another, so only the first part is seen here.
     Settings,
     json_schema!({

@@ -4,11 +4,12 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use onescan_base::regular;
-use onescan_clients::gateway::exchange::{Direction, SystemWords};
+use onescan_clients::gateway::exchange::{Direction, Words};
 use onescan_clients::gateway::layout_number::layout_number;
 use onescan_clients::gateway::mapping::{self, Variables};
 use onescan_clients::gateway::{
-    Exchange, FreeGateway, Gateway, LinkFault, MappingFault, Point, Settings, SettingsFault,
+    CountedGateway, Exchange, FreeGateway, Gateway, HandshakeKind, LinkFault, MappingFault, Point, Settings,
+    SettingsFault,
 };
 use onescan_clients::soft_plc::{Bindings, SoftPlcClient};
 use onescan_plc_shim::input::kind::{FileKind, SourceKind};
@@ -143,7 +144,14 @@ impl Scenario {
     /// The client that speaks for the PLC `name`, connected.
     pub(crate) fn gateway(&self, name: &ClientName) -> Result<Box<dyn Client>, ScenarioError> {
         let Agreement { settings, request, exchange, layout } = self.agreement(name)?;
-        let link = settings.link(&exchange).map_err(|fault| self.wrong_settings(name, fault))?;
+        self.may_listen(name, &settings)?;
+        let wrong = |fault| self.wrong_settings(name, fault);
+        if let Some(counted) = settings.counted(&exchange).map_err(wrong)? {
+            let mut gateway = CountedGateway::new(request, exchange, counted, settings.patience());
+            gateway.connect().map_err(|fault| self.wrong_settings(name, fault.into()))?;
+            return Ok(Box::new(gateway));
+        }
+        let link = settings.link(&exchange).map_err(wrong)?;
         let mut gateway = Gateway::new(request, exchange, link, settings.patience()).expecting(layout);
         gateway.connect().map_err(|fault| self.wrong_settings(name, fault.into()))?;
         Ok(Box::new(gateway))
@@ -158,10 +166,28 @@ impl Scenario {
         let is_real = matches!(client, Some(ClientFile::Gateway { .. })) || self.gateways.contains_key(name);
         is_real.then(|| {
             let Agreement { settings, request, exchange, .. } = self.agreement(name)?;
+            self.may_listen(name, &settings)?;
             let link = settings.link(&exchange).map_err(|fault| self.wrong_settings(name, fault))?;
             let patience = settings.patience().reconnect;
             Ok(Box::new(FreeGateway::new(request, exchange, link, patience)) as Box<dyn Client>)
         })
+    }
+
+    /// A port that other machines reach is opened for whoever types its address, not for a file.
+    fn may_listen(&self, name: &ClientName, settings: &Settings) -> Result<(), ScenarioError> {
+        let address = settings.listens_on().map_err(|bad| self.wrong_settings(name, bad.into()))?;
+        let is_typed = self.gateways.get(name).is_some_and(Option::is_some);
+        match address.filter(|address| !is_typed && !address.ip().is_loopback()) {
+            None => Ok(()),
+            Some(address) => {
+                let message = format!("`{}` would let other machines connect to {address}", settings.url);
+                let help = format!(
+                    "raw TCP knows no users; where that is wanted, type the address: --gateway {name}={}",
+                    settings.url
+                );
+                Err(self.wrong_client(name, message, Some(help)))
+            }
+        }
     }
 
     /// What the gateway of PLC `name`, and the program in it, must agree on.
@@ -185,7 +211,7 @@ impl Scenario {
         let request = self.request(name)?;
         let unknown = |ports: &[Port]| -> Vec<Variables> { ports.iter().cloned().map(Variables::unknown).collect() };
         let (inputs, outputs) = (unknown(&request.reads), unknown(&request.writes));
-        let exchange = mapping::exchange(&inputs, &outputs, settings.system(), &settings.map);
+        let exchange = mapping::exchange(&inputs, &outputs, settings.words(), &settings.map);
         let exchange = exchange.map_err(|fault| self.wrong_mapping(name, fault))?;
         Ok(Agreement { settings, request, exchange, layout: None })
     }
@@ -220,7 +246,7 @@ impl Scenario {
         let plan = self.task_plan(name, application, tasks)?;
         let plc = SoftPlcClient::new(name.clone(), application, &plan, &bindings, self.file().step);
         let request = plc.map_err(|error| self.wrong_client(name, error.to_string(), None))?.join();
-        let exchange = self.exchange(name, &settings, settings.system(), &bindings)?;
+        let exchange = self.exchange(name, &settings, settings.words(), &bindings)?;
         let layout = Some(layout_number(&settings, &exchange));
         Ok(Agreement { settings, request, exchange, layout })
     }
@@ -230,12 +256,12 @@ impl Scenario {
         &self,
         name: &ClientName,
         settings: &Settings,
-        system: SystemWords,
+        words: Words,
         bindings: &Bindings,
     ) -> Result<Exchange, ScenarioError> {
         let [inputs, outputs] =
             [&bindings.inputs, &bindings.outputs].map(|bound| bound.iter().map(Variables::of).collect::<Vec<_>>());
-        let exchange = mapping::exchange(&inputs, &outputs, system, &settings.map);
+        let exchange = mapping::exchange(&inputs, &outputs, words, &settings.map);
         exchange.map_err(|fault| self.wrong_mapping(name, fault))
     }
 
@@ -369,7 +395,7 @@ impl Scenario {
             None => self.task_plan(name, &application, tasks)?,
         };
         let settings = gateway.clone().unwrap_or_default();
-        let exchange = self.exchange(name, &settings, SystemWords::Present, &own)?;
+        let exchange = self.exchange(name, &settings, served(&settings), &own)?;
         Ok(Instrumented { application, plan, bindings: named_as(bindings, &own), exchange, settings })
     }
 
@@ -399,6 +425,12 @@ impl Scenario {
             SettingsFault::Link(fault) => ScenarioError::Link { client: name.clone(), fault },
         }
     }
+}
+
+/// The words that a PLC serves: more than it is asked for, unless its blocks have no room for more.
+fn served(settings: &Settings) -> Words {
+    let is_declared = !settings.layout.to_plc.is_empty() || !settings.layout.from_plc.is_empty();
+    if is_declared || settings.handshake == HandshakeKind::Frames { settings.words() } else { Words::WithSystem }
 }
 
 /// A file of the instrumented project as the compiler takes it.

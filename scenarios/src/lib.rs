@@ -13,7 +13,7 @@
 //! | `arrays` | signals written as arrays and patterns |
 //! | [`expectations`] | what it expects of every run |
 //! | [`case`] | one scenario, tried in many ways |
-//! | `apply` | a case put on its scenario |
+//! | [`apply`] | a case put on its scenario |
 //! | [`schema`] | the JSON schemas of both files |
 //! | [`compose`] | a scenario's plan and its clients |
 //! | [`gateway`] | its real PLCs |
@@ -27,7 +27,7 @@
 //! Invariants. This is the only crate that reads scenario files. It starts no process, runs no session
 //! and prints nothing.
 
-mod apply;
+pub mod apply;
 mod arrays;
 pub mod case;
 pub mod compose;

@@ -11,6 +11,7 @@
 //! | [`client`] | the interface of everything that takes part |
 //! | [`plan`] | a session before anybody joins |
 //! | [`operation`] | what is done to a session from outside, as data |
+//! | [`random`] | random numbers from seeds that operations and scenarios give |
 //! | [`layout`] | where each signal lies among all values |
 //! | `interference` | what lies over the writers' values: writes, forces, faults of signals |
 //! | [`image`] | all values; staged, then committed |
@@ -34,7 +35,7 @@
 //! | [`transport`] | a carrier of its frames: TCP |
 //!
 //! Invariants. Up to [`session`] the crate is *sans-IO*: no clock, no thread, no socket, no random
-//! number, no iteration in hash order, and after the start nothing is allocated by a step. Nothing
+//! number without a seed, no iteration in hash order, and after the start nothing is allocated by a step. Nothing
 //! here knows what a PLC or a plant is, nor how a scenario is written.
 
 pub mod access;
@@ -59,6 +60,7 @@ pub mod operation;
 pub mod pacing;
 pub mod plan;
 pub mod published;
+pub mod random;
 pub mod session;
 pub mod signal;
 pub mod state;

@@ -106,6 +106,30 @@ pub enum Operation {
     },
 }
 
+/// How long it is from one push of a frame to the next: normally distributed, held within bounds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct PushInterval {
+    /// Its mean.
+    #[serde(rename = "mean_ns")]
+    pub mean: TimeSpan,
+    /// Its standard deviation; none if all intervals are equal.
+    #[serde(rename = "sigma_ns")]
+    pub sigma: Option<TimeSpan>,
+    /// Its least.
+    #[serde(rename = "least_ns")]
+    pub least: TimeSpan,
+    /// Its greatest.
+    #[serde(rename = "most_ns")]
+    pub most: TimeSpan,
+}
+
+impl PushInterval {
+    /// Whether the bounds are in order around the mean.
+    pub fn is_in_order(&self) -> bool {
+        self.least <= self.mean && self.mean <= self.most
+    }
+}
+
 /// What can be wrong with a signal between its writer and its readers.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
@@ -124,6 +148,43 @@ pub enum SignalFault {
         /// By how much, rounded up to whole steps.
         #[serde(rename = "by_ns")]
         by: TimeSpan,
+    },
+    /// Changes are lost: the readers keep the value before until a change arrives.
+    Lost {
+        /// How many of the changes, from 0 to 1, as text.
+        rate: String,
+        /// Seed of the draws, one for each change.
+        seed: u64,
+    },
+    /// The values of whole steps are lost: the readers keep those of the last step that arrived. Signals
+    /// with the same rate and seed, disturbed at the same boundary, lose the same steps: they are one frame.
+    LostSteps {
+        /// How many of the steps, from 0 to 1, as text.
+        rate: String,
+        /// Seed of the draws, one for each step.
+        seed: u64,
+    },
+    /// Values travel in frames, which a side that runs by its own clock pushes: between two pushes the readers keep
+    /// those of the last one. Signals with the same interval and seed, disturbed at the same boundary, are one frame.
+    Pushed {
+        /// From push to push.
+        interval: PushInterval,
+        /// Seed of the draws, one for each push.
+        seed: u64,
+    },
+    /// A bit of the value is inverted for a step; for REAL and LREAL only where that leaves a finite number.
+    Flipped {
+        /// In how many of the steps, from 0 to 1, as text.
+        rate: String,
+        /// Seed of the draws.
+        seed: u64,
+    },
+    /// A normal deviate is added in each step; integers are rounded and saturate at the bounds of their type.
+    Noisy {
+        /// Standard deviation, in the signal's own unit, as text.
+        sigma: String,
+        /// Seed of the draws, one for each step.
+        seed: u64,
     },
 }
 
@@ -231,6 +292,11 @@ impl fmt::Display for SignalFault {
             Self::Inverted => f.write_str("inverted"),
             Self::Offset { by } => write!(f, "offset by {}", one_line(by)),
             Self::Late { by } => write!(f, "late by {by}"),
+            Self::Lost { rate, .. } => write!(f, "losing changes at a rate of {}", one_line(rate)),
+            Self::LostSteps { rate, .. } => write!(f, "losing frames at a rate of {}", one_line(rate)),
+            Self::Pushed { interval, .. } => write!(f, "pushed every {}", interval.mean),
+            Self::Flipped { rate, .. } => write!(f, "flipped at a rate of {}", one_line(rate)),
+            Self::Noisy { sigma, .. } => write!(f, "noisy by {}", one_line(sigma)),
         }
     }
 }

@@ -47,7 +47,7 @@ fn station() -> Station {
     let controller = Arc::new(Controller::new(plc, wires));
     let layouts = Layouts::new(&program.settings.layout, &program.exchange).expect("a layout");
     let map = RegisterMap::new(&program.settings.modbus, &program.exchange).expect("a map");
-    let tcp = tcp::serve(loopback(), &controller, layouts).expect("a free port");
+    let tcp = tcp::serve(loopback(), &controller, tcp::Blocks { layouts, push: None }).expect("a free port");
     let modbus = modbus::serve(loopback(), &controller, map).expect("a free port");
     let ads = ads::serve(loopback(), &controller, &program.settings.ads).expect("a free port");
     let opcua = opcua::serve(loopback(), &controller, &Access::default()).expect("a free port");

@@ -145,7 +145,7 @@ fn operations_by_condition_are_repeatable() {
     let (plain, _) = run(folder.path(), &["--until", "3s"]);
     assert_eq!(digests(&inproc), digests(&tcp), "{said:?}");
     assert_ne!(digests(&inproc), digests(&plain));
-    edit(folder.path(), "cases.toml", "Position_1 < -0.05", "rose(Sensor_1)");
+    edit(folder.path(), "cases.toml", "Position_1 < -0.05", "eventually Sensor_1");
     let (_, wrong) = run(folder.path(), &["--case", "by-condition"]);
     assert_eq!(wrong.code, Some(2));
     insta::assert_snapshot!(wrong.err.replace(folder.path().to_str().unwrap(), "FOLDER"));

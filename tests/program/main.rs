@@ -1,6 +1,7 @@
 //! The program as a user types it: commands, files, messages, exit codes.
 
 mod access;
+mod campaigns;
 mod cases;
 mod cause;
 mod check;
@@ -40,6 +41,7 @@ mod plc_ads;
 mod plc_chart;
 mod plc_equal;
 mod plc_faults;
+mod plc_frames;
 mod plc_garbled;
 mod plc_modes;
 mod plc_peers;

@@ -33,6 +33,7 @@ impl Plc {
             let line = plc.line();
             match line.strip_prefix("serving ") {
                 Some(url) => plc.urls.push(url.to_owned()),
+                None if line.starts_with("connecting to ") => {}
                 None => break,
             }
         }

@@ -2,7 +2,7 @@
 //! is clear. What is not clear is reported and left to a person.
 
 use onescan_clients::gateway::addresses::ALL;
-use onescan_clients::gateway::exchange::{BOOTS, Exchange, Point, RUNNING, START, SystemWords};
+use onescan_clients::gateway::exchange::{BOOTS, Exchange, Point, RUNNING, START, Words};
 use onescan_clients::gateway::link::Found;
 use onescan_server::signal::nearest;
 
@@ -19,7 +19,7 @@ pub(super) fn mapped(exchange: &Exchange, found: &[Found]) -> Fragment {
         if let (true, [one]) = (is_served, &hits[..]) {
             let places = vec![Place::Only(one.address.clone())];
             entries.push(Entry::Mapped { name: (*word).to_owned(), places });
-        } else if exchange.system() == SystemWords::Present {
+        } else if exchange.words() == Words::WithSystem {
             entries.push(Entry::Note(missing(word, found)));
         }
     }
@@ -132,7 +132,7 @@ mod tests {
         let inputs = [Feed { port: port.clone(), targets: vec![target("P.go"), target("Q.go")] }];
         let done = Port { name: SignalName::new("Done").unwrap(), ..port };
         let outputs = [Feed { port: done, targets: vec![target("P.Done")] }];
-        let exchange = Exchange::new(&inputs, &outputs, SystemWords::Present, &BTreeMap::new());
+        let exchange = Exchange::new(&inputs, &outputs, Words::WithSystem, &BTreeMap::new());
         let all: Vec<Found> = addresses.iter().map(|address| found(address)).collect();
         let Fragment { entries, system_words, .. } = mapped(&exchange, &all);
         let lines = entries.iter().map(Entry::to_string).filter(|line| !line.contains("SDSP"));

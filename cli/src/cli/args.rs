@@ -7,6 +7,7 @@ use clap::{ArgAction, Parser, Subcommand};
 use onescan_scenario::permission::Permission;
 
 use super::access::{CertificateArgs, TokenArgs};
+use super::campaign::{CampaignArgs, CampaignWorkerArgs};
 use super::compare::CompareArgs;
 use super::error::CommandError;
 use super::model::ModelArgs;
@@ -17,7 +18,7 @@ use super::run::RunArgs;
 use super::session::{ControlArgs, JoinArgs};
 use super::source::{CheckArgs, ExplainArgs, InstrumentArgs};
 use super::test::{ReviewArgs, TestArgs, WorkerArgs};
-use super::{access, compare, model, plant, plc, recording, run, session, source, test};
+use super::{access, campaign, compare, model, plant, plc, recording, run, session, source, test};
 use crate::error::ExitCode;
 
 /// Deterministic lockstep virtual commissioning.
@@ -69,6 +70,12 @@ pub enum Command {
     Compare(CompareArgs),
     /// Run all scenarios and cases, and hold them against their reviewed snapshots; run test programs in ST
     Test(Box<TestArgs>),
+    /// Try every fault of a campaign with every activation, and report a verdict for each: told by the control,
+    /// safe, missed, collision, without effect
+    Campaign(CampaignArgs),
+    /// One run, for `campaign`
+    #[command(hide = true)]
+    CampaignWorker(CampaignWorkerArgs),
     /// Look at snapshots that are new or have changed, and accept or reject them
     Review(ReviewArgs),
     /// One test, for `test`
@@ -130,6 +137,8 @@ pub fn dispatch(command: Command) -> Result<ExitCode, CommandError> {
         Command::Run(args) => run::run(*args),
         Command::Compare(args) => compare::compare(args),
         Command::Test(args) => test::test(*args),
+        Command::Campaign(args) => campaign::campaign(args),
+        Command::CampaignWorker(args) => campaign::work(args),
         Command::Review(args) => test::review(args),
         Command::TestWorker(args) => test::work(args),
         Command::Guard => Ok(session::guard()),

@@ -5,6 +5,7 @@ use onescan_report::OutputError;
 use crate::access::AccessError;
 use crate::bisect::BisectError;
 use crate::browse::BrowseError;
+use crate::campaign::CampaignError;
 use crate::check::CheckError;
 use crate::diff::DiffError;
 use crate::error::{Usage, sum_of_errors};
@@ -31,6 +32,9 @@ sum_of_errors! {
         /// `test` came to nothing.
         #[diagnostic(transparent)]
         Test(TestError),
+        /// `campaign` came to nothing.
+        #[diagnostic(transparent)]
+        Campaign(CampaignError),
         /// `review` came to nothing.
         #[diagnostic(transparent)]
         Review(ReviewError),

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`args`] | the commands, and who does them |
 //! | [`run`], [`compare`] | a scenario |
+//! | [`campaign`] | faults by campaigns |
 //! | [`test`] | all scenarios, and test programs |
 //! | [`session`] | a session that another process serves |
 //! | [`recording`] | what was recorded |
@@ -17,6 +18,7 @@
 
 pub mod access;
 pub mod args;
+pub mod campaign;
 pub mod compare;
 mod error;
 mod logging;

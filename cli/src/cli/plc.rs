@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use clap::{Args as ClapArgs, ValueEnum};
 use onescan_scenario::Mode;
 use onescan_server::signal::ClientName;
+use onescan_server::time::TimeSpan;
 
 use super::error::CommandError;
 use super::opcua::AccessArgs;
@@ -37,6 +38,13 @@ pub struct PlcArgs {
     /// this machine]
     #[arg(long, value_name = "ADDRESS:PORT")]
     pub tcp: Option<SocketAddr>,
+    /// Be the TCP client: send data blocks to a gateway that listens here, and try again until it does
+    #[arg(long, value_name = "ADDRESS:PORT")]
+    pub tcp_connect: Option<SocketAddr>,
+    /// Over raw TCP, send the block at this interval, wall clock, whether or not anything has changed, and at no
+    /// other time [default: when it has changed, and when a block has come]
+    #[arg(long, value_name = "TIME", value_parser = interval)]
+    pub push: Option<TimeSpan>,
     /// Where data blocks are served over ISO-on-TCP, as an S7 does
     #[arg(long, value_name = "ADDRESS:PORT")]
     pub s7: Option<SocketAddr>,
@@ -79,6 +87,12 @@ const PLC_COMMANDS: &str = "Commands on standard input:
   status       how it is
   quit         end it";
 
+/// A time that is longer than nothing.
+fn interval(text: &str) -> Result<TimeSpan, String> {
+    let span: TimeSpan = text.parse().map_err(|error| format!("write a time as in `10ms`: {error}"))?;
+    if span.as_nanos() == 0 { Err("an interval is longer than 0".to_owned()) } else { Ok(span) }
+}
+
 /// Runs a soft PLC.
 ///
 /// # Errors
@@ -87,11 +101,13 @@ pub fn run_plc(args: PlcArgs) -> Result<ExitCode, CommandError> {
     let interrupt = Interrupt::new();
     interrupt.on_signals();
     let named = [args.tcp, args.s7, args.modbus, args.ads, args.opcua];
-    let somewhere = named.iter().all(Option::is_none).then_some(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)));
+    let is_served = args.tcp_connect.is_some() || named.iter().any(Option::is_some);
+    let somewhere = (!is_served).then_some(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)));
     let [tcp, s7, modbus, ads, opcua] = named.map(|address| address.or(somewhere));
     let access = args.access.access()?;
     let (scenario, client, mode, cycle) = (args.scenario, args.client, args.mode.into(), args.cycle);
-    let config = PlcConfig { scenario, client, mode, cycle, tcp, s7, modbus, ads, opcua, access };
+    let (tcp_connect, push) = (args.tcp_connect, args.push);
+    let config = PlcConfig { scenario, client, mode, cycle, tcp, tcp_connect, push, s7, modbus, ads, opcua, access };
     Ok(plc::run(&config, &interrupt, &mut std::io::stdout().lock())?)
 }
 

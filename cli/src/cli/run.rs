@@ -59,7 +59,7 @@ pub struct RunArgs {
     #[arg(long, value_enum, default_value_t)]
     pub transport: TransportArg,
     /// Let a real PLC stand in for a soft PLC, as in `plc=tcp://192.168.0.1:2000`; it runs the instrumented
-    /// program [default URL: the scenario's]
+    /// program; `tcp-listen://ADDRESS:PORT` for one that connects to onescan [default URL: the scenario's]
     #[arg(long = "gateway", value_name = "CLIENT[=URL]", value_parser = gateway)]
     pub gateways: Vec<(ClientName, Option<String>)>,
     /// Record each run in a folder `run-N` of this folder: the scenario's files, every signal and digest of

@@ -120,9 +120,13 @@ impl Exit for ScenarioError {
 impl Exit for SettingsFault {
     fn exit_code(&self) -> ExitCode {
         match self {
-            Self::Link(LinkFault::Unreachable { .. } | LinkFault::Refused { .. } | LinkFault::Lost(_)) => {
-                ExitCode::Fault
-            }
+            Self::Link(
+                LinkFault::Unreachable { .. }
+                | LinkFault::Listen { .. }
+                | LinkFault::NobodyCame { .. }
+                | LinkFault::Refused { .. }
+                | LinkFault::Lost(_),
+            ) => ExitCode::Fault,
             Self::Url(_)
             | Self::Mapping(_)
             | Self::Link(LinkFault::Mapping(_) | LinkFault::Setting(_) | LinkFault::Nonsense(_)) => {

@@ -23,6 +23,10 @@ pub struct PlcConfig {
     pub cycle: Cycle,
     /// Where its data blocks are served.
     pub tcp: Option<SocketAddr>,
+    /// Where a gateway listens to which its data blocks go over raw TCP.
+    pub tcp_connect: Option<SocketAddr>,
+    /// How often its block is sent over raw TCP, wall clock; when there is reason to if absent.
+    pub push: Option<TimeSpan>,
     /// Where its data blocks are served over ISO-on-TCP.
     pub s7: Option<SocketAddr>,
     /// Where its registers are served over Modbus TCP.

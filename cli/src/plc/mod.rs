@@ -11,10 +11,11 @@ pub mod operator;
 
 use std::io::Write;
 use std::sync::Arc;
+use std::time::Duration;
 
-use onescan_clients::gateway::MappingFault;
 use onescan_clients::gateway::modbus::RegisterMap;
 use onescan_clients::gateway::tcp::Layouts;
+use onescan_clients::gateway::{HandshakeKind, MappingFault};
 use onescan_clients::opcua_server::{Running, ServeError};
 use onescan_clients::station::{Clockwork, Controller, Wires, ads, modbus, opcua, s7, tcp};
 use onescan_plc_shim::SoftPlc;
@@ -40,6 +41,14 @@ pub fn run(config: &PlcConfig, interrupt: &Interrupt, out: &mut dyn Write) -> Re
     let scenario = Scenario::load(&config.scenario)?;
     let name = the_plc(&scenario, config.client.as_ref())?;
     let program = scenario.instrumented(&name, config.mode)?;
+    if program.settings.handshake == HandshakeKind::Frames && config.mode == Mode::Lockstep {
+        let help = "add `--mode freewheel`: its program runs by its own clock, as one that is not instrumented";
+        return Err(Usage::new(
+            "the blocks of this PLC are counted, so that nobody grants its scans",
+            Some(help.into()),
+        )
+        .into());
+    }
     let wrong = |text: String| PlcError::Scenario(scenario.wrong_client(&name, text, None));
     let plc = SoftPlc::new(&program.application, &program.plan).map_err(|error| wrong(error.to_string()))?;
     let wires = Wires::new(&program.exchange, &program.application, &program.bindings);
@@ -54,6 +63,9 @@ pub fn run(config: &PlcConfig, interrupt: &Interrupt, out: &mut dyn Write) -> Re
     let clockwork = Clockwork::start(Arc::clone(&controller), config.cycle.interval());
     for url in &urls {
         writeln!(out, "serving {url}").map_err(OutputError)?;
+    }
+    if let Some(address) = config.tcp_connect {
+        writeln!(out, "connecting to {address}").map_err(OutputError)?;
     }
     writeln!(out, "{}", operator::status(&controller)).and_then(|()| out.flush()).map_err(OutputError)?;
     let code = operator::attend(&controller, interrupt, out)?;
@@ -88,9 +100,16 @@ fn serve(
 ) -> Result<(Vec<String>, Option<Running>), PlcError> {
     let (mut urls, mut served) = (Vec::new(), None);
     let unfit = |fault: MappingFault| PlcError::Scenario(scenario.wrong_client(name, fault.message, fault.help));
-    if let Some(address) = config.tcp {
+    let blocks = || -> Result<tcp::Blocks, PlcError> {
         let layouts = Layouts::new(&program.settings.layout, &program.exchange).map_err(unfit)?;
-        let address = tcp::serve(address, controller, layouts).map_err(ListenError::on(address))?;
+        let push = config.push.map(|interval| Duration::from_nanos(interval.as_nanos()));
+        Ok(tcp::Blocks { layouts, push })
+    };
+    if let Some(address) = config.tcp_connect {
+        tcp::connect(address, controller, blocks()?);
+    }
+    if let Some(address) = config.tcp {
+        let address = tcp::serve(address, controller, blocks()?).map_err(ListenError::on(address))?;
         urls.push(format!("tcp://{address}"));
     }
     if let Some(address) = config.s7 {

@@ -74,7 +74,7 @@ fn taken(pipe: Option<impl Read + Send + 'static>) -> Receiver<Vec<u8>> {
 }
 
 /// Ends this process when the one that started it has ended, whose pipe is the standard input.
-pub(super) fn end_with_parent() {
+pub(crate) fn end_with_parent() {
     std::thread::spawn(|| {
         let mut rest = Vec::new();
         // Nothing is ever written to it. That it ends, or breaks, says that the other process has.

@@ -31,7 +31,7 @@ mod declared;
 pub mod discover;
 mod error;
 pub mod junit;
-mod limited;
+pub(crate) mod limited;
 mod memory_text;
 pub mod outcome;
 pub mod page;

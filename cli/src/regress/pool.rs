@@ -1,12 +1,13 @@
 //! Units in processes of their own, several at a time: one that crashes takes no other with it.
 
-use std::path::Path;
+use std::num::NonZeroUsize;
 use std::process::Command;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use onescan_server::time::TimeSpan;
+use serde::de::DeserializeOwned;
 
 use super::Selection;
 use super::config::TestConfig;
@@ -22,39 +23,84 @@ use crate::error::SpawnError;
 /// # Errors
 /// A process cannot be started.
 pub fn work(config: &TestConfig, units: &[Unit]) -> Result<Vec<Worked>, TestError> {
+    let bar = bar(config.progress, units.len(), "tests");
+    spread(config.jobs, units.len(), &bar, |index| one(config, &units[index])).into_iter().collect()
+}
+
+/// Does `count` pieces of work, so many at a time; the results are in their order.
+pub(crate) fn spread<T: Send>(
+    jobs: NonZeroUsize,
+    count: usize,
+    bar: &ProgressBar,
+    one: impl Fn(usize) -> T + Sync,
+) -> Vec<T> {
     let next = AtomicUsize::new(0);
-    let done: Mutex<Vec<Option<Result<Worked, TestError>>>> = Mutex::new(units.iter().map(|_| None).collect());
-    let bar = bar(config, units.len());
-    std::thread::scope(|scope| {
-        for _ in 0..config.jobs.get().min(units.len()) {
-            scope.spawn(|| {
-                while let Some((index, unit)) = take(&next, units) {
-                    let worked = one(config, unit);
-                    // A thread that panicked holds nothing half-written.
-                    let mut done = done.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-                    done[index] = Some(worked);
-                    bar.inc(1);
-                }
-            });
+    let worker = || {
+        let mut done = Vec::new();
+        loop {
+            let index = next.fetch_add(1, Ordering::Relaxed);
+            if index >= count {
+                return done;
+            }
+            done.push((index, one(index)));
+            bar.inc(1);
         }
+    };
+    let mut done: Vec<(usize, T)> = std::thread::scope(|scope| {
+        let workers: Vec<_> = (0..jobs.get().min(count)).map(|_| scope.spawn(worker)).collect();
+        let joined = workers.into_iter().map(std::thread::ScopedJoinHandle::join);
+        joined.flat_map(|done| done.unwrap_or_else(|panic| std::panic::resume_unwind(panic))).collect()
     });
     bar.finish_and_clear();
-    let done = done.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
-    done.into_iter().map(|worked| worked.unwrap_or_else(|| Ok(Worked::default()))).collect()
+    done.sort_by_key(|(index, _)| *index);
+    done.into_iter().map(|(_, one)| one).collect()
 }
 
-fn take<'u>(next: &AtomicUsize, units: &'u [Unit]) -> Option<(usize, &'u Unit)> {
-    let index = next.fetch_add(1, Ordering::Relaxed);
-    units.get(index).map(|unit| (index, unit))
-}
-
-fn bar(config: &TestConfig, units: usize) -> ProgressBar {
-    let target = if config.progress { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
-    let bar = ProgressBar::with_draw_target(Some(units as u64), target);
-    if let Ok(style) = ProgressStyle::with_template("[{bar:40}] {pos} / {len} tests  {elapsed} ") {
+/// A bar over `count` pieces of work, which are called so.
+pub(crate) fn bar(is_seen: bool, count: usize, noun: &str) -> ProgressBar {
+    let target = if is_seen { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
+    let bar = ProgressBar::with_draw_target(Some(count as u64), target);
+    if let Ok(style) = ProgressStyle::with_template(&format!("[{{bar:40}}] {{pos}} / {{len}} {noun}  {{elapsed}} ")) {
         bar.set_style(style.progress_chars("=> "));
     }
     bar
+}
+
+/// What a process says as JSON on its standard output, or its error, drawn, and its exit code.
+///
+/// # Errors
+/// It cannot be started.
+pub(crate) fn answer<T: DeserializeOwned>(
+    command: &mut Command,
+    timeout: TimeSpan,
+) -> Result<Result<T, (String, i32)>, SpawnError> {
+    let spawn = |source| SpawnError { client: "test".to_owned(), command: "onescan".to_owned(), source };
+    let limit = Duration::from_nanos(timeout.as_nanos());
+    let Some(output) = Limited::start(command).map_err(spawn)?.output(limit).map_err(spawn)? else {
+        let error = format!("not done within {timeout}, which is the limit: it was ended (see `--timeout`)");
+        return Ok(Err((error, ExitCode::Fault as i32)));
+    };
+    let said = || String::from_utf8_lossy(&output.stderr).trim_end().to_owned();
+    Ok(match (output.status.code(), serde_json::from_slice::<T>(&output.stdout)) {
+        (Some(0), Ok(answer)) => Ok(answer),
+        (Some(code), _) if code != 0 => Err((said(), code)),
+        _ => {
+            let error = format!("the process of the test ended with {}: {}", output.status, said());
+            Err((error, ExitCode::Fault as i32))
+        }
+    })
+}
+
+/// This program, to be started once more for a piece of work, with what scenarios may do.
+///
+/// # Errors
+/// The system does not say where it is.
+pub(crate) fn this_program(worker: &str) -> Result<Command, SpawnError> {
+    let spawn = |source| SpawnError { client: "test".to_owned(), command: "onescan".to_owned(), source };
+    let mut command = Command::new(std::env::current_exe().map_err(spawn)?);
+    command.arg(worker);
+    command.envs(onescan_scenario::permission::granted().variables());
+    Ok(command)
 }
 
 fn one(config: &TestConfig, unit: &Unit) -> Result<Worked, TestError> {
@@ -62,31 +108,13 @@ fn one(config: &TestConfig, unit: &Unit) -> Result<Worked, TestError> {
         let error = Some((error.clone(), ExitCode::WrongInput as i32));
         return Ok(Worked { error, ..Worked::default() });
     }
-    let spawn = |source| SpawnError { client: "test".to_owned(), command: "onescan".to_owned(), source };
-    let program = std::env::current_exe().map_err(spawn)?;
-    let limit = Duration::from_nanos(config.timeout.as_nanos());
-    let Some(output) =
-        Limited::start(&mut command(config, unit, &program)).map_err(spawn)?.output(limit).map_err(spawn)?
-    else {
-        let error = format!("not done within {}, which is the limit: it was ended (see `--timeout`)", config.timeout);
-        return Ok(Worked { error: Some((error, ExitCode::Fault as i32)), ..Worked::default() });
-    };
-    let said = || String::from_utf8_lossy(&output.stderr).trim_end().to_owned();
-    match (output.status.code(), serde_json::from_slice::<Worked>(&output.stdout)) {
-        (Some(0), Ok(worked)) => Ok(worked),
-        (Some(code), _) if code != 0 => Ok(Worked { error: Some((said(), code)), ..Worked::default() }),
-        _ => {
-            let error = format!("the process of the test ended with {}: {}", output.status, said());
-            Ok(Worked { error: Some((error, ExitCode::Fault as i32)), ..Worked::default() })
-        }
-    }
+    let mut command = command(config, unit, this_program("test-worker")?);
+    let answer = answer(&mut command, config.timeout)?;
+    Ok(answer.unwrap_or_else(|error| Worked { error: Some(error), ..Worked::default() }))
 }
 
 /// What the process of a unit is given.
-fn command(config: &TestConfig, unit: &Unit, program: &Path) -> Command {
-    let mut command = Command::new(program);
-    command.arg("test-worker");
-    command.envs(onescan_scenario::permission::granted().variables());
+fn command(config: &TestConfig, unit: &Unit, mut command: Command) -> Command {
     match unit {
         Unit::Case(unit) => {
             command.arg("--scenario").arg(&unit.place.scenario);

@@ -4,34 +4,34 @@ use onescan_server::session::Session;
 use onescan_server::signal::{SignalId, SignalName};
 
 /// Signals chosen by name, found anew in each session.
-pub(super) struct Chosen {
+pub(crate) struct Chosen {
     names: Vec<SignalName>,
     signals: Vec<SignalId>,
 }
 
 impl Chosen {
-    pub(super) fn new(names: &[SignalName]) -> Self {
+    pub(crate) fn new(names: &[SignalName]) -> Self {
         Self { names: names.to_vec(), signals: Vec::new() }
     }
 
     /// Their names.
-    pub(super) fn names(&self) -> &[SignalName] {
+    pub(crate) fn names(&self) -> &[SignalName] {
         &self.names
     }
 
     /// Finds the signals in a session that begins; returns how many there are.
-    pub(super) fn find(&mut self, session: &Session) -> usize {
+    pub(crate) fn find(&mut self, session: &Session) -> usize {
         self.signals = self.names.iter().filter_map(|name| session.signal_id(name.as_str())).collect();
         self.signals.len()
     }
 
     /// Their bytes now, in their order.
-    pub(super) fn bytes<'s>(&self, session: &'s Session) -> impl Iterator<Item = &'s [u8]> {
+    pub(crate) fn bytes<'s>(&self, session: &'s Session) -> impl Iterator<Item = &'s [u8]> {
         self.signals.iter().map(|signal| session.layout().bytes(*signal, session.image()))
     }
 
     /// What they are now, in their order; texts are no numbers.
-    pub(super) fn numbers(&self, session: &Session) -> impl Iterator<Item = f64> {
+    pub(crate) fn numbers(&self, session: &Session) -> impl Iterator<Item = f64> {
         self.signals.iter().map(|signal| {
             let bytes = session.layout().bytes(*signal, session.image());
             session.layout().ty(*signal).as_f64(bytes).unwrap_or(f64::NAN)

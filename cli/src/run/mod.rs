@@ -25,7 +25,7 @@
 //! | [`session_log`] | which client a session waited for |
 
 mod check;
-mod chosen;
+pub(crate) mod chosen;
 pub mod config;
 pub mod coverage;
 mod environment;

@@ -38,7 +38,7 @@ const SOON: Duration = Duration::from_micros(500);
 const PAUSE_MAX: Duration = Duration::from_millis(1);
 
 /// Answers to one order that cannot be understood before the run ends: one may be garbled on its way, whatever the link.
-const GARBLED_MAX: u32 = 3;
+pub(super) const GARBLED_MAX: u32 = 3;
 
 /// The clocks of one order.
 struct Wait {
@@ -127,7 +127,10 @@ impl Gateway {
                 Err(fault) => return Err(fault.into()),
             }
             if wait.lost.is_none() && self.handshake.ask() != Ask::Nothing && Instant::now() > wait.deadline {
-                return Err(self.handshake.late(patience));
+                return Err(match self.link.broken_off() {
+                    Some(partial) => GatewayFault::BrokenOff { what: self.handshake.what(), after: patience, partial },
+                    None => self.handshake.late(patience),
+                });
             }
         }
     }

@@ -29,7 +29,12 @@ pub(super) fn connect(link: &mut dyn Link, name: &str, patience: Duration) -> Re
             return Err(fault.tried(tried, patience));
         }
         if tried == 1 {
-            tracing::info!(target: NOTICE, "client `{name}`: {fault}; trying again for {patience:?}");
+            match fault {
+                LinkFault::NobodyCame { url, .. } => {
+                    tracing::info!(target: NOTICE, "client `{name}`: waiting {patience:?} for the PLC to connect to {url}");
+                }
+                fault => tracing::info!(target: NOTICE, "client `{name}`: {fault}; trying again for {patience:?}"),
+            }
         }
         std::thread::sleep(AGAIN.min(patience.saturating_sub(begun.elapsed())));
     }

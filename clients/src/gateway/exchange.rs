@@ -139,14 +139,17 @@ pub fn is_word(name: &str) -> bool {
     words.map(|(word, _)| *word).any(|word| word == name)
 }
 
-/// Words about the PLC itself, which a program cannot have: the PLC's system serves them.
+/// The words that are exchanged beside the signals.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum SystemWords {
-    /// A PLC without them: who restarts it is a person.
-    #[default]
+pub enum Words {
+    /// None: the PLC's program is not instrumented.
     Absent,
-    /// `PLC_Start`, `PLC_Boots` and `PLC_Running`.
-    Present,
+    /// Those of the handshake. A person starts the PLC.
+    #[default]
+    Handshake,
+    /// Those of the handshake, and `PLC_Start`, `PLC_Boots` and `PLC_Running`, which a program cannot have: the PLC's
+    /// system serves them.
+    WithSystem,
 }
 
 /// All points of a PLC, and where the words lie among them.
@@ -160,13 +163,13 @@ pub struct Exchange {
     input_bytes: usize,
     /// Bytes of the words, before the outputs.
     word_bytes: usize,
-    system: SystemWords,
+    words: Words,
 }
 
 impl Exchange {
     /// The points of a PLC that reads `inputs` and writes `outputs`; `addresses` are those of words.
-    pub fn new(inputs: &[Feed], outputs: &[Feed], system: SystemWords, addresses: &BTreeMap<String, String>) -> Self {
-        let words = |words: &[(&str, SignalType)]| -> Vec<Point> {
+    pub fn new(inputs: &[Feed], outputs: &[Feed], words: Words, addresses: &BTreeMap<String, String>) -> Self {
+        let points = |words: &[(&str, SignalType)]| -> Vec<Point> {
             let word = |(name, ty): &(&str, SignalType)| Point {
                 name: (*name).to_owned(),
                 variable: None,
@@ -177,21 +180,24 @@ impl Exchange {
             };
             words.iter().map(word).collect()
         };
-        let (start, about) = match system {
-            SystemWords::Absent => (Vec::new(), Vec::new()),
-            SystemWords::Present => (words(&[START]), words(&[BOOTS, RUNNING])),
+        let (written, read) = match words {
+            Words::Absent => (Vec::new(), Vec::new()),
+            Words::Handshake => (points(&WORDS_TO_PLC), points(&WORDS_FROM_PLC)),
+            Words::WithSystem => (
+                [points(&[START]), points(&WORDS_TO_PLC)].concat(),
+                [points(&WORDS_FROM_PLC), points(&[BOOTS, RUNNING])].concat(),
+            ),
         };
         let (inputs, ports) = (points_of(inputs), ports_of(inputs));
         let input_bytes = inputs.iter().map(|point| point.ty.size()).sum();
-        let read = [words(&WORDS_FROM_PLC), about].concat();
         let word_bytes = read.iter().map(|point| point.ty.size()).sum();
         Self {
-            to_plc: placed([inputs, start, words(&WORDS_TO_PLC)].concat()),
+            to_plc: placed([inputs, written].concat()),
             from_plc: placed([read, points_of(outputs)].concat()),
             ports,
             input_bytes,
             word_bytes,
-            system,
+            words,
         }
     }
 
@@ -202,9 +208,9 @@ impl Exchange {
         plain
     }
 
-    /// Whether the PLC serves words about itself.
-    pub fn system(&self) -> SystemWords {
-        self.system
+    /// The words that are exchanged.
+    pub fn words(&self) -> Words {
+        self.words
     }
 
     /// What the gateway writes, in order.
@@ -242,14 +248,17 @@ impl Exchange {
         self.word_bytes..self.size(Direction::FromPlc)
     }
 
-    /// Puts an order behind the inputs.
+    /// Puts an order behind the inputs; nothing where there are no words.
     pub fn put(&self, order: &Order, to_plc: &mut [u8]) {
+        if self.words == Words::Absent {
+            return;
+        }
         let mut at = self.input_bytes;
         let mut put = |bytes: &[u8]| {
             to_plc[at..at + bytes.len()].copy_from_slice(bytes);
             at += bytes.len();
         };
-        if self.system == SystemWords::Present {
+        if self.words == Words::WithSystem {
             put(&order.start.to_le_bytes());
         }
         put(&order.session.to_le_bytes());
@@ -258,25 +267,27 @@ impl Exchange {
         put(&order.grant.to_le_bytes());
     }
 
-    /// The words among what was read.
+    /// The words among what was read; all 0 where there are none.
     pub fn report(&self, from_plc: &[u8]) -> Report {
         let udint =
             |at: usize| u32::from_le_bytes([from_plc[at], from_plc[at + 1], from_plc[at + 2], from_plc[at + 3]]);
-        let (boots, running) = match self.system {
-            SystemWords::Absent => (None, None),
-            SystemWords::Present => (Some(udint(14)), Some(from_plc[18] != 0)),
+        let (boots, running) = match self.words {
+            Words::Absent => return Report::default(),
+            Words::Handshake => (None, None),
+            Words::WithSystem => (Some(udint(14)), Some(from_plc[18] != 0)),
         };
         let answer = Answer::from(i16::from_le_bytes([from_plc[8], from_plc[9]]));
         Report { joined: udint(0), done: udint(4), answer, layout: udint(10), boots, running }
     }
 
-    /// The order among what was written: the PLC's side of [`Exchange::put`].
+    /// The order among what was written: the PLC's side of [`Exchange::put`]; none where there are no words.
     pub fn order(&self, to_plc: &[u8]) -> Order {
         let words = &to_plc[self.input_bytes..];
         let udint = |at: usize| u32::from_le_bytes([words[at], words[at + 1], words[at + 2], words[at + 3]]);
-        let (start, at) = match self.system {
-            SystemWords::Absent => (0, 0),
-            SystemWords::Present => (udint(0), 4),
+        let (start, at) = match self.words {
+            Words::Absent => return Order::default(),
+            Words::Handshake => (0, 0),
+            Words::WithSystem => (udint(0), 4),
         };
         let t_v = u64::from(udint(at + 8)) | u64::from(udint(at + 12)) << 32;
         Order {
@@ -336,17 +347,17 @@ mod tests {
     #[test]
     fn words_lie_where_they_are_looked_for() {
         let port = |name: &str, ty| Port { name: SignalName::new(name).unwrap(), ty };
-        for system in [SystemWords::Absent, SystemWords::Present] {
+        for words in [Words::Handshake, Words::WithSystem] {
             let feed = |name: &str, ty| Feed::whole(&port(name, ty), None);
             let exchange = Exchange::new(
                 &[feed("a", SignalType::BOOL), feed("b", SignalType::LREAL)],
                 &[feed("c", SignalType::INT)],
-                system,
+                words,
                 &BTreeMap::new(),
             );
             assert_eq!(exchange.to_plc().last().map(|point| point.name.as_str()), Some("SDSP_Grant"));
             let mut to_plc = vec![0; exchange.size(Direction::ToPlc)];
-            let start = if system == SystemWords::Present { 9 } else { 0 };
+            let start = if words == Words::WithSystem { 9 } else { 0 };
             let t_v = VirtualTime::from_nanos(0x0102_0304_0506_0708);
             let order = Order { session: 3, limit: 4, t_v, grant: 7, start };
             exchange.put(&order, &mut to_plc);
@@ -367,7 +378,7 @@ mod tests {
             set("SDSP_Layout", &11_u32.to_le_bytes());
             set("PLC_Boots", &8_u32.to_le_bytes());
             set("PLC_Running", &[1]);
-            let is_told = system == SystemWords::Present;
+            let is_told = words == Words::WithSystem;
             let (boots, running) = (is_told.then_some(8), is_told.then_some(true));
             let report = Report { joined: 5, done: 6, answer: Answer::Other(-2), layout: 11, boots, running };
             assert_eq!(exchange.report(&from_plc), report);
@@ -382,7 +393,7 @@ mod tests {
         let several =
             Feed { port: port("go", SignalType::INT), targets: vec![target("A.go"), target("B.go"), target("C.go")] };
         let after = Feed::whole(&port("level", SignalType::BOOL), None);
-        let exchange = Exchange::new(&[several, after], &[], SystemWords::Absent, &BTreeMap::new());
+        let exchange = Exchange::new(&[several, after], &[], Words::Handshake, &BTreeMap::new());
         let mut to_plc = vec![0; exchange.size(Direction::ToPlc)];
         exchange.put_inputs(&[7, 8, 1], &mut to_plc);
         assert_eq!(to_plc[..7], [7, 8, 7, 8, 7, 8, 1]);

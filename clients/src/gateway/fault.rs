@@ -6,6 +6,16 @@ use thiserror::Error;
 
 use super::answer::Answer;
 
+/// A block of which not everything has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error("{got} of the {whole} bytes of a block")]
+pub struct Partial {
+    /// Bytes that have come.
+    pub got: usize,
+    /// Bytes of the block.
+    pub whole: usize,
+}
+
 /// Why a link cannot do what it is to do.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum LinkFault {
@@ -16,6 +26,22 @@ pub enum LinkFault {
         url: String,
         /// What the operating system or the protocol says.
         reason: String,
+    },
+    /// The address for PLCs to connect to cannot be had.
+    #[error("cannot listen on {url}: {reason}")]
+    Listen {
+        /// Where the gateway should listen.
+        url: String,
+        /// What the operating system says.
+        reason: String,
+    },
+    /// The gateway listens, and no PLC has connected.
+    #[error("no PLC has connected to {url} within {within:?}")]
+    NobodyCame {
+        /// Where the gateway listens.
+        url: String,
+        /// How long it has waited.
+        within: Duration,
     },
     /// The PLC does not let this user, certificate or security policy in.
     #[error("authentication refused by {url}: {reason}")]
@@ -47,7 +73,7 @@ impl LinkFault {
 
     /// True if another attempt may mend it.
     pub fn is_transient(&self) -> bool {
-        matches!(self, Self::Unreachable { .. } | Self::Lost(_))
+        matches!(self, Self::Unreachable { .. } | Self::NobodyCame { .. } | Self::Lost(_))
     }
 
     /// The same, with how often it was tried and for how long.
@@ -56,6 +82,7 @@ impl LinkFault {
         let told = |reason: String| format!("{reason}; tried {times} in {within:?}");
         match self {
             Self::Unreachable { url, reason } => Self::Unreachable { url, reason: told(reason) },
+            Self::NobodyCame { url, .. } => Self::NobodyCame { url, within },
             Self::Lost(reason) => Self::Lost(told(reason)),
             other => other,
         }
@@ -130,6 +157,28 @@ pub enum GatewayFault {
         after: Duration,
         /// What the scheduler said last.
         answer: Answer,
+    },
+    /// The PLC began a block and did not go on.
+    #[error(
+        "{what} is not answered within {after:?}: the PLC has sent {partial} and then nothing; is the layout the same on both sides?"
+    )]
+    BrokenOff {
+        /// The grant or the start under way.
+        what: String,
+        /// How long was waited, wall clock.
+        after: Duration,
+        /// What has come.
+        partial: Partial,
+    },
+    /// A PLC whose blocks are counted has sent none.
+    #[error(
+        "no block has come within {after:?} after {what} went out; is the PLC in RUN, and does it send at an interval?"
+    )]
+    NoBlock {
+        /// The step under way.
+        what: String,
+        /// How long was waited, wall clock.
+        after: Duration,
     },
     /// The PLC answers a grant that this gateway did not give.
     #[error(

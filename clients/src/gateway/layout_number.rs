@@ -54,7 +54,7 @@ mod tests {
     use onescan_server::signal::{Port, SignalName, SignalType};
 
     use super::*;
-    use crate::gateway::exchange::SystemWords;
+    use crate::gateway::exchange::Words;
     use crate::gateway::mapping::{self, Variables};
 
     fn number(inputs: &[(&str, &str, SignalType)], settings: &str) -> u32 {
@@ -64,7 +64,7 @@ mod tests {
         };
         let inputs: Vec<_> = inputs.iter().map(signal).collect();
         let settings: Settings = toml::from_str(settings).unwrap();
-        let exchange = mapping::exchange(&inputs, &[], settings.system(), &settings.map).unwrap();
+        let exchange = mapping::exchange(&inputs, &[], settings.words(), &settings.map).unwrap();
         layout_number(&settings, &exchange)
     }
 
@@ -112,7 +112,7 @@ mod tests {
     #[test]
     fn it_is_that_of_the_text() {
         let settings = Settings::default();
-        let exchange = Exchange::new(&[], &[], SystemWords::Present, &std::collections::BTreeMap::new());
+        let exchange = Exchange::new(&[], &[], Words::WithSystem, &std::collections::BTreeMap::new());
         insta::assert_snapshot!(canonical(&settings, &exchange));
         assert_eq!(layout_number(&settings, &exchange), crc32fast::hash(canonical(&settings, &exchange).as_bytes()));
     }

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use onescan_server::signal::SignalType;
 
-use super::fault::LinkFault;
+use super::fault::{LinkFault, Partial};
 
 /// A way to write and read the points of an [`super::Exchange`], whatever the protocol.
 ///
@@ -29,6 +29,11 @@ pub trait Link: Send {
     /// # Errors
     /// The connection is gone, or what came is no value.
     fn read(&mut self, patience: Duration, from_plc: &mut [u8]) -> Result<bool, LinkFault>;
+
+    /// The block that has begun to come and does not go on, for a link that cuts blocks from a stream.
+    fn broken_off(&self) -> Option<Partial> {
+        None
+    }
 
     /// True for a link that asks the PLC each time, false for one to which the PLC sends its changes.
     fn is_polled(&self) -> bool {

@@ -46,7 +46,7 @@ impl Listing {
             let keys = [&map.to_plc, &map.from_plc].map(|entries| entries.iter().map(key).collect());
             return Ok(Self::sorted(exchange, map.places(), keys, [None, None]));
         }
-        if matches!(scheme, "tcp" | "s7") {
+        if matches!(scheme, "tcp" | "tcp-listen" | "s7") {
             let layouts = Layouts::new(&settings.layout, exchange)?;
             let sizes = [layouts.to_plc.size(), layouts.from_plc.size()];
             let place = |db: u16, size: usize| {

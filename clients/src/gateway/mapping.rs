@@ -9,7 +9,7 @@ use onescan_base::did_you_mean;
 use onescan_server::signal::Port;
 
 use super::addresses::{ALL, Addresses};
-use super::exchange::{Direction, Exchange, Feed, Point, SystemWords, Target, is_word};
+use super::exchange::{Direction, Exchange, Feed, Point, Target, Words, is_word};
 use super::fault::MappingFault;
 use crate::soft_plc::bind::{Bound, Place};
 
@@ -51,7 +51,7 @@ impl Variables {
 pub fn exchange(
     inputs: &[Variables],
     outputs: &[Variables],
-    system: SystemWords,
+    words: Words,
     map: &BTreeMap<String, Addresses>,
 ) -> Result<Exchange, MappingFault> {
     let names = || inputs.iter().chain(outputs).map(|signal| signal.port.name.as_str());
@@ -59,18 +59,22 @@ pub fn exchange(
         let message = format!("`map` names `{unknown}`, in which this PLC takes no part");
         return Err(MappingFault::new(unknown, message).with_help(did_you_mean(unknown, names())));
     }
+    if let Some(word) = map.keys().find(|key| is_word(key)).filter(|_| words == Words::Absent) {
+        let message = format!("`map` names `{word}`, but with `handshake = \"frames\"` no words are exchanged");
+        return Err(MappingFault::new(word, message));
+    }
     let feeds = |signals: &[Variables]| -> Result<Vec<Feed>, MappingFault> {
         signals.iter().map(|signal| feed(signal, map.get(signal.port.name.as_str()))).collect()
     };
-    let words = map.iter().filter(|(name, _)| is_word(name)).map(|(name, address)| {
+    let addresses = map.iter().filter(|(name, _)| is_word(name)).map(|(name, address)| {
         if let Addresses::One(address) = address {
             return Ok((name.clone(), address.clone()));
         }
         let help = Some(format!("write one address: {name} = \"…\""));
         Err(MappingFault::new(name, format!("`{name}` is one word and has one address")).with_help(help))
     });
-    let words = words.collect::<Result<_, _>>()?;
-    let exchange = Exchange::new(&feeds(inputs)?, &feeds(outputs)?, system, &words);
+    let addresses = addresses.collect::<Result<_, _>>()?;
+    let exchange = Exchange::new(&feeds(inputs)?, &feeds(outputs)?, words, &addresses);
     for direction in [Direction::ToPlc, Direction::FromPlc] {
         doubled(exchange.points(direction), direction)?;
     }
@@ -245,7 +249,7 @@ mod tests {
 
     fn mapped(map: &str) -> Result<Exchange, MappingFault> {
         let inputs = [signal("go", &["Q.go", "P.go"]), signal("level", &["P.level"]), signal("free", &[])];
-        exchange(&inputs, &[signal("out", &["P.out"])], SystemWords::Absent, &toml::from_str(map).unwrap())
+        exchange(&inputs, &[signal("out", &["P.out"])], Words::Handshake, &toml::from_str(map).unwrap())
     }
 
     /// The points of the signals with their addresses.

@@ -20,6 +20,7 @@
 //! | [`opcua`] | variables of an OPC UA server |
 //! | [`s7`] | data blocks of an S7 |
 //! | `socket` | the TCP connection that several links begin with |
+//! | [`counted`] | a PLC that is not instrumented: a step for each of its blocks |
 //! | [`freewheel`] | a PLC that is not driven, to compare |
 //! | [`tcp`] | data blocks of declared layout over a raw TCP connection |
 //!
@@ -34,6 +35,7 @@ pub mod answer;
 pub mod byte_order;
 pub mod client;
 mod contact;
+pub mod counted;
 pub mod exchange;
 pub mod fault;
 pub mod freewheel;
@@ -51,8 +53,9 @@ pub mod tcp;
 
 pub use addresses::Addresses;
 pub use client::{Gateway, Patience};
+pub use counted::CountedGateway;
 pub use exchange::{Direction, Exchange, Point};
 pub use fault::{GatewayFault, LinkFault, MappingFault};
 pub use freewheel::FreeGateway;
 pub use link::Link;
-pub use settings::{BadUrl, Settings, SettingsFault};
+pub use settings::{BadUrl, HandshakeKind, Settings, SettingsFault};

@@ -2,6 +2,8 @@
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
+use std::net::SocketAddr;
+use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -14,7 +16,7 @@ use thiserror::Error;
 use super::addresses::Addresses;
 use super::ads::{self, AdsLink};
 use super::client::Patience;
-use super::exchange::{Exchange, SystemWords};
+use super::exchange::{Direction, Exchange, Words};
 use super::fault::{LinkFault, MappingFault};
 use super::link::{Found, Link};
 use super::modbus::{self, ModbusLink};
@@ -29,6 +31,10 @@ use super::tcp::{Declaration, Layouts, TcpLink};
 pub struct Settings {
     /// Where the PLC is, as in `tcp://192.168.0.1:2000`.
     pub url: String,
+    /// How a step of the session and a cycle of the PLC are brought together.
+    pub handshake: HandshakeKind,
+    /// Blocks of the PLC that make up a step, with `handshake = "frames"`.
+    pub frames_per_step: Option<NonZeroU32>,
     /// True if the PLC serves `PLC_Start`, `PLC_Boots` and `PLC_Running`.
     pub system_words: bool,
     /// How long a grant may stay unanswered.
@@ -62,6 +68,17 @@ impl Settings {
             .flatten()
             .map(PathBuf::as_path)
     }
+}
+
+/// How a step of the session and a cycle of the PLC are brought together.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum HandshakeKind {
+    /// By the words of the instrumented program: lockstep.
+    #[default]
+    Words,
+    /// By counting blocks, for a PLC whose program cannot be instrumented: no lockstep.
+    Frames,
 }
 
 /// A value written as text with a unit.
@@ -106,7 +123,7 @@ pub struct BadUrl {
 }
 
 /// The links there are, by the scheme of their URL.
-const SCHEMES: [&str; 5] = ["tcp", "modbus", "opc.tcp", "s7", "ads"];
+const SCHEMES: [&str; 6] = ["tcp", "tcp-listen", "modbus", "opc.tcp", "s7", "ads"];
 
 /// Why there is no link.
 #[derive(Clone, Debug, Error)]
@@ -123,9 +140,26 @@ pub enum SettingsFault {
 }
 
 impl Settings {
-    /// Whether the PLC serves words about itself.
-    pub fn system(&self) -> SystemWords {
-        if self.system_words { SystemWords::Present } else { SystemWords::Absent }
+    /// The words that the PLC and the gateway exchange.
+    pub fn words(&self) -> Words {
+        match (self.handshake, self.system_words) {
+            (HandshakeKind::Frames, _) => Words::Absent,
+            (HandshakeKind::Words, true) => Words::WithSystem,
+            (HandshakeKind::Words, false) => Words::Handshake,
+        }
+    }
+
+    /// The address at which the gateway listens, if the PLC is the one that connects.
+    ///
+    /// # Errors
+    /// The URL names no link, or no address of this machine.
+    pub fn listens_on(&self) -> Result<Option<SocketAddr>, BadUrl> {
+        let ("tcp-listen", address) = self.scheme()? else { return Ok(None) };
+        address.parse().map(Some).map_err(|_| BadUrl {
+            url: self.url.clone(),
+            reason: "it has no IP address and port".to_owned(),
+            help: Some("write it as in `tcp-listen://127.0.0.1:2000`".to_owned()),
+        })
     }
 
     /// How long the gateway waits.
@@ -170,13 +204,49 @@ impl Settings {
     /// See [`SettingsFault`].
     pub fn link(&self, exchange: &Exchange) -> Result<Box<dyn Link>, SettingsFault> {
         let ((scheme, address), timeout) = (self.scheme()?, self.timeout());
+        if let (HandshakeKind::Words, Some(_)) = (self.handshake, self.frames_per_step) {
+            let text = "`frames_per_step` needs `handshake = \"frames\"`";
+            return Err(LinkFault::Setting(text.to_owned()).into());
+        }
         Ok(match scheme {
             "modbus" => Box::new(ModbusLink::new(address, self.modbus, exchange, timeout)?),
             "opc.tcp" => Box::new(OpcUaLink::new(&self.url, self.opcua.clone(), exchange, timeout)?),
             "ads" => Box::new(AdsLink::new(address, self.ads.clone(), exchange, timeout)),
-            "s7" => Box::new(S7Link::new(address, self.s7, exchange, Layouts::new(&self.layout, exchange)?, timeout)),
-            _ => Box::new(TcpLink::new(address, Layouts::new(&self.layout, exchange)?, timeout)),
+            "s7" => Box::new(S7Link::new(address, self.s7, exchange, Layouts::new(&self.layout, exchange)?, timeout)?),
+            _ => Box::new(self.blocks(exchange)?),
         })
+    }
+
+    /// Data blocks over TCP, whoever connects.
+    fn blocks(&self, exchange: &Exchange) -> Result<TcpLink, SettingsFault> {
+        let (layouts, timeout) = (Layouts::new(&self.layout, exchange)?, self.timeout());
+        Ok(match self.listens_on()? {
+            Some(address) => TcpLink::listening(address, layouts, timeout),
+            None => TcpLink::new(self.scheme()?.1, layouts, timeout),
+        })
+    }
+
+    /// The link for a PLC whose blocks are counted, and how many of them make up a step; nothing for one that is driven by
+    /// words.
+    ///
+    /// # Errors
+    /// A link without blocks, or a key that has no meaning here. See [`SettingsFault`].
+    pub fn counted(&self, exchange: &Exchange) -> Result<Option<(TcpLink, NonZeroU32)>, SettingsFault> {
+        if self.handshake == HandshakeKind::Words {
+            return Ok(None);
+        }
+        let wrong = |text: &str| Err(LinkFault::Setting(format!("`handshake = \"frames\"` {text}")).into());
+        let scheme = self.scheme()?.0;
+        if !matches!(scheme, "tcp" | "tcp-listen") {
+            return wrong(&format!("counts blocks, and {scheme} has none: use `tcp` or `tcp-listen`"));
+        }
+        if self.system_words {
+            return wrong("exchanges no words: leave out `system_words`");
+        }
+        if exchange.size(Direction::FromPlc) == 0 || exchange.size(Direction::ToPlc) == 0 {
+            return wrong("counts blocks: the PLC must read a signal and write one");
+        }
+        Ok(Some((self.blocks(exchange)?, self.frames_per_step.unwrap_or(NonZeroU32::MIN))))
     }
 
     /// Everything that the PLC says it has.
@@ -184,7 +254,7 @@ impl Settings {
     /// # Errors
     /// A protocol without names, or the PLC cannot be reached.
     pub fn browse(&self) -> Result<Vec<Found>, SettingsFault> {
-        let nothing = Exchange::new(&[], &[], SystemWords::Absent, &BTreeMap::new());
+        let nothing = Exchange::new(&[], &[], Words::Handshake, &BTreeMap::new());
         match self.scheme()?.0 {
             "opc.tcp" => Ok(OpcUaLink::new(&self.url, self.opcua.clone(), &nothing, self.timeout())?.browse()?),
             "ads" => Ok(AdsLink::new(self.scheme()?.1, self.ads.clone(), &nothing, self.timeout()).browse()?),

@@ -26,13 +26,22 @@ pub(super) fn connect(addresses: impl ToSocketAddrs, timeout: Duration) -> Resul
     for address in addresses.to_socket_addrs().map_err(|error| error.to_string())? {
         match TcpStream::connect_timeout(&address, timeout) {
             Ok(stream) => {
-                let prepared = stream.set_nodelay(true).and_then(|()| stream.set_write_timeout(Some(timeout)));
-                return prepared.map(|()| stream).map_err(|error| error.to_string());
+                return prepare(&stream, timeout).map(|()| stream).map_err(|error| error.to_string());
             }
             Err(error) => reason = error.to_string(),
         }
     }
     Err(reason)
+}
+
+/// For one request at a time: none waits for more to come, and none for longer than `timeout` to be taken.
+///
+/// # Errors
+/// The connection is gone.
+pub(super) fn prepare(stream: &TcpStream, timeout: Duration) -> std::io::Result<()> {
+    stream.set_nonblocking(false)?;
+    stream.set_nodelay(true)?;
+    stream.set_write_timeout(Some(timeout))
 }
 
 #[cfg(test)]

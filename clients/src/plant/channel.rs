@@ -12,9 +12,9 @@ use onescan_server::signal::{Port, SignalType};
 use serde::{Deserialize, Serialize};
 
 use super::lateness::late_ns;
-use super::random::{Random, seed_for};
 use super::scene::Scene;
 use super::scene::model::Condition;
+use onescan_server::random::{Random, seed_for};
 
 /// Bytes of the longest value that a `[[signal]]` conditions.
 const LONGEST: usize = 8;

@@ -28,7 +28,6 @@
 //! | [`coupling`] | what ties a component to the world of rigid bodies |
 //! | `part` | a component of the scene, bound to signals, other components and the world |
 //! | `machine` | all of these, one turn at a time |
-//! | `random` | random numbers from the scenario's seed |
 //! | `lateness` | how late a value arrives: a constant, an even part, a normal part |
 //! | `channel` | what happens to signals between the plant and the PLC |
 //! | `failure` | why a failure or a repair of a running plant is refused |
@@ -72,7 +71,6 @@ mod outline;
 mod part;
 mod placement;
 mod pose;
-mod random;
 mod reach;
 pub mod robot;
 pub mod scene;

@@ -14,10 +14,10 @@ use super::component::origin::{Making, Unmade};
 use super::coordinate::Measured;
 use super::effort::{Effort, Motion};
 use super::machine::Misfit;
-use super::random::seed_for;
 use super::scene::Scene;
 use super::scene::model::{self, When, Wire};
 use super::world::World;
+use onescan_server::random::seed_for;
 
 /// Why a plant cannot be built; no checked scene is the cause.
 #[derive(Clone, Debug, PartialEq, Error)]

@@ -98,6 +98,14 @@ impl SoftPlcClient {
         Ok(())
     }
 
+    /// Whether the variable at `path` could be written or forced to a value, given as a literal.
+    ///
+    /// # Errors
+    /// There is no such variable, it may not be written, or the text is no value of its type.
+    pub fn check_write(&self, path: &str, value: &str) -> Result<(), WriteError> {
+        self.plc.check_write(path, value)
+    }
+
     /// Says whose states [`Client::restore`] takes from here on: at first those of the same sources alone.
     pub fn accept_states_of(&mut self, policy: CodePolicy) {
         self.code_policy = policy;

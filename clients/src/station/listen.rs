@@ -81,7 +81,7 @@ impl Drop for Seat {
 }
 
 /// For requests that are answered one by one, by a thread of their own.
-fn prepare(stream: &TcpStream) -> std::io::Result<()> {
+pub(super) fn prepare(stream: &TcpStream) -> std::io::Result<()> {
     stream.set_nonblocking(false)?;
     stream.set_nodelay(true)?;
     stream.set_read_timeout(Some(IDLE_TIMEOUT))?;

@@ -104,6 +104,14 @@ impl SoftPlc {
         Ok(())
     }
 
+    /// Whether a value, given as a literal, could be written or forced there.
+    ///
+    /// # Errors
+    /// As [`SoftPlc::write`].
+    pub fn check_write(&self, path: &str, value: &str) -> Result<(), WriteError> {
+        self.parsed(path, value).map(drop)
+    }
+
     fn parsed(&self, path: &str, value: &str) -> Result<(Variable, Vec<u8>), WriteError> {
         let variable = self.variable(path)?;
         variable.writable()?;

@@ -155,7 +155,7 @@ fn expectations(all: &[Shown]) -> Markup {
 fn told(table: &Table) -> Markup {
     let cells = html! {
         table {
-            thead { tr { th { (table.title) } @for head in &table.head { th { (head) } } } } (LINE)
+            thead { tr { th { (table.title) } @for head in &table.head { th { (&**head) } } } } (LINE)
             @for row in &table.rows { tr { @for cell in row { td { (cell) } } } (LINE) }
         }
     };

@@ -4,8 +4,14 @@
 //! |---|---|
 //! | this file | the case's own keys, and its expectations |
 //! | `settings` | parameters of plants, constants and initial values of PLCs |
+//! | `period` | when something begins and ends |
+//! | `disturbance` | faults on the way of signals |
+//! | [`measure`] | what a campaign reads out of its runs |
 //! | `timeline` | what a case does while a session runs, as operations |
 
+mod disturbance;
+pub mod measure;
+mod period;
 mod settings;
 mod timeline;
 
@@ -15,7 +21,7 @@ use std::path::Path;
 use onescan_server::signal::{ClientName, did_you_mean};
 
 use crate::case::file::CaseFile;
-use crate::case::{Applied, Case, Catalogue, Setting};
+use crate::case::{Applied, Case, Catalogue, Injection, Setting};
 use crate::error::{ScenarioError, wrong};
 use crate::file::ClientFile;
 use crate::load::Scenario;
@@ -33,6 +39,17 @@ impl Scenario {
             return scenario.with_case(&catalogue, case);
         }
         let names = || catalogue.cases().iter().map(|case| case.name.as_str());
+        if let Some((campaign, _)) = name.split_once('/')
+            && let Some(campaign) = catalogue.campaigns().iter().find(|one| one.name == campaign)
+        {
+            let nearest = did_you_mean(name, campaign.cases.iter().map(|case| case.name.as_str()));
+            let help = nearest.unwrap_or_else(|| format!("its cases are {}/FAULT/ACTIVATION", campaign.name));
+            return Err(ScenarioError::UnknownCase {
+                scenario: scenario.name().to_owned(),
+                case: name.to_owned(),
+                help,
+            });
+        }
         let all = || format!("its cases are {}", names().collect::<Vec<_>>().join(", "));
         let help = did_you_mean(name, names()).unwrap_or_else(all);
         Err(ScenarioError::UnknownCase { scenario: scenario.name().to_owned(), case: name.to_owned(), help })
@@ -47,12 +64,40 @@ impl Scenario {
         for setting in &case.settings {
             self.settable(catalogue, setting)?;
         }
-        if let Some(entry) = catalogue.entry(case) {
-            self.schedule(catalogue, entry, &mut applied)?;
-            self.adjust_expectations(catalogue, entry)?;
+        if let Some(entry) = catalogue.entry(case)? {
+            self.schedule(catalogue, &entry, &mut applied)?;
+            if let Some(injection) = &case.injection {
+                self.inject(catalogue, injection, &mut applied)?;
+            }
+            self.adjust_expectations(catalogue, &entry)?;
         }
         self.put_on(applied);
         Ok(self)
+    }
+
+    /// Tells what a campaign's fault adds to the run that is healthy.
+    fn inject(&self, catalogue: &Catalogue, injection: &Injection, applied: &mut Applied) -> Result<(), ScenarioError> {
+        let until = applied.case.until.unwrap_or(self.file().until);
+        if let Some((at, place)) = injection.at.clone().filter(|(at, _)| *at >= until) {
+            let message = format!("this activation can never come: it is at {at}, and the run ends at {until}");
+            return Err(catalogue.wrong(
+                message,
+                Some(place),
+                Some("let it come earlier, or the run end later".to_owned()),
+            ));
+        }
+        let mut healthy = Applied { case: applied.case.clone(), ..Applied::default() };
+        if let Some(entry) = catalogue.healthy_entry(&applied.case) {
+            self.schedule(catalogue, entry, &mut healthy)?;
+        }
+        let mut injected = applied.timeline.clone();
+        for known in &healthy.timeline {
+            if let Some(place) = injected.iter().position(|one| one == known) {
+                injected.remove(place);
+            }
+        }
+        applied.injected = injected;
+        Ok(())
     }
 
     /// Refuses a setting of a client that has none.

@@ -149,6 +149,23 @@ impl Scenario {
         Ok(())
     }
 
+    /// Refuses values of variables that PLC `name` does not have, and those that are none of their types.
+    pub(crate) fn check_variables(&self, plc: &SoftPlcClient, name: &ClientName) -> Result<(), ScenarioError> {
+        let Some(applied) = self.applied() else { return Ok(()) };
+        for at in applied.variables.iter().filter(|at| at.client == *name) {
+            plc.check_write(&at.variable, &at.value).map_err(|error| {
+                let (message, help) = match error {
+                    WriteError::Unknown(unknown) => {
+                        (format!("`{name}` has no variable `{}`", unknown.path), unknown.help)
+                    }
+                    error => (error.to_string(), None),
+                };
+                wrong_case(applied, message, at.place.clone(), help)
+            })?;
+        }
+        Ok(())
+    }
+
     /// Refuses failures of components that plant `name` does not have.
     pub(crate) fn check_failures(
         &self,

@@ -7,34 +7,20 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use onescan_server::operation::{Operation, SignalFault};
+use onescan_server::operation::Operation;
 use onescan_server::signal::{ClientName, SignalName, SignalType, did_you_mean};
-use onescan_server::time::{TimeSpan, VirtualTime};
+use onescan_server::time::VirtualTime;
 use onescan_server::timeline::{Scheduled, When};
 use toml::{Spanned, Value};
 
-use crate::case::file::{CaseFile, DisturbanceFile, DisturbanceKind, FaultFile, VariableFile};
+use super::period::{Period, PeriodKeys, period, period_keys};
+use crate::case::file::{CaseFile, FaultFile, VariableFile};
 use crate::case::value::{bytes_of, literal_of};
-use crate::case::{Applied, Catalogue, FailureAt};
+use crate::case::{Applied, Catalogue, FailureAt, VariableAt};
 use crate::error::ScenarioError;
-use crate::expect::{KnownSignal, condition};
+use crate::expect::KnownSignal;
 use crate::file::ClientFile;
 use crate::load::Scenario;
-
-/// When something of a case begins and ends.
-struct Period {
-    begin: When,
-    end: Option<When>,
-}
-
-/// The keys that say so, as they are written.
-struct PeriodKeys<'a> {
-    from: Option<VirtualTime>,
-    until: Option<VirtualTime>,
-    when: Option<&'a Spanned<String>>,
-    lasting: Option<TimeSpan>,
-    place: Range<usize>,
-}
 
 /// A value that a signal has for a time.
 struct Held {
@@ -72,8 +58,7 @@ impl Scenario {
             let place = force.span();
             let force = force.get_ref();
             let (signal, value) = (force.signal.get_ref(), self.value(catalogue, &force.signal, &force.value)?);
-            let (from, until, when, lasting) = (force.from, force.until, force.when.as_ref(), force.lasting);
-            let period = ends(PeriodKeys { from, until, when, lasting, place })?;
+            let period = ends(period_keys!(force, place))?;
             match period {
                 Period { begin: When::At(from), end: None } => {
                     held.entry(signal.clone()).or_default().push(Held { from, until: None, value });
@@ -92,25 +77,22 @@ impl Scenario {
         }
         for fault in &entry.faults {
             let failure = self.failure(catalogue, fault)?;
-            let FaultFile { from, until, when, lasting, .. } = fault.get_ref();
-            let keys =
-                PeriodKeys { from: *from, until: *until, when: when.as_ref(), lasting: *lasting, place: fault.span() };
+            let keys = period_keys!(fault.get_ref(), fault.span());
             let FailureAt { client, component, mode, .. } = failure.clone();
             let repair = Operation::Repair { client: client.clone(), component: component.clone(), mode: mode.clone() };
             between(&mut timeline, ends(keys)?, Operation::Fail { client, component, mode }, repair);
             applied.failures.push(failure);
         }
+        let seed = applied.case.seed.unwrap_or(self.file().seed);
         for disturbance in &entry.disturbances {
-            let DisturbanceFile { signal, from, until, when, lasting, .. } = disturbance.get_ref();
-            let fault = self.signal_fault(catalogue, disturbance.get_ref(), disturbance.span())?;
-            let place = disturbance.span();
-            let keys = PeriodKeys { from: *from, until: *until, when: when.as_ref(), lasting: *lasting, place };
-            let signal = signal.get_ref().clone();
-            let mend = Operation::Mend { signal: signal.clone() };
-            between(&mut timeline, ends(keys)?, Operation::Disturb { signal, fault }, mend);
+            let period = ends(period_keys!(disturbance.get_ref(), disturbance.span()))?;
+            for (signal, fault) in self.signal_faults(catalogue, disturbance, seed)? {
+                let mend = Operation::Mend { signal: signal.clone() };
+                between(&mut timeline, period.clone(), Operation::Disturb { signal, fault }, mend);
+            }
         }
         for variable in &entry.variables {
-            self.variable(catalogue, variable, &known, &mut timeline)?;
+            self.variable(catalogue, variable, &known, &mut timeline, &mut applied.variables)?;
         }
         // By time, so that the file of events and the plot's marks read like the run; a stable sort keeps
         // the order of the case where times are equal, and conditions last.
@@ -122,7 +104,11 @@ impl Scenario {
         Ok(())
     }
 
-    fn type_of(&self, catalogue: &Catalogue, signal: &Spanned<SignalName>) -> Result<SignalType, ScenarioError> {
+    pub(super) fn type_of(
+        &self,
+        catalogue: &Catalogue,
+        signal: &Spanned<SignalName>,
+    ) -> Result<SignalType, ScenarioError> {
         let name = signal.get_ref();
         self.file().signals.get(name).map(|declared| declared.get_ref().ty).ok_or_else(|| {
             let help = did_you_mean(name.as_str(), self.file().signals.keys().map(SignalName::as_str));
@@ -146,7 +132,7 @@ impl Scenario {
     }
 
     /// The only client of a kind, or the one that is named.
-    fn chosen(
+    pub(super) fn chosen(
         &self,
         catalogue: &Catalogue,
         named: Option<&Spanned<String>>,
@@ -183,54 +169,16 @@ impl Scenario {
         Ok(FailureAt { client, component: component.get_ref().clone(), mode: mode.get_ref().clone(), place })
     }
 
-    fn signal_fault(
-        &self,
-        catalogue: &Catalogue,
-        disturbance: &DisturbanceFile,
-        place: Range<usize>,
-    ) -> Result<SignalFault, ScenarioError> {
-        let (ty, by) = (self.type_of(catalogue, &disturbance.signal)?, disturbance.by.as_ref());
-        let value_place = by.map_or(place, Spanned::span);
-        let wrong = |message: &str, help: &str| {
-            Err(catalogue.wrong(message.to_owned(), Some(value_place.clone()), Some(help.to_owned())))
-        };
-        let name = disturbance.signal.get_ref();
-        match (disturbance.kind, by.map(Spanned::get_ref)) {
-            (DisturbanceKind::Stuck, None) => Ok(SignalFault::Stuck),
-            (DisturbanceKind::Inverted, None) if ty == SignalType::BOOL => Ok(SignalFault::Inverted),
-            (DisturbanceKind::Inverted, None) => {
-                wrong(&format!("`{name}` is {ty}, not BOOL"), "only a BOOL can be inverted")
-            }
-            (DisturbanceKind::Stuck | DisturbanceKind::Inverted, Some(_)) => {
-                wrong("`by` means nothing here", "it belongs to `offset` and `late`")
-            }
-            (DisturbanceKind::Offset, Some(Value::Float(by))) if ty == SignalType::REAL || ty == SignalType::LREAL => {
-                Ok(SignalFault::Offset { by: format!("{by:?}") })
-            }
-            (DisturbanceKind::Offset, Some(Value::Integer(by))) if is_number(ty) => {
-                Ok(SignalFault::Offset { by: by.to_string() })
-            }
-            (DisturbanceKind::Offset, _) => wrong(
-                &format!("`{name}` is {ty}: an offset is a number of its type"),
-                "as in `kind = \"offset\"`, `by = -0.05`",
-            ),
-            (DisturbanceKind::Late, Some(Value::String(by))) => match by.parse() {
-                Ok(by) => Ok(SignalFault::Late { by }),
-                Err(error) => wrong(&format!("`by` is not a time: {error}"), "as in `by = \"20ms\"`"),
-            },
-            (DisturbanceKind::Late, _) => wrong("`late` needs `by`, a time", "as in `by = \"20ms\"`"),
-        }
-    }
-
     fn variable(
         &self,
         catalogue: &Catalogue,
         entry: &Spanned<VariableFile>,
         known: &[KnownSignal],
         timeline: &mut Vec<Scheduled>,
+        checked: &mut Vec<VariableAt>,
     ) -> Result<(), ScenarioError> {
         let place = entry.span();
-        let VariableFile { client, variable, value, at, from, until, when, lasting } = entry.get_ref();
+        let VariableFile { client, variable, value, at, from, until, when, nth, lasting } = entry.get_ref();
         let what = ("soft PLC", "whose variables could be set", variable.span());
         let is_plc = |client: &ClientFile| matches!(client, ClientFile::SoftPlc { .. });
         let client = self.chosen(catalogue, client.as_ref(), is_plc, what)?;
@@ -239,9 +187,12 @@ impl Scenario {
             return Err(catalogue.wrong(message, Some(value.span()), None));
         };
         let variable = variable.get_ref().clone();
+        let value_at = VariableAt { client: client.clone(), variable: variable.clone(), value: value.clone(), place };
+        let place = value_at.place.clone();
+        checked.push(value_at);
         if let Some(at) = at {
-            if from.is_some() || until.is_some() || when.is_some() || lasting.is_some() {
-                let help = "`at` writes once; `from`, `until`, `when` and `for` force for a time".to_owned();
+            if from.is_some() || until.is_some() || when.is_some() || nth.is_some() || lasting.is_some() {
+                let help = "`at` writes once; `from`, `until`, `when`, `nth` and `for` force for a time".to_owned();
                 let message = format!("`{variable}` is both written and forced");
                 return Err(catalogue.wrong(message, Some(place), Some(help)));
             }
@@ -249,7 +200,7 @@ impl Scenario {
             timeline.push(Scheduled { when: When::At(*at), operation });
             return Ok(());
         }
-        let keys = PeriodKeys { from: *from, until: *until, when: when.as_ref(), lasting: *lasting, place };
+        let keys = period_keys!(entry.get_ref(), place);
         let release = Operation::ReleaseVariable { client: client.clone(), variable: variable.clone() };
         let force = Operation::ForceVariable { client, variable, value };
         between(timeline, period(catalogue, known, keys)?, force, release);
@@ -272,11 +223,6 @@ impl Scenario {
         events.sort();
         events
     }
-}
-
-fn is_number(ty: SignalType) -> bool {
-    matches!(ty, SignalType::Elementary(ty) if ty.is_number() || (ty.is_bits() && ty.size() > 0))
-        && ty != SignalType::BOOL
 }
 
 /// An operation as the mark of a plot: short, without marks of code.
@@ -319,42 +265,6 @@ fn resolve(timeline: &mut Vec<Scheduled>, signal: &SignalName, held: &[Held]) {
 fn between(timeline: &mut Vec<Scheduled>, period: Period, begin: Operation, end: Operation) {
     timeline.push(Scheduled { when: period.begin, operation: begin });
     timeline.extend(period.end.map(|when| Scheduled { when, operation: end }));
-}
-
-/// When something begins and ends, by the keys that are written.
-fn period(
-    catalogue: &Catalogue,
-    known: &[KnownSignal],
-    PeriodKeys { from, until, when, lasting, place }: PeriodKeys<'_>,
-) -> Result<Period, ScenarioError> {
-    let start = from.unwrap_or_default();
-    if let (Some(_), Some(_)) = (until, lasting) {
-        let message = "`until` and `for` both say when it ends".to_owned();
-        return Err(catalogue.wrong(message, Some(place), Some("keep one of them".to_owned())));
-    }
-    if let Some(written) = when {
-        let condition = condition(written.get_ref(), known)
-            .map_err(|error| catalogue.wrong(error.to_string(), Some(written.span()), error.help))?;
-        let end = match (until, lasting) {
-            (Some(until), _) => {
-                let message = format!("it begins with `when`, so that it may begin after {until}");
-                let help = "say how long it lasts, as in `for = \"200ms\"`".to_owned();
-                return Err(catalogue.wrong(message, Some(place), Some(help)));
-            }
-            (None, delay @ Some(_)) => Some(When::Once { condition: condition.clone(), from: start, delay }),
-            (None, None) => None,
-        };
-        return Ok(Period { begin: When::Once { condition, from: start, delay: None }, end });
-    }
-    let until = match lasting {
-        None => until,
-        Some(lasting) => Some(start.checked_add(lasting).unwrap_or(VirtualTime::MAX)),
-    };
-    if let Some(until) = until.filter(|until| *until <= start) {
-        let message = format!("`until`, {until}, is not after `from`, {start}");
-        return Err(catalogue.wrong(message, Some(place), None));
-    }
-    Ok(Period { begin: When::At(start), end: until.map(When::At) })
 }
 
 #[cfg(test)]

@@ -1,18 +1,22 @@
 //! `cases.toml` read: all cases of a scenario, those of matrices one by one.
 
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use onescan_base::regular;
+use onescan_server::signal::did_you_mean;
 use toml::de::{DeTable, DeValue};
 use toml::{Spanned, Value};
 
-use super::file::{CaseFile, CasesFile, SnapshotFile, VERSION};
+use super::campaign::{self, Campaign};
+use super::file::{CampaignFile, CaseFile, CasesFile, SnapshotFile, VERSION};
 use super::matrix::{Axis, COMBINATIONS_MAX, combinations};
 use super::{Case, DEFAULT, FILE_NAME, Setting};
 use crate::arrays;
 use crate::error::{ScenarioError, wrong};
+use crate::expectations::place_within;
 use crate::permission;
 
 /// All cases of a scenario.
@@ -22,6 +26,7 @@ pub struct Catalogue {
     text: String,
     file: CasesFile,
     cases: Vec<Case>,
+    campaigns: Vec<Campaign>,
 }
 
 impl Catalogue {
@@ -42,7 +47,7 @@ impl Catalogue {
     }
 
     fn parse(path: PathBuf, text: String) -> Result<Self, ScenarioError> {
-        let mut this = Self { path, text, ..Self::default() };
+        let this = Self { path, text, ..Self::default() };
         let form = |e: toml::de::Error| this.wrong(e.message().trim().to_owned(), e.span(), None);
         let mut file: CasesFile = toml::from_str(&this.text).map_err(form)?;
         this.expand(&mut file)?;
@@ -66,8 +71,32 @@ impl Catalogue {
         if cases.is_empty() {
             cases.push(default_case());
         }
-        (this.file, this.cases) = (file, cases);
-        Ok(this)
+        let mut campaigns: Vec<Campaign> = Vec::new();
+        for (number, entry) in file.campaigns.iter().enumerate() {
+            let name = &entry.name;
+            if !campaign::is_name(name.get_ref()) {
+                let help = "letters, digits, `-`, `_` and `.`".to_owned();
+                let message = format!("`{}` is no name of a campaign", name.get_ref());
+                return Err(this.wrong(message, Some(name.span()), Some(help)));
+            }
+            if campaigns.iter().any(|other| other.name.eq_ignore_ascii_case(name.get_ref())) {
+                let message = format!("two campaigns are called `{}`", name.get_ref());
+                return Err(this.wrong(message, Some(name.span()), None));
+            }
+            let base = this.base(entry, &cases)?;
+            let expanded = campaign::expanded(entry, &base, number);
+            campaigns.push(expanded.map_err(|found| this.wrong(found.message, found.place, found.help))?);
+        }
+        Ok(Self { file, cases, campaigns, ..this })
+    }
+
+    /// The case to which the faults of a campaign come.
+    fn base(&self, campaign: &CampaignFile, cases: &[Case]) -> Result<Case, ScenarioError> {
+        let Some(named) = &campaign.case else { return Ok(default_case()) };
+        cases.iter().find(|case| case.name == *named.get_ref()).cloned().ok_or_else(|| {
+            let help = did_you_mean(named.get_ref(), cases.iter().map(|case| case.name.as_str()));
+            self.wrong(format!("there is no case `{}`", named.get_ref()), Some(named.span()), help)
+        })
     }
 
     /// Expands the arrays among the signals of snapshots.
@@ -91,8 +120,7 @@ impl Catalogue {
     ) -> Result<Vec<Case>, ScenarioError> {
         let file = entry.get_ref();
         let name = file.name.get_ref();
-        let allowed = |letter: char| letter.is_ascii_alphanumeric() || "-_.".contains(letter);
-        if name.is_empty() || name.starts_with('.') || !name.chars().all(allowed) {
+        if !campaign::is_name(name) {
             let help = "letters, digits, `-`, `_` and `.`: its snapshot is a file of that name".to_owned();
             return Err(self.wrong(format!("`{name}` is no name of a case"), Some(file.name.span()), Some(help)));
         }
@@ -111,6 +139,7 @@ impl Catalogue {
                 until: file.until,
                 settings: Vec::new(),
                 entry: Some(index),
+                injection: None,
             };
             for setting in own.iter().cloned().chain(more) {
                 self.put(&mut case, setting)?;
@@ -154,24 +183,47 @@ impl Catalogue {
         &self.cases
     }
 
+    /// All campaigns, in the order of the file.
+    pub fn campaigns(&self) -> &[Campaign] {
+        &self.campaigns
+    }
+
+    /// The same without the fault of a campaign.
+    pub(crate) fn healthy_entry(&self, case: &Case) -> Option<&CaseFile> {
+        self.file.cases.get(case.entry?).map(Spanned::get_ref)
+    }
+
     /// What snapshots hold.
     pub fn snapshot(&self) -> &SnapshotFile {
         &self.file.snapshot
     }
 
-    /// The case of this name.
+    /// The case of this name, also one of a campaign, as `CAMPAIGN/FAULT/ACTIVATION`.
     pub fn find(&self, name: &str) -> Option<&Case> {
-        self.cases.iter().find(|case| case.name == name)
+        let of_campaigns = self.campaigns.iter().flat_map(|campaign| &campaign.cases);
+        self.cases.iter().chain(of_campaigns).find(|case| case.name == name)
     }
 
-    /// The entry of a case as it is written.
-    pub(crate) fn entry(&self, case: &Case) -> Option<&CaseFile> {
-        self.file.cases.get(case.entry?).map(Spanned::get_ref)
+    /// What a case does, as it is written; with the fault, if it is one of a campaign.
+    ///
+    /// # Errors
+    /// None for a case of this catalogue, which was checked when it was read.
+    pub(crate) fn entry(&self, case: &Case) -> Result<Option<Cow<'_, CaseFile>>, ScenarioError> {
+        let own = self.healthy_entry(case);
+        let Some(injection) = &case.injection else { return Ok(own.map(Cow::Borrowed)) };
+        let Some(campaign) = self.campaigns.get(injection.place[0]) else { return Ok(own.map(Cow::Borrowed)) };
+        let entry = campaign.entry(own, injection);
+        entry.map(|entry| Some(Cow::Owned(entry))).map_err(|found| self.wrong(found.message, found.place, found.help))
     }
 
     /// The file's name and text.
     pub(crate) fn source(&self) -> (String, String) {
         (self.path.display().to_string(), self.text.clone())
+    }
+
+    /// The place of a part of a formula.
+    pub(crate) fn place_within(&self, formula: &Spanned<String>, part: &Range<usize>) -> Range<usize> {
+        place_within(formula, &self.text, part)
     }
 
     /// An error at a place of the file.

@@ -5,11 +5,13 @@ use std::collections::BTreeMap;
 use onescan_server::signal::SignalName;
 use onescan_server::time::{TimeSpan, VirtualTime};
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
 use crate::file::ExpectFile;
-use crate::form::{Amount, CaseName, Matrix, Name, Scalar, Settings, Time, from_optional_text, from_text};
+use crate::form::{
+    Amount, CaseName, Deviation, Matrix, Name, Ordinal, Rate, Scalar, Settings, Time, from_optional_text, from_text,
+};
 
 /// The only version of the format so far.
 pub const VERSION: u32 = 1;
@@ -27,6 +29,9 @@ pub struct CasesFile {
     #[serde(default, rename = "case")]
     #[schemars(with = "Vec<CaseFile>")]
     pub cases: Vec<Spanned<CaseFile>>,
+    /// Faults tried one by one, each at each of several instants.
+    #[serde(default, rename = "campaign")]
+    pub campaigns: Vec<CampaignFile>,
 }
 
 /// Which signals a snapshot contains, and how far a run may be from it.
@@ -138,9 +143,12 @@ pub struct FaultFile {
     #[serde(default, deserialize_with = "from_optional_text")]
     #[schemars(with = "Option<Time>")]
     pub until: Option<VirtualTime>,
-    /// A condition on signals: it begins in the step after the condition has come true.
+    /// A condition on signals, now and in the past: it begins in the step after the condition has come true.
     #[schemars(with = "Option<String>")]
     pub when: Option<Spanned<String>>,
+    /// Which time that the condition comes true; the first if absent.
+    #[schemars(with = "Option<Ordinal>")]
+    pub nth: Option<Spanned<u32>>,
     /// How long it lasts.
     #[serde(default, rename = "for", deserialize_with = "from_optional_text")]
     #[schemars(with = "Option<Time>")]
@@ -165,27 +173,46 @@ pub struct ForceFile {
     #[serde(default, deserialize_with = "from_optional_text")]
     #[schemars(with = "Option<Time>")]
     pub until: Option<VirtualTime>,
-    /// A condition on signals: it begins in the step after the condition has come true.
+    /// A condition on signals, now and in the past: it begins in the step after the condition has come true.
     #[schemars(with = "Option<String>")]
     pub when: Option<Spanned<String>>,
+    /// Which time that the condition comes true; the first if absent.
+    #[schemars(with = "Option<Ordinal>")]
+    pub nth: Option<Spanned<u32>>,
     /// How long it lasts.
     #[serde(default, rename = "for", deserialize_with = "from_optional_text")]
     #[schemars(with = "Option<Time>")]
     pub lasting: Option<TimeSpan>,
 }
 
-/// A fault on the way of a signal from its writer to its readers.
+/// A fault on the way of signals from their writer to their readers.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DisturbanceFile {
-    /// The signal's name.
-    #[schemars(with = "Name")]
-    pub signal: Spanned<SignalName>,
+    /// The signal's name; or `signals`, or `client`.
+    #[schemars(with = "Option<Name>")]
+    pub signal: Option<Spanned<SignalName>>,
+    /// Several signals, which are one frame; ranges are allowed.
+    #[serde(default)]
+    #[schemars(with = "Vec<Name>")]
+    pub signals: Vec<Spanned<SignalName>>,
+    /// A client: all signals that it writes are one frame.
+    #[schemars(with = "Option<Name>")]
+    pub client: Option<Spanned<String>>,
     /// What is wrong with the signal.
     pub kind: DisturbanceKind,
     /// By how much: a number of the signal's type for `offset`, a time as in `"20ms"` for `late`.
     #[schemars(with = "Option<Amount>")]
     pub by: Option<Spanned<toml::Value>>,
+    /// How often, from 0 to 1: of the changes for `lost` (of the steps, if it is a frame), of the steps for `flipped`.
+    #[schemars(with = "Option<Rate>")]
+    pub rate: Option<Spanned<f64>>,
+    /// Standard deviation of `noisy`, in the signal's unit.
+    #[schemars(with = "Option<Deviation>")]
+    pub sigma: Option<Spanned<f64>>,
+    /// From push to push of `pushed`.
+    #[schemars(with = "Option<IntervalFile>")]
+    pub interval: Option<Spanned<IntervalFile>>,
     /// From when; from the start if absent. With `when`: from when on the condition counts.
     #[serde(default, deserialize_with = "from_optional_text")]
     #[schemars(with = "Option<Time>")]
@@ -194,20 +221,45 @@ pub struct DisturbanceFile {
     #[serde(default, deserialize_with = "from_optional_text")]
     #[schemars(with = "Option<Time>")]
     pub until: Option<VirtualTime>,
-    /// A condition on signals: it begins in the step after the condition has come true.
+    /// A condition on signals, now and in the past: it begins in the step after the condition has come true.
     #[schemars(with = "Option<String>")]
     pub when: Option<Spanned<String>>,
+    /// Which time that the condition comes true; the first if absent.
+    #[schemars(with = "Option<Ordinal>")]
+    pub nth: Option<Spanned<u32>>,
     /// How long it lasts.
     #[serde(default, rename = "for", deserialize_with = "from_optional_text")]
     #[schemars(with = "Option<Time>")]
     pub lasting: Option<TimeSpan>,
 }
 
+/// How long it is from one push of a frame to the next: normally distributed, held within bounds.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct IntervalFile {
+    /// Its mean.
+    #[serde(deserialize_with = "from_text")]
+    #[schemars(with = "Time")]
+    pub mean: TimeSpan,
+    /// Its standard deviation; all intervals are equal if absent.
+    #[serde(default, deserialize_with = "from_optional_text")]
+    #[schemars(with = "Option<Time>")]
+    pub sigma: Option<TimeSpan>,
+    /// Its least.
+    #[serde(default, deserialize_with = "from_optional_text")]
+    #[schemars(with = "Option<Time>")]
+    pub least: Option<TimeSpan>,
+    /// Its greatest.
+    #[serde(default, deserialize_with = "from_optional_text")]
+    #[schemars(with = "Option<Time>")]
+    pub most: Option<TimeSpan>,
+}
+
 /// What can be wrong with a signal on its way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum DisturbanceKind {
-    /// It keeps the value that it has.
+    /// It keeps the value that it has: it is frozen.
     Stuck,
     /// A BOOL arrives negated.
     Inverted,
@@ -215,6 +267,14 @@ pub enum DisturbanceKind {
     Offset,
     /// Values arrive late.
     Late,
+    /// Changes do not arrive; of a frame, the values of whole steps.
+    Lost,
+    /// Values travel in frames that are pushed by a clock of their own: between two pushes the last one holds.
+    Pushed,
+    /// A bit of the value is inverted for a step.
+    Flipped,
+    /// A normal deviate is added in each step.
+    Noisy,
 }
 
 /// A variable of a PLC is forced for a time, or written once.
@@ -242,11 +302,171 @@ pub struct VariableFile {
     #[serde(default, deserialize_with = "from_optional_text")]
     #[schemars(with = "Option<Time>")]
     pub until: Option<VirtualTime>,
-    /// A condition on signals: it begins in the step after the condition has come true.
+    /// A condition on signals, now and in the past: it begins in the step after the condition has come true.
     #[schemars(with = "Option<String>")]
     pub when: Option<Spanned<String>>,
+    /// Which time that the condition comes true; the first if absent.
+    #[schemars(with = "Option<Ordinal>")]
+    pub nth: Option<Spanned<u32>>,
     /// How long it is forced.
     #[serde(default, rename = "for", deserialize_with = "from_optional_text")]
     #[schemars(with = "Option<Time>")]
     pub lasting: Option<TimeSpan>,
+}
+
+/// One `[[campaign]]`: every fault is tried with every activation.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CampaignFile {
+    /// Its name: letters, digits, `-`, `_` and `.`; unique, without regard to case.
+    #[schemars(with = "CaseName")]
+    pub name: Spanned<String>,
+    /// What it is about, in one line.
+    pub about: Option<String>,
+    /// The case to which the faults come; the scenario as it is if absent.
+    #[schemars(with = "Option<String>")]
+    pub case: Option<Spanned<String>>,
+    /// Virtual time at which a run is complete; that of the case if absent.
+    #[serde(default, deserialize_with = "from_optional_text")]
+    #[schemars(with = "Option<Time>")]
+    pub until: Option<VirtualTime>,
+    /// What fails.
+    #[serde(default, rename = "fault")]
+    #[schemars(with = "Vec<CampaignFaultFile>")]
+    pub faults: Vec<Spanned<CampaignFaultFile>>,
+    /// When it fails, and for how long.
+    #[serde(default, rename = "activation")]
+    #[schemars(with = "Vec<ActivationFile>")]
+    pub activations: Vec<Spanned<ActivationFile>>,
+    /// The signals in which a fault shows its effect; all if empty. Ranges are allowed.
+    #[serde(default)]
+    #[schemars(with = "Vec<Name>")]
+    pub readouts: Vec<Spanned<SignalName>>,
+    /// The control has told of the fault: `eventually` with a window, or `within`, from the activation on.
+    #[schemars(with = "Option<String>")]
+    pub told: Option<Spanned<String>>,
+    /// The machine is safe: a formula, from the activation on.
+    #[schemars(with = "Option<String>")]
+    pub safe: Option<Spanned<String>>,
+    /// Something has come to harm: a formula, from the activation on.
+    #[schemars(with = "Option<String>")]
+    pub collision: Option<Spanned<String>>,
+    /// The verdicts with which the campaign is passed; `told`, `safe`, `no-effect` and `not-activated` if absent.
+    pub accept: Option<Vec<CampaignVerdict>>,
+}
+
+/// One fault of a campaign: exactly one of `fault`, `force`, `disturbance` and `variable`, without times.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CampaignFaultFile {
+    /// Its name: letters, digits, `-`, `_` and `.`.
+    #[schemars(with = "CaseName")]
+    pub name: Spanned<String>,
+    /// By which method it is brought in.
+    pub kind: FaultKind,
+    /// What it is, in one line.
+    pub about: Option<String>,
+    /// A component that fails, as in `[[case.fault]]`.
+    #[schemars(with = "Option<FaultFile>")]
+    pub fault: Option<Spanned<FaultFile>>,
+    /// A signal that is held, as in `[[case.force]]`.
+    #[schemars(with = "Option<ForceFile>")]
+    pub force: Option<Spanned<ForceFile>>,
+    /// Signals that do not arrive as they were sent, as in `[[case.disturbance]]`.
+    #[schemars(with = "Option<DisturbanceFile>")]
+    pub disturbance: Option<Spanned<DisturbanceFile>>,
+    /// A variable of a PLC that is forced, as in `[[case.variable]]`.
+    #[schemars(with = "Option<VariableFile>")]
+    pub variable: Option<Spanned<VariableFile>>,
+}
+
+/// Where a fault is brought in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum FaultKind {
+    /// In the model of the machine.
+    Model,
+    /// In the software of the control.
+    Software,
+    /// In its wiring, its inputs and outputs, its links.
+    Hardware,
+}
+
+impl FaultKind {
+    /// As it is written.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Model => "model",
+            Self::Software => "software",
+            Self::Hardware => "hardware",
+        }
+    }
+}
+
+/// When the faults of a campaign come: `at` a time, or `when` a condition comes true.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ActivationFile {
+    /// Its name: letters, digits, `-`, `_` and `.`.
+    #[schemars(with = "CaseName")]
+    pub name: Spanned<String>,
+    /// What it is, in one line.
+    pub about: Option<String>,
+    /// At this time.
+    #[serde(default, deserialize_with = "from_optional_text")]
+    #[schemars(with = "Option<Time>")]
+    pub at: Option<VirtualTime>,
+    /// A condition on signals, now and in the past: in the step after it has come true.
+    #[schemars(with = "Option<String>")]
+    pub when: Option<Spanned<String>>,
+    /// Which time that the condition comes true; the first if absent.
+    #[schemars(with = "Option<Ordinal>")]
+    pub nth: Option<Spanned<u32>>,
+    /// From when on the condition counts.
+    #[serde(default, deserialize_with = "from_optional_text")]
+    #[schemars(with = "Option<Time>")]
+    pub from: Option<VirtualTime>,
+    /// How long the fault lasts; to the end if absent.
+    #[serde(default, rename = "for", deserialize_with = "from_optional_text")]
+    #[schemars(with = "Option<Time>")]
+    pub lasting: Option<TimeSpan>,
+}
+
+/// What came of a fault. Exactly one of these holds; the first in this order counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum CampaignVerdict {
+    /// Its activation did not come.
+    NotActivated,
+    /// A PLC stopped on a fault.
+    PlcFault,
+    /// The readouts are those of the run without faults.
+    NoEffect,
+    /// Something came to harm.
+    Collision,
+    /// The control told of it.
+    Told,
+    /// The control did not tell of it, but the machine was safe.
+    Safe,
+    /// None of these.
+    Missed,
+}
+
+impl CampaignVerdict {
+    /// All of them, in the order in which they count.
+    pub const ALL: [Self; 7] =
+        [Self::NotActivated, Self::PlcFault, Self::NoEffect, Self::Collision, Self::Told, Self::Safe, Self::Missed];
+
+    /// As it is shown.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::NotActivated => "not activated",
+            Self::PlcFault => "plc fault",
+            Self::NoEffect => "no effect",
+            Self::Collision => "collision",
+            Self::Told => "told",
+            Self::Safe => "safe",
+            Self::Missed => "missed",
+        }
+    }
 }

@@ -5,6 +5,7 @@
 //! | [`file`] | `cases.toml` as it is written |
 //! | [`catalogue`] | the file read; all cases, those of matrices one by one |
 //! | [`matrix`] | every combination of values |
+//! | [`campaign`] | every fault with every activation, as cases |
 //! | [`value`] | TOML values as those of signals and variables |
 //!
 //! How a case is put on its scenario is in `apply`, beside this room.
@@ -12,6 +13,7 @@
 //! A scenario without the file, and one whose file names no case, has one case, called
 //! [`DEFAULT`]: the scenario as it is.
 
+pub mod campaign;
 pub mod catalogue;
 pub mod file;
 pub mod matrix;
@@ -23,7 +25,9 @@ use onescan_server::signal::ClientName;
 use onescan_server::time::VirtualTime;
 use onescan_server::timeline::Scheduled;
 
+pub use campaign::{Campaign, Injection};
 pub use catalogue::Catalogue;
+pub use file::{CampaignVerdict, FaultKind};
 
 /// The one case of a scenario that names none.
 pub const DEFAULT: &str = "default";
@@ -58,6 +62,8 @@ pub struct Case {
     pub settings: Vec<Setting>,
     /// The entry of `cases.toml` it comes from; nothing for the default case.
     pub entry: Option<usize>,
+    /// What is a campaign's of it, if it is one of a campaign.
+    pub injection: Option<Injection>,
 }
 
 /// What a case does to a scenario once it is bound to its signals.
@@ -67,8 +73,12 @@ pub struct Applied {
     pub case: Case,
     /// What it does while the session runs.
     pub timeline: Vec<Scheduled>,
+    /// The part of that which a campaign brings in.
+    pub injected: Vec<Scheduled>,
     /// Failures of components, which can be checked only when their plants are read.
     pub failures: Vec<FailureAt>,
+    /// Variables that it writes or forces, which can be checked only when their PLCs are made.
+    pub variables: Vec<VariableAt>,
     /// `cases.toml`, for errors that are found when clients are made.
     pub source: (String, String),
 }
@@ -82,6 +92,19 @@ pub struct FailureAt {
     pub component: String,
     /// How it fails.
     pub mode: String,
+    /// Where it stands in `cases.toml`.
+    pub place: Range<usize>,
+}
+
+/// A variable's value in a case.
+#[derive(Clone, Debug, PartialEq)]
+pub struct VariableAt {
+    /// The PLC.
+    pub client: ClientName,
+    /// The variable's path.
+    pub variable: String,
+    /// Its value, as a literal.
+    pub value: String,
     /// Where it stands in `cases.toml`.
     pub place: Range<usize>,
 }

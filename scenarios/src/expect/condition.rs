@@ -1,19 +1,19 @@
-//! Formulas of the present as conditions that a running session can judge.
+//! Formulas of the present and the past as conditions that a running session can judge.
 //!
-//! A session sees one image at a time: windows, edges and arithmetic with signals need a trace and are
-//! refused.
+//! A session has seen the images so far, and none of those to come: what looks ahead is refused, and so is arithmetic
+//! with signals, since checkpoints keep conditions as comparisons of signals with values.
 
 use onescan_server::signal::{SignalName, SignalType};
-use onescan_server::timeline::{Condition, Relation};
+use onescan_server::timeline::{Back, Condition, Edge, Relation};
 
 use super::bind::{Expectation, KnownSignal};
 use super::error::{FormulaError, FormulaErrorKind};
-use super::formula::{Arithmetic, Comparison, Formula, Term, TermKind};
+use super::formula::{self, Arithmetic, Comparison, Formula, Term, TermKind, Window};
 
 /// The condition written in `text`, on signals of `known`.
 ///
 /// # Errors
-/// The text is not a formula, names what is not known, or needs more than one image.
+/// The text is not a formula, names what is not known, or looks ahead.
 pub fn condition(text: &str, known: &[KnownSignal]) -> Result<Condition, FormulaError> {
     let mut columns = Vec::new();
     let expectation = Expectation::parse(text, known, &mut columns)?;
@@ -39,6 +39,7 @@ enum Side {
 impl Signals<'_> {
     fn condition(&self, formula: &Formula<usize>) -> Result<Condition, FormulaError> {
         let not = |condition| Condition::Not(Box::new(condition));
+        let boxed = |inner: &Formula<usize>| self.condition(inner).map(Box::new);
         Ok(match formula {
             Formula::Constant(true) => Condition::All(Vec::new()),
             Formula::Constant(false) => Condition::Any(Vec::new()),
@@ -56,13 +57,18 @@ impl Signals<'_> {
                 let neither = Condition::All(vec![not(left.clone()), not(right.clone())]);
                 Condition::Any(vec![Condition::All(vec![left, right]), neither])
             }
-            Formula::Always(..)
-            | Formula::Eventually(..)
-            | Formula::Until(..)
-            | Formula::Historically(..)
-            | Formula::Once(..)
-            | Formula::Since(..)
-            | Formula::Edge(..) => return Err(Self::refused(0..self.whole)),
+            Formula::Historically(window, inner) => Condition::Historically(back(*window), boxed(inner)?),
+            Formula::Once(window, inner) => Condition::Once(back(*window), boxed(inner)?),
+            Formula::Since(window, left, right) => {
+                let both = [self.condition(left)?, self.condition(right)?];
+                Condition::Since(back(*window), Box::new(both))
+            }
+            Formula::Edge(edge, inner) => Condition::Edge(edge_of(*edge), boxed(inner)?),
+            Formula::Always(..) | Formula::Eventually(..) | Formula::Until(..) => {
+                let help =
+                    "write what has happened: `once`, `historically`, `since`, `rose`, `fell`, `changed`".to_owned();
+                return Err(FormulaError::new(FormulaErrorKind::LooksAhead, 0..self.whole).with_help(help));
+            }
         })
     }
 
@@ -161,6 +167,18 @@ fn constant(term: &Term<usize>) -> Option<f64> {
     })
 }
 
+fn back(window: Window) -> Back {
+    Back { from_ns: window.from_ns, to_ns: window.to_ns }
+}
+
+fn edge_of(edge: formula::Edge) -> Edge {
+    match edge {
+        formula::Edge::Rose => Edge::Rose,
+        formula::Edge::Fell => Edge::Fell,
+        formula::Edge::Changed => Edge::Changed,
+    }
+}
+
 fn relation(comparison: Comparison) -> Relation {
     match comparison {
         Comparison::Less => Relation::Less,
@@ -203,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn formulas_of_the_present_are_conditions() {
+    fn formulas_without_a_future_are_conditions() {
         let texts = [
             "On",
             "not On",
@@ -218,11 +236,82 @@ mod tests {
             "On implies n = 1",
             "always On",
             "rose(On)",
+            "On and not once[20ms,1s] x > 1",
+            "historically[100ms,] fell(On)",
+            "(n > 1) since[0s,2s] changed(x > 0.5)",
+            "rose(eventually On)",
+            "rate(x) > 1",
             "x + 1 > 2",
             "x > x",
             "y",
         ];
         let read: Vec<String> = texts.iter().map(|text| format!("{text}  ->  {}", read(text))).collect();
         insta::assert_snapshot!(read.join("\n"));
+    }
+
+    use onescan_server::timeline::past::Judged;
+    use proptest::prelude::*;
+
+    use super::super::monitor::Monitor;
+    use super::super::sample::Block;
+    use super::super::truth::Truth;
+
+    fn past() -> impl Strategy<Value = String> {
+        let window = prop_oneof![
+            2 => Just(String::new()),
+            4 => (0_u64..9, 0_u64..12).prop_map(|(from, length)| format!("[{from}ns,{}ns]", from + length)),
+            1 => (0_u64..9).prop_map(|from| format!("[{from}ns,]")),
+        ];
+        let leaf = prop_oneof![Just("On".to_owned()), (-2_i32..3).prop_map(|limit| format!("(x > {limit})"))];
+        leaf.prop_recursive(4, 16, 2, move |inner| {
+            let two = prop::sample::select(vec!["and", "or", "implies", "iff"]);
+            let one = prop::sample::select(vec!["historically", "once"]);
+            let edge = prop::sample::select(vec!["rose", "fell", "changed"]);
+            prop_oneof![
+                (one, window.clone(), inner.clone()).prop_map(|(word, window, f)| format!("({word}{window} {f})")),
+                (inner.clone(), two, inner.clone()).prop_map(|(f, word, g)| format!("({f} {word} {g})")),
+                (inner.clone(), window.clone(), inner.clone())
+                    .prop_map(|(f, window, g)| format!("({f} since{window} {g})")),
+                inner.clone().prop_map(|f| format!("(not {f})")),
+                (edge, inner).prop_map(|(word, f)| format!("{word}({f})")),
+            ]
+        })
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(2_000))]
+        /// A session judges the past as expectations do, at every image, and also after its memories were saved.
+        #[test]
+        fn conditions_are_worth_what_formulas_are(
+            text in past(),
+            samples in prop::collection::vec((1_u64..5, -3_i32..4, any::<bool>()), 1..60),
+        ) {
+            let signal = |name: &str, ty| KnownSignal { name: name.to_owned(), ty, unit: None };
+            let known = [signal("On", SignalType::BOOL), signal("x", SignalType::LREAL)];
+            let mut columns = vec!["On".to_owned(), "x".to_owned()];
+            let expectation = Expectation::parse(&text, &known, &mut columns).expect("a formula");
+            let mut monitor = Monitor::every(expectation.formula());
+            let mut block = Block::new(2);
+            let condition = condition(&text, &known).expect("a condition");
+            let bind = &mut |signal: &SignalName, _: Relation, value: &str| {
+                Ok::<_, std::convert::Infallible>((signal.as_str() == "On", value.parse::<f64>().unwrap_or(f64::NAN)))
+            };
+            let judged = Judged::new(&condition, bind).expect("bound");
+            let mut memories = judged.nothing_seen();
+            let (mut t_ns, mut now) = (0, Vec::new());
+            for (dt_ns, x, on) in &samples {
+                let x = f64::from(*x);
+                block.push(t_ns, [f64::from(u8::from(*on)), x]);
+                let holds = &mut |(is_on, limit): &(bool, f64)| if *is_on { *on } else { x > *limit };
+                now.push(judged.judge(&mut memories, t_ns, holds));
+                let saved = serde_json::to_string(&memories).expect("JSON");
+                memories = serde_json::from_str(&saved).expect("memories");
+                prop_assert!(judged.fits(&memories));
+                t_ns += dt_ns;
+            }
+            monitor.push(&block);
+            let expected: Vec<bool> = monitor.take_said().map(|said| said.worth.truth == Truth::True).collect();
+            prop_assert_eq!(now, expected, "{}", text);
+        }
     }
 }

@@ -57,9 +57,12 @@ pub enum FormulaErrorKind {
     /// A text.
     #[error("`{0}` is a {1}; expectations are on BOOLs, numbers and times")]
     Text(String, String),
-    /// More than one image is needed to judge it.
-    #[error("a condition is judged on one image: no windows, no edges, no arithmetic with signals")]
+    /// More than comparisons with values is needed to judge it.
+    #[error("a condition compares signals with values: no arithmetic with signals, no `rate`")]
     NotNow,
+    /// It cannot be judged when it is asked for.
+    #[error("a condition is judged as the run goes: it cannot look ahead")]
+    LooksAhead,
     /// It looks at more than one time.
     #[error("this is judged on one image at a time: no windows, no edges, no `rate`")]
     NotPresent,

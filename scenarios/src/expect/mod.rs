@@ -12,7 +12,7 @@
 //! | [`formula`] | formulas and terms |
 //! | [`unit`] | units of measurement, and numbers carried from one to another |
 //! | [`bind`] | names to signals, units to factors |
-//! | [`condition`] | formulas of the present, which a running session can judge |
+//! | [`condition`] | formulas without a future, which a running session can judge |
 //! | [`present`] | the same with arithmetic, for who has the values at hand |
 //! | [`truth`] | three-valued truth, and the margin by which a formula holds |
 //! | [`verdict`] | met, violated and when, or still open at the end |
@@ -21,6 +21,7 @@
 //! | [`sliding`] | what is joined over windows that move, in a time that does not depend on their lengths |
 //! | [`ahead`], [`back`] | operators on the future and on the past |
 //! | [`monitor`] | a formula as the run goes |
+//! | [`reaction`] | how long it takes until something holds |
 //! | [`judge`] | all expectations of a run, and the samples that a verdict may still name |
 //!
 //! A run is judged as it goes. What is kept of it is what windows reach over, times the signals that are named.
@@ -47,6 +48,7 @@ mod monitor;
 mod offline;
 mod parser;
 mod present;
+mod reaction;
 mod sample;
 mod sliding;
 mod term;
@@ -60,6 +62,7 @@ pub use condition::condition;
 pub use error::FormulaError;
 pub use judge::Judge;
 pub use present::Present;
+pub use reaction::Reaction;
 pub use sample::TraceEnd;
 pub use truth::Margin;
 pub use verdict::{Outcome, Verdict};

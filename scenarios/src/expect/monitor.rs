@@ -46,6 +46,16 @@ impl Monitor {
         Self::asked(formula, Demand::First)
     }
 
+    /// The same, asked for every sample.
+    pub(super) fn every(formula: &Formula<usize>) -> Self {
+        Self::asked(formula, Demand::Every)
+    }
+
+    /// Takes what it has said so far.
+    pub(super) fn take_said(&mut self) -> impl Iterator<Item = Judged> + '_ {
+        self.said.drain(..)
+    }
+
     fn asked(formula: &Formula<usize>, demand: Demand) -> Self {
         let same = |inner: &Formula<usize>| Box::new(Self::asked(inner, demand));
         let every = |inner: &Formula<usize>| Box::new(Self::asked(inner, Demand::Every));

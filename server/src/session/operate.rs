@@ -4,6 +4,7 @@ use onescan_base::did_you_mean;
 
 use super::{Mode, Session};
 use crate::client::OperationRefused;
+use crate::interference::Onset;
 use crate::operation::{Control, Operation, OperationError, SignalFault};
 use crate::signal::{SignalId, SignalName};
 
@@ -70,7 +71,8 @@ impl Session {
         let id = self.known(signal)?;
         let (ty, step) = (self.layout.ty(id), self.plan.step());
         let committed = self.layout.bytes(id, self.image.committed()).to_vec();
-        if self.image.interference_mut().disturb(id, fault, ty, &committed, step) {
+        let onset = Onset { ty, committed: &committed, step, steps: self.cycle.steps() };
+        if self.image.interference_mut().disturb(id, fault, &onset) {
             return Ok(());
         }
         Err(OperationError::FaultType { signal: signal.clone(), ty, fault: fault.clone() })

@@ -40,7 +40,7 @@ fn counts(report: &Report) -> Table {
     let ratio = report.quality.as_ref().and_then(|quality| quality.ratio);
     Table {
         title: "count",
-        head: vec!["total", "per hour", "quality"],
+        head: ["total", "per hour", "quality"].map(Into::into).into(),
         rows: report.counts.iter().map(row).collect(),
         remarks: ratio.map(|ratio| format!("quality {}", per_cent(ratio))).into_iter().collect(),
         is_folded: false,
@@ -68,7 +68,7 @@ fn cycles(cycles: &[CycleReport]) -> Table {
     };
     Table {
         title: "cycle",
-        head: vec!["count", "mean", "\u{3c3}", "min", "median", "95 %", "max"],
+        head: ["count", "mean", "\u{3c3}", "min", "median", "95 %", "max"].map(Into::into).into(),
         rows: cycles.iter().map(row).collect(),
         remarks: cycles.iter().filter_map(abandoned).collect(),
         is_folded: false,
@@ -100,7 +100,7 @@ fn down_time(down: &DownTimeReport, oee: Option<&OeeReport>) -> Table {
     }));
     Table {
         title: "down time",
-        head: vec!["times", "total", "longest", "share", ""],
+        head: ["times", "total", "longest", "share", ""].map(Into::into).into(),
         rows: rows.collect(),
         remarks,
         is_folded: false,
@@ -119,7 +119,7 @@ fn alarms(alarms: &AlarmReport) -> Table {
     });
     Table {
         title: "alarm",
-        head: vec!["times", "total", "longest", ""],
+        head: ["times", "total", "longest", ""].map(Into::into).into(),
         rows: rows.collect(),
         remarks: Vec::new(),
         is_folded: false,
@@ -137,7 +137,7 @@ pub(crate) fn occurrences(report: &Report) -> Option<Table> {
     let rows = alarms.first.iter().map(row).chain(left_out).chain(alarms.last.iter().map(row));
     Some(Table {
         title: "alarms, one by one",
-        head: vec!["from", "to", "duration"],
+        head: ["from", "to", "duration"].map(Into::into).into(),
         rows: rows.collect(),
         remarks: Vec::new(),
         is_folded: true,

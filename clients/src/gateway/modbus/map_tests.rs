@@ -4,7 +4,7 @@ use onescan_server::signal::{Port, SignalName};
 use proptest::prelude::*;
 
 use super::*;
-use crate::gateway::exchange::{Feed, SystemWords};
+use crate::gateway::exchange::{Feed, Words};
 use crate::gateway::modbus::registers;
 
 const TYPES: [SignalType; 7] = [
@@ -24,7 +24,7 @@ fn exchange(ports: &[(&str, SignalType)], addresses: &[(&str, &str)]) -> Exchang
         Feed::whole(&port, addresses.get(name).map(|address| (*address).to_owned()))
     };
     let inputs: Vec<Feed> = ports.iter().map(feed).collect();
-    Exchange::new(&inputs, &[], SystemWords::Absent, &BTreeMap::new())
+    Exchange::new(&inputs, &[], Words::Handshake, &BTreeMap::new())
 }
 
 #[test]

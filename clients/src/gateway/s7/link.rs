@@ -34,9 +34,23 @@ pub struct S7Link {
 
 impl S7Link {
     /// A link to `address`, a host and perhaps a port.
-    pub fn new(address: &str, options: Options, exchange: &Exchange, layouts: Layouts, timeout: Duration) -> Self {
+    ///
+    /// # Errors
+    /// A point in parts: what is written in several messages is not written at once.
+    pub fn new(
+        address: &str,
+        options: Options,
+        exchange: &Exchange,
+        layouts: Layouts,
+        timeout: Duration,
+    ) -> Result<Self, MappingFault> {
+        if let Some(point) = layouts.in_parts(exchange) {
+            let message = format!("`{}` is in parts, and a data block of an S7 is not written at once", point.label());
+            let help = "give it one offset, or use `tcp` or `tcp-listen`, where a block travels whole";
+            return Err(MappingFault::new(&point.name, message).with_help(Some(help.to_owned())));
+        }
         let (owned, grant) = (layouts.to_plc.owned(), layouts.to_plc.last());
-        Self {
+        Ok(Self {
             address: address.to_owned(),
             options,
             exchange: exchange.clone(),
@@ -47,7 +61,7 @@ impl S7Link {
             connection: None,
             block: Vec::new(),
             timeout,
-        }
+        })
     }
 
     fn blank(&mut self, size: usize) {
@@ -60,6 +74,9 @@ impl S7Link {
         self.blank(size);
         let connection = self.connection.as_mut().ok_or_else(LinkFault::not_connected)?;
         connection.read(db, &mut self.block).map_err(|refusal| fault(refusal, db, size))?;
+        if let Some(stray) = self.layouts.from_plc.stray(&self.block) {
+            return Err(LinkFault::Nonsense(format!("{stray} of DB{db}: the layouts differ")));
+        }
         self.layouts.from_plc.decode(&self.block, packed);
         Ok(())
     }

@@ -1,75 +1,106 @@
 //! Blocks in a stream of bytes: nothing but their length tells them apart.
+//!
+//! There is no header and no check sum. Only what the layout calls reserve can show that a stream is cut in the wrong
+//! place, so with `reserve_zero` every block is held against it, also those that newer ones replace.
 
-use std::io;
+use bytes::{Bytes, BytesMut};
+use thiserror::Error;
 
-use bytes::{Buf, Bytes, BytesMut};
-use tokio_util::codec::{Decoder, Encoder};
+use super::layout::{Layout, Stray};
+use crate::gateway::fault::Partial;
 
-/// Blocks of one length in, blocks of another out.
-#[derive(Clone, Copy, Debug)]
+/// What a stream shows when both sides do not cut it alike.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum StreamFault {
+    /// The connection was closed in mid-block.
+    #[error("closed after {0}: is the layout the same on both sides?")]
+    Cut(Partial),
+    /// There is something where the layout has nothing.
+    #[error("{stray} of block {number}: the stream is cut in the wrong place, or the layouts differ")]
+    Stray {
+        /// Which block since the connection came about, from 1.
+        number: u64,
+        /// What is there.
+        stray: Stray,
+    },
+}
+
+/// Blocks of one layout, cut from a stream.
+#[derive(Clone, Debug)]
 pub struct BlockCodec {
-    incoming_bytes: usize,
+    layout: Layout,
+    buffer: BytesMut,
+    /// Blocks since the connection came about.
+    number: u64,
 }
 
 impl BlockCodec {
-    /// Incoming blocks have `incoming_bytes` bytes, at least one.
-    pub fn new(incoming_bytes: usize) -> Self {
-        Self { incoming_bytes: incoming_bytes.max(1) }
+    /// Nothing has come yet.
+    pub fn new(layout: &Layout) -> Self {
+        Self { layout: layout.clone(), buffer: BytesMut::new(), number: 0 }
     }
-}
 
-impl Decoder for BlockCodec {
-    type Item = Bytes;
-    type Error = io::Error;
+    /// A new connection: nothing of the one before counts.
+    pub fn clear(&mut self) {
+        self.buffer.clear();
+        self.number = 0;
+    }
 
-    /// The newest whole block: those before it are past, and nobody asks what a PLC was.
-    fn decode(&mut self, buffer: &mut BytesMut) -> io::Result<Option<Bytes>> {
-        let whole = buffer.len() / self.incoming_bytes;
-        if whole == 0 {
-            buffer.reserve(self.incoming_bytes - buffer.len());
+    /// These bytes have come.
+    pub fn take(&mut self, bytes: &[u8]) {
+        self.buffer.extend_from_slice(bytes);
+    }
+
+    /// The next whole block, in the order in which they come.
+    ///
+    /// # Errors
+    /// Its reserve is not 0, where that is asked for.
+    pub fn next_block(&mut self) -> Result<Option<Bytes>, StreamFault> {
+        let whole = self.whole();
+        if self.buffer.len() < whole {
+            self.buffer.reserve(whole - self.buffer.len());
             return Ok(None);
         }
-        buffer.advance((whole - 1) * self.incoming_bytes);
-        Ok(Some(buffer.split_to(self.incoming_bytes).freeze()))
-    }
-
-    fn decode_eof(&mut self, buffer: &mut BytesMut) -> io::Result<Option<Bytes>> {
-        match self.decode(buffer)? {
-            Some(block) => Ok(Some(block)),
-            None if buffer.is_empty() => Ok(None),
-            None => {
-                let (got, whole) = (buffer.len(), self.incoming_bytes);
-                let message = format!(
-                    "closed after {got} of the {whole} bytes of a block: is the layout the same on both sides?"
-                );
-                Err(io::Error::new(io::ErrorKind::UnexpectedEof, message))
-            }
+        let block = self.buffer.split_to(whole).freeze();
+        self.number += 1;
+        match self.layout.stray(&block) {
+            Some(stray) => Err(StreamFault::Stray { number: self.number, stray }),
+            None => Ok(Some(block)),
         }
     }
-}
 
-impl Encoder<&[u8]> for BlockCodec {
-    type Error = io::Error;
+    /// The newest whole block: those before it are past, and nobody asks what a PLC was.
+    ///
+    /// # Errors
+    /// The reserve of one of them is not 0, where that is asked for.
+    pub fn newest(&mut self) -> Result<Option<Bytes>, StreamFault> {
+        let mut newest = None;
+        while let Some(block) = self.next_block()? {
+            newest = Some(block);
+        }
+        Ok(newest)
+    }
 
-    fn encode(&mut self, block: &[u8], buffer: &mut BytesMut) -> io::Result<()> {
-        buffer.extend_from_slice(block);
-        Ok(())
+    /// The block that has begun and is not whole, if there is one.
+    pub fn partial(&self) -> Option<Partial> {
+        let (got, whole) = (self.buffer.len(), self.whole());
+        (got % whole != 0).then_some(Partial { got: got % whole, whole })
+    }
+
+    /// The stream has ended.
+    ///
+    /// # Errors
+    /// In mid-block.
+    pub fn end(&self) -> Result<(), StreamFault> {
+        self.partial().map_or(Ok(()), |partial| Err(StreamFault::Cut(partial)))
+    }
+
+    /// A block without fields is one byte, so that there is something to wait for.
+    fn whole(&self) -> usize {
+        self.layout.size().max(1)
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_newest_whole_block_counts() {
-        let mut codec = BlockCodec::new(3);
-        let mut buffer = BytesMut::from(&b"ab"[..]);
-        assert_eq!(codec.decode(&mut buffer).unwrap(), None);
-        buffer.extend_from_slice(b"cdefgh");
-        assert_eq!(codec.decode(&mut buffer).unwrap().as_deref(), Some(&b"def"[..]));
-        assert_eq!(codec.decode(&mut buffer).unwrap(), None);
-        let error = codec.decode_eof(&mut buffer).unwrap_err();
-        assert!(error.to_string().starts_with("closed after 2 of the 3 bytes"));
-    }
-}
+#[path = "codec_tests.rs"]
+mod tests;

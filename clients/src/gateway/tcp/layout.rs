@@ -4,14 +4,15 @@
 //! `[Nyyssönen]` Fig. 18: 16 control bits and seven REALs are 30 bytes an axis.
 
 use std::collections::BTreeMap;
-use std::fmt;
 use std::ops::Range;
 
 use onescan_base::did_you_mean;
 use onescan_server::signal::SignalType;
 use schemars::JsonSchema;
 use serde::Deserialize;
+use thiserror::Error;
 
+use super::place::Place;
 use crate::gateway::byte_order::{ByteOrder, is_number};
 use crate::gateway::exchange::{Exchange, Point};
 use crate::gateway::fault::MappingFault;
@@ -28,26 +29,14 @@ const DEPTH_MAX: u32 = 8;
 pub struct Declaration {
     /// Order of the bytes of every number.
     pub byte_order: ByteOrder,
+    /// True if everything that comes must be 0 where no field and no point lies.
+    pub reserve_zero: bool,
     /// The block that the gateway sends.
     pub to_plc: Vec<String>,
     /// The block that the PLC sends.
     pub from_plc: Vec<String>,
     /// Structures by name, each a list of fields.
     pub structures: BTreeMap<String, Vec<String>>,
-}
-
-/// A place in a block.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Place {
-    byte: usize,
-    bit: u8,
-    ty: SignalType,
-}
-
-impl Place {
-    fn bytes(self) -> Range<usize> {
-        self.byte..self.byte + self.ty.size()
-    }
 }
 
 /// A value in packed bytes and in a block.
@@ -63,8 +52,20 @@ pub struct Layout {
     order: ByteOrder,
     moves: Vec<Move>,
     size: usize,
+    /// The bits that must be 0, a byte each of the block's; empty if nothing must.
+    reserve: Vec<u8>,
     /// True if the block has no fields but the points, so that all of it is the gateway's and the PLC's own.
     is_own: bool,
+}
+
+/// Bits that are set where the layout has nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error("{bits} bits are set in the reserve, the first in byte {byte},")]
+pub struct Stray {
+    /// How many.
+    pub bits: u32,
+    /// The first byte of the block that has one.
+    pub byte: usize,
 }
 
 /// Both blocks.
@@ -84,14 +85,25 @@ impl Layouts {
     /// # Errors
     /// A point without a field, a field of another type, two points in one place, a declaration that is wrong.
     pub fn new(declaration: &Declaration, exchange: &Exchange) -> Result<Self, MappingFault> {
-        Ok(Self {
+        let layouts = Self {
             to_plc: Layout::new(declaration, &declaration.to_plc, exchange.to_plc(), "to_plc")?,
             from_plc: Layout::new(declaration, &declaration.from_plc, exchange.from_plc(), "from_plc")?,
-        })
+        };
+        if declaration.reserve_zero && layouts.from_plc.reserve.iter().all(|mask| *mask == 0) {
+            let message = "`reserve_zero` has nothing to look at: `from_plc` has no reserve";
+            return Err(MappingFault::new("reserve_zero", message));
+        }
+        Ok(layouts)
     }
-}
 
-impl Layouts {
+    /// The first point that is not in one piece, of those that `exchange` has.
+    pub(crate) fn in_parts<'e>(&self, exchange: &'e Exchange) -> Option<&'e Point> {
+        let of = |layout: &Layout, points: &'e [Point]| {
+            layout.moves.iter().zip(points).find(|(moved, _)| moved.place.is_in_parts()).map(|(_, point)| point)
+        };
+        of(&self.to_plc, exchange.to_plc()).or_else(|| of(&self.from_plc, exchange.from_plc()))
+    }
+
     /// The offsets of the points of both directions, as a map writes them.
     pub fn places(&self) -> [Vec<String>; 2] {
         [&self.to_plc, &self.from_plc].map(|layout| layout.moves.iter().map(|moved| moved.place.to_string()).collect())
@@ -99,22 +111,8 @@ impl Layouts {
 
     /// Byte and bit of the points of both directions.
     pub fn keys(&self) -> [Vec<(usize, u8)>; 2] {
-        let key = |moved: &Move| (moved.place.byte, moved.place.bit);
+        let key = |moved: &Move| moved.place.key();
         [&self.to_plc, &self.from_plc].map(|layout| layout.moves.iter().map(key).collect())
-    }
-}
-
-impl fmt::Display for Place {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.ty == SignalType::BOOL { write!(f, "{}.{}", self.byte, self.bit) } else { write!(f, "{}", self.byte) }
-    }
-}
-
-impl Place {
-    /// True if the two share a bit.
-    fn overlaps(self, other: Self) -> bool {
-        let is_apart = self.ty == SignalType::BOOL && other.ty == SignalType::BOOL && self.bit != other.bit;
-        !is_apart && self.byte < other.byte + other.ty.size() && other.byte < self.byte + self.ty.size()
     }
 }
 
@@ -132,14 +130,25 @@ impl Layout {
         }
         let size = ruler.size();
         let mut moves: Vec<Move> = Vec::new();
-        for point in points {
+        let mut taken = Taken::default();
+        for (index, point) in points.iter().enumerate() {
             let place = place_of(point, &ruler.places, size, block)?;
-            if let Some(index) = moves.iter().position(|other| other.place.overlaps(place)) {
-                return Err(points[index].doubled(point, &format!("{place} of `{block}`")));
+            match taken.by(index, &place) {
+                Some(other) if other == index => {
+                    let message =
+                        format!("`{}` is mapped to {place} of `{block}`, which has a bit twice", point.label());
+                    return Err(MappingFault::new(&point.name, message));
+                }
+                Some(other) => return Err(points[other].doubled(point, &format!("{place} of `{block}`"))),
+                None => moves.push(Move { packed: point.range(), place }),
             }
-            moves.push(Move { packed: point.range(), place });
         }
-        Ok(Self { order: declaration.byte_order, moves, size, is_own: fields.is_empty() })
+        let mut reserve = if declaration.reserve_zero { vec![0xff; size] } else { Vec::new() };
+        if declaration.reserve_zero {
+            let places = ruler.places.values().chain(moves.iter().map(|each| &each.place));
+            places.flat_map(Place::masks).for_each(|(byte, mask)| reserve[byte] &= !mask);
+        }
+        Ok(Self { order: declaration.byte_order, moves, size, reserve, is_own: fields.is_empty() })
     }
 
     /// Bytes of the block.
@@ -147,9 +156,17 @@ impl Layout {
         self.size
     }
 
-    /// The bytes of the last point.
+    /// The bytes of the last point, where it is in one piece.
     pub fn last(&self) -> Range<usize> {
-        self.moves.last().map_or(0..0, |each| each.place.bytes())
+        self.moves.last().and_then(|each| each.place.ranges().next()).unwrap_or(0..0)
+    }
+
+    /// What is set in the reserve of a block, if that must be 0.
+    pub fn stray(&self, block: &[u8]) -> Option<Stray> {
+        let stray = |(byte, mask): (&u8, &u8)| (byte & mask).count_ones();
+        let bits = block.iter().zip(&self.reserve).map(stray);
+        let byte = bits.clone().position(|bits| bits > 0)?;
+        Some(Stray { bits: bits.sum(), byte })
     }
 
     /// The bytes that may be written: all of a block that has no fields but the points, and otherwise those in which
@@ -158,7 +175,7 @@ impl Layout {
         if self.is_own {
             return std::iter::once(0..self.size).collect();
         }
-        let mut places: Vec<Range<usize>> = self.moves.iter().map(|each| each.place.bytes()).collect();
+        let mut places: Vec<Range<usize>> = self.moves.iter().flat_map(|each| each.place.ranges()).collect();
         places.sort_by_key(|place| place.start);
         let mut runs: Vec<Range<usize>> = Vec::new();
         for place in places {
@@ -173,34 +190,40 @@ impl Layout {
     /// The points that lie in these bytes of the block in part or whole, by their index and packed bytes.
     pub(crate) fn touched(&self, bytes: &Range<usize>) -> impl Iterator<Item = (usize, Range<usize>)> {
         let touches = |place: Range<usize>| place.start < bytes.end && bytes.start < place.end;
-        let chosen = self.moves.iter().enumerate().filter(move |(_, each)| touches(each.place.bytes()));
+        let chosen = self.moves.iter().enumerate().filter(move |(_, each)| each.place.ranges().any(touches));
         chosen.map(|(index, each)| (index, each.packed.clone()))
     }
 
     /// Puts packed values into a block.
     pub fn encode(&self, packed: &[u8], block: &mut [u8]) {
         for Move { packed: range, place } in &self.moves {
-            let value = &packed[range.clone()];
-            if place.ty == SignalType::BOOL {
-                let mask = 1 << place.bit;
-                block[place.byte] = block[place.byte] & !mask | if value[0] != 0 { mask } else { 0 };
-            } else {
-                self.order.copy(value, &mut block[place.byte..place.byte + value.len()]);
-            }
+            place.put(self.order, &packed[range.clone()], block);
         }
     }
 
     /// Takes packed values out of a block.
     pub fn decode(&self, block: &[u8], packed: &mut [u8]) {
         for Move { packed: range, place } in &self.moves {
-            let value = &mut packed[range.clone()];
-            if place.ty == SignalType::BOOL {
-                value[0] = block[place.byte] >> place.bit & 1;
-            } else {
-                let len = value.len();
-                self.order.copy(&block[place.byte..place.byte + len], value);
-            }
+            place.take(self.order, block, &mut packed[range.clone()]);
         }
+    }
+}
+
+/// Which bits have points.
+#[derive(Default)]
+struct Taken(BTreeMap<usize, Vec<(u8, usize)>>);
+
+impl Taken {
+    /// Point `index` takes `place`; gives the first point that has a bit of it already.
+    fn by(&mut self, index: usize, place: &Place) -> Option<usize> {
+        let mut first = None;
+        for (byte, mask) in place.masks() {
+            let there = self.0.entry(byte).or_default();
+            let others = there.iter().filter(|(other, _)| other & mask != 0).map(|(_, index)| *index);
+            first = first.into_iter().chain(others).min();
+            there.push((mask, index));
+        }
+        first
     }
 }
 
@@ -210,16 +233,14 @@ fn place_of(point: &Point, places: &BTreeMap<String, Place>, size: usize, block:
         path.map_or_else(|| point.key(), str::to_owned)
     };
     let address = &point.address.clone().unwrap_or_else(own);
-    let place = match (places.get(address.as_str()), offset(address)) {
-        (Some(place), _) => *place,
-        (None, Some((byte, bit))) => {
-            let is_bool = point.ty == SignalType::BOOL;
-            if byte + if is_bool { 1 } else { point.ty.size() } > size || (bit.is_some() != is_bool) {
-                let message =
-                    format!("`{address}` is no place for {} `{}` in a block of {size} bytes", point.ty, point.label());
-                return Err(MappingFault::new(&point.name, message));
-            }
-            Place { byte, bit: bit.unwrap_or(0), ty: point.ty }
+    let place = match (places.get(address.as_str()), Place::parse(address, point.ty, size)) {
+        (Some(place), _) => place.clone(),
+        (None, Some(Ok(place))) => place,
+        (None, Some(Err(why))) => {
+            return Err(MappingFault::new(
+                &point.name,
+                format!("`{}` has no place in `{block}`: {why}", point.label()),
+            ));
         }
         (None, None) => {
             let help = did_you_mean(address, places.keys().map(String::as_str));
@@ -227,23 +248,12 @@ fn place_of(point: &Point, places: &BTreeMap<String, Place>, size: usize, block:
             return Err(MappingFault::new(&point.name, message).with_help(help));
         }
     };
-    if place.ty != point.ty {
+    if place.ty() != point.ty {
         let message =
-            format!("`{}` is {}, but field `{address}` of `{block}` is {}", point.label(), point.ty, place.ty);
+            format!("`{}` is {}, but field `{address}` of `{block}` is {}", point.label(), point.ty, place.ty());
         return Err(MappingFault::new(&point.name, message));
     }
     Ok(place)
-}
-
-/// `12` or `12.3`: a byte, and a bit of it.
-fn offset(address: &str) -> Option<(usize, Option<u8>)> {
-    match address.split_once('.') {
-        None => Some((address.parse().ok()?, None)),
-        Some((byte, bit)) => {
-            let bit = bit.parse().ok().filter(|bit| *bit < 8)?;
-            Some((byte.parse().ok()?, Some(bit)))
-        }
-    }
 }
 
 /// Lays field behind field.
@@ -303,7 +313,7 @@ impl Ruler<'_> {
                 self.bits = 0;
             }
             self.bits += 1;
-            Place { byte: self.at - 1, bit: self.bits - 1, ty }
+            Place::bit(self.at - 1, self.bits - 1)
         } else if is_number(ty) {
             if ty.size() == 1 {
                 self.bits = 0;
@@ -312,7 +322,7 @@ impl Ruler<'_> {
             }
             let byte = self.at;
             self.at += ty.size();
-            Place { byte, bit: 0, ty }
+            Place::row(byte, ty)
         } else {
             return Err(MappingFault::new(path, format!("`{path}` is {ty}: texts do not travel in blocks")));
         };

@@ -2,7 +2,7 @@ use onescan_server::signal::{Port, SignalName};
 use proptest::prelude::*;
 
 use super::*;
-use crate::gateway::exchange::{Feed, SystemWords};
+use crate::gateway::exchange::{Feed, Words};
 
 fn declaration(text: &str) -> Declaration {
     toml::from_str(text).unwrap()
@@ -34,7 +34,7 @@ fn axis_exchange() -> Exchange {
     ];
     let words = ["Session", "Limit", "TV", "Grant", "Joined", "Done", "Answer", "Layout"];
     let addresses = words.iter().map(|word| (format!("SDSP_{word}"), format!("Sync.{word}"))).collect();
-    Exchange::new(&inputs, &outputs, SystemWords::Absent, &addresses)
+    Exchange::new(&inputs, &outputs, Words::Handshake, &addresses)
 }
 
 #[test]
@@ -82,10 +82,10 @@ fn points_may_lie_at_offsets() {
     let port = Port { name: SignalName::new("Valve").unwrap(), ty: SignalType::BOOL };
     let at = |address: &str| {
         let feed = Feed::whole(&port, Some(address.to_owned()));
-        let exchange = Exchange::new(&[feed], &[], SystemWords::Absent, &BTreeMap::new());
-        Layouts::new(&Declaration::default(), &exchange).map(|layouts| layouts.to_plc.moves[0].place)
+        let exchange = Exchange::new(&[feed], &[], Words::Handshake, &BTreeMap::new());
+        Layouts::new(&Declaration::default(), &exchange).map(|layouts| layouts.to_plc.moves[0].place.clone())
     };
-    assert_eq!(at("0.3").unwrap(), Place { byte: 0, bit: 3, ty: SignalType::BOOL });
+    assert_eq!(at("0.3").unwrap(), Place::bit(0, 3));
     assert!(at("900.0").is_err() && at("4").is_err());
 }
 
@@ -96,7 +96,7 @@ fn two_points_share_no_place() {
         Feed::whole(&port, Some(address.to_owned()))
     };
     let told = |a: &str, b: &str| {
-        let exchange = Exchange::new(&[feed("a", a), feed("b", b)], &[], SystemWords::Absent, &BTreeMap::new());
+        let exchange = Exchange::new(&[feed("a", a), feed("b", b)], &[], Words::Handshake, &BTreeMap::new());
         Layouts::new(&Declaration::default(), &exchange).map_or_else(|fault| fault.to_string(), |_| "fine".to_owned())
     };
     assert_eq!(told("0.1", "0.0"), "fine");
@@ -109,7 +109,7 @@ fn a_variable_is_the_field_of_its_path() {
     let target = |path: &str| crate::gateway::exchange::Target { variable: Some(path.to_owned()), address: None };
     let port = Port { name: SignalName::new("go").unwrap(), ty: SignalType::BOOL };
     let feed = Feed { port, targets: vec![target("P.go"), target("Q.go")] };
-    let exchange = Exchange::new(&[feed], &[], SystemWords::Absent, &BTreeMap::new());
+    let exchange = Exchange::new(&[feed], &[], Words::Handshake, &BTreeMap::new());
     let words = "\"SDSP_Session: UDINT\", \"SDSP_Limit: UDINT\", \"SDSP_TV: LINT\", \"SDSP_Grant: UDINT\"";
     let places = |fields: &str| {
         let text = format!("to_plc = [{fields}, {words}]\n[structures]\nIn = [\"go: BOOL\"]\n");
@@ -132,7 +132,7 @@ proptest! {
             Feed::whole(&Port { name: SignalName::new(format!("s{i}")).unwrap(), ty: TYPES[*ty] }, None)
         };
         let ports: Vec<Feed> = types.iter().enumerate().map(port).collect();
-        let exchange = Exchange::new(&ports, &[], SystemWords::Present, &BTreeMap::new());
+        let exchange = Exchange::new(&ports, &[], Words::WithSystem, &BTreeMap::new());
         let layouts = Layouts::new(&Declaration::default(), &exchange).unwrap();
         let mut state = seed;
         let mut packed = Vec::new();

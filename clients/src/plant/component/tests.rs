@@ -7,7 +7,7 @@ use super::library::{ENTRIES, kinds};
 use super::origin::Origin;
 use crate::plant::coupling::{Coordinate, Grasp, Hit, InField, Load, Moving, Targets};
 use crate::plant::effort::Motion;
-use crate::plant::random::Random;
+use onescan_server::random::Random;
 
 /// What is seen of so many targets.
 pub(crate) fn touched(count: u32) -> Targets {

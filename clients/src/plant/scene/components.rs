@@ -157,7 +157,9 @@ fn refuse_unknown_keys(one: &Known<'_>, faults: &mut Faults<'_>) {
     right.extend(kind.inputs.iter().flat_map(|input| [format!("{}_signal", input.key), format!("{}_from", input.key)]));
     right.extend(kind.inputs.iter().map(|input| kind.constant_key(&input.key)));
     right.extend(kind.outputs.iter().map(|output| format!("{}_signal", output.key)));
-    right.extend(kind.frames.by_key().into_iter().filter(|(_, signals)| !signals.is_empty()).map(|(key, _)| key.to_owned()));
+    right.extend(
+        kind.frames.by_key().into_iter().filter(|(_, signals)| !signals.is_empty()).map(|(key, _)| key.to_owned()),
+    );
     for key in keys.table.keys().filter(|key| !right.contains(key.get_ref())) {
         let wrong = SceneFaultKind::ComponentKey { whose: keys.whose(), key: key.get_ref().clone() };
         faults.add_hinted(key.span(), wrong, hint(key.get_ref(), kind, &right));

@@ -121,6 +121,8 @@ pub(super) fn link(scratch: &Path) -> Prepared {
         head.replace("modbus://127.0.0.1:1502", url).into_bytes()
     };
     let mut seeds: Vec<_> = others.into_iter().map(of).collect();
+    let parts = "[clients.plc.gateway.map]\nSDSP_Answer = \"8.0-7 + 9.0-3+9.4-7\"\n[clients.plc.gateway.layout]\nreserve_zero = false\n";
+    seeds.push([of("tcp-listen://127.0.0.1:1"), parts.as_bytes().to_vec()].concat());
     seeds.push(modbus.clone().into_bytes());
     Prepared::new(seeds, move |input| {
         let path = write(&folder, "link.toml", input);

@@ -3,9 +3,13 @@
 use std::path::Path;
 
 use bytes::BytesMut;
+use onescan_clients::gateway::Exchange;
 use onescan_clients::gateway::ads::frame::{Bytes, Frame as AdsFrame};
 use onescan_clients::gateway::ads::symbol::Symbol;
+use onescan_clients::gateway::exchange::{Direction, Feed, Words};
 use onescan_clients::gateway::s7::{iso, pdu};
+use onescan_clients::gateway::tcp::{BlockCodec, Declaration, Layouts};
+use onescan_server::signal::{Port, SignalName, SignalType};
 use onescan_server::wire::frame::to_json;
 use onescan_server::wire::{ClientMessage, Endpoint, Frame, FrameCodec, HANDSHAKE_FRAME_BYTES_MAX, ServerMessage};
 use tokio_util::codec::Decoder;
@@ -95,6 +99,67 @@ fn whole_frames(input: &mut Vec<u8>) {
         at += 4 + length;
     }
 }
+
+/// Data blocks of three axes with the words in the reserve: the first byte says how TCP cuts the stream. Each block is told
+/// to be wrong, or taken without leaving out a bit of it.
+pub(super) fn blocks(_: &Path) -> Prepared {
+    let port = |name: String, ty| Feed::whole(&Port { name: SignalName::new(name).expect("a name"), ty }, None);
+    let bits = ["Execute", "Tracking", "TorqueControl", "SpeedControl", "Enable"];
+    let reals = ["TargetPosition", "TargetSpeed", "TargetAcceleration", "TargetDeceleration", "TargetTorque"];
+    let axis = |axis: usize| {
+        let named = |field: &&str| format!("A{axis}.{field}");
+        let (bits, reals) = (bits.iter().map(named), reals.iter().map(named));
+        let all: Vec<Feed> = bits.map(|name| port(name, SignalType::BOOL)).collect();
+        all.into_iter().chain(reals.map(|name| port(name, SignalType::REAL)).collect::<Vec<_>>())
+    };
+    let words =
+        [("SDSP_Joined", "1+31+61+22"), ("SDSP_Done", "23+24+25+0.5-7+30.5-7+60.5-6"), ("SDSP_Answer", "52+53")];
+    let own =
+        [("SDSP_Session", "0"), ("SDSP_Limit", "4"), ("SDSP_TV", "8"), ("SDSP_Grant", "16"), ("SDSP_Layout", "54")];
+    let addresses = words.iter().chain(&own).map(|(word, place)| ((*word).to_owned(), (*place).to_owned())).collect();
+    let outputs: Vec<Feed> = (0..3).flat_map(axis).collect();
+    let exchange = Exchange::new(&[], &outputs, Words::Handshake, &addresses);
+    let declaration: Declaration = toml::from_str(BLOCKS).expect("a layout");
+    let layout = Layouts::new(&declaration, &exchange).expect("it fits").from_plc;
+    let mut good = vec![0; layout.size()];
+    let packed: Vec<u8> = (0..exchange.size(Direction::FromPlc)).map(|at| u8::from(at % 3 == 0)).collect();
+    layout.encode(&packed, &mut good);
+    let seeds = vec![[&[7], &good[..]].concat(), [&[90], &good.repeat(3)[..]].concat(), [&[255], &good[..40]].concat()];
+    Prepared::new(seeds, move |input| {
+        let Some((cut, stream)) = input.split_first() else { return false };
+        let (mut codec, mut taken) = (BlockCodec::new(&layout), 0_usize);
+        for segment in stream.chunks(usize::from(*cut).max(1)) {
+            codec.take(segment);
+            loop {
+                match codec.next_block() {
+                    Ok(Some(block)) => {
+                        let (mut values, mut again) = (packed.clone(), vec![0; layout.size()]);
+                        layout.decode(&block, &mut values);
+                        layout.encode(&values, &mut again);
+                        assert_eq!(&again[..], &block[..], "a bit of a block was left out");
+                        taken += 1;
+                    }
+                    Ok(None) => break,
+                    Err(fault) => assert!(!fault.to_string().is_empty()),
+                }
+            }
+        }
+        assert_eq!(codec.end().is_ok(), stream.len().is_multiple_of(layout.size()));
+        taken > 0
+    })
+}
+
+/// Commands of three axes, without a byte for the words.
+const BLOCKS: &str = r#"
+reserve_zero = true
+from_plc = ["A0: Command", "A1: Command", "A2: Command"]
+to_plc = ["_: LINT", "_: LINT", "_: DINT"]
+
+[structures]
+Command = ["Execute: BOOL", "Tracking: BOOL", "TorqueControl: BOOL", "SpeedControl: BOOL", "Enable: BOOL",
+    "_: BOOL", "_: BOOL", "_: BOOL", "_: BYTE", "TargetPosition: REAL", "TargetSpeed: REAL",
+    "TargetAcceleration: REAL", "TargetDeceleration: REAL", "TargetTorque: REAL", "_: REAL", "_: REAL"]
+"#;
 
 /// Telegrams of PLCs, as a stream: the first byte says of which protocol.
 pub(super) fn telegrams(_: &Path) -> Prepared {

@@ -15,7 +15,7 @@ use crate::plant::component::behaviour::{Component, Start, Turn};
 use crate::plant::component::declare::{failures, own_types, parameters, signals};
 use crate::plant::component::dynamics::lag;
 use crate::plant::coupling::{Coordinate, Measures};
-use crate::plant::random::Random;
+use onescan_server::random::Random;
 
 parameters! {
     /// Its parameters; lengths are in m for a prismatic joint, angles in rad for a revolute one.

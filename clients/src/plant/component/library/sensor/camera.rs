@@ -13,7 +13,7 @@ use crate::plant::component::behaviour::{Component, Start, Turn};
 use crate::plant::component::declare::{failures, own_types, parameters, signals};
 use crate::plant::component::dynamics::quantised;
 use crate::plant::coupling::{Field, InField};
-use crate::plant::random::Random;
+use onescan_server::random::Random;
 
 parameters! {
     /// Its parameters.

@@ -14,7 +14,7 @@ use crate::plant::component::behaviour::{Component, Conflict, Start, Turn};
 use crate::plant::component::declare::{failures, own_types, parameters, signals};
 use crate::plant::component::dynamics::{lag, quantised};
 use crate::plant::coupling::{Hit, Ray};
-use crate::plant::random::Random;
+use onescan_server::random::Random;
 
 parameters! {
     /// Its parameters.

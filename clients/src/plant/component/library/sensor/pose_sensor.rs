@@ -14,7 +14,7 @@ use crate::plant::component::behaviour::{Component, Start, Turn};
 use crate::plant::component::declare::{failures, own_types, parameters, signals};
 use crate::plant::component::dynamics::quantised;
 use crate::plant::coupling::{Motion, Moving};
-use crate::plant::random::Random;
+use onescan_server::random::Random;
 
 parameters! {
     /// Its parameters.

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use crate::plant::component::behaviour::{Component, Start, Turn};
 use crate::plant::component::declare::{failures, own_types, parameters, signals};
 use crate::plant::component::dynamics::lag;
-use crate::plant::random::Random;
+use onescan_server::random::Random;
 
 parameters! {
     /// Its parameters.

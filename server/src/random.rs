@@ -1,4 +1,4 @@
-//! Random numbers that are the same everywhere: a generator of our own, seeded from the scenario.
+//! Random numbers that are the same everywhere: a generator of our own, with seeds from the scenario.
 //!
 //! xoshiro256++ 1.0 by D. Blackman and S. Vigna, seeded through `SplitMix64` as its authors advise;
 //! normal deviates by Box and Muller's transform, with `libm`.
@@ -7,9 +7,9 @@ use std::f64::consts::TAU;
 
 use serde::{Deserialize, Serialize};
 
-/// A stream of random numbers; its state is part of the plant's.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) struct Random([u64; 4]);
+/// A stream of random numbers; its state is part of that of whoever draws from it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct Random([u64; 4]);
 
 /// `SplitMix64`: the next number of a counter, well mixed.
 fn split_mix(counter: &mut u64) -> u64 {
@@ -20,9 +20,9 @@ fn split_mix(counter: &mut u64) -> u64 {
     mixed ^ (mixed >> 31)
 }
 
-/// A seed for the thing `name` of a plant, from the scenario's: streams of different things are
-/// independent, and none depends on what else a scene has.
-pub(crate) fn seed_for(scenario: u64, thing: &str, name: &str) -> u64 {
+/// A seed for the thing `name`, from the scenario's: streams of different things are independent, and
+/// none depends on what else there is.
+pub fn seed_for(scenario: u64, thing: &str, name: &str) -> u64 {
     let mut hasher = blake3::Hasher::new();
     hasher.update(&scenario.to_le_bytes()).update(thing.as_bytes()).update(&[0]).update(name.as_bytes());
     let mut first = [0; 8];
@@ -31,13 +31,15 @@ pub(crate) fn seed_for(scenario: u64, thing: &str, name: &str) -> u64 {
 }
 
 impl Random {
-    pub(crate) fn new(seed: u64) -> Self {
+    /// The stream that begins with `seed`.
+    #[must_use]
+    pub fn new(seed: u64) -> Self {
         let mut counter = seed;
         Self([(); 4].map(|()| split_mix(&mut counter)))
     }
 
     /// 64 random bits.
-    pub(crate) fn bits(&mut self) -> u64 {
+    pub fn bits(&mut self) -> u64 {
         let [a, b, c, d] = &mut self.0;
         let result = a.wrapping_add(*d).rotate_left(23).wrapping_add(*a);
         let shifted = *b << 17;
@@ -51,12 +53,12 @@ impl Random {
     }
 
     /// Evenly from 0 (not included) to 1 (included).
-    pub(crate) fn uniform(&mut self) -> f64 {
+    pub fn uniform(&mut self) -> f64 {
         ((self.bits() >> 11) + 1) as f64 / (1_u64 << 53) as f64
     }
 
     /// From N(0, 1).
-    pub(crate) fn normal(&mut self) -> f64 {
+    pub fn normal(&mut self) -> f64 {
         let radius = (-2.0 * libm::log(self.uniform())).sqrt();
         radius * libm::cos(TAU * self.uniform())
     }

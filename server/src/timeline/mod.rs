@@ -3,21 +3,34 @@
 //! An operation *at* 1.2 s acts on the step that ends at 1.2 s: clients are asked before that step's
 //! turns, values change with its commit. An operation at 0 acts on the initial values. A condition is
 //! judged on each committed image; the operation acts on the step that follows the first image on
-//! which it holds, or later by the delay that is asked for.
+//! which it holds, or the n-th time that it comes true, or later by the delay that is asked for.
+//!
+//! | module | subject |
+//! |---|---|
+//! | this file | operations, when they happen, and how far they have come |
+//! | [`condition`] | conditions as data |
+//! | [`past`] | conditions judged image by image, with what they remember |
 //!
 //! The timeline is part of the session's state. A checkpoint can be taken up by a session with another
 //! timeline if both agree on what has happened so far.
 
+pub mod condition;
+pub mod past;
+
 use std::cmp::Ordering;
 use std::fmt;
+use std::num::NonZeroU32;
 
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::operation::{Operation, OperationError};
 use crate::session::Session;
-use crate::signal::{SignalId, SignalName, SignalType};
+use crate::signal::{SignalId, SignalType};
 use crate::time::{TimeSpan, VirtualTime};
+
+pub use condition::{Back, Condition, Edge, Relation};
+use past::{Judged, Memories};
 
 /// An operation and when it happens.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -37,122 +50,31 @@ pub enum When {
     Once {
         /// The condition.
         condition: Condition,
-        /// Images before this time do not count.
+        /// Images before this time do not count, though they are part of the past that the condition may look at.
         from: VirtualTime,
+        /// Which time that it comes true; the first, unless said otherwise.
+        nth: NonZeroU32,
         /// How much later than the step after that image; at once if absent.
         delay: Option<TimeSpan>,
     },
-}
-
-/// Something that an image shows or does not show.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Condition {
-    /// A signal compared with a value.
-    Compare {
-        /// The signal.
-        signal: SignalName,
-        /// How.
-        relation: Relation,
-        /// The value, in the text of the signal's type.
-        value: String,
-    },
-    /// All of these.
-    All(Vec<Condition>),
-    /// At least one of these.
-    Any(Vec<Condition>),
-    /// Not this.
-    Not(Box<Condition>),
-}
-
-/// How a signal compares with a value.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Relation {
-    /// `=`
-    Equal,
-    /// `<>`
-    Unequal,
-    /// `<`
-    Less,
-    /// `<=`
-    AtMost,
-    /// `>`
-    Greater,
-    /// `>=`
-    AtLeast,
-}
-
-impl Relation {
-    /// Nothing compares with NaN, so every relation but `<>` is false then.
-    fn holds(self, ordering: Option<Ordering>) -> bool {
-        match self {
-            Self::Equal => ordering == Some(Ordering::Equal),
-            Self::Unequal => ordering != Some(Ordering::Equal),
-            Self::Less => ordering == Some(Ordering::Less),
-            Self::AtMost => matches!(ordering, Some(Ordering::Less | Ordering::Equal)),
-            Self::Greater => ordering == Some(Ordering::Greater),
-            Self::AtLeast => matches!(ordering, Some(Ordering::Greater | Ordering::Equal)),
-        }
-    }
-
-    fn sign(self) -> &'static str {
-        match self {
-            Self::Equal => "=",
-            Self::Unequal => "<>",
-            Self::Less => "<",
-            Self::AtMost => "<=",
-            Self::Greater => ">",
-            Self::AtLeast => ">=",
-        }
-    }
-}
-
-impl fmt::Display for Condition {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let list = |f: &mut fmt::Formatter<'_>, all: &[Self], word: &str| {
-            for (index, one) in all.iter().enumerate() {
-                if index > 0 {
-                    write!(f, " {word} ")?;
-                }
-                match one {
-                    Self::Compare { .. } | Self::Not(_) => write!(f, "{one}")?,
-                    Self::All(_) | Self::Any(_) => write!(f, "({one})")?,
-                }
-            }
-            Ok(())
-        };
-        match self {
-            Self::Compare { signal, relation, value } => write!(f, "{signal} {} {value}", relation.sign()),
-            Self::All(all) if all.is_empty() => f.write_str("always"),
-            Self::All(all) => list(f, all, "and"),
-            Self::Any(all) if all.is_empty() => f.write_str("never"),
-            Self::Any(all) => list(f, all, "or"),
-            Self::Not(inner) => write!(f, "not ({inner})"),
-        }
-    }
 }
 
 impl fmt::Display for When {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::At(at) => write!(f, "at {at}"),
-            Self::Once { condition, from, delay } => {
+            Self::Once { condition, from, nth, delay } => {
                 if let Some(delay) = delay {
                     write!(f, "{delay} ")?;
                 }
                 write!(f, "after `{condition}`")?;
+                if nth.get() > 1 {
+                    write!(f, " has come true {nth} times")?;
+                }
                 if *from > VirtualTime::ZERO { write!(f, " from {from} on") } else { Ok(()) }
             }
         }
     }
-}
-
-/// A condition with its signals found and its values read.
-#[derive(Clone, Debug)]
-enum Bound {
-    Compare { signal: SignalId, ty: SignalType, relation: Relation, value: Vec<u8> },
-    All(Vec<Bound>),
-    Any(Vec<Bound>),
-    Not(Box<Bound>),
 }
 
 /// How far an item has come.
@@ -166,19 +88,44 @@ pub(crate) enum Stage {
     Done,
 }
 
+/// What an item has seen of its condition.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Seen {
+    memories: Memories,
+    /// Whether it held on the last image that counted.
+    held: bool,
+    /// How often it has come true.
+    times: u32,
+}
+
 #[derive(Clone, Debug)]
 struct Item {
     scheduled: Scheduled,
     /// Nothing for a time.
-    condition: Option<Bound>,
+    condition: Option<Judged<Comparison>>,
+    seen: Seen,
     stage: Stage,
 }
+
+impl Item {
+    fn begin(&mut self) {
+        self.stage = first_stage(&self.scheduled);
+        let memories = self.condition.as_ref().map(Judged::nothing_seen).unwrap_or_default();
+        self.seen = Seen { memories, held: false, times: 0 };
+    }
+
+    fn state(&self) -> ItemState {
+        (self.scheduled.clone(), self.stage, self.seen.clone())
+    }
+}
+
+type ItemState = (Scheduled, Stage, Seen);
 
 /// What a checkpoint keeps of a timeline.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TimelineState {
     #[serde(with = "as_json")]
-    items: Vec<(Scheduled, Stage)>,
+    items: Vec<ItemState>,
 }
 
 /// Operations are told apart by a key, as in recordings. The binary form of checkpoints has no keys,
@@ -186,13 +133,13 @@ pub struct TimelineState {
 mod as_json {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-    use super::{Scheduled, Stage};
+    use super::ItemState;
 
-    pub(super) fn serialize<S: Serializer>(items: &[(Scheduled, Stage)], serializer: S) -> Result<S::Ok, S::Error> {
+    pub(super) fn serialize<S: Serializer>(items: &[ItemState], serializer: S) -> Result<S::Ok, S::Error> {
         serde_json::to_string(items).map_err(serde::ser::Error::custom)?.serialize(serializer)
     }
 
-    pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<(Scheduled, Stage)>, D::Error> {
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<ItemState>, D::Error> {
         serde_json::from_str(&String::deserialize(deserializer)?).map_err(serde::de::Error::custom)
     }
 }
@@ -200,7 +147,7 @@ mod as_json {
 impl TimelineState {
     /// What is yet to come: the part that decides how a session goes on.
     pub(crate) fn pending(&self) -> Self {
-        Self { items: self.items.iter().filter(|(_, stage)| *stage != Stage::Done).cloned().collect() }
+        Self { items: self.items.iter().filter(|(_, stage, _)| *stage != Stage::Done).cloned().collect() }
     }
 }
 
@@ -222,6 +169,12 @@ pub enum TimelineError {
         scheduled: Box<Scheduled>,
         /// When the checkpoint was taken.
         t_v: VirtualTime,
+    },
+    /// What a condition remembers is not of that condition.
+    #[error("what the checkpoint remembers of {operation} {when} is not of that condition", operation = scheduled.operation, when = scheduled.when)]
+    Memories {
+        /// What, and when.
+        scheduled: Box<Scheduled>,
     },
 }
 
@@ -246,7 +199,7 @@ impl Timeline {
                 When::At(_) => None,
                 When::Once { condition, .. } => Some(bind(condition, session)?),
             };
-            Ok(Item { scheduled, condition, stage: Stage::Waiting })
+            Ok(Item { scheduled, condition, seen: Seen::default(), stage: Stage::Waiting })
         };
         let mut this = Self { items: scheduled.into_iter().map(item).collect::<Result<_, _>>()?, ..Self::default() };
         this.rewind();
@@ -255,9 +208,7 @@ impl Timeline {
 
     /// Nothing has happened: the session starts, or restarts.
     pub(crate) fn rewind(&mut self) {
-        for item in &mut self.items {
-            item.stage = first_stage(&item.scheduled);
-        }
+        self.items.iter_mut().for_each(Item::begin);
         self.look_ahead();
     }
 
@@ -303,10 +254,15 @@ impl Timeline {
     fn judge(&mut self, session: &Session, t_v: VirtualTime, end: VirtualTime) {
         let mut changed = false;
         for item in self.items.iter_mut().filter(|item| item.stage == Stage::Waiting) {
-            let (When::Once { from, delay, .. }, Some(condition)) = (&item.scheduled.when, &item.condition) else {
+            let (When::Once { from, nth, delay, .. }, Some(condition)) = (&item.scheduled.when, &item.condition) else {
                 continue;
             };
-            if t_v >= *from && holds(condition, session) {
+            let seen = &mut item.seen;
+            let holds = condition.judge(&mut seen.memories, t_v.as_nanos(), &mut |one| one.holds(session));
+            let counted = holds && t_v >= *from;
+            seen.times += u32::from(counted && !seen.held);
+            seen.held = counted;
+            if counted && seen.times >= nth.get() {
                 let at = delay.map_or(Some(end), |delay| end.checked_add(delay));
                 // Beyond the end of virtual time it never happens.
                 item.stage = at.map_or(Stage::Done, Stage::Due);
@@ -320,7 +276,7 @@ impl Timeline {
 
     /// What a checkpoint keeps.
     pub(crate) fn save(&self) -> TimelineState {
-        TimelineState { items: self.items.iter().map(|item| (item.scheduled.clone(), item.stage)).collect() }
+        TimelineState { items: self.items.iter().map(Item::state).collect() }
     }
 
     /// Goes on from a checkpoint taken at `t_v`.
@@ -328,25 +284,33 @@ impl Timeline {
     /// # Errors
     /// The two timelines do not agree on what has happened until then; nothing has changed then.
     pub(crate) fn restore(&mut self, state: &TimelineState, t_v: VirtualTime) -> Result<(), TimelineError> {
-        let mut theirs: Vec<Option<&(Scheduled, Stage)>> = state.items.iter().map(Some).collect();
+        let mut theirs: Vec<Option<&ItemState>> = state.items.iter().map(Some).collect();
         let mut stages = Vec::with_capacity(self.items.len());
         for item in &self.items {
-            let same = theirs.iter_mut().find(|their| their.is_some_and(|(their, _)| *their == item.scheduled));
+            let same = theirs.iter_mut().find(|their| their.is_some_and(|(their, ..)| *their == item.scheduled));
             stages.push(match (same.and_then(Option::take), &item.scheduled.when) {
-                (Some((_, stage)), _) => *stage,
-                (None, When::At(at)) if *at > t_v => Stage::Due(*at),
-                // Judged at boundaries from `from` on, and the one of the checkpoint is yet to come.
-                (None, When::Once { from, .. }) if *from >= t_v => Stage::Waiting,
+                (Some((_, stage, seen)), _) => {
+                    if item.condition.as_ref().is_some_and(|condition| !condition.fits(&seen.memories)) {
+                        return Err(TimelineError::Memories { scheduled: Box::new(item.scheduled.clone()) });
+                    }
+                    (*stage, seen.clone())
+                }
+                (None, When::At(at)) if *at > t_v => (Stage::Due(*at), Seen::default()),
+                // Judged at boundaries from `from` on, and the one of the checkpoint is yet to come. What looks at the
+                // past would have had to see it.
+                (None, When::Once { from, condition, .. }) if *from >= t_v && !condition.has_past() => {
+                    (Stage::Waiting, Seen::default())
+                }
                 (None, _) => {
                     return Err(TimelineError::New { scheduled: Box::new(item.scheduled.clone()), t_v });
                 }
             });
         }
-        if let Some((gone, _)) = theirs.into_iter().flatten().find(|(_, stage)| *stage == Stage::Done) {
+        if let Some((gone, ..)) = theirs.into_iter().flatten().find(|(_, stage, _)| *stage == Stage::Done) {
             return Err(TimelineError::Gone { scheduled: Box::new(gone.clone()), t_v });
         }
-        for (item, stage) in self.items.iter_mut().zip(stages) {
-            item.stage = stage;
+        for (item, (stage, seen)) in self.items.iter_mut().zip(stages) {
+            (item.stage, item.seen) = (stage, seen);
         }
         self.look_ahead();
         Ok(())
@@ -360,29 +324,27 @@ fn first_stage(scheduled: &Scheduled) -> Stage {
     }
 }
 
-fn bind(condition: &Condition, session: &Session) -> Result<Bound, OperationError> {
-    let list = |all: &[Condition]| all.iter().map(|one| bind(one, session)).collect::<Result<Vec<_>, _>>();
-    Ok(match condition {
-        Condition::Compare { signal, relation, value } => {
-            let (id, value) = session.valued(signal, value)?;
-            Bound::Compare { signal: id, ty: session.layout().ty(id), relation: *relation, value }
-        }
-        Condition::All(all) => Bound::All(list(all)?),
-        Condition::Any(all) => Bound::Any(list(all)?),
-        Condition::Not(inner) => Bound::Not(Box::new(bind(inner, session)?)),
-    })
+/// A comparison with its signal found and its value read.
+#[derive(Clone, Debug)]
+struct Comparison {
+    signal: SignalId,
+    ty: SignalType,
+    relation: Relation,
+    value: Vec<u8>,
 }
 
-fn holds(condition: &Bound, session: &Session) -> bool {
-    match condition {
-        Bound::Compare { signal, ty, relation, value } => {
-            let bytes = session.layout().bytes(*signal, session.image());
-            relation.holds(compared(*ty, bytes, value))
-        }
-        Bound::All(all) => all.iter().all(|one| holds(one, session)),
-        Bound::Any(all) => all.iter().any(|one| holds(one, session)),
-        Bound::Not(inner) => !holds(inner, session),
+impl Comparison {
+    fn holds(&self, session: &Session) -> bool {
+        let bytes = session.layout().bytes(self.signal, session.image());
+        self.relation.holds(compared(self.ty, bytes, &self.value))
     }
+}
+
+fn bind(condition: &Condition, session: &Session) -> Result<Judged<Comparison>, OperationError> {
+    Judged::new(condition, &mut |signal, relation, value| {
+        let (id, value) = session.valued(signal, value)?;
+        Ok(Comparison { signal: id, ty: session.layout().ty(id), relation, value })
+    })
 }
 
 /// Two values of one type in their order. Texts are ordered by their characters.

@@ -1,0 +1,99 @@
+//! The table for people, and as JSON.
+
+use std::io::{self, Write};
+
+use onescan_report::table::write;
+use onescan_scenario::case::CampaignVerdict;
+use onescan_server::time::VirtualTime;
+use serde_json::json;
+
+use super::table::{Row, Table};
+
+/// So many cases that are not accepted are named.
+const NAMED_MAX: usize = 10;
+
+/// Writes each campaign as a matrix: a row a fault, a column an activation.
+///
+/// # Errors
+/// Those of `out`.
+pub fn write_human(tables: &[Table], out: &mut dyn Write) -> io::Result<()> {
+    for (index, table) in tables.iter().enumerate() {
+        if index > 0 {
+            writeln!(out)?;
+        }
+        writeln!(out, "{}: {}", table.scenario, totals(table))?;
+        write(&matrix(table), out)?;
+        let bad: Vec<&Row> = table.rows.iter().filter(|row| !table.is_accepted(row)).collect();
+        for row in bad.iter().take(NAMED_MAX) {
+            writeln!(out, "  {}: {}", row.verdict.word(), repeat(table, row))?;
+        }
+        if let Some(more @ 1..) = bad.len().checked_sub(NAMED_MAX) {
+            writeln!(out, "  ... and {more} more")?;
+        }
+    }
+    out.flush()
+}
+
+/// The verdicts, with a head.
+pub(super) fn matrix(table: &Table) -> Vec<Vec<String>> {
+    let head = ["fault", "kind"].into_iter().chain(table.activations.iter().map(String::as_str));
+    let row = |(fault, rows): (&onescan_scenario::case::campaign::CampaignFault, &[Row])| {
+        let names = [fault.name.clone(), fault.kind.word().to_owned()];
+        names.into_iter().chain(rows.iter().map(cell)).collect()
+    };
+    std::iter::once(head.map(str::to_owned).collect()).chain(table.by_fault().map(row)).collect()
+}
+
+/// A verdict, and how long it took if that is known.
+pub(super) fn cell(row: &Row) -> String {
+    match (row.verdict, row.told_after_ns) {
+        (CampaignVerdict::Told, Some(after_ns)) => format!("told after {}", VirtualTime::from_nanos(after_ns)),
+        (verdict, _) => verdict.word().to_owned(),
+    }
+}
+
+/// How many there were of each sort.
+pub(super) fn totals(table: &Table) -> String {
+    let counted = CampaignVerdict::ALL.map(|verdict| (table.count(verdict), verdict.word()));
+    let parts: Vec<String> =
+        counted.iter().filter(|(count, _)| *count > 0).map(|(count, word)| format!("{count} {word}")).collect();
+    let (faults, activations) = (table.faults.len(), table.activations.len());
+    let plural = |count: usize, noun: &str| format!("{count} {noun}{}", if count == 1 { "" } else { "s" });
+    let sizes = format!("{} \u{d7} {}", plural(faults, "fault"), plural(activations, "activation"));
+    format!("campaign {}, {sizes}: {}", table.campaign, parts.join(", "))
+}
+
+/// How to run one of them again.
+pub(super) fn repeat(table: &Table, row: &Row) -> String {
+    format!("onescan run {} --case {}", table.scenario, row.case)
+}
+
+/// Writes a JSON object for each run with a fault, and one for each campaign.
+///
+/// # Errors
+/// Those of `out`.
+pub fn write_json(tables: &[Table], out: &mut dyn Write) -> io::Result<()> {
+    for table in tables {
+        for (fault, rows) in table.by_fault() {
+            for (row, activation) in rows.iter().zip(&table.activations) {
+                let mut line = json!({ "scenario": table.scenario, "campaign": table.campaign, "fault": fault.name,
+                    "kind": fault.kind, "activation": activation });
+                if let (Some(line), Ok(serde_json::Value::Object(row))) =
+                    (line.as_object_mut(), serde_json::to_value(row))
+                {
+                    line.extend(row);
+                }
+                writeln!(out, "{line}")?;
+            }
+        }
+        let counts: serde_json::Map<String, serde_json::Value> = CampaignVerdict::ALL
+            .iter()
+            .map(|verdict| (verdict.word().replace(' ', "-"), table.count(*verdict).into()))
+            .collect();
+        let total = json!({ "scenario": table.scenario, "campaign": table.campaign, "runs": table.rows.len(),
+            "counts": counts, "passed": table.is_passed(), "healthy_digest": table.healthy.digest,
+            "version": env!("CARGO_PKG_VERSION") });
+        writeln!(out, "{total}")?;
+    }
+    out.flush()
+}

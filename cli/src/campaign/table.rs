@@ -1,0 +1,174 @@
+//! The verdicts of a campaign, by fault and activation.
+
+use std::collections::BTreeMap;
+
+use onescan_scenario::case::campaign::CampaignFault;
+use onescan_scenario::case::{Campaign, CampaignVerdict, Case};
+use onescan_server::signal::SignalName;
+use serde::Serialize;
+
+use super::config::CampaignConfig;
+use super::reading::{Failure, Reading};
+use crate::regress::plan::suite_of;
+
+/// What came of a campaign.
+#[derive(Clone, Debug)]
+pub struct Table {
+    /// The scenario's folder.
+    pub scenario: String,
+    /// Its name.
+    pub campaign: String,
+    /// What it is about.
+    pub about: Option<String>,
+    /// Its faults.
+    pub faults: Vec<CampaignFault>,
+    /// Its activations.
+    pub activations: Vec<String>,
+    /// The verdicts with which it is passed.
+    pub accepted: Vec<CampaignVerdict>,
+    /// The run without faults.
+    pub healthy: Reading,
+    /// All activations of the first fault, then those of the second.
+    pub rows: Vec<Row>,
+}
+
+/// What came of one fault at one activation. Its JSON form is a contract: fields are added, never changed.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Row {
+    /// The case, as `onescan run --case` takes it.
+    pub case: String,
+    /// What came of it.
+    pub verdict: CampaignVerdict,
+    /// The end of the step in which the fault came.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub activated_ns: Option<u64>,
+    /// How much later the control told of it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub told_after_ns: Option<u64>,
+    /// Whether the machine was safe, if the campaign says what that means.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub safe: Option<bool>,
+    /// Whether something came to harm, if the campaign says what that means.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub collision: Option<bool>,
+    /// The readouts whose trajectories are not those of the run without faults, beside the signals that the fault itself
+    /// holds or disturbs.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub effects: Vec<String>,
+    /// How often each alarm of the scenario's `[report]` came, of those that did.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub alarms: BTreeMap<String, u64>,
+    /// The failure that ended the run.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub failure: Option<Failure>,
+    /// The digest over all steps.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub digest: Option<String>,
+    /// Virtual time of the last step.
+    pub virtual_time_ns: u64,
+}
+
+impl Table {
+    /// The table of these rows.
+    pub(super) fn new(config: &CampaignConfig, campaign: &Campaign, healthy: Reading, rows: Vec<Row>) -> Self {
+        Self {
+            scenario: suite_of(&config.scenario),
+            campaign: campaign.name.clone(),
+            about: campaign.about.clone(),
+            faults: campaign.faults.clone(),
+            activations: campaign.activations.clone(),
+            accepted: campaign.accepted.clone(),
+            healthy,
+            rows,
+        }
+    }
+
+    /// How many ended so.
+    pub fn count(&self, verdict: CampaignVerdict) -> usize {
+        self.rows.iter().filter(|row| row.verdict == verdict).count()
+    }
+
+    /// True if its verdict is one with which the campaign is passed.
+    pub fn is_accepted(&self, row: &Row) -> bool {
+        self.accepted.contains(&row.verdict)
+    }
+
+    /// True if all verdicts are.
+    pub fn is_passed(&self) -> bool {
+        self.rows.iter().all(|row| self.is_accepted(row))
+    }
+
+    /// Each fault with its rows.
+    pub fn by_fault(&self) -> impl Iterator<Item = (&CampaignFault, &[Row])> {
+        self.faults.iter().zip(self.rows.chunks(self.activations.len().max(1)))
+    }
+}
+
+/// The row of a run. `own` are the signals that the fault itself holds or disturbs.
+pub(super) fn row(
+    case: &Case,
+    reading: Reading,
+    healthy: &Reading,
+    readouts: &[SignalName],
+    own: &[SignalName],
+) -> Row {
+    let compared = readouts.iter().zip(reading.readouts.iter().zip(&healthy.readouts));
+    let differs =
+        |(signal, (now, healthy)): &(&SignalName, (&String, &String))| now != healthy && !own.contains(signal);
+    let effects: Vec<String> = compared.filter(differs).map(|(signal, _)| signal.to_string()).collect();
+    Row {
+        case: case.name.clone(),
+        verdict: verdict(&reading, !effects.is_empty()),
+        activated_ns: reading.activated_ns,
+        told_after_ns: reading.told_after_ns,
+        safe: reading.safe,
+        collision: reading.collision,
+        effects,
+        alarms: reading.alarms,
+        failure: reading.failure,
+        digest: reading.digest,
+        virtual_time_ns: reading.virtual_time_ns,
+    }
+}
+
+/// The first of these that holds, in the order of [`CampaignVerdict::ALL`].
+fn verdict(reading: &Reading, has_effect: bool) -> CampaignVerdict {
+    let of_plc = reading.failure.as_ref().map(|failure| failure.of_plc);
+    match reading {
+        Reading { activated_ns: None, .. } => CampaignVerdict::NotActivated,
+        _ if of_plc == Some(true) => CampaignVerdict::PlcFault,
+        // A client that is no PLC stopped the run: that is harm, whatever else was seen of it.
+        _ if of_plc == Some(false) => CampaignVerdict::Collision,
+        _ if !has_effect => CampaignVerdict::NoEffect,
+        Reading { collision: Some(true), .. } => CampaignVerdict::Collision,
+        Reading { told_after_ns: Some(_), .. } => CampaignVerdict::Told,
+        Reading { safe: Some(true), .. } => CampaignVerdict::Safe,
+        _ => CampaignVerdict::Missed,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_several_verdicts_the_first_counts() {
+        let mut reading =
+            Reading { told_after_ns: Some(0), safe: Some(true), collision: Some(true), ..Reading::default() };
+        let failure = Failure { text: String::new(), of_plc: true, place: None };
+        reading.failure = Some(failure);
+        let mut verdicts = vec![verdict(&reading, true)];
+        reading.activated_ns = Some(0);
+        verdicts.push(verdict(&reading, true));
+        reading.failure = None;
+        verdicts.push(verdict(&reading, false));
+        verdicts.push(verdict(&reading, true));
+        reading.collision = Some(false);
+        verdicts.push(verdict(&reading, true));
+        reading.told_after_ns = None;
+        verdicts.push(verdict(&reading, true));
+        reading.safe = None;
+        verdicts.push(verdict(&reading, true));
+        assert_eq!(verdicts, CampaignVerdict::ALL);
+    }
+}

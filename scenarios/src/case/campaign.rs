@@ -1,0 +1,232 @@
+//! Campaigns: every fault with every activation, each as a case that runs by itself.
+
+use std::collections::BTreeSet;
+use std::ops::Range;
+
+use onescan_server::time::VirtualTime;
+use toml::Spanned;
+
+use super::Case;
+use super::file::{
+    ActivationFile, CampaignFaultFile, CampaignFile, CampaignVerdict, CaseFile, FaultFile, FaultKind, ForceFile,
+    VariableFile,
+};
+use super::matrix::COMBINATIONS_MAX;
+use crate::arrays::Wrong;
+
+/// The verdicts with which a campaign is passed unless it says otherwise.
+const ACCEPTED: [CampaignVerdict; 4] =
+    [CampaignVerdict::Told, CampaignVerdict::Safe, CampaignVerdict::NoEffect, CampaignVerdict::NotActivated];
+
+/// A campaign, its rows and columns checked.
+#[derive(Clone, Debug)]
+pub struct Campaign {
+    /// Its name.
+    pub name: String,
+    /// What it is about.
+    pub about: Option<String>,
+    /// The faults, in the order of the file.
+    pub faults: Vec<CampaignFault>,
+    /// The names of the activations, in the order of the file.
+    pub activations: Vec<String>,
+    /// The run without faults.
+    pub healthy: Case,
+    /// A case for each fault and activation: all activations of the first fault, then those of the second.
+    pub cases: Vec<Case>,
+    /// The verdicts with which it is passed.
+    pub accepted: Vec<CampaignVerdict>,
+    pub(crate) file: CampaignFile,
+}
+
+/// A fault of a campaign.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CampaignFault {
+    /// Its name.
+    pub name: String,
+    /// Where it is brought in.
+    pub kind: FaultKind,
+    /// What it is.
+    pub about: Option<String>,
+}
+
+/// What the fault of a campaign is to its case.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Injection {
+    /// Its campaign, and the fault and the activation in that.
+    pub(super) place: [usize; 3],
+    /// When it comes, if that is by time, and where that is written.
+    pub(crate) at: Option<(VirtualTime, Range<usize>)>,
+}
+
+/// Says that a name is that of a file on any system.
+pub(super) fn is_name(name: &str) -> bool {
+    let allowed = |letter: char| letter.is_ascii_alphanumeric() || "-_.".contains(letter);
+    !name.is_empty() && !name.starts_with('.') && name.chars().all(allowed)
+}
+
+/// The campaign of `file`, which is the one of this number in its file, and whose faults come to `base`.
+pub(super) fn expanded(file: &CampaignFile, base: &Case, number: usize) -> Result<Campaign, Wrong> {
+    names(file.faults.iter().map(|fault| &fault.get_ref().name), "faults")?;
+    names(file.activations.iter().map(|activation| &activation.get_ref().name), "activations")?;
+    let place = file.name.span();
+    if file.faults.is_empty() || file.activations.is_empty() {
+        let what = if file.faults.is_empty() { "fault" } else { "activation" };
+        let help = format!("write a `[[campaign.{what}]]` below it");
+        return Err(wrong(format!("campaign `{}` has no {what}", file.name.get_ref()), place, &help));
+    }
+    if file.faults.len().saturating_mul(file.activations.len()) > COMBINATIONS_MAX {
+        let message = format!("campaign `{}` has more than {COMBINATIONS_MAX} cases", file.name.get_ref());
+        return Err(wrong(message, place, "make two of it"));
+    }
+    let mut healthy = base.clone();
+    healthy.until = file.until.or(base.until);
+    let mut cases = Vec::with_capacity(file.faults.len() * file.activations.len());
+    for (row, fault) in file.faults.iter().enumerate() {
+        for (column, activation) in file.activations.iter().enumerate() {
+            let (fault, activation) = (fault.get_ref(), activation.get_ref());
+            // What is wrong is told now; the entry itself is made when its case is asked for.
+            let at = put(&mut empty(file), fault, activation)?;
+            let path = [&file.name, &fault.name, &activation.name].map(|name| name.get_ref().as_str());
+            cases.push(Case {
+                name: path.join("/"),
+                about: fault.about.clone(),
+                injection: Some(Injection { place: [number, row, column], at }),
+                ..healthy.clone()
+            });
+        }
+    }
+    let fault = |fault: &Spanned<CampaignFaultFile>| {
+        let CampaignFaultFile { name, kind, about, .. } = fault.get_ref();
+        CampaignFault { name: name.get_ref().clone(), kind: *kind, about: about.clone() }
+    };
+    Ok(Campaign {
+        name: file.name.get_ref().clone(),
+        about: file.about.clone(),
+        faults: file.faults.iter().map(fault).collect(),
+        activations: file.activations.iter().map(|one| one.get_ref().name.get_ref().clone()).collect(),
+        healthy,
+        cases,
+        accepted: file.accept.clone().unwrap_or_else(|| ACCEPTED.to_vec()),
+        file: file.clone(),
+    })
+}
+
+impl Campaign {
+    /// What the case of an injection does: what `base` does, and the fault.
+    ///
+    /// # Errors
+    /// None for an injection of this campaign, which was checked when it was read.
+    pub(super) fn entry(&self, base: Option<&CaseFile>, injection: &Injection) -> Result<CaseFile, Wrong> {
+        let mut entry = base.cloned().unwrap_or_else(|| empty(&self.file));
+        let [_, row, column] = injection.place;
+        if let (Some(fault), Some(activation)) = (self.file.faults.get(row), self.file.activations.get(column)) {
+            put(&mut entry, fault.get_ref(), activation.get_ref())?;
+        }
+        Ok(entry)
+    }
+}
+
+fn wrong(message: String, place: Range<usize>, help: &str) -> Wrong {
+    Wrong { message, place: Some(place), help: Some(help.to_owned()) }
+}
+
+fn names<'a>(all: impl Iterator<Item = &'a Spanned<String>>, what: &str) -> Result<(), Wrong> {
+    let mut seen = BTreeSet::new();
+    for name in all {
+        if !is_name(name.get_ref()) {
+            let message = format!("`{}` is no name of one of the {what}", name.get_ref());
+            return Err(wrong(message, name.span(), "letters, digits, `-`, `_` and `.`"));
+        }
+        if !seen.insert(name.get_ref().to_lowercase()) {
+            let message = format!("two {what} of the campaign are called `{}`", name.get_ref());
+            return Err(wrong(message, name.span(), "names differ, without regard to case"));
+        }
+    }
+    Ok(())
+}
+
+/// The entry of a case that does nothing.
+fn empty(file: &CampaignFile) -> CaseFile {
+    CaseFile {
+        name: file.name.clone(),
+        about: None,
+        tags: Vec::new(),
+        seed: None,
+        until: None,
+        set: toml::Table::new(),
+        matrix: toml::Table::new(),
+        inputs: Vec::new(),
+        faults: Vec::new(),
+        forces: Vec::new(),
+        disturbances: Vec::new(),
+        variables: Vec::new(),
+        waive: Vec::new(),
+        expect: Vec::new(),
+    }
+}
+
+/// Takes the keys that say when from an activation.
+macro_rules! timed {
+    ($fault:expr, $activation:expr, $kind:ident) => {{
+        let (place, mut entry) = ($fault.span(), $fault.get_ref().clone());
+        let untimed = entry.from.is_none()
+            && entry.until.is_none()
+            && entry.when.is_none()
+            && entry.nth.is_none()
+            && entry.lasting.is_none();
+        if !untimed {
+            return Err(said_twice(place));
+        }
+        let ActivationFile { at, when, nth, from, lasting, .. } = $activation;
+        entry.from = at.or(*from);
+        entry.when.clone_from(when);
+        entry.nth.clone_from(nth);
+        entry.lasting = *lasting;
+        Spanned::<$kind>::new(place, entry)
+    }};
+}
+
+fn said_twice(place: Range<usize>) -> Wrong {
+    let help = "leave `at`, `from`, `until`, `when`, `nth` and `for` to `[[campaign.activation]]`";
+    wrong("a fault of a campaign does not say when it comes".to_owned(), place, help)
+}
+
+/// Adds a fault at an activation to the entry of a case; gives the time if it comes by time.
+fn put(
+    entry: &mut CaseFile,
+    fault: &CampaignFaultFile,
+    activation: &ActivationFile,
+) -> Result<Option<(VirtualTime, Range<usize>)>, Wrong> {
+    use super::file::DisturbanceFile;
+    let place = activation.name.span();
+    let at = match (activation.at, &activation.when) {
+        (Some(_), None) if activation.nth.is_some() || activation.from.is_some() => {
+            let message = "`nth` and `from` belong to a condition".to_owned();
+            return Err(wrong(message, place, "write `when`, or leave them out"));
+        }
+        (Some(at), None) => Some((at, place)),
+        (None, Some(_)) => None,
+        (Some(_), Some(_)) | (None, None) => {
+            let message =
+                format!("activation `{}` comes `at` a time or `when` a condition holds", activation.name.get_ref());
+            return Err(wrong(message, place, "write one of them"));
+        }
+    };
+    match (&fault.fault, &fault.force, &fault.disturbance, &fault.variable) {
+        (Some(fault), None, None, None) => entry.faults.push(timed!(fault, activation, FaultFile)),
+        (None, Some(force), None, None) => entry.forces.push(timed!(force, activation, ForceFile)),
+        (None, None, Some(disturbance), None) => {
+            entry.disturbances.push(timed!(disturbance, activation, DisturbanceFile));
+        }
+        (None, None, None, Some(variable)) if variable.get_ref().at.is_some() => {
+            return Err(said_twice(variable.span()));
+        }
+        (None, None, None, Some(variable)) => entry.variables.push(timed!(variable, activation, VariableFile)),
+        _ => {
+            let message = format!("what fault `{}` does is not said, or said twice", fault.name.get_ref());
+            let help = "write one of `fault`, `force`, `disturbance` and `variable`";
+            return Err(wrong(message, fault.name.span(), help));
+        }
+    }
+    Ok(at)
+}

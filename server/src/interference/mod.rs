@@ -1,0 +1,112 @@
+//! What lies over the values that writers stage: writes and forces from outside, and faults on the way
+//! of a signal.
+//!
+//! A writer's own values stay as staged, so that a released or mended signal shows at once what its
+//! writer last wrote, however long that client sleeps. Only what a commit makes visible is changed:
+//! first by the fault, then by a write, then by a force, each hiding what is below it.
+
+//!
+//! | module | subject |
+//! |---|---|
+//! | this file | the order of what lies over each other |
+//! | `disturbance` | faults on the way of a signal, at work |
+//! | `push` | frames that a side pushes by its own clock |
+//! | `number` | numbers shifted, and bits flipped, within their type |
+
+mod disturbance;
+mod number;
+mod push;
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use crate::layout::ImageLayout;
+use crate::operation::SignalFault;
+use crate::signal::SignalId;
+
+use disturbance::Disturbance;
+pub(crate) use disturbance::Onset;
+
+/// Everything that lies over the writers' values, by signal.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub(crate) struct Interference {
+    faults: BTreeMap<SignalId, Disturbance>,
+    /// Values for the step under way; its last commit gives them to the writer's own values.
+    writes: BTreeMap<SignalId, Vec<u8>>,
+    forces: BTreeMap<SignalId, Vec<u8>>,
+}
+
+impl Interference {
+    /// True while nothing lies over anything: a commit is a copy then.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.faults.is_empty() && self.writes.is_empty() && self.forces.is_empty()
+    }
+
+    /// A value for one step; `bytes` has the signal's size.
+    pub(crate) fn write(&mut self, signal: SignalId, bytes: Vec<u8>) {
+        self.writes.insert(signal, bytes);
+    }
+
+    /// A value until it is released.
+    pub(crate) fn force(&mut self, signal: SignalId, bytes: Vec<u8>) {
+        // The force hides a write of the same boundary for good.
+        self.writes.remove(&signal);
+        self.forces.insert(signal, bytes);
+    }
+
+    /// True if the signal is forced.
+    pub(crate) fn is_forced(&self, signal: SignalId) -> bool {
+        self.forces.contains_key(&signal)
+    }
+
+    /// Ends a force; false if there was none.
+    pub(crate) fn release(&mut self, signal: SignalId) -> bool {
+        self.forces.remove(&signal).is_some()
+    }
+
+    /// Puts a fault on a signal in place of the one it has. False if its type cannot have that fault.
+    pub(crate) fn disturb(&mut self, signal: SignalId, fault: &SignalFault, onset: &Onset<'_>) -> bool {
+        let disturbance = Disturbance::begin(fault, onset);
+        let can = disturbance.is_some();
+        self.faults.extend(disturbance.map(|disturbance| (signal, disturbance)));
+        can
+    }
+
+    /// Ends a fault; false if there was none.
+    pub(crate) fn mend(&mut self, signal: SignalId) -> bool {
+        self.faults.remove(&signal).is_some()
+    }
+
+    /// Changes `committed`, which is a copy of `staged`. The last commit of a step moves time on for
+    /// late signals and gives written values to the writers' own.
+    #[cold]
+    pub(crate) fn apply(&mut self, layout: &ImageLayout, staged: &mut [u8], committed: &mut [u8], ends_step: bool) {
+        for (signal, fault) in &mut self.faults {
+            let at = layout.range(*signal);
+            fault.pass(layout.ty(*signal), &mut committed[at], ends_step);
+        }
+        for (signal, bytes) in &self.writes {
+            let at = layout.range(*signal);
+            committed[at.clone()].copy_from_slice(bytes);
+            if ends_step {
+                staged[at].copy_from_slice(bytes);
+            }
+        }
+        if ends_step {
+            self.writes.clear();
+        }
+        for (signal, bytes) in &self.forces {
+            committed[layout.range(*signal)].copy_from_slice(bytes);
+        }
+    }
+
+    /// True if it could lie over an image of this layout: what a checkpoint says is not believed.
+    pub(crate) fn fits(&self, layout: &ImageLayout) -> bool {
+        let known = |signal: &SignalId| signal.index() < layout.signals().len();
+        let sized =
+            |(signal, bytes): (&SignalId, &Vec<u8>)| known(signal) && bytes.len() == layout.range(*signal).len();
+        let fault = |(signal, fault): (&SignalId, &Disturbance)| known(signal) && fault.fits(layout.ty(*signal));
+        self.forces.iter().all(sized) && self.writes.iter().all(sized) && self.faults.iter().all(fault)
+    }
+}
