@@ -213,3 +213,71 @@ impl Link for TcpLink {
         self.codec.partial().filter(|_| self.is_silent)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use onescan_server::signal::{Port, SignalName, SignalType};
+
+    use super::*;
+    use crate::gateway::exchange::{Exchange, Feed, Words};
+    use crate::gateway::tcp::Declaration;
+
+    const SOON: Duration = Duration::from_millis(20);
+    const LATER: Duration = Duration::from_mins(1);
+
+    /// A link with a block of eight bytes each way, and the PLC that has connected to it.
+    fn connected() -> (TcpLink, TcpStream) {
+        let feed = |name: &str| Feed::whole(&Port { name: SignalName::new(name).unwrap(), ty: SignalType::LINT }, None);
+        let exchange = Exchange::new(&[feed("a")], &[feed("b")], Words::Absent, &BTreeMap::new());
+        let layouts = Layouts::new(&Declaration::default(), &exchange).unwrap();
+        let mut link = TcpLink::listening(SocketAddr::from(([127, 0, 0, 1], 0)), layouts, LATER);
+        assert!(matches!(link.connect(), Err(LinkFault::NobodyCame { .. })));
+        let Way::FromPlc(_, Some(door)) = &link.way else { panic!("it listens") };
+        let plc = TcpStream::connect(door.address()).unwrap();
+        plc.set_nodelay(true).unwrap();
+        while link.connect().is_err() {}
+        (link, plc)
+    }
+
+    #[test]
+    fn silence_in_mid_block_is_named() {
+        let (mut link, mut plc) = connected();
+        let mut packed = [0; 8];
+        assert_eq!((link.read(SOON, &mut packed), link.broken_off()), (Ok(false), None));
+        plc.write_all(&[0; 5]).unwrap();
+        // What has come is not silence; what comes after it is.
+        while link.broken_off().is_none() {
+            assert_eq!(link.read(SOON, &mut packed), Ok(false));
+        }
+        assert_eq!(
+            link.broken_off().map(|partial| partial.to_string()).as_deref(),
+            Some("5 of the 8 bytes of a block")
+        );
+        drop(plc);
+        let closed = "closed after 5 of the 8 bytes of a block: is the layout the same on both sides?";
+        assert_eq!(link.read(LATER, &mut packed), Err(LinkFault::Lost(closed.to_owned())));
+    }
+
+    #[test]
+    fn blocks_that_came_before_are_let_go_and_counted() {
+        let (mut link, mut plc) = connected();
+        let mut packed = [0; 8];
+        let block = |number: u8| [0, 0, 0, 0, 0, 0, 0, number];
+        plc.write_all(&[block(1), block(2), block(3)].concat()).unwrap();
+        assert_eq!((link.next_block(LATER, &mut packed), packed[0]), (Ok(true), 1));
+        let mut count = 0;
+        while count < 2 {
+            count += link.discard().unwrap();
+        }
+        assert_eq!(link.next_block(SOON, &mut packed), Ok(false));
+        plc.write_all(&[block(4), block(5)].concat()).unwrap();
+        assert_eq!((link.next_block(LATER, &mut packed), packed[0]), (Ok(true), 4));
+        assert_eq!((link.next_block(LATER, &mut packed), packed[0]), (Ok(true), 5));
+        link.write(&packed).unwrap();
+        let mut sent = [0; 8];
+        plc.read_exact(&mut sent).unwrap();
+        assert_eq!(sent, block(5));
+    }
+}
