@@ -142,6 +142,9 @@ pub(crate) struct State {
     surface_m_s: f64,
     thickness_m: f64,
     torque_nm: f64,
+    /// From the surface to the top and the bottom roll, and the bending, when the knife was there.
+    gaps_m: [f64; 2],
+    bending_m: f64,
     cutting: bool,
     spin_out: bool,
     pressed: bool,
@@ -273,14 +276,14 @@ impl Component for VeneerLathe {
         let turning = state.held && !state.spin_out;
         state.surface_m_s = if turning { 2.0 * PI * state.radius_m * turns / turn.dt_s } else { 0.0 };
         (state.knife_m, state.rotation) = (knife_m, inputs.rotation);
+        // of the same instant as the knife: a turn later it has gone on
+        state.gaps_m = [(inputs.roll_top, TOP_RAD), (inputs.roll_bottom, BOTTOM_RAD)]
+            .map(|(roll, behind_rad)| roll * p.unit_m - (state.radius_m + state.thickness_m * behind_rad / (2.0 * PI)));
+        let splinter = turn.failed.has(Failure::Splinter);
+        state.bending_m = self.bending_m(state, state.gaps_m, inputs.gap * p.unit_m, splinter);
     }
 
-    fn sense(&self, state: &mut State, inputs: &Inputs, turn: &Turn) -> Outputs {
-        let unit_m = self.p.unit_m;
-        let gap_m =
-            |roll: f64, behind_rad: f64| roll * unit_m - (state.radius_m + state.thickness_m * behind_rad / (2.0 * PI));
-        let gaps_m = [gap_m(inputs.roll_top, TOP_RAD), gap_m(inputs.roll_bottom, BOTTOM_RAD)];
-        let splinter = turn.failed.has(Failure::Splinter);
+    fn sense(&self, state: &mut State, _: &Inputs, _: &Turn) -> Outputs {
         Outputs {
             radius_m: state.radius_m,
             turns: state.turns,
@@ -290,9 +293,9 @@ impl Component for VeneerLathe {
             surface_m_s: state.surface_m_s,
             thickness_m: state.thickness_m,
             torque_nm: state.torque_nm,
-            bending_m: self.bending_m(state, gaps_m, inputs.gap * unit_m, splinter),
-            gap_top_m: gaps_m[0],
-            gap_bottom_m: gaps_m[1],
+            bending_m: state.bending_m,
+            gap_top_m: state.gaps_m[0],
+            gap_bottom_m: state.gaps_m[1],
             cutting: state.cutting,
             spin_out: state.spin_out,
             pressed: state.pressed,
