@@ -35,6 +35,7 @@ mod operator;
 mod output;
 mod own_kinds;
 mod papers;
+mod peeling_line;
 mod plant;
 mod plc;
 mod plc_ads;

@@ -1,0 +1,75 @@
+//! The peeling line: twenty-five axes that take command frames, two PLCs, a block from the feeder to its core.
+
+use crate::typed::{copied, digests, edit, is_the_same_over_tcp_and_resumed, scenario, typed};
+
+/// A run of the line, which must end with this exit code; its report.
+fn run(words: &[&str], code: i32) -> serde_json::Value {
+    let said = typed(&scenario("peeling-line"), &[&["run", ".", "--format", "json"], words].concat());
+    assert_eq!(said.code, Some(code), "{said:?}");
+    serde_json::from_str(said.out.trim()).expect("a report")
+}
+
+/// The total of a count of the report.
+fn counted(report: &serde_json::Value, name: &str) -> u64 {
+    let counts = report["report"]["counts"].as_array().expect("counts");
+    let count = counts.iter().find(|count| count["name"] == name).unwrap_or_else(|| panic!("{name}: {report}"));
+    count["total"].as_u64().expect("a number")
+}
+
+/// Table 3 of `[Nyyssönen]` and the lines of today peel 5 to 20 blocks a minute.
+#[test]
+fn an_hour_of_the_line_peels_more_than_eight_blocks_a_minute_and_nothing_falls() {
+    let report = run(&["--until", "3600s"], 0);
+    assert!(counted(&report, "blocks peeled") >= 480, "{report}");
+    assert_eq!(counted(&report, "blocks dropped"), 0);
+    insta::assert_snapshot!("peeling_line_hour_digest", digests(&[report])[0]);
+}
+
+#[test]
+fn transport_and_checkpoints_do_not_matter() {
+    // The second block is clamped, the third one measured.
+    is_the_same_over_tcp_and_resumed("peeling-line", ".", "20s", "14.68s");
+}
+
+/// The formulas of the case hold length, turns, speed and rolls against the closed form.
+#[test]
+fn the_birch_of_the_thesis_gives_its_veneer() {
+    run(&["--case", "birch"], 0);
+}
+
+/// 3.2: a position of 50000 that is kept in INT and converted as it is.
+#[test]
+fn a_conversion_without_the_way_over_uint_is_told() {
+    let folder = copied("peeling-line");
+    edit(
+        folder.path(),
+        "charger/position_to_real.scl",
+        "UINT_TO_REAL(INT_TO_UINT(#Position))",
+        "INT_TO_REAL(#Position)",
+    );
+    let said = typed(folder.path(), &["run", ".", "--until", "10s"]);
+    assert_eq!(said.code, Some(1), "{said:?}");
+    let told = said.out.lines().find(|line| line.contains("`positions are converted as UINT` violated"));
+    insta::assert_snapshot!("peeling_line_conversion", told.unwrap_or_default());
+}
+
+/// 3.1.1: Execute is held for 500 ms because a shorter one may not be seen. In lockstep one scan is enough.
+#[test]
+fn commands_of_one_scan_are_lost_over_a_link_that_pushes_and_never_in_lockstep() {
+    let peeled = |case: &str| {
+        let report = run(&["--case", case], 0);
+        (counted(&report, "blocks peeled"), digests(&[report])[0].clone())
+    };
+    let [(held, _), (one_scan, _), (pushed, pushed_once), (both, _)] =
+        ["production", "one-scan", "pushed", "one-scan-pushed"].map(peeled);
+    assert_eq!(one_scan, held, "in lockstep no command is lost");
+    assert!(both < one_scan && both < pushed, "{both} of {one_scan}, {pushed}");
+    assert_eq!(peeled("pushed").1, pushed_once, "a link without lockstep, the same each time");
+}
+
+#[test]
+fn every_fault_of_the_line_has_a_verdict() {
+    let said = typed(&scenario("peeling-line"), &["campaign", ".", "line"]);
+    assert_eq!(said.code, Some(1), "{said:?}");
+    insta::assert_snapshot!("peeling_line_campaign", said.out);
+}
