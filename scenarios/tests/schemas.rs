@@ -174,7 +174,7 @@ fn what_the_reader_refuses_is_refused() {
         ("name = \"a\"\nmatrix.seed = 3", ".matrix.seed"),
         ("name = \"a\"\nmatrix.plant.ram.speed_m_s = [1]\nuntill = \"1s\"", "no key `untill`"),
         ("name = \"a\"\nforce = [{ signal = \"x\" }]", "required"),
-        ("name = \"a\"\ndisturbance = [{ signal = \"x\", kind = \"lost\" }]", ".kind"),
+        ("name = \"a\"\ndisturbance = [{ signal = \"x\", kind = \"loose\" }]", ".kind"),
     ] {
         let faults = faults_in(&schema::cases(), &format!("version = 1\n[[case]]\n{wrong}\n"));
         assert!(faults.iter().any(|fault| fault.contains(place)), "{wrong}: {faults:#?}");

@@ -9,11 +9,11 @@ fn run(words: &[&str], code: i32) -> serde_json::Value {
     serde_json::from_str(said.out.trim()).expect("a report")
 }
 
-/// The total of a count of the report.
+/// What a count of the report has come to.
 fn counted(report: &serde_json::Value, name: &str) -> u64 {
     let counts = report["report"]["counts"].as_array().expect("counts");
     let count = counts.iter().find(|count| count["name"] == name).unwrap_or_else(|| panic!("{name}: {report}"));
-    count["total"].as_u64().expect("a number")
+    count["count"].as_u64().expect("a number")
 }
 
 /// Table 3 of `[Nyyssönen]` and the lines of today peel 5 to 20 blocks a minute.

@@ -64,8 +64,9 @@ const MEASURES: &str = r#"
 /// What `[report]` of a scenario with these signals asks for.
 pub(super) fn measures(report: &str) -> Result<Measures, (String, String, Option<String>)> {
     let text = format!("{SIGNALS}{report}");
-    let file: ScenarioFile =
+    let mut file: ScenarioFile =
         toml::from_str(&text).map_err(|error| (error.message().to_owned(), String::new(), None))?;
+    crate::structure::expand(&mut file).map_err(|wrong| (wrong.message, String::new(), wrong.help))?;
     match Measures::bind(&file, &text) {
         Ok(measures) => Ok(measures.expect("a report")),
         Err(wrong) => Err((wrong.message, text[wrong.place].to_owned(), wrong.help)),

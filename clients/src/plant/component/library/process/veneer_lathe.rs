@@ -128,6 +128,7 @@ failures! {
 
 /// What it remembers.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[expect(clippy::struct_excessive_bools, reason = "four states of the block that are independent of one another")]
 pub(crate) struct State {
     held: bool,
     radius_m: f64,
@@ -165,7 +166,7 @@ struct Cut {
 
 impl VeneerLathe {
     /// What the knife would take off, if the block turns with the spindles.
-    fn cut(&self, state: &State, knife_m: f64, turns: f64) -> Option<Cut> {
+    fn cut(state: &State, knife_m: f64, turns: f64) -> Option<Cut> {
         if !state.held || knife_m >= state.radius_m {
             return None;
         }
@@ -184,7 +185,7 @@ impl VeneerLathe {
         self.p.cutting_bar * BAR_PA * wet * splinter * self.p.length_m * cut.thickness_m * cut.from_m
     }
 
-    fn load(&self, state: &mut State, inputs: &Inputs, turn: &Turn) {
+    fn load(state: &mut State, inputs: &Inputs, turn: &Turn) {
         let out_of_round = if turn.failed.has(Failure::OutOfRound) { OUT_OF_ROUND_M } else { 0.0 };
         let off_m = inputs.off_centre_m.abs() + out_of_round;
         state.radius_m = inputs.block_radius_m + off_m;
@@ -192,7 +193,7 @@ impl VeneerLathe {
         (state.turns, state.veneer_m, state.spin_out) = (0.0, 0.0, false);
     }
 
-    fn peel(&self, state: &mut State, cut: &Cut, knife_m: f64, dt_s: f64) {
+    fn peel(state: &mut State, cut: &Cut, knife_m: f64, dt_s: f64) {
         state.cutting = true;
         state.turns += cut.turns;
         state.thickness_m = cut.thickness_m;
@@ -252,7 +253,7 @@ impl Component for VeneerLathe {
         }
         let p = &self.p;
         if inputs.held && !state.held {
-            self.load(state, inputs, turn);
+            Self::load(state, inputs, turn);
         }
         state.held = inputs.held;
         let knife_m = inputs.knife * p.unit_m;
@@ -262,14 +263,14 @@ impl Component for VeneerLathe {
         if state.spin_out && (knife_m > state.radius_m + CLEAR_M || !state.held) {
             state.spin_out = false;
         }
-        if let Some(cut) = self.cut(state, knife_m, turns).filter(|_| !state.spin_out) {
+        if let Some(cut) = Self::cut(state, knife_m, turns).filter(|_| !state.spin_out) {
             if cut.turns <= STANDING_TURNS {
                 state.pressed = knife_m < state.knife_m;
             } else {
                 state.torque_nm = self.torque_nm(&cut, turn);
                 state.spin_out = state.torque_nm > p.torque_max_nm * inputs.pressing_pct.clamp(0.0, 100.0) / 100.0;
                 if !state.spin_out {
-                    self.peel(state, &cut, knife_m, turn.dt_s);
+                    Self::peel(state, &cut, knife_m, turn.dt_s);
                 }
             }
         }

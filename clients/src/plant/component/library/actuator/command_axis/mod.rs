@@ -79,8 +79,8 @@ parameters! {
         /// speed under torque, by the flow of the pump
         stroke_units_s: f64 = 30000.0 => 1e-3, 1e9;
         /// acceleration and deceleration where a command has none
-        braking_units_s2: f64 = 100000.0 => 1e-3, 1e12;
-        /// what tracking means: "none", "per_turn", "offset", "rate" or "curve"
+        braking_units_s2: f64 = 100_000.0 => 1e-3, 1e12;
+        /// what tracking means: "none", `"per_turn"`, "offset", "rate" or "curve"
         track: Track = Track::None;
         /// units of the other axis that are one turn of it
         turn_units: f64 = 100.0 => 1e-6, 1e9;
@@ -99,7 +99,7 @@ parameters! {
         /// what moves it: "ideal" or "valve"
         drive: Drive = Drive::Ideal;
         /// speed at 10 V: flow of the valve over the area of the piston
-        full_units_s: f64 = 100000.0 => 1e-3, 1e9;
+        full_units_s: f64 = 100_000.0 => 1e-3, 1e9;
         /// speed at the knee of the flow
         knee_units_s: f64 = 10000.0 => 1e-6, 1e9;
         /// voltage at the knee of the flow

@@ -114,7 +114,7 @@ mod tests {
         // below 4266.67 units a triangle
         let short = from_rest(2000.0);
         assert!((short.duration_s() - 0.730_296_743).abs() < 1e-9);
-        assert!((short.at(0.5 * short.duration_s()).velocity - 5477.225_575).abs() < 1e-6);
+        assert!((short.at(0.5 * short.duration_s()).velocity - 5_477.225_575).abs() < 1e-6);
     }
 
     proptest! {
