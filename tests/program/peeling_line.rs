@@ -73,3 +73,19 @@ fn every_fault_of_the_line_has_a_verdict() {
     assert_eq!(said.code, Some(1), "{said:?}");
     insta::assert_snapshot!("peeling_line_campaign", said.out);
 }
+
+/// Sec. 2.3: the campaign finds that an unseen block is pushed where the loader is not; the mended program tells it.
+#[test]
+fn the_mended_program_tells_what_the_first_one_missed() {
+    // those of the first one are in the snapshot of its campaign: no effect, and three collisions
+    let said = typed(&scenario("peeling-line"), &["campaign", "mended.toml", "line", "--format", "json"]);
+    let lines = said.out.lines().map(|line| serde_json::from_str::<serde_json::Value>(line).expect("JSON lines"));
+    let unseen = lines.filter(|line| line["fault"] == "block-unseen");
+    let verdicts: Vec<_> = unseen.map(|line| line["verdict"].as_str().expect("a verdict").to_owned()).collect();
+    assert_eq!(verdicts, ["no-effect", "told", "told", "told"]);
+    let healthy = |file: &str| {
+        let said = typed(&scenario("peeling-line"), &["run", file, "--format", "json"]);
+        digests(&[serde_json::from_str(said.out.trim()).expect("a report")])
+    };
+    assert_eq!(healthy("mended.toml"), healthy("."), "nothing else has changed");
+}
