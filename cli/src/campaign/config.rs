@@ -20,7 +20,7 @@ pub struct CampaignConfig {
     pub timeout: TimeSpan,
     /// For whom the output is.
     pub format: Format,
-    /// A page.
+    /// The file for a page of all campaigns; none if absent.
     pub html: Option<PathBuf>,
     /// A report in the format of `JUnit`.
     pub junit: Option<PathBuf>,
@@ -33,7 +33,7 @@ pub struct CampaignConfig {
 pub struct WorkerConfig {
     /// The scenario's folder or file.
     pub scenario: PathBuf,
-    /// The campaign.
+    /// The campaign's name in `cases.toml`.
     pub campaign: String,
     /// Which of its cases; the run without faults if absent.
     pub case: Option<String>,

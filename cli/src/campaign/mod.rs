@@ -114,8 +114,11 @@ fn tried(
     let mut rows = Vec::with_capacity(readings.len());
     for (case, reading) in campaign.cases.iter().zip(readings) {
         let injected = scenario.clone().with_case(catalogue, case)?.injected();
-        let own = injected.map(|injected| injected.signals).unwrap_or_default();
-        rows.push(table::row(case, reading, &healthy, &measures.readouts, &own));
+        let Some(injected) = injected else {
+            let text = "the case brings nothing into the run".to_owned();
+            return Err(error::Ended { name: case.name.clone(), text, code: ExitCode::Fault as i32 }.into());
+        };
+        rows.push(table::row(case, reading, &healthy, &measures.readouts, &injected.signals));
     }
     Ok(Table::new(config, campaign, healthy, rows))
 }

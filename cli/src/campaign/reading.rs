@@ -31,7 +31,7 @@ pub struct Reading {
 /// A failure that ended a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Failure {
-    /// In words.
+    /// What happened, as people are told, without its place.
     pub text: String,
     /// True if it is of a PLC.
     pub of_plc: bool,

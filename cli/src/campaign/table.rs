@@ -16,13 +16,13 @@ use crate::regress::plan::suite_of;
 pub struct Table {
     /// The scenario's folder.
     pub scenario: String,
-    /// Its name.
+    /// The campaign's name in `cases.toml`.
     pub campaign: String,
     /// What it is about.
     pub about: Option<String>,
-    /// Its faults.
+    /// Its faults, in the order of the file.
     pub faults: Vec<CampaignFault>,
-    /// Its activations.
+    /// The names of its activations, in the order of the file.
     pub activations: Vec<String>,
     /// The verdicts with which it is passed.
     pub accepted: Vec<CampaignVerdict>,

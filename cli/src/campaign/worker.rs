@@ -54,6 +54,7 @@ fn read(config: &WorkerConfig) -> Result<Reading, CampaignError> {
     Ok(Reading {
         digest: report.digest.map(|digest| digest.to_string()),
         virtual_time_ns: report.virtual_time.as_nanos(),
+        // without `[report]` a scenario has no alarms
         alarms: report.report.as_ref().map(came).unwrap_or_default(),
         failure: report.failure.as_ref().map(|failure| told(&scenario, failure)),
         ..seen.reading(&measures, end)

@@ -104,7 +104,7 @@ fn check_keys(catalogue: &Catalogue, disturbance: &DisturbanceFile, place: &Rang
         (Some(interval), true) if !interval_of(interval.get_ref()).is_in_order() => {
             return wrong("the mean is not between `least` and `most`", interval.span(), "mend one of the three");
         }
-        _ => {}
+        (Some(_), true) | (None, false) => {}
     }
     match (by, rate, sigma) {
         (Some(by), ..) if !offset_or_late => {

@@ -79,6 +79,7 @@ impl Scenario {
     pub fn check_campaign(&self, catalogue: &Catalogue, campaign: &Campaign) -> Result<(), ScenarioError> {
         self.campaign_measures(catalogue, campaign)?;
         let mut all = self.clone().with_case(catalogue, &campaign.healthy)?;
+        // a run without faults may have nothing applied to it
         let mut applied = all.applied().cloned().unwrap_or_default();
         for case in &campaign.cases {
             let tried = self.clone().with_case(catalogue, case)?;

@@ -52,6 +52,7 @@ pub(super) fn period(
 ) -> Result<Period, ScenarioError> {
     let nth = nth(catalogue, &keys)?;
     let PeriodKeys { from, until, when, lasting, place, .. } = keys;
+    // without `from` it begins with the run
     let start = from.unwrap_or_default();
     if let (Some(_), Some(_)) = (until, lasting) {
         let message = "`until` and `for` both say when it ends".to_owned();

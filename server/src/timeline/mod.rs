@@ -110,6 +110,7 @@ struct Item {
 impl Item {
     fn begin(&mut self) {
         self.stage = first_stage(&self.scheduled);
+        // an item at a time has no condition, and nothing to remember
         let memories = self.condition.as_ref().map(Judged::nothing_seen).unwrap_or_default();
         self.seen = Seen { memories, held: false, times: 0 };
     }

@@ -88,14 +88,13 @@ impl CommandAxis {
         let limits = self.limits(inputs);
         state.in_position = false;
         state.braking = limits.deceleration;
-        state.mode = if self.p.track == Track::None && (inputs.tracking || inputs.torque_control) {
-            Mode::Torque
-        } else if inputs.tracking {
+        state.mode = if inputs.tracking && self.p.track != Track::None {
             state.tracked = finite(inputs.tracked);
             Mode::Tracking
-        } else if inputs.torque_control {
+        } else if inputs.tracking || inputs.torque_control {
             Mode::Torque
         } else if inputs.speed_control {
+            state.target = finite(inputs.target_position);
             Mode::Speed
         } else {
             state.target = self.p.within(finite(inputs.target_position));
@@ -103,9 +102,6 @@ impl CommandAxis {
             state.since_s = 0.0;
             Mode::Position
         };
-        if state.mode == Mode::Speed {
-            state.target = finite(inputs.target_position);
-        }
     }
 
     /// Moves the axis by a period.
@@ -226,17 +222,14 @@ impl CommandAxis {
 
     /// The axis follows what the control wants.
     fn follow(&self, state: &mut State, from: Setpoint, inputs: &Inputs, turn: &Turn) {
-        if self.p.drive == Drive::Ideal {
-            let part = if turn.failed.has(Failure::HoseBurst) { BURST_SPEED } else { 1.0 };
-            if part < 1.0 {
-                let position = from.position + part * (state.set.position - from.position);
-                state.actual = Setpoint { position, velocity: part * state.set.velocity };
-                self.stand(state, 0.0);
-            } else {
-                state.actual = state.set;
-            }
+        let burst = turn.failed.has(Failure::HoseBurst);
+        if self.p.drive == Drive::Ideal && burst {
+            let position = from.position + BURST_SPEED * (state.set.position - from.position);
+            state.actual = Setpoint { position, velocity: BURST_SPEED * state.set.velocity };
+            self.stand(state, 0.0);
+        } else if self.p.drive == Drive::Ideal {
+            state.actual = state.set;
         } else {
-            let burst = turn.failed.has(Failure::HoseBurst);
             let wear = Wear {
                 worn: turn.failed.has(Failure::WornValve),
                 no_pressure: turn.failed.has(Failure::NoPressure) || burst,
@@ -284,10 +277,7 @@ impl CommandAxis {
             (false, false) => FREE_PRESSURE * torque,
         };
         self.stand(state, pressing);
-        state.in_position |= met;
-        if still {
-            state.in_position = false;
-        }
+        state.in_position = !still && (state.in_position || met);
     }
 
     /// An axis that turns begins at 0 again.
