@@ -9,9 +9,11 @@
 //! | `ready` | `"P.arm[0..9].ready"` | one signal for many variables that are read |
 //! | `"SW_*"` | `"P.*"` | every declared signal of that form; what `*` stands for goes to the right |
 //!
+//! A gateway's `reads` takes names, ranges and patterns.
+//!
 //! A name goes before a range, and a range before a pattern.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use onescan_clients::array;
 use onescan_server::signal::{SignalName, did_you_mean};
@@ -143,6 +145,37 @@ fn by_pattern(
     Ok(found)
 }
 
+/// The declared signals that a list under `key` names by name, range or pattern, in the order of the list, each once.
+///
+/// # Errors
+/// A name that is not declared, a pattern of which no signal is.
+pub(crate) fn chosen(key: &str, list: &[String], declared: &[&SignalName]) -> Result<Vec<SignalName>, Wrong> {
+    let (mut found, mut seen) = (Vec::new(), BTreeSet::new());
+    for text in list {
+        if text.contains('*') {
+            let before = found.len();
+            let matching = declared.iter().filter(|signal| matched(text, signal.as_str()).is_some());
+            found.extend(matching.filter(|signal| seen.insert(**signal)).map(|signal| (*signal).clone()));
+            if found.len() == before {
+                let message = format!("`{key}` has a pattern `{text}`, but no other signal is of that form");
+                return Err(Wrong::new(message, None));
+            }
+            continue;
+        }
+        for signal in array::names(text).map_err(|error| Wrong::new(error.to_string(), None))? {
+            let Some(known) = declared.iter().find(|known| known.as_str() == signal) else {
+                let help = did_you_mean(&signal, declared.iter().map(|known| known.as_str()));
+                let message = format!("`{key}` names a signal `{signal}` that is not declared");
+                return Err(Wrong { help, ..Wrong::new(message, None) });
+            };
+            if seen.insert(known) {
+                found.push((*known).clone());
+            }
+        }
+    }
+    Ok(found)
+}
+
 /// What each `*` of a pattern stands for in a text, each as short as can be; none if it does not match.
 fn matched<'t>(pattern: &str, text: &'t str) -> Option<Vec<&'t str>> {
     let mut pieces = pattern.split('*');
@@ -181,6 +214,23 @@ mod tests {
         assert_eq!(found, texts(&[("a[0].x", &["P.b[3]"]), ("a[1].x", &["P.b[4]"]), ("r", all)]));
         assert!(bind(&[("a[0..1]", "P.b[0..2]")], &["a[0]", "a[1]"]).unwrap_err().contains("2 signals"));
         assert!(bind(&[("a[0..2]", "P.b[0..2]")], &["a[0]", "a[1]"]).unwrap_err().contains("`a[2]` that is not"));
+    }
+
+    #[test]
+    fn a_list_chooses_by_name_range_and_pattern() {
+        let declared = ["a[0].x", "a[1].x", "b", "c"].map(|name| SignalName::new(name).unwrap());
+        let of = |list: &[&str]| {
+            let list: Vec<_> = list.iter().map(|text| (*text).to_owned()).collect();
+            let found = chosen("reads", &list, &declared.iter().collect::<Vec<_>>());
+            found.map_or_else(
+                |wrong| wrong.message,
+                |found| found.iter().map(SignalName::as_str).collect::<Vec<_>>().join(" "),
+            )
+        };
+        assert_eq!(of(&["b", "a[0..1].x", "b"]), "b a[0].x a[1].x");
+        assert_eq!(of(&["a[*", "c"]), "a[0].x a[1].x c");
+        assert_eq!(of(&["a[0..2].x"]), "`reads` names a signal `a[2].x` that is not declared");
+        assert_eq!(of(&["d*"]), "`reads` has a pattern `d*`, but no other signal is of that form");
     }
 
     #[test]

@@ -173,10 +173,9 @@ pub enum ClientFile {
         #[serde(default, deserialize_with = "from_optional_text")]
         #[schemars(with = "Option<Time>")]
         period: Option<TimeSpan>,
-        /// The signals that it reads.
+        /// The signals that it reads: names, ranges as `Sensor[0..3]`, patterns as `Feedback.*`.
         #[serde(default)]
-        #[schemars(with = "Vec<Name>")]
-        reads: Vec<SignalName>,
+        reads: Vec<String>,
         /// The link to the PLC.
         gateway: Settings,
     },
@@ -193,10 +192,10 @@ pub enum ClientFile {
         #[serde(default, deserialize_with = "from_optional_text")]
         #[schemars(with = "Option<Time>")]
         period: Option<TimeSpan>,
-        /// The signals that it reads. It writes those whose writer it is.
+        /// The signals that it reads: names, ranges as `Sensor[0..3]`, patterns as `Feedback.*`. It writes those whose
+        /// writer it is.
         #[serde(default)]
-        #[schemars(with = "Vec<Name>")]
-        reads: Vec<SignalName>,
+        reads: Vec<String>,
         /// The program to start, with its arguments; `{server}` stands for the server's endpoint.
         /// Without it the server waits for somebody to start it.
         #[serde(default)]

@@ -18,9 +18,10 @@ use onescan_plc_shim::instrument::{
 };
 use onescan_plc_shim::{Application, BuildError, Input, Task, TaskPlan, TimeSpan};
 use onescan_server::client::{Client, JoinRequest};
-use onescan_server::signal::{ClientName, Port, SignalName, did_you_mean};
+use onescan_server::signal::{ClientName, Port, SignalDecl, SignalName, did_you_mean};
 use serde::Deserialize;
 
+use super::arrays;
 use super::compose::{Compiled, Paths, plan_of};
 use super::error::{PlcReport, ScenarioError};
 use super::file::ClientFile;
@@ -280,11 +281,16 @@ impl Scenario {
         if let Some(link) = self.links.get(name) {
             return link.settings.clone();
         }
-        match self.file().clients.get(name).map(toml::Spanned::get_ref) {
+        let mut settings = match self.file().clients.get(name).map(toml::Spanned::get_ref) {
             Some(ClientFile::SoftPlc { gateway, .. }) => gateway.clone().unwrap_or_default(),
             Some(ClientFile::Gateway { gateway, .. }) => gateway.clone(),
             _ => Settings::default(),
+        };
+        // The structures of signals are those of the PLC's data blocks, too. A layout's own take precedence.
+        for (structure, members) in &self.file().structures {
+            settings.layout.structures.entry(structure.clone()).or_insert_with(|| members.clone());
         }
+        settings
     }
 
     /// The link of PLC `name`, with the URL that counts.
@@ -317,19 +323,18 @@ impl Scenario {
                 Ok(plc.map_err(|error| self.wrong_client(name, error.to_string(), None))?.join())
             }
             Some(ClientFile::Gateway { period, reads, .. } | ClientFile::OpcUa { period, reads, .. }) => {
-                let known = || signals.iter().map(|signal| signal.name.as_str());
-                let read = |wanted: &SignalName| {
-                    let found = signals.iter().find(|signal| signal.name == *wanted);
-                    found.map(|signal| port(wanted, signal.ty)).ok_or_else(|| {
-                        let message = format!("`reads` names a signal `{wanted}` that is not declared");
-                        self.wrong_client(name, message, did_you_mean(wanted.as_str(), known()))
-                    })
+                let declared: Vec<_> = signals.iter().map(|signal| &signal.name).collect();
+                let wanted = arrays::chosen("reads", reads, &declared)
+                    .map_err(|wrong| self.wrong_client(name, wrong.message, wrong.help))?;
+                let read = |name: SignalName| {
+                    let ty = signals.iter().find(|signal| signal.name == name).map(|signal| signal.ty);
+                    ty.map(|ty| Port { name, ty })
                 };
-                let is_own = |signal: &&onescan_server::signal::SignalDecl| signal.writer.as_ref() == Some(name);
+                let is_own = |signal: &&SignalDecl| signal.writer.as_ref() == Some(name);
                 Ok(JoinRequest {
                     name: name.clone(),
                     period: period.unwrap_or(self.file().step),
-                    reads: reads.iter().map(read).collect::<Result<_, _>>()?,
+                    reads: wanted.into_iter().filter_map(read).collect(),
                     writes: signals.iter().filter(is_own).map(|signal| port(&signal.name, signal.ty)).collect(),
                 })
             }
