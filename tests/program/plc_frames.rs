@@ -16,7 +16,7 @@ use onescan_clients::gateway::tcp::{Declaration, Layouts};
 use onescan_server::signal::{Port, SignalName, SignalType};
 
 use crate::plc::Plc;
-use crate::typed::{Said, begun, digests, edit, onescan, typed};
+use crate::typed::{Said, begun, digests, edit, onescan, scenario, typed};
 
 const TYPES: &str = "
 TYPE
@@ -392,24 +392,53 @@ fn a_stream_that_is_cut_wrongly_is_told() {
     assert!(said.err.contains("the stream is cut in the wrong place"), "{said:?}");
 }
 
+/// A scenario whose gateways listen at these ports, and a peer in Python that connects to them.
+fn with_peer(
+    peer: &str,
+    arguments: &[&str],
+    ports: [SocketAddr; 2],
+    folder: &Path,
+    scenario: &str,
+    until: &str,
+) -> (Said, Said) {
+    let peer = Path::new(env!("CARGO_MANIFEST_DIR")).join("peers/plc").join(peer);
+    let words = ports.map(|address| address.port().to_string());
+    let mut python = Command::new("python3");
+    python.arg("-B").arg(peer).args(["--ports", &words[0], &words[1]]).args(arguments);
+    let peer = python.stdout(std::process::Stdio::piped()).stderr(std::process::Stdio::piped()).spawn();
+    let gateways = ["charger", "lathe"].map(|plc| plc.to_owned() + "=tcp-listen://");
+    let [charger, lathe] = [0, 1].map(|plc| format!("{}{}", gateways[plc], ports[plc]));
+    let run = ["run", scenario, "--format", "json", "--until", until, "--gateway", &charger, "--gateway", &lathe];
+    let said = typed(folder, &run);
+    let peer = Said::from(peer.expect("Python is on the machine").wait_with_output().expect("it ends"));
+    assert_eq!((said.code, peer.code), (Some(0), Some(0)), "{said:?} {peer:?}");
+    (said, peer)
+}
+
 /// A peer that knows nothing of onescan but the thesis' frames drives both machines, a step for each of its frames.
 #[test]
 fn a_plc_that_is_not_instrumented_is_counted() {
     let ports = [free(), free()];
     let urls = ports.map(|address| format!("tcp-listen://{address}"));
     let folder = line([&urls[0], &urls[1]], "frames");
-    let peer = Path::new(env!("CARGO_MANIFEST_DIR")).join("peers/plc/frames_plc.py");
-    let words = ports.map(|address| address.port().to_string());
-    let mut python = Command::new("python3");
-    python.arg("-B").arg(peer).args(["--ports", &words[0], &words[1]]);
-    let peer = python.stdout(std::process::Stdio::piped()).stderr(std::process::Stdio::piped()).spawn();
-    let run = ["run", ".", "--format", "json", "--until", "3s", "--gateway", "charger", "--gateway", "lathe"];
-    let said = typed(folder.path(), &run);
-    let peer = Said::from(peer.expect("Python is on the machine").wait_with_output().expect("it ends"));
-    assert_eq!((said.code, peer.code), (Some(0), Some(0)), "{said:?} {peer:?}");
+    let (said, peer) = with_peer("frames_plc.py", &[], ports, folder.path(), ".", "3s");
     assert!(said.err.contains("blocks counted: 300 steps, 300 blocks used"), "{said:?}");
     assert!(peer.out.contains("charger: axis 2 in position at 6300.0"), "{peer:?}");
     assert!(peer.out.contains("lathe: axis 6 in position at 2000.0"), "{peer:?}");
+}
+
+/// Two PLCs in Python, written from the thesis alone, drive the whole line: blocks come, are centred, peeled to their
+/// cores, and nothing meets anything. They push every 4 ms of the wall clock, whatever has come.
+#[test]
+fn a_peer_drives_the_whole_line() {
+    let ports = [free(), free()];
+    let (said, peer) =
+        with_peer("peeling_line_plcs.py", &["--push", "4"], ports, &scenario("peeling-line"), "frames.toml", "25s");
+    assert!(said.err.contains("blocks counted: 2500 steps, 2500 blocks used"), "{said:?}");
+    assert!(peer.out.contains("lathe: 1 peeled"), "{peer:?}");
+    let run: serde_json::Value = serde_json::from_str(&said.out).expect("JSON");
+    let verdicts = run["expectations"].as_array().expect("expectations");
+    assert_eq!(verdicts.len(), 4, "{said:?}");
 }
 
 /// The codec against `struct`: no difference in 10,000 frames of each kind, there and back.
