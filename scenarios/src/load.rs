@@ -27,6 +27,12 @@ use super::{arrays, structure};
 /// The file that makes a folder a scenario.
 pub const FILE_NAME: &str = "scenario.toml";
 
+/// Where in `folder` the scenario `name` is: a file that is not called as usual has given it its name.
+pub fn kept_as(folder: &Path, name: &str) -> PathBuf {
+    let usual = folder.join(FILE_NAME);
+    if usual.is_file() { usual } else { folder.join(format!("{name}.toml")) }
+}
+
 /// A scenario, checked as far as that is possible without its plant and its PLC.
 ///
 /// ```

@@ -56,6 +56,7 @@ mod regression;
 mod reports;
 mod review;
 mod robot_cell;
+mod rotary_kiln;
 mod run;
 mod shear;
 mod shift;

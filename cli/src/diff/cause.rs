@@ -8,6 +8,7 @@ use std::sync::PoisonError;
 
 use onescan_clients::soft_plc::{Traced, Written};
 use onescan_recording::Recording;
+use onescan_scenario::load::kept_as;
 use onescan_scenario::{Mode, Scenario, ScenarioError};
 use onescan_server::operation::OperatorInput;
 use onescan_server::signal::{ClientName, SignalName};
@@ -95,8 +96,11 @@ fn repeatable(recording: &Recording) -> Result<Repeatable, String> {
     if Mode::named(&header.provenance.mode) != Some(Mode::Lockstep) {
         return Err(format!("a run in mode {} cannot be repeated", header.provenance.mode));
     }
-    let scenario = Scenario::load_case(&recording.scenario(), header.provenance.case.as_deref())
-        .map_err(|error| error.to_string())?;
+    let scenario = Scenario::load_case(
+        &kept_as(&recording.scenario(), &header.provenance.scenario),
+        header.provenance.case.as_deref(),
+    )
+    .map_err(|error| error.to_string())?;
     if header.first_step.0 != 0 {
         return Err("the run went on from a checkpoint".to_owned());
     }

@@ -9,7 +9,7 @@ use onescan_recording::Recording;
 use onescan_report::page::{Page, Section};
 use onescan_report::{OutputError, file};
 use onescan_scenario::Scenario;
-use onescan_scenario::load::FILE_NAME;
+use onescan_scenario::load::kept_as;
 use onescan_scenario::report::{Measures, Meter, Report};
 use onescan_server::signal::SignalName;
 use onescan_server::signal::pattern::{EmptyPattern, SignalPattern};
@@ -89,12 +89,9 @@ fn recorded(folder: &Path, asked: Option<&Scenario>) -> Result<Recorded, ReportE
     })
 }
 
-/// The recorded scenario. A file that is not called as usual gives it its name.
+/// The recorded scenario.
 fn own_scenario(recording: &Recording) -> Result<Scenario, ReportError> {
-    let folder = recording.scenario();
-    let named = folder.join(format!("{}.toml", recording.header().provenance.scenario));
-    let path = if folder.join(FILE_NAME).is_file() { folder } else { named };
-    Ok(Scenario::load(&path)?)
+    Ok(Scenario::load(&kept_as(&recording.scenario(), &recording.header().provenance.scenario))?)
 }
 
 fn measured(recording: &Recording, measures: &Measures) -> Result<Report, ReportError> {

@@ -280,6 +280,7 @@ const UNITS: &[(&str, &str)] = &[
     ("_l_s_bar", "l/(s·bar)"),
     ("_j_k", "J/K"),
     ("_w_k", "W/K"),
+    ("_turns_h", "turns/h"),
     ("_1_min", "1/min"),
     ("_1_s", "1/s"),
     ("_degc", "°C"),

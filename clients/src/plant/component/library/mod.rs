@@ -123,6 +123,7 @@ library! {
         workpiece_source::WorkpieceSource,
         workpiece_sink::WorkpieceSink,
         veneer_lathe::VeneerLathe,
+        kiln_shell::KilnShell,
     }
     panel {
         push_button::PushButton,
