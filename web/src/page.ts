@@ -27,9 +27,10 @@ export class Page {
   private readonly source: SourceView;
   private readonly trends: TrendsView;
   private readonly timeline: Timeline;
-  private readonly link: Link;
+  private readonly link: Link | null = null;
   private readonly sensors: readonly { signal: number; body: number }[];
   private readonly verdicts = new Map<string, HTMLElement>();
+  private tabs: Sheets | null = null;
   private sheet = "";
   private last: Picture | null = null;
   private wasPast = false;
@@ -88,8 +89,6 @@ export class Page {
     for (const signal of shown) this.trends.toggle(signal);
   }
 
-  private tabs: Sheets | null = null;
-
   private plc(code: HTMLElement): HTMLElement {
     const first = this.session.sources[0];
     if (first === undefined) return make("div", {}, make("p", { class: "empty" }, "No source of a PLC is part of this session."));
@@ -131,7 +130,7 @@ export class Page {
   }
 
   private ask(ask: Ask): void {
-    if (!this.link.ask(ask)) this.notice("There is no connection to the session: nothing was sent.");
+    if (!(this.link?.ask(ask) ?? false)) this.notice("There is no connection to the session: nothing was sent.");
   }
 
   private choose(body: number | null): void {
@@ -142,7 +141,8 @@ export class Page {
 
   /** Asks for the signals that some view shows. */
   private subscribe(): void {
-    if (this.link === undefined) return;
+    // Views ask while they are made, before there is a connection.
+    if (this.link === null) return;
     const wanted = new Set([
       ...this.panels.flatMap((one) => one.view.signals()),
       ...this.sensors.map((one) => one.signal),
@@ -226,8 +226,8 @@ export class Page {
   }
 
   private paint(): void {
-    this.machine.theme(colour("--ground"), colour("--text-2"));
-    if (this.last !== null) this.trends.at(this.last.t_ns);
+    this.machine.theme(colour("--ground"), colour("--line"));
+    this.trends.repaint();
   }
 
   /** What a test reads from the page: exact positions of the last picture, not the drawn ones. */

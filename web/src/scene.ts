@@ -1,8 +1,8 @@
 // The machine in 3D: bodies where the session has them, at the step that is shown.
 
 import {
-  AmbientLight, BufferGeometry, BoxGeometry, CapsuleGeometry, Color, CylinderGeometry, DirectionalLight,
-  Float32BufferAttribute, GridHelper, HemisphereLight, Mesh, MeshStandardMaterial, PerspectiveCamera, Plane, Raycaster,
+  AmbientLight, Box3, BoxGeometry, BufferGeometry, CapsuleGeometry, Color, CylinderGeometry, DirectionalLight,
+  Float32BufferAttribute, GridHelper, HemisphereLight, Mesh, MeshLambertMaterial, PerspectiveCamera, Plane, Raycaster,
   Scene, SphereGeometry, Vector2, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
@@ -17,7 +17,7 @@ const DARK = new Color("#000000");
 
 interface Part {
   readonly body: Body;
-  readonly mesh: Mesh<BufferGeometry, MeshStandardMaterial>;
+  readonly mesh: Mesh<BufferGeometry, MeshLambertMaterial>;
   readonly colour: Color;
   isHiddenByHand: boolean;
 }
@@ -144,7 +144,7 @@ export class MachineView {
     const { low, high } = this.reach();
     const middle = low.clone().add(high).multiplyScalar(0.5);
     const size_m = Math.max(0.5, high.distanceTo(low));
-    const away = new Vector3(0.55, -0.95, 0.65).normalize().multiplyScalar(size_m * 0.95);
+    const away = new Vector3(0.55, -0.95, 0.65).normalize().multiplyScalar(size_m * 0.9);
     this.controls.target.copy(middle);
     this.camera.position.copy(middle).add(away);
     this.controls.update();
@@ -163,12 +163,11 @@ export class MachineView {
     const high = low.clone().negate();
     for (const part of this.parts) {
       if (part === null || !part.body.visible) continue;
-      const radius = part.mesh.geometry.boundingSphere?.radius ?? 0;
       // A plate for a floor is no reason to stand far away.
-      if (radius > 20) continue;
-      const at = new Vector3(...part.body.position_m);
-      low.min(at.clone().subScalar(radius));
-      high.max(at.clone().addScalar(radius));
+      if ((part.mesh.geometry.boundingSphere?.radius ?? 0) > 20) continue;
+      const box = new Box3().setFromObject(part.mesh);
+      low.min(box.min);
+      high.max(box.max);
     }
     return low.x <= high.x ? { low, high } : { low: new Vector3(-1, -1, 0), high: new Vector3(1, 1, 1) };
   }
@@ -194,7 +193,7 @@ export class MachineView {
     if (!Array.isArray(grid.material)) {
       grid.material.vertexColors = false;
       grid.material.transparent = true;
-      grid.material.opacity = 0.45;
+      grid.material.opacity = 0.6;
     }
     this.scene.add(grid);
   }
@@ -209,7 +208,7 @@ export class MachineView {
       geometries.set(key, geometry);
     }
     const colour = new Color(body.colour ?? BY_KIND[body.kind] ?? "#a0a6ab");
-    const mesh = new Mesh(geometry, new MeshStandardMaterial({ color: colour, roughness: 0.72, metalness: 0.08 }));
+    const mesh = new Mesh(geometry, new MeshLambertMaterial({ color: colour }));
     mesh.position.set(...body.position_m);
     mesh.quaternion.set(...body.rotation);
     mesh.visible = body.visible;

@@ -9,6 +9,7 @@ import type { Session, Signal } from "./protocol";
 /** Colours of the curves, told apart by those who do not see red and green (Okabe and Ito 2008). */
 const CURVES = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"] as const;
 const WINDOW_S = 20;
+const LANE_PX = 62;
 
 interface Lane {
   readonly signal: number;
@@ -77,6 +78,11 @@ export class TrendsView {
     this.isStale = true;
   }
 
+  /** Draws all again in the colours of the theme. */
+  repaint(): void {
+    for (const lane of this.lanes) lane.plot.redraw(false, true);
+  }
+
   /** Shows the last seconds again. */
   follow(): void {
     this.range_s = null;
@@ -110,11 +116,12 @@ export class TrendsView {
   private options(about: Signal, lane: number): uPlot.Options {
     const isState = about.type === "BOOL" || about.names.size > 0;
     const stroke = CURVES[lane % CURVES.length] ?? CURVES[0];
-    const axis: uPlot.Axis = { stroke: () => style("--text-2"), grid: { stroke: () => style("--line"), width: 1 }, font: "11px system-ui" };
+    const axis: uPlot.Axis = { stroke: () => style("--text-2"), grid: { stroke: () => style("--line"), width: 1 }, ticks: { show: false }, gap: 3, font: "11px system-ui" };
     const stepped = uPlot.paths.stepped?.({ align: 1 });
     return {
       width: 300,
-      height: 74,
+      height: LANE_PX,
+      padding: [6, 10, 0, 0],
       legend: { show: false },
       cursor: { sync: { key: "trends" }, drag: { x: true, y: false, setScale: false }, y: false },
       scales: { x: { time: false }, y: isState && about.type === "BOOL" ? { range: [-0.1, 1.1] } : {} },
@@ -169,7 +176,7 @@ export class TrendsView {
   }
 
   private fit(): void {
-    for (const lane of this.lanes) lane.plot.setSize({ width: Math.max(120, lane.root.clientWidth - 4), height: 74 });
+    for (const lane of this.lanes) lane.plot.setSize({ width: Math.max(120, lane.root.clientWidth - 4), height: LANE_PX });
     this.isStale = true;
   }
 
@@ -180,6 +187,13 @@ export class TrendsView {
       const about = this.session.signals[lane.signal] as Signal;
       const history = this.histories.get(lane.signal);
       const part = history?.decimated(from, to, lane.plot.width) ?? { t_s: [], value: [] };
+      // The server sends what changes: the last value holds until now.
+      const held = part.value[part.value.length - 1];
+      const until_s = Math.min(to, this.now_s);
+      if (held !== undefined && (part.t_s[part.t_s.length - 1] as number) < until_s) {
+        part.t_s.push(until_s);
+        part.value.push(held);
+      }
       lane.plot.batch(() => {
         lane.plot.setData([part.t_s, part.value], about.type !== "BOOL");
         lane.plot.setScale("x", { min: from, max: to });
