@@ -1,0 +1,139 @@
+// A session that stands in for the server in the tests of the page: a belt with packages, a light barrier, a desk.
+// It keeps what the page asks, so that a test can read it.
+
+import { readFile } from "node:fs/promises";
+import { createServer } from "node:http";
+import { WebSocketServer } from "ws";
+
+const STEP_NS = 10_000_000;
+const TYPES = { "index.html": "text/html", "page.js": "text/javascript", "page.css": "text/css" };
+const SIGNALS = [
+  ["Start", "BOOL", "operator", null], ["Belt_On", "BOOL", "plc", null], ["Eye", "BOOL", "plant", null],
+  ["Speed", "LREAL", "plant", "m/s"], ["Count", "DINT", "plant", null], ["Setpoint", "LREAL", "operator", "m/s"],
+];
+
+/** A structure with `packages` packages on a belt of 4 m. */
+export function structure(packages) {
+  const box = (name, kind, size_m, position_m, colour) =>
+    ({ name, kind, shape: { kind: "box", size_m }, colour, position_m, rotation: [0, 0, 0, 1], visible: true });
+  const bodies = [
+    box("belt", "kinematic", [4, 0.5, 0.08], [0, 0, 0.8], "#5c656c"),
+    ...[-1.8, 1.8].flatMap((x, side) => [-0.2, 0.2].map((y, at) => box(`leg[${2 * side + at}]`, "fixed", [0.06, 0.06, 0.76], [x, y, 0.38], null))),
+    { name: "eye", kind: "fixed", shape: { kind: "cylinder", radius_m: 0.04, length_m: 0.3 }, colour: "#39424a", position_m: [0.8, -0.32, 0.98], rotation: [0, 0, 0, 1], visible: true },
+    ...Array.from({ length: packages }, (_, index) => box(`package[${index}]`, "dynamic", [0.16, 0.2, 0.14], [-1.8, 0, 0.91], "#b88a54")),
+  ];
+  const element = (kind, label, signal, at, more = {}) => ({ kind, label, signal, at, span: [2, 1], ...more });
+  return {
+    protocol: 1, title: "Stand-in: a belt with packages", scenario: "stand-in", step_ns: STEP_NS, until_ns: null, live: true,
+    signals: SIGNALS.map(([name, type, writer, unit]) => ({ name, type, writer, unit, about: "" })),
+    bodies,
+    components: [{
+      name: "barrier", kind: "light-barrier", body: "eye", signals: ["Eye"], senses: "Eye",
+      parameters: [{ name: "range", value: 0.6, unit: "m" }], failures: [{ name: "stuck", active: false }],
+    }],
+    looks: [], views: [{ name: "front", position_m: [0, -4, 1.6], target_m: [0, 0, 0.8] }],
+    panels: [{
+      name: "desk", seat: "operator", columns: 6, rows: 4,
+      elements: [
+        element("button", "Start", "Start", [0, 0], { colour: "#1d8a42" }), element("lamp", "Belt runs", "Belt_On", [2, 0], { colour: "#3fbf5f" }),
+        element("lamp", "Eye sees", "Eye", [4, 0]), element("number", "Packages", "Count", [0, 1]),
+        element("bar", "Speed", "Speed", [2, 1], { span: [4, 1] }), element("slider", "Setpoint", "Setpoint", [0, 2], { span: [6, 1] }),
+      ],
+    }],
+    expectations: [{ name: "no package is lost", text: "always Count >= 0" }],
+    sources: [{
+      path: "plc/belt.st", text: "PROGRAM Belt\n  IF Start THEN\n    Belt_On := TRUE;\n  END_IF;\n  IF Eye THEN Count := Count + 1; END_IF;\nEND_PROGRAM\n",
+      lines: [{ line: 2, variables: ["Start"] }, { line: 3, variables: ["Belt_On"] }, { line: 5, variables: ["Eye", "Count"] }],
+    }],
+  };
+}
+
+/** Where a package is at a step, in metres along the belt; packages after the tenth stand on others. */
+export function place(index, step, packages) {
+  const row = index % 10;
+  const around = (((row * 0.38 + step * 0.005) % 3.8) + 3.8) % 3.8;
+  return [around - 1.9, packages > 10 ? ((Math.floor(index / 10) % 6) - 2.5) * 0.22 : 0, 0.91 + Math.floor(index / 60) * 0.16];
+}
+
+/** The picture of a step, as the protocol has it. */
+export function picture(step, { packages, first, values, isPast, isHeld }) {
+  const data = Buffer.alloc(24 + values.length * 16 + packages * 32);
+  data.writeUInt8(1, 0);
+  data.writeUInt8((isHeld ? 1 : 0) | (isPast ? 2 : 0), 1);
+  data.writeUInt16LE(values.length, 2);
+  data.writeUInt32LE(packages, 4);
+  data.writeBigUInt64LE(BigInt(step), 8);
+  data.writeBigUInt64LE(BigInt(step) * BigInt(STEP_NS), 16);
+  values.forEach(([signal, value], index) => {
+    data.writeUInt32LE(signal, 24 + index * 16);
+    data.writeDoubleLE(value, 32 + index * 16);
+  });
+  for (let index = 0; index < packages; index += 1) {
+    const at = 24 + values.length * 16 + index * 32;
+    data.writeUInt32LE(first + index, at);
+    [...place(index, step, packages), 0, 0, 0, 1].forEach((one, axis) => data.writeFloatLE(one, at + 4 + axis * 4));
+  }
+  return data;
+}
+
+/** Serves the page in `dist` and a session; `asked` holds what pages asked, `say` speaks to all of them. */
+export async function serve({ packages = 8 } = {}) {
+  const session = structure(packages);
+  const asked = [];
+  const state = { step: 0, isHeld: false, seat: false, shown: null, subscribed: [], start: 0, setpoint: 0.5 };
+  const http = createServer(async (request, answer) => {
+    const name = request.url === "/" ? "index.html" : request.url.slice(1);
+    if (name === "api/session") return answer.setHeader("content-type", "application/json").end(JSON.stringify(session));
+    if (!(name in TYPES)) return answer.writeHead(404).end();
+    answer.setHeader("content-type", TYPES[name]).setHeader("content-security-policy", "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:");
+    return answer.end(await readFile(new URL(`../dist/${name}`, import.meta.url)));
+  });
+  const sockets = new WebSocketServer({ server: http, path: "/api/live" });
+  const say = (what) => sockets.clients.forEach((one) => one.send(what));
+  const status = () => say(JSON.stringify({
+    type: "status", state: state.isHeld ? "hold" : "run", digest: null, pace: "1", seat: { desk: state.seat ? "mine" : "free" },
+    shown_ns: state.shown === null ? null : state.shown * STEP_NS, past_ns: [0, state.step * STEP_NS],
+  }));
+  const show = () => {
+    const step = state.shown ?? state.step;
+    const eye = Number(Array.from({ length: packages }, (_, index) => place(index, step, packages)[0]).some((x) => Math.abs(x - 0.8) < 0.1));
+    const all = [state.start, 1, eye, 0.5 + 0.05 * Math.sin(step / 30), Math.floor(step / 76), state.setpoint];
+    const values = state.subscribed.map((signal) => [signal, all[signal]]);
+    say(picture(step, { packages, first: session.bodies.length - packages, values, isPast: state.shown !== null, isHeld: state.isHeld }));
+  };
+  const hear = {
+    subscribe: (ask) => (state.subscribed = ask.signals),
+    seat: (ask) => (state.seat = ask.take),
+    write: (ask) => (ask.signal === 0 ? (state.start = ask.value) : (state.setpoint = ask.value)),
+    operate: (ask) => {
+      state.isHeld = ask.operation !== "go";
+      if (ask.operation === "step") state.step += 1;
+    },
+    show: (ask) => (state.shown = Math.round(ask.t_ns / STEP_NS)),
+    live: () => (state.shown = null),
+    fail: () => {},
+    fork: () => (state.shown = null),
+  };
+  sockets.on("connection", (socket) => {
+    socket.on("message", (data) => {
+      const ask = JSON.parse(String(data));
+      asked.push(ask);
+      hear[ask.type](ask);
+      status();
+      show();
+    });
+    status();
+    show();
+  });
+  const beat = setInterval(() => {
+    if (!state.isHeld) state.step += 2;
+    show();
+  }, 20);
+  await new Promise((ready) => http.listen(0, "127.0.0.1", ready));
+  const close = async () => {
+    clearInterval(beat);
+    sockets.clients.forEach((one) => one.terminate());
+    await new Promise((closed) => http.close(closed));
+  };
+  return { url: `http://127.0.0.1:${http.address().port}/`, session, asked, state, say, cut: () => sockets.clients.forEach((one) => one.terminate()), close };
+}

@@ -1,0 +1,73 @@
+// The connection to the session: opens, reads, says what is wrong, and opens again.
+
+import { decodeMessage, decodePicture, ProtocolError, type Ask, type Message, type Picture, type Session } from "./protocol";
+
+export type LinkState = "connecting" | "connected" | "lost";
+
+export interface Hears {
+  readonly message: (message: Message) => void;
+  readonly picture: (picture: Picture) => void;
+  readonly state: (state: LinkState) => void;
+  /** Something arrived that the page cannot read; it is left out. */
+  readonly garbage: (error: ProtocolError) => void;
+}
+
+const FIRST_WAIT_MS = 250;
+const LONGEST_WAIT_MS = 5000;
+
+export class Link {
+  private socket: WebSocket | null = null;
+  private wait_ms = FIRST_WAIT_MS;
+  private subscribed: readonly number[] = [];
+
+  constructor(
+    private readonly url: string,
+    private readonly session: Session,
+    private readonly hears: Hears,
+  ) {
+    this.open();
+  }
+
+  /** Says something to the session; false while there is no connection. */
+  ask(ask: Ask): boolean {
+    if (this.socket?.readyState !== WebSocket.OPEN) return false;
+    this.socket.send(JSON.stringify(ask));
+    return true;
+  }
+
+  /** Asks for these signals from now on, and again after a loss. */
+  subscribe(signals: readonly number[]): void {
+    this.subscribed = signals;
+    this.ask({ type: "subscribe", signals });
+  }
+
+  private open(): void {
+    this.hears.state("connecting");
+    const socket = new WebSocket(this.url);
+    socket.binaryType = "arraybuffer";
+    this.socket = socket;
+    socket.addEventListener("open", () => {
+      this.wait_ms = FIRST_WAIT_MS;
+      this.hears.state("connected");
+      this.subscribe(this.subscribed);
+    });
+    socket.addEventListener("message", (event: MessageEvent<unknown>) => this.read(event.data));
+    socket.addEventListener("close", () => {
+      this.hears.state("lost");
+      window.setTimeout(() => this.open(), this.wait_ms);
+      this.wait_ms = Math.min(LONGEST_WAIT_MS, this.wait_ms * 2);
+    });
+  }
+
+  private read(data: unknown): void {
+    try {
+      if (typeof data === "string") this.hears.message(decodeMessage(data));
+      else if (data instanceof ArrayBuffer) {
+        this.hears.picture(decodePicture(data, this.session.signals.length, this.session.bodies.length));
+      } else throw new ProtocolError("message", "is neither text nor bytes");
+    } catch (error) {
+      if (!(error instanceof ProtocolError)) throw error;
+      this.hears.garbage(error);
+    }
+  }
+}

@@ -1,0 +1,249 @@
+// All views of one session, fed from one connection.
+
+import { button, frame, make } from "./dom";
+import { seconds } from "./format";
+import { Link, type LinkState } from "./link";
+import { PanelView } from "./panels";
+import { PartSheet } from "./part";
+import type { Ask, Message, Picture, Session } from "./protocol";
+import { MachineView } from "./scene";
+import { Sheets } from "./sheets";
+import { SignalTable } from "./signals";
+import { SourceView } from "./source";
+import { colour } from "./theme";
+import { Timeline } from "./timeline";
+import { TrendsView } from "./trends";
+
+const ALARMS = 50;
+const LANES_AT_FIRST = 3;
+
+export class Page {
+  private readonly values = new Map<number, number>();
+  private readonly alarms: string[] = [];
+  private readonly machine: MachineView;
+  private readonly panels: readonly { name: string; view: PanelView }[];
+  private readonly part: PartSheet;
+  private readonly table: SignalTable;
+  private readonly source: SourceView;
+  private readonly trends: TrendsView;
+  private readonly timeline: Timeline;
+  private readonly link: Link | null = null;
+  private readonly sensors: readonly { signal: number; body: number }[];
+  private readonly verdicts = new Map<string, HTMLElement>();
+  private tabs: Sheets | null = null;
+  private sheet = "";
+  private last: Picture | null = null;
+  private wasPast = false;
+
+  constructor(private readonly session: Session) {
+    frame("title").textContent = session.title;
+    document.title = `${session.title} · onescan`;
+    const again = (): void => this.subscribe();
+    this.machine = new MachineView(frame("canvas"), session, (body) => this.choose(body));
+    this.panels = session.panels.map((panel) => ({
+      name: panel.name,
+      view: new PanelView(panel, session, {
+        write: (signal, value) => this.ask({ type: "write", signal, value }),
+        take: (name, take) => this.ask({ type: "seat", panel: name, take }),
+        alarms: () => this.alarms,
+      }),
+    }));
+    this.part = new PartSheet(session, this.values, this.machine, (ask) => this.ask(ask), again);
+    const readout = make("span", { id: "readout", role: "status" });
+    this.trends = new TrendsView(frame("lanes"), readout, session, again);
+    this.table = new SignalTable(session, this.values, (signal) => this.trends.toggle(signal), again);
+    const code = make("div", { class: "code" });
+    this.source = new SourceView(code, session, this.values);
+    this.timeline = new Timeline(frame("timeline"), session, (ask) => this.ask(ask));
+    this.sensors = session.components.flatMap((one) => {
+      const signal = session.signals.findIndex((candidate) => candidate.name === one.senses);
+      const body = session.bodies.findIndex((candidate) => candidate.name === one.body);
+      return signal < 0 || body < 0 ? [] : [{ signal, body }];
+    });
+    const sheets = new Sheets((name) => {
+      this.sheet = name;
+      again();
+    });
+    this.link = new Link(address(), session, {
+      message: (message) => this.hear(message),
+      picture: (picture) => this.show(picture),
+      state: (state) => this.tell(state),
+      garbage: (error) => this.notice(`Something that arrived cannot be read and is left out: ${error.message}.`),
+    });
+    this.fill_sheets(sheets, code);
+    this.fill_tools(readout);
+    this.paint();
+    window.addEventListener("themechange", () => this.paint());
+    this.expose();
+  }
+
+  private fill_sheets(sheets: Sheets, code: HTMLElement): void {
+    const none = make("p", { class: "empty" }, "This scenario has no panel. Add [[panel]] to it.");
+    sheets.add("Panels", make("div", {}, ...(this.panels.length === 0 ? [none] : this.panels.map((one) => one.view.root))));
+    sheets.add("Part", this.part.root);
+    sheets.add("Signals", this.table.root);
+    sheets.add("PLC", this.plc(code));
+    sheets.add("Checks", this.checks());
+    this.tabs = sheets;
+    const shown = this.panels.flatMap((one) => one.view.signals()).slice(0, LANES_AT_FIRST);
+    for (const signal of shown) this.trends.toggle(signal);
+  }
+
+  private plc(code: HTMLElement): HTMLElement {
+    const first = this.session.sources[0];
+    if (first === undefined) return make("div", {}, make("p", { class: "empty" }, "No source of a PLC is part of this session."));
+    const files = make("select", { "aria-label": "Source file" }, ...this.session.sources.map((one) => make("option", {}, one.path)));
+    files.addEventListener("change", () => {
+      this.source.open(this.session.sources[files.selectedIndex] ?? first);
+      this.subscribe();
+    });
+    this.source.open(first);
+    return make("div", {}, files, code);
+  }
+
+  private checks(): HTMLElement {
+    if (this.session.expectations.length === 0) return make("div", {}, make("p", { class: "empty" }, "This scenario expects nothing."));
+    const rows = this.session.expectations.map((one) => {
+      const cell = make("td", { class: "value" }, "open");
+      this.verdicts.set(one.name, cell);
+      return make("tr", {}, make("td", { class: "name", title: one.text }, one.name), cell);
+    });
+    return make("div", {}, make("table", {}, make("tbody", {}, ...rows)));
+  }
+
+  private fill_tools(readout: HTMLElement): void {
+    const operate = (operation: "hold" | "go" | "step", label: string): HTMLButtonElement =>
+      button(label, () => this.ask({ type: "operate", operation }));
+    if (this.session.live) frame("controls").append(operate("hold", "Hold"), operate("step", "Step"), operate("go", "Go"));
+    const views = this.session.views.map((view) => button(view.name, () => this.machine.see(view)));
+    const [front, back] = this.machine.depth_m();
+    const cut = make("input", { type: "range", min: "0", max: "1", step: "0.01", value: "0", "aria-label": "Section from the front" });
+    cut.addEventListener("input", () => {
+      const share = Number(cut.value);
+      this.machine.cut(share === 0 ? null : front + share * (back - front));
+    });
+    frame("view-tools").append(
+      button("Whole", () => this.machine.home()), ...views,
+      button("Show all", () => this.machine.show_all()), make("label", {}, "Section", cut),
+    );
+    frame("trend-tools").append(make("h2", {}, "Trends"), readout, button("Latest", () => this.trends.follow()));
+  }
+
+  private ask(ask: Ask): void {
+    if (!(this.link?.ask(ask) ?? false)) this.notice("There is no connection to the session: nothing was sent.");
+  }
+
+  private choose(body: number | null): void {
+    this.part.open(body);
+    if (body !== null) this.tabs?.open("Part");
+    this.subscribe();
+  }
+
+  /** Asks for the signals that some view shows. */
+  private subscribe(): void {
+    // Views ask while they are made, before there is a connection.
+    if (this.link === null) return;
+    const wanted = new Set([
+      ...this.panels.flatMap((one) => one.view.signals()),
+      ...this.sensors.map((one) => one.signal),
+      ...this.trends.signals(),
+      ...(this.sheet === "Part" ? this.part.signals() : []),
+      ...(this.sheet === "Signals" ? this.table.signals() : []),
+      ...(this.sheet === "PLC" ? this.source.signals() : []),
+    ]);
+    this.link.subscribe([...wanted].sort((a, b) => a - b));
+  }
+
+  private show(picture: Picture): void {
+    if (picture.isPast !== this.wasPast || (this.last !== null && picture.t_ns < this.last.t_ns)) this.machine.jump();
+    this.wasPast = picture.isPast;
+    this.last = picture;
+    frame("time").textContent = seconds(picture.t_ns);
+    frame("step").textContent = String(picture.step);
+    for (const [signal, value] of picture.values) {
+      this.values.set(signal, value);
+      for (const one of this.panels) one.view.show(signal, value);
+      this.table.show(signal);
+      this.part.show(signal);
+      if (!picture.isPast) this.trends.push(signal, picture.t_ns, value);
+    }
+    this.machine.arrive(picture.poses);
+    if (picture.values.length > 0) {
+      if (this.sheet === "PLC") this.source.show();
+      this.machine.light_up(new Set(this.sensors.filter((one) => this.values.get(one.signal) !== 0).map((one) => one.body)));
+    }
+    if (!picture.isPast) this.trends.at(picture.t_ns);
+    this.timeline.at(picture);
+  }
+
+  private hear(message: Message): void {
+    switch (message.type) {
+      case "status":
+        frame("state").textContent = message.state;
+        frame("pace").textContent = message.pace;
+        for (const one of this.panels) one.view.sit(message.seats.get(one.name) ?? "taken");
+        return this.timeline.reach(message.past_ns, message.shown_ns);
+      case "event":
+        this.alarms.unshift(`${seconds(message.t_ns)} ${message.text}`);
+        this.alarms.length = Math.min(this.alarms.length, ALARMS);
+        return this.trends.mark({ t_ns: message.t_ns, text: message.text });
+      case "verdict":
+        return this.judge(message.name, message.verdict, message.robustness);
+      case "looks":
+        return this.machine.look(this.looks(message.active));
+      case "error":
+        return this.notice(message.message);
+    }
+  }
+
+  private judge(name: string, verdict: string, robustness: number | null): void {
+    const cell = this.verdicts.get(name);
+    if (cell === undefined) return;
+    cell.textContent = robustness === null ? verdict : `${verdict} (${Number(robustness.toPrecision(4))})`;
+    cell.className = `value verdict-${verdict}`;
+  }
+
+  private looks(active: readonly number[]): Map<number, { colour: string | null; hidden: boolean }> {
+    const found = active.flatMap((index) => {
+      const look = this.session.looks[index];
+      const body = this.session.bodies.findIndex((one) => one.name === look?.body);
+      return look === undefined || body < 0 ? [] : [[body, look] as const];
+    });
+    return new Map(found);
+  }
+
+  private tell(state: LinkState): void {
+    const link = frame("link");
+    link.textContent = { connecting: "connecting…", connected: "connected", lost: "connection lost" }[state];
+    link.className = state;
+    if (state === "lost") this.notice("The connection to the session is lost. The page shows the last picture and connects again by itself.");
+    if (state === "connected") frame("notice").hidden = true;
+  }
+
+  private notice(text: string): void {
+    frame("notice").textContent = text;
+    frame("notice").hidden = false;
+  }
+
+  private paint(): void {
+    this.machine.theme(colour("--ground"), colour("--line"));
+    this.trends.repaint();
+  }
+
+  /** What a test reads from the page: exact positions of the last picture, not the drawn ones. */
+  private expose(): void {
+    const read = {
+      picture: () => ({ step: this.last?.step ?? null, t_ns: this.last?.t_ns ?? null, isPast: this.last?.isPast ?? false }),
+      position_m: (name: string) => this.machine.position_m(this.session.bodies.findIndex((one) => one.name === name)),
+      value: (name: string) => this.values.get(this.session.signals.findIndex((one) => one.name === name)) ?? null,
+      drawn: () => this.machine.drawn,
+    };
+    Object.defineProperty(window, "onescan", { value: Object.freeze(read) });
+  }
+}
+
+function address(): string {
+  const url = new URL("api/live", window.location.href);
+  url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
+  return url.href;
+}

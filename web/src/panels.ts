@@ -1,0 +1,210 @@
+// The panels of the machine: what an operator presses and reads.
+
+import { button, make } from "./dom";
+import { shown } from "./format";
+import type { Panel, PanelElement, Seat, Session } from "./protocol";
+
+export interface Desk {
+  /** Writes a value of a signal, as an operator's input at the next step boundary. */
+  readonly write: (signal: number, value: number) => void;
+  readonly take: (panel: string, take: boolean) => void;
+  /** The events that wait for an acknowledgement, newest first. */
+  readonly alarms: () => readonly string[];
+}
+
+/** Shows the value of a signal that has changed. */
+type Show = (value: number) => void;
+
+export class PanelView {
+  readonly root: HTMLElement;
+  private readonly shows = new Map<number, Show[]>();
+  private readonly inputs: (HTMLButtonElement | HTMLInputElement | HTMLSelectElement)[] = [];
+  private readonly seat_text = make("span", { class: "seat-text", role: "status" });
+  private readonly seat_button: HTMLButtonElement;
+  private seat: Seat = "free";
+
+  constructor(
+    private readonly panel: Panel,
+    private readonly session: Session,
+    private readonly desk: Desk,
+  ) {
+    this.seat_button = button("Take seat", () => desk.take(panel.name, this.seat !== "mine"));
+    const grid = make("div", { class: "panel-grid" }, ...panel.elements.map((element) => this.place(element)));
+    grid.style.gridTemplateColumns = `repeat(${panel.columns}, minmax(0, 1fr))`;
+    const head = make("div", { class: "panel-head" }, make("h3", {}, panel.name), this.seat_text, this.seat_button);
+    this.root = make("section", { class: "panel", "aria-label": `Panel ${panel.name}` }, head, grid);
+    this.sit("free");
+  }
+
+  /** The signals that this panel reads. */
+  signals(): readonly number[] {
+    return [...this.shows.keys()];
+  }
+
+  show(signal: number, value: number): void {
+    for (const one of this.shows.get(signal) ?? []) one(value);
+  }
+
+  /** Who sits here: inputs work for the one who does. */
+  sit(seat: Seat): void {
+    this.seat = seat;
+    const words: Record<Seat, string> = { free: "free", mine: "you sit here", taken: "taken by another viewer" };
+    this.seat_text.textContent = `${this.panel.seat}: ${words[seat]}`;
+    this.seat_button.textContent = seat === "mine" ? "Leave seat" : "Take seat";
+    this.seat_button.disabled = seat === "taken";
+    for (const input of this.inputs) input.disabled = seat !== "mine";
+    this.root?.classList.toggle("mine", seat === "mine");
+  }
+
+  private place(element: PanelElement): HTMLElement {
+    const cell = make("div", { class: `element ${element.kind}` });
+    cell.style.gridColumn = `${element.at[0] + 1} / span ${element.span[0]}`;
+    cell.style.gridRow = `${element.at[1] + 1} / span ${element.span[1]}`;
+    if (element.colour !== null) cell.style.setProperty("--own", element.colour);
+    this.fill(cell, element);
+    return cell;
+  }
+
+  private fill(cell: HTMLElement, element: PanelElement): void {
+    switch (element.kind) {
+      case "button":
+        return element.toggles ? this.fill_switch(cell, element) : this.fill_button(cell, element);
+      case "switch":
+        return this.fill_switch(cell, element);
+      case "selector":
+        return this.fill_selector(cell, element);
+      case "slider":
+        return this.fill_slider(cell, element, element.signal, element.label);
+      case "joystick":
+        this.fill_slider(cell, element, element.signal, `${element.label} x`, true);
+        return this.fill_slider(cell, element, element.signal_y, `${element.label} y`, true);
+      case "lamp":
+        return this.fill_lamp(cell, element);
+      case "number":
+      case "trend":
+        return this.fill_number(cell, element);
+      case "bar":
+        return this.fill_bar(cell, element);
+      case "alarms":
+        return this.fill_alarms(cell, element);
+    }
+  }
+
+  /** The number of a signal by its name; an element of a signal that is not there stays dead and says so. */
+  private bound(name: string | null, show: Show): number | null {
+    const signal = this.session.signals.findIndex((one) => one.name === name);
+    if (signal < 0) return null;
+    const all = this.shows.get(signal);
+    if (all === undefined) this.shows.set(signal, [show]);
+    else all.push(show);
+    return signal;
+  }
+
+  private write(signal: number | null, value: number): void {
+    if (signal !== null && this.seat === "mine") this.desk.write(signal, value);
+  }
+
+  private fill_button(cell: HTMLElement, element: PanelElement): void {
+    const key = make("button", { type: "button", class: "push", "aria-pressed": "false" }, element.label);
+    const signal = this.bound(element.signal, (value) => key.setAttribute("aria-pressed", String(value !== 0)));
+    let isDown = false;
+    const press = (down: boolean): void => {
+      if (down === isDown || key.disabled) return;
+      isDown = down;
+      this.write(signal, down ? 1 : 0);
+    };
+    key.addEventListener("pointerdown", (event) => {
+      key.setPointerCapture(event.pointerId);
+      press(true);
+    });
+    for (const name of ["pointerup", "pointercancel", "blur"] as const) key.addEventListener(name, () => press(false));
+    key.addEventListener("keydown", (event) => {
+      if (event.key !== " " && event.key !== "Enter") return;
+      event.preventDefault();
+      press(true);
+    });
+    key.addEventListener("keyup", (event) => {
+      if (event.key === " " || event.key === "Enter") press(false);
+    });
+    this.inputs.push(key);
+    cell.append(key);
+  }
+
+  private fill_switch(cell: HTMLElement, element: PanelElement): void {
+    const key = make("button", { type: "button", class: "toggle", role: "switch", "aria-checked": "false" }, element.label);
+    const signal = this.bound(element.signal, (value) => key.setAttribute("aria-checked", String(value !== 0)));
+    key.addEventListener("click", () => this.write(signal, key.getAttribute("aria-checked") === "true" ? 0 : 1));
+    this.inputs.push(key);
+    cell.append(key);
+  }
+
+  private fill_selector(cell: HTMLElement, element: PanelElement): void {
+    const choices = element.choices.map((one) => make("option", { value: String(one.value) }, one.label));
+    const select = make("select", {}, ...choices);
+    const signal = this.bound(element.signal, (value) => (select.value = String(value)));
+    select.addEventListener("change", () => this.write(signal, Number(select.value)));
+    this.inputs.push(select);
+    cell.append(make("label", {}, make("span", {}, element.label), select));
+  }
+
+  /** A slider; one that springs goes back to the middle when it is let go. */
+  private fill_slider(cell: HTMLElement, element: PanelElement, name: string | null, label: string, springs = false): void {
+    const step = (element.max - element.min) / 200;
+    const slider = make("input", {
+      type: "range", min: String(element.min), max: String(element.max), step: step > 0 ? String(step) : "any",
+    });
+    const output = make("output", {}, "–");
+    const signal = this.bound(name, (value) => {
+      if (document.activeElement !== slider) slider.value = String(value);
+      output.textContent = this.text(name, value);
+    });
+    slider.addEventListener("input", () => this.write(signal, Number(slider.value)));
+    const let_go = (): void => {
+      slider.value = String((element.min + element.max) / 2);
+      this.write(signal, Number(slider.value));
+    };
+    if (springs) for (const event of ["pointerup", "pointercancel", "blur"]) slider.addEventListener(event, let_go);
+    this.inputs.push(slider);
+    cell.append(make("label", {}, make("span", {}, label, " ", output), slider));
+  }
+
+  private fill_lamp(cell: HTMLElement, element: PanelElement): void {
+    const state = make("span", { class: "visually-hidden" }, "off");
+    const bulb = make("span", { class: "bulb" });
+    this.bound(element.signal, (value) => {
+      bulb.classList.toggle("on", value !== 0);
+      state.textContent = value !== 0 ? "on" : "off";
+    });
+    cell.append(bulb, make("span", { class: "lamp-label" }, element.label), state);
+  }
+
+  private fill_number(cell: HTMLElement, element: PanelElement): void {
+    const output = make("output", {}, "–");
+    this.bound(element.signal, (value) => (output.textContent = this.text(element.signal, value)));
+    cell.append(make("span", { class: "caption" }, element.label), output);
+  }
+
+  private fill_bar(cell: HTMLElement, element: PanelElement): void {
+    const bar = make("meter", { min: String(element.min), max: String(element.max), "aria-label": element.label });
+    const output = make("output", {}, "–");
+    this.bound(element.signal, (value) => {
+      bar.value = value;
+      output.textContent = this.text(element.signal, value);
+    });
+    cell.append(make("span", { class: "caption" }, element.label, " ", output), bar);
+  }
+
+  private fill_alarms(cell: HTMLElement, element: PanelElement): void {
+    const list = make("ul", { "aria-label": element.label, "aria-live": "polite" });
+    const signal = this.bound(element.signal, () => list.replaceChildren(...this.desk.alarms().map((one) => make("li", {}, one))));
+    const key = make("button", { type: "button" }, "Acknowledge");
+    key.addEventListener("click", () => this.write(signal, 1));
+    this.inputs.push(key);
+    cell.append(make("span", { class: "caption" }, element.label), list, key);
+  }
+
+  private text(name: string | null, value: number): string {
+    const signal = this.session.signals.find((one) => one.name === name);
+    return signal === undefined ? "no such signal" : shown(signal, value);
+  }
+}

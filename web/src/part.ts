@@ -1,0 +1,87 @@
+// What is known of the part that was clicked: its signals, its parameters, its failure modes.
+
+import { button, make } from "./dom";
+import { shown } from "./format";
+import type { Ask, Component, Session } from "./protocol";
+import type { MachineView } from "./scene";
+
+export class PartSheet {
+  readonly root = make("div");
+  private readonly cells = new Map<number, HTMLElement>();
+
+  constructor(
+    private readonly session: Session,
+    private readonly values: ReadonlyMap<number, number>,
+    private readonly machine: MachineView,
+    private readonly ask: (ask: Ask) => void,
+    private readonly changed: () => void,
+  ) {
+    this.open(null);
+  }
+
+  /** The signals that the sheet shows. */
+  signals(): readonly number[] {
+    return [...this.cells.keys()];
+  }
+
+  show(signal: number): void {
+    const cell = this.cells.get(signal);
+    const about = this.session.signals[signal];
+    if (cell !== undefined && about !== undefined) cell.textContent = shown(about, this.values.get(signal));
+  }
+
+  open(body: number | null): void {
+    this.cells.clear();
+    this.machine.choose(body);
+    const about = body === null ? undefined : this.session.bodies[body];
+    if (about === undefined || body === null) {
+      this.machine.follow(null);
+      this.root.replaceChildren(this.list());
+      return;
+    }
+    const tools = make("div", { class: "toolbar" },
+      button("Follow", () => this.machine.follow(body)),
+      button("Stay", () => this.machine.follow(null)),
+      button("Hide", () => this.machine.hide(body)));
+    const components = this.session.components.filter((one) => one.body === about.name);
+    this.root.replaceChildren(
+      make("h2", {}, about.name), make("p", { class: "empty" }, `${about.kind}, ${about.shape.kind}`), tools,
+      ...components.flatMap((one) => this.component(one)), this.back());
+  }
+
+  /** All parts by name, for those who do not use a mouse. */
+  private list(): HTMLElement {
+    const options = this.session.bodies.map((one, index) => make("option", { value: String(index) }, one.name));
+    const select = make("select", { "aria-label": "Part", size: "12", class: "filter" }, ...options);
+    select.addEventListener("change", () => {
+      this.open(Number(select.value));
+      this.changed();
+    });
+    return make("div", {}, make("p", { class: "empty" }, "Click a part of the machine, or choose one here."), select);
+  }
+
+  private back(): HTMLElement {
+    return button("All parts", () => {
+      this.open(null);
+      this.changed();
+    });
+  }
+
+  private component(one: Component): readonly HTMLElement[] {
+    const signals = one.signals.flatMap((name) => {
+      const index = this.session.signals.findIndex((signal) => signal.name === name);
+      if (index < 0) return [];
+      const cell = make("td", { class: "value" });
+      this.cells.set(index, cell);
+      this.show(index);
+      return [make("tr", {}, make("td", { class: "name" }, name), cell)];
+    });
+    const parameters = one.parameters.map((parameter) => make("tr", {},
+      make("td", { class: "name" }, parameter.name),
+      make("td", { class: "value" }, parameter.unit === null ? parameter.value : `${parameter.value} ${parameter.unit}`)));
+    const failures = one.failures.map((failure) => make("tr", {}, make("td", { class: "name" }, failure), make("td", { class: "value" },
+      button("Fail", () => this.ask({ type: "fail", component: one.name, failure, active: true }), `Fail ${one.name}: ${failure}`),
+      button("Repair", () => this.ask({ type: "fail", component: one.name, failure, active: false }), `Repair ${one.name}: ${failure}`))));
+    return [make("h3", {}, `${one.name} (${one.kind})`), make("table", {}, make("tbody", {}, ...signals, ...parameters, ...failures))];
+  }
+}

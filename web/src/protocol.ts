@@ -1,0 +1,479 @@
+// What the server says and what the page asks: types and decoders. Nothing that arrives is trusted.
+
+/** A place that cannot be read, and why. */
+export class ProtocolError extends Error {
+  constructor(
+    readonly place: string,
+    readonly reason: string,
+  ) {
+    super(`${place}: ${reason}`);
+    this.name = "ProtocolError";
+  }
+}
+
+export type Vec3 = readonly [number, number, number];
+/** x, y, z, w. */
+export type Quaternion = readonly [number, number, number, number];
+
+export interface Signal {
+  readonly name: string;
+  readonly type: string;
+  readonly writer: string;
+  readonly unit: string | null;
+  readonly about: string;
+  readonly names: ReadonlyMap<number, string>;
+}
+
+export type Shape =
+  | { readonly kind: "box"; readonly size_m: Vec3 }
+  | { readonly kind: "cylinder" | "capsule"; readonly radius_m: number; readonly length_m: number }
+  | { readonly kind: "sphere"; readonly radius_m: number }
+  | { readonly kind: "mesh"; readonly positions_m: readonly number[]; readonly indices: readonly number[] }
+  | { readonly kind: "none" };
+
+export interface Body {
+  readonly name: string;
+  readonly kind: string;
+  readonly shape: Shape;
+  readonly colour: string | null;
+  readonly position_m: Vec3;
+  readonly rotation: Quaternion;
+  readonly visible: boolean;
+}
+
+export interface Parameter {
+  readonly name: string;
+  readonly value: string;
+  readonly unit: string | null;
+}
+
+export interface Component {
+  readonly name: string;
+  readonly kind: string;
+  readonly body: string | null;
+  readonly signals: readonly string[];
+  readonly parameters: readonly Parameter[];
+  readonly failures: readonly string[];
+  /** The signal that is true while a sensor sees something. */
+  readonly senses: string | null;
+}
+
+export interface View {
+  readonly name: string;
+  readonly position_m: Vec3;
+  readonly target_m: Vec3;
+}
+
+export interface Look {
+  readonly body: string;
+  readonly colour: string | null;
+  readonly hidden: boolean;
+}
+
+export const ELEMENT_KINDS = [
+  "button", "switch", "selector", "slider", "joystick", "lamp", "number", "bar", "trend", "alarms",
+] as const;
+export type ElementKind = (typeof ELEMENT_KINDS)[number];
+
+export interface Choice {
+  readonly value: number;
+  readonly label: string;
+}
+
+export interface PanelElement {
+  readonly kind: ElementKind;
+  readonly label: string;
+  readonly signal: string | null;
+  /** The second axis of a joystick. */
+  readonly signal_y: string | null;
+  /** Column and row, from 0. */
+  readonly at: readonly [number, number];
+  readonly span: readonly [number, number];
+  readonly min: number;
+  readonly max: number;
+  readonly colour: string | null;
+  readonly choices: readonly Choice[];
+  readonly toggles: boolean;
+}
+
+export interface Panel {
+  readonly name: string;
+  readonly seat: string;
+  readonly columns: number;
+  readonly rows: number;
+  readonly elements: readonly PanelElement[];
+}
+
+export interface SourceLine {
+  /** From 1. */
+  readonly line: number;
+  readonly variables: readonly string[];
+}
+
+export interface Source {
+  readonly path: string;
+  readonly text: string;
+  readonly lines: readonly SourceLine[];
+}
+
+/** The parts of a session that do not change while it runs. */
+export interface Session {
+  readonly title: string;
+  readonly scenario: string;
+  readonly step_ns: number;
+  readonly until_ns: number | null;
+  readonly live: boolean;
+  readonly signals: readonly Signal[];
+  readonly bodies: readonly Body[];
+  readonly components: readonly Component[];
+  readonly views: readonly View[];
+  readonly looks: readonly Look[];
+  readonly panels: readonly Panel[];
+  readonly expectations: readonly { readonly name: string; readonly text: string }[];
+  readonly sources: readonly Source[];
+}
+
+/** A value of JSON with the place that it was found at. */
+class Field {
+  constructor(
+    private readonly value: unknown,
+    readonly place: string,
+  ) {}
+
+  fail(reason: string): never {
+    throw new ProtocolError(this.place, reason);
+  }
+
+  at(key: string): Field {
+    if (typeof this.value !== "object" || this.value === null || Array.isArray(this.value)) this.fail("is not an object");
+    return new Field((this.value as Record<string, unknown>)[key], this.place === "" ? key : `${this.place}.${key}`);
+  }
+
+  get isAbsent(): boolean {
+    return this.value === undefined || this.value === null;
+  }
+
+  text(): string {
+    return typeof this.value === "string" ? this.value : this.fail("is not a text");
+  }
+
+  number(): number {
+    return typeof this.value === "number" && Number.isFinite(this.value) ? this.value : this.fail("is not a number");
+  }
+
+  flag(): boolean {
+    return typeof this.value === "boolean" ? this.value : this.fail("is not true or false");
+  }
+
+  list<T>(read: (item: Field) => T): T[] {
+    if (!Array.isArray(this.value)) this.fail("is not a list");
+    return this.value.map((item, index) => read(new Field(item, `${this.place}[${index}]`)));
+  }
+
+  entries<T>(read: (key: string, item: Field) => T): T[] {
+    if (typeof this.value !== "object" || this.value === null) this.fail("is not an object");
+    return Object.keys(this.value).map((key) => read(key, this.at(key)));
+  }
+
+  /** What `read` makes of it, or `fallback` where the optional field is not there. */
+  or<T>(fallback: T, read: (field: Field) => T): T {
+    return this.isAbsent ? fallback : read(this);
+  }
+
+  /** Exactly `count` numbers. */
+  numbers(count: number): number[] {
+    const all = this.list((item) => item.number());
+    return all.length === count ? all : this.fail(`has ${all.length} numbers instead of ${count}`);
+  }
+
+  /** A parameter as it is shown. */
+  shown(): string {
+    if (typeof this.value === "string") return this.value;
+    return JSON.stringify(this.value) ?? this.fail("is not there");
+  }
+}
+
+const text = (field: Field): string => field.text();
+const number = (field: Field): number => field.number();
+const flag = (field: Field): boolean => field.flag();
+const nullableText = (field: Field): string | null => field.or<string | null>(null, text);
+const vec3 = (field: Field): Vec3 => field.numbers(3) as unknown as Vec3;
+
+function shape(field: Field): Shape {
+  const kind = field.at("kind").text();
+  switch (kind) {
+    case "box":
+      return { kind, size_m: vec3(field.at("size_m")) };
+    case "cylinder":
+    case "capsule":
+      return { kind, radius_m: field.at("radius_m").number(), length_m: field.at("length_m").number() };
+    case "sphere":
+      return { kind, radius_m: field.at("radius_m").number() };
+    case "mesh":
+      return mesh(field);
+    case "none":
+      return { kind };
+    default:
+      return field.fail(`has the shape \`${kind}\`, which this page does not draw`);
+  }
+}
+
+function mesh(field: Field): Shape {
+  const positions_m = field.at("positions_m").list(number);
+  const indices = field.at("indices").list(number);
+  const vertices = positions_m.length / 3;
+  if (!Number.isInteger(vertices)) field.fail("has positions that are not triples");
+  if (indices.length % 3 !== 0) field.fail("has indices that are not triangles");
+  for (const index of indices) {
+    if (!Number.isInteger(index) || index < 0 || index >= vertices) field.fail(`has no vertex ${index}`);
+  }
+  return { kind: "mesh", positions_m, indices };
+}
+
+function signal(field: Field): Signal {
+  return {
+    name: field.at("name").text(),
+    type: field.at("type").text(),
+    writer: field.at("writer").text(),
+    unit: nullableText(field.at("unit")),
+    about: field.at("about").or("", text),
+    names: new Map(field.at("names").or<[number, string][]>([], (names) =>
+      names.entries((key, item) => [Number(key), item.text()]))),
+  };
+}
+
+function body(field: Field): Body {
+  return {
+    name: field.at("name").text(),
+    kind: field.at("kind").text(),
+    shape: shape(field.at("shape")),
+    colour: nullableText(field.at("colour")),
+    position_m: vec3(field.at("position_m")),
+    rotation: field.at("rotation").or<Quaternion>([0, 0, 0, 1], (item) => item.numbers(4) as unknown as Quaternion),
+    visible: field.at("visible").or(true, flag),
+  };
+}
+
+function component(field: Field): Component {
+  return {
+    name: field.at("name").text(),
+    kind: field.at("kind").text(),
+    body: nullableText(field.at("body")),
+    signals: field.at("signals").or<string[]>([], (all) => all.list(text)),
+    parameters: field.at("parameters").or<Parameter[]>([], (all) => all.list((item) => ({
+      name: item.at("name").text(),
+      value: item.at("value").shown(),
+      unit: nullableText(item.at("unit")),
+    }))),
+    failures: field.at("failures").or<string[]>([], (all) => all.list((item) => item.at("name").text())),
+    senses: nullableText(field.at("senses")),
+  };
+}
+
+function element(field: Field): PanelElement {
+  const kind = field.at("kind").text();
+  const known = ELEMENT_KINDS.find((one) => one === kind);
+  return {
+    kind: known ?? field.fail(`is a \`${kind}\`, which this page does not have`),
+    label: field.at("label").text(),
+    signal: nullableText(field.at("signal")),
+    signal_y: nullableText(field.at("signal_y")),
+    at: field.at("at").numbers(2) as unknown as [number, number],
+    span: field.at("span").or<readonly [number, number]>([1, 1], (item) => item.numbers(2) as unknown as [number, number]),
+    min: field.at("min").or(0, number),
+    max: field.at("max").or(1, number),
+    colour: nullableText(field.at("colour")),
+    choices: field.at("choices").or<Choice[]>([], (all) => all.list((item) => ({
+      value: item.at("value").number(),
+      label: item.at("label").text(),
+    }))),
+    toggles: field.at("mode").or("momentary", text) === "toggle",
+  };
+}
+
+function panel(field: Field): Panel {
+  return {
+    name: field.at("name").text(),
+    seat: field.at("seat").text(),
+    columns: field.at("columns").number(),
+    rows: field.at("rows").number(),
+    elements: field.at("elements").list(element),
+  };
+}
+
+/** Reads the structure of a session; throws [`ProtocolError`] with the place that is wrong. */
+export function decodeSession(value: unknown): Session {
+  const root = new Field(value, "");
+  const version = root.at("protocol").number();
+  if (version !== 1) root.at("protocol").fail(`is ${version}; this page speaks 1`);
+  const list = <T>(key: string, read: (item: Field) => T): T[] => root.at(key).or<T[]>([], (all) => all.list(read));
+  return {
+    title: root.at("title").text(),
+    scenario: root.at("scenario").text(),
+    step_ns: root.at("step_ns").number(),
+    until_ns: root.at("until_ns").or<number | null>(null, number),
+    live: root.at("live").or(true, flag),
+    signals: root.at("signals").list(signal),
+    bodies: list("bodies", body),
+    components: list("components", component),
+    views: list("views", (item) => ({
+      name: item.at("name").text(),
+      position_m: vec3(item.at("position_m")),
+      target_m: vec3(item.at("target_m")),
+    })),
+    looks: list("looks", (item) => ({
+      body: item.at("body").text(),
+      colour: nullableText(item.at("colour")),
+      hidden: item.at("hidden").or(false, flag),
+    })),
+    panels: list("panels", panel),
+    expectations: list("expectations", (item) => ({ name: item.at("name").text(), text: item.at("text").or("", text) })),
+    sources: list("sources", (item) => ({
+      path: item.at("path").text(),
+      text: item.at("text").text(),
+      lines: item.at("lines").or<SourceLine[]>([], (all) => all.list((line) => ({
+        line: line.at("line").number(),
+        variables: line.at("variables").list(text),
+      }))),
+    })),
+  };
+}
+
+export type Seat = "free" | "mine" | "taken";
+
+export type Message =
+  | {
+      readonly type: "status";
+      readonly state: string;
+      readonly digest: string | null;
+      readonly pace: string;
+      readonly seats: ReadonlyMap<string, Seat>;
+      /** The time in the past that is shown; nothing at the live edge. */
+      readonly shown_ns: number | null;
+      readonly past_ns: readonly [number, number] | null;
+    }
+  | { readonly type: "event"; readonly t_ns: number; readonly kind: string; readonly text: string }
+  | {
+      readonly type: "verdict";
+      readonly name: string;
+      readonly verdict: string;
+      readonly robustness: number | null;
+      readonly t_ns: number;
+    }
+  | { readonly type: "looks"; readonly active: readonly number[] }
+  | { readonly type: "error"; readonly message: string };
+
+function seat(field: Field): Seat {
+  const one = field.text();
+  return one === "free" || one === "mine" || one === "taken" ? one : field.fail(`is \`${one}\`: free, mine or taken`);
+}
+
+/** Reads a message of the server; throws [`ProtocolError`]. */
+export function decodeMessage(raw: string): Message {
+  let value: unknown;
+  try {
+    value = JSON.parse(raw);
+  } catch (error) {
+    throw new ProtocolError("message", `is not JSON (${String(error)})`);
+  }
+  const root = new Field(value, "");
+  const type = root.at("type").text();
+  switch (type) {
+    case "status":
+      return {
+        type,
+        state: root.at("state").text(),
+        digest: nullableText(root.at("digest")),
+        pace: root.at("pace").or("", (field) => field.shown()),
+        seats: new Map(root.at("seat").or<[string, Seat][]>([], (all) => all.entries((key, item) => [key, seat(item)]))),
+        shown_ns: root.at("shown_ns").or<number | null>(null, number),
+        past_ns: root.at("past_ns").or<readonly [number, number] | null>(null, (item) => item.numbers(2) as [number, number]),
+      };
+    case "event":
+      return { type, t_ns: root.at("t_ns").number(), kind: root.at("kind").text(), text: root.at("text").text() };
+    case "verdict":
+      return {
+        type,
+        name: root.at("name").text(),
+        verdict: root.at("verdict").text(),
+        robustness: root.at("robustness").or<number | null>(null, number),
+        t_ns: root.at("t_ns").number(),
+      };
+    case "looks":
+      return { type, active: root.at("active").list(number) };
+    case "error":
+      return { type, message: root.at("message").text() };
+    default:
+      return root.at("type").fail(`is \`${type}\`, which this page does not know`);
+  }
+}
+
+/** Bodies and values of one step. */
+export interface Picture {
+  readonly isHeld: boolean;
+  readonly isPast: boolean;
+  readonly step: number;
+  readonly t_ns: number;
+  /** Pairs of signal and value. */
+  readonly values: readonly (readonly [number, number])[];
+  readonly poses: readonly Pose[];
+}
+
+export interface Pose {
+  readonly body: number;
+  /** Nothing while the body is away. */
+  readonly place: { readonly position_m: Vec3; readonly rotation: Quaternion } | null;
+}
+
+const HEAD_BYTES = 24;
+const VALUE_BYTES = 16;
+const POSE_BYTES = 32;
+
+/** Reads a binary picture of a session with so many signals and bodies; throws [`ProtocolError`]. */
+export function decodePicture(data: ArrayBuffer, signals: number, bodies: number): Picture {
+  if (data.byteLength < HEAD_BYTES) throw new ProtocolError("picture", `has ${data.byteLength} bytes, its head alone has ${HEAD_BYTES}`);
+  const view = new DataView(data);
+  if (view.getUint8(0) !== 1) throw new ProtocolError("picture", `is of kind ${view.getUint8(0)}; this page reads 1`);
+  const valueCount = view.getUint16(2, true);
+  const poseCount = view.getUint32(4, true);
+  const expected = HEAD_BYTES + valueCount * VALUE_BYTES + poseCount * POSE_BYTES;
+  if (data.byteLength !== expected) throw new ProtocolError("picture", `has ${data.byteLength} bytes instead of ${expected}`);
+  const flags = view.getUint8(1);
+  const values: (readonly [number, number])[] = [];
+  for (let index = 0, at = HEAD_BYTES; index < valueCount; index += 1, at += VALUE_BYTES) {
+    const one = view.getUint32(at, true);
+    if (one >= signals) throw new ProtocolError("picture", `names signal ${one} of ${signals}`);
+    values.push([one, view.getFloat64(at + 8, true)]);
+  }
+  const poses: Pose[] = [];
+  for (let index = 0, at = HEAD_BYTES + valueCount * VALUE_BYTES; index < poseCount; index += 1, at += POSE_BYTES) {
+    poses.push(decodePose(view, at, bodies));
+  }
+  return {
+    isHeld: (flags & 1) !== 0,
+    isPast: (flags & 2) !== 0,
+    step: Number(view.getBigUint64(8, true)),
+    t_ns: Number(view.getBigUint64(16, true)),
+    values,
+    poses,
+  };
+}
+
+function decodePose(view: DataView, at: number, bodies: number): Pose {
+  const body = view.getUint32(at, true);
+  if (body >= bodies) throw new ProtocolError("picture", `names body ${body} of ${bodies}`);
+  const f = (place: number): number => view.getFloat32(at + 4 + place * 4, true);
+  if (Number.isNaN(f(0))) return { body, place: null };
+  return { body, place: { position_m: [f(0), f(1), f(2)], rotation: [f(3), f(4), f(5), f(6)] } };
+}
+
+/** What the page asks. */
+export type Ask =
+  | { readonly type: "subscribe"; readonly signals: readonly number[] }
+  | { readonly type: "write"; readonly signal: number; readonly value: number }
+  | { readonly type: "operate"; readonly operation: "hold" | "go" | "step" | "stop"; readonly steps?: number }
+  | { readonly type: "seat"; readonly panel: string; readonly take: boolean }
+  | { readonly type: "fail"; readonly component: string; readonly failure: string; readonly active: boolean }
+  | { readonly type: "show"; readonly t_ns: number }
+  | { readonly type: "live" }
+  | { readonly type: "fork"; readonly t_ns: number };

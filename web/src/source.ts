@@ -1,0 +1,84 @@
+// The sources of the PLC with the values of their variables at the end of each line.
+
+import { EditorState, StateEffect, StateField } from "@codemirror/state";
+import { Decoration, EditorView, WidgetType, keymap, lineNumbers, type DecorationSet } from "@codemirror/view";
+import { shown } from "./format";
+import type { Session, Source } from "./protocol";
+
+class Values extends WidgetType {
+  constructor(private readonly text: string) {
+    super();
+  }
+
+  override eq(other: Values): boolean {
+    return other.text === this.text;
+  }
+
+  override toDOM(): HTMLElement {
+    const element = document.createElement("span");
+    element.className = "line-values";
+    element.textContent = this.text;
+    return element;
+  }
+}
+
+const set_values = StateEffect.define<DecorationSet>();
+const values_field = StateField.define<DecorationSet>({
+  create: () => Decoration.none,
+  update: (before, change) => {
+    for (const effect of change.effects) if (effect.is(set_values)) return effect.value;
+    return before.map(change.changes);
+  },
+  provide: (field) => EditorView.decorations.from(field),
+});
+
+export class SourceView {
+  private readonly editor: EditorView;
+  private source: Source | null = null;
+
+  constructor(
+    place: HTMLElement,
+    private readonly session: Session,
+    private readonly values: ReadonlyMap<number, number>,
+  ) {
+    this.editor = new EditorView({ parent: place, state: this.state("") });
+  }
+
+  open(source: Source): void {
+    this.source = source;
+    this.editor.setState(this.state(source.text));
+    this.show();
+  }
+
+  /** The signals whose values stand beside the open source. */
+  signals(): readonly number[] {
+    const names = new Set(this.source?.lines.flatMap((line) => line.variables) ?? []);
+    return this.session.signals.flatMap((signal, index) => (names.has(signal.name) ? [index] : []));
+  }
+
+  show(): void {
+    const source = this.source;
+    if (source === null) return;
+    const lines = this.editor.state.doc.lines;
+    const marks = source.lines.flatMap((line) => {
+      const text = line.variables.map((name) => this.reading(name)).filter((one) => one !== null).join("   ");
+      if (line.line < 1 || line.line > lines || text === "") return [];
+      return [Decoration.widget({ widget: new Values(text), side: 1 }).range(this.editor.state.doc.line(line.line).to)];
+    });
+    this.editor.dispatch({ effects: set_values.of(Decoration.set(marks, true)) });
+  }
+
+  private reading(name: string): string | null {
+    const index = this.session.signals.findIndex((one) => one.name === name);
+    const signal = this.session.signals[index];
+    return signal === undefined ? null : `${name} = ${shown(signal, this.values.get(index))}`;
+  }
+
+  private state(text: string): EditorState {
+    const label = EditorView.contentAttributes.of({ "aria-label": "Source of the PLC, read only" });
+    return EditorState.create({
+      doc: text,
+      extensions: [EditorState.readOnly.of(true), lineNumbers(), keymap.of([]), label, values_field],
+    });
+  }
+}
