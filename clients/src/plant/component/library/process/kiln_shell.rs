@@ -162,8 +162,8 @@ impl Component for KilnShell {
             ring_switch: sees(&state.ring, self.p.ring_cam_deg, Failure::RingSwitchDead),
             shell_switch: sees(&state.shell, self.p.shell_cam_deg, Failure::ShellSwitchDead),
             shell_rad: 2.0 * PI * state.shell.part,
-            ring_turns: state.ring.turns() - self.p.ring_start_deg / TURN_DEG,
-            shell_turns: state.shell.turns() - self.p.shell_start_deg / TURN_DEG,
+            ring_turns: state.ring.turns() - Angle::from_degrees(self.p.ring_start_deg).part,
+            shell_turns: state.shell.turns() - Angle::from_degrees(self.p.shell_start_deg).part,
             creep_m: PI * self.p.shell_m * state.behind,
         }
     }
@@ -187,6 +187,13 @@ mod tests {
         assert!((out.ring_turns - 100.0).abs() < 1e-6, "{out:?}");
         assert!((out.shell_turns - 100.0 / 1.004).abs() < 1e-6, "{out:?}");
         assert!((out.creep_m - PI * 0.016 * out.shell_turns).abs() < 1e-6, "{out:?}");
+    }
+
+    #[test]
+    fn a_start_behind_a_whole_turn_is_one_at_the_switch() {
+        let whole = Parameters { ring_start_deg: 360.0, ..Parameters::default() };
+        let out = Rig::new(KilnShell::new(whole)).run(Inputs { speed_turns_h: 0.0 }, 0.01, 1);
+        assert!(out.ring_turns == 0.0 && out.ring_switch, "{out:?}");
     }
 
     #[test]
