@@ -24,12 +24,14 @@ pub(crate) mod dynamics;
 pub(crate) mod fluid;
 pub mod kind;
 pub(crate) mod library;
+pub(crate) mod melt;
 pub mod origin;
 pub mod page;
 pub(crate) mod profile;
 pub(crate) mod program;
 #[cfg(test)]
 mod tests;
+pub(crate) mod three_phase;
 
 pub use library::kinds;
 pub use origin::open_inputs;

@@ -5,6 +5,7 @@
 //! | `actuator` | what moves, turns, carries, grips |
 //! | `sensor` | what measures and detects |
 //! | `process` | what is heated, filled, fed and taken away |
+//! | `furnace` | what melts steel by an electric arc |
 //! | `panel` | what people press and see |
 //! | `logic` | what is computed beside the PLC |
 //!
@@ -124,6 +125,12 @@ library! {
         workpiece_sink::WorkpieceSink,
         veneer_lathe::VeneerLathe,
         kiln_shell::KilnShell,
+    }
+    furnace {
+        arc_circuit::ArcCircuit,
+        electrode_mast::ElectrodeMast,
+        arc_bath::ArcBath,
+        cooled_panel::CooledPanel,
     }
     panel {
         push_button::PushButton,
