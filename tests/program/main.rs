@@ -1,6 +1,7 @@
 //! The program as a user types it: commands, files, messages, exit codes.
 
 mod access;
+mod arc_furnace;
 mod campaigns;
 mod cases;
 mod cause;

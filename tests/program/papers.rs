@@ -148,7 +148,7 @@ fn each_command_can_be_typed() {
     let folder = tempfile::tempdir().unwrap();
     let scenarios = folder.path().join("scenarios");
     std::fs::create_dir(&scenarios).unwrap();
-    for name in ["shear", "filling-machine", "gantry-robot", "robot-cell", "peeling-line"] {
+    for name in ["shear", "filling-machine", "gantry-robot", "robot-cell", "peeling-line", "arc-furnace"] {
         std::fs::rename(copied(name).keep(), scenarios.join(name)).unwrap();
     }
     let mut commands: Vec<String> =

@@ -57,8 +57,9 @@ fn projects() -> Vec<(String, String)> {
                 open.push(path);
             } else if path.extension().is_some_and(|extension| extension == "xml") {
                 let mut name = path.file_stem().unwrap().to_string_lossy().into_owned();
-                // The lathe's drawings are one project together, and not each of them.
-                if path.parent().is_some_and(|folder| folder.ends_with("lathe")) {
+                // The lathe's drawings are one project together, and not each of them; the furnace's chart is a block
+                // of a program in text.
+                if path.parent().is_some_and(|folder| folder.ends_with("lathe") || folder.ends_with("functions")) {
                     name.insert_str(0, PART);
                 }
                 // CODESYS writes version 2.0, of which what is used here is the same.

@@ -7,7 +7,7 @@
 //!   `e = (1 - c_s)(1 - c_f)`.
 //! - Of the arcs' power `P`: `g P` leaves with the gas, `(b + w e) P` goes to the walls, the rest to scrap and bath.
 //! - What reaches the scrap melts a part of it on the spot: `dm/dt = μ P_s/(c (ϑ_m - ϑ_s) + L_f)`, and warms the rest.
-//! - The bath warms the scrap in it, `k (ϑ_l - ϑ_s)`, and loses `G (ϑ_l - ϑ_a)` to the walls.
+//! - The bath melts the scrap in it at its surface, `k (ϑ_l - ϑ_m)`, and loses `G (ϑ_l - ϑ_a)` to the walls.
 //! - Enthalpies are the states, so that nothing changes them but what comes and goes.
 //!
 //! # Source
@@ -25,6 +25,8 @@ const BATH_KG_M3: f64 = 7000.0;
 const SLAG_KG_M3: f64 = 2500.0;
 /// A bath of less than this takes a part of the heat only, as it does not cover the floor, kg.
 const WHOLE_BATH_KG: f64 = 1000.0;
+/// A bath of less than this wets a part of the lining only, kg.
+const WHOLE_LINING_KG: f64 = 40_000.0;
 /// Scrap of less than this touches the bath with a part of its surface only, kg.
 const WHOLE_SCRAP_KG: f64 = 5000.0;
 /// The part of the power that goes to scrap which covers the arcs.
@@ -38,6 +40,8 @@ const CARBON_KG_KG: f64 = 0.75;
 const OXYGEN_J_KG: f64 = 6.9e6;
 /// How far a cave-in fills the pit, of the scrap's height.
 const CAVED_IN: f64 = 0.7;
+/// How far scrap that slides presses against the tips, m.
+const PRESSED_M: f64 = 0.02;
 const PERCENT: f64 = 100.0;
 
 parameters! {
@@ -52,7 +56,7 @@ parameters! {
         /// heat capacity of steel
         heat_j_kg_k: f64 = 720.0 => 1.0, 1e4;
         /// heat of fusion
-        fusion_j_kg: f64 = 252000.0 => 1.0, 1e6;
+        fusion_j_kg: f64 = 252_000.0 => 1.0, 1e6;
         /// where steel melts
         melting_degc: f64 = 1520.0 => 100.0, 3000.0;
         /// scrap of this height covers the arcs
@@ -65,8 +69,8 @@ parameters! {
         bare_fraction: f64 = 0.4 => 0.0, 1.0;
         /// part of the heat of scrap that melts it on the spot
         melting_fraction: f64 = 0.6 => 0.0, 1.0;
-        /// heat from bath to scrap for each kelvin
-        exchange_w_k: f64 = 40000.0 => 0.0, 1e7;
+        /// heat from bath to scrap for each kelvin above the melting point
+        exchange_w_k: f64 = 1_000_000.0 => 0.0, 1e7;
         /// heat that the bath loses to the walls for each kelvin
         loss_w_k: f64 = 2500.0 => 0.0, 1e6;
         /// how high slag foams with a kilogram of carbon a second, times its height
@@ -248,13 +252,16 @@ impl ArcBath {
         state.foam = lag(state.foam, foam, FOAM_S, turn.dt_s);
         let caves_in = turn.failed.has(Failure::CaveIn);
         if caves_in && !state.caved_in {
-            state.pit_m = state.pit_m.max(self.bath_m(state) + CAVED_IN * self.scrap_m(state));
+            // scrap slides against the electrodes, not under them: it fills the pit as far as their tips at most
+            let filled_m = self.bath_m(state) + CAVED_IN * self.scrap_m(state);
+            let tips_m = state.pit_m + inputs.arc_m.max(0.0) + PRESSED_M;
+            state.pit_m = state.pit_m.max(filled_m.min(tips_m));
         }
         state.caved_in = caves_in;
     }
 
     /// Heat of oxygen: it burns carbon of the bath, as long as there is some.
-    fn blow(&self, state: &mut State, inputs: &Inputs, dt_s: f64) -> f64 {
+    fn blow(state: &mut State, inputs: &Inputs, dt_s: f64) -> f64 {
         let wanted_kg = inputs.oxygen_kg_s.max(0.0) * dt_s * CARBON_KG_KG;
         let burnt_kg = if state.bath.mass_kg > WHOLE_BATH_KG { wanted_kg.min(state.carbon_kg) } else { 0.0 };
         state.carbon_kg -= burnt_kg;
@@ -264,7 +271,7 @@ impl ArcBath {
     fn heat(&self, state: &mut State, inputs: &Inputs, turn: &Turn) {
         let (steel, dt_s) = (self.steel(), turn.dt_s);
         let arc_j = inputs.arc_w.max(0.0) * dt_s;
-        let oxygen_j = self.blow(state, inputs, dt_s);
+        let oxygen_j = Self::blow(state, inputs, dt_s);
         let exposure = self.exposure(state, inputs.arc_m.max(0.0));
         let empty = state.scrap.mass_kg <= 0.0 && state.bath.mass_kg <= 0.0;
         let gas_j = self.p.gas_fraction * arc_j;
@@ -272,17 +279,17 @@ impl ArcBath {
         let wall_j = if empty { arc_j - gas_j } else { wall_part * arc_j };
         let charge_j = arc_j - gas_j - wall_j;
         let whole_bath = (state.bath.mass_kg / WHOLE_BATH_KG).min(1.0);
-        let to_bath = match state.scrap.mass_kg > 0.0 {
-            true => (1.0 - TO_SCRAP * self.scrap_cover(state)) * whole_bath,
-            false => 1.0,
-        };
+        let to_bath =
+            if state.scrap.mass_kg > 0.0 { (1.0 - TO_SCRAP * self.scrap_cover(state)) * whole_bath } else { 1.0 };
         // the root leaves no crumb that melts for ever
         let touching = whole_bath * (state.scrap.mass_kg / WHOLE_SCRAP_KG).min(1.0).sqrt();
-        let warmer_k = state.bath.temperature_degc(&steel) - state.scrap.temperature_degc(&steel);
+        // scrap melts at its surface, so the bath holds its melting point against it
+        let warmer_k = state.bath.temperature_degc(&steel) - self.p.melting_degc;
         let exchanged_j = self.p.exchange_w_k * touching * warmer_k.max(0.0) * dt_s;
         let worn = if turn.failed.has(Failure::LiningWorn) { 3.0 } else { 1.0 };
         let bath_k = (state.bath.temperature_degc(&steel) - REFERENCE_DEGC).max(0.0);
-        let lining_j = self.p.loss_w_k * worn * whole_bath * bath_k * dt_s;
+        let wetted = (state.bath.mass_kg / WHOLE_LINING_KG).min(1.0);
+        let lining_j = self.p.loss_w_k * worn * wetted * bath_k * dt_s;
 
         let melted = state.scrap.melt((1.0 - to_bath) * charge_j, self.p.melting_fraction, &steel);
         let dissolved = state.scrap.melt(exchanged_j, 1.0, &steel);
@@ -346,7 +353,7 @@ impl Component for ArcBath {
         "e = (1 - h_scrap/h_c)(1 - h_slag/L)",
         "P = g P + (b + w e) P + rest to scrap and bath",
         "dm/dt = μ P_s/(c (ϑ_m - ϑ_s) + L_f)",
-        "bath to scrap k (ϑ_l - ϑ_s), bath to walls G (ϑ_l - ϑ_a)",
+        "bath to scrap k (ϑ_l - ϑ_m), bath to walls G (ϑ_l - ϑ_a)",
     ];
     const SOURCE: &'static str = "balances of mass and energy; sizes: Vergnano et al., 2012, sec. 4";
     own_types!();
@@ -482,7 +489,8 @@ mod tests {
         let bored = good.run(Inputs { arc_w: 60e6, ..IDLE }, 0.1, 6000);
         assert!(bored.scrap_kg > 10e3 && bored.surface_m == bored.bath_m, "{bored:?}");
         good = good.failing(Failure::CaveIn);
-        assert!(good.run(IDLE, 0.1, 1).surface_m > bored.surface_m + 0.2);
+        let caved_m = good.run(IDLE, 0.0, 1).surface_m - bored.bath_m;
+        assert!((caved_m - (0.7 * bored.scrap_m).min(0.32)).abs() < 1e-9, "{caved_m}");
     }
 
     #[test]

@@ -76,7 +76,7 @@ signals! {
         current_2_a: f64,
         /// current of phase 3
         current_3_a: f64,
-        /// voltage from electrode 1 to the bath
+        /// voltage from electrode 1 to the bath, that of its phase where there is no arc and it does not touch
         voltage_1_v: f64,
         /// voltage from electrode 2 to the bath
         voltage_2_v: f64,
@@ -90,6 +90,8 @@ signals! {
         arc_3_w: f64,
         /// power of the three arcs
         arc_w: f64,
+        /// mean length of the arcs that burn
+        arc_m: f64,
         /// real power, with what the conductors lose
         power_w: f64,
         /// reactive power
@@ -150,6 +152,13 @@ impl ArcCircuit {
         (self.p.lowest_v + between * (self.p.highest_v - self.p.lowest_v)) / 3f64.sqrt()
     }
 
+    fn mean_m(state: &State, lengths_m: [f64; PHASES]) -> f64 {
+        let burning =
+            || lengths_m.iter().zip(&state.lit).filter(|(_, lit)| **lit).map(|(length_m, _)| length_m.max(0.0));
+        let count = burning().map(|_| 1.0).sum::<f64>();
+        if count > 0.0 { burning().sum::<f64>() / count } else { 0.0 }
+    }
+
     /// What an arc of this length holds against its current.
     fn arc_v(&self, length_m: f64) -> f64 {
         if length_m <= 0.0 { 0.0 } else { self.p.drop_v + self.p.gradient_v_m * length_m }
@@ -185,6 +194,14 @@ impl ArcCircuit {
         std::array::from_fn(|phase| {
             let length_m = set[phase];
             if length_m <= 0.0 { length_m } else { (length_m + self.p.stray_m * state.strayed[phase]).max(0.0) }
+        })
+    }
+
+    /// Voltage of electrodes that carry nothing: by it a regulator feels that one touches before the others do.
+    fn open_v(&self, closed: bool, phase_v: f64, lengths_m: [f64; PHASES], turn: &Turn) -> [f64; PHASES] {
+        std::array::from_fn(|phase| {
+            let live = closed && !(phase == 1 && turn.failed.has(Failure::PhaseLost));
+            if live && lengths_m[phase] > self.p.strike_m { phase_v } else { 0.0 }
         })
     }
 
@@ -240,16 +257,18 @@ impl Component for ArcCircuit {
         self.switch(state, inputs, turn);
         let lengths_m = self.lengths_m(state, inputs, turn.dt_s);
         let branches = self.branches(state, lengths_m, turn);
-        state.current_a = currents_a(self.phase_v(Self::contact(state)), &branches);
+        let phase_v = self.phase_v(Self::contact(state));
+        let open_v = self.open_v(state.closed, phase_v, lengths_m, turn);
+        state.current_a = currents_a(phase_v, &branches);
         for phase in 0..PHASES {
             let current_a = state.current_a[phase];
             state.lit[phase] = current_a > 0.0;
-            state.voltage_v[phase] = if current_a > 0.0 { self.arc_v(lengths_m[phase]) } else { 0.0 };
+            state.voltage_v[phase] = if current_a > 0.0 { self.arc_v(lengths_m[phase]) } else { open_v[phase] };
         }
         state.energy_j += self.power_w(state) * turn.dt_s;
     }
 
-    fn sense(&self, state: &mut State, _: &Inputs, _: &Turn) -> Outputs {
+    fn sense(&self, state: &mut State, inputs: &Inputs, _: &Turn) -> Outputs {
         let [current_1_a, current_2_a, current_3_a] = state.current_a;
         let [voltage_1_v, voltage_2_v, voltage_3_v] = state.voltage_v;
         let arcs_w: [f64; PHASES] = std::array::from_fn(|phase| state.voltage_v[phase] * state.current_a[phase]);
@@ -268,6 +287,7 @@ impl Component for ArcCircuit {
             arc_2_w,
             arc_3_w,
             arc_w: arcs_w.iter().sum(),
+            arc_m: Self::mean_m(state, [inputs.arc_1_m, inputs.arc_2_m, inputs.arc_3_m]),
             power_w,
             reactive_var,
             power_factor: if apparent_va > 0.0 { power_w / apparent_va } else { 0.0 },
@@ -297,8 +317,9 @@ mod tests {
     use crate::plant::component::tests::Rig;
 
     /// Without steps of the tap changer.
-    fn rig(p: Parameters) -> Rig<ArcCircuit> {
-        Rig::new(ArcCircuit::new(Parameters { tap_time_s: 0.0, ..p }))
+    fn rig(mut p: Parameters) -> Rig<ArcCircuit> {
+        p.tap_time_s = 0.0;
+        Rig::new(ArcCircuit::new(p))
     }
 
     fn inputs(tap: i32, lengths_m: [f64; 3]) -> Inputs {

@@ -31,9 +31,9 @@ parameters! {
         /// temperature of the supply
         supply_degc: f64 = 30.0 => 0.0, 100.0;
         /// heat that goes from panel to water for each kelvin
-        transfer_w_k: f64 = 400000.0 => 1.0, 1e9;
+        transfer_w_k: f64 = 400_000.0 => 1.0, 1e9;
         /// heat capacity of the panel
-        capacity_j_k: f64 = 4000000.0 => 1.0, 1e12;
+        capacity_j_k: f64 = 4_000_000.0 => 1.0, 1e12;
         /// pressure at the full flow
         pressure_bar: f64 = 4.0 => 0.1, 100.0;
         /// the contact of the outlet opens here

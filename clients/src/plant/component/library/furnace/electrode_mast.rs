@@ -19,7 +19,7 @@ use crate::plant::component::dynamics::lag;
 
 /// Density of graphite, kg/m³.
 const GRAPHITE_KG_M3: f64 = 1700.0;
-/// J in an MWh.
+/// J in a megawatt-hour.
 const MWH_J: f64 = 3.6e9;
 /// An electrode over which there is no arc: longer than any voltage carries, m.
 const NO_ARC_M: f64 = 10.0;
@@ -48,7 +48,7 @@ parameters! {
         /// graphite that the arc takes
         consumption_kg_mwh: f64 = 1.5 => 0.0, 20.0;
         /// how stiff scrap and mast are against an electrode that presses on scrap
-        stiffness_n_m: f64 = 200000.0 => 1.0, 1e9;
+        stiffness_n_m: f64 = 200_000.0 => 1.0, 1e9;
         /// force that breaks the electrode
         breaking_n: f64 = 20000.0 => 1.0, 1e9;
         /// how much of the electrode falls when it breaks

@@ -1,0 +1,138 @@
+//! The arc furnace: a heat's balances, its interlocks under any hand, its checkpoints.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::typed::{is_the_same_over_tcp_and_resumed, scenario, typed};
+
+/// A run of the furnace: the values of these signals, a row a change, and what was said.
+fn run<const N: usize>(more: &[&str], signals: [&str; N]) -> (Vec<[String; N]>, String) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let record = folder.path().join("r");
+    let mut words = [&["run", ".", "--record", utf8(&record)], more].concat();
+    words.extend(signals.iter().flat_map(|signal| ["--record-signals", signal]));
+    let said = typed(&scenario("arc-furnace"), &words);
+    assert!(matches!(said.code, Some(0 | 1)), "{said:?}");
+    let exported = typed(folder.path(), &["export", "r", "-o", "r.csv"]);
+    assert_eq!(exported.code, Some(0), "{exported:?}");
+    let table = fs::read_to_string(folder.path().join("r.csv")).expect("a table");
+    let mut rows = table.lines().map(|line| line.split(',').collect::<Vec<&str>>());
+    let head = rows.next().expect("a head");
+    let columns = signals.map(|signal| head.iter().position(|name| *name == signal).expect("a column"));
+    (rows.map(|row| columns.map(|column| row[column].to_owned())).collect(), said.out)
+}
+
+fn utf8(path: &Path) -> &str {
+    path.to_str().expect("UTF-8")
+}
+
+#[test]
+fn the_energy_of_a_heat_is_in_balance() {
+    let (rows, _) = run(&["--until", "65min"], ["Energy_in", "Energy_lost", "Energy_out", "Energy_held", "Tapped"]);
+    let number = |text: &String| text.parse::<f64>().expect("a number");
+    let (first, last) = (rows.first().expect("rows"), rows.last().expect("rows"));
+    let [came, lost, out, held, tapped] = [0, 1, 2, 3, 4].map(|k| (number(&first[k]), number(&last[k])));
+    let (brought_j, found_j) = (came.1 + held.0, lost.1 + out.1 + held.1);
+    assert!((brought_j / found_j - 1.0).abs() < 1e-3, "{brought_j} {found_j}");
+    assert!(tapped.1 > 99e3 && tapped.1 < 101e3, "{tapped:?}");
+    // 385 kWh a tonne at an efficiency of 0.65
+    let per_tonne_kwh = came.1 / 3.6e6 / (tapped.1 / 1000.0);
+    assert!((per_tonne_kwh * 0.65 - 385.0).abs() < 20.0, "{per_tonne_kwh}");
+}
+
+#[test]
+fn two_heats_are_an_hour_apart_and_hot_enough() {
+    let said = typed(&scenario("arc-furnace"), &["run", "."]);
+    assert_eq!(said.code, Some(0), "{said:?}");
+}
+
+#[test]
+fn transport_and_checkpoints_do_not_matter() {
+    // Electrodes have just touched, arcs burn, the tap changer is on its way.
+    is_the_same_over_tcp_and_resumed("arc-furnace", ".", "9min", "478.5s");
+}
+
+/// A trainer's start: the flat bath, once reached, is there in no time, and every time the same.
+#[test]
+fn the_flat_bath_is_taken_up_again_twenty_times() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let start = folder.path().join("flat-bath.ckpt");
+    let digest = |more: &[&str]| {
+        let words = [&["run", ".", "--until", "2890s", "--format", "json"], more].concat();
+        let said = typed(&scenario("arc-furnace"), &words);
+        let run: Value = serde_json::from_str(&said.out).expect("JSON");
+        run["digest"].as_str().expect("a digest").to_owned()
+    };
+    let whole = digest(&["--save-at", "48min", "--save", utf8(&start)]);
+    for _ in 0..20 {
+        assert_eq!(digest(&["--resume", utf8(&start)]), whole);
+    }
+}
+
+/// 10,000 inputs of any kind at any time: no power under an open roof, no tilt with electrodes down.
+#[test]
+fn no_hand_at_the_pulpit_gets_past_the_interlocks() {
+    const STEPS: u64 = 500_000;
+    const STEP_NS: u64 = 20_000_000;
+    let mut random = 12u64;
+    let mut draw = |below: u64| {
+        random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (random >> 33) % below
+    };
+    let switches = [
+        "Automatic",
+        "Heat_start",
+        "Emergency_stop",
+        "Acknowledge",
+        "Electrode_automatic",
+        "Power_button",
+        "Roof_switch",
+        "Door_switch",
+        "Car_switch",
+        "Sample_button",
+        "Join_electrode",
+    ];
+    let mut inputs = String::new();
+    for number in 0..10_000 {
+        let step = number * STEPS / 10_000;
+        let (signal, value) = match draw(6) {
+            0 => ("Tilt_lever".to_owned(), (draw(3) as i64 - 1).to_string()),
+            1 => (format!("Lever[{}]", 1 + draw(3)), (draw(3) as i64 - 1).to_string()),
+            2 => ("Programme_selector".to_owned(), draw(5).to_string()),
+            _ => {
+                let switch = switches[usize::try_from(draw(switches.len() as u64)).expect("small")];
+                // mostly by hand, and mostly not stopped
+                let on = match switch {
+                    "Automatic" | "Emergency_stop" => draw(8) == 0,
+                    "Acknowledge" | "Power_button" => draw(4) != 0,
+                    _ => draw(2) == 0,
+                };
+                (switch.to_owned(), if on { "TRUE" } else { "FALSE" }.to_owned())
+            }
+        };
+        let t_v_ns = step * STEP_NS;
+        writeln!(
+            inputs,
+            r#"{{"step":{step},"t_v_ns":{t_v_ns},"event":"operator","action":"write","signal":"{signal}","value":"{value}"}}"#
+        )
+        .expect("a string takes all");
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("inputs.jsonl");
+    fs::write(&file, inputs).expect("writable");
+    let (rows, said) = run(
+        &["--until", "10000s", "--replay-operator", utf8(&file)],
+        ["Breaker_closed", "Roof_opened", "Tilt_level", "Mast_up[2]"],
+    );
+    for law in ["no power under an open roof", "no tilt with electrodes down"] {
+        assert!(said.contains(&format!("`{law}` met")), "{said}");
+    }
+    // all that could have met was tried
+    for (column, least) in [(0, 20), (1, 3), (2, 10), (3, 10)] {
+        let edges = rows.windows(2).filter(|pair| pair[0][column] != pair[1][column]).count();
+        assert!(edges >= least, "column {column}: {edges} edges");
+    }
+}
