@@ -64,5 +64,6 @@ pub mod review;
 pub mod run;
 pub mod session;
 pub mod snapshot;
+mod web;
 pub mod why;
 pub mod wiring;

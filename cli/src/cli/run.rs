@@ -5,6 +5,7 @@ use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::time::Duration;
 
+use clap::builder::ArgPredicate;
 use clap::{Args as ClapArgs, ValueEnum};
 use onescan_recording::Choice;
 use onescan_report::plot::Part;
@@ -46,7 +47,7 @@ pub struct RunArgs {
     #[arg(long, value_name = "TIME")]
     pub until: Option<VirtualTime>,
     /// How fast virtual time may run: `max`, or a factor of real time
-    #[arg(long, default_value = "max", value_name = "max|FACTOR", value_parser = pace)]
+    #[arg(long, default_value = "max", default_value_if("web", ArgPredicate::IsPresent, "1"), value_name = "max|FACTOR", value_parser = pace)]
     pub pace: Pace,
     /// `lockstep`, or `freewheel` to see what it is good for: plant and PLC in real time, each on its
     /// own clock, with an OPC-like link between them
@@ -123,6 +124,10 @@ pub struct RunArgs {
     /// Let in whoever reaches the address of `--listen`, also from other machines: without TLS, without a token
     #[arg(long, requires = "listen")]
     pub listen_insecure: bool,
+    /// Serve the session as a page to browsers of this machine: machine, panels, trends, programs (`docs/web.md`); in real
+    /// time unless `--pace` says otherwise [default ADDRESS: a free port]
+    #[arg(long, value_name = "ADDRESS:PORT", num_args = 0..=1, require_equals = true, default_missing_value = "127.0.0.1:0")]
+    pub web: Option<SocketAddr>,
     /// Serve the session over OPC UA at this address, for operators and clients (`docs/opcua.md`) [default: a free
     /// port of this machine, if a client needs one]
     #[arg(long, value_name = "ADDRESS:PORT")]
@@ -289,7 +294,7 @@ fn config(args: RunArgs) -> Result<RunConfig, CommandError> {
             reply_timeout: Duration::from_nanos(args.reply_timeout.as_nanos()),
             latency: args.latency,
         },
-        doors: Doors { listen: args.listen, admission, opcua: args.opcua, access },
+        doors: Doors { listen: args.listen, admission, web: args.web, opcua: args.opcua, access },
         course: Course {
             pace: args.pace,
             resume: args.resume,

@@ -88,6 +88,8 @@ pub struct Doors {
     pub listen: Option<SocketAddr>,
     /// Who is let in there.
     pub admission: Admission,
+    /// Where the session is served as a page.
+    pub web: Option<SocketAddr>,
     /// Where the session is served over OPC UA.
     pub opcua: Option<SocketAddr>,
     /// Who is let in there.

@@ -14,6 +14,7 @@ use thiserror::Error;
 
 use crate::access::AccessError;
 use crate::error::{Exit, ExitCode, ListenError, SpawnError, Unreadable, Usage};
+use crate::web::WebError;
 
 /// Why nothing came of a run.
 #[derive(Debug, Error, Diagnostic)]
@@ -43,6 +44,10 @@ pub enum RunError {
     /// The address cannot be listened on.
     #[error(transparent)]
     Listen(#[from] ListenError),
+    /// There is no page.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Web(#[from] WebError),
     /// Anybody could take part, or nobody can be let in.
     #[error(transparent)]
     #[diagnostic(transparent)]
@@ -97,6 +102,7 @@ impl Exit for RunError {
             Self::Formation(error) => error.exit_code(),
             Self::Spawn(error) => error.exit_code(),
             Self::Listen(error) => error.exit_code(),
+            Self::Web(error) => error.exit_code(),
             Self::Access(error) => error.exit_code(),
             Self::Record(error) => error.exit_code(),
             Self::RecordCut { source, .. } => source.exit_code(),

@@ -12,6 +12,7 @@ use onescan_server::checkpoint::Checkpoint;
 use onescan_server::formation::{Formation, FormationError};
 use onescan_server::lockstep::{Lockstep, Outcome, Reached};
 use onescan_server::operation::OperatorInput;
+use onescan_server::pacing::Pace;
 use onescan_server::signal::ClientName;
 use onescan_server::timeline::Timeline;
 use onescan_server::transport::tcp::Lobby;
@@ -25,6 +26,7 @@ use super::session_log::SessionLog;
 use crate::access::admission::{Doorstep, Shown, from_here};
 use crate::error::{ListenError, Unreadable, Usage};
 use crate::interrupt::Interrupt;
+use crate::web::{self, Page};
 
 /// What is said here is for the user, also without `--verbose`.
 pub(crate) const NOTICE: &str = "onescan::notice";
@@ -52,6 +54,8 @@ pub(super) fn run(
         lockstep.set_published(desk.published());
         lockstep.observe(desk.observer());
     }
+    let _page =
+        config.doors.web.map(|address| serve_page(address, config, scenario, &lockstep, interrupt)).transpose()?;
     if config.reports.progress {
         let label = if config.runs == 1 { scenario.name().to_owned() } else { format!("run {number}/{}", config.runs) };
         lockstep.observe(Box::new(Progress::new(config.subject.end(scenario), label).with_log(log.clone())));
@@ -71,6 +75,27 @@ pub(super) fn run(
         tracing::error!("{error}; the session goes on");
     }
     Ok((lockstep.run()?, saved.err()))
+}
+
+/// Serves the session as a page, for as long as it is kept.
+fn serve_page(
+    address: SocketAddr,
+    config: &RunConfig,
+    scenario: &Scenario,
+    lockstep: &Lockstep,
+    interrupt: &Interrupt,
+) -> Result<Page, RunError> {
+    let pace = match config.course.pace {
+        Pace::Max => "max".to_owned(),
+        Pace::Factor(factor) => factor.to_string(),
+    };
+    let source = web::Source { scenario, published: lockstep.published(), mailbox: interrupt.mailbox(), pace };
+    let page = Page::serve(address, source)?;
+    match Page::is_absent() {
+        None => tracing::info!(target: NOTICE, "the session is at {}", page.url()),
+        Some(how) => tracing::warn!(target: NOTICE, "no page at {}: {how}", page.url()),
+    }
+    Ok(page)
 }
 
 /// A session that is about to begin, and what stays open for operators.

@@ -22,6 +22,7 @@
 //! | `mechanism` | bodies on joints, moved by the joints' coordinates |
 //! | `articulation` | mechanisms and the engine: who moves which bodies |
 //! | `follower` | a joint that follows another |
+//! | `form` | the forms of bodies as they are, for readers that draw by themselves |
 //! | `axis` | a driven axis: command, setpoint, what it moves, feedback |
 //! | `sensor` | end-position and proximity sensors |
 //! | [`component`] | the library: cylinders, motors, sensors, … by their equations |
@@ -62,6 +63,7 @@ mod failure;
 mod file_place;
 mod fitting;
 mod follower;
+mod form;
 mod identity;
 mod lateness;
 mod machine;
@@ -83,6 +85,7 @@ mod world;
 pub use client::Plant;
 pub use failure::FailureRefused;
 pub use file_place::{Place, Source};
+pub use form::{Form, Frame, Geometry};
 pub use outline::{Outline, Surface};
 pub use placement::{BodyPose, Placement};
 pub use scene::{Inside, Scene, SceneError, SceneFault, SceneFaultKind, UnknownFailure};

@@ -1,0 +1,116 @@
+//! What a page asks, and what the session is to do for it.
+
+use onescan_server::layout::ImageLayout;
+use onescan_server::operation::Operation;
+use onescan_server::plan::SessionPlan;
+use onescan_server::signal::{SignalId, SignalType};
+use serde::Deserialize;
+use thiserror::Error;
+
+use super::structure::Known;
+
+/// A message of a page.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(tag = "type", rename_all = "lowercase", deny_unknown_fields)]
+pub(super) enum Ask {
+    /// These signals from now on.
+    Subscribe { signals: Vec<usize> },
+    /// An operator's input.
+    Write { signal: usize, value: f64 },
+    /// Virtual time is held, goes on, makes one step; the session ends.
+    Operate { operation: Verb },
+    /// A seat is taken or left.
+    Seat { panel: String, take: bool },
+    /// A component fails, or is repaired.
+    Fail { component: String, failure: String, active: bool },
+    /// A moment of the past is to be shown.
+    Show {
+        #[serde(rename = "t_ns")]
+        _t_ns: f64,
+    },
+    /// The live edge again.
+    Live,
+    /// A session that goes on from a moment of the past.
+    Fork {
+        #[serde(rename = "t_ns")]
+        _t_ns: f64,
+    },
+}
+
+/// What is done with virtual time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum Verb {
+    Hold,
+    Go,
+    Step,
+    Stop,
+}
+
+/// Why nothing is done.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub(super) enum Refused {
+    #[error("not a message of the page: {0}")]
+    Garbage(String),
+    #[error("there is no signal {0}")]
+    NoSignal(usize),
+    #[error("`{signal}` is {ty}, which {value} is not")]
+    Value { signal: String, ty: SignalType, value: String },
+    #[error("there is no component `{0}`")]
+    NoComponent(String),
+    #[error("there is no panel `{0}`")]
+    NoPanel(String),
+    #[error("the past of a running session is not kept: `--save-at` keeps a moment of it, `--record` all signals")]
+    Past,
+    #[error("somebody else has the seat of panel `{0}`")]
+    Taken(String),
+    #[error("take the seat of the panel before you operate")]
+    NoSeat,
+}
+
+impl Ask {
+    /// Reads a message.
+    pub(super) fn read(text: &str) -> Result<Self, Refused> {
+        serde_json::from_str(text).map_err(|error| Refused::Garbage(error.to_string()))
+    }
+}
+
+/// The signals of these places.
+pub(super) fn signals(places: &[usize], layout: &ImageLayout) -> Result<Vec<SignalId>, Refused> {
+    let all: Vec<SignalId> = layout.signals().collect();
+    places.iter().map(|place| all.get(*place).copied().ok_or(Refused::NoSignal(*place))).collect()
+}
+
+/// A signal takes a value.
+pub(super) fn write(place: usize, value: f64, plan: &SessionPlan) -> Result<Operation, Refused> {
+    let declared = plan.signals().get(place).ok_or(Refused::NoSignal(place))?;
+    let wrong = || Refused::Value { signal: declared.name.to_string(), ty: declared.ty, value: value.to_string() };
+    let text = match declared.ty {
+        SignalType::BOOL if value == 0.0 || value == 1.0 => if value == 1.0 { "TRUE" } else { "FALSE" }.to_owned(),
+        SignalType::BOOL => return Err(wrong()),
+        _ if !value.is_finite() => return Err(wrong()),
+        _ => value.to_string(),
+    };
+    declared.ty.parse_text(&text).map_err(|_| wrong())?;
+    Ok(Operation::Write { signal: declared.name.clone(), value: text })
+}
+
+/// A component fails, or is repaired. Whether it has that mode, the plant says.
+pub(super) fn fail(component: String, mode: String, active: bool, known: &Known) -> Result<Operation, Refused> {
+    let client = known.plants.get(&component).ok_or_else(|| Refused::NoComponent(component.clone()))?.clone();
+    Ok(match active {
+        true => Operation::Fail { client, component, mode },
+        false => Operation::Repair { client, component, mode },
+    })
+}
+
+impl From<Verb> for Operation {
+    fn from(verb: Verb) -> Self {
+        match verb {
+            Verb::Hold => Self::Pause,
+            Verb::Go => Self::Resume,
+            Verb::Step => Self::Step,
+            Verb::Stop => Self::Stop,
+        }
+    }
+}

@@ -1,0 +1,251 @@
+//! The session as a page in a browser: `run --web`.
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`bundle`] | the page itself, a part of the program |
+//! | [`guard`] | whose requests are answered |
+//! | [`structure`] | what of a session does not change |
+//! | [`picture`] | what of a step is shown |
+//! | [`ask`] | what a page may ask |
+//! | [`seats`] | who operates |
+//! | [`viewer`] | one viewer |
+//!
+//! The server has a thread of its own. It reads what the session publishes and leaves wishes in its mailbox, as every other
+//! operator does: nothing that is read leaves a trace, and what is written is an operator's input at a step boundary.
+//! The protocol is in `web/PROTOCOL.md`.
+
+mod ask;
+mod bundle;
+mod guard;
+mod picture;
+mod seats;
+mod structure;
+mod viewer;
+
+use std::net::{SocketAddr, TcpListener};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use axum::Router;
+use axum::extract::{Request, State, WebSocketUpgrade};
+use axum::http::{HeaderName, HeaderValue, StatusCode, header};
+use axum::middleware::{self, Next};
+use axum::response::{IntoResponse, Response};
+use axum::routing::get;
+use miette::Diagnostic;
+use onescan_scenario::{Scenario, ScenarioError};
+use onescan_server::layout::ImageLayout;
+use onescan_server::mailbox::Mailbox;
+use onescan_server::plan::SessionPlan;
+use onescan_server::published::Published;
+use thiserror::Error;
+use tokio::sync::Notify;
+
+use crate::error::{Exit, ExitCode, ListenError, Usage};
+use seats::{SeatView, Seats};
+use structure::Known;
+
+/// What a page may load and do: what comes from here, and nothing from outside.
+const POLICY: &str = "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; connect-src 'self'; \
+                      frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
+/// The longest message of a page, bytes.
+const MESSAGE_MAX: usize = 64 * 1024;
+/// How long viewers have to take the end.
+const FAREWELL: Duration = Duration::from_millis(500);
+
+/// What a session's page needs of it.
+pub(crate) struct Source<'s> {
+    /// The scenario.
+    pub(crate) scenario: &'s Scenario,
+    /// Where the session publishes its steps.
+    pub(crate) published: Published,
+    /// Where wishes go.
+    pub(crate) mailbox: Mailbox,
+    /// How fast virtual time may run, in words.
+    pub(crate) pace: String,
+}
+
+/// A session, as all viewers share it.
+struct Session {
+    /// The answer to `GET /api/session`.
+    structure: String,
+    known: Known,
+    plan: SessionPlan,
+    layout: ImageLayout,
+    published: Published,
+    mailbox: Mailbox,
+    pace: String,
+    seats: Seats,
+    over: AtomicBool,
+}
+
+impl Session {
+    fn ended(&self) -> bool {
+        self.over.load(Ordering::Acquire)
+    }
+}
+
+/// Why there is no page.
+#[derive(Debug, Error, Diagnostic)]
+pub enum WebError {
+    /// The address cannot be listened on.
+    #[error(transparent)]
+    Listen(#[from] ListenError),
+    /// Others could come in.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Open(#[from] Usage),
+    /// The scene has changed since it was read.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Scenario(#[from] ScenarioError),
+    /// The structure cannot be written.
+    #[error("the structure of the session cannot be served: {0}")]
+    Structure(#[from] serde_json::Error),
+}
+
+impl Exit for WebError {
+    fn exit_code(&self) -> ExitCode {
+        match self {
+            Self::Listen(error) => error.exit_code(),
+            Self::Open(error) => error.exit_code(),
+            Self::Scenario(error) => error.exit_code(),
+            Self::Structure(_) => ExitCode::Fault,
+        }
+    }
+}
+
+/// Everybody who reaches the page operates the session, so nobody from elsewhere may.
+fn of_this_machine(address: SocketAddr) -> Result<(), Usage> {
+    if address.ip().is_loopback() {
+        return Ok(());
+    }
+    let port = address.port();
+    let help = format!("write `--web=127.0.0.1:{port}`, and come from elsewhere through a tunnel, as that of `ssh -L`");
+    Err(Usage::new(format!("--web {address}: the page is for browsers of this machine only"), Some(help)))
+}
+
+/// The server of a session's page. It ends when it is dropped.
+pub(crate) struct Page {
+    address: SocketAddr,
+    session: Arc<Session>,
+    stop: Arc<Notify>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Page {
+    /// Serves a session at `address`, an address of this machine.
+    ///
+    /// # Errors
+    /// See [`WebError`].
+    pub(crate) fn serve(address: SocketAddr, source: Source<'_>) -> Result<Self, WebError> {
+        of_this_machine(address)?;
+        let listen = ListenError::on(address);
+        let (structure, known) = structure::of(source.scenario)?;
+        let plan = source.scenario.plan().clone();
+        let session = Arc::new(Session {
+            structure: serde_json::to_string(&structure)?,
+            seats: Seats::at(&known.panels),
+            known,
+            layout: ImageLayout::new(plan.signals()),
+            plan,
+            published: source.published,
+            mailbox: source.mailbox,
+            pace: source.pace,
+            over: AtomicBool::new(false),
+        });
+        let listener = TcpListener::bind(address).map_err(&listen)?;
+        listener.set_nonblocking(true).map_err(&listen)?;
+        let address = listener.local_addr().map_err(&listen)?;
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(&listen)?;
+        let stop = Arc::new(Notify::new());
+        let (router, stopped) = (router(Arc::clone(&session)), Arc::clone(&stop));
+        let thread = std::thread::Builder::new().name("web".to_owned()).spawn(move || {
+            runtime.block_on(async move {
+                let served = async {
+                    let listener = tokio::net::TcpListener::from_std(listener)?;
+                    axum::serve(listener, router).await
+                };
+                tokio::select! {
+                    outcome = served => if let Err(error) = outcome {
+                        tracing::error!(%error, "the page is not served any more; the session goes on");
+                    },
+                    () = stopped.notified() => {}
+                }
+            });
+            // viewers that do not read are not waited for
+            runtime.shutdown_timeout(FAREWELL);
+        });
+        Ok(Self { address, session, stop, thread: Some(thread.map_err(&listen)?) })
+    }
+
+    /// Where a browser finds it.
+    pub(crate) fn url(&self) -> String {
+        format!("http://{}/", self.address)
+    }
+
+    /// What is missing, if the program was built without its page.
+    pub(crate) fn is_absent() -> Option<&'static str> {
+        (!bundle::is_there()).then_some(bundle::ABSENT)
+    }
+}
+
+impl Drop for Page {
+    /// Tells viewers of the end, and leaves them a moment to take it.
+    fn drop(&mut self) {
+        self.session.over.store(true, Ordering::Release);
+        std::thread::sleep(FAREWELL);
+        self.stop.notify_one();
+        if let Some(thread) = self.thread.take()
+            && thread.join().is_err()
+        {
+            tracing::error!("the thread of the page has panicked");
+        }
+    }
+}
+
+fn router(session: Arc<Session>) -> Router {
+    Router::new()
+        .route("/api/session", get(structure_of))
+        .route("/api/live", get(live))
+        .fallback(get(asset))
+        .layer(middleware::from_fn(guarded))
+        .with_state(session)
+}
+
+/// Every request passes here: what is foreign is refused, and each answer says what a page may do.
+async fn guarded(request: Request, next: Next) -> Response {
+    const PLAIN: [(HeaderName, HeaderValue); 4] = [
+        (header::CONTENT_SECURITY_POLICY, HeaderValue::from_static(POLICY)),
+        (header::X_CONTENT_TYPE_OPTIONS, HeaderValue::from_static("nosniff")),
+        (header::REFERRER_POLICY, HeaderValue::from_static("no-referrer")),
+        (header::CACHE_CONTROL, HeaderValue::from_static("no-store")),
+    ];
+    let mut answer = match guard::admit(request.headers()) {
+        Ok(()) => next.run(request).await,
+        Err(foreign) => (StatusCode::FORBIDDEN, format!("{foreign}\n")).into_response(),
+    };
+    answer.headers_mut().extend(PLAIN);
+    answer
+        .headers_mut()
+        .insert(HeaderName::from_static("cross-origin-resource-policy"), HeaderValue::from_static("same-origin"));
+    answer
+}
+
+async fn structure_of(State(session): State<Arc<Session>>) -> Response {
+    ([(header::CONTENT_TYPE, "application/json")], session.structure.clone()).into_response()
+}
+
+async fn live(State(session): State<Arc<Session>>, upgrade: WebSocketUpgrade) -> Response {
+    upgrade.max_message_size(MESSAGE_MAX).on_upgrade(|socket| viewer::attend(socket, session))
+}
+
+async fn asset(request: Request) -> Response {
+    match bundle::file(request.uri().path()) {
+        Some((_, media, bytes)) => ([(header::CONTENT_TYPE, media)], bytes).into_response(),
+        None if !bundle::is_there() => (StatusCode::NOT_FOUND, format!("{}\n", bundle::ABSENT)).into_response(),
+        None => (StatusCode::NOT_FOUND, "there is nothing of this name\n").into_response(),
+    }
+}

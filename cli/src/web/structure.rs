@@ -1,0 +1,382 @@
+//! What of a session does not change while it runs, as the page reads it.
+
+use std::collections::BTreeMap;
+
+use onescan_base::regular;
+use onescan_clients::plant::component::kind::unit;
+use onescan_clients::plant::scene::model::{BodyKind, Component, Wire};
+use onescan_clients::plant::{Form, Frame, Geometry, Scene};
+use onescan_scenario::file::{ClientFile, SignalFile};
+use onescan_scenario::{Scenario, ScenarioError};
+use onescan_server::signal::{ClientName, SignalDecl, SignalType};
+use serde::Serialize;
+
+use super::picture::Stage;
+
+/// The version of the protocol, `web/PROTOCOL.md`.
+const PROTOCOL: u32 = 1;
+/// The largest source that is shown, bytes.
+const SOURCE_MAX: usize = 1_000_000;
+
+/// The answer to `GET /api/session`.
+#[derive(Debug, Serialize)]
+pub(super) struct Structure {
+    protocol: u32,
+    title: String,
+    scenario: String,
+    step_ns: u64,
+    until_ns: u64,
+    live: bool,
+    signals: Vec<Signal>,
+    bodies: Vec<Body>,
+    components: Vec<Part>,
+    panels: Vec<Panel>,
+    expectations: Vec<Expectation>,
+    sources: Vec<Source>,
+}
+
+/// Beside the structure, what the server needs to answer.
+#[derive(Debug, Default)]
+pub(super) struct Known {
+    /// Which of the page's bodies move with which.
+    pub(super) stage: Stage,
+    /// The plant of each component.
+    pub(super) plants: BTreeMap<String, ClientName>,
+    /// The panels.
+    pub(super) panels: Vec<String>,
+}
+
+#[derive(Debug, Serialize)]
+struct Signal {
+    name: String,
+    #[serde(rename = "type")]
+    ty: String,
+    writer: String,
+    unit: Option<String>,
+    about: String,
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    names: BTreeMap<String, String>,
+}
+
+#[derive(Debug, Serialize)]
+struct Body {
+    name: String,
+    kind: &'static str,
+    shape: Shape,
+    position_m: [f64; 3],
+    rotation: [f64; 4],
+}
+
+#[derive(Debug, Serialize)]
+#[serde(tag = "kind", rename_all = "lowercase")]
+enum Shape {
+    None,
+    Box { size_m: [f64; 3] },
+    Sphere { radius_m: f64 },
+    Cylinder { radius_m: f64, length_m: f64 },
+    Capsule { radius_m: f64, length_m: f64 },
+    Mesh { positions_m: Vec<f64>, indices: Vec<u32> },
+}
+
+#[derive(Debug, Serialize)]
+struct Part {
+    name: String,
+    kind: String,
+    body: Option<String>,
+    signals: Vec<String>,
+    senses: Option<String>,
+    parameters: Vec<Parameter>,
+    failures: Vec<Failure>,
+}
+
+#[derive(Debug, Serialize)]
+struct Parameter {
+    name: String,
+    value: serde_json::Value,
+    unit: Option<&'static str>,
+}
+
+#[derive(Debug, Serialize)]
+struct Failure {
+    name: String,
+}
+
+#[derive(Debug, Serialize)]
+struct Panel {
+    name: String,
+    seat: &'static str,
+    columns: u32,
+    rows: u32,
+    elements: Vec<Element>,
+}
+
+#[derive(Debug, Serialize)]
+struct Element {
+    kind: &'static str,
+    label: String,
+    signal: String,
+    at: [u32; 2],
+    span: [u32; 2],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    mode: Option<&'static str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    min: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    max: Option<f64>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    choices: Vec<Choice>,
+}
+
+#[derive(Debug, Serialize)]
+struct Choice {
+    value: i64,
+    label: String,
+}
+
+#[derive(Debug, Serialize)]
+struct Expectation {
+    name: String,
+    text: String,
+}
+
+#[derive(Debug, Serialize)]
+struct Source {
+    path: String,
+    text: String,
+    lines: Vec<Line>,
+}
+
+#[derive(Debug, Serialize)]
+struct Line {
+    line: usize,
+    variables: Vec<String>,
+}
+
+/// The structure of the scenario's sessions, and what the server needs beside it.
+///
+/// # Errors
+/// A scene that cannot be read; it was read before, so it has just changed.
+pub(super) fn of(scenario: &Scenario) -> Result<(Structure, Known), ScenarioError> {
+    let file = scenario.file();
+    let mut known = Known::default();
+    let (mut bodies, mut components) = (Vec::new(), Vec::new());
+    for (name, client) in &file.clients {
+        if let ClientFile::Plant { scene, .. } = client.get_ref() {
+            let scene = scenario.scene_of(name, scene)?;
+            add_bodies(&scene, &mut bodies, &mut known.stage);
+            for component in &scene.components {
+                known.plants.insert(component.name.clone(), name.clone());
+                components.push(part(component, &scene));
+            }
+        }
+    }
+    let panels: Vec<Panel> = pulpit(scenario).into_iter().collect();
+    known.panels = panels.iter().map(|panel| panel.name.clone()).collect();
+    let structure = Structure {
+        protocol: PROTOCOL,
+        title: file.title.clone(),
+        scenario: scenario.name().to_owned(),
+        step_ns: file.step.as_nanos(),
+        until_ns: scenario.until().as_nanos(),
+        live: true,
+        signals: scenario.plan().signals().iter().map(|declared| signal(declared, scenario)).collect(),
+        bodies,
+        components,
+        panels,
+        expectations: file
+            .expect
+            .iter()
+            .map(|expect| Expectation { name: expect.name.get_ref().clone(), text: expect.formula.get_ref().clone() })
+            .collect(),
+        sources: sources(scenario),
+    };
+    Ok((structure, known))
+}
+
+fn written(scenario: &Scenario, declared: &SignalDecl) -> Option<SignalFile> {
+    scenario.file().signals.get(&declared.name).map(|signal| signal.get_ref().clone())
+}
+
+fn signal(declared: &SignalDecl, scenario: &Scenario) -> Signal {
+    let file = written(scenario, declared);
+    let names = file.as_ref().map(|file| file.names.pairs()).into_iter().flatten();
+    Signal {
+        name: declared.name.to_string(),
+        ty: declared.ty.to_string(),
+        writer: declared.writer.as_ref().map(ToString::to_string).unwrap_or_default(),
+        unit: declared.unit.clone(),
+        about: file.as_ref().and_then(|file| file.about.clone()).unwrap_or_default(),
+        names: names.map(|(value, name)| (value.to_string(), name)).collect(),
+    }
+}
+
+fn add_bodies(scene: &Scene, bodies: &mut Vec<Body>, stage: &mut Stage) {
+    let frames: Vec<Frame> = scene.frames().collect();
+    for form in scene.forms() {
+        let number = u32::try_from(bodies.len()).unwrap_or(u32::MAX);
+        if form.kind != BodyKind::Fixed {
+            stage.follow(form.body, number, form.within);
+        }
+        let place = form.within.seen_from(frames[form.index]);
+        let Form { body, attached, kind, geometry, .. } = form;
+        bodies.push(Body {
+            name: attached.map_or_else(|| body.to_owned(), |shape| format!("{body}/{shape}")),
+            kind: match kind {
+                BodyKind::Fixed => "fixed",
+                BodyKind::Kinematic => "kinematic",
+                BodyKind::Dynamic => "dynamic",
+            },
+            shape: shape(geometry),
+            position_m: place.position_m,
+            rotation: place.rotation_xyzw,
+        });
+    }
+}
+
+fn shape(geometry: Geometry) -> Shape {
+    match geometry {
+        Geometry::Nothing => Shape::None,
+        Geometry::Box { size_m } => Shape::Box { size_m },
+        Geometry::Sphere { radius_m } => Shape::Sphere { radius_m },
+        Geometry::Cylinder { radius_m, length_m } => Shape::Cylinder { radius_m, length_m },
+        Geometry::Capsule { radius_m, length_m } => Shape::Capsule { radius_m, length_m },
+        Geometry::Mesh { corners_m, triangles } => Shape::Mesh {
+            positions_m: corners_m.into_iter().flatten().collect(),
+            indices: triangles.into_iter().flatten().collect(),
+        },
+    }
+}
+
+fn part(component: &Component, scene: &Scene) -> Part {
+    let taken = component.inputs.iter().filter_map(|wire| match wire {
+        Wire::Signal(name) => Some(name.to_string()),
+        Wire::Open | Wire::Constant(_) | Wire::Output { .. } => None,
+    });
+    let given: Vec<String> = component.outputs.iter().flatten().map(ToString::to_string).collect();
+    let parameter = |(parameter, setting): (&onescan_clients::plant::component::kind::Parameter, _)| {
+        let (name, unit) = unit(&parameter.key);
+        Parameter { name: name.to_owned(), value: serde_json::json!(setting), unit }
+    };
+    Part {
+        name: component.name.clone(),
+        kind: component.kind.name.to_string(),
+        body: component.bound.body.and_then(|body| scene.bodies.get(body)).map(|body| body.name.clone()),
+        senses: senses(component),
+        signals: taken.chain(given.iter().cloned()).collect(),
+        parameters: component.kind.parameters.iter().zip(&component.settings).map(parameter).collect(),
+        failures: component.kind.failures.iter().map(|mode| Failure { name: mode.mode.to_string() }).collect(),
+    }
+}
+
+/// The signal that is true while a sensor sees something.
+fn senses(component: &Component) -> Option<String> {
+    const SEES: &[&str] = &["detected", "contact", "pulse", "present", "in_range"];
+    let mut outputs = component.kind.outputs.iter().zip(&component.outputs);
+    outputs.find(|(output, _)| SEES.contains(&&*output.key))?.1.as_ref().map(ToString::to_string)
+}
+
+/// A panel of all that operators write, in the order of the file.
+fn pulpit(scenario: &Scenario) -> Option<Panel> {
+    const COLUMNS: u32 = 6;
+    const SPAN: u32 = 2;
+    let file = scenario.file();
+    let is_operator = |name: &ClientName| {
+        matches!(file.clients.get(name).map(toml::Spanned::get_ref), Some(ClientFile::Operator { .. }))
+    };
+    let declared = scenario.plan().signals().iter();
+    let mut elements = Vec::new();
+    for declared in declared.filter(|declared| declared.writer.as_ref().is_some_and(is_operator)) {
+        let number = u32::try_from(elements.len()).unwrap_or(u32::MAX);
+        let at = [number % (COLUMNS / SPAN) * SPAN, number / (COLUMNS / SPAN)];
+        elements.extend(element(declared, scenario, at, SPAN));
+    }
+    let rows = u32::try_from(elements.len()).unwrap_or(u32::MAX).div_ceil(COLUMNS / SPAN);
+    (!elements.is_empty()).then(|| Panel {
+        name: "operator".to_owned(),
+        seat: "operator",
+        columns: COLUMNS,
+        rows,
+        elements,
+    })
+}
+
+/// What a signal is written with: a switch, a choice of its names, a slider. A text has none.
+fn element(declared: &SignalDecl, scenario: &Scenario, at: [u32; 2], span: u32) -> Option<Element> {
+    let names = written(scenario, declared).map(|file| file.names.pairs()).unwrap_or_default();
+    let plain = |kind| Element {
+        kind,
+        label: declared.name.to_string().replace('_', " "),
+        signal: declared.name.to_string(),
+        at,
+        span: [span, 1],
+        mode: None,
+        min: None,
+        max: None,
+        choices: Vec::new(),
+    };
+    if declared.ty == SignalType::BOOL {
+        return Some(Element { mode: Some("toggle"), ..plain("switch") });
+    }
+    if !names.is_empty() {
+        let choices = names.into_iter().map(|(value, label)| Choice { value, label }).collect();
+        return Some(Element { choices, ..plain("selector") });
+    }
+    let initial = initial(declared, scenario);
+    declared.ty.as_f64(&vec![0; declared.ty.size()])?;
+    let reach = if initial == 0.0 { 10.0 } else { 2.0 * initial.abs() };
+    let least = if initial < 0.0 || initial == 0.0 { -reach } else { 0.0 };
+    Some(Element { min: Some(least), max: Some(reach), ..plain("slider") })
+}
+
+/// What the scenario says that a signal of an operator is at the start.
+fn initial(declared: &SignalDecl, scenario: &Scenario) -> f64 {
+    let client = declared.writer.as_ref().and_then(|name| scenario.file().clients.get(name));
+    let Some(ClientFile::Operator { initial }) = client.map(toml::Spanned::get_ref) else { return 0.0 };
+    match initial.get(&declared.name) {
+        Some(toml::Value::Float(number)) => *number,
+        #[expect(clippy::cast_precision_loss, reason = "a range for the eye")]
+        Some(toml::Value::Integer(number)) => *number as f64,
+        _ => 0.0,
+    }
+}
+
+/// The programs of the soft PLCs that are text, each with the signals on its lines.
+fn sources(scenario: &Scenario) -> Vec<Source> {
+    let mut sources = Vec::new();
+    for plc in scenario.plcs() {
+        for path in plc.sources.iter().filter(|path| !path.to_ascii_lowercase().ends_with("xml")) {
+            // it has just been compiled; what cannot be read any more is not shown
+            let Ok(text) = regular::read_text(&scenario.folder().join(path)) else { continue };
+            if text.len() > SOURCE_MAX || sources.iter().any(|known: &Source| known.path == *path) {
+                continue;
+            }
+            let lines = lines(&text, scenario);
+            sources.push(Source { path: path.clone(), text, lines });
+        }
+    }
+    sources
+}
+
+/// Signals by whose names, without those of what they are in, a line has words.
+fn lines(text: &str, scenario: &Scenario) -> Vec<Line> {
+    let mut by_word: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for declared in scenario.plan().signals() {
+        let name = declared.name.to_string();
+        let last = name.rsplit('.').next().unwrap_or(&name);
+        let word = last.split('[').next().unwrap_or(last).to_ascii_uppercase();
+        by_word.entry(word).or_default().push(name);
+    }
+    let is_word = |c: char| c.is_alphanumeric() || c == '_';
+    let line = |(index, line): (usize, &str)| {
+        let mut variables: Vec<String> = Vec::new();
+        for word in line.split(|c| !is_word(c)) {
+            for name in by_word.get(&word.to_ascii_uppercase()).into_iter().flatten() {
+                if !variables.contains(name) {
+                    variables.push(name.clone());
+                }
+            }
+        }
+        (!variables.is_empty()).then_some(Line { line: index + 1, variables })
+    };
+    text.lines().enumerate().filter_map(line).collect()
+}
