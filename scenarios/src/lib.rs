@@ -39,6 +39,7 @@ mod form;
 pub mod gateway;
 pub mod load;
 pub mod mode;
+mod operated;
 pub mod permission;
 mod refusal;
 pub mod report;

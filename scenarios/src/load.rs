@@ -252,6 +252,11 @@ impl Scenario {
         &self.file
     }
 
+    /// What is in the place of client `name` from now on.
+    pub(crate) fn set_client(&mut self, name: ClientName, client: toml::Spanned<ClientFile>) {
+        self.file.clients.insert(name, client);
+    }
+
     /// The plan of its sessions.
     pub fn plan(&self) -> &SessionPlan {
         &self.plan

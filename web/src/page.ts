@@ -233,7 +233,7 @@ export class Page {
   /** What a test reads from the page: exact positions of the last picture, not the drawn ones. */
   private expose(): void {
     const read = {
-      picture: () => ({ step: this.last?.step ?? null, t_ns: this.last?.t_ns ?? null, isPast: this.last?.isPast ?? false }),
+      picture: () => ({ step: this.last?.step ?? null, t_ns: this.last?.t_ns ?? null, isPast: this.last?.isPast ?? false, isHeld: this.last?.isHeld ?? false }),
       position_m: (name: string) => this.machine.position_m(this.session.bodies.findIndex((one) => one.name === name)),
       value: (name: string) => this.values.get(this.session.signals.findIndex((one) => one.name === name)) ?? null,
       drawn: () => this.machine.drawn,

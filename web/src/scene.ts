@@ -162,18 +162,20 @@ export class MachineView {
     this.isStale = true;
   }
 
+  /** The room of the machine: without floors and halls, which are larger than all that moves. */
   private reach(): { low: Vector3; high: Vector3 } {
-    const low = new Vector3(Infinity, Infinity, Infinity);
-    const high = low.clone().negate();
-    for (const part of this.parts) {
-      if (part === null || !part.body.visible) continue;
-      // A plate for a floor is no reason to stand far away.
-      if ((part.mesh.geometry.boundingSphere?.radius ?? 0) > 20) continue;
-      const box = new Box3().setFromObject(part.mesh);
-      low.min(box.min);
-      high.max(box.max);
-    }
-    return low.x <= high.x ? { low, high } : { low: new Vector3(-1, -1, 0), high: new Vector3(1, 1, 1) };
+    const boxes = this.parts
+      .filter((part) => part !== null)
+      .map((part) => ({ box: new Box3().setFromObject(part.mesh), moves: part.body.kind !== "fixed" }))
+      .filter(({ box }) => !box.isEmpty() && [...box.min.toArray(), ...box.max.toArray()].every(Number.isFinite));
+    const room = (of: readonly { box: Box3 }[]): Box3 => of.reduce((all, { box }) => all.union(box), new Box3());
+    const moving = room(boxes.filter(({ moves }) => moves));
+    const size_m = (box: Box3): number => box.getSize(new Vector3()).length();
+    const machine = moving.isEmpty()
+      ? room(boxes)
+      : room(boxes.filter(({ box, moves }) => moves || size_m(box) <= size_m(moving)));
+    if (machine.isEmpty()) return { low: new Vector3(-1, -1, 0), high: new Vector3(1, 1, 1) };
+    return { low: machine.min, high: machine.max };
   }
 
   private light(): void {

@@ -128,6 +128,10 @@ pub struct RunArgs {
     /// time unless `--pace` says otherwise [default ADDRESS: a free port]
     #[arg(long, value_name = "ADDRESS:PORT", num_args = 0..=1, require_equals = true, default_missing_value = "127.0.0.1:0")]
     pub web: Option<SocketAddr>,
+    /// Let people stand in for this client: its signals are operated, on the page, by `onescan control` or over OPC UA; may be
+    /// given several times
+    #[arg(long = "operator", value_name = "CLIENT", value_parser = client_name)]
+    pub operators: Vec<ClientName>,
     /// Serve the session over OPC UA at this address, for operators and clients (`docs/opcua.md`) [default: a free
     /// port of this machine, if a client needs one]
     #[arg(long, value_name = "ADDRESS:PORT")]
@@ -289,6 +293,7 @@ fn config(args: RunArgs) -> Result<RunConfig, CommandError> {
         reach: Reach {
             transport: args.transport.into(),
             gateways: args.gateways,
+            operated: args.operators,
             opcua_clients: args.opcua_clients,
             join_timeout: Duration::from_nanos(args.join_timeout.as_nanos()),
             reply_timeout: Duration::from_nanos(args.reply_timeout.as_nanos()),

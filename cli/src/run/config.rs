@@ -71,6 +71,8 @@ pub struct Reach {
     pub transport: Transport,
     /// Real PLCs that stand in for soft ones, with their URL.
     pub gateways: Vec<(ClientName, Option<String>)>,
+    /// Clients in whose place people operate.
+    pub operated: Vec<ClientName>,
     /// Clients in whose place somebody takes part over OPC UA.
     pub opcua_clients: Vec<ClientName>,
     /// How long to wait for clients to join.
@@ -210,6 +212,7 @@ impl RunConfig {
             reach: Reach {
                 transport: Transport::Inproc,
                 gateways: Vec::new(),
+                operated: Vec::new(),
                 opcua_clients: Vec::new(),
                 join_timeout: Duration::from_mins(1),
                 reply_timeout: Duration::from_secs(10),

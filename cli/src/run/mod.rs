@@ -96,6 +96,9 @@ pub fn execute(config: &RunConfig, interrupt: &Interrupt, out: &mut dyn Write) -
     for (client, url) in &config.reach.gateways {
         scenario.commission(client, url.clone())?;
     }
+    for client in &config.reach.operated {
+        scenario.operate(client)?;
+    }
     config.check(&scenario)?;
     if let Some(request) = &config.reports.record {
         refuse_to_overwrite(request, config.runs)?;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use onescan_base::regular;
-use onescan_clients::plant::component::kind::unit;
+use onescan_clients::plant::component::kind::{self, unit};
 use onescan_clients::plant::scene::model::{BodyKind, Component, Wire};
 use onescan_clients::plant::{Form, Frame, Geometry, Scene};
 use onescan_scenario::file::{ClientFile, SignalFile};
@@ -92,7 +92,7 @@ struct Part {
 #[derive(Debug, Serialize)]
 struct Parameter {
     name: String,
-    value: serde_json::Value,
+    value: String,
     unit: Option<&'static str>,
 }
 
@@ -253,9 +253,9 @@ fn part(component: &Component, scene: &Scene) -> Part {
         Wire::Open | Wire::Constant(_) | Wire::Output { .. } => None,
     });
     let given: Vec<String> = component.outputs.iter().flatten().map(ToString::to_string).collect();
-    let parameter = |(parameter, setting): (&onescan_clients::plant::component::kind::Parameter, _)| {
+    let parameter = |(parameter, setting): (&kind::Parameter, &kind::Setting)| {
         let (name, unit) = unit(&parameter.key);
-        Parameter { name: name.to_owned(), value: serde_json::json!(setting), unit }
+        Parameter { name: name.to_owned(), value: setting.to_string(), unit }
     };
     Part {
         name: component.name.clone(),
@@ -300,12 +300,17 @@ fn pulpit(scenario: &Scenario) -> Option<Panel> {
     })
 }
 
+/// A signal's name without that of what it is in.
+fn label(name: &str) -> String {
+    name.rsplit('.').next().unwrap_or(name).replace('_', " ")
+}
+
 /// What a signal is written with: a switch, a choice of its names, a slider. A text has none.
 fn element(declared: &SignalDecl, scenario: &Scenario, at: [u32; 2], span: u32) -> Option<Element> {
     let names = written(scenario, declared).map(|file| file.names.pairs()).unwrap_or_default();
     let plain = |kind| Element {
         kind,
-        label: declared.name.to_string().replace('_', " "),
+        label: label(&declared.name.to_string()),
         signal: declared.name.to_string(),
         at,
         span: [span, 1],

@@ -1,0 +1,111 @@
+// The page before the program itself: a machine is operated, and what was done is repeated to the digest.
+// `node e2e/session.mjs PROGRAM SCENARIOS [FOLDER]` writes its pictures to FOLDER.
+
+import assert from "node:assert/strict";
+import { spawn, spawnSync } from "node:child_process";
+import { mkdtemp, readFile, rm } from "node:fs/promises";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { chromium } from "playwright-core";
+import { WebSocket } from "ws";
+
+const [program, scenarios, folder = null] = process.argv.slice(2);
+const children = [];
+const room = await mkdtemp(join(tmpdir(), "page-"));
+const browser = await chromium.launch({
+  executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
+  args: [
+    "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
+    "--disable-component-update", "--disable-sync", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+  ],
+});
+
+/** Starts a session with a page; `url` is where, `over` comes with its exit code and what it wrote. */
+async function start(words) {
+  const child = spawn(program, ["run", ...words, "--web"], { stdio: ["ignore", "pipe", "pipe"] });
+  children.push(child);
+  let [out, said] = ["", ""];
+  child.stdout.on("data", (data) => (out += data));
+  const url = await new Promise((found, lost) => {
+    child.stderr.on("data", (data) => {
+      said += data;
+      const line = /the session is at (http:\S+)/.exec(said);
+      if (line !== null) found(line[1]);
+    });
+    child.on("exit", () => lost(new Error(`no page: ${said}`)));
+  });
+  const over = new Promise((ended) => child.on("exit", (code) => ended({ code, out, said })));
+  return { url, over };
+}
+
+async function open(url) {
+  const page = await browser.newPage({ viewport: { width: 1280, height: 720 } });
+  const errors = [];
+  page.on("pageerror", (error) => errors.push(String(error)));
+  await page.goto(url);
+  await page.waitForFunction(() => window.onescan?.picture().step > 5);
+  return { page, errors };
+}
+
+/** Ends a session, as an operator does. */
+async function stop(url) {
+  const socket = new WebSocket(url.replace("http", "ws") + "api/live");
+  await new Promise((opened) => socket.on("open", opened));
+  socket.send(JSON.stringify({ type: "operate", operation: "stop" }));
+  await new Promise((closed) => socket.on("close", closed));
+}
+
+async function shoot(page, name) {
+  if (folder !== null) await page.screenshot({ path: `${folder}/${name}.png` });
+}
+
+/** The filling machine by its panel: started, distorted, and repeated. */
+async function operate_the_filling_machine() {
+  const record = join(room, "filling");
+  const words = [join(scenarios, "filling-machine"), "--operator", "panel", "--until", "1h", "--record", record, "--pace", "2"];
+  const session = await start(words);
+  const { page, errors } = await open(session.url);
+  await page.getByRole("button", { name: "Take seat" }).click();
+  await page.getByRole("button", { name: "Leave seat" }).waitFor();
+  const press = async (name) => page.getByRole("switch", { name }).click();
+  await page.getByRole("tab", { name: "Signals" }).click();
+  for (const name of ["Packages_In", "Packages_Dropped", "SW_ANGLE"]) await page.getByRole("button", { name: `Trend of ${name}`, exact: true }).click();
+  await page.getByRole("tab", { name: "Panels" }).click();
+  await press(/^Skip Setup/);
+  await press(/^SwitchOutput\[0\]/);
+  await page.waitForFunction(() => window.onescan.value("Main_Control.SwitchOutput[0]") === 1);
+  await press(/^SwitchOutput\[0\]/);
+  await page.waitForFunction(() => window.onescan.value("Packages_In") >= 3, null, { timeout: 60_000 });
+  await shoot(page, "filling-machine");
+  // What the page shows is what the image has, in the same step.
+  await page.getByRole("button", { name: "Hold" }).click();
+  await page.waitForFunction(() => window.onescan.picture().isHeld);
+  const shown = await page.evaluate(() => [window.onescan.picture().t_ns, window.onescan.value("SW_ANGLE"), window.onescan.value("Packages_In")]);
+  await page.getByRole("button", { name: "Go", exact: true }).click();
+  await press(/^Distortion/);
+  await page.waitForFunction(() => window.onescan.value("Packages_Dropped") >= 1, null, { timeout: 60_000 });
+  await shoot(page, "filling-machine-distorted");
+  await stop(session.url);
+  const { out, said } = await session.over;
+  assert.deepEqual(errors, []);
+  const digest = /digest (\S+)/.exec(out)?.[1] ?? assert.fail(`${out}${said}`);
+
+  const again = spawnSync(program, ["run", join(scenarios, "filling-machine"), "--operator", "panel", "--until", "1h", "--replay-operator", record]);
+  assert.match(String(again.stdout), new RegExp(digest), String(again.stderr));
+
+  const table = join(room, "filling.csv");
+  spawnSync(program, ["export", record, "-o", table, "--signals", "SW_ANGLE", "--signals", "Packages_In"]);
+  const rows = (await readFile(table, "utf8")).split("\n").map((line) => line.split(","));
+  const row = rows.find(([t_ns]) => t_ns === String(shown[0]));
+  const column = (name) => Number(row[rows[0].indexOf(name)]);
+  assert.deepEqual([column("SW_ANGLE"), column("Packages_In")], [shown[1], shown[2]]);
+}
+
+try {
+  await operate_the_filling_machine();
+  console.log("the page operates a session: ok");
+} finally {
+  for (const child of children) child.kill();
+  await browser.close();
+  await rm(room, { recursive: true, force: true });
+}
