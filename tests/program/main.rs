@@ -71,4 +71,5 @@ mod typed;
 mod unit_tests;
 mod venv;
 mod watch;
+mod web;
 mod wiring;
