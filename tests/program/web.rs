@@ -35,13 +35,10 @@ impl Served {
     fn get(&self, path: &str, headers: &[(&str, &str)]) -> (String, String) {
         let mut stream = TcpStream::connect(&self.address).expect("served");
         let has_host = headers.iter().any(|(name, _)| *name == "Host");
-        let mut request = format!("GET {path} HTTP/1.1\r\nConnection: close\r\n");
-        if !has_host {
-            request.push_str(&format!("Host: {}\r\n", self.address));
-        }
-        for (name, value) in headers {
-            request.push_str(&format!("{name}: {value}\r\n"));
-        }
+        let host = [("Host", self.address.as_str())];
+        let all = host.iter().filter(|_| !has_host).chain(headers);
+        let lines: String = all.flat_map(|(name, value)| [name, ": ", value, "\r\n"]).collect();
+        let request = format!("GET {path} HTTP/1.1\r\nConnection: close\r\n{lines}");
         stream.write_all((request + "\r\n").as_bytes()).expect("writable");
         let mut answer = Vec::new();
         stream.read_to_end(&mut answer).expect("an answer");

@@ -98,10 +98,7 @@ pub(super) fn write(place: usize, value: f64, plan: &SessionPlan) -> Result<Oper
 /// A component fails, or is repaired. Whether it has that mode, the plant says.
 pub(super) fn fail(component: String, mode: String, active: bool, known: &Known) -> Result<Operation, Refused> {
     let client = known.plants.get(&component).ok_or_else(|| Refused::NoComponent(component.clone()))?.clone();
-    Ok(match active {
-        true => Operation::Fail { client, component, mode },
-        false => Operation::Repair { client, component, mode },
-    })
+    Ok(if active { Operation::Fail { client, component, mode } } else { Operation::Repair { client, component, mode } })
 }
 
 impl From<Verb> for Operation {

@@ -84,10 +84,12 @@ impl Shown {
             let frame = Frame { position_m: pose.position_m, rotation_xyzw: pose.rotation_xyzw };
             for (body, within) in stage.followers.get(&*pose.body).into_iter().flatten() {
                 let place = within.seen_from(frame);
-                let [x, y, z] = place.position_m;
-                let [i, j, k, w] = place.rotation_xyzw;
-                #[expect(clippy::cast_possible_truncation, reason = "for the eye")]
-                let bits = [x, y, z, i, j, k, w].map(|part| (part as f32).to_bits());
+                let mut bits = [0; 7];
+                for (bits, part) in bits.iter_mut().zip(place.position_m.into_iter().chain(place.rotation_xyzw)) {
+                    #[expect(clippy::cast_possible_truncation, reason = "for the eye")]
+                    let part = part as f32;
+                    *bits = part.to_bits();
+                }
                 if self.poses.get(body) != Some(&bits) {
                     moved.push((*body, bits));
                 }

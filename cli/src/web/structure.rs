@@ -329,7 +329,7 @@ fn element(declared: &SignalDecl, scenario: &Scenario, at: [u32; 2], span: u32) 
     let initial = initial(declared, scenario);
     declared.ty.as_f64(&vec![0; declared.ty.size()])?;
     let reach = if initial == 0.0 { 10.0 } else { 2.0 * initial.abs() };
-    let least = if initial < 0.0 || initial == 0.0 { -reach } else { 0.0 };
+    let least = if initial <= 0.0 { -reach } else { 0.0 };
     Some(Element { min: Some(least), max: Some(reach), ..plain("slider") })
 }
 
