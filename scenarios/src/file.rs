@@ -12,6 +12,7 @@ use toml::Spanned;
 
 use crate::expect::KnownSignal;
 use crate::form::{DialectName, Mebibytes, Name, Scalar, Time, Type, Values, from_optional_text, from_text};
+use crate::panel_file::PanelFile;
 use crate::report_file::ReportFile;
 use crate::value_names::ValueNames;
 
@@ -69,6 +70,9 @@ pub struct ScenarioFile {
     /// What a plot shows.
     #[serde(default)]
     pub plot: PlotFile,
+    /// What people see and operate on the page.
+    #[serde(default)]
+    pub panel: Vec<PanelFile>,
 }
 
 /// `"parallel"` or `{ sequential = ["plc", "plant"] }`.

@@ -40,6 +40,8 @@ pub mod gateway;
 pub mod load;
 pub mod mode;
 mod operated;
+mod panel;
+pub mod panel_file;
 pub mod permission;
 mod refusal;
 pub mod report;

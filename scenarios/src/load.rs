@@ -22,7 +22,7 @@ use super::expectations::Expectations;
 use super::file::{ClientFile, CouplingFile, ScenarioFile, VERSION};
 use super::report::Measures;
 use super::watch::{WatchRequest, Watched};
-use super::{arrays, structure};
+use super::{arrays, panel, structure};
 
 /// The file that makes a folder a scenario.
 pub const FILE_NAME: &str = "scenario.toml";
@@ -113,6 +113,7 @@ impl Scenario {
                 return Err(wrong(message, Some(signal.span()), help));
             }
         }
+        panel::check(&file).map_err(|found| wrong(found.message, Some(found.place), found.help))?;
         let expectations =
             Expectations::bind(&file, &text).map_err(|found| wrong(found.message, Some(found.place), found.help))?;
         let measures =

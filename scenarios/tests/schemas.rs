@@ -52,6 +52,9 @@ fn faults_of(schema: &Map<String, Value>, keyword: &str, wanted: &Value, value: 
             let nearest = choices.into_iter().min_by_key(Vec::len).unwrap_or_default();
             return [vec![format!("{at}: {fitting} of the choices fit")], nearest].concat();
         }
+        "maxItems" => {
+            value.as_array().is_none_or(|items| wanted.as_u64().is_some_and(|most| items.len() as u64 <= most))
+        }
         "not" => !faults(wanted, value, at).is_empty(),
         "type" => match wanted {
             Value::Array(types) => types.iter().any(|ty| is_of(ty, value)),

@@ -65,16 +65,20 @@ async function operate_the_filling_machine() {
   const words = [join(scenarios, "filling-machine"), "--operator", "panel", "--until", "1h", "--record", record, "--pace", "2"];
   const session = await start(words);
   const { page, errors } = await open(session.url);
-  await page.getByRole("button", { name: "Take seat" }).click();
-  await page.getByRole("button", { name: "Leave seat" }).waitFor();
-  const press = async (name) => page.getByRole("switch", { name }).click();
+  const panel = (name) => page.getByRole("region", { name: `Panel ${name}` });
+  for (const name of ["main menu", "monitor"]) {
+    await panel(name).getByRole("button", { name: "Take seat" }).click();
+    await panel(name).getByRole("button", { name: "Leave seat" }).waitFor();
+  }
   await page.getByRole("tab", { name: "Signals" }).click();
   for (const name of ["Packages_In", "Packages_Dropped", "SW_ANGLE"]) await page.getByRole("button", { name: `Trend of ${name}`, exact: true }).click();
   await page.getByRole("tab", { name: "Panels" }).click();
-  await press(/^Skip Setup/);
-  await press(/^SwitchOutput\[0\]/);
+  await panel("monitor").getByRole("switch", { name: /^Skip set-up/ }).click();
+  const key = panel("main menu").getByRole("button", { name: "Start", exact: true });
+  await key.focus();
+  await page.keyboard.down("Space");
   await page.waitForFunction(() => window.onescan.value("Main_Control.SwitchOutput[0]") === 1);
-  await press(/^SwitchOutput\[0\]/);
+  await page.keyboard.up("Space");
   await page.waitForFunction(() => window.onescan.value("Packages_In") >= 3, null, { timeout: 60_000 });
   await shoot(page, "filling-machine");
   // What the page shows is what the image has, in the same step.
@@ -82,7 +86,7 @@ async function operate_the_filling_machine() {
   await page.waitForFunction(() => window.onescan.picture().isHeld);
   const shown = await page.evaluate(() => [window.onescan.picture().t_ns, window.onescan.value("SW_ANGLE"), window.onescan.value("Packages_In")]);
   await page.getByRole("button", { name: "Go", exact: true }).click();
-  await press(/^Distortion/);
+  await panel("monitor").getByRole("switch", { name: /^Distortion/ }).click();
   await page.waitForFunction(() => window.onescan.value("Packages_Dropped") >= 1, null, { timeout: 60_000 });
   await shoot(page, "filling-machine-distorted");
   await stop(session.url);

@@ -76,6 +76,7 @@ export class PanelView {
       case "slider":
         return this.fill_slider(cell, element, element.signal, element.label);
       case "joystick":
+        if (element.signal_y === null) return this.fill_slider(cell, element, element.signal, element.label, true);
         this.fill_slider(cell, element, element.signal, `${element.label} x`, true);
         return this.fill_slider(cell, element, element.signal_y, `${element.label} y`, true);
       case "lamp":

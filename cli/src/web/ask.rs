@@ -2,8 +2,7 @@
 
 use onescan_server::layout::ImageLayout;
 use onescan_server::operation::Operation;
-use onescan_server::plan::SessionPlan;
-use onescan_server::signal::{SignalId, SignalType};
+use onescan_server::signal::{SignalDecl, SignalId, SignalType};
 use serde::Deserialize;
 use thiserror::Error;
 
@@ -56,6 +55,8 @@ pub(super) enum Refused {
     NoSignal(usize),
     #[error("`{signal}` is {ty}, which {value} is not")]
     Value { signal: String, ty: SignalType, value: String },
+    #[error("`{signal}` is written by `{writer}`: `run --operator {writer}` lets people write it")]
+    Writer { signal: String, writer: String },
     #[error("there is no component `{0}`")]
     NoComponent(String),
     #[error("there is no panel `{0}`")]
@@ -64,8 +65,8 @@ pub(super) enum Refused {
     Past,
     #[error("somebody else has the seat of panel `{0}`")]
     Taken(String),
-    #[error("take the seat of the panel before you operate")]
-    NoSeat,
+    #[error("`{0}` is written from the seat of a panel that has it: take that seat first")]
+    NoSeat(String),
 }
 
 impl Ask {
@@ -82,8 +83,10 @@ pub(super) fn signals(places: &[usize], layout: &ImageLayout) -> Result<Vec<Sign
 }
 
 /// A signal takes a value.
-pub(super) fn write(place: usize, value: f64, plan: &SessionPlan) -> Result<Operation, Refused> {
-    let declared = plan.signals().get(place).ok_or(Refused::NoSignal(place))?;
+pub(super) fn write(declared: &SignalDecl, value: f64, known: &Known) -> Result<Operation, Refused> {
+    if let Some(writer) = declared.writer.as_ref().filter(|writer| !known.operators.contains(*writer)) {
+        return Err(Refused::Writer { signal: declared.name.to_string(), writer: writer.to_string() });
+    }
     let wrong = || Refused::Value { signal: declared.name.to_string(), ty: declared.ty, value: value.to_string() };
     let text = match declared.ty {
         SignalType::BOOL if value == 0.0 || value == 1.0 => if value == 1.0 { "TRUE" } else { "FALSE" }.to_owned(),

@@ -5,6 +5,7 @@
 //! | [`bundle`] | the page itself, a part of the program |
 //! | [`guard`] | whose requests are answered |
 //! | [`structure`] | what of a session does not change |
+//! | [`panel`] | what operators see and write with |
 //! | [`picture`] | what of a step is shown |
 //! | [`ask`] | what a page may ask |
 //! | [`seats`] | who operates |
@@ -17,6 +18,7 @@
 mod ask;
 mod bundle;
 mod guard;
+mod panel;
 mod picture;
 mod seats;
 mod structure;
@@ -143,11 +145,11 @@ impl Page {
     pub(crate) fn serve(address: SocketAddr, source: Source<'_>) -> Result<Self, WebError> {
         of_this_machine(address)?;
         let listen = ListenError::on(address);
-        let (structure, known) = structure::of(source.scenario)?;
+        let (structure, mut known) = structure::of(source.scenario)?;
         let plan = source.scenario.plan().clone();
         let session = Arc::new(Session {
             structure: serde_json::to_string(&structure)?,
-            seats: Seats::at(&known.panels),
+            seats: Seats::at(std::mem::take(&mut known.panels)),
             known,
             layout: ImageLayout::new(plan.signals()),
             plan,

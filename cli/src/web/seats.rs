@@ -1,6 +1,6 @@
 //! Who sits where: any number of viewers, one at each panel.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use serde::Serialize;
@@ -29,17 +29,21 @@ struct Inner {
     panels: BTreeMap<String, Option<Viewer>>,
 }
 
+/// The signals that each panel writes.
+type Written = BTreeMap<String, BTreeSet<String>>;
+
 /// The seats of a session.
 #[derive(Debug)]
 pub(super) struct Seats {
+    written: Written,
     inner: Mutex<Inner>,
 }
 
 impl Seats {
     /// One at each panel, all free.
-    pub(super) fn at(panels: &[String]) -> Self {
-        let panels = panels.iter().map(|panel| (panel.clone(), None)).collect();
-        Self { inner: Mutex::new(Inner { last: 0, panels }) }
+    pub(super) fn at(written: Written) -> Self {
+        let panels = written.keys().map(|panel| (panel.clone(), None)).collect();
+        Self { written, inner: Mutex::new(Inner { last: 0, panels }) }
     }
 
     /// A thread that panicked under the lock has left whole values.
@@ -73,10 +77,12 @@ impl Seats {
         Ok(())
     }
 
-    /// Whoever operates has a seat.
-    pub(super) fn may_operate(&self, viewer: Viewer) -> Result<(), Refused> {
+    /// Whoever writes a signal sits at a panel that has it.
+    pub(super) fn may_write(&self, viewer: Viewer, signal: &str) -> Result<(), Refused> {
         let inner = self.lock();
-        inner.panels.values().any(|seat| *seat == Some(viewer)).then_some(()).ok_or(Refused::NoSeat)
+        let mut sits_at = inner.panels.iter().filter(|(_, seat)| **seat == Some(viewer)).map(|(panel, _)| panel);
+        let may = sits_at.any(|panel| self.written.get(panel).is_some_and(|written| written.contains(signal)));
+        may.then_some(()).ok_or_else(|| Refused::NoSeat(signal.to_owned()))
     }
 
     /// The seats as a viewer sees them.
@@ -96,13 +102,15 @@ mod tests {
 
     #[test]
     fn one_seat_a_panel_and_whoever_goes_leaves_it() {
-        let seats = Seats::at(&["desk".to_owned()]);
+        let written = BTreeMap::from([("desk".to_owned(), BTreeSet::from(["Start".to_owned()]))]);
+        let seats = Seats::at(written);
         let (one, other) = (seats.enter(), seats.enter());
-        assert_eq!(seats.may_operate(one), Err(Refused::NoSeat));
+        assert_eq!(seats.may_write(one, "Start"), Err(Refused::NoSeat("Start".to_owned())));
         assert_eq!(seats.claim("desk", one, true), Ok(()));
         assert_eq!(seats.claim("desk", other, true), Err(Refused::Taken("desk".to_owned())));
         assert_eq!((seats.seen_by(one)["desk"], seats.seen_by(other)["desk"]), (Seat::Mine, Seat::Taken));
-        assert_eq!(seats.may_operate(one), Ok(()));
+        assert_eq!(seats.may_write(one, "Start"), Ok(()));
+        assert_eq!(seats.may_write(one, "Stop"), Err(Refused::NoSeat("Stop".to_owned())));
         seats.leave(one);
         assert_eq!(seats.seen_by(other)["desk"], Seat::Free);
         assert_eq!(seats.claim("chair", other, true), Err(Refused::NoPanel("chair".to_owned())));

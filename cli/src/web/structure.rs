@@ -1,6 +1,6 @@
 //! What of a session does not change while it runs, as the page reads it.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use onescan_base::regular;
 use onescan_clients::plant::component::kind::{self, unit};
@@ -8,9 +8,10 @@ use onescan_clients::plant::scene::model::{BodyKind, Component, Wire};
 use onescan_clients::plant::{Form, Frame, Geometry, Scene};
 use onescan_scenario::file::{ClientFile, SignalFile};
 use onescan_scenario::{Scenario, ScenarioError};
-use onescan_server::signal::{ClientName, SignalDecl, SignalType};
+use onescan_server::signal::{ClientName, SignalDecl};
 use serde::Serialize;
 
+use super::panel::{self, Panel};
 use super::picture::Stage;
 
 /// The version of the protocol, `web/PROTOCOL.md`.
@@ -42,8 +43,10 @@ pub(super) struct Known {
     pub(super) stage: Stage,
     /// The plant of each component.
     pub(super) plants: BTreeMap<String, ClientName>,
-    /// The panels.
-    pub(super) panels: Vec<String>,
+    /// Clients that are people.
+    pub(super) operators: BTreeSet<ClientName>,
+    /// The panels, each with the signals that it writes.
+    pub(super) panels: BTreeMap<String, BTreeSet<String>>,
 }
 
 #[derive(Debug, Serialize)]
@@ -102,38 +105,6 @@ struct Failure {
 }
 
 #[derive(Debug, Serialize)]
-struct Panel {
-    name: String,
-    seat: &'static str,
-    columns: u32,
-    rows: u32,
-    elements: Vec<Element>,
-}
-
-#[derive(Debug, Serialize)]
-struct Element {
-    kind: &'static str,
-    label: String,
-    signal: String,
-    at: [u32; 2],
-    span: [u32; 2],
-    #[serde(skip_serializing_if = "Option::is_none")]
-    mode: Option<&'static str>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    min: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    max: Option<f64>,
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    choices: Vec<Choice>,
-}
-
-#[derive(Debug, Serialize)]
-struct Choice {
-    value: i64,
-    label: String,
-}
-
-#[derive(Debug, Serialize)]
 struct Expectation {
     name: String,
     text: String,
@@ -161,6 +132,9 @@ pub(super) fn of(scenario: &Scenario) -> Result<(Structure, Known), ScenarioErro
     let mut known = Known::default();
     let (mut bodies, mut components) = (Vec::new(), Vec::new());
     for (name, client) in &file.clients {
+        if let ClientFile::Operator { .. } = client.get_ref() {
+            known.operators.insert(name.clone());
+        }
         if let ClientFile::Plant { scene, .. } = client.get_ref() {
             let scene = scenario.scene_of(name, scene)?;
             add_bodies(&scene, &mut bodies, &mut known.stage);
@@ -170,8 +144,8 @@ pub(super) fn of(scenario: &Scenario) -> Result<(Structure, Known), ScenarioErro
             }
         }
     }
-    let panels: Vec<Panel> = pulpit(scenario).into_iter().collect();
-    known.panels = panels.iter().map(|panel| panel.name.clone()).collect();
+    let panels = panel::of(scenario);
+    known.panels = panels.iter().map(|panel| (panel.name.clone(), panel.written())).collect();
     let structure = Structure {
         protocol: PROTOCOL,
         title: file.title.clone(),
@@ -193,7 +167,7 @@ pub(super) fn of(scenario: &Scenario) -> Result<(Structure, Known), ScenarioErro
     Ok((structure, known))
 }
 
-fn written(scenario: &Scenario, declared: &SignalDecl) -> Option<SignalFile> {
+pub(super) fn written(scenario: &Scenario, declared: &SignalDecl) -> Option<SignalFile> {
     scenario.file().signals.get(&declared.name).map(|signal| signal.get_ref().clone())
 }
 
@@ -273,76 +247,6 @@ fn senses(component: &Component) -> Option<String> {
     const SEES: &[&str] = &["detected", "contact", "pulse", "present", "in_range"];
     let mut outputs = component.kind.outputs.iter().zip(&component.outputs);
     outputs.find(|(output, _)| SEES.contains(&&*output.key))?.1.as_ref().map(ToString::to_string)
-}
-
-/// A panel of all that operators write, in the order of the file.
-fn pulpit(scenario: &Scenario) -> Option<Panel> {
-    const COLUMNS: u32 = 6;
-    const SPAN: u32 = 2;
-    let file = scenario.file();
-    let is_operator = |name: &ClientName| {
-        matches!(file.clients.get(name).map(toml::Spanned::get_ref), Some(ClientFile::Operator { .. }))
-    };
-    let declared = scenario.plan().signals().iter();
-    let mut elements = Vec::new();
-    for declared in declared.filter(|declared| declared.writer.as_ref().is_some_and(is_operator)) {
-        let number = u32::try_from(elements.len()).unwrap_or(u32::MAX);
-        let at = [number % (COLUMNS / SPAN) * SPAN, number / (COLUMNS / SPAN)];
-        elements.extend(element(declared, scenario, at, SPAN));
-    }
-    let rows = u32::try_from(elements.len()).unwrap_or(u32::MAX).div_ceil(COLUMNS / SPAN);
-    (!elements.is_empty()).then(|| Panel {
-        name: "operator".to_owned(),
-        seat: "operator",
-        columns: COLUMNS,
-        rows,
-        elements,
-    })
-}
-
-/// A signal's name without that of what it is in.
-fn label(name: &str) -> String {
-    name.rsplit('.').next().unwrap_or(name).replace('_', " ")
-}
-
-/// What a signal is written with: a switch, a choice of its names, a slider. A text has none.
-fn element(declared: &SignalDecl, scenario: &Scenario, at: [u32; 2], span: u32) -> Option<Element> {
-    let names = written(scenario, declared).map(|file| file.names.pairs()).unwrap_or_default();
-    let plain = |kind| Element {
-        kind,
-        label: label(&declared.name.to_string()),
-        signal: declared.name.to_string(),
-        at,
-        span: [span, 1],
-        mode: None,
-        min: None,
-        max: None,
-        choices: Vec::new(),
-    };
-    if declared.ty == SignalType::BOOL {
-        return Some(Element { mode: Some("toggle"), ..plain("switch") });
-    }
-    if !names.is_empty() {
-        let choices = names.into_iter().map(|(value, label)| Choice { value, label }).collect();
-        return Some(Element { choices, ..plain("selector") });
-    }
-    let initial = initial(declared, scenario);
-    declared.ty.as_f64(&vec![0; declared.ty.size()])?;
-    let reach = if initial == 0.0 { 10.0 } else { 2.0 * initial.abs() };
-    let least = if initial <= 0.0 { -reach } else { 0.0 };
-    Some(Element { min: Some(least), max: Some(reach), ..plain("slider") })
-}
-
-/// What the scenario says that a signal of an operator is at the start.
-fn initial(declared: &SignalDecl, scenario: &Scenario) -> f64 {
-    let client = declared.writer.as_ref().and_then(|name| scenario.file().clients.get(name));
-    let Some(ClientFile::Operator { initial }) = client.map(toml::Spanned::get_ref) else { return 0.0 };
-    match initial.get(&declared.name) {
-        Some(toml::Value::Float(number)) => *number,
-        #[expect(clippy::cast_precision_loss, reason = "a range for the eye")]
-        Some(toml::Value::Integer(number)) => *number as f64,
-        _ => 0.0,
-    }
 }
 
 /// The programs of the soft PLCs that are text, each with the signals on its lines.

@@ -141,8 +141,9 @@ fn heed(
             return Ok(false);
         }
         Ask::Write { signal, value } => {
-            session.seats.may_operate(viewer)?;
-            ask::write(signal, value, &session.plan)?
+            let declared = session.plan.signals().get(signal).ok_or(Refused::NoSignal(signal))?;
+            session.seats.may_write(viewer, declared.name.as_str())?;
+            ask::write(declared, value, &session.known)?
         }
         Ask::Operate { operation } => operation.into(),
         Ask::Fail { component, failure, active } => ask::fail(component, failure, active, &session.known)?,

@@ -1,0 +1,177 @@
+//! Panels: those that the scenario lays out, or one of all that operators write.
+
+use std::collections::BTreeSet;
+
+use onescan_scenario::Scenario;
+use onescan_scenario::file::ClientFile;
+use onescan_scenario::panel_file::{ElementFile, ElementKind, PanelFile, Seat};
+use onescan_server::signal::{ClientName, SignalDecl, SignalName, SignalType};
+use serde::Serialize;
+
+use super::structure::written;
+
+#[derive(Debug, Serialize)]
+pub(super) struct Panel {
+    pub(super) name: String,
+    seat: Seat,
+    columns: u32,
+    rows: u32,
+    elements: Vec<Element>,
+}
+
+#[derive(Debug, Serialize)]
+struct Element {
+    kind: ElementKind,
+    label: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    signal: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    signal_y: Option<String>,
+    at: [u32; 2],
+    span: [u32; 2],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    mode: Option<&'static str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    min: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    max: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    colour: Option<String>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    choices: Vec<Choice>,
+}
+
+#[derive(Debug, Serialize)]
+struct Choice {
+    value: i64,
+    label: String,
+}
+
+impl Panel {
+    /// The signals that people write with it.
+    pub(super) fn written(&self) -> BTreeSet<String> {
+        let writing = self.elements.iter().filter(|element| element.kind.writes());
+        writing.flat_map(|element| element.signal.iter().chain(&element.signal_y)).cloned().collect()
+    }
+}
+
+/// The panels of a scenario's page.
+pub(super) fn of(scenario: &Scenario) -> Vec<Panel> {
+    let laid_out = &scenario.file().panel;
+    if laid_out.is_empty() {
+        pulpit(scenario).into_iter().collect()
+    } else {
+        laid_out.iter().map(|file| panel(file, scenario)).collect()
+    }
+}
+
+fn panel(file: &PanelFile, scenario: &Scenario) -> Panel {
+    let elements: Vec<&ElementFile> = file.element.iter().map(toml::Spanned::get_ref).collect();
+    Panel {
+        name: file.name.get_ref().clone(),
+        seat: file.seat,
+        columns: file.columns,
+        rows: elements.iter().map(|element| element.at[1] + element.span[1]).max().unwrap_or(1),
+        elements: elements.into_iter().map(|element| laid_out(element, scenario)).collect(),
+    }
+}
+
+/// An element as the scenario has it, with the names of its signal's values as choices.
+fn laid_out(file: &ElementFile, scenario: &Scenario) -> Element {
+    let name = |signal: &toml::Spanned<SignalName>| signal.get_ref().to_string();
+    let signal = file.signal.as_ref().map(name);
+    let names = file.signal.as_ref().and_then(|signal| scenario.file().signals.get(signal.get_ref()));
+    let is_selector = file.kind == ElementKind::Selector;
+    Element {
+        kind: file.kind,
+        label: file.label.clone().or_else(|| signal.as_deref().map(label)).unwrap_or_default(),
+        signal,
+        signal_y: file.signal_y.as_ref().map(name),
+        at: file.at,
+        span: file.span,
+        mode: file.latching.then_some("toggle"),
+        min: file.min,
+        max: file.max,
+        colour: file.colour.clone(),
+        choices: names
+            .filter(|_| is_selector)
+            .map(|signal| choices(signal.get_ref().names.pairs()))
+            .unwrap_or_default(),
+    }
+}
+
+fn choices(names: Vec<(i64, String)>) -> Vec<Choice> {
+    names.into_iter().map(|(value, label)| Choice { value, label }).collect()
+}
+
+/// A panel of all that operators write, in the order of the file.
+fn pulpit(scenario: &Scenario) -> Option<Panel> {
+    const COLUMNS: u32 = 6;
+    const SPAN: u32 = 2;
+    let file = scenario.file();
+    let is_operator = |name: &ClientName| {
+        matches!(file.clients.get(name).map(toml::Spanned::get_ref), Some(ClientFile::Operator { .. }))
+    };
+    let declared = scenario.plan().signals().iter();
+    let mut elements = Vec::new();
+    for declared in declared.filter(|declared| declared.writer.as_ref().is_some_and(is_operator)) {
+        let number = u32::try_from(elements.len()).unwrap_or(u32::MAX);
+        let at = [number % (COLUMNS / SPAN) * SPAN, number / (COLUMNS / SPAN)];
+        elements.extend(element(declared, scenario, at, SPAN));
+    }
+    let rows = u32::try_from(elements.len()).unwrap_or(u32::MAX).div_ceil(COLUMNS / SPAN);
+    (!elements.is_empty()).then(|| Panel {
+        name: "operator".to_owned(),
+        seat: Seat::Operator,
+        columns: COLUMNS,
+        rows,
+        elements,
+    })
+}
+
+/// A signal's name without that of what it is in.
+fn label(name: &str) -> String {
+    name.rsplit('.').next().unwrap_or(name).replace('_', " ")
+}
+
+/// What a signal is written with: a switch, a choice of its names, a slider. A text has none.
+fn element(declared: &SignalDecl, scenario: &Scenario, at: [u32; 2], span: u32) -> Option<Element> {
+    let names = written(scenario, declared).map(|file| file.names.pairs()).unwrap_or_default();
+    let plain = |kind| Element {
+        kind,
+        label: label(&declared.name.to_string()),
+        signal: Some(declared.name.to_string()),
+        signal_y: None,
+        at,
+        span: [span, 1],
+        mode: None,
+        min: None,
+        max: None,
+        colour: None,
+        choices: Vec::new(),
+    };
+    if declared.ty == SignalType::BOOL {
+        return Some(Element { mode: Some("toggle"), ..plain(ElementKind::Switch) });
+    }
+    if !names.is_empty() {
+        let choices = choices(names);
+        return Some(Element { choices, ..plain(ElementKind::Selector) });
+    }
+    let initial = initial(declared, scenario);
+    declared.ty.as_f64(&vec![0; declared.ty.size()])?;
+    let reach = if initial == 0.0 { 10.0 } else { 2.0 * initial.abs() };
+    let least = if initial <= 0.0 { -reach } else { 0.0 };
+    Some(Element { min: Some(least), max: Some(reach), ..plain(ElementKind::Slider) })
+}
+
+/// What the scenario says that a signal of an operator is at the start.
+fn initial(declared: &SignalDecl, scenario: &Scenario) -> f64 {
+    let client = declared.writer.as_ref().and_then(|name| scenario.file().clients.get(name));
+    let Some(ClientFile::Operator { initial }) = client.map(toml::Spanned::get_ref) else { return 0.0 };
+    match initial.get(&declared.name) {
+        Some(toml::Value::Float(number)) => *number,
+        #[expect(clippy::cast_precision_loss, reason = "a range for the eye")]
+        Some(toml::Value::Integer(number)) => *number as f64,
+        _ => 0.0,
+    }
+}

@@ -1,0 +1,243 @@
+//! What must hold of a panel before anybody sits at it.
+
+use std::ops::Range;
+
+use onescan_server::signal::{SignalName, did_you_mean};
+use toml::Spanned;
+
+use crate::file::{ClientFile, ScenarioFile, SignalFile};
+use crate::panel_file::{ElementFile, ElementKind, PanelFile};
+
+/// Colours by name, beside `#rrggbb`.
+const COLOURS: &[&str] = &["red", "orange", "yellow", "green", "blue", "white", "grey"];
+const COLUMNS_MAX: u32 = 24;
+const ROWS_MAX: u32 = 100;
+
+/// What is wrong with a panel, and where.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct BadPanel {
+    pub(crate) message: String,
+    pub(crate) place: Range<usize>,
+    pub(crate) help: Option<String>,
+}
+
+impl BadPanel {
+    fn at<T>(place: &Spanned<T>, message: String, help: Option<&str>) -> Self {
+        Self { message, place: place.span(), help: help.map(str::to_owned) }
+    }
+}
+
+/// Checks all panels of a scenario whose signals are written out.
+pub(crate) fn check(file: &ScenarioFile) -> Result<(), BadPanel> {
+    for (index, panel) in file.panel.iter().enumerate() {
+        let name = panel.name.get_ref();
+        if name.trim().is_empty() {
+            return Err(BadPanel::at(&panel.name, "a panel needs a name".to_owned(), None));
+        }
+        if file.panel[..index].iter().any(|other| other.name.get_ref() == name) {
+            return Err(BadPanel::at(&panel.name, format!("there are two panels `{name}`"), None));
+        }
+        if panel.columns == 0 || panel.columns > COLUMNS_MAX {
+            let message = format!("panel `{name}` has {} columns; it may have 1 to {COLUMNS_MAX}", panel.columns);
+            return Err(BadPanel::at(&panel.name, message, None));
+        }
+        for (index, element) in panel.element.iter().enumerate() {
+            check_place(panel, element, &panel.element[..index])?;
+            check_binding(file, element)?;
+            check_looks(element)?;
+        }
+    }
+    Ok(())
+}
+
+/// On the grid, and on nothing else.
+fn check_place(
+    panel: &PanelFile,
+    element: &Spanned<ElementFile>,
+    before: &[Spanned<ElementFile>],
+) -> Result<(), BadPanel> {
+    let ElementFile { at: [column, row], span: [wide, high], .. } = *element.get_ref();
+    let fits = wide > 0
+        && high > 0
+        && column.checked_add(wide).is_some_and(|end| end <= panel.columns)
+        && row.checked_add(high).is_some_and(|end| end <= ROWS_MAX);
+    if !fits {
+        let message =
+            format!("the element reaches beyond the {} columns and {ROWS_MAX} rows of its panel", panel.columns);
+        return Err(BadPanel::at(element, message, Some("columns and rows count from 0")));
+    }
+    let apart = |other: &ElementFile| {
+        let ([left, top], [across, down]) = (other.at, other.span);
+        column + wide <= left || left + across <= column || row + high <= top || top + down <= row
+    };
+    if let Some(other) = before.iter().find(|other| !apart(other.get_ref())) {
+        let [left, top] = other.get_ref().at;
+        let message = format!("the element lies on the one at column {left}, row {top}");
+        return Err(BadPanel::at(element, message, None));
+    }
+    Ok(())
+}
+
+/// The signals are there, have a type that goes with the element, and are not written by a machine.
+fn check_binding(file: &ScenarioFile, element: &Spanned<ElementFile>) -> Result<(), BadPanel> {
+    let inner = element.get_ref();
+    match (inner.kind, &inner.signal, &inner.signal_y) {
+        (ElementKind::Alarms, None, None) => return Ok(()),
+        (ElementKind::Alarms, Some(signal), _) => {
+            return Err(BadPanel::at(signal, "a list of alarms has no signal".to_owned(), None));
+        }
+        (kind, _, Some(signal)) if kind != ElementKind::Joystick => {
+            return Err(BadPanel::at(signal, "only a joystick has two signals".to_owned(), None));
+        }
+        (ElementKind::Alarms, None, Some(_)) | (_, Some(_), _) => {}
+        (_, None, _) => return Err(BadPanel::at(element, "the element needs a `signal`".to_owned(), None)),
+    }
+    for name in inner.signal.iter().chain(&inner.signal_y) {
+        check_signal(file, inner.kind, name)?;
+    }
+    Ok(())
+}
+
+fn check_signal(file: &ScenarioFile, kind: ElementKind, name: &Spanned<SignalName>) -> Result<(), BadPanel> {
+    let Some(signal) = file.signals.get(name.get_ref()).map(Spanned::get_ref) else {
+        let message = format!("the panel has a signal `{}` that is not declared", name.get_ref());
+        let help = did_you_mean(name.get_ref().as_str(), file.signals.keys().map(SignalName::as_str));
+        return Err(BadPanel { message, place: name.span(), help });
+    };
+    if let Some(wanted) = misfit(kind, signal) {
+        return Err(BadPanel::at(name, format!("`{}` is {}; {wanted}", name.get_ref(), signal.ty), None));
+    }
+    let writer = file.clients.get(&signal.writer).map(Spanned::get_ref);
+    if kind.writes() && matches!(writer, Some(ClientFile::Plant { .. })) {
+        let message =
+            format!("`{}` is written by the plant `{}`, and people cannot write it", name.get_ref(), signal.writer);
+        return Err(BadPanel::at(
+            name,
+            message,
+            Some("give it a writer of `kind = \"operator\"`, or show it with a lamp or a number"),
+        ));
+    }
+    Ok(())
+}
+
+/// What an element of this kind needs that a signal is not.
+fn misfit(kind: ElementKind, signal: &SignalFile) -> Option<&'static str> {
+    use onescan_server::signal::SignalType;
+
+    let is_bool = signal.ty == SignalType::BOOL;
+    let is_number = !is_bool && signal.ty.as_f64(&vec![0; signal.ty.size()]).is_some();
+    match kind {
+        ElementKind::Button | ElementKind::Switch | ElementKind::Lamp => {
+            (!is_bool).then_some("a button, a switch and a lamp need BOOL")
+        }
+        ElementKind::Selector if signal.names.pairs().is_empty() => {
+            Some("a selector needs a signal with `names` for its values")
+        }
+        ElementKind::Slider | ElementKind::Joystick | ElementKind::Bar => {
+            (!is_number).then_some("a slider, a joystick and a bar need a number")
+        }
+        ElementKind::Number | ElementKind::Trend => {
+            (!is_number && !is_bool).then_some("it has no value that can be shown as a number")
+        }
+        ElementKind::Selector | ElementKind::Alarms => None,
+    }
+}
+
+/// Range and colour.
+fn check_looks(element: &Spanned<ElementFile>) -> Result<(), BadPanel> {
+    let inner = element.get_ref();
+    if let (Some(min), Some(max)) = (inner.min, inner.max)
+        && (!min.is_finite() || !max.is_finite() || min >= max)
+    {
+        return Err(BadPanel::at(element, format!("`min` {min} is not below `max` {max}"), None));
+    }
+    if inner.latching && inner.kind != ElementKind::Button {
+        return Err(BadPanel::at(element, "only a button can be `latching`".to_owned(), Some("a switch always is")));
+    }
+    if let Some(colour) = &inner.colour {
+        let is_hex = colour
+            .strip_prefix('#')
+            .is_some_and(|hex| hex.len() == 6 && hex.bytes().all(|digit| digit.is_ascii_hexdigit()));
+        if !is_hex && !COLOURS.contains(&colour.as_str()) {
+            let help = format!("write `#rrggbb` or one of {}", COLOURS.join(", "));
+            return Err(BadPanel::at(element, format!("`{colour}` is no colour"), Some(&help)));
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HEAD: &str = r#"
+version = 1
+step = "10ms"
+until = "1s"
+[signals]
+Start = { type = "BOOL", writer = "desk" }
+Speed = { type = "REAL", writer = "desk" }
+Mode = { type = "INT", writer = "desk", names = { 0 = "off", 1 = "on" } }
+Seen = { type = "BOOL", writer = "plant" }
+[clients.desk]
+kind = "operator"
+[clients.plant]
+kind = "plant"
+scene = "plant.toml"
+[[panel]]
+name = "desk"
+"#;
+
+    /// What is said of a panel with these elements, and where.
+    fn told(elements: &str) -> Result<(), (String, String)> {
+        let text = format!("{HEAD}{elements}");
+        let mut file: ScenarioFile = toml::from_str(&text).expect("a scenario");
+        crate::structure::expand(&mut file).expect("signals");
+        check(&file).map_err(|found| (found.message, text[found.place].to_owned()))
+    }
+
+    fn element(kind: &str, more: &str) -> String {
+        format!("[[panel.element]]\nkind = \"{kind}\"\n{more}\n")
+    }
+
+    #[test]
+    fn what_goes_together_is_taken() {
+        let elements = [
+            element("button", "signal = \"Start\"\nat = [0, 0]\ncolour = \"#1d8a42\"\nlatching = true"),
+            element("slider", "signal = \"Speed\"\nat = [1, 0]\nspan = [5, 1]\nmin = -1.0\nmax = 1.0"),
+            element("selector", "signal = \"Mode\"\nat = [0, 1]"),
+            element("lamp", "signal = \"Seen\"\nat = [1, 1]\ncolour = \"red\""),
+            element("joystick", "signal = \"Speed\"\nsignal_y = \"Speed\"\nat = [2, 1]"),
+            element("alarms", "at = [0, 2]\nspan = [6, 3]"),
+        ];
+        assert_eq!(told(&elements.concat()), Ok(()));
+    }
+
+    #[test]
+    fn each_fault_is_told_at_its_place() {
+        let wrong = |kind: &str, more: &str| told(&element(kind, more)).expect_err("wrong");
+        let (message, place) = wrong("button", "signal = \"Strat\"\nat = [0, 0]");
+        assert_eq!((&*message, &*place), ("the panel has a signal `Strat` that is not declared", "\"Strat\""));
+        assert_eq!(
+            wrong("button", "signal = \"Speed\"\nat = [0, 0]").0,
+            "`Speed` is REAL; a button, a switch and a lamp need BOOL"
+        );
+        assert!(wrong("selector", "signal = \"Speed\"\nat = [0, 0]").0.contains("needs a signal with `names`"));
+        assert!(wrong("switch", "signal = \"Seen\"\nat = [0, 0]").0.contains("is written by the plant"));
+        assert!(wrong("button", "signal = \"Start\"\nat = [6, 0]").0.contains("beyond the 6 columns"));
+        assert!(wrong("button", "signal = \"Start\"\nat = [4294967295, 0]").0.contains("beyond"));
+        assert!(wrong("button", "signal = \"Start\"\nat = [0, 0]\nspan = [0, 1]").0.contains("beyond"));
+        assert!(wrong("button", "at = [0, 0]").0.contains("needs a `signal`"));
+        assert!(wrong("lamp", "signal = \"Start\"\nsignal_y = \"Start\"\nat = [0, 0]").0.contains("only a joystick"));
+        assert!(wrong("alarms", "signal = \"Start\"\nat = [0, 0]").0.contains("has no signal"));
+        assert!(wrong("bar", "signal = \"Speed\"\nat = [0, 0]\nmin = 1.0\nmax = 1.0").0.contains("not below"));
+        assert!(wrong("lamp", "signal = \"Start\"\nat = [0, 0]\ncolour = \"url(x)\"").0.contains("is no colour"));
+        assert!(wrong("switch", "signal = \"Start\"\nat = [0, 0]\nlatching = true").0.contains("only a button"));
+        let two = element("lamp", "signal = \"Start\"\nat = [0, 0]\nspan = [2, 2]");
+        let over = told(&(two + &element("lamp", "signal = \"Start\"\nat = [1, 1]"))).expect_err("wrong");
+        assert!(over.0.contains("lies on the one at column 0, row 0"), "{over:?}");
+        assert!(
+            told("element = []\n[[panel]]\nname = \"desk\"\nelement = []").expect_err("wrong").0.contains("two panels")
+        );
+    }
+}

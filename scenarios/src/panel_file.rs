@@ -1,0 +1,109 @@
+//! `[[panel]]` of `scenario.toml` as it is written.
+
+use onescan_server::signal::SignalName;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use toml::Spanned;
+
+use crate::form::Name;
+
+/// What people see and operate of a session, laid out on a grid.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PanelFile {
+    /// Its name; unique.
+    #[schemars(with = "String")]
+    pub name: Spanned<String>,
+    /// Whose it is.
+    #[serde(default)]
+    pub seat: Seat,
+    /// How many columns the grid has.
+    #[serde(default = "columns")]
+    #[schemars(range(min = 1, max = 24))]
+    pub columns: u32,
+    /// What is on it.
+    #[schemars(with = "Vec<ElementFile>")]
+    pub element: Vec<Spanned<ElementFile>>,
+}
+
+/// Whose a panel is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Seat {
+    /// The machine's operator.
+    #[default]
+    Operator,
+    /// Who trains operators.
+    Trainer,
+}
+
+/// One thing on a panel.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ElementFile {
+    /// What it is.
+    pub kind: ElementKind,
+    /// What stands on it; the name of the signal if absent.
+    pub label: Option<String>,
+    /// The signal that it shows or writes.
+    #[schemars(with = "Option<Name>")]
+    pub signal: Option<Spanned<SignalName>>,
+    /// The signal of a joystick's way up and down.
+    #[schemars(with = "Option<Name>")]
+    pub signal_y: Option<Spanned<SignalName>>,
+    /// Column and row of its upper left corner, from 0.
+    pub at: [u32; 2],
+    /// How many columns and rows it takes.
+    #[serde(default = "one_cell")]
+    pub span: [u32; 2],
+    /// The least value of a slider, a joystick or a bar, in the signal's unit.
+    pub min: Option<f64>,
+    /// The greatest one.
+    pub max: Option<f64>,
+    /// Its colour: `#rrggbb`, or a word such as `red`.
+    pub colour: Option<String>,
+    /// Whether a button stays where it is put.
+    #[serde(default)]
+    pub latching: bool,
+}
+
+/// What an element is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum ElementKind {
+    /// Is TRUE while it is pressed.
+    Button,
+    /// Is on or off.
+    Switch,
+    /// One of the names of the signal's values.
+    Selector,
+    /// A number.
+    Slider,
+    /// Two numbers, or one; it goes back to the middle.
+    Joystick,
+    /// Lights while the signal is TRUE.
+    Lamp,
+    /// The value.
+    Number,
+    /// The value as a length.
+    Bar,
+    /// The value over time.
+    Trend,
+    /// What has been told, to be acknowledged.
+    Alarms,
+}
+
+impl ElementKind {
+    /// Whether people write with it.
+    pub fn writes(self) -> bool {
+        matches!(self, Self::Button | Self::Switch | Self::Selector | Self::Slider | Self::Joystick)
+    }
+}
+
+fn columns() -> u32 {
+    6
+}
+
+fn one_cell() -> [u32; 2] {
+    [1, 1]
+}
