@@ -5,8 +5,13 @@ use std::path::{Path, PathBuf};
 use std::{env, fs};
 
 fn main() {
-    let page = Path::new(&env::var_os("CARGO_MANIFEST_DIR").expect("cargo sets it")).join("../web/dist");
-    println!("cargo::rerun-if-changed={}", page.display());
+    let web = Path::new(&env::var_os("CARGO_MANIFEST_DIR").expect("cargo sets it")).join("../web");
+    let page = web.join("dist");
+    // cargo runs this at every build while what it is to watch is not there
+    if let Some(watched) = [&page, &web].into_iter().find(|folder| folder.is_dir()) {
+        println!("cargo::rerun-if-changed={}", watched.display());
+    }
+    println!("cargo::rerun-if-changed=build.rs");
     let mut files: Vec<PathBuf> = fs::read_dir(&page)
         .map(|entries| entries.filter_map(|entry| Some(entry.ok()?.path())).collect())
         .unwrap_or_default();

@@ -267,6 +267,10 @@ pub struct FreewheelFile {
     #[serde(deserialize_with = "from_text")]
     #[schemars(with = "Time")]
     pub item_transfer: TimeSpan,
+    /// How much of its error a plant that follows the PLC's clock corrects at each update, % (`[Vergnano]` Fig. 5: all of it).
+    #[serde(deserialize_with = "percent")]
+    #[schemars(range(min = 0, max = 100))]
+    pub synchronizer_gain_pct: u8,
 }
 
 impl ScenarioFile {
@@ -284,7 +288,7 @@ impl Default for FreewheelFile {
     /// The update rate of `[SDSP]` sec. III-C, and a gateway that moves a thousand items a second.
     fn default() -> Self {
         const MILLISECOND: TimeSpan = TimeSpan::from_millis(1).expect("not zero");
-        Self { update_rate: MILLISECOND, item_transfer: MILLISECOND }
+        Self { update_rate: MILLISECOND, item_transfer: MILLISECOND, synchronizer_gain_pct: 100 }
     }
 }
 
@@ -296,6 +300,14 @@ pub struct PlotFile {
     #[serde(default)]
     #[schemars(with = "Vec<Name>")]
     pub signals: Vec<Spanned<SignalName>>,
+}
+
+/// A part of a hundred.
+fn percent<'de, D: Deserializer<'de>>(from: D) -> Result<u8, D::Error> {
+    match u8::deserialize(from)? {
+        percent @ 0..=100 => Ok(percent),
+        more => Err(serde::de::Error::custom(format!("{more} is more than 100 %"))),
+    }
 }
 
 /// A number of MiB that a PLC can address.

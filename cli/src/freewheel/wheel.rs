@@ -20,8 +20,13 @@ pub enum Clock {
     Pause,
     /// Held to a PLC's cycle time by a timer of high resolution (`[SDSP]` sec. III-B).
     Halt,
-    /// Following the PLC's clock, which is looked at so often (`[Vergnano]` Fig. 5).
-    Follow(TimeSpan),
+    /// Following the PLC's clock (`[Vergnano]` Fig. 5).
+    Follow {
+        /// How often it is looked at.
+        rate: TimeSpan,
+        /// How much of the error is corrected, %.
+        gain_pct: u8,
+    },
 }
 
 /// A client, its process images and its clock.
@@ -66,7 +71,10 @@ impl Wheel {
         let mut inputs = vec![0; input_bytes];
         let mut outputs = self.own.clone();
         let mut t = VirtualTime::ZERO;
-        let mut synchronizer = Synchronizer::default();
+        let mut synchronizer = match self.clock {
+            Clock::Follow { gain_pct, .. } => Synchronizer::new(gain_pct),
+            Clock::Grid | Clock::Halt | Clock::Pause => Synchronizer::default(),
+        };
         let mut due = Instant::now() + period;
         while t < until && !stops.iter().any(|stop| stop.load(Ordering::Relaxed)) {
             match self.clock {
@@ -79,7 +87,7 @@ impl Wheel {
                     due += period;
                 }
                 Clock::Pause => std::thread::sleep(period),
-                Clock::Follow(rate) => {
+                Clock::Follow { rate, .. } => {
                     if !self.wait_for_plc(&mut synchronizer, t, rate, stops) {
                         break;
                     }

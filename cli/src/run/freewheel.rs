@@ -54,7 +54,10 @@ pub(super) fn run(
 fn plant_clock(mode: Mode, scenario: &Scenario) -> Clock {
     match mode {
         Mode::Halt => Clock::Halt,
-        Mode::Follow => Clock::Follow(scenario.file().freewheel.update_rate),
+        Mode::Follow => {
+            let link = &scenario.file().freewheel;
+            Clock::Follow { rate: link.update_rate, gain_pct: link.synchronizer_gain_pct }
+        }
         Mode::Lockstep | Mode::Freewheel => Clock::Pause,
     }
 }
