@@ -44,6 +44,7 @@ pub enum Member {
 pub type Paths = BTreeMap<SignalName, Vec<String>>;
 
 /// A soft PLC's sources, compiled, and what its `bind` says.
+#[derive(Debug)]
 pub struct Compiled {
     /// The program.
     pub application: Application,
@@ -86,7 +87,7 @@ impl Scenario {
             ClientFile::Gateway { .. } => self.gateway(name).map(Member::Gateway),
             ClientFile::SoftPlc { .. } if self.gateways.contains_key(name) => self.gateway(name).map(Member::Gateway),
             ClientFile::SoftPlc { sources, dialect, tasks, bind, .. } => {
-                let compiled = self.compiled(name, sources, *dialect, bind)?;
+                let compiled = self.compiled_once(name, || self.compiled(name, sources, *dialect, bind))?;
                 let plc = self.soft_plc(name, &compiled, tasks)?;
                 Ok(Member::Plc(Box::new(plc)))
             }

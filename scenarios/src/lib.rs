@@ -16,6 +16,7 @@
 //! | [`apply`] | a case put on its scenario |
 //! | [`schema`] | the JSON schemas of both files |
 //! | [`compose`] | a scenario's plan and its clients |
+//! | `compilations` | soft PLCs compiled once for all cases |
 //! | [`gateway`] | its real PLCs |
 //! | [`watch`] | variables of its soft PLCs that a run looks at |
 //! | `refusal` | a client that its session does not let in |
@@ -30,6 +31,7 @@
 pub mod apply;
 mod arrays;
 pub mod case;
+mod compilations;
 pub mod compose;
 pub mod error;
 pub mod expect;

@@ -17,6 +17,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::case::{self, Applied};
+use super::compilations::Compilations;
 use super::error::{ScenarioError, wrong};
 use super::expectations::Expectations;
 use super::file::{ClientFile, CouplingFile, ScenarioFile, VERSION};
@@ -67,6 +68,8 @@ pub struct Scenario {
     pub(crate) links: BTreeMap<ClientName, LinkSource>,
     /// What soft PLCs look at, if that is asked for.
     pub(crate) watched: Option<Watched>,
+    /// Its soft PLCs, as far as they have been compiled.
+    compilations: Compilations,
 }
 
 impl Scenario {
@@ -135,6 +138,7 @@ impl Scenario {
             gateways: BTreeMap::new(),
             links: BTreeMap::new(),
             watched: None,
+            compilations: Compilations::default(),
         };
         scenario.checked()
     }
@@ -142,6 +146,10 @@ impl Scenario {
     /// The case that is tried.
     pub fn case(&self) -> Option<&case::Case> {
         self.applied().map(|applied| &applied.case)
+    }
+
+    pub(crate) fn compilations(&self) -> &Compilations {
+        &self.compilations
     }
 
     pub(crate) fn applied(&self) -> Option<&Applied> {

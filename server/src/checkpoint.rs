@@ -14,7 +14,7 @@ use crate::signal::{ClientName, SignalDecl, SignalName, SignalType};
 use crate::time::{StepCount, TimeSpan, VirtualTime};
 use crate::timeline::{TimelineError, TimelineState};
 
-const MAGIC: &[u8; 16] = b"onescan state 4\n";
+const MAGIC: &[u8; 16] = b"onescan state 5\n";
 const MAGIC_ANY: &[u8; 14] = b"onescan state ";
 const CHECK_BYTES: usize = 32;
 

@@ -31,6 +31,9 @@ pub trait Observer {
         Ok(())
     }
 
+    /// A checkpoint is taken, at a step boundary: a session that forks from it goes on from what has been seen here.
+    fn saved(&mut self, _session: &Session) {}
+
     /// The session is over; called exactly once, also after a failure.
     ///
     /// # Errors

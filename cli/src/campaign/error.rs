@@ -5,7 +5,7 @@ use onescan_report::{FileError, OutputError};
 use onescan_scenario::ScenarioError;
 use thiserror::Error;
 
-use crate::error::{Exit, ExitCode, SpawnError, Usage, sum_of_errors};
+use crate::error::{Exit, ExitCode, SpawnError, Unreadable, Usage, sum_of_errors};
 use crate::run::RunError;
 
 sum_of_errors! {
@@ -25,7 +25,9 @@ sum_of_errors! {
         Ended(Ended),
         /// A process cannot be started.
         Spawn(SpawnError),
-        /// A report cannot be written.
+        /// A file of the work, or of the scenario, cannot be read.
+        Unreadable(Unreadable),
+        /// A report, or a file of the work, cannot be written.
         File(FileError),
         /// The output cannot be written.
         Output(OutputError),

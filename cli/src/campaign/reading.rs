@@ -22,10 +22,34 @@ pub struct Reading {
     pub safe: Option<bool>,
     /// Whether something came to harm; absent if the campaign does not say what that means.
     pub collision: Option<bool>,
-    /// How often each alarm of the scenario's `[report]` came, of those that did.
+    /// How often each alarm of the scenario's `[report]` came from the fault on, of those that did.
     pub alarms: BTreeMap<String, u64>,
     /// A hash of the trajectory of each readout.
     pub readouts: Vec<String>,
+    /// A hash of its state at the end; nothing if it failed before, or if a client cannot save its state.
+    #[serde(default)]
+    pub state: Option<String>,
+}
+
+/// What the process of the run without faults says: what was read out of it, and where the cases fork from it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Trunk {
+    /// What was read out of it.
+    pub reading: Reading,
+    /// Where the run of each case begins, in the order of the campaign's cases.
+    pub ways: Vec<Way>,
+}
+
+/// Where the run of a case begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Way {
+    /// At the start, as that of any case.
+    Start,
+    /// At the checkpoint of this virtual time, in nanoseconds, of the run without faults.
+    Fork(u64),
+    /// Nowhere: the condition of its fault does not come true, so it is the run without faults.
+    Never,
 }
 
 /// A failure that ended a run.

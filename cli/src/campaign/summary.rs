@@ -7,7 +7,9 @@ use onescan_scenario::case::CampaignVerdict;
 use onescan_server::time::VirtualTime;
 use serde_json::json;
 
+use super::config::Partition;
 use super::table::{Row, Table};
+use crate::format::Format;
 
 /// So many cases that are not accepted are named.
 const NAMED_MAX: usize = 10;
@@ -29,6 +31,31 @@ pub fn write_human(tables: &[Table], out: &mut dyn Write) -> io::Result<()> {
         }
         if let Some(more @ 1..) = bad.len().checked_sub(NAMED_MAX) {
             writeln!(out, "  ... and {more} more")?;
+        }
+    }
+    out.flush()
+}
+
+/// Says that a part of each of these campaigns is done, so many of its runs.
+///
+/// # Errors
+/// Those of `out`.
+pub(super) fn write_part<'a>(
+    format: Format,
+    part: Partition,
+    campaigns: impl Iterator<Item = (&'a str, usize)>,
+    out: &mut dyn Write,
+) -> io::Result<()> {
+    for (campaign, runs) in campaigns {
+        match format {
+            Format::Json => {
+                writeln!(out, "{}", json!({ "campaign": campaign, "part": part.to_string(), "runs": runs }))?;
+            }
+            Format::Human => {
+                let noun = if runs == 1 { "run" } else { "runs" };
+                writeln!(out, "campaign {campaign}, part {part}: {runs} {noun} done")?;
+                writeln!(out, "  `onescan campaign merge` makes the table of all parts")?;
+            }
         }
     }
     out.flush()

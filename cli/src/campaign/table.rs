@@ -1,13 +1,13 @@
 //! The verdicts of a campaign, by fault and activation.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use onescan_scenario::case::campaign::CampaignFault;
 use onescan_scenario::case::{Campaign, CampaignVerdict, Case};
 use onescan_server::signal::SignalName;
 use serde::Serialize;
 
-use super::config::CampaignConfig;
 use super::reading::{Failure, Reading};
 use crate::regress::plan::suite_of;
 
@@ -55,7 +55,11 @@ pub struct Row {
     /// holds or disturbs.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub effects: Vec<String>,
-    /// How often each alarm of the scenario's `[report]` came, of those that did.
+    /// Whether the state at the end, with all that clients remember, is that of the run without faults: from there on both
+    /// would go on alike. Absent if it failed, or if a client cannot save its state.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rejoined: Option<bool>,
+    /// How often each alarm of the scenario's `[report]` came from the fault on, of those that did.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub alarms: BTreeMap<String, u64>,
     /// The failure that ended the run.
@@ -70,9 +74,9 @@ pub struct Row {
 
 impl Table {
     /// The table of these rows.
-    pub(super) fn new(config: &CampaignConfig, campaign: &Campaign, healthy: Reading, rows: Vec<Row>) -> Self {
+    pub(super) fn new(scenario: &Path, campaign: &Campaign, healthy: Reading, rows: Vec<Row>) -> Self {
         Self {
-            scenario: suite_of(&config.scenario),
+            scenario: suite_of(scenario),
             campaign: campaign.name.clone(),
             about: campaign.about.clone(),
             faults: campaign.faults.clone(),
@@ -124,6 +128,7 @@ pub(super) fn row(
         safe: reading.safe,
         collision: reading.collision,
         effects,
+        rejoined: reading.state.as_ref().zip(healthy.state.as_ref()).map(|(own, healthy)| own == healthy),
         alarms: reading.alarms,
         failure: reading.failure,
         digest: reading.digest,

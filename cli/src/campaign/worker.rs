@@ -3,24 +3,32 @@
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::io::Write;
+use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-use onescan_report::OutputError;
+use onescan_base::regular::{self, Limit};
+use onescan_report::{OutputError, file};
 use onescan_scenario::Scenario;
-use onescan_scenario::case::Catalogue;
+use onescan_scenario::apply::departure::Departure;
+use onescan_scenario::apply::measure::CampaignMeasures;
+use onescan_scenario::case::{Campaign, Catalogue};
 use onescan_scenario::expect::TraceEnd;
 use onescan_scenario::file::ClientFile;
 use onescan_scenario::report::Report;
 use onescan_server::end::{Failure as EndedBy, FailureCause};
+use onescan_server::time::VirtualTime;
 
 use super::CampaignError;
-use super::config::WorkerConfig;
-use super::probe::{Probe, Seen};
-use super::reading::{Failure, Reading};
-use crate::error::Usage;
+use super::config::{Begun, Part, WorkerConfig};
+use super::journal;
+use super::probe::{Probe, Seen, Track};
+use super::reading::{Failure, Reading, Trunk, Way};
+use crate::error::{Unreadable, Usage};
 use crate::interrupt::Interrupt;
 use crate::regress::limited::end_with_parent;
-use crate::run::{RunConfig, RunStatus, one_run};
+use crate::run::fork::Fork;
+use crate::run::production::Metered;
+use crate::run::{ForkRequest, Ran, RunConfig, RunStatus, one_run};
 
 /// Does the run and writes what was read out of it to `out`.
 ///
@@ -28,37 +36,169 @@ use crate::run::{RunConfig, RunStatus, one_run};
 /// The input is wrong.
 pub fn work(config: &WorkerConfig, out: &mut dyn Write) -> Result<(), CampaignError> {
     end_with_parent();
-    let reading = read(config)?;
-    serde_json::to_writer(&mut *out, &reading).map_err(|error| OutputError(error.into()))?;
-    Ok(out.flush().map_err(OutputError)?)
-}
-
-fn read(config: &WorkerConfig) -> Result<Reading, CampaignError> {
     let scenario = Scenario::load(&config.scenario)?;
     let catalogue = Catalogue::load(scenario.folder())?;
     let gone = |name: &str| Usage::new(format!("the scenario has no `{name}` any more"), None);
     let campaign = catalogue.campaigns().iter().find(|campaign| campaign.name == config.campaign);
     let campaign = campaign.ok_or_else(|| gone(&config.campaign))?;
-    let case = match &config.case {
-        None => &campaign.healthy,
-        Some(name) => campaign.cases.iter().find(|case| case.name == *name).ok_or_else(|| gone(name))?,
-    };
     let measures = scenario.campaign_measures(&catalogue, campaign)?;
-    let scenario = scenario.with_case(&catalogue, case)?;
-    let seen = Rc::new(RefCell::new(Seen::nothing(&measures)));
-    let probe = Probe::new(&measures, scenario.injected(), Rc::clone(&seen));
-    let run = RunConfig::headless(config.scenario.clone(), config.case.clone());
-    let report = one_run(&run, &scenario, 1, &Interrupt::new(), vec![Box::new(probe)])?.report;
-    let end = if report.status == RunStatus::Completed { TraceEnd::Complete } else { TraceEnd::Cut };
-    let seen = seen.replace(Seen::nothing(&measures));
-    Ok(Reading {
-        digest: report.digest.map(|digest| digest.to_string()),
-        virtual_time_ns: report.virtual_time.as_nanos(),
-        // without `[report]` a scenario has no alarms
-        alarms: report.report.as_ref().map(came).unwrap_or_default(),
-        failure: report.failure.as_ref().map(|failure| told(&scenario, failure)),
-        ..seen.reading(&measures, end)
-    })
+    let written = match &config.part {
+        Part::Healthy { forks } => {
+            let departures = departures(&scenario, &catalogue, campaign)?;
+            let scenario = scenario.with_case(&catalogue, &campaign.healthy)?;
+            serde_json::to_writer(&mut *out, &healthy(config, &scenario, &measures, &departures, forks)?)
+        }
+        Part::Cases { cases, forks, journal } => {
+            let mut readings = Vec::with_capacity(cases.len());
+            for begun in cases {
+                let case = campaign.cases.iter().find(|case| case.name == begun.case);
+                let scenario = scenario.clone().with_case(&catalogue, case.ok_or_else(|| gone(&begun.case))?)?;
+                let reading = with_fault(config, &scenario, &measures, begun, forks)?;
+                journal::note_done(journal, &begun.case, &reading)?;
+                readings.push(reading);
+            }
+            serde_json::to_writer(&mut *out, &readings)
+        }
+    };
+    written.map_err(|error| OutputError(error.into()))?;
+    Ok(out.flush().map_err(OutputError)?)
+}
+
+/// The run of a case.
+fn with_fault(
+    config: &WorkerConfig,
+    scenario: &Scenario,
+    measures: &CampaignMeasures,
+    begun: &Begun,
+    forks: &Path,
+) -> Result<Reading, CampaignError> {
+    let mut run = RunConfig::headless(config.scenario.clone(), Some(begun.case.clone()));
+    let mut probing = Probing::new(scenario, measures);
+    if let Some(at) = begun.at {
+        run.course.resume = Some(ForkRequest::fork_file(forks, at));
+        probing = probing.forking(tracks_of(forks, at)?);
+    }
+    Ok(probing.run(run)?.reading)
+}
+
+/// Where each case departs from the run without faults.
+fn departures(
+    scenario: &Scenario,
+    catalogue: &Catalogue,
+    campaign: &Campaign,
+) -> Result<Vec<Departure>, CampaignError> {
+    let healthy = scenario.clone().with_case(catalogue, &campaign.healthy)?;
+    let departure = |case| Ok(scenario.clone().with_case(catalogue, case)?.departs_from(&healthy));
+    campaign.cases.iter().map(departure).collect()
+}
+
+/// The run without faults, with a checkpoint wherever a case departs from it.
+fn healthy(
+    config: &WorkerConfig,
+    scenario: &Scenario,
+    measures: &CampaignMeasures,
+    departures: &[Departure],
+    folder: &Path,
+) -> Result<Trunk, CampaignError> {
+    let from_checkpoints = || departures.iter().filter(|departure| !departure.from_start);
+    let mut times: Vec<VirtualTime> = from_checkpoints().filter_map(|departure| departure.at).collect();
+    times.sort_unstable();
+    times.dedup();
+    let mut conditions = Vec::new();
+    for condition in from_checkpoints().flat_map(|departure| &departure.conditions) {
+        if !conditions.contains(condition) {
+            conditions.push(condition.clone());
+        }
+    }
+    let mut run = RunConfig::headless(config.scenario.clone(), None);
+    run.course.forks = Some(ForkRequest { folder: folder.to_owned(), times, conditions });
+    let Probed { reading, ran, kept } = Probing::new(scenario, measures).run(run)?;
+    if let Some(error) = &ran.unsaved {
+        tracing::info!(%error, "no run forks from the one without faults: all begin at the start");
+    }
+    for (t_ns, tracks) in kept.into_iter().filter(|(t_ns, _)| ran.forks.iter().any(|fork| fork.t_v.as_nanos() == *t_ns))
+    {
+        let text = serde_json::to_vec(&tracks).map_err(|error| OutputError(error.into()))?;
+        file::write_whole(&tracks_file(folder, VirtualTime::from_nanos(t_ns)), &text)?;
+    }
+    let way = |departure| if ran.unsaved.is_some() { Way::Start } else { way(departure, &ran.forks) };
+    Ok(Trunk { reading, ways: departures.iter().map(way).collect() })
+}
+
+/// Where a case forks that departs so: at the first of these checkpoints that it needs.
+fn way(departure: &Departure, forks: &[Fork]) -> Way {
+    if departure.from_start {
+        return Way::Start;
+    }
+    let of_condition = |fork: &&Fork| fork.coming.iter().any(|when| departure.conditions.contains(when));
+    let condition = forks.iter().find(of_condition).map(|fork| fork.t_v);
+    match [departure.at, condition].into_iter().flatten().min() {
+        Some(t_v) if forks.iter().any(|fork| fork.t_v == t_v) => Way::Fork(t_v.as_nanos()),
+        Some(_) => Way::Start,
+        None => Way::Never,
+    }
+}
+
+fn tracks_file(folder: &Path, t_v: VirtualTime) -> PathBuf {
+    ForkRequest::fork_file(folder, t_v).with_extension("json")
+}
+
+fn tracks_of(folder: &Path, t_v: VirtualTime) -> Result<Vec<Track>, CampaignError> {
+    let path = tracks_file(folder, t_v);
+    let bytes = regular::read(&path, Limit::DATA).map_err(Unreadable::at(&path))?;
+    let damaged = |error: serde_json::Error| Usage::new(format!("{} is damaged: {error}", path.display()), None);
+    Ok(serde_json::from_slice(&bytes).map_err(damaged)?)
+}
+
+/// A run that is about to be probed.
+struct Probing<'a> {
+    scenario: &'a Scenario,
+    measures: &'a CampaignMeasures,
+    seen: Rc<RefCell<Seen>>,
+    metered: Metered,
+    probe: Probe,
+}
+
+/// A run that was probed.
+struct Probed {
+    reading: Reading,
+    ran: Ran,
+    /// Virtual time of each checkpoint in nanoseconds, and the trajectories up to there.
+    kept: Vec<(u64, Vec<Track>)>,
+}
+
+impl<'a> Probing<'a> {
+    fn new(scenario: &'a Scenario, measures: &'a CampaignMeasures) -> Self {
+        let seen = Rc::new(RefCell::new(Seen::nothing(measures)));
+        let metered = Metered::new(scenario.measures());
+        let probe = Probe::new(measures, scenario.injected(), Rc::clone(&seen));
+        let probe = probe.metering(&metered, scenario.measures());
+        Self { scenario, measures, seen, metered, probe }
+    }
+
+    fn forking(self, tracks: Vec<Track>) -> Self {
+        Self { probe: self.probe.forking(tracks), ..self }
+    }
+
+    /// Does the run.
+    fn run(self, mut run: RunConfig) -> Result<Probed, CampaignError> {
+        run.course.state_at_end = true;
+        let ran = one_run(&run, self.scenario, 1, &Interrupt::new(), vec![Box::new(self.probe)])?;
+        let report = &ran.report;
+        let end = if report.status == RunStatus::Completed { TraceEnd::Complete } else { TraceEnd::Cut };
+        let mut seen = self.seen.replace(Seen::nothing(self.measures));
+        let kept = std::mem::take(&mut seen.kept);
+        let reading = Reading {
+            digest: report.digest.map(|digest| digest.to_string()),
+            virtual_time_ns: report.virtual_time.as_nanos(),
+            // without `[report]` a scenario has no alarms
+            alarms: self.metered.report().as_ref().map(came).unwrap_or_default(),
+            failure: report.failure.as_ref().map(|failure| told(self.scenario, failure)),
+            state: ran.state.map(|state| state.to_string()),
+            ..seen.reading(self.measures, end)
+        };
+        Ok(Probed { reading, ran, kept })
+    }
 }
 
 /// The alarms that came, and how often.

@@ -3,29 +3,78 @@
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
-use clap::Args as ClapArgs;
+use clap::{Args as ClapArgs, Subcommand};
 use onescan_server::time::TimeSpan;
 
 use super::error::CommandError;
 use super::value::FormatArg;
-use crate::campaign::config::{CampaignConfig, WorkerConfig};
+use crate::campaign::config::{Begun, CampaignConfig, Chosen, MergeConfig, Part, Partition, Reports, WorkerConfig};
 use crate::error::ExitCode;
 use crate::format::Format;
 
 /// Options of `campaign`.
 #[derive(Debug, ClapArgs)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 pub struct CampaignArgs {
-    /// The scenario: a folder with a scenario.toml
-    #[arg(default_value = ".")]
-    pub scenario: PathBuf,
-    /// Which campaign of its cases.toml [default: all]
-    pub campaign: Option<String>,
+    /// What else is done with campaigns.
+    #[command(subcommand)]
+    pub command: Option<CampaignCommand>,
+    /// What is tried.
+    #[command(flatten)]
+    pub chosen: ChosenArgs,
     /// How many runs at a time, each in a process of its own [default: as many as there are processors]
     #[arg(short, long, value_name = "N")]
     pub jobs: Option<NonZeroUsize>,
     /// Time that one run may take, wall clock
     #[arg(long, default_value = "10min", value_name = "TIME")]
     pub timeout: TimeSpan,
+    /// Keep the work in this folder: the same command goes on with it after it was stopped or killed
+    #[arg(long, value_name = "FOLDER")]
+    pub keep: Option<PathBuf>,
+    /// Do only part K of N, as `3/8`; `onescan campaign merge` puts the parts together
+    #[arg(long, value_name = "K/N", requires = "keep", conflicts_with_all = ["html", "junit"])]
+    pub partition: Option<Partition>,
+    /// What is written about it.
+    #[command(flatten)]
+    pub reports: ReportArgs,
+}
+
+/// What else is done with campaigns.
+#[derive(Debug, Subcommand)]
+pub enum CampaignCommand {
+    /// Put the parts of a campaign together that were done with `--partition`, on whatever machines
+    Merge(MergeArgs),
+}
+
+/// Options of `campaign merge`.
+#[derive(Debug, ClapArgs)]
+pub struct MergeArgs {
+    /// The scenario: a folder with a scenario.toml
+    pub scenario: PathBuf,
+    /// The folders of `--keep`
+    #[arg(required = true, value_name = "FOLDER")]
+    pub folders: Vec<PathBuf>,
+    /// Which campaign of its cases.toml [default: all]
+    #[arg(long, value_name = "NAME")]
+    pub campaign: Option<String>,
+    /// What is written about it.
+    #[command(flatten)]
+    pub reports: ReportArgs,
+}
+
+/// Which campaigns.
+#[derive(Debug, ClapArgs)]
+pub struct ChosenArgs {
+    /// The scenario: a folder with a scenario.toml
+    #[arg(default_value = ".")]
+    pub scenario: PathBuf,
+    /// Which campaign of its cases.toml [default: all]
+    pub campaign: Option<String>,
+}
+
+/// What is written about campaigns.
+#[derive(Debug, ClapArgs)]
+pub struct ReportArgs {
     /// For people; or a JSON object a run, and one for each campaign
     #[arg(long, value_enum, default_value_t)]
     pub format: FormatArg,
@@ -46,33 +95,57 @@ pub struct CampaignWorkerArgs {
     /// The campaign
     #[arg(long)]
     pub campaign: String,
-    /// The case; the run without faults if absent
+    /// Where the checkpoints are
     #[arg(long)]
-    pub case: Option<String>,
+    pub forks: PathBuf,
+    /// A case, and where it begins; the run without faults if there is none
+    #[arg(long, requires = "journal")]
+    pub case: Vec<Begun>,
+    /// The journal of the cases
+    #[arg(long)]
+    pub journal: Option<PathBuf>,
+}
+
+impl From<ChosenArgs> for Chosen {
+    fn from(ChosenArgs { scenario, campaign }: ChosenArgs) -> Self {
+        Self { scenario, campaign }
+    }
+}
+
+impl From<ReportArgs> for Reports {
+    fn from(ReportArgs { format, html, junit }: ReportArgs) -> Self {
+        Self { format: format.into(), html, junit }
+    }
 }
 
 impl CampaignArgs {
     fn config(self) -> CampaignConfig {
-        let format: Format = self.format.into();
+        let reports: Reports = self.reports.into();
         CampaignConfig {
-            scenario: self.scenario,
-            campaign: self.campaign,
+            chosen: self.chosen.into(),
             jobs: self.jobs.unwrap_or_else(|| std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN)),
             timeout: self.timeout,
-            progress: format == Format::Human && std::io::IsTerminal::is_terminal(&std::io::stderr()),
-            format,
-            html: self.html,
-            junit: self.junit,
+            keep: self.keep,
+            partition: self.partition,
+            progress: reports.format == Format::Human && std::io::IsTerminal::is_terminal(&std::io::stderr()),
+            reports,
         }
     }
 }
 
-/// Runs campaigns.
+/// Runs campaigns, or puts the parts of some together.
 ///
 /// # Errors
 /// See [`CommandError`].
-pub fn campaign(args: CampaignArgs) -> Result<ExitCode, CommandError> {
-    Ok(crate::campaign::run(&args.config(), &mut std::io::stdout().lock())?)
+pub fn campaign(mut args: CampaignArgs) -> Result<ExitCode, CommandError> {
+    let out = &mut std::io::stdout().lock();
+    Ok(match args.command.take() {
+        None => crate::campaign::run(&args.config(), out)?,
+        Some(CampaignCommand::Merge(MergeArgs { scenario, folders, campaign, reports })) => {
+            let chosen = Chosen { scenario, campaign };
+            crate::campaign::merge(&MergeConfig { chosen, folders, reports: reports.into() }, out)?
+        }
+    })
 }
 
 /// One run of a campaign, as a process of [`campaign`].
@@ -80,7 +153,11 @@ pub fn campaign(args: CampaignArgs) -> Result<ExitCode, CommandError> {
 /// # Errors
 /// See [`CommandError`].
 pub fn work(args: CampaignWorkerArgs) -> Result<ExitCode, CommandError> {
-    let CampaignWorkerArgs { scenario, campaign, case } = args;
-    crate::campaign::worker::work(&WorkerConfig { scenario, campaign, case }, &mut std::io::stdout().lock())?;
+    let CampaignWorkerArgs { scenario, campaign, forks, case: cases, journal } = args;
+    let part = match journal {
+        Some(journal) => Part::Cases { cases, forks, journal },
+        None => Part::Healthy { forks },
+    };
+    crate::campaign::worker::work(&WorkerConfig { scenario, campaign, part }, &mut std::io::stdout().lock())?;
     Ok(ExitCode::Ok)
 }

@@ -305,6 +305,7 @@ fn config(args: RunArgs) -> Result<RunConfig, CommandError> {
             resume: args.resume,
             replay_operator: args.replay_operator,
             save: args.save_at.zip(args.save).map(|(at, path)| SaveRequest { at, path }),
+            ..Course::default()
         },
         picture: Picture {
             drawing: args.plot.map_or(Drawing::Nothing, Drawing::File),

@@ -3,7 +3,7 @@
 //! Each part is what one room of a run needs to know; only [`super::execute`] sees the whole.
 
 use std::net::SocketAddr;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use onescan_clients::opcua_server::Access;
@@ -14,6 +14,7 @@ use onescan_scenario::{Mode, Scenario};
 use onescan_server::pacing::Pace;
 use onescan_server::signal::{ClientName, SignalName};
 use onescan_server::time::VirtualTime;
+use onescan_server::timeline::When;
 
 use super::coverage::CoverageRequest;
 use crate::access::admission::Admission;
@@ -99,7 +100,7 @@ pub struct Doors {
 }
 
 /// The course of a run.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Course {
     /// How fast virtual time may run.
     pub pace: Pace,
@@ -109,6 +110,28 @@ pub struct Course {
     pub replay_operator: Option<PathBuf>,
     /// A checkpoint to take.
     pub save: Option<SaveRequest>,
+    /// Where others are to fork from it.
+    pub forks: Option<ForkRequest>,
+    /// Whether its state at the end is wanted, as a hash.
+    pub state_at_end: bool,
+}
+
+/// Checkpoints from which other cases fork.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ForkRequest {
+    /// Where they go, each named after its virtual time: [`fork_file`](Self::fork_file).
+    pub folder: PathBuf,
+    /// The boundaries at which they are taken, in order.
+    pub times: Vec<VirtualTime>,
+    /// Conditions: a checkpoint is taken at the last boundary before each comes true.
+    pub conditions: Vec<When>,
+}
+
+impl ForkRequest {
+    /// The file of the checkpoint that is taken at `t_v`.
+    pub fn fork_file(folder: &Path, t_v: VirtualTime) -> PathBuf {
+        folder.join(format!("{}.checkpoint", t_v.as_nanos()))
+    }
 }
 
 /// A checkpoint to be taken.
@@ -219,7 +242,7 @@ impl RunConfig {
                 latency: false,
             },
             doors: Doors::default(),
-            course: Course { pace: Pace::Max, resume: None, replay_operator: None, save: None },
+            course: Course::default(),
             picture: Picture::default(),
             watch: Watch::default(),
             reports: Reports { format: Format::Json, progress: false, record: None, coverage: None, html: None },

@@ -8,7 +8,7 @@ use onescan_recording::{Recording, event};
 use onescan_report::file;
 use onescan_scenario::compose::Member;
 use onescan_scenario::{Scenario, permission};
-use onescan_server::checkpoint::Checkpoint;
+use onescan_server::checkpoint::{Checkpoint, StateHash};
 use onescan_server::formation::{Formation, FormationError};
 use onescan_server::lockstep::{Lockstep, Outcome, Reached};
 use onescan_server::operation::OperatorInput;
@@ -19,6 +19,7 @@ use onescan_server::transport::tcp::Lobby;
 
 use super::config::{Reach, RunConfig, SaveRequest, Transport};
 use super::error::RunError;
+use super::fork::{self, Fork};
 use super::processes::{Passed, Processes};
 use super::progress::Progress;
 use super::seats::{Desk, Seats};
@@ -31,8 +32,24 @@ use crate::web::{self, Page};
 /// What is said here is for the user, also without `--verbose`.
 pub(crate) const NOTICE: &str = "onescan::notice";
 
-/// Runs the scenario once; `watch` adds observers before it begins. Beside the outcome, why there is no checkpoint that
-/// was asked for: a run that could not be saved has been run all the same.
+/// What came of a session that was driven to its end.
+pub(super) struct Driven {
+    pub(super) outcome: Outcome,
+    /// Why there is no checkpoint that was asked for: a run that could not be saved has been run all the same.
+    pub(super) unsaved: Option<RunError>,
+    /// Where others can fork from it.
+    pub(super) forks: Vec<Fork>,
+    /// Its state at the end, if that was asked for and it came so far.
+    pub(super) state: Option<StateHash>,
+}
+
+impl From<Outcome> for Driven {
+    fn from(outcome: Outcome) -> Self {
+        Self { outcome, unsaved: None, forks: Vec::new(), state: None }
+    }
+}
+
+/// Runs the scenario once; `watch` adds observers before it begins.
 pub(super) fn run(
     config: &RunConfig,
     scenario: &Scenario,
@@ -40,15 +57,14 @@ pub(super) fn run(
     interrupt: &Interrupt,
     log: &SessionLog,
     watch: impl FnOnce(&mut Lockstep),
-) -> Result<(Outcome, Option<RunError>), RunError> {
+) -> Result<Driven, RunError> {
     let mut processes = Processes::default();
     let Formed { mut lockstep, lobby: _lobby, desk } = form(config, scenario, interrupt, log, &mut processes)?;
     lockstep.set_until(Some(config.subject.end(scenario)));
     lockstep.set_pace(config.course.pace);
     lockstep.set_mailbox(interrupt.mailbox());
     lockstep.set_makeup(scenario.makeup());
-    let timeline = Timeline::new(scenario.timeline().to_vec(), lockstep.session()).map_err(RunError::Timeline)?;
-    lockstep.set_timeline(timeline);
+    lockstep.set_timeline(timeline(config, scenario, &lockstep)?);
     watch(&mut lockstep);
     if let Some(desk) = &desk {
         lockstep.set_published(desk.published());
@@ -74,7 +90,29 @@ pub(super) fn run(
         // The run is what was asked for first: it goes on to its end.
         tracing::error!("{error}; the session goes on");
     }
-    Ok((lockstep.run()?, saved.err()))
+    let mut unsaved = saved.err();
+    let mut forks = Vec::new();
+    if let Some(request) = &config.course.forks {
+        match fork::take(&mut lockstep, request, config.subject.end(scenario)) {
+            Ok(taken) => forks = taken,
+            Err(error) => unsaved = Some(error),
+        }
+    }
+    let state = if config.course.state_at_end && lockstep.run_to(config.subject.end(scenario))? == Reached::Boundary {
+        let hash = lockstep.checkpoint().and_then(|checkpoint| checkpoint.state_hash());
+        hash.inspect_err(|error| tracing::debug!(%error, "the state at the end is not known")).ok()
+    } else {
+        None
+    };
+    Ok(Driven { outcome: lockstep.run()?, unsaved, forks, state })
+}
+
+/// What the scenario does by itself, and what is looked out for on behalf of others.
+fn timeline(config: &RunConfig, scenario: &Scenario, lockstep: &Lockstep) -> Result<Timeline, RunError> {
+    let session = lockstep.session();
+    let own = Timeline::new(scenario.timeline().to_vec(), session).map_err(RunError::Timeline)?;
+    let Some(forks) = &config.course.forks else { return Ok(own) };
+    own.with_lookouts(forks.conditions.clone(), session).map_err(RunError::Timeline)
 }
 
 /// Serves the session as a page, for as long as it is kept.

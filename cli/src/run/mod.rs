@@ -10,6 +10,7 @@
 //! | [`processes`] | clients as processes of their own |
 //! | [`guard`] | who ends these if this process cannot |
 //! | `environment` | what they see of the environment |
+//! | `fork` | checkpoints from which other cases fork |
 //! | [`freewheel`] | one run without lockstep |
 //! | [`progress`] | a bar on a terminal |
 //! | `chosen` | signals chosen by name, as numbers |
@@ -31,6 +32,7 @@ pub mod coverage;
 mod environment;
 mod error;
 pub mod expectation;
+pub(crate) mod fork;
 mod freewheel;
 pub(crate) mod guard;
 mod lockstep;
@@ -61,12 +63,15 @@ use onescan_report::plot::Plot;
 use onescan_report::view::Side;
 use onescan_scenario::expect::TraceEnd;
 use onescan_scenario::{Mode, Scenario};
+use onescan_server::checkpoint::StateHash;
 use onescan_server::lockstep::Lockstep;
 use onescan_server::observer::Observer;
 
 use config::{Drawing, WatchOn};
-pub use config::{RunConfig, Transport};
+pub use config::{ForkRequest, RunConfig, Transport};
 pub use error::RunError;
+use fork::Fork;
+use lockstep::Driven;
 pub(crate) use lockstep::NOTICE;
 pub use report::{RunReport, RunStatus, Verdict};
 
@@ -155,7 +160,7 @@ pub(crate) fn watched(
     interrupt: &Interrupt,
     observers: Vec<Box<dyn Observer>>,
 ) -> Result<(RunReport, Plot), RunError> {
-    let Ran { report, samples, unsaved } = one_run(config, scenario, 1, interrupt, observers)?;
+    let Ran { report, samples, unsaved, .. } = one_run(config, scenario, 1, interrupt, observers)?;
     let plot = sampler::plot(scenario, config.mode, &config.picture, &[samples], std::slice::from_ref(&report));
     unsaved.map_or(Ok((report, plot)), Err)
 }
@@ -166,7 +171,11 @@ pub(crate) struct Ran {
     /// The samples of the signals that are drawn; empty if none are.
     pub(crate) samples: Samples,
     /// Why there is no checkpoint that was asked for.
-    unsaved: Option<RunError>,
+    pub(crate) unsaved: Option<RunError>,
+    /// Where others can fork from it.
+    pub(crate) forks: Vec<Fork>,
+    /// Its state at the end, if that was asked for.
+    pub(crate) state: Option<StateHash>,
 }
 
 /// One run.
@@ -213,10 +222,10 @@ pub(crate) fn one_run(
     let outcome = match config.mode {
         Mode::Lockstep => lockstep::run(config, scenario, number, interrupt, &log, watch),
         Mode::Freewheel | Mode::Halt | Mode::Follow => {
-            freewheel::run(config, scenario, number, interrupt, watch).map(|outcome| (outcome, None))
+            freewheel::run(config, scenario, number, interrupt, watch).map(Driven::from)
         }
     };
-    let (outcome, unsaved) = outcome.map_err(|error| match (&recorded, error) {
+    let Driven { outcome, unsaved, forks, state } = outcome.map_err(|error| match (&recorded, error) {
         (Some(recorded), RunError::Record(source)) => RunError::RecordCut { source, kept: recorded.kept() },
         (_, error) => error,
     })?;
@@ -229,5 +238,5 @@ pub(crate) fn one_run(
     if let Some(recorded) = &recorded {
         recorded.end(&report)?;
     }
-    Ok(Ran { report, samples: samples.replace(Samples::default()), unsaved })
+    Ok(Ran { report, samples: samples.replace(Samples::default()), unsaved, forks, state })
 }

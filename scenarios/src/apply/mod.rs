@@ -6,9 +6,11 @@
 //! | `settings` | parameters of plants, constants and initial values of PLCs |
 //! | `period` | when something begins and ends |
 //! | `disturbance` | faults on the way of signals |
+//! | [`departure`] | where a case departs from another |
 //! | [`measure`] | what a campaign reads out of its runs |
 //! | `timeline` | what a case does while a session runs, as operations |
 
+pub mod departure;
 mod disturbance;
 pub mod measure;
 mod period;

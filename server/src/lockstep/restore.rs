@@ -1,9 +1,12 @@
 //! A running session as a value, and back.
 
-use super::Lockstep;
+use super::{Lockstep, Reached};
 use crate::checkpoint::{Checkpoint, CheckpointError, Makeup, PlanSummary};
 use crate::client::StateError;
 use crate::end::FailureCause;
+use crate::observer::RecordError;
+use crate::time::VirtualTime;
+use crate::timeline::When;
 
 impl Lockstep {
     /// Says what the session is made of, for checkpoints that are taken of it and by it.
@@ -34,7 +37,32 @@ impl Lockstep {
         }
         let plan = PlanSummary::of(self.session.plan());
         let (makeup, timeline) = (self.makeup.clone(), self.timeline.save());
+        self.observers.iter_mut().for_each(|observer| observer.saved(&self.session));
         Ok(Checkpoint { plan, makeup, session, timeline, digest, clients })
+    }
+
+    /// Goes on to the first boundary at or after `t_v`, or to the next one from which a session can fork whose operations
+    /// wait for one of the timeline's lookouts: the last boundary before that comes true. At least one step is done, but
+    /// for a session that has yet to begin, which begins.
+    ///
+    /// # Errors
+    /// A recording cannot be written; the session is closed for all then.
+    pub fn run_to_fork(&mut self, t_v: VirtualTime) -> Result<Reached, RecordError> {
+        loop {
+            let step = self.session.step();
+            let next = self.digest.as_ref().map_or(VirtualTime::ZERO, |_| self.session.t_v() + step);
+            if self.run_to(next)? == Reached::End {
+                return Ok(Reached::End);
+            }
+            if self.session.t_v() >= t_v || self.coming().next().is_some() {
+                return Ok(Reached::Boundary);
+            }
+        }
+    }
+
+    /// The lookouts of the timeline that come true in the step that begins here.
+    pub fn coming(&self) -> impl Iterator<Item = &When> {
+        self.timeline.coming(&self.session, self.session.t_v())
     }
 
     /// Takes up a checkpoint before the session runs. Observers begin at its image.

@@ -9,12 +9,14 @@
 //! |---|---|
 //! | this file | operations, when they happen, and how far they have come |
 //! | [`condition`] | conditions as data |
+//! | `lookout` | conditions that are judged for sessions that fork |
 //! | [`past`] | conditions judged image by image, with what they remember |
 //!
 //! The timeline is part of the session's state. A checkpoint can be taken up by a session with another
 //! timeline if both agree on what has happened so far.
 
 pub mod condition;
+mod lookout;
 pub mod past;
 
 use std::cmp::Ordering;
@@ -30,6 +32,7 @@ use crate::signal::{SignalId, SignalType};
 use crate::time::{TimeSpan, VirtualTime};
 
 pub use condition::{Back, Condition, Edge, Relation};
+use lookout::{Lookout, LookoutState};
 use past::{Judged, Memories};
 
 /// An operation and when it happens.
@@ -98,6 +101,14 @@ pub(crate) struct Seen {
     times: u32,
 }
 
+impl Seen {
+    /// Before the first image. An item at a time has no condition, and nothing to remember.
+    fn nothing(condition: Option<&Judged<Comparison>>) -> Self {
+        let memories = condition.map(Judged::nothing_seen).unwrap_or_default();
+        Self { memories, held: false, times: 0 }
+    }
+}
+
 #[derive(Clone, Debug)]
 struct Item {
     scheduled: Scheduled,
@@ -110,9 +121,7 @@ struct Item {
 impl Item {
     fn begin(&mut self) {
         self.stage = first_stage(&self.scheduled);
-        // an item at a time has no condition, and nothing to remember
-        let memories = self.condition.as_ref().map(Judged::nothing_seen).unwrap_or_default();
-        self.seen = Seen { memories, held: false, times: 0 };
+        self.seen = Seen::nothing(self.condition.as_ref());
     }
 
     fn state(&self) -> ItemState {
@@ -127,20 +136,26 @@ type ItemState = (Scheduled, Stage, Seen);
 pub struct TimelineState {
     #[serde(with = "as_json")]
     items: Vec<ItemState>,
+    /// Conditions that no item of this timeline waits for, but one of a session that forks from here may.
+    #[serde(with = "as_json")]
+    lookouts: Vec<LookoutState>,
 }
 
 /// Operations are told apart by a key, as in recordings. The binary form of checkpoints has no keys,
 /// so they are JSON there.
 mod as_json {
+    use serde::de::DeserializeOwned;
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-    use super::ItemState;
-
-    pub(super) fn serialize<S: Serializer>(items: &[ItemState], serializer: S) -> Result<S::Ok, S::Error> {
+    pub(super) fn serialize<T: Serialize, S: Serializer>(items: &[T], serializer: S) -> Result<S::Ok, S::Error> {
         serde_json::to_string(items).map_err(serde::ser::Error::custom)?.serialize(serializer)
     }
 
-    pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<ItemState>, D::Error> {
+    pub(super) fn deserialize<'de, T, D>(deserializer: D) -> Result<Vec<T>, D::Error>
+    where
+        T: DeserializeOwned,
+        D: Deserializer<'de>,
+    {
         serde_json::from_str(&String::deserialize(deserializer)?).map_err(serde::de::Error::custom)
     }
 }
@@ -148,7 +163,8 @@ mod as_json {
 impl TimelineState {
     /// What is yet to come: the part that decides how a session goes on.
     pub(crate) fn pending(&self) -> Self {
-        Self { items: self.items.iter().filter(|(_, stage, _)| *stage != Stage::Done).cloned().collect() }
+        let items = self.items.iter().filter(|(_, stage, _)| *stage != Stage::Done).cloned().collect();
+        Self { items, lookouts: Vec::new() }
     }
 }
 
@@ -187,6 +203,8 @@ pub struct Timeline {
     next: Option<VirtualTime>,
     /// An item waits for its condition.
     waits: bool,
+    /// Conditions that are judged for others.
+    lookouts: Vec<Lookout>,
 }
 
 impl Timeline {
@@ -207,9 +225,26 @@ impl Timeline {
         Ok(this)
     }
 
+    /// The same, judging these as well, so that a session with operations on them can fork from this one.
+    ///
+    /// # Errors
+    /// A condition on a signal that the session does not have, or with a value that it cannot have.
+    pub fn with_lookouts(mut self, lookouts: Vec<When>, session: &Session) -> Result<Self, OperationError> {
+        let all: Vec<_> = lookouts.into_iter().map(|when| Lookout::new(when, session)).collect::<Result<_, _>>()?;
+        self.lookouts = all.into_iter().flatten().collect();
+        self.rewind();
+        Ok(self)
+    }
+
+    /// The lookouts that come true with the image committed at `t_v`, which the next step will judge.
+    pub(crate) fn coming<'a>(&'a self, session: &'a Session, t_v: VirtualTime) -> impl Iterator<Item = &'a When> {
+        self.lookouts.iter().filter(move |lookout| lookout.is_coming(session, t_v)).map(Lookout::when)
+    }
+
     /// Nothing has happened: the session starts, or restarts.
     pub(crate) fn rewind(&mut self) {
         self.items.iter_mut().for_each(Item::begin);
+        self.lookouts.iter_mut().for_each(Lookout::begin);
         self.look_ahead();
     }
 
@@ -225,6 +260,7 @@ impl Timeline {
         if self.waits {
             self.judge(session, t_v, end);
         }
+        self.lookouts.iter_mut().for_each(|lookout| lookout.judge(session, t_v));
         self.take_until(end)
     }
 
@@ -255,15 +291,10 @@ impl Timeline {
     fn judge(&mut self, session: &Session, t_v: VirtualTime, end: VirtualTime) {
         let mut changed = false;
         for item in self.items.iter_mut().filter(|item| item.stage == Stage::Waiting) {
-            let (When::Once { from, nth, delay, .. }, Some(condition)) = (&item.scheduled.when, &item.condition) else {
+            let (When::Once { delay, .. }, Some(condition)) = (&item.scheduled.when, &item.condition) else {
                 continue;
             };
-            let seen = &mut item.seen;
-            let holds = condition.judge(&mut seen.memories, t_v.as_nanos(), &mut |one| one.holds(session));
-            let counted = holds && t_v >= *from;
-            seen.times += u32::from(counted && !seen.held);
-            seen.held = counted;
-            if counted && seen.times >= nth.get() {
+            if comes_true(&item.scheduled.when, condition, &mut item.seen, session, t_v) {
                 let at = delay.map_or(Some(end), |delay| end.checked_add(delay));
                 // Beyond the end of virtual time it never happens.
                 item.stage = at.map_or(Stage::Done, Stage::Due);
@@ -277,7 +308,8 @@ impl Timeline {
 
     /// What a checkpoint keeps.
     pub(crate) fn save(&self) -> TimelineState {
-        TimelineState { items: self.items.iter().map(Item::state).collect() }
+        let items = self.items.iter().map(Item::state).collect();
+        TimelineState { items, lookouts: self.lookouts.iter().filter_map(Lookout::save).collect() }
     }
 
     /// Goes on from a checkpoint taken at `t_v`.
@@ -288,13 +320,16 @@ impl Timeline {
         let mut theirs: Vec<Option<&ItemState>> = state.items.iter().map(Some).collect();
         let mut stages = Vec::with_capacity(self.items.len());
         for item in &self.items {
+            let looked_out = state.lookouts.iter().find(|lookout| lookout.when == item.scheduled.when);
             let same = theirs.iter_mut().find(|their| their.is_some_and(|(their, ..)| *their == item.scheduled));
-            stages.push(match (same.and_then(Option::take), &item.scheduled.when) {
-                (Some((_, stage, seen)), _) => {
+            let known = same.and_then(Option::take).map(|(_, stage, seen)| (*stage, seen));
+            let known = known.or(looked_out.map(|lookout| (Stage::Waiting, &lookout.seen)));
+            stages.push(match (known, &item.scheduled.when) {
+                (Some((stage, seen)), _) => {
                     if item.condition.as_ref().is_some_and(|condition| !condition.fits(&seen.memories)) {
                         return Err(TimelineError::Memories { scheduled: Box::new(item.scheduled.clone()) });
                     }
-                    (*stage, seen.clone())
+                    (stage, seen.clone())
                 }
                 (None, When::At(at)) if *at > t_v => (Stage::Due(*at), Seen::default()),
                 // Judged at boundaries from `from` on, and the one of the checkpoint is yet to come. What looks at the
@@ -313,9 +348,26 @@ impl Timeline {
         for (item, (stage, seen)) in self.items.iter_mut().zip(stages) {
             (item.stage, item.seen) = (stage, seen);
         }
+        self.lookouts.iter_mut().for_each(|lookout| lookout.restore(&state.lookouts));
         self.look_ahead();
         Ok(())
     }
+}
+
+/// Judges the image committed at `t_v`; true if the condition comes true with it, for the time that is asked for.
+fn comes_true(
+    when: &When,
+    condition: &Judged<Comparison>,
+    seen: &mut Seen,
+    session: &Session,
+    t_v: VirtualTime,
+) -> bool {
+    let When::Once { from, nth, .. } = when else { return false };
+    let holds = condition.judge(&mut seen.memories, t_v.as_nanos(), &mut |one| one.holds(session));
+    let counted = holds && t_v >= *from;
+    seen.times += u32::from(counted && !seen.held);
+    seen.held = counted;
+    counted && seen.times >= nth.get()
 }
 
 fn first_stage(scheduled: &Scheduled) -> Stage {

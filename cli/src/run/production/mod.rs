@@ -21,15 +21,15 @@ use super::chosen::Chosen;
 
 /// The meter of a run; nothing if its scenario asks for no report.
 #[derive(Clone, Default)]
-pub(super) struct Metered(Option<Rc<RefCell<Meter>>>);
+pub(crate) struct Metered(Option<Rc<RefCell<Meter>>>);
 
 impl Metered {
-    pub(super) fn new(measures: Option<&Measures>) -> Self {
+    pub(crate) fn new(measures: Option<&Measures>) -> Self {
         Self(measures.map(|measures| Rc::new(RefCell::new(Meter::new(measures)))))
     }
 
     /// What shows it the run.
-    pub(super) fn observer(&self, measures: Option<&Measures>) -> Option<Box<dyn Observer>> {
+    pub(crate) fn observer(&self, measures: Option<&Measures>) -> Option<Box<dyn Observer>> {
         let (meter, measures) = (self.0.as_ref()?, measures?);
         let names: Vec<_> = measures.signals().map(|(name, _)| name.clone()).collect();
         let chosen = Chosen::new(&names);
@@ -37,7 +37,7 @@ impl Metered {
     }
 
     /// What came of the run.
-    pub(super) fn report(&self) -> Option<Report> {
+    pub(crate) fn report(&self) -> Option<Report> {
         self.0.as_ref()?.borrow().report()
     }
 }
