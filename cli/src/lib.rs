@@ -46,6 +46,7 @@ pub mod cli;
 pub mod compare;
 pub mod diff;
 pub mod error;
+pub mod explore;
 pub mod export;
 pub mod format;
 pub mod freewheel;

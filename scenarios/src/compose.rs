@@ -16,6 +16,8 @@ use onescan_server::signal::{ClientName, Port, SignalName, did_you_mean};
 
 use super::arrays;
 use super::case::value::bytes_of;
+use super::compilations::Compilation;
+pub use super::compilations::{Compiled, Paths};
 use super::error::{PlcReport, ScenarioError, SceneReport};
 use super::file::{ClientFile, TaskFile};
 use super::load::Scenario;
@@ -38,20 +40,6 @@ pub enum Member {
         /// The command; empty if somebody else starts it.
         command: Vec<String>,
     },
-}
-
-/// The variables of signals, as `bind` names them.
-pub type Paths = BTreeMap<SignalName, Vec<String>>;
-
-/// A soft PLC's sources, compiled, and what its `bind` says.
-#[derive(Debug)]
-pub struct Compiled {
-    /// The program.
-    pub application: Application,
-    /// What `bind` says, patterns written out.
-    pub paths: Paths,
-    /// The sources as they are, without what the case changes.
-    pub inputs: Vec<Input>,
 }
 
 /// The sources of a soft PLC, and how they are compiled.
@@ -205,6 +193,22 @@ impl Scenario {
         }
         let paths = self.paths(name, bind)?;
         Ok(Compiled { application, paths, inputs })
+    }
+
+    /// The same for all cases that set the same.
+    fn compiled_once(
+        &self,
+        name: &ClientName,
+        compile: impl FnOnce() -> Result<Compiled, ScenarioError>,
+    ) -> Result<Arc<Compiled>, ScenarioError> {
+        let settings = self.case().map(|case| case.settings.as_slice()).unwrap_or_default();
+        let of = Compilation {
+            client: name.clone(),
+            settings: settings.iter().map(|one| (one.path.clone(), one.value.to_string())).collect(),
+            is_traced: self.is_traced(),
+            is_covered: self.coverage().is_some(),
+        };
+        self.compilations().once(of, compile)
     }
 
     fn soft_plc(

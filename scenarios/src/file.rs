@@ -14,6 +14,7 @@ use crate::expect::KnownSignal;
 use crate::form::{DialectName, Mebibytes, Name, Scalar, Time, Type, Values, from_optional_text, from_text};
 use crate::panel_file::PanelFile;
 use crate::report_file::ReportFile;
+use crate::timing_file::TimingFile;
 use crate::value_names::ValueNames;
 
 /// The only version of the format so far.
@@ -64,6 +65,9 @@ pub struct ScenarioFile {
     /// What is counted and timed in every run.
     #[schemars(with = "Option<ReportFile>")]
     pub report: Option<Spanned<ReportFile>>,
+    /// What the real links may do to signals, for `onescan explore`.
+    #[serde(default)]
+    pub timing: TimingFile,
     /// How the signals travel when nothing is synchronised.
     #[serde(default)]
     pub freewheel: FreewheelFile,

@@ -7,6 +7,7 @@
 //! | `form` | the forms of values in the files, for schemas |
 //! | [`file`] | `scenario.toml` as it is written |
 //! | [`report_file`] | its `[report]` as it is written |
+//! | [`timing_file`] | its `[timing]` as it is written |
 //! | [`value_names`] | names of a signal's values |
 //! | [`permission`] | which files it may read, and whether it may start programs |
 //! | [`load`] | `scenario.toml` read and checked |
@@ -17,6 +18,7 @@
 //! | [`schema`] | the JSON schemas of both files |
 //! | [`compose`] | a scenario's plan and its clients |
 //! | `compilations` | soft PLCs compiled once for all cases |
+//! | [`timing`] | its `[timing]`, bound to its signals |
 //! | [`gateway`] | its real PLCs |
 //! | [`watch`] | variables of its soft PLCs that a run looks at |
 //! | `refusal` | a client that its session does not let in |
@@ -50,6 +52,8 @@ pub mod report;
 pub mod report_file;
 pub mod schema;
 mod structure;
+pub mod timing;
+pub mod timing_file;
 pub mod value_names;
 pub mod watch;
 

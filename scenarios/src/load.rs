@@ -22,8 +22,9 @@ use super::error::{ScenarioError, wrong};
 use super::expectations::Expectations;
 use super::file::{ClientFile, CouplingFile, ScenarioFile, VERSION};
 use super::report::Measures;
+use super::timing::Late;
 use super::watch::{WatchRequest, Watched};
-use super::{arrays, panel, structure};
+use super::{arrays, panel, structure, timing};
 
 /// The file that makes a folder a scenario.
 pub const FILE_NAME: &str = "scenario.toml";
@@ -68,6 +69,8 @@ pub struct Scenario {
     pub(crate) links: BTreeMap<ClientName, LinkSource>,
     /// What soft PLCs look at, if that is asked for.
     pub(crate) watched: Option<Watched>,
+    /// The signals whose edges may be late.
+    late: Vec<Late>,
     /// Its soft PLCs, as far as they have been compiled.
     compilations: Compilations,
 }
@@ -117,6 +120,7 @@ impl Scenario {
             }
         }
         panel::check(&file).map_err(|found| wrong(found.message, Some(found.place), found.help))?;
+        let late = timing::bind(&file).map_err(|found| wrong(found.message, Some(found.place), found.help))?;
         let expectations =
             Expectations::bind(&file, &text).map_err(|found| wrong(found.message, Some(found.place), found.help))?;
         let measures =
@@ -138,6 +142,7 @@ impl Scenario {
             gateways: BTreeMap::new(),
             links: BTreeMap::new(),
             watched: None,
+            late,
             compilations: Compilations::default(),
         };
         scenario.checked()
@@ -146,6 +151,11 @@ impl Scenario {
     /// The case that is tried.
     pub fn case(&self) -> Option<&case::Case> {
         self.applied().map(|applied| &applied.case)
+    }
+
+    /// The signals whose edges may be late, by `[timing]`.
+    pub fn late(&self) -> &[Late] {
+        &self.late
     }
 
     pub(crate) fn compilations(&self) -> &Compilations {

@@ -16,6 +16,7 @@ mod diff;
 mod digests;
 mod errors;
 mod expectations;
+mod explore;
 mod faults;
 mod files_named;
 mod filling_machine;

@@ -10,6 +10,7 @@ use super::access::{CertificateArgs, TokenArgs};
 use super::campaign::{CampaignArgs, CampaignWorkerArgs};
 use super::compare::CompareArgs;
 use super::error::CommandError;
+use super::explore::ExploreArgs;
 use super::model::ModelArgs;
 use super::plant::{ComponentsArgs, DescribeArgs, NewArgs, WiringArgs};
 use super::plc::{BrowseArgs, MapArgs, PlcArgs};
@@ -18,7 +19,7 @@ use super::run::RunArgs;
 use super::session::{ControlArgs, JoinArgs};
 use super::source::{CheckArgs, ExplainArgs, InstrumentArgs};
 use super::test::{ReviewArgs, TestArgs, WorkerArgs};
-use super::{access, campaign, compare, model, plant, plc, recording, run, session, source, test};
+use super::{access, campaign, compare, explore, model, plant, plc, recording, run, session, source, test};
 use crate::error::ExitCode;
 
 /// Deterministic lockstep virtual commissioning.
@@ -73,6 +74,9 @@ pub enum Command {
     /// Try every fault of a campaign with every activation, and report a verdict for each: told by the control,
     /// safe, missed, collision, without effect
     Campaign(CampaignArgs),
+    /// Try every timing that a scenario's `[timing]` allows: edges that are late, one at a time, then two, and show the
+    /// fewest with which it does not do what is expected
+    Explore(ExploreArgs),
     /// One run, for `campaign`
     #[command(hide = true)]
     CampaignWorker(CampaignWorkerArgs),
@@ -137,6 +141,7 @@ pub fn dispatch(command: Command) -> Result<ExitCode, CommandError> {
         Command::Run(args) => run::run(*args),
         Command::Compare(args) => compare::compare(args),
         Command::Test(args) => test::test(*args),
+        Command::Explore(args) => explore::explore(args),
         Command::Campaign(args) => campaign::campaign(args),
         Command::CampaignWorker(args) => campaign::work(args),
         Command::Review(args) => test::review(args),

@@ -9,6 +9,7 @@ use crate::campaign::CampaignError;
 use crate::check::CheckError;
 use crate::diff::DiffError;
 use crate::error::{Usage, sum_of_errors};
+use crate::explore::ExploreError;
 use crate::export::ExportError;
 use crate::instrument::InstrumentError;
 use crate::map::MapError;
@@ -68,6 +69,9 @@ sum_of_errors! {
         /// `model` came to nothing.
         #[diagnostic(transparent)]
         Model(ModelError),
+        /// `explore` came to nothing.
+        #[diagnostic(transparent)]
+        Explore(ExploreError),
         /// `components` or `describe` came to nothing.
         #[diagnostic(transparent)]
         Plant(PlantError),

@@ -5,6 +5,7 @@
 //! | [`args`] | the commands, and who does them |
 //! | [`run`], [`compare`] | a scenario |
 //! | [`campaign`] | faults by campaigns |
+//! | [`explore`] | timings that links may have |
 //! | [`test`] | all scenarios, and test programs |
 //! | [`session`] | a session that another process serves |
 //! | [`recording`] | what was recorded |
@@ -21,6 +22,7 @@ pub mod args;
 pub mod campaign;
 pub mod compare;
 mod error;
+pub mod explore;
 mod logging;
 pub mod model;
 pub mod opcua;

@@ -94,7 +94,7 @@ impl ExpectationReport {
 }
 
 /// What came of all expectations.
-pub(super) fn reports(scenario: &Scenario, judge: Judge, end: TraceEnd) -> Vec<ExpectationReport> {
+pub(crate) fn reports(scenario: &Scenario, judge: Judge, end: TraceEnd) -> Vec<ExpectationReport> {
     let report = |((name, expectation), outcome): (&(String, Expectation), expect::Outcome)| {
         // A margin of -0, which negation gives, reads as if something were missing.
         let margin = outcome.margin.greatest + 0.0;
@@ -112,7 +112,7 @@ pub(super) fn reports(scenario: &Scenario, judge: Judge, end: TraceEnd) -> Vec<E
 }
 
 /// A judge of a run that has not begun.
-pub(super) fn judge(scenario: &Scenario) -> Judge {
+pub(crate) fn judge(scenario: &Scenario) -> Judge {
     let expected = scenario.expectations();
     Judge::new(expected.named.iter().map(|(_, expectation)| expectation.clone()), expected.signals.len())
 }

@@ -1,0 +1,53 @@
+//! `onescan explore`: every timing that `[timing]` allows, up to a number of deviations at a time.
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`config`] | what is asked for |
+//! | [`error`] | why it came to nothing |
+//! | [`deviation`] | an edge that is late, and as a case |
+//! | [`path`] | one way in which the session may go, forked from another |
+//! | [`search`] | which ways are gone, and in what order |
+//! | [`report`] | what was found, or that nothing was |
+//!
+//! **Invariants.** What is found does not depend on where a way forked: it has the digest of its case run from the start.
+//! What is said to be exhausted was.
+
+pub mod config;
+pub mod deviation;
+mod error;
+mod path;
+mod report;
+mod search;
+
+use std::io::Write;
+
+use onescan_report::{OutputError, file};
+use onescan_scenario::Scenario;
+
+pub use config::ExploreConfig;
+pub use error::ExploreError;
+
+use crate::error::{ExitCode, Usage};
+
+/// Tries all timings that `config` asks for, and writes what came of it to `out`.
+///
+/// # Errors
+/// The scenario is wrong, or cannot be forked.
+pub fn run(config: &ExploreConfig, out: &mut dyn Write) -> Result<ExitCode, ExploreError> {
+    let scenario = Scenario::load_case(&config.scenario, config.case.as_deref())?;
+    if scenario.late().is_empty() {
+        let help = "say in `[timing]` which signals may be late, and by how much (docs/explore.md)".to_owned();
+        return Err(Usage::new("the scenario does not say what its links may do", Some(help)).into());
+    }
+    if scenario.expectations().named.is_empty() {
+        let help = "write an `[[expect]]`: what must hold whenever signals arrive (docs/expectations.md)".to_owned();
+        return Err(Usage::new("the scenario expects nothing", Some(help)).into());
+    }
+    let until = config.until.unwrap_or(scenario.until());
+    let found = search::search(config, &scenario, until)?;
+    report::write(config, &scenario, until, &found, out).map_err(OutputError)?;
+    if let Some(path) = &config.cases {
+        file::write_whole(path, report::cases(&found, until).as_bytes())?;
+    }
+    Ok(if found.findings.is_empty() { ExitCode::Ok } else { ExitCode::Unmet })
+}
