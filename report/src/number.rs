@@ -20,6 +20,11 @@ pub fn short(value: f64) -> String {
     rounded.parse::<f64>().map_or(rounded, |value| plain(&format!("{value:.decimals$}")))
 }
 
+/// So many of something whose plural ends in `s`: `1 run`, `20 edges`.
+pub fn counted(count: u64, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -32,5 +37,10 @@ mod tests {
             written,
             ["7", "0", "100", "0.05236", "-1235", "123500", "1", "1.2e-9", "4e12", "inf"].map(str::to_owned)
         );
+    }
+
+    #[test]
+    fn one_is_no_plural() {
+        assert_eq!([0, 1, 2].map(|count| counted(count, "run")), ["0 runs", "1 run", "2 runs"]);
     }
 }

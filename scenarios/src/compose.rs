@@ -201,6 +201,7 @@ impl Scenario {
         name: &ClientName,
         compile: impl FnOnce() -> Result<Compiled, ScenarioError>,
     ) -> Result<Arc<Compiled>, ScenarioError> {
+        // the scenario as it is sets nothing
         let settings = self.case().map(|case| case.settings.as_slice()).unwrap_or_default();
         let of = Compilation {
             client: name.clone(),

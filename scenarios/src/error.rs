@@ -106,6 +106,14 @@ pub(crate) fn wrong(
     }
 }
 
+/// What is wrong with a part of a file, where, and what to do: an error as soon as the file's name and text are put to it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Wrong {
+    pub(crate) message: String,
+    pub(crate) place: Range<usize>,
+    pub(crate) help: Option<String>,
+}
+
 /// What was found in a PLC's sources, each with its place.
 #[derive(Debug, Error)]
 #[error("the sources of client `{client}` do not compile")]

@@ -6,6 +6,7 @@ use onescan_server::signal::SignalName;
 use toml::Spanned;
 
 use super::file::{ExpectFile, ScenarioFile};
+use crate::error::Wrong;
 use crate::expect::Expectation;
 
 /// All expectations of a scenario.
@@ -15,13 +16,6 @@ pub struct Expectations {
     pub named: Vec<(String, Expectation)>,
     /// The signals they are judged by, in the order of the columns of their trace.
     pub signals: Vec<SignalName>,
-}
-
-/// What is wrong with an expectation, where in the file, and what to do.
-pub(crate) struct Wrong {
-    pub(crate) message: String,
-    pub(crate) place: Range<usize>,
-    pub(crate) help: Option<String>,
 }
 
 impl Expectations {

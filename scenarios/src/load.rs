@@ -18,7 +18,7 @@ use toml::Spanned;
 
 use super::case::{self, Applied};
 use super::compilations::Compilations;
-use super::error::{ScenarioError, wrong};
+use super::error::{ScenarioError, Wrong, wrong};
 use super::expectations::Expectations;
 use super::file::{ClientFile, CouplingFile, ScenarioFile, VERSION};
 use super::report::Measures;
@@ -119,12 +119,11 @@ impl Scenario {
                 return Err(wrong(message, Some(signal.span()), help));
             }
         }
-        panel::check(&file).map_err(|found| wrong(found.message, Some(found.place), found.help))?;
-        let late = timing::bind(&file).map_err(|found| wrong(found.message, Some(found.place), found.help))?;
-        let expectations =
-            Expectations::bind(&file, &text).map_err(|found| wrong(found.message, Some(found.place), found.help))?;
-        let measures =
-            Measures::bind(&file, &text).map_err(|found| wrong(found.message, Some(found.place), found.help))?;
+        let placed = |found: Wrong| wrong(found.message, Some(found.place), found.help);
+        panel::check(&file).map_err(placed)?;
+        let late = timing::bind(&file).map_err(placed)?;
+        let expectations = Expectations::bind(&file, &text).map_err(placed)?;
+        let measures = Measures::bind(&file, &text).map_err(placed)?;
         let name = name_of(&path);
         let scenario = Self {
             name,

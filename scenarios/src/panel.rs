@@ -1,10 +1,9 @@
 //! What must hold of a panel before anybody sits at it.
 
-use std::ops::Range;
-
 use onescan_server::signal::{SignalName, did_you_mean};
 use toml::Spanned;
 
+use crate::error::Wrong;
 use crate::file::{ClientFile, ScenarioFile, SignalFile};
 use crate::panel_file::{ElementFile, ElementKind, PanelFile};
 
@@ -13,33 +12,24 @@ const COLOURS: &[&str] = &["red", "orange", "yellow", "green", "blue", "white", 
 const COLUMNS_MAX: u32 = 24;
 const ROWS_MAX: u32 = 100;
 
-/// What is wrong with a panel, and where.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct BadPanel {
-    pub(crate) message: String,
-    pub(crate) place: Range<usize>,
-    pub(crate) help: Option<String>,
-}
-
-impl BadPanel {
-    fn at<T>(place: &Spanned<T>, message: String, help: Option<&str>) -> Self {
-        Self { message, place: place.span(), help: help.map(str::to_owned) }
-    }
+/// What is wrong at `place`.
+fn at<T>(place: &Spanned<T>, message: String, help: Option<&str>) -> Wrong {
+    Wrong { message, place: place.span(), help: help.map(str::to_owned) }
 }
 
 /// Checks all panels of a scenario whose signals are written out.
-pub(crate) fn check(file: &ScenarioFile) -> Result<(), BadPanel> {
+pub(crate) fn check(file: &ScenarioFile) -> Result<(), Wrong> {
     for (index, panel) in file.panel.iter().enumerate() {
         let name = panel.name.get_ref();
         if name.trim().is_empty() {
-            return Err(BadPanel::at(&panel.name, "a panel needs a name".to_owned(), None));
+            return Err(at(&panel.name, "a panel needs a name".to_owned(), None));
         }
         if file.panel[..index].iter().any(|other| other.name.get_ref() == name) {
-            return Err(BadPanel::at(&panel.name, format!("there are two panels `{name}`"), None));
+            return Err(at(&panel.name, format!("there are two panels `{name}`"), None));
         }
         if panel.columns == 0 || panel.columns > COLUMNS_MAX {
             let message = format!("panel `{name}` has {} columns; it may have 1 to {COLUMNS_MAX}", panel.columns);
-            return Err(BadPanel::at(&panel.name, message, None));
+            return Err(at(&panel.name, message, None));
         }
         for (index, element) in panel.element.iter().enumerate() {
             check_place(panel, element, &panel.element[..index])?;
@@ -55,7 +45,7 @@ fn check_place(
     panel: &PanelFile,
     element: &Spanned<ElementFile>,
     before: &[Spanned<ElementFile>],
-) -> Result<(), BadPanel> {
+) -> Result<(), Wrong> {
     let ElementFile { at: [column, row], span: [wide, high], .. } = *element.get_ref();
     let fits = wide > 0
         && high > 0
@@ -64,7 +54,7 @@ fn check_place(
     if !fits {
         let message =
             format!("the element reaches beyond the {} columns and {ROWS_MAX} rows of its panel", panel.columns);
-        return Err(BadPanel::at(element, message, Some("columns and rows count from 0")));
+        return Err(at(element, message, Some("columns and rows count from 0")));
     }
     let apart = |other: &ElementFile| {
         let ([left, top], [across, down]) = (other.at, other.span);
@@ -73,24 +63,24 @@ fn check_place(
     if let Some(other) = before.iter().find(|other| !apart(other.get_ref())) {
         let [left, top] = other.get_ref().at;
         let message = format!("the element lies on the one at column {left}, row {top}");
-        return Err(BadPanel::at(element, message, None));
+        return Err(at(element, message, None));
     }
     Ok(())
 }
 
 /// The signals are there, have a type that goes with the element, and are not written by a machine.
-fn check_binding(file: &ScenarioFile, element: &Spanned<ElementFile>) -> Result<(), BadPanel> {
+fn check_binding(file: &ScenarioFile, element: &Spanned<ElementFile>) -> Result<(), Wrong> {
     let inner = element.get_ref();
     match (inner.kind, &inner.signal, &inner.signal_y) {
         (ElementKind::Alarms, None, None) => return Ok(()),
         (ElementKind::Alarms, Some(signal), _) => {
-            return Err(BadPanel::at(signal, "a list of alarms has no signal".to_owned(), None));
+            return Err(at(signal, "a list of alarms has no signal".to_owned(), None));
         }
         (kind, _, Some(signal)) if kind != ElementKind::Joystick => {
-            return Err(BadPanel::at(signal, "only a joystick has two signals".to_owned(), None));
+            return Err(at(signal, "only a joystick has two signals".to_owned(), None));
         }
         (ElementKind::Alarms, None, Some(_)) | (_, Some(_), _) => {}
-        (_, None, _) => return Err(BadPanel::at(element, "the element needs a `signal`".to_owned(), None)),
+        (_, None, _) => return Err(at(element, "the element needs a `signal`".to_owned(), None)),
     }
     for name in inner.signal.iter().chain(&inner.signal_y) {
         check_signal(file, inner.kind, name)?;
@@ -98,20 +88,20 @@ fn check_binding(file: &ScenarioFile, element: &Spanned<ElementFile>) -> Result<
     Ok(())
 }
 
-fn check_signal(file: &ScenarioFile, kind: ElementKind, name: &Spanned<SignalName>) -> Result<(), BadPanel> {
+fn check_signal(file: &ScenarioFile, kind: ElementKind, name: &Spanned<SignalName>) -> Result<(), Wrong> {
     let Some(signal) = file.signals.get(name.get_ref()).map(Spanned::get_ref) else {
         let message = format!("the panel has a signal `{}` that is not declared", name.get_ref());
         let help = did_you_mean(name.get_ref().as_str(), file.signals.keys().map(SignalName::as_str));
-        return Err(BadPanel { message, place: name.span(), help });
+        return Err(Wrong { message, place: name.span(), help });
     };
     if let Some(wanted) = misfit(kind, signal) {
-        return Err(BadPanel::at(name, format!("`{}` is {}; {wanted}", name.get_ref(), signal.ty), None));
+        return Err(at(name, format!("`{}` is {}; {wanted}", name.get_ref(), signal.ty), None));
     }
     let writer = file.clients.get(&signal.writer).map(Spanned::get_ref);
     if kind.writes() && matches!(writer, Some(ClientFile::Plant { .. })) {
         let message =
             format!("`{}` is written by the plant `{}`, and people cannot write it", name.get_ref(), signal.writer);
-        return Err(BadPanel::at(
+        return Err(at(
             name,
             message,
             Some("give it a writer of `kind = \"operator\"`, or show it with a lamp or a number"),
@@ -144,15 +134,15 @@ fn misfit(kind: ElementKind, signal: &SignalFile) -> Option<&'static str> {
 }
 
 /// Range and colour.
-fn check_looks(element: &Spanned<ElementFile>) -> Result<(), BadPanel> {
+fn check_looks(element: &Spanned<ElementFile>) -> Result<(), Wrong> {
     let inner = element.get_ref();
     if let (Some(min), Some(max)) = (inner.min, inner.max)
         && (!min.is_finite() || !max.is_finite() || min >= max)
     {
-        return Err(BadPanel::at(element, format!("`min` {min} is not below `max` {max}"), None));
+        return Err(at(element, format!("`min` {min} is not below `max` {max}"), None));
     }
     if inner.latching && inner.kind != ElementKind::Button {
-        return Err(BadPanel::at(element, "only a button can be `latching`".to_owned(), Some("a switch always is")));
+        return Err(at(element, "only a button can be `latching`".to_owned(), Some("a switch always is")));
     }
     if let Some(colour) = &inner.colour {
         let is_hex = colour
@@ -160,7 +150,7 @@ fn check_looks(element: &Spanned<ElementFile>) -> Result<(), BadPanel> {
             .is_some_and(|hex| hex.len() == 6 && hex.bytes().all(|digit| digit.is_ascii_hexdigit()));
         if !is_hex && !COLOURS.contains(&colour.as_str()) {
             let help = format!("write `#rrggbb` or one of {}", COLOURS.join(", "));
-            return Err(BadPanel::at(element, format!("`{colour}` is no colour"), Some(&help)));
+            return Err(at(element, format!("`{colour}` is no colour"), Some(&help)));
         }
     }
     Ok(())

@@ -1,10 +1,9 @@
 //! `[timing]` bound to the signals of its scenario.
 
-use std::ops::Range;
-
 use onescan_server::signal::{SignalName, SignalType, did_you_mean};
 
 use crate::arrays;
+use crate::error::Wrong;
 use crate::file::ScenarioFile;
 
 /// A signal whose edges may arrive late.
@@ -16,21 +15,13 @@ pub struct Late {
     pub steps: u64,
 }
 
-/// What is wrong with a timing, and where.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct BadTiming {
-    pub(crate) message: String,
-    pub(crate) place: Range<usize>,
-    pub(crate) help: Option<String>,
-}
-
 /// The signals of `[timing]`, in the order of the file.
-pub(crate) fn bind(file: &ScenarioFile) -> Result<Vec<Late>, BadTiming> {
+pub(crate) fn bind(file: &ScenarioFile) -> Result<Vec<Late>, Wrong> {
     let mut all: Vec<Late> = Vec::new();
     for late in &file.timing.late {
         let steps = late.by.as_nanos() / file.step.as_nanos().max(1);
         for written in &late.signals {
-            let wrong = |message: String, help: Option<String>| BadTiming { message, place: written.span(), help };
+            let wrong = |message: String, help: Option<String>| Wrong { message, place: written.span(), help };
             if steps == 0 {
                 let message = format!("`{}` is late by less than a step, {}", written.get_ref(), file.step);
                 return Err(wrong(message, Some("time goes on in whole steps".to_owned())));

@@ -13,7 +13,7 @@ use crate::format::Format;
 /// All options of a campaign.
 #[derive(Clone, Debug)]
 pub struct CampaignConfig {
-    /// What is tried.
+    /// The campaigns, and their scenario.
     pub chosen: Chosen,
     /// How many runs at a time, each in a process of its own.
     pub jobs: NonZeroUsize,
@@ -52,7 +52,7 @@ pub struct Reports {
 /// The parts of a campaign to be put together.
 #[derive(Clone, Debug)]
 pub struct MergeConfig {
-    /// What was tried.
+    /// The campaigns, and their scenario.
     pub chosen: Chosen,
     /// The folders in which the parts are.
     pub folders: Vec<PathBuf>,
@@ -67,7 +67,7 @@ pub struct Partition {
     of: NonZeroUsize,
 }
 
-/// No part.
+/// A text that is no part: not of the form `K/N`, or not with 1 ≤ K ≤ N.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("a part is `K/N`, as 3/8 for the third of eight")]
 pub struct NoPartition;
@@ -104,24 +104,21 @@ pub struct WorkerConfig {
     pub scenario: PathBuf,
     /// The campaign's name in `cases.toml`.
     pub campaign: String,
+    /// The folder of the checkpoints from which runs with faults fork.
+    pub forks: PathBuf,
     /// Which of its runs.
     pub part: Part,
 }
 
-/// A run of a campaign.
+/// Runs of a campaign.
 #[derive(Clone, Debug)]
 pub enum Part {
-    /// The one without faults.
-    Healthy {
-        /// The folder for the checkpoints from which the others fork.
-        forks: PathBuf,
-    },
-    /// Some with faults.
+    /// The one without faults, which leaves the checkpoints.
+    Healthy,
+    /// Some with faults, one after the other.
     Cases {
         /// Each of them, and where it begins.
         cases: Vec<Begun>,
-        /// The folder of the checkpoints from which they fork.
-        forks: PathBuf,
         /// The journal, in which each is noted when it is done.
         journal: PathBuf,
     },
@@ -130,7 +127,7 @@ pub enum Part {
 /// A case, and where its run begins. As text it is `START:CASE`, with the checkpoint's nanoseconds or nothing for START.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Begun {
-    /// The case.
+    /// The case's name, `CAMPAIGN/FAULT/ACTIVATION`.
     pub case: String,
     /// Virtual time of the checkpoint from which it forks; from the start if absent.
     pub at: Option<VirtualTime>,
@@ -156,8 +153,10 @@ impl FromStr for Begun {
 
 impl fmt::Display for Begun {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let at = self.at.map(|at| at.as_nanos().to_string()).unwrap_or_default();
-        write!(f, "{at}:{}", self.case)
+        if let Some(at) = self.at {
+            write!(f, "{}", at.as_nanos())?;
+        }
+        write!(f, ":{}", self.case)
     }
 }
 

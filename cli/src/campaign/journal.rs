@@ -110,14 +110,11 @@ impl Work {
     /// # Errors
     /// The folder cannot be used, is of another campaign, or another process works in it.
     pub(super) fn open(keep: Option<&Path>, subject: &Subject) -> Result<(Self, Done), CampaignError> {
-        let temporary = match keep {
-            Some(_) => None,
-            None => Some(TempDir::new().map_err(unusable(&std::env::temp_dir()))?),
-        };
-        let folder = match (keep, &temporary) {
-            (Some(keep), _) => keep.join(&subject.campaign),
-            (None, Some(temporary)) => temporary.path().to_owned(),
-            (None, None) => return Err(Usage::new("there is no folder for the campaign's work", None).into()),
+        let (folder, temporary) = if let Some(keep) = keep {
+            (keep.join(&subject.campaign), None)
+        } else {
+            let temporary = TempDir::new().map_err(unusable(&std::env::temp_dir()))?;
+            (temporary.path().to_owned(), Some(temporary))
         };
         file::create_folder(&folder)?;
         let path = folder.join(JOURNAL);

@@ -197,7 +197,7 @@ fn batch(
         if readings.len() == cases.len() {
             return Ok(readings);
         }
-        let text = format!("{} runs were asked for, {} are told of", cases.len(), readings.len());
+        let text = format!("{} runs were asked for, {} were reported", cases.len(), readings.len());
         Err(Ended { name: name.to_owned(), text, code: ExitCode::Fault as i32 }.into())
     };
     match together(cases) {

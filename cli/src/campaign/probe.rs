@@ -97,8 +97,9 @@ impl Seen {
 
 impl Probe {
     pub(super) fn new(measures: &CampaignMeasures, injected: Option<Injected>, seen: Rc<RefCell<Seen>>) -> Self {
+        let tracks = seen.borrow().tracks.clone();
         Self {
-            tracks: measures.readouts.iter().map(|_| Track::default()).collect(),
+            tracks,
             metering: None,
             injected,
             readouts: Chosen::new(&measures.readouts),

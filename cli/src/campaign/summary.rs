@@ -2,6 +2,7 @@
 
 use std::io::{self, Write};
 
+use onescan_report::number::counted;
 use onescan_report::table::write;
 use onescan_scenario::case::CampaignVerdict;
 use onescan_server::time::VirtualTime;
@@ -52,8 +53,7 @@ pub(super) fn write_part<'a>(
                 writeln!(out, "{}", json!({ "campaign": campaign, "part": part.to_string(), "runs": runs }))?;
             }
             Format::Human => {
-                let noun = if runs == 1 { "run" } else { "runs" };
-                writeln!(out, "campaign {campaign}, part {part}: {runs} {noun} done")?;
+                writeln!(out, "campaign {campaign}, part {part}: {} done", counted(runs as u64, "run"))?;
                 writeln!(out, "  `onescan campaign merge` makes the table of all parts")?;
             }
         }
@@ -81,12 +81,11 @@ pub(super) fn cell(row: &Row) -> String {
 
 /// How many there were of each sort.
 pub(super) fn totals(table: &Table) -> String {
-    let counted = CampaignVerdict::ALL.map(|verdict| (table.count(verdict), verdict.word()));
+    let by_verdict = CampaignVerdict::ALL.map(|verdict| (table.count(verdict), verdict.word()));
     let parts: Vec<String> =
-        counted.iter().filter(|(count, _)| *count > 0).map(|(count, word)| format!("{count} {word}")).collect();
+        by_verdict.iter().filter(|(count, _)| *count > 0).map(|(count, word)| format!("{count} {word}")).collect();
     let (faults, activations) = (table.faults.len(), table.activations.len());
-    let plural = |count: usize, noun: &str| format!("{count} {noun}{}", if count == 1 { "" } else { "s" });
-    let sizes = format!("{} \u{d7} {}", plural(faults, "fault"), plural(activations, "activation"));
+    let sizes = format!("{} \u{d7} {}", counted(faults as u64, "fault"), counted(activations as u64, "activation"));
     format!("campaign {}, {sizes}: {}", table.campaign, parts.join(", "))
 }
 

@@ -43,17 +43,17 @@ pub fn work(config: &WorkerConfig, out: &mut dyn Write) -> Result<(), CampaignEr
     let campaign = campaign.ok_or_else(|| gone(&config.campaign))?;
     let measures = scenario.campaign_measures(&catalogue, campaign)?;
     let written = match &config.part {
-        Part::Healthy { forks } => {
+        Part::Healthy => {
             let departures = departures(&scenario, &catalogue, campaign)?;
             let scenario = scenario.with_case(&catalogue, &campaign.healthy)?;
-            serde_json::to_writer(&mut *out, &healthy(config, &scenario, &measures, &departures, forks)?)
+            serde_json::to_writer(&mut *out, &healthy(config, &scenario, &measures, &departures)?)
         }
-        Part::Cases { cases, forks, journal } => {
+        Part::Cases { cases, journal } => {
             let mut readings = Vec::with_capacity(cases.len());
             for begun in cases {
                 let case = campaign.cases.iter().find(|case| case.name == begun.case);
                 let scenario = scenario.clone().with_case(&catalogue, case.ok_or_else(|| gone(&begun.case))?)?;
-                let reading = with_fault(config, &scenario, &measures, begun, forks)?;
+                let reading = with_fault(config, &scenario, &measures, begun)?;
                 journal::note_done(journal, &begun.case, &reading)?;
                 readings.push(reading);
             }
@@ -70,13 +70,12 @@ fn with_fault(
     scenario: &Scenario,
     measures: &CampaignMeasures,
     begun: &Begun,
-    forks: &Path,
 ) -> Result<Reading, CampaignError> {
     let mut run = RunConfig::headless(config.scenario.clone(), Some(begun.case.clone()));
     let mut probing = Probing::new(scenario, measures);
     if let Some(at) = begun.at {
-        run.course.resume = Some(ForkRequest::fork_file(forks, at));
-        probing = probing.forking(tracks_of(forks, at)?);
+        run.course.resume = Some(ForkRequest::fork_file(&config.forks, at));
+        probing = probing.forking(tracks_of(&config.forks, at)?);
     }
     Ok(probing.run(run)?.reading)
 }
@@ -98,7 +97,6 @@ fn healthy(
     scenario: &Scenario,
     measures: &CampaignMeasures,
     departures: &[Departure],
-    folder: &Path,
 ) -> Result<Trunk, CampaignError> {
     let from_checkpoints = || departures.iter().filter(|departure| !departure.from_start);
     let mut times: Vec<VirtualTime> = from_checkpoints().filter_map(|departure| departure.at).collect();
@@ -111,7 +109,7 @@ fn healthy(
         }
     }
     let mut run = RunConfig::headless(config.scenario.clone(), None);
-    run.course.forks = Some(ForkRequest { folder: folder.to_owned(), times, conditions });
+    run.course.forks = Some(ForkRequest { folder: config.forks.clone(), times, conditions });
     let Probed { reading, ran, kept } = Probing::new(scenario, measures).run(run)?;
     if let Some(error) = &ran.unsaved {
         tracing::info!(%error, "no run forks from the one without faults: all begin at the start");
@@ -119,7 +117,7 @@ fn healthy(
     for (t_ns, tracks) in kept.into_iter().filter(|(t_ns, _)| ran.forks.iter().any(|fork| fork.t_v.as_nanos() == *t_ns))
     {
         let text = serde_json::to_vec(&tracks).map_err(|error| OutputError(error.into()))?;
-        file::write_whole(&tracks_file(folder, VirtualTime::from_nanos(t_ns)), &text)?;
+        file::write_whole(&tracks_file(&config.forks, VirtualTime::from_nanos(t_ns)), &text)?;
     }
     let way = |departure| if ran.unsaved.is_some() { Way::Start } else { way(departure, &ran.forks) };
     Ok(Trunk { reading, ways: departures.iter().map(way).collect() })
@@ -180,7 +178,7 @@ impl<'a> Probing<'a> {
         Self { probe: self.probe.forking(tracks), ..self }
     }
 
-    /// Does the run.
+    /// Does the run to its end, with its state there as a hash.
     fn run(self, mut run: RunConfig) -> Result<Probed, CampaignError> {
         run.course.state_at_end = true;
         let ran = one_run(&run, self.scenario, 1, &Interrupt::new(), vec![Box::new(self.probe)])?;

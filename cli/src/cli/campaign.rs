@@ -19,7 +19,7 @@ pub struct CampaignArgs {
     /// What else is done with campaigns.
     #[command(subcommand)]
     pub command: Option<CampaignCommand>,
-    /// What is tried.
+    /// The campaigns, and their scenario.
     #[command(flatten)]
     pub chosen: ChosenArgs,
     /// How many runs at a time, each in a process of its own [default: as many as there are processors]
@@ -155,9 +155,9 @@ pub fn campaign(mut args: CampaignArgs) -> Result<ExitCode, CommandError> {
 pub fn work(args: CampaignWorkerArgs) -> Result<ExitCode, CommandError> {
     let CampaignWorkerArgs { scenario, campaign, forks, case: cases, journal } = args;
     let part = match journal {
-        Some(journal) => Part::Cases { cases, forks, journal },
-        None => Part::Healthy { forks },
+        Some(journal) => Part::Cases { cases, journal },
+        None => Part::Healthy,
     };
-    crate::campaign::worker::work(&WorkerConfig { scenario, campaign, part }, &mut std::io::stdout().lock())?;
+    crate::campaign::worker::work(&WorkerConfig { scenario, campaign, forks, part }, &mut std::io::stdout().lock())?;
     Ok(ExitCode::Ok)
 }

@@ -45,9 +45,9 @@ pub fn run(config: &ExploreConfig, out: &mut dyn Write) -> Result<ExitCode, Expl
     }
     let until = config.until.unwrap_or(scenario.until());
     let found = search::search(config, &scenario, until)?;
-    report::write(config, &scenario, until, &found, out).map_err(OutputError)?;
+    report::write(config, &scenario, &found, out).map_err(OutputError)?;
     if let Some(path) = &config.cases {
-        file::write_whole(path, report::cases(&found, until).as_bytes())?;
+        file::write_whole(path, report::cases(&found).as_bytes())?;
     }
     Ok(if found.findings.is_empty() { ExitCode::Ok } else { ExitCode::Unmet })
 }

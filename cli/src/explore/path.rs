@@ -8,12 +8,10 @@ use onescan_scenario::expect::{Judge, TraceEnd};
 use onescan_server::checkpoint::Checkpoint;
 use onescan_server::digest::Digest;
 use onescan_server::end::SessionEnd;
-use onescan_server::formation::Formation;
 use onescan_server::lockstep::{Lockstep, Reached};
 use onescan_server::session::Session;
-use onescan_server::signal::SignalName;
+use onescan_server::signal::{ClientName, SignalName};
 use onescan_server::time::VirtualTime;
-use onescan_server::timeline::Timeline;
 
 use super::ExploreError;
 use super::deviation::Deviation;
@@ -21,6 +19,7 @@ use crate::error::Usage;
 use crate::run::RunError;
 use crate::run::chosen::Chosen;
 use crate::run::expectation::{self, ExpectationReport};
+use crate::run::in_process::in_process;
 
 /// An edge, and the boundary before the step that brings it.
 #[derive(Clone)]
@@ -122,23 +121,13 @@ impl<'a> Ground<'a> {
         Ok(Path { digest: outcome.digest, violated: reports, failure, forks })
     }
 
-    fn form(&self, deviations: &[Deviation]) -> Result<Lockstep, ExploreError> {
-        let mut formation = Formation::new(self.scenario.plan().clone());
-        for name in self.scenario.plan().clients() {
-            let (Member::Plant(client) | Member::Plc(client)) = self.scenario.member(name)? else {
-                let message = format!("client `{name}` is not in this process, where it could be saved and forked");
-                return Err(Usage::new(message, Some("explore with a soft PLC in its place".to_owned())).into());
-            };
-            let request = client.join();
-            formation.join(client).map_err(|refusal| self.scenario.refused(&request, &refusal))?;
-        }
-        let mut lockstep = formation.start().map_err(RunError::Formation)?;
-        lockstep.set_until(Some(self.until));
-        let mut scheduled = self.scenario.timeline().to_vec();
-        scheduled.extend(deviations.iter().flat_map(Deviation::operations));
-        let timeline = Timeline::new(scheduled, lockstep.session()).map_err(RunError::Timeline)?;
-        lockstep.set_timeline(timeline);
-        Ok(lockstep)
+    fn form(&self, deviations: &[Deviation]) -> Result<Lockstep, RunError> {
+        let elsewhere = |name: &ClientName, _: &Member| {
+            let message = format!("client `{name}` is not in this process, where it could be saved and forked");
+            Usage::new(message, Some("explore with a soft PLC in its place".to_owned()))
+        };
+        let deviating = deviations.iter().flat_map(Deviation::operations);
+        in_process(self.scenario, self.until, deviating, elsewhere)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::io::{self, Write};
 
+use onescan_report::number::counted;
 use onescan_scenario::Scenario;
 use onescan_server::time::VirtualTime;
 use serde_json::json;
@@ -12,22 +13,16 @@ use super::search::{Finding, Found};
 use crate::format::Format;
 
 /// Writes what came of an exploration.
-pub(super) fn write(
-    config: &ExploreConfig,
-    scenario: &Scenario,
-    until: VirtualTime,
-    found: &Found,
-    out: &mut dyn Write,
-) -> io::Result<()> {
+pub(super) fn write(config: &ExploreConfig, scenario: &Scenario, found: &Found, out: &mut dyn Write) -> io::Result<()> {
     match config.format {
-        Format::Human => human(config, scenario, until, found, out)?,
+        Format::Human => human(config, scenario, found, out)?,
         Format::Json => {
             for (number, finding) in found.findings.iter().enumerate() {
                 writeln!(
                     out,
                     "{}",
                     json!({ "deviations": finding.deviations, "violated": finding.violated, "failure": finding.failure,
-                        "digest": finding.digest, "case": case(number + 1, finding, until) })
+                        "digest": finding.digest, "case": case(number + 1, finding, found.until) })
                 )?;
             }
             let statement = json!({ "scenario": scenario.name(), "holds": found.findings.is_empty(),
@@ -39,13 +34,7 @@ pub(super) fn write(
     out.flush()
 }
 
-fn human(
-    config: &ExploreConfig,
-    scenario: &Scenario,
-    until: VirtualTime,
-    found: &Found,
-    out: &mut dyn Write,
-) -> io::Result<()> {
+fn human(config: &ExploreConfig, scenario: &Scenario, found: &Found, out: &mut dyn Write) -> io::Result<()> {
     for (number, finding) in found.findings.iter().enumerate() {
         let what: Vec<String> =
             finding.violated.iter().map(|one| format!("`{}`", one.name)).chain(finding.failure.clone()).collect();
@@ -57,7 +46,7 @@ fn human(
         for deviation in &finding.deviations {
             writeln!(out, "  {deviation}")?;
         }
-        for line in case(number + 1, finding, until).lines() {
+        for line in case(number + 1, finding, found.until).lines() {
             writeln!(out, "    {line}")?;
         }
     }
@@ -66,11 +55,10 @@ fn human(
 
 /// What is known now: no more than was tried.
 fn statement(config: &ExploreConfig, scenario: &Scenario, found: &Found) -> String {
-    let plural = |count: u64, noun: &str| format!("{count} {noun}{}", if count == 1 { "" } else { "s" });
     let latest = scenario.late().iter().map(|late| late.steps).max().unwrap_or(0);
     let late = if latest == 1 { "1 step".to_owned() } else { format!("1 to {latest} steps") };
-    let edges = plural(found.edges as u64, "edge");
-    let schedules = plural(found.schedules, "schedule");
+    let edges = counted(found.edges as u64, "edge");
+    let schedules = counted(found.schedules, "schedule");
     match (found.findings.len(), found.exhausted) {
         (0, Some(bound)) if bound == config.bound => {
             format!("all {schedules} with at most {bound} of {edges} late by {late} hold")
@@ -82,7 +70,7 @@ fn statement(config: &ExploreConfig, scenario: &Scenario, found: &Found) -> Stri
             );
             format!(
                 "{schedules} hold; {known}, because {} were done, which is the limit (see `--runs`)",
-                plural(found.runs, "run")
+                counted(found.runs, "run")
             )
         }
         (findings, _) if config.all => {
@@ -94,11 +82,11 @@ fn statement(config: &ExploreConfig, scenario: &Scenario, found: &Found) -> Stri
 }
 
 /// All findings as a file of cases.
-pub(super) fn cases(found: &Found, until: VirtualTime) -> String {
+pub(super) fn cases(found: &Found) -> String {
     let mut text = "version = 1\n".to_owned();
     for (number, finding) in found.findings.iter().enumerate() {
         text.push('\n');
-        text.push_str(&case(number + 1, finding, until));
+        text.push_str(&case(number + 1, finding, found.until));
     }
     text
 }

@@ -10,8 +10,9 @@ use super::path::{Fork, Ground, Path};
 use crate::run::expectation::ExpectationReport;
 
 /// What came of an exploration.
-#[derive(Default)]
 pub(super) struct Found {
+    /// When each run was complete.
+    pub(super) until: VirtualTime,
     /// Ways that do not do what is expected, the fewest deviations first.
     pub(super) findings: Vec<Finding>,
     /// Different ways that were gone.
@@ -49,7 +50,9 @@ struct Search<'a> {
 /// # Errors
 /// The session cannot be formed, saved or taken up.
 pub(super) fn search(config: &ExploreConfig, scenario: &Scenario, until: VirtualTime) -> Result<Found, ExploreError> {
-    let mut search = Search { config, ground: Ground::new(scenario, until), found: Found::default() };
+    let found = Found { until, findings: Vec::new(), schedules: 0, runs: 0, edges: 0, exhausted: None };
+    let mut search = Search { config, ground: Ground::new(scenario, until), found };
+    // Each level goes the ways of those below it again: to keep their forks instead would take memory for the whole tree.
     for level in 0..=config.bound {
         if let Going::Enough = search.below(None, &mut Vec::new(), level)? {
             break;

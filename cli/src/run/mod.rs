@@ -16,6 +16,7 @@
 //! | `chosen` | signals chosen by name, as numbers |
 //! | [`sampler`] | what a plot shows |
 //! | [`recorded`] | a run's recording |
+//! | `in_process` | a session of which all clients are here |
 //! | [`rerun`] | a recorded run once more |
 //! | [`expectation`] | what a run had to show |
 //! | [`production`] | what a run produced, by its scenario's `[report]` |
@@ -35,6 +36,7 @@ pub mod expectation;
 pub(crate) mod fork;
 mod freewheel;
 pub(crate) mod guard;
+pub(crate) mod in_process;
 mod lockstep;
 pub mod page;
 mod processes;

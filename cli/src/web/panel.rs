@@ -84,6 +84,7 @@ fn laid_out(file: &ElementFile, scenario: &Scenario) -> Element {
     let is_selector = file.kind == ElementKind::Selector;
     Element {
         kind: file.kind,
+        // a list of alarms has no signal to be called after
         label: file.label.clone().or_else(|| signal.as_deref().map(label)).unwrap_or_default(),
         signal,
         signal_y: file.signal_y.as_ref().map(name),

@@ -8,8 +8,9 @@ use super::alarm::Alarm;
 use super::count::{Counted, What};
 use super::cycle::Timed;
 use super::down_time::{Cause, Down, UNKNOWN};
+use crate::error::Wrong;
 use crate::expect::{KnownSignal, Present};
-use crate::expectations::{Wrong, place_within};
+use crate::expectations::place_within;
 use crate::file::ScenarioFile;
 use crate::report_file::{AlarmFile, CauseFile, CountFile, CycleFile, DownTimeFile, ReportFile};
 
