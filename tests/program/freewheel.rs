@@ -1,6 +1,8 @@
 //! Without lockstep no two runs are equal, and the alignment check of `[SDSP]` Figs. 5 and 6 fails.
 
-use crate::typed::{digests, run_shear};
+use std::collections::BTreeSet;
+
+use crate::typed::{ROUNDS, digests, run_shear};
 
 /// Alignments seen and levellings made in the recording of a run.
 fn alignments(csv: &str) -> (u64, usize) {
@@ -24,14 +26,19 @@ fn recorded(words: &[&str], runs: usize) -> (Vec<String>, Vec<(u64, usize)>) {
     (digests(&reports), (1..=runs).map(|run| alignments(&read(run))).collect())
 }
 
+/// Two runs may be equal and lose nothing by chance, so there are more until both has been seen.
 #[test]
 fn free_wheeling_runs_differ_and_lose_alignments() {
-    let (digests, alignments) = recorded(&["--mode", "freewheel", "--runs", "6"], 6);
-    let mut distinct = digests.clone();
-    distinct.sort();
-    distinct.dedup();
-    assert!(distinct.len() > 1, "six equal runs without lockstep: {digests:?}");
-    assert!(alignments.iter().any(|(seen, levelled)| *seen < *levelled as u64), "none was lost: {alignments:?}");
+    let (mut distinct, mut lost) = (BTreeSet::new(), false);
+    for _ in 0..ROUNDS {
+        let (digests, alignments) = recorded(&["--mode", "freewheel", "--runs", "3"], 3);
+        distinct.extend(digests);
+        lost |= alignments.iter().any(|(seen, levelled)| *seen < *levelled as u64);
+        if distinct.len() > 1 && lost {
+            return;
+        }
+    }
+    panic!("runs without lockstep: {} different, an alignment was lost: {lost}", distinct.len());
 }
 
 #[test]
