@@ -6,6 +6,8 @@
 //! |---|---|
 //! | [`cli`] | the command line |
 //! | [`campaign`] | faults by the table, each with a verdict |
+//! | [`explore`] | timings that links may have, tried |
+//! | [`minimise`] | the least of a case with which it still fails |
 //! | [`review`] | snapshots looked at, accepted or rejected |
 //! | [`compare`] | lockstep beside the other ways of bringing plant and PLC together |
 //! | [`bisect`] | the commit since which a run is another |
@@ -54,6 +56,7 @@ pub mod instrument;
 pub mod interrupt;
 pub mod io_list;
 pub mod map;
+pub mod minimise;
 pub mod model;
 pub mod new;
 pub mod plant;

@@ -29,6 +29,7 @@ mod large;
 mod load;
 mod long;
 mod map;
+mod minimise;
 mod model;
 mod mutated;
 mod new;

@@ -11,6 +11,7 @@ use super::campaign::{CampaignArgs, CampaignWorkerArgs};
 use super::compare::CompareArgs;
 use super::error::CommandError;
 use super::explore::ExploreArgs;
+use super::minimise::MinimiseArgs;
 use super::model::ModelArgs;
 use super::plant::{ComponentsArgs, DescribeArgs, NewArgs, WiringArgs};
 use super::plc::{BrowseArgs, MapArgs, PlcArgs};
@@ -19,7 +20,7 @@ use super::run::RunArgs;
 use super::session::{ControlArgs, JoinArgs};
 use super::source::{CheckArgs, ExplainArgs, InstrumentArgs};
 use super::test::{ReviewArgs, TestArgs, WorkerArgs};
-use super::{access, campaign, compare, explore, model, plant, plc, recording, run, session, source, test};
+use super::{access, campaign, compare, explore, minimise, model, plant, plc, recording, run, session, source, test};
 use crate::error::ExitCode;
 
 /// Deterministic lockstep virtual commissioning.
@@ -77,6 +78,8 @@ pub enum Command {
     /// Try every timing that a scenario's `[timing]` allows: edges that are late, one at a time, then two, and show the
     /// fewest with which it does not do what is expected
     Explore(ExploreArgs),
+    /// Leave out of a failing case what it does not need to fail, and make the rest as small and as early as it can be
+    Minimise(MinimiseArgs),
     /// One run, for `campaign`
     #[command(hide = true)]
     CampaignWorker(CampaignWorkerArgs),
@@ -142,6 +145,7 @@ pub fn dispatch(command: Command) -> Result<ExitCode, CommandError> {
         Command::Compare(args) => compare::compare(args),
         Command::Test(args) => test::test(*args),
         Command::Explore(args) => explore::explore(args),
+        Command::Minimise(args) => minimise::minimise(args),
         Command::Campaign(args) => campaign::campaign(args),
         Command::CampaignWorker(args) => campaign::work(args),
         Command::Review(args) => test::review(args),

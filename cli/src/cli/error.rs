@@ -13,6 +13,7 @@ use crate::explore::ExploreError;
 use crate::export::ExportError;
 use crate::instrument::InstrumentError;
 use crate::map::MapError;
+use crate::minimise::MinimiseError;
 use crate::model::ModelError;
 use crate::new::NewError;
 use crate::plant::PlantError;
@@ -72,6 +73,9 @@ sum_of_errors! {
         /// `explore` came to nothing.
         #[diagnostic(transparent)]
         Explore(ExploreError),
+        /// `minimise` came to nothing.
+        #[diagnostic(transparent)]
+        Minimise(MinimiseError),
         /// `components` or `describe` came to nothing.
         #[diagnostic(transparent)]
         Plant(PlantError),

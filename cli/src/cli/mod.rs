@@ -6,6 +6,7 @@
 //! | [`run`], [`compare`] | a scenario |
 //! | [`campaign`] | faults by campaigns |
 //! | [`explore`] | timings that links may have |
+//! | [`minimise`] | the least of a case that still fails |
 //! | [`test`] | all scenarios, and test programs |
 //! | [`session`] | a session that another process serves |
 //! | [`recording`] | what was recorded |
@@ -24,6 +25,7 @@ pub mod compare;
 mod error;
 pub mod explore;
 mod logging;
+pub mod minimise;
 pub mod model;
 pub mod opcua;
 pub mod plant;

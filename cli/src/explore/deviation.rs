@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use onescan_scenario::case::written::spelt;
 use onescan_server::operation::Operation;
 use onescan_server::signal::SignalName;
 use onescan_server::time::{TimeSpan, VirtualTime};
@@ -53,15 +54,9 @@ impl Deviation {
     /// The same as the force of a case.
     pub(super) fn as_toml(&self) -> String {
         let Self { signal, rises, .. } = self;
-        let (edge, arrives) = (written(self.edge), written(self.arrives));
+        let (edge, arrives) = (spelt(self.edge), spelt(self.arrives));
         format!("{{ signal = \"{signal}\", value = {}, from = \"{edge}\", until = \"{arrives}\" }}", !rises)
     }
-}
-
-/// A time as files have it, exactly.
-pub(super) fn written(t_v: VirtualTime) -> String {
-    let ns = t_v.as_nanos();
-    if ns.is_multiple_of(1_000_000) { format!("{}ms", ns / 1_000_000) } else { format!("{ns}ns") }
 }
 
 impl fmt::Display for Deviation {

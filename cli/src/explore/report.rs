@@ -4,11 +4,11 @@ use std::io::{self, Write};
 
 use onescan_report::number::counted;
 use onescan_scenario::Scenario;
+use onescan_scenario::case::written::spelt;
 use onescan_server::time::VirtualTime;
 use serde_json::json;
 
 use super::config::ExploreConfig;
-use super::deviation::written;
 use super::search::{Finding, Found};
 use crate::format::Format;
 
@@ -95,7 +95,7 @@ pub(super) fn cases(found: &Found) -> String {
 fn case(number: usize, finding: &Finding, until: VirtualTime) -> String {
     let about: Vec<String> = finding.deviations.iter().map(ToString::to_string).collect();
     let about = about.join("; ");
-    let head = format!("[[case]]\nname = \"timing-{number}\"\nabout = \"{about}\"\nuntil = \"{}\"\n", written(until));
+    let head = format!("[[case]]\nname = \"timing-{number}\"\nabout = \"{about}\"\nuntil = \"{}\"\n", spelt(until));
     if finding.deviations.is_empty() {
         return head;
     }

@@ -75,6 +75,9 @@ pub enum RunError {
     /// A checkpoint cannot be taken.
     #[error("cannot save the session: {0}")]
     Save(CheckpointError),
+    /// A session does not go on from where another one was.
+    #[error("cannot fork the session: {0}")]
+    Fork(CheckpointError),
     /// The run ended before the checkpoint could be taken.
     #[error("cannot save the session: it ended at t_v = {0}, before the checkpoint was due")]
     SaveTooLate(VirtualTime),
@@ -110,7 +113,7 @@ impl Exit for RunError {
             Self::Unreadable(error) => error.exit_code(),
             Self::File(error) => error.exit_code(),
             Self::Output(error) => error.exit_code(),
-            Self::ClientProcess { .. } | Self::Save(_) | Self::SaveTooLate(_) => ExitCode::Fault,
+            Self::ClientProcess { .. } | Self::Save(_) | Self::Fork(_) | Self::SaveTooLate(_) => ExitCode::Fault,
             Self::Resume { .. } | Self::Timeline(_) => ExitCode::WrongInput,
         }
     }

@@ -268,7 +268,7 @@ fn wait_for_clients(
 }
 
 /// What operators did in a recording, or by a file of events.
-fn operator_inputs(path: &std::path::Path) -> Result<Vec<OperatorInput>, RunError> {
+pub(crate) fn operator_inputs(path: &std::path::Path) -> Result<Vec<OperatorInput>, RunError> {
     if path.is_dir() {
         return Ok(Recording::open(path)?.operator_inputs()?);
     }

@@ -17,6 +17,7 @@
 //! | [`sampler`] | what a plot shows |
 //! | [`recorded`] | a run's recording |
 //! | `in_process` | a session of which all clients are here |
+//! | `judged` | the same, judged step by step |
 //! | [`rerun`] | a recorded run once more |
 //! | [`expectation`] | what a run had to show |
 //! | [`production`] | what a run produced, by its scenario's `[report]` |
@@ -37,6 +38,7 @@ pub(crate) mod fork;
 mod freewheel;
 pub(crate) mod guard;
 pub(crate) mod in_process;
+pub(crate) mod judged;
 mod lockstep;
 pub mod page;
 mod processes;
@@ -74,7 +76,7 @@ pub use config::{ForkRequest, RunConfig, Transport};
 pub use error::RunError;
 use fork::Fork;
 use lockstep::Driven;
-pub(crate) use lockstep::NOTICE;
+pub(crate) use lockstep::{NOTICE, operator_inputs};
 pub use report::{RunReport, RunStatus, Verdict};
 
 use crate::interrupt::Interrupt;

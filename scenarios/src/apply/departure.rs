@@ -41,6 +41,9 @@ impl Scenario {
 
 /// What stands in one list only, each entry as often as it does.
 fn only_in_one<'a>(one: &'a [Scheduled], other: &'a [Scheduled]) -> Vec<&'a Scheduled> {
+    // What both begin with is most of it where one was made from the other.
+    let same = one.iter().zip(other).take_while(|(one, other)| one == other).count();
+    let (one, other) = (&one[same..], &other[same..]);
     let mut left: Vec<&Scheduled> = other.iter().collect();
     let mut found = Vec::new();
     for scheduled in one {

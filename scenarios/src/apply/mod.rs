@@ -37,24 +37,8 @@ impl Scenario {
         let scenario = Self::load(path)?;
         let Some(name) = name else { return Ok(scenario) };
         let catalogue = Catalogue::load(scenario.folder())?;
-        if let Some(case) = catalogue.find(name) {
-            return scenario.with_case(&catalogue, case);
-        }
-        let names = || catalogue.cases().iter().map(|case| case.name.as_str());
-        if let Some((campaign, _)) = name.split_once('/')
-            && let Some(campaign) = catalogue.campaigns().iter().find(|one| one.name == campaign)
-        {
-            let nearest = did_you_mean(name, campaign.cases.iter().map(|case| case.name.as_str()));
-            let help = nearest.unwrap_or_else(|| format!("its cases are {}/FAULT/ACTIVATION", campaign.name));
-            return Err(ScenarioError::UnknownCase {
-                scenario: scenario.name().to_owned(),
-                case: name.to_owned(),
-                help,
-            });
-        }
-        let all = || format!("its cases are {}", names().collect::<Vec<_>>().join(", "));
-        let help = did_you_mean(name, names()).unwrap_or_else(all);
-        Err(ScenarioError::UnknownCase { scenario: scenario.name().to_owned(), case: name.to_owned(), help })
+        let case = catalogue.named(&scenario, name)?.clone();
+        scenario.with_case(&catalogue, &case)
     }
 
     /// The scenario as `case` wants it.
@@ -138,6 +122,30 @@ impl Scenario {
         added.map_err(|found| catalogue.wrong(found.message, Some(found.place), found.help))?;
         self.set_expectations(expectations);
         Ok(())
+    }
+}
+
+impl Catalogue {
+    /// The case of `scenario` called `name`, also one of a campaign.
+    ///
+    /// # Errors
+    /// There is none, with the nearest.
+    pub fn named(&self, scenario: &Scenario, name: &str) -> Result<&Case, ScenarioError> {
+        if let Some(case) = self.find(name) {
+            return Ok(case);
+        }
+        let unknown = |help| {
+            Err(ScenarioError::UnknownCase { scenario: scenario.name().to_owned(), case: name.to_owned(), help })
+        };
+        if let Some((campaign, _)) = name.split_once('/')
+            && let Some(campaign) = self.campaigns().iter().find(|one| one.name == campaign)
+        {
+            let nearest = did_you_mean(name, campaign.cases.iter().map(|case| case.name.as_str()));
+            return unknown(nearest.unwrap_or_else(|| format!("its cases are {}/FAULT/ACTIVATION", campaign.name)));
+        }
+        let names = || self.cases().iter().map(|case| case.name.as_str());
+        let all = || format!("its cases are {}", names().collect::<Vec<_>>().join(", "));
+        unknown(did_you_mean(name, names()).unwrap_or_else(all))
     }
 }
 

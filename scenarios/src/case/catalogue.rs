@@ -46,7 +46,11 @@ impl Catalogue {
         }
     }
 
-    fn parse(path: PathBuf, text: String) -> Result<Self, ScenarioError> {
+    /// The cases of a text, which would stand in the file `path`.
+    ///
+    /// # Errors
+    /// The text is wrong, with the place.
+    pub fn parse(path: PathBuf, text: String) -> Result<Self, ScenarioError> {
         let this = Self { path, text, ..Self::default() };
         let form = |e: toml::de::Error| this.wrong(e.message().trim().to_owned(), e.span(), None);
         let mut file: CasesFile = toml::from_str(&this.text).map_err(form)?;

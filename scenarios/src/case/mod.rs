@@ -7,6 +7,7 @@
 //! | [`matrix`] | every combination of values |
 //! | [`campaign`] | every fault with every activation, as cases |
 //! | [`value`] | TOML values as those of signals and variables |
+//! | [`written`] | a case in pieces, and as text again |
 //!
 //! How a case is put on its scenario is in `apply`, beside this room.
 //!
@@ -18,6 +19,7 @@ pub mod catalogue;
 pub mod file;
 pub mod matrix;
 pub mod value;
+pub mod written;
 
 use std::ops::Range;
 

@@ -73,6 +73,14 @@ impl Judge {
         self.expectations.iter().map(|(expectation, monitor)| self.outcome(expectation, monitor.first())).collect()
     }
 
+    /// The numbers of expectations that are violated already, whatever comes. What is judged comes in blocks, so that it
+    /// lags behind the run.
+    pub fn violated(&self) -> impl Iterator<Item = usize> + '_ {
+        let is_violated = |monitor: &Monitor| monitor.first().is_some_and(|judged| judged.worth.truth == Truth::False);
+        let numbered = self.expectations.iter().enumerate();
+        numbered.filter(move |(_, (_, monitor))| is_violated(monitor)).map(|(number, _)| number)
+    }
+
     fn judge_open(&mut self) {
         for (_, monitor) in &mut self.expectations {
             monitor.push(&self.open);

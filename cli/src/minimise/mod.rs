@@ -1,0 +1,85 @@
+//! `onescan minimise`: of what a failing case does, the fewest entries with which it still fails, then the smallest, then
+//! the earliest.
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`config`] | what is asked for |
+//! | [`error`] | why it came to nothing |
+//! | `operator` | what operators did, as entries |
+//! | `target` | what fails, so that nothing else is taken for it |
+//! | `trial` | a set of entries tried, forked from trials before it |
+//! | `fewest` | which entries are needed |
+//! | `smallest` | entries made shorter, less and earlier |
+//! | `report` | what is left, as a case |
+//!
+//! **Invariants.** What is left was tried, and fails in the same way. Each entry of it was left out by itself, and nothing
+//! failed, unless the limit of trials was reached, which is said.
+
+pub mod config;
+mod error;
+mod fewest;
+mod operator;
+mod report;
+mod smallest;
+mod target;
+mod trial;
+
+use std::io::Write;
+
+use onescan_report::{OutputError, file};
+use onescan_scenario::Scenario;
+use onescan_scenario::case::Catalogue;
+use onescan_scenario::case::written::{Entry, Written};
+
+pub use config::MinimiseConfig;
+pub use error::MinimiseError;
+use report::Minimised;
+use trial::Trials;
+
+use crate::error::ExitCode;
+use crate::run::operator_inputs;
+
+/// Looks for the least that still fails, and writes it to `out`.
+///
+/// # Errors
+/// The scenario or the case is wrong, nothing fails, or a client is not in this process.
+pub fn run(config: &MinimiseConfig, out: &mut dyn Write) -> Result<ExitCode, MinimiseError> {
+    let mut scenario = Scenario::load(&config.scenario)?;
+    for client in &config.operated {
+        scenario.operate(client)?;
+    }
+    let (mut whole, mut written) = chosen(config, &scenario)?;
+    if let Some(path) = &config.replay_operator {
+        written.entries.extend(operator::entries(&operator_inputs(path)?, &scenario)?);
+        whole = trial::applied(&scenario, &written.to_toml("operated", &written.entries))?;
+    }
+    let until = config.until.unwrap_or(whole.until());
+    let first = target::first(&whole, until, config.expect.as_deref())?;
+    let mut entries = written.entries.clone();
+    // In the order in which they make a difference; what begins after the failure makes none.
+    entries.sort_by_key(Entry::begin);
+    entries.retain(|entry| entry.begin() <= first.at);
+    let all = written.entries.len();
+    let mut trials = Trials::new(&scenario, written, &first, until, config.runs_max);
+    // A name that no case can have is told of before the search.
+    trials.applied(&trials.text(&config.name, &[], None, None))?;
+    let fewest = fewest::fewest(&mut trials, &entries)?;
+    let trials_to_fewest = trials.done();
+    let left = smallest::smallest(&mut trials, fewest)?;
+    let at = trials.fails(&left)?.unwrap_or(first.at);
+    let minimised = Minimised { target: first.target, before: all, left, at, trials_to_fewest };
+    let case = minimised.case(config, until, &trials)?;
+    report::write(config, &scenario, &minimised, &case, &trials, out).map_err(OutputError)?;
+    if let Some(path) = &config.cases {
+        file::write_whole(path, format!("version = 1\n\n{}", case.text).as_bytes())?;
+    }
+    Ok(ExitCode::Ok)
+}
+
+/// The scenario with the case that is asked for, and the case in pieces.
+fn chosen(config: &MinimiseConfig, scenario: &Scenario) -> Result<(Scenario, Written), MinimiseError> {
+    let Some(name) = &config.case else { return Ok((scenario.clone(), Written::default())) };
+    let catalogue = Catalogue::load(scenario.folder())?;
+    let case = catalogue.named(scenario, name)?;
+    Ok((scenario.clone().with_case(&catalogue, case)?, catalogue.written(case)))
+}

@@ -1,0 +1,141 @@
+//! A session in this process that is judged step by step, as one that forks is.
+
+use onescan_scenario::Scenario;
+use onescan_scenario::compose::Member;
+use onescan_scenario::expect::{Judge, TraceEnd};
+use onescan_server::checkpoint::{Checkpoint, CheckpointError};
+use onescan_server::digest::Digest;
+use onescan_server::end::{Failure, SessionEnd};
+use onescan_server::lockstep::{Lockstep, Reached};
+use onescan_server::observer::RecordError;
+use onescan_server::session::Session;
+use onescan_server::signal::ClientName;
+use onescan_server::time::VirtualTime;
+use onescan_server::timeline::Scheduled;
+
+use super::chosen::Chosen;
+use super::error::RunError;
+use super::expectation::{self, ExpectationReport};
+use super::in_process::in_process;
+use crate::error::Usage;
+
+/// A session, and what its expectations have seen of it.
+pub(crate) struct Judged<'a> {
+    scenario: &'a Scenario,
+    lockstep: Lockstep,
+    until: VirtualTime,
+    judge: Judge,
+    columns: Chosen,
+}
+
+/// A boundary from which other sessions go on.
+pub(crate) struct Moment {
+    checkpoint: Checkpoint,
+    judge: Judge,
+}
+
+/// What came of a session.
+pub(crate) struct Judgement {
+    pub(crate) digest: Option<Digest>,
+    /// Expectations that did not hold.
+    pub(crate) violated: Vec<ExpectationReport>,
+    /// How a client failed, if one did.
+    pub(crate) failure: Option<Failure>,
+}
+
+impl<'a> Judged<'a> {
+    /// A session up to `until`, about to begin. Beside what the scenario does by itself it does `more`.
+    ///
+    /// # Errors
+    /// The scenario is wrong, or what `elsewhere` says of a client that is not in this process.
+    pub(crate) fn form(
+        scenario: &'a Scenario,
+        until: VirtualTime,
+        more: impl IntoIterator<Item = Scheduled>,
+        elsewhere: impl Fn(&ClientName, &Member) -> Usage,
+    ) -> Result<Self, RunError> {
+        let mut lockstep = in_process(scenario, until, more, elsewhere)?;
+        lockstep.set_makeup(scenario.makeup());
+        let mut columns = Chosen::new(&scenario.expectations().signals);
+        columns.find(lockstep.session());
+        Ok(Self { scenario, lockstep, until, judge: expectation::judge(scenario), columns })
+    }
+
+    /// Sets it up: the image of 0 is there.
+    pub(crate) fn begin(&mut self) -> Result<(), RecordError> {
+        self.lockstep.run_to(VirtualTime::ZERO)?;
+        self.see();
+        Ok(())
+    }
+
+    /// Goes on from a boundary of another session of the scenario.
+    ///
+    /// # Errors
+    /// Up to there, that one was not what this one is.
+    pub(crate) fn resume(&mut self, moment: &Moment) -> Result<(), CheckpointError> {
+        self.lockstep.resume(&moment.checkpoint)?;
+        self.judge = moment.judge.clone();
+        Ok(())
+    }
+
+    /// The boundary at which it is. Nothing if it is over.
+    ///
+    /// # Errors
+    /// A client cannot save its state.
+    pub(crate) fn moment(&mut self) -> Result<Option<Moment>, RunError> {
+        match self.lockstep.checkpoint() {
+            Ok(checkpoint) => Ok(Some(Moment { checkpoint, judge: self.judge.clone() })),
+            Err(_) if self.lockstep.session().end().is_some() => Ok(None),
+            Err(error) => Err(RunError::Save(error)),
+        }
+    }
+
+    /// Makes a step; false if there is none.
+    ///
+    /// # Errors
+    /// The session cannot go on.
+    pub(crate) fn step(&mut self) -> Result<bool, RecordError> {
+        let next = self.session().t_v() + self.session().step();
+        if self.session().t_v() >= self.until || self.lockstep.run_to(next)? == Reached::End {
+            return Ok(false);
+        }
+        self.see();
+        Ok(true)
+    }
+
+    /// The session.
+    pub(crate) fn session(&self) -> &Session {
+        self.lockstep.session()
+    }
+
+    /// True if it is known already that this expectation does not hold.
+    pub(crate) fn violates(&self, name: &str) -> bool {
+        let named = &self.scenario.expectations().named;
+        self.judge.violated().any(|number| named.get(number).is_some_and(|(known, _)| known == name))
+    }
+
+    /// What came of it. `end` says whether nothing comes after it.
+    ///
+    /// # Errors
+    /// The session could not go on.
+    pub(crate) fn finish(mut self, end: TraceEnd) -> Result<Judgement, RecordError> {
+        let outcome = self.lockstep.run()?;
+        let failure = if let SessionEnd::Failed(failure) = outcome.end { Some(failure) } else { None };
+        let end = if failure.is_none() { end } else { TraceEnd::Cut };
+        let mut violated = expectation::reports(self.scenario, self.judge, end);
+        violated.retain(ExpectationReport::is_violated);
+        Ok(Judgement { digest: outcome.digest, violated, failure })
+    }
+
+    /// What came of it as far as it is known now; what it would still do is not.
+    pub(crate) fn abandon(self) -> Vec<ExpectationReport> {
+        let mut violated = expectation::reports(self.scenario, self.judge, TraceEnd::Cut);
+        violated.retain(ExpectationReport::is_violated);
+        violated
+    }
+
+    fn see(&mut self) {
+        let session = self.lockstep.session();
+        self.judge.push(session.t_v().as_nanos(), self.columns.numbers(session));
+    }
+}
