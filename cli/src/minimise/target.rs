@@ -1,5 +1,6 @@
 //! What fails.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 use onescan_scenario::Scenario;
@@ -9,6 +10,7 @@ use onescan_server::signal::{ClientName, did_you_mean};
 use onescan_server::time::VirtualTime;
 
 use super::MinimiseError;
+use super::trial::Trunk;
 use crate::error::Usage;
 use crate::run::RunError;
 use crate::run::judged::{Judged, Judgement};
@@ -77,15 +79,31 @@ pub(super) fn form(scenario: &Scenario, until: VirtualTime) -> Result<Judged<'_>
 ///
 /// # Errors
 /// It does not fail.
-pub(super) fn first(whole: &Scenario, until: VirtualTime, wanted: Option<&str>) -> Result<First, MinimiseError> {
+pub(super) fn first(
+    whole: Scenario,
+    until: VirtualTime,
+    wanted: Option<&str>,
+    spots: &BTreeSet<VirtualTime>,
+) -> Result<(First, Trunk), MinimiseError> {
     let names = || whole.expectations().named.iter().map(|(name, _)| name.as_str());
     if let Some(wanted) = wanted.filter(|wanted| names().all(|name| name != *wanted)) {
         let help = did_you_mean(wanted, names());
         return Err(Usage::new(format!("the scenario has no expectation `{wanted}`"), help).into());
     }
-    let mut judged = form(whole, until)?;
+    let mut judged = form(&whole, until)?;
+    let mut moments = BTreeMap::new();
     judged.begin()?;
-    while judged.step()? {}
+    loop {
+        let t_v = judged.session().t_v();
+        if spots.contains(&t_v)
+            && let Some(moment) = judged.moment()?
+        {
+            moments.insert(t_v, moment);
+        }
+        if !judged.step()? {
+            break;
+        }
+    }
     let judgement = judged.finish(TraceEnd::Complete)?;
     let violated = judgement.violated.iter().filter(|one| wanted.is_none_or(|wanted| wanted == one.name));
     let violations = violated.filter_map(|one| Some((one.at?, Target::Expectation(one.name.clone()))));
@@ -96,9 +114,10 @@ pub(super) fn first(whole: &Scenario, until: VirtualTime, wanted: Option<&str>) 
     });
     // The earliest; of those at one time, the first in the file, and what a client says last.
     let first = violations.chain(failure).min_by_key(|(at, _)| *at);
-    first.map(|(at, target)| First { target, at }).ok_or_else(|| {
-        let what = wanted.map_or_else(|| "it does what is expected".to_owned(), |name| format!("`{name}` holds"));
-        let help = "minimise a case that fails, as those that `onescan explore --cases` writes (docs/minimise.md)";
-        Usage::new(format!("there is nothing to minimise: {what} until {until}"), Some(help.to_owned())).into()
-    })
+    if let Some((at, target)) = first {
+        return Ok((First { target, at }, Trunk { scenario: whole, moments }));
+    }
+    let what = wanted.map_or_else(|| "it does what is expected".to_owned(), |name| format!("`{name}` holds"));
+    let help = "minimise a case that fails, as those that `onescan explore --cases` writes (docs/minimise.md)";
+    Err(Usage::new(format!("there is nothing to minimise: {what} until {until}"), Some(help.to_owned())).into())
 }

@@ -51,10 +51,21 @@ pub(super) fn applied(scenario: &Scenario, text: &str) -> Result<Scenario, Minim
     Ok(applied)
 }
 
+/// The boundaries before these entries begin, or some of them if there are many.
+pub(super) fn spots(entries: &[Entry], step: TimeSpan) -> BTreeSet<VirtualTime> {
+    let before = |entry: &Entry| {
+        let grid = entry.begin().as_nanos().div_ceil(step.as_nanos()).saturating_mul(step.as_nanos());
+        VirtualTime::from_nanos(grid).saturating_sub(step)
+    };
+    let all: BTreeSet<VirtualTime> = entries.iter().map(before).collect();
+    let stride = all.len().div_ceil(MOMENTS_MAX).max(1);
+    all.into_iter().step_by(stride).collect()
+}
+
 /// A run from which others fork.
-struct Trunk {
-    scenario: Scenario,
-    moments: BTreeMap<VirtualTime, Moment>,
+pub(super) struct Trunk {
+    pub(super) scenario: Scenario,
+    pub(super) moments: BTreeMap<VirtualTime, Moment>,
 }
 
 impl<'a> Trials<'a> {
@@ -62,7 +73,7 @@ impl<'a> Trials<'a> {
         scenario: &'a Scenario,
         written: Written,
         first: &First,
-        until: VirtualTime,
+        (until, trunk): (VirtualTime, Trunk),
         runs_max: NonZeroU64,
     ) -> Self {
         let end = if first.at < until { TraceEnd::Cut } else { TraceEnd::Complete };
@@ -72,9 +83,9 @@ impl<'a> Trials<'a> {
             target: first.target.clone(),
             by: first.at,
             end,
-            spots: BTreeSet::new(),
+            spots: trunk.moments.keys().copied().collect(),
             known: BTreeMap::new(),
-            trunks: Vec::new(),
+            trunks: vec![trunk],
             done: 0,
             runs_max,
         }
@@ -128,14 +139,7 @@ impl<'a> Trials<'a> {
 
     /// Lets runs keep the boundaries before these entries begin.
     pub(super) fn fork_before(&mut self, entries: &[Entry]) {
-        let step = self.step();
-        let before = |entry: &Entry| {
-            let grid = entry.begin().as_nanos().div_ceil(step.as_nanos()).saturating_mul(step.as_nanos());
-            VirtualTime::from_nanos(grid).saturating_sub(step)
-        };
-        let all: BTreeSet<VirtualTime> = entries.iter().map(before).collect();
-        let stride = all.len().div_ceil(MOMENTS_MAX).max(1);
-        self.spots = all.into_iter().step_by(stride).collect();
+        self.spots = spots(entries, self.step());
     }
 
     /// When a run with these entries alone fails, if it does.
