@@ -8,6 +8,7 @@
 //! | [`campaign`] | faults by the table, each with a verdict |
 //! | [`explore`] | timings that links may have, tried |
 //! | [`minimise`] | the least of a case with which it still fails |
+//! | [`mutate`] | small mistakes in the PLC's program, and whether they are noticed |
 //! | [`review`] | snapshots looked at, accepted or rejected |
 //! | [`compare`] | lockstep beside the other ways of bringing plant and PLC together |
 //! | [`bisect`] | the commit since which a run is another |
@@ -58,6 +59,7 @@ pub mod io_list;
 pub mod map;
 pub mod minimise;
 pub mod model;
+pub mod mutate;
 pub mod new;
 pub mod plant;
 pub mod plc;

@@ -16,6 +16,7 @@
 //! | `output` | program text | the files that other tools import |
 //! | [`stubs`] | a project | declarations of what it names and nobody declares |
 //! | [`instrument`] | a project | the same, made to run in lockstep |
+//! | [`mutate`] | a file | the small mistakes that could be in it |
 //! | [`run`] | an application and a task plan | a soft PLC that scans |
 //! | [`coverage`] | what has been executed | reports of it |
 //!
@@ -39,6 +40,7 @@ pub mod input;
 pub mod instrument;
 mod ir;
 mod lint;
+pub mod mutate;
 mod output;
 pub mod run;
 pub mod source;

@@ -137,9 +137,13 @@ impl Scenario {
             help: None,
         })?;
         let input = Input::read(source, kind, &bytes);
-        Ok(match dialect {
+        let input = match dialect {
             Some(dialect) => input.in_dialect(dialect),
             None => input,
+        };
+        Ok(match self.mistake() {
+            Some(mistake) if mistake.client == *name && mistake.source == source => input.with_mutant(&mistake.mutant),
+            _ => input,
         })
     }
 

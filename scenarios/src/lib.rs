@@ -17,6 +17,8 @@
 //! | [`apply`] | a case put on its scenario |
 //! | [`schema`] | the JSON schemas of both files |
 //! | [`compose`] | a scenario's plan and its clients |
+//! | [`mistake`] | a small mistake in the program of a soft PLC |
+//! | `mistaken` | the scenario with it |
 //! | `compilations` | soft PLCs compiled once for all cases |
 //! | [`timing`] | its `[timing]`, bound to its signals |
 //! | [`gateway`] | its real PLCs |
@@ -42,6 +44,8 @@ pub mod file;
 mod form;
 pub mod gateway;
 pub mod load;
+pub mod mistake;
+mod mistaken;
 pub mod mode;
 mod operated;
 mod panel;

@@ -21,6 +21,7 @@ use super::compilations::Compilations;
 use super::error::{ScenarioError, Wrong, wrong};
 use super::expectations::Expectations;
 use super::file::{ClientFile, CouplingFile, ScenarioFile, VERSION};
+use super::mistake::Mistake;
 use super::report::Measures;
 use super::timing::Late;
 use super::watch::{WatchRequest, Watched};
@@ -73,6 +74,8 @@ pub struct Scenario {
     late: Vec<Late>,
     /// Its soft PLCs, as far as they have been compiled.
     compilations: Compilations,
+    /// What is wrong on purpose with the program of one of them.
+    mistake: Option<Arc<Mistake>>,
 }
 
 impl Scenario {
@@ -143,6 +146,7 @@ impl Scenario {
             watched: None,
             late,
             compilations: Compilations::default(),
+            mistake: None,
         };
         scenario.checked()
     }
@@ -155,6 +159,15 @@ impl Scenario {
     /// The signals whose edges may be late, by `[timing]`.
     pub fn late(&self) -> &[Late] {
         &self.late
+    }
+
+    pub(crate) fn mistake(&self) -> Option<&Mistake> {
+        self.mistake.as_deref()
+    }
+
+    /// What was compiled without the mistake is not what runs with it.
+    pub(crate) fn set_mistake(&mut self, mistake: Arc<Mistake>, compilations: Compilations) {
+        (self.mistake, self.compilations) = (Some(mistake), compilations);
     }
 
     pub(crate) fn compilations(&self) -> &Compilations {

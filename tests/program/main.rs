@@ -31,6 +31,7 @@ mod long;
 mod map;
 mod minimise;
 mod model;
+mod mutate;
 mod mutated;
 mod new;
 mod opcua;

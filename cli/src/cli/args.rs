@@ -13,6 +13,7 @@ use super::error::CommandError;
 use super::explore::ExploreArgs;
 use super::minimise::MinimiseArgs;
 use super::model::ModelArgs;
+use super::mutate::MutateArgs;
 use super::plant::{ComponentsArgs, DescribeArgs, NewArgs, WiringArgs};
 use super::plc::{BrowseArgs, MapArgs, PlcArgs};
 use super::recording::{BisectArgs, DiffArgs, ExportArgs, ReportArgs};
@@ -20,7 +21,9 @@ use super::run::RunArgs;
 use super::session::{ControlArgs, JoinArgs};
 use super::source::{CheckArgs, ExplainArgs, InstrumentArgs};
 use super::test::{ReviewArgs, TestArgs, WorkerArgs};
-use super::{access, campaign, compare, explore, minimise, model, plant, plc, recording, run, session, source, test};
+use super::{
+    access, campaign, compare, explore, minimise, model, mutate, plant, plc, recording, run, session, source, test,
+};
 use crate::error::ExitCode;
 
 /// Deterministic lockstep virtual commissioning.
@@ -80,6 +83,8 @@ pub enum Command {
     Explore(ExploreArgs),
     /// Leave out of a failing case what it does not need to fail, and make the rest as small and as early as it can be
     Minimise(MinimiseArgs),
+    /// Make small mistakes in the PLC's program, one at a time, and show which ones no expectation notices
+    Mutate(MutateArgs),
     /// One run, for `campaign`
     #[command(hide = true)]
     CampaignWorker(CampaignWorkerArgs),
@@ -145,6 +150,7 @@ pub fn dispatch(command: Command) -> Result<ExitCode, CommandError> {
         Command::Compare(args) => compare::compare(args),
         Command::Test(args) => test::test(*args),
         Command::Explore(args) => explore::explore(args),
+        Command::Mutate(args) => mutate::mutate(args),
         Command::Minimise(args) => minimise::minimise(args),
         Command::Campaign(args) => campaign::campaign(args),
         Command::CampaignWorker(args) => campaign::work(args),

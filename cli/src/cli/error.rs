@@ -15,6 +15,7 @@ use crate::instrument::InstrumentError;
 use crate::map::MapError;
 use crate::minimise::MinimiseError;
 use crate::model::ModelError;
+use crate::mutate::MutateError;
 use crate::new::NewError;
 use crate::plant::PlantError;
 use crate::plc::PlcError;
@@ -76,6 +77,9 @@ sum_of_errors! {
         /// `minimise` came to nothing.
         #[diagnostic(transparent)]
         Minimise(MinimiseError),
+        /// `mutate` came to nothing.
+        #[diagnostic(transparent)]
+        Mutate(MutateError),
         /// `components` or `describe` came to nothing.
         #[diagnostic(transparent)]
         Plant(PlantError),

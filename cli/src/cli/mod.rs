@@ -6,6 +6,7 @@
 //! | [`run`], [`compare`] | a scenario |
 //! | [`campaign`] | faults by campaigns |
 //! | [`explore`] | timings that links may have |
+//! | [`mutate`] | small mistakes in programs |
 //! | [`minimise`] | the least of a case that still fails |
 //! | [`test`] | all scenarios, and test programs |
 //! | [`session`] | a session that another process serves |
@@ -27,6 +28,7 @@ pub mod explore;
 mod logging;
 pub mod minimise;
 pub mod model;
+pub mod mutate;
 pub mod opcua;
 pub mod plant;
 pub mod plc;

@@ -182,7 +182,8 @@ impl<'a> Trials<'a> {
             {
                 moments.insert(t_v, moment);
             }
-            let is_decided = || self.target.expectation().is_some_and(|name| judged.violates(name));
+            let is_decided =
+                || self.target.expectation().is_some_and(|name| judged.violated().any(|known| known == name));
             if steps.is_multiple_of(LOOK_STRIDE) && is_decided() {
                 let judgement = Judgement { digest: None, violated: judged.abandon(), failure: None };
                 return Ok((self.target.met(&judgement), moments));

@@ -108,10 +108,10 @@ impl<'a> Judged<'a> {
         self.lockstep.session()
     }
 
-    /// True if it is known already that this expectation does not hold.
-    pub(crate) fn violates(&self, name: &str) -> bool {
+    /// The expectations of which it is known already that they do not hold.
+    pub(crate) fn violated(&self) -> impl Iterator<Item = &str> {
         let named = &self.scenario.expectations().named;
-        self.judge.violated().any(|number| named.get(number).is_some_and(|(known, _)| known == name))
+        self.judge.violated().filter_map(|number| named.get(number).map(|(name, _)| name.as_str()))
     }
 
     /// What came of it. `end` says whether nothing comes after it.

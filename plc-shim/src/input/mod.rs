@@ -170,6 +170,11 @@ impl Input {
         self.encoding
     }
 
+    /// The same file with another text for a part of its program text.
+    pub(crate) fn with_replaced(&self, range: std::ops::Range<u32>, text: &str) -> Self {
+        Self { file: self.file.with_replaced(range, text), ..self.clone() }
+    }
+
     /// Adds the file to `sources`, and gives what is wrong with it.
     pub(crate) fn add_to(self, sources: &mut SourceMap) -> Vec<Diagnostic> {
         let mut diagnostics = self.diagnostics;

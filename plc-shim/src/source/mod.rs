@@ -84,6 +84,21 @@ impl SourceFile {
         Self { dialect, ..self }
     }
 
+    /// The same with another text for a part of its program text. Of text that was taken out of a file, places behind
+    /// that part are shown where they would be without the change.
+    pub(crate) fn with_replaced(&self, range: Range<u32>, text: &str) -> Self {
+        let mut changed = self.text.to_string();
+        let bytes = range.start as usize..range.end as usize;
+        if changed.get(bytes.clone()).is_some() {
+            changed.replace_range(bytes, text);
+        }
+        let file = match &self.origin {
+            Some(origin) => Self::extracted(self.name.clone(), changed, origin.clone()),
+            None => Self::new(self.name.clone(), changed),
+        };
+        file.in_dialect(self.dialect)
+    }
+
     /// The dialect of its program text.
     pub fn dialect(&self) -> Dialect {
         self.dialect

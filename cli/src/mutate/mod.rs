@@ -1,0 +1,88 @@
+//! `onescan mutate`: small mistakes in the PLC's program, one at a time, and whether any expectation notices.
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`config`] | what is asked for |
+//! | [`error`] | why it came to nothing |
+//! | `trial` | all cases run with a mistake |
+//! | `tally` | how many of which kind were noticed |
+//! | `report` | for people and as JSON |
+//!
+//! **Invariants.** What is said of a mistake depends on its runs alone, not on how many went at a time. An expectation that
+//! the program without mistakes does not meet notices nothing.
+
+pub mod config;
+mod error;
+mod report;
+mod tally;
+mod trial;
+
+use std::io::Write;
+
+use onescan_plc_shim::mutate::MutantKind;
+use onescan_report::OutputError;
+use onescan_scenario::Scenario;
+use onescan_scenario::case::{Case, Catalogue};
+use onescan_scenario::mistake::Mistake;
+use onescan_server::signal::{ClientName, did_you_mean};
+
+pub use config::MutateConfig;
+pub use error::MutateError;
+use tally::Tally;
+use trial::{Trial, Verdict};
+
+use crate::error::{ExitCode, Usage};
+use crate::regress::pool::{bar, spread};
+
+/// A mistake, and what came of it.
+struct Judged {
+    mistake: Mistake,
+    verdict: Verdict,
+}
+
+/// Tries all mistakes that `config` asks for, and writes what came of them to `out`.
+///
+/// # Errors
+/// The scenario is wrong, has no soft PLC, or fails without any mistake.
+pub fn run(config: &MutateConfig, out: &mut dyn Write) -> Result<ExitCode, MutateError> {
+    let scenario = Scenario::load(&config.scenario)?;
+    let catalogue = Catalogue::load(scenario.folder())?;
+    let cases = chosen(&scenario, &catalogue, &config.cases)?;
+    let mut mistakes = scenario.mistakes(config.client.as_ref())?;
+    mistakes.retain(|mistake| config.kinds.is_empty() || config.kinds.contains(&mistake.mutant.kind));
+    if mistakes.is_empty() {
+        return Err(nothing(&scenario, config.client.as_ref()).into());
+    }
+    let trial = Trial::new(&scenario, &catalogue, cases)?;
+    let bar = bar(config.progress, mistakes.len(), "mutants");
+    let verdicts = spread(config.jobs, mistakes.len(), &bar, |index| trial.verdict(&mistakes[index]));
+    let verdicts: Vec<Verdict> = verdicts.into_iter().collect::<Result<_, _>>()?;
+    let judged: Vec<Judged> =
+        mistakes.into_iter().zip(verdicts).map(|(mistake, verdict)| Judged { mistake, verdict }).collect();
+    let tally = Tally::of(&judged);
+    report::write(config, &scenario, &judged, &tally, out).map_err(OutputError)?;
+    let enough = config.at_least.is_none_or(|wanted| tally.all().score_pct() >= f64::from(wanted));
+    Ok(if enough { ExitCode::Ok } else { ExitCode::Unmet })
+}
+
+/// The cases of these names; all if none is named.
+fn chosen<'c>(scenario: &Scenario, catalogue: &'c Catalogue, names: &[String]) -> Result<Vec<&'c Case>, MutateError> {
+    if names.is_empty() {
+        return Ok(catalogue.cases().iter().collect());
+    }
+    names.iter().map(|name| Ok(catalogue.named(scenario, name)?)).collect()
+}
+
+/// Why there is no mistake that could be made.
+fn nothing(scenario: &Scenario, client: Option<&ClientName>) -> Usage {
+    let Some(client) = client else {
+        return Usage::new("the scenario has no soft PLC in whose program a mistake could be", None);
+    };
+    let names = scenario.file().clients.keys().map(ClientName::as_str);
+    let message = format!("the scenario has no soft PLC `{client}` in whose program a mistake could be");
+    Usage::new(message, did_you_mean(client.as_str(), names))
+}
+
+/// What may be changed, as it is typed.
+pub(crate) const KINDS: [MutantKind; 5] =
+    [MutantKind::Operator, MutantKind::Constant, MutantKind::Condition, MutantKind::Statement, MutantKind::Timer];
