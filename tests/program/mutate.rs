@@ -19,14 +19,27 @@ fn count(mutants: &[Value], verdict: &str) -> usize {
     mutants.iter().filter(|mutant| mutant["verdict"] == verdict).count()
 }
 
-/// The table of the shear, and the same however many run at a time.
+/// The table of the shear by one of its cases, and the same however many run at a time.
 #[test]
-fn the_mistakes_of_the_shear_are_noticed() {
-    let said = typed(&scenario("shear"), &["mutate", "."]);
-    assert_eq!((said.code, said.err.as_str()), (Some(0), ""));
-    insta::assert_snapshot!(said.out);
-    let alone = typed(&scenario("shear"), &["mutate", ".", "--jobs", "1"]);
-    assert_eq!(alone.out, said.out);
+fn what_is_said_does_not_depend_on_the_number_at_a_time() {
+    let words = ["mutate", ".", "--case", "sensor-lost", "--jobs"];
+    let [alone, three] = ["1", "3"].map(|jobs| typed(&scenario("shear"), &[&words[..], &[jobs]].concat()));
+    assert_eq!((alone.code, alone.err.as_str()), (Some(0), ""));
+    insta::assert_snapshot!(alone.out);
+    assert_eq!(three.out, alone.out);
+}
+
+/// What the cases of three machines expect, a mistake in their programs does not keep to.
+#[test]
+fn the_cases_of_the_machines_notice_the_mistakes_in_their_programs() {
+    let mut mutants = 0;
+    for (name, client) in [("shear", "plc"), ("gantry-robot", "plc"), ("filling-machine", "plc")] {
+        let words = ["--client", client, "--at-least", "95"];
+        let (_, statement) = told(&scenario(name), &words);
+        assert!(statement["score_pct"].as_f64().expect("a number") >= 95.0, "{name}: {statement}");
+        mutants += statement["mutants"].as_u64().expect("a number");
+    }
+    assert!(mutants >= 300, "{mutants}");
 }
 
 /// What is said of a mutant is what comes of the program with the mistake in it.
@@ -77,7 +90,7 @@ fn each_verdict_is_given_for_its_reason() {
     let of_alignment = |mutants: Vec<Value>| -> Vec<Value> {
         mutants.into_iter().filter(|mutant| mutant["file"] == "plc/alignment.st").collect()
     };
-    let (mutants, _) = told(folder.path(), &["--case", "default"]);
+    let (mutants, _) = told(folder.path(), &["--case", "sensor-lost"]);
     let mutants = of_alignment(mutants);
     let verdict = |was: &str, is: &str| {
         let found = mutants.iter().find(|mutant| mutant["was"] == was && mutant["is"] == is);
@@ -90,7 +103,7 @@ fn each_verdict_is_given_for_its_reason() {
     let more = "[[expect]]\nname = \"the blade is seen to be level\"\nformula = \"always ((rose(Sensor_1) and \
                 rose(Sensor_2)) implies eventually[0,20ms] Aligned)\"\n\n[[expect]]\nname = \"strokes go on\"";
     edit(folder.path(), "scenario.toml", "[[expect]]\nname = \"strokes go on\"", more);
-    let (with, _) = told(folder.path(), &["--case", "default"]);
+    let (with, _) = told(folder.path(), &["--case", "sensor-lost"]);
     let with = of_alignment(with);
     let noticed = with.iter().find(|mutant| mutant["was"] == "Aligned := c.Q").expect("a mutant");
     assert_eq!(noticed["by"], "the blade is seen to be level");

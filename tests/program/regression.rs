@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::typed::{copied_shear, edit, scenario, typed};
+use crate::typed::{copied_shear, copied_shear_of_snapshots, edit, scenario, typed};
 
 /// `onescan test` of a folder with JSON output; one object a test, and one for all.
 fn tested(folder: &Path, words: &[&str]) -> (Vec<serde_json::Value>, Option<i32>) {
@@ -42,7 +42,7 @@ fn the_number_of_jobs_changes_no_bit() {
 
 #[test]
 fn a_changed_comparison_is_found() {
-    let folder = copied_shear();
+    let folder = copied_shear_of_snapshots();
     edit(folder.path(), "plc/shear.st", "Position_1 > LowerLimit", "Position_1 >= LowerLimit");
     let said = typed(folder.path().parent().expect("a folder"), &["test", &folder.path().to_string_lossy(), "--check"]);
     assert_eq!(said.code, Some(1), "{said:?}");
@@ -70,7 +70,7 @@ fn a_change_that_nobody_sees_stays_green() {
 
 #[test]
 fn pending_snapshots_come_and_go() {
-    let folder = copied_shear();
+    let folder = copied_shear_of_snapshots();
     let snapshots = folder.path().join("snapshots");
     let pending = || {
         let names = std::fs::read_dir(&snapshots).expect("a folder").map(|entry| entry.expect("an entry").file_name());

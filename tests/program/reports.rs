@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::typed::{copied_shear, edit, typed};
+use crate::typed::{copied_shear, copied_shear_of_snapshots, edit, typed};
 use crate::venv::python;
 
 /// A Python with what reads these reports.
@@ -21,7 +21,7 @@ const SOURCES: &str = "PROGRAM TEST_Odd ASSERT(FALSE, 'a < b & \"c\"'); END_PROG
 
 /// The shear with one case that has changed, and a test program that fails.
 fn reported() -> tempfile::TempDir {
-    let folder = copied_shear();
+    let folder = copied_shear_of_snapshots();
     edit(folder.path(), "plc/shear.st", "Position_1 > LowerLimit", "Position_1 >= LowerLimit");
     std::fs::write(folder.path().join("odd.st"), SOURCES).expect("a file");
     let words =

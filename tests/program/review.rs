@@ -1,10 +1,10 @@
 //! `onescan review`: old, new and difference, accepted or rejected.
 
-use crate::typed::{copied_shear, edit, scenario, typed};
+use crate::typed::{copied_shear, copied_shear_of_snapshots, edit, scenario, typed};
 
 /// The shear with a change that has been tested.
 fn changed_shear() -> tempfile::TempDir {
-    let folder = copied_shear();
+    let folder = copied_shear_of_snapshots();
     edit(folder.path(), "plc/shear.st", "Position_1 > LowerLimit", "Position_1 >= LowerLimit");
     assert_eq!(typed(folder.path(), &["test", "."]).code, Some(1));
     folder

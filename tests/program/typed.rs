@@ -100,6 +100,16 @@ pub(crate) fn copied_shear() -> tempfile::TempDir {
     copied("shear")
 }
 
+/// The same whose cases expect nothing beside what the scenario does, so that a change shows in snapshots alone.
+pub(crate) fn copied_shear_of_snapshots() -> tempfile::TempDir {
+    let folder = copied_shear();
+    let path = folder.path().join("cases.toml");
+    let text = std::fs::read_to_string(&path).expect("a file");
+    let blocks = text.split("\n\n").filter(|block| !block.contains("[[case.expect]]"));
+    std::fs::write(path, blocks.collect::<Vec<_>>().join("\n\n")).expect("a file");
+    folder
+}
+
 /// A copy of a scenario of the project in a folder of its own, to be broken.
 pub(crate) fn copied(name: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a folder");
