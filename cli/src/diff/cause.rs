@@ -44,8 +44,13 @@ pub struct Causes {
     pub unknown: [Option<String>; 2],
 }
 
-/// Finds who wrote `differences` at `at`.
-pub(super) fn causes(recordings: &[Recording; 2], differences: &[Difference], at: VirtualTime) -> Causes {
+/// Finds who wrote `differences` at `at`. Where one of the runs `ended` there, it is looked into the step in which it did:
+/// a PLC that stops has gone another way before.
+pub(super) fn causes(
+    recordings: &[Recording; 2],
+    differences: &[Difference],
+    (at, ended): (VirtualTime, bool),
+) -> Causes {
     let signals: BTreeSet<SignalName> = differences.iter().map(|difference| difference.signal.clone()).collect();
     let mut unknown = [None, None];
     let mut traced: [Traced; 2] = Default::default();
@@ -56,7 +61,7 @@ pub(super) fn causes(recordings: &[Recording; 2], differences: &[Difference], at
             Err(why) => unknown[index] = Some(why),
         }
     }
-    let why = way_back(&runs, differences, at);
+    let why = way_back(&runs, differences, (at, ended));
     if let Err(error) = &why {
         unknown[1].get_or_insert_with(|| error.to_string());
     }
@@ -82,9 +87,10 @@ struct Repeatable {
 fn way_back(
     runs: &[Option<Repeatable>; 2],
     differences: &[Difference],
-    at: VirtualTime,
+    (at, ended): (VirtualTime, bool),
 ) -> Result<Option<Why>, ScenarioError> {
     let [Some(a), Some(b)] = runs else { return Ok(None) };
+    let at = if ended { at + a.scenario.plan().step() } else { at };
     let sides = [a, b].map(|run| Side { scenario: &run.scenario, inputs: run.inputs.clone() });
     let signals: Vec<SignalName> = differences.iter().map(|difference| difference.signal.clone()).collect();
     why::explain(sides.each_ref(), &signals, at)

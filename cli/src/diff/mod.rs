@@ -20,8 +20,10 @@ pub mod trajectory;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use onescan_recording::Recording;
+use onescan_recording::event::EventKind;
+use onescan_recording::{Recording, RecordingError};
 use onescan_report::OutputError;
+use onescan_server::end::Failure;
 use onescan_server::signal::pattern::SignalPattern;
 use onescan_server::time::VirtualTime;
 
@@ -93,10 +95,23 @@ pub fn compare(a: &Path, b: &Path, since: VirtualTime, signals: &[SignalPattern]
     let comparison = Comparison::new(&recordings, since, signals)?;
     let divergence = comparison.first()?;
     let causes = match &divergence {
-        Some(Divergence { differences, at, .. }) => cause::causes(&recordings, differences, *at),
+        Some(Divergence { differences, at, ended, .. }) => {
+            cause::causes(&recordings, differences, (*at, ended.is_some()))
+        }
         None => cause::Causes::default(),
     };
     let around = divergence.as_ref().map(|found| comparison.around(found)).transpose()?;
     let files = sources::differing(&recordings);
-    Ok(Report { recordings, divergence, causes, around: around.unwrap_or_default(), files })
+    let ended = divergence.as_ref().and_then(|found| found.ended);
+    let failure = ended.map(|ended| failure_of(&recordings[ended])).transpose()?.flatten();
+    Ok(Report { recordings, divergence, failure, causes, around: around.unwrap_or_default(), files })
+}
+
+/// How a client of a recorded run failed, if one did.
+fn failure_of(recording: &Recording) -> Result<Option<Failure>, RecordingError> {
+    let events = recording.events()?;
+    Ok(events.into_iter().rev().find_map(|event| match event.what {
+        EventKind::Failed { failure } => Some(failure),
+        _ => None,
+    }))
 }

@@ -6,6 +6,7 @@ use onescan_clients::soft_plc::Written;
 use onescan_plc_shim::{FaultSite, Way};
 use onescan_recording::Recording;
 use onescan_report::table;
+use onescan_server::end::Failure;
 use serde_json::{Value, json};
 
 use super::cause::{Cause, Causes};
@@ -31,6 +32,8 @@ pub struct Report {
     pub recordings: [Recording; 2],
     /// Where they part; nothing if they are equal.
     pub divergence: Option<Divergence>,
+    /// How a client failed in the run that ends before the other.
+    pub failure: Option<Failure>,
     /// Who wrote what differs.
     pub causes: Causes,
     /// The trajectory there.
@@ -68,6 +71,9 @@ impl Report {
             return writeln!(out, "no difference");
         };
         write_place(found, out)?;
+        if let Some(failure) = &self.failure {
+            writeln!(out, "  {failure}")?;
+        }
         write_differences(found, out)?;
         for cause in self.causes.signals.iter().take(EXPLAINED) {
             self.write_cause(cause, out)?;
@@ -175,6 +181,7 @@ impl Report {
             object.insert("step_b".to_owned(), json!(found.steps[1]));
             object.insert("basis".to_owned(), json!(if found.basis == Basis::Digests { "digests" } else { "values" }));
             object.insert("ended".to_owned(), json!(found.ended.map(|ended| ["a", "b"][ended])));
+            object.insert("failure".to_owned(), json!(self.failure));
             object.insert("signals".to_owned(), self.json_signals(found));
             let partings: Vec<Value> = self.causes.partings.iter().map(json_parting).collect();
             object.insert("partings".to_owned(), json!(partings));
