@@ -5,6 +5,7 @@
 //! | module | subject |
 //! |---|---|
 //! | [`cli`] | the command line |
+//! | [`train`] | lessons taken at panels, measured on virtual time |
 //! | [`campaign`] | faults by the table, each with a verdict |
 //! | [`explore`] | timings that links may have, tried |
 //! | [`minimise`] | the least of a case with which it still fails |
@@ -70,6 +71,7 @@ pub mod review;
 pub mod run;
 pub mod session;
 pub mod snapshot;
+pub mod train;
 mod web;
 pub mod why;
 pub mod wiring;

@@ -15,6 +15,7 @@
 //! | [`expectations`] | what it expects of every run |
 //! | [`case`] | one scenario, tried in many ways |
 //! | [`apply`] | a case put on its scenario |
+//! | [`lesson`] | `lessons.toml`: what operators are trained in |
 //! | [`schema`] | the JSON schemas of both files |
 //! | [`compose`] | a scenario's plan and its clients |
 //! | [`mistake`] | a small mistake in the program of a soft PLC |
@@ -43,6 +44,7 @@ pub mod expectations;
 pub mod file;
 mod form;
 pub mod gateway;
+pub mod lesson;
 pub mod load;
 pub mod mistake;
 mod mistaken;

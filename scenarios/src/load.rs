@@ -182,6 +182,13 @@ impl Scenario {
         self.applied = Some(Arc::new(applied));
     }
 
+    /// Lets a component fail by somebody's hand: it is looked for when its plant is read.
+    pub(crate) fn may_fail(&mut self, failure: case::FailureAt) {
+        if let Some(applied) = &mut self.applied {
+            Arc::make_mut(applied).failures.push(failure);
+        }
+    }
+
     pub(crate) fn set_expectations(&mut self, expectations: Expectations) {
         self.expectations = expectations;
     }
@@ -194,6 +201,11 @@ impl Scenario {
     /// What chance begins with.
     pub fn seed(&self) -> u64 {
         self.case().and_then(|case| case.seed).unwrap_or(self.file.seed)
+    }
+
+    /// Lets a plant that follows a PLC correct so much of its error at each communication, %.
+    pub fn follow_with(&mut self, gain_pct: u8) {
+        self.file.freewheel.synchronizer_gain_pct = gain_pct;
     }
 
     /// Lets soft PLCs note what they execute.
@@ -273,7 +285,8 @@ impl Scenario {
                 | ClientFile::External { .. } => {}
             }
         }
-        files.extend(self.applied().and(Some(case::FILE_NAME.into())));
+        // cases and lessons stand beside the scenario
+        files.extend(self.applied().and_then(|applied| Path::new(&applied.source.0).file_name()).map(PathBuf::from));
         files.dedup();
         files
     }
@@ -323,6 +336,11 @@ impl Scenario {
         };
         let place = place_of_mapping(text, name, key)?;
         Some(wrong(path, text, message.to_owned(), Some(place), help.cloned()))
+    }
+
+    /// An error at a place of the file.
+    pub(crate) fn wrong_at(&self, place: Range<usize>, message: String, help: Option<String>) -> ScenarioError {
+        wrong(&self.path, &self.text, message, Some(place), help)
     }
 
     /// An error of an option, which has no place in the file.

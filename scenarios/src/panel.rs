@@ -5,7 +5,7 @@ use toml::Spanned;
 
 use crate::error::Wrong;
 use crate::file::{ClientFile, ScenarioFile, SignalFile};
-use crate::panel_file::{ElementFile, ElementKind, PanelFile};
+use crate::panel_file::{ElementFile, ElementKind, FailureName, PanelFile};
 
 /// Colours by name, beside `#rrggbb`.
 const COLOURS: &[&str] = &["red", "orange", "yellow", "green", "blue", "white", "grey"];
@@ -71,6 +71,9 @@ fn check_place(
 /// The signals are there, have a type that goes with the element, and are not written by a machine.
 fn check_binding(file: &ScenarioFile, element: &Spanned<ElementFile>) -> Result<(), Wrong> {
     let inner = element.get_ref();
+    if let Some(failure) = &inner.failure {
+        return check_failure(inner, failure);
+    }
     match (inner.kind, &inner.signal, &inner.signal_y) {
         (ElementKind::Alarms, None, None) => return Ok(()),
         (ElementKind::Alarms, Some(signal), _) => {
@@ -84,6 +87,21 @@ fn check_binding(file: &ScenarioFile, element: &Spanned<ElementFile>) -> Result<
     }
     for name in inner.signal.iter().chain(&inner.signal_y) {
         check_signal(file, inner.kind, name)?;
+    }
+    Ok(())
+}
+
+/// A failure is caused by a switch or while a button is pressed, and shown by a lamp. Whether the component has that mode is
+/// known when its plant is read.
+fn check_failure(element: &ElementFile, failure: &Spanned<FailureName>) -> Result<(), Wrong> {
+    if let Some(signal) = element.signal.as_ref().or(element.signal_y.as_ref()) {
+        return Err(at(signal, "an element has a `signal` or a `failure`, not both".to_owned(), None));
+    }
+    if !matches!(element.kind, ElementKind::Switch | ElementKind::Button | ElementKind::Lamp) {
+        return Err(at(failure, "only a switch, a button and a lamp can have a `failure`".to_owned(), None));
+    }
+    if failure.get_ref().parts().is_none() {
+        return Err(at(failure, "a failure is written `component.mode`".to_owned(), Some("as in `wall.leak`")));
     }
     Ok(())
 }

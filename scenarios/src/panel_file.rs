@@ -51,6 +51,9 @@ pub struct ElementFile {
     /// The signal of a joystick's way up and down.
     #[schemars(with = "Option<Name>")]
     pub signal_y: Option<Spanned<SignalName>>,
+    /// What it lets fail and repairs, in place of a signal: `component.mode`.
+    #[schemars(with = "Option<String>")]
+    pub failure: Option<Spanned<FailureName>>,
     /// Column and row of its upper left corner, from 0.
     pub at: [u32; 2],
     /// How many columns and rows it takes.
@@ -65,6 +68,19 @@ pub struct ElementFile {
     /// Whether a button stays where it is put.
     #[serde(default)]
     pub latching: bool,
+}
+
+/// A mode of failure of a component, as `component.mode`.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[serde(transparent)]
+pub struct FailureName(String);
+
+impl FailureName {
+    /// The component and the mode; nothing if it is not written so.
+    pub fn parts(&self) -> Option<[&str; 2]> {
+        let (component, mode) = self.0.rsplit_once('.')?;
+        (!component.is_empty() && !mode.is_empty()).then_some([component, mode])
+    }
 }
 
 /// What an element is.

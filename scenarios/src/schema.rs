@@ -1,4 +1,4 @@
-//! The JSON schemas of `scenario.toml` and `cases.toml`, for editors, and of a run's report, for programs: made from the
+//! The JSON schemas of `scenario.toml`, `cases.toml` and `lessons.toml`, for editors, and of a run's report, for programs: made from the
 //! structs that are read and written.
 
 use schemars::generate::SchemaSettings;
@@ -9,6 +9,8 @@ use serde_json::{Value, json};
 use crate::case;
 use crate::case::file::CasesFile;
 use crate::file::{self, ScenarioFile};
+use crate::lesson;
+use crate::lesson::file::LessonsFile;
 use crate::report::Report;
 
 /// The schema of `scenario.toml` (JSON Schema 2020-12).
@@ -19,6 +21,11 @@ pub fn scenario() -> Value {
 /// The schema of `cases.toml` (JSON Schema 2020-12).
 pub fn cases() -> Value {
     schema::<CasesFile>("onescan cases", case::file::VERSION)
+}
+
+/// The schema of `lessons.toml` (JSON Schema 2020-12).
+pub fn lessons() -> Value {
+    schema::<LessonsFile>("onescan lessons", lesson::file::VERSION)
 }
 
 /// The schema of `report` in the line of a run, and of `onescan report` (JSON Schema 2020-12).
@@ -112,6 +119,7 @@ mod tests {
     fn the_published_schemas_are_those_of_the_structs() {
         is_published("scenario", &scenario());
         is_published("cases", &cases());
+        is_published("lessons", &lessons());
         is_published("report", &report());
     }
 
@@ -143,6 +151,7 @@ mod tests {
         let mut found = Vec::new();
         undescribed(&scenario(), "scenario", &mut found);
         undescribed(&cases(), "cases", &mut found);
+        undescribed(&lessons(), "lessons", &mut found);
         undescribed(&report(), "report", &mut found);
         assert!(found.is_empty(), "{found:?}");
     }

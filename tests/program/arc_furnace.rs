@@ -6,7 +6,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::typed::{is_the_same_over_tcp_and_resumed, scenario, typed};
+use crate::typed::{copied, edit, is_the_same_over_tcp_and_resumed, rows, scenario, typed};
 
 /// A run of the furnace: the values of these signals, a row a change, and what was said.
 fn run<const N: usize>(more: &[&str], signals: [&str; N]) -> (Vec<[String; N]>, String) {
@@ -135,4 +135,31 @@ fn no_hand_at_the_pulpit_gets_past_the_interlocks() {
         let edges = rows.windows(2).filter(|pair| pair[0][column] != pair[1][column]).count();
         assert!(edges >= least, "column {column}: {edges} edges");
     }
+}
+
+/// The greatest distances from the library's mast, m: of the kind in Structured Text, and of the PLC that is the mechanics.
+fn apart(folder: &Path) -> [f64; 2] {
+    let record = folder.join("r");
+    let words = ["run", "mechanics.toml", "--record-also", "csv", "--overwrite", "--record", utf8(&record)];
+    let said = typed(folder, &words);
+    assert_eq!(said.code, Some(0), "{said:?}");
+    let rows = rows(&record.join("run-1"), &["Built_in", "Own_kind", "Second_plc"]);
+    assert!(rows.len() > 2000, "{}", rows.len());
+    [1, 2].map(|column| rows.iter().map(|row| (row[column] - row[0]).abs()).fold(0.0, f64::max))
+}
+
+/// Mechanics in Structured Text, as a kind of one's own and as a second PLC, are the library's within the error of Euler's
+/// rule: half the step, half the distance.
+#[test]
+fn mechanics_in_structured_text_are_those_of_the_library() {
+    let folder = copied("arc-furnace");
+    let coarse = apart(folder.path());
+    edit(folder.path(), "mechanics.toml", "\"20ms\"", "\"10ms\"");
+    edit(folder.path(), "mechanics/mechanics.st", "0.02", "0.01");
+    let fine = apart(folder.path());
+    for (coarse, fine) in coarse.into_iter().zip(fine) {
+        assert!(coarse > 1e-4 && coarse < 3.1e-3, "{coarse} m");
+        assert!((coarse / fine - 2.0).abs() < 0.3, "{coarse} m, {fine} m");
+    }
+    is_the_same_over_tcp_and_resumed("arc-furnace", "mechanics.toml", "30s", "12s");
 }

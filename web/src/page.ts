@@ -12,6 +12,7 @@ import { SignalTable } from "./signals";
 import { SourceView } from "./source";
 import { colour } from "./theme";
 import { Timeline } from "./timeline";
+import { TrainingView } from "./training";
 import { TrendsView } from "./trends";
 
 const ALARMS = 50;
@@ -45,6 +46,7 @@ export class Page {
       view: new PanelView(panel, session, {
         write: (signal, value) => this.ask({ type: "write", signal, value }),
         take: (name, take) => this.ask({ type: "seat", panel: name, take }),
+        fail: (component, failure, active) => this.ask({ type: "fail", component, failure, active }),
         alarms: () => this.alarms,
       }),
     }));
@@ -79,7 +81,7 @@ export class Page {
 
   private fill_sheets(sheets: Sheets, code: HTMLElement): void {
     const none = make("p", { class: "empty" }, "This scenario has no panel. Add [[panel]] to it.");
-    sheets.add("Panels", make("div", {}, ...(this.panels.length === 0 ? [none] : this.panels.map((one) => one.view.root))));
+    sheets.add("Panels", make("div", {}, ...this.lesson(), ...(this.panels.length === 0 ? [none] : this.panels.map((one) => one.view.root))));
     sheets.add("Part", this.part.root);
     sheets.add("Signals", this.table.root);
     sheets.add("PLC", this.plc(code));
@@ -87,6 +89,11 @@ export class Page {
     this.tabs = sheets;
     const shown = this.panels.flatMap((one) => one.view.signals()).slice(0, LANES_AT_FIRST);
     for (const signal of shown) this.trends.toggle(signal);
+  }
+
+  private lesson(): readonly HTMLElement[] {
+    const lesson = this.session.training;
+    return lesson === null ? [] : [new TrainingView(lesson, () => this.last?.t_ns ?? 0, (ask) => this.ask(ask)).root];
   }
 
   private plc(code: HTMLElement): HTMLElement {
@@ -114,7 +121,8 @@ export class Page {
   private fill_tools(readout: HTMLElement): void {
     const operate = (operation: "hold" | "go" | "step", label: string): HTMLButtonElement =>
       button(label, () => this.ask({ type: "operate", operation }));
-    if (this.session.live) frame("controls").append(operate("hold", "Hold"), operate("step", "Step"), operate("go", "Go"));
+    const is_ours = this.session.training?.role !== "trainee";
+    if (this.session.live && is_ours) frame("controls").append(operate("hold", "Hold"), operate("step", "Step"), operate("go", "Go"));
     const views = this.session.views.map((view) => button(view.name, () => this.machine.see(view)));
     const [front, back] = this.machine.depth_m();
     const cut = make("input", { type: "range", min: "0", max: "1", step: "0.01", value: "0", "aria-label": "Section from the front" });
@@ -181,7 +189,10 @@ export class Page {
       case "status":
         frame("state").textContent = message.state;
         frame("pace").textContent = message.pace;
-        for (const one of this.panels) one.view.sit(message.seats.get(one.name) ?? "taken");
+        for (const one of this.panels) {
+          one.view.sit(message.seats.get(one.name) ?? "taken");
+          one.view.show_failed(message.failed);
+        }
         return this.timeline.reach(message.past_ns, message.shown_ns);
       case "event":
         this.alarms.unshift(`${seconds(message.t_ns)} ${message.text}`);

@@ -8,6 +8,8 @@ export interface Desk {
   /** Writes a value of a signal, as an operator's input at the next step boundary. */
   readonly write: (signal: number, value: number) => void;
   readonly take: (panel: string, take: boolean) => void;
+  /** Lets a component fail, or repairs it. */
+  readonly fail: (component: string, failure: string, active: boolean) => void;
   /** The events that wait for an acknowledgement, newest first. */
   readonly alarms: () => readonly string[];
 }
@@ -18,6 +20,7 @@ type Show = (value: number) => void;
 export class PanelView {
   readonly root: HTMLElement;
   private readonly shows = new Map<number, Show[]>();
+  private readonly failures = new Map<string, Show[]>();
   private readonly inputs: (HTMLButtonElement | HTMLInputElement | HTMLSelectElement)[] = [];
   private readonly seat_text = make("span", { class: "seat-text", role: "status" });
   private readonly seat_button: HTMLButtonElement;
@@ -43,6 +46,11 @@ export class PanelView {
 
   show(signal: number, value: number): void {
     for (const one of this.shows.get(signal) ?? []) one(value);
+  }
+
+  /** The failures that are at work now, as `component.mode`. */
+  show_failed(failed: ReadonlySet<string>): void {
+    for (const [name, shows] of this.failures) for (const one of shows) one(failed.has(name) ? 1 : 0);
   }
 
   /** Who sits here: inputs work for the one who does. */
@@ -105,14 +113,30 @@ export class PanelView {
     if (signal !== null && this.seat === "mine") this.desk.write(signal, value);
   }
 
+  /** Shows the signal or the failure of an element; what it gives writes it. */
+  private wire(element: PanelElement, show: Show): (value: number) => void {
+    if (element.failure === null) {
+      const signal = this.bound(element.signal, show);
+      return (value) => this.write(signal, value);
+    }
+    const [component, mode] = element.failure;
+    const name = `${component}.${mode}`;
+    const all = this.failures.get(name);
+    if (all === undefined) this.failures.set(name, [show]);
+    else all.push(show);
+    return (value) => {
+      if (this.seat === "mine") this.desk.fail(component, mode, value !== 0);
+    };
+  }
+
   private fill_button(cell: HTMLElement, element: PanelElement): void {
     const key = make("button", { type: "button", class: "push", "aria-pressed": "false" }, element.label);
-    const signal = this.bound(element.signal, (value) => key.setAttribute("aria-pressed", String(value !== 0)));
+    const write = this.wire(element, (value) => key.setAttribute("aria-pressed", String(value !== 0)));
     let isDown = false;
     const press = (down: boolean): void => {
       if (down === isDown || key.disabled) return;
       isDown = down;
-      this.write(signal, down ? 1 : 0);
+      write(down ? 1 : 0);
     };
     key.addEventListener("pointerdown", (event) => {
       key.setPointerCapture(event.pointerId);
@@ -133,8 +157,8 @@ export class PanelView {
 
   private fill_switch(cell: HTMLElement, element: PanelElement): void {
     const key = make("button", { type: "button", class: "toggle", role: "switch", "aria-checked": "false" }, element.label);
-    const signal = this.bound(element.signal, (value) => key.setAttribute("aria-checked", String(value !== 0)));
-    key.addEventListener("click", () => this.write(signal, key.getAttribute("aria-checked") === "true" ? 0 : 1));
+    const write = this.wire(element, (value) => key.setAttribute("aria-checked", String(value !== 0)));
+    key.addEventListener("click", () => write(key.getAttribute("aria-checked") === "true" ? 0 : 1));
     this.inputs.push(key);
     cell.append(key);
   }
@@ -172,7 +196,7 @@ export class PanelView {
   private fill_lamp(cell: HTMLElement, element: PanelElement): void {
     const state = make("span", { class: "visually-hidden" }, "off");
     const bulb = make("span", { class: "bulb" });
-    this.bound(element.signal, (value) => {
+    this.wire(element, (value) => {
       bulb.classList.toggle("on", value !== 0);
       state.textContent = value !== 0 ? "on" : "off";
     });

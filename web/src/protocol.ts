@@ -86,6 +86,8 @@ export interface PanelElement {
   readonly signal: string | null;
   /** The second axis of a joystick. */
   readonly signal_y: string | null;
+  /** The component and its mode of failure, in place of a signal. */
+  readonly failure: readonly [string, string] | null;
   /** Column and row, from 0. */
   readonly at: readonly [number, number];
   readonly span: readonly [number, number];
@@ -116,6 +118,14 @@ export interface Source {
   readonly lines: readonly SourceLine[];
 }
 
+/** The lesson that a session is, on the page of one of its two people. */
+export interface Lesson {
+  readonly role: "trainee" | "trainer";
+  readonly lesson: string;
+  readonly about: string | null;
+  readonly starts: readonly string[];
+}
+
 /** The parts of a session that do not change while it runs. */
 export interface Session {
   readonly title: string;
@@ -123,6 +133,7 @@ export interface Session {
   readonly step_ns: number;
   readonly until_ns: number | null;
   readonly live: boolean;
+  readonly training: Lesson | null;
   readonly signals: readonly Signal[];
   readonly bodies: readonly Body[];
   readonly components: readonly Component[];
@@ -278,6 +289,7 @@ function element(field: Field): PanelElement {
     label: field.at("label").text(),
     signal: nullableText(field.at("signal")),
     signal_y: nullableText(field.at("signal_y")),
+    failure: field.at("failure").or<readonly [string, string] | null>(null, failure),
     at: field.at("at").numbers(2) as unknown as [number, number],
     span: field.at("span").or<readonly [number, number]>([1, 1], (item) => item.numbers(2) as unknown as [number, number]),
     min: field.at("min").or(0, number),
@@ -288,6 +300,22 @@ function element(field: Field): PanelElement {
       label: item.at("label").text(),
     }))),
     toggles: field.at("mode").or("momentary", text) === "toggle",
+  };
+}
+
+function failure(field: Field): readonly [string, string] {
+  const [component, mode, ...more] = field.list(text);
+  if (component === undefined || mode === undefined || more.length > 0) field.fail("is not a component and a mode");
+  return [component, mode];
+}
+
+function lesson(field: Field): Lesson {
+  const role = field.at("role").text();
+  return {
+    role: role === "trainee" || role === "trainer" ? role : field.at("role").fail(`is \`${role}\`: trainee or trainer`),
+    lesson: field.at("lesson").text(),
+    about: nullableText(field.at("about")),
+    starts: field.at("starts").or<string[]>([], (all) => all.list(text)),
   };
 }
 
@@ -313,6 +341,7 @@ export function decodeSession(value: unknown): Session {
     step_ns: root.at("step_ns").number(),
     until_ns: root.at("until_ns").or<number | null>(null, number),
     live: root.at("live").or(true, flag),
+    training: root.at("training").or<Lesson | null>(null, lesson),
     signals: root.at("signals").list(signal),
     bodies: list("bodies", body),
     components: list("components", component),
@@ -348,6 +377,8 @@ export type Message =
       readonly digest: string | null;
       readonly pace: string;
       readonly seats: ReadonlyMap<string, Seat>;
+      /** Failures at work, as `component.mode`. */
+      readonly failed: ReadonlySet<string>;
       /** The time in the past that is shown; nothing at the live edge. */
       readonly shown_ns: number | null;
       readonly past_ns: readonly [number, number] | null;
@@ -386,6 +417,7 @@ export function decodeMessage(raw: string): Message {
         digest: nullableText(root.at("digest")),
         pace: root.at("pace").or("", (field) => field.shown()),
         seats: new Map(root.at("seat").or<[string, Seat][]>([], (all) => all.entries((key, item) => [key, seat(item)]))),
+        failed: new Set(root.at("failed").or<string[]>([], (all) => all.list(text))),
         shown_ns: root.at("shown_ns").or<number | null>(null, number),
         past_ns: root.at("past_ns").or<readonly [number, number] | null>(null, (item) => item.numbers(2) as [number, number]),
       };
@@ -474,6 +506,9 @@ export type Ask =
   | { readonly type: "operate"; readonly operation: "hold" | "go" | "step" | "stop"; readonly steps?: number }
   | { readonly type: "seat"; readonly panel: string; readonly take: boolean }
   | { readonly type: "fail"; readonly component: string; readonly failure: string; readonly active: boolean }
+  | { readonly type: "train"; readonly turn: "repeat" }
+  | { readonly type: "train"; readonly turn: "back"; readonly t_ns: number }
+  | { readonly type: "train"; readonly turn: "jump"; readonly start: string }
   | { readonly type: "show"; readonly t_ns: number }
   | { readonly type: "live" }
   | { readonly type: "fork"; readonly t_ns: number };

@@ -21,8 +21,10 @@ use super::run::RunArgs;
 use super::session::{ControlArgs, JoinArgs};
 use super::source::{CheckArgs, ExplainArgs, InstrumentArgs};
 use super::test::{ReviewArgs, TestArgs, WorkerArgs};
+use super::train::TrainArgs;
 use super::{
     access, campaign, compare, explore, minimise, model, mutate, plant, plc, recording, run, session, source, test,
+    train,
 };
 use crate::error::ExitCode;
 
@@ -85,6 +87,9 @@ pub enum Command {
     Minimise(MinimiseArgs),
     /// Make small mistakes in the PLC's program, one at a time, and show which ones no expectation notices
     Mutate(MutateArgs),
+    /// Let somebody take a lesson: malfunctions at the panels of a page, the times until they are identified and acted
+    /// upon, and what an expert made of them
+    Train(Box<TrainArgs>),
     /// One run, for `campaign`
     #[command(hide = true)]
     CampaignWorker(CampaignWorkerArgs),
@@ -152,6 +157,7 @@ pub fn dispatch(command: Command) -> Result<ExitCode, CommandError> {
         Command::Explore(args) => explore::explore(args),
         Command::Mutate(args) => mutate::mutate(args),
         Command::Minimise(args) => minimise::minimise(args),
+        Command::Train(args) => train::train(*args),
         Command::Campaign(args) => campaign::campaign(args),
         Command::CampaignWorker(args) => campaign::work(args),
         Command::Review(args) => test::review(args),

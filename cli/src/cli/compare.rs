@@ -8,7 +8,7 @@ use onescan_server::signal::SignalName;
 use onescan_server::time::VirtualTime;
 
 use super::error::CommandError;
-use super::value::{FormatArg, part, plane};
+use super::value::{FormatArg, part, plane, signal_name};
 use crate::compare::CompareConfig;
 use crate::error::ExitCode;
 use crate::interrupt::Interrupt;
@@ -19,12 +19,18 @@ use crate::run::RunConfig;
 pub struct CompareArgs {
     /// The scenario: a folder with a `scenario.toml`
     pub scenario: PathBuf,
+    /// A case of the scenario's `cases.toml` [default: the scenario as it is]
+    #[arg(long, value_name = "NAME")]
+    pub case: Option<String>,
     /// Virtual time at which a run is complete [default: the scenario's `until`]
     #[arg(long, value_name = "TIME")]
     pub until: Option<VirtualTime>,
     /// Runs of each way
     #[arg(long, default_value_t = 3, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000))]
     pub runs: u32,
+    /// Count how often this signal comes true in each way, as one that tells that the PLC's checks fail
+    #[arg(long, value_name = "SIGNAL", value_parser = signal_name)]
+    pub count: Option<SignalName>,
     /// Draw the signals of the scenario's plot, a run of each way over each other, into this SVG file
     #[arg(long, value_name = "FILE")]
     pub plot: Option<PathBuf>,
@@ -46,12 +52,12 @@ pub struct CompareArgs {
 pub fn compare(args: CompareArgs) -> Result<ExitCode, CommandError> {
     let interrupt = Interrupt::new();
     interrupt.on_signals();
-    let mut run = RunConfig::headless(args.scenario, None);
+    let mut run = RunConfig::headless(args.scenario, args.case);
     run.subject.until = args.until;
     run.runs = args.runs;
     run.picture.plane = args.xy;
     run.picture.enlarged = args.enlarge;
-    let config = CompareConfig { run, plot: args.plot, format: args.format.into() };
+    let config = CompareConfig { run, count: args.count, plot: args.plot, format: args.format.into() };
     crate::compare::compare(&config, &interrupt, &mut std::io::stdout().lock())?;
     Ok(ExitCode::Ok)
 }

@@ -24,6 +24,7 @@ use crate::report::ReportError;
 use crate::review::ReviewError;
 use crate::run::RunError;
 use crate::session::SessionError;
+use crate::train::TrainError;
 use crate::wiring::WiringError;
 
 sum_of_errors! {
@@ -80,6 +81,9 @@ sum_of_errors! {
         /// `mutate` came to nothing.
         #[diagnostic(transparent)]
         Mutate(MutateError),
+        /// `train` came to nothing.
+        #[diagnostic(transparent)]
+        Train(TrainError),
         /// `components` or `describe` came to nothing.
         #[diagnostic(transparent)]
         Plant(PlantError),

@@ -8,6 +8,7 @@
 //! | [`explore`] | timings that links may have |
 //! | [`mutate`] | small mistakes in programs |
 //! | [`minimise`] | the least of a case that still fails |
+//! | [`train`] | lessons |
 //! | [`test`] | all scenarios, and test programs |
 //! | [`session`] | a session that another process serves |
 //! | [`recording`] | what was recorded |
@@ -37,6 +38,7 @@ pub mod run;
 pub mod session;
 pub mod source;
 pub mod test;
+pub mod train;
 pub mod value;
 
 use std::io::Write;

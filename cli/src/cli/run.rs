@@ -325,7 +325,11 @@ fn config(args: RunArgs) -> Result<RunConfig, CommandError> {
     })
 }
 
-fn pace(text: &str) -> Result<Pace, String> {
+/// How fast virtual time may run.
+///
+/// # Errors
+/// Why it is no pace.
+pub(super) fn pace(text: &str) -> Result<Pace, String> {
     if text == "max" {
         return Ok(Pace::Max);
     }

@@ -17,14 +17,44 @@ use crate::run::config::{Drawing, Picture};
 use crate::run::sampler::{Samples, drawn, panel};
 use crate::run::{Ran, RunConfig, RunError, one_run};
 
-/// The ways, lockstep first: the others are held against it.
-const MODES: [Mode; 4] = [Mode::Lockstep, Mode::Freewheel, Mode::Halt, Mode::Follow];
+/// A way of bringing plant and PLC together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Way {
+    mode: Mode,
+    /// How much of its error a plant that follows corrects, %; as the scenario says if absent.
+    gain_pct: Option<u8>,
+}
+
+/// The ways, lockstep first: the others are held against it. The plant follows by the scenario's gain, which is that of the paper
+/// unless it says otherwise, and by half of the error.
+const WAYS: [Way; 5] = [
+    Way { mode: Mode::Lockstep, gain_pct: None },
+    Way { mode: Mode::Freewheel, gain_pct: None },
+    Way { mode: Mode::Halt, gain_pct: None },
+    Way { mode: Mode::Follow, gain_pct: None },
+    Way { mode: Mode::Follow, gain_pct: Some(50) },
+];
+
+/// Errors of a plant that follows which people are shown.
+const ERRORS_SHOWN: usize = 10;
+
+impl Way {
+    /// What it is called in a table.
+    fn name(self) -> String {
+        match self.gain_pct {
+            Some(gain_pct) => format!("{} {gain_pct}%", self.mode.name()),
+            None => self.mode.name().to_owned(),
+        }
+    }
+}
 
 /// What is asked for.
 #[derive(Clone, Debug)]
 pub struct CompareConfig {
     /// How each run is made; its mode and what it writes are this command's business.
     pub run: RunConfig,
+    /// A signal of which it is counted how often it comes true.
+    pub count: Option<SignalName>,
     /// File for the plot.
     pub plot: Option<PathBuf>,
     /// For whom the table is.
@@ -51,6 +81,15 @@ pub struct Row {
     pub lost_edges: f64,
     /// Edges of lockstep.
     pub edges: usize,
+    /// How often the signal that is counted came true, on average of the runs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub counted: Option<f64>,
+    /// How much of its error a plant that follows corrects at each communication, %.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gain_pct: Option<u8>,
+    /// How far it was behind the PLC at each communication of the first run, ms.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub errors_ms: Vec<f64>,
     /// Steps a second, wall clock.
     pub steps_per_s: f64,
 }
@@ -59,6 +98,7 @@ pub struct Row {
 struct Run {
     digest: String,
     samples: Samples,
+    errors_ns: Vec<i64>,
     steps_per_s: f64,
 }
 
@@ -67,10 +107,16 @@ struct Run {
 /// # Errors
 /// As those of a run.
 pub fn compare(config: &CompareConfig, interrupt: &Interrupt, out: &mut dyn Write) -> Result<Vec<Row>, RunError> {
-    let scenario = Scenario::load(&config.run.subject.scenario)?;
+    let plain = Scenario::load_case(&config.run.subject.scenario, config.run.subject.case.as_deref())?;
+    let counted = config.count.as_ref().map(|name| counted(&plain, name)).transpose()?;
+    let scenario = &plain;
     let names: Vec<SignalName> = scenario.file().signals.keys().cloned().collect();
     let mut all: Vec<Vec<Run>> = Vec::new();
-    for mode in MODES {
+    for Way { mode, gain_pct } in WAYS {
+        let mut scenario = plain.clone();
+        if let Some(gain_pct) = gain_pct {
+            scenario.follow_with(gain_pct);
+        }
         let run = RunConfig {
             mode,
             picture: Picture { drawing: Drawing::Kept, signals: names.clone(), ..config.run.picture.clone() },
@@ -79,12 +125,17 @@ pub fn compare(config: &CompareConfig, interrupt: &Interrupt, out: &mut dyn Writ
         run.check(&scenario)?;
         let mut runs = Vec::new();
         for number in 1..=config.run.runs {
-            let Ran { report, samples, .. } = one_run(&run, &scenario, number, interrupt, Vec::new())?;
+            let Ran { report, samples, errors_ns, .. } = one_run(&run, &scenario, number, interrupt, Vec::new())?;
             if let Some(error) = &report.error {
                 return Err(Usage::new(format!("{}: {error}", mode.name()), None).into());
             }
             let digest = report.digest.map_or_else(String::new, |digest| digest.to_string());
-            runs.push(Run { digest, samples, steps_per_s: report.steps.0 as f64 / report.wall_time_s.max(1e-9) });
+            runs.push(Run {
+                digest,
+                samples,
+                errors_ns,
+                steps_per_s: report.steps.0 as f64 / report.wall_time_s.max(1e-9),
+            });
             if interrupt.is_raised() {
                 return Err(Usage::new("stopped before there was anything to compare", None).into());
             }
@@ -92,11 +143,18 @@ pub fn compare(config: &CompareConfig, interrupt: &Interrupt, out: &mut dyn Writ
         all.push(runs);
     }
     let types: Vec<SignalType> = scenario.file().signals.values().map(|signal| signal.get_ref().ty).collect();
-    let rows: Vec<Row> =
-        MODES.iter().zip(&all).map(|(mode, runs)| row(*mode, runs, &all[0][0].samples, &types)).collect();
+    let mut rows: Vec<Row> =
+        WAYS.iter().zip(&all).map(|(way, runs)| row(way.mode, runs, &all[0][0].samples, &types)).collect();
+    for ((row, way), runs) in rows.iter_mut().zip(WAYS).zip(&all) {
+        row.counted = counted.map(|index| times_true(runs, index));
+        if way.mode == Mode::Follow {
+            row.gain_pct = Some(way.gain_pct.unwrap_or(scenario.file().freewheel.synchronizer_gain_pct));
+            row.errors_ms = runs[0].errors_ns.iter().map(|ns| *ns as f64 / 1e6).collect();
+        }
+    }
     let mut not_there = None;
     if let Some(path) = &config.plot {
-        let (svg, nothing) = drawn(&plot(&config.run.picture, &scenario, &all), &config.run.picture);
+        let (svg, nothing) = drawn(&plot(&config.run.picture, scenario, &all), &config.run.picture);
         file::write_whole(path, svg.as_bytes())?;
         not_there = nothing;
     }
@@ -138,8 +196,33 @@ fn row(mode: Mode, runs: &[Run], lockstep: &Samples, types: &[SignalType]) -> Ro
         offset_ms: mean(&offsets),
         lost_edges: lost as f64 / count as f64,
         edges: edges / count,
+        counted: None,
+        gain_pct: None,
+        errors_ms: Vec::new(),
         steps_per_s: mean(&rates),
     }
+}
+
+/// The column of a signal that is counted.
+fn counted(scenario: &Scenario, name: &SignalName) -> Result<usize, Usage> {
+    let mut known = scenario.file().signals.keys();
+    known.position(|signal| signal == name).ok_or_else(|| {
+        let names = scenario.file().signals.keys().map(SignalName::as_str);
+        Usage::new(format!("there is no signal `{name}` to count"), onescan_base::did_you_mean(name.as_str(), names))
+    })
+}
+
+/// How often a signal comes true, on average of the runs.
+fn times_true(runs: &[Run], index: usize) -> f64 {
+    let of_run =
+        |run: &Run| run.samples.values[index].windows(2).filter(|pair| pair[0] == 0.0 && pair[1] != 0.0).count();
+    runs.iter().map(of_run).sum::<usize>() as f64 / runs.len().max(1) as f64
+}
+
+/// The mean size of the errors in the second half of a run, ms: what is left of them.
+fn left_ms(errors_ms: &[f64]) -> f64 {
+    let late = &errors_ms[errors_ms.len() / 2..];
+    late.iter().map(|error| error.abs()).sum::<f64>() / late.len().max(1) as f64
 }
 
 /// The largest distance of two trajectories, as a part of the first one's range.
@@ -164,7 +247,7 @@ fn plot(picture: &Picture, scenario: &Scenario, all: &[Vec<Run>]) -> Plot {
     let names = picture.plane.as_ref().map_or_else(|| picture.plotted(scenario), |plane| plane.to_vec());
     Plot {
         title: format!("{}: lockstep and the other ways", scenario.name()),
-        runs: MODES.iter().map(|mode| mode.name().to_owned()).collect(),
+        runs: WAYS.iter().map(|way| way.name()).collect(),
         panels: names.iter().map(|name| panel(scenario, name, samples.iter())).collect(),
         marks: Vec::new(),
     }
@@ -178,18 +261,34 @@ fn write(rows: &[Row], format: Format, out: &mut dyn Write) -> std::io::Result<(
         }
         return out.flush();
     }
-    writeln!(out, "mode       runs  digests  deviation  time offset  lost edges     steps/s")?;
-    for row in rows {
-        let (mode, lost) = (row.mode.name(), format!("{:.1} of {}", row.lost_edges, row.edges));
+    writeln!(out, "mode        runs  digests  deviation  time offset  lost edges     steps/s")?;
+    for (row, way) in rows.iter().zip(WAYS) {
+        let (mode, lost) = (way.name(), format!("{:.1} of {}", row.lost_edges, row.edges));
         writeln!(
             out,
-            "{mode:9}  {:4}  {:7}  {:7.2} %  {:+8.1} ms  {lost:>10}  {:10.0}",
+            "{mode:10}  {:4}  {:7}  {:7.2} %  {:+8.1} ms  {lost:>10}  {:10.0}",
             row.runs,
             row.digests,
             row.deviation * 100.0,
             row.offset_ms,
             row.steps_per_s
         )?;
+    }
+    for (row, way) in rows.iter().zip(WAYS) {
+        if let Some(counted) = row.counted {
+            writeln!(out, "{}: counted {counted:.1} times", way.name())?;
+        }
+        if let Some(gain_pct) = row.gain_pct.filter(|_| !row.errors_ms.is_empty()) {
+            let first: Vec<String> = row.errors_ms.iter().take(ERRORS_SHOWN).map(|ms| format!("{ms:+.0}")).collect();
+            let (count, left) = (row.errors_ms.len(), left_ms(&row.errors_ms));
+            let errors = first.join(", ");
+            writeln!(
+                out,
+                "{}: gain {gain_pct} %, {count} communications; the plant is behind by {errors} ms …; {left:.1} ms in the mean of \
+                 the second half",
+                way.name()
+            )?;
+        }
     }
     out.flush()
 }
@@ -202,7 +301,7 @@ mod tests {
         let names = ["level", "flag"].map(|name| SignalName::new(name).unwrap()).to_vec();
         let t_ns = (0..level.len() as u64).map(|k| k * 10_000_000).collect();
         let samples = Samples { names, t_ns, values: vec![level.to_vec(), flag.to_vec()] };
-        Run { digest: digest.to_owned(), samples, steps_per_s: 100.0 }
+        Run { digest: digest.to_owned(), samples, errors_ns: Vec::new(), steps_per_s: 100.0 }
     }
 
     #[test]

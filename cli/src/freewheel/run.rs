@@ -41,6 +41,8 @@ pub struct Trace {
     pub reached: VirtualTime,
     /// The end of the run if a client failed.
     pub failed: Option<SessionEnd>,
+    /// How far a plant that follows was behind the PLC at each communication, ns.
+    pub errors_ns: Vec<i64>,
 }
 
 /// Runs `clients` free-wheeling until each one's own clock has come to `until`, or until `stop`.
@@ -67,8 +69,9 @@ pub fn run(
         failed = spin(&mut wheels, &links, &requests, until, stop);
     }
     let reached = wheels.iter().map(|wheel| wheel.reached).min().unwrap_or_default();
+    let errors_ns = wheels.iter_mut().flat_map(|wheel| std::mem::take(&mut wheel.errors_ns)).collect();
     let recorded = requests.into_iter().zip(wheels.into_iter().map(|wheel| wheel.recorded));
-    Ok(Trace { replay: replayed(plan, recorded)?, reached, failed })
+    Ok(Trace { replay: replayed(plan, recorded)?, reached, failed, errors_ns })
 }
 
 /// Lets all clients and links run beside each other, each in a thread of its own.
@@ -138,6 +141,7 @@ fn connect(
             own: Vec::new(),
             recorded: Vec::new(),
             reached: VirtualTime::ZERO,
+            errors_ns: Vec::new(),
             plc_clock: Arc::clone(&plc_clock),
         })
         .collect();

@@ -44,6 +44,8 @@ pub(super) struct Wheel {
     pub(super) recorded: Vec<Vec<u8>>,
     /// How far its own clock has come.
     pub(super) reached: VirtualTime,
+    /// How far it was behind the PLC at each communication, ns, if it follows one.
+    pub(super) errors_ns: Vec<i64>,
     /// The clock of the PLC, in ns, which the PLC's wheel writes and who follows it reads.
     pub(super) plc_clock: Arc<AtomicU64>,
 }
@@ -111,7 +113,7 @@ impl Wheel {
 
     /// Waits until the plant, at `t`, may step; false if it is to stop.
     fn wait_for_plc(
-        &self,
+        &mut self,
         synchronizer: &mut Synchronizer,
         t: VirtualTime,
         rate: TimeSpan,
@@ -122,7 +124,9 @@ impl Wheel {
                 return false;
             }
             std::thread::sleep(Duration::from_nanos(rate.as_nanos()));
-            synchronizer.observe(self.plc_clock.load(Ordering::Relaxed), t.as_nanos());
+            let plc_ns = self.plc_clock.load(Ordering::Relaxed);
+            self.errors_ns.push(plc_ns.cast_signed() - t.as_nanos().cast_signed());
+            synchronizer.observe(plc_ns, t.as_nanos());
         }
         true
     }

@@ -4,6 +4,7 @@ use onescan_server::session::Session;
 use onescan_server::signal::{SignalId, SignalName};
 
 /// Signals chosen by name, found anew in each session.
+#[derive(Clone)]
 pub(crate) struct Chosen {
     names: Vec<SignalName>,
     signals: Vec<SignalId>,

@@ -16,14 +16,15 @@ use crate::error::Usage;
 use crate::freewheel::run::{Clock, Freewheeler, Trace};
 use crate::interrupt::Interrupt;
 
-/// Runs the scenario once; `watch` adds observers to the replay.
+/// Runs the scenario once; `watch` adds observers to the replay. Beside its outcome it gives how far a plant that follows was
+/// behind the PLC at each communication, ns.
 pub(super) fn run(
     config: &RunConfig,
     scenario: &Scenario,
     number: u32,
     interrupt: &Interrupt,
     watch: impl FnOnce(&mut Lockstep),
-) -> Result<Outcome, RunError> {
+) -> Result<(Outcome, Vec<i64>), RunError> {
     let mut clients = Vec::new();
     for name in scenario.plan().clients() {
         if let Some(client) = scenario.free_gateway(name) {
@@ -39,15 +40,16 @@ pub(super) fn run(
         }
     }
     interrupt.heed();
-    let Trace { mut replay, reached, failed } = spin(config, scenario, number, interrupt, clients)?;
+    let Trace { mut replay, reached, failed, errors_ns } = spin(config, scenario, number, interrupt, clients)?;
     replay.set_until(Some(reached));
     watch(&mut replay);
     let outcome = replay.run()?;
-    Ok(match failed {
+    let outcome = match failed {
         Some(end) => Outcome { end, ..outcome },
         None if interrupt.is_raised() => Outcome { end: SessionEnd::Stopped { t_v: outcome.t_v }, ..outcome },
         None => outcome,
-    })
+    };
+    Ok((outcome, errors_ns))
 }
 
 /// How a plant keeps its cycle.

@@ -41,11 +41,13 @@ pub(super) struct Driven {
     pub(super) forks: Vec<Fork>,
     /// Its state at the end, if that was asked for and it came so far.
     pub(super) state: Option<StateHash>,
+    /// How far a plant that follows was behind the PLC at each communication, ns.
+    pub(super) errors_ns: Vec<i64>,
 }
 
-impl From<Outcome> for Driven {
-    fn from(outcome: Outcome) -> Self {
-        Self { outcome, unsaved: None, forks: Vec::new(), state: None }
+impl From<(Outcome, Vec<i64>)> for Driven {
+    fn from((outcome, errors_ns): (Outcome, Vec<i64>)) -> Self {
+        Self { outcome, unsaved: None, forks: Vec::new(), state: None, errors_ns }
     }
 }
 
@@ -71,7 +73,7 @@ pub(super) fn run(
         lockstep.observe(desk.observer());
     }
     let _page =
-        config.doors.web.map(|address| serve_page(address, config, scenario, &lockstep, interrupt)).transpose()?;
+        config.doors.web.map(|address| serve_page(address, config, scenario, &mut lockstep, interrupt)).transpose()?;
     if config.reports.progress {
         let label = if config.runs == 1 { scenario.name().to_owned() } else { format!("run {number}/{}", config.runs) };
         lockstep.observe(Box::new(Progress::new(config.subject.end(scenario), label).with_log(log.clone())));
@@ -104,7 +106,7 @@ pub(super) fn run(
     } else {
         None
     };
-    Ok(Driven { outcome: lockstep.run()?, unsaved, forks, state })
+    Ok(Driven { outcome: lockstep.run()?, unsaved, forks, state, errors_ns: Vec::new() })
 }
 
 /// What the scenario does by itself, and what is looked out for on behalf of others.
@@ -120,14 +122,17 @@ fn serve_page(
     address: SocketAddr,
     config: &RunConfig,
     scenario: &Scenario,
-    lockstep: &Lockstep,
+    lockstep: &mut Lockstep,
     interrupt: &Interrupt,
 ) -> Result<Page, RunError> {
     let pace = match config.course.pace {
         Pace::Max => "max".to_owned(),
         Pace::Factor(factor) => factor.to_string(),
     };
-    let source = web::Source { scenario, published: lockstep.published(), mailbox: interrupt.mailbox(), pace };
+    let failing = web::Failing::default();
+    lockstep.observe(failing.observer());
+    let (published, mailbox) = (lockstep.published(), interrupt.mailbox());
+    let source = web::Source { scenario, published, mailbox, pace, failing, training: None };
     let page = Page::serve(address, source)?;
     match Page::is_absent() {
         None => tracing::info!(target: NOTICE, "the session is at {}", page.url()),

@@ -180,6 +180,8 @@ pub(crate) struct Ran {
     pub(crate) forks: Vec<Fork>,
     /// Its state at the end, if that was asked for.
     pub(crate) state: Option<StateHash>,
+    /// How far a plant that follows was behind the PLC at each communication, ns.
+    pub(crate) errors_ns: Vec<i64>,
 }
 
 /// One run.
@@ -229,7 +231,7 @@ pub(crate) fn one_run(
             freewheel::run(config, scenario, number, interrupt, watch).map(Driven::from)
         }
     };
-    let Driven { outcome, unsaved, forks, state } = outcome.map_err(|error| match (&recorded, error) {
+    let Driven { outcome, unsaved, forks, state, errors_ns } = outcome.map_err(|error| match (&recorded, error) {
         (Some(recorded), RunError::Record(source)) => RunError::RecordCut { source, kept: recorded.kept() },
         (_, error) => error,
     })?;
@@ -242,5 +244,5 @@ pub(crate) fn one_run(
     if let Some(recorded) = &recorded {
         recorded.end(&report)?;
     }
-    Ok(Ran { report, samples: samples.replace(Samples::default()), unsaved, forks, state })
+    Ok(Ran { report, samples: samples.replace(Samples::default()), unsaved, forks, state, errors_ns })
 }

@@ -20,13 +20,13 @@ use crate::error::Usage;
 const SCENARIO: &str = "scenario";
 
 /// The recording of one run.
-pub(super) struct Recorded {
+pub(crate) struct Recorded {
     folder: PathBuf,
 }
 
 impl Recorded {
     /// Makes the folder of run `number` with the scenario's files in it, and a recorder for the rest.
-    pub(super) fn begin(
+    pub(crate) fn begin(
         request: &RecordRequest,
         subject: &Subject,
         mode: Mode,

@@ -3,9 +3,11 @@
 use onescan_server::layout::ImageLayout;
 use onescan_server::operation::Operation;
 use onescan_server::signal::{SignalDecl, SignalId, SignalType};
+use onescan_server::time::VirtualTime;
 use serde::Deserialize;
 use thiserror::Error;
 
+use super::desk::{Role, Training, Turn};
 use super::structure::Known;
 
 /// A message of a page.
@@ -22,6 +24,8 @@ pub(super) enum Ask {
     Seat { panel: String, take: bool },
     /// A component fails, or is repaired.
     Fail { component: String, failure: String, active: bool },
+    /// The lesson goes on from its start, from an earlier moment, or from a prepared state.
+    Train(TrainAsk),
     /// A moment of the past is to be shown.
     Show {
         #[serde(rename = "t_ns")]
@@ -34,6 +38,15 @@ pub(super) enum Ask {
         #[serde(rename = "t_ns")]
         _t_ns: f64,
     },
+}
+
+/// How a lesson is to go on.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(tag = "turn", rename_all = "lowercase", deny_unknown_fields)]
+pub(super) enum TrainAsk {
+    Repeat,
+    Back { t_ns: f64 },
+    Jump { start: String },
 }
 
 /// What is done with virtual time.
@@ -59,6 +72,12 @@ pub(super) enum Refused {
     Writer { signal: String, writer: String },
     #[error("there is no component `{0}`")]
     NoComponent(String),
+    #[error("that is the trainer's business")]
+    Trainee,
+    #[error("this session is no lesson")]
+    NoLesson,
+    #[error("there is no start `{0}`")]
+    NoStart(String),
     #[error("there is no panel `{0}`")]
     NoPanel(String),
     #[error("the past of a running session is not kept: `--save-at` keeps a moment of it, `--record` all signals")]
@@ -102,6 +121,32 @@ pub(super) fn write(declared: &SignalDecl, value: f64, known: &Known) -> Result<
 pub(super) fn fail(component: String, mode: String, active: bool, known: &Known) -> Result<Operation, Refused> {
     let client = known.plants.get(&component).ok_or_else(|| Refused::NoComponent(component.clone()))?.clone();
     Ok(if active { Operation::Fail { client, component, mode } } else { Operation::Repair { client, component, mode } })
+}
+
+/// How the lesson goes on, if the page is the trainer's.
+pub(super) fn turn(asked: TrainAsk, training: Option<&Training>) -> Result<Turn, Refused> {
+    let training = training.ok_or(Refused::NoLesson)?;
+    trainer_only(Some(training))?;
+    Ok(match asked {
+        TrainAsk::Repeat => Turn::Repeat,
+        TrainAsk::Back { t_ns } => Turn::Back(past(t_ns)),
+        TrainAsk::Jump { start } if training.starts.contains(&start) => Turn::Jump(start),
+        TrainAsk::Jump { start } => return Err(Refused::NoStart(start)),
+    })
+}
+
+/// A time as a page has it: what is before the start is the start.
+fn past(t_ns: f64) -> VirtualTime {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates, and a time has no sign")]
+    VirtualTime::from_nanos(t_ns.max(0.0) as u64)
+}
+
+/// Refuses what a trainee may not do.
+pub(super) fn trainer_only(training: Option<&Training>) -> Result<(), Refused> {
+    match training {
+        Some(Training { role: Role::Trainee, .. }) => Err(Refused::Trainee),
+        Some(_) | None => Ok(()),
+    }
 }
 
 impl From<Verb> for Operation {

@@ -9,6 +9,7 @@
 //! | [`picture`] | what of a step is shown |
 //! | [`ask`] | what a page may ask |
 //! | [`seats`] | who operates |
+//! | [`desk`] | a lesson on two pages |
 //! | [`viewer`] | one viewer |
 //!
 //! The server has a thread of its own. It reads what the session publishes and leaves wishes in its mailbox, as every other
@@ -17,6 +18,7 @@
 
 mod ask;
 mod bundle;
+mod desk;
 mod guard;
 mod panel;
 mod picture;
@@ -46,6 +48,7 @@ use thiserror::Error;
 use tokio::sync::Notify;
 
 use crate::error::{Exit, ExitCode, ListenError, Usage};
+pub(crate) use desk::{Desk, Failing, Role, Training, Turn};
 use seats::{SeatView, Seats};
 use structure::Known;
 
@@ -67,6 +70,10 @@ pub(crate) struct Source<'s> {
     pub(crate) mailbox: Mailbox,
     /// How fast virtual time may run, in words.
     pub(crate) pace: String,
+    /// What has failed.
+    pub(crate) failing: Failing,
+    /// The lesson, if it is one.
+    pub(crate) training: Option<Training>,
 }
 
 /// A session, as all viewers share it.
@@ -79,7 +86,9 @@ struct Session {
     published: Published,
     mailbox: Mailbox,
     pace: String,
-    seats: Seats,
+    failing: Failing,
+    training: Option<Training>,
+    seats: Arc<Seats>,
     over: AtomicBool,
 }
 
@@ -143,19 +152,33 @@ impl Page {
     /// # Errors
     /// See [`WebError`].
     pub(crate) fn serve(address: SocketAddr, source: Source<'_>) -> Result<Self, WebError> {
+        Self::seated(address, source, None)
+    }
+
+    /// Serves the same session at another address, for others who share its seats.
+    ///
+    /// # Errors
+    /// See [`WebError`].
+    pub(crate) fn beside(&self, address: SocketAddr, source: Source<'_>) -> Result<Self, WebError> {
+        Self::seated(address, source, Some(Arc::clone(&self.session.seats)))
+    }
+
+    fn seated(address: SocketAddr, source: Source<'_>, seats: Option<Arc<Seats>>) -> Result<Self, WebError> {
         of_this_machine(address)?;
         let listen = ListenError::on(address);
-        let (structure, mut known) = structure::of(source.scenario)?;
+        let (structure, mut known) = structure::of(source.scenario, source.training.as_ref())?;
         let plan = source.scenario.plan().clone();
         let session = Arc::new(Session {
             structure: serde_json::to_string(&structure)?,
-            seats: Seats::at(std::mem::take(&mut known.panels)),
+            seats: seats.unwrap_or_else(|| Arc::new(Seats::at(std::mem::take(&mut known.panels)))),
             known,
             layout: ImageLayout::new(plan.signals()),
             plan,
             published: source.published,
             mailbox: source.mailbox,
             pace: source.pace,
+            failing: source.failing,
+            training: source.training,
             over: AtomicBool::new(false),
         });
         let listener = TcpListener::bind(address).map_err(&listen)?;

@@ -13,7 +13,7 @@ use super::structure::written;
 #[derive(Debug, Serialize)]
 pub(super) struct Panel {
     pub(super) name: String,
-    seat: Seat,
+    pub(super) seat: Seat,
     columns: u32,
     rows: u32,
     elements: Vec<Element>,
@@ -27,6 +27,9 @@ struct Element {
     signal: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     signal_y: Option<String>,
+    /// The component and the mode of failure that it shows and causes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    failure: Option<[String; 2]>,
     at: [u32; 2],
     span: [u32; 2],
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -88,6 +91,11 @@ fn laid_out(file: &ElementFile, scenario: &Scenario) -> Element {
         label: file.label.clone().or_else(|| signal.as_deref().map(label)).unwrap_or_default(),
         signal,
         signal_y: file.signal_y.as_ref().map(name),
+        failure: file
+            .failure
+            .as_ref()
+            .and_then(|failure| failure.get_ref().parts())
+            .map(|parts| parts.map(str::to_owned)),
         at: file.at,
         span: file.span,
         mode: file.latching.then_some("toggle"),
@@ -143,6 +151,7 @@ fn element(declared: &SignalDecl, scenario: &Scenario, at: [u32; 2], span: u32) 
         label: label(&declared.name.to_string()),
         signal: Some(declared.name.to_string()),
         signal_y: None,
+        failure: None,
         at,
         span: [span, 1],
         mode: None,

@@ -11,6 +11,7 @@ use onescan_scenario::{Scenario, ScenarioError};
 use onescan_server::signal::{ClientName, SignalDecl};
 use serde::Serialize;
 
+use super::desk::{Role, Training};
 use super::panel::{self, Panel};
 use super::picture::Stage;
 
@@ -28,12 +29,31 @@ pub(super) struct Structure {
     step_ns: u64,
     until_ns: u64,
     live: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    training: Option<Lesson>,
     signals: Vec<Signal>,
     bodies: Vec<Body>,
     components: Vec<Part>,
     panels: Vec<Panel>,
     expectations: Vec<Expectation>,
     sources: Vec<Source>,
+}
+
+/// A lesson, as its page shows it.
+#[derive(Debug, Serialize)]
+struct Lesson {
+    role: Role,
+    lesson: String,
+    about: Option<String>,
+    /// Prepared states to jump to; none on the trainee's page.
+    starts: Vec<String>,
+}
+
+impl Lesson {
+    fn of(training: &Training) -> Self {
+        let starts = if training.role == Role::Trainer { training.starts.clone() } else { Vec::new() };
+        Self { role: training.role, lesson: training.lesson.clone(), about: training.about.clone(), starts }
+    }
 }
 
 /// Beside the structure, what the server needs to answer.
@@ -127,7 +147,7 @@ struct Line {
 ///
 /// # Errors
 /// A scene that cannot be read; it was read before, so it has just changed.
-pub(super) fn of(scenario: &Scenario) -> Result<(Structure, Known), ScenarioError> {
+pub(super) fn of(scenario: &Scenario, training: Option<&Training>) -> Result<(Structure, Known), ScenarioError> {
     let file = scenario.file();
     let mut known = Known::default();
     let (mut bodies, mut components) = (Vec::new(), Vec::new());
@@ -144,8 +164,12 @@ pub(super) fn of(scenario: &Scenario) -> Result<(Structure, Known), ScenarioErro
             }
         }
     }
-    let panels = panel::of(scenario);
+    let mut panels = panel::of(scenario);
     known.panels = panels.iter().map(|panel| (panel.name.clone(), panel.written())).collect();
+    if let Some(Training { role: role @ Role::Trainee, .. }) = training {
+        panels.retain(|panel| role.sees(panel.seat));
+        components.iter_mut().for_each(|part: &mut Part| part.failures.clear());
+    }
     let structure = Structure {
         protocol: PROTOCOL,
         title: file.title.clone(),
@@ -153,6 +177,7 @@ pub(super) fn of(scenario: &Scenario) -> Result<(Structure, Known), ScenarioErro
         step_ns: file.step.as_nanos(),
         until_ns: scenario.until().as_nanos(),
         live: true,
+        training: training.map(Lesson::of),
         signals: scenario.plan().signals().iter().map(|declared| signal(declared, scenario)).collect(),
         bodies,
         components,

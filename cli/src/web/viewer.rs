@@ -1,6 +1,7 @@
 //! One viewer: what it asks and what it is shown. It looks at the session as often as it can take; views in between
 //! are dropped, so a slow viewer slows nobody.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -28,9 +29,22 @@ const PATIENCE: Duration = Duration::from_secs(20);
 #[derive(Debug, Serialize)]
 #[serde(tag = "type", rename_all = "lowercase")]
 enum Told {
-    Status { state: &'static str, digest: Option<String>, pace: String, seat: SeatView },
-    Event { t_ns: u64, kind: &'static str, text: String },
-    Error { message: String },
+    Status {
+        state: &'static str,
+        digest: Option<String>,
+        pace: String,
+        seat: SeatView,
+        #[serde(skip_serializing_if = "BTreeSet::is_empty")]
+        failed: BTreeSet<String>,
+    },
+    Event {
+        t_ns: u64,
+        kind: &'static str,
+        text: String,
+    },
+    Error {
+        message: String,
+    },
 }
 
 /// What came of a wish: nothing to say, or why it was not done.
@@ -107,7 +121,9 @@ fn told(view: &SessionView, session: &Session, viewer: Viewer) -> String {
         (None, false) => "run",
     };
     let digest = view.end.as_ref().and(view.digest).map(|digest| digest.to_string());
-    let told = Told::Status { state, digest, pace: session.pace.clone(), seat: session.seats.seen_by(viewer) };
+    let is_secret = ask::trainer_only(session.training.as_ref()).is_err();
+    let failed = if is_secret { BTreeSet::new() } else { session.failing.now() };
+    let told = Told::Status { state, digest, pace: session.pace.clone(), seat: session.seats.seen_by(viewer), failed };
     serde_json::to_string(&told).unwrap_or_else(|error| error.to_string())
 }
 
@@ -145,8 +161,21 @@ fn heed(
             session.seats.may_write(viewer, declared.name.as_str())?;
             ask::write(declared, value, &session.known)?
         }
-        Ask::Operate { operation } => operation.into(),
-        Ask::Fail { component, failure, active } => ask::fail(component, failure, active, &session.known)?,
+        Ask::Operate { operation } => {
+            ask::trainer_only(session.training.as_ref())?;
+            operation.into()
+        }
+        Ask::Fail { component, failure, active } => {
+            ask::trainer_only(session.training.as_ref())?;
+            ask::fail(component, failure, active, &session.known)?
+        }
+        Ask::Train(asked) => {
+            let turn = ask::turn(asked, session.training.as_ref())?;
+            if let Some(training) = &session.training {
+                training.desk.ask(turn);
+            }
+            return Ok(false);
+        }
         Ask::Show { .. } | Ask::Fork { .. } => return Err(Refused::Past),
         Ask::Live => return Ok(false),
     };

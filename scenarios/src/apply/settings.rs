@@ -172,18 +172,32 @@ impl Scenario {
         name: &ClientName,
         scene: &onescan_clients::plant::Scene,
     ) -> Result<(), ScenarioError> {
+        self.check_panels(scene)?;
         let Some(applied) = self.applied() else { return Ok(()) };
         for failure in applied.failures.iter().filter(|failure| failure.client == *name) {
             if let Err(unknown) = scene.check_failure(&failure.component, &failure.mode) {
-                let (message, help) = match unknown {
-                    UnknownFailure::Component { component, hint } => {
-                        (format!("no component `{component}` in this scene"), hint)
-                    }
-                    UnknownFailure::Mode { component, mode, hint } => {
-                        (format!("component `{component}` has no failure mode `{mode}`"), Some(hint))
-                    }
-                };
+                let (message, help) = told(unknown);
                 return Err(wrong_case(applied, message, failure.place.clone(), help));
+            }
+        }
+        Ok(())
+    }
+
+    /// Refuses failures on panels that `scene` does not have. Where there are several plants, a component that it does not have
+    /// may be another one's.
+    fn check_panels(&self, scene: &onescan_clients::plant::Scene) -> Result<(), ScenarioError> {
+        let is_plant = |client: &toml::Spanned<ClientFile>| matches!(client.get_ref(), ClientFile::Plant { .. });
+        let is_only = self.file().clients.values().filter(|client| is_plant(client)).count() == 1;
+        for element in self.file().panel.iter().flat_map(|panel| &panel.element) {
+            let Some(failure) = &element.get_ref().failure else { continue };
+            let Some([component, mode]) = failure.get_ref().parts() else { continue };
+            match scene.check_failure(component, mode) {
+                Err(UnknownFailure::Component { .. }) if !is_only => {}
+                Err(unknown) => {
+                    let (message, help) = told(unknown);
+                    return Err(self.wrong_at(failure.span(), message, help));
+                }
+                Ok(()) => {}
             }
         }
         Ok(())
@@ -198,6 +212,16 @@ impl Scenario {
         }
         let case = self.case().map_or(DEFAULT, |case| case.name.as_str());
         Makeup { name: format!("case `{case}`"), settings }
+    }
+}
+
+/// What is wrong with a failure, and what to do.
+fn told(unknown: UnknownFailure) -> (String, Option<String>) {
+    match unknown {
+        UnknownFailure::Component { component, hint } => (format!("no component `{component}` in this scene"), hint),
+        UnknownFailure::Mode { component, mode, hint } => {
+            (format!("component `{component}` has no failure mode `{mode}`"), Some(hint))
+        }
     }
 }
 

@@ -37,7 +37,7 @@ impl Held {
 
 impl Scenario {
     /// Puts what `entry` does while the session runs on the timeline.
-    pub(super) fn schedule(
+    pub(crate) fn schedule(
         &self,
         catalogue: &Catalogue,
         entry: &CaseFile,
@@ -160,7 +160,12 @@ impl Scenario {
         }
     }
 
-    fn failure(&self, catalogue: &Catalogue, fault: &Spanned<FaultFile>) -> Result<FailureAt, ScenarioError> {
+    /// The component that fails, its plant named or found.
+    pub(crate) fn failure(
+        &self,
+        catalogue: &Catalogue,
+        fault: &Spanned<FaultFile>,
+    ) -> Result<FailureAt, ScenarioError> {
         let FaultFile { client, component, mode, .. } = fault.get_ref();
         let what = ("plant", "whose components could fail", component.span());
         let is_plant = |client: &ClientFile| matches!(client, ClientFile::Plant { .. });

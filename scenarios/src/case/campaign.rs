@@ -59,7 +59,7 @@ pub struct Injection {
 }
 
 /// Says that a name is that of a file on any system.
-pub(super) fn is_name(name: &str) -> bool {
+pub(crate) fn is_name(name: &str) -> bool {
     let allowed = |letter: char| letter.is_ascii_alphanumeric() || "-_.".contains(letter);
     !name.is_empty() && !name.starts_with('.') && name.chars().all(allowed)
 }

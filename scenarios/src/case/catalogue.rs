@@ -182,6 +182,21 @@ impl Catalogue {
         lists.into_iter().map(axis).collect()
     }
 
+    /// One case alone, which stands in another file.
+    pub(crate) fn of_lesson(path: PathBuf, text: String, entry: CaseFile, case: Case) -> Self {
+        let file = CasesFile { version: VERSION, cases: vec![Spanned::new(0..0, entry)], ..CasesFile::default() };
+        Self { path, text, file, cases: vec![case], campaigns: Vec::new() }
+    }
+
+    /// Sets in all cases what `other` sets, as if it stood at `place`.
+    pub(crate) fn set_of(&mut self, other: &Case, place: Range<usize>) {
+        for case in &mut self.cases {
+            case.seed = other.seed;
+            case.settings.clone_from(&other.settings);
+            case.settings.iter_mut().for_each(|setting| setting.place = place.clone());
+        }
+    }
+
     /// All cases, in the order of the file.
     pub fn cases(&self) -> &[Case] {
         &self.cases

@@ -1,0 +1,134 @@
+//! One attempt at a lesson: a session from a moment on, watched, measured, recorded.
+
+use std::cell::RefCell;
+use std::path::Path;
+use std::rc::Rc;
+
+use onescan_recording::{Choice, Recorder};
+use onescan_scenario::compose::Member;
+use onescan_scenario::expect::TraceEnd;
+use onescan_scenario::{Mode, Scenario};
+use onescan_server::digest::Digest;
+use onescan_server::end::SessionEnd;
+use onescan_server::lockstep::{Lockstep, Outcome, Reached};
+use onescan_server::mailbox::Mailbox;
+use onescan_server::operation::{Control, OperatorInput};
+use onescan_server::pacing::Pace;
+use onescan_server::published::Published;
+use onescan_server::signal::ClientName;
+use onescan_server::time::VirtualTime;
+
+use super::error::{StartError, TrainError};
+use super::examination::Examiner;
+use super::moments::{Moment, Moments};
+use super::score::Score;
+use crate::error::Usage;
+use crate::run::config::{RecordRequest, Subject};
+use crate::run::in_process::in_process;
+use crate::run::recorded::Recorded;
+use crate::web::Failing;
+
+/// A lesson needs its clients here: the states of others cannot be kept.
+pub(super) fn elsewhere(name: &ClientName, member: &Member) -> Usage {
+    let what = if matches!(member, Member::Gateway(_)) { "a real PLC" } else { "a program of its own" };
+    Usage::new(format!("client `{name}` is {what}, whose state cannot be kept: lessons need it in this process"), None)
+}
+
+/// What all attempts of a session have in common.
+pub(super) struct Stage {
+    /// Where wishes are left.
+    pub(super) mailbox: Mailbox,
+    /// Where views go.
+    pub(super) published: Published,
+    /// What has failed, as pages show it.
+    pub(super) failing: Failing,
+    pub(super) pace: Pace,
+    /// Whether moments are kept to go back to.
+    pub(super) keeps: bool,
+}
+
+/// An attempt that is about to begin.
+pub(super) struct Course<'a> {
+    /// The scenario as the lesson wants it from its start on.
+    pub(super) scenario: &'a Scenario,
+    /// Where it begins.
+    pub(super) from: Moment,
+    /// What it begins with is called so.
+    pub(super) start: &'a str,
+    /// Inputs of operators that are repeated.
+    pub(super) inputs: Vec<OperatorInput>,
+    /// Where virtual time is held, before anybody does anything new.
+    pub(super) hold_at: Option<VirtualTime>,
+    /// The recording: its folder, its number, the scenario's path.
+    pub(super) record: Option<(&'a Path, u32, &'a Path)>,
+}
+
+/// What came of an attempt.
+pub(super) struct Ended {
+    pub(super) outcome: Outcome,
+    pub(super) began: Digest,
+    pub(super) score: Score,
+    pub(super) inputs: Vec<OperatorInput>,
+}
+
+/// Drives an attempt to its end, keeping moments on the way.
+///
+/// # Errors
+/// The session cannot be formed or go on, or its recording cannot be written.
+pub(super) fn drive(course: Course<'_>, stage: &Stage, moments: &mut Moments) -> Result<Ended, TrainError> {
+    let Course { scenario, from, start, inputs, hold_at, record } = course;
+    let mut lockstep = in_process(scenario, scenario.until(), [], elsewhere)?;
+    lockstep.set_makeup(scenario.makeup());
+    lockstep.set_published(stage.published.clone());
+    lockstep.set_mailbox(stage.mailbox.clone());
+    let examination = Rc::new(RefCell::new(from.examination.clone()));
+    let heard = Rc::new(RefCell::new(Vec::new()));
+    lockstep.observe(Box::new(Examiner { examination: Rc::clone(&examination), inputs: Rc::clone(&heard) }));
+    lockstep.observe(stage.failing.observer());
+    if let Some((folder, number, path)) = record {
+        lockstep.observe(Box::new(recorder(scenario, folder, number, path)?));
+    }
+    lockstep.replay(inputs);
+    let failed = |source| StartError::Checkpoint { name: start.to_owned(), source };
+    lockstep.resume(&from.checkpoint).map_err(failed)?;
+    if let Some(hold_at) = hold_at
+        && lockstep.run_to(hold_at)? == Reached::Boundary
+    {
+        stage.mailbox.control(Control::Pause);
+    }
+    lockstep.set_pace(stage.pace);
+    let step = scenario.plan().step();
+    loop {
+        let t_v = lockstep.session().t_v();
+        if examination.borrow().is_done() {
+            lockstep.set_until(Some(t_v));
+            break;
+        }
+        if stage.keeps && moments.is_due(t_v) && lockstep.session().end().is_none() {
+            moments.keep(moment(&mut lockstep, examination.borrow().clone()).map_err(failed)?);
+        }
+        if t_v >= scenario.until() || lockstep.run_to(t_v + step)? == Reached::End {
+            break;
+        }
+    }
+    let outcome = lockstep.run()?;
+    drop(lockstep);
+    let end = if matches!(outcome.end, SessionEnd::Completed { .. }) { TraceEnd::Complete } else { TraceEnd::Cut };
+    let score = examination.borrow().clone().finish(scenario, end);
+    let inputs = heard.take();
+    Ok(Ended { outcome, began: from.checkpoint.digest(), score, inputs })
+}
+
+fn moment(
+    lockstep: &mut Lockstep,
+    examination: super::examination::Examination,
+) -> Result<Moment, onescan_server::checkpoint::CheckpointError> {
+    Ok(Moment { checkpoint: lockstep.checkpoint()?, examination })
+}
+
+fn recorder(scenario: &Scenario, folder: &Path, number: u32, path: &Path) -> Result<Recorder, TrainError> {
+    let request = RecordRequest { folder: folder.to_owned(), overwrite: true, choice: Choice::default() };
+    let subject = Subject { scenario: path.to_owned(), case: None, until: Some(scenario.until()) };
+    let (_, recorder) = Recorded::begin(&request, &subject, Mode::Lockstep, scenario, number)?;
+    Ok(recorder)
+}

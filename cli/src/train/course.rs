@@ -1,0 +1,255 @@
+//! A session: attempt after attempt, as the trainer asks, or one that repeats what somebody did.
+
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+use onescan_scenario::Scenario;
+use onescan_scenario::lesson::{Book, Lesson, Start};
+use onescan_server::checkpoint::Checkpoint;
+use onescan_server::end::SessionEnd;
+use onescan_server::layout::ImageLayout;
+use onescan_server::mailbox::Mailbox;
+use onescan_server::operation::OperatorInput;
+use onescan_server::pacing::Pace;
+use onescan_server::published::Published;
+use onescan_server::time::VirtualTime;
+
+use super::attempt::{Course, Ended, Stage, drive};
+use super::config::{Served, TrainConfig};
+use super::error::TrainError;
+use super::examination::Examination;
+use super::moments::{Moment, Moments};
+use super::record::{AttemptRecord, FILE_NAME, Fork, SessionRecord, run_folder};
+use super::starts::Starts;
+use crate::error::Usage;
+use crate::interrupt::Interrupt;
+use crate::run::{NOTICE, operator_inputs};
+use crate::web::{self, Desk, Failing, Page, Role, Training, Turn};
+
+/// A lesson, and all that is needed to hold it.
+pub(super) struct Classroom<'a> {
+    pub(super) config: &'a TrainConfig,
+    pub(super) scenario: &'a Scenario,
+    pub(super) book: &'a Book,
+    pub(super) lesson: &'a Lesson,
+    pub(super) interrupt: &'a Interrupt,
+}
+
+/// An attempt whose repetition is another one, in words.
+pub(super) type Unequal = Vec<String>;
+
+/// A start as attempts need it: the scenario with the lesson from there on, and the state.
+struct Prepared {
+    scenario: Scenario,
+    checkpoint: Checkpoint,
+}
+
+/// Where the next attempt begins.
+struct Next {
+    start: String,
+    moment: Moment,
+    moments: Moments,
+    inputs: Vec<OperatorInput>,
+    fork: Option<Fork>,
+}
+
+impl Classroom<'_> {
+    /// Holds the lesson, with the expert's score beside it.
+    ///
+    /// # Errors
+    /// See [`TrainError`].
+    pub(super) fn hold(&self) -> Result<(SessionRecord, Unequal), TrainError> {
+        let mut record = SessionRecord::new(self.scenario.name(), &self.lesson.name, &self.config.trainee);
+        let mut unequal = Vec::new();
+        match (&self.config.served, &self.config.replay_operator) {
+            (Some(served), None) => record.attempts = self.live(served)?,
+            (None, Some(path)) if path.join(FILE_NAME).is_file() => {
+                let before = SessionRecord::read(path)?;
+                record.trainee.clone_from(&before.trainee);
+                for attempt in &before.attempts {
+                    let inputs = before.inputs(path, attempt.number)?;
+                    let again = self.repeated(&attempt.start, inputs, attempt.number)?;
+                    if again.digest != attempt.digest {
+                        unequal.push(format!(
+                            "attempt {} has digest {}, now {}",
+                            again.number, attempt.digest, again.digest
+                        ));
+                    }
+                    record.attempts.push(again);
+                }
+            }
+            (None, Some(path)) => {
+                record.attempts = vec![self.repeated(&self.lesson.start, operator_inputs(path)?, 1)?];
+            }
+            (Some(_), Some(_)) | (None, None) => {
+                let help = "`--web` serves it to a trainee and a trainer; `--replay-operator` takes what somebody did";
+                return Err(Usage::new("a lesson is taken on a page or from a recording", Some(help.to_owned())).into());
+            }
+        }
+        record.passed = record.last().is_some_and(|attempt| attempt.failure.is_none() && attempt.score.is_passed());
+        if let Some(expert) = &self.lesson.expert {
+            let inputs = operator_inputs(&self.scenario.folder().join(expert))?;
+            let quiet = TrainConfig { record: None, ..self.config.clone() };
+            record.expert = Some(Classroom { config: &quiet, ..*self }.repeated(&self.lesson.start, inputs, 1)?);
+        }
+        Ok((record, unequal))
+    }
+
+    fn start(&self, name: &str) -> Result<&Start, TrainError> {
+        let names = || self.book.starts().iter().map(|start| start.name.as_str());
+        let missing = || Usage::new(format!("there is no start `{name}`"), onescan_base::did_you_mean(name, names()));
+        Ok(self.book.start(name).ok_or_else(missing)?)
+    }
+
+    fn prepare(&self, name: &str) -> Result<Prepared, TrainError> {
+        let start = self.start(name)?;
+        let scenario = self.book.applied(self.scenario, self.lesson, start)?;
+        let checkpoint = Starts::new(self.scenario, self.book, self.config.starts.as_deref()).prepare(start)?;
+        Ok(Prepared { scenario, checkpoint })
+    }
+
+    fn stage(&self, pace: Pace, mailbox: Mailbox) -> Stage {
+        let image_bytes = ImageLayout::new(self.scenario.plan().signals()).size();
+        Stage { mailbox, published: Published::new(image_bytes), failing: Failing::default(), pace, keeps: false }
+    }
+
+    /// One attempt in which nobody takes part.
+    fn repeated(&self, start: &str, inputs: Vec<OperatorInput>, number: u32) -> Result<AttemptRecord, TrainError> {
+        let prepared = self.prepare(start)?;
+        let stage = self.stage(Pace::Max, Mailbox::new());
+        let moment = self.first_moment(&prepared);
+        let next = Next { start: start.to_owned(), moment, moments: Moments::default(), inputs, fork: None };
+        let (record, _, _) = self.attempt(next, &prepared.scenario, &stage, number)?;
+        Ok(record)
+    }
+
+    fn first_moment(&self, prepared: &Prepared) -> Moment {
+        let lesson = Rc::new(self.lesson.clone());
+        let examination = Examination::new(&prepared.scenario, &lesson);
+        Moment { checkpoint: prepared.checkpoint.clone(), examination }
+    }
+
+    /// Drives an attempt; gives its record, its moments and what operators did.
+    fn attempt(
+        &self,
+        next: Next,
+        scenario: &Scenario,
+        stage: &Stage,
+        number: u32,
+    ) -> Result<(AttemptRecord, Moments, Vec<OperatorInput>), TrainError> {
+        let Next { start, moment, mut moments, inputs, fork } = next;
+        let record = self.config.record.as_deref().map(|folder| (folder, number, self.config.scenario.as_path()));
+        let hold_at = fork.map(|fork| VirtualTime::from_nanos(fork.t_v_ns));
+        let course = Course { scenario, from: moment, start: &start, inputs, hold_at, record };
+        let Ended { outcome, began, score, inputs } = drive(course, stage, &mut moments)?;
+        let (end, failure) = match &outcome.end {
+            SessionEnd::Completed { .. } => ("completed", None),
+            SessionEnd::Stopped { .. } => ("stopped", None),
+            SessionEnd::Failed(failure) => ("failed", Some(failure.to_string())),
+        };
+        let record = AttemptRecord {
+            number,
+            start,
+            fork,
+            begin_digest: began.to_string(),
+            end: end.to_owned(),
+            failure,
+            steps: outcome.steps.0,
+            digest: outcome.digest.map_or_else(String::new, |digest| digest.to_string()),
+            score,
+        };
+        Ok((record, moments, inputs))
+    }
+
+    /// The lesson on two pages, for as long as the trainer wants it.
+    fn live(&self, served: &Served) -> Result<Vec<AttemptRecord>, TrainError> {
+        self.interrupt.heed();
+        let mailbox = self.interrupt.mailbox();
+        let stage = Stage { keeps: true, ..self.stage(served.pace, mailbox.clone()) };
+        let desk = Desk::new(mailbox);
+        let mut prepared: BTreeMap<String, Prepared> = BTreeMap::new();
+        let first = self.prepare(&self.lesson.start)?;
+        let _pages = self.pages(served, &first.scenario, &stage, &desk)?;
+        let mut next = self.begins(&self.lesson.start, &first);
+        prepared.insert(self.lesson.start.clone(), first);
+        let mut attempts: Vec<AttemptRecord> = Vec::new();
+        // what operators did since the start, along the way that led here
+        let mut line: Vec<OperatorInput> = Vec::new();
+        loop {
+            let number = u32::try_from(attempts.len()).unwrap_or(u32::MAX).saturating_add(1);
+            let start = next.start.clone();
+            let Some(at) = prepared.get(&start) else { return Ok(attempts) };
+            let from = next.moment.steps();
+            let (record, mut moments, heard) = self.attempt(next, &at.scenario, &stage, number)?;
+            line.retain(|input| input.step < from);
+            line.extend(heard);
+            attempts.push(record);
+            if self.interrupt.is_raised() {
+                return Ok(attempts);
+            }
+            next = match desk.take() {
+                None => return Ok(attempts),
+                Some(Turn::Repeat) => self.begins(&start, at),
+                Some(Turn::Jump(name)) => {
+                    // The page knows the starts there are.
+                    let Some(known) = self.book.start(&name).map(|start| start.name.clone()) else {
+                        return Ok(attempts);
+                    };
+                    if !prepared.contains_key(&known) {
+                        let state = self.prepare(&known)?;
+                        prepared.insert(known.clone(), state);
+                    }
+                    let Some(state) = prepared.get(&known) else { return Ok(attempts) };
+                    self.begins(&known, state)
+                }
+                Some(Turn::Back(t_v)) => {
+                    let Some(moment) = moments.back_to(t_v) else { return Ok(attempts) };
+                    let t_v = t_v.max(moment.t_v());
+                    let inputs = line.iter().filter(|input| input.step >= moment.steps() && input.t_v < t_v);
+                    let inputs = inputs.cloned().collect();
+                    let fork = Fork { attempt: number, step: moment.steps().0, t_v_ns: t_v.as_nanos() };
+                    Next { start, moment, moments, inputs, fork: Some(fork) }
+                }
+            };
+        }
+    }
+
+    /// An attempt from a start on.
+    fn begins(&self, start: &str, prepared: &Prepared) -> Next {
+        let moment = self.first_moment(prepared);
+        Next { start: start.to_owned(), moment, moments: Moments::default(), inputs: Vec::new(), fork: None }
+    }
+
+    /// The trainee's page and the trainer's.
+    fn pages(&self, served: &Served, scenario: &Scenario, stage: &Stage, desk: &Desk) -> Result<[Page; 2], TrainError> {
+        let pace = match served.pace {
+            Pace::Max => "max".to_owned(),
+            Pace::Factor(factor) => factor.to_string(),
+        };
+        let source = |role| web::Source {
+            scenario,
+            published: stage.published.clone(),
+            mailbox: stage.mailbox.clone(),
+            pace: pace.clone(),
+            failing: stage.failing.clone(),
+            training: Some(Training {
+                role,
+                desk: desk.clone(),
+                lesson: self.lesson.name.clone(),
+                about: self.lesson.about.clone(),
+                starts: self.book.starts().iter().map(|start| start.name.clone()).collect(),
+            }),
+        };
+        let trainee = Page::serve(served.trainee, source(Role::Trainee))?;
+        let trainer = trainee.beside(served.trainer, source(Role::Trainer))?;
+        if let Some(how) = Page::is_absent() {
+            tracing::warn!(target: NOTICE, "no pages: {how}");
+        }
+        tracing::info!(target: NOTICE, "the trainee's page is at {}", trainee.url());
+        tracing::info!(target: NOTICE, "the trainer's page is at {}", trainer.url());
+        if let Some(folder) = &self.config.record {
+            tracing::info!(target: NOTICE, "recorded in {}", run_folder(folder, 1).display());
+        }
+        Ok([trainee, trainer])
+    }
+}

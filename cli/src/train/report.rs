@@ -1,0 +1,177 @@
+//! What came of a session, in words and as a page.
+
+use std::io::{self, Write};
+
+use onescan_report::Table;
+use onescan_report::number::short;
+use onescan_report::page::{Event, Mood, Page, Section, Shown};
+use onescan_scenario::lesson::Lesson;
+
+use super::record::{AttemptRecord, SessionRecord, spelt};
+use super::score::{Handled, Response, Score, Spent};
+
+/// Nothing to be said.
+const NOTHING: &str = "–";
+
+/// A response as `+3.200 s`, with what it should have been where it was not.
+fn after(response: Option<&Response>) -> String {
+    let Some(response) = response else { return NOTHING.to_owned() };
+    let after = response.after_ns.map_or_else(|| "never".to_owned(), |after_ns| format!("+{}", spelt(after_ns)));
+    match response.within_ns {
+        Some(within_ns) if !response.is_timely() => format!("{after} (within {})", spelt(within_ns)),
+        _ => after,
+    }
+}
+
+fn spent(spent: &Spent) -> String {
+    let unit = spent.unit.as_ref().map(|unit| format!(" {unit}")).unwrap_or_default();
+    format!("{}{unit}", short(spent.value))
+}
+
+/// What the expert made of the same malfunction.
+fn beside<'s>(expert: Option<&'s Score>, name: &str) -> Option<&'s Handled> {
+    expert?.malfunctions.iter().find(|handled| handled.name == name)
+}
+
+fn malfunctions(score: &Score, expert: Option<&Score>) -> Table {
+    let row = |handled: &Handled| {
+        let theirs = beside(expert, &handled.name);
+        vec![
+            handled.name.clone(),
+            handled.begun_ns.map_or_else(|| "did not come".to_owned(), spelt),
+            after(handled.identified.as_ref()),
+            after(theirs.and_then(|theirs| theirs.identified.as_ref())),
+            after(handled.acted.as_ref()),
+            after(theirs.and_then(|theirs| theirs.acted.as_ref())),
+        ]
+    };
+    let head = ["begun", "identified", "expert", "acted", "expert"];
+    Table {
+        title: "malfunction",
+        head: head.into_iter().map(Into::into).collect(),
+        rows: score.malfunctions.iter().map(row).collect(),
+        remarks: Vec::new(),
+        is_folded: false,
+    }
+}
+
+fn costs(score: &Score, expert: Option<&Score>) -> Table {
+    let theirs = |name: &str| expert?.costs.iter().find(|cost| cost.name == name);
+    let mut rows: Vec<Vec<String>> = score
+        .costs
+        .iter()
+        .map(|cost| vec![cost.name.clone(), spent(cost), theirs(&cost.name).map_or(NOTHING.to_owned(), spent)])
+        .collect();
+    let lasted = expert.map_or(NOTHING.to_owned(), |expert| spelt(expert.lasted_ns()));
+    rows.push(vec!["time".to_owned(), spelt(score.lasted_ns()), lasted]);
+    let head = ["trainee", "expert"].into_iter().map(Into::into).collect();
+    Table { title: "cost", head, rows, remarks: Vec::new(), is_folded: false }
+}
+
+/// Where an attempt begins, in words.
+fn origin(attempt: &AttemptRecord) -> String {
+    match attempt.fork {
+        None => format!("from `{}`", attempt.start),
+        Some(fork) => format!("back to {} of attempt {}", spelt(fork.t_v_ns), fork.attempt),
+    }
+}
+
+fn verdict(passed: bool) -> &'static str {
+    if passed { "passed" } else { "not passed" }
+}
+
+/// Writes a session for people.
+pub(super) fn write(record: &SessionRecord, unequal: &[String], out: &mut dyn Write) -> io::Result<()> {
+    let SessionRecord { scenario, lesson, trainee, passed, .. } = record;
+    writeln!(out, "lesson `{lesson}` of {scenario}, {trainee}: {}", verdict(*passed))?;
+    let expert = record.expert.as_ref().map(|expert| &expert.score);
+    for attempt in &record.attempts {
+        let score = &attempt.score;
+        writeln!(
+            out,
+            "attempt {}, {}: {}, {}, {} steps, digest {}",
+            attempt.number,
+            origin(attempt),
+            attempt.end,
+            verdict(score.is_passed()),
+            attempt.steps,
+            attempt.digest
+        )?;
+        if let Some(failure) = &attempt.failure {
+            writeln!(out, "  {failure}")?;
+        }
+        if score.done == Some(false) {
+            writeln!(out, "  it was not brought to its end")?;
+        }
+        if !score.malfunctions.is_empty() {
+            malfunctions(score, expert).write(out)?;
+        }
+        for expected in &score.expectations {
+            let at = expected.at_ns.map(|at_ns| format!(" at {}", spelt(at_ns))).unwrap_or_default();
+            let unit = expected.unit.as_ref().map(|unit| format!(" {unit}")).unwrap_or_default();
+            let margin = expected.margin.map(|margin| format!(" (margin {}{unit})", short(margin))).unwrap_or_default();
+            writeln!(out, "  expectation `{}` {}{at}{margin}", expected.name, expected.verdict.word())?;
+        }
+        costs(score, expert).write(out)?;
+    }
+    unequal.iter().try_for_each(|one| writeln!(out, "not repeated: {one}"))
+}
+
+/// The page of a session.
+pub(super) fn page(record: &SessionRecord, lesson: &Lesson) -> Page {
+    let expert = record.expert.as_ref().map(|expert| &expert.score);
+    Page {
+        title: format!("{}: lesson {}", record.scenario, record.lesson),
+        totals: format!("{}, {}", record.trainee, verdict(record.passed)),
+        wall: lesson.about.clone().unwrap_or_default(),
+        sections: record.attempts.iter().map(|attempt| section(attempt, expert)).collect(),
+        coverage: Vec::new(),
+    }
+}
+
+fn section(attempt: &AttemptRecord, expert: Option<&Score>) -> Section {
+    let score = &attempt.score;
+    let passed = score.is_passed() && attempt.failure.is_none();
+    let shown = |expected: &super::score::Expected| Shown {
+        name: expected.name.clone(),
+        verdict: expected.verdict,
+        at: expected.at_ns.map(spelt).unwrap_or_default(),
+        values: Vec::new(),
+        margin: expected.margin,
+        unit: expected.unit.clone(),
+    };
+    Section {
+        title: format!("attempt {}, {}", attempt.number, origin(attempt)),
+        status: format!("{}, {}", attempt.end, verdict(passed)),
+        mood: if passed { Mood::Good } else { Mood::Bad },
+        steps: Some(attempt.steps),
+        virtual_time: spelt(score.end_ns),
+        facts: vec![
+            ("begun at", spelt(score.begin_ns)),
+            ("digest at the start", attempt.begin_digest.clone()),
+            ("digest", attempt.digest.clone()),
+        ],
+        lines: attempt.failure.iter().cloned().collect(),
+        expectations: score.expectations.iter().map(shown).collect(),
+        tables: vec![malfunctions(score, expert), costs(score, expert)],
+        events: events(score),
+        pictures: Vec::new(),
+    }
+}
+
+/// What happened, in the order of time.
+fn events(score: &Score) -> Vec<Event> {
+    let mut all: Vec<(u64, String)> = Vec::new();
+    for handled in &score.malfunctions {
+        let name = &handled.name;
+        all.extend(handled.begun_ns.map(|at_ns| (at_ns, format!("{name} begins"))));
+        let at = |response: &Option<Response>| response.and_then(|response| response.at_ns);
+        all.extend(at(&handled.identified).map(|at_ns| (at_ns, format!("{name} is identified"))));
+        all.extend(at(&handled.acted).map(|at_ns| (at_ns, format!("{name}: the right thing is done"))));
+    }
+    for expected in &score.expectations {
+        all.extend(expected.at_ns.map(|at_ns| (at_ns, format!("expectation `{}` violated", expected.name))));
+    }
+    all.sort();
+    all.into_iter().map(|(at_ns, what)| Event { at: spelt(at_ns), what }).collect()
+}

@@ -1,0 +1,123 @@
+//! Prepared states: made by a run, kept as checkpoints in files that are named after all that made them.
+
+use std::path::{Path, PathBuf};
+
+use onescan_base::regular::{self, Limit};
+use onescan_report::file;
+use onescan_scenario::Scenario;
+use onescan_scenario::file::ClientFile;
+use onescan_scenario::lesson::{Book, Start};
+use onescan_server::checkpoint::Checkpoint;
+use onescan_server::lockstep::Reached;
+
+use super::attempt::elsewhere;
+use super::error::{StartError, TrainError};
+use crate::error::Unreadable;
+use crate::run::in_process::in_process;
+
+/// Where prepared states are kept, unless somebody says otherwise: below the user's cache, else below the temporary folder.
+fn usual_folder() -> PathBuf {
+    let cache = std::env::var_os("XDG_CACHE_HOME").map(PathBuf::from);
+    let home = || std::env::var_os("HOME").map(|home| PathBuf::from(home).join(".cache"));
+    let cache = cache.filter(|path| path.is_absolute()).or_else(home).unwrap_or_else(std::env::temp_dir);
+    cache.join("onescan").join("starts")
+}
+
+/// The prepared states of a scenario.
+pub(super) struct Starts<'a> {
+    scenario: &'a Scenario,
+    book: &'a Book,
+    folder: PathBuf,
+}
+
+impl<'a> Starts<'a> {
+    pub(super) fn new(scenario: &'a Scenario, book: &'a Book, folder: Option<&Path>) -> Self {
+        Self { scenario, book, folder: folder.map_or_else(usual_folder, Path::to_owned) }
+    }
+
+    /// The state `start`: from its file, or made and kept.
+    ///
+    /// # Errors
+    /// The run that makes it cannot be formed or ends too early.
+    pub(super) fn prepare(&self, start: &Start) -> Result<Checkpoint, TrainError> {
+        let scenario = self.book.prepared(self.scenario, start)?;
+        let path = self.folder.join(format!("{}.ckpt", self.identity(&scenario, start)?));
+        if let Some(kept) = kept(&path) {
+            return Ok(kept);
+        }
+        let checkpoint = make(&scenario, start)?;
+        let failed = |source| StartError::Checkpoint { name: start.name.clone(), source };
+        let bytes = checkpoint.to_bytes().map_err(failed)?;
+        // Without a file the state is made again next time: that costs time and nothing else.
+        let written = file::create_folder(&self.folder).and_then(|_| file::write_whole(&path, &bytes));
+        if let Err(error) = written {
+            tracing::warn!(%error, "start `{}` is not kept", start.name);
+        }
+        Ok(checkpoint)
+    }
+
+    /// A name by all that makes the state: the program, the scenario's files, the case, the time.
+    fn identity(&self, scenario: &Scenario, start: &Start) -> Result<String, TrainError> {
+        let mut hash = blake3::Hasher::new();
+        let mut part = |bytes: &[u8]| {
+            hash.update(&(bytes.len() as u64).to_le_bytes());
+            hash.update(bytes);
+        };
+        part(env!("CARGO_PKG_VERSION").as_bytes());
+        part(&start.at.as_nanos().to_le_bytes());
+        let mut files = scenario.files();
+        files.extend(kinds(scenario)?);
+        for file in files {
+            let path = scenario.folder().join(&file);
+            part(file.to_string_lossy().as_bytes());
+            part(&regular::read(&path, Limit::DATA).map_err(Unreadable::at(&path))?);
+        }
+        part(start.case.as_deref().unwrap_or_default().as_bytes());
+        let short: String = hash.finalize().to_hex().chars().take(32).collect();
+        Ok(format!("{}-{short}", self.scenario.name()))
+    }
+}
+
+/// The files with kinds of component of the scenario's own, relative to its folder, in the order of their names.
+fn kinds(scenario: &Scenario) -> Result<Vec<PathBuf>, TrainError> {
+    let mut found = Vec::new();
+    for client in scenario.file().clients.values() {
+        let ClientFile::Plant { scene, .. } = client.get_ref() else { continue };
+        let path = scenario.folder().join(scene);
+        let text = regular::read_text(&path).map_err(Unreadable::at(&path))?;
+        // The scene was read before: what is no table here would have been told then.
+        let Ok(table) = text.parse::<toml::Table>() else { continue };
+        let libraries = table.get("libraries").and_then(toml::Value::as_array).into_iter().flatten();
+        for library in libraries.filter_map(toml::Value::as_str) {
+            let relative = Path::new(scene).parent().unwrap_or(Path::new("")).join(library);
+            let folder = scenario.folder().join(&relative);
+            let entries = std::fs::read_dir(&folder).map_err(Unreadable::at(&folder))?;
+            for entry in entries {
+                let entry = entry.map_err(Unreadable::at(&folder))?;
+                if entry.file_type().is_ok_and(|ty| ty.is_file()) {
+                    found.push(relative.join(entry.file_name()));
+                }
+            }
+        }
+    }
+    found.sort();
+    Ok(found)
+}
+
+/// A state that was kept; nothing if there is none, or one that is damaged or of another version.
+fn kept(path: &Path) -> Option<Checkpoint> {
+    let bytes = regular::read(path, Limit::DATA).ok()?;
+    Checkpoint::from_bytes(&bytes).inspect_err(|error| tracing::warn!(%error, "{} is made again", path.display())).ok()
+}
+
+/// Runs up to the state.
+fn make(scenario: &Scenario, start: &Start) -> Result<Checkpoint, TrainError> {
+    let until = start.at + scenario.plan().step();
+    let mut lockstep = in_process(scenario, until, [], elsewhere)?;
+    lockstep.set_makeup(scenario.makeup());
+    if lockstep.run_to(start.at)? == Reached::End {
+        return Err(StartError::Ended { name: start.name.clone(), ended: lockstep.session().t_v() }.into());
+    }
+    let taken = lockstep.checkpoint();
+    Ok(taken.map_err(|source| StartError::Checkpoint { name: start.name.clone(), source })?)
+}

@@ -1,0 +1,131 @@
+//! A lesson on two pages: whose page it is, what the trainer asks, what has failed.
+
+use std::collections::BTreeSet;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use onescan_scenario::panel_file::Seat;
+use onescan_server::digest::TrajectoryDigest;
+use onescan_server::mailbox::Mailbox;
+use onescan_server::observer::{Observer, RecordError};
+use onescan_server::operation::{Control, Operation, OperatorInput};
+use onescan_server::session::Session;
+use onescan_server::time::VirtualTime;
+
+/// What a page needs of a lesson.
+#[derive(Clone, Debug)]
+pub(crate) struct Training {
+    /// Whose page it is.
+    pub(crate) role: Role,
+    /// Where the trainer's wishes go.
+    pub(crate) desk: Desk,
+    /// The lesson's name.
+    pub(crate) lesson: String,
+    /// What the trainee is told.
+    pub(crate) about: Option<String>,
+    /// The prepared states by name.
+    pub(crate) starts: Vec<String>,
+}
+
+/// Whose page it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Role {
+    /// Who takes the lesson: virtual time, failures and the trainer's panels are not theirs.
+    Trainee,
+    /// Who holds it.
+    Trainer,
+}
+
+impl Role {
+    /// Whether a panel of this seat is on the page.
+    pub(super) fn sees(self, seat: Seat) -> bool {
+        self == Self::Trainer || seat != Seat::Trainer
+    }
+}
+
+/// How a lesson goes on.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Turn {
+    /// From its start again.
+    Repeat,
+    /// From an earlier moment.
+    Back(VirtualTime),
+    /// From a prepared state.
+    Jump(String),
+}
+
+/// The trainer's wish, from any thread for the one that drives the lesson; clones share it. The newest counts.
+#[derive(Clone, Debug)]
+pub(crate) struct Desk {
+    turn: Arc<Mutex<Option<Turn>>>,
+    mailbox: Mailbox,
+}
+
+impl Desk {
+    /// Nobody has asked; `mailbox` is that of the session.
+    pub(crate) fn new(mailbox: Mailbox) -> Self {
+        Self { turn: Arc::default(), mailbox }
+    }
+
+    /// Lets the attempt that is under way end, and the lesson go on like this.
+    pub(super) fn ask(&self, turn: Turn) {
+        *lock(&self.turn) = Some(turn);
+        self.mailbox.control(Control::Stop);
+    }
+
+    /// How the lesson goes on; nothing if nobody asked.
+    pub(crate) fn take(&self) -> Option<Turn> {
+        lock(&self.turn).take()
+    }
+}
+
+/// A thread that panicked under a lock has left a whole value.
+fn lock<T>(value: &Mutex<T>) -> MutexGuard<'_, T> {
+    value.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The failures at work, as `component.mode`; clones share them.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Failing {
+    failed: Arc<Mutex<BTreeSet<String>>>,
+}
+
+impl Failing {
+    /// Keeps them up to date with a session. What failed before it goes on from a checkpoint is not known.
+    pub(crate) fn observer(&self) -> Box<dyn Observer> {
+        Box::new(self.clone())
+    }
+
+    /// All of them.
+    pub(super) fn now(&self) -> BTreeSet<String> {
+        lock(&self.failed).clone()
+    }
+}
+
+impl Observer for Failing {
+    fn begin(&mut self, _: &Session, _: &TrajectoryDigest) -> Result<(), RecordError> {
+        lock(&self.failed).clear();
+        Ok(())
+    }
+
+    fn step(&mut self, _: &Session, _: &TrajectoryDigest) -> Result<(), RecordError> {
+        Ok(())
+    }
+
+    fn operated(&mut self, input: &OperatorInput) -> Result<(), RecordError> {
+        match &input.operation {
+            Operation::Fail { component, mode, .. } => {
+                lock(&self.failed).insert(format!("{component}.{mode}"));
+            }
+            Operation::Repair { component, mode, .. } => {
+                lock(&self.failed).remove(&format!("{component}.{mode}"));
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn end(&mut self, _: &Session) -> Result<(), RecordError> {
+        Ok(())
+    }
+}

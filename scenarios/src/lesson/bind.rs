@@ -1,0 +1,207 @@
+//! The formulas and costs of a lesson, bound to the signals of its scenario.
+
+use std::path::PathBuf;
+
+use onescan_server::operation::Operation;
+use onescan_server::signal::{SignalName, did_you_mean};
+use onescan_server::time::TimeSpan;
+use toml::Spanned;
+
+use super::book::Book;
+use super::file::{CostFile, CostKind, LessonFile, MalfunctionFile};
+use crate::arrays;
+use crate::error::ScenarioError;
+use crate::expect::{Expectation, FormulaError, Judge, KnownSignal, Present};
+use crate::file::ScenarioFile;
+
+/// A lesson, checked.
+#[derive(Clone, Debug)]
+pub struct Lesson {
+    /// Its name.
+    pub name: String,
+    /// What the trainee is told.
+    pub about: Option<String>,
+    /// The prepared state with which it begins.
+    pub start: String,
+    /// How long it lasts at most.
+    pub lasts: TimeSpan,
+    /// It is over as soon as this holds on these signals.
+    pub done: Option<(Present, Vec<SignalName>)>,
+    /// What goes wrong.
+    pub malfunctions: Vec<Malfunction>,
+    /// What it costs.
+    pub costs: Vec<Cost>,
+    /// The file or recording of what an expert did, relative to the scenario's folder.
+    pub expert: Option<PathBuf>,
+}
+
+/// Something that goes wrong, and how it is seen that the trainee knows it and has done what is to be done.
+#[derive(Clone, Debug)]
+pub struct Malfunction {
+    /// Its name.
+    pub name: String,
+    /// The operation with which it begins.
+    pub begin: Operation,
+    /// It comes by the trainer's hand.
+    pub by_trainer: bool,
+    /// The trainee knows.
+    pub identify: Option<Sought>,
+    /// How long that may take.
+    pub identify_within: Option<TimeSpan>,
+    /// The trainee has acted.
+    pub act: Option<Sought>,
+    /// How long that may take.
+    pub act_within: Option<TimeSpan>,
+}
+
+impl Malfunction {
+    /// Whether it begins with this operation: the same thing happens to the same component or signal.
+    pub fn begins_with(&self, operation: &Operation) -> bool {
+        match (&self.begin, operation) {
+            (Operation::Disturb { signal, .. }, Operation::Disturb { signal: other, .. })
+            | (Operation::Force { signal, .. }, Operation::Force { signal: other, .. }) => signal == other,
+            (begin, operation) => begin == operation,
+        }
+    }
+}
+
+/// A formula whose first time is looked for.
+#[derive(Clone, Debug)]
+pub struct Sought {
+    /// That it never holds: violated when it first does.
+    never: Expectation,
+    /// Its signals, in the order of their columns.
+    pub signals: Vec<SignalName>,
+}
+
+impl Sought {
+    fn parse(text: &str, known: &[KnownSignal]) -> Result<Self, FormulaError> {
+        let mut columns = Vec::new();
+        // By itself first: what is wrong is told at its own place.
+        Expectation::parse(text, known, &mut columns)?;
+        let never = Expectation::parse(&format!("always not ({text})"), known, &mut columns)?;
+        Ok(Self { never, signals: names(columns) })
+    }
+
+    /// A judge for whom the formula's first time is the violation of its only expectation.
+    pub fn judge(&self) -> Judge {
+        Judge::new([self.never.clone()], self.signals.len())
+    }
+}
+
+/// What a lesson costs.
+#[derive(Clone, Debug)]
+pub struct Cost {
+    /// Its name.
+    pub name: String,
+    /// The signals, which are added.
+    pub signals: Vec<SignalName>,
+    /// What of them counts.
+    pub of: CostKind,
+    /// The unit of the signals, if they have one in common; that of an integral has `s` with it.
+    pub unit: Option<String>,
+}
+
+/// Columns are names of the file's own signals.
+fn names(columns: Vec<String>) -> Vec<SignalName> {
+    columns.into_iter().filter_map(|column| SignalName::new(column).ok()).collect()
+}
+
+/// Binds what is written of a lesson; `begins` are the operations with which its malfunctions begin.
+pub(super) fn lesson(
+    book: &Book,
+    scenario: &ScenarioFile,
+    file: &LessonFile,
+    begins: Vec<Operation>,
+) -> Result<Lesson, ScenarioError> {
+    let known = scenario.known_signals();
+    let done = file.done.as_ref().map(|done| {
+        let mut columns = Vec::new();
+        let present = Present::parse(done.get_ref(), &known, &mut columns);
+        present.map(|present| (present, names(columns))).map_err(|error| book.wrong_formula(done, error))
+    });
+    let mut malfunctions: Vec<Malfunction> = Vec::new();
+    for (file, begin) in file.malfunctions.iter().zip(begins) {
+        let file = file.get_ref();
+        if malfunctions.iter().any(|other| other.name == *file.name.get_ref()) {
+            let message = format!("two malfunctions are called `{}`", file.name.get_ref());
+            return Err(book.wrong(message, file.name.span(), None));
+        }
+        malfunctions.push(malfunction(book, &known, file, begin)?);
+    }
+    let mut costs: Vec<Cost> = Vec::new();
+    for file in &file.costs {
+        let file = file.get_ref();
+        if costs.iter().any(|other| other.name == *file.name.get_ref()) {
+            return Err(book.wrong(format!("two costs are called `{}`", file.name.get_ref()), file.name.span(), None));
+        }
+        costs.push(cost(book, scenario, file)?);
+    }
+    Ok(Lesson {
+        name: file.name.get_ref().clone(),
+        about: file.about.clone(),
+        start: file.start.get_ref().clone(),
+        lasts: file.lasts,
+        done: done.transpose()?,
+        malfunctions,
+        costs,
+        expert: file.expert.as_ref().map(|path| path.get_ref().clone()),
+    })
+}
+
+fn malfunction(
+    book: &Book,
+    known: &[KnownSignal],
+    file: &MalfunctionFile,
+    begin: Operation,
+) -> Result<Malfunction, ScenarioError> {
+    let sought = |written: &Option<Spanned<String>>, within: Option<TimeSpan>, key: &str| {
+        if let (None, Some(_)) = (written, within) {
+            let message = format!("`{key}_within` says how long `{key}` may take, which is not there");
+            return Err(book.wrong(message, file.name.span(), None));
+        }
+        let sought = written
+            .as_ref()
+            .map(|text| Sought::parse(text.get_ref(), known).map_err(|error| book.wrong_formula(text, error)));
+        sought.transpose()
+    };
+    Ok(Malfunction {
+        name: file.name.get_ref().clone(),
+        begin,
+        by_trainer: file.by_trainer,
+        identify: sought(&file.identify, file.identify_within, "identify")?,
+        identify_within: file.identify_within,
+        act: sought(&file.act, file.act_within, "act")?,
+        act_within: file.act_within,
+    })
+}
+
+fn cost(book: &Book, scenario: &ScenarioFile, file: &CostFile) -> Result<Cost, ScenarioError> {
+    let mut signals = Vec::new();
+    let mut units = Vec::new();
+    for written in &file.signals {
+        let place = written.span();
+        let all = arrays::names(written.get_ref().as_str(), place.clone());
+        for name in all.map_err(|found| book.wrong(found.message, place.clone(), found.help))? {
+            let Some(declared) = scenario.signals.get(&name) else {
+                let help = did_you_mean(name.as_str(), scenario.signals.keys().map(SignalName::as_str));
+                return Err(book.wrong(format!("there is no signal `{name}`"), place, help));
+            };
+            let ty = declared.get_ref().ty;
+            if ty.as_f64(&vec![0; ty.size()]).is_none() {
+                return Err(book.wrong(format!("`{name}` is {ty}, which is no number"), place, None));
+            }
+            units.push(declared.get_ref().unit.clone());
+            signals.push(name);
+        }
+    }
+    if signals.is_empty() {
+        return Err(book.wrong("a cost is made of at least one signal".to_owned(), file.name.span(), None));
+    }
+    let common = units.first().cloned().flatten().filter(|first| units.iter().all(|unit| unit.as_ref() == Some(first)));
+    let unit = match (common, file.of) {
+        (Some(unit), CostKind::Integral) => Some(format!("{unit} s")),
+        (unit, _) => unit,
+    };
+    Ok(Cost { name: file.name.get_ref().clone(), signals, of: file.of, unit })
+}
