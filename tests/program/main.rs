@@ -12,6 +12,7 @@ mod compare;
 mod configuration;
 mod control;
 mod coverage;
+mod dask;
 mod diff;
 mod digests;
 mod errors;

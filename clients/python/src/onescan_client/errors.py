@@ -31,3 +31,7 @@ class SessionEnded(LockstepError):
 
 class SessionFailed(SessionEnded):
     """The session failed, or this client's own `fault` ended it (sections 3.3 and 3.5)."""
+
+
+class CampaignFailed(LockstepError):
+    """`onescan campaign` came to no table; the text is what it said."""
