@@ -81,7 +81,7 @@ try {
   // The start twenty times again, and the flat bath in less than a second.
   const at = (page) => page.evaluate(() => window.onescan.picture().t_ns);
   for (let attempt = 0; attempt < 20; attempt += 1) {
-    await trainer.page.waitForFunction(() => window.onescan.picture().t_ns > 780.4e9);
+    await trainer.page.waitForFunction(() => window.onescan.picture().t_ns > 784e9);
     const before = await at(trainer.page);
     await trainer.page.getByRole("button", { name: "Repeat" }).click();
     await trainer.page.waitForFunction((before) => window.onescan.picture().t_ns < before, before);

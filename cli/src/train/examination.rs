@@ -69,7 +69,7 @@ impl Search {
             Verdict::Violated { at, .. } => Some(at.as_nanos()),
             Verdict::Met | Verdict::Open => None,
         });
-        let after_ns = at_ns.zip(begun_ns).map(|(at_ns, begun_ns)| at_ns - begun_ns);
+        let after_ns = at_ns.zip(begun_ns).map(|(at_ns, begun_ns)| at_ns.saturating_sub(begun_ns));
         Response { at_ns, after_ns, within_ns }
     }
 }
@@ -143,7 +143,7 @@ impl Examination {
     /// Takes an image.
     fn see(&mut self, session: &Session) {
         let t_ns = session.t_v().as_nanos();
-        let since_s = if self.begin_ns.is_some() { (t_ns - self.now_ns) as f64 / 1e9 } else { 0.0 };
+        let since_s = if self.begin_ns.is_some() { t_ns.saturating_sub(self.now_ns) as f64 / 1e9 } else { 0.0 };
         self.begin_ns.get_or_insert(t_ns);
         self.now_ns = t_ns;
         self.judge.push(t_ns, self.judged.numbers(session));
