@@ -52,8 +52,9 @@ struct Search {
 #[derive(Clone)]
 struct Meter {
     signals: Chosen,
-    first: Option<f64>,
-    last: f64,
+    last: Option<f64>,
+    risen: f64,
+    fallen: f64,
     greatest: f64,
     integral: f64,
 }
@@ -87,22 +88,30 @@ impl Trial {
 
 impl Meter {
     fn new(cost: &Cost) -> Self {
-        Self { signals: Chosen::new(&cost.signals), first: None, last: 0.0, greatest: f64::NEG_INFINITY, integral: 0.0 }
+        Self {
+            signals: Chosen::new(&cost.signals),
+            last: None,
+            risen: 0.0,
+            fallen: 0.0,
+            greatest: f64::NEG_INFINITY,
+            integral: 0.0,
+        }
     }
 
     fn see(&mut self, session: &Session, since_s: f64) {
         let value: f64 = self.signals.numbers(session).sum();
+        let last = self.last.unwrap_or(value);
         // A signal holds its value from one image to the next.
-        self.integral += self.last * since_s;
-        self.first.get_or_insert(value);
-        (self.last, self.greatest) = (value, self.greatest.max(value));
+        self.integral += last * since_s;
+        self.risen += (value - last).max(0.0);
+        self.fallen += (last - value).max(0.0);
+        (self.last, self.greatest) = (Some(value), self.greatest.max(value));
     }
 
     fn value(&self, of: CostKind) -> f64 {
-        let first = self.first.unwrap_or_default();
         match of {
-            CostKind::Rise => self.last - first,
-            CostKind::Fall => first - self.last,
+            CostKind::Rise => self.risen,
+            CostKind::Fall => self.fallen,
             CostKind::Greatest => self.greatest,
             CostKind::Integral => self.integral,
         }
