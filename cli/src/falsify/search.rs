@@ -100,10 +100,9 @@ impl Atlas {
             *times += 1;
         }
         match self.objective {
-            Objective::Robustness => sample.robustness,
             Objective::Coverage => -rarity,
             Objective::Both if sample.robustness > 0.0 => sample.robustness / f64::from(new + 1),
-            Objective::Both => sample.robustness,
+            Objective::Robustness | Objective::Both => sample.robustness,
         }
     }
 }
