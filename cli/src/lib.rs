@@ -8,6 +8,7 @@
 //! | [`train`] | lessons taken at panels, measured on virtual time |
 //! | [`campaign`] | faults by the table, each with a verdict |
 //! | [`explore`] | timings that links may have, tried |
+//! | [`falsify`] | inputs and parameters that break what is expected, searched |
 //! | [`minimise`] | the least of a case with which it still fails |
 //! | [`mutate`] | small mistakes in the PLC's program, and whether they are noticed |
 //! | [`review`] | snapshots looked at, accepted or rejected |
@@ -52,6 +53,7 @@ pub mod diff;
 pub mod error;
 pub mod explore;
 pub mod export;
+pub mod falsify;
 pub mod format;
 pub mod freewheel;
 pub mod instrument;

@@ -68,7 +68,7 @@ impl Scenario {
         };
         match entry.get_ref() {
             ClientFile::Plant { scene, period, .. } => {
-                let scene = self.scene_of(name, scene)?;
+                let scene = self.scene_once(name, scene)?;
                 let plant = Plant::new(scene, name.clone(), period.unwrap_or(self.file().step));
                 Ok(Member::Plant(Box::new(plant.seeded(self.seed()))))
             }
@@ -174,6 +174,14 @@ impl Scenario {
         Ok(scene)
     }
 
+    /// The same, read once for all cases that set the same in it.
+    fn scene_once(&self, name: &ClientName, file: &str) -> Result<Scene, ScenarioError> {
+        permission::granted().check(self.folder(), &self.folder().join(file))?;
+        let scene = self.compilations().scene(name, &self.overrides(name), || self.scene_of(name, file))?;
+        self.check_failures(name, &scene)?;
+        Ok(Scene::clone(&scene))
+    }
+
     /// The sources of soft PLC `name`, compiled, and what its `bind` says.
     ///
     /// # Errors
@@ -209,7 +217,11 @@ impl Scenario {
         let settings = self.case().map(|case| case.settings.as_slice()).unwrap_or_default();
         let of = Compilation {
             client: name.clone(),
-            settings: settings.iter().map(|one| (one.path.clone(), one.value.to_string())).collect(),
+            settings: settings
+                .iter()
+                .filter(|one| one.path.split('.').next() == Some(name.as_str()))
+                .map(|one| (one.path.clone(), one.value.to_string()))
+                .collect(),
             is_traced: self.is_traced(),
             is_covered: self.coverage().is_some(),
         };

@@ -11,6 +11,7 @@ use serde::{Deserialize, Deserializer};
 use toml::Spanned;
 
 use crate::expect::KnownSignal;
+use crate::falsify_file::FalsifyFile;
 use crate::form::{DialectName, Mebibytes, Name, Scalar, Time, Type, Values, from_optional_text, from_text};
 use crate::panel_file::PanelFile;
 use crate::report_file::ReportFile;
@@ -68,6 +69,9 @@ pub struct ScenarioFile {
     /// What the real links may do to signals, for `onescan explore`.
     #[serde(default)]
     pub timing: TimingFile,
+    /// What may be varied to break what is expected, for `onescan falsify`.
+    #[serde(default)]
+    pub falsify: FalsifyFile,
     /// How the signals travel when nothing is synchronised.
     #[serde(default)]
     pub freewheel: FreewheelFile,

@@ -8,6 +8,7 @@
 //! | [`file`] | `scenario.toml` as it is written |
 //! | [`report_file`] | its `[report]` as it is written |
 //! | [`timing_file`] | its `[timing]` as it is written |
+//! | [`falsify_file`] | its `[falsify]` as it is written |
 //! | [`value_names`] | names of a signal's values |
 //! | [`permission`] | which files it may read, and whether it may start programs |
 //! | [`load`] | `scenario.toml` read and checked |
@@ -22,6 +23,7 @@
 //! | `mistaken` | the scenario with it |
 //! | `compilations` | soft PLCs compiled once for all cases |
 //! | [`timing`] | its `[timing]`, bound to its signals |
+//! | [`falsify`] | its `[falsify]`, bound to its signals and clients |
 //! | [`gateway`] | its real PLCs |
 //! | [`watch`] | variables of its soft PLCs that a run looks at |
 //! | `refusal` | a client that its session does not let in |
@@ -41,6 +43,8 @@ pub mod compose;
 pub mod error;
 pub mod expect;
 pub mod expectations;
+pub mod falsify;
+pub mod falsify_file;
 pub mod file;
 mod form;
 pub mod gateway;

@@ -20,6 +20,7 @@ use super::case::{self, Applied};
 use super::compilations::Compilations;
 use super::error::{ScenarioError, Wrong, wrong};
 use super::expectations::Expectations;
+use super::falsify::{self, Varied, VariedParameter};
 use super::file::{ClientFile, CouplingFile, ScenarioFile, VERSION};
 use super::mistake::Mistake;
 use super::report::Measures;
@@ -72,6 +73,8 @@ pub struct Scenario {
     pub(crate) watched: Option<Watched>,
     /// The signals whose edges may be late.
     late: Vec<Late>,
+    /// What may be varied.
+    varied: Varied,
     /// Its soft PLCs, as far as they have been compiled.
     compilations: Compilations,
     /// What is wrong on purpose with the program of one of them.
@@ -125,6 +128,7 @@ impl Scenario {
         let placed = |found: Wrong| wrong(found.message, Some(found.place), found.help);
         panel::check(&file).map_err(placed)?;
         let late = timing::bind(&file).map_err(placed)?;
+        let varied = falsify::bind(&file).map_err(placed)?;
         let expectations = Expectations::bind(&file, &text).map_err(placed)?;
         let measures = Measures::bind(&file, &text).map_err(placed)?;
         let name = name_of(&path);
@@ -145,6 +149,7 @@ impl Scenario {
             links: BTreeMap::new(),
             watched: None,
             late,
+            varied,
             compilations: Compilations::default(),
             mistake: None,
         };
@@ -159,6 +164,16 @@ impl Scenario {
     /// The signals whose edges may be late, by `[timing]`.
     pub fn late(&self) -> &[Late] {
         &self.late
+    }
+
+    /// What may be varied, by `[falsify]`.
+    pub fn varied(&self) -> &Varied {
+        &self.varied
+    }
+
+    /// An error of a parameter that is varied.
+    pub fn wrong_parameter(&self, parameter: &VariedParameter, message: String, help: Option<String>) -> ScenarioError {
+        wrong(&self.path, &self.text, message, Some(parameter.place.clone()), help)
     }
 
     pub(crate) fn mistake(&self) -> Option<&Mistake> {

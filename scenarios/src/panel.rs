@@ -216,6 +216,7 @@ name = "desk"
             element("selector", "signal = \"Mode\"\nat = [0, 1]"),
             element("lamp", "signal = \"Seen\"\nat = [1, 1]\ncolour = \"red\""),
             element("joystick", "signal = \"Speed\"\nsignal_y = \"Speed\"\nat = [2, 1]"),
+            element("switch", "failure = \"wall.leak\"\nat = [3, 1]"),
             element("alarms", "at = [0, 2]\nspan = [6, 3]"),
         ];
         assert_eq!(told(&elements.concat()), Ok(()));
@@ -241,6 +242,12 @@ name = "desk"
         assert!(wrong("bar", "signal = \"Speed\"\nat = [0, 0]\nmin = 1.0\nmax = 1.0").0.contains("not below"));
         assert!(wrong("lamp", "signal = \"Start\"\nat = [0, 0]\ncolour = \"url(x)\"").0.contains("is no colour"));
         assert!(wrong("switch", "signal = \"Start\"\nat = [0, 0]\nlatching = true").0.contains("only a button"));
+        assert!(
+            wrong("slider", "failure = \"wall.leak\"\nat = [0, 0]").0.contains("only a switch, a button and a lamp")
+        );
+        assert!(wrong("switch", "failure = \"leak\"\nat = [0, 0]").0.contains("`component.mode`"));
+        let both = "signal = \"Start\"\nfailure = \"wall.leak\"\nat = [0, 0]";
+        assert!(wrong("switch", both).0.contains("not both"));
         let two = element("lamp", "signal = \"Start\"\nat = [0, 0]\nspan = [2, 2]");
         let over = told(&(two + &element("lamp", "signal = \"Start\"\nat = [1, 1]"))).expect_err("wrong");
         assert!(over.0.contains("lies on the one at column 0, row 0"), "{over:?}");

@@ -163,3 +163,24 @@ fn mechanics_in_structured_text_are_those_of_the_library() {
     }
     is_the_same_over_tcp_and_resumed("arc-furnace", "mechanics.toml", "30s", "12s");
 }
+
+/// A heat with an expert's hand at its presets and taps: one digest in process, over TCP, and from its own recording.
+#[test]
+fn an_experts_heat_is_repeated_over_every_way() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let record = folder.path().join("r");
+    let digest = |source: &str, more: &[&str]| {
+        let words = ["run", ".", "--until", "62min", "--format", "json", "--replay-operator", source];
+        let said = typed(&scenario("arc-furnace"), &[&words, more].concat());
+        let run: Value = serde_json::from_str(&said.out).unwrap_or_else(|_| panic!("{said:?}"));
+        let tapped = run["expectations"].as_array().expect("expectations").iter();
+        let hot = tapped.filter(|one| one["name"] == "steel is tapped hot enough").map(|one| one["verdict"].clone());
+        assert_eq!(hot.collect::<Vec<Value>>(), ["met"], "{run}");
+        run["digest"].as_str().expect("a digest").to_owned()
+    };
+    let whole = digest("experts/heat.jsonl", &["--record", utf8(&record)]);
+    assert_eq!(digest("experts/heat.jsonl", &["--transport", "tcp"]), whole);
+    assert_eq!(digest(utf8(&record.join("run-1")), &[]), whole);
+    let automatic = typed(&scenario("arc-furnace"), &["run", ".", "--until", "62min", "--format", "json"]);
+    assert!(!automatic.out.contains(&whole), "the expert does something");
+}

@@ -18,6 +18,7 @@ mod digests;
 mod errors;
 mod expectations;
 mod explore;
+mod falsify;
 mod faults;
 mod files_named;
 mod filling_machine;

@@ -221,9 +221,9 @@ fn a_trainer_repeats_jumps_and_goes_back() {
     }
     let start_ns = 780 * SECOND_NS;
     for _ in 0..20 {
-        until(&mut trainer, |t_ns| t_ns > start_ns + SECOND_NS / 2 && t_ns < start_ns + 100 * SECOND_NS);
+        let before = until(&mut trainer, |t_ns| t_ns > start_ns + 5 * SECOND_NS);
         ask(&mut trainer, &json!({"type": "train", "turn": "repeat"}));
-        until(&mut trainer, |t_ns| t_ns < start_ns + SECOND_NS / 2);
+        until(&mut trainer, |t_ns| t_ns < before);
     }
     let asked = Instant::now();
     ask(&mut trainer, &json!({"type": "train", "turn": "jump", "start": "flat bath"}));

@@ -112,8 +112,13 @@ pub(crate) fn copied_shear_of_snapshots() -> tempfile::TempDir {
 
 /// A copy of a scenario of the project in a folder of its own, to be broken.
 pub(crate) fn copied(name: &str) -> tempfile::TempDir {
+    copied_from(&scenario(name))
+}
+
+/// A copy of a folder.
+pub(crate) fn copied_from(from: &Path) -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a folder");
-    copy(&scenario(name), folder.path());
+    copy(from, folder.path());
     folder
 }
 

@@ -11,6 +11,7 @@ use super::campaign::{CampaignArgs, CampaignWorkerArgs};
 use super::compare::CompareArgs;
 use super::error::CommandError;
 use super::explore::ExploreArgs;
+use super::falsify::FalsifyArgs;
 use super::minimise::MinimiseArgs;
 use super::model::ModelArgs;
 use super::mutate::MutateArgs;
@@ -23,8 +24,8 @@ use super::source::{CheckArgs, ExplainArgs, InstrumentArgs};
 use super::test::{ReviewArgs, TestArgs, WorkerArgs};
 use super::train::TrainArgs;
 use super::{
-    access, campaign, compare, explore, minimise, model, mutate, plant, plc, recording, run, session, source, test,
-    train,
+    access, campaign, compare, explore, falsify, minimise, model, mutate, plant, plc, recording, run, session, source,
+    test, train,
 };
 use crate::error::ExitCode;
 
@@ -83,6 +84,9 @@ pub enum Command {
     /// Try every timing that a scenario's `[timing]` allows: edges that are late, one at a time, then two, and show the
     /// fewest with which it does not do what is expected
     Explore(ExploreArgs),
+    /// Search the inputs and parameters that a scenario's `[falsify]` allows for some with which it does not do what is
+    /// expected
+    Falsify(FalsifyArgs),
     /// Leave out of a failing case what it does not need to fail, and make the rest as small and as early as it can be
     Minimise(MinimiseArgs),
     /// Make small mistakes in the PLC's program, one at a time, and show which ones no expectation notices
@@ -155,6 +159,7 @@ pub fn dispatch(command: Command) -> Result<ExitCode, CommandError> {
         Command::Compare(args) => compare::compare(args),
         Command::Test(args) => test::test(*args),
         Command::Explore(args) => explore::explore(args),
+        Command::Falsify(args) => falsify::falsify(args),
         Command::Mutate(args) => mutate::mutate(args),
         Command::Minimise(args) => minimise::minimise(args),
         Command::Train(args) => train::train(*args),

@@ -11,6 +11,7 @@ use crate::diff::DiffError;
 use crate::error::{Usage, sum_of_errors};
 use crate::explore::ExploreError;
 use crate::export::ExportError;
+use crate::falsify::FalsifyError;
 use crate::instrument::InstrumentError;
 use crate::map::MapError;
 use crate::minimise::MinimiseError;
@@ -75,6 +76,9 @@ sum_of_errors! {
         /// `explore` came to nothing.
         #[diagnostic(transparent)]
         Explore(ExploreError),
+        /// `falsify` came to nothing.
+        #[diagnostic(transparent)]
+        Falsify(FalsifyError),
         /// `minimise` came to nothing.
         #[diagnostic(transparent)]
         Minimise(MinimiseError),

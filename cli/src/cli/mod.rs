@@ -6,6 +6,7 @@
 //! | [`run`], [`compare`] | a scenario |
 //! | [`campaign`] | faults by campaigns |
 //! | [`explore`] | timings that links may have |
+//! | [`falsify`] | inputs and parameters that break what is expected |
 //! | [`mutate`] | small mistakes in programs |
 //! | [`minimise`] | the least of a case that still fails |
 //! | [`train`] | lessons |
@@ -26,6 +27,7 @@ pub mod campaign;
 pub mod compare;
 mod error;
 pub mod explore;
+pub mod falsify;
 mod logging;
 pub mod minimise;
 pub mod model;

@@ -2,7 +2,7 @@
 
 use onescan_scenario::Scenario;
 use onescan_scenario::compose::Member;
-use onescan_scenario::expect::{Judge, TraceEnd};
+use onescan_scenario::expect::{Judge, Outcome, TraceEnd};
 use onescan_server::checkpoint::{Checkpoint, CheckpointError};
 use onescan_server::digest::Digest;
 use onescan_server::end::{Failure, SessionEnd};
@@ -39,6 +39,15 @@ pub(crate) struct Judgement {
     pub(crate) digest: Option<Digest>,
     /// Expectations that did not hold.
     pub(crate) violated: Vec<ExpectationReport>,
+    /// How a client failed, if one did.
+    pub(crate) failure: Option<Failure>,
+}
+
+/// What each expectation of a session is worth.
+pub(crate) struct Measured {
+    pub(crate) digest: Option<Digest>,
+    /// In the order of the scenario.
+    pub(crate) outcomes: Vec<Outcome>,
     /// How a client failed, if one did.
     pub(crate) failure: Option<Failure>,
 }
@@ -125,6 +134,17 @@ impl<'a> Judged<'a> {
         let mut violated = expectation::reports(self.scenario, self.judge, end);
         violated.retain(ExpectationReport::is_violated);
         Ok(Judgement { digest: outcome.digest, violated, failure })
+    }
+
+    /// What each expectation is worth now that nothing comes after it. Its clients are gone then.
+    ///
+    /// # Errors
+    /// The session could not go on.
+    pub(crate) fn measure(mut self) -> Result<Measured, RecordError> {
+        let outcome = self.lockstep.run()?;
+        let failure = if let SessionEnd::Failed(failure) = outcome.end { Some(failure) } else { None };
+        let end = if failure.is_none() { TraceEnd::Complete } else { TraceEnd::Cut };
+        Ok(Measured { digest: outcome.digest, outcomes: self.judge.finish(end), failure })
     }
 
     /// What came of it as far as it is known now; what it would still do is not.

@@ -52,8 +52,9 @@ struct Search {
 #[derive(Clone)]
 struct Meter {
     signals: Chosen,
-    first: Option<f64>,
-    last: f64,
+    last: Option<f64>,
+    risen: f64,
+    fallen: f64,
     greatest: f64,
     integral: f64,
 }
@@ -69,7 +70,7 @@ impl Search {
             Verdict::Violated { at, .. } => Some(at.as_nanos()),
             Verdict::Met | Verdict::Open => None,
         });
-        let after_ns = at_ns.zip(begun_ns).map(|(at_ns, begun_ns)| at_ns - begun_ns);
+        let after_ns = at_ns.zip(begun_ns).map(|(at_ns, begun_ns)| at_ns.saturating_sub(begun_ns));
         Response { at_ns, after_ns, within_ns }
     }
 }
@@ -87,22 +88,30 @@ impl Trial {
 
 impl Meter {
     fn new(cost: &Cost) -> Self {
-        Self { signals: Chosen::new(&cost.signals), first: None, last: 0.0, greatest: f64::NEG_INFINITY, integral: 0.0 }
+        Self {
+            signals: Chosen::new(&cost.signals),
+            last: None,
+            risen: 0.0,
+            fallen: 0.0,
+            greatest: f64::NEG_INFINITY,
+            integral: 0.0,
+        }
     }
 
     fn see(&mut self, session: &Session, since_s: f64) {
         let value: f64 = self.signals.numbers(session).sum();
+        let last = self.last.unwrap_or(value);
         // A signal holds its value from one image to the next.
-        self.integral += self.last * since_s;
-        self.first.get_or_insert(value);
-        (self.last, self.greatest) = (value, self.greatest.max(value));
+        self.integral += last * since_s;
+        self.risen += (value - last).max(0.0);
+        self.fallen += (last - value).max(0.0);
+        (self.last, self.greatest) = (Some(value), self.greatest.max(value));
     }
 
     fn value(&self, of: CostKind) -> f64 {
-        let first = self.first.unwrap_or_default();
         match of {
-            CostKind::Rise => self.last - first,
-            CostKind::Fall => first - self.last,
+            CostKind::Rise => self.risen,
+            CostKind::Fall => self.fallen,
             CostKind::Greatest => self.greatest,
             CostKind::Integral => self.integral,
         }
@@ -143,7 +152,7 @@ impl Examination {
     /// Takes an image.
     fn see(&mut self, session: &Session) {
         let t_ns = session.t_v().as_nanos();
-        let since_s = if self.begin_ns.is_some() { (t_ns - self.now_ns) as f64 / 1e9 } else { 0.0 };
+        let since_s = if self.begin_ns.is_some() { t_ns.saturating_sub(self.now_ns) as f64 / 1e9 } else { 0.0 };
         self.begin_ns.get_or_insert(t_ns);
         self.now_ns = t_ns;
         self.judge.push(t_ns, self.judged.numbers(session));

@@ -65,6 +65,8 @@ pub(super) struct Known {
     pub(super) plants: BTreeMap<String, ClientName>,
     /// Clients that are people.
     pub(super) operators: BTreeSet<ClientName>,
+    /// Panels that are not on this page.
+    pub(super) hidden: BTreeSet<String>,
     /// The panels, each with the signals that it writes.
     pub(super) panels: BTreeMap<String, BTreeSet<String>>,
 }
@@ -167,6 +169,8 @@ pub(super) fn of(scenario: &Scenario, training: Option<&Training>) -> Result<(St
     let mut panels = panel::of(scenario);
     known.panels = panels.iter().map(|panel| (panel.name.clone(), panel.written())).collect();
     if let Some(Training { role: role @ Role::Trainee, .. }) = training {
+        let hidden = panels.iter().filter(|panel| !role.sees(panel.seat));
+        known.hidden = hidden.map(|panel| panel.name.clone()).collect();
         panels.retain(|panel| role.sees(panel.seat));
         components.iter_mut().for_each(|part: &mut Part| part.failures.clear());
     }

@@ -152,6 +152,7 @@ fn heed(
             shown.want(ask::signals(&signals, &session.layout)?);
             return Ok(true);
         }
+        Ask::Seat { panel, .. } if session.known.hidden.contains(&panel) => return Err(Refused::NoPanel(panel)),
         Ask::Seat { panel, take } => {
             session.seats.claim(&panel, viewer, take)?;
             return Ok(false);

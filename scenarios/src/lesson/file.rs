@@ -145,9 +145,9 @@ pub struct CostFile {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum CostKind {
-    /// By how much it has grown from the start to the end.
+    /// By how much it has grown, all in all; what it falls in between does not count.
     Rise,
-    /// By how much it has fallen.
+    /// By how much it has fallen, all in all.
     Fall,
     /// Its greatest value.
     Greatest,

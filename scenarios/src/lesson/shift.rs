@@ -53,3 +53,24 @@ impl Shift {
         Spanned::new(force.span(), moved)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_comes_with_the_start_comes_with_the_first_step_behind_it() {
+        let second = TimeSpan::millis::<1000>();
+        let shift = Shift { start: VirtualTime::ZERO + second, step: TimeSpan::millis::<10>() };
+        let millis = |t: VirtualTime| t.as_nanos() / 1_000_000;
+        assert_eq!(millis(shift.moved(VirtualTime::ZERO)), 1010);
+        assert_eq!(millis(shift.moved(VirtualTime::ZERO + second)), 2000);
+        let (mut from, mut until) = (None, Some(VirtualTime::ZERO + second));
+        shift.period(&mut from, &mut until, false);
+        assert_eq!((from.map(millis), until.map(millis)), (Some(1010), Some(2000)));
+        shift.period(&mut None, &mut until, true);
+        let mut waiting = None;
+        shift.period(&mut waiting, &mut None, true);
+        assert_eq!(waiting.map(millis), Some(1000), "a condition counts from the start on");
+    }
+}

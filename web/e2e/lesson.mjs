@@ -1,0 +1,178 @@
+// A lesson before the program itself: three malfunctions are met at the pulpit, and measured to the step.
+// `node e2e/lesson.mjs PROGRAM SCENARIOS [FOLDER]` writes its pictures to FOLDER.
+
+import assert from "node:assert/strict";
+import { spawn, spawnSync } from "node:child_process";
+import { mkdtemp, readFile, rm } from "node:fs/promises";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { chromium } from "playwright-core";
+
+const [program, scenarios, folder = null] = process.argv.slice(2);
+const furnace = join(scenarios, "arc-furnace");
+const STEP_NS = 20_000_000;
+const room = await mkdtemp(join(tmpdir(), "lesson-"));
+const [session, starts, report] = [join(room, "session"), join(room, "starts"), join(room, "lesson.html")];
+const browser = await chromium.launch({
+  executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
+  args: [
+    "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
+    "--disable-component-update", "--disable-sync", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+  ],
+});
+const words = [
+  "train", furnace, "three-malfunctions", "--trainee", "ann", "--web", "--pace", "4", "--starts", starts, "--record", session,
+  "--html", report, "--format", "json",
+];
+const child = spawn(program, words, { stdio: ["ignore", "pipe", "pipe"] });
+let [out, said] = ["", ""];
+child.stdout.on("data", (data) => (out += data));
+const over = new Promise((ended) => child.on("exit", (code) => ended(code)));
+const urls = await new Promise((found, lost) => {
+  child.stderr.on("data", (data) => {
+    said += data;
+    const lines = ["trainee", "trainer"].map((whose) => new RegExp(`${whose}'s page is at (http:\\S+)`).exec(said)?.[1]);
+    if (lines.every((line) => line !== undefined)) found(lines);
+  });
+  child.on("exit", () => lost(new Error(`no pages: ${said}`)));
+});
+
+async function open(url) {
+  const page = await browser.newPage({ viewport: { width: 1280, height: 900 } });
+  const errors = [];
+  page.on("pageerror", (error) => errors.push(String(error)));
+  await page.goto(url);
+  await page.waitForFunction(() => window.onescan?.picture().step > 5);
+  return { page, errors };
+}
+
+const panel = (page, name) => page.getByRole("region", { name: `Panel ${name}` });
+
+async function sit(page, name) {
+  await panel(page, name).getByRole("button", { name: "Take seat" }).click();
+  await panel(page, name).getByRole("button", { name: "Leave seat" }).waitFor();
+}
+
+/** Until the signals of the pulpit are so: each a name, `=`, `<` or `>`, and a value. */
+async function until(page, ...conditions) {
+  const hold = (all) => all.every(([name, relation, value]) => {
+    const shown = window.onescan.value(name);
+    return shown !== null && (relation === "=" ? shown === value : relation === "<" ? shown < value : shown > value);
+  });
+  await page.waitForFunction(hold, conditions, { timeout: 120_000 });
+}
+
+/** Holds a button down until a signal shows it. */
+async function press(page, label, signal) {
+  const key = panel(page, "pulpit").getByRole("button", { name: label, exact: true });
+  await key.focus();
+  await page.keyboard.down("Space");
+  await until(page, [signal, "=", 1]);
+  await page.keyboard.up("Space");
+  await until(page, [signal, "=", 0]);
+}
+
+try {
+  const [trainee, trainer] = [await open(urls[0]), await open(urls[1])];
+  // What is the trainer's is on the trainer's page alone.
+  assert.equal(await panel(trainee.page, "malfunctions").count(), 0);
+  assert.equal(await trainee.page.getByRole("button", { name: "Hold" }).count(), 0);
+  await sit(trainer.page, "malfunctions");
+  // The start twenty times again, and the flat bath in less than a second.
+  const at = (page) => page.evaluate(() => window.onescan.picture().t_ns);
+  for (let attempt = 0; attempt < 20; attempt += 1) {
+    await trainer.page.waitForFunction(() => window.onescan.picture().t_ns > 784e9);
+    const before = await at(trainer.page);
+    await trainer.page.getByRole("button", { name: "Repeat" }).click();
+    await trainer.page.waitForFunction((before) => window.onescan.picture().t_ns < before, before);
+  }
+  const choose = trainer.page.getByLabel("Prepared state");
+  await choose.selectOption("flat bath");
+  await trainer.page.getByRole("button", { name: "Jump" }).click();
+  await trainer.page.waitForFunction(() => window.onescan.picture().t_ns >= 2880e9);
+  // Now it is there: from elsewhere and back again within a second.
+  await choose.selectOption("melting");
+  await trainer.page.getByRole("button", { name: "Jump" }).click();
+  await trainer.page.waitForFunction(() => window.onescan.picture().t_ns < 2000e9);
+  await choose.selectOption("flat bath");
+  const asked = performance.now();
+  await trainer.page.getByRole("button", { name: "Jump" }).click();
+  await trainer.page.waitForFunction(() => window.onescan.picture().t_ns >= 2880e9);
+  const jumped_ms = performance.now() - asked;
+  await choose.selectOption("melting");
+  await trainer.page.getByRole("button", { name: "Jump" }).click();
+  await trainer.page.waitForFunction(() => window.onescan.picture().t_ns < 2000e9);
+
+  const { page } = trainee;
+  await sit(page, "pulpit");
+  const pulpit = panel(page, "pulpit");
+  // A leak: acknowledged, taken by hand, and given back when the water is there again.
+  await until(page, ["Alarm", "=", 2]);
+  await press(page, "Acknowledge", "Acknowledge");
+  await pulpit.getByRole("switch", { name: /^Automatic/ }).click();
+  if (folder !== null) await page.screenshot({ path: `${folder}/lesson.png` });
+  if (folder !== null) await trainer.page.screenshot({ path: `${folder}/lesson-trainer.png` });
+  await trainer.page.getByRole("switch", { name: /^Water leak, walls/ }).and(trainer.page.locator("[aria-checked=true]")).waitFor();
+  await until(page, ["Wall_pressure", ">", 2.5]);
+  await press(page, "Acknowledge", "Acknowledge");
+  await until(page, ["Alarm", "=", 0]);
+  await pulpit.getByRole("switch", { name: /^Automatic/ }).click();
+  // No suction: acknowledged, and again when it is back.
+  await until(page, ["Alarm", "=", 5]);
+  await press(page, "Acknowledge", "Acknowledge");
+  await until(page, ["Vessel_pressure", "<", 10]);
+  await press(page, "Acknowledge", "Acknowledge");
+  await until(page, ["Alarm", "=", 0], ["Breaker_closed", "=", 1]);
+  // An electrode breaks: a new piece.
+  await until(page, ["Electrode_broken[1]", "=", 1]);
+  await press(page, "New electrode", "Join_electrode");
+  const code = await over;
+  assert.deepEqual([...trainee.errors, ...trainer.errors], []);
+  assert.equal(code, 0, `${out}${said}`);
+  const record = JSON.parse(out);
+  assert.equal(record.attempts.length, 25);
+  const melting = record.attempts.filter((attempt) => attempt.start === "melting");
+  for (const attempt of melting) assert.equal(attempt.begin_digest, melting[0].begin_digest);
+
+  // Its times are those of the recording, to the step.
+  const last = record.attempts.at(-1);
+  const run = join(session, `run-${last.number}`);
+  const events = (await readFile(join(run, "events.jsonl"), "utf8")).trim().split("\n").map((line) => JSON.parse(line));
+  const names = ["Acknowledge", "Automatic", "Join_electrode", "Alarm", "Breaker_closed"];
+  const table = join(room, "run.csv");
+  const exported = spawnSync(program, ["export", run, "-o", table, ...names.flatMap((name) => ["--signals", name])]);
+  assert.equal(exported.status, 0, String(exported.stderr));
+  const [head, ...rows] = (await readFile(table, "utf8")).trim().split("\n").map((line) => line.split(","));
+  const column = (name) => head.indexOf(name);
+  const image = (row, name) => Number(row[column(name)]);
+  const first = (from_ns, is) => {
+    const index = rows.findIndex((row, index) => Number(row[0]) > from_ns && is(row, rows[index - 1]));
+    return Number(rows[index][0]);
+  };
+  const rose = (name) => (row, before) => image(row, name) === 1 && image(before, name) === 0;
+  const expected = [
+    ["wall", rose("Acknowledge"), (row) => image(row, "Automatic") === 0],
+    ["bath", rose("Acknowledge"), null],
+    ["mast_1", (row, before) => rose("Join_electrode")(row, before) || rose("Acknowledge")(row, before), rose("Join_electrode")],
+  ];
+  for (const [index, [component, identify, act]] of expected.entries()) {
+    const handled = last.score.malfunctions[index];
+    const event = events.find((one) => one.event === "timeline" && one.action === "fail" && one.component === component);
+    assert.equal(handled.begun_ns, event.t_v_ns + STEP_NS, component);
+    assert.equal(handled.identified.at_ns, first(handled.begun_ns, identify), component);
+    if (act !== null) assert.equal(handled.acted.at_ns, first(handled.begun_ns, act), component);
+  }
+  assert.match(await readFile(report, "utf8"), /water leak/);
+
+  // All attempts once more, without a page.
+  const again = spawnSync(program, ["train", furnace, "three-malfunctions", "--starts", starts, "--format", "json", "--replay-operator", session]);
+  assert.equal(again.status, 0, `${again.stdout}${again.stderr}`);
+  const repeated = JSON.parse(String(again.stdout));
+  assert.deepEqual(repeated.attempts.map((one) => one.digest), record.attempts.map((one) => one.digest));
+  assert.deepEqual(repeated.attempts.at(-1).score, last.score);
+  console.log(`a lesson is taken at the pulpit: ok; jump to the flat bath ${jumped_ms.toFixed(0)} ms`);
+} finally {
+  child.kill();
+  await browser.close();
+  await rm(room, { recursive: true, force: true });
+}
