@@ -69,6 +69,7 @@ mod stubs;
 mod suites;
 mod test_manager;
 mod third_party;
+mod timings;
 mod twincat;
 mod two_hosts;
 mod typed;
