@@ -214,8 +214,12 @@ fn seeds_and_parameters_are_columns_each_with_a_run_without_faults() {
     let json = lines(&campaign(&["--format", "json"]));
     let (rows, total) = json.split_at(json.len() - 1);
     assert_eq!(rows.len(), 2 * 2 * 4);
-    let healthy: Vec<&str> =
-        total[0]["healthy_digests"].as_array().expect("a list").iter().map(|one| one.as_str().expect("a digest")).collect();
+    let healthy: Vec<&str> = total[0]["healthy_digests"]
+        .as_array()
+        .expect("a list")
+        .iter()
+        .map(|one| one.as_str().expect("a digest"))
+        .collect();
     // Nothing is drawn without faults, so that only the speed makes a difference.
     assert_eq!((healthy.len(), healthy[0] == healthy[2], healthy[0] == healthy[1]), (4, true, false));
     for row in rows {

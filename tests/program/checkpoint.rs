@@ -88,7 +88,8 @@ fn a_run_that_cannot_be_saved_is_reported_all_the_same() {
 #[test]
 fn other_code_of_equal_layout_goes_on_where_it_is_asked_for() {
     let folder = copied_shear();
-    let run = |words: &[&str]| typed(folder.path(), &[&["run", ".", "--until", "2s", "--format", "json"], words].concat());
+    let run =
+        |words: &[&str]| typed(folder.path(), &[&["run", ".", "--until", "2s", "--format", "json"], words].concat());
     let reports = |said: &Said| -> Vec<serde_json::Value> {
         said.out.lines().map(|line| serde_json::from_str(line).expect("JSON lines")).collect()
     };

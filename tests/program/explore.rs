@@ -93,9 +93,10 @@ fn equal_states_find_the_same_on_the_shear_and_the_filling_machine() {
     let folder = copied_shear();
     mended(folder.path(), 2);
     let machine = crate::typed::copied("filling-machine");
-    for (folder, scenario, words) in
-        [(folder.path(), "race.toml", ["--until", "3s", "--bound", "2"]), (machine.path(), ".", ["--until", "9s", "--bound", "1"])]
-    {
+    for (folder, scenario, words) in [
+        (folder.path(), "race.toml", ["--until", "3s", "--bound", "2"]),
+        (machine.path(), ".", ["--until", "9s", "--bound", "1"]),
+    ] {
         let explored = |more: &[&str]| {
             let asked = ["explore", scenario, "--all", "--format", "json"];
             lines(&typed(folder, &[&asked[..], &words[..], more].concat()).out)

@@ -107,7 +107,7 @@ impl Told<'_> {
             (0, 1) => format!("{known}, and so does 1 of the {random}"),
             (0, sampled) => format!("{known}, and so do {sampled} {random}"),
             (_, sampled) if config.all => format!("{known}; of {sampled} {random} some do not: {by_chance} causes"),
-            (_, sampled) => format!("{known}; found in {sampled} {random}"),
+            (_, sampled) => format!("{known}; found in number {sampled} of the {random}"),
         }
     }
 
@@ -120,7 +120,7 @@ impl Told<'_> {
             1 => " late by 1 step".to_owned(),
             latest => format!(" late by 1 to {latest} steps"),
         });
-        format!("{bound} of {}{}", self.places(), by.unwrap_or_else(|| " otherwise".to_owned()))
+        format!("{bound} of {}{}", self.places(), by.unwrap_or_else(|| " late".to_owned()))
     }
 
     /// What may happen later in the run without deviations.
