@@ -60,6 +60,6 @@ pub use ir::{MemoryLimit, MemoryLimitError};
 pub use lint::{inspect, inspect_within};
 pub use onescan_base::{ElementaryType, SignalType, TimeSpan, VirtualTime};
 pub use run::{
-    Act, CodePolicy, FaultSite, PlanDifference, PlcFault, RestoreError, RunError, SoftPlc, Statement, StatementId,
-    Task, TaskPlan, Way, WayId, WriteSite, Wrote,
+    Act, CodePolicy, FaultSite, LateError, PlanDifference, PlcFault, RestoreError, RunError, SoftPlc, Statement,
+    StatementId, Task, TaskPlan, Way, WayId, WriteSite, Wrote,
 };

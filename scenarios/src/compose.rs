@@ -74,17 +74,27 @@ impl Scenario {
             }
             ClientFile::Gateway { .. } => self.gateway(name).map(Member::Gateway),
             ClientFile::SoftPlc { .. } if self.gateways.contains_key(name) => self.gateway(name).map(Member::Gateway),
-            ClientFile::SoftPlc { sources, dialect, tasks, bind, .. } => {
-                let compiled = self.compiled_once(name, || self.compiled(name, sources, *dialect, bind))?;
-                let plc = self.soft_plc(name, &compiled, tasks)?;
-                Ok(Member::Plc(Box::new(plc)))
-            }
+            ClientFile::SoftPlc { .. } => Ok(Member::Plc(Box::new(self.plc(name)?))),
             ClientFile::Operator { initial } => Ok(Member::Plant(Box::new(self.operator(name, initial)?))),
             ClientFile::External { command } => Ok(Member::External(command.clone())),
             ClientFile::OpcUa { command, .. } => {
                 Ok(Member::Seated { request: self.request(name)?, command: command.clone() })
             }
         }
+    }
+
+    /// The soft PLC `name`, ready to join.
+    ///
+    /// # Errors
+    /// No such PLC, or its files are wrong.
+    pub(crate) fn plc(&self, name: &ClientName) -> Result<SoftPlcClient, ScenarioError> {
+        let Some(ClientFile::SoftPlc { sources, dialect, tasks, bind, .. }) =
+            self.file().clients.get(name).map(toml::Spanned::get_ref)
+        else {
+            return Err(self.wrong_client(name, format!("client `{name}` is no soft PLC"), None));
+        };
+        let compiled = self.compiled_once(name, || self.compiled(name, sources, *dialect, bind))?;
+        self.soft_plc(name, &compiled, tasks)
     }
 
     /// What the scenario says of each soft PLC.
@@ -239,8 +249,10 @@ impl Scenario {
         self.fits_step(name, &plan)?;
         let mut client = SoftPlcClient::new(name.clone(), application, &plan, &bindings, self.file().step)
             .map_err(|error| self.wrong_client(name, error.to_string(), None))?;
+        client.accept_states_of(self.code_policy());
         self.preset(&mut client, name, inputs)?;
         self.check_variables(&client, name)?;
+        self.check_tasks(&client, name)?;
         if let Some(sink) = self.coverage() {
             client.cover(sink.clone());
         }

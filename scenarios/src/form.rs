@@ -131,10 +131,11 @@ form!(
         "type": "object",
         "properties": {
             "seed": {
-                "description": "Seeds of all randomness.",
-                "type": "array",
-                "items": seed("One seed."),
-                "minItems": 1,
+                "description": "Seeds of all randomness: a list, or a range with both ends as `1..20`.",
+                "anyOf": [
+                    { "type": "array", "items": seed("One seed."), "minItems": 1 },
+                    { "type": "string", "pattern": r"^ *[0-9]+ *\.\. *[0-9]+ *$" },
+                ],
             },
         },
         "additionalProperties": {

@@ -10,6 +10,7 @@ use onescan_clients::gateway::Settings;
 use onescan_clients::soft_plc::journal::{Journalling, Wanted};
 use onescan_clients::soft_plc::watch::Sightings;
 use onescan_clients::soft_plc::{CoverageSink, TraceSink};
+use onescan_plc_shim::CodePolicy;
 use onescan_server::plan::{Coupling, PlanError, SessionPlan};
 use onescan_server::signal::{ClientName, SignalDecl, SignalName, did_you_mean};
 use onescan_server::time::{TimeSpan, VirtualTime};
@@ -24,7 +25,7 @@ use super::falsify::{self, Varied, VariedParameter};
 use super::file::{ClientFile, CouplingFile, ScenarioFile, VERSION};
 use super::mistake::Mistake;
 use super::report::Measures;
-use super::timing::Late;
+use super::timing::Timing;
 use super::watch::{WatchRequest, Watched};
 use super::{arrays, panel, structure, timing};
 
@@ -71,8 +72,10 @@ pub struct Scenario {
     pub(crate) links: BTreeMap<ClientName, LinkSource>,
     /// What soft PLCs look at, if that is asked for.
     pub(crate) watched: Option<Watched>,
-    /// The signals whose edges may be late.
-    late: Vec<Late>,
+    /// What may happen at other times.
+    timing: Timing,
+    /// Whose states its soft PLCs take.
+    code_policy: CodePolicy,
     /// What may be varied.
     varied: Varied,
     /// Its soft PLCs, as far as they have been compiled.
@@ -127,7 +130,7 @@ impl Scenario {
         }
         let placed = |found: Wrong| wrong(found.message, Some(found.place), found.help);
         panel::check(&file).map_err(placed)?;
-        let late = timing::bind(&file).map_err(placed)?;
+        let timing = timing::bind(&file).map_err(placed)?;
         let varied = falsify::bind(&file).map_err(placed)?;
         let expectations = Expectations::bind(&file, &text).map_err(placed)?;
         let measures = Measures::bind(&file, &text).map_err(placed)?;
@@ -148,7 +151,8 @@ impl Scenario {
             gateways: BTreeMap::new(),
             links: BTreeMap::new(),
             watched: None,
-            late,
+            timing,
+            code_policy: CodePolicy::default(),
             varied,
             compilations: Compilations::default(),
             mistake: None,
@@ -161,9 +165,23 @@ impl Scenario {
         self.applied().map(|applied| &applied.case)
     }
 
-    /// The signals whose edges may be late, by `[timing]`.
-    pub fn late(&self) -> &[Late] {
-        &self.late
+    /// Lets soft PLCs take states of other sources with the same variables and tasks.
+    pub fn accept_code(&mut self) {
+        self.code_policy = CodePolicy::AnyCode;
+    }
+
+    pub(crate) fn code_policy(&self) -> CodePolicy {
+        self.code_policy
+    }
+
+    /// What `[timing]` says.
+    pub(crate) fn timing(&self) -> &Timing {
+        &self.timing
+    }
+
+    /// An error in `[timing]` that is found when PLCs are made.
+    pub(crate) fn wrong_timing(&self, message: String, place: &Range<usize>, help: Option<String>) -> ScenarioError {
+        wrong(&self.path, &self.text, message, Some(place.clone()), help)
     }
 
     /// What may be varied, by `[falsify]`.

@@ -1,6 +1,6 @@
 //! A checkpoint: everything that a session is at a step boundary, as a value.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
@@ -185,10 +185,16 @@ impl PlanSummary {
 }
 
 impl Makeup {
-    /// The first setting in which this is not `there`, as the error of a session of this makeup.
-    pub(crate) fn difference(&self, there: &Self) -> Option<CheckpointError> {
+    /// The settings in which this is not `there`.
+    pub fn differing<'a>(&'a self, there: &'a Self) -> impl Iterator<Item = &'a String> {
         let paths = self.settings.keys().chain(there.settings.keys());
-        let setting = paths.filter(|path| self.settings.get(*path) != there.settings.get(*path)).min()?;
+        paths.filter(|path| self.settings.get(*path) != there.settings.get(*path))
+    }
+
+    /// The first setting in which this is not `there`, beside those that may differ, as the error of a session of this
+    /// makeup.
+    pub(crate) fn difference(&self, there: &Self, may_differ: &BTreeSet<String>) -> Option<CheckpointError> {
+        let setting = self.differing(there).filter(|path| !may_differ.contains(*path)).min()?;
         let value =
             |of: &Self| of.settings.get(setting).cloned().unwrap_or_else(|| "the scenario's own value".to_owned());
         Some(CheckpointError::OtherSetting {

@@ -158,6 +158,36 @@ pub enum ClientOperation {
         /// Its path.
         variable: String,
     },
+    /// A task of a PLC, or all of them, are due later than they would be, from the next time on.
+    Postpone {
+        /// Its name; all tasks if absent.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        task: Option<String>,
+        /// By how much.
+        #[serde(rename = "by_ns")]
+        by: TimeSpan,
+    },
+    /// A task that was postponed is due earlier by that again, at once if that has passed.
+    CatchUp {
+        /// Its name; all tasks if absent.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        task: Option<String>,
+        /// By how much.
+        #[serde(rename = "by_ns")]
+        by: TimeSpan,
+    },
+}
+
+impl ClientOperation {
+    /// True if the client may want its next turn earlier than it has said.
+    pub(crate) fn moves_turns(&self) -> bool {
+        matches!(self, Self::Postpone { .. } | Self::CatchUp { .. })
+    }
+}
+
+/// A task as words have it.
+fn task_word(task: Option<&String>) -> String {
+    task.map_or_else(|| "all tasks".to_owned(), |task| format!("task `{task}`"))
 }
 
 impl fmt::Display for ClientOperation {
@@ -168,6 +198,8 @@ impl fmt::Display for ClientOperation {
             Self::WriteVariable { variable, value } => format!("`{variable}` is set to {value}"),
             Self::ForceVariable { variable, value } => format!("`{variable}` is forced to {value}"),
             Self::ReleaseVariable { variable } => format!("`{variable}` is released"),
+            Self::Postpone { task, by } => format!("{} late by {by}", task_word(task.as_ref())),
+            Self::CatchUp { task, by } => format!("{} in time again, late by {by} before", task_word(task.as_ref())),
         };
         f.write_str(&one_line(&text))
     }

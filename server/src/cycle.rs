@@ -125,6 +125,20 @@ impl Cycle {
         }
     }
 
+    /// Ends a delay of `client` with the next step of which it is not decided yet who takes part. A client that takes part
+    /// in the step under way says itself when it wants its next turn.
+    pub(crate) fn wake_next(&mut self, client: ClientId) {
+        let under_way = self.server == ServerState::PreRead;
+        let seat = &mut self.seats[client.index()];
+        if under_way && seat.due {
+            return;
+        }
+        // Behind the end of virtual time nobody has a turn.
+        let steps = if under_way { 2 } else { 1 };
+        let next = self.step.times(steps).and_then(|span| self.t_v.checked_add(span)).unwrap_or(VirtualTime::MAX);
+        (seat.wake, seat.asked) = (seat.wake.min(next), seat.asked.min(next));
+    }
+
     /// `synchronize = AND(client_i.sync)`.
     pub fn is_synchronised(&self) -> bool {
         self.seats.iter().all(|seat| seat.ready || !seat.due)

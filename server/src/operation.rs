@@ -104,6 +104,28 @@ pub enum Operation {
         /// The variable's path.
         variable: String,
     },
+    /// A task of a PLC, or all of them, are due later than they would be, from the next time on.
+    Postpone {
+        /// The PLC.
+        client: ClientName,
+        /// The task's name; all tasks if absent.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        task: Option<String>,
+        /// By how much.
+        #[serde(rename = "by_ns")]
+        by: TimeSpan,
+    },
+    /// A task that was postponed is due earlier by that again, at once if that has passed.
+    CatchUp {
+        /// The PLC.
+        client: ClientName,
+        /// The task's name; all tasks if absent.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        task: Option<String>,
+        /// By how much.
+        #[serde(rename = "by_ns")]
+        by: TimeSpan,
+    },
 }
 
 /// How long it is from one push of a frame to the next: normally distributed, held within bounds.
@@ -210,6 +232,8 @@ impl Operation {
             Self::WriteVariable { variable, value, .. } => (self.client()?, C::WriteVariable { variable, value }),
             Self::ForceVariable { variable, value, .. } => (self.client()?, C::ForceVariable { variable, value }),
             Self::ReleaseVariable { variable, .. } => (self.client()?, C::ReleaseVariable { variable }),
+            Self::Postpone { task, by, .. } => (self.client()?, C::Postpone { task, by }),
+            Self::CatchUp { task, by, .. } => (self.client()?, C::CatchUp { task, by }),
             _ => return None,
         })
     }
@@ -220,7 +244,9 @@ impl Operation {
             | Self::Repair { client, .. }
             | Self::WriteVariable { client, .. }
             | Self::ForceVariable { client, .. }
-            | Self::ReleaseVariable { client, .. } => Some(client),
+            | Self::ReleaseVariable { client, .. }
+            | Self::Postpone { client, .. }
+            | Self::CatchUp { client, .. } => Some(client),
             _ => None,
         }
     }
@@ -280,7 +306,9 @@ impl fmt::Display for Operation {
             | Self::Repair { .. }
             | Self::WriteVariable { .. }
             | Self::ForceVariable { .. }
-            | Self::ReleaseVariable { .. } => Ok(()),
+            | Self::ReleaseVariable { .. }
+            | Self::Postpone { .. }
+            | Self::CatchUp { .. } => Ok(()),
         }
     }
 }

@@ -185,3 +185,65 @@ fn what_is_drawn_follows_from_the_seed() {
     let said = typed(folder.path(), &["run", ".", "--case", "seeded", "--format", "json"]);
     assert_ne!(digests(&lines(&said))[0], of_case(folder.path(), "lost", &[]));
 }
+
+const COLUMNS: &str = r#"
+version = 1
+
+[[campaign]]
+name = "columns"
+until = "1500ms"
+safe = "eventually[0,100ms] not (Actuator_1_Up or Actuator_1_Down)"
+matrix = { seed = "3..4", "plant.actuator_1.speed_m_s" = [0.2, 0.25] }
+fault = [
+    { name = "sensor-off", kind = "hardware", force = { signal = "Sensor_1", value = false } },
+    { name = "noisy", kind = "hardware", disturbance = { signal = "Position_1", kind = "noisy", sigma = 0.002 } },
+]
+activation = [{ name = "early", at = "0s" }, { name = "late", at = "700ms", for = "100ms" }]
+"#;
+
+#[test]
+fn seeds_and_parameters_are_columns_each_with_a_run_without_faults() {
+    let folder = shear_with(COLUMNS);
+    let campaign = |words: &[&str]| typed(folder.path(), &[&["campaign", "."], words].concat());
+    let text = campaign(&["--jobs", "2"]);
+    assert_eq!(text.err, "");
+    insta::assert_snapshot!(
+        text.out.replace(&folder.path().file_name().unwrap().to_string_lossy().into_owned(), "SHEAR")
+    );
+    assert_eq!(campaign(&["--jobs", "1"]).out, text.out, "to the byte");
+    let json = lines(&campaign(&["--format", "json"]));
+    let (rows, total) = json.split_at(json.len() - 1);
+    assert_eq!(rows.len(), 2 * 2 * 4);
+    let healthy: Vec<&str> = total[0]["healthy_digests"]
+        .as_array()
+        .expect("a list")
+        .iter()
+        .map(|one| one.as_str().expect("a digest"))
+        .collect();
+    // Nothing is drawn without faults, so that only the speed makes a difference.
+    assert_eq!((healthy.len(), healthy[0] == healthy[2], healthy[0] == healthy[1]), (4, true, false));
+    for row in rows {
+        let case = row["case"].as_str().expect("a case");
+        let said = typed(folder.path(), &["run", ".", "--case", case, "--format", "json"]);
+        assert_eq!(digests(&lines(&said)), [row["digest"].as_str().expect("a digest")], "{case}");
+    }
+    // The work of a variant is kept, shared and put together like any other.
+    assert_eq!(campaign(&["--keep", "one", "--partition", "1/2"]).code, Some(0));
+    assert_eq!(campaign(&["--keep", "two", "--partition", "2/2"]).code, Some(0));
+    let merged = typed(folder.path(), &["campaign", "merge", ".", "one", "two"]);
+    assert_eq!(merged.out, text.out);
+}
+
+/// A run that comes to no end is no error of the campaign, and is tried again.
+#[test]
+fn what_takes_too_long_is_unfinished_until_it_is_done() {
+    let folder = shear_with(&COLUMNS.replace("matrix = ", "# matrix = "));
+    let campaign = |words: &[&str]| typed(folder.path(), &[&["campaign", ".", "--format", "json"], words].concat());
+    let whole = campaign(&[]);
+    assert_eq!(campaign(&["--keep", "work", "--partition", "1/2"]).code, Some(0));
+    let cut = campaign(&["--keep", "work", "--timeout", "1ns"]);
+    assert_eq!((cut.code, cut.err.as_str()), (Some(1), ""));
+    let verdicts: Vec<Value> = lines(&cut).iter().map(|row| row["verdict"].clone()).collect();
+    assert_eq!(verdicts.iter().filter(|verdict| **verdict == "unfinished").count(), 2, "{cut:?}");
+    assert_eq!(campaign(&["--keep", "work"]).out, whole.out);
+}

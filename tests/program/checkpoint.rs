@@ -10,7 +10,7 @@ use onescan_server::lockstep::{Lockstep, Reached};
 use onescan_tests::at_ms;
 use onescan_tests::run::run;
 
-use crate::typed::{digests, run_shear, scenario, typed};
+use crate::typed::{Said, copied_shear, digests, edit, run_shear, scenario, typed};
 
 fn shear() -> Lockstep {
     let scenario = Scenario::load(&scenario("shear")).unwrap();
@@ -82,4 +82,47 @@ fn a_run_that_cannot_be_saved_is_reported_all_the_same() {
     let (undisturbed, _) = run_shear(&["--until", "1s"]);
     assert_eq!(digests(&[report]), digests(&undisturbed));
     assert!(record.join("run-1/run.json").is_file() && said.err.contains("no/such/folder"), "{said:?}");
+}
+
+/// The machine stands where it stood, and another program goes on with it.
+#[test]
+fn other_code_of_equal_layout_goes_on_where_it_is_asked_for() {
+    let folder = copied_shear();
+    let run =
+        |words: &[&str]| typed(folder.path(), &[&["run", ".", "--until", "2s", "--format", "json"], words].concat());
+    let reports = |said: &Said| -> Vec<serde_json::Value> {
+        said.out.lines().map(|line| serde_json::from_str(line).expect("JSON lines")).collect()
+    };
+    let whole = run(&["--save-at", "1s", "--save", "s.ckpt"]);
+    assert_eq!(whole.code, Some(0), "{whole:?}");
+    let resume = ["--resume", "s.ckpt"];
+    let accept = ["--resume", "s.ckpt", "--accept-code"];
+    // The same code is accepted anyhow, to the same digest.
+    assert_eq!(digests(&reports(&run(&accept))), digests(&reports(&whole)));
+    let cases = "version = 1\n\n[[case]]\nname = \"rest\"\nset.plc.Shear.Rest = \"T#30ms\"\n\n\
+                 [[case]]\nname = \"strokes\"\nset.plc.Shear.Strokes = 4\n\n\
+                 [[case]]\nname = \"speed\"\nset.plant.actuator_1.speed_m_s = 0.2\n";
+    std::fs::write(folder.path().join("cases.toml"), cases).expect("written");
+    let rest = run(&[&accept[..], &["--case", "rest"]].concat());
+    assert_eq!(rest.code, Some(0), "{rest:?}");
+    assert_ne!(digests(&reports(&rest)), digests(&reports(&whole)), "it rests for a shorter time from there on");
+    assert_eq!(rest.out, run(&[&accept[..], &["--case", "rest"]].concat()).out);
+    let told = |words: &[&str]| {
+        let said = run(words);
+        assert_eq!((said.code, said.out.as_str()), (Some(2), ""), "{words:?}: {said:?}");
+        said.err
+    };
+    let mut all = vec![
+        told(&[&resume[..], &["--case", "rest"]].concat()),
+        told(&[&accept[..], &["--case", "strokes"]].concat()),
+        told(&[&accept[..], &["--case", "speed"]].concat()),
+        told(&[&accept[..], &["--transport", "tcp"]].concat()),
+    ];
+    edit(folder.path(), "plc/shear.st", "Rest : TIME := T#100ms;", "Rest : TIME := T#90ms;");
+    all.push(told(&resume));
+    let edited = run(&accept);
+    assert_eq!(edited.code, Some(0), "{edited:?}");
+    edit(folder.path(), "plc/shear.st", "VAR CONSTANT", "VAR more : INT; END_VAR\nVAR CONSTANT");
+    all.push(told(&accept));
+    insta::assert_snapshot!(all.join("\n"));
 }

@@ -71,6 +71,7 @@ mod stubs;
 mod suites;
 mod test_manager;
 mod third_party;
+mod timings;
 mod training;
 mod twincat;
 mod two_hosts;

@@ -134,7 +134,10 @@ impl Work {
         }
         let mut done = done_of(lines, subject, &path)?;
         // Checkpoints that somebody removed are taken again, by the same run.
-        done.healthy = done.healthy.filter(|trunk| trunk.ways.iter().all(|way| work.has_fork(*way)));
+        done.healthy = done.healthy.filter(|trunk| {
+            let variants = trunk.readings.len().max(1);
+            trunk.ways.iter().enumerate().all(|(case, way)| work.has_fork(case % variants, *way))
+        });
         Ok((work, done))
     }
 
@@ -153,9 +156,10 @@ impl Work {
         self.folder.join(FORKS)
     }
 
-    fn has_fork(&self, way: Way) -> bool {
+    fn has_fork(&self, variant: usize, way: Way) -> bool {
         let Way::Fork(t_ns) = way else { return true };
-        ForkRequest::fork_file(&self.forks(), VirtualTime::from_nanos(t_ns)).is_file()
+        let folder = of_variant(&self.forks(), variant);
+        ForkRequest::fork_file(&folder, VirtualTime::from_nanos(t_ns)).is_file()
     }
 
     /// Notes the run without faults.
@@ -174,6 +178,11 @@ impl Work {
     fn note(&self, line: &Line) -> Result<(), CampaignError> {
         write_line(&self.journal, &self.journal(), line)
     }
+}
+
+/// The folder of the checkpoints of a variant's run without faults.
+pub(super) fn of_variant(forks: &Path, variant: usize) -> PathBuf {
+    forks.join(variant.to_string())
 }
 
 /// Notes that the run of `case` is done, in the journal at `path`.

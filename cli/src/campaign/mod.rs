@@ -151,9 +151,13 @@ fn tried(config: &CampaignConfig, scenario: &Scenario, campaign: &Campaign) -> R
         work.healthy(&trunk)?;
         trunk
     };
-    if let Some(failure) = &trunk.reading.failure {
-        let text = format!("without any fault: {}", failure.text);
-        return Err(Ended { name: campaign.name.clone(), text, code: ExitCode::Fault as i32 }.into());
+    for (reading, (variant, _)) in trunk.readings.iter().zip(&campaign.variants) {
+        if let Some(failure) = &reading.failure {
+            let text = format!("without any fault: {}", failure.text);
+            return Err(
+                Ended { name: format!("{}{variant}", campaign.name), text, code: ExitCode::Fault as i32 }.into()
+            );
+        }
     }
     let is_ours = |number: usize| config.partition.is_none_or(|part| part.has(number));
     let todo: Vec<(&str, Way)> = ways(campaign, &trunk)
@@ -203,9 +207,22 @@ fn batch(
     match together(cases) {
         Err(CampaignError::Ended(ended)) if cases.len() > 1 => {
             tracing::info!(%ended, "a process of {} runs came to nothing: each is done by itself", cases.len());
-            cases.iter().map(|case| together(std::slice::from_ref(case)).map(|mut one| one.remove(0))).collect()
+            cases.iter().map(|case| finished(together(std::slice::from_ref(case)))).collect()
         }
+        done if cases.len() == 1 => finished(done).map(|one| vec![one]),
         done => done,
+    }
+}
+
+/// The reading of one run. Of one that came to nothing it is known only that it did: it is done again when the campaign is
+/// gone on with, because it is not in the journal.
+fn finished(done: Result<Vec<Reading>, CampaignError>) -> Result<Reading, CampaignError> {
+    match done {
+        Ok(mut one) => Ok(one.pop().unwrap_or_default()),
+        Err(CampaignError::Ended(ended)) if ended.code != ExitCode::WrongInput as i32 => {
+            Ok(Reading { unfinished: Some(ended.text), ..Reading::default() })
+        }
+        Err(error) => Err(error),
     }
 }
 
@@ -237,15 +254,18 @@ fn table_of(
     }
     let measures = scenario.campaign_measures(catalogue, campaign)?;
     let mut rows = Vec::with_capacity(campaign.cases.len());
-    for case in &campaign.cases {
+    for (number, case) in campaign.cases.iter().enumerate() {
+        let Some(healthy) = trunk.readings.get(campaign.variant_of(number)) else {
+            return Err(missing("a run without faults is".to_owned()).into());
+        };
         let Some(injected) = scenario.clone().with_case(catalogue, case)?.injected() else {
             let text = "the case brings nothing into the run".to_owned();
             return Err(Ended { name: case.name.clone(), text, code: ExitCode::Fault as i32 }.into());
         };
-        let reading = readings.remove(&case.name).unwrap_or_else(|| trunk.reading.clone());
-        rows.push(table::row(case, reading, &trunk.reading, &measures.readouts, &injected.signals));
+        let reading = readings.remove(&case.name).unwrap_or_else(|| healthy.clone());
+        rows.push(table::row(case, reading, healthy, &measures.readouts, &injected.signals));
     }
-    Ok(Table::new(&chosen.scenario, campaign, trunk.reading, rows))
+    Ok(Table::new(&chosen.scenario, campaign, trunk.readings, rows))
 }
 
 /// A process for runs.

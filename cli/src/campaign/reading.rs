@@ -29,13 +29,16 @@ pub struct Reading {
     /// A hash of its state at the end; nothing if it failed before, or if a client cannot save its state.
     #[serde(default)]
     pub state: Option<String>,
+    /// Why its run came to no end, if it did not: nothing else is known of it then.
+    #[serde(default)]
+    pub unfinished: Option<String>,
 }
 
-/// What the process of the run without faults says: what was read out of it, and where the cases fork from it.
+/// What the process of the runs without faults says: what was read out of each, and where the cases fork from it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Trunk {
-    /// What was read out of it.
-    pub reading: Reading,
+    /// What was read out of the run of each variant.
+    pub readings: Vec<Reading>,
     /// Where the run of each case begins, in the order of the campaign's cases.
     pub ways: Vec<Way>,
 }

@@ -42,7 +42,7 @@ fn overview(table: &Table) -> Section {
         title: format!("{}: {}", table.scenario, table.campaign),
         status: if passed { "passed" } else { "not passed" }.to_owned(),
         mood: if passed { Mood::Good } else { Mood::Bad },
-        virtual_time: VirtualTime::from_nanos(table.healthy.virtual_time_ns).to_string(),
+        virtual_time: VirtualTime::from_nanos(table.healthy.iter().map(|one| one.virtual_time_ns).sum()).to_string(),
         lines: table.about.iter().cloned().collect(),
         tables: vec![table::Table { title: "fault", head, rows, ..table::Table::default() }],
         ..Section::default()
@@ -70,9 +70,14 @@ fn run(table: &Table, fault: &CampaignFault, row: &Row) -> Section {
         mood: if table.is_accepted(row) { Mood::Good } else { Mood::Bad },
         virtual_time: time(row.virtual_time_ns),
         facts: facts.into_iter().filter_map(|(name, value)| Some((name, value?))).collect(),
-        lines: fault.about.iter().cloned().chain(row.failure.iter().map(|failure| failure.text.clone())).collect(),
+        lines: fault.about.iter().cloned().chain(told(row)).collect(),
         ..Section::default()
     }
+}
+
+/// What ended its run before its time.
+fn told(row: &Row) -> impl Iterator<Item = String> {
+    row.failure.iter().map(|failure| failure.text.clone()).chain(row.unfinished.iter().cloned())
 }
 
 fn alarms(row: &Row) -> String {
@@ -97,11 +102,10 @@ pub(super) fn junit(tables: &[Table]) -> String {
         ended: if table.is_accepted(row) {
             Ended::Well
         } else {
-            let failure = row.failure.iter().map(|failure| failure.text.clone());
             Ended::Failure(Trouble {
                 word: row.verdict.word(),
                 lines: std::iter::once(row.verdict.word().to_owned())
-                    .chain(failure)
+                    .chain(told(row))
                     .chain([repeat(table, row)])
                     .collect(),
             })

@@ -84,8 +84,12 @@ pub(super) fn totals(table: &Table) -> String {
     let by_verdict = CampaignVerdict::ALL.map(|verdict| (table.count(verdict), verdict.word()));
     let parts: Vec<String> =
         by_verdict.iter().filter(|(count, _)| *count > 0).map(|(count, word)| format!("{count} {word}")).collect();
-    let (faults, activations) = (table.faults.len(), table.activations.len());
-    let sizes = format!("{} \u{d7} {}", counted(faults as u64, "fault"), counted(activations as u64, "activation"));
+    let variants = table.variants.max(1);
+    let (faults, activations) = (table.faults.len(), table.activations.len() / variants);
+    let mut sizes = format!("{} \u{d7} {}", counted(faults as u64, "fault"), counted(activations as u64, "activation"));
+    if variants > 1 {
+        sizes.push_str(&format!(" \u{d7} {}", counted(variants as u64, "variant")));
+    }
     format!("campaign {}, {sizes}: {}", table.campaign, parts.join(", "))
 }
 
@@ -117,7 +121,8 @@ pub fn write_json(tables: &[Table], out: &mut dyn Write) -> io::Result<()> {
             .map(|verdict| (verdict.word().replace(' ', "-"), table.count(*verdict).into()))
             .collect();
         let total = json!({ "scenario": table.scenario, "campaign": table.campaign, "runs": table.rows.len(),
-            "counts": counts, "passed": table.is_passed(), "healthy_digest": table.healthy.digest,
+            "counts": counts, "passed": table.is_passed(), "healthy_digest": table.healthy.first().and_then(|first| first.digest.as_ref()),
+            "healthy_digests": table.healthy.iter().map(|one| &one.digest).collect::<Vec<_>>(),
             "version": env!("CARGO_PKG_VERSION") });
         writeln!(out, "{total}")?;
     }

@@ -22,12 +22,14 @@ pub struct Table {
     pub about: Option<String>,
     /// Its faults, in the order of the file.
     pub faults: Vec<CampaignFault>,
-    /// The names of its activations, in the order of the file.
+    /// The names of its columns: the activations, in the order of the file, each with all variants.
     pub activations: Vec<String>,
+    /// How many variants it has: combinations of its matrix.
+    pub variants: usize,
     /// The verdicts with which it is passed.
     pub accepted: Vec<CampaignVerdict>,
-    /// The run without faults.
-    pub healthy: Reading,
+    /// The run without faults of each variant.
+    pub healthy: Vec<Reading>,
     /// All activations of the first fault, then those of the second.
     pub rows: Vec<Row>,
 }
@@ -65,6 +67,9 @@ pub struct Row {
     /// The failure that ended the run.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failure: Option<Failure>,
+    /// Why the run came to no end.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unfinished: Option<String>,
     /// The digest over all steps.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub digest: Option<String>,
@@ -74,13 +79,17 @@ pub struct Row {
 
 impl Table {
     /// The table of these rows.
-    pub(super) fn new(scenario: &Path, campaign: &Campaign, healthy: Reading, rows: Vec<Row>) -> Self {
+    pub(super) fn new(scenario: &Path, campaign: &Campaign, healthy: Vec<Reading>, rows: Vec<Row>) -> Self {
+        let column = |(activation, (suffix, _)): (&String, &(String, Case))| format!("{activation}{suffix}");
+        let activations = campaign.activations.iter();
+        let columns = activations.flat_map(|one| campaign.variants.iter().map(move |variant| (one, variant)));
         Self {
             scenario: suite_of(scenario),
             campaign: campaign.name.clone(),
             about: campaign.about.clone(),
             faults: campaign.faults.clone(),
-            activations: campaign.activations.clone(),
+            activations: columns.map(column).collect(),
+            variants: campaign.variants.len(),
             accepted: campaign.accepted.clone(),
             healthy,
             rows,
@@ -131,6 +140,7 @@ pub(super) fn row(
         rejoined: reading.state.as_ref().zip(healthy.state.as_ref()).map(|(own, healthy)| own == healthy),
         alarms: reading.alarms,
         failure: reading.failure,
+        unfinished: reading.unfinished,
         digest: reading.digest,
         virtual_time_ns: reading.virtual_time_ns,
     }
@@ -140,6 +150,7 @@ pub(super) fn row(
 fn verdict(reading: &Reading, has_effect: bool) -> CampaignVerdict {
     let of_plc = reading.failure.as_ref().map(|failure| failure.of_plc);
     match reading {
+        Reading { unfinished: Some(_), .. } => CampaignVerdict::Unfinished,
         Reading { activated_ns: None, .. } => CampaignVerdict::NotActivated,
         _ if of_plc == Some(true) => CampaignVerdict::PlcFault,
         // A client that is no PLC stopped the run: that is harm, whatever else was seen of it.
@@ -162,7 +173,10 @@ mod tests {
             Reading { told_after_ns: Some(0), safe: Some(true), collision: Some(true), ..Reading::default() };
         let failure = Failure { text: String::new(), of_plc: true, place: None };
         reading.failure = Some(failure);
+        reading.unfinished = Some(String::new());
         let mut verdicts = vec![verdict(&reading, true)];
+        reading.unfinished = None;
+        verdicts.push(verdict(&reading, true));
         reading.activated_ns = Some(0);
         verdicts.push(verdict(&reading, true));
         reading.failure = None;

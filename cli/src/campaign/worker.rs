@@ -44,16 +44,23 @@ pub fn work(config: &WorkerConfig, out: &mut dyn Write) -> Result<(), CampaignEr
     let measures = scenario.campaign_measures(&catalogue, campaign)?;
     let written = match &config.part {
         Part::Healthy => {
-            let departures = departures(&scenario, &catalogue, campaign)?;
-            let scenario = scenario.with_case(&catalogue, &campaign.healthy)?;
-            serde_json::to_writer(&mut *out, &healthy(config, &scenario, &measures, &departures)?)
+            let mut trunk = Trunk { readings: Vec::new(), ways: vec![Way::Start; campaign.cases.len()] };
+            for variant in 0..campaign.variants.len() {
+                let (reading, ways) = healthy(config, (&scenario, &catalogue, campaign), &measures, variant)?;
+                trunk.readings.push(reading);
+                let own = trunk.ways.iter_mut().skip(variant).step_by(campaign.variants.len());
+                own.zip(ways).for_each(|(way, found)| *way = found);
+            }
+            serde_json::to_writer(&mut *out, &trunk)
         }
         Part::Cases { cases, journal } => {
             let mut readings = Vec::with_capacity(cases.len());
             for begun in cases {
-                let case = campaign.cases.iter().find(|case| case.name == begun.case);
-                let scenario = scenario.clone().with_case(&catalogue, case.ok_or_else(|| gone(&begun.case))?)?;
-                let reading = with_fault(config, &scenario, &measures, begun)?;
+                let found = campaign.cases.iter().enumerate().find(|(_, case)| case.name == begun.case);
+                let (number, case) = found.ok_or_else(|| gone(&begun.case))?;
+                let scenario = scenario.clone().with_case(&catalogue, case)?;
+                let forks = journal::of_variant(&config.forks, campaign.variant_of(number));
+                let reading = with_fault(config, &scenario, &measures, (begun, &forks))?;
                 journal::note_done(journal, &begun.case, &reading)?;
                 readings.push(reading);
             }
@@ -69,35 +76,30 @@ fn with_fault(
     config: &WorkerConfig,
     scenario: &Scenario,
     measures: &CampaignMeasures,
-    begun: &Begun,
+    (begun, forks): (&Begun, &Path),
 ) -> Result<Reading, CampaignError> {
     let mut run = RunConfig::headless(config.scenario.clone(), Some(begun.case.clone()));
     let mut probing = Probing::new(scenario, measures);
     if let Some(at) = begun.at {
-        run.course.resume = Some(ForkRequest::fork_file(&config.forks, at));
-        probing = probing.forking(tracks_of(&config.forks, at)?);
+        run.course.resume = Some(ForkRequest::fork_file(forks, at));
+        probing = probing.forking(tracks_of(forks, at)?);
     }
     Ok(probing.run(run)?.reading)
 }
 
-/// Where each case departs from the run without faults.
-fn departures(
-    scenario: &Scenario,
-    catalogue: &Catalogue,
-    campaign: &Campaign,
-) -> Result<Vec<Departure>, CampaignError> {
-    let healthy = scenario.clone().with_case(catalogue, &campaign.healthy)?;
-    let departure = |case| Ok(scenario.clone().with_case(catalogue, case)?.departs_from(&healthy));
-    campaign.cases.iter().map(departure).collect()
-}
-
-/// The run without faults, with a checkpoint wherever a case departs from it.
+/// The run without faults of a variant, with a checkpoint wherever a case departs from it: what was read out of it, and
+/// where each of its cases begins.
 fn healthy(
     config: &WorkerConfig,
-    scenario: &Scenario,
+    (scenario, catalogue, campaign): (&Scenario, &Catalogue, &Campaign),
     measures: &CampaignMeasures,
-    departures: &[Departure],
-) -> Result<Trunk, CampaignError> {
+    variant: usize,
+) -> Result<(Reading, Vec<Way>), CampaignError> {
+    let Some((_, case)) = campaign.variants.get(variant) else { return Ok((Reading::default(), Vec::new())) };
+    let healthy = scenario.clone().with_case(catalogue, case)?;
+    let cases = campaign.cases.iter().skip(variant).step_by(campaign.variants.len());
+    let departure = |case| Ok(scenario.clone().with_case(catalogue, case)?.departs_from(&healthy));
+    let departures: Vec<Departure> = cases.map(departure).collect::<Result<_, CampaignError>>()?;
     let from_checkpoints = || departures.iter().filter(|departure| !departure.from_start);
     let mut times: Vec<VirtualTime> = from_checkpoints().filter_map(|departure| departure.at).collect();
     times.sort_unstable();
@@ -108,19 +110,20 @@ fn healthy(
             conditions.push(condition.clone());
         }
     }
+    let folder = journal::of_variant(&config.forks, variant);
     let mut run = RunConfig::headless(config.scenario.clone(), None);
-    run.course.forks = Some(ForkRequest { folder: config.forks.clone(), times, conditions });
-    let Probed { reading, ran, kept } = Probing::new(scenario, measures).run(run)?;
+    run.course.forks = Some(ForkRequest { folder: folder.clone(), times, conditions });
+    let Probed { reading, ran, kept } = Probing::new(&healthy, measures).run(run)?;
     if let Some(error) = &ran.unsaved {
         tracing::info!(%error, "no run forks from the one without faults: all begin at the start");
     }
     for (t_ns, tracks) in kept.into_iter().filter(|(t_ns, _)| ran.forks.iter().any(|fork| fork.t_v.as_nanos() == *t_ns))
     {
         let text = serde_json::to_vec(&tracks).map_err(|error| OutputError(error.into()))?;
-        file::write_whole(&tracks_file(&config.forks, VirtualTime::from_nanos(t_ns)), &text)?;
+        file::write_whole(&tracks_file(&folder, VirtualTime::from_nanos(t_ns)), &text)?;
     }
     let way = |departure| if ran.unsaved.is_some() { Way::Start } else { way(departure, &ran.forks) };
-    Ok(Trunk { reading, ways: departures.iter().map(way).collect() })
+    Ok((reading, departures.iter().map(way).collect()))
 }
 
 /// Where a case forks that departs so: at the first of these checkpoints that it needs.

@@ -23,7 +23,7 @@ pub struct ExploreArgs {
     /// End of each run, in virtual time [default: that of the scenario]
     #[arg(long, value_name = "TIME")]
     pub until: Option<VirtualTime>,
-    /// So many edges are late at a time, at most
+    /// So much is late at a time, at most
     #[arg(long, default_value_t = 1, value_name = "N")]
     pub bound: u32,
     /// Go on after the first finding
@@ -32,6 +32,18 @@ pub struct ExploreArgs {
     /// So many runs at most
     #[arg(long, default_value = "100000", value_name = "N")]
     pub runs: NonZeroU64,
+    /// Go every way to its end, also where it has come to a state that is known
+    #[arg(long)]
+    pub no_merge: bool,
+    /// Then so many random schedules with more deviations at a time
+    #[arg(long, default_value_t = 0, value_name = "N")]
+    pub samples: u64,
+    /// What they are drawn with
+    #[arg(long, default_value_t = 1, value_name = "SEED")]
+    pub seed: u64,
+    /// So many deviations at a time have random schedules, at most
+    #[arg(long, default_value_t = 8, value_name = "N")]
+    pub most: u32,
     /// Write what is found as cases into this file
     #[arg(long, value_name = "FILE")]
     pub cases: Option<PathBuf>,
@@ -45,7 +57,20 @@ pub struct ExploreArgs {
 /// # Errors
 /// See [`CommandError`].
 pub fn explore(args: ExploreArgs) -> Result<ExitCode, CommandError> {
-    let ExploreArgs { scenario, case, until, bound, all, runs, cases, format } = args;
-    let config = ExploreConfig { scenario, case, until, bound, all, runs_max: runs, cases, format: format.into() };
+    let ExploreArgs { scenario, case, until, bound, all, runs, no_merge, samples, seed, most, cases, format } = args;
+    let config = ExploreConfig {
+        scenario,
+        case,
+        until,
+        bound,
+        all,
+        runs_max: runs,
+        no_merge,
+        samples,
+        seed,
+        most,
+        cases,
+        format: format.into(),
+    };
     Ok(explore::run(&config, &mut std::io::stdout().lock())?)
 }

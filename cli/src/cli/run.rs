@@ -157,6 +157,9 @@ pub struct RunArgs {
     /// Go on from this checkpoint
     #[arg(long, value_name = "FILE")]
     pub resume: Option<PathBuf>,
+    /// Go on from there with other PLC code: sources and constants may differ, variables and tasks may not
+    #[arg(long, requires = "resume")]
+    pub accept_code: bool,
     /// Report how long the session waited for each client of this process; always with --gateway
     #[arg(long)]
     pub latency: bool,
@@ -303,6 +306,7 @@ fn config(args: RunArgs) -> Result<RunConfig, CommandError> {
         course: Course {
             pace: args.pace,
             resume: args.resume,
+            accept_code: args.accept_code,
             replay_operator: args.replay_operator,
             save: args.save_at.zip(args.save).map(|(at, path)| SaveRequest { at, path }),
             ..Course::default()

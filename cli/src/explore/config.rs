@@ -22,6 +22,14 @@ pub struct ExploreConfig {
     pub all: bool,
     /// So many runs are tried at most.
     pub runs_max: NonZeroU64,
+    /// Whether every way is gone to its end, also where its state is known.
+    pub no_merge: bool,
+    /// So many random schedules are tried beyond the bound.
+    pub samples: u64,
+    /// What they are drawn with.
+    pub seed: u64,
+    /// So many deviations they have at most.
+    pub most: u32,
     /// The file for the findings as cases.
     pub cases: Option<PathBuf>,
     /// For whom the output is.

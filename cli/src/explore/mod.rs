@@ -4,28 +4,38 @@
 //! |---|---|
 //! | [`config`] | what is asked for |
 //! | [`error`] | why it came to nothing |
-//! | [`deviation`] | an edge that is late, and as a case |
-//! | [`path`] | one way in which the session may go, forked from another |
-//! | [`search`] | which ways are gone, and in what order |
+//! | [`deviation`] | what happens later than it would, and as a case |
+//! | `place` | where something may happen later |
+//! | `known` | states from which everything is known to hold |
+//! | `path` | one way in which the session may go, forked from another |
+//! | `search` | which ways are gone, and in what order |
+//! | `sample` | random ways beyond those |
 //! | [`report`] | what was found, or that nothing was |
 //!
 //! **Invariants.** What is found does not depend on where a way forked: it has the digest of its case run from the start.
-//! What is said to be exhausted was.
+//! What is said to be exhausted was. A way that is not gone to its end would have held.
 
 pub mod config;
 pub mod deviation;
 mod error;
+mod known;
 mod path;
+mod place;
 mod report;
+mod sample;
 mod search;
 
 use std::io::Write;
 
 use onescan_report::{OutputError, file};
 use onescan_scenario::Scenario;
+use onescan_scenario::case::Catalogue;
+use onescan_scenario::case::written::Written;
 
 pub use config::ExploreConfig;
 pub use error::ExploreError;
+
+use report::Told;
 
 use crate::error::{ExitCode, Usage};
 
@@ -34,8 +44,18 @@ use crate::error::{ExitCode, Usage};
 /// # Errors
 /// The scenario is wrong, or cannot be forked.
 pub fn run(config: &ExploreConfig, out: &mut dyn Write) -> Result<ExitCode, ExploreError> {
-    let scenario = Scenario::load_case(&config.scenario, config.case.as_deref())?;
-    if scenario.late().is_empty() {
+    let scenario = Scenario::load(&config.scenario)?;
+    let (scenario, written) = match &config.case {
+        None => (scenario, Written::default()),
+        Some(name) => {
+            let catalogue = Catalogue::load(scenario.folder())?;
+            let case = catalogue.named(&scenario, name)?.clone();
+            let written = catalogue.written(&case);
+            (scenario.with_case(&catalogue, &case)?, written)
+        }
+    };
+    let leeways = scenario.leeways()?;
+    if leeways.is_empty() {
         let help = "say in `[timing]` which signals may be late, and by how much (docs/explore.md)".to_owned();
         return Err(Usage::new("the scenario does not say what its links may do", Some(help)).into());
     }
@@ -44,10 +64,11 @@ pub fn run(config: &ExploreConfig, out: &mut dyn Write) -> Result<ExitCode, Expl
         return Err(Usage::new("the scenario expects nothing", Some(help)).into());
     }
     let until = config.until.unwrap_or(scenario.until());
-    let found = search::search(config, &scenario, until)?;
-    report::write(config, &scenario, &found, out).map_err(OutputError)?;
+    let found = search::search(config, &scenario, &leeways, until)?;
+    let told = Told { config, scenario: &scenario, leeways: &leeways, found: &found, written: &written };
+    told.write(out).map_err(OutputError)?;
     if let Some(path) = &config.cases {
-        file::write_whole(path, report::cases(&found).as_bytes())?;
+        file::write_whole(path, told.cases().as_bytes())?;
     }
     Ok(if found.findings.is_empty() { ExitCode::Ok } else { ExitCode::Unmet })
 }

@@ -81,6 +81,15 @@ impl Script<'_> {
                 self.begin(format!("variable {client} {variable}"), begun(List::Variable, keys, at), at);
             }
             Operation::ReleaseVariable { client, variable } => self.end(&format!("variable {client} {variable}"), at),
+            Operation::Postpone { client, task, by } => {
+                let task_key = task.as_ref().map(|task| ("task".to_owned(), word(task)));
+                let by_key = ("by".to_owned(), word(&spelt(VirtualTime::ZERO + *by)));
+                let client_key = ("client".to_owned(), word(client.as_str()));
+                let keys = [client_key, by_key].into_iter().chain(task_key).collect();
+                let about = format!("task {client} {task:?} {by}");
+                self.begin(about, begun(List::Task, keys, at), at);
+            }
+            Operation::CatchUp { client, task, by } => self.end(&format!("task {client} {task:?} {by}"), at),
         }
         Ok(())
     }

@@ -135,7 +135,9 @@ impl Size {
                 };
                 lasts.then(|| in_steps(VirtualTime::from_nanos(length)))
             }
-            Self::Late => (entry.list == List::Disturbance).then(|| entry.time("by").map(in_steps)).flatten(),
+            Self::Late => {
+                matches!(entry.list, List::Disturbance | List::Task).then(|| entry.time("by").map(in_steps)).flatten()
+            }
             Self::Begin => (entry.list != List::Set && !is_conditional).then(|| in_steps(entry.begin())),
         }
     }

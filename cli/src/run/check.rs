@@ -33,7 +33,11 @@ impl RunConfig {
                 format!("--save-at {} is not before the end of the run at {}", save.at, self.subject.end(scenario));
             return Err(Usage::new(message, Some(format!("the step is {step}"))).into());
         }
-        let inside = [("--coverage", self.reports.coverage.is_some()), ("--watch", !self.watch.variables.is_empty())];
+        let inside = [
+            ("--coverage", self.reports.coverage.is_some()),
+            ("--watch", !self.watch.variables.is_empty()),
+            ("--accept-code", self.course.accept_code),
+        ];
         if let Some((option, _)) = inside.iter().find(|(_, given)| *given && self.reach.transport == Transport::Tcp) {
             let help = "what a client in another process does is not seen here".to_owned();
             return Err(Usage::new(format!("{option} means nothing with --transport tcp"), Some(help)).into());

@@ -106,6 +106,8 @@ pub struct Course {
     pub pace: Pace,
     /// A checkpoint to go on from.
     pub resume: Option<PathBuf>,
+    /// Whether that may be of other PLC code with the same variables and tasks.
+    pub accept_code: bool,
     /// A recording, or a file of events, whose operator's inputs are repeated.
     pub replay_operator: Option<PathBuf>,
     /// A checkpoint to take.

@@ -3,7 +3,7 @@
 use onescan_scenario::Scenario;
 use onescan_scenario::compose::Member;
 use onescan_scenario::expect::{Judge, Outcome, TraceEnd};
-use onescan_server::checkpoint::{Checkpoint, CheckpointError};
+use onescan_server::checkpoint::{Checkpoint, CheckpointError, StateHash};
 use onescan_server::digest::Digest;
 use onescan_server::end::{Failure, SessionEnd};
 use onescan_server::lockstep::{Lockstep, Reached};
@@ -26,12 +26,17 @@ pub(crate) struct Judged<'a> {
     until: VirtualTime,
     judge: Judge,
     columns: Chosen,
+    seen: SeenHash,
 }
+
+/// A hash over all values by which expectations have been judged so far.
+pub(crate) type SeenHash = [u8; 32];
 
 /// A boundary from which other sessions go on.
 pub(crate) struct Moment {
     checkpoint: Checkpoint,
     judge: Judge,
+    seen: SeenHash,
 }
 
 /// What came of a session.
@@ -67,7 +72,7 @@ impl<'a> Judged<'a> {
         lockstep.set_makeup(scenario.makeup());
         let mut columns = Chosen::new(&scenario.expectations().signals);
         columns.find(lockstep.session());
-        Ok(Self { scenario, lockstep, until, judge: expectation::judge(scenario), columns })
+        Ok(Self { scenario, lockstep, until, judge: expectation::judge(scenario), columns, seen: SeenHash::default() })
     }
 
     /// Sets it up: the image of 0 is there.
@@ -84,6 +89,7 @@ impl<'a> Judged<'a> {
     pub(crate) fn resume(&mut self, moment: &Moment) -> Result<(), CheckpointError> {
         self.lockstep.resume(&moment.checkpoint)?;
         self.judge = moment.judge.clone();
+        self.seen = moment.seen;
         Ok(())
     }
 
@@ -93,10 +99,32 @@ impl<'a> Judged<'a> {
     /// A client cannot save its state.
     pub(crate) fn moment(&mut self) -> Result<Option<Moment>, RunError> {
         match self.lockstep.checkpoint() {
-            Ok(checkpoint) => Ok(Some(Moment { checkpoint, judge: self.judge.clone() })),
+            Ok(checkpoint) => Ok(Some(Moment { checkpoint, judge: self.judge.clone(), seen: self.seen })),
             Err(_) if self.lockstep.session().end().is_some() => Ok(None),
             Err(error) => Err(RunError::Save(error)),
         }
+    }
+
+    /// What it will do from here on, as a hash; nothing if it is over.
+    ///
+    /// # Errors
+    /// A client cannot save its state.
+    pub(crate) fn state(&mut self) -> Result<Option<StateHash>, RunError> {
+        match self.lockstep.checkpoint() {
+            Ok(checkpoint) => checkpoint.state_hash().map(Some).map_err(RunError::Save),
+            Err(_) if self.lockstep.session().end().is_some() => Ok(None),
+            Err(error) => Err(RunError::Save(error)),
+        }
+    }
+
+    /// All that expectations have been judged by so far, as a hash.
+    pub(crate) fn seen(&self) -> SeenHash {
+        self.seen
+    }
+
+    /// What is decided of each expectation, whatever comes.
+    pub(crate) fn settled(&mut self) -> Vec<Option<bool>> {
+        self.judge.settled()
     }
 
     /// Makes a step; false if there is none.
@@ -156,6 +184,12 @@ impl<'a> Judged<'a> {
 
     fn see(&mut self) {
         let session = self.lockstep.session();
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(&self.seen);
+        for bytes in self.columns.bytes(session) {
+            hasher.update(bytes);
+        }
+        self.seen = *hasher.finalize().as_bytes();
         self.judge.push(session.t_v().as_nanos(), self.columns.numbers(session));
     }
 }

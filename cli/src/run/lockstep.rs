@@ -1,5 +1,6 @@
 //! One run in lockstep.
 
+use std::collections::BTreeSet;
 use std::net::{Ipv4Addr, SocketAddr};
 
 use onescan_base::foreign::one_line;
@@ -82,7 +83,7 @@ pub(super) fn run(
         lockstep.replay(operator_inputs(path)?);
     }
     if let Some(path) = &config.course.resume {
-        resume(&mut lockstep, path)?;
+        resume(&mut lockstep, path, config.course.accept_code.then_some(scenario))?;
     }
     let saved = match &config.course.save {
         Some(request) => save(&mut lockstep, request),
@@ -281,10 +282,22 @@ pub(crate) fn operator_inputs(path: &std::path::Path) -> Result<Vec<OperatorInpu
     Ok(event::operator_inputs(&events))
 }
 
-fn resume(lockstep: &mut Lockstep, path: &std::path::Path) -> Result<(), RunError> {
+/// Goes on from a checkpoint; from one of other PLC code if the scenario `accepts` that.
+fn resume(lockstep: &mut Lockstep, path: &std::path::Path, accepts: Option<&Scenario>) -> Result<(), RunError> {
     let bytes = regular::read(path, Limit::DATA).map_err(Unreadable::at(path))?;
     let wrong = |source| RunError::Resume { path: path.to_owned(), source };
-    lockstep.resume(&Checkpoint::from_bytes(&bytes).map_err(wrong)?).map_err(wrong)
+    let checkpoint = Checkpoint::from_bytes(&bytes).map_err(wrong)?;
+    if let Some(scenario) = accepts {
+        // Constants are code; what else a case sets is a state of the past, which it cannot change.
+        let mut constants = BTreeSet::new();
+        for path in scenario.makeup().differing(checkpoint.makeup()) {
+            if scenario.is_constant(path)? {
+                constants.insert(path.clone());
+            }
+        }
+        lockstep.accept_settings(constants);
+    }
+    lockstep.resume(&checkpoint).map_err(wrong)
 }
 
 fn save(lockstep: &mut Lockstep, request: &SaveRequest) -> Result<(), RunError> {

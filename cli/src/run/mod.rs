@@ -108,6 +108,9 @@ pub fn execute(config: &RunConfig, interrupt: &Interrupt, out: &mut dyn Write) -
     for client in &config.reach.operated {
         scenario.operate(client)?;
     }
+    if config.course.accept_code {
+        scenario.accept_code();
+    }
     config.check(&scenario)?;
     if let Some(request) = &config.reports.record {
         refuse_to_overwrite(request, config.runs)?;

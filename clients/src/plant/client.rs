@@ -199,7 +199,9 @@ impl Client for Plant {
             ClientOperation::Repair { component, mode } => self.repair(component, mode),
             ClientOperation::WriteVariable { .. }
             | ClientOperation::ForceVariable { .. }
-            | ClientOperation::ReleaseVariable { .. } => return Err(OperationRefused::Unsupported),
+            | ClientOperation::ReleaseVariable { .. }
+            | ClientOperation::Postpone { .. }
+            | ClientOperation::CatchUp { .. } => return Err(OperationRefused::Unsupported),
         };
         done.map_err(|refused| OperationRefused::Because(refused.to_string()))
     }

@@ -271,6 +271,12 @@ impl Client for SoftPlcClient {
                 Ok(false) => Err(refused(&format!("variable `{variable}` is not forced"))),
                 Err(unknown) => Err(refused(&unknown)),
             },
+            ClientOperation::Postpone { task, by } => {
+                self.plc.postpone(task.as_deref(), *by).map_err(|error| refused(&error))
+            }
+            ClientOperation::CatchUp { task, by } => {
+                self.plc.catch_up(task.as_deref(), *by).map_err(|error| refused(&error))
+            }
             ClientOperation::Fail { .. } | ClientOperation::Repair { .. } => Err(OperationRefused::Unsupported),
         }
     }

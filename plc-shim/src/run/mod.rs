@@ -10,6 +10,7 @@
 //! | `fault` | a trap as an error in the source |
 //! | `task_info` | what programs read about their task |
 //! | `soft_plc` | the PLC itself |
+//! | `late` | tasks that are late, once or for good |
 //! | `force` | variables that keep a value, reading and writing by path |
 //! | `asserts` | what the asserts of a test program have found |
 //! | `text` | functions on character strings |
@@ -22,6 +23,7 @@ mod configured;
 mod fault;
 mod force;
 mod journal;
+mod late;
 mod machine;
 mod plan;
 mod row;
@@ -36,6 +38,7 @@ mod way;
 pub use asserts::{Asserts, FailedAssert};
 pub use fault::{FaultSite, PlcFault, WriteSite};
 pub use journal::{ACTS_MAX, Act, Statement, StatementId, Wrote};
+pub use late::LateError;
 pub use plan::{RunError, Task, TaskPlan};
 pub use soft_plc::SoftPlc;
 pub use state::{CodePolicy, PlanDifference, RestoreError};

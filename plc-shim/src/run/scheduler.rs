@@ -52,6 +52,13 @@ impl Entry {
     }
 }
 
+/// Which way the times of a task are moved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Shift {
+    Later,
+    Earlier,
+}
+
 /// The tasks by their position in the plan.
 #[derive(Debug, Clone)]
 pub(super) struct Scheduler {
@@ -113,6 +120,18 @@ impl Scheduler {
             task.has_run = true;
         }
         Some(index)
+    }
+
+    /// Lets a task be due so much later, or earlier. False if it has no interval, or would never be due again.
+    pub(super) fn shift(&mut self, index: usize, shift: Shift, by: TimeSpan) -> bool {
+        let Some(task) = self.tasks.get_mut(index) else { return false };
+        let Some(due) = task.waiting.due else { return false };
+        let shifted = match shift {
+            Shift::Later => due.checked_add(by),
+            Shift::Earlier => Some(due.saturating_sub(by)),
+        };
+        task.waiting.due = shifted.or(Some(due));
+        shifted.is_some()
     }
 
     /// When the first task is due by its interval; nothing if none has one.
@@ -179,6 +198,21 @@ mod tests {
         let mut tasks = scheduler(&[(10, 0)], &[None]);
         assert_eq!(due(&mut tasks, 35, &[]), [0]);
         assert_eq!(tasks.next_due(), Some(VirtualTime::from_nanos(40)));
+    }
+
+    #[test]
+    fn a_task_is_late_once_or_for_good() {
+        let by = TimeSpan::from_nanos(3).unwrap();
+        let mut tasks = scheduler(&[(10, 0)], &[None]);
+        assert!(tasks.shift(0, Shift::Later, by) && !tasks.shift(1, Shift::Later, by));
+        assert!(due(&mut tasks, 10, &[]).is_empty());
+        // Caught up with before it has run, it is due at once, and then as if it had never been late.
+        assert!(tasks.shift(0, Shift::Earlier, by));
+        assert_eq!(due(&mut tasks, 13, &[]), [0]);
+        assert_eq!(tasks.next_due(), Some(VirtualTime::from_nanos(20)));
+        assert!(tasks.shift(0, Shift::Later, by));
+        assert_eq!(due(&mut tasks, 23, &[]), [0]);
+        assert_eq!(tasks.next_due(), Some(VirtualTime::from_nanos(33)), "for good");
     }
 
     #[test]

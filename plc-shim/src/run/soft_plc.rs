@@ -37,11 +37,11 @@ use crate::coverage::Coverage;
 pub struct SoftPlc {
     application: Application,
     machine: Machine,
-    scheduler: Scheduler,
+    pub(super) scheduler: Scheduler,
     /// What each task runs.
     tasks: Vec<Vec<usize>>,
     /// What each scan runs at its end.
-    background: Vec<usize>,
+    pub(super) background: Vec<usize>,
     is_triggered: bool,
     task_info: Option<TaskInfo>,
     plan: TaskPlan,
@@ -257,6 +257,11 @@ impl SoftPlc {
     /// The fault that stopped the PLC.
     pub fn fault(&self) -> Option<&PlcFault> {
         self.fault.as_ref()
+    }
+
+    /// Its tasks.
+    pub fn plan(&self) -> &TaskPlan {
+        &self.plan
     }
 
     /// What the PLC runs.

@@ -78,21 +78,25 @@ impl Scenario {
     /// A formula, a signal, a component, its mode, a variable or its value is wrong, or an activation can never come.
     pub fn check_campaign(&self, catalogue: &Catalogue, campaign: &Campaign) -> Result<(), ScenarioError> {
         self.campaign_measures(catalogue, campaign)?;
-        let mut all = self.clone().with_case(catalogue, &campaign.healthy)?;
-        // a run without faults may have nothing applied to it
-        let mut applied = all.applied().cloned().unwrap_or_default();
-        for case in &campaign.cases {
-            let tried = self.clone().with_case(catalogue, case)?;
-            if let Some(of_case) = tried.applied() {
-                applied.failures.extend(of_case.failures.iter().cloned());
-                applied.variables.extend(of_case.variables.iter().cloned());
+        let count = campaign.variants.len();
+        for (number, (_, healthy)) in campaign.variants.iter().enumerate() {
+            let mut all = self.clone().with_case(catalogue, healthy)?;
+            // a run without faults may have nothing applied to it
+            let mut applied = all.applied().cloned().unwrap_or_default();
+            for case in campaign.cases.iter().skip(number).step_by(count) {
+                let tried = self.clone().with_case(catalogue, case)?;
+                if let Some(of_case) = tried.applied() {
+                    applied.failures.extend(of_case.failures.iter().cloned());
+                    applied.variables.extend(of_case.variables.iter().cloned());
+                    applied.tasks.extend(of_case.tasks.iter().cloned());
+                }
             }
-        }
-        all.put_on(applied);
-        // Clients are made once with all that is asked of them: sources are compiled and scenes read only once.
-        for (name, client) in &self.file().clients {
-            if matches!(client.get_ref(), ClientFile::Plant { .. } | ClientFile::SoftPlc { .. }) {
-                all.member(name)?;
+            all.put_on(applied);
+            // Clients are made once with all that is asked of them: sources are compiled and scenes read only once.
+            for (name, client) in &self.file().clients {
+                if matches!(client.get_ref(), ClientFile::Plant { .. } | ClientFile::SoftPlc { .. }) {
+                    all.member(name)?;
+                }
             }
         }
         Ok(())

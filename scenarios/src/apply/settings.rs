@@ -166,6 +166,16 @@ impl Scenario {
         Ok(())
     }
 
+    /// Refuses tasks that PLC `name` does not have, and those that cannot be late.
+    pub(crate) fn check_tasks(&self, plc: &SoftPlcClient, name: &ClientName) -> Result<(), ScenarioError> {
+        let Some(applied) = self.applied() else { return Ok(()) };
+        for at in applied.tasks.iter().filter(|at| at.client == *name) {
+            let late = plc.plc().check_late(at.task.as_deref());
+            late.map_err(|error| wrong_case(applied, format!("`{name}`: {error}"), at.place.clone(), None))?;
+        }
+        Ok(())
+    }
+
     /// Refuses failures of components that plant `name` does not have.
     pub(crate) fn check_failures(
         &self,
@@ -201,6 +211,22 @@ impl Scenario {
             }
         }
         Ok(())
+    }
+
+    /// Whether a setting is a constant of a soft PLC: part of its code, and not of its state.
+    ///
+    /// # Errors
+    /// Sources that cannot be read.
+    pub fn is_constant(&self, path: &str) -> Result<bool, ScenarioError> {
+        let Some((client, own)) = path.split_once('.') else { return Ok(false) };
+        let named = self.file().clients.iter().find(|(name, _)| name.as_str() == client);
+        let Some((name, ClientFile::SoftPlc { sources, dialect, .. })) =
+            named.map(|(name, client)| (name, client.get_ref()))
+        else {
+            return Ok(false);
+        };
+        let inputs = self.inputs(name, sources, *dialect)?;
+        Ok(Application::builder().inputs(inputs).has_constant(own))
     }
 
     /// What a session of this scenario is made of, for checkpoints.

@@ -9,14 +9,14 @@ use std::ops::Range;
 
 use onescan_server::operation::Operation;
 use onescan_server::signal::{ClientName, SignalName, SignalType, did_you_mean};
-use onescan_server::time::VirtualTime;
+use onescan_server::time::{TimeSpan, VirtualTime};
 use onescan_server::timeline::{Scheduled, When};
 use toml::{Spanned, Value};
 
 use super::period::{Period, PeriodKeys, period, period_keys};
-use crate::case::file::{CaseFile, FaultFile, VariableFile};
+use crate::case::file::{CaseFile, FaultFile, TaskFile, VariableFile};
 use crate::case::value::{bytes_of, literal_of};
-use crate::case::{Applied, Catalogue, FailureAt, VariableAt};
+use crate::case::{Applied, Catalogue, FailureAt, TaskAt, VariableAt};
 use crate::error::ScenarioError;
 use crate::expect::KnownSignal;
 use crate::file::ClientFile;
@@ -93,6 +93,14 @@ impl Scenario {
         }
         for variable in &entry.variables {
             self.variable(catalogue, variable, &known, &mut timeline, &mut applied.variables)?;
+        }
+        for task in &entry.tasks {
+            let period = ends(period_keys!(task.get_ref(), task.span()))?;
+            let (at, by) = self.late_task(catalogue, task)?;
+            let TaskAt { client, task, .. } = at.clone();
+            let in_time = Operation::CatchUp { client: client.clone(), task: task.clone(), by };
+            between(&mut timeline, period, Operation::Postpone { client, task, by }, in_time);
+            applied.tasks.push(at);
         }
         // By time, so that the file of events and the plot's marks read like the run; a stable sort keeps
         // the order of the case where times are equal, and conditions last.
@@ -212,6 +220,27 @@ impl Scenario {
         Ok(())
     }
 
+    /// Which task is late, and by how much.
+    fn late_task(&self, catalogue: &Catalogue, entry: &Spanned<TaskFile>) -> Result<(TaskAt, TimeSpan), ScenarioError> {
+        let TaskFile { client, task, by, .. } = entry.get_ref();
+        let what = ("soft PLC", "whose tasks could be late", entry.span());
+        let is_plc = |client: &ClientFile| matches!(client, ClientFile::SoftPlc { .. });
+        let client = self.chosen(catalogue, client.as_ref(), is_plc, what)?;
+        let wrong = |message: String, help: Option<&str>| {
+            Err(catalogue.wrong(message, Some(by.span()), help.map(str::to_owned)))
+        };
+        let step = self.file().step;
+        let task = task.as_ref().map(|task| task.get_ref().clone());
+        match by.get_ref().parse::<TimeSpan>() {
+            Ok(span) if span.is_multiple_of(step) => Ok((TaskAt { client, task, place: entry.span() }, span)),
+            Ok(span) => {
+                let message = format!("{span} is no multiple of the session's step, {step}");
+                wrong(message, Some("tasks are late by whole steps"))
+            }
+            Err(error) => wrong(format!("`by` is not a time: {error}"), Some("as in `by = \"20ms\"`")),
+        }
+    }
+
     /// What a session of this scenario does by itself while it runs.
     pub fn timeline(&self) -> &[Scheduled] {
         self.applied().map_or(&[], |applied| &applied.timeline)
@@ -242,6 +271,10 @@ fn told(operation: &Operation) -> String {
         Operation::WriteVariable { variable, value, .. } => format!("{variable} set to {value}"),
         Operation::ForceVariable { variable, value, .. } => format!("{variable} held at {value}"),
         Operation::ReleaseVariable { variable, .. } => format!("{variable} let go"),
+        Operation::Postpone { task, by, .. } => {
+            format!("{} late by {by}", task.as_deref().unwrap_or("all tasks"))
+        }
+        Operation::CatchUp { task, .. } => format!("{} in time again", task.as_deref().unwrap_or("all tasks")),
         other => other.to_string(),
     }
 }

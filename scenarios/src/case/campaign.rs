@@ -29,9 +29,10 @@ pub struct Campaign {
     pub faults: Vec<CampaignFault>,
     /// The names of the activations, in the order of the file.
     pub activations: Vec<String>,
-    /// The run without faults.
-    pub healthy: Case,
-    /// A case for each fault and activation: all activations of the first fault, then those of the second.
+    /// The run without faults for each combination of the matrix, and what that adds to names; one without a matrix.
+    pub variants: Vec<(String, Case)>,
+    /// A case for each fault, activation and variant: all of the first fault, then those of the second; the variant changes
+    /// fastest.
     pub cases: Vec<Case>,
     /// The verdicts with which it is passed.
     pub accepted: Vec<CampaignVerdict>,
@@ -64,8 +65,8 @@ pub(crate) fn is_name(name: &str) -> bool {
     !name.is_empty() && !name.starts_with('.') && name.chars().all(allowed)
 }
 
-/// The campaign of `file`, which is the one of this number in its file, and whose faults come to `base`.
-pub(super) fn expanded(file: &CampaignFile, base: &Case, number: usize) -> Result<Campaign, Wrong> {
+/// The campaign of `file`, which is the one of this number in its file, and whose faults come to these variants.
+pub(super) fn expanded(file: &CampaignFile, variants: Vec<(String, Case)>, number: usize) -> Result<Campaign, Wrong> {
     names(file.faults.iter().map(|fault| &fault.get_ref().name), "faults")?;
     names(file.activations.iter().map(|activation| &activation.get_ref().name), "activations")?;
     let place = file.name.span();
@@ -74,25 +75,24 @@ pub(super) fn expanded(file: &CampaignFile, base: &Case, number: usize) -> Resul
         let help = format!("write a `[[campaign.{what}]]` below it");
         return Err(wrong(format!("campaign `{}` has no {what}", file.name.get_ref()), place, &help));
     }
-    if file.faults.len().saturating_mul(file.activations.len()) > COMBINATIONS_MAX {
+    let count = file.faults.len().saturating_mul(file.activations.len()).saturating_mul(variants.len());
+    if count > COMBINATIONS_MAX {
         let message = format!("campaign `{}` has more than {COMBINATIONS_MAX} cases", file.name.get_ref());
         return Err(wrong(message, place, "make two of it"));
     }
-    let mut healthy = base.clone();
-    healthy.until = file.until.or(base.until);
-    let mut cases = Vec::with_capacity(file.faults.len() * file.activations.len());
+    let mut cases = Vec::with_capacity(count);
     for (row, fault) in file.faults.iter().enumerate() {
         for (column, activation) in file.activations.iter().enumerate() {
             let (fault, activation) = (fault.get_ref(), activation.get_ref());
             // What is wrong is told now; the entry itself is made when its case is asked for.
             let at = put(&mut empty(file), fault, activation)?;
             let path = [&file.name, &fault.name, &activation.name].map(|name| name.get_ref().as_str());
-            cases.push(Case {
-                name: path.join("/"),
+            cases.extend(variants.iter().map(|(suffix, healthy)| Case {
+                name: format!("{}{suffix}", path.join("/")),
                 about: fault.about.clone(),
-                injection: Some(Injection { place: [number, row, column], at }),
+                injection: Some(Injection { place: [number, row, column], at: at.clone() }),
                 ..healthy.clone()
-            });
+            }));
         }
     }
     let fault = |fault: &Spanned<CampaignFaultFile>| {
@@ -104,7 +104,7 @@ pub(super) fn expanded(file: &CampaignFile, base: &Case, number: usize) -> Resul
         about: file.about.clone(),
         faults: file.faults.iter().map(fault).collect(),
         activations: file.activations.iter().map(|one| one.get_ref().name.get_ref().clone()).collect(),
-        healthy,
+        variants,
         cases,
         accepted: file.accept.clone().unwrap_or_else(|| ACCEPTED.to_vec()),
         file: file.clone(),
@@ -112,6 +112,11 @@ pub(super) fn expanded(file: &CampaignFile, base: &Case, number: usize) -> Resul
 }
 
 impl Campaign {
+    /// The number of the variant to which the case of this number belongs.
+    pub fn variant_of(&self, case: usize) -> usize {
+        case % self.variants.len().max(1)
+    }
+
     /// What the case of an injection does: what `base` does, and the fault.
     ///
     /// # Errors
@@ -160,6 +165,7 @@ fn empty(file: &CampaignFile) -> CaseFile {
         forces: Vec::new(),
         disturbances: Vec::new(),
         variables: Vec::new(),
+        tasks: Vec::new(),
         waive: Vec::new(),
         expect: Vec::new(),
     }

@@ -88,7 +88,8 @@ impl Catalogue {
                 return Err(this.wrong(message, Some(name.span()), None));
             }
             let base = this.base(entry, &cases)?;
-            let expanded = campaign::expanded(entry, &base, number);
+            let variants = this.variants(entry, base, this.axes(places.leaves("campaign", number, "matrix"))?)?;
+            let expanded = campaign::expanded(entry, variants, number);
             campaigns.push(expanded.map_err(|found| this.wrong(found.message, found.place, found.help))?);
         }
         Ok(Self { file, cases, campaigns, ..this })
@@ -101,6 +102,27 @@ impl Catalogue {
             let help = did_you_mean(named.get_ref(), cases.iter().map(|case| case.name.as_str()));
             self.wrong(format!("there is no case `{}`", named.get_ref()), Some(named.span()), help)
         })
+    }
+
+    /// The case to which the faults of a campaign come with each combination of its matrix, and what that adds to names.
+    fn variants(
+        &self,
+        campaign: &CampaignFile,
+        mut base: Case,
+        axes: Vec<Axis>,
+    ) -> Result<Vec<(String, Case)>, ScenarioError> {
+        base.until = campaign.until.or(base.until);
+        let Some(combinations) = combinations(&axes) else {
+            let message =
+                format!("the matrix of `{}` has more than {COMBINATIONS_MAX} combinations", campaign.name.get_ref());
+            return Err(self.wrong(message, Some(campaign.name.span()), None));
+        };
+        let variant = |(suffix, settings): (String, Vec<Setting>)| {
+            let mut case = base.clone();
+            settings.into_iter().try_for_each(|setting| self.put(&mut case, setting))?;
+            Ok((suffix, case))
+        };
+        combinations.into_iter().map(variant).collect()
     }
 
     /// Expands the arrays among the signals of snapshots.
@@ -128,12 +150,12 @@ impl Catalogue {
             let help = "letters, digits, `-`, `_` and `.`: its snapshot is a file of that name".to_owned();
             return Err(self.wrong(format!("`{name}` is no name of a case"), Some(file.name.span()), Some(help)));
         }
-        let axes = self.axes(places.leaves(index, "matrix"))?;
+        let axes = self.axes(places.leaves("case", index, "matrix"))?;
         let Some(combinations) = combinations(&axes) else {
             let message = format!("the matrix of `{name}` has more than {COMBINATIONS_MAX} combinations");
             return Err(self.wrong(message, Some(file.name.span()), None));
         };
-        let own: Vec<Setting> = places.leaves(index, "set");
+        let own: Vec<Setting> = places.leaves("case", index, "set");
         let case = |(suffix, more): (String, Vec<Setting>)| {
             let mut case = Case {
                 name: format!("{name}{suffix}"),
@@ -174,6 +196,13 @@ impl Catalogue {
     fn axes(&self, lists: Vec<Setting>) -> Result<Vec<Axis>, ScenarioError> {
         let axis = |Setting { path, value, place }: Setting| match value {
             Value::Array(values) if !values.is_empty() => Ok(Axis { path, values, place }),
+            Value::String(text) if path == "seed" => match range(&text) {
+                Some(values) => Ok(Axis { path, values, place }),
+                None => {
+                    let message = format!("`{text}` is no range of at most {COMBINATIONS_MAX} seeds");
+                    Err(self.wrong(message, Some(place), Some("as in `seed = \"1..20\"`, with both ends".to_owned())))
+                }
+            },
             _ => {
                 let message = format!("`{path}` of a matrix is a list of values");
                 Err(self.wrong(message, Some(place), Some("as in `seed = [1, 2, 3]`".to_owned())))
@@ -251,6 +280,14 @@ impl Catalogue {
     }
 }
 
+/// The whole numbers of a range as `1..20`, with both ends; nothing if it is none, or has too many.
+fn range(text: &str) -> Option<Vec<Value>> {
+    let (first, last) = text.split_once("..")?;
+    let (first, last): (i64, i64) = (first.trim().parse().ok()?, last.trim().parse().ok()?);
+    let count = usize::try_from(last.checked_sub(first)?).ok()?.checked_add(1)?;
+    (first >= 0 && count <= COMBINATIONS_MAX).then(|| (first..=last).map(Value::Integer).collect())
+}
+
 fn default_case() -> Case {
     Case { name: DEFAULT.to_owned(), ..Case::default() }
 }
@@ -266,10 +303,10 @@ impl<'t> Places<'t> {
         Self { root: DeTable::parse(text).ok() }
     }
 
-    /// Every value below the table `key` of a case, by its path, in the order of the file.
-    fn leaves(&self, case: usize, key: &str) -> Vec<Setting> {
-        let cases = self.root.as_ref().and_then(|root| root.get_ref().get("case"));
-        let table = cases.and_then(|cases| cases.get_ref().as_array()?.get(case)?.get_ref().as_table()?.get(key));
+    /// Every value below the table `key` of an entry of a list, by its path, in the order of the file.
+    fn leaves(&self, list: &str, index: usize, key: &str) -> Vec<Setting> {
+        let all = self.root.as_ref().and_then(|root| root.get_ref().get(list));
+        let table = all.and_then(|all| all.get_ref().as_array()?.get(index)?.get_ref().as_table()?.get(key));
         let mut found = Vec::new();
         if let Some(table) = table.and_then(|table| table.get_ref().as_table()) {
             gather(table, "", &mut found);

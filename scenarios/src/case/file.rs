@@ -97,6 +97,10 @@ pub struct CaseFile {
     #[serde(default, rename = "variable")]
     #[schemars(with = "Vec<VariableFile>")]
     pub variables: Vec<Spanned<VariableFile>>,
+    /// Tasks of PLCs that run late.
+    #[serde(default, rename = "task")]
+    #[schemars(with = "Vec<TaskFile>")]
+    pub tasks: Vec<Spanned<TaskFile>>,
     /// Expectations of the scenario that this case need not meet.
     #[serde(default)]
     #[schemars(with = "Vec<String>")]
@@ -314,6 +318,39 @@ pub struct VariableFile {
     pub lasting: Option<TimeSpan>,
 }
 
+/// A task of a PLC runs late: as long as this lasts each time, and in time again afterwards.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TaskFile {
+    /// The soft PLC, if there are several.
+    #[schemars(with = "Option<Name>")]
+    pub client: Option<Spanned<String>>,
+    /// The task; all tasks of the PLC if absent, as if it had been started later.
+    #[schemars(with = "Option<String>")]
+    pub task: Option<Spanned<String>>,
+    /// By how much it is late, in whole steps.
+    #[schemars(with = "Time")]
+    pub by: Spanned<String>,
+    /// From when; from the start if absent. With `when`: from when on the condition counts.
+    #[serde(default, deserialize_with = "from_optional_text")]
+    #[schemars(with = "Option<Time>")]
+    pub from: Option<VirtualTime>,
+    /// Until when; never ends if absent. Not together with `when` or `for`.
+    #[serde(default, deserialize_with = "from_optional_text")]
+    #[schemars(with = "Option<Time>")]
+    pub until: Option<VirtualTime>,
+    /// A condition on signals, now and in the past: it begins in the step after the condition has come true.
+    #[schemars(with = "Option<String>")]
+    pub when: Option<Spanned<String>>,
+    /// Which time that the condition comes true; the first if absent.
+    #[schemars(with = "Option<Ordinal>")]
+    pub nth: Option<Spanned<u32>>,
+    /// How long it lasts.
+    #[serde(default, rename = "for", deserialize_with = "from_optional_text")]
+    #[schemars(with = "Option<Time>")]
+    pub lasting: Option<TimeSpan>,
+}
+
 /// One `[[campaign]]`: every fault is tried with every activation.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -330,6 +367,10 @@ pub struct CampaignFile {
     #[serde(default, deserialize_with = "from_optional_text")]
     #[schemars(with = "Option<Time>")]
     pub until: Option<VirtualTime>,
+    /// Lists of values by path, or `seed`: all faults and activations for each combination.
+    #[serde(default)]
+    #[schemars(with = "Matrix")]
+    pub matrix: toml::Table,
     /// What fails.
     #[serde(default, rename = "fault")]
     #[schemars(with = "Vec<CampaignFaultFile>")]
@@ -436,6 +477,8 @@ pub struct ActivationFile {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum CampaignVerdict {
+    /// Its run came to no end in the time that it had, or its process was lost.
+    Unfinished,
     /// Its activation did not come.
     NotActivated,
     /// A PLC stopped on a fault.
@@ -454,12 +497,21 @@ pub enum CampaignVerdict {
 
 impl CampaignVerdict {
     /// All of them, in the order in which they count.
-    pub const ALL: [Self; 7] =
-        [Self::NotActivated, Self::PlcFault, Self::NoEffect, Self::Collision, Self::Told, Self::Safe, Self::Missed];
+    pub const ALL: [Self; 8] = [
+        Self::Unfinished,
+        Self::NotActivated,
+        Self::PlcFault,
+        Self::NoEffect,
+        Self::Collision,
+        Self::Told,
+        Self::Safe,
+        Self::Missed,
+    ];
 
     /// As it is shown.
     pub fn word(self) -> &'static str {
         match self {
+            Self::Unfinished => "unfinished",
             Self::NotActivated => "not activated",
             Self::PlcFault => "plc fault",
             Self::NoEffect => "no effect",

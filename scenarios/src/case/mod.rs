@@ -81,6 +81,8 @@ pub struct Applied {
     pub failures: Vec<FailureAt>,
     /// Variables that it writes or forces, which can be checked only when their PLCs are made.
     pub variables: Vec<VariableAt>,
+    /// Tasks that run late, which can be checked only when their PLCs are made.
+    pub tasks: Vec<TaskAt>,
     /// `cases.toml`, for errors that are found when clients are made.
     pub source: (String, String),
 }
@@ -107,6 +109,17 @@ pub struct VariableAt {
     pub variable: String,
     /// Its value, as a literal.
     pub value: String,
+    /// Where it stands in `cases.toml`.
+    pub place: Range<usize>,
+}
+
+/// A task that runs late in a case.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TaskAt {
+    /// The PLC.
+    pub client: ClientName,
+    /// The task's name; all tasks if absent.
+    pub task: Option<String>,
     /// Where it stands in `cases.toml`.
     pub place: Range<usize>,
 }

@@ -23,10 +23,13 @@ pub enum List {
     Disturbance,
     /// Variables of PLCs that are forced or written.
     Variable,
+    /// Tasks of PLCs that run late.
+    Task,
 }
 
 impl List {
-    const ALL: [Self; 6] = [Self::Set, Self::Input, Self::Fault, Self::Force, Self::Disturbance, Self::Variable];
+    const ALL: [Self; 7] =
+        [Self::Set, Self::Input, Self::Fault, Self::Force, Self::Disturbance, Self::Variable, Self::Task];
 
     /// The key of `[[case]]` that holds it.
     pub fn key(self) -> &'static str {
@@ -37,6 +40,7 @@ impl List {
             Self::Force => "force",
             Self::Disturbance => "disturbance",
             Self::Variable => "variable",
+            Self::Task => "task",
         }
     }
 }
@@ -64,13 +68,14 @@ impl Entry {
 }
 
 /// Keys in the order in which people write them.
-const ORDER: [&str; 18] = [
+const ORDER: [&str; 19] = [
     "client",
     "component",
     "mode",
     "signal",
     "signals",
     "variable",
+    "task",
     "kind",
     "by",
     "rate",

@@ -48,6 +48,15 @@ impl Expectation {
         &self.formula
     }
 
+    /// How long the past of a run may matter to what is open of it, in nanoseconds, for samples that are `step_ns` apart.
+    /// Nothing if all of it may.
+    ///
+    /// Two runs that have been alike for longer than that, and of which the same is settled, have the same verdict if they
+    /// go on alike.
+    pub fn memory_ns(&self, step_ns: u64) -> Option<u64> {
+        super::reach::memory_ns(&self.formula, step_ns)
+    }
+
     /// True if memory for it grows with every step of a run; it then says little more than one with a window.
     pub fn keeps_every_sample(&self) -> bool {
         self.formula.keeps_every_sample()

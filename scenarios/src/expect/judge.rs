@@ -81,6 +81,20 @@ impl Judge {
         numbered.filter(move |(_, (_, monitor))| is_violated(monitor)).map(|(number, _)| number)
     }
 
+    /// What is decided of each expectation by the samples so far, whatever comes; nothing for what is open.
+    pub fn settled(&mut self) -> Vec<Option<bool>> {
+        if self.open.len() > 0 {
+            self.judge_open();
+            self.forget();
+        }
+        let truth = |monitor: &Monitor| match monitor.first()?.worth.truth {
+            Truth::True => Some(true),
+            Truth::False => Some(false),
+            Truth::Unknown => None,
+        };
+        self.expectations.iter().map(|(_, monitor)| truth(monitor)).collect()
+    }
+
     fn judge_open(&mut self) {
         for (_, monitor) in &mut self.expectations {
             monitor.push(&self.open);
@@ -192,11 +206,13 @@ mod tests {
             start_ns in prop_oneof![Just(0_u64), 0_u64..30],
             cut in any::<bool>(),
             repeat in 1_usize..12,
+            asked in any::<bool>(),
         ) {
             let end = if cut { TraceEnd::Cut } else { TraceEnd::Complete };
             let expectations: Vec<_> = formulas.iter().map(|text| expectation(text)).collect();
             let mut judge = Judge::new(expectations.clone(), 3);
             let mut trace = Trace::new(3);
+            let mut settled = Vec::new();
             let mut t_ns = start_ns;
             // Runs longer than a block, too.
             for (dt_ns, a, b, c) in samples.iter().cycle().take(samples.len() * repeat) {
@@ -204,9 +220,21 @@ mod tests {
                 let values = [f64::from(*a) / 2.0, b, f64::from(u8::from(*c))];
                 judge.push(t_ns, values);
                 trace.push(t_ns, values);
+                // What is settled early is the same in the end, and looking changes nothing.
+                if asked && *dt_ns == 3 {
+                    settled.push(judge.settled());
+                }
                 t_ns += dt_ns;
             }
             trace.set_end(end);
+            let outcomes = judge.clone().finish(end);
+            for (early, outcome) in settled.iter().flat_map(|early| early.iter().zip(&outcomes)) {
+                match early {
+                    Some(true) => prop_assert_eq!(&outcome.verdict, &Verdict::Met),
+                    Some(false) => prop_assert!(matches!(outcome.verdict, Verdict::Violated { .. })),
+                    None => {}
+                }
+            }
             for ((expectation, text), outcome) in expectations.iter().zip(&formulas).zip(judge.finish(end)) {
                 let expected = expectation.judge_offline(&trace);
                 prop_assert_eq!(format!("{outcome:?}"), format!("{expected:?}"), "{}", text);

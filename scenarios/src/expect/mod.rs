@@ -16,6 +16,7 @@
 //! | [`present`] | the same with arithmetic, for who has the values at hand |
 //! | [`truth`] | three-valued truth, and the margin by which a formula holds |
 //! | [`verdict`] | met, violated and when, or still open at the end |
+//! | `reach` | how far around a sample a formula looks |
 //! | [`sample`] | what a formula is worth at a sample, and blocks of samples |
 //! | [`term`] | terms, sample by sample |
 //! | [`sliding`] | what is joined over windows that move, in a time that does not depend on their lengths |
@@ -48,6 +49,7 @@ mod monitor;
 mod offline;
 mod parser;
 mod present;
+mod reach;
 mod reaction;
 mod sample;
 mod sliding;

@@ -14,7 +14,7 @@ mod operate;
 mod restore;
 mod show;
 
-use std::collections::VecDeque;
+use std::collections::{BTreeSet, VecDeque};
 use std::time::Duration;
 
 use crate::carrier::{Answer, Carrier, Grant};
@@ -65,6 +65,8 @@ pub struct Lockstep {
     replayed: VecDeque<OperatorInput>,
     timeline: Timeline,
     makeup: Makeup,
+    /// Settings in which a checkpoint that is taken up may be another.
+    may_differ: BTreeSet<String>,
     /// What the timeline did to the initial values, until observers can be told.
     at_start: Vec<Operation>,
     shown: Shown,
@@ -119,6 +121,7 @@ impl Lockstep {
             replayed: VecDeque::new(),
             timeline: Timeline::default(),
             makeup: Makeup::default(),
+            may_differ: BTreeSet::new(),
             at_start: Vec::new(),
             shown,
         }

@@ -104,7 +104,11 @@ impl Lockstep {
     fn operate_client(&mut self, name: &ClientName, asked: &ClientOperation) -> Result<(), OperationError> {
         let id = self.client_id(name)?;
         let refused = |source| OperationError::Client { client: name.clone(), source };
-        self.berths[id.index()].carrier.operate(asked).map_err(refused)
+        self.berths[id.index()].carrier.operate(asked).map_err(refused)?;
+        if asked.moves_turns() {
+            self.session.wake_next(id);
+        }
+        Ok(())
     }
 
     fn client_id(&self, name: &ClientName) -> Result<ClientId, OperationError> {

@@ -1,5 +1,7 @@
 //! A running session as a value, and back.
 
+use std::collections::BTreeSet;
+
 use super::{Lockstep, Reached};
 use crate::checkpoint::{Checkpoint, CheckpointError, Makeup, PlanSummary};
 use crate::client::StateError;
@@ -12,6 +14,12 @@ impl Lockstep {
     /// Says what the session is made of, for checkpoints that are taken of it and by it.
     pub fn set_makeup(&mut self, makeup: Makeup) {
         self.makeup = makeup;
+    }
+
+    /// Lets a checkpoint be taken up in which these settings are others: whoever says so knows that they leave the shape of
+    /// the state as it is, and that their clients take it.
+    pub fn accept_settings(&mut self, may_differ: BTreeSet<String>) {
+        self.may_differ = may_differ;
     }
 
     /// Takes a checkpoint at the boundary at which the session is.
@@ -78,7 +86,7 @@ impl Lockstep {
         if let Some(difference) = checkpoint.plan.difference(&plan) {
             return Err(CheckpointError::OtherSession(difference));
         }
-        if let Some(difference) = self.makeup.difference(&checkpoint.makeup) {
+        if let Some(difference) = self.makeup.difference(&checkpoint.makeup, &self.may_differ) {
             return Err(difference);
         }
         let (theirs, ours) = (checkpoint.makeup.name.clone(), self.makeup.name.clone());
