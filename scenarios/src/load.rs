@@ -21,6 +21,7 @@ use super::compilations::Compilations;
 use super::error::{ScenarioError, Wrong, wrong};
 use super::expectations::Expectations;
 use super::file::{ClientFile, CouplingFile, ScenarioFile, VERSION};
+use super::map;
 use super::mistake::Mistake;
 use super::report::Measures;
 use super::timing::Late;
@@ -124,6 +125,7 @@ impl Scenario {
         }
         let placed = |found: Wrong| wrong(found.message, Some(found.place), found.help);
         panel::check(&file).map_err(placed)?;
+        map::check(&file).map_err(placed)?;
         let late = timing::bind(&file).map_err(placed)?;
         let expectations = Expectations::bind(&file, &text).map_err(placed)?;
         let measures = Measures::bind(&file, &text).map_err(placed)?;
