@@ -46,20 +46,20 @@ parameters! {
         flame_width_m: f64 = 18.0 => 0.1, 300.0;
         /// of the gas far from the flame, and of all of it without a burner
         ends_degc: f64 = 600.0 => 0.0, 2000.0;
-        /// heat transfer from the gas to the wall, W/(m²·K)
-        inside_w_k: f64 = 150.0 => 1.0, 1e4;
+        /// heat transfer from the gas to the wall
+        inside_w_m2_k: f64 = 150.0 => 1.0, 1e4;
         /// brick when it is new
         brick_m: f64 = 0.2 => 0.001, 2.0;
-        /// conductivity of the brick, W/(m·K)
-        brick_w_k: f64 = 3.0 => 0.01, 100.0;
+        /// conductivity of the brick
+        brick_w_m_k: f64 = 3.0 => 0.01, 100.0;
         /// by how much the brick wears
         wear_m_s: f64 = 0.0 => 0.0, 1e-3;
         /// coating when it has grown
         coating_m: f64 = 0.1 => 0.0, 2.0;
         /// coating at the start
         coating_start_m: f64 = 0.1 => 0.0, 2.0;
-        /// conductivity of coating and rings, W/(m·K)
-        coating_w_k: f64 = 1.5 => 0.01, 100.0;
+        /// conductivity of coating and rings
+        coating_w_m_k: f64 = 1.5 => 0.01, 100.0;
         /// time constant of the coating's growth
         coating_s: f64 = 86400.0 => 1.0, 1e9;
         /// a ring: where it is
@@ -88,12 +88,12 @@ parameters! {
         lost_at_deg: f64 = 250.0 => -360.0, 360.0;
         /// a lost brick: time constant with which its spot comes and goes
         lost_s: f64 = 7200.0 => 0.0, 1e9;
-        /// heat transfer from the shell to the air, W/(m²·K)
-        outside_w_k: f64 = 15.0 => 0.1, 1e4;
+        /// heat transfer from the shell to the air
+        outside_w_m2_k: f64 = 15.0 => 0.1, 1e4;
         /// emissivity of the shell
-        emissivity: f64 = 0.85 => 0.0, 1.0;
-        /// heat that a m² of shell and brick holds
-        heat_j_k: f64 = 380_000.0 => 1.0, 1e9;
+        emissivity_pct: f64 = 85.0 => 0.0, 100.0;
+        /// heat that shell and brick hold
+        heat_j_m2_k: f64 = 380_000.0 => 1.0, 1e9;
         /// of shell at the start; from the steady state if it is below absolute zero
         start_degc: f64 = -300.0 => -300.0, 1500.0;
     }
@@ -220,12 +220,12 @@ impl KilnHeat {
         let p = &self.p;
         let aside = (self.middle_m(zone) - p.flame_at_m) / p.flame_width_m;
         let hotter = burner * (p.flame_degc - p.ends_degc) * libm::exp(-0.5 * aside * aside);
-        let layers = 1.0 / p.inside_w_k + self.coating_at(state, zone) / p.coating_w_k + state.brick_m / p.brick_w_k;
+        let layers = 1.0 / p.inside_w_m2_k + self.coating_at(state, zone) / p.coating_w_m_k + state.brick_m / p.brick_w_m_k;
         Wall {
             gas_degc: p.ends_degc + hotter,
             inside_w_k: 1.0 / layers,
-            outside_w_k: p.outside_w_k,
-            radiation_w_k4: p.emissivity * SIGMA,
+            outside_w_k: p.outside_w_m2_k,
+            radiation_w_k4: p.emissivity_pct / 100.0 * SIGMA,
             ambient_degc: state.ambient_degc,
         }
     }
@@ -286,7 +286,7 @@ impl Component for KilnHeat {
         state.angle_rad = inputs.angle_rad;
         for zone in 0..ZONES {
             let wall = self.wall(state, burner, zone);
-            state.zones_degc[zone] = wall.after(state.zones_degc[zone], p.heat_j_k, dt_s);
+            state.zones_degc[zone] = wall.after(state.zones_degc[zone], p.heat_j_m2_k, dt_s);
         }
         state.coating_m = lag(state.coating_m, coating_m, p.coating_s, dt_s);
         state.lost_k = lag(state.lost_k, lost_k, p.lost_s, dt_s);
@@ -365,9 +365,9 @@ mod tests {
 
     #[test]
     fn without_radiation_a_step_of_any_length_is_exact() {
-        let p = Parameters { emissivity: 0.0, start_degc: 20.0, ..by_hand() };
+        let p = Parameters { emissivity_pct: 0.0, start_degc: 20.0, ..by_hand() };
         let (g, h) = (1.0 / (p.brick_m / 3.0 + 1.0 / 150.0), 15.0);
-        let (end, tau) = ((g * 1000.0 + h * 20.0) / (g + h), p.heat_j_k / (g + h));
+        let (end, tau) = ((g * 1000.0 + h * 20.0) / (g + h), p.heat_j_m2_k / (g + h));
         for (dt_s, turns) in [(1.0, 7200), (7200.0, 1)] {
             let out = rig(p.clone()).run(ON, dt_s, turns);
             let exact = end + (20.0 - end) * libm::exp(-7200.0 / tau);

@@ -24,9 +24,9 @@ parameters! {
         /// time constant
         lag_s: f64 = 0.0 => 0.0, 1e5;
         /// of the surface
-        emissivity: f64 = 0.95 => 0.05, 1.0;
+        emissivity_pct: f64 = 95.0 => 5.0, 100.0;
         /// that it is set to
-        set_emissivity: f64 = 0.95 => 0.05, 1.0;
+        set_emissivity_pct: f64 = 95.0 => 5.0, 100.0;
         /// part of the radiation that a dirty window lets through
         dirty_pct: f64 = 60.0 => 1.0, 100.0;
     }
@@ -87,7 +87,7 @@ impl Component for Pyrometer {
     fn sense(&self, state: &mut State, _: &Inputs, turn: &Turn<TemperatureField>) -> Outputs {
         let clear = if turn.failed.has(Failure::Dirty) { self.p.dirty_pct / 100.0 } else { 1.0 };
         let surface_degc = turn.seen.seen_at(self.p.place_m);
-        let seen_degc = shown_degc(surface_degc, self.p.emissivity * clear, self.p.set_emissivity);
+        let seen_degc = shown_degc(surface_degc, self.p.emissivity_pct / 100.0 * clear, self.p.set_emissivity_pct / 100.0);
         let before_degc = state.shown_degc.filter(|_| turn.dt_s > 0.0).unwrap_or(seen_degc);
         let shown = lag(before_degc, seen_degc, self.p.lag_s, turn.dt_s);
         state.shown_degc = Some(shown);
