@@ -267,6 +267,11 @@ impl Scenario {
             let watched = client.watch(&watches, changes, sink);
             watched.map_err(|unknown| self.wrong_option(format!("--watch: {unknown}"), None))?;
         }
+        let own = self.file().map.iter().filter(|map| map.client.get_ref() == name);
+        for (map, variable) in own.filter_map(|map| Some((map, map.variable.as_ref()?.get_ref()))) {
+            let shown = client.show_table(variable, map.row.unwrap_or(0));
+            shown.map_err(|none| self.wrong_client(name, format!("map `{}`: {none}", map.name.get_ref()), None))?;
+        }
         Ok(client)
     }
 

@@ -13,6 +13,7 @@ use toml::Spanned;
 use crate::expect::KnownSignal;
 use crate::falsify_file::FalsifyFile;
 use crate::form::{DialectName, Mebibytes, Name, Scalar, Time, Type, Values, from_optional_text, from_text};
+use crate::map_file::MapFile;
 use crate::panel_file::PanelFile;
 use crate::report_file::ReportFile;
 use crate::timing_file::TimingFile;
@@ -78,6 +79,9 @@ pub struct ScenarioFile {
     /// What a plot shows.
     #[serde(default)]
     pub plot: PlotFile,
+    /// Tables of values that `onescan run --map` draws when a run is over.
+    #[serde(default)]
+    pub map: Vec<MapFile>,
     /// What people see and operate on the page.
     #[serde(default)]
     pub panel: Vec<PanelFile>,

@@ -7,6 +7,7 @@
 //! | `form` | the forms of values in the files, for schemas |
 //! | [`file`] | `scenario.toml` as it is written |
 //! | [`report_file`] | its `[report]` as it is written |
+//! | [`map_file`], `map` | its `[[map]]` as it is written, and what must hold of them |
 //! | [`timing_file`] | its `[timing]` as it is written |
 //! | [`falsify_file`] | its `[falsify]` as it is written |
 //! | [`value_names`] | names of a signal's values |
@@ -50,6 +51,8 @@ mod form;
 pub mod gateway;
 pub mod lesson;
 pub mod load;
+mod map;
+pub mod map_file;
 pub mod mistake;
 mod mistaken;
 pub mod mode;

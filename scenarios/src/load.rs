@@ -23,6 +23,7 @@ use super::error::{ScenarioError, Wrong, wrong};
 use super::expectations::Expectations;
 use super::falsify::{self, Varied, VariedParameter};
 use super::file::{ClientFile, CouplingFile, ScenarioFile, VERSION};
+use super::map;
 use super::mistake::Mistake;
 use super::report::Measures;
 use super::timing::Timing;
@@ -130,6 +131,7 @@ impl Scenario {
         }
         let placed = |found: Wrong| wrong(found.message, Some(found.place), found.help);
         panel::check(&file).map_err(placed)?;
+        map::check(&file).map_err(placed)?;
         let timing = timing::bind(&file).map_err(placed)?;
         let varied = falsify::bind(&file).map_err(placed)?;
         let expectations = Expectations::bind(&file, &text).map_err(placed)?;

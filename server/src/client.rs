@@ -222,13 +222,31 @@ pub enum OperationRefused {
 pub struct ClientView {
     /// Where the bodies of plants are.
     pub poses: Vec<Pose>,
+    /// Tables of values that clients have and no signal tells.
+    pub tables: Vec<ValueTable>,
 }
 
 impl ClientView {
     /// Forgets what was seen; the memory is kept for the next look.
     pub fn clear(&mut self) {
         self.poses.clear();
+        self.tables.clear();
     }
+}
+
+/// A table of values, as of a surface, or an array of a program.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ValueTable {
+    /// What has it.
+    pub name: std::sync::Arc<str>,
+    /// Values of a row.
+    pub columns: usize,
+    /// Where the first column begins and the last one ends, in the client's own unit.
+    pub across: [f64; 2],
+    /// Where the first row begins and the last one ends.
+    pub down: [f64; 2],
+    /// Row after row.
+    pub values: Vec<f64>,
 }
 
 /// Where a body is: its origin, m, and its orientation, a unit quaternion with the scalar last.

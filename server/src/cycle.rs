@@ -187,6 +187,32 @@ impl Cycle {
         Some(entered)
     }
 
+    /// How many whole steps follow from here in which nobody is due; 0 within a step.
+    ///
+    /// With `client_i.sync = ready_i OR t_delay_i > t_v` true for every client, such a step waits for nobody and changes
+    /// nothing but the time.
+    pub fn idle_steps(&self) -> u64 {
+        if !self.is_at_boundary() {
+            return 0;
+        }
+        let end = self.seats.iter().map(|seat| seat.wake).min().unwrap_or(VirtualTime::MAX);
+        whole_steps_before(self.t_v, end, self.step)
+    }
+
+    /// Goes through so many steps in which nobody is due at once, at most [`idle_steps`](Self::idle_steps) of them: as
+    /// if it had entered all their states. How many they were.
+    pub fn pass_over(&mut self, steps: u64) -> u64 {
+        let steps = steps.min(self.idle_steps());
+        let span = self.step.times(steps).and_then(|span| self.t_v.checked_add(span));
+        let Some(t_v) = span.filter(|_| steps > 0) else { return 0 };
+        self.t_v = t_v;
+        self.steps.0 += steps;
+        self.server = ServerState::Write;
+        self.pass = self.passes() - 1;
+        self.seats.iter_mut().for_each(|seat| seat.due = false);
+        steps
+    }
+
     /// Back to initial-write from any state: a reset.
     pub fn restart(&mut self) {
         self.t_v = VirtualTime::ZERO;
@@ -241,6 +267,12 @@ impl Cycle {
             seat.ready = false;
         }
     }
+}
+
+/// How many steps from `t_v` on end before `end`.
+pub(crate) fn whole_steps_before(t_v: VirtualTime, end: VirtualTime, step: TimeSpan) -> u64 {
+    let left_ns = end.as_nanos().saturating_sub(t_v.as_nanos());
+    left_ns.saturating_sub(1) / step.as_nanos()
 }
 
 #[cfg(test)]
@@ -314,6 +346,38 @@ mod tests {
             runs.push((running.map(ClientId::index), cycle.t_v()));
         }
         assert_eq!(runs, [(Some(1), at(1)), (Some(0), at(1)), (Some(1), at(2)), (Some(0), at(2))]);
+    }
+
+    #[test]
+    fn steps_passed_over_are_as_if_gone_through() {
+        for coupling in [Coupling::Parallel, Coupling::Sequential { order: vec![ClientId(1), ClientId(0)] }] {
+            let mut slow = Cycle::new(STEP, coupling, 2);
+            run_to(&mut slow, 2, ServerState::InitialWrite);
+            assert_eq!(slow.idle_steps(), 0, "nobody has set itself up");
+            slow.sleep_until(ClientId(0), at(7));
+            slow.sleep_until(ClientId(1), at(9));
+            [0, 1].map(|client| slow.signal_ready(ClientId(client)));
+            let mut fast = slow.clone();
+            assert_eq!(fast.idle_steps(), 6);
+            while slow.steps() < StepCount(6) || slow.server() != ServerState::Write || !slow.is_at_boundary() {
+                slow.advance();
+            }
+            assert_eq!((fast.pass_over(2), fast.pass_over(100), fast.pass_over(1)), (2, 4, 0));
+            assert_eq!(fast, slow);
+            run_to(&mut fast, 2, ServerState::PreWrite);
+            assert!(fast.t_v() == at(7) && fast.idle_steps() == 0);
+        }
+    }
+
+    #[test]
+    fn who_never_wakes_lets_time_run_out_without_overflow() {
+        let mut cycle = Cycle::new(STEP, Coupling::Parallel, 1);
+        run_to(&mut cycle, 1, ServerState::InitialWrite);
+        cycle.sleep_until(ClientId(0), VirtualTime::MAX);
+        cycle.signal_ready(ClientId(0));
+        let all = cycle.idle_steps();
+        assert_eq!(cycle.pass_over(u64::MAX), all);
+        assert!(cycle.t_v() < VirtualTime::MAX);
     }
 
     #[test]

@@ -23,6 +23,12 @@ pub trait Observer {
     /// What was to be written could not be.
     fn step(&mut self, session: &Session, digest: &TrajectoryDigest) -> Result<(), RecordError>;
 
+    /// Whether it wants to see every step, also those in which nobody is due and no value changes. If all observers are
+    /// content without, they see the last of a run of such steps only.
+    fn wants_idle_steps(&self) -> bool {
+        true
+    }
+
     /// An operation has been taken, at a step boundary.
     ///
     /// # Errors

@@ -27,6 +27,11 @@ impl Pacer {
         Self { pace, origin: None }
     }
 
+    /// True if nothing is held back.
+    pub(crate) fn is_free(&self) -> bool {
+        self.pace == Pace::Max
+    }
+
     /// Counts anew from the next step on: after a pause, a reset, a restore.
     pub(crate) fn rebase(&mut self) {
         self.origin = None;

@@ -112,6 +112,11 @@ impl Published {
             || (self.inner.wanted.load(Ordering::Acquire) && self.inner.wanted.swap(false, Ordering::AcqRel))
     }
 
+    /// True if somebody wants a view of every step.
+    pub(crate) fn is_followed(&self) -> bool {
+        self.inner.followers.load(Ordering::Acquire) > 0
+    }
+
     /// Publishes a view, and gives back the one before if nobody reads it any more.
     pub(crate) fn publish(&self, view: Arc<SessionView>) -> Arc<SessionView> {
         self.inner.latest.swap(view)

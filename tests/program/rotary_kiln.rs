@@ -1,6 +1,6 @@
 //! The rotary kiln: two clocks of rotation, and the slip between ring and shell.
 
-use crate::typed::{is_the_same_over_tcp_and_resumed, scenario, typed};
+use crate::typed::{digests, is_the_same_over_tcp_and_resumed, scenario, typed};
 
 /// The slip of the mended program is `1 + δ/D`; that of the thesis is short by cams and scans, as derived.
 #[test]
@@ -36,4 +36,46 @@ fn a_comparison_names_the_flip_flop_of_the_thesis() {
     let said = typed(folder.path(), &["diff", &thesis, &mended]);
     assert_eq!(said.code, Some(1), "{said:?}");
     assert!(said.out.contains("thesis/timer1.st:12 in PRG_Timer1: GV_Timer1(IN := V_RS.Q1"), "{said:?}");
+}
+
+/// Nearly all steps are gone over at once; gone through one by one, in other processes or from a checkpoint they are the same.
+#[test]
+fn a_month_of_sleep_leaves_no_trace() {
+    is_the_same_over_tcp_and_resumed("rotary-kiln", "month.toml", "2h", "50min");
+    let digest = |words: &[&str]| {
+        let all = [&["run", "month.toml", "--format", "json", "--until", "2h"], words].concat();
+        let said = typed(&scenario("rotary-kiln"), &all);
+        let report: serde_json::Value = serde_json::from_str(said.out.trim()).unwrap_or_else(|_| panic!("{said:?}"));
+        digests(&[report])
+    };
+    // at a pace that holds nothing back every state of every step is entered
+    assert_eq!(digest(&["--pace", "1000000000"]), digest(&[]));
+}
+
+#[test]
+fn a_map_has_the_shell_as_a_picture_and_as_text() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let maps = folder.path().join("maps");
+    let target = maps.to_str().expect("UTF-8");
+    let said = typed(&scenario("rotary-kiln"), &["run", "month.toml", "--until", "2h", "--map", target]);
+    assert_eq!(said.code, Some(0), "{said:?}");
+    let svg = std::fs::read_to_string(maps.join("month.svg")).expect("a picture");
+    assert!(svg.contains("The shell after a month") && svg.contains("angle (°)"), "{svg}");
+    let text = std::fs::read_to_string(maps.join("month.csv")).expect("a table");
+    let mut lines = text.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let places = lines.next().expect("a head");
+    let first: Vec<f64> = lines.next().expect("a row")[1..].iter().map(|cell| cell.parse().expect("a number")).collect();
+    assert_eq!((first.len(), lines.count()), (240, 119));
+    // the middle of the zone that is nearest to the flame at 15 m is at 13.75 m
+    let hottest = (0..first.len()).max_by(|a, b| first[*a].total_cmp(&first[*b])).expect("some");
+    let at_m: f64 = places[hottest + 1].parse().expect("a number");
+    assert!((at_m - 13.75).abs() < 0.5 && (first[hottest] - 285.0).abs() < 1.0, "{at_m} m: {} °C", first[hottest]);
+}
+
+#[test]
+fn a_scenario_without_maps_says_so() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let said = typed(&scenario("rotary-kiln"), &["run", ".", "--map", folder.path().to_str().expect("UTF-8")]);
+    assert_eq!(said.code, Some(2), "{said:?}");
+    assert!(said.err.contains("--map: there is nothing to be drawn"), "{said:?}");
 }

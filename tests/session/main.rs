@@ -10,6 +10,7 @@ mod leaving;
 mod lobby;
 mod peer;
 mod recorded;
+mod rest;
 mod security;
 mod shim;
 mod targets;

@@ -7,8 +7,8 @@ use std::time::Duration;
 
 use onescan_server::client::{Client, ClientFault, JoinRequest, Wake};
 use onescan_server::plan::{Coupling, SessionPlan};
-use onescan_server::signal::SignalType;
-use onescan_server::time::VirtualTime;
+use onescan_server::signal::{ClientName, SignalType};
+use onescan_server::time::{TimeSpan, VirtualTime};
 
 use crate::{client, plan, port, span_ms};
 
@@ -86,4 +86,36 @@ impl Ledger {
             println!("{what:28} {rate:>12.0} steps/s   {reference:28} {bare_rate:>12.0} /s   {ratio:5.1} %");
         }
     }
+}
+
+/// Counts its turns on one signal, and sleeps so long between two.
+pub struct Sleeper {
+    name: &'static str,
+    sleep: TimeSpan,
+}
+
+impl Client for Sleeper {
+    fn join(&self) -> JoinRequest {
+        let writes = vec![port(self.name, SignalType::ULINT)];
+        JoinRequest { name: client(self.name), period: span_ms(1), reads: vec![], writes }
+    }
+
+    fn setup(&mut self, outputs: &mut [u8]) -> Result<(), ClientFault> {
+        outputs.fill(0);
+        Ok(())
+    }
+
+    fn turn(&mut self, t_v: VirtualTime, _inputs: &[u8], outputs: &mut [u8]) -> Result<Wake, ClientFault> {
+        let count = outputs.first_chunk().map_or(0, |bytes| u64::from_le_bytes(*bytes)) + 1;
+        outputs.copy_from_slice(&count.to_le_bytes());
+        Ok(t_v.checked_add(self.sleep).map_or(Wake::NextPeriod, Wake::At))
+    }
+}
+
+/// A plan of steps of 1 ms, and two clients that each sleep so many of them.
+pub fn two_sleepers(coupling: &Coupling<ClientName>, sleeps: [u64; 2]) -> (SessionPlan, [Sleeper; 2]) {
+    let names = ["plant", "plc"];
+    let declared = names.map(|name| (name, SignalType::ULINT, name));
+    let sleeper = |index: usize| Sleeper { name: names[index], sleep: span_ms(sleeps[index]) };
+    (plan(span_ms(1), coupling, &declared, &names), [sleeper(0), sleeper(1)])
 }

@@ -106,6 +106,10 @@ pub struct RunArgs {
     /// Write a page with trajectories, expectations, events and coverage of all runs, all in one file
     #[arg(long, value_name = "FILE")]
     pub html: Option<PathBuf>,
+    /// Draw the scenario's maps as they are at the end into this folder: each as a picture `NAME.svg` and as text `NAME.csv`;
+    /// of several runs, those of the last one
+    #[arg(long, value_name = "DIR")]
+    pub map: Option<PathBuf>,
     /// A variable of a soft PLC to look at, as `Main.axis[2].x`, with its PLC in front if there are several, as
     /// `plc2:Main.x`, and with a format for whole numbers behind, as `Main.status=bin`: `hex`, `dec` or `bin`;
     /// may be given several times
@@ -325,6 +329,7 @@ fn config(args: RunArgs) -> Result<RunConfig, CommandError> {
             record,
             coverage: args.coverage.map(|path| CoverageRequest::new(path, args.coverage_format.map(Into::into))),
             html: args.html,
+            maps: args.map,
         },
     })
 }

@@ -37,10 +37,15 @@ impl RunConfig {
             ("--coverage", self.reports.coverage.is_some()),
             ("--watch", !self.watch.variables.is_empty()),
             ("--accept-code", self.course.accept_code),
+            ("--map", self.reports.maps.is_some()),
         ];
         if let Some((option, _)) = inside.iter().find(|(_, given)| *given && self.reach.transport == Transport::Tcp) {
             let help = "what a client in another process does is not seen here".to_owned();
             return Err(Usage::new(format!("{option} means nothing with --transport tcp"), Some(help)).into());
+        }
+        if self.reports.maps.is_some() && (scenario.file().map.is_empty() || self.mode != Mode::Lockstep) {
+            let help = "a scenario says with [[map]] what is drawn; it is drawn of runs in lockstep".to_owned();
+            return Err(Usage::new("--map: there is nothing to be drawn", Some(help)).into());
         }
         self.check_opcua(scenario)?;
         match self.mode {

@@ -214,6 +214,8 @@ pub struct Reports {
     pub coverage: Option<CoverageRequest>,
     /// File for a page about all runs.
     pub html: Option<PathBuf>,
+    /// Folder for the scenario's maps at the end of the last run.
+    pub maps: Option<PathBuf>,
 }
 
 /// What is to be recorded, and where.
@@ -247,7 +249,14 @@ impl RunConfig {
             course: Course::default(),
             picture: Picture::default(),
             watch: Watch::default(),
-            reports: Reports { format: Format::Json, progress: false, record: None, coverage: None, html: None },
+            reports: Reports {
+                format: Format::Json,
+                progress: false,
+                record: None,
+                coverage: None,
+                html: None,
+                maps: None,
+            },
         }
     }
 

@@ -15,6 +15,7 @@
 //! | [`progress`] | a bar on a terminal |
 //! | `chosen` | signals chosen by name, as numbers |
 //! | [`sampler`] | what a plot shows |
+//! | [`maps`] | tables of values as they are at the end |
 //! | [`recorded`] | a run's recording |
 //! | `in_process` | a session of which all clients are here |
 //! | `judged` | the same, judged step by step |
@@ -40,6 +41,7 @@ pub(crate) mod guard;
 pub(crate) mod in_process;
 pub(crate) mod judged;
 mod lockstep;
+pub mod maps;
 pub mod page;
 mod processes;
 pub(crate) mod production;
@@ -68,6 +70,7 @@ use onescan_report::view::Side;
 use onescan_scenario::expect::TraceEnd;
 use onescan_scenario::{Mode, Scenario};
 use onescan_server::checkpoint::StateHash;
+use onescan_server::client::ValueTable;
 use onescan_server::lockstep::Lockstep;
 use onescan_server::observer::Observer;
 
@@ -119,12 +122,13 @@ pub fn execute(config: &RunConfig, interrupt: &Interrupt, out: &mut dyn Write) -
         scenario.watch(&config.watch.variables, config.watch.on == WatchOn::Change)?;
     }
     let mut reports: Vec<RunReport> = Vec::new();
-    let (mut samples, mut unsaved) = (Vec::new(), None);
+    let (mut samples, mut unsaved, mut tables) = (Vec::new(), None, Vec::new());
     for number in 1..=config.runs {
         let ran = one_run(config, &scenario, number, interrupt, Vec::new())?;
         ran.report.write(config.reports.format, config.runs, reports.last(), out).map_err(OutputError)?;
         reports.push(ran.report);
         samples.push(ran.samples);
+        tables = ran.tables;
         unsaved = unsaved.or(ran.unsaved);
         if interrupt.is_raised() || reports.iter().any(RunReport::is_failed) {
             break;
@@ -137,6 +141,9 @@ pub fn execute(config: &RunConfig, interrupt: &Interrupt, out: &mut dyn Write) -
         let (svg, not_there) = sampler::picture(&scenario, config.mode, &config.picture, &samples, &reports);
         file::write_whole(path, svg.as_bytes())?;
         unsaved = unsaved.or(not_there.map(Into::into));
+    }
+    if let Some(folder) = &config.reports.maps {
+        maps::write(&scenario, &tables, folder)?;
     }
     if let Some(path) = &config.reports.html {
         let plot = sampler::plot(&scenario, config.mode, &config.picture, &samples, &reports);
@@ -185,6 +192,8 @@ pub(crate) struct Ran {
     pub(crate) state: Option<StateHash>,
     /// How far a plant that follows was behind the PLC at each communication, ns.
     pub(crate) errors_ns: Vec<i64>,
+    /// What its clients showed at the end, if maps are asked for.
+    pub(crate) tables: Vec<ValueTable>,
 }
 
 /// One run.
@@ -209,7 +218,9 @@ pub(crate) fn one_run(
         .as_ref()
         .map(|request| Recorded::begin(request, &config.subject, config.mode, scenario, number));
     let (recorded, recorder) = recorded.transpose()?.unzip();
+    let published = RefCell::new(None);
     let watch = |lockstep: &mut Lockstep| {
+        published.replace(Some(lockstep.published()));
         for observer in observers {
             lockstep.observe(observer);
         }
@@ -247,5 +258,7 @@ pub(crate) fn one_run(
     if let Some(recorded) = &recorded {
         recorded.end(&report)?;
     }
-    Ok(Ran { report, samples: samples.replace(Samples::default()), unsaved, forks, state, errors_ns })
+    let last = published.take().filter(|_| config.reports.maps.is_some()).map(|published| published.latest());
+    let tables = last.map(|view| view.clients.tables.clone()).unwrap_or_default();
+    Ok(Ran { report, samples: samples.replace(Samples::default()), unsaved, forks, state, errors_ns, tables })
 }

@@ -69,6 +69,10 @@ impl Observer for Progress {
         Ok(())
     }
 
+    fn wants_idle_steps(&self) -> bool {
+        false
+    }
+
     fn end(&mut self, _session: &Session) -> Result<(), RecordError> {
         self.bar.finish_and_clear();
         Ok(())

@@ -212,6 +212,8 @@ impl Client for Plant {
             position_m: pose.position_m,
             rotation_xyzw: pose.rotation_xyzw,
         }));
+        let heated = self.machine.iter().flat_map(Machine::heated);
+        view.tables.extend(heated.map(|(body, field)| field.unrolled(&self.names[body])));
     }
 
     fn turn(&mut self, t_v: VirtualTime, inputs: &[u8], outputs: &mut [u8]) -> Result<Wake, ClientFault> {

@@ -20,6 +20,7 @@ use super::scene::failures::FoundMode;
 use super::scene::{Scene, model};
 use super::sensor::Sensor;
 use super::setpoint::Setpoint;
+use super::temperature_field::TemperatureField;
 use super::world::World;
 
 /// What the plant remembers between two turns, beside the state of its world.
@@ -125,6 +126,11 @@ impl Machine {
             let pose = body.position();
             Placement { position_m: pose.translation.to_array(), rotation_xyzw: pose.rotation.to_array() }
         })
+    }
+
+    /// The temperatures of heated surfaces, each with the index of its body.
+    pub(super) fn heated(&self) -> impl Iterator<Item = (usize, &TemperatureField)> {
+        self.world.heated()
     }
 
     /// Switches a mode of a component on.

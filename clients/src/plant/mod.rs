@@ -25,6 +25,8 @@
 //! | `form` | the forms of bodies as they are, for readers that draw by themselves |
 //! | `axis` | a driven axis: command, setpoint, what it moves, feedback |
 //! | `sensor` | end-position and proximity sensors |
+//! | `temperature_field` | the temperature on the surface of a shell that turns |
+//! | [`scanner`] | an infrared line scanner as a device: protocol and optics |
 //! | [`component`] | the library: cylinders, motors, sensors, … by their equations |
 //! | [`coupling`] | what ties a component to the world of rigid bodies |
 //! | `part` | a component of the scene, bound to signals, other components and the world |
@@ -75,11 +77,13 @@ mod placement;
 mod pose;
 mod reach;
 pub mod robot;
+pub mod scanner;
 pub mod scene;
 mod sensor;
 mod setpoint;
 mod solid;
 mod state;
+mod temperature_field;
 mod world;
 
 pub use client::Plant;

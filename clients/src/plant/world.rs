@@ -13,6 +13,7 @@ use super::pose;
 use super::reach::Reach;
 use super::scene::model::{Joint, JointKind, Scene};
 use super::solid::{attach, insert_body, leave_alone};
+use super::temperature_field::TemperatureField;
 
 /// Sweeps over all joints and contacts in one solver iteration while the engine has joints: one between a
 /// light and a heavy body needs several to carry the load. Contacts alone need one, as the engine is made.
@@ -48,6 +49,9 @@ pub(crate) struct World {
     pub(super) articulation: Articulation,
     /// Belts, and where they stay while their surfaces run.
     belts: Vec<(RigidBodyHandle, Pose)>,
+    /// Surfaces that are heated, by the index of their body. What heats them says so in every turn, before others look,
+    /// so this is no state of its own.
+    heated: Vec<(usize, TemperatureField)>,
     reach: Reach,
     substeps: u32,
     extent_m: f64,
@@ -85,6 +89,7 @@ impl World {
             actuators: Vec::new(),
             articulation: Articulation::empty(),
             belts: Vec::new(),
+            heated: Vec::new(),
             substeps: scene.substeps,
             extent_m: scene.extent_m,
         };
@@ -157,6 +162,27 @@ impl World {
     /// The body of an index in the scene, the ground for none.
     pub(super) fn handle(&self, index: Option<usize>) -> RigidBodyHandle {
         index.map_or(self.ground, |index| self.bodies[index])
+    }
+
+    /// The surface of a body has these temperatures from now on.
+    pub(super) fn heat(&mut self, body: usize, field: TemperatureField) {
+        match self.heated.iter_mut().find(|(heated, _)| *heated == body) {
+            Some((_, before)) => *before = field,
+            None => self.heated.push((body, field)),
+        }
+    }
+
+    /// The temperatures of the surface of a body; those of a room where nothing heats it.
+    pub(super) fn heat_of(&self, body: usize) -> TemperatureField {
+        self.heated
+            .iter()
+            .find(|(heated, _)| *heated == body)
+            .map_or_else(TemperatureField::default, |(_, field)| *field)
+    }
+
+    /// Surfaces that are heated, each with the index of its body.
+    pub(super) fn heated(&self) -> impl Iterator<Item = (usize, &TemperatureField)> {
+        self.heated.iter().map(|(body, field)| (*body, field))
     }
 
     /// The bodies of the scene, in its order.

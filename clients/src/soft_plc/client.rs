@@ -4,13 +4,15 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
 
+use onescan_base::ElementaryType;
 use onescan_plc_shim::{
     Application, CodePolicy, Coverage, PlcFault, RestoreError, RunError, SoftPlc, TaskPlan, UnknownVariable, WriteError,
 };
 use onescan_server::client::{
-    Client, ClientFault, ClientOperation, JoinRequest, OperationRefused, SourcePlace, StateError, Wake,
+    Client, ClientFault, ClientOperation, ClientView, JoinRequest, OperationRefused, SourcePlace, StateError,
+    ValueTable, Wake,
 };
-use onescan_server::signal::{ClientName, Port, SignalName};
+use onescan_server::signal::{ClientName, Port, SignalName, SignalType};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
 use super::bind::{Bindings, Bound, Place};
@@ -51,6 +53,37 @@ pub struct SoftPlcClient {
     tracing: Option<Tracing>,
     journal: Option<Keeper>,
     watcher: Option<Watcher>,
+    tables: Vec<Table>,
+}
+
+/// An array that is shown as a table.
+struct Table {
+    name: Arc<str>,
+    offset: usize,
+    ty: ElementaryType,
+    columns: usize,
+    elements: usize,
+}
+
+/// Why an array is no table.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NoTable {
+    /// There is no such variable.
+    #[error(transparent)]
+    Unknown(#[from] UnknownVariable),
+    /// It is no array of elementary values.
+    #[error("`{0}` is no array of elementary values")]
+    NoArray(String),
+    /// Its elements are no whole rows.
+    #[error("`{path}` has {elements} elements, which are no rows of {row}")]
+    Rows {
+        /// The array.
+        path: String,
+        /// Its elements.
+        elements: usize,
+        /// Elements of a row, as asked for.
+        row: u32,
+    },
 }
 
 /// What the PLCs of a run have executed together.
@@ -85,6 +118,7 @@ impl SoftPlcClient {
             tracing: None,
             journal: None,
             watcher: None,
+            tables: Vec::new(),
         })
     }
 
@@ -167,6 +201,22 @@ impl SoftPlcClient {
         Ok(())
     }
 
+    /// Shows the array at `path` as a table with rows of so many elements.
+    ///
+    /// # Errors
+    /// There is no such array, or it has no such rows.
+    pub fn show_table(&mut self, path: &str, row: u32) -> Result<(), NoTable> {
+        let whole = self.plc.application().variable(path)?;
+        let ty = whole.element.ok_or_else(|| NoTable::NoArray(path.to_owned()))?;
+        let elements = (whole.size / ty.size()) as usize;
+        if row == 0 || !elements.is_multiple_of(row as usize) {
+            return Err(NoTable::Rows { path: path.to_owned(), elements, row });
+        }
+        let (name, offset) = (Arc::from(path), whole.offset as usize);
+        self.tables.push(Table { name, offset, ty, columns: row as usize, elements });
+        Ok(())
+    }
+
     fn look(&mut self, t_v: VirtualTime) {
         if let Some(watcher) = &mut self.watcher {
             watcher.look(&self.plc, t_v);
@@ -204,6 +254,27 @@ impl SoftPlcClient {
         let memory = self.plc.memory();
         for run in &self.outputs {
             run.take(memory, outputs);
+        }
+    }
+}
+
+impl Table {
+    fn of(&self, memory: &[u8]) -> ValueTable {
+        let size = self.ty.size() as usize;
+        let of_array = memory.get(self.offset..self.offset + size * self.elements).unwrap_or_default();
+        let number = |bytes: &[u8]| match (self.ty.is_real(), bytes) {
+            (true, [a, b, c, d]) => f64::from(f32::from_le_bytes([*a, *b, *c, *d])),
+            (true, bytes) => bytes.first_chunk().map_or(f64::NAN, |bytes| f64::from_le_bytes(*bytes)),
+            (false, bytes) => SignalType::Elementary(self.ty).integer(bytes).map_or(f64::NAN, |whole| whole as f64),
+        };
+        let values: Vec<f64> = of_array.chunks_exact(size).map(number).collect();
+        let rows = self.elements / self.columns;
+        ValueTable {
+            name: Arc::clone(&self.name),
+            columns: self.columns,
+            across: [0.0, self.columns as f64],
+            down: [0.0, rows as f64],
+            values,
         }
     }
 }
@@ -304,6 +375,10 @@ impl Client for SoftPlcClient {
             // Without a task that may be due at any step nothing is due only past the end of time.
             _ => Wake::NextPeriod,
         })
+    }
+
+    fn show(&self, view: &mut ClientView) {
+        view.tables.extend(self.tables.iter().map(|table| table.of(self.plc.memory())));
     }
 
     fn save(&self) -> Result<Vec<u8>, StateError> {

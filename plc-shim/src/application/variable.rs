@@ -27,6 +27,8 @@ pub struct Variable {
     /// length stands in `type_name` (`STRING[80]`). A value of an
     /// enumeration or subrange is one of its base type.
     pub ty: Option<ElementaryType>,
+    /// Of an array of elementary values, their type; they lie one behind the other, the last index fastest.
+    pub element: Option<ElementaryType>,
     /// Its type as a session has it: also of strings, with their length. Nothing for what no signal can be.
     pub signal_type: Option<SignalType>,
     /// Set for a string that lies in memory otherwise than a signal has it.
@@ -240,6 +242,7 @@ impl Application {
             size: types.size(spot.ty),
             bit: spot.bit,
             ty: types.elementary(spot.ty),
+            element: element(types, spot.ty),
             signal_type: signal_type(types, spot.ty),
             zero_terminated: types.text(spot.ty).and_then(ZeroTerminated::of),
             type_name: types.name(spot.ty),
@@ -247,6 +250,14 @@ impl Application {
             access: spot.access,
             type_id: spot.ty,
         }
+    }
+}
+
+/// The type of the values of an array.
+fn element(types: &TypeTable, ty: TypeId) -> Option<ElementaryType> {
+    match types.get(ty) {
+        Type::Array { element, .. } => types.elementary(*element),
+        _ => None,
     }
 }
 

@@ -24,6 +24,7 @@
 //! | `plane` | two signals against each other |
 //! | `bars` | parts of a whole |
 //! | `histogram` | how many times of which length |
+//! | `value_map` | a table of values over two axes, as colours |
 //!
 //! Invariants. No input makes it panic, nothing is read from the machine (no clock, no fonts, no
 //! locale), and arithmetic is limited to the operations that IEEE 754 rounds exactly. Whatever is
@@ -67,10 +68,12 @@ pub mod svg;
 mod ticks;
 mod time_axis;
 mod trace;
+mod value_map;
 
 pub use bars::{Bar, Bars};
 pub use histogram::Histogram;
 pub use part::{NothingThere, Part};
+pub use value_map::{MapAxis, ValueMap};
 
 /// One signal in one run.
 ///

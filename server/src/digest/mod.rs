@@ -122,6 +122,13 @@ impl TrajectoryDigest {
         self.stream.take(image);
     }
 
+    /// Takes in so many steps that all left the same image.
+    pub fn steps(&mut self, image: &[u8], steps: u64) {
+        for _ in 0..steps {
+            self.stream.take(image);
+        }
+    }
+
     /// The digest of all steps so far. It finishes a copy: costs a few microseconds, not a copy of
     /// the run.
     #[must_use]

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | this file | the loop: what each state of the cycle asks for |
 //! | `operate` | operations of operators, replays and the timeline |
+//! | `rest` | steps in which nobody is due |
 //! | `restore` | checkpoints taken and taken up |
 //! | `show` | observers and published views |
 //!
@@ -11,6 +12,7 @@
 //! of clients in this process is plain function calls, without a channel or an allocation.
 
 mod operate;
+mod rest;
 mod restore;
 mod show;
 
@@ -230,6 +232,9 @@ impl Lockstep {
                     return Ok(Reached::Boundary);
                 }
                 self.take_wishes()?;
+                if self.rest(t_v)? {
+                    continue;
+                }
             }
             match self.session.advance() {
                 Progress::Entered(state) => self.serve(state)?,

@@ -27,6 +27,11 @@ impl Shown {
         self.published.clone()
     }
 
+    /// Somebody wants a view of every step.
+    pub(super) fn is_watched(&self) -> bool {
+        self.published.is_followed()
+    }
+
     pub(super) fn set_published(&mut self, published: Published) {
         self.published = published;
     }

@@ -11,6 +11,7 @@
 //! | read | [`Session::read`] |
 //! | run | [`Session::submit`] |
 //! | any | [`Session::fail`], [`Session::control`] |
+//! | at a boundary, nobody due | [`Session::pass_over`] |
 //!
 //! There is no other way to change it, so what holds for every order of these calls holds for every
 //! transport. `tests/proofs` explores those orders.
@@ -35,7 +36,7 @@ pub use saved::SessionState;
 pub use turn::Turn;
 
 use crate::client::{ClientId, JoinRequest};
-use crate::cycle::Cycle;
+use crate::cycle::{Cycle, whole_steps_before};
 use crate::end::SessionEnd;
 use crate::image::{Commit, Image};
 use crate::join::{JoinRefusal, Membership, admit};
@@ -186,6 +187,31 @@ impl Session {
             return progress;
         }
         self.next_state()
+    }
+
+    /// How many steps follow in which nobody is due and nothing was asked for; 0 within a step, and while something lies
+    /// over the writers' values that may change them without a turn.
+    pub fn idle_steps(&self) -> u64 {
+        let asked = self.stop || self.reset || self.mode != Mode::Running || self.end.is_some();
+        if asked || !self.image.interference().is_empty() {
+            return 0;
+        }
+        let until = self.until.unwrap_or(VirtualTime::MAX);
+        let boundaries = whole_steps_before(self.cycle.t_v(), until, self.cycle.step()).saturating_add(1);
+        let over = self.cycle.t_v() >= until;
+        if over { 0 } else { self.cycle.idle_steps().min(boundaries) }
+    }
+
+    /// Goes through so many steps in which nobody is due, at most [`idle_steps`](Self::idle_steps) of them: the session
+    /// is then as if it had entered all their states. How many they were.
+    pub fn pass_over(&mut self, steps: u64) -> u64 {
+        let passed = self.cycle.pass_over(steps.min(self.idle_steps()));
+        if passed > 0 {
+            // What an operation has changed since the last commit is seen with the first of them; the others change
+            // nothing.
+            self.image.commit(Commit::EndsStep);
+        }
+        passed
     }
 
     /// One transition of the cycle and its effect on the image.

@@ -264,6 +264,13 @@ impl Timeline {
         self.take_until(end)
     }
 
+    /// Until when nothing of it happens while the image stays as it is: the first step that ends then or later is one
+    /// to ask for. `None` if a condition is being judged, which may look at the past.
+    pub(crate) fn rests_until(&self) -> Option<VirtualTime> {
+        let judging = self.waits || !self.lookouts.is_empty();
+        (!judging).then(|| self.next.unwrap_or(VirtualTime::MAX))
+    }
+
     /// The operations of the set-up.
     pub(crate) fn due_at_start(&mut self) -> Vec<Operation> {
         self.take_until(VirtualTime::ZERO)

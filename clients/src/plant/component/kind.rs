@@ -259,6 +259,9 @@ pub struct Failure {
 
 /// Endings of keys and the units they stand for.
 const UNITS: &[(&str, &str)] = &[
+    ("_w_m2_k", "W/(m²·K)"),
+    ("_j_m2_k", "J/(m²·K)"),
+    ("_w_m_k", "W/(m·K)"),
     ("_units_s2", "units/s²"),
     ("_units_s", "units/s"),
     ("_units", "units"),

@@ -7,6 +7,7 @@ use super::library::{ENTRIES, kinds};
 use super::origin::Origin;
 use crate::plant::coupling::{Coordinate, Grasp, Hit, InField, Load, Moving, Targets};
 use crate::plant::effort::Motion;
+use crate::plant::temperature_field::TemperatureField;
 use onescan_server::random::Random;
 
 /// What is seen of so many targets.
@@ -100,6 +101,12 @@ impl Sight for Coordinate {
 impl Sight for Option<Coordinate> {
     fn in_weather(random: &mut Random) -> Self {
         Some(Coordinate::in_weather(random))
+    }
+}
+
+impl Sight for TemperatureField {
+    fn in_weather(random: &mut Random) -> Self {
+        Self { angle_rad: 10.0 * random.uniform(), length_m: 60.0, ..Self::default() }
     }
 }
 

@@ -54,6 +54,7 @@ pub const TARGETS: &[Target] = &[
     Target { name: "wire", about: "frames, messages, a client's side of a session", prepare: wire::session },
     Target { name: "telegrams", about: "answers and requests of S7 and ADS", prepare: wire::telegrams },
     Target { name: "blocks", about: "data blocks in a stream, cut and decoded", prepare: wire::blocks },
+    Target { name: "scanner", about: "commands to an infrared scanner", prepare: wire::scanner },
     Target { name: "scenario", about: "scenario.toml, up to its clients", prepare: scenario::scenario },
     Target { name: "cases", about: "cases.toml, each put on its scenario", prepare: scenario::cases },
     Target { name: "expectation", about: "a formula, judged over a run", prepare: scenario::expectation },

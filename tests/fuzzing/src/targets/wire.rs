@@ -9,6 +9,8 @@ use onescan_clients::gateway::ads::symbol::Symbol;
 use onescan_clients::gateway::exchange::{Direction, Feed, Words};
 use onescan_clients::gateway::s7::{iso, pdu};
 use onescan_clients::gateway::tcp::{BlockCodec, Declaration, Layouts};
+use onescan_clients::plant::scanner::protocol::{ACK, command};
+use onescan_clients::plant::scanner::{Answer, Device};
 use onescan_server::signal::{Port, SignalName, SignalType};
 use onescan_server::wire::frame::to_json;
 use onescan_server::wire::{ClientMessage, Endpoint, Frame, FrameCodec, HANDSHAKE_FRAME_BYTES_MAX, ServerMessage};
@@ -222,4 +224,25 @@ fn s7(bytes: &[u8]) -> bool {
         }
     }
     understood
+}
+
+/// What a host says to an infrared scanner: whatever it is, the scanner answers or waits, and hears the next command.
+pub(super) fn scanner(_: &Path) -> Prepared {
+    let texts =
+        ["AR", "RMH", "RMB", "PM5", "DMB", "SB0100", "ST0500", "ES095", "LM3", "LC001", "ZM00", "PS", "GST", "GPM"];
+    let mut seeds: Vec<Vec<u8>> = texts.iter().map(|text| command(text.as_bytes())).collect();
+    seeds.push(vec![0x02, 0x1b]);
+    seeds.push(seeds.concat());
+    Prepared::new(seeds, |input| {
+        let mut device = Device::default();
+        let good =
+            input.iter().filter(|byte| matches!(device.hear(**byte), Some(Answer::Bytes(bytes)) if bytes[0] == ACK));
+        let good = good.count() > 0;
+        // whatever came before: an EOT, and the byte behind it, end it
+        [0x04, 0x00].map(|byte| device.hear(byte));
+        let heard = command(b"AR").into_iter().filter_map(|byte| device.hear(byte)).last();
+        assert_eq!(heard, Some(Answer::Bytes(vec![ACK])), "a command is heard after anything");
+        assert!((66..=1033).contains(&device.settings().line_bytes()));
+        good
+    })
 }

@@ -108,6 +108,7 @@ library! {
         absolute_encoder::AbsoluteEncoder,
         pressure_sensor::PressureSensor,
         temperature_sensor::TemperatureSensor,
+        pyrometer::Pyrometer,
         contact_sensor::ContactSensor,
         collision_monitor::CollisionMonitor,
         line_scanner::LineScanner,
@@ -125,6 +126,7 @@ library! {
         workpiece_sink::WorkpieceSink,
         veneer_lathe::VeneerLathe,
         kiln_shell::KilnShell,
+        kiln_heat::KilnHeat,
     }
     furnace {
         arc_circuit::ArcCircuit,
