@@ -4,6 +4,14 @@ import { decodeMessage, decodePicture, ProtocolError, type Ask, type Message, ty
 
 export type LinkState = "connecting" | "connected" | "lost";
 
+/** Where a session speaks with its page: beside the place that the page is from. */
+export function live_address(): string {
+  const url = new URL("api/live", window.location.href);
+  url.search = "";
+  url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
+  return url.href;
+}
+
 export interface Hears {
   readonly message: (message: Message) => void;
   readonly picture: (picture: Picture) => void;

@@ -3,18 +3,25 @@
 import "uplot/dist/uPlot.min.css";
 import "./page.css";
 import { frame, make } from "./dom";
+import { live_address } from "./link";
 import { Page } from "./page";
 import { ProtocolError, decodeSession } from "./protocol";
+import { fail, shoot, wanted } from "./shot";
 import { begin_theme } from "./theme";
 
 async function begin(): Promise<void> {
   begin_theme();
   const answer = await fetch("api/session");
   if (!answer.ok) throw new ProtocolError("api/session", `the server answers ${answer.status} ${answer.statusText}`);
-  new Page(decodeSession(await answer.json()));
+  const session = decodeSession(await answer.json());
+  if (picture === null) new Page(session);
+  else shoot(session, live_address(), picture);
 }
 
+const picture = wanted(window.location.search);
+
 begin().catch((error: unknown) => {
+  if (picture !== null) return void fail(error);
   const notice = frame("notice");
   const text = error instanceof Error ? error.message : String(error);
   const again = make("button", { type: "button" }, "Try again");

@@ -1,9 +1,10 @@
 // All views of one session, fed from one connection.
 
 import { button, frame, make } from "./dom";
+import { Drawings } from "./drawings";
 import { seconds } from "./format";
-import { Link, type LinkState } from "./link";
-import { PanelView } from "./panels";
+import { Link, live_address, type LinkState } from "./link";
+import { PanelView, type Alarm } from "./panels";
 import { PartSheet } from "./part";
 import type { Ask, Message, Picture, Session } from "./protocol";
 import { MachineView } from "./scene";
@@ -20,12 +21,13 @@ const LANES_AT_FIRST = 3;
 
 export class Page {
   private readonly values = new Map<number, number>();
-  private readonly alarms: string[] = [];
+  private alarms: readonly Alarm[] = [];
   private readonly machine: MachineView;
   private readonly panels: readonly { name: string; view: PanelView }[];
   private readonly part: PartSheet;
   private readonly table: SignalTable;
   private readonly source: SourceView;
+  private readonly drawings: Drawings;
   private readonly trends: TrendsView;
   private readonly timeline: Timeline;
   private readonly link: Link | null = null;
@@ -33,6 +35,8 @@ export class Page {
   private readonly verdicts = new Map<string, HTMLElement>();
   private tabs: Sheets | null = null;
   private sheet = "";
+  /** The view that was chosen last. */
+  private seen: string | null = null;
   private last: Picture | null = null;
   private wasPast = false;
 
@@ -48,6 +52,7 @@ export class Page {
         take: (name, take) => this.ask({ type: "seat", panel: name, take }),
         fail: (component, failure, active) => this.ask({ type: "fail", component, failure, active }),
         alarms: () => this.alarms,
+        acknowledge: () => this.acknowledge(),
       }),
     }));
     this.part = new PartSheet(session, this.values, this.machine, (ask) => this.ask(ask), again);
@@ -56,6 +61,8 @@ export class Page {
     this.table = new SignalTable(session, this.values, (signal) => this.trends.toggle(signal), again);
     const code = make("div", { class: "code" });
     this.source = new SourceView(code, session, this.values);
+    // Values of a drawing are asked for where there is a connection.
+    this.drawings = new Drawings(session, (ask) => void this.link?.ask(ask));
     this.timeline = new Timeline(frame("timeline"), session, (ask) => this.ask(ask));
     this.sensors = session.components.flatMap((one) => {
       const signal = session.signals.findIndex((candidate) => candidate.name === one.senses);
@@ -66,7 +73,7 @@ export class Page {
       this.sheet = name;
       again();
     });
-    this.link = new Link(address(), session, {
+    this.link = new Link(live_address(), session, {
       message: (message) => this.hear(message),
       picture: (picture) => this.show(picture),
       state: (state) => this.tell(state),
@@ -97,15 +104,23 @@ export class Page {
   }
 
   private plc(code: HTMLElement): HTMLElement {
-    const first = this.session.sources[0];
-    if (first === undefined) return make("div", {}, make("p", { class: "empty" }, "No source of a PLC is part of this session."));
-    const files = make("select", { "aria-label": "Source file" }, ...this.session.sources.map((one) => make("option", {}, one.path)));
-    files.addEventListener("change", () => {
-      this.source.open(this.session.sources[files.selectedIndex] ?? first);
+    const [sources, drawings] = [this.session.sources, this.drawings.names()];
+    if (sources.length + drawings.length === 0) return make("div", {}, make("p", { class: "empty" }, "No source of a PLC is part of this session."));
+    const options = [...sources.map((one) => one.path), ...drawings].map((name) => make("option", {}, name));
+    const files = make("select", { "aria-label": "Source file" }, ...options);
+    const open = (): void => {
+      const source = sources[files.selectedIndex];
+      [code.hidden, this.drawings.root.hidden] = [source === undefined, source !== undefined];
+      if (source === undefined) this.drawings.show(files.selectedIndex - sources.length);
+      else {
+        this.drawings.close();
+        this.source.open(source);
+      }
       this.subscribe();
-    });
-    this.source.open(first);
-    return make("div", {}, files, code);
+    };
+    files.addEventListener("change", open);
+    open();
+    return make("div", {}, files, code, this.drawings.root);
   }
 
   private checks(): HTMLElement {
@@ -123,7 +138,12 @@ export class Page {
       button(label, () => this.ask({ type: "operate", operation }));
     const is_ours = this.session.training?.role !== "trainee";
     if (this.session.live && is_ours) frame("controls").append(operate("hold", "Hold"), operate("step", "Step"), operate("go", "Go"));
-    const views = this.session.views.map((view) => button(view.name, () => this.machine.see(view)));
+    const views = this.session.views.map((view) => button(view.name, () => this.see(view.name)));
+    const call = (): void => {
+      const name = this.session.views.find((one) => one.name === this.seen)?.name;
+      if (name !== undefined) this.ask({ type: "view", view: name });
+    };
+    if (views.length > 0) views.push(button("For all", call, "Shows the view that was chosen last to all viewers"));
     const [front, back] = this.machine.depth_m();
     const cut = make("input", { type: "range", min: "0", max: "1", step: "0.01", value: "0", "aria-label": "Section from the front" });
     cut.addEventListener("input", () => {
@@ -154,6 +174,7 @@ export class Page {
     const wanted = new Set([
       ...this.panels.flatMap((one) => one.view.signals()),
       ...this.sensors.map((one) => one.signal),
+      ...this.machine.signals(),
       ...this.trends.signals(),
       ...(this.sheet === "Part" ? this.part.signals() : []),
       ...(this.sheet === "Signals" ? this.table.signals() : []),
@@ -171,15 +192,18 @@ export class Page {
     for (const [signal, value] of picture.values) {
       this.values.set(signal, value);
       for (const one of this.panels) one.view.show(signal, value);
+      this.machine.value(signal, value);
       this.table.show(signal);
       this.part.show(signal);
       if (!picture.isPast) this.trends.push(signal, picture.t_ns, value);
     }
+    this.machine.advance(picture.t_ns);
     this.machine.arrive(picture.poses);
     if (picture.values.length > 0) {
       if (this.sheet === "PLC") this.source.show();
       this.machine.light_up(new Set(this.sensors.filter((one) => this.values.get(one.signal) !== 0).map((one) => one.body)));
     }
+    for (const one of this.panels) one.view.at(picture.t_ns);
     if (!picture.isPast) this.trends.at(picture.t_ns);
     this.timeline.at(picture);
   }
@@ -195,16 +219,35 @@ export class Page {
         }
         return this.timeline.reach(message.past_ns, message.shown_ns);
       case "event":
-        this.alarms.unshift(`${seconds(message.t_ns)} ${message.text}`);
-        this.alarms.length = Math.min(this.alarms.length, ALARMS);
+        this.ring(message.t_ns, message.kind, message.text);
         return this.trends.mark({ t_ns: message.t_ns, text: message.text });
       case "verdict":
         return this.judge(message.name, message.verdict, message.robustness);
       case "looks":
-        return this.machine.look(this.looks(message.active));
+        return this.machine.look(message.active);
+      case "states":
+        return this.drawings.hear(message.drawing, message.instance, message.values);
+      case "view":
+        return this.see(message.view);
       case "error":
         return this.notice(message.message);
     }
+  }
+
+  /** Something has come, or is gone. */
+  private ring(t_ns: number, kind: string, text: string): void {
+    if (kind === "gone") {
+      const gone = this.alarms.map((one) => (one.text.endsWith(` ${text}`) ? { ...one, isGone: true } : one));
+      this.alarms = gone.filter((one) => !one.isGone || !one.isSeen);
+    } else {
+      this.alarms = [{ text: `${seconds(t_ns)} ${text}`, isGone: kind !== "alarm", isSeen: false }, ...this.alarms].slice(0, ALARMS);
+    }
+    for (const one of this.panels) one.view.alarms();
+  }
+
+  private acknowledge(): void {
+    this.alarms = this.alarms.filter((one) => !one.isGone).map((one) => ({ ...one, isSeen: true }));
+    for (const one of this.panels) one.view.alarms();
   }
 
   private judge(name: string, verdict: string, robustness: number | null): void {
@@ -214,13 +257,12 @@ export class Page {
     cell.className = `value verdict-${verdict}`;
   }
 
-  private looks(active: readonly number[]): Map<number, { colour: string | null; hidden: boolean }> {
-    const found = active.flatMap((index) => {
-      const look = this.session.looks[index];
-      const body = this.session.bodies.findIndex((one) => one.name === look?.body);
-      return look === undefined || body < 0 ? [] : [[body, look] as const];
-    });
-    return new Map(found);
+  /** Sees the machine from a view of the scenario. */
+  private see(name: string): void {
+    const view = this.session.views.find((one) => one.name === name);
+    if (view === undefined) return;
+    this.seen = name;
+    this.machine.see(view);
   }
 
   private tell(state: LinkState): void {
@@ -228,7 +270,10 @@ export class Page {
     link.textContent = { connecting: "connecting…", connected: "connected", lost: "connection lost" }[state];
     link.className = state;
     if (state === "lost") this.notice("The connection to the session is lost. The page shows the last picture and connects again by itself.");
-    if (state === "connected") frame("notice").hidden = true;
+    if (state === "connected") {
+      frame("notice").hidden = true;
+      this.drawings.again();
+    }
   }
 
   private notice(text: string): void {
@@ -248,13 +293,13 @@ export class Page {
       position_m: (name: string) => this.machine.position_m(this.session.bodies.findIndex((one) => one.name === name)),
       value: (name: string) => this.values.get(this.session.signals.findIndex((one) => one.name === name)) ?? null,
       drawn: () => this.machine.drawn,
+      drawn_m: (name: string) => this.machine.drawn_m(this.session.bodies.findIndex((one) => one.name === name)),
+      style: (name: string) => {
+        const style = this.machine.style(this.session.bodies.findIndex((one) => one.name === name));
+        return style === null ? null : { colour: style.colour?.getHexString() ?? null, isHidden: style.isHidden, transparent: style.transparent, grown: style.grown };
+      },
     };
     Object.defineProperty(window, "onescan", { value: Object.freeze(read) });
   }
 }
 
-function address(): string {
-  const url = new URL("api/live", window.location.href);
-  url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
-  return url.href;
-}

@@ -3,6 +3,14 @@
 import { button, make } from "./dom";
 import { shown } from "./format";
 import type { Panel, PanelElement, Seat, Session } from "./protocol";
+import { Sparkline } from "./sparkline";
+
+/** Something that has been told: it is listed until it is gone and has been acknowledged. */
+export interface Alarm {
+  readonly text: string;
+  readonly isGone: boolean;
+  readonly isSeen: boolean;
+}
 
 export interface Desk {
   /** Writes a value of a signal, as an operator's input at the next step boundary. */
@@ -10,9 +18,14 @@ export interface Desk {
   readonly take: (panel: string, take: boolean) => void;
   /** Lets a component fail, or repairs it. */
   readonly fail: (component: string, failure: string, active: boolean) => void;
-  /** The events that wait for an acknowledgement, newest first. */
-  readonly alarms: () => readonly string[];
+  /** What has been told, newest first. */
+  readonly alarms: () => readonly Alarm[];
+  /** All of it has been seen. */
+  readonly acknowledge: () => void;
 }
+
+/** How long an acknowledgement is pressed. */
+const PRESSED_MS = 500;
 
 /** Shows the value of a signal that has changed. */
 type Show = (value: number) => void;
@@ -22,6 +35,8 @@ export class PanelView {
   private readonly shows = new Map<number, Show[]>();
   private readonly failures = new Map<string, Show[]>();
   private readonly inputs: (HTMLButtonElement | HTMLInputElement | HTMLSelectElement)[] = [];
+  private readonly lines: Sparkline[] = [];
+  private readonly lists: (() => void)[] = [];
   private readonly seat_text = make("span", { class: "seat-text", role: "status" });
   private readonly seat_button: HTMLButtonElement;
   private seat: Seat = "free";
@@ -51,6 +66,16 @@ export class PanelView {
   /** The failures that are at work now, as `component.mode`. */
   show_failed(failed: ReadonlySet<string>): void {
     for (const [name, shows] of this.failures) for (const one of shows) one(failed.has(name) ? 1 : 0);
+  }
+
+  /** Shows the alarms that there are now. */
+  alarms(): void {
+    for (const list of this.lists) list();
+  }
+
+  /** The time of a picture whose values have been shown. */
+  at(t_ns: number): void {
+    for (const line of this.lines) line.at(t_ns / 1e9);
   }
 
   /** Who sits here: inputs work for the one who does. */
@@ -90,8 +115,9 @@ export class PanelView {
       case "lamp":
         return this.fill_lamp(cell, element);
       case "number":
-      case "trend":
         return this.fill_number(cell, element);
+      case "trend":
+        return this.fill_trend(cell, element);
       case "bar":
         return this.fill_bar(cell, element);
       case "alarms":
@@ -209,6 +235,18 @@ export class PanelView {
     cell.append(make("span", { class: "caption" }, element.label), output);
   }
 
+  private fill_trend(cell: HTMLElement, element: PanelElement): void {
+    const output = make("output", {}, "–");
+    const hasRange = element.min !== 0 || element.max !== 1;
+    const line = new Sparkline(element.label, hasRange ? element.min : null, hasRange ? element.max : null);
+    this.bound(element.signal, (value) => {
+      line.value(value);
+      output.textContent = this.text(element.signal, value);
+    });
+    this.lines.push(line);
+    cell.append(make("span", { class: "caption" }, element.label, " ", output), line.root);
+  }
+
   private fill_bar(cell: HTMLElement, element: PanelElement): void {
     const bar = make("meter", { min: String(element.min), max: String(element.max), "aria-label": element.label });
     const output = make("output", {}, "–");
@@ -220,11 +258,22 @@ export class PanelView {
   }
 
   private fill_alarms(cell: HTMLElement, element: PanelElement): void {
-    const list = make("ul", { "aria-label": element.label, "aria-live": "polite" });
-    const signal = this.bound(element.signal, () => list.replaceChildren(...this.desk.alarms().map((one) => make("li", {}, one))));
+    const list = make("ul", { "aria-label": element.label === "" ? "Alarms" : element.label, "aria-live": "polite" });
+    this.lists.push(() => {
+      list.replaceChildren(...this.desk.alarms().map((one) => {
+        const state = one.isGone ? "gone" : "on";
+        return make("li", { class: `${state} ${one.isSeen ? "seen" : "new"}` }, one.text, make("span", {}, one.isSeen ? state : `${state}, new`));
+      }));
+    });
     const key = make("button", { type: "button" }, "Acknowledge");
-    key.addEventListener("click", () => this.write(signal, 1));
-    this.inputs.push(key);
+    const signal = this.bound(element.signal, () => {});
+    key.addEventListener("click", () => {
+      this.desk.acknowledge();
+      this.write(signal, 1);
+      if (signal !== null) window.setTimeout(() => this.write(signal, 0), PRESSED_MS);
+    });
+    // What only this page remembers needs no seat.
+    if (signal !== null) this.inputs.push(key);
     cell.append(make("span", { class: "caption" }, element.label), list, key);
   }
 

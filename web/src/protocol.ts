@@ -27,6 +27,7 @@ export interface Signal {
 export type Shape =
   | { readonly kind: "box"; readonly size_m: Vec3 }
   | { readonly kind: "cylinder" | "capsule"; readonly radius_m: number; readonly length_m: number }
+  | { readonly kind: "round"; readonly radius_m: number; readonly top_radius_m: number; readonly length_m: number; readonly isOpen: boolean }
   | { readonly kind: "sphere"; readonly radius_m: number }
   | { readonly kind: "mesh"; readonly positions_m: readonly number[]; readonly indices: readonly number[] }
   | { readonly kind: "none" };
@@ -39,6 +40,10 @@ export interface Body {
   readonly position_m: Vec3;
   readonly rotation: Quaternion;
   readonly visible: boolean;
+  /** The body in whose frame it is; places are in the world's without one. */
+  readonly on: number | null;
+  /** How much one sees through it, 0 to 1. */
+  readonly transparent: number;
 }
 
 export interface Parameter {
@@ -64,10 +69,23 @@ export interface View {
   readonly target_m: Vec3;
 }
 
+/** How bodies look while a condition holds, always without one, or by the value of the signal that it follows. */
 export interface Look {
-  readonly body: string;
+  readonly bodies: readonly number[];
+  readonly when: string | null;
   readonly colour: string | null;
   readonly hidden: boolean;
+  readonly transparent: number | null;
+  readonly scale: number | null;
+  readonly follows: number | null;
+  readonly over: readonly [number, number] | null;
+  readonly takes_s: number | null;
+  readonly move_m: Vec3 | null;
+  readonly turn_deg: Vec3 | null;
+  readonly turn_about_m: Vec3 | null;
+  readonly grow: "x" | "y" | "z" | null;
+  readonly colours: readonly [string, string] | null;
+  readonly run_m_s: Vec3 | null;
 }
 
 export const ELEMENT_KINDS = [
@@ -126,6 +144,51 @@ export interface Lesson {
   readonly starts: readonly string[];
 }
 
+export interface DrawingPin {
+  readonly name: string;
+  readonly isOutput: boolean;
+  readonly marks: readonly string[];
+  /** The path of the variable that it gives, within the unit. */
+  readonly state: string | null;
+  readonly at: readonly [number, number];
+}
+
+export interface DrawingElement {
+  readonly id: string;
+  readonly kind: string;
+  readonly text: string;
+  readonly instance: string | null;
+  /** The path of the variable that tells its state, within the unit. */
+  readonly state: string | null;
+  readonly marks: readonly string[];
+  readonly at: readonly [number, number];
+  readonly size: readonly [number, number];
+  readonly pins: readonly DrawingPin[];
+  readonly line: number;
+}
+
+/** From an output to an input, each an element and a pin. */
+export interface DrawingWire {
+  readonly from: readonly [number, number];
+  readonly to: readonly [number, number];
+  readonly points: readonly (readonly [number, number])[];
+  readonly line: number;
+}
+
+/** A body that is drawn, as it is laid out in its file. */
+export interface Drawing {
+  readonly path: string;
+  readonly unit: string;
+  readonly part: string | null;
+  readonly language: "ladder" | "blocks" | "chart";
+  readonly elements: readonly DrawingElement[];
+  readonly wires: readonly DrawingWire[];
+  /** What there is of its unit. */
+  readonly instances: readonly { readonly client: string; readonly path: string }[];
+  /** The paths of all states, in the order of their values. */
+  readonly states: readonly string[];
+}
+
 /** The parts of a session that do not change while it runs. */
 export interface Session {
   readonly title: string;
@@ -142,6 +205,7 @@ export interface Session {
   readonly panels: readonly Panel[];
   readonly expectations: readonly { readonly name: string; readonly text: string }[];
   readonly sources: readonly Source[];
+  readonly drawings: readonly Drawing[];
 }
 
 /** A value of JSON with the place that it was found at. */
@@ -218,6 +282,11 @@ function shape(field: Field): Shape {
     case "cylinder":
     case "capsule":
       return { kind, radius_m: field.at("radius_m").number(), length_m: field.at("length_m").number() };
+    case "round":
+      return {
+        kind, radius_m: field.at("radius_m").number(), top_radius_m: field.at("top_radius_m").number(),
+        length_m: field.at("length_m").number(), isOpen: field.at("open").or(false, flag),
+      };
     case "sphere":
       return { kind, radius_m: field.at("radius_m").number() };
     case "mesh":
@@ -262,6 +331,36 @@ function body(field: Field): Body {
     position_m: vec3(field.at("position_m")),
     rotation: field.at("rotation").or<Quaternion>([0, 0, 0, 1], (item) => item.numbers(4) as unknown as Quaternion),
     visible: field.at("visible").or(true, flag),
+    on: field.at("on").or<number | null>(null, number),
+    transparent: field.at("transparent").or(0, number),
+  };
+}
+
+function axis(field: Field): "x" | "y" | "z" {
+  const one = field.text();
+  return one === "x" || one === "y" || one === "z" ? one : field.fail(`is \`${one}\`: x, y or z`);
+}
+
+function look(field: Field): Look {
+  const maybe = <T>(key: string, read: (item: Field) => T): T | null => field.at(key).or<T | null>(null, read);
+  const colours = maybe("colours", (all) => all.list(text));
+  const [begin, end] = colours ?? [];
+  return {
+    bodies: field.at("bodies").list(number),
+    when: maybe("when", text),
+    colour: maybe("colour", text),
+    hidden: field.at("hidden").or(false, flag),
+    transparent: maybe("transparent", number),
+    scale: maybe("scale", number),
+    follows: maybe("follows", number),
+    over: maybe("over", (item) => item.numbers(2) as unknown as [number, number]),
+    takes_s: maybe("takes_s", number),
+    move_m: maybe("move_m", vec3),
+    turn_deg: maybe("turn_deg", vec3),
+    turn_about_m: maybe("turn_about_m", vec3),
+    grow: maybe("grow", axis),
+    colours: begin === undefined || end === undefined ? null : [begin, end],
+    run_m_s: maybe("run_m_s", vec3),
   };
 }
 
@@ -329,6 +428,39 @@ function panel(field: Field): Panel {
   };
 }
 
+const texts = (field: Field): string[] => field.list(text);
+const pair = (field: Field): [number, number] => field.numbers(2) as unknown as [number, number];
+
+function drawing(field: Field): Drawing {
+  const language = field.at("language").text();
+  const elements = field.at("elements").list<DrawingElement>((item) => ({
+    id: item.at("id").text(), kind: item.at("kind").text(), text: item.at("text").or("", text),
+    instance: nullableText(item.at("instance")), state: nullableText(item.at("state")),
+    marks: item.at("marks").or<string[]>([], texts), at: pair(item.at("at")), size: pair(item.at("size")),
+    pins: item.at("pins").list((pin) => ({
+      name: pin.at("name").or("", text), isOutput: pin.at("output").or(false, flag), marks: pin.at("marks").or<string[]>([], texts),
+      state: nullableText(pin.at("state")), at: pair(pin.at("at")),
+    })),
+    line: item.at("line").number(),
+  }));
+  const end = (item: Field): [number, number] => {
+    const [element, pin] = pair(item);
+    return elements[element]?.pins[pin] === undefined ? item.fail("names a pin that is not there") : [element, pin];
+  };
+  return {
+    path: field.at("path").text(),
+    unit: field.at("unit").text(),
+    part: nullableText(field.at("part")),
+    language: language === "ladder" || language === "blocks" || language === "chart" ? language : field.at("language").fail(`is \`${language}\``),
+    elements,
+    wires: field.at("wires").list((item) => ({
+      from: end(item.at("from")), to: end(item.at("to")), points: item.at("points").list(pair), line: item.at("line").number(),
+    })),
+    instances: field.at("instances").list((item) => ({ client: item.at("client").text(), path: item.at("path").text() })),
+    states: field.at("states").list(text),
+  };
+}
+
 /** Reads the structure of a session; throws [`ProtocolError`] with the place that is wrong. */
 export function decodeSession(value: unknown): Session {
   const root = new Field(value, "");
@@ -350,11 +482,7 @@ export function decodeSession(value: unknown): Session {
       position_m: vec3(item.at("position_m")),
       target_m: vec3(item.at("target_m")),
     })),
-    looks: list("looks", (item) => ({
-      body: item.at("body").text(),
-      colour: nullableText(item.at("colour")),
-      hidden: item.at("hidden").or(false, flag),
-    })),
+    looks: list("looks", look),
     panels: list("panels", panel),
     expectations: list("expectations", (item) => ({ name: item.at("name").text(), text: item.at("text").or("", text) })),
     sources: list("sources", (item) => ({
@@ -365,6 +493,7 @@ export function decodeSession(value: unknown): Session {
         variables: line.at("variables").list(text),
       }))),
     })),
+    drawings: list("drawings", drawing),
   };
 }
 
@@ -392,6 +521,8 @@ export type Message =
       readonly t_ns: number;
     }
   | { readonly type: "looks"; readonly active: readonly number[] }
+  | { readonly type: "view"; readonly view: string }
+  | { readonly type: "states"; readonly drawing: number; readonly instance: number; readonly values: readonly (number | null)[] }
   | { readonly type: "error"; readonly message: string };
 
 function seat(field: Field): Seat {
@@ -433,6 +564,13 @@ export function decodeMessage(raw: string): Message {
       };
     case "looks":
       return { type, active: root.at("active").list(number) };
+    case "view":
+      return { type, view: root.at("view").text() };
+    case "states":
+      return {
+        type, drawing: root.at("drawing").number(), instance: root.at("instance").number(),
+        values: root.at("values").list((item) => item.or<number | null>(null, number)),
+      };
     case "error":
       return { type, message: root.at("message").text() };
     default:
@@ -510,5 +648,7 @@ export type Ask =
   | { readonly type: "train"; readonly turn: "back"; readonly t_ns: number }
   | { readonly type: "train"; readonly turn: "jump"; readonly start: string }
   | { readonly type: "show"; readonly t_ns: number }
+  | { readonly type: "view"; readonly view: string }
+  | { readonly type: "draw"; readonly drawing: number | null; readonly instance: number }
   | { readonly type: "live" }
   | { readonly type: "fork"; readonly t_ns: number };

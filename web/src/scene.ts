@@ -1,27 +1,34 @@
 // The machine in 3D: bodies where the session has them, at the step that is shown.
 
 import {
-  AmbientLight, Box3, BoxGeometry, BufferGeometry, CapsuleGeometry, Color, CylinderGeometry, DirectionalLight,
-  Float32BufferAttribute, GridHelper, HemisphereLight, Mesh, MeshLambertMaterial, PerspectiveCamera, Plane, Raycaster,
-  Scene, SphereGeometry, Vector2, Vector3, WebGLRenderer,
+  AmbientLight, Box3, BufferGeometry, Color, DirectionalLight, GridHelper, HemisphereLight, PerspectiveCamera, Plane,
+  Raycaster, Scene, Vector2, Vector3, WebGLRenderer, type Object3D,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import { Crowd, Single, type Drawn, type Glow, type Member } from "./drawn";
 import { Tracks } from "./interpolation";
-import type { Body, Pose, Session, Shape, View } from "./protocol";
+import { Looks, type Style } from "./looks";
+import type { Body, Pose, Session, View } from "./protocol";
+import { Sharpness } from "./sharpness";
+import { geometry_of, is_open, key_of } from "./shapes";
 
 /** Colours of the parts that have none of their own, by what they are. */
 const BY_KIND: Readonly<Record<string, string>> = { fixed: "#7d868d", kinematic: "#8b98a3", dynamic: "#b7bec4" };
 const SEES = new Color("#e0a000");
 const CHOSEN = new Color("#1f6fbf");
-const DARK = new Color("#000000");
 
 /** Machines with more bodies are drawn without smooth edges. */
 const SMOOTH_BODIES = 100;
+/** So many bodies of one shape are drawn together. */
+const CROWD_BODIES = 8;
 
 interface Part {
   readonly body: Body;
-  readonly mesh: Mesh<BufferGeometry, MeshLambertMaterial>;
+  readonly drawn: Drawn;
   readonly colour: Color;
+  style: Style | null;
+  /** How far its surface has run, m. */
+  ran_m: number;
   isHiddenByHand: boolean;
 }
 
@@ -36,7 +43,11 @@ export class MachineView {
   private followed: number | null = null;
   private chosen: number | null = null;
   private lit: ReadonlySet<number> = new Set();
-  private looks: ReadonlyMap<number, { colour: Color | null; isHidden: boolean }> = new Map();
+  private readonly sharpness = new Sharpness();
+  private readonly looks: Looks;
+  private readonly bodies: readonly Body[];
+  private readonly crowds: Crowd[] = [];
+  private t_ns: number | null = null;
   private isStale = true;
   private moving_until_ms = 0;
   /** Pictures drawn since the page was opened. */
@@ -47,9 +58,10 @@ export class MachineView {
     private readonly place: HTMLElement,
     session: Session,
     choose: (body: number | null) => void,
+    isForPicture = false,
   ) {
     // Smooth edges cost four samples a pixel where there is no graphics card.
-    this.renderer = new WebGLRenderer({ antialias: session.bodies.length <= SMOOTH_BODIES, powerPreference: "low-power" });
+    this.renderer = new WebGLRenderer({ antialias: isForPicture || session.bodies.length <= SMOOTH_BODIES, powerPreference: "low-power" });
     this.renderer.domElement.setAttribute("aria-label", "Machine in 3D; drag to turn, wheel to zoom, arrow keys to pan");
     this.renderer.domElement.setAttribute("role", "img");
     this.renderer.domElement.tabIndex = 0;
@@ -59,14 +71,17 @@ export class MachineView {
     this.controls.listenToKeyEvents(this.renderer.domElement);
     this.controls.addEventListener("change", () => (this.isStale = true));
     this.light();
-    const geometries = new Map<string, BufferGeometry>();
-    this.parts = session.bodies.map((body) => this.part(body, geometries));
+    this.looks = new Looks(session);
+    this.bodies = session.bodies;
+    this.parts = this.parts_of(session.bodies);
+    this.advance(0);
+    this.t_ns = null;
     this.floor();
     this.home();
     this.listen(choose);
     new ResizeObserver(() => this.fit()).observe(place);
     this.fit();
-    this.renderer.setAnimationLoop(() => this.draw());
+    if (!isForPicture) this.renderer.setAnimationLoop(() => this.draw());
   }
 
   /** Takes the poses of a picture that has just arrived. */
@@ -80,6 +95,35 @@ export class MachineView {
   /** Forgets where bodies were: the next picture is of another time. */
   jump(): void {
     this.tracks.clear();
+    this.looks.jump();
+    this.t_ns = null;
+  }
+
+  /** The signals that looks follow. */
+  signals(): readonly number[] {
+    return this.looks.signals();
+  }
+
+  value(signal: number, value: number): void {
+    this.looks.value(signal, value);
+  }
+
+  /** Lets looks go on to the time of a picture. */
+  advance(t_ns: number): void {
+    const step_s = this.t_ns === null ? 0 : Math.max(0, t_ns - this.t_ns) / 1e9;
+    this.t_ns = t_ns;
+    this.looks.advance(t_ns);
+    if (this.looks.are_none) return;
+    for (const body of this.looks.bodies()) {
+      const part = this.parts[body];
+      if (!part) continue;
+      part.style = this.looks.of(body);
+      part.drawn.bend(part.style);
+      const runs = part.style?.runs_m_s ?? null;
+      if (runs !== null) part.drawn.run((part.ran_m += (runs[0] + runs[1] + runs[2]) * step_s));
+      this.paint_one(part, body);
+    }
+    this.isStale = true;
   }
 
   /** The position of a body in the last picture, in metres; nothing while it is away. */
@@ -94,12 +138,20 @@ export class MachineView {
     this.paint();
   }
 
-  /** Colours or hides bodies whose condition holds. */
-  look(looks: ReadonlyMap<number, { colour: string | null; hidden: boolean }>): void {
-    this.looks = new Map([...looks].map(([body, look]) => [
-      body, { colour: look.colour === null ? null : new Color(look.colour), isHidden: look.hidden },
-    ]));
-    this.paint();
+  /** The looks whose condition holds. */
+  look(active: readonly number[]): void {
+    this.looks.hold(active);
+    this.advance(this.t_ns ?? 0);
+  }
+
+  /** How a body is drawn now, for tests. */
+  style(body: number): Style | null {
+    return this.parts[body]?.style ?? null;
+  }
+
+  /** Where a body is drawn in the world, m. */
+  drawn_m(body: number): readonly number[] | null {
+    return this.parts[body]?.drawn.where().toArray() ?? null;
   }
 
   choose(body: number | null): void {
@@ -155,6 +207,20 @@ export class MachineView {
     this.isStale = true;
   }
 
+  /** The machine as it is now, a PNG. */
+  async picture(width: number, height: number): Promise<Blob> {
+    this.renderer.setPixelRatio(1);
+    this.renderer.setSize(width, height);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    this.isStale = true;
+    this.draw();
+    // What is drawn is kept until the task is over.
+    return new Promise((done, failed) => {
+      this.renderer.domElement.toBlob((blob) => (blob === null ? failed(new Error("nothing was drawn")) : done(blob)), "image/png");
+    });
+  }
+
   theme(background: string, line: string): void {
     this.scene.background = new Color(background);
     const grid = this.scene.getObjectByName("grid");
@@ -166,7 +232,7 @@ export class MachineView {
   private reach(): { low: Vector3; high: Vector3 } {
     const boxes = this.parts
       .filter((part) => part !== null)
-      .map((part) => ({ box: new Box3().setFromObject(part.mesh), moves: part.body.kind !== "fixed" }))
+      .map((part) => ({ box: part.drawn.box(), moves: this.moves(part.body) }))
       .filter(({ box }) => !box.isEmpty() && [...box.min.toArray(), ...box.max.toArray()].every(Number.isFinite));
     const room = (of: readonly { box: Box3 }[]): Box3 => of.reduce((all, { box }) => all.union(box), new Box3());
     const moving = room(boxes.filter(({ moves }) => moves));
@@ -176,6 +242,10 @@ export class MachineView {
       : room(boxes.filter(({ box, moves }) => moves || size_m(box) <= size_m(moving)));
     if (machine.isEmpty()) return { low: new Vector3(-1, -1, 0), high: new Vector3(1, 1, 1) };
     return { low: machine.min, high: machine.max };
+  }
+
+  private moves(body: Body): boolean {
+    return body.kind === "figure" ? body.on !== null || this.looks.bends(this.bodies.indexOf(body)) : body.kind !== "fixed";
   }
 
   private light(): void {
@@ -191,7 +261,8 @@ export class MachineView {
   private floor(): void {
     const { low, high } = this.reach();
     const metres = Math.min(200, Math.max(4, Math.ceil(2 * Math.max(high.x - low.x, high.y - low.y))));
-    const grid = new GridHelper(metres, metres * 2, "#888888", "#888888");
+    const cells = metres <= 20 ? metres * 2 : Math.ceil(metres / (metres <= 60 ? 2 : 5));
+    const grid = new GridHelper(metres, cells, "#888888", "#888888");
     grid.name = "grid";
     // The helper's floor is x z; the session's is x y.
     grid.rotation.x = Math.PI / 2;
@@ -204,22 +275,54 @@ export class MachineView {
     this.scene.add(grid);
   }
 
-  private part(body: Body, geometries: Map<string, BufferGeometry>): Part | null {
-    const key = body.shape.kind === "mesh" ? body.name : JSON.stringify(body.shape);
-    const known = geometries.get(key);
-    const geometry = known ?? geometryOf(body.shape);
-    if (geometry === null) return null;
-    if (known === undefined) {
-      geometry.computeBoundingSphere();
-      geometries.set(key, geometry);
+  private parts_of(bodies: readonly Body[]): (Part | null)[] {
+    const geometries = new Map<string, BufferGeometry>();
+    const crowds = new Map<string, Crowd>();
+    const parents = new Set(bodies.flatMap((body) => (body.on === null ? [] : [body.on])));
+    const alone = (body: Body, index: number): boolean =>
+      body.on !== null || body.transparent > 0 || is_open(body.shape) || parents.has(index) || this.looks.needs_own(index);
+    const counts = new Map<string, number>();
+    bodies.forEach((body, index) => {
+      const key = key_of(body.name, body.shape);
+      if (!alone(body, index)) counts.set(key, (counts.get(key) ?? 0) + 1);
+    });
+    const parts: (Part | null)[] = [];
+    bodies.forEach((body, index) => {
+      const key = key_of(body.name, body.shape);
+      const geometry = geometries.get(key) ?? geometry_of(body.shape);
+      if (geometry === null) return void parts.push(null);
+      if (!geometries.has(key)) {
+        geometry.computeBoundingSphere();
+        geometry.computeBoundingBox();
+        geometries.set(key, geometry);
+      }
+      const many = alone(body, index) ? 0 : (counts.get(key) ?? 0);
+      const drawn = many >= CROWD_BODIES
+        ? this.member(body, key, geometry, many, crowds)
+        : new Single(body, geometry, this.frame_of(body, parts), parents.has(index) || this.looks.bends(index));
+      const colour = new Color(body.colour ?? BY_KIND[body.kind] ?? "#a0a6ab");
+      const part = { body, drawn, colour, style: null, ran_m: 0, isHiddenByHand: false };
+      parts.push(part);
+      drawn.paint(colour, null, body.transparent);
+      drawn.show(body.visible);
+    });
+    return parts;
+  }
+
+  private member(body: Body, key: string, geometry: BufferGeometry, most: number, crowds: Map<string, Crowd>): Member {
+    let crowd = crowds.get(key);
+    if (crowd === undefined) {
+      crowd = new Crowd(geometry, most, this.scene);
+      crowds.set(key, crowd);
+      this.crowds.push(crowd);
     }
-    const colour = new Color(body.colour ?? BY_KIND[body.kind] ?? "#a0a6ab");
-    const mesh = new Mesh(geometry, new MeshLambertMaterial({ color: colour }));
-    mesh.position.set(...body.position_m);
-    mesh.quaternion.set(...body.rotation);
-    mesh.visible = body.visible;
-    this.scene.add(mesh);
-    return { body, mesh, colour, isHiddenByHand: false };
+    return crowd.add(body);
+  }
+
+  /** The frame that a body is in: that of a body before it, or the world's. */
+  private frame_of(body: Body, parts: readonly (Part | null)[]): Object3D {
+    const drawn = body.on === null ? null : parts[body.on]?.drawn;
+    return drawn instanceof Single ? drawn.node : this.scene;
   }
 
   private listen(choose: (body: number | null) => void): void {
@@ -237,17 +340,16 @@ export class MachineView {
     const at = new Vector2(((event.clientX - box.left) / box.width) * 2 - 1, 1 - ((event.clientY - box.top) / box.height) * 2);
     const ray = new Raycaster();
     ray.setFromCamera(at, this.camera);
-    const shown = this.parts.flatMap((part) => (part?.mesh.visible ? [part.mesh] : []));
-    const hit = ray.intersectObjects(shown, false)[0];
+    const hit = ray.intersectObjects(this.scene.children, true).find((one) => one.object.visible && one.object.name !== "grid");
     if (hit === undefined) return null;
-    const body = this.parts.findIndex((part) => part?.mesh === hit.object);
+    const body = this.parts.findIndex((part) => part?.drawn.is(hit.object, hit.instanceId ?? -1) ?? false);
     return body < 0 ? null : body;
   }
 
   private fit(): void {
     const { clientWidth: width, clientHeight: height } = this.place;
     if (width === 0 || height === 0) return;
-    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2) * this.sharpness.share);
     this.renderer.setSize(width, height);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
@@ -256,19 +358,22 @@ export class MachineView {
 
   private paint(): void {
     this.parts.forEach((part, body) => {
-      if (part === null) return;
-      const look = this.looks.get(body);
-      part.mesh.material.color.copy(look?.colour ?? part.colour);
-      part.mesh.material.emissive.copy(body === this.chosen ? CHOSEN : this.lit.has(body) ? SEES : DARK);
-      part.mesh.material.emissiveIntensity = body === this.chosen ? 0.55 : 0.8;
-      part.mesh.visible = this.isVisible(part, body);
+      if (part !== null) this.paint_one(part, body);
     });
     this.isStale = true;
   }
 
+  private paint_one(part: Part, body: number): void {
+    const glow: Glow | null = body === this.chosen
+      ? { colour: CHOSEN, strength: 0.55 }
+      : this.lit.has(body) ? { colour: SEES, strength: 0.8 } : null;
+    part.drawn.paint(part.style?.colour ?? part.colour, glow, part.style?.transparent ?? part.body.transparent);
+    part.drawn.show(this.isVisible(part, body));
+  }
+
   private isVisible(part: Part, body: number): boolean {
     const isAway = this.tracks.exact(body) === null;
-    return part.body.visible && !part.isHiddenByHand && !isAway && !(this.looks.get(body)?.isHidden ?? false);
+    return part.body.visible && !part.isHiddenByHand && !isAway && !(part.style?.isHidden ?? false);
   }
 
   private draw(): void {
@@ -278,46 +383,23 @@ export class MachineView {
       const part = this.parts[body];
       const place = this.tracks.drawn(body, now_ms);
       if (!part || place === undefined) continue;
-      part.mesh.visible = this.isVisible(part, body);
-      if (place === null) continue;
-      part.mesh.position.set(...place.position_m);
-      part.mesh.quaternion.set(...place.rotation);
+      part.drawn.show(this.isVisible(part, body));
+      if (place !== null) part.drawn.place(place.position_m, place.rotation);
     }
+    for (const crowd of this.crowds) crowd.settle();
     this.stay_with_followed();
     this.isStale = false;
     this.renderer.render(this.scene, this.camera);
     this.drawn += 1;
+    if (now_ms <= this.moving_until_ms && this.sharpness.drawn(now_ms)) this.fit();
   }
 
   private stay_with_followed(): void {
     const part = this.followed === null ? null : this.parts[this.followed];
     if (!part) return;
-    const way = part.mesh.position.clone().sub(this.controls.target);
+    const way = part.drawn.where().sub(this.controls.target);
     this.controls.target.add(way);
     this.camera.position.add(way);
     this.camera.lookAt(this.controls.target);
-  }
-}
-
-/** A shape in metres, cylinders and capsules along z. */
-function geometryOf(shape: Shape): BufferGeometry | null {
-  switch (shape.kind) {
-    case "box":
-      return new BoxGeometry(...shape.size_m);
-    case "cylinder":
-      return new CylinderGeometry(shape.radius_m, shape.radius_m, shape.length_m, 40).rotateX(Math.PI / 2);
-    case "capsule":
-      return new CapsuleGeometry(shape.radius_m, shape.length_m, 8, 24).rotateX(Math.PI / 2);
-    case "sphere":
-      return new SphereGeometry(shape.radius_m, 28, 18);
-    case "mesh": {
-      const geometry = new BufferGeometry();
-      geometry.setAttribute("position", new Float32BufferAttribute(shape.positions_m, 3));
-      geometry.setIndex([...shape.indices]);
-      geometry.computeVertexNormals();
-      return geometry;
-    }
-    case "none":
-      return null;
   }
 }
