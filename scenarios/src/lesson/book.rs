@@ -309,6 +309,7 @@ fn empty(name: &Spanned<String>) -> CaseFile {
         forces: Vec::new(),
         disturbances: Vec::new(),
         variables: Vec::new(),
+        tasks: Vec::new(),
         waive: Vec::new(),
         expect: Vec::new(),
     }
