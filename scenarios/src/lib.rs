@@ -6,6 +6,7 @@
 //! |---|---|
 //! | `form` | the forms of values in the files, for schemas |
 //! | [`file`] | `scenario.toml` as it is written |
+//! | [`look_file`] | its `[[view]]`, `[[figure]]` and `[[look]]` as they are written |
 //! | [`report_file`] | its `[report]` as it is written |
 //! | [`timing_file`] | its `[timing]` as it is written |
 //! | [`value_names`] | names of a signal's values |
@@ -23,6 +24,7 @@
 //! | [`timing`] | its `[timing]`, bound to its signals |
 //! | [`gateway`] | its real PLCs |
 //! | [`watch`] | variables of its soft PLCs that a run looks at |
+//! | [`figure`], [`look`] | what is drawn beside the bodies of plants, and what they look like while something holds |
 //! | `refusal` | a client that its session does not let in |
 //! | [`expect`] | what a run must show: signal temporal logic |
 //! | [`report`] | what a run produced, and what held it up |
@@ -40,10 +42,13 @@ pub mod compose;
 pub mod error;
 pub mod expect;
 pub mod expectations;
+pub mod figure;
 pub mod file;
 mod form;
 pub mod gateway;
 pub mod load;
+pub mod look;
+pub mod look_file;
 pub mod mistake;
 mod mistaken;
 pub mod mode;

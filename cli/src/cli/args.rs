@@ -19,10 +19,12 @@ use super::plc::{BrowseArgs, MapArgs, PlcArgs};
 use super::recording::{BisectArgs, DiffArgs, ExportArgs, ReportArgs};
 use super::run::RunArgs;
 use super::session::{ControlArgs, JoinArgs};
+use super::shot::ShotArgs;
 use super::source::{CheckArgs, ExplainArgs, InstrumentArgs};
 use super::test::{ReviewArgs, TestArgs, WorkerArgs};
 use super::{
-    access, campaign, compare, explore, minimise, model, mutate, plant, plc, recording, run, session, source, test,
+    access, campaign, compare, explore, minimise, model, mutate, plant, plc, recording, run, session, shot, source,
+    test,
 };
 use crate::error::ExitCode;
 
@@ -85,6 +87,8 @@ pub enum Command {
     Minimise(MinimiseArgs),
     /// Make small mistakes in the PLC's program, one at a time, and show which ones no expectation notices
     Mutate(MutateArgs),
+    /// Draw the machine at one virtual time as a picture, as its page shows it; needs a Chromium
+    Shot(ShotArgs),
     /// One run, for `campaign`
     #[command(hide = true)]
     CampaignWorker(CampaignWorkerArgs),
@@ -152,6 +156,7 @@ pub fn dispatch(command: Command) -> Result<ExitCode, CommandError> {
         Command::Explore(args) => explore::explore(args),
         Command::Mutate(args) => mutate::mutate(args),
         Command::Minimise(args) => minimise::minimise(args),
+        Command::Shot(args) => shot::shot(args),
         Command::Campaign(args) => campaign::campaign(args),
         Command::CampaignWorker(args) => campaign::work(args),
         Command::Review(args) => test::review(args),

@@ -24,6 +24,7 @@ use crate::report::ReportError;
 use crate::review::ReviewError;
 use crate::run::RunError;
 use crate::session::SessionError;
+use crate::shot::ShotError;
 use crate::wiring::WiringError;
 
 sum_of_errors! {
@@ -77,6 +78,9 @@ sum_of_errors! {
         /// `minimise` came to nothing.
         #[diagnostic(transparent)]
         Minimise(MinimiseError),
+        /// `shot` came to nothing.
+        #[diagnostic(transparent)]
+        Shot(ShotError),
         /// `mutate` came to nothing.
         #[diagnostic(transparent)]
         Mutate(MutateError),

@@ -7,6 +7,7 @@
 //! | [`campaign`] | faults by campaigns |
 //! | [`explore`] | timings that links may have |
 //! | [`mutate`] | small mistakes in programs |
+//! | [`shot`] | the machine at one time as a picture |
 //! | [`minimise`] | the least of a case that still fails |
 //! | [`test`] | all scenarios, and test programs |
 //! | [`session`] | a session that another process serves |
@@ -35,6 +36,7 @@ pub mod plc;
 pub mod recording;
 pub mod run;
 pub mod session;
+pub mod shot;
 pub mod source;
 pub mod test;
 pub mod value;

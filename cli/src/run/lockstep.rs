@@ -127,7 +127,8 @@ fn serve_page(
         Pace::Max => "max".to_owned(),
         Pace::Factor(factor) => factor.to_string(),
     };
-    let source = web::Source { scenario, published: lockstep.published(), mailbox: interrupt.mailbox(), pace };
+    let source =
+        web::Source { scenario, published: lockstep.published(), mailbox: interrupt.mailbox(), pace, pictures: None };
     let page = Page::serve(address, source)?;
     match Page::is_absent() {
         None => tracing::info!(target: NOTICE, "the session is at {}", page.url()),
