@@ -20,6 +20,7 @@
 //! | [`why`] | the way from a signal back to the statement in which two runs part |
 //! | [`repository`] | what a scenario was at other commits |
 //! | [`snapshot`] | trajectories as small text, compared |
+//! | [`shot`] | the machine at one time, as a picture |
 //! | [`run`] | runs of a scenario: in lockstep or not, recorded, reported |
 //! | [`freewheel`] | running without lockstep, to show what it is good for |
 //! | [`access`] | who may take part in sessions over a network |
@@ -72,6 +73,7 @@ pub mod repository;
 pub mod review;
 pub mod run;
 pub mod session;
+pub mod shot;
 pub mod snapshot;
 pub mod train;
 mod web;

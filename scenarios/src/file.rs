@@ -13,6 +13,7 @@ use toml::Spanned;
 use crate::expect::KnownSignal;
 use crate::falsify_file::FalsifyFile;
 use crate::form::{DialectName, Mebibytes, Name, Scalar, Time, Type, Values, from_optional_text, from_text};
+use crate::look_file::{FigureFile, LookFile, ViewFile};
 use crate::map_file::MapFile;
 use crate::panel_file::PanelFile;
 use crate::report_file::ReportFile;
@@ -85,6 +86,16 @@ pub struct ScenarioFile {
     /// What people see and operate on the page.
     #[serde(default)]
     pub panel: Vec<PanelFile>,
+    /// From where the machine is seen on the page.
+    #[serde(default)]
+    pub view: Vec<ViewFile>,
+    /// What is drawn on the page beside the bodies of plants.
+    #[serde(default)]
+    pub figure: Vec<FigureFile>,
+    /// What bodies look like on the page while something holds, or by the value of a signal.
+    #[serde(default)]
+    #[schemars(with = "Vec<LookFile>")]
+    pub look: Vec<Spanned<LookFile>>,
 }
 
 /// `"parallel"` or `{ sequential = ["plc", "plant"] }`.

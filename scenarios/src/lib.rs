@@ -6,6 +6,7 @@
 //! |---|---|
 //! | `form` | the forms of values in the files, for schemas |
 //! | [`file`] | `scenario.toml` as it is written |
+//! | [`look_file`] | its `[[view]]`, `[[figure]]` and `[[look]]` as they are written |
 //! | [`report_file`] | its `[report]` as it is written |
 //! | [`map_file`], `map` | its `[[map]]` as it is written, and what must hold of them |
 //! | [`timing_file`] | its `[timing]` as it is written |
@@ -27,6 +28,7 @@
 //! | [`falsify`] | its `[falsify]`, bound to its signals and clients |
 //! | [`gateway`] | its real PLCs |
 //! | [`watch`] | variables of its soft PLCs that a run looks at |
+//! | [`figure`], [`look`] | what is drawn beside the bodies of plants, and what they look like while something holds |
 //! | `refusal` | a client that its session does not let in |
 //! | [`expect`] | what a run must show: signal temporal logic |
 //! | [`report`] | what a run produced, and what held it up |
@@ -46,11 +48,14 @@ pub mod expect;
 pub mod expectations;
 pub mod falsify;
 pub mod falsify_file;
+pub mod figure;
 pub mod file;
 mod form;
 pub mod gateway;
 pub mod lesson;
 pub mod load;
+pub mod look;
+pub mod look_file;
 mod map;
 pub mod map_file;
 pub mod mistake;

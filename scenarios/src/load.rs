@@ -23,6 +23,7 @@ use super::error::{ScenarioError, Wrong, wrong};
 use super::expectations::Expectations;
 use super::falsify::{self, Varied, VariedParameter};
 use super::file::{ClientFile, CouplingFile, ScenarioFile, VERSION};
+use super::look::Looks;
 use super::map;
 use super::mistake::Mistake;
 use super::report::Measures;
@@ -59,6 +60,7 @@ pub struct Scenario {
     plan: SessionPlan,
     expectations: Expectations,
     measures: Option<Measures>,
+    looks: Looks,
     /// The case that is tried; nothing for the scenario as it is.
     applied: Option<Arc<Applied>>,
     /// Where soft PLCs give what they executed, if that is asked for.
@@ -136,6 +138,7 @@ impl Scenario {
         let varied = falsify::bind(&file).map_err(placed)?;
         let expectations = Expectations::bind(&file, &text).map_err(placed)?;
         let measures = Measures::bind(&file, &text).map_err(placed)?;
+        let looks = Looks::bind(&file, &text).map_err(placed)?;
         let name = name_of(&path);
         let scenario = Self {
             name,
@@ -146,6 +149,7 @@ impl Scenario {
             plan,
             expectations,
             measures,
+            looks,
             applied: None,
             coverage: None,
             writers: None,
@@ -344,6 +348,16 @@ impl Scenario {
     /// What every run must show.
     pub fn expectations(&self) -> &Expectations {
         &self.expectations
+    }
+
+    /// What bodies look like, and what is drawn beside them.
+    pub fn looks(&self) -> &Looks {
+        &self.looks
+    }
+
+    /// An error at a place of the scenario's file.
+    pub(crate) fn wrong_at(&self, found: Wrong) -> ScenarioError {
+        wrong(&self.path, &self.text, found.message, Some(found.place), found.help)
     }
 
     /// What is counted and timed in every run, if that is asked for.

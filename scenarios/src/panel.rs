@@ -1,5 +1,7 @@
 //! What must hold of a panel before anybody sits at it.
 
+use std::ops::Range;
+
 use onescan_server::signal::{SignalName, did_you_mean};
 use toml::Spanned;
 
@@ -76,13 +78,10 @@ fn check_binding(file: &ScenarioFile, element: &Spanned<ElementFile>) -> Result<
     }
     match (inner.kind, &inner.signal, &inner.signal_y) {
         (ElementKind::Alarms, None, None) => return Ok(()),
-        (ElementKind::Alarms, Some(signal), _) => {
-            return Err(at(signal, "a list of alarms has no signal".to_owned(), None));
-        }
         (kind, _, Some(signal)) if kind != ElementKind::Joystick => {
             return Err(at(signal, "only a joystick has two signals".to_owned(), None));
         }
-        (ElementKind::Alarms, None, Some(_)) | (_, Some(_), _) => {}
+        (_, Some(_), _) => {}
         (_, None, _) => return Err(at(element, "the element needs a `signal`".to_owned(), None)),
     }
     for name in inner.signal.iter().chain(&inner.signal_y) {
@@ -116,7 +115,7 @@ fn check_signal(file: &ScenarioFile, kind: ElementKind, name: &Spanned<SignalNam
         return Err(at(name, format!("`{}` is {}; {wanted}", name.get_ref(), signal.ty), None));
     }
     let writer = file.clients.get(&signal.writer).map(Spanned::get_ref);
-    if kind.writes() && matches!(writer, Some(ClientFile::Plant { .. })) {
+    if (kind.writes() || kind == ElementKind::Alarms) && matches!(writer, Some(ClientFile::Plant { .. })) {
         let message =
             format!("`{}` is written by the plant `{}`, and people cannot write it", name.get_ref(), signal.writer);
         return Err(at(
@@ -138,6 +137,7 @@ fn misfit(kind: ElementKind, signal: &SignalFile) -> Option<&'static str> {
         ElementKind::Button | ElementKind::Switch | ElementKind::Lamp => {
             (!is_bool).then_some("a button, a switch and a lamp need BOOL")
         }
+        ElementKind::Alarms => (!is_bool).then_some("what acknowledges alarms is BOOL"),
         ElementKind::Selector if signal.names.pairs().is_empty() => {
             Some("a selector needs a signal with `names` for its values")
         }
@@ -147,7 +147,7 @@ fn misfit(kind: ElementKind, signal: &SignalFile) -> Option<&'static str> {
         ElementKind::Number | ElementKind::Trend => {
             (!is_number && !is_bool).then_some("it has no value that can be shown as a number")
         }
-        ElementKind::Selector | ElementKind::Alarms => None,
+        ElementKind::Selector => None,
     }
 }
 
@@ -162,16 +162,19 @@ fn check_looks(element: &Spanned<ElementFile>) -> Result<(), Wrong> {
     if inner.latching && inner.kind != ElementKind::Button {
         return Err(at(element, "only a button can be `latching`".to_owned(), Some("a switch always is")));
     }
-    if let Some(colour) = &inner.colour {
-        let is_hex = colour
-            .strip_prefix('#')
-            .is_some_and(|hex| hex.len() == 6 && hex.bytes().all(|digit| digit.is_ascii_hexdigit()));
-        if !is_hex && !COLOURS.contains(&colour.as_str()) {
-            let help = format!("write `#rrggbb` or one of {}", COLOURS.join(", "));
-            return Err(at(element, format!("`{colour}` is no colour"), Some(&help)));
-        }
+    inner.colour.as_ref().map_or(Ok(()), |colour| check_colour(colour, element.span()))
+}
+
+/// A colour that stands at `place`.
+pub(crate) fn check_colour(colour: &str, place: Range<usize>) -> Result<(), Wrong> {
+    let is_hex = colour
+        .strip_prefix('#')
+        .is_some_and(|hex| hex.len() == 6 && hex.bytes().all(|digit| digit.is_ascii_hexdigit()));
+    if is_hex || COLOURS.contains(&colour) {
+        return Ok(());
     }
-    Ok(())
+    let help = Some(format!("write `#rrggbb` or one of {}", COLOURS.join(", ")));
+    Err(Wrong { message: format!("`{colour}` is no colour"), place, help })
 }
 
 #[cfg(test)]
@@ -218,6 +221,7 @@ name = "desk"
             element("joystick", "signal = \"Speed\"\nsignal_y = \"Speed\"\nat = [2, 1]"),
             element("switch", "failure = \"wall.leak\"\nat = [3, 1]"),
             element("alarms", "at = [0, 2]\nspan = [6, 3]"),
+            element("alarms", "signal = \"Start\"\nat = [0, 5]"),
         ];
         assert_eq!(told(&elements.concat()), Ok(()));
     }
@@ -238,7 +242,8 @@ name = "desk"
         assert!(wrong("button", "signal = \"Start\"\nat = [0, 0]\nspan = [0, 1]").0.contains("beyond"));
         assert!(wrong("button", "at = [0, 0]").0.contains("needs a `signal`"));
         assert!(wrong("lamp", "signal = \"Start\"\nsignal_y = \"Start\"\nat = [0, 0]").0.contains("only a joystick"));
-        assert!(wrong("alarms", "signal = \"Start\"\nat = [0, 0]").0.contains("has no signal"));
+        assert!(wrong("alarms", "signal = \"Speed\"\nat = [0, 0]").0.contains("is BOOL"));
+        assert!(wrong("alarms", "signal = \"Seen\"\nat = [0, 0]").0.contains("is written by the plant"));
         assert!(wrong("bar", "signal = \"Speed\"\nat = [0, 0]\nmin = 1.0\nmax = 1.0").0.contains("not below"));
         assert!(wrong("lamp", "signal = \"Start\"\nat = [0, 0]\ncolour = \"url(x)\"").0.contains("is no colour"));
         assert!(wrong("switch", "signal = \"Start\"\nat = [0, 0]\nlatching = true").0.contains("only a button"));

@@ -105,7 +105,7 @@ pub enum ElementKind {
     Bar,
     /// The value over time.
     Trend,
-    /// What has been told, to be acknowledged.
+    /// The alarms of `[report]`, to be acknowledged; its signal is TRUE while that is pressed.
     Alarms,
 }
 

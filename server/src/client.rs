@@ -224,6 +224,8 @@ pub struct ClientView {
     pub poses: Vec<Pose>,
     /// Tables of values that clients have and no signal tells.
     pub tables: Vec<ValueTable>,
+    /// What PLCs hold in their memories.
+    pub memories: Vec<Memory>,
 }
 
 impl ClientView {
@@ -231,6 +233,7 @@ impl ClientView {
     pub fn clear(&mut self) {
         self.poses.clear();
         self.tables.clear();
+        self.memories.clear();
     }
 }
 
@@ -247,6 +250,19 @@ pub struct ValueTable {
     pub down: [f64; 2],
     /// Row after row.
     pub values: Vec<f64>,
+}
+
+/// What a PLC holds between two scans. Where its variables lie, whoever has compiled its program knows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Memory {
+    /// The PLC.
+    pub client: ClientName,
+    /// Its memory.
+    pub bytes: Vec<u8>,
+    /// The paths of the variables that are forced.
+    pub forced: Vec<String>,
+    /// A byte for each place of the program that notes whether it has been executed, 0 if not; empty if none does.
+    pub executed: Vec<u8>,
 }
 
 /// Where a body is: its origin, m, and its orientation, a unit quaternion with the scalar last.

@@ -15,6 +15,7 @@ mod coverage;
 mod dask;
 mod diff;
 mod digests;
+mod drawn;
 mod errors;
 mod expectations;
 mod explore;

@@ -11,16 +11,17 @@ use tungstenite::{Message, WebSocket};
 use crate::typed::{begun, scenario, typed};
 
 /// A session with a page, and where that is.
-struct Served {
+pub(crate) struct Served {
     program: Child,
     said: BufReader<ChildStderr>,
     address: String,
 }
 
 impl Served {
-    fn begin(name: &str, words: &[&str]) -> Self {
-        let words = [&["run", ".", "--format", "json", "--web"], words].concat();
-        let mut program = begun(&scenario(name), &words);
+    pub(crate) fn begin(name: &str, words: &[&str]) -> Self {
+        let (folder, file) = name.split_once('/').unwrap_or((name, "."));
+        let words = [&["run", file, "--format", "json", "--web"], words].concat();
+        let mut program = begun(&scenario(folder), &words);
         let mut said = BufReader::new(program.stderr.take().expect("piped"));
         let mut line = String::new();
         while !line.contains("http://") {
@@ -32,7 +33,7 @@ impl Served {
     }
 
     /// The status line and the body of an answer.
-    fn get(&self, path: &str, headers: &[(&str, &str)]) -> (String, String) {
+    pub(crate) fn get(&self, path: &str, headers: &[(&str, &str)]) -> (String, String) {
         let mut stream = TcpStream::connect(&self.address).expect("served");
         let has_host = headers.iter().any(|(name, _)| *name == "Host");
         let host = [("Host", self.address.as_str())];
@@ -47,14 +48,14 @@ impl Served {
         (head.lines().next().expect("a status").to_owned(), body.to_owned())
     }
 
-    fn view(&self) -> WebSocket<TcpStream> {
+    pub(crate) fn view(&self) -> WebSocket<TcpStream> {
         let stream = TcpStream::connect(&self.address).expect("served");
         let request = format!("ws://{}/api/live", self.address).into_client_request().expect("a request");
         tungstenite::client(request, stream).expect("a viewer").0
     }
 
     /// The report of the run.
-    fn report(mut self) -> Value {
+    pub(crate) fn report(mut self) -> Value {
         let output = {
             let mut rest = String::new();
             self.said.read_to_string(&mut rest).expect("text");
@@ -64,12 +65,12 @@ impl Served {
     }
 }
 
-fn ask(viewer: &mut WebSocket<TcpStream>, what: &Value) {
+pub(crate) fn ask(viewer: &mut WebSocket<TcpStream>, what: &Value) {
     viewer.send(Message::text(what.to_string())).expect("sent");
 }
 
 /// The next text that says this.
-fn told(viewer: &mut WebSocket<TcpStream>, kind: &str) -> Value {
+pub(crate) fn told(viewer: &mut WebSocket<TcpStream>, kind: &str) -> Value {
     loop {
         if let Message::Text(text) = viewer.read().expect("a message") {
             let told: Value = serde_json::from_str(&text).expect("JSON");

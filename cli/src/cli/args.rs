@@ -20,12 +20,13 @@ use super::plc::{BrowseArgs, MapArgs, PlcArgs};
 use super::recording::{BisectArgs, DiffArgs, ExportArgs, ReportArgs};
 use super::run::RunArgs;
 use super::session::{ControlArgs, JoinArgs};
+use super::shot::ShotArgs;
 use super::source::{CheckArgs, ExplainArgs, InstrumentArgs};
 use super::test::{ReviewArgs, TestArgs, WorkerArgs};
 use super::train::TrainArgs;
 use super::{
-    access, campaign, compare, explore, falsify, minimise, model, mutate, plant, plc, recording, run, session, source,
-    test, train,
+    access, campaign, compare, explore, falsify, minimise, model, mutate, plant, plc, recording, run, session, shot,
+    source, test, train,
 };
 use crate::error::ExitCode;
 
@@ -94,6 +95,8 @@ pub enum Command {
     /// Let somebody take a lesson: malfunctions at the panels of a page, the times until they are identified and acted
     /// upon, and what an expert made of them
     Train(Box<TrainArgs>),
+    /// Draw the machine at one virtual time as a picture, as its page shows it; needs a Chromium
+    Shot(ShotArgs),
     /// One run, for `campaign`
     #[command(hide = true)]
     CampaignWorker(CampaignWorkerArgs),
@@ -163,6 +166,7 @@ pub fn dispatch(command: Command) -> Result<ExitCode, CommandError> {
         Command::Mutate(args) => mutate::mutate(args),
         Command::Minimise(args) => minimise::minimise(args),
         Command::Train(args) => train::train(*args),
+        Command::Shot(args) => shot::shot(args),
         Command::Campaign(args) => campaign::campaign(args),
         Command::CampaignWorker(args) => campaign::work(args),
         Command::Review(args) => test::review(args),

@@ -25,6 +25,7 @@ use crate::report::ReportError;
 use crate::review::ReviewError;
 use crate::run::RunError;
 use crate::session::SessionError;
+use crate::shot::ShotError;
 use crate::train::TrainError;
 use crate::wiring::WiringError;
 
@@ -82,6 +83,9 @@ sum_of_errors! {
         /// `minimise` came to nothing.
         #[diagnostic(transparent)]
         Minimise(MinimiseError),
+        /// `shot` came to nothing.
+        #[diagnostic(transparent)]
+        Shot(ShotError),
         /// `mutate` came to nothing.
         #[diagnostic(transparent)]
         Mutate(MutateError),

@@ -8,6 +8,7 @@
 //! | [`explore`] | timings that links may have |
 //! | [`falsify`] | inputs and parameters that break what is expected |
 //! | [`mutate`] | small mistakes in programs |
+//! | [`shot`] | the machine at one time as a picture |
 //! | [`minimise`] | the least of a case that still fails |
 //! | [`train`] | lessons |
 //! | [`test`] | all scenarios, and test programs |
@@ -38,6 +39,7 @@ pub mod plc;
 pub mod recording;
 pub mod run;
 pub mod session;
+pub mod shot;
 pub mod source;
 pub mod test;
 pub mod train;

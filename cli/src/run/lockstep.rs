@@ -133,7 +133,7 @@ fn serve_page(
     let failing = web::Failing::default();
     lockstep.observe(failing.observer());
     let (published, mailbox) = (lockstep.published(), interrupt.mailbox());
-    let source = web::Source { scenario, published, mailbox, pace, failing, training: None };
+    let source = web::Source { scenario, published, mailbox, pace, failing, training: None, pictures: None };
     let page = Page::serve(address, source)?;
     match Page::is_absent() {
         None => tracing::info!(target: NOTICE, "the session is at {}", page.url()),

@@ -232,6 +232,7 @@ impl Classroom<'_> {
             mailbox: stage.mailbox.clone(),
             pace: pace.clone(),
             failing: stage.failing.clone(),
+            pictures: None,
             training: Some(Training {
                 role,
                 desk: desk.clone(),

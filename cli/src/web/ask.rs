@@ -31,6 +31,10 @@ pub(super) enum Ask {
         #[serde(rename = "t_ns")]
         _t_ns: f64,
     },
+    /// A view of the scenario for all viewers.
+    View { view: String },
+    /// The values of a drawing's instance from now on, or of none.
+    Draw { drawing: Option<usize>, instance: usize },
     /// The live edge again.
     Live,
     /// A session that goes on from a moment of the past.
@@ -80,6 +84,12 @@ pub(super) enum Refused {
     NoStart(String),
     #[error("there is no panel `{0}`")]
     NoPanel(String),
+    #[error("there is no drawing {0}, or not this instance of it")]
+    NoDrawing(usize),
+    #[error("there is no view `{0}`")]
+    NoView(String),
+    #[error("a view is called for all from the seat of a trainer: take one first")]
+    NoTrainer,
     #[error("the past of a running session is not kept: `--save-at` keeps a moment of it, `--record` all signals")]
     Past,
     #[error("somebody else has the seat of panel `{0}`")]

@@ -6,6 +6,9 @@
 //! | [`guard`] | whose requests are answered |
 //! | [`structure`] | what of a session does not change |
 //! | [`panel`] | what operators see and write with |
+//! | [`drawings`] | ladders, function blocks and charts as they are laid out, with their states |
+//! | [`alarms`] | alarms as they come and go |
+//! | [`looks`] | figures, views, and what bodies look like while something holds |
 //! | [`picture`] | what of a step is shown |
 //! | [`ask`] | what a page may ask |
 //! | [`seats`] | who operates |
@@ -16,10 +19,13 @@
 //! operator does: nothing that is read leaves a trace, and what is written is an operator's input at a step boundary.
 //! The protocol is in `web/PROTOCOL.md`.
 
+mod alarms;
 mod ask;
 mod bundle;
 mod desk;
+mod drawings;
 mod guard;
+mod looks;
 mod panel;
 mod picture;
 mod seats;
@@ -29,15 +35,17 @@ mod viewer;
 use std::net::{SocketAddr, TcpListener};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::Sender;
 use std::thread::JoinHandle;
 use std::time::Duration;
 
 use axum::Router;
-use axum::extract::{Request, State, WebSocketUpgrade};
-use axum::http::{HeaderName, HeaderValue, StatusCode, header};
+use axum::body::Bytes;
+use axum::extract::{DefaultBodyLimit, Request, State, WebSocketUpgrade};
+use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, header};
 use axum::middleware::{self, Next};
 use axum::response::{IntoResponse, Response};
-use axum::routing::get;
+use axum::routing::{get, post};
 use miette::Diagnostic;
 use onescan_scenario::{Scenario, ScenarioError};
 use onescan_server::layout::ImageLayout;
@@ -49,6 +57,7 @@ use tokio::sync::Notify;
 
 use crate::error::{Exit, ExitCode, ListenError, Usage};
 pub(crate) use desk::{Desk, Failing, Role, Training, Turn};
+use looks::Called;
 use seats::{SeatView, Seats};
 use structure::Known;
 
@@ -57,6 +66,8 @@ const POLICY: &str = "default-src 'self'; style-src 'self' 'unsafe-inline'; img-
                       frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
 /// The longest message of a page, bytes.
 const MESSAGE_MAX: usize = 64 * 1024;
+/// The largest picture that a page draws, bytes.
+const PICTURE_MAX: usize = 256 * 1024 * 1024;
 /// How long viewers have to take the end.
 const FAREWELL: Duration = Duration::from_millis(500);
 
@@ -74,7 +85,12 @@ pub(crate) struct Source<'s> {
     pub(crate) failing: Failing,
     /// The lesson, if it is one.
     pub(crate) training: Option<Training>,
+    /// Where pictures go that the page draws, if it is to draw one.
+    pub(crate) pictures: Option<Sender<Drawn>>,
 }
+
+/// A picture that the page has drawn, a PNG, or why it has not.
+pub(crate) type Drawn = Result<Vec<u8>, String>;
 
 /// A session, as all viewers share it.
 struct Session {
@@ -89,6 +105,8 @@ struct Session {
     failing: Failing,
     training: Option<Training>,
     seats: Arc<Seats>,
+    called: Called,
+    pictures: Option<Sender<Drawn>>,
     over: AtomicBool,
 }
 
@@ -171,6 +189,7 @@ impl Page {
         let session = Arc::new(Session {
             structure: serde_json::to_string(&structure)?,
             seats: seats.unwrap_or_else(|| Arc::new(Seats::at(std::mem::take(&mut known.panels)))),
+            called: Called::among(source.scenario),
             known,
             layout: ImageLayout::new(plan.signals()),
             plan,
@@ -179,6 +198,7 @@ impl Page {
             pace: source.pace,
             failing: source.failing,
             training: source.training,
+            pictures: source.pictures,
             over: AtomicBool::new(false),
         });
         let listener = TcpListener::bind(address).map_err(&listen)?;
@@ -235,6 +255,7 @@ fn router(session: Arc<Session>) -> Router {
     Router::new()
         .route("/api/session", get(structure_of))
         .route("/api/live", get(live))
+        .route("/api/picture", post(picture).layer(DefaultBodyLimit::max(PICTURE_MAX)))
         .fallback(get(asset))
         .layer(middleware::from_fn(guarded))
         .with_state(session)
@@ -265,6 +286,19 @@ async fn structure_of(State(session): State<Arc<Session>>) -> Response {
 
 async fn live(State(session): State<Arc<Session>>, upgrade: WebSocketUpgrade) -> Response {
     upgrade.max_message_size(MESSAGE_MAX).on_upgrade(|socket| viewer::attend(socket, session))
+}
+
+/// A picture that the page has drawn: a PNG, or a text that says why there is none.
+async fn picture(State(session): State<Arc<Session>>, headers: HeaderMap, body: Bytes) -> Response {
+    let Some(pictures) = &session.pictures else {
+        return (StatusCode::NOT_FOUND, "nobody has asked for a picture\n").into_response();
+    };
+    let is_picture = headers.get(header::CONTENT_TYPE).is_some_and(|media| media == "image/png");
+    let drawn = if is_picture { Ok(body.to_vec()) } else { Err(String::from_utf8_lossy(&body).into_owned()) };
+    match pictures.send(drawn) {
+        Ok(()) => StatusCode::NO_CONTENT.into_response(),
+        Err(_) => (StatusCode::GONE, "nobody waits for a picture any more\n").into_response(),
+    }
 }
 
 async fn asset(request: Request) -> Response {

@@ -53,7 +53,8 @@ struct Choice {
 impl Panel {
     /// The signals that people write with it.
     pub(super) fn written(&self) -> BTreeSet<String> {
-        let writing = self.elements.iter().filter(|element| element.kind.writes());
+        let writes = |element: &&Element| element.kind.writes() || element.kind == ElementKind::Alarms;
+        let writing = self.elements.iter().filter(writes);
         writing.flat_map(|element| element.signal.iter().chain(&element.signal_y)).cloned().collect()
     }
 }

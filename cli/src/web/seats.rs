@@ -85,6 +85,11 @@ impl Seats {
         may.then_some(()).ok_or_else(|| Refused::NoSeat(signal.to_owned()))
     }
 
+    /// Whether a viewer has the seat of one of these panels.
+    pub(super) fn sits_at_one_of(&self, panels: &BTreeSet<String>, viewer: Viewer) -> bool {
+        self.lock().panels.iter().any(|(panel, seat)| *seat == Some(viewer) && panels.contains(panel))
+    }
+
     /// The seats as a viewer sees them.
     pub(super) fn seen_by(&self, viewer: Viewer) -> SeatView {
         let seen = |seat: &Option<Viewer>| match seat {

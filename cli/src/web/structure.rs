@@ -11,7 +11,10 @@ use onescan_scenario::{Scenario, ScenarioError};
 use onescan_server::signal::{ClientName, SignalDecl};
 use serde::Serialize;
 
+use super::alarms::Bell;
 use super::desk::{Role, Training};
+use super::drawings::{self, Drawing, States};
+use super::looks::{self, Judge, Look, View};
 use super::panel::{self, Panel};
 use super::picture::Stage;
 
@@ -34,9 +37,12 @@ pub(super) struct Structure {
     signals: Vec<Signal>,
     bodies: Vec<Body>,
     components: Vec<Part>,
+    views: Vec<View>,
+    looks: Vec<Look>,
     panels: Vec<Panel>,
     expectations: Vec<Expectation>,
     sources: Vec<Source>,
+    drawings: Vec<Drawing>,
 }
 
 /// A lesson, as its page shows it.
@@ -67,6 +73,12 @@ pub(super) struct Known {
     pub(super) operators: BTreeSet<ClientName>,
     /// Panels that are not on this page.
     pub(super) hidden: BTreeSet<String>,
+    /// Where the states of drawings are.
+    pub(super) states: States,
+    /// Which alarms are on.
+    pub(super) bell: Bell,
+    /// Which looks are on.
+    pub(super) looks: Judge,
     /// The panels, each with the signals that it writes.
     pub(super) panels: BTreeMap<String, BTreeSet<String>>,
 }
@@ -84,30 +96,43 @@ struct Signal {
 }
 
 #[derive(Debug, Serialize)]
-struct Body {
-    name: String,
-    kind: &'static str,
-    shape: Shape,
-    position_m: [f64; 3],
-    rotation: [f64; 4],
+pub(super) struct Body {
+    pub(super) name: String,
+    pub(super) kind: &'static str,
+    pub(super) shape: Shape,
+    pub(super) position_m: [f64; 3],
+    pub(super) rotation: [f64; 4],
+    /// The body in whose frame it is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) on: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) colour: Option<String>,
+    #[serde(skip_serializing_if = "is_zero")]
+    pub(super) transparent: f64,
 }
 
 #[derive(Debug, Serialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
-enum Shape {
+pub(super) enum Shape {
     None,
     Box { size_m: [f64; 3] },
     Sphere { radius_m: f64 },
     Cylinder { radius_m: f64, length_m: f64 },
+    Round { radius_m: f64, top_radius_m: f64, length_m: f64, open: bool },
     Capsule { radius_m: f64, length_m: f64 },
     Mesh { positions_m: Vec<f64>, indices: Vec<u32> },
 }
 
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde asks for it")]
+fn is_zero(share: &f64) -> bool {
+    *share == 0.0
+}
+
 #[derive(Debug, Serialize)]
-struct Part {
-    name: String,
+pub(super) struct Part {
+    pub(super) name: String,
     kind: String,
-    body: Option<String>,
+    pub(super) body: Option<String>,
     signals: Vec<String>,
     senses: Option<String>,
     parameters: Vec<Parameter>,
@@ -166,6 +191,10 @@ pub(super) fn of(scenario: &Scenario, training: Option<&Training>) -> Result<(St
             }
         }
     }
+    let (drawings, states) = drawings::of(scenario)?;
+    known.states = states;
+    let looks = looks::of(scenario, &mut bodies, &components)?;
+    (known.looks, known.bell) = (Judge::of(scenario), Bell::of(scenario));
     let mut panels = panel::of(scenario);
     known.panels = panels.iter().map(|panel| (panel.name.clone(), panel.written())).collect();
     if let Some(Training { role: role @ Role::Trainee, .. }) = training {
@@ -185,6 +214,8 @@ pub(super) fn of(scenario: &Scenario, training: Option<&Training>) -> Result<(St
         signals: scenario.plan().signals().iter().map(|declared| signal(declared, scenario)).collect(),
         bodies,
         components,
+        views: looks::views(scenario),
+        looks,
         panels,
         expectations: file
             .expect
@@ -192,6 +223,7 @@ pub(super) fn of(scenario: &Scenario, training: Option<&Training>) -> Result<(St
             .map(|expect| Expectation { name: expect.name.get_ref().clone(), text: expect.formula.get_ref().clone() })
             .collect(),
         sources: sources(scenario),
+        drawings,
     };
     Ok((structure, known))
 }
@@ -232,6 +264,9 @@ fn add_bodies(scene: &Scene, bodies: &mut Vec<Body>, stage: &mut Stage) {
             shape: shape(geometry),
             position_m: place.position_m,
             rotation: place.rotation_xyzw,
+            on: None,
+            colour: None,
+            transparent: 0.0,
         });
     }
 }

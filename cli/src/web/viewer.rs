@@ -15,6 +15,7 @@ use serde::Serialize;
 use tokio::sync::{mpsc, oneshot};
 use tokio::time::{MissedTickBehavior, interval, timeout};
 
+use super::alarms::{Change, Rung};
 use super::ask::{self, Ask, Refused};
 use super::picture::Shown;
 use super::seats::Viewer;
@@ -36,6 +37,17 @@ enum Told {
         seat: SeatView,
         #[serde(skip_serializing_if = "BTreeSet::is_empty")]
         failed: BTreeSet<String>,
+    },
+    Looks {
+        active: Vec<usize>,
+    },
+    States {
+        drawing: usize,
+        instance: usize,
+        values: Vec<Option<f64>>,
+    },
+    View {
+        view: String,
     },
     Event {
         t_ns: u64,
@@ -66,11 +78,13 @@ async fn converse(socket: &mut WebSocket, session: &Session, viewer: Viewer) -> 
     let mut look = interval(PICTURE);
     look.set_missed_tick_behavior(MissedTickBehavior::Delay);
     let (mut shown, mut seen, mut status) = (Shown::default(), None, String::new());
+    let (mut looks, mut called) = (None, session.called.follow());
+    let (mut drawn, mut states, mut rung) = (None, None, Rung::default());
     loop {
         tokio::select! {
             message = socket.recv() => match message {
                 Some(Ok(Message::Text(text))) => {
-                    match heed(&text, session, viewer, &mut shown, &outcomes) {
+                    match heed(&text, session, viewer, (&mut shown, &mut drawn), &outcomes) {
                         Ok(true) => seen = None,
                         Ok(false) => {}
                         Err(refused) => say(socket, &Told::Error { message: refused.to_string() }).await?,
@@ -83,6 +97,10 @@ async fn converse(socket: &mut WebSocket, session: &Session, viewer: Viewer) -> 
                 Some(Ok(Message::Ping(_) | Message::Pong(_))) => {}
                 Some(Ok(Message::Close(_)) | Err(_)) | None => return Ok(()),
             },
+            Ok(()) = called.changed() => {
+                let (_, view) = called.borrow_and_update().clone();
+                say(socket, &Told::View { view }).await?;
+            }
             Some(outcome) = done.recv() => {
                 if let Err(message) = outcome {
                     say(socket, &Told::Error { message }).await?;
@@ -101,6 +119,20 @@ async fn converse(socket: &mut WebSocket, session: &Session, viewer: Viewer) -> 
                     seen = Some(view.revision);
                     let picture = shown.picture(&view, &session.layout, &session.known.stage);
                     send(socket, Message::Binary(Bytes::from(picture))).await?;
+                    let active = session.known.looks.active(&view, &session.layout);
+                    if looks.as_ref() != Some(&active) {
+                        looks = Some(active.clone());
+                        say(socket, &Told::Looks { active }).await?;
+                    }
+                    let t_ns = view.t_v.as_nanos();
+                    for Change { kind, name } in session.known.bell.changes(&mut rung, &view, &session.layout) {
+                        say(socket, &Told::Event { t_ns, kind, text: name.to_owned() }).await?;
+                    }
+                    let now = drawn.map(|drawn| (drawn, session.known.states.values(drawn, &view)));
+                    if let Some(((drawing, instance), values)) = now.clone().filter(|_| now != states) {
+                        say(socket, &Told::States { drawing, instance, values }).await?;
+                    }
+                    states = now;
                 }
                 if let (Some(end), true) = (&view.end, session.ended()) {
                     let text = end.to_string();
@@ -144,7 +176,7 @@ fn heed(
     text: &str,
     session: &Session,
     viewer: Viewer,
-    shown: &mut Shown,
+    (shown, drawn): (&mut Shown, &mut Option<(usize, usize)>),
     outcomes: &mpsc::UnboundedSender<Outcome>,
 ) -> Result<bool, Refused> {
     let operation = match Ask::read(text)? {
@@ -178,6 +210,14 @@ fn heed(
             return Ok(false);
         }
         Ask::Show { .. } | Ask::Fork { .. } => return Err(Refused::Past),
+        Ask::View { view } => {
+            session.called.call(view, viewer, &session.seats)?;
+            return Ok(false);
+        }
+        Ask::Draw { drawing, instance } => {
+            *drawn = drawing.map(|drawing| session.known.states.check(drawing, instance)).transpose()?;
+            return Ok(true);
+        }
         Ask::Live => return Ok(false),
     };
     wish(operation, session, outcomes);

@@ -38,6 +38,12 @@ impl Frame {
         Self { position_m: pose.translation.to_array(), rotation_xyzw: pose.rotation.to_array() }
     }
 
+    /// At a position, m, rolled about x, then pitched about y, then yawed about z.
+    #[must_use]
+    pub fn at(position_m: [f64; 3], rpy_deg: [f64; 3]) -> Self {
+        Self::of(from_rpy_deg(position_m, rpy_deg))
+    }
+
     fn pose(self) -> Pose {
         Pose::from_parts(self.position_m.into(), rapier3d::glamx::DQuat::from_array(self.rotation_xyzw))
     }

@@ -10,6 +10,7 @@
 //! | `plcopen`, `plcopen_instances`, `plcopen_object` | PLCopen XML, and what CODESYS adds to it | program text |
 //! | `plcopen_chart`, `plcopen_chart_graph`, `plcopen_condition` | its Sequential Function Charts | program text |
 //! | `plcopen_network` | its networks in LD and FBD | statements |
+//! | [`layout`] | PLCopen XML | its drawings as they are laid out, for those who look at them |
 //! | `drawing` | bodies that TwinCAT keeps as archives of objects: CFC, LD, FBD and SFC | statements |
 //! | `statement` | statements while they are made | program text |
 //! | [`project`] | a TwinCAT project | the names of its files |
@@ -21,6 +22,7 @@ mod drawing;
 pub mod encoding;
 mod foreign;
 pub mod kind;
+pub mod layout;
 mod needed;
 mod plcopen;
 pub(crate) mod plcopen_chart;

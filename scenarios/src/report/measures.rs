@@ -28,6 +28,11 @@ pub struct Measures {
 }
 
 impl Measures {
+    /// The alarms by name, each with its condition.
+    pub fn alarms(&self) -> impl Iterator<Item = (&str, &Present)> {
+        self.alarms.iter().map(|alarm| (alarm.name.as_str(), &alarm.when))
+    }
+
     /// What `file` asks for, whose text is `text`; nothing if it asks for no report.
     ///
     /// # Errors

@@ -1,0 +1,102 @@
+//! Why there is no picture.
+
+use std::io;
+use std::process::ExitStatus;
+use std::time::Duration;
+
+use miette::Diagnostic;
+use onescan_report::OutputError;
+use onescan_report::file::FileError;
+use onescan_scenario::ScenarioError;
+use onescan_server::time::VirtualTime;
+use thiserror::Error;
+
+use crate::error::{Exit, ExitCode, Usage};
+use crate::run::RunError;
+use crate::web::WebError;
+
+/// Why there is no picture.
+#[derive(Debug, Error, Diagnostic)]
+pub enum ShotError {
+    /// The scenario or its case is wrong.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Scenario(#[from] ScenarioError),
+    /// What was typed is wrong.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Usage(#[from] Usage),
+    /// The session cannot be run.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Run(#[from] RunError),
+    /// The page cannot be served.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Web(#[from] WebError),
+    /// The session ended before its time.
+    #[error("the session did not come to {at}: {why}")]
+    Ended {
+        /// The time that was asked for.
+        at: VirtualTime,
+        /// What ended it.
+        why: String,
+    },
+    /// There is nothing that draws.
+    #[error("{}", match named {
+        Some(named) => format!("there is no browser `{named}`, as `CHROMIUM` has it"),
+        None => "there is no Chromium here, which draws the picture".to_owned(),
+    })]
+    #[diagnostic(help(
+        "install it (Debian: `apt install chromium`; Fedora: `dnf install chromium`), or name a Chrome or an Edge in the variable `CHROMIUM`"
+    ))]
+    NoBrowser {
+        /// What `CHROMIUM` says.
+        named: Option<String>,
+    },
+    /// The browser cannot be started.
+    #[error("`{program}` cannot draw: {source}")]
+    Browser {
+        /// The browser.
+        program: String,
+        /// Why.
+        source: io::Error,
+    },
+    /// The browser went before it had drawn.
+    #[error("`{program}` ended without a picture: {status}")]
+    Gone {
+        /// The browser.
+        program: String,
+        /// Its last word.
+        status: ExitStatus,
+    },
+    /// The browser takes too long.
+    #[error("there is no picture after {} s", .0.as_secs())]
+    Late(Duration),
+    /// The page says why.
+    #[error("the page does not draw: {0}")]
+    Page(String),
+    /// The picture cannot be written.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// It cannot be told where the picture is.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+}
+
+impl Exit for ShotError {
+    fn exit_code(&self) -> ExitCode {
+        match self {
+            Self::Scenario(error) => error.exit_code(),
+            Self::Usage(error) => error.exit_code(),
+            Self::Run(error) => error.exit_code(),
+            Self::Web(error) => error.exit_code(),
+            Self::File(error) => error.exit_code(),
+            Self::Output(error) => error.exit_code(),
+            Self::NoBrowser { .. } => ExitCode::WrongInput,
+            Self::Ended { .. } | Self::Browser { .. } | Self::Gone { .. } | Self::Late(_) | Self::Page(_) => {
+                ExitCode::Fault
+            }
+        }
+    }
+}

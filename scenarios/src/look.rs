@@ -1,0 +1,374 @@
+//! Looks: what bodies look like while something holds, or by the value of a signal.
+//!
+//! A look is for the eye. It is judged on what a session publishes, beside the session, and leaves no trace in it.
+
+use std::collections::BTreeSet;
+
+use onescan_clients::array;
+use onescan_server::signal::pattern::SignalPattern;
+use onescan_server::signal::{SignalName, SignalType, did_you_mean};
+use toml::Spanned;
+
+use crate::error::{ScenarioError, Wrong};
+use crate::expect::Present;
+use crate::expectations::place_within;
+use crate::figure::{Figure, check_views, figures};
+use crate::file::ScenarioFile;
+use crate::load::Scenario;
+use crate::look_file::LookFile;
+use crate::panel::check_colour;
+
+/// The looks of a scenario, bound to its signals.
+#[derive(Clone, Debug, Default)]
+pub struct Looks {
+    /// What is drawn beside the bodies of plants.
+    pub figures: Vec<Figure>,
+    /// The looks as they are written, one for each of `each`.
+    pub looks: Vec<Spanned<LookFile>>,
+    /// By the number of the look: its condition, if it has one.
+    conditions: Vec<Option<Present>>,
+    /// The signals that conditions are judged by, in the order of the values for [`Self::active`].
+    pub signals: Vec<SignalName>,
+}
+
+/// What there is to be looked at, as a page counts it.
+#[derive(Clone, Debug, Default)]
+pub struct Visible {
+    /// The bodies of plants: `arm`, and `arm/hand` for a shape that is attached to it. Figures come behind them.
+    pub bodies: Vec<String>,
+    /// The components, each with its body.
+    pub parts: Vec<(String, Option<String>)>,
+}
+
+impl Looks {
+    /// The numbers of the looks whose condition holds with these values, one for each of `signals`; looks without a
+    /// condition are not among them.
+    pub fn active(&self, values: &[f64]) -> Vec<usize> {
+        let holds = |condition: &Option<Present>| condition.as_ref().is_some_and(|condition| condition.holds(values));
+        self.conditions.iter().enumerate().filter(|(_, condition)| holds(condition)).map(|(look, _)| look).collect()
+    }
+
+    pub(crate) fn bind(file: &ScenarioFile, text: &str) -> Result<Self, Wrong> {
+        check_views(&file.view)?;
+        let figures = figures(file)?;
+        let (known, mut columns) = (file.known_signals(), Vec::new());
+        let (mut looks, mut conditions) = (Vec::new(), Vec::new());
+        for look in &file.look {
+            looks.extend(written_out(look)?);
+        }
+        for look in &looks {
+            check(look, file)?;
+            let bound = look.get_ref().when.as_ref().map(|when| {
+                Present::parse(when.get_ref(), &known, &mut columns).map_err(|error| Wrong {
+                    message: error.to_string(),
+                    place: place_within(when, text, &error.place),
+                    help: error.help,
+                })
+            });
+            conditions.push(bound.transpose()?);
+        }
+        // Columns are names of the file's own signals.
+        let signals = columns.iter().filter_map(|column| SignalName::new(column.as_str()).ok()).collect();
+        Ok(Self { figures, looks, conditions, signals })
+    }
+}
+
+fn at<T>(place: &Spanned<T>, message: impl Into<String>, help: &str) -> Wrong {
+    Wrong { message: message.into(), place: place.span(), help: (!help.is_empty()).then(|| help.to_owned()) }
+}
+
+/// A look for each number of its `each`; itself if it has none.
+fn written_out(look: &Spanned<LookFile>) -> Result<Vec<Spanned<LookFile>>, Wrong> {
+    let Some([first, last]) = look.get_ref().each else { return Ok(vec![look.clone()]) };
+    if last < first || last - first >= array::NAMES_MAX {
+        let message = format!("`each` counts from {first} to {last}");
+        return Err(at(look, message, "write the lower number first, and ten thousand at most"));
+    }
+    let copy = |index: usize| -> Result<Spanned<LookFile>, Wrong> {
+        let text = |one: &Spanned<String>| Spanned::new(one.span(), array::at_index(one.get_ref(), index));
+        let inner = look.get_ref();
+        let follows = inner.follows.as_ref().map(|signal| {
+            let name = SignalName::new(array::at_index(signal.get_ref().as_str(), index));
+            name.map(|name| Spanned::new(signal.span(), name)).map_err(|bad| at(signal, bad.to_string(), ""))
+        });
+        let copy = LookFile {
+            bodies: inner.bodies.iter().map(text).collect(),
+            parts: inner.parts.iter().map(text).collect(),
+            when: inner.when.as_ref().map(text),
+            follows: follows.transpose()?,
+            ..inner.clone()
+        };
+        Ok(Spanned::new(look.span(), copy))
+    };
+    (first..=last).map(copy).collect()
+}
+
+/// What can be said of a look without a plant.
+fn check(look: &Spanned<LookFile>, file: &ScenarioFile) -> Result<(), Wrong> {
+    let inner = look.get_ref();
+    if inner.bodies.is_empty() && inner.parts.is_empty() {
+        return Err(at(look, "the look is of nothing", "name `bodies` or `parts`"));
+    }
+    let is_driven = inner.grow.is_some() || inner.colours.is_some() || inner.moves() || inner.run_m_s.is_some();
+    let is_plain = inner.colour.is_some() || inner.hidden || inner.transparent.is_some() || inner.scale.is_some();
+    if !is_driven && !is_plain {
+        let help = "write `colour`, `hidden`, `transparent` or `scale`, or with `follows` what its value drives";
+        return Err(at(look, "the look changes nothing", help));
+    }
+    check_numbers(look)?;
+    if let Some(colour) = &inner.colour {
+        check_colour(colour.get_ref(), colour.span())?;
+    }
+    if let Some(colours) = &inner.colours {
+        for colour in colours.get_ref() {
+            check_colour(colour, colours.span())?;
+        }
+    }
+    match &inner.follows {
+        None if is_driven => Err(at(look, "nothing drives the look", "name a signal with `follows`")),
+        None => Ok(()),
+        Some(signal) if !is_driven => {
+            let help = "write `move_m`, `turn_deg`, `grow`, `colours` or `run_m_s`";
+            Err(at(signal, format!("the value of `{}` drives nothing", signal.get_ref()), help))
+        }
+        Some(signal) => check_signal(signal, file),
+    }
+}
+
+fn check_signal(name: &Spanned<SignalName>, file: &ScenarioFile) -> Result<(), Wrong> {
+    let Some(signal) = file.signals.get(name.get_ref()).map(Spanned::get_ref) else {
+        let message = format!("the look follows a signal `{}` that is not declared", name.get_ref());
+        let help = did_you_mean(name.get_ref().as_str(), file.signals.keys().map(SignalName::as_str));
+        return Err(Wrong { message, place: name.span(), help });
+    };
+    let is_number = signal.ty == SignalType::BOOL || signal.ty.as_f64(&vec![0; signal.ty.size()]).is_some();
+    if !is_number {
+        return Err(at(name, format!("`{}` is {}, and a look follows a number", name.get_ref(), signal.ty), ""));
+    }
+    Ok(())
+}
+
+fn check_numbers(look: &Spanned<LookFile>) -> Result<(), Wrong> {
+    let inner = look.get_ref();
+    if let Some(share) = inner.transparent
+        && !(0.0..=1.0).contains(&share)
+    {
+        return Err(at(look, format!("`transparent` is {share}, not 0 to 1"), ""));
+    }
+    for (key, number) in [("scale", inner.scale), ("takes_s", inner.takes_s)] {
+        if number.is_some_and(|number| !number.is_finite() || number <= 0.0) {
+            return Err(at(look, format!("`{key}` is not above 0"), ""));
+        }
+    }
+    if let Some([begin, end]) = inner.over
+        && (!begin.is_finite() || !end.is_finite() || begin.total_cmp(&end).is_eq())
+    {
+        return Err(at(look, "`over` has no two different ends", ""));
+    }
+    let ways = [inner.move_m, inner.turn_deg, inner.turn_about_m, inner.run_m_s];
+    if !ways.iter().flatten().flatten().all(|part| part.is_finite()) {
+        return Err(at(look, "the look has a way without numbers", ""));
+    }
+    if inner.turn_about_m.is_some() && inner.turn_deg.is_none() {
+        return Err(at(look, "`turn_about_m` needs `turn_deg`", ""));
+    }
+    if inner.grow.is_some() && inner.over.is_none() {
+        return Err(at(look, "`grow` needs `over`", "write at which values there is nothing, and all of it"));
+    }
+    if inner.takes_s.is_some() && inner.over.is_none() {
+        return Err(at(look, "`takes_s` needs `over`", "write at which values the way begins and ends"));
+    }
+    Ok(())
+}
+
+impl LookFile {
+    /// Whether it moves what it is of.
+    fn moves(&self) -> bool {
+        self.move_m.is_some() || self.turn_deg.is_some()
+    }
+}
+
+impl Scenario {
+    /// By the number of the look: the bodies that it is of, as a page counts them.
+    ///
+    /// # Errors
+    /// A look of something that is not there, or that moves what a plant moves.
+    pub fn seen(&self, visible: &Visible) -> Result<Vec<Vec<usize>>, ScenarioError> {
+        let placed = |found: Wrong| self.wrong_at(found);
+        let names: Vec<&str> = visible
+            .bodies
+            .iter()
+            .map(String::as_str)
+            .chain(self.looks().figures.iter().map(|one| &*one.name))
+            .collect();
+        for figure in &self.file().figure {
+            // an array may be on an array, which its copies name
+            for on in figure.on.iter().filter(|on| !on.get_ref().contains("[i]")) {
+                if !names.contains(&on.get_ref().as_str()) {
+                    return Err(placed(unknown("a figure is on", on, &names)));
+                }
+            }
+        }
+        self.looks().looks.iter().map(|look| of(look.get_ref(), visible, &names).map_err(placed)).collect()
+    }
+}
+
+fn unknown(what: &str, name: &Spanned<String>, names: &[&str]) -> Wrong {
+    let help = did_you_mean(name.get_ref(), names.iter().copied());
+    Wrong { message: format!("{what} `{}`, which is not there", name.get_ref()), place: name.span(), help }
+}
+
+/// What a body is called: a shape that is attached to one goes by its own name, too, and with its body.
+fn known_as(name: &str) -> impl Iterator<Item = &str> {
+    let parts = name.split_once('/').into_iter().flat_map(|(body, shape)| [body, shape]);
+    std::iter::once(name).chain(parts)
+}
+
+fn of(look: &LookFile, visible: &Visible, names: &[&str]) -> Result<Vec<usize>, Wrong> {
+    let mut found = BTreeSet::new();
+    let mut add = |is_meant: &dyn Fn(&str) -> bool| {
+        let meant = |number: &usize| names.get(*number).is_some_and(|name| known_as(name).any(is_meant));
+        let numbers: Vec<usize> = (0..names.len()).filter(meant).collect();
+        found.extend(&numbers);
+        !numbers.is_empty()
+    };
+    let pattern = |written: &Spanned<String>| {
+        written.get_ref().parse::<SignalPattern>().map_err(|error| at(written, error.to_string(), ""))
+    };
+    for written in &look.bodies {
+        let pattern = pattern(written)?;
+        if !add(&|name| pattern.matches(name)) {
+            return Err(unknown("the look is of a body", written, names));
+        }
+        let is_moved = |name: &&String| known_as(name).any(|name| pattern.matches(name));
+        if let (true, Some(body)) = (look.moves(), visible.bodies.iter().find(is_moved)) {
+            return Err(at(written, format!("`{body}` is moved by its plant"), "move a `[[figure]]`"));
+        }
+    }
+    for written in &look.parts {
+        let pattern = pattern(written)?;
+        let mut parts = visible.parts.iter().filter(|(part, _)| pattern.matches(part)).peekable();
+        if parts.peek().is_none() {
+            let known: Vec<&str> = visible.parts.iter().map(|(part, _)| part.as_str()).collect();
+            return Err(unknown("the look is of a part", written, &known));
+        }
+        let bodies: Vec<&str> = parts.filter_map(|(_, body)| body.as_deref()).collect();
+        if bodies.is_empty() {
+            return Err(at(written, format!("`{}` has no body", written.get_ref()), "name `bodies`"));
+        }
+        add(&|name| bodies.contains(&name));
+    }
+    Ok(found.into_iter().collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HEAD: &str = r#"
+version = 1
+step = "10ms"
+until = "1s"
+[signals]
+Hot = { type = "LREAL", writer = "plant", unit = "°C" }
+Up = { type = "BOOL", writer = "plant" }
+Text = { type = "STRING[8]", writer = "plant" }
+[clients.plant]
+kind = "plant"
+scene = "plant.toml"
+"#;
+
+    fn bound(more: &str) -> Result<Looks, (String, String)> {
+        let text = format!("{HEAD}{more}");
+        let mut file: ScenarioFile =
+            toml::from_str(&text).map_err(|error| (error.message().to_owned(), String::new()))?;
+        crate::structure::expand(&mut file).expect("signals");
+        Looks::bind(&file, &text).map_err(|found| (found.message, text[found.place].to_owned()))
+    }
+
+    #[test]
+    fn conditions_are_judged_on_one_image() {
+        let looks = bound(
+            "[[look]]\nbodies = [\"a\"]\nwhen = \"Hot > 80 °C and Up\"\ncolour = \"red\"\n\
+             [[look]]\nbodies = [\"a\"]\nfollows = \"Hot\"\nover = [0.0, 1.0]\ngrow = \"z\"\n\
+             [[look]]\nbodies = [\"a\"]\nwhen = \"not Up\"\nhidden = true\n",
+        )
+        .expect("looks");
+        let names: Vec<&str> = looks.signals.iter().map(SignalName::as_str).collect();
+        assert_eq!(names, ["Hot", "Up"]);
+        assert_eq!(looks.active(&[90.0, 1.0]), [0]);
+        assert_eq!(looks.active(&[90.0, 0.0]), [2]);
+        assert_eq!(looks.active(&[70.0, 1.0]), [0; 0]);
+    }
+
+    #[test]
+    fn a_look_of_many_is_one_for_each() {
+        let looks = bound("[[look]]\neach = [1, 3]\nbodies = [\"arm[i]\"]\nwhen = \"Hot > 80\"\ncolour = \"red\"\n")
+            .expect("looks");
+        let bodies: Vec<&str> = looks.looks.iter().map(|look| look.get_ref().bodies[0].get_ref().as_str()).collect();
+        assert_eq!(bodies, ["arm[1]", "arm[2]", "arm[3]"]);
+        assert_eq!(looks.active(&[90.0]), [0, 1, 2]);
+    }
+
+    #[test]
+    fn figures_of_an_array_stand_in_a_circle_or_in_a_row() {
+        let looks = bound(
+            "[[figure]]\nname = \"wall[0..3]\"\nshape = \"box\"\nsize_m = [1.0, 1.0, 1.0]\nposition_m = [2.0, 0.0, 0.0]\n\
+             turn_about_m = [0.0, 0.0, 0.0]\n\
+             [[figure]]\nname = \"post[1..2]\"\nshape = \"cylinder\"\nradius_m = 0.1\nlength_m = 1.0\nstep_m = [0.0, 3.0, 0.0]\n\
+             on = \"wall[i]\"\n",
+        )
+        .expect("figures");
+        let places: Vec<_> = looks.figures.iter().map(|one| one.place.position_m.map(f64::round)).collect();
+        assert_eq!(places[..4], [[2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [-2.0, 0.0, 0.0], [0.0, -2.0, 0.0]]);
+        assert_eq!(places[4..], [[0.0, 0.0, 0.0], [0.0, 3.0, 0.0]]);
+        assert_eq!(looks.figures[5].on.as_deref(), Some("wall[2]"));
+    }
+
+    #[test]
+    fn each_fault_is_told_at_its_place() {
+        let look = |more: &str| bound(&format!("[[look]]\n{more}\n")).expect_err("wrong");
+        let (message, place) = look("bodies = [\"a\"]\nwhen = \"Hto > 80\"\ncolour = \"red\"");
+        assert!(message.contains("Hto"), "{message}");
+        assert_eq!(place, "Hto");
+        assert!(look("bodies = [\"a\"]\nwhen = \"rose(Up)\"\ncolour = \"red\"").0.contains("one image"));
+        assert!(look("colour = \"red\"").0.contains("of nothing"));
+        assert!(look("bodies = [\"a\"]\nwhen = \"Up\"").0.contains("changes nothing"));
+        assert_eq!(look("bodies = [\"a\"]\ncolour = \"rot\""), ("`rot` is no colour".into(), "\"rot\"".into()));
+        assert!(look("bodies = [\"a\"]\nmove_m = [0, 0, 1]").0.contains("nothing drives"));
+        assert!(look("bodies = [\"a\"]\nfollows = \"Hot\"").0.contains("drives nothing"));
+        assert!(look("bodies = [\"a\"]\nfollows = \"Hut\"\nmove_m = [0, 0, 1]").0.contains("not declared"));
+        assert!(look("bodies = [\"a\"]\nfollows = \"Text\"\nmove_m = [0, 0, 1]").0.contains("follows a number"));
+        assert!(look("bodies = [\"a\"]\nfollows = \"Hot\"\ngrow = \"z\"").0.contains("needs `over`"));
+        assert!(look("bodies = [\"a\"]\ntransparent = 2.0").0.contains("not 0 to 1"));
+        assert!(look("bodies = [\"a\"]\nscale = 0.0").0.contains("not above 0"));
+        let figure = |more: &str| bound(&format!("[[figure]]\nname = \"a\"\n{more}\n")).expect_err("wrong").0;
+        assert!(figure("shape = \"box\"").contains("needs `size_m`"));
+        assert!(figure("shape = \"box\"\nsize_m = [1, 0, 1]").contains("no length"));
+        assert!(figure("shape = \"sphere\"\nradius_m = 1.0\nlength_m = 1.0").contains("does not have"));
+        let later = "shape = \"sphere\"\nradius_m = 1.0\non = \"b\"\n[[figure]]\nname = \"b\"\nshape = \"sphere\"\nradius_m = 1.0";
+        assert!(figure(later).contains("comes later"));
+        let view = "[[view]]\nname = \"front\"\nposition_m = [0, 0, 1]\ntarget_m = [0, 0, 1]\n";
+        assert!(bound(view).expect_err("wrong").0.contains("the place where it is"));
+    }
+
+    #[test]
+    fn looks_find_bodies_with_what_is_attached_and_the_bodies_of_parts() {
+        let visible = Visible {
+            bodies: ["arm", "arm/hand", "belt"].map(str::to_owned).to_vec(),
+            parts: vec![("barrier".to_owned(), Some("belt".to_owned())), ("timer".to_owned(), None)],
+        };
+        let names = ["arm", "arm/hand", "belt", "tank"];
+        let found = |more: &str| {
+            let look: LookFile = toml::from_str(more).expect("a look");
+            of(&look, &visible, &names).map_err(|wrong| wrong.message)
+        };
+        assert_eq!(found("bodies = [\"arm\"]"), Ok(vec![0, 1]));
+        assert_eq!(found("bodies = [\"hand\"]"), Ok(vec![1]));
+        assert_eq!(found("bodies = [\"t*\"]\nparts = [\"bar*\"]"), Ok(vec![2, 3]));
+        assert_eq!(found("bodies = [\"tnak\"]"), Err("the look is of a body `tnak`, which is not there".into()));
+        assert_eq!(found("parts = [\"timer\"]"), Err("`timer` has no body".into()));
+        assert_eq!(found("bodies = [\"arm\"]\nmove_m = [0, 0, 1]"), Err("`arm` is moved by its plant".into()));
+        assert_eq!(found("bodies = [\"tank\"]\nmove_m = [0, 0, 1]"), Ok(vec![3]));
+    }
+}
