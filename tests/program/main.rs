@@ -14,6 +14,7 @@ mod control;
 mod coverage;
 mod diff;
 mod digests;
+mod edit;
 mod errors;
 mod expectations;
 mod explore;

@@ -300,7 +300,7 @@ export class MachineView {
 }
 
 /** A shape in metres, cylinders and capsules along z. */
-function geometryOf(shape: Shape): BufferGeometry | null {
+export function geometryOf(shape: Shape): BufferGeometry | null {
   switch (shape.kind) {
     case "box":
       return new BoxGeometry(...shape.size_m);

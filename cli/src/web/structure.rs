@@ -61,8 +61,9 @@ struct Signal {
     names: BTreeMap<String, String>,
 }
 
+/// A body, or a shape of one, where the scene has it.
 #[derive(Debug, Serialize)]
-struct Body {
+pub(crate) struct Body {
     name: String,
     kind: &'static str,
     shape: Shape,
@@ -165,6 +166,13 @@ pub(super) fn of(scenario: &Scenario) -> Result<(Structure, Known), ScenarioErro
         sources: sources(scenario),
     };
     Ok((structure, known))
+}
+
+/// The bodies of a scene, as it is set up.
+pub(crate) fn bodies_of(scene: &Scene) -> Vec<Body> {
+    let mut bodies = Vec::new();
+    add_bodies(scene, &mut bodies, &mut Stage::default());
+    bodies
 }
 
 pub(super) fn written(scenario: &Scenario, declared: &SignalDecl) -> Option<SignalFile> {
