@@ -1,4 +1,4 @@
-//! A change, and what it makes of the files: text for text, nothing read or written here.
+//! A change, as data, and the files that it is made in.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -6,10 +6,8 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 use toml_edit::Value;
 
-use super::construct;
 use super::document::quoted;
 use super::error::EditError;
-use super::wire;
 
 /// The files of a scenario that can be changed, as text.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -223,34 +221,6 @@ pub enum Edit {
         /// Its name.
         name: String,
     },
-}
-
-impl Edit {
-    /// The files with this change.
-    ///
-    /// # Errors
-    /// It cannot be made, and says why.
-    pub fn apply(&self, texts: &Texts) -> Result<Texts, EditError> {
-        match self {
-            Self::Connect { client, signal, variable } => wire::connect(texts, client, signal, variable),
-            Self::Disconnect { client, signal } => wire::disconnect(texts, client, signal),
-            Self::Declare { signal, ty, writer, unit, about } => {
-                let declared = wire::Declared { signal, ty, writer, unit: unit.as_deref(), about: about.as_deref() };
-                wire::declare(texts, &declared)
-            }
-            Self::Withdraw { signal } => wire::withdraw(texts, signal),
-            Self::Add { scene, sort, name, keys } => construct::add(texts, scene, *sort, name, keys),
-            Self::Set { scene, sort, name, key, value } => {
-                construct::set(texts, scene, (*sort, name), key, value.as_ref())
-            }
-            Self::Move { scene, body, position_m } => {
-                let value = Given::Numbers(position_m.to_vec());
-                construct::set(texts, scene, (Sort::Body, body), "position_m", Some(&value))
-            }
-            Self::Rename { scene, sort, name, to } => construct::rename(texts, scene, *sort, name, to),
-            Self::Remove { scene, sort, name } => construct::remove(texts, scene, *sort, name),
-        }
-    }
 }
 
 impl fmt::Display for Edit {

@@ -3,12 +3,13 @@
 //!
 //! | module | subject |
 //! |---|---|
-//! | [`change`] | a change, as data, and what it makes of the files |
+//! | [`change`] | a change, as data, and the files that it is made in |
 //! | `document` | a TOML file as text, and the places in it where something is written |
 //! | `field` | what a table of a scene may say, with units and ranges |
 //! | `reference` | who refers to what |
 //! | `wire` | connections in `scenario.toml` |
 //! | `construct` | the tables of a scene |
+//! | `apply` | what a change makes of the files |
 //! | [`desk`] | the files as they are worked on: changed, taken back, done again |
 //! | `files` | the files on the disk |
 //! | [`ends`] | where connections can begin and end |
@@ -20,6 +21,7 @@
 //! Up to `desk` nothing reads or writes a file. What is written is checked by the code of every other command; nothing here
 //! knows what a correct scenario is. The protocol is in `web/PROTOCOL.md`.
 
+mod apply;
 pub mod change;
 mod construct;
 pub mod desk;
