@@ -5,10 +5,12 @@ import assert from "node:assert/strict";
 import { spawn, spawnSync } from "node:child_process";
 import { mkdtemp, readFile, rm, writeFile } from "node:fs/promises";
 import { tmpdir } from "node:os";
-import { join } from "node:path";
+import { join, resolve } from "node:path";
 import { chromium } from "playwright-core";
 
-const [program, folder = null] = process.argv.slice(2);
+const [named, folder = null] = process.argv.slice(2);
+// the program is started in another folder
+const program = resolve(named);
 const children = [];
 const room = await mkdtemp(join(tmpdir(), "edit-"));
 const browser = await chromium.launch({
