@@ -19,7 +19,7 @@ if (process.argv.includes("--tests")) {
   await rm("dist", { recursive: true, force: true });
   await mkdir("dist", { recursive: true });
   await build({
-    entryPoints: { page: "src/main.ts" },
+    entryPoints: { page: "src/main.ts", edit: "src/construct/main.ts" },
     outdir: "dist",
     bundle: true,
     minify: true,
@@ -29,4 +29,5 @@ if (process.argv.includes("--tests")) {
     loader: { ".css": "css" },
   });
   await copyFile("src/index.html", "dist/index.html");
+  await copyFile("src/construct/edit.html", "dist/edit.html");
 }

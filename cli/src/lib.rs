@@ -32,6 +32,7 @@
 //! | [`check`] | PLC sources checked without being run |
 //! | [`wiring`] | signals between clients, listed and drawn |
 //! | [`plant`] | scenes and components, described without a session |
+//! | [`edit`] | a scenario wired and built in a browser |
 //! | [`model`] | the states of a session, as a table and for a model checker |
 //! | [`export`] | recordings in other forms |
 //! | [`new`] | scenarios to begin with |
@@ -51,6 +52,7 @@ pub mod check;
 pub mod cli;
 pub mod compare;
 pub mod diff;
+pub mod edit;
 pub mod error;
 pub mod explore;
 pub mod export;

@@ -16,6 +16,7 @@ mod dask;
 mod diff;
 mod digests;
 mod drawn;
+mod edit;
 mod errors;
 mod expectations;
 mod explore;

@@ -12,7 +12,7 @@ fn with_python(folder: &Path, words: &[&str]) -> Said {
 
 #[test]
 fn every_template_runs_green_at_once() {
-    for template in ["cell", "tank", "python"] {
+    for template in ["cell", "tank", "python", "blank"] {
         let folder = tempfile::tempdir().unwrap();
         let said = typed(folder.path(), &["new", "my-cell", "--template", template]);
         assert_eq!((said.code, said.err.as_str()), (Some(0), ""), "{template}");

@@ -209,9 +209,9 @@ export interface Session {
 }
 
 /** A value of JSON with the place that it was found at. */
-class Field {
+export class Field {
   constructor(
-    private readonly value: unknown,
+    readonly value: unknown,
     readonly place: string,
   ) {}
 
@@ -322,7 +322,8 @@ function signal(field: Field): Signal {
   };
 }
 
-function body(field: Field): Body {
+/** A body where the scene has it. */
+export function body(field: Field): Body {
   return {
     name: field.at("name").text(),
     kind: field.at("kind").text(),

@@ -8,6 +8,7 @@ use crate::browse::BrowseError;
 use crate::campaign::CampaignError;
 use crate::check::CheckError;
 use crate::diff::DiffError;
+use crate::edit::EditorError;
 use crate::error::{Usage, sum_of_errors};
 use crate::explore::ExploreError;
 use crate::export::ExportError;
@@ -98,6 +99,9 @@ sum_of_errors! {
         /// `wiring` came to nothing.
         #[diagnostic(transparent)]
         Wiring(WiringError),
+        /// `edit` came to nothing.
+        #[diagnostic(transparent)]
+        Edit(EditorError),
         /// `new` came to nothing.
         #[diagnostic(transparent)]
         New(NewError),

@@ -1,5 +1,6 @@
-//! With scenes and scenarios: `onescan components`, `describe`, `wiring` and `new`.
+//! With scenes and scenarios: `onescan components`, `describe`, `wiring`, `edit` and `new`.
 
+use std::net::SocketAddr;
 use std::path::PathBuf;
 
 use clap::{Args as ClapArgs, ValueEnum};
@@ -7,6 +8,7 @@ use onescan_report::view::Side;
 
 use super::error::CommandError;
 use super::value::FormatArg;
+use crate::edit::{self, EditConfig};
 use crate::error::ExitCode;
 use crate::io_list::{ListKind, Wanted};
 use crate::new::from_list::FromListConfig;
@@ -125,6 +127,26 @@ pub fn wiring(args: WiringArgs) -> Result<ExitCode, CommandError> {
     Ok(if sound { ExitCode::Ok } else { ExitCode::WrongInput })
 }
 
+/// Options of `edit`.
+#[derive(Debug, ClapArgs)]
+pub struct EditArgs {
+    /// The scenario: a folder with a `scenario.toml`
+    pub scenario: PathBuf,
+    /// Where browsers of this machine find the page [default: a free port]
+    #[arg(long, value_name = "ADDRESS")]
+    pub web: Option<SocketAddr>,
+}
+
+/// Serves the editor of a scenario until the program is ended.
+///
+/// # Errors
+/// See [`CommandError`].
+pub fn edit(args: EditArgs) -> Result<ExitCode, CommandError> {
+    let address = args.web.unwrap_or_else(|| SocketAddr::from(([127, 0, 0, 1], 0)));
+    edit::serve(&EditConfig { scenario: args.scenario, address })?;
+    Ok(ExitCode::Ok)
+}
+
 /// Options of `new`.
 #[derive(Debug, ClapArgs)]
 pub struct NewArgs {
@@ -194,6 +216,8 @@ pub enum TemplateArg {
     Tank,
     /// A plant of your own in Python, over TCP
     Python,
+    /// A control program, and a machine to be built with `onescan edit`
+    Blank,
 }
 
 impl From<TemplateArg> for Template {
@@ -202,6 +226,7 @@ impl From<TemplateArg> for Template {
             TemplateArg::Cell => Self::Cell,
             TemplateArg::Tank => Self::Tank,
             TemplateArg::Python => Self::Python,
+            TemplateArg::Blank => Self::Blank,
         }
     }
 }

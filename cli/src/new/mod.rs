@@ -35,6 +35,8 @@ pub enum Template {
     Tank,
     /// A plant in Python.
     Python,
+    /// A program, and no machine yet.
+    Blank,
 }
 
 macro_rules! files {
@@ -49,6 +51,7 @@ impl Template {
         match self {
             Self::Cell => files!("cell": "scenario.toml", "plant.toml", "plc/main.st", "README.md"),
             Self::Tank => files!("tank": "scenario.toml", "plant.toml", "plc/main.st", "README.md"),
+            Self::Blank => files!("blank": "scenario.toml", "plant.toml", "plc/main.st", "README.md"),
             // the plant is the package's own example
             Self::Python => &[
                 ("scenario.toml", include_str!("../../../scenarios/templates/python/scenario.toml")),

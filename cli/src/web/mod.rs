@@ -29,7 +29,7 @@ mod looks;
 mod panel;
 mod picture;
 mod seats;
-mod structure;
+pub(crate) mod structure;
 mod viewer;
 
 use std::net::{SocketAddr, TcpListener};
@@ -147,7 +147,7 @@ impl Exit for WebError {
 }
 
 /// Everybody who reaches the page operates the session, so nobody from elsewhere may.
-fn of_this_machine(address: SocketAddr) -> Result<(), Usage> {
+pub(crate) fn of_this_machine(address: SocketAddr) -> Result<(), Usage> {
     if address.ip().is_loopback() {
         return Ok(());
     }
@@ -256,13 +256,13 @@ fn router(session: Arc<Session>) -> Router {
         .route("/api/session", get(structure_of))
         .route("/api/live", get(live))
         .route("/api/picture", post(picture).layer(DefaultBodyLimit::max(PICTURE_MAX)))
-        .fallback(get(asset))
+        .fallback(get(|request: Request| async move { asset(request.uri().path()) }))
         .layer(middleware::from_fn(guarded))
         .with_state(session)
 }
 
 /// Every request passes here: what is foreign is refused, and each answer says what a page may do.
-async fn guarded(request: Request, next: Next) -> Response {
+pub(crate) async fn guarded(request: Request, next: Next) -> Response {
     const PLAIN: [(HeaderName, HeaderValue); 4] = [
         (header::CONTENT_SECURITY_POLICY, HeaderValue::from_static(POLICY)),
         (header::X_CONTENT_TYPE_OPTIONS, HeaderValue::from_static("nosniff")),
@@ -301,8 +301,9 @@ async fn picture(State(session): State<Arc<Session>>, headers: HeaderMap, body: 
     }
 }
 
-async fn asset(request: Request) -> Response {
-    match bundle::file(request.uri().path()) {
+/// A file of the page.
+pub(crate) fn asset(path: &str) -> Response {
+    match bundle::file(path) {
         Some((_, media, bytes)) => ([(header::CONTENT_TYPE, media)], bytes).into_response(),
         None if !bundle::is_there() => (StatusCode::NOT_FOUND, format!("{}\n", bundle::ABSENT)).into_response(),
         None => (StatusCode::NOT_FOUND, "there is nothing of this name\n").into_response(),

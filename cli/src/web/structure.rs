@@ -95,8 +95,9 @@ struct Signal {
     names: BTreeMap<String, String>,
 }
 
+/// A body, or a shape of one, where the scene has it.
 #[derive(Debug, Serialize)]
-pub(super) struct Body {
+pub(crate) struct Body {
     pub(super) name: String,
     pub(super) kind: &'static str,
     pub(super) shape: Shape,
@@ -226,6 +227,13 @@ pub(super) fn of(scenario: &Scenario, training: Option<&Training>) -> Result<(St
         drawings,
     };
     Ok((structure, known))
+}
+
+/// The bodies of a scene, as it is set up.
+pub(crate) fn bodies_of(scene: &Scene) -> Vec<Body> {
+    let mut bodies = Vec::new();
+    add_bodies(scene, &mut bodies, &mut Stage::default());
+    bodies
 }
 
 pub(super) fn written(scenario: &Scenario, declared: &SignalDecl) -> Option<SignalFile> {

@@ -107,6 +107,13 @@ impl TroubleKind {
     }
 }
 
+impl Trouble {
+    /// True if it would keep a session from starting.
+    pub fn is_error(&self) -> bool {
+        self.kind != TroubleKind::Unread
+    }
+}
+
 impl Map {
     /// The wiring of a scenario.
     ///
@@ -151,7 +158,7 @@ impl Map {
 
     /// True if nothing would keep a session from starting.
     pub fn is_sound(&self) -> bool {
-        self.troubles.iter().all(|trouble| trouble.kind == TroubleKind::Unread)
+        !self.troubles.iter().any(Trouble::is_error)
     }
 
     fn trouble(&mut self, kind: TroubleKind, signal: &SignalName, message: String) {

@@ -27,7 +27,7 @@ use onescan_scenario::Scenario;
 use crate::format::Format;
 
 pub use error::WiringError;
-pub use map::{Map, OpenInput, Trouble};
+pub use map::{Map, OpenInput, Trouble, TroubleKind};
 
 /// What to report about a scenario's wiring.
 #[derive(Clone, Debug)]

@@ -1,0 +1,106 @@
+// The editor of a scenario: connections are drawn, a machine is built, and the server writes both.
+
+import "../page.css";
+import "./edit.css";
+import { button, frame, make } from "../dom";
+import { begin_theme } from "../theme";
+import { Builder } from "./builder";
+import { Desk } from "./desk";
+import type { EditState, Finding, Refusal } from "./protocol";
+import { WiringView } from "./wiring";
+
+interface Seen {
+  readonly revision: () => number;
+  readonly screen: (body: string) => { readonly x: number; readonly y: number } | null;
+}
+
+declare global {
+  interface Window {
+    /** What tests read. */
+    onescanEdit?: Seen;
+  }
+}
+
+function findings(all: readonly Finding[]): readonly HTMLElement[] {
+  if (all.length === 0) return [make("p", { class: "empty" }, "Nothing is wrong.")];
+  return all.map((finding) => {
+    const where = finding.file === null ? "" : `${finding.file}${finding.line === null ? "" : `:${finding.line}`}`;
+    const row = make("li", { class: finding.isError ? "finding error" : "finding" }, make("span", { class: "where" }, where), make("span", {}, finding.message));
+    if (finding.help !== null) row.append(make("span", { class: "help" }, finding.help));
+    return row;
+  });
+}
+
+async function begin(): Promise<void> {
+  begin_theme();
+  const parts: { wiring?: WiringView; builder?: Builder } = {};
+  const notice = frame("notice");
+  const refuse = (refusal: Refusal | null, is_theirs = false): void => {
+    notice.hidden = refusal === null;
+    if (refusal === null) return;
+    const where = refusal.references.map((one) => ` ${one.file}:${one.line}`).join(",");
+    notice.replaceChildren(`${refusal.message}${where === "" ? "" : ` (${where.trim()})`} `, ...(is_theirs ? [button("Read again", () => void desk.want({ want: "reload" }))] : []));
+  };
+  const show = (state: EditState): void => {
+    frame("title").textContent = state.scenario;
+    document.title = `${state.scenario} · onescan edit`;
+    undo.disabled = state.undo === null;
+    redo.disabled = state.redo === null;
+    undo.title = state.undo === null ? "Nothing to take back" : `Take back: ${state.undo}`;
+    redo.title = state.redo === null ? "Nothing to do again" : `Do again: ${state.redo}`;
+    const errors = state.findings.filter((finding) => finding.isError).length;
+    const status = frame("check");
+    status.textContent = state.changed.length > 0 ? "changed by somebody else" : errors === 0 ? "sound" : `${errors} wrong`;
+    status.className = errors === 0 && state.changed.length === 0 ? "sound" : "wrong";
+    frame("findings-list").replaceChildren(...findings(state.findings));
+    if (state.changed.length > 0) {
+      refuse({ message: `Somebody else has changed ${state.changed.join(" and ")}: read the files again before you change anything.`, file: null, line: null, references: [] }, true);
+    }
+    parts.wiring?.show(state);
+    parts.builder?.show(state);
+  };
+  const desk = await Desk.open(show, refuse);
+  const undo = button("Undo", () => void desk.want({ want: "undo" }));
+  const redo = button("Redo", () => void desk.want({ want: "redo" }));
+  frame("controls").append(undo, redo, button("Read again", () => void desk.want({ want: "reload" }), "Read the files again"));
+  window.addEventListener("keydown", (event) => {
+    const is_field = event.target instanceof HTMLInputElement || event.target instanceof HTMLSelectElement;
+    if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "z" || is_field) return;
+    event.preventDefault();
+    void desk.want({ want: event.shiftKey ? "redo" : "undo" });
+  });
+  tabs();
+  parts.builder = new Builder(frame("build"), desk.library, (edits) => desk.want({ want: "change", edits }));
+  parts.wiring = new WiringView(frame("wiring"), (one, other) => void desk.want({ want: "join", one, other }), (tip) => void desk.want({ want: "part", tip }));
+  show(desk.state);
+  const bench = parts.builder.bench;
+  window.onescanEdit = { revision: () => desk.state.revision, screen: (body) => bench.screen(body) };
+}
+
+/** The two sheets, by mouse and arrow keys. */
+function tabs(): void {
+  const all = [...frame("sheets-of-edit").querySelectorAll<HTMLButtonElement>("[role=tab]")];
+  const open = (chosen: HTMLButtonElement): void => {
+    for (const tab of all) {
+      tab.setAttribute("aria-selected", String(tab === chosen));
+      tab.tabIndex = tab === chosen ? 0 : -1;
+      frame(tab.dataset.sheet ?? "").hidden = tab !== chosen;
+    }
+  };
+  all.forEach((tab, index) => {
+    tab.addEventListener("click", () => open(tab));
+    tab.addEventListener("keydown", (event) => {
+      if (event.key !== "ArrowLeft" && event.key !== "ArrowRight") return;
+      const next = all[(index + 1) % all.length];
+      if (next === undefined) return;
+      open(next);
+      next.focus();
+    });
+  });
+}
+
+begin().catch((error: unknown) => {
+  const notice = frame("notice");
+  notice.replaceChildren(`The scenario cannot be shown: ${error instanceof Error ? error.message : String(error)}. `, button("Try again", () => window.location.reload()));
+  notice.hidden = false;
+});
