@@ -119,7 +119,7 @@ mod tests {
     fn the_published_schemas_are_those_of_the_structs() {
         is_published("scenario", &scenario());
         is_published("cases", &cases());
-        is_published("lessons", &lessons());
+        is_published("training", &lessons());
         is_published("report", &report());
     }
 

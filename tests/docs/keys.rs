@@ -10,7 +10,8 @@ use crate::markdown::code;
 use crate::repository;
 
 /// Manuals that describe a part of another format.
-const FURTHER: &[(&str, &str)] = &[("cases", "campaigns.md"), ("scenario", "gateway.md"), ("scenario", "report.md")];
+const FURTHER: &[(&str, &str)] =
+    &[("cases", "campaigns.md"), ("scenario", "gateway.md"), ("scenario", "report.md"), ("training", "cases.md")];
 
 /// Keys that a manual describes as a group: the parameters and signals of each component are in the library's pages.
 const GROUPED: &[&str] = &["component"];
