@@ -33,7 +33,7 @@ fn machine(scan_ms: u64, (a, b): (u64, u64), program: &str, formula: &str, timin
         ),
     );
     write(
-        "scenario.toml",
+        "machine.toml",
         format!(
             r#"version = 1
 step = "10ms"
@@ -71,7 +71,7 @@ fn lines(said: &Said) -> Vec<Value> {
 }
 
 fn explored(folder: &Path, words: &[&str]) -> (Vec<Value>, Value) {
-    let said = typed(folder, &[&["explore", ".", "--format", "json"], words].concat());
+    let said = typed(folder, &[&["explore", "machine.toml", "--format", "json"], words].concat());
     let mut all = lines(&said);
     let statement = all.pop().unwrap_or_else(|| panic!("a statement: {said:?}"));
     (all, statement)
@@ -83,7 +83,7 @@ fn repeats(folder: &Path, findings: &[Value]) {
     std::fs::write(folder.join("cases.toml"), format!("version = 1\n{}", cases.join("\n"))).expect("written");
     for (number, finding) in findings.iter().enumerate() {
         let case = format!("timing-{}", number + 1);
-        let run = typed(folder, &["run", ".", "--case", &case, "--format", "json"]);
+        let run = typed(folder, &["run", "machine.toml", "--case", &case, "--format", "json"]);
         let digest = finding["digest"].as_str().expect("a digest");
         assert_eq!(digests(&lines(&run)), [digest], "{case}\n{}\n{run:?}", finding["case"]);
     }
@@ -103,7 +103,7 @@ start = [{ client = "reader", by = "20ms" }, { client = "source", by = "10ms" }]
     // What is wrong already is no finding of a deviation, so that each way is told only if something is expected of it.
     edit(
         folder.path(),
-        "scenario.toml",
+        "machine.toml",
         "always (apart = 0 and n <= 0)",
         "always[0,10ms] n = 0 and always[290ms,300ms] n > 9",
     );
@@ -113,10 +113,10 @@ start = [{ client = "reader", by = "20ms" }, { client = "source", by = "10ms" }]
         (1, &Value::Null),
         "wrong without any deviation: {statement}"
     );
-    edit(folder.path(), "scenario.toml", "always[0,10ms] n = 0 and always[290ms,300ms] n > 9", "always n < 100");
+    edit(folder.path(), "machine.toml", "always[0,10ms] n = 0 and always[290ms,300ms] n > 9", "always n < 100");
     let (findings, statement) = explored(folder.path(), &[]);
     assert!(findings.is_empty(), "{findings:?}");
-    insta::assert_snapshot!(typed(folder.path(), &["explore", "."]).out);
+    insta::assert_snapshot!(typed(folder.path(), &["explore", "machine.toml"]).out);
     assert!(statement["joined"].as_u64().expect("a count") > 0, "{statement}");
 }
 
@@ -125,16 +125,16 @@ start = [{ client = "reader", by = "20ms" }, { client = "source", by = "10ms" }]
 fn what_travels_together_is_late_together() {
     let late = "[timing]\nlate = [{ signals = [\"A\", \"B\"], by = \"10ms\" }]";
     let folder = machine(10, (3, 3), TOGETHER, "always apart = 0", late);
-    let alone = typed(folder.path(), &["explore", "."]);
-    edit(folder.path(), "scenario.toml", "late = [", "together = [");
-    let together = typed(folder.path(), &["explore", ".", "--bound", "2"]);
+    let alone = typed(folder.path(), &["explore", "machine.toml"]);
+    edit(folder.path(), "machine.toml", "late = [", "together = [");
+    let together = typed(folder.path(), &["explore", "machine.toml", "--bound", "2"]);
     edit(
         folder.path(),
-        "scenario.toml",
+        "machine.toml",
         "together = [{ signals = [\"A\", \"B\"], by = \"10ms\" }]",
         "order = [{ signals = [\"A\", \"B\"] }]",
     );
-    let order = typed(folder.path(), &["explore", "."]);
+    let order = typed(folder.path(), &["explore", "machine.toml"]);
     assert_eq!([alone.code, together.code, order.code], [Some(1), Some(0), Some(1)], "{together:?}");
     insta::assert_snapshot!([alone.out, together.out, order.out].join("\n"));
     let (findings, _) = explored(folder.path(), &["--all"]);
@@ -154,17 +154,17 @@ fn tasks_are_late_once_or_for_good() {
         "start = [{ client = \"reader\", by = \"50ms\" }]",
     ] {
         let folder = machine(30, (4, 5), program, "always (n < 100)", &format!("[timing]\n{timing}"));
-        let healthy = typed(folder.path(), &["explore", "."]);
+        let healthy = typed(folder.path(), &["explore", "machine.toml"]);
         assert_eq!(healthy.code, Some(0), "{healthy:?}");
         let counted = (0..20).find(|count| {
-            edit(folder.path(), "scenario.toml", "always (n < 100)", &format!("always[280ms,290ms] (n = {count})"));
+            edit(folder.path(), "machine.toml", "always (n < 100)", &format!("always[280ms,290ms] (n = {count})"));
             let (findings, _) = explored(folder.path(), &["--bound", "0"]);
-            edit(folder.path(), "scenario.toml", &format!("always[280ms,290ms] (n = {count})"), "always (n < 100)");
+            edit(folder.path(), "machine.toml", &format!("always[280ms,290ms] (n = {count})"), "always (n < 100)");
             findings.is_empty()
         });
         let wanted = format!("always[280ms,290ms] (n = {})", counted.expect("a count"));
-        edit(folder.path(), "scenario.toml", "always (n < 100)", &wanted);
-        told.push(typed(folder.path(), &["explore", "."]).out);
+        edit(folder.path(), "machine.toml", "always (n < 100)", &wanted);
+        told.push(typed(folder.path(), &["explore", "machine.toml"]).out);
         let (findings, _) = explored(folder.path(), &["--all"]);
         repeats(folder.path(), &findings);
         let unmerged = explored(folder.path(), &["--all", "--no-merge"]).0;
@@ -215,7 +215,7 @@ fn random_schedules_are_those_of_their_seed() {
     let late = "[timing]\nlate = [{ signals = [\"A\", \"B\"], by = \"10ms\" }]";
     // Three edges that are late are needed: each adds one scan in which A and B differ.
     let folder = machine(10, (3, 3), TOGETHER, "always apart < 3", late);
-    let words = ["explore", ".", "--bound", "1", "--samples", "40", "--seed", "7"];
+    let words = ["explore", "machine.toml", "--bound", "1", "--samples", "40", "--seed", "7"];
     let said = typed(folder.path(), &words);
     assert_eq!(said.code, Some(1), "{said:?}");
     insta::assert_snapshot!(said.out);
@@ -224,8 +224,8 @@ fn random_schedules_are_those_of_their_seed() {
     assert_eq!(findings[0]["deviations"].as_array().map(Vec::len), Some(3), "{findings:?}");
     assert!(findings[0]["drawn"].as_u64() >= Some(3), "{statement}");
     repeats(folder.path(), &findings);
-    edit(folder.path(), "scenario.toml", "apart < 3", "apart < 300");
-    let holds = typed(folder.path(), &["explore", ".", "--samples", "20", "--most", "4"]);
+    edit(folder.path(), "machine.toml", "apart < 3", "apart < 300");
+    let holds = typed(folder.path(), &["explore", "machine.toml", "--samples", "20", "--most", "4"]);
     assert!(holds.out.contains("and so do 20 random ones with 2 to 4, of seed 1"), "{holds:?}");
 }
 
@@ -244,7 +244,7 @@ fn what_tasks_and_orders_cannot_do_is_told() {
     ]
     .map(|timing| {
         let folder = machine(30, (3, 3), TOGETHER, "always n < 9", &format!("[timing]\n{timing}"));
-        let said = typed(folder.path(), &["explore", "."]);
+        let said = typed(folder.path(), &["explore", "machine.toml"]);
         assert_eq!((said.code, said.out.as_str()), (Some(2), ""), "{timing}: {said:?}");
         said.err
     });
@@ -258,7 +258,7 @@ fn what_tasks_and_orders_cannot_do_is_told() {
         let folder = machine(30, (3, 3), TOGETHER, "always n < 9", "");
         let text = format!("version = 1\n\n[[case]]\nname = \"late\"\n{task}\n");
         std::fs::write(folder.path().join("cases.toml"), text).expect("written");
-        let said = typed(folder.path(), &["run", ".", "--case", "late"]);
+        let said = typed(folder.path(), &["run", "machine.toml", "--case", "late"]);
         assert_eq!((said.code, said.out.as_str()), (Some(2), ""), "{task}: {said:?}");
         said.err
     });
@@ -274,13 +274,14 @@ fn a_case_with_a_late_task_is_the_same_resumed_and_over_tcp() {
                 \x20   { client = \"source\", by = \"10ms\" },\n]\n";
     std::fs::write(folder.path().join("cases.toml"), case).expect("written");
     let run = |words: &[&str]| {
-        let said = typed(folder.path(), &[&["run", ".", "--case", "late", "--format", "json"], words].concat());
+        let said =
+            typed(folder.path(), &[&["run", "machine.toml", "--case", "late", "--format", "json"], words].concat());
         assert_eq!(said.code, Some(0), "{said:?}");
         digests(&lines(&said))
     };
     let whole = run(&["--save-at", "100ms", "--save", "s.ckpt"]);
     assert_eq!(whole, run(&["--resume", "s.ckpt"]));
     assert_eq!(whole, run(&["--transport", "tcp"]));
-    let plain = typed(folder.path(), &["run", ".", "--format", "json"]);
+    let plain = typed(folder.path(), &["run", "machine.toml", "--format", "json"]);
     assert_ne!(whole, digests(&lines(&plain)), "it makes a difference");
 }
