@@ -387,11 +387,6 @@ impl Scenario {
         Some(wrong(path, text, message.to_owned(), Some(place), help.cloned()))
     }
 
-    /// An error at a place of the file.
-    pub(crate) fn wrong_at(&self, place: Range<usize>, message: String, help: Option<String>) -> ScenarioError {
-        wrong(&self.path, &self.text, message, Some(place), help)
-    }
-
     /// An error of an option, which has no place in the file.
     pub(crate) fn wrong_option(&self, message: String, help: Option<String>) -> ScenarioError {
         wrong(&self.path, &self.text, message, None, help)

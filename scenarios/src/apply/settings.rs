@@ -12,7 +12,7 @@ use onescan_server::signal::ClientName;
 use super::{settings_of, wrong_case};
 use crate::case::value::{literal_of, quoted};
 use crate::case::{Applied, DEFAULT, Setting};
-use crate::error::ScenarioError;
+use crate::error::{ScenarioError, Wrong};
 use crate::file::ClientFile;
 use crate::load::Scenario;
 
@@ -205,7 +205,7 @@ impl Scenario {
                 Err(UnknownFailure::Component { .. }) if !is_only => {}
                 Err(unknown) => {
                     let (message, help) = told(unknown);
-                    return Err(self.wrong_at(failure.span(), message, help));
+                    return Err(self.wrong_at(Wrong { message, place: failure.span(), help }));
                 }
                 Ok(()) => {}
             }

@@ -231,7 +231,10 @@ mod tests {
             for (early, outcome) in settled.iter().flat_map(|early| early.iter().zip(&outcomes)) {
                 match early {
                     Some(true) => prop_assert_eq!(&outcome.verdict, &Verdict::Met),
-                    Some(false) => prop_assert!(matches!(outcome.verdict, Verdict::Violated { .. })),
+                    Some(false) => {
+                        let is_violated = matches!(outcome.verdict, Verdict::Violated { .. });
+                        prop_assert!(is_violated);
+                    }
                     None => {}
                 }
             }
