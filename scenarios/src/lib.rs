@@ -29,6 +29,7 @@
 //! | [`gateway`] | its real PLCs |
 //! | [`watch`] | variables of its soft PLCs that a run looks at |
 //! | [`figure`], [`look`] | what is drawn beside the bodies of plants, and what they look like while something holds |
+//! | [`visible`] | which bodies a look is of |
 //! | `refusal` | a client that its session does not let in |
 //! | [`expect`] | what a run must show: signal temporal logic |
 //! | [`report`] | what a run produced, and what held it up |
@@ -73,6 +74,7 @@ mod structure;
 pub mod timing;
 pub mod timing_file;
 pub mod value_names;
+pub mod visible;
 pub mod watch;
 
 pub use error::ScenarioError;

@@ -30,7 +30,7 @@ use onescan_server::signal::{ClientName, did_you_mean};
 use crate::error::{ExitCode, Usage};
 use crate::run::RunError;
 use crate::run::in_process::in_process;
-use crate::web::{self, Page};
+use crate::web::{self, Failing, Page};
 use browser::Browser;
 pub use config::{ShotConfig, Size, Theme};
 pub use error::ShotError;
@@ -56,6 +56,8 @@ pub fn run(config: &ShotConfig, out: &mut dyn Write) -> Result<ExitCode, ShotErr
         published,
         mailbox: Mailbox::new(),
         pace: "max".to_owned(),
+        failing: Failing::default(),
+        training: None,
         pictures: Some(sender),
     };
     let page = Page::serve(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)), source)?;

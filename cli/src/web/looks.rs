@@ -3,9 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use onescan_scenario::figure::{Figure, FigureForm};
-use onescan_scenario::look::Visible;
 use onescan_scenario::look_file::{Axis, LookFile};
 use onescan_scenario::panel_file::Seat;
+use onescan_scenario::visible::Visible;
 use onescan_scenario::{Scenario, ScenarioError};
 use onescan_server::layout::ImageLayout;
 use onescan_server::published::SessionView;
