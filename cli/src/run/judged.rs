@@ -123,7 +123,7 @@ impl<'a> Judged<'a> {
     }
 
     /// What is decided of each expectation, whatever comes.
-    pub(crate) fn settled(&mut self) -> Vec<Option<bool>> {
+    pub(crate) fn settled(&self) -> Vec<Option<bool>> {
         self.judge.settled()
     }
 

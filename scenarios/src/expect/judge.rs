@@ -82,17 +82,15 @@ impl Judge {
     }
 
     /// What is decided of each expectation by the samples so far, whatever comes; nothing for what is open.
-    pub fn settled(&mut self) -> Vec<Option<bool>> {
-        if self.open.len() > 0 {
-            self.judge_open();
-            self.forget();
-        }
-        let truth = |monitor: &Monitor| match monitor.first()?.worth.truth {
-            Truth::True => Some(true),
-            Truth::False => Some(false),
-            Truth::Unknown => None,
+    pub fn settled(&self) -> Vec<Option<bool>> {
+        // An operator without an end says nothing before the run is over, so this is the verdict of a run that is cut here.
+        let outcomes = self.clone().finish(TraceEnd::Cut).into_iter();
+        let truth = |outcome: Outcome| match outcome.verdict {
+            Verdict::Met => Some(true),
+            Verdict::Violated { .. } => Some(false),
+            Verdict::Open => None,
         };
-        self.expectations.iter().map(|(_, monitor)| truth(monitor)).collect()
+        outcomes.map(truth).collect()
     }
 
     fn judge_open(&mut self) {
