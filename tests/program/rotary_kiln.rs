@@ -64,7 +64,8 @@ fn a_map_has_the_shell_as_a_picture_and_as_text() {
     let text = std::fs::read_to_string(maps.join("month.csv")).expect("a table");
     let mut lines = text.lines().map(|line| line.split(',').collect::<Vec<_>>());
     let places = lines.next().expect("a head");
-    let first: Vec<f64> = lines.next().expect("a row")[1..].iter().map(|cell| cell.parse().expect("a number")).collect();
+    let first: Vec<f64> =
+        lines.next().expect("a row")[1..].iter().map(|cell| cell.parse().expect("a number")).collect();
     assert_eq!((first.len(), lines.count()), (240, 119));
     // the middle of the zone that is nearest to the flame at 15 m is at 13.75 m
     let hottest = (0..first.len()).max_by(|a, b| first[*a].total_cmp(&first[*b])).expect("some");
