@@ -109,7 +109,7 @@ fn the_check_byte_of_the_thesis_is_refused() {
 #[test]
 fn a_loop_that_waits_within_a_scan_is_told() {
     let said = scanned("thesis-serial.toml", "200s", &[]);
-    assert_eq!(said.code, Some(1), "{said:?}");
+    assert_eq!(said.code, Some(3), "{said:?}");
     let told = format!("{}{}", said.out, said.err);
     assert!(told.contains("endless loop in PRG_Measure_serial at thesis/measure_serial.st:16:13"), "{told}");
 }
