@@ -88,11 +88,12 @@ impl Scenario {
     /// # Errors
     /// No such PLC, or its files are wrong.
     pub(crate) fn plc(&self, name: &ClientName) -> Result<SoftPlcClient, ScenarioError> {
-        let Some(ClientFile::SoftPlc { sources, dialect, tasks, bind, .. }) =
+        let Some(ClientFile::SoftPlc { sources, dialect, tasks, bind, ports, .. }) =
             self.file().clients.get(name).map(toml::Spanned::get_ref)
         else {
             return Err(self.wrong_client(name, format!("client `{name}` is no soft PLC"), None));
         };
+        self.check_lines(name, ports)?;
         let compiled = self.compiled_once(name, || self.compiled(name, sources, *dialect, bind))?;
         self.soft_plc(name, &compiled, tasks)
     }
@@ -263,6 +264,7 @@ impl Scenario {
         let mut client = SoftPlcClient::new(name.clone(), application, &plan, &bindings, self.file().step)
             .map_err(|error| self.wrong_client(name, error.to_string(), None))?;
         client.accept_states_of(self.code_policy());
+        client = self.connected(name, client)?;
         self.preset(&mut client, name, inputs)?;
         self.check_variables(&client, name)?;
         self.check_tasks(&client, name)?;

@@ -26,6 +26,7 @@
 //! | `compilations` | soft PLCs compiled once for all cases |
 //! | [`timing`] | its `[timing]`, bound to its signals |
 //! | [`falsify`] | its `[falsify]`, bound to its signals and clients |
+//! | [`ports_file`], `ports` | the ports and files of soft PLCs, as they are written and made |
 //! | [`gateway`] | its real PLCs |
 //! | [`watch`] | variables of its soft PLCs that a run looks at |
 //! | [`figure`], [`look`] | what is drawn beside the bodies of plants, and what they look like while something holds |
@@ -66,6 +67,8 @@ mod operated;
 mod panel;
 pub mod panel_file;
 pub mod permission;
+mod ports;
+pub mod ports_file;
 mod refusal;
 pub mod report;
 pub mod report_file;

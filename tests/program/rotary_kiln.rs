@@ -80,3 +80,36 @@ fn a_scenario_without_maps_says_so() {
     assert_eq!(said.code, Some(2), "{said:?}");
     assert!(said.err.contains("--map: there is nothing to be drawn"), "{said:?}");
 }
+
+/// What a run of the scanner says, with variables of the PLC at the end.
+fn scanned(file: &str, until: &str, watched: &[&str]) -> crate::typed::Said {
+    let watched = watched.iter().flat_map(|path| ["--watch", path]);
+    let words: Vec<&str> = ["run", file, "--until", until].into_iter().chain(watched).collect();
+    typed(&scenario("rotary-kiln"), &words)
+}
+
+#[test]
+fn a_revolution_has_its_lines_over_ethernet_and_over_a_serial_line() {
+    for file in ["tcp.toml", "serial.toml"] {
+        let said = scanned(file, "200s", &["GV_Rows", "GV_Orders_before"]);
+        assert_eq!(said.code, Some(0), "{file}: {said:?}");
+        assert!(said.out.contains("GV_Rows = 100") && said.out.contains("GV_Orders_before = 100"), "{file}: {said:?}");
+    }
+    is_the_same_over_tcp_and_resumed("rotary-kiln", "tcp.toml", "140s", "131s");
+}
+
+#[test]
+fn the_check_byte_of_the_thesis_is_refused() {
+    let right = scanned("serial.toml", "5s", &["GV_Params_ok", "GV_Refused"]);
+    assert!(right.out.contains("GV_Params_ok = 7") && right.out.contains("GV_Refused = 0"), "{right:?}");
+    let thesis = scanned("thesis-frame.toml", "5s", &["GV_Params_ok", "GV_Refused"]);
+    assert!(thesis.out.contains("GV_Params_ok = 4") && thesis.out.contains("GV_Refused = 9"), "{thesis:?}");
+}
+
+#[test]
+fn a_loop_that_waits_within_a_scan_is_told() {
+    let said = scanned("thesis-serial.toml", "200s", &[]);
+    assert_eq!(said.code, Some(3), "{said:?}");
+    let told = format!("{}{}", said.out, said.err);
+    assert!(told.contains("endless loop in PRG_Measure_serial at thesis/measure_serial.st:16:13"), "{told}");
+}

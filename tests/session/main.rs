@@ -13,5 +13,6 @@ mod recorded;
 mod rest;
 mod security;
 mod shim;
+mod streams;
 mod targets;
 mod wire;

@@ -15,6 +15,7 @@ mod friction;
 mod guided;
 mod handling;
 mod holding;
+mod kiln_scanner;
 mod measuring;
 mod mechanism;
 mod meshes;

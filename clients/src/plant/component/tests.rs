@@ -26,7 +26,7 @@ pub(crate) struct Rig<C: Component> {
     pub(crate) component: C,
     pub(crate) state: C::State,
     pub(crate) seen: SeenBy<C>,
-    failed: Failed,
+    pub(crate) failed: Failed,
 }
 
 impl<C: Component> Rig<C> {
@@ -65,6 +65,7 @@ impl Weather {
                 Values::Bool => Value::Bool(self.0.uniform() < 0.5),
                 Values::Number => Value::Number(2.0 * self.0.normal()),
                 Values::Whole => Value::Whole((self.0.bits() % 5) as i32),
+                Values::Bytes => Value::Bytes,
             })
             .collect()
     }

@@ -109,6 +109,7 @@ library! {
         pressure_sensor::PressureSensor,
         temperature_sensor::TemperatureSensor,
         pyrometer::Pyrometer,
+        infrared_scanner::InfraredScanner,
         contact_sensor::ContactSensor,
         collision_monitor::CollisionMonitor,
         line_scanner::LineScanner,
@@ -142,6 +143,7 @@ library! {
     logic {
         input_controller::InputController,
         gate::Gate,
+        loopback::Loopback,
     }
 }
 
