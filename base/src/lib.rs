@@ -5,7 +5,8 @@
 //! | [`time`] | virtual time, integer nanoseconds |
 //! | [`duration`] | the text forms of durations: `10 ms`, `T#1s500ms`, `PT0.02S` |
 //! | [`elementary`] | the elementary types of IEC 61131-3: names, sizes, ranges, conversions |
-//! | [`signal_type`] | the types that a signal can have: the elementary types, and strings with a length |
+//! | [`signal_type`] | the types that a signal can have: the elementary types, strings with a length, lines of bytes |
+//! | [`byte_line`] | one direction of a line of bytes as the value of a signal |
 //! | [`value`] | values of these types: their bytes, and the text that recordings hold |
 //! | [`nearest`] | the name that was probably meant |
 //! | [`regular`] | files that are read: regular ones, up to a limit |
@@ -14,6 +15,7 @@
 //! Invariants: plain data and pure functions, but for [`regular`], which reads files. No clock, no random number,
 //! no iteration in hash order, and no dependency except serde, thiserror and strsim.
 
+pub mod byte_line;
 pub mod duration;
 pub mod elementary;
 pub mod foreign;

@@ -1,4 +1,4 @@
-//! The types that a signal can have: the elementary types, and strings with a length.
+//! The types that a signal can have: the elementary types, strings with a length, and lines of bytes.
 
 use std::fmt;
 use std::str::FromStr;
@@ -6,6 +6,7 @@ use std::str::FromStr;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use thiserror::Error;
 
+use crate::byte_line::{self, DEFAULT_WINDOW, WINDOW_MAX};
 use crate::elementary::ElementaryType;
 
 /// Characters of a STRING without a length, as most PLCs have it.
@@ -33,6 +34,8 @@ pub enum SignalType {
     String(u16),
     /// Up to so many 16-bit characters.
     Wstring(u16),
+    /// One direction of a line of bytes, with a window of so many: [`crate::byte_line`].
+    Bytes(u16),
 }
 
 macro_rules! constants {
@@ -60,6 +63,7 @@ impl SignalType {
             Self::Elementary(ty) => ty.size() as usize,
             Self::String(capacity) => 2 + capacity as usize,
             Self::Wstring(capacity) => 2 + 2 * capacity as usize,
+            Self::Bytes(window) => byte_line::size(window),
         }
     }
 
@@ -81,11 +85,18 @@ impl SignalType {
         (1..=STRING_CAPACITY_MAX).contains(&capacity).then_some(Self::Wstring(capacity))
     }
 
+    /// The type of a line of bytes with a window of `window`; nothing if a signal cannot have so few or so many.
+    #[must_use]
+    pub fn bytes(window: u16) -> Option<Self> {
+        (1..=WINDOW_MAX).contains(&window).then_some(Self::Bytes(window))
+    }
+
     /// Natural alignment in bytes.
     pub const fn alignment(self) -> usize {
         match self {
             Self::Elementary(ty) => ty.size() as usize,
             Self::String(_) | Self::Wstring(_) => 2,
+            Self::Bytes(_) => 1,
         }
     }
 
@@ -107,13 +118,14 @@ impl fmt::Display for SignalType {
             Self::Elementary(ty) => ty.fmt(f),
             Self::String(capacity) => write!(f, "STRING[{capacity}]"),
             Self::Wstring(capacity) => write!(f, "WSTRING[{capacity}]"),
+            Self::Bytes(window) => write!(f, "BYTES[{window}]"),
         }
     }
 }
 
 /// A text that names no type of a signal.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("`{0}` is not an elementary type of IEC 61131-3 (BOOL, INT, REAL, TIME, STRING[80], …)")]
+#[error("`{0}` is not an elementary type of IEC 61131-3 (BOOL, INT, REAL, TIME, STRING[80], …), nor BYTES[64]")]
 pub struct UnknownType(pub String);
 
 impl FromStr for SignalType {
@@ -124,16 +136,17 @@ impl FromStr for SignalType {
         if let Some(ty) = ElementaryType::find(&upper) {
             return Ok(Self::Elementary(ty));
         }
-        let capacity = |keyword: &str| -> Option<u16> {
+        let capacity = |keyword: &str, default: u16| -> Option<u16> {
             let rest = upper.strip_prefix(keyword)?;
             if rest.is_empty() {
-                return Some(DEFAULT_STRING_CAPACITY);
+                return Some(default);
             }
             rest.strip_prefix('[')?.strip_suffix(']')?.trim().parse().ok()
         };
-        let string = || capacity("STRING").and_then(Self::string);
-        let wstring = || capacity("WSTRING").and_then(Self::wstring);
-        string().or_else(wstring).ok_or_else(|| UnknownType(text.to_owned()))
+        let string = || capacity("STRING", DEFAULT_STRING_CAPACITY).and_then(Self::string);
+        let wstring = || capacity("WSTRING", DEFAULT_STRING_CAPACITY).and_then(Self::wstring);
+        let bytes = || capacity("BYTES", DEFAULT_WINDOW).and_then(Self::bytes);
+        string().or_else(wstring).or_else(bytes).ok_or_else(|| UnknownType(text.to_owned()))
     }
 }
 
@@ -161,8 +174,10 @@ mod tests {
         }
         assert_eq!(" string[12]".parse(), Ok(SignalType::String(12)));
         assert_eq!("WSTRING".parse(), Ok(SignalType::Wstring(80)));
+        assert_eq!("Bytes".parse(), Ok(SignalType::Bytes(64)));
+        assert_eq!("BYTES[1026]".parse(), Ok(SignalType::Bytes(1026)));
         assert_eq!("ldate_and_time".parse(), Ok(SignalType::LDT));
-        for wrong in ["STRING[0]", "STRING[32767]", "STRING[x]", "STRING[", "FLOAT", ""] {
+        for wrong in ["STRING[0]", "STRING[32767]", "STRING[x]", "BYTES[0]", "BYTES[32767]", "STRING[", "FLOAT", ""] {
             assert!(wrong.parse::<SignalType>().is_err(), "{wrong}");
         }
     }

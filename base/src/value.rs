@@ -6,6 +6,7 @@
 
 use thiserror::Error;
 
+use crate::byte_line::{self, ByteLine};
 use crate::elementary::{ElementaryType as E, Kind};
 use crate::signal_type::SignalType;
 
@@ -63,6 +64,7 @@ impl SignalType {
         match self {
             Self::Elementary(ty) => matches!(ty.kind(), Kind::Bool | Kind::Real),
             Self::String(_) | Self::Wstring(_) => true,
+            Self::Bytes(window) => window % 8 != 0,
         }
     }
 
@@ -103,11 +105,15 @@ impl SignalType {
             }
             Self::String(capacity) => clear_tail(bytes, capacity, 1),
             Self::Wstring(capacity) => clear_tail(bytes, capacity, 2),
+            Self::Bytes(window) => {
+                byte_line::canonicalise(window, bytes);
+                Ok(())
+            }
             Self::Elementary(_) => Ok(()),
         }
     }
 
-    /// The value as a number for plots, times in seconds; strings have none.
+    /// The value as a number for plots, times in seconds, of a line how many bytes were put on it; strings have none.
     ///
     /// # Panics
     /// If `bytes` is shorter than [`SignalType::size`].
@@ -119,7 +125,11 @@ impl SignalType {
     /// assert_eq!(SignalType::TIME.as_f64(&1_500_000_000_i64.to_le_bytes()), Some(1.5));
     /// ```
     pub fn as_f64(self, bytes: &[u8]) -> Option<f64> {
-        let Self::Elementary(ty) = self else { return None };
+        let ty = match self {
+            Self::Elementary(ty) => ty,
+            Self::Bytes(_) => return ByteLine::of(self, bytes).map(|line| line.count() as f64),
+            Self::String(_) | Self::Wstring(_) => return None,
+        };
         Some(match ty {
             E::Bool | E::Byte | E::Usint | E::Char => f64::from(bytes[0]),
             E::Sint => f64::from(i8::from_le_bytes(array(bytes))),
@@ -159,6 +169,7 @@ impl SignalType {
                 let units: Vec<u16> = units.map(|unit| u16::from_le_bytes(array(unit))).collect();
                 return String::from_utf16_lossy(&units);
             }
+            Self::Bytes(window) => return byte_line::to_text(window, bytes),
         };
         match ty {
             E::Bool | E::Byte | E::Usint => bytes[0].to_string(),
@@ -197,6 +208,10 @@ impl SignalType {
             ($number:ty, $wanted:literal) => {
                 text.trim().parse::<$number>().map(|value| value.to_le_bytes().to_vec()).map_err(|_| bad($wanted))
             };
+        }
+        if let Self::Bytes(window) = self {
+            return byte_line::parse_text(window, text)
+                .ok_or_else(|| bad("write `count since acknowledged link` and the window in hexadecimal"));
         }
         let Self::Elementary(ty) = self else {
             return self.text_bytes(text).map_err(|fault| {
@@ -299,7 +314,7 @@ impl SignalType {
                 let units: Vec<u8> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
                 (capacity, units.len() / 2, units)
             }
-            Self::Elementary(_) => return Err(TextFault::NoString),
+            Self::Elementary(_) | Self::Bytes(_) => return Err(TextFault::NoString),
         };
         let used = u16::try_from(count).ok().filter(|used| *used <= capacity).ok_or(TextFault::Long)?;
         let mut bytes = used.to_le_bytes().to_vec();

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`plant`] | the simulated machine: a scene of rigid bodies, driven axes and sensors |
 //! | [`soft_plc`] | the embedded soft PLC, which runs IEC 61131-3 source text |
+//! | [`stream`] | ports at which clients send and receive bytes |
 //! | [`gateway`] | a real PLC, over the links that it has |
 //! | [`station`] | a soft PLC on a clock of its own, for gateways to be tried on |
 //! | `information_model` | a session over OPC UA: clients that have nothing but an OPC UA client |
@@ -35,3 +36,4 @@ mod published;
 pub mod replay;
 pub mod soft_plc;
 pub mod station;
+pub mod stream;

@@ -74,7 +74,8 @@ impl Scenario {
             }
             ClientFile::Gateway { .. } => self.gateway(name).map(Member::Gateway),
             ClientFile::SoftPlc { .. } if self.gateways.contains_key(name) => self.gateway(name).map(Member::Gateway),
-            ClientFile::SoftPlc { sources, dialect, tasks, bind, .. } => {
+            ClientFile::SoftPlc { sources, dialect, tasks, bind, ports, .. } => {
+                self.check_lines(name, ports)?;
                 let compiled = self.compiled_once(name, || self.compiled(name, sources, *dialect, bind))?;
                 let plc = self.soft_plc(name, &compiled, tasks)?;
                 Ok(Member::Plc(Box::new(plc)))
@@ -227,6 +228,7 @@ impl Scenario {
         self.fits_step(name, &plan)?;
         let mut client = SoftPlcClient::new(name.clone(), application, &plan, &bindings, self.file().step)
             .map_err(|error| self.wrong_client(name, error.to_string(), None))?;
+        client = self.connected(name, client)?;
         self.preset(&mut client, name, inputs)?;
         self.check_variables(&client, name)?;
         if let Some(sink) = self.coverage() {

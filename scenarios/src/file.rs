@@ -13,6 +13,7 @@ use toml::Spanned;
 use crate::expect::KnownSignal;
 use crate::form::{DialectName, Mebibytes, Name, Scalar, Time, Type, Values, from_optional_text, from_text};
 use crate::panel_file::PanelFile;
+use crate::ports_file::PortFile;
 use crate::report_file::ReportFile;
 use crate::timing_file::TimingFile;
 use crate::value_names::ValueNames;
@@ -171,6 +172,12 @@ pub enum ClientFile {
         /// name, as arrays (`"arm[0..2].x" = "P.arm[0..2].x"`) or as patterns (`"SW_*" = "P.*"`).
         #[serde(default)]
         bind: BTreeMap<String, String>,
+        /// Its ports: lines of bytes to devices, by their names.
+        #[serde(default)]
+        ports: BTreeMap<String, PortFile>,
+        /// A folder with the files that its program finds; `files` if absent and there.
+        #[serde(default)]
+        files: Option<String>,
         /// The real PLC that runs the same sources, instrumented (see `run --gateway`).
         #[serde(default)]
         gateway: Option<Settings>,

@@ -21,6 +21,7 @@
 //! | `mistaken` | the scenario with it |
 //! | `compilations` | soft PLCs compiled once for all cases |
 //! | [`timing`] | its `[timing]`, bound to its signals |
+//! | [`ports_file`], `ports` | the ports and files of soft PLCs, as they are written and made |
 //! | [`gateway`] | its real PLCs |
 //! | [`watch`] | variables of its soft PLCs that a run looks at |
 //! | `refusal` | a client that its session does not let in |
@@ -51,6 +52,8 @@ mod operated;
 mod panel;
 pub mod panel_file;
 pub mod permission;
+mod ports;
+pub mod ports_file;
 mod refusal;
 pub mod report;
 pub mod report_file;

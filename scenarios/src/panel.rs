@@ -114,6 +114,9 @@ fn check_signal(file: &ScenarioFile, kind: ElementKind, name: &Spanned<SignalNam
 fn misfit(kind: ElementKind, signal: &SignalFile) -> Option<&'static str> {
     use onescan_server::signal::SignalType;
 
+    if let SignalType::Bytes(_) = signal.ty {
+        return Some("a line of bytes has no value that people show or write");
+    }
     let is_bool = signal.ty == SignalType::BOOL;
     let is_number = !is_bool && signal.ty.as_f64(&vec![0; signal.ty.size()]).is_some();
     match kind {

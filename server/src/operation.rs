@@ -149,9 +149,9 @@ pub enum SignalFault {
         #[serde(rename = "by_ns")]
         by: TimeSpan,
     },
-    /// Changes are lost: the readers keep the value before until a change arrives.
+    /// Changes are lost: the readers keep the value before until a change arrives. Of a line of bytes: single bytes.
     Lost {
-        /// How many of the changes, from 0 to 1, as text.
+        /// How many of the changes or bytes, from 0 to 1, as text.
         rate: String,
         /// Seed of the draws, one for each change.
         seed: u64,
@@ -172,13 +172,18 @@ pub enum SignalFault {
         /// Seed of the draws, one for each push.
         seed: u64,
     },
-    /// A bit of the value is inverted for a step; for REAL and LREAL only where that leaves a finite number.
+    /// A bit of the value is inverted for a step; for REAL and LREAL only where that leaves a finite number. Of a line of
+    /// bytes: a bit of a byte, for good.
     Flipped {
-        /// In how many of the steps, from 0 to 1, as text.
+        /// In how many of the steps, or bytes, from 0 to 1, as text.
         rate: String,
         /// Seed of the draws.
         seed: u64,
     },
+    /// No byte of a line comes through.
+    Silent,
+    /// No byte of a line comes through, and its connection, if it has one, is no more.
+    Cut,
     /// A normal deviate is added in each step; integers are rounded and saturate at the bounds of their type.
     Noisy {
         /// Standard deviation, in the signal's own unit, as text.
@@ -296,6 +301,8 @@ impl fmt::Display for SignalFault {
             Self::LostSteps { rate, .. } => write!(f, "losing frames at a rate of {}", one_line(rate)),
             Self::Pushed { interval, .. } => write!(f, "pushed every {}", interval.mean),
             Self::Flipped { rate, .. } => write!(f, "flipped at a rate of {}", one_line(rate)),
+            Self::Silent => f.write_str("silent"),
+            Self::Cut => f.write_str("cut"),
             Self::Noisy { sigma, .. } => write!(f, "noisy by {}", one_line(sigma)),
         }
     }

@@ -65,6 +65,7 @@ mod rotary_kiln;
 mod run;
 mod shear;
 mod shift;
+mod streams;
 mod stubs;
 mod suites;
 mod test_manager;

@@ -12,5 +12,6 @@ mod peer;
 mod recorded;
 mod security;
 mod shim;
+mod streams;
 mod targets;
 mod wire;

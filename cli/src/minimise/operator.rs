@@ -138,7 +138,7 @@ fn value_of(ty: SignalType, text: &str) -> Value {
     match ty {
         E::BOOL => Value::from(text == "1" || text.eq_ignore_ascii_case("true")),
         E::TIME | E::LTIME => Value::from(format!("{text}ns")),
-        E::String(_) | E::Wstring(_) => Value::from(text),
+        E::String(_) | E::Wstring(_) | E::Bytes(_) => Value::from(text),
         E::Elementary(_) => {
             let whole = text.parse::<i64>().map(Value::from);
             whole.or_else(|_| text.parse::<f64>().map(Value::from)).unwrap_or_else(|_| Value::from(text))
@@ -149,6 +149,8 @@ fn value_of(ty: SignalType, text: &str) -> Value {
 fn disturbance(fault: &SignalFault, ty: SignalType) -> Result<Table, Usage> {
     let keys = match fault {
         SignalFault::Stuck => vec![("kind", Value::from("stuck"))],
+        SignalFault::Silent => vec![("kind", Value::from("silent"))],
+        SignalFault::Cut => vec![("kind", Value::from("cut"))],
         SignalFault::Inverted => vec![("kind", Value::from("inverted"))],
         SignalFault::Offset { by } => vec![("kind", Value::from("offset")), ("by", value_of(ty, by))],
         SignalFault::Late { by } => {

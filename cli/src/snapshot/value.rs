@@ -17,6 +17,7 @@ pub fn show(ty: SignalType, bytes: &[u8]) -> String {
         E::CHAR | E::WCHAR => quoted(&[unsigned(bytes) as u16]),
         E::String(_) => quoted(&used(bytes, 1)),
         E::Wstring(_) => quoted(&used(bytes, 2)),
+        E::Bytes(_) => ty.to_text(bytes),
         // Signed integers; dates as nanoseconds since 1970 or midnight.
         E::Elementary(_) => signed(bytes).to_string(),
     }
@@ -45,6 +46,7 @@ fn parse(ty: SignalType, text: &str) -> Option<Vec<u8>> {
         },
         E::String(_) => padded(units(text)?, 1, size),
         E::Wstring(_) => padded(units(text)?, 2, size),
+        E::Bytes(_) => ty.parse_text(text).ok(),
         E::Elementary(_) => least(text.parse::<i64>().ok()? as u64),
     }
 }
@@ -145,7 +147,7 @@ mod tests {
             match ty {
                 E::BOOL => bytes[0] &= 1,
                 E::String(_) | E::Wstring(_) => (bytes[0], bytes[1]) = (bytes[0] % 6, 0),
-                E::Elementary(_) => {}
+                E::Elementary(_) | E::Bytes(_) => {}
             }
             prop_assume!(ty.canonicalise(&mut bytes).is_ok());
             prop_assert_eq!(read(ty, &show(ty, &bytes)), Some(bytes));

@@ -25,7 +25,7 @@ impl ByteOrder {
     }
 }
 
-/// True for the types that are one number of whole bytes: all but BOOL and texts.
+/// True for the types that are one number of whole bytes: all but BOOL, texts and lines of bytes.
 pub fn is_number(ty: SignalType) -> bool {
-    !matches!(ty, SignalType::BOOL | SignalType::String(_) | SignalType::Wstring(_))
+    !matches!(ty, SignalType::BOOL | SignalType::String(_) | SignalType::Wstring(_) | SignalType::Bytes(_))
 }

@@ -6,7 +6,7 @@
 use std::collections::BTreeMap;
 
 use onescan_base::did_you_mean;
-use onescan_server::signal::Port;
+use onescan_server::signal::{Port, SignalType};
 
 use super::addresses::{ALL, Addresses};
 use super::exchange::{Direction, Exchange, Feed, Point, Target, Words, is_word};
@@ -98,6 +98,11 @@ fn no_address(name: &str, what: &str) -> MappingFault {
 /// A signal with the addresses that the scenario gives it.
 fn feed(signal: &Variables, addresses: Option<&Addresses>) -> Result<Feed, MappingFault> {
     let Variables { port, paths } = signal;
+    if let SignalType::Bytes(_) = port.ty {
+        let message = format!("`{}` is {}, a line of bytes, which no link to a real PLC carries", port.name, port.ty);
+        let help = "connect the line to the PLC's own port, or let a soft PLC take part".to_owned();
+        return Err(MappingFault::new(port.name.as_str(), message).with_help(Some(help)));
+    }
     let mut paths = paths.clone();
     paths.sort();
     let variable = |path: &String| Target { variable: Some(path.clone()), address: None };

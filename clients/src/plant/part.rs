@@ -1,5 +1,7 @@
 //! A component of the scene at work: bound to its signals, to other components and to the world.
 
+use std::ops::Range;
+
 use onescan_server::client::ClientFault;
 use onescan_server::signal::{PortLayout, SignalName, Slot, SlotError};
 use onescan_server::time::TimeSpan;
@@ -9,7 +11,7 @@ use thiserror::Error;
 use super::command::NumberSlot;
 use super::component::behaviour::{Running, Surroundings};
 use super::component::declare::{Failed, Value};
-use super::component::kind::Values;
+use super::component::kind::{Signal, Values};
 use super::component::origin::{Making, Unmade};
 use super::coordinate::Measured;
 use super::effort::{Effort, Motion};
@@ -17,6 +19,9 @@ use super::machine::Misfit;
 use super::scene::Scene;
 use super::scene::model::{self, When, Wire};
 use super::world::World;
+use crate::stream::{Port, PortState};
+use onescan_base::SignalType;
+use onescan_base::byte_line::DEFAULT_WINDOW;
 use onescan_server::random::seed_for;
 
 /// Why a plant cannot be built; no checked scene is the cause.
@@ -35,6 +40,8 @@ enum ValueSlot {
     Bool(Slot<bool>),
     Number(NumberSlot),
     Whole(Slot<i32>),
+    /// A port reads or writes it.
+    Line,
 }
 
 impl ValueSlot {
@@ -48,6 +55,7 @@ impl ValueSlot {
             Values::Bool => Self::Bool(layout.slot(name.as_str())?),
             Values::Whole => Self::Whole(layout.slot(name.as_str())?),
             Values::Number => Self::Number(NumberSlot::find(layout, name, number)?),
+            Values::Bytes => Self::Line,
         })
     }
 
@@ -56,6 +64,7 @@ impl ValueSlot {
             Self::Bool(slot) => Value::Bool(slot.get(port)),
             Self::Whole(slot) => Value::Whole(slot.get(port)),
             Self::Number(slot) => Value::Number(slot.get(port)),
+            Self::Line => Value::Bytes,
         }
     }
 
@@ -66,7 +75,8 @@ impl ValueSlot {
             (Self::Bool(slot), Value::Bool(value)) => slot.set(port, value),
             (Self::Whole(slot), Value::Whole(value)) => slot.set(port, value),
             (Self::Number(slot), Value::Number(value)) => slot.set(port, value),
-            (Self::Bool(_) | Self::Whole(_) | Self::Number(_), _) => return false,
+            (Self::Line, Value::Bytes) => {}
+            (Self::Bool(_) | Self::Whole(_) | Self::Number(_) | Self::Line, _) => return false,
         }
         true
     }
@@ -83,6 +93,23 @@ enum Feed {
     },
 }
 
+/// Where the signals of a port lie in the plant's inputs and outputs; nowhere, if it is not connected.
+struct LinePlaces {
+    reads: Option<Range<usize>>,
+    writes: Option<Range<usize>>,
+}
+
+impl LinePlaces {
+    /// What the other side has put on the line: nothing, if there is none.
+    fn input<'i>(&self, inputs: &'i [u8]) -> &'i [u8] {
+        self.reads.clone().and_then(|place| inputs.get(place)).unwrap_or_default()
+    }
+
+    fn output<'o>(&self, outputs: &'o mut [u8]) -> &'o mut [u8] {
+        self.writes.clone().and_then(|place| outputs.get_mut(place)).unwrap_or_default()
+    }
+}
+
 /// When a mode of failure is on.
 enum Switch {
     Signal(Slot<bool>),
@@ -95,6 +122,9 @@ pub(super) struct Part {
     feeds: Vec<Feed>,
     outputs: Vec<Option<ValueSlot>>,
     switches: Vec<(usize, Switch)>,
+    ports: Vec<Port>,
+    /// Where the lines of each port lie.
+    lines: Vec<LinePlaces>,
     /// Inputs of this turn; those that nothing feeds never change.
     taken: Vec<Value>,
     /// Outputs of the last turn.
@@ -109,6 +139,7 @@ pub(super) struct PartMemory {
     state: Vec<u8>,
     given: Vec<Value>,
     failed: Failed,
+    ports: Vec<PortState>,
 }
 
 /// What surrounds a part in a half turn.
@@ -154,8 +185,12 @@ impl Part {
         let seed = seed_for(seed, "component", &described.name);
         let making = Making { seed, bound: &described.bound, scene, period };
         let running = kind.make(&described.settings, &making, world);
+        let running = running.map_err(|unmade| Unbuilt::Unmade(described.name.clone(), unmade))?;
+        let (ports, lines) = ports(described, &*running, seed, [reads, writes]).into_iter().unzip();
         Ok(Self {
-            running: running.map_err(|unmade| Unbuilt::Unmade(described.name.clone(), unmade))?,
+            running,
+            ports,
+            lines,
             feeds,
             outputs,
             switches: switches(described, reads)?,
@@ -198,6 +233,7 @@ impl Part {
         outputs: &mut [u8],
     ) -> Result<(), ClientFault> {
         self.take(described, moment, others)?;
+        self.talk(moment, world, outputs);
         self.running.sense(&self.taken, &self.surroundings(moment), world, &mut self.given);
         for (slot, value) in self.outputs.iter().zip(&self.given) {
             // a component gives the values that its kind states, by the same macro
@@ -211,6 +247,26 @@ impl Part {
             }
         }
         Ok(())
+    }
+
+    /// Lets bytes arrive, the component receive and send, and bytes depart; at the set-up the lines are as they begin.
+    fn talk(&mut self, moment: &Moment<'_>, world: &World, outputs: &mut [u8]) {
+        if self.ports.is_empty() {
+            return;
+        }
+        let (around, now_ns) = (self.surroundings(moment), moment.t_v_ns);
+        let Self { ports, lines, running, taken, .. } = self;
+        if now_ns == 0 {
+            ports.iter().zip(lines).for_each(|(port, places)| port.show(places.output(outputs)));
+            return;
+        }
+        for (port, places) in ports.iter_mut().zip(&*lines) {
+            port.arrive(now_ns, places.input(moment.inputs));
+        }
+        running.talk(taken, &around, world, ports);
+        for (port, places) in ports.iter_mut().zip(lines) {
+            port.depart(now_ns, places.input(moment.inputs), places.output(outputs));
+        }
     }
 
     /// The number of the drive that it is, if it drives a joint by its own equations.
@@ -252,7 +308,8 @@ impl Part {
     /// # Errors
     /// A state that does not go into bytes, which no kind has: each is plain data.
     pub(super) fn memory(&self) -> Result<PartMemory, postcard::Error> {
-        Ok(PartMemory { state: self.running.save()?, given: self.given.clone(), failed: self.failed })
+        let ports = self.ports.iter().map(|port| port.state().clone()).collect();
+        Ok(PartMemory { state: self.running.save()?, given: self.given.clone(), failed: self.failed, ports })
     }
 
     /// Checks that a memory is one of such a part; `name` is the part in the refusal.
@@ -264,6 +321,10 @@ impl Part {
         if !self.given.iter().map(Value::values).eq(memory.given.iter().map(Value::values)) {
             return Err(foreign("its outputs are others"));
         }
+        let mut ports = self.ports.iter().zip(&memory.ports);
+        if self.ports.len() != memory.ports.len() || !ports.all(|(port, state)| port.check(state).is_ok()) {
+            return Err(foreign("its lines of bytes are others"));
+        }
         self.running.check(&memory.state).map_err(|error| foreign(&error.to_string()))
     }
 
@@ -274,6 +335,9 @@ impl Part {
     pub(super) fn restore(&mut self, memory: PartMemory, name: &str) -> Result<(), Misfit> {
         let taken = self.running.restore(&memory.state);
         taken.map_err(|error| Misfit(format!("component `{name}`: {error}")))?;
+        for (port, state) in self.ports.iter_mut().zip(memory.ports) {
+            port.restore(state).map_err(|error| Misfit(format!("component `{name}`: {error}")))?;
+        }
         (self.given, self.failed) = (memory.given, memory.failed);
         Ok(())
     }
@@ -318,6 +382,42 @@ impl Part {
         }
         Surroundings { t_v_ns: moment.t_v_ns, dt_s: moment.dt_s, measured: moment.measured, failed }
     }
+}
+
+/// The ports of a component: the first of its inputs and outputs that are lines are the first port, and so on.
+fn ports(
+    described: &model::Component,
+    running: &dyn Running,
+    seed: u64,
+    [reads, writes]: [&PortLayout; 2],
+) -> Vec<(Port, LinePlaces)> {
+    let is_line = |signal: &&Signal| signal.values == Values::Bytes;
+    let place = |layout: &PortLayout, name: &SignalName| {
+        let found = layout.iter().find(|(port, _)| port.name == *name);
+        found.map(|(port, offset)| (offset..offset + port.ty.size(), port.ty))
+    };
+    let inputs = described.kind.inputs.iter().zip(&described.inputs).filter(|(signal, _)| is_line(signal));
+    let mut read = inputs.map(|(_, wire)| match wire {
+        Wire::Signal(name) => place(reads, name),
+        Wire::Open | Wire::Constant(_) | Wire::Output { .. } => None,
+    });
+    let outputs = described.kind.outputs.iter().zip(&described.outputs).filter(|(signal, _)| is_line(signal));
+    let mut written = outputs.map(|(_, name)| name.as_ref().and_then(|name| place(writes, name)));
+    let window = described.window.unwrap_or(DEFAULT_WINDOW);
+    let window_of = |found: &Option<(Range<usize>, SignalType)>| match found {
+        Some((_, SignalType::Bytes(bytes))) => *bytes,
+        _ => window,
+    };
+    let forms = running.ports().into_iter().enumerate();
+    forms
+        .map(|(index, form)| {
+            let (reads, writes) = (read.next().flatten(), written.next().flatten());
+            let seed = seed_for(seed, "line", &index.to_string());
+            let port = Port::new(form, [window_of(&reads), window_of(&writes)], seed);
+            let [reads, writes] = [reads, writes].map(|found| found.map(|(place, _)| place));
+            (port, LinePlaces { reads, writes })
+        })
+        .collect()
 }
 
 /// The scene's own switches of failures, by the index of the mode.

@@ -1,7 +1,7 @@
 //! Which signal is which variable of the PLC.
 //!
 //! A signal that the PLC writes is the `VAR_OUTPUT` of its name in one of the programs; any other
-//! signal is every `VAR_INPUT` of its name. Names are compared as the standard does, without case
+//! signal is every `VAR_INPUT` of its name. A line of bytes belongs to a port. Names are compared as the standard does, without case
 //! (IEC 61131-3 2.1.2). A path given for a signal, or a direct address like `%QX0.1`, goes before its name.
 
 use std::collections::BTreeMap;
@@ -101,6 +101,10 @@ pub fn bind(
     let mut bindings = Bindings::default();
     let own = Own::of(application);
     for signal in signals {
+        if let SignalType::Bytes(_) = signal.ty {
+            // a port has it, and no variable
+            continue;
+        }
         let written = signal.writer.as_ref() == Some(plc);
         let variables = match paths.get(&signal.name) {
             Some(paths) if written && paths.len() > 1 => return Err(several(&signal.name, paths)),

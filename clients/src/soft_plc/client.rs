@@ -13,8 +13,12 @@ use onescan_server::client::{
 use onescan_server::signal::{ClientName, Port, SignalName};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
+use crate::stream::Losses;
+
 use super::bind::{Bindings, Bound, Place};
+use super::files::{FileError, PlcFile};
 use super::journal::{Journalling, Keeper};
+use super::ports::{PlcPort, PortError, Ports, PortsState};
 use super::trace::{TraceSink, Tracing};
 use super::watch::{SightingSink, Watch, Watcher};
 
@@ -51,6 +55,9 @@ pub struct SoftPlcClient {
     tracing: Option<Tracing>,
     journal: Option<Keeper>,
     watcher: Option<Watcher>,
+    ports: Ports,
+    /// What the program finds in its file system at the set-up.
+    files: Vec<PlcFile>,
 }
 
 /// What the PLCs of a run have executed together.
@@ -85,7 +92,42 @@ impl SoftPlcClient {
             tracing: None,
             journal: None,
             watcher: None,
+            ports: Ports::default(),
+            files: Vec::new(),
         })
+    }
+
+    /// Gives the PLC ports; `seed` is for what happens on them by chance.
+    ///
+    /// # Errors
+    /// The application has not what a port is bound to.
+    pub fn with_ports(mut self, described: &[PlcPort], seed: u64) -> Result<Self, PortError> {
+        let size = |ports: &[Port]| ports.iter().map(|port| port.ty.size()).sum();
+        let before = (size(&self.request.reads), size(&self.request.writes));
+        self.ports = Ports::bind(self.plc.application(), described, before, seed)?;
+        let [reads, writes] = Ports::signals(described);
+        self.request.reads.extend(reads);
+        self.request.writes.extend(writes);
+        Ok(self)
+    }
+
+    /// Whether its program has a block or function that opens files.
+    pub fn opens_files(&self) -> bool {
+        PlcFile::are_in(self.plc.application())
+    }
+
+    /// Puts files into the PLC's file system, where its program finds them from the set-up on.
+    ///
+    /// # Errors
+    /// The program has no block or function of files, or there is no room for so many or so long ones.
+    pub fn with_files(mut self, files: Vec<(String, Vec<u8>)>) -> Result<Self, FileError> {
+        self.files = PlcFile::all(self.plc.application(), files)?;
+        Ok(self)
+    }
+
+    /// Bytes that did not get through its ports so far, by the name of the port.
+    pub fn losses(&self) -> impl Iterator<Item = (&str, Losses)> {
+        self.ports.losses()
     }
 
     /// Lets the variable at `path` begin with a value, given as a literal, in place of that of its declaration.
@@ -116,7 +158,11 @@ impl SoftPlcClient {
     /// # Errors
     /// See [`SoftPlc::restore_with`]. Nothing has changed then.
     pub fn restore_with(&mut self, state: &[u8], policy: CodePolicy) -> Result<(), RestoreError> {
+        let (state, ports) = self.split(state)?;
         self.plc.restore_with(state, policy)?;
+        if let Some(ports) = ports {
+            self.ports.restore(ports).map_err(|_| RestoreError::Damaged)?;
+        }
         // What was seen of a run that went further is of a future that may never come.
         let now = self.plc.now();
         if let Some(tracing) = &self.tracing {
@@ -165,6 +211,19 @@ impl SoftPlcClient {
     ) -> Result<(), UnknownVariable> {
         self.watcher = Some(Watcher::new(self.plc.application(), watches, changes, sink)?);
         Ok(())
+    }
+
+    /// The state of the PLC, and that of its ports if it has some, which lies behind it.
+    fn split<'s>(&self, state: &'s [u8]) -> Result<(&'s [u8], Option<PortsState>), RestoreError> {
+        if self.ports.is_empty() {
+            return Ok((state, None));
+        }
+        let (rest, length) = state.split_last_chunk::<8>().ok_or(RestoreError::Damaged)?;
+        let length = usize::try_from(u64::from_le_bytes(*length)).map_err(|_| RestoreError::Damaged)?;
+        let at = rest.len().checked_sub(length).ok_or(RestoreError::Damaged)?;
+        let ports: PortsState = postcard::from_bytes(&rest[at..]).map_err(|_| RestoreError::Damaged)?;
+        self.ports.check(&ports).map_err(|_| RestoreError::Damaged)?;
+        Ok((&rest[..at], Some(ports)))
     }
 
     fn look(&mut self, t_v: VirtualTime) {
@@ -242,6 +301,9 @@ impl Client for SoftPlcClient {
         for (path, value) in &self.presets {
             self.plc.write(path, value).map_err(|error| ClientFault::new(error.to_string()))?;
         }
+        let begun = self.ports.begin(&mut self.plc, outputs);
+        let begun = begun.and_then(|()| self.files.iter().try_for_each(|file| file.put(&mut self.plc)));
+        begun.map_err(|error| ClientFault::new(error.to_string()))?;
         self.take_outputs(outputs);
         self.look(VirtualTime::default());
         Ok(())
@@ -280,6 +342,7 @@ impl Client for SoftPlcClient {
         for run in &self.inputs {
             run.give(inputs, memory);
         }
+        self.ports.arrive(t_v.as_nanos(), inputs, memory);
         if let Some(journal) = &mut self.journal {
             journal.begin(&mut self.plc, t_v);
         }
@@ -292,6 +355,7 @@ impl Client for SoftPlcClient {
         }
         self.look(t_v);
         scanned.map_err(|fault| client_fault(&fault))?;
+        self.ports.depart(t_v.as_nanos(), inputs, outputs, self.plc.memory_mut());
         self.take_outputs(outputs);
         Ok(match self.plc.next_due() {
             Some(due) if !self.plc.wants_every_step() => Wake::At(due),
@@ -301,7 +365,14 @@ impl Client for SoftPlcClient {
     }
 
     fn save(&self) -> Result<Vec<u8>, StateError> {
-        Ok(self.plc.save())
+        let mut state = self.plc.save();
+        if !self.ports.is_empty() {
+            let ports = postcard::to_stdvec(&self.ports.state());
+            let ports = ports.map_err(|error| StateError::Corrupt(format!("its ports cannot be saved: {error}")))?;
+            state.extend_from_slice(&ports);
+            state.extend_from_slice(&(ports.len() as u64).to_le_bytes());
+        }
+        Ok(state)
     }
 
     fn restore(&mut self, state: &[u8]) -> Result<(), StateError> {

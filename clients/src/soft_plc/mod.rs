@@ -5,13 +5,17 @@
 //! | [`bind`] | which signal is which variable of the PLC |
 //! | `client` | inputs in, scan, outputs out |
 //! | [`journal`] | what it does scan by scan, handed over |
+//! | [`ports`] | lines of bytes: serial terminals, connections |
+//! | [`files`] | files that its program finds |
 //! | [`trace`] | which statements wrote its outputs, which ways decisions went |
 //! | `variables` | variables written and forced by path |
 //! | [`watch`] | variables that somebody looks at |
 
 pub mod bind;
 mod client;
+pub mod files;
 pub mod journal;
+pub mod ports;
 pub mod trace;
 mod variables;
 pub mod watch;

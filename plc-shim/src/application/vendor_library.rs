@@ -69,6 +69,10 @@ const PARTS: &[Part] = parts![
     Codesys BOTH, "dynamic_memory";
     TwinCat BOTH, "tc2_standard";
     TwinCat BOTH, "tc2_system";
+    TwinCat BOTH, "tc2_system_files";
+    TwinCat BOTH, "tc2_serialcom";
+    TwinCat BOTH, "tc2_tcpip";
+    TwinCat BOTH, "onescan_ports";
     TwinCat BOTH, "tc2_utilities_conversion";
     TwinCat BOTH, "tc2_utilities_format";
     TwinCat BOTH, "tc2_utilities_memory";
@@ -82,6 +86,7 @@ const PARTS: &[Part] = parts![
     Codesys BOTH, "codesys_systime";
     Codesys BOTH, "caa_types";
     Codesys BOTH, "codesys_sysfile";
+    Codesys BOTH, "codesys_nbs";
     SiemensScl SCL, "siemens_conversion";
     SiemensScl SCL, "siemens_time";
     Iec3 SCL, "siemens_clock";

@@ -103,7 +103,8 @@ fn form(ty: SignalType) -> Option<Form> {
         // Dates and times of day count something else there, and strings begin with two lengths.
         SignalType::Elementary(ElementaryType::Date | ElementaryType::Tod)
         | SignalType::String(_)
-        | SignalType::Wstring(_) => None,
+        | SignalType::Wstring(_)
+        | SignalType::Bytes(_) => None,
         SignalType::Elementary(ty) => {
             scl::elementary_name(ty).map(|written| Form { size: ty.size() as usize, written, is_time: false })
         }

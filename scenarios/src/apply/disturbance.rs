@@ -175,13 +175,20 @@ impl Fault<'_> {
                     None => return Err(self.wrong("a frame is pushed at an `interval`")),
                 }
             }
-            DisturbanceKind::Flipped if self.ty == SignalType::BOOL || is_number(self.ty) => {
+            DisturbanceKind::Silent if is_line(self.ty) => SignalFault::Silent,
+            DisturbanceKind::Cut if is_line(self.ty) => SignalFault::Cut,
+            DisturbanceKind::Flipped if self.ty == SignalType::BOOL || is_number(self.ty) || is_line(self.ty) => {
                 SignalFault::Flipped { rate: number(rate), seed: seed_of("signal flipped", self.signal.as_str()) }
             }
             DisturbanceKind::Noisy if is_number(self.ty) => {
                 SignalFault::Noisy { sigma: number(sigma), seed: seed_of("signal noisy", self.signal.as_str()) }
             }
-            DisturbanceKind::Flipped => return Err(self.wrong("only a BOOL or a number has bits that can be flipped")),
+            DisturbanceKind::Flipped => {
+                return Err(self.wrong("only a BOOL, a number or a line of bytes has bits that can be flipped"));
+            }
+            DisturbanceKind::Silent | DisturbanceKind::Cut => {
+                return Err(self.wrong("only a line of bytes, `type = \"BYTES[n]\"`, can be silent or cut"));
+            }
             DisturbanceKind::Noisy => return Err(self.wrong("only a number can be noisy")),
         })
     }
@@ -228,6 +235,10 @@ impl Fault<'_> {
         let place = self.disturbance.by.as_ref().map_or(self.place.clone(), Spanned::span);
         self.catalogue.wrong(message, Some(place), Some(help.to_owned()))
     }
+}
+
+fn is_line(ty: SignalType) -> bool {
+    matches!(ty, SignalType::Bytes(_))
 }
 
 fn is_number(ty: SignalType) -> bool {

@@ -204,7 +204,8 @@ pub struct DisturbanceFile {
     /// By how much: a number of the signal's type for `offset`, a time as in `"20ms"` for `late`.
     #[schemars(with = "Option<Amount>")]
     pub by: Option<Spanned<toml::Value>>,
-    /// How often, from 0 to 1: of the changes for `lost` (of the steps, if it is a frame), of the steps for `flipped`.
+    /// How often, from 0 to 1: of the changes for `lost` (of the steps, if it is a frame), of the steps for `flipped`; of the
+    /// bytes of a line for both.
     #[schemars(with = "Option<Rate>")]
     pub rate: Option<Spanned<f64>>,
     /// Standard deviation of `noisy`, in the signal's unit.
@@ -267,14 +268,18 @@ pub enum DisturbanceKind {
     Offset,
     /// Values arrive late.
     Late,
-    /// Changes do not arrive; of a frame, the values of whole steps.
+    /// Changes do not arrive; of a frame, the values of whole steps; of a line of bytes, single bytes.
     Lost,
     /// Values travel in frames that are pushed by a clock of their own: between two pushes the last one holds.
     Pushed,
-    /// A bit of the value is inverted for a step.
+    /// A bit of the value is inverted for a step; of a line of bytes, a bit of a byte.
     Flipped,
     /// A normal deviate is added in each step.
     Noisy,
+    /// No byte of a line comes through.
+    Silent,
+    /// No byte of a line comes through, and its connection is no more.
+    Cut,
 }
 
 /// A variable of a PLC is forced for a time, or written once.

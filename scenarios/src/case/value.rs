@@ -21,7 +21,7 @@ pub fn bytes_of(ty: SignalType, value: &Value) -> Result<Vec<u8>, String> {
             plain::parse_signed(text).map(|ns| ns.to_le_bytes().to_vec()).map_err(|_| wanted(ty))
         }
         (E::String(_) | E::Wstring(_), Value::String(text)) => fitting(ty, text),
-        (E::BOOL | E::TIME | E::LTIME | E::String(_) | E::Wstring(_), _) => Err(wanted(ty)),
+        (E::BOOL | E::TIME | E::LTIME | E::String(_) | E::Wstring(_) | E::Bytes(_), _) => Err(wanted(ty)),
         (_, Value::Integer(value)) => {
             ty.integer_bytes(i128::from(*value)).ok_or_else(|| format!("a value of {ty}, which {value} is outside of"))
         }
@@ -37,6 +37,7 @@ fn wanted(ty: SignalType) -> String {
         E::REAL | E::LREAL => "a number".to_owned(),
         E::TIME | E::LTIME => "a time as text, as in \"500ms\"".to_owned(),
         E::String(_) | E::Wstring(_) => "a text".to_owned(),
+        E::Bytes(_) => "anything that can be written here: a line of bytes is disturbed, not set".to_owned(),
         E::Elementary(_) => format!("a whole number of {ty}"),
     }
 }

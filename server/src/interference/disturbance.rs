@@ -7,6 +7,7 @@ use std::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};
 
+use super::line::LineFault;
 use super::number::{deviate, flip, has_bits, number, offset, shift};
 use super::push::Pushes;
 use crate::operation::SignalFault;
@@ -35,6 +36,8 @@ pub(super) enum Disturbance {
     /// The value that the signal keeps.
     Stuck(Vec<u8>),
     Inverted,
+    /// Of a line of bytes.
+    Line(LineFault),
     /// Added to a number of the signal's type, in the bytes of `f64` for REAL and LREAL and of `i64`
     /// for integers.
     Offset([u8; 8]),
@@ -84,7 +87,7 @@ impl Draws {
     }
 
     /// A stream with a rate from 0 to 1; nothing for what is no rate.
-    fn at_rate(rate: &str, seed: u64, onset: &Onset<'_>) -> Option<Self> {
+    pub(super) fn at_rate(rate: &str, seed: u64, onset: &Onset<'_>) -> Option<Self> {
         let rate: f64 = rate.parse().ok()?;
         (0.0..=1.0).contains(&rate).then(|| Self::new(rate, seed, onset))
     }
@@ -93,12 +96,12 @@ impl Draws {
         f64::from_bits(self.number)
     }
 
-    fn happens(&mut self) -> bool {
+    pub(super) fn happens(&mut self) -> bool {
         // From 0, which is never drawn, to 1.
         self.random.uniform() <= self.number()
     }
 
-    fn bit(&mut self) -> Option<u64> {
+    pub(super) fn bit(&mut self) -> Option<u64> {
         self.happens().then(|| self.random.bits())
     }
 
@@ -111,6 +114,9 @@ impl Disturbance {
     /// The fault as it begins; nothing if the signal's type cannot have it.
     pub(super) fn begin(fault: &SignalFault, onset: &Onset<'_>) -> Option<Self> {
         let Onset { ty, committed, .. } = *onset;
+        if let (SignalType::Bytes(_), Some(fault)) = (ty, LineFault::begin(fault, onset)) {
+            return Some(Self::Line(fault));
+        }
         Some(match fault {
             SignalFault::Stuck => Self::Stuck(committed.to_vec()),
             SignalFault::Inverted => (ty == SignalType::BOOL).then_some(Self::Inverted)?,
@@ -137,6 +143,7 @@ impl Disturbance {
                 let at = draws.bit();
                 Self::Flipped { draws, at }
             }
+            SignalFault::Silent | SignalFault::Cut => return None,
             SignalFault::Noisy { sigma, seed } => {
                 let sigma: f64 = number(ty).and(sigma.parse().ok())?;
                 let mut draws = (sigma.is_finite() && sigma >= 0.0).then(|| Draws::new(sigma, *seed, onset))?;
@@ -151,6 +158,7 @@ impl Disturbance {
         match self {
             Self::Stuck(kept) => bytes.copy_from_slice(kept),
             Self::Inverted => bytes[0] ^= 1,
+            Self::Line(fault) => fault.pass(ty, bytes, ends_step),
             Self::Offset(by) => shift(ty, bytes, *by),
             Self::Late(values) => {
                 if ends_step {
@@ -214,6 +222,7 @@ impl Disturbance {
             Self::Late(values) => !values.is_empty() && values.iter().all(sized),
             Self::Pushed { pushes, kept } => sized(kept) && pushes.fits(),
             Self::Inverted => ty == SignalType::BOOL,
+            Self::Line(fault) => fault.fits(ty),
             Self::Offset(_) | Self::Noisy { .. } => number(ty).is_some(),
             Self::Lost { looked, kept, .. } => sized(looked) && sized(kept),
             Self::Flipped { .. } => has_bits(ty),

@@ -10,10 +10,12 @@
 //! |---|---|
 //! | this file | the order of what lies over each other |
 //! | `disturbance` | faults on the way of a signal, at work |
+//! | `line` | faults on a line of bytes |
 //! | `push` | frames that a side pushes by its own clock |
 //! | `number` | numbers shifted, and bits flipped, within their type |
 
 mod disturbance;
+mod line;
 mod number;
 mod push;
 
@@ -68,13 +70,21 @@ impl Interference {
     /// Puts a fault on a signal in place of the one it has. False if its type cannot have that fault.
     pub(crate) fn disturb(&mut self, signal: SignalId, fault: &SignalFault, onset: &Onset<'_>) -> bool {
         let disturbance = Disturbance::begin(fault, onset);
-        let can = disturbance.is_some();
-        self.faults.extend(disturbance.map(|disturbance| (signal, disturbance)));
-        can
+        let Some(disturbance) = disturbance else { return false };
+        let disturbance = match (disturbance, self.faults.remove(&signal)) {
+            (Disturbance::Line(fault), Some(Disturbance::Line(before))) => Disturbance::Line(fault.after(before)),
+            (disturbance, _) => disturbance,
+        };
+        self.faults.insert(signal, disturbance);
+        true
     }
 
     /// Ends a fault; false if there was none.
     pub(crate) fn mend(&mut self, signal: SignalId) -> bool {
+        if let Some(Disturbance::Line(fault)) = self.faults.get_mut(&signal) {
+            // what it has done to bytes that are still in the window stays
+            return fault.end();
+        }
         self.faults.remove(&signal).is_some()
     }
 
@@ -85,6 +95,9 @@ impl Interference {
         for (signal, fault) in &mut self.faults {
             let at = layout.range(*signal);
             fault.pass(layout.ty(*signal), &mut committed[at], ends_step);
+        }
+        if ends_step {
+            self.faults.retain(|_, fault| !matches!(fault, Disturbance::Line(line) if line.is_gone()));
         }
         for (signal, bytes) in &self.writes {
             let at = layout.range(*signal);

@@ -65,8 +65,9 @@ class Simulation(Participant):
     def __init__(self, name: str, period_ns: Optional[int] = None) -> None:
         self._name, self._period_ns = name, period_ns
         self._values: Dict[str, Value] = {}
-        self._own = set(vars(self)) | {"_own", "wake_ns", "t_s", "dt_s"}
+        self._own = set(vars(self)) | {"_own", "wake_ns", "t_s", "t_ns", "dt_s"}
         self.t_s = 0.0
+        self.t_ns = 0
         self.dt_s = 0.0
 
     def start(self) -> None:
@@ -92,12 +93,14 @@ class Simulation(Participant):
             delattr(self, attribute)
         self._values = {signal.name: signal.initial for signal in self.signals(Signal)}
         self.t_s = 0.0
+        self.t_ns = 0
         self.start()
         return self._outputs()
 
     def turn(self, t_v_ns: int, inputs: Dict[str, Value]) -> Dict[str, Value]:
         self._values.update(inputs)
         self.t_s = t_v_ns / 1e9
+        self.t_ns = t_v_ns
         self.step()
         return self._outputs()
 

@@ -79,7 +79,7 @@ impl Form {
         match self.ty {
             T::String(capacity) => usize::from(capacity) + 1,
             T::Wstring(capacity) => 2 * (usize::from(capacity) + 1),
-            other @ T::Elementary(_) => other.size(),
+            other @ (T::Elementary(_) | T::Bytes(_)) => other.size(),
         }
     }
 
@@ -100,6 +100,8 @@ impl Form {
             T::Wstring(_) => 31,
             // LWORD and ULINT; and durations and dates, which TwinCAT counts in ns without a sign.
             T::Elementary(_) => 21,
+            // An array of bytes; the mapping refuses lines of bytes before anybody asks.
+            T::Bytes(_) => 65,
         }
     }
 
@@ -115,7 +117,7 @@ impl Form {
         let end = out.len() + self.size();
         match self.ty {
             T::String(_) | T::Wstring(_) => out.extend_from_slice(&packed[2..]),
-            T::Elementary(_) => out.extend_from_slice(packed),
+            T::Elementary(_) | T::Bytes(_) => out.extend_from_slice(packed),
         }
         out.resize(end, 0);
     }
@@ -129,7 +131,7 @@ impl Form {
                 packed[0] = bytes[0];
                 return bytes[0] <= 1;
             }
-            T::Elementary(_) => {
+            T::Elementary(_) | T::Bytes(_) => {
                 packed.copy_from_slice(bytes);
                 return true;
             }

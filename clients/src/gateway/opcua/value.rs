@@ -17,7 +17,7 @@ pub fn data_type(ty: T) -> DataTypeId {
         T::LWORD | T::ULINT => DataTypeId::UInt64,
         T::REAL => DataTypeId::Float,
         T::LREAL => DataTypeId::Double,
-        T::String(_) | T::Wstring(_) => DataTypeId::String,
+        T::String(_) | T::Wstring(_) | T::Bytes(_) => DataTypeId::String,
         T::LINT | T::TIME | T::LTIME | T::DATE | T::LDATE | T::TOD | T::LTOD | T::DT | T::LDT => DataTypeId::Int64,
     }
 }

@@ -19,6 +19,7 @@ use crate::plant::effort::{Effort, Motion};
 use crate::plant::scene::Scene;
 use crate::plant::scene::model::Bound;
 use crate::plant::world::World;
+use crate::stream::{Form, Port};
 
 /// A kind of component, by its equations.
 pub(crate) trait Component: Sized + Send + 'static {
@@ -94,6 +95,15 @@ pub(crate) trait Component: Sized + Send + 'static {
     /// What it does to the world in the period that `drive` has begun.
     fn effect(&self, state: &Self::State) -> EffectOf<Self>;
 
+    /// How its ports send: one for each of its inputs and outputs that are lines of bytes, in their order.
+    fn ports(&self) -> Vec<Form> {
+        Vec::new()
+    }
+
+    /// Receives and sends at its ports, after the world has moved and before it is looked at; not at the set-up.
+    fn talk(&self, _state: &mut Self::State, _inputs: &Self::Inputs, _turn: &Turn<SeenBy<Self>>, _talk: &mut Talk<'_>) {
+    }
+
     /// Looks at the world and says what there is.
     fn sense(&self, state: &mut Self::State, inputs: &Self::Inputs, turn: &Turn<SeenBy<Self>>) -> Self::Outputs;
 }
@@ -130,6 +140,14 @@ pub(crate) struct Turn<Seen = ()> {
     pub(crate) failed: Failed,
 }
 
+/// The ports of a component in a turn.
+pub(crate) struct Talk<'p> {
+    /// Virtual time at the end of the turn, ns: what is sent goes on its way now.
+    pub(crate) now_ns: u64,
+    /// Its ports, in the order of its lines.
+    pub(crate) ports: &'p mut [Port],
+}
+
 /// What surrounds a component of any kind in a half turn.
 #[derive(Clone, Copy)]
 pub(crate) struct Surroundings<'s> {
@@ -147,6 +165,12 @@ pub(crate) trait Running: Send {
     fn drive(&mut self, inputs: &[Value], around: &Surroundings<'_>, world: &mut World) -> Result<(), ClientFault>;
     /// Second half of a turn.
     fn sense(&mut self, inputs: &[Value], around: &Surroundings<'_>, world: &World, outputs: &mut Vec<Value>);
+    /// How its ports send.
+    fn ports(&self) -> Vec<Form> {
+        Vec::new()
+    }
+    /// Receives and sends at its ports.
+    fn talk(&mut self, _inputs: &[Value], _around: &Surroundings<'_>, _world: &World, _ports: &mut [Port]) {}
     /// The number of the drive that it is, if it drives a joint by its own equations.
     fn drive_number(&self) -> Option<usize>;
     /// The longest sub-step of its equations, s.
@@ -227,6 +251,16 @@ impl<C: Component> Running for Runner<C> {
         self.component.sense(&mut self.state, &C::Inputs::read(inputs), &turn).write(outputs);
     }
 
+    fn ports(&self) -> Vec<Form> {
+        self.component.ports()
+    }
+
+    fn talk(&mut self, inputs: &[Value], around: &Surroundings<'_>, world: &World, ports: &mut [Port]) {
+        let (turn, inputs) = (self.turn(around, world), C::Inputs::read(inputs));
+        let mut talk = Talk { now_ns: around.t_v_ns, ports };
+        self.component.talk(&mut self.state, &inputs, &turn, &mut talk);
+    }
+
     fn drive_number(&self) -> Option<usize> {
         self.tie.driven().map(|driven| driven.drive)
     }
@@ -287,6 +321,6 @@ pub(super) fn kind<C: Component>() -> Kind {
 
 /// The inputs of a kind, with what they are if nobody drives them.
 fn inputs<C: Component>() -> Vec<Signal> {
-    let presets = C::Inputs::unconnected().into_iter().map(|value| Some(value.setting()));
+    let presets = C::Inputs::unconnected().into_iter().map(Value::setting);
     C::Inputs::table().into_iter().zip(presets).map(|(input, preset)| Signal { preset, ..input }).collect()
 }

@@ -136,6 +136,8 @@ pub(crate) enum Value {
     Bool(bool),
     Number(f64),
     Whole(i32),
+    /// A line of bytes, which a port reads and writes.
+    Bytes,
 }
 
 impl Value {
@@ -145,6 +147,7 @@ impl Value {
             Values::Bool => Self::Bool(false),
             Values::Number => Self::Number(0.0),
             Values::Whole => Self::Whole(0),
+            Values::Bytes => Self::Bytes,
         }
     }
 
@@ -158,12 +161,13 @@ impl Value {
         }
     }
 
-    /// As a scene would say it.
-    pub(crate) const fn setting(self) -> Setting {
+    /// As a scene would say it, which no scene does of a line of bytes.
+    pub(crate) const fn setting(self) -> Option<Setting> {
         match self {
-            Self::Bool(flag) => Setting::Flag(flag),
-            Self::Number(number) => Setting::Number(number),
-            Self::Whole(whole) => Setting::Count(whole as i64),
+            Self::Bool(flag) => Some(Setting::Flag(flag)),
+            Self::Number(number) => Some(Setting::Number(number)),
+            Self::Whole(whole) => Some(Setting::Count(whole as i64)),
+            Self::Bytes => None,
         }
     }
 
@@ -173,6 +177,7 @@ impl Value {
             Self::Bool(_) => Values::Bool,
             Self::Number(_) => Values::Number,
             Self::Whole(_) => Values::Whole,
+            Self::Bytes => Values::Bytes,
         }
     }
 }
@@ -202,6 +207,23 @@ macro_rules! signal_type {
 signal_type!(bool, Bool);
 signal_type!(f64, Number);
 signal_type!(i32, Whole);
+
+/// The type of an input or output that is one direction of a line of bytes. It has no value of its own: the first such
+/// input and the first such output are the first of the component's ports, and so on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Line;
+
+impl SignalType for Line {
+    const VALUES: Values = Values::Bytes;
+
+    fn write(self) -> Value {
+        Value::Bytes
+    }
+
+    fn read(value: Value) -> Option<Self> {
+        (value == Value::Bytes).then_some(Self)
+    }
+}
 
 /// The inputs or the outputs of a kind of component.
 pub(crate) trait SignalSet: Default {

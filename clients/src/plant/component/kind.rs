@@ -225,6 +225,8 @@ pub enum Values {
     Number,
     /// DINT.
     Whole,
+    /// One direction of a line of bytes.
+    Bytes,
 }
 
 impl Values {
@@ -234,6 +236,7 @@ impl Values {
             Self::Bool => "`true` or `false`",
             Self::Number => "a finite number",
             Self::Whole => "a whole number from -2147483648 to 2147483647",
+            Self::Bytes => "no constant: a line of bytes comes from a signal",
         }
     }
 }
@@ -244,6 +247,7 @@ impl std::fmt::Display for Values {
             Self::Bool => "BOOL",
             Self::Number => "LREAL",
             Self::Whole => "DINT",
+            Self::Bytes => "BYTES",
         })
     }
 }

@@ -64,6 +64,7 @@ impl Weather {
                 Values::Bool => Value::Bool(self.0.uniform() < 0.5),
                 Values::Number => Value::Number(2.0 * self.0.normal()),
                 Values::Whole => Value::Whole((self.0.bits() % 5) as i32),
+                Values::Bytes => Value::Bytes,
             })
             .collect()
     }

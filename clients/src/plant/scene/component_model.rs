@@ -27,6 +27,9 @@ pub struct Component {
     pub outputs: Vec<Option<SignalName>>,
     /// Type of its number signals.
     pub number: NumberType,
+    /// Bytes in the windows of the signals that are lines.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub window: Option<u16>,
     /// How and when it fails.
     pub failures: Vec<FailureSwitch>,
 }

@@ -1,5 +1,6 @@
 //! Second pass over `[[component]]`: kind, parameters, bindings and wires, all by the kind's table.
 
+use onescan_base::byte_line::{DEFAULT_WINDOW, WINDOW_MAX};
 use onescan_base::nearest;
 use onescan_server::signal::{SignalName, SignalType};
 use toml::Value;
@@ -113,7 +114,7 @@ pub(super) fn check(
         // of no meaning where a fault was found
         let to = to.unwrap_or_default();
         bound.push((text(&one.keys.name).to_owned(), to.clone()));
-        let number = number_type(&one.keys, faults);
+        let types = Types { number: number_type(&one.keys, faults), window: window(one, faults) };
         let settings = settings(one, faults);
         let kind = settled(one, &settings, faults);
         components.push(Component {
@@ -122,9 +123,10 @@ pub(super) fn check(
             kind,
             settings,
             bound: to,
-            inputs: inputs(one, (&known, &lost), number, signals, faults),
-            outputs: outputs(one, number, signals, faults),
-            number,
+            inputs: inputs(one, (&known, &lost), types, signals, faults),
+            outputs: outputs(one, types, signals, faults),
+            number: types.number,
+            window: types.window,
             failures: Vec::new(),
         });
     }
@@ -160,6 +162,9 @@ fn refuse_unknown_keys(one: &Known<'_>, faults: &mut Faults<'_>) {
     right.extend(
         kind.frames.by_key().into_iter().filter(|(_, signals)| !signals.is_empty()).map(|(key, _)| key.to_owned()),
     );
+    if has_lines(kind) {
+        right.push(WINDOW.to_owned());
+    }
     for key in keys.table.keys().filter(|key| !right.contains(key.get_ref())) {
         let wrong = SceneFaultKind::ComponentKey { whose: keys.whose(), key: key.get_ref().clone() };
         faults.add_hinted(key.span(), wrong, hint(key.get_ref(), kind, &right));
@@ -221,9 +226,41 @@ fn number_type(keys: &Keys<'_>, faults: &mut Faults<'_>) -> NumberType {
     }
 }
 
+/// What a component says of the types of its signals.
+#[derive(Clone, Copy)]
+struct Types {
+    number: NumberType,
+    /// Of its lines of bytes, if it has some.
+    window: Option<u16>,
+}
+
+/// The key that says how many bytes the window of each line of a component has.
+pub(super) const WINDOW: &str = "line_window";
+
+/// Whether a kind has lines of bytes.
+pub(super) fn has_lines(kind: &Kind) -> bool {
+    kind.inputs.iter().chain(&kind.outputs).any(|signal| signal.values == Values::Bytes)
+}
+
+fn window(one: &Known<'_>, faults: &mut Faults<'_>) -> Option<u16> {
+    if !has_lines(&one.kind) {
+        return None;
+    }
+    let Some(written) = one.keys.get(WINDOW) else { return Some(DEFAULT_WINDOW) };
+    let window = written.get_ref().as_integer().and_then(|bytes| u16::try_from(bytes).ok());
+    let window = window.filter(|bytes| (1..=WINDOW_MAX).contains(bytes));
+    if window.is_none() {
+        let wanted = format!("a whole number from 1 to {WINDOW_MAX}");
+        let value = written.get_ref().to_string();
+        faults.add(written.span(), SceneFaultKind::Number { key: WINDOW.into(), wanted, value });
+    }
+    Some(window.unwrap_or(DEFAULT_WINDOW))
+}
+
 /// The type of a signal of these values.
-fn elementary(values: Values, number: NumberType) -> SignalType {
-    match (values, number) {
+fn type_of(values: Values, types: Types) -> SignalType {
+    match (values, types.number) {
+        (Values::Bytes, _) => SignalType::Bytes(types.window.unwrap_or(DEFAULT_WINDOW)),
         (Values::Bool, _) => SignalType::BOOL,
         (Values::Whole, _) => SignalType::DINT,
         (Values::Number, NumberType::Real) => SignalType::REAL,
@@ -243,7 +280,7 @@ fn member(structure: Option<&Placed<String>>, frame: &[&str], key: &str) -> Opti
 fn inputs(
     one: &Known<'_>,
     known: (&[Known<'_>], &[String]),
-    number: NumberType,
+    types: Types,
     signals: &mut Signals,
     faults: &mut Faults<'_>,
 ) -> Vec<Wire> {
@@ -264,11 +301,16 @@ fn inputs(
         let from = one.keys.text(&by_wire, "\"component.output\"", faults);
         let wire = match (written, signal, from) {
             (Some(value), ..) => constant(input, by_value, value, faults),
-            (None, Some(name), _) => signals.read(&name, elementary(input.values, number), faults).map(Wire::Signal),
+            (None, Some(name), _) => signals.read(&name, type_of(input.values, types), faults).map(Wire::Signal),
+            (None, None, Some(from)) if input.values == Values::Bytes => {
+                let wanted = "no wire: a line of bytes joins two clients by a signal";
+                faults.add(from.span(), SceneFaultKind::Text { key: by_wire, wanted });
+                None
+            }
             (None, None, Some(from)) => output_of(&from, &by_wire, input.values, known, faults),
             (None, None, None) => {
                 let member = member(frame.as_ref(), one.kind.frames.command, &input.key);
-                member.and_then(|name| signals.read(&name, elementary(input.values, number), faults)).map(Wire::Signal)
+                member.and_then(|name| signals.read(&name, type_of(input.values, types), faults)).map(Wire::Signal)
             }
         };
         wires.push(wire.unwrap_or(Wire::Open));
@@ -343,18 +385,13 @@ fn output_of(
     Some(Wire::Output { component, output: index })
 }
 
-fn outputs(
-    one: &Known<'_>,
-    number: NumberType,
-    signals: &mut Signals,
-    faults: &mut Faults<'_>,
-) -> Vec<Option<SignalName>> {
+fn outputs(one: &Known<'_>, types: Types, signals: &mut Signals, faults: &mut Faults<'_>) -> Vec<Option<SignalName>> {
     let mut names = Vec::new();
     let frame = one.keys.text(Frames::FEEDBACK, STRUCTURE, faults);
     for output in &one.kind.outputs {
         let own = one.keys.text(&format!("{}_signal", output.key), SIGNAL, faults);
         let name = own.or_else(|| member(frame.as_ref(), one.kind.frames.feedback, &output.key));
-        names.push(name.and_then(|name| signals.write(&name, elementary(output.values, number), faults)));
+        names.push(name.and_then(|name| signals.write(&name, type_of(output.values, types), faults)));
     }
     names
 }

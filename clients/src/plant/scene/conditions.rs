@@ -32,6 +32,12 @@ fn condition(table: &SignalTable, signals: &mut Signals, faults: &mut Faults<'_>
         faults.add_hinted(name.span(), SceneFaultKind::ForeignSignal(text(name).to_owned()), hint);
         return None;
     };
+    if let SignalType::Bytes(_) = port.ty {
+        let (name_text, ty) = (text(name).to_owned(), port.ty.to_string());
+        let hint = "what goes wrong with a line of bytes is a `[[case.disturbance]]`".to_owned();
+        faults.add_hinted(name.span(), SceneFaultKind::SignalKey { name: name_text, ty, key: "name" }, Some(hint));
+        return None;
+    }
     if port.ty == SignalType::BOOL {
         refuse_number_keys(table, faults);
     }

@@ -1,10 +1,12 @@
 //! The JSON schema of a scene, for editors: made from the structs that it is read into and from the
 //! library's kinds.
 
+use onescan_base::byte_line::{DEFAULT_WINDOW, WINDOW_MAX};
 use schemars::generate::SchemaSettings;
 use serde_json::{Map, Value, json};
 
 use super::VERSION;
+use super::components::{WINDOW, has_lines};
 use super::format::SceneFile;
 use super::own::Header;
 use crate::plant::component::kind::{Form, Frames, Kind, Parameter, Setting, Signal, Values, unit};
@@ -115,13 +117,20 @@ fn component(kind: &Kind) -> Value {
         properties.insert(parameter.key.to_string(), setting(parameter));
     }
     for input in &kind.inputs {
-        properties.insert(kind.constant_key(&input.key), constant(input));
+        properties.extend(constant(input).map(|constant| (kind.constant_key(&input.key), constant)));
         properties.insert(format!("{}_signal", input.key), described(text(), &input.about));
+        if input.values == Values::Bytes {
+            continue;
+        }
         let wire = json!({ "type": TEXT, "pattern": r"^.+\..+$" });
         properties.insert(format!("{}_from", input.key), described(wire, &input.about));
     }
     for output in &kind.outputs {
         properties.insert(format!("{}_signal", output.key), described(text(), &output.about));
+    }
+    if has_lines(kind) {
+        let window = json!({ "type": WHOLE, "minimum": 1, "maximum": WINDOW_MAX, "default": DEFAULT_WINDOW });
+        properties.insert(WINDOW.to_owned(), described(window, "bytes in the window of each line of bytes"));
     }
     json!({ "type": "object", "additionalProperties": false, "required": required, "properties": properties })
 }
@@ -142,17 +151,18 @@ fn setting(parameter: &Parameter) -> Value {
     schema
 }
 
-fn constant(input: &Signal) -> Value {
+fn constant(input: &Signal) -> Option<Value> {
     let ty = match input.values {
         Values::Bool => FLAG,
         Values::Number => NUMBER,
         Values::Whole => WHOLE,
+        Values::Bytes => return None,
     };
     let mut schema = described(json!({ "type": ty }), &input.about);
     if let Some(preset) = input.preset {
         schema["default"] = plain(preset);
     }
-    schema
+    Some(schema)
 }
 
 fn plain(setting: Setting) -> Value {

@@ -3,6 +3,7 @@
 mod codesys;
 mod matiec;
 mod siemens;
+mod tc2_communication;
 mod tc2_mc2;
 mod tc2_standard;
 mod tc2_system;

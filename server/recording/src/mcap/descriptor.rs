@@ -55,7 +55,7 @@ impl Form {
             T::SINT | T::INT | T::DINT => Self::Signed32,
             T::REAL => Self::Float,
             T::LREAL => Self::Double,
-            T::CHAR | T::WCHAR | T::String(_) | T::Wstring(_) => Self::Text,
+            T::CHAR | T::WCHAR | T::String(_) | T::Wstring(_) | T::Bytes(_) => Self::Text,
             T::Elementary(_) => Self::Signed64,
         }
     }

@@ -176,6 +176,10 @@ fn each<D: DataType>(reader: ColumnReaderImpl<D>, rows: usize, mut put: impl FnM
 
 /// A text as it lies in an image, cut to what fits.
 fn text_bytes(ty: T, text: &str) -> Vec<u8> {
+    if let T::Bytes(_) = ty {
+        // a text of others that is no line is an empty one
+        return ty.parse_text(text).unwrap_or_else(|_| vec![0; ty.size()]);
+    }
     let mut bytes = vec![0, 0];
     let count = match ty {
         T::String(capacity) => {
@@ -188,7 +192,7 @@ fn text_bytes(ty: T, text: &str) -> Vec<u8> {
             bytes.extend(units.flat_map(u16::to_le_bytes));
             (bytes.len() - 2) / 2
         }
-        T::Elementary(_) => 0,
+        T::Elementary(_) | T::Bytes(_) => 0,
     };
     bytes[..2].copy_from_slice(&(count as u16).to_le_bytes());
     bytes.resize(ty.size().max(2), 0);

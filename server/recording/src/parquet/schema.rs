@@ -52,7 +52,7 @@ impl Held {
             T::DINT | T::DWORD | T::UDINT => Self::Same(Physical::INT32),
             T::REAL => Self::Same(Physical::FLOAT),
             T::LREAL => Self::Same(Physical::DOUBLE),
-            T::String(_) | T::Wstring(_) => Self::Text,
+            T::String(_) | T::Wstring(_) | T::Bytes(_) => Self::Text,
             T::Elementary(_) => Self::Same(Physical::INT64),
         }
     }
@@ -80,7 +80,7 @@ fn logical(ty: T) -> Option<LogicalType> {
         T::ULINT | T::LWORD => integer(64, false),
         T::DATE | T::LDATE | T::DT | T::LDT => Some(LogicalType::timestamp(false, TimeUnit::NANOS)),
         T::TOD | T::LTOD => Some(LogicalType::time(false, TimeUnit::NANOS)),
-        T::String(_) | T::Wstring(_) => Some(LogicalType::String),
+        T::String(_) | T::Wstring(_) | T::Bytes(_) => Some(LogicalType::String),
         T::BOOL | T::REAL | T::LREAL | T::TIME | T::LTIME => None,
     }
 }

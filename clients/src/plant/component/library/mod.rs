@@ -140,6 +140,7 @@ library! {
     logic {
         input_controller::InputController,
         gate::Gate,
+        loopback::Loopback,
     }
 }
 

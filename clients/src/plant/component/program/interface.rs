@@ -12,6 +12,7 @@ use onescan_plc_shim::{Input, SoftPlc};
 
 use super::socket::Socket;
 use super::{ProgramError, ProgramFault};
+use crate::plant::component::declare::Value;
 use crate::plant::component::kind::{Failure, Form, Frames, Kind, Parameter, Setting, Signal, Values};
 use crate::plant::coupling::{Coupling, Nothing};
 use crate::plant::file_place::{Place, Source};
@@ -149,7 +150,8 @@ impl Interface {
             parameter.form = match values {
                 Values::Bool => Form::Flag,
                 Values::Number => Form::Number { least: f64::MIN, most: f64::MAX },
-                Values::Whole => Form::Count { least: i64::from(i32::MIN), most: i64::from(i32::MAX) },
+                // no variable of a block is a line
+                Values::Whole | Values::Bytes => Form::Count { least: i64::from(i32::MIN), most: i64::from(i32::MAX) },
             };
             parameter.preset = preset;
         }
@@ -160,13 +162,13 @@ impl Interface {
     /// What values a variable takes, and its initial one.
     fn preset(&self, name: &str, plc: &SoftPlc) -> Result<(Values, Setting), ProgramError> {
         let socket = Socket::find(plc.application(), self, name)?;
-        let found = socket.values().zip(socket.get(plc.memory()));
-        let (values, value) = found.ok_or_else(|| {
+        let setting = socket.get(plc.memory()).and_then(Value::setting);
+        let (values, setting) = socket.values().zip(setting).ok_or_else(|| {
             let cause = format!("`{name}` is {}, which no signal or parameter of a component is", socket.type_name());
             let hint = "it may be BOOL, SINT, USINT, INT, UINT, DINT, REAL or LREAL; times are numbers in s";
             self.wrong(name, cause, Some(hint.to_owned()))
         })?;
-        Ok((values, value.setting()))
+        Ok((values, setting))
     }
 
     /// The constants that are not as they are declared: path and literal.

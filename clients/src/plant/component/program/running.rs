@@ -28,7 +28,7 @@ impl Block {
         let memory = plc.memory_mut();
         for ((socket, value), input) in sockets.inputs.iter().zip(inputs).zip(&kind.inputs) {
             if !socket.set(memory, *value) {
-                let value = value.setting();
+                let value = value.setting().map_or_else(|| "a line of bytes".to_owned(), |value| value.to_string());
                 return Err(ClientFault::new(format!("its input `{}` cannot be {value}", input.key)));
             }
         }

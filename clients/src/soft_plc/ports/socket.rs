@@ -1,0 +1,130 @@
+//! A connection as `OnescanPorts` has it, in `plc-shim/iec/vendor/onescan_ports.st`, on which the blocks of vendors stand.
+
+use onescan_plc_shim::{Application, SoftPlc, WriteError};
+
+use super::{PortError, variable};
+use crate::stream::Port;
+use crate::stream::connection::Link;
+
+/// Ports of TCP that a PLC can have: the length of `OnescanPorts`.
+pub(super) const COUNT: usize = 8;
+
+/// Bytes of either buffer.
+const ROOM: usize = 8192;
+
+/// Where the members of an element of `OnescanPorts` lie in the PLC's memory.
+pub(super) struct Socket {
+    /// Paths of what the program is told at the set-up, with literals.
+    told: Vec<(String, String)>,
+    attempt: usize,
+    served: usize,
+    wanted: usize,
+    link: usize,
+    to_send: usize,
+    arrived: usize,
+    outgoing: usize,
+    incoming: usize,
+}
+
+impl Socket {
+    pub(super) fn bind(
+        application: &Application,
+        port: &str,
+        index: usize,
+        host: &str,
+        number: u16,
+    ) -> Result<Self, PortError> {
+        if index >= COUNT {
+            return Err(PortError::Many { port: port.to_owned() });
+        }
+        if application.variable("OnescanPorts[0].exists").is_err() {
+            return Err(PortError::NoBlock { port: port.to_owned() });
+        }
+        let found = |member: &str| variable(application, port, &format!("OnescanPorts[{index}].{member}"));
+        let place = |member: &str| found(member).map(|variable| variable.offset as usize);
+        let told = [("exists", "TRUE".to_owned()), ("host", format!("'{host}'")), ("number", number.to_string())];
+        Ok(Self {
+            told: told.map(|(member, literal)| (format!("OnescanPorts[{index}].{member}"), literal)).to_vec(),
+            attempt: place("attempt")?,
+            served: place("served")?,
+            wanted: place("wanted")?,
+            link: place("link")?,
+            to_send: place("toSend")?,
+            arrived: place("arrived")?,
+            outgoing: place("outgoing")?,
+            incoming: place("incoming")?,
+        })
+    }
+
+    /// Tells the program that there is such a port.
+    pub(super) fn begin(&self, plc: &mut SoftPlc) -> Result<(), WriteError> {
+        self.told.iter().try_for_each(|(path, literal)| plc.write(path, literal))
+    }
+
+    /// Before a scan: how the connection is, and what has arrived.
+    pub(super) fn arrive(&self, port: &mut Port, memory: &mut [u8]) {
+        if !self.is_wanted(memory) || number(memory, self.served) != number(memory, self.attempt) {
+            return;
+        }
+        let link: i16 = match port.link() {
+            Link::Closed => 0,
+            Link::Connecting => 1,
+            Link::Open => 2,
+            Link::Ended => 3,
+        };
+        write(memory, self.link, &link.to_le_bytes());
+        let arrived = number(memory, self.arrived) as usize;
+        let bytes = port.take(ROOM.saturating_sub(arrived));
+        write(memory, self.incoming + arrived.min(ROOM), &bytes);
+        write(memory, self.arrived, &((arrived + bytes.len()) as u32).to_le_bytes());
+    }
+
+    /// After a scan: connects, sends and disconnects as the program wants.
+    pub(super) fn depart(&self, port: &mut Port, memory: &mut [u8]) {
+        let (attempt, served) = (number(memory, self.attempt), number(memory, self.served));
+        let is_wanted = self.is_wanted(memory);
+        if is_wanted && attempt == served {
+            // what waits already is to be on its way first, so that the program sees when there is room
+            if port.pending() == 0 {
+                self.send(port, memory);
+            }
+            return;
+        }
+        // a program that connects anew has given up what it had not sent
+        if !is_wanted {
+            self.send(port, memory);
+        }
+        port.disconnect();
+        if is_wanted && port.link() == Link::Closed {
+            port.connect();
+            write(memory, self.served, &attempt.to_le_bytes());
+        }
+    }
+
+    fn send(&self, port: &mut Port, memory: &mut [u8]) {
+        let count = (number(memory, self.to_send) as usize).min(ROOM);
+        if count > 0 && port.link() == Link::Open {
+            if let Some(bytes) = memory.get(self.outgoing..self.outgoing + count) {
+                port.send(bytes);
+            }
+            write(memory, self.to_send, &[0; 4]);
+        }
+    }
+
+    fn is_wanted(&self, memory: &[u8]) -> bool {
+        memory.get(self.wanted).is_some_and(|wanted| *wanted != 0)
+    }
+}
+
+/// A place of another application, beyond the end of memory, holds 0.
+fn number(memory: &[u8], at: usize) -> u32 {
+    let bytes = memory.get(at..at + 4).and_then(|bytes| <[u8; 4]>::try_from(bytes).ok());
+    bytes.map_or(0, u32::from_le_bytes)
+}
+
+/// Writes what lies in the memory.
+fn write(memory: &mut [u8], at: usize, bytes: &[u8]) {
+    if let Some(place) = memory.get_mut(at..at + bytes.len()) {
+        place.copy_from_slice(bytes);
+    }
+}
