@@ -45,6 +45,8 @@ signals! {
         line_out: Line,
         /// bytes that it has sent back
         returned: i32,
+        /// time since it received the last one; from the start, if there was none
+        quiet_s: f64,
     }
 }
 
@@ -60,6 +62,9 @@ failures! {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct State {
     returned: u32,
+    /// When the last byte came, ns.
+    last_ns: u64,
+    quiet_s: f64,
 }
 
 /// A plug, by its parameters.
@@ -94,13 +99,18 @@ impl Component for Loopback {
     fn talk(&self, state: &mut State, _: &Inputs, turn: &Turn, talk: &mut Talk<'_>) {
         let Some(port) = talk.ports.first_mut() else { return };
         let got = port.take(usize::MAX);
+        if !got.is_empty() {
+            state.last_ns = talk.now_ns;
+        }
+        state.quiet_s = talk.now_ns.saturating_sub(state.last_ns) as f64 / 1e9;
         if !turn.failed.has(Failure::Silent) && port.send(&got) {
             state.returned = state.returned.wrapping_add(got.len() as u32);
         }
     }
 
     fn sense(&self, state: &mut State, _: &Inputs, _: &Turn) -> Outputs {
-        Outputs { line_out: Line, returned: i32::try_from(state.returned).unwrap_or(i32::MAX) }
+        let returned = i32::try_from(state.returned).unwrap_or(i32::MAX);
+        Outputs { line_out: Line, returned, quiet_s: state.quiet_s }
     }
 }
 
