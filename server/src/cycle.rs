@@ -356,7 +356,9 @@ mod tests {
             assert_eq!(slow.idle_steps(), 0, "nobody has set itself up");
             slow.sleep_until(ClientId(0), at(7));
             slow.sleep_until(ClientId(1), at(9));
-            [0, 1].map(|client| slow.signal_ready(ClientId(client)));
+            for client in [0, 1] {
+                slow.signal_ready(ClientId(client));
+            }
             let mut fast = slow.clone();
             assert_eq!(fast.idle_steps(), 6);
             while slow.steps() < StepCount(6) || slow.server() != ServerState::Write || !slow.is_at_boundary() {

@@ -239,7 +239,9 @@ pub(super) fn scanner(_: &Path) -> Prepared {
             input.iter().filter(|byte| matches!(device.hear(**byte), Some(Answer::Bytes(bytes)) if bytes[0] == ACK));
         let good = good.count() > 0;
         // whatever came before: an EOT, and the byte behind it, end it
-        [0x04, 0x00].map(|byte| device.hear(byte));
+        for byte in [0x04, 0x00] {
+            device.hear(byte);
+        }
         let heard = command(b"AR").into_iter().filter_map(|byte| device.hear(byte)).last();
         assert_eq!(heard, Some(Answer::Bytes(vec![ACK])), "a command is heard after anything");
         assert!((66..=1033).contains(&device.settings().line_bytes()));
