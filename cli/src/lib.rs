@@ -13,6 +13,7 @@
 //! | [`compare`] | lockstep beside the other ways of bringing plant and PLC together |
 //! | [`bisect`] | the commit since which a run is another |
 //! | [`diff`] | where two recordings or snapshots part, and why |
+//! | [`view`] | a recording as a page |
 //! | [`report`] | what a recorded run produced |
 //! | [`regress`] | all cases run, compared with reviewed snapshots, reported |
 //! | [`why`] | the way from a signal back to the statement in which two runs part |
@@ -20,6 +21,7 @@
 //! | [`snapshot`] | trajectories as small text, compared |
 //! | [`run`] | runs of a scenario: in lockstep or not, recorded, reported |
 //! | [`freewheel`] | running without lockstep, to show what it is good for |
+//! | [`past`] | the past of a session: moments that are kept, any other re-run |
 //! | [`access`] | who may take part in sessions over a network |
 //! | [`session`] | part in a session that another process serves |
 //! | [`plc`] | a soft PLC as a process of its own |
@@ -61,6 +63,7 @@ pub mod minimise;
 pub mod model;
 pub mod mutate;
 pub mod new;
+pub mod past;
 pub mod plant;
 pub mod plc;
 pub mod regress;
@@ -70,6 +73,7 @@ pub mod review;
 pub mod run;
 pub mod session;
 pub mod snapshot;
+pub mod view;
 mod web;
 pub mod why;
 pub mod wiring;

@@ -25,7 +25,7 @@ use std::sync::{Arc, OnceLock};
 
 use crate::check::Checked;
 use crate::compile::fault::FaultTable;
-use crate::compile::points::Point;
+use crate::compile::points::{Point, PointKind};
 use crate::compile::{Compiled, Noted, compile};
 use crate::diagnostic::Diagnostics;
 use crate::input::Input;
@@ -201,6 +201,15 @@ impl Application {
     /// What survives a cold start too (`PERSISTENT`), as ranges of memory in ascending order.
     pub fn persistent(&self) -> &[Range<u32>] {
         &self.inner.persistent
+    }
+
+    /// File and line, from 1, of each place that notes whether it has been executed, in the order of
+    /// [`SoftPlc::executed`](crate::SoftPlc::executed); nothing for one that is no statement.
+    pub fn noted_places(&self) -> impl Iterator<Item = Option<(&str, u32)>> {
+        self.points().iter().map(|point| {
+            let (file, place) = self.sources().locate(point.span);
+            (point.kind == PointKind::Statement).then_some((file, place.line))
+        })
     }
 
     /// What is noted while the program runs; nothing unless it was compiled for that.

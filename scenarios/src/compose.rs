@@ -199,6 +199,19 @@ impl Scenario {
         Ok(Compiled { application, paths, inputs })
     }
 
+    /// Soft PLC `name`, compiled as its client is; nothing if it is none, or a real one stands in for it.
+    ///
+    /// # Errors
+    /// See [`compiled`](Self::compiled).
+    pub fn compiled_plc(&self, name: &ClientName) -> Result<Option<Arc<Compiled>>, ScenarioError> {
+        match self.file().clients.get(name).map(toml::Spanned::get_ref) {
+            Some(ClientFile::SoftPlc { sources, dialect, bind, .. }) if !self.gateways.contains_key(name) => {
+                self.compiled_once(name, || self.compiled(name, sources, *dialect, bind)).map(Some)
+            }
+            _ => Ok(None),
+        }
+    }
+
     /// The same for all cases that set the same.
     fn compiled_once(
         &self,

@@ -190,13 +190,29 @@ pub enum OperationRefused {
 pub struct ClientView {
     /// Where the bodies of plants are.
     pub poses: Vec<Pose>,
+    /// What PLCs hold in their memories.
+    pub memories: Vec<Memory>,
 }
 
 impl ClientView {
     /// Forgets what was seen; the memory is kept for the next look.
     pub fn clear(&mut self) {
         self.poses.clear();
+        self.memories.clear();
     }
+}
+
+/// What a PLC holds between two scans. Where its variables lie, whoever has compiled its program knows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Memory {
+    /// The PLC.
+    pub client: ClientName,
+    /// Its memory.
+    pub bytes: Vec<u8>,
+    /// The paths of the variables that are forced.
+    pub forced: Vec<String>,
+    /// A byte for each place of the program that notes whether it has been executed, 0 if not; empty if none does.
+    pub executed: Vec<u8>,
 }
 
 /// Where a body is: its origin, m, and its orientation, a unit quaternion with the scalar last.

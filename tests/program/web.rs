@@ -11,16 +11,20 @@ use tungstenite::{Message, WebSocket};
 use crate::typed::{begun, scenario, typed};
 
 /// A session with a page, and where that is.
-struct Served {
-    program: Child,
+pub(crate) struct Served {
+    pub(crate) program: Child,
     said: BufReader<ChildStderr>,
-    address: String,
+    pub(crate) address: String,
 }
 
 impl Served {
-    fn begin(name: &str, words: &[&str]) -> Self {
+    pub(crate) fn begin(name: &str, words: &[&str]) -> Self {
         let words = [&["run", ".", "--format", "json", "--web"], words].concat();
-        let mut program = begun(&scenario(name), &words);
+        Self::of(begun(&scenario(name), &words))
+    }
+
+    /// What says where its page is.
+    pub(crate) fn of(mut program: Child) -> Self {
         let mut said = BufReader::new(program.stderr.take().expect("piped"));
         let mut line = String::new();
         while !line.contains("http://") {
@@ -32,29 +36,34 @@ impl Served {
     }
 
     /// The status line and the body of an answer.
-    fn get(&self, path: &str, headers: &[(&str, &str)]) -> (String, String) {
+    pub(crate) fn get(&self, path: &str, headers: &[(&str, &str)]) -> (String, String) {
+        let (head, body) = self.request("GET", path, headers, "");
+        (head.lines().next().expect("a status").to_owned(), body)
+    }
+
+    /// The head and the body of an answer.
+    pub(crate) fn request(&self, method: &str, path: &str, headers: &[(&str, &str)], body: &str) -> (String, String) {
         let mut stream = TcpStream::connect(&self.address).expect("served");
         let has_host = headers.iter().any(|(name, _)| *name == "Host");
         let host = [("Host", self.address.as_str())];
         let all = host.iter().filter(|_| !has_host).chain(headers);
         let lines: String = all.flat_map(|(name, value)| [name, ": ", value, "\r\n"]).collect();
-        let request = format!("GET {path} HTTP/1.1\r\nConnection: close\r\n{lines}");
-        stream.write_all((request + "\r\n").as_bytes()).expect("writable");
+        let length = if body.is_empty() { String::new() } else { format!("Content-Length: {}\r\n", body.len()) };
+        let request = format!("{method} {path} HTTP/1.1\r\nConnection: close\r\n{lines}{length}\r\n{body}");
+        stream.write_all(request.as_bytes()).expect("writable");
         let mut answer = Vec::new();
         stream.read_to_end(&mut answer).expect("an answer");
         let answer = String::from_utf8_lossy(&answer).into_owned();
         let (head, body) = answer.split_once("\r\n\r\n").expect("a head");
-        (head.lines().next().expect("a status").to_owned(), body.to_owned())
+        (head.to_owned(), body.to_owned())
     }
 
-    fn view(&self) -> WebSocket<TcpStream> {
-        let stream = TcpStream::connect(&self.address).expect("served");
-        let request = format!("ws://{}/api/live", self.address).into_client_request().expect("a request");
-        tungstenite::client(request, stream).expect("a viewer").0
+    pub(crate) fn view(&self) -> WebSocket<TcpStream> {
+        view(&self.address)
     }
 
     /// The report of the run.
-    fn report(mut self) -> Value {
+    pub(crate) fn report(mut self) -> Value {
         let output = {
             let mut rest = String::new();
             self.said.read_to_string(&mut rest).expect("text");
@@ -64,12 +73,19 @@ impl Served {
     }
 }
 
-fn ask(viewer: &mut WebSocket<TcpStream>, what: &Value) {
+/// A viewer of the page at this address.
+pub(crate) fn view(address: &str) -> WebSocket<TcpStream> {
+    let stream = TcpStream::connect(address).expect("served");
+    let request = format!("ws://{address}/api/live").into_client_request().expect("a request");
+    tungstenite::client(request, stream).expect("a viewer").0
+}
+
+pub(crate) fn ask(viewer: &mut WebSocket<TcpStream>, what: &Value) {
     viewer.send(Message::text(what.to_string())).expect("sent");
 }
 
 /// The next text that says this.
-fn told(viewer: &mut WebSocket<TcpStream>, kind: &str) -> Value {
+pub(crate) fn told(viewer: &mut WebSocket<TcpStream>, kind: &str) -> Value {
     loop {
         if let Message::Text(text) = viewer.read().expect("a message") {
             let told: Value = serde_json::from_str(&text).expect("JSON");
@@ -92,7 +108,7 @@ fn shown(viewer: &mut WebSocket<TcpStream>) -> (u64, f64) {
     }
 }
 
-const LIVE: &[(&str, &str)] = &[
+pub(crate) const LIVE: &[(&str, &str)] = &[
     ("Upgrade", "websocket"),
     ("Connection", "Upgrade"),
     ("Sec-WebSocket-Version", "13"),
@@ -148,7 +164,7 @@ fn viewers_leave_no_trace() {
         json!({"type": "write", "signal": 0, "value": 1.0, "more": 1}),
         json!({"type": "fail", "component": "nobody", "failure": "stuck", "active": true}),
         json!({"type": "seat", "panel": "nowhere", "take": true}),
-        json!({"type": "show", "t_ns": 1}),
+        json!({"type": "show", "t_ns": -1}),
     ];
     for what in &garbage {
         ask(&mut viewers[0], what);

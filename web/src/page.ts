@@ -3,6 +3,7 @@
 import { button, frame, make } from "./dom";
 import { seconds } from "./format";
 import { Link, type LinkState } from "./link";
+import { OnlineView } from "./online";
 import { PanelView } from "./panels";
 import { PartSheet } from "./part";
 import type { Ask, Message, Picture, Session } from "./protocol";
@@ -25,6 +26,7 @@ export class Page {
   private readonly part: PartSheet;
   private readonly table: SignalTable;
   private readonly source: SourceView;
+  private readonly online: OnlineView;
   private readonly trends: TrendsView;
   private readonly timeline: Timeline;
   private readonly link: Link | null = null;
@@ -53,7 +55,8 @@ export class Page {
     this.trends = new TrendsView(frame("lanes"), readout, session, again);
     this.table = new SignalTable(session, this.values, (signal) => this.trends.toggle(signal), again);
     const code = make("div", { class: "code" });
-    this.source = new SourceView(code, session, this.values);
+    this.online = new OnlineView(session, (ask) => this.ask(ask), again);
+    this.source = new SourceView(code, session, this.values, this.online);
     this.timeline = new Timeline(frame("timeline"), session, (ask) => this.ask(ask));
     this.sensors = session.components.flatMap((one) => {
       const signal = session.signals.findIndex((candidate) => candidate.name === one.senses);
@@ -91,14 +94,14 @@ export class Page {
 
   private plc(code: HTMLElement): HTMLElement {
     const first = this.session.sources[0];
-    if (first === undefined) return make("div", {}, make("p", { class: "empty" }, "No source of a PLC is part of this session."));
+    if (first === undefined) return make("div", {}, make("p", { class: "empty" }, "No source of a PLC is part of this session."), this.online.root);
     const files = make("select", { "aria-label": "Source file" }, ...this.session.sources.map((one) => make("option", {}, one.path)));
     files.addEventListener("change", () => {
       this.source.open(this.session.sources[files.selectedIndex] ?? first);
       this.subscribe();
     });
     this.source.open(first);
-    return make("div", {}, files, code);
+    return make("div", {}, files, code, this.online.root);
   }
 
   private checks(): HTMLElement {
@@ -152,6 +155,7 @@ export class Page {
       ...(this.sheet === "PLC" ? this.source.signals() : []),
     ]);
     this.link.subscribe([...wanted].sort((a, b) => a - b));
+    this.link.watch(this.sheet === "PLC" ? this.online.wanted(this.source.variables()) : []);
   }
 
   private show(picture: Picture): void {
@@ -165,14 +169,14 @@ export class Page {
       for (const one of this.panels) one.view.show(signal, value);
       this.table.show(signal);
       this.part.show(signal);
-      if (!picture.isPast) this.trends.push(signal, picture.t_ns, value);
+      if (!picture.isPast || !this.session.live) this.trends.push(signal, picture.t_ns, value);
     }
     this.machine.arrive(picture.poses);
     if (picture.values.length > 0) {
       if (this.sheet === "PLC") this.source.show();
       this.machine.light_up(new Set(this.sensors.filter((one) => this.values.get(one.signal) !== 0).map((one) => one.body)));
     }
-    if (!picture.isPast) this.trends.at(picture.t_ns);
+    if (!picture.isPast || !this.session.live) this.trends.at(picture.t_ns);
     this.timeline.at(picture);
   }
 
@@ -188,17 +192,24 @@ export class Page {
         this.alarms.length = Math.min(this.alarms.length, ALARMS);
         return this.trends.mark({ t_ns: message.t_ns, text: message.text });
       case "verdict":
-        return this.judge(message.name, message.verdict, message.robustness);
+        return this.judge(message.name, message.verdict, message.robustness, message.t_ns);
       case "looks":
         return this.machine.look(this.looks(message.active));
+      case "variables":
+        this.online.show(message);
+        return this.source.show();
+      case "forked":
+        return this.timeline.forked(message.t_ns, message.url);
       case "error":
         return this.notice(message.message);
     }
   }
 
-  private judge(name: string, verdict: string, robustness: number | null): void {
+  private judge(name: string, verdict: string, robustness: number | null, t_ns: number): void {
     const cell = this.verdicts.get(name);
     if (cell === undefined) return;
+    const was_met = !cell.classList.contains("verdict-fail");
+    if (verdict === "fail" && was_met) this.trends.mark({ t_ns, text: `not met: ${name}` });
     cell.textContent = robustness === null ? verdict : `${verdict} (${Number(robustness.toPrecision(4))})`;
     cell.className = `value verdict-${verdict}`;
   }

@@ -108,6 +108,14 @@ export interface SourceLine {
   /** From 1. */
   readonly line: number;
   readonly variables: readonly string[];
+  /** Numbers of variables of the PLC. */
+  readonly inner: readonly number[];
+}
+
+/** A PLC whose variables can be looked at. Variables of all PLCs are numbered through. */
+export interface Plc {
+  readonly client: string;
+  readonly variables: readonly { readonly path: string; readonly type: string }[];
 }
 
 export interface Source {
@@ -131,6 +139,15 @@ export interface Session {
   readonly panels: readonly Panel[];
   readonly expectations: readonly { readonly name: string; readonly text: string }[];
   readonly sources: readonly Source[];
+  readonly plcs: readonly Plc[];
+}
+
+/** What is new of the PLC's variables. */
+export interface Variables {
+  readonly values: readonly (readonly [number, string])[];
+  readonly forced: readonly number[];
+  /** File and line of what has been executed. */
+  readonly executed: readonly (readonly [string, number])[];
 }
 
 /** A value of JSON with the place that it was found at. */
@@ -334,7 +351,12 @@ export function decodeSession(value: unknown): Session {
       lines: item.at("lines").or<SourceLine[]>([], (all) => all.list((line) => ({
         line: line.at("line").number(),
         variables: line.at("variables").list(text),
+        inner: line.at("inner").or<number[]>([], (all) => all.list(number)),
       }))),
+    })),
+    plcs: list("plcs", (item) => ({
+      client: item.at("client").text(),
+      variables: item.at("variables").list((one) => ({ path: one.at("path").text(), type: one.at("type").text() })),
     })),
   };
 }
@@ -361,11 +383,25 @@ export type Message =
       readonly t_ns: number;
     }
   | { readonly type: "looks"; readonly active: readonly number[] }
+  | ({ readonly type: "variables" } & Variables)
+  /** A session goes on from a moment of the past; its page is at `url`. */
+  | { readonly type: "forked"; readonly t_ns: number; readonly url: string }
   | { readonly type: "error"; readonly message: string };
 
 function seat(field: Field): Seat {
   const one = field.text();
   return one === "free" || one === "mine" || one === "taken" ? one : field.fail(`is \`${one}\`: free, mine or taken`);
+}
+
+function pair<A, B>(field: Field, first: (item: Field) => A, second: (item: Field) => B): readonly [A, B] {
+  const [a, b, ...more] = field.list((item) => item);
+  return a === undefined || b === undefined || more.length > 0 ? field.fail("is no pair") : [first(a), second(b)];
+}
+
+/** The address of a page: of this kind and no other, as it becomes a link. */
+function page(field: Field): string {
+  const url = field.text();
+  return /^https?:\/\/[^\s"'<>]+$/.test(url) ? url : field.fail("is no address of a page");
 }
 
 /** Reads a message of the server; throws [`ProtocolError`]. */
@@ -401,6 +437,15 @@ export function decodeMessage(raw: string): Message {
       };
     case "looks":
       return { type, active: root.at("active").list(number) };
+    case "variables":
+      return {
+        type,
+        values: root.at("values").list((item) => pair(item, number, text)),
+        forced: root.at("forced").list(number),
+        executed: root.at("executed").or<(readonly [string, number])[]>([], (all) => all.list((item) => pair(item, text, number))),
+      };
+    case "forked":
+      return { type, t_ns: root.at("t_ns").number(), url: page(root.at("url")) };
     case "error":
       return { type, message: root.at("message").text() };
     default:
@@ -476,4 +521,7 @@ export type Ask =
   | { readonly type: "fail"; readonly component: string; readonly failure: string; readonly active: boolean }
   | { readonly type: "show"; readonly t_ns: number }
   | { readonly type: "live" }
+  | { readonly type: "watch"; readonly variables: readonly number[] }
+  | { readonly type: "variable"; readonly variable: number; readonly action: "write" | "force" | "release"; readonly value: string }
+  | { readonly type: "force"; readonly signal: number; readonly value: string | null }
   | { readonly type: "fork"; readonly t_ns: number };

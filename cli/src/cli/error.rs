@@ -24,6 +24,7 @@ use crate::report::ReportError;
 use crate::review::ReviewError;
 use crate::run::RunError;
 use crate::session::SessionError;
+use crate::view::ViewError;
 use crate::wiring::WiringError;
 
 sum_of_errors! {
@@ -50,6 +51,9 @@ sum_of_errors! {
         /// `report` came to nothing.
         #[diagnostic(transparent)]
         Report(ReportError),
+        /// `view` came to nothing.
+        #[diagnostic(transparent)]
+        View(ViewError),
         /// `bisect` came to nothing.
         #[diagnostic(transparent)]
         Bisect(BisectError),

@@ -3,9 +3,11 @@
 use onescan_server::layout::ImageLayout;
 use onescan_server::operation::Operation;
 use onescan_server::signal::{SignalDecl, SignalId, SignalType};
+use onescan_server::time::VirtualTime;
 use serde::Deserialize;
 use thiserror::Error;
 
+use super::online::Action;
 use super::structure::Known;
 
 /// A message of a page.
@@ -23,17 +25,17 @@ pub(super) enum Ask {
     /// A component fails, or is repaired.
     Fail { component: String, failure: String, active: bool },
     /// A moment of the past is to be shown.
-    Show {
-        #[serde(rename = "t_ns")]
-        _t_ns: f64,
-    },
+    Show { t_ns: f64 },
+    /// These variables of PLCs from now on.
+    Watch { variables: Vec<usize> },
+    /// A variable of a PLC is written, forced or released.
+    Variable { variable: usize, action: Action, value: String },
+    /// A signal is forced; released without a value.
+    Force { signal: usize, value: Option<String> },
     /// The live edge again.
     Live,
     /// A session that goes on from a moment of the past.
-    Fork {
-        #[serde(rename = "t_ns")]
-        _t_ns: f64,
-    },
+    Fork { t_ns: f64 },
 }
 
 /// What is done with virtual time.
@@ -57,12 +59,22 @@ pub(super) enum Refused {
     Value { signal: String, ty: SignalType, value: String },
     #[error("`{signal}` is written by `{writer}`: `run --operator {writer}` lets people write it")]
     Writer { signal: String, writer: String },
+    #[error("there is no variable {0}")]
+    NoVariable(usize),
     #[error("there is no component `{0}`")]
     NoComponent(String),
     #[error("there is no panel `{0}`")]
     NoPanel(String),
-    #[error("the past of a running session is not kept: `--save-at` keeps a moment of it, `--record` all signals")]
-    Past,
+    #[error("the past of this session cannot be shown: {0}")]
+    Past(String),
+    #[error("{t_ns} ns is no moment of the past, which ends at {end}")]
+    NoMoment { t_ns: String, end: VirtualTime },
+    #[error("a recording is looked at: nobody operates it; `Go on from here` makes a session of it")]
+    Recorded,
+    #[error("a viewer's token lets its holder look, and change nothing")]
+    LooksOnly,
+    #[error("panel `{0}` is a trainer's, and an operator's token does not let its holder sit there")]
+    Trainers(String),
     #[error("somebody else has the seat of panel `{0}`")]
     Taken(String),
     #[error("`{0}` is written from the seat of a panel that has it: take that seat first")]
@@ -70,6 +82,20 @@ pub(super) enum Refused {
 }
 
 impl Ask {
+    /// Whether it changes nothing that anybody else sees.
+    pub(super) fn only_looks(&self) -> bool {
+        match self {
+            Self::Subscribe { .. } | Self::Watch { .. } | Self::Show { .. } | Self::Live => true,
+            Self::Write { .. }
+            | Self::Operate { .. }
+            | Self::Seat { .. }
+            | Self::Fail { .. }
+            | Self::Variable { .. }
+            | Self::Force { .. }
+            | Self::Fork { .. } => false,
+        }
+    }
+
     /// Reads a message.
     pub(super) fn read(text: &str) -> Result<Self, Refused> {
         serde_json::from_str(text).map_err(|error| Refused::Garbage(error.to_string()))
@@ -96,6 +122,15 @@ pub(super) fn write(declared: &SignalDecl, value: f64, known: &Known) -> Result<
     };
     declared.ty.parse_text(&text).map_err(|_| wrong())?;
     Ok(Operation::Write { signal: declared.name.clone(), value: text })
+}
+
+/// A signal is forced, or released without a value. Whether the text is a value of its type, the session says.
+pub(super) fn force(declared: &SignalDecl, value: Option<String>) -> Operation {
+    let signal = declared.name.clone();
+    match value {
+        Some(value) => Operation::Force { signal, value },
+        None => Operation::Release { signal },
+    }
 }
 
 /// A component fails, or is repaired. Whether it has that mode, the plant says.

@@ -8,7 +8,8 @@ use onescan_plc_shim::{
     Application, CodePolicy, Coverage, PlcFault, RestoreError, RunError, SoftPlc, TaskPlan, UnknownVariable, WriteError,
 };
 use onescan_server::client::{
-    Client, ClientFault, ClientOperation, JoinRequest, OperationRefused, SourcePlace, StateError, Wake,
+    Client, ClientFault, ClientOperation, ClientView, JoinRequest, Memory, OperationRefused, SourcePlace, StateError,
+    Wake,
 };
 use onescan_server::signal::{ClientName, Port, SignalName};
 use onescan_server::time::{TimeSpan, VirtualTime};
@@ -17,6 +18,9 @@ use super::bind::{Bindings, Bound, Place};
 use super::journal::{Journalling, Keeper};
 use super::trace::{TraceSink, Tracing};
 use super::watch::{SightingSink, Watch, Watcher};
+
+/// The largest memory that is shown to those who look, bytes: they look 60 times a second.
+const SHOWN_BYTES_MAX: usize = 1 << 20;
 
 /// A value's bytes in a port and in the PLC's memory.
 #[derive(Clone, Copy, Debug)]
@@ -298,6 +302,19 @@ impl Client for SoftPlcClient {
             // Without a task that may be due at any step nothing is due only past the end of time.
             _ => Wake::NextPeriod,
         })
+    }
+
+    fn show(&self, view: &mut ClientView) {
+        let memory = self.plc.memory();
+        if memory.len() > SHOWN_BYTES_MAX {
+            return;
+        }
+        view.memories.push(Memory {
+            client: self.request.name.clone(),
+            bytes: memory.to_vec(),
+            forced: self.plc.forced().map(|variable| variable.path.clone()).collect(),
+            executed: self.plc.executed().to_vec(),
+        });
     }
 
     fn save(&self) -> Result<Vec<u8>, StateError> {

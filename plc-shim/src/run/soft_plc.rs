@@ -293,6 +293,12 @@ impl SoftPlc {
             .then(|| Coverage::new(sources, points, self.machine.notes(), self.skipped_to))
     }
 
+    /// A byte for each place that notes whether it has been executed, 0 if not, in the order of
+    /// [`Application::noted_places`]; empty unless the application was compiled for coverage.
+    pub fn executed(&self) -> &[u8] {
+        if self.application.is_traced() { &[] } else { self.machine.notes() }
+    }
+
     /// Watches places in memory from here on, in place of those watched before. The application must
     /// have been compiled for it ([`Builder::traced`](crate::Builder::traced)).
     pub fn watch(&mut self, places: impl IntoIterator<Item = (Range<usize>, Option<u8>)>) {
