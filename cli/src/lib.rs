@@ -15,6 +15,7 @@
 //! | [`compare`] | lockstep beside the other ways of bringing plant and PLC together |
 //! | [`bisect`] | the commit since which a run is another |
 //! | [`diff`] | where two recordings or snapshots part, and why |
+//! | [`view`] | a recording as a page |
 //! | [`report`] | what a recorded run produced |
 //! | [`regress`] | all cases run, compared with reviewed snapshots, reported |
 //! | [`why`] | the way from a signal back to the statement in which two runs part |
@@ -23,6 +24,7 @@
 //! | [`shot`] | the machine at one time, as a picture |
 //! | [`run`] | runs of a scenario: in lockstep or not, recorded, reported |
 //! | [`freewheel`] | running without lockstep, to show what it is good for |
+//! | [`past`] | the past of a session: moments that are kept, any other re-run |
 //! | [`access`] | who may take part in sessions over a network |
 //! | [`session`] | part in a session that another process serves |
 //! | [`plc`] | a soft PLC as a process of its own |
@@ -67,6 +69,7 @@ pub mod minimise;
 pub mod model;
 pub mod mutate;
 pub mod new;
+pub mod past;
 pub mod plant;
 pub mod plc;
 pub mod regress;
@@ -78,6 +81,7 @@ pub mod session;
 pub mod shot;
 pub mod snapshot;
 pub mod train;
+pub mod view;
 mod web;
 pub mod why;
 pub mod wiring;

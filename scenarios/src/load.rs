@@ -247,6 +247,12 @@ impl Scenario {
         self.file.freewheel.synchronizer_gain_pct = gain_pct;
     }
 
+    /// The same, of which nothing is noted, traced or watched: what it does again was seen the first time.
+    #[must_use]
+    pub fn unobserved(&self) -> Self {
+        Self { coverage: None, writers: None, journalling: None, watched: None, ..self.clone() }
+    }
+
     /// Lets soft PLCs note what they execute.
     pub fn cover(&mut self) {
         self.coverage.get_or_insert_default();

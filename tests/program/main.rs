@@ -83,4 +83,7 @@ mod unit_tests;
 mod venv;
 mod watch;
 mod web;
+mod web_access;
+mod web_past;
+mod web_plc;
 mod wiring;

@@ -12,16 +12,20 @@ use crate::typed::{begun, scenario, typed};
 
 /// A session with a page, and where that is.
 pub(crate) struct Served {
-    program: Child,
+    pub(crate) program: Child,
     said: BufReader<ChildStderr>,
-    address: String,
+    pub(crate) address: String,
 }
 
 impl Served {
     pub(crate) fn begin(name: &str, words: &[&str]) -> Self {
         let (folder, file) = name.split_once('/').unwrap_or((name, "."));
         let words = [&["run", file, "--format", "json", "--web"], words].concat();
-        let mut program = begun(&scenario(folder), &words);
+        Self::of(begun(&scenario(folder), &words))
+    }
+
+    /// What says where its page is.
+    pub(crate) fn of(mut program: Child) -> Self {
         let mut said = BufReader::new(program.stderr.take().expect("piped"));
         let mut line = String::new();
         while !line.contains("http://") {
@@ -34,24 +38,29 @@ impl Served {
 
     /// The status line and the body of an answer.
     pub(crate) fn get(&self, path: &str, headers: &[(&str, &str)]) -> (String, String) {
+        let (head, body) = self.request("GET", path, headers, "");
+        (head.lines().next().expect("a status").to_owned(), body)
+    }
+
+    /// The head and the body of an answer.
+    pub(crate) fn request(&self, method: &str, path: &str, headers: &[(&str, &str)], body: &str) -> (String, String) {
         let mut stream = TcpStream::connect(&self.address).expect("served");
         let has_host = headers.iter().any(|(name, _)| *name == "Host");
         let host = [("Host", self.address.as_str())];
         let all = host.iter().filter(|_| !has_host).chain(headers);
         let lines: String = all.flat_map(|(name, value)| [name, ": ", value, "\r\n"]).collect();
-        let request = format!("GET {path} HTTP/1.1\r\nConnection: close\r\n{lines}");
-        stream.write_all((request + "\r\n").as_bytes()).expect("writable");
+        let length = if body.is_empty() { String::new() } else { format!("Content-Length: {}\r\n", body.len()) };
+        let request = format!("{method} {path} HTTP/1.1\r\nConnection: close\r\n{lines}{length}\r\n{body}");
+        stream.write_all(request.as_bytes()).expect("writable");
         let mut answer = Vec::new();
         stream.read_to_end(&mut answer).expect("an answer");
         let answer = String::from_utf8_lossy(&answer).into_owned();
         let (head, body) = answer.split_once("\r\n\r\n").expect("a head");
-        (head.lines().next().expect("a status").to_owned(), body.to_owned())
+        (head.to_owned(), body.to_owned())
     }
 
     pub(crate) fn view(&self) -> WebSocket<TcpStream> {
-        let stream = TcpStream::connect(&self.address).expect("served");
-        let request = format!("ws://{}/api/live", self.address).into_client_request().expect("a request");
-        tungstenite::client(request, stream).expect("a viewer").0
+        view(&self.address)
     }
 
     /// The report of the run.
@@ -63,6 +72,13 @@ impl Served {
         };
         serde_json::from_slice(&output.stdout).expect("a report")
     }
+}
+
+/// A viewer of the page at this address.
+pub(crate) fn view(address: &str) -> WebSocket<TcpStream> {
+    let stream = TcpStream::connect(address).expect("served");
+    let request = format!("ws://{address}/api/live").into_client_request().expect("a request");
+    tungstenite::client(request, stream).expect("a viewer").0
 }
 
 pub(crate) fn ask(viewer: &mut WebSocket<TcpStream>, what: &Value) {
@@ -93,7 +109,7 @@ fn shown(viewer: &mut WebSocket<TcpStream>) -> (u64, f64) {
     }
 }
 
-const LIVE: &[(&str, &str)] = &[
+pub(crate) const LIVE: &[(&str, &str)] = &[
     ("Upgrade", "websocket"),
     ("Connection", "Upgrade"),
     ("Sec-WebSocket-Version", "13"),
@@ -149,7 +165,7 @@ fn viewers_leave_no_trace() {
         json!({"type": "write", "signal": 0, "value": 1.0, "more": 1}),
         json!({"type": "fail", "component": "nobody", "failure": "stuck", "active": true}),
         json!({"type": "seat", "panel": "nowhere", "take": true}),
-        json!({"type": "show", "t_ns": 1}),
+        json!({"type": "show", "t_ns": -1}),
     ];
     for what in &garbage {
         ask(&mut viewers[0], what);

@@ -45,6 +45,7 @@ pub fn provenance() -> Provenance {
         scenario: "toy".to_owned(),
         folder: String::new(),
         case: None,
+        operated: Vec::new(),
         mode: "lockstep".to_owned(),
         until: VirtualTime::ZERO,
         seed: 0,

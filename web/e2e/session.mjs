@@ -21,15 +21,20 @@ const browser = await chromium.launch({
 });
 
 /** Starts a session with a page; `url` is where, `over` comes with its exit code and what it wrote. */
-async function start(words) {
-  const child = spawn(program, ["run", ...words, "--web"], { stdio: ["ignore", "pipe", "pipe"] });
+function start(words) {
+  return started(["run", ...words, "--web"]);
+}
+
+/** Starts what has a page. */
+async function started(words) {
+  const child = spawn(program, words, { stdio: ["ignore", "pipe", "pipe"] });
   children.push(child);
   let [out, said] = ["", ""];
   child.stdout.on("data", (data) => (out += data));
   const url = await new Promise((found, lost) => {
     child.stderr.on("data", (data) => {
       said += data;
-      const line = /the session is at (http:\S+)/.exec(said);
+      const line = /the (?:session|recording) is at (http:\S+)/.exec(said);
       if (line !== null) found(line[1]);
     });
     child.on("exit", () => lost(new Error(`no page: ${said}`)));
@@ -38,12 +43,12 @@ async function start(words) {
   return { url, over };
 }
 
-async function open(url) {
+async function open(url, first = 5) {
   const page = await browser.newPage({ viewport: { width: 1280, height: 720 } });
   const errors = [];
   page.on("pageerror", (error) => errors.push(String(error)));
   await page.goto(url);
-  await page.waitForFunction(() => window.onescan?.picture().step > 5);
+  await page.waitForFunction((step) => window.onescan?.picture().step > step, first);
   return { page, errors };
 }
 
@@ -105,9 +110,73 @@ async function operate_the_filling_machine() {
   assert.deepEqual([column("SW_ANGLE"), column("Packages_In")], [shown[1], shown[2]]);
 }
 
+/** Puts the timeline on a step, as dragging does, and waits until the page shows it. */
+async function drag_to(page, step) {
+  await page.getByRole("slider", { name: "Time that is shown" }).fill(String(step));
+  await page.waitForFunction((step) => window.onescan.picture().isPast && window.onescan.picture().step === step, step);
+}
+
+const SHEAR_STEP_NS = 10_000_000;
+
+/** What a signal of the shear is at a step of a recording, by the table that the program exports. */
+async function row(record, name, step) {
+  const table = join(room, "table.csv");
+  spawnSync(program, ["export", record, "-o", table, "--signals", name]);
+  const [head, ...rows] = (await readFile(table, "utf8")).trim().split("\n").map((line) => line.split(","));
+  const found = rows.find(([t_ns]) => t_ns === String(step * SHEAR_STEP_NS)) ?? assert.fail(`no step ${step}`);
+  return Number(found[head.indexOf(name)]);
+}
+
+const value = (page, name) => page.evaluate((signal) => window.onescan.value(signal), name);
+
+/** The shear: its timeline dragged back to the second stroke, while it goes on; a session from there; its recording. */
+async function look_back_at_the_shear() {
+  const shear = join(scenarios, "shear");
+  const record = join(room, "shear");
+  const plain = spawnSync(program, ["run", shear, "--until", "6s", "--record", record]);
+  const digest = /digest (\S+)/.exec(String(plain.stdout))?.[1] ?? assert.fail(String(plain.stderr));
+  const session = await start([shear, "--until", "1h", "--pace", "5"]);
+  const { page, errors } = await open(session.url, 500);
+  await page.getByRole("tab", { name: "Signals" }).click();
+  // The second stroke is the last step at which two strokes have begun.
+  await drag_to(page, 300);
+  let second = 300;
+  while ((await value(page, "Strokes")) > 2) await drag_to(page, (second -= 10));
+  while ((await value(page, "Strokes")) < 2) await drag_to(page, (second += 10));
+  assert.equal(await value(page, "Strokes"), 2);
+  assert.equal(await value(page, "Position_1"), await row(record, "Position_1", second));
+  await shoot(page, "shear-past");
+  // The live one has gone on meanwhile; another one goes on from here.
+  await page.getByRole("button", { name: "Go on from here" }).click();
+  const link = page.getByRole("link", { name: /^Session from/ });
+  await link.waitFor({ timeout: 60_000 });
+  const fork = await open(await link.getAttribute("href"), second);
+  await page.getByRole("button", { name: "Live" }).click();
+  await page.waitForFunction((step) => !window.onescan.picture().isPast && window.onescan.picture().step > step, 500);
+  assert.deepEqual([errors, fork.errors], [[], []]);
+  await stop(session.url);
+  await session.over;
+
+  const recorded = await started(["view", join(record, "run-1")]);
+  const view = await open(recorded.url, -1);
+  await view.page.getByRole("tab", { name: "Signals" }).click();
+  await drag_to(view.page, second);
+  assert.equal(await value(view.page, "Position_1"), await row(record, "Position_1", second));
+  await view.page.getByRole("button", { name: "Play" }).click();
+  await view.page.waitForFunction((step) => window.onescan.picture().step > step + 50, second);
+  assert.deepEqual(view.errors, []);
+  await shoot(view.page, "shear-recording");
+  await stop(recorded.url);
+  const checked = await recorded.over;
+  assert.equal(checked.code, 0, checked.said);
+  assert.ok(checked.out.includes(digest), checked.out);
+}
+
 try {
   await operate_the_filling_machine();
   console.log("the page operates a session: ok");
+  await look_back_at_the_shear();
+  console.log("the page shows the past: ok");
 } finally {
   for (const child of children) child.kill();
   await browser.close();

@@ -111,8 +111,9 @@ export async function serve({ packages = 8 } = {}) {
     },
     show: (ask) => (state.shown = Math.round(ask.t_ns / STEP_NS)),
     live: () => (state.shown = null),
+    watch: () => {},
     fail: () => {},
-    fork: () => (state.shown = null),
+    fork: (ask) => say(JSON.stringify({ type: "forked", t_ns: ask.t_ns, url: "http://127.0.0.1:9/" })),
   };
   sockets.on("connection", (socket) => {
     socket.on("message", (data) => {

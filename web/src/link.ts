@@ -27,6 +27,7 @@ export class Link {
   private socket: WebSocket | null = null;
   private wait_ms = FIRST_WAIT_MS;
   private subscribed: readonly number[] = [];
+  private watched: readonly number[] = [];
 
   constructor(
     private readonly url: string,
@@ -49,6 +50,13 @@ export class Link {
     this.ask({ type: "subscribe", signals });
   }
 
+  /** Asks for these variables of the PLC from now on, and again after a loss. */
+  watch(variables: readonly number[]): void {
+    if (variables.length === 0 && this.watched.length === 0) return;
+    this.watched = variables;
+    this.ask({ type: "watch", variables });
+  }
+
   private open(): void {
     this.hears.state("connecting");
     const socket = new WebSocket(this.url);
@@ -58,6 +66,7 @@ export class Link {
       this.wait_ms = FIRST_WAIT_MS;
       this.hears.state("connected");
       this.subscribe(this.subscribed);
+      this.watch(this.watched);
     });
     socket.addEventListener("message", (event: MessageEvent<unknown>) => this.read(event.data));
     socket.addEventListener("close", () => {

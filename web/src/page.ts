@@ -4,6 +4,7 @@ import { button, frame, make } from "./dom";
 import { Drawings } from "./drawings";
 import { seconds } from "./format";
 import { Link, live_address, type LinkState } from "./link";
+import { OnlineView } from "./online";
 import { PanelView, type Alarm } from "./panels";
 import { PartSheet } from "./part";
 import type { Ask, Message, Picture, Session } from "./protocol";
@@ -28,6 +29,7 @@ export class Page {
   private readonly table: SignalTable;
   private readonly source: SourceView;
   private readonly drawings: Drawings;
+  private readonly online: OnlineView;
   private readonly trends: TrendsView;
   private readonly timeline: Timeline;
   private readonly link: Link | null = null;
@@ -60,7 +62,8 @@ export class Page {
     this.trends = new TrendsView(frame("lanes"), readout, session, again);
     this.table = new SignalTable(session, this.values, (signal) => this.trends.toggle(signal), again);
     const code = make("div", { class: "code" });
-    this.source = new SourceView(code, session, this.values);
+    this.online = new OnlineView(session, (ask) => this.ask(ask), again);
+    this.source = new SourceView(code, session, this.values, this.online);
     // Values of a drawing are asked for where there is a connection.
     this.drawings = new Drawings(session, (ask) => void this.link?.ask(ask));
     this.timeline = new Timeline(frame("timeline"), session, (ask) => this.ask(ask));
@@ -105,7 +108,7 @@ export class Page {
 
   private plc(code: HTMLElement): HTMLElement {
     const [sources, drawings] = [this.session.sources, this.drawings.names()];
-    if (sources.length + drawings.length === 0) return make("div", {}, make("p", { class: "empty" }, "No source of a PLC is part of this session."));
+    if (sources.length + drawings.length === 0) return make("div", {}, make("p", { class: "empty" }, "No source of a PLC is part of this session."), this.online.root);
     const options = [...sources.map((one) => one.path), ...drawings].map((name) => make("option", {}, name));
     const files = make("select", { "aria-label": "Source file" }, ...options);
     const open = (): void => {
@@ -120,7 +123,7 @@ export class Page {
     };
     files.addEventListener("change", open);
     open();
-    return make("div", {}, files, code, this.drawings.root);
+    return make("div", {}, files, code, this.drawings.root, this.online.root);
   }
 
   private checks(): HTMLElement {
@@ -181,6 +184,7 @@ export class Page {
       ...(this.sheet === "PLC" ? this.source.signals() : []),
     ]);
     this.link.subscribe([...wanted].sort((a, b) => a - b));
+    this.link.watch(this.sheet === "PLC" ? this.online.wanted(this.source.variables()) : []);
   }
 
   private show(picture: Picture): void {
@@ -195,7 +199,7 @@ export class Page {
       this.machine.value(signal, value);
       this.table.show(signal);
       this.part.show(signal);
-      if (!picture.isPast) this.trends.push(signal, picture.t_ns, value);
+      if (!picture.isPast || !this.session.live) this.trends.push(signal, picture.t_ns, value);
     }
     this.machine.advance(picture.t_ns);
     this.machine.arrive(picture.poses);
@@ -204,7 +208,7 @@ export class Page {
       this.machine.light_up(new Set(this.sensors.filter((one) => this.values.get(one.signal) !== 0).map((one) => one.body)));
     }
     for (const one of this.panels) one.view.at(picture.t_ns);
-    if (!picture.isPast) this.trends.at(picture.t_ns);
+    if (!picture.isPast || !this.session.live) this.trends.at(picture.t_ns);
     this.timeline.at(picture);
   }
 
@@ -222,13 +226,18 @@ export class Page {
         this.ring(message.t_ns, message.kind, message.text);
         return this.trends.mark({ t_ns: message.t_ns, text: message.text });
       case "verdict":
-        return this.judge(message.name, message.verdict, message.robustness);
+        return this.judge(message.name, message.verdict, message.robustness, message.t_ns);
       case "looks":
         return this.machine.look(message.active);
       case "states":
         return this.drawings.hear(message.drawing, message.instance, message.values);
       case "view":
         return this.see(message.view);
+      case "variables":
+        this.online.show(message);
+        return this.source.show();
+      case "forked":
+        return this.timeline.forked(message.t_ns, message.url);
       case "error":
         return this.notice(message.message);
     }
@@ -250,9 +259,11 @@ export class Page {
     for (const one of this.panels) one.view.alarms();
   }
 
-  private judge(name: string, verdict: string, robustness: number | null): void {
+  private judge(name: string, verdict: string, robustness: number | null, t_ns: number): void {
     const cell = this.verdicts.get(name);
     if (cell === undefined) return;
+    const was_met = !cell.classList.contains("verdict-fail");
+    if (verdict === "fail" && was_met) this.trends.mark({ t_ns, text: `not met: ${name}` });
     cell.textContent = robustness === null ? verdict : `${verdict} (${Number(robustness.toPrecision(4))})`;
     cell.className = `value verdict-${verdict}`;
   }

@@ -128,6 +128,14 @@ export interface SourceLine {
   /** From 1. */
   readonly line: number;
   readonly variables: readonly string[];
+  /** Numbers of variables of the PLC. */
+  readonly inner: readonly number[];
+}
+
+/** A PLC whose variables can be looked at. Variables of all PLCs are numbered through. */
+export interface Plc {
+  readonly client: string;
+  readonly variables: readonly { readonly path: string; readonly type: string }[];
 }
 
 export interface Source {
@@ -206,6 +214,15 @@ export interface Session {
   readonly expectations: readonly { readonly name: string; readonly text: string }[];
   readonly sources: readonly Source[];
   readonly drawings: readonly Drawing[];
+  readonly plcs: readonly Plc[];
+}
+
+/** What is new of the PLC's variables. */
+export interface Variables {
+  readonly values: readonly (readonly [number, string])[];
+  readonly forced: readonly number[];
+  /** File and line of what has been executed. */
+  readonly executed: readonly (readonly [string, number])[];
 }
 
 /** A value of JSON with the place that it was found at. */
@@ -492,9 +509,14 @@ export function decodeSession(value: unknown): Session {
       lines: item.at("lines").or<SourceLine[]>([], (all) => all.list((line) => ({
         line: line.at("line").number(),
         variables: line.at("variables").list(text),
+        inner: line.at("inner").or<number[]>([], (all) => all.list(number)),
       }))),
     })),
     drawings: list("drawings", drawing),
+    plcs: list("plcs", (item) => ({
+      client: item.at("client").text(),
+      variables: item.at("variables").list((one) => ({ path: one.at("path").text(), type: one.at("type").text() })),
+    })),
   };
 }
 
@@ -524,11 +546,25 @@ export type Message =
   | { readonly type: "looks"; readonly active: readonly number[] }
   | { readonly type: "view"; readonly view: string }
   | { readonly type: "states"; readonly drawing: number; readonly instance: number; readonly values: readonly (number | null)[] }
+  | ({ readonly type: "variables" } & Variables)
+  /** A session goes on from a moment of the past; its page is at `url`. */
+  | { readonly type: "forked"; readonly t_ns: number; readonly url: string }
   | { readonly type: "error"; readonly message: string };
 
 function seat(field: Field): Seat {
   const one = field.text();
   return one === "free" || one === "mine" || one === "taken" ? one : field.fail(`is \`${one}\`: free, mine or taken`);
+}
+
+function couple<A, B>(field: Field, first: (item: Field) => A, second: (item: Field) => B): readonly [A, B] {
+  const [a, b, ...more] = field.list((item) => item);
+  return a === undefined || b === undefined || more.length > 0 ? field.fail("is no pair") : [first(a), second(b)];
+}
+
+/** The address of a page: of this kind and no other, as it becomes a link. */
+function page(field: Field): string {
+  const url = field.text();
+  return /^https?:\/\/[^\s"'<>]+$/.test(url) ? url : field.fail("is no address of a page");
 }
 
 /** Reads a message of the server; throws [`ProtocolError`]. */
@@ -572,6 +608,15 @@ export function decodeMessage(raw: string): Message {
         type, drawing: root.at("drawing").number(), instance: root.at("instance").number(),
         values: root.at("values").list((item) => item.or<number | null>(null, number)),
       };
+    case "variables":
+      return {
+        type,
+        values: root.at("values").list((item) => couple(item, number, text)),
+        forced: root.at("forced").list(number),
+        executed: root.at("executed").or<(readonly [string, number])[]>([], (all) => all.list((item) => couple(item, text, number))),
+      };
+    case "forked":
+      return { type, t_ns: root.at("t_ns").number(), url: page(root.at("url")) };
     case "error":
       return { type, message: root.at("message").text() };
     default:
@@ -652,4 +697,7 @@ export type Ask =
   | { readonly type: "view"; readonly view: string }
   | { readonly type: "draw"; readonly drawing: number | null; readonly instance: number }
   | { readonly type: "live" }
+  | { readonly type: "watch"; readonly variables: readonly number[] }
+  | { readonly type: "variable"; readonly variable: number; readonly action: "write" | "force" | "release"; readonly value: string }
+  | { readonly type: "force"; readonly signal: number; readonly value: string | null }
   | { readonly type: "fork"; readonly t_ns: number };

@@ -22,6 +22,7 @@ class Values extends WidgetType {
   }
 }
 
+const executed_line = Decoration.line({ class: "executed" });
 const set_values = StateEffect.define<DecorationSet>();
 const values_field = StateField.define<DecorationSet>({
   create: () => Decoration.none,
@@ -32,6 +33,12 @@ const values_field = StateField.define<DecorationSet>({
   provide: (field) => EditorView.decorations.from(field),
 });
 
+/** What stands beside a line of the PLC's variables. */
+export interface Inner {
+  readonly reading: (variable: number) => string | null;
+  readonly was_executed: (file: string, line: number) => boolean | null;
+}
+
 export class SourceView {
   private readonly editor: EditorView;
   private source: Source | null = null;
@@ -40,6 +47,7 @@ export class SourceView {
     place: HTMLElement,
     private readonly session: Session,
     private readonly values: ReadonlyMap<number, number>,
+    private readonly inner: Inner,
   ) {
     this.editor = new EditorView({ parent: place, state: this.state("") });
   }
@@ -56,16 +64,24 @@ export class SourceView {
     return this.session.signals.flatMap((signal, index) => (names.has(signal.name) ? [index] : []));
   }
 
+  /** The variables of the PLC whose values stand beside the open source. */
+  variables(): readonly number[] {
+    return [...new Set(this.source?.lines.flatMap((line) => line.inner) ?? [])];
+  }
+
   show(): void {
     const source = this.source;
     if (source === null) return;
     const lines = this.editor.state.doc.lines;
     const marks = source.lines.flatMap((line) => {
-      const text = line.variables.map((name) => this.reading(name)).filter((one) => one !== null).join("   ");
+      const all = [...line.variables.map((name) => this.reading(name)), ...line.inner.map((one) => this.inner.reading(one))];
+      const text = all.filter((one) => one !== null).join("   ");
       if (line.line < 1 || line.line > lines || text === "") return [];
       return [Decoration.widget({ widget: new Values(text), side: 1 }).range(this.editor.state.doc.line(line.line).to)];
     });
-    this.editor.dispatch({ effects: set_values.of(Decoration.set(marks, true)) });
+    const executed = Array.from({ length: lines }, (_, index) => index + 1).flatMap((line) =>
+      this.inner.was_executed(source.path, line) === true ? [executed_line.range(this.editor.state.doc.line(line).from)] : []);
+    this.editor.dispatch({ effects: set_values.of(Decoration.set([...marks, ...executed], true)) });
   }
 
   private reading(name: string): string | null {

@@ -1,15 +1,23 @@
-// The time that is shown: the live edge, or a moment of the past.
+// The time that is shown: the live edge, or a moment of the past. A recording can be played.
 
 import { button, make } from "./dom";
 import { seconds } from "./format";
 import type { Ask, Picture, Session } from "./protocol";
 
+/** How often a recording that plays asks for its next moment. */
+const PLAY_MS = 50;
+
 export class Timeline {
   private readonly slider = make("input", { type: "range", min: "0", max: "0", step: "1", "aria-label": "Time that is shown" });
   private readonly output = make("output", {}, "live");
+  private readonly link = make("a", { target: "_blank", rel: "noopener" });
   private readonly live: HTMLButtonElement;
   private readonly fork: HTMLButtonElement;
+  private readonly play: HTMLButtonElement;
   private shown_ns: number | null = null;
+  private playing: number | null = null;
+  /** The step that was asked for; its picture may be on its way. */
+  private asked: number | null = null;
 
   constructor(
     place: HTMLElement,
@@ -17,14 +25,16 @@ export class Timeline {
     private readonly ask: (ask: Ask) => void,
   ) {
     this.live = button("Live", () => this.ask({ type: "live" }), "Back to the live edge");
+    this.play = button("Play", () => this.toggle(), "Play from here in real time");
     this.fork = button("Go on from here", () => {
       if (this.shown_ns !== null) this.ask({ type: "fork", t_ns: this.shown_ns });
     });
     this.slider.addEventListener("input", () => {
       this.output.textContent = seconds(this.chosen_ns());
-      this.ask({ type: "show", t_ns: this.chosen_ns() });
+      this.show(Number(this.slider.value));
     });
-    place.append(this.live, this.slider, this.output, this.fork);
+    this.link.hidden = true;
+    place.append(session.live ? this.live : this.play, this.slider, this.output, this.fork, this.link);
     this.reach(null, null);
   }
 
@@ -32,6 +42,7 @@ export class Timeline {
   reach(past_ns: readonly [number, number] | null, shown_ns: number | null): void {
     this.shown_ns = shown_ns;
     this.slider.disabled = past_ns === null;
+    this.play.disabled = past_ns === null;
     this.live.disabled = shown_ns === null || !this.session.live;
     this.fork.disabled = shown_ns === null;
     if (past_ns !== null) {
@@ -45,9 +56,54 @@ export class Timeline {
 
   /** Keeps the live edge at the end of the slider. */
   at(picture: Picture): void {
-    if (picture.isPast || this.shown_ns !== null) return;
+    if (picture.isPast) {
+      if (this.asked !== null && picture.step >= this.asked) this.asked = null;
+      return;
+    }
+    if (this.shown_ns !== null) return;
     if (!this.slider.disabled) this.slider.max = String(picture.step);
     this.slider.value = this.slider.max;
+  }
+
+  /** A session goes on from a moment: its page is a link away. */
+  forked(t_ns: number, url: string): void {
+    const to = new URL(url);
+    // A session that listens everywhere is found where this one was.
+    if (to.hostname === "0.0.0.0" || to.hostname === "[::]") to.hostname = window.location.hostname;
+    this.link.href = to.href;
+    this.link.textContent = `Session from ${seconds(t_ns)}`;
+    this.link.hidden = false;
+  }
+
+  private show(step: number): void {
+    this.asked = step;
+    this.ask({ type: "show", t_ns: step * this.session.step_ns });
+  }
+
+  private toggle(): void {
+    if (this.playing !== null) return this.pause();
+    this.play.textContent = "Pause";
+    let before_ms = performance.now();
+    let ahead_ns = 0;
+    this.playing = window.setInterval(() => {
+      const now_ms = performance.now();
+      ahead_ns += (now_ms - before_ms) * 1e6;
+      before_ms = now_ms;
+      const steps = Math.floor(ahead_ns / this.session.step_ns);
+      // A machine that is too slow to play in real time plays slower, picture by picture.
+      if (steps === 0 || this.asked !== null) return;
+      ahead_ns = Math.min(ahead_ns - steps * this.session.step_ns, 1e9);
+      const next = Math.min(Number(this.slider.value) + steps, Number(this.slider.max));
+      if (next === Number(this.slider.value)) return this.pause();
+      this.slider.value = String(next);
+      this.show(next);
+    }, PLAY_MS);
+  }
+
+  private pause(): void {
+    if (this.playing !== null) window.clearInterval(this.playing);
+    this.playing = null;
+    this.play.textContent = "Play";
   }
 
   private chosen_ns(): number {

@@ -67,6 +67,26 @@ test("a session is read; an error names its place", () => {
   for (const garbage of [null, 3, "x", [], {}]) assert.throws(() => decodeSession(garbage), ProtocolError);
 });
 
+test("a fork comes with the address of a page, and nothing else becomes a link", () => {
+  const forked = decodeMessage('{"type":"forked","t_ns":5,"url":"http://127.0.0.1:8080/"}');
+  assert.ok(forked.type === "forked" && forked.t_ns === 5 && forked.url.endsWith("8080/"));
+  for (const url of ["javascript:alert(1)", "http://a b", "", 'http://x"onclick="']) {
+    assert.throws(() => decodeMessage(JSON.stringify({ type: "forked", t_ns: 5, url })), ProtocolError);
+  }
+});
+
+test("variables of the PLC are read, in a session and as they change", () => {
+  const plcs = [{ client: "plc", variables: [{ path: "Main.x", type: "INT" }, { path: "Main.axis[1].on", type: "BOOL" }] }];
+  const session = decodeSession({ ...SESSION, plcs, sources: [{ path: "a.st", text: "", lines: [{ line: 1, variables: [], inner: [0] }] }] });
+  assert.deepEqual([session.plcs[0]?.variables[1]?.path, session.sources[0]?.lines[0]?.inner], ["Main.axis[1].on", [0]]);
+  assert.throws(() => decodeSession({ ...SESSION, plcs: [{ client: "plc" }] }), /plcs\[0\]\.variables: is not a list/);
+  const seen = decodeMessage('{"type":"variables","values":[[1,"TRUE"]],"forced":[1],"executed":[["a.st",3]]}');
+  assert.ok(seen.type === "variables" && seen.values[0]?.[1] === "TRUE" && seen.forced[0] === 1 && seen.executed[0]?.[1] === 3);
+  for (const garbage of ['{"values":[[1]],"forced":[]}', '{"values":[["1","x"]],"forced":[]}', '{"values":[]}', '{"values":[[1,"a",2]],"forced":[]}']) {
+    assert.throws(() => decodeMessage(garbage.replace("{", '{"type":"variables",')), ProtocolError);
+  }
+});
+
 test("messages are read; garbage is an error", () => {
   const status = decodeMessage('{"type":"status","state":"run","pace":1,"seat":{"desk":"free"},"past_ns":[0,5]}');
   assert.ok(status.type === "status" && status.seats.get("desk") === "free" && status.past_ns?.[1] === 5);

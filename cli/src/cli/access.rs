@@ -90,7 +90,7 @@ pub enum TokenWish {
 pub struct NewTokenArgs {
     /// Its name, for lists and messages: who or what is to hold it
     pub name: String,
-    /// What it is good for: `operator`, `viewer` (an operator who changes nothing), or `client:NAME`, to take part as this client
+    /// What it is good for: `operator`, `trainer` (an operator who sits at the panels of trainers, too), `viewer` (an operator who changes nothing), or `client:NAME`, to take part as this client
     #[arg(long, value_name = "ROLE")]
     pub role: Role,
     /// The folder of those who are let in; it is made if it is not there

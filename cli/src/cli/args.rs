@@ -17,7 +17,7 @@ use super::model::ModelArgs;
 use super::mutate::MutateArgs;
 use super::plant::{ComponentsArgs, DescribeArgs, EditArgs, NewArgs, WiringArgs};
 use super::plc::{BrowseArgs, MapArgs, PlcArgs};
-use super::recording::{BisectArgs, DiffArgs, ExportArgs, ReportArgs};
+use super::recording::{BisectArgs, DiffArgs, ExportArgs, ReportArgs, ViewArgs};
 use super::run::RunArgs;
 use super::session::{ControlArgs, JoinArgs};
 use super::shot::ShotArgs;
@@ -120,6 +120,8 @@ pub enum Command {
     Export(ExportArgs),
     /// Compare two recordings: where they first differ, in which signals, and which statement wrote them
     Diff(DiffArgs),
+    /// Show a recording as a page in a browser: it is run again from its own files, and its digest checked on the way
+    View(ViewArgs),
     /// Report what recorded runs produced: counts, throughput, cycle times, down time by cause, alarms, as their
     /// scenario's `[report]` asks
     Report(ReportArgs),
@@ -180,6 +182,7 @@ pub fn dispatch(command: Command) -> Result<ExitCode, CommandError> {
         Command::Certificate(args) => access::certificate(args),
         Command::Export(args) => recording::export(args),
         Command::Diff(args) => recording::diff(args),
+        Command::View(args) => recording::view(args),
         Command::Report(args) => recording::report(args),
         Command::Bisect(args) => recording::bisect(args),
         Command::Check(args) => source::check(args),

@@ -28,6 +28,7 @@ use crate::run::RunError;
 use crate::session::SessionError;
 use crate::shot::ShotError;
 use crate::train::TrainError;
+use crate::view::ViewError;
 use crate::wiring::WiringError;
 
 sum_of_errors! {
@@ -54,6 +55,9 @@ sum_of_errors! {
         /// `report` came to nothing.
         #[diagnostic(transparent)]
         Report(ReportError),
+        /// `view` came to nothing.
+        #[diagnostic(transparent)]
+        View(ViewError),
         /// `bisect` came to nothing.
         #[diagnostic(transparent)]
         Bisect(BisectError),

@@ -1,5 +1,6 @@
-//! What is done with recordings: `onescan export`, `diff`, `report`, and `bisect`, which makes its own.
+//! What is done with recordings: `onescan export`, `diff`, `view`, `report`, and `bisect`, which makes its own.
 
+use std::net::SocketAddr;
 use std::path::PathBuf;
 
 use clap::{Args as ClapArgs, ValueEnum};
@@ -9,13 +10,16 @@ use onescan_server::time::VirtualTime;
 
 use super::error::CommandError;
 use super::value::FormatArg;
+use crate::access::admission::Admission;
 use crate::bisect::BisectConfig;
 use crate::diff::DiffConfig;
 use crate::error::ExitCode;
 use crate::error::Usage;
 use crate::export::ExportConfig;
 use crate::interrupt::Interrupt;
+use crate::past::Budget;
 use crate::report::ReportConfig;
+use crate::view::ViewConfig;
 
 /// Options of `export`.
 #[derive(Debug, ClapArgs)]
@@ -125,6 +129,35 @@ pub fn report(args: ReportArgs) -> Result<ExitCode, CommandError> {
     let config = ReportConfig { recordings, scenario, format: format.into(), html };
     crate::report::report(&config, &mut std::io::stdout().lock())?;
     Ok(ExitCode::Ok)
+}
+
+/// Options of `view`.
+#[derive(Debug, ClapArgs)]
+pub struct ViewArgs {
+    /// The recording: a folder with a `recording.json`, or with one such folder in it
+    pub recording: PathBuf,
+    /// Let in whoever shows a token of this folder, under TLS if it has a certificate
+    #[arg(long, value_name = "DIR")]
+    pub access: Option<PathBuf>,
+    /// Where the page is served: an address of this machine, or any with `--access` [default: a free port]
+    #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:0", hide_default_value = true)]
+    pub web: SocketAddr,
+    /// How much memory moments of the re-run may take, as in `256MiB`
+    #[arg(long, default_value_t, value_name = "MEMORY")]
+    pub past_memory: Budget,
+}
+
+/// Shows a recording as a page.
+///
+/// # Errors
+/// See [`CommandError`].
+pub fn view(args: ViewArgs) -> Result<ExitCode, CommandError> {
+    let interrupt = Interrupt::new();
+    interrupt.on_signals();
+    let ViewArgs { recording, access, web, past_memory: past } = args;
+    let admission = access.map_or(Admission::ThisMachine, Admission::Holders);
+    let config = ViewConfig { recording, web, admission, past };
+    Ok(crate::view::view(&config, &interrupt, &mut std::io::stdout().lock())?)
 }
 
 /// Options of `bisect`.

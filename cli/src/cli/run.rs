@@ -25,6 +25,7 @@ use crate::check::stubs;
 use crate::error::ExitCode;
 use crate::format::Format;
 use crate::interrupt::Interrupt;
+use crate::past::Budget;
 use crate::run::config::{
     Course, Doors, Drawing, Picture, Reach, RecordRequest, Reports, RunsDrawn, SaveRequest, Subject, Watch, WatchOn,
 };
@@ -132,6 +133,9 @@ pub struct RunArgs {
     /// time unless `--pace` says otherwise [default ADDRESS: a free port]
     #[arg(long, value_name = "ADDRESS:PORT", num_args = 0..=1, require_equals = true, default_missing_value = "127.0.0.1:0")]
     pub web: Option<SocketAddr>,
+    /// How much memory the past may take that the page of `--web` shows, as in `256MiB`; `0` for none
+    #[arg(long, default_value_t, requires = "web", value_name = "MEMORY")]
+    pub past_memory: Budget,
     /// Let people stand in for this client: its signals are operated, on the page, by `onescan control` or over OPC UA; may be
     /// given several times
     #[arg(long = "operator", value_name = "CLIENT", value_parser = client_name)]
@@ -306,7 +310,14 @@ fn config(args: RunArgs) -> Result<RunConfig, CommandError> {
             reply_timeout: Duration::from_nanos(args.reply_timeout.as_nanos()),
             latency: args.latency,
         },
-        doors: Doors { listen: args.listen, admission, web: args.web, opcua: args.opcua, access },
+        doors: Doors {
+            listen: args.listen,
+            admission,
+            web: args.web,
+            past: args.past_memory,
+            opcua: args.opcua,
+            access,
+        },
         course: Course {
             pace: args.pace,
             resume: args.resume,

@@ -19,6 +19,7 @@ use onescan_server::timeline::When;
 use super::coverage::CoverageRequest;
 use crate::access::admission::Admission;
 use crate::format::Format;
+use crate::past::Budget;
 
 /// All options of a run.
 #[derive(Clone, Debug, PartialEq)]
@@ -93,6 +94,8 @@ pub struct Doors {
     pub admission: Admission,
     /// Where the session is served as a page.
     pub web: Option<SocketAddr>,
+    /// How much memory the past takes that the page shows.
+    pub past: Budget,
     /// Where the session is served over OPC UA.
     pub opcua: Option<SocketAddr>,
     /// Who is let in there.

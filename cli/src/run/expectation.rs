@@ -9,6 +9,7 @@ use onescan_report::number::short;
 use onescan_scenario::Scenario;
 use onescan_scenario::expect::{self, Expectation, Judge, TraceEnd};
 use onescan_server::digest::TrajectoryDigest;
+use onescan_server::end::SessionEnd;
 use onescan_server::observer::{Observer, RecordError};
 use onescan_server::session::Session;
 use onescan_server::signal::SignalName;
@@ -17,6 +18,7 @@ use serde::Serialize;
 
 use super::chosen::Chosen;
 use crate::error::Usage;
+use crate::web::Bench;
 
 /// What came of one expectation. Its JSON form is a contract: fields are added, never changed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -115,6 +117,42 @@ pub(crate) fn reports(scenario: &Scenario, judge: Judge, end: TraceEnd) -> Vec<E
 pub(crate) fn judge(scenario: &Scenario) -> Judge {
     let expected = scenario.expectations();
     Judge::new(expected.named.iter().map(|(_, expectation)| expectation.clone()), expected.signals.len())
+}
+
+/// Leaves copies of the judge of a run for those who watch it, behind the [`Witness`] that shows the run to it.
+pub(super) struct Copyist {
+    judge: Rc<RefCell<Judge>>,
+    bench: Bench,
+}
+
+impl Copyist {
+    pub(super) fn new(judge: Rc<RefCell<Judge>>, bench: Bench) -> Self {
+        Self { judge, bench }
+    }
+
+    fn leave(&self, session: &Session, end: TraceEnd) {
+        self.bench.leave(session.t_v(), self.judge.borrow().clone(), end);
+    }
+}
+
+impl Observer for Copyist {
+    fn begin(&mut self, session: &Session, _digest: &TrajectoryDigest) -> Result<(), RecordError> {
+        self.leave(session, TraceEnd::Cut);
+        Ok(())
+    }
+
+    fn step(&mut self, session: &Session, _digest: &TrajectoryDigest) -> Result<(), RecordError> {
+        if self.bench.is_wanted() {
+            self.leave(session, TraceEnd::Cut);
+        }
+        Ok(())
+    }
+
+    fn end(&mut self, session: &Session) -> Result<(), RecordError> {
+        let is_complete = matches!(session.end(), Some(SessionEnd::Completed { .. }));
+        self.leave(session, if is_complete { TraceEnd::Complete } else { TraceEnd::Cut });
+        Ok(())
+    }
 }
 
 /// Shows a run to the judge of its expectations.

@@ -41,6 +41,7 @@ impl Group {
 }
 
 /// The server's side.
+#[derive(Debug)]
 pub(super) struct Guard {
     process: Child,
     told: ChildStdin,

@@ -15,6 +15,7 @@ use onescan_server::lockstep::{Lockstep, Outcome, Reached};
 use onescan_server::operation::OperatorInput;
 use onescan_server::pacing::Pace;
 use onescan_server::signal::ClientName;
+use onescan_server::time::VirtualTime;
 use onescan_server::timeline::Timeline;
 use onescan_server::transport::tcp::Lobby;
 
@@ -23,12 +24,14 @@ use super::error::RunError;
 use super::fork::{self, Fork};
 use super::processes::{Passed, Processes};
 use super::progress::Progress;
+use super::rewound::{self, Onward};
 use super::seats::{Desk, Seats};
 use super::session_log::SessionLog;
 use crate::access::admission::{Doorstep, Shown, from_here};
 use crate::error::{ListenError, Unreadable, Usage};
 use crate::interrupt::Interrupt;
-use crate::web::{self, Page};
+use crate::past::{Keeper, Kept, Rewinder};
+use crate::web::{self, Bench, Page, WebError};
 
 /// What is said here is for the user, also without `--verbose`.
 pub(crate) const NOTICE: &str = "onescan::notice";
@@ -58,7 +61,7 @@ pub(super) fn run(
     scenario: &Scenario,
     number: u32,
     interrupt: &Interrupt,
-    log: &SessionLog,
+    (log, bench): (&SessionLog, &Bench),
     watch: impl FnOnce(&mut Lockstep),
 ) -> Result<Driven, RunError> {
     let mut processes = Processes::default();
@@ -73,8 +76,14 @@ pub(super) fn run(
         lockstep.set_published(desk.published());
         lockstep.observe(desk.observer());
     }
-    let _page =
-        config.doors.web.map(|address| serve_page(address, config, scenario, &mut lockstep, interrupt)).transpose()?;
+    let mut keeper = None;
+    let _page = match config.doors.web {
+        Some(address) => {
+            let past = past_of(config, scenario, &mut lockstep, &mut keeper)?;
+            Some(serve_page(address, config, scenario, &mut lockstep, interrupt, (past, bench.clone()))?)
+        }
+        None => None,
+    };
     if config.reports.progress {
         let label = if config.runs == 1 { scenario.name().to_owned() } else { format!("run {number}/{}", config.runs) };
         lockstep.observe(Box::new(Progress::new(config.subject.end(scenario), label).with_log(log.clone())));
@@ -86,7 +95,7 @@ pub(super) fn run(
         resume(&mut lockstep, path, config.course.accept_code.then_some(scenario))?;
     }
     let saved = match &config.course.save {
-        Some(request) => save(&mut lockstep, request),
+        Some(request) => save(&mut lockstep, request, &mut keeper),
         None => Ok(()),
     };
     if let Err(error) = &saved {
@@ -100,6 +109,9 @@ pub(super) fn run(
             Ok(taken) => forks = taken,
             Err(error) => unsaved = Some(error),
         }
+    }
+    if let Some(keeper) = &mut keeper {
+        keeper.run_to(&mut lockstep, VirtualTime::MAX)?;
     }
     let state = if config.course.state_at_end && lockstep.run_to(config.subject.end(scenario))? == Reached::Boundary {
         let hash = lockstep.checkpoint().and_then(|checkpoint| checkpoint.state_hash());
@@ -118,6 +130,28 @@ fn timeline(config: &RunConfig, scenario: &Scenario, lockstep: &Lockstep) -> Res
     own.with_lookouts(forks.conditions.clone(), session).map_err(RunError::Timeline)
 }
 
+/// Lets the session leave its past; gives who shows it, or why nobody can.
+fn past_of(
+    config: &RunConfig,
+    scenario: &Scenario,
+    lockstep: &mut Lockstep,
+    keeper: &mut Option<Keeper>,
+) -> Result<Result<Rewinder, String>, RunError> {
+    if config.doors.past.bytes == 0 {
+        return Ok(Err("`--past-memory 0` keeps none".to_owned()));
+    }
+    if let Some(why) = rewound::hindrance(scenario, Some(config)) {
+        return Ok(Err(why));
+    }
+    let kept = Kept::within(config.doors.past.bytes);
+    let started = Keeper::new(kept.clone())
+        .and_then(|keeper| Ok((keeper, Rewinder::new(kept, rewound::former(scenario))?)))
+        .map_err(WebError::Thread)?;
+    lockstep.observe(started.0.observer());
+    *keeper = Some(started.0);
+    Ok(Ok(started.1))
+}
+
 /// Serves the session as a page, for as long as it is kept.
 fn serve_page(
     address: SocketAddr,
@@ -125,6 +159,7 @@ fn serve_page(
     scenario: &Scenario,
     lockstep: &mut Lockstep,
     interrupt: &Interrupt,
+    (past, bench): (Result<Rewinder, String>, Bench),
 ) -> Result<Page, RunError> {
     let pace = match config.course.pace {
         Pace::Max => "max".to_owned(),
@@ -133,10 +168,23 @@ fn serve_page(
     let failing = web::Failing::default();
     lockstep.observe(failing.observer());
     let (published, mailbox) = (lockstep.published(), interrupt.mailbox());
-    let source = web::Source { scenario, published, mailbox, pace, failing, training: None, pictures: None };
-    let page = Page::serve(address, source)?;
+    let launch = rewound::launcher(Onward::of(config));
+    let source = web::Source {
+        scenario,
+        published,
+        mailbox,
+        pace,
+        failing,
+        training: None,
+        pictures: None,
+        past,
+        launch,
+        bench,
+        recorded_to: None,
+    };
+    let page = Page::serve(address, &config.doors.admission, source)?;
     match Page::is_absent() {
-        None => tracing::info!(target: NOTICE, "the session is at {}", page.url()),
+        None => tracing::info!(target: NOTICE, "{}{}", rewound::PAGE_AT, page.url()),
         Some(how) => tracing::warn!(target: NOTICE, "no page at {}: {how}", page.url()),
     }
     Ok(page)
@@ -300,8 +348,12 @@ fn resume(lockstep: &mut Lockstep, path: &std::path::Path, accepts: Option<&Scen
     lockstep.resume(&checkpoint).map_err(wrong)
 }
 
-fn save(lockstep: &mut Lockstep, request: &SaveRequest) -> Result<(), RunError> {
-    if lockstep.run_to(request.at)? == Reached::End {
+fn save(lockstep: &mut Lockstep, request: &SaveRequest, keeper: &mut Option<Keeper>) -> Result<(), RunError> {
+    let reached = match keeper {
+        Some(keeper) => keeper.run_to(lockstep, request.at)?,
+        None => lockstep.run_to(request.at)?,
+    };
+    if reached == Reached::End {
         return Err(RunError::SaveTooLate(lockstep.session().t_v()));
     }
     let bytes = lockstep.checkpoint().and_then(|checkpoint| checkpoint.to_bytes()).map_err(RunError::Save)?;

@@ -20,6 +20,7 @@
 //! | `in_process` | a session of which all clients are here |
 //! | `judged` | the same, judged step by step |
 //! | [`rerun`] | a recorded run once more |
+//! | [`rewound`] | the past of a run, for its page |
 //! | [`expectation`] | what a run had to show |
 //! | [`production`] | what a run produced, by its scenario's `[report]` |
 //! | [`watch`] | what watched variables were |
@@ -49,6 +50,7 @@ mod progress;
 pub mod recorded;
 pub mod report;
 pub mod rerun;
+pub(crate) mod rewound;
 pub(crate) mod sampler;
 #[cfg(feature = "opcua")]
 mod seats;
@@ -84,7 +86,8 @@ pub use report::{RunReport, RunStatus, Verdict};
 
 use crate::interrupt::Interrupt;
 use crate::plant::drawing;
-use expectation::Witness;
+use crate::web::Bench;
+use expectation::{Copyist, Witness};
 use page::Event;
 use production::Metered;
 use recorded::{Recorded, refuse_to_overwrite};
@@ -212,13 +215,12 @@ pub(crate) fn one_run(
     let samples = Rc::new(RefCell::new(Samples::new(&config.picture.sampled(scenario))));
     let judge = Rc::new(RefCell::new(expectation::judge(scenario)));
     let (measures, metered) = (scenario.measures(), Metered::new(scenario.measures()));
-    let recorded = config
-        .reports
-        .record
-        .as_ref()
-        .map(|request| Recorded::begin(request, &config.subject, config.mode, scenario, number));
+    let recorded = config.reports.record.as_ref().map(|request| {
+        Recorded::begin(request, &config.subject, (config.mode, &config.reach.operated), scenario, number)
+    });
     let (recorded, recorder) = recorded.transpose()?.unzip();
     let published = RefCell::new(None);
+    let bench = Bench::default();
     let watch = |lockstep: &mut Lockstep| {
         published.replace(Some(lockstep.published()));
         for observer in observers {
@@ -230,6 +232,9 @@ pub(crate) fn one_run(
         let expected = scenario.expectations();
         if !expected.named.is_empty() {
             lockstep.observe(Box::new(Witness::new(Rc::clone(&judge), &expected.signals)));
+            if config.doors.web.is_some() {
+                lockstep.observe(Box::new(Copyist::new(Rc::clone(&judge), bench.clone())));
+            }
         }
         if let Some(metering) = metered.observer(measures) {
             lockstep.observe(metering);
@@ -240,7 +245,7 @@ pub(crate) fn one_run(
     };
     let log = SessionLog::default();
     let outcome = match config.mode {
-        Mode::Lockstep => lockstep::run(config, scenario, number, interrupt, &log, watch),
+        Mode::Lockstep => lockstep::run(config, scenario, number, interrupt, (&log, &bench), watch),
         Mode::Freewheel | Mode::Halt | Mode::Follow => {
             freewheel::run(config, scenario, number, interrupt, watch).map(Driven::from)
         }

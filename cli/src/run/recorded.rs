@@ -9,6 +9,7 @@ use onescan_recording::{Provenance, Recorder, Recording, SourceFile};
 use onescan_report::OutputError;
 use onescan_report::{FileError, file};
 use onescan_scenario::{Mode, Scenario, ScenarioError, permission};
+use onescan_server::signal::ClientName;
 use onescan_server::time::VirtualTime;
 
 use super::config::{RecordRequest, Subject};
@@ -29,7 +30,7 @@ impl Recorded {
     pub(crate) fn begin(
         request: &RecordRequest,
         subject: &Subject,
-        mode: Mode,
+        (mode, operated): (Mode, &[ClientName]),
         scenario: &Scenario,
         number: u32,
     ) -> Result<(Self, Recorder), RunError> {
@@ -42,6 +43,7 @@ impl Recorded {
             scenario: scenario.name().to_owned(),
             folder: own_folder,
             case: subject.case.clone(),
+            operated: operated.to_vec(),
             mode: mode.name().to_owned(),
             until: subject.end(scenario),
             seed: scenario.seed(),

@@ -8,6 +8,7 @@ use serde::Deserialize;
 use thiserror::Error;
 
 use super::desk::{Role, Training, Turn};
+use super::online::Action;
 use super::structure::Known;
 
 /// A message of a page.
@@ -27,21 +28,21 @@ pub(super) enum Ask {
     /// The lesson goes on from its start, from an earlier moment, or from a prepared state.
     Train(TrainAsk),
     /// A moment of the past is to be shown.
-    Show {
-        #[serde(rename = "t_ns")]
-        _t_ns: f64,
-    },
+    Show { t_ns: f64 },
     /// A view of the scenario for all viewers.
     View { view: String },
     /// The values of a drawing's instance from now on, or of none.
     Draw { drawing: Option<usize>, instance: usize },
+    /// These variables of PLCs from now on.
+    Watch { variables: Vec<usize> },
+    /// A variable of a PLC is written, forced or released.
+    Variable { variable: usize, action: Action, value: String },
+    /// A signal is forced; released without a value.
+    Force { signal: usize, value: Option<String> },
     /// The live edge again.
     Live,
     /// A session that goes on from a moment of the past.
-    Fork {
-        #[serde(rename = "t_ns")]
-        _t_ns: f64,
-    },
+    Fork { t_ns: f64 },
 }
 
 /// How a lesson is to go on.
@@ -74,6 +75,8 @@ pub(super) enum Refused {
     Value { signal: String, ty: SignalType, value: String },
     #[error("`{signal}` is written by `{writer}`: `run --operator {writer}` lets people write it")]
     Writer { signal: String, writer: String },
+    #[error("there is no variable {0}")]
+    NoVariable(usize),
     #[error("there is no component `{0}`")]
     NoComponent(String),
     #[error("that is the trainer's business")]
@@ -90,8 +93,16 @@ pub(super) enum Refused {
     NoView(String),
     #[error("a view is called for all from the seat of a trainer: take one first")]
     NoTrainer,
-    #[error("the past of a running session is not kept: `--save-at` keeps a moment of it, `--record` all signals")]
-    Past,
+    #[error("the past of this session cannot be shown: {0}")]
+    Past(String),
+    #[error("{t_ns} ns is no moment of the past, which ends at {end}")]
+    NoMoment { t_ns: String, end: VirtualTime },
+    #[error("a recording is looked at: nobody operates it; `Go on from here` makes a session of it")]
+    Recorded,
+    #[error("a viewer's token lets its holder look, and change nothing")]
+    LooksOnly,
+    #[error("panel `{0}` is a trainer's, and an operator's token does not let its holder sit there")]
+    Trainers(String),
     #[error("somebody else has the seat of panel `{0}`")]
     Taken(String),
     #[error("`{0}` is written from the seat of a panel that has it: take that seat first")]
@@ -99,6 +110,22 @@ pub(super) enum Refused {
 }
 
 impl Ask {
+    /// Whether it changes nothing that anybody else sees.
+    pub(super) fn only_looks(&self) -> bool {
+        match self {
+            Self::Subscribe { .. } | Self::Watch { .. } | Self::Draw { .. } | Self::Show { .. } | Self::Live => true,
+            Self::Write { .. }
+            | Self::Operate { .. }
+            | Self::Seat { .. }
+            | Self::Fail { .. }
+            | Self::Variable { .. }
+            | Self::Force { .. }
+            | Self::Train(_)
+            | Self::View { .. }
+            | Self::Fork { .. } => false,
+        }
+    }
+
     /// Reads a message.
     pub(super) fn read(text: &str) -> Result<Self, Refused> {
         serde_json::from_str(text).map_err(|error| Refused::Garbage(error.to_string()))
@@ -125,6 +152,15 @@ pub(super) fn write(declared: &SignalDecl, value: f64, known: &Known) -> Result<
     };
     declared.ty.parse_text(&text).map_err(|_| wrong())?;
     Ok(Operation::Write { signal: declared.name.clone(), value: text })
+}
+
+/// A signal is forced, or released without a value. Whether the text is a value of its type, the session says.
+pub(super) fn force(declared: &SignalDecl, value: Option<String>) -> Operation {
+    let signal = declared.name.clone();
+    match value {
+        Some(value) => Operation::Force { signal, value },
+        None => Operation::Release { signal },
+    }
 }
 
 /// A component fails, or is repaired. Whether it has that mode, the plant says.

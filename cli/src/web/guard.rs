@@ -17,18 +17,20 @@ pub(super) enum Foreign {
     Origin,
 }
 
-/// Lets in what comes from this server's own page, or from a program.
-pub(super) fn admit(headers: &HeaderMap) -> Result<(), Foreign> {
+/// Lets in what comes from this server's own page, or from a program. `scheme` is what the page is served by.
+pub(super) fn admit(headers: &HeaderMap, scheme: &str) -> Result<(), Foreign> {
     let host = headers.get(HOST).and_then(|host| host.to_str().ok()).ok_or(Foreign::NoHost)?;
     if !is_address(host) {
         return Err(Foreign::Name);
     }
     match headers.get(ORIGIN) {
         None => Ok(()),
-        Some(origin) => match origin.to_str().ok().and_then(|origin| origin.strip_prefix("http://")) {
-            Some(from) if from.eq_ignore_ascii_case(host) => Ok(()),
-            _ => Err(Foreign::Origin),
-        },
+        Some(origin) => {
+            match origin.to_str().ok().and_then(|origin| origin.strip_prefix(scheme)?.strip_prefix("://")) {
+                Some(from) if from.eq_ignore_ascii_case(host) => Ok(()),
+                _ => Err(Foreign::Origin),
+            }
+        }
     }
 }
 
@@ -53,7 +55,7 @@ mod tests {
         if let Some(origin) = origin {
             headers.insert(ORIGIN, origin.parse().expect("a header"));
         }
-        admit(&headers)
+        admit(&headers, "http")
     }
 
     #[test]

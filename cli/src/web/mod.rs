@@ -4,15 +4,20 @@
 //! |---|---|
 //! | [`bundle`] | the page itself, a part of the program |
 //! | [`guard`] | whose requests are answered |
+//! | [`entry`] | who comes in where a token is asked for |
+//! | `tls` | the page under TLS |
 //! | [`structure`] | what of a session does not change |
+//! | [`online`] | variables of PLCs that are no signals |
 //! | [`panel`] | what operators see and write with |
 //! | [`drawings`] | ladders, function blocks and charts as they are laid out, with their states |
 //! | [`alarms`] | alarms as they come and go |
 //! | [`looks`] | figures, views, and what bodies look like while something holds |
 //! | [`picture`] | what of a step is shown |
 //! | [`ask`] | what a page may ask |
+//! | [`gaze`] | where a viewer looks: live, or at the past |
 //! | [`seats`] | who operates |
 //! | [`desk`] | a lesson on two pages |
+//! | [`verdicts`] | what becomes of expectations while it runs |
 //! | [`viewer`] | one viewer |
 //!
 //! The server has a thread of its own. It reads what the session publishes and leaves wishes in its mailbox, as every other
@@ -24,50 +29,65 @@ mod ask;
 mod bundle;
 mod desk;
 mod drawings;
+mod entry;
+mod gaze;
 mod guard;
 mod looks;
+mod online;
 mod panel;
 mod picture;
 mod seats;
 pub(crate) mod structure;
+mod tls;
+mod verdicts;
 mod viewer;
 
 use std::net::{SocketAddr, TcpListener};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::Sender;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use axum::Router;
-use axum::body::Bytes;
+use axum::body::{Body, Bytes};
 use axum::extract::{DefaultBodyLimit, Request, State, WebSocketUpgrade};
 use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, header};
 use axum::middleware::{self, Next};
-use axum::response::{IntoResponse, Response};
+use axum::response::{Html, IntoResponse, Response};
 use axum::routing::{get, post};
+use axum::{Extension, Router};
 use miette::Diagnostic;
 use onescan_scenario::{Scenario, ScenarioError};
 use onescan_server::layout::ImageLayout;
 use onescan_server::mailbox::Mailbox;
 use onescan_server::plan::SessionPlan;
 use onescan_server::published::Published;
+use onescan_server::time::VirtualTime;
+use onescan_server::transport::tcp::House;
 use thiserror::Error;
 use tokio::sync::Notify;
 
+use crate::access::AccessError;
+use crate::access::admission::{Admission, Doorstep};
 use crate::error::{Exit, ExitCode, ListenError, Usage};
+use crate::past::Rewinder;
 pub(crate) use desk::{Desk, Failing, Role, Training, Turn};
+use entry::{Barred, Entry, Rank};
 use looks::Called;
 use seats::{SeatView, Seats};
 use structure::Known;
+use tls::TlsDoor;
+pub(crate) use verdicts::Bench;
 
 /// What a page may load and do: what comes from here, and nothing from outside.
 const POLICY: &str = "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; connect-src 'self'; \
-                      frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
+                      frame-ancestors 'none'; base-uri 'none'; form-action 'self'";
 /// The longest message of a page, bytes.
 const MESSAGE_MAX: usize = 64 * 1024;
 /// The largest picture that a page draws, bytes.
 const PICTURE_MAX: usize = 256 * 1024 * 1024;
+/// The longest form, bytes.
+const FORM_MAX: usize = 4 * 1024;
 /// How long viewers have to take the end.
 const FAREWELL: Duration = Duration::from_millis(500);
 
@@ -87,7 +107,19 @@ pub(crate) struct Source<'s> {
     pub(crate) training: Option<Training>,
     /// Where pictures go that the page draws, if it is to draw one.
     pub(crate) pictures: Option<Sender<Drawn>>,
+    /// Who shows its past; or why nobody does.
+    pub(crate) past: Result<Rewinder, String>,
+    /// Who lets sessions go on from there.
+    pub(crate) launch: Launch,
+    /// Where it is seen what becomes of expectations.
+    pub(crate) bench: Bench,
+    /// Where a recording ends; nothing for a session that runs.
+    pub(crate) recorded_to: Option<VirtualTime>,
 }
+
+/// Begins a session that goes on from a checkpoint, given as a file's bytes; gives where its page is, or says in words why
+/// there is none.
+pub(crate) type Launch = Arc<dyn Fn(&[u8]) -> Result<String, String> + Send + Sync>;
 
 /// A picture that the page has drawn, a PNG, or why it has not.
 pub(crate) type Drawn = Result<Vec<u8>, String>;
@@ -107,10 +139,45 @@ struct Session {
     seats: Arc<Seats>,
     called: Called,
     pictures: Option<Sender<Drawn>>,
+    entry: Entry,
+    /// `http` or `https`.
+    scheme: &'static str,
+    past: Result<Rewinder, String>,
+    launch: Launch,
+    bench: Bench,
+    /// The names of the expectations.
+    expected: Vec<String>,
+    recorded_to: Option<VirtualTime>,
     over: AtomicBool,
+    /// A viewer of a recording has seen enough.
+    left: AtomicBool,
+    /// What all viewers are told, in its order.
+    news: Mutex<Vec<News>>,
+}
+
+/// Something that happened beside the steps.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct News {
+    /// When.
+    pub(crate) t_v: VirtualTime,
+    /// What kind of thing.
+    pub(crate) kind: &'static str,
+    /// In words.
+    pub(crate) text: String,
 }
 
 impl Session {
+    /// What was told after the first `heard` news. A thread that panicked under the lock has left whole values.
+    fn news_after(&self, heard: usize) -> Vec<News> {
+        let news = self.news.lock().unwrap_or_else(PoisonError::into_inner);
+        news.get(heard..).unwrap_or_default().to_vec()
+    }
+
+    /// The newest moment that there is.
+    fn edge(&self) -> VirtualTime {
+        self.recorded_to.unwrap_or_else(|| self.published.latest().t_v)
+    }
+
     fn ended(&self) -> bool {
         self.over.load(Ordering::Acquire)
     }
@@ -126,10 +193,17 @@ pub enum WebError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Open(#[from] Usage),
+    /// Others could come in, or nobody can.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Access(#[from] AccessError),
     /// The scene has changed since it was read.
     #[error(transparent)]
     #[diagnostic(transparent)]
     Scenario(#[from] ScenarioError),
+    /// The past cannot be kept or shown.
+    #[error("there is no thread for the past of the session: {0}")]
+    Thread(std::io::Error),
     /// The structure cannot be written.
     #[error("the structure of the session cannot be served: {0}")]
     Structure(#[from] serde_json::Error),
@@ -140,19 +214,23 @@ impl Exit for WebError {
         match self {
             Self::Listen(error) => error.exit_code(),
             Self::Open(error) => error.exit_code(),
+            Self::Access(error) => error.exit_code(),
             Self::Scenario(error) => error.exit_code(),
-            Self::Structure(_) => ExitCode::Fault,
+            Self::Structure(_) | Self::Thread(_) => ExitCode::Fault,
         }
     }
 }
 
-/// Everybody who reaches the page operates the session, so nobody from elsewhere may.
-pub(crate) fn of_this_machine(address: SocketAddr) -> Result<(), Usage> {
-    if address.ip().is_loopback() {
+/// Without tokens, everybody who reaches the page operates the session, so nobody from elsewhere may.
+pub(crate) fn of_this_machine(address: SocketAddr, admission: &Admission) -> Result<(), Usage> {
+    if address.ip().is_loopback() || matches!(admission, Admission::Holders(_)) {
         return Ok(());
     }
     let port = address.port();
-    let help = format!("write `--web=127.0.0.1:{port}`, and come from elsewhere through a tunnel, as that of `ssh -L`");
+    let help = format!(
+        "write `--web=127.0.0.1:{port}`, and come from elsewhere through a tunnel, as that of `ssh -L`; or name a folder with \
+         tokens and a certificate, with `--access DIR` (docs/security.md)"
+    );
     Err(Usage::new(format!("--web {address}: the page is for browsers of this machine only"), Some(help)))
 }
 
@@ -165,28 +243,48 @@ pub(crate) struct Page {
 }
 
 impl Page {
-    /// Serves a session at `address`, an address of this machine.
+    /// Serves a session at `address`, an address of this machine, unless `admission` asks for tokens.
     ///
     /// # Errors
     /// See [`WebError`].
-    pub(crate) fn serve(address: SocketAddr, source: Source<'_>) -> Result<Self, WebError> {
-        Self::seated(address, source, None)
+    pub(crate) fn serve(address: SocketAddr, admission: &Admission, source: Source<'_>) -> Result<Self, WebError> {
+        Self::seated(address, admission, source, None)
     }
 
     /// Serves the same session at another address, for others who share its seats.
     ///
     /// # Errors
     /// See [`WebError`].
-    pub(crate) fn beside(&self, address: SocketAddr, source: Source<'_>) -> Result<Self, WebError> {
-        Self::seated(address, source, Some(Arc::clone(&self.session.seats)))
+    pub(crate) fn beside(
+        &self,
+        address: SocketAddr,
+        admission: &Admission,
+        source: Source<'_>,
+    ) -> Result<Self, WebError> {
+        Self::seated(address, admission, source, Some(Arc::clone(&self.session.seats)))
     }
 
-    fn seated(address: SocketAddr, source: Source<'_>, seats: Option<Arc<Seats>>) -> Result<Self, WebError> {
-        of_this_machine(address)?;
+    fn seated(
+        address: SocketAddr,
+        admission: &Admission,
+        source: Source<'_>,
+        seats: Option<Arc<Seats>>,
+    ) -> Result<Self, WebError> {
+        of_this_machine(address, admission)?;
+        let House { register, identity } = match admission {
+            Admission::Holders(_) => Doorstep::open(admission, address)?.into_house(),
+            Admission::ThisMachine | Admission::Anybody => House::default(),
+        };
         let listen = ListenError::on(address);
-        let (structure, mut known) = structure::of(source.scenario, source.training.as_ref())?;
+        let (mut structure, mut known) = structure::of(source.scenario, source.training.as_ref())?;
+        structure.live = source.recorded_to.is_none();
         let plan = source.scenario.plan().clone();
+        let listener = TcpListener::bind(address).map_err(&listen)?;
+        listener.set_nonblocking(true).map_err(&listen)?;
+        let address = listener.local_addr().map_err(&listen)?;
         let session = Arc::new(Session {
+            entry: Entry::new(register, address.port(), identity.is_some()),
+            scheme: if identity.is_some() { "https" } else { "http" },
             structure: serde_json::to_string(&structure)?,
             seats: seats.unwrap_or_else(|| Arc::new(Seats::at(std::mem::take(&mut known.panels)))),
             called: Called::among(source.scenario),
@@ -199,11 +297,15 @@ impl Page {
             failing: source.failing,
             training: source.training,
             pictures: source.pictures,
+            past: source.past,
+            launch: source.launch,
+            bench: source.bench,
+            expected: source.scenario.expectations().named.iter().map(|(name, _)| name.clone()).collect(),
+            recorded_to: source.recorded_to,
             over: AtomicBool::new(false),
+            left: AtomicBool::new(false),
+            news: Mutex::default(),
         });
-        let listener = TcpListener::bind(address).map_err(&listen)?;
-        listener.set_nonblocking(true).map_err(&listen)?;
-        let address = listener.local_addr().map_err(&listen)?;
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(&listen)?;
         let stop = Arc::new(Notify::new());
         let (router, stopped) = (router(Arc::clone(&session)), Arc::clone(&stop));
@@ -211,7 +313,10 @@ impl Page {
             runtime.block_on(async move {
                 let served = async {
                     let listener = tokio::net::TcpListener::from_std(listener)?;
-                    axum::serve(listener, router).await
+                    match identity {
+                        Some(identity) => axum::serve(TlsDoor::new(listener, &identity)?, router).await,
+                        None => axum::serve(listener, router).await,
+                    }
                 };
                 tokio::select! {
                     outcome = served => if let Err(error) = outcome {
@@ -228,7 +333,17 @@ impl Page {
 
     /// Where a browser finds it.
     pub(crate) fn url(&self) -> String {
-        format!("http://{}/", self.address)
+        format!("{}://{}/", self.session.scheme, self.address)
+    }
+
+    /// Tells all viewers, those who are yet to come too.
+    pub(crate) fn tell(&self, news: News) {
+        self.session.news.lock().unwrap_or_else(PoisonError::into_inner).push(news);
+    }
+
+    /// Whether a viewer of a recording has seen enough.
+    pub(crate) fn is_left(&self) -> bool {
+        self.session.left.load(Ordering::Acquire)
     }
 
     /// What is missing, if the program was built without its page.
@@ -256,22 +371,34 @@ fn router(session: Arc<Session>) -> Router {
         .route("/api/session", get(structure_of))
         .route("/api/live", get(live))
         .route("/api/picture", post(picture).layer(DefaultBodyLimit::max(PICTURE_MAX)))
+        .route("/api/login", post(log_in))
         .fallback(get(|request: Request| async move { asset(request.uri().path()) }))
-        .layer(middleware::from_fn(guarded))
+        .layer(middleware::from_fn_with_state(Arc::clone(&session), guarded))
         .with_state(session)
 }
 
 /// Every request passes here: what is foreign is refused, and each answer says what a page may do.
-pub(crate) async fn guarded(request: Request, next: Next) -> Response {
+async fn guarded(State(session): State<Arc<Session>>, mut request: Request, next: Next) -> Response {
     const PLAIN: [(HeaderName, HeaderValue); 4] = [
         (header::CONTENT_SECURITY_POLICY, HeaderValue::from_static(POLICY)),
         (header::X_CONTENT_TYPE_OPTIONS, HeaderValue::from_static("nosniff")),
-        (header::REFERRER_POLICY, HeaderValue::from_static("no-referrer")),
+        (header::REFERRER_POLICY, HeaderValue::from_static("same-origin")),
         (header::CACHE_CONTROL, HeaderValue::from_static("no-store")),
     ];
-    let mut answer = match guard::admit(request.headers()) {
-        Ok(()) => next.run(request).await,
+    let admitted = guard::admit(request.headers(), session.scheme).map(|()| session.entry.admit(request.headers()));
+    let is_login = request.uri().path() == "/api/login";
+    let mut answer = match admitted {
         Err(foreign) => (StatusCode::FORBIDDEN, format!("{foreign}\n")).into_response(),
+        Ok(Ok(rank)) => {
+            request.extensions_mut().insert(rank);
+            next.run(request).await
+        }
+        Ok(Err(_)) if is_login => next.run(request).await,
+        Ok(Err(Barred::Client(name))) => (StatusCode::FORBIDDEN, format!("{}\n", Barred::Client(name))).into_response(),
+        Ok(Err(_)) if request.uri().path() == "/" => {
+            (StatusCode::UNAUTHORIZED, Html(entry::form(None))).into_response()
+        }
+        Ok(Err(barred)) => (StatusCode::UNAUTHORIZED, format!("{barred}\n")).into_response(),
     };
     answer.headers_mut().extend(PLAIN);
     answer
@@ -284,8 +411,26 @@ async fn structure_of(State(session): State<Arc<Session>>) -> Response {
     ([(header::CONTENT_TYPE, "application/json")], session.structure.clone()).into_response()
 }
 
-async fn live(State(session): State<Arc<Session>>, upgrade: WebSocketUpgrade) -> Response {
-    upgrade.max_message_size(MESSAGE_MAX).on_upgrade(|socket| viewer::attend(socket, session))
+async fn live(
+    State(session): State<Arc<Session>>,
+    Extension(rank): Extension<Rank>,
+    upgrade: WebSocketUpgrade,
+) -> Response {
+    upgrade.max_message_size(MESSAGE_MAX).on_upgrade(move |socket| viewer::attend(socket, session, rank))
+}
+
+/// A token that somebody has typed.
+async fn log_in(State(session): State<Arc<Session>>, body: Body) -> Response {
+    let Ok(body) = axum::body::to_bytes(body, FORM_MAX).await else {
+        return (StatusCode::PAYLOAD_TOO_LARGE, "a token is shorter\n").into_response();
+    };
+    match session.entry.log_in(entry::typed(&body).unwrap_or_default()) {
+        Ok(cookie) => {
+            let to = (header::LOCATION, "/".to_owned());
+            (StatusCode::SEE_OTHER, [to, (header::SET_COOKIE, cookie)]).into_response()
+        }
+        Err(barred) => (StatusCode::UNAUTHORIZED, Html(entry::form(Some(&barred.to_string())))).into_response(),
+    }
 }
 
 /// A picture that the page has drawn: a PNG, or a text that says why there is none.

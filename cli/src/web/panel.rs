@@ -51,6 +51,11 @@ struct Choice {
 }
 
 impl Panel {
+    /// Whether it is a trainer's.
+    pub(super) fn is_trainers(&self) -> bool {
+        self.seat == Seat::Trainer
+    }
+
     /// The signals that people write with it.
     pub(super) fn written(&self) -> BTreeSet<String> {
         let writes = |element: &&Element| element.kind.writes() || element.kind == ElementKind::Alarms;

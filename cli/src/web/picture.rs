@@ -7,6 +7,10 @@ use onescan_server::layout::ImageLayout;
 use onescan_server::published::SessionView;
 use onescan_server::signal::SignalId;
 
+/// The bit of a picture's flags that says that it is of the past.
+pub(super) const PAST: u8 = 2;
+/// The place of the flags.
+pub(super) const FLAGS: usize = 1;
 /// The kind of message that a picture is.
 const KIND: u8 = 1;
 const HEAD_BYTES: usize = 24;
@@ -40,6 +44,12 @@ impl Shown {
     pub(super) fn want(&mut self, signals: Vec<SignalId>) {
         self.wanted = signals;
         self.values.clear();
+    }
+
+    /// Nothing of what was shown counts any more: the next picture has everything.
+    pub(super) fn forget(&mut self) {
+        self.values.clear();
+        self.poses.clear();
     }
 
     /// The picture of a step.

@@ -15,6 +15,7 @@ use super::alarms::Bell;
 use super::desk::{Role, Training};
 use super::drawings::{self, Drawing, States};
 use super::looks::{self, Judge, Look, View};
+use super::online::{self, Online};
 use super::panel::{self, Panel};
 use super::picture::Stage;
 
@@ -31,7 +32,7 @@ pub(super) struct Structure {
     scenario: String,
     step_ns: u64,
     until_ns: u64,
-    live: bool,
+    pub(super) live: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
     training: Option<Lesson>,
     signals: Vec<Signal>,
@@ -43,6 +44,7 @@ pub(super) struct Structure {
     expectations: Vec<Expectation>,
     sources: Vec<Source>,
     drawings: Vec<Drawing>,
+    plcs: Vec<online::Plc>,
 }
 
 /// A lesson, as its page shows it.
@@ -81,6 +83,10 @@ pub(super) struct Known {
     pub(super) looks: Judge,
     /// The panels, each with the signals that it writes.
     pub(super) panels: BTreeMap<String, BTreeSet<String>>,
+    /// The PLCs, as they are looked into.
+    pub(super) online: Online,
+    /// The panels of trainers.
+    pub(super) trainers: BTreeSet<String>,
 }
 
 #[derive(Debug, Serialize)]
@@ -169,6 +175,9 @@ struct Source {
 struct Line {
     line: usize,
     variables: Vec<String>,
+    /// Numbers of variables of the PLC.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    inner: Vec<usize>,
 }
 
 /// The structure of the scenario's sessions, and what the server needs beside it.
@@ -198,6 +207,9 @@ pub(super) fn of(scenario: &Scenario, training: Option<&Training>) -> Result<(St
     (known.looks, known.bell) = (Judge::of(scenario), Bell::of(scenario));
     let mut panels = panel::of(scenario);
     known.panels = panels.iter().map(|panel| (panel.name.clone(), panel.written())).collect();
+    known.trainers = panels.iter().filter(|panel| panel.is_trainers()).map(|panel| panel.name.clone()).collect();
+    let (plcs, looked_into) = Online::of(scenario)?;
+    known.online = looked_into;
     if let Some(Training { role: role @ Role::Trainee, .. }) = training {
         let hidden = panels.iter().filter(|panel| !role.sees(panel.seat));
         known.hidden = hidden.map(|panel| panel.name.clone()).collect();
@@ -223,7 +235,8 @@ pub(super) fn of(scenario: &Scenario, training: Option<&Training>) -> Result<(St
             .iter()
             .map(|expect| Expectation { name: expect.name.get_ref().clone(), text: expect.formula.get_ref().clone() })
             .collect(),
-        sources: sources(scenario),
+        sources: sources(scenario, &known.online),
+        plcs,
         drawings,
     };
     Ok((structure, known))
@@ -322,7 +335,7 @@ fn senses(component: &Component) -> Option<String> {
 }
 
 /// The programs of the soft PLCs that are text, each with the signals on its lines.
-fn sources(scenario: &Scenario) -> Vec<Source> {
+fn sources(scenario: &Scenario, online: &Online) -> Vec<Source> {
     let mut sources = Vec::new();
     for plc in scenario.plcs() {
         for path in plc.sources.iter().filter(|path| !path.to_ascii_lowercase().ends_with("xml")) {
@@ -331,15 +344,16 @@ fn sources(scenario: &Scenario) -> Vec<Source> {
             if text.len() > SOURCE_MAX || sources.iter().any(|known: &Source| known.path == *path) {
                 continue;
             }
-            let lines = lines(&text, scenario);
+            let lines = lines(&text, scenario, &|program, word| online.number(plc.name, &format!("{program}.{word}")));
             sources.push(Source { path: path.clone(), text, lines });
         }
     }
     sources
 }
 
-/// Signals by whose names, without those of what they are in, a line has words.
-fn lines(text: &str, scenario: &Scenario) -> Vec<Line> {
+/// Signals by whose names, without those of what they are in, a line has words; and variables of the program that the line is
+/// in, which `inner` finds.
+fn lines(text: &str, scenario: &Scenario, inner: &dyn Fn(&str, &str) -> Option<usize>) -> Vec<Line> {
     let mut by_word: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for declared in scenario.plan().signals() {
         let name = declared.name.to_string();
@@ -348,16 +362,26 @@ fn lines(text: &str, scenario: &Scenario) -> Vec<Line> {
         by_word.entry(word).or_default().push(name);
     }
     let is_word = |c: char| c.is_alphanumeric() || c == '_';
+    let mut program = String::new();
     let line = |(index, line): (usize, &str)| {
-        let mut variables: Vec<String> = Vec::new();
+        let (mut variables, mut numbers): (Vec<String>, Vec<usize>) = (Vec::new(), Vec::new());
+        let mut words = line.split(|c| !is_word(c)).filter(|word| !word.is_empty());
+        match words.next() {
+            Some(word) if word.eq_ignore_ascii_case("PROGRAM") => program = words.next().unwrap_or_default().to_owned(),
+            Some(word) if word.eq_ignore_ascii_case("END_PROGRAM") => program.clear(),
+            _ => {}
+        }
         for word in line.split(|c| !is_word(c)) {
             for name in by_word.get(&word.to_ascii_uppercase()).into_iter().flatten() {
                 if !variables.contains(name) {
                     variables.push(name.clone());
                 }
             }
+            let number = if program.is_empty() { None } else { inner(&program, word) };
+            numbers.extend(number.filter(|number| !numbers.contains(number)));
         }
-        (!variables.is_empty()).then_some(Line { line: index + 1, variables })
+        let is_told = !variables.is_empty() || !numbers.is_empty();
+        is_told.then_some(Line { line: index + 1, variables, inner: numbers })
     };
     text.lines().enumerate().filter_map(line).collect()
 }

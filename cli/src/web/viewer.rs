@@ -3,6 +3,7 @@
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 use axum::body::Bytes;
@@ -16,13 +17,24 @@ use tokio::sync::{mpsc, oneshot};
 use tokio::time::{MissedTickBehavior, interval, timeout};
 
 use super::alarms::{Change, Rung};
-use super::ask::{self, Ask, Refused};
-use super::picture::Shown;
+use super::ask::{self, Ask, Refused, Verb};
+use super::entry::Rank;
+use super::gaze::{self, Gaze};
+use super::online::{Seen, Watching};
+use super::picture::{FLAGS, PAST, Shown};
 use super::seats::Viewer;
-use super::{SeatView, Session};
+use super::verdicts::{Heard, Standing};
+use super::{News, SeatView, Session};
+use crate::past::Moment;
 
 /// How often a picture is looked for.
 const PICTURE: Duration = Duration::from_millis(16);
+/// How many looks it takes until the viewer is told how far the past reaches by now.
+const PAST_EACH: u32 = 30;
+/// How many looks it takes until variables of PLCs are looked at again: people read ten values a second.
+const VARIABLES_EACH: u32 = 6;
+/// How many looks it takes until it is asked again what has become of expectations.
+const VERDICTS_EACH: u32 = 15;
 /// How long one message may take to a viewer that does not read before it is left.
 const PATIENCE: Duration = Duration::from_secs(20);
 
@@ -37,6 +49,8 @@ enum Told {
         seat: SeatView,
         #[serde(skip_serializing_if = "BTreeSet::is_empty")]
         failed: BTreeSet<String>,
+        shown_ns: Option<u64>,
+        past_ns: Option<[u64; 2]>,
     },
     Looks {
         active: Vec<usize>,
@@ -49,6 +63,18 @@ enum Told {
     View {
         view: String,
     },
+    Variables {
+        #[serde(flatten)]
+        seen: Seen,
+    },
+    Verdict {
+        #[serde(flatten)]
+        standing: Standing,
+    },
+    Forked {
+        t_ns: u64,
+        url: String,
+    },
     Event {
         t_ns: u64,
         kind: &'static str,
@@ -59,37 +85,80 @@ enum Told {
     },
 }
 
-/// What came of a wish: nothing to say, or why it was not done.
-type Outcome = Result<(), String>;
-
 /// Speaks with a viewer until one of the two leaves.
-pub(super) async fn attend(mut socket: WebSocket, session: Arc<Session>) {
+pub(super) async fn attend(mut socket: WebSocket, session: Arc<Session>, rank: Rank) {
     let viewer = session.seats.enter();
     // what ends it is that the viewer is gone
-    let _ = converse(&mut socket, &session, viewer).await;
+    let _ = converse(&mut socket, &session, (viewer, rank)).await;
     session.seats.leave(viewer);
 }
 
 /// The viewer is gone, or does not read.
 struct Gone;
 
-async fn converse(socket: &mut WebSocket, session: &Session, viewer: Viewer) -> Result<(), Gone> {
-    let (outcomes, mut done) = mpsc::unbounded_channel::<Outcome>();
+/// What one viewer looks at, and what it has been shown and told of it.
+struct Eye {
+    gaze: Gaze,
+    shown: Shown,
+    watching: Watching,
+    judged: Heard,
+    /// The view of the live edge that was shown last.
+    seen: Option<u64>,
+    /// The status that was told last.
+    status: String,
+    /// How many of the news were told.
+    heard: usize,
+    past_ns: Option<[u64; 2]>,
+    /// How often it was looked for something new.
+    turns: u32,
+    /// The looks that were on when they were told last.
+    looks: Option<Vec<usize>>,
+    /// The drawing that is shown, and which instance of it.
+    drawn: Option<(usize, usize)>,
+    /// The values of the drawing that were told last.
+    states: Option<((usize, usize), Vec<Option<f64>>)>,
+    rung: Rung,
+}
+
+impl Eye {
+    fn new(session: &Session) -> Self {
+        Self {
+            gaze: Gaze::new(session),
+            shown: Shown::default(),
+            watching: Watching::default(),
+            judged: Heard::default(),
+            seen: None,
+            status: String::new(),
+            heard: 0,
+            past_ns: None,
+            turns: 0,
+            looks: None,
+            drawn: None,
+            states: None,
+            rung: Rung::default(),
+        }
+    }
+}
+
+async fn converse(socket: &mut WebSocket, session: &Session, who: (Viewer, Rank)) -> Result<(), Gone> {
+    let (outcomes, mut done) = mpsc::unbounded_channel::<Told>();
+    let mut eye = Eye::new(session);
     let mut look = interval(PICTURE);
     look.set_missed_tick_behavior(MissedTickBehavior::Delay);
-    let (mut shown, mut seen, mut status) = (Shown::default(), None, String::new());
-    let (mut looks, mut called) = (None, session.called.follow());
-    let (mut drawn, mut states, mut rung) = (None, None, Rung::default());
+    let mut called = session.called.follow();
     loop {
         tokio::select! {
             message = socket.recv() => match message {
-                Some(Ok(Message::Text(text))) => {
-                    match heed(&text, session, viewer, (&mut shown, &mut drawn), &outcomes) {
-                        Ok(true) => seen = None,
-                        Ok(false) => {}
-                        Err(refused) => say(socket, &Told::Error { message: refused.to_string() }).await?,
+                Some(Ok(Message::Text(text))) => match heed(&text, session, who, &mut eye, &outcomes) {
+                    Ok(true) => {
+                        eye.seen = None;
+                        if let Some(view) = eye.gaze.seen() {
+                            picture(socket, &view, session, &mut eye).await?;
+                        }
                     }
-                }
+                    Ok(false) => {}
+                    Err(refused) => say(socket, &Told::Error { message: refused.to_string() }).await?,
+                },
                 Some(Ok(Message::Binary(_))) => {
                     let message = Refused::Garbage("bytes, where a text is expected".to_owned()).to_string();
                     say(socket, &Told::Error { message }).await?;
@@ -101,53 +170,90 @@ async fn converse(socket: &mut WebSocket, session: &Session, viewer: Viewer) -> 
                 let (_, view) = called.borrow_and_update().clone();
                 say(socket, &Told::View { view }).await?;
             }
-            Some(outcome) = done.recv() => {
-                if let Err(message) = outcome {
-                    say(socket, &Told::Error { message }).await?;
-                }
-            }
+            Some(told) = done.recv() => say(socket, &told).await?,
+            moment = eye.gaze.next() => turn(moment, socket, session, &mut eye).await?,
             _ = look.tick() => {
                 let view = session.published.latest();
                 session.published.ask();
-                let told = told(&view, session, viewer);
-                if told != status {
+                tell_beside(socket, &view, session, &mut eye).await?;
+                let told = told(&view, session, who.0, &eye);
+                if told != eye.status {
                     send(socket, Message::Text(told.clone().into())).await?;
-                    status = told;
+                    eye.status = told;
                 }
                 // a view of a restarted session has a smaller time, and a revision of its own all the same
-                if seen != Some(view.revision) {
-                    seen = Some(view.revision);
-                    let picture = shown.picture(&view, &session.layout, &session.known.stage);
-                    send(socket, Message::Binary(Bytes::from(picture))).await?;
-                    let active = session.known.looks.active(&view, &session.layout);
-                    if looks.as_ref() != Some(&active) {
-                        looks = Some(active.clone());
-                        say(socket, &Told::Looks { active }).await?;
-                    }
-                    let t_ns = view.t_v.as_nanos();
-                    for Change { kind, name } in session.known.bell.changes(&mut rung, &view, &session.layout) {
-                        say(socket, &Told::Event { t_ns, kind, text: name.to_owned() }).await?;
-                    }
-                    let now = drawn.map(|drawn| (drawn, session.known.states.values(drawn, &view)));
-                    if let Some(((drawing, instance), values)) = now.clone().filter(|_| now != states) {
-                        say(socket, &Told::States { drawing, instance, values }).await?;
-                    }
-                    states = now;
+                if eye.seen != Some(view.revision) && !eye.gaze.is_past() {
+                    eye.seen = Some(view.revision);
+                    picture(socket, &view, session, &mut eye).await?;
                 }
-                if let (Some(end), true) = (&view.end, session.ended()) {
-                    let text = end.to_string();
-                    let t_ns = view.t_v.as_nanos();
-                    say(socket, &Told::Event { t_ns, kind: "end", text }).await?;
-                    return Ok(());
+                if session.ended() && (view.end.is_some() || session.recorded_to.is_some()) {
+                    return part(socket, &view, session, &mut eye).await;
                 }
             }
         }
     }
 }
 
+/// A moment of the past has come that the viewer has asked for.
+async fn turn(moment: Moment, socket: &mut WebSocket, session: &Session, eye: &mut Eye) -> Result<(), Gone> {
+    let was_past = eye.gaze.seen().is_some();
+    match eye.gaze.see(moment) {
+        Ok(Some(view)) => {
+            if !was_past {
+                eye.shown.forget();
+            }
+            picture(socket, &view, session, eye).await
+        }
+        Ok(None) => Ok(()),
+        Err(refused) => say(socket, &Told::Error { message: refused.to_string() }).await,
+    }
+}
+
+/// Tells what is new beside pictures, each thing as often as people read it.
+async fn tell_beside(
+    socket: &mut WebSocket,
+    view: &Arc<SessionView>,
+    session: &Session,
+    eye: &mut Eye,
+) -> Result<(), Gone> {
+    if eye.turns.is_multiple_of(PAST_EACH) {
+        eye.past_ns = gaze::past_ns(session);
+    }
+    if eye.turns.is_multiple_of(VARIABLES_EACH) {
+        let looked_at = if eye.gaze.is_past() { eye.gaze.seen() } else { Some(Arc::clone(view)) };
+        if let Some(seen) = looked_at.and_then(|view| eye.watching.see(&view, &session.known.online)) {
+            say(socket, &Told::Variables { seen }).await?;
+        }
+    }
+    if eye.turns.is_multiple_of(VERDICTS_EACH) {
+        tell_verdicts(socket, session, eye).await?;
+    }
+    eye.turns = eye.turns.wrapping_add(1);
+    for News { t_v, kind, text } in session.news_after(eye.heard) {
+        eye.heard += 1;
+        say(socket, &Told::Event { t_ns: t_v.as_nanos(), kind, text }).await?;
+    }
+    Ok(())
+}
+
+async fn tell_verdicts(socket: &mut WebSocket, session: &Session, eye: &mut Eye) -> Result<(), Gone> {
+    for standing in eye.judged.news(session.bench.standings(&session.expected)) {
+        say(socket, &Told::Verdict { standing }).await?;
+    }
+    Ok(())
+}
+
+/// The session is over: tells how it ended, and what came of its expectations.
+async fn part(socket: &mut WebSocket, view: &SessionView, session: &Session, eye: &mut Eye) -> Result<(), Gone> {
+    tell_verdicts(socket, session, eye).await?;
+    let Some(end) = &view.end else { return Ok(()) };
+    say(socket, &Told::Event { t_ns: view.t_v.as_nanos(), kind: "end", text: end.to_string() }).await
+}
+
 /// How the session is, in words that change only when it does.
-fn told(view: &SessionView, session: &Session, viewer: Viewer) -> String {
+fn told(view: &SessionView, session: &Session, viewer: Viewer, eye: &Eye) -> String {
     let state = match (&view.end, view.is_held) {
+        _ if session.recorded_to.is_some() => "recorded",
         (Some(_), _) => "end",
         (None, true) => "hold",
         (None, false) => "run",
@@ -155,8 +261,47 @@ fn told(view: &SessionView, session: &Session, viewer: Viewer) -> String {
     let digest = view.end.as_ref().and(view.digest).map(|digest| digest.to_string());
     let is_secret = ask::trainer_only(session.training.as_ref()).is_err();
     let failed = if is_secret { BTreeSet::new() } else { session.failing.now() };
-    let told = Told::Status { state, digest, pace: session.pace.clone(), seat: session.seats.seen_by(viewer), failed };
+    let (pace, seat) = (session.pace.clone(), session.seats.seen_by(viewer));
+    let (shown_ns, past_ns) = (eye.gaze.shown_ns(), eye.past_ns);
+    let told = Told::Status { state, digest, pace, seat, failed, shown_ns, past_ns };
     serde_json::to_string(&told).unwrap_or_else(|error| error.to_string())
+}
+
+/// Shows a step, and whether it is of the past.
+async fn picture(socket: &mut WebSocket, view: &SessionView, session: &Session, eye: &mut Eye) -> Result<(), Gone> {
+    let mut picture = eye.shown.picture(view, &session.layout, &session.known.stage);
+    if eye.gaze.is_past() {
+        picture[FLAGS] |= PAST;
+    }
+    send(socket, Message::Binary(Bytes::from(picture))).await?;
+    tell_drawn(socket, view, session, eye).await
+}
+
+/// Tells what a picture goes with: the looks that are on, alarms, and the values of a drawing.
+async fn tell_drawn(
+    socket: &mut WebSocket,
+    view: &SessionView,
+    session: &Session,
+    eye: &mut Eye,
+) -> Result<(), Gone> {
+    let active = session.known.looks.active(view, &session.layout);
+    if eye.looks.as_ref() != Some(&active) {
+        eye.looks = Some(active.clone());
+        say(socket, &Told::Looks { active }).await?;
+    }
+    // Alarms are those of the live edge: who looks at the past has been told of them.
+    if !eye.gaze.is_past() {
+        let t_ns = view.t_v.as_nanos();
+        for Change { kind, name } in session.known.bell.changes(&mut eye.rung, view, &session.layout) {
+            say(socket, &Told::Event { t_ns, kind, text: name.to_owned() }).await?;
+        }
+    }
+    let now = eye.drawn.map(|drawn| (drawn, session.known.states.values(drawn, view)));
+    if let Some(((drawing, instance), values)) = now.clone().filter(|_| now != eye.states) {
+        say(socket, &Told::States { drawing, instance, values }).await?;
+    }
+    eye.states = now;
+    Ok(())
 }
 
 async fn say(socket: &mut WebSocket, told: &Told) -> Result<(), Gone> {
@@ -175,16 +320,54 @@ async fn send(socket: &mut WebSocket, message: Message) -> Result<(), Gone> {
 fn heed(
     text: &str,
     session: &Session,
-    viewer: Viewer,
-    (shown, drawn): (&mut Shown, &mut Option<(usize, usize)>),
-    outcomes: &mpsc::UnboundedSender<Outcome>,
+    (viewer, rank): (Viewer, Rank),
+    eye: &mut Eye,
+    outcomes: &mpsc::UnboundedSender<Told>,
 ) -> Result<bool, Refused> {
-    let operation = match Ask::read(text)? {
+    let ask = Ask::read(text)?;
+    if rank < Rank::Operates && !ask.only_looks() {
+        return Err(Refused::LooksOnly);
+    }
+    let operation = match ask {
         Ask::Subscribe { signals } => {
-            shown.want(ask::signals(&signals, &session.layout)?);
+            eye.shown.want(ask::signals(&signals, &session.layout)?);
             return Ok(true);
         }
         Ask::Seat { panel, .. } if session.known.hidden.contains(&panel) => return Err(Refused::NoPanel(panel)),
+        Ask::Draw { drawing, instance } => {
+            eye.drawn = drawing.map(|drawing| session.known.states.check(drawing, instance)).transpose()?;
+            return Ok(true);
+        }
+        Ask::Watch { variables } => {
+            if let Some(unknown) = variables.iter().find(|number| !session.known.online.knows(**number)) {
+                return Err(Refused::NoVariable(*unknown));
+            }
+            eye.watching.want(variables);
+            return Ok(false);
+        }
+        Ask::Show { t_ns } => {
+            eye.gaze.show(t_ns, session)?;
+            return Ok(false);
+        }
+        Ask::Live => {
+            let turned = eye.gaze.live(session);
+            if turned {
+                eye.shown.forget();
+            }
+            return Ok(turned);
+        }
+        Ask::Fork { t_ns } => {
+            fork(t_ns, session, &eye.gaze, outcomes)?;
+            return Ok(false);
+        }
+        Ask::Operate { operation: Verb::Stop } if session.recorded_to.is_some() => {
+            session.left.store(true, Ordering::Release);
+            return Ok(false);
+        }
+        _ if session.recorded_to.is_some() => return Err(Refused::Recorded),
+        Ask::Seat { panel, .. } if rank < Rank::Trains && session.known.trainers.contains(&panel) => {
+            return Err(Refused::Trainers(panel));
+        }
         Ask::Seat { panel, take } => {
             session.seats.claim(&panel, viewer, take)?;
             return Ok(false);
@@ -193,6 +376,12 @@ fn heed(
             let declared = session.plan.signals().get(signal).ok_or(Refused::NoSignal(signal))?;
             session.seats.may_write(viewer, declared.name.as_str())?;
             ask::write(declared, value, &session.known)?
+        }
+        Ask::Variable { variable, action, value } => {
+            session.known.online.operation(variable, action, value).ok_or(Refused::NoVariable(variable))?
+        }
+        Ask::Force { signal, value } => {
+            ask::force(session.plan.signals().get(signal).ok_or(Refused::NoSignal(signal))?, value)
         }
         Ask::Operate { operation } => {
             ask::trainer_only(session.training.as_ref())?;
@@ -209,33 +398,51 @@ fn heed(
             }
             return Ok(false);
         }
-        Ask::Show { .. } | Ask::Fork { .. } => return Err(Refused::Past),
         Ask::View { view } => {
             session.called.call(view, viewer, &session.seats)?;
             return Ok(false);
         }
-        Ask::Draw { drawing, instance } => {
-            *drawn = drawing.map(|drawing| session.known.states.check(drawing, instance)).transpose()?;
-            return Ok(true);
-        }
-        Ask::Live => return Ok(false),
     };
     wish(operation, session, outcomes);
     Ok(false)
 }
 
+/// Lets a session go on from a moment of the past, beside this one; the viewer is told where it is.
+fn fork(t_ns: f64, session: &Session, gaze: &Gaze, outcomes: &mpsc::UnboundedSender<Told>) -> Result<(), Refused> {
+    let t_v = gaze::moment(t_ns, session)?;
+    let saved = gaze.gazer(session)?.save(t_v);
+    let (outcomes, launch) = (outcomes.clone(), Arc::clone(&session.launch));
+    tokio::spawn(async move {
+        let saved: Result<Vec<u8>, String> = saved.await.unwrap_or_else(|_| Err("the session is over".to_owned()));
+        let forked = match saved {
+            // it takes as long as the other session takes to begin
+            Ok(bytes) => {
+                tokio::task::spawn_blocking(move || launch(&bytes)).await.unwrap_or_else(|e| Err(e.to_string()))
+            }
+            Err(why) => Err(why),
+        };
+        let told = match forked {
+            Ok(url) => Told::Forked { t_ns: t_v.as_nanos(), url },
+            Err(why) => Told::Error { message: format!("no session goes on from {t_v}: {why}") },
+        };
+        // a viewer that has left hears nothing
+        outcomes.send(told).ok();
+    });
+    Ok(())
+}
+
 /// Leaves a wish in the session's mailbox; what comes of it is told when the session has taken it.
-fn wish(operation: Operation, session: &Session, outcomes: &mpsc::UnboundedSender<Outcome>) {
+fn wish(operation: Operation, session: &Session, outcomes: &mpsc::UnboundedSender<Told>) {
     let (reply, answer) = oneshot::channel::<Result<Taken, OperationError>>();
     session.mailbox.post(Request { wish: Wish::Do(operation), reply: Some(reply) });
     let outcomes = outcomes.clone();
     tokio::spawn(async move {
-        let outcome = match answer.await {
-            Ok(Ok(_)) => Ok(()),
-            Ok(Err(error)) => Err(error.to_string()),
-            Err(_) => Err("the session is over".to_owned()),
+        let message = match answer.await {
+            Ok(Ok(_)) => return,
+            Ok(Err(error)) => error.to_string(),
+            Err(_) => "the session is over".to_owned(),
         };
         // a viewer that has left hears nothing
-        outcomes.send(outcome).ok();
+        outcomes.send(Told::Error { message }).ok();
     });
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use async_trait::async_trait;
-use onescan_server::access::{Register, Role};
+use onescan_server::access::Register;
 use opcua::server::CreateMonitoredItem;
 use opcua::server::address_space::AddressSpace;
 use opcua::server::diagnostics::NamespaceMetadata;
@@ -38,7 +38,7 @@ impl<T> Admitted<T> {
     /// And a viewer, who changes nothing.
     fn admit(&self, context: &RequestContext) -> Result<(), StatusCode> {
         if let Some(register) = &self.register
-            && !register.passes().iter().any(|pass| pass.name == context.token.0 && pass.role == Role::Operator)
+            && !register.passes().iter().any(|pass| pass.name == context.token.0 && pass.role.operates())
         {
             return Err(StatusCode::BadUserAccessDenied);
         }

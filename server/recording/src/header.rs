@@ -24,6 +24,9 @@ pub struct Provenance {
     /// The case of it that was tried, if one was.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub case: Option<String>,
+    /// The clients in whose place people operated.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub operated: Vec<ClientName>,
     /// `lockstep` or `freewheel`.
     pub mode: String,
     /// When the run was to be complete.

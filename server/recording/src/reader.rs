@@ -316,6 +316,19 @@ impl Recording {
         })
     }
 
+    /// Some steps without their signals.
+    ///
+    /// # Errors
+    /// A part cannot be read.
+    pub fn digests(&self, steps: RangeInclusive<u64>) -> Result<Vec<Row>, RecordingError> {
+        let mut rows = Vec::new();
+        self.each_row(&[], steps, &mut |row| {
+            rows.push(row);
+            Ok(())
+        })?;
+        Ok(rows)
+    }
+
     /// The digest up to `step`.
     ///
     /// # Errors

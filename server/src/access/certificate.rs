@@ -58,6 +58,7 @@ impl Holder {
         let role = match of(&UNIT)[..] {
             [] | ["client"] => Role::Client(client),
             ["operator"] => Role::Operator,
+            ["trainer"] => Role::Trainer,
             ["viewer"] => Role::Viewer,
             _ => return Err(BadSubject::Role),
         };

@@ -8,20 +8,22 @@ use thiserror::Error;
 use crate::signal::ClientName;
 use crate::wire::message;
 
-/// What somebody may do to a session; written `client:NAME`, `operator` or `viewer`.
+/// What somebody may do to a session; written `client:NAME`, `operator`, `trainer` or `viewer`.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Role {
     /// Take part as this client.
     Client(ClientName),
     /// Ask how it is, and do whatever operators can.
     Operator,
+    /// The same, and sit where trainers do.
+    Trainer,
     /// Ask how it is.
     Viewer,
 }
 
 /// A text that is no role.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("a role is `operator`, `viewer` or `client:NAME`, as in `client:plant`")]
+#[error("a role is `operator`, `trainer`, `viewer` or `client:NAME`, as in `client:plant`")]
 pub struct BadRole;
 
 impl Role {
@@ -29,8 +31,13 @@ impl Role {
     pub fn admits(&self, role: message::Role) -> bool {
         match role {
             message::Role::Client => matches!(self, Self::Client(_)),
-            message::Role::Operator => matches!(self, Self::Operator | Self::Viewer),
+            message::Role::Operator => matches!(self, Self::Operator | Self::Trainer | Self::Viewer),
         }
+    }
+
+    /// True if its holder may do what operators can.
+    pub fn operates(&self) -> bool {
+        matches!(self, Self::Operator | Self::Trainer)
     }
 }
 
@@ -39,6 +46,7 @@ impl fmt::Display for Role {
         match self {
             Self::Client(name) => write!(f, "client:{name}"),
             Self::Operator => f.write_str("operator"),
+            Self::Trainer => f.write_str("trainer"),
             Self::Viewer => f.write_str("viewer"),
         }
     }
@@ -50,6 +58,7 @@ impl FromStr for Role {
     fn from_str(text: &str) -> Result<Self, BadRole> {
         match text {
             "operator" => Ok(Self::Operator),
+            "trainer" => Ok(Self::Trainer),
             "viewer" => Ok(Self::Viewer),
             _ => {
                 let name = text.strip_prefix("client:").ok_or(BadRole)?;
@@ -65,7 +74,7 @@ mod tests {
 
     #[test]
     fn roles_are_written_as_they_are_read() {
-        for text in ["operator", "viewer", "client:plant"] {
+        for text in ["operator", "trainer", "viewer", "client:plant"] {
             assert_eq!(text.parse::<Role>().unwrap().to_string(), text);
         }
         for text in ["client", "client:", "client:a b", "Operator", ""] {

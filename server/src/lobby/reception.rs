@@ -282,7 +282,7 @@ impl Reception {
         let Some(guest) = self.guests.get_mut(&visitor) else { return };
         if let Some(holder) = &guest.holder
             && matches!(wish, Wish::Do(_))
-            && holder.role != Right::Operator
+            && !holder.role.operates()
         {
             let refusal = TokenRefusal::LooksOnly { proof: holder.proof, name: holder.name.clone() };
             return self.refuse(visitor, &refusal.to_string(), now, actions);

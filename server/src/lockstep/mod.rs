@@ -212,7 +212,20 @@ impl Lockstep {
     /// # Errors
     /// A recording cannot be written; the session is closed for all then.
     pub fn run_to(&mut self, t_v: VirtualTime) -> Result<Reached, RecordError> {
-        let reached = self.cycle_to(t_v);
+        self.run_until(|lockstep| lockstep.session.t_v() >= t_v)
+    }
+
+    /// Runs as [`run_to`](Self::run_to) does, or to the first boundary after a reset.
+    ///
+    /// # Errors
+    /// A recording cannot be written; the session is closed for all then.
+    pub fn run_to_or_reset(&mut self, t_v: VirtualTime) -> Result<Reached, RecordError> {
+        let resets = self.resets;
+        self.run_until(|lockstep| lockstep.session.t_v() >= t_v || lockstep.resets != resets)
+    }
+
+    fn run_until(&mut self, is_there: impl Fn(&Self) -> bool) -> Result<Reached, RecordError> {
+        let reached = self.cycle_until(is_there);
         match &reached {
             Ok(Reached::Boundary) => return reached,
             Ok(Reached::End) => {}
@@ -222,13 +235,13 @@ impl Lockstep {
     }
 
     /// The loop of a session. Everything that can happen between two states is decided here.
-    fn cycle_to(&mut self, t_v: VirtualTime) -> Result<Reached, RecordError> {
+    fn cycle_until(&mut self, is_there: impl Fn(&Self) -> bool) -> Result<Reached, RecordError> {
         if std::mem::take(&mut self.begin_observers) {
             self.tell_beginning()?;
         }
         loop {
             if self.session.cycle().is_at_boundary() {
-                if self.digest.is_some() && self.session.t_v() >= t_v {
+                if self.digest.is_some() && is_there(self) {
                     return Ok(Reached::Boundary);
                 }
                 self.take_wishes()?;

@@ -55,6 +55,13 @@ impl Identity {
     }
 }
 
+impl Identity {
+    /// For those who speak something else under TLS.
+    pub fn server_config(&self) -> Arc<ServerConfig> {
+        Arc::clone(&self.0)
+    }
+}
+
 impl Trust {
     /// Believes what these authorities have signed, and nobody else.
     ///

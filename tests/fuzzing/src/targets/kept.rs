@@ -117,6 +117,7 @@ fn recorded(scratch: &Path) -> PathBuf {
         scenario: "shear".to_owned(),
         folder: String::new(),
         case: None,
+        operated: Vec::new(),
         mode: "lockstep".to_owned(),
         until: at_ms(300),
         seed: 0,

@@ -1,0 +1,113 @@
+//! `onescan view`: a recording as a page. It is run again from its own files, and each step held against the digest that
+//! was recorded for it.
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`recorded`] | what a recording was made of, and whether it can be run again |
+//! | [`check`] | the re-run, held against the recording |
+//! | [`error`] | why nothing is shown |
+
+mod check;
+pub mod error;
+mod recorded;
+
+use std::io::Write;
+use std::net::SocketAddr;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use onescan_report::OutputError;
+use onescan_server::mailbox::Mailbox;
+use onescan_server::published::Published;
+
+pub use error::ViewError;
+
+use crate::access::admission::Admission;
+use crate::error::ExitCode;
+use crate::interrupt::Interrupt;
+use crate::past::{Budget, Kept, Rewinder};
+use crate::run::NOTICE;
+use crate::run::rewound::{self, Onward};
+use crate::web::{self, Bench, News, Page, WebError};
+use check::Checked;
+use recorded::Recorded;
+
+/// How often it is looked whether somebody has seen enough.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// What is shown, and where.
+#[derive(Clone, Debug)]
+pub struct ViewConfig {
+    /// The recording.
+    pub recording: PathBuf,
+    /// Where the page is served.
+    pub web: SocketAddr,
+    /// Who is let in there.
+    pub admission: Admission,
+    /// How much memory moments of the re-run may take.
+    pub past: Budget,
+}
+
+/// Serves the recording as a page until Ctrl-C, or a viewer ends it. Says in `out` whether the re-run is what was recorded.
+///
+/// # Errors
+/// See [`ViewError`]. A re-run that differs is no error but the exit code.
+pub fn view(config: &ViewConfig, interrupt: &Interrupt, out: &mut dyn Write) -> Result<ExitCode, ViewError> {
+    let recorded = Recorded::open(&config.recording)?;
+    interrupt.heed();
+    let kept = Kept::within(config.past.bytes);
+    recorded.leave_inputs(&kept);
+    let bench = Bench::default();
+    let page = serve(config, &recorded, kept.clone(), bench.clone())?;
+    match Page::is_absent() {
+        None => tracing::info!(target: NOTICE, "the recording is at {}", page.url()),
+        Some(how) => tracing::warn!(target: NOTICE, "no page at {}: {how}", page.url()),
+    }
+    let enough = AtomicBool::new(false);
+    let bench = &bench;
+    std::thread::scope(|scope| {
+        let mut checking = Some(scope.spawn(|| check::check(&recorded, &kept, bench, &enough)));
+        let mut code = ExitCode::Ok;
+        loop {
+            let is_over = interrupt.is_raised() || page.is_left();
+            enough.fetch_or(is_over, Ordering::AcqRel);
+            if let Some(check) = checking.take_if(|check| is_over || check.is_finished()) {
+                let checked = check.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
+                if checked.differs() {
+                    code = ExitCode::Unmet;
+                }
+                page.tell(News { t_v: checked.t_v(), kind: "check", text: checked.to_string() });
+                writeln!(out, "{checked}").and_then(|()| out.flush()).map_err(OutputError)?;
+            }
+            if is_over {
+                return Ok(code);
+            }
+            std::thread::sleep(LOOK);
+        }
+    })
+}
+
+fn serve(config: &ViewConfig, recorded: &Recorded, kept: Kept, bench: Bench) -> Result<Page, ViewError> {
+    let scenario = &recorded.scenario;
+    let rewinder = Rewinder::new(kept, rewound::former(scenario)).map_err(WebError::Thread)?;
+    let onward = Onward::at(recorded.words(), Some(config.web), &config.admission);
+    let source = web::Source {
+        scenario,
+        // nothing is published: a recording has no live edge
+        published: Published::new(0),
+        mailbox: Mailbox::new(),
+        pace: String::new(),
+        past: Ok(rewinder),
+        launch: rewound::launcher(onward),
+        bench,
+        recorded_to: Some(recorded.end),
+    };
+    Ok(Page::serve(config.web, &config.admission, source)?)
+}
+
+impl Checked {
+    fn differs(&self) -> bool {
+        matches!(self, Self::Differs { .. })
+    }
+}

@@ -1,0 +1,112 @@
+//! What becomes of expectations while a session runs.
+//!
+//! Whoever judges the run on the session's thread leaves a copy of itself here when somebody wants one. What it says is worked
+//! out on the page's thread.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use onescan_scenario::expect::{Judge, Outcome, TraceEnd, Verdict};
+use onescan_server::time::VirtualTime;
+use serde::Serialize;
+
+/// What has become of one expectation so far.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(super) struct Standing {
+    pub(super) name: String,
+    verdict: &'static str,
+    /// By how much it is met, negative if it is not; nothing where that is not known, or without end.
+    robustness: Option<f64>,
+    /// When it was violated; else when it was looked at.
+    t_ns: u64,
+}
+
+#[derive(Debug, Default)]
+struct Latest {
+    /// A judge that nobody has asked yet.
+    judge: Option<(VirtualTime, Judge, TraceEnd)>,
+    standings: Vec<Standing>,
+}
+
+/// Where judges are left; clones share it.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Bench {
+    wanted: Arc<AtomicBool>,
+    latest: Arc<Mutex<Latest>>,
+}
+
+impl Bench {
+    /// A thread that panicked under the lock has left whole values.
+    fn lock(&self) -> MutexGuard<'_, Latest> {
+        self.latest.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// True if somebody wants a judge; one that was asked for is asked for once.
+    pub(crate) fn is_wanted(&self) -> bool {
+        self.wanted.load(Ordering::Acquire) && self.wanted.swap(false, Ordering::AcqRel)
+    }
+
+    /// Leaves a judge of the run up to `t_v`.
+    pub(crate) fn leave(&self, t_v: VirtualTime, judge: Judge, end: TraceEnd) {
+        self.lock().judge = Some((t_v, judge, end));
+    }
+
+    /// What the judge says that was left last, by the names of its expectations. Asks for another one.
+    pub(super) fn standings(&self, names: &[String]) -> Vec<Standing> {
+        self.wanted.store(true, Ordering::Release);
+        let mut latest = self.lock();
+        if let Some((t_v, judge, end)) = latest.judge.take() {
+            let judged = judge.finish(end);
+            latest.standings = names.iter().zip(judged).map(|(name, outcome)| standing(name, &outcome, t_v)).collect();
+        }
+        latest.standings.clone()
+    }
+}
+
+fn standing(name: &str, outcome: &Outcome, now: VirtualTime) -> Standing {
+    let (verdict, at) = match &outcome.verdict {
+        Verdict::Met => ("pass", now),
+        Verdict::Open => ("open", now),
+        Verdict::Violated { at, .. } => ("fail", *at),
+    };
+    // a margin of -0, which negation gives, reads as if something were missing
+    let margin = outcome.margin.greatest + 0.0;
+    let is_known = margin.is_finite() && margin == outcome.margin.least;
+    Standing { name: name.to_owned(), verdict, robustness: is_known.then_some(margin), t_ns: at.as_nanos() }
+}
+
+/// What one viewer has been told.
+#[derive(Debug, Default)]
+pub(super) struct Heard(Vec<(String, &'static str, Option<u64>)>);
+
+impl Heard {
+    /// What is new to the viewer: another verdict, or another robustness.
+    pub(super) fn news(&mut self, standings: Vec<Standing>) -> Vec<Standing> {
+        let key = |one: &Standing| (one.name.clone(), one.verdict, one.robustness.map(f64::to_bits));
+        let now: Vec<_> = standings.iter().map(key).collect();
+        let before = std::mem::replace(&mut self.0, now);
+        standings.into_iter().filter(|one| !before.contains(&key(one))).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_viewer_hears_what_is_new() {
+        let standing = |verdict, t_ns| Standing { name: "level".to_owned(), verdict, robustness: Some(0.5), t_ns };
+        let mut heard = Heard::default();
+        assert_eq!(heard.news(vec![standing("open", 1)]).len(), 1);
+        assert_eq!(heard.news(vec![standing("open", 2)]), []);
+        assert_eq!(heard.news(vec![standing("fail", 2)]), [standing("fail", 2)]);
+    }
+
+    #[test]
+    fn a_judge_is_asked_for_once() {
+        let bench = Bench::default();
+        assert!(!bench.is_wanted());
+        assert_eq!(bench.standings(&[]), []);
+        assert!(bench.is_wanted() && !bench.is_wanted());
+    }
+}
