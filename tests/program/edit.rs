@@ -83,7 +83,7 @@ impl Editor {
 fn diff(before: &str, after: &str) -> String {
     let diff = similar::TextDiff::from_lines(before, after);
     let changes = diff.iter_all_changes().filter(|change| change.tag() != similar::ChangeTag::Equal);
-    changes.map(|change| format!("{}{change}", change.tag())).collect()
+    changes.flat_map(|change| [change.tag().to_string(), change.to_string()]).collect()
 }
 
 fn join(revision: u64, one: &Value, other: &Value) -> Value {

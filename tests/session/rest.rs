@@ -134,10 +134,7 @@ proptest! {
 
     #[test]
     fn rest_leaves_no_trace(one in 1..300_u64, other in 1..300_u64, judged: bool, sequential: bool) {
-        let coupling = match sequential {
-            true => Coupling::Sequential { order: ["plc", "plant"].map(client).to_vec() },
-            false => Coupling::Parallel,
-        };
+        let coupling = if sequential { Coupling::Sequential { order: ["plc", "plant"].map(client).to_vec() } } else { Coupling::Parallel };
         let digests = [Way::Freely, Way::StepByStep, Way::Observed].map(|way| digest(&coupling, [one, other], judged, way));
         prop_assert_eq!(digests[0], digests[1]);
         prop_assert_eq!(digests[0], digests[2]);

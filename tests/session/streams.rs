@@ -287,7 +287,8 @@ fn no_sequence_of_faults_stops_a_session() {
         let signals = [("answer", LINE, "device"), ("ask", LINE, "other")];
         let mut timeline = Vec::new();
         for _ in 0..random.bits() % 8 {
-            let signal = SignalName::new(if random.bits() % 2 == 0 { "ask" } else { "answer" }).expect("a name");
+            let signal =
+                SignalName::new(if random.bits().is_multiple_of(2) { "ask" } else { "answer" }).expect("a name");
             let rate = || "0.3".to_owned();
             let fault = match random.bits() % 6 {
                 0 => SignalFault::Lost { rate: rate(), seed: sequence },
@@ -333,7 +334,7 @@ impl Client for Talker {
         self.port.arrive(t_v.as_nanos(), inputs);
         self.port.connect();
         self.port.send(&[1, 2, 3]);
-        if t_v.as_nanos() % 40_000_000 == 0 {
+        if t_v.as_nanos().is_multiple_of(40_000_000) {
             self.port.disconnect();
         }
         self.port.take(usize::MAX);

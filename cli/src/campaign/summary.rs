@@ -86,11 +86,11 @@ pub(super) fn totals(table: &Table) -> String {
         by_verdict.iter().filter(|(count, _)| *count > 0).map(|(count, word)| format!("{count} {word}")).collect();
     let variants = table.variants.max(1);
     let (faults, activations) = (table.faults.len(), table.activations.len() / variants);
-    let mut sizes = format!("{} \u{d7} {}", counted(faults as u64, "fault"), counted(activations as u64, "activation"));
+    let mut sizes = vec![counted(faults as u64, "fault"), counted(activations as u64, "activation")];
     if variants > 1 {
-        sizes.push_str(&format!(" \u{d7} {}", counted(variants as u64, "variant")));
+        sizes.push(counted(variants as u64, "variant"));
     }
-    format!("campaign {}, {sizes}: {}", table.campaign, parts.join(", "))
+    format!("campaign {}, {}: {}", table.campaign, sizes.join(" \u{d7} "), parts.join(", "))
 }
 
 /// How to run one of them again.

@@ -97,7 +97,7 @@ pub(super) fn add(
     for (key, given) in keys {
         let is_kind = sort == Sort::Component && key == "kind";
         let value = if is_kind { given.to_string() } else { written(fields.as_deref(), &what, key, given)? };
-        lines += &format!("\n{} = {value}", key_text(key));
+        lines.extend(["\n", key_text(key).as_ref(), " = ", value.as_str()]);
     }
     let front = Sort::ALL.into_iter().take_while(|one| *one <= sort).collect::<Vec<_>>();
     let end = front.into_iter().rev().find_map(|sort| document.tables(sort.key()).filter_map(whole_end).max());

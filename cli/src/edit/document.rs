@@ -245,7 +245,7 @@ fn first_header(item: &Item) -> Option<usize> {
             table.iter().filter_map(|(_, item)| first_header(item)).min()
         }
         Item::Table(table) => table.span().map(|span| span.start),
-        Item::ArrayOfTables(all) => all.iter().filter_map(|table| table.span()).map(|span| span.start).min(),
+        Item::ArrayOfTables(all) => all.iter().filter_map(toml_edit::Table::span).map(|span| span.start).min(),
         Item::None | Item::Value(_) => None,
     }
 }

@@ -97,7 +97,7 @@ pub(super) fn declare(texts: &Texts, declared: &Declared<'_>) -> Result<Texts, E
     let mut said = format!("type = {}, writer = {}", quoted(ty), quoted(writer));
     for (key, value) in [("unit", unit), ("about", about)] {
         if let Some(value) = value {
-            said += &format!(", {key} = {}", quoted(value));
+            said.extend([", ", key, " = ", quoted(value).as_str()]);
         }
     }
     let value = format!("{{ {said} }}");

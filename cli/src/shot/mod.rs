@@ -36,7 +36,7 @@ pub use config::{ShotConfig, Size, Theme};
 pub use error::ShotError;
 
 /// How long a browser may take to start and to draw.
-const PATIENCE: Duration = Duration::from_secs(120);
+const PATIENCE: Duration = Duration::from_mins(2);
 
 /// Draws the picture, and tells where it is.
 ///
@@ -89,7 +89,7 @@ fn query(config: &ShotConfig, scenario: &Scenario) -> Result<String, Usage> {
             let help = did_you_mean(view, views.iter().copied()).unwrap_or(known);
             return Err(Usage::new(format!("the scenario has no view `{view}`"), Some(help)));
         };
-        query.push_str(&format!("&view={number}"));
+        query.extend(["&view=", number.to_string().as_str()]);
     }
     Ok(query)
 }

@@ -184,7 +184,7 @@ impl Examination {
     pub(super) fn finish(self, scenario: &Scenario, end: TraceEnd) -> Score {
         let handled = |(trial, malfunction): (Trial, &Malfunction)| {
             let begun_ns = trial.begun_ns;
-            let within = |span: Option<onescan_server::time::TimeSpan>| span.map(|span| span.as_nanos());
+            let within = |span: Option<onescan_server::time::TimeSpan>| span.map(onescan_base::TimeSpan::as_nanos);
             Handled {
                 name: malfunction.name.clone(),
                 begun_ns,
@@ -197,7 +197,7 @@ impl Examination {
         let expected = |report: expectation::ExpectationReport| Expected {
             name: report.name,
             verdict: report.verdict,
-            at_ns: report.at.map(|at| at.as_nanos()),
+            at_ns: report.at.map(onescan_base::VirtualTime::as_nanos),
             margin: report.margin,
             unit: report.margin_unit,
         };

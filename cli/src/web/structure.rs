@@ -51,7 +51,8 @@ pub(super) struct Structure {
 #[derive(Debug, Serialize)]
 struct Lesson {
     role: Role,
-    lesson: String,
+    #[serde(rename = "lesson")]
+    name: String,
     about: Option<String>,
     /// Prepared states to jump to; none on the trainee's page.
     starts: Vec<String>,
@@ -60,7 +61,7 @@ struct Lesson {
 impl Lesson {
     fn of(training: &Training) -> Self {
         let starts = if training.role == Role::Trainer { training.starts.clone() } else { Vec::new() };
-        Self { role: training.role, lesson: training.lesson.clone(), about: training.about.clone(), starts }
+        Self { role: training.role, name: training.lesson.clone(), about: training.about.clone(), starts }
     }
 }
 
@@ -214,7 +215,9 @@ pub(super) fn of(scenario: &Scenario, training: Option<&Training>) -> Result<(St
         let hidden = panels.iter().filter(|panel| !role.sees(panel.seat));
         known.hidden = hidden.map(|panel| panel.name.clone()).collect();
         panels.retain(|panel| role.sees(panel.seat));
-        components.iter_mut().for_each(|part: &mut Part| part.failures.clear());
+        for part in &mut components {
+            part.failures.clear();
+        }
     }
     let structure = Structure {
         protocol: PROTOCOL,

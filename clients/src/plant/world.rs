@@ -165,10 +165,10 @@ impl World {
     }
 
     /// The surface of a body has these temperatures from now on.
-    pub(super) fn heat(&mut self, body: usize, field: TemperatureField) {
+    pub(super) fn heat(&mut self, body: usize, field: &TemperatureField) {
         match self.heated.iter_mut().find(|(heated, _)| *heated == body) {
-            Some((_, before)) => *before = field,
-            None => self.heated.push((body, field)),
+            Some((_, before)) => *before = *field,
+            None => self.heated.push((body, *field)),
         }
     }
 

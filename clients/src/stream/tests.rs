@@ -80,7 +80,7 @@ fn a_reader_that_sleeps_for_longer_than_the_window_is_told_what_it_missed() {
         });
     }
     assert_eq!(got + pair.ports[1].losses().window, 200);
-    assert!(got >= 32 && got <= 64, "{got}");
+    assert!((32..=64).contains(&got), "{got}");
 }
 
 #[test]
@@ -94,7 +94,7 @@ fn a_full_buffer_loses_bytes_of_a_serial_line_and_holds_up_a_connection() {
     kept.ports[1].buffer = 10;
     kept.step(|side, _, port| {
         if side == 0 {
-            port.connect()
+            port.connect();
         }
     });
     let mut sent = false;

@@ -77,15 +77,15 @@ fn place(signals: &[Signal], name: &str) -> std::ops::Range<usize> {
 
 impl Rig {
     fn new(scanner: &str, form: Form) -> Self {
-        let name = ClientName::new("plant").unwrap();
-        let step = "2ms".parse().unwrap();
-        let mut plant = Plant::parse(&scene(scanner), "kiln.toml", name, step).unwrap();
+        let name = ClientName::new("plant").expect("whole");
+        let step = "2ms".parse().expect("whole");
+        let mut plant = Plant::parse(&scene(scanner), "kiln.toml", name, step).expect("whole");
         let size = |signals: &[Signal]| signals.iter().map(|signal| signal.ty.size()).sum();
         let request = plant.join();
         let (inputs, mut outputs) = (vec![0; size(&request.reads)], vec![0; size(&request.writes)]);
-        plant.setup(&mut outputs).unwrap();
+        plant.setup(&mut outputs).expect("whole");
         let window = |signals: &[Signal], name: &str| {
-            let ty = signals.iter().find(|signal| signal.name.as_str() == name).unwrap().ty;
+            let ty = signals.iter().find(|signal| signal.name.as_str() == name).expect("whole").ty;
             let SignalType::Bytes(window) = ty else { panic!("{name} is no line") };
             window
         };
@@ -94,7 +94,7 @@ impl Rig {
     }
 
     fn serial(scanner: &str) -> Self {
-        Self::new(scanner, Form::Serial(Rate::of(9600, 10).unwrap()))
+        Self::new(scanner, Form::Serial(Rate::of(9600, 10).expect("whole")))
     }
 
     fn tcp(scanner: &str) -> Self {
@@ -113,7 +113,7 @@ impl Rig {
         let (from, to) = (place(&request.writes, "From"), place(&request.reads, "To"));
         let seen = self.outputs[from].to_vec();
         let mut said = self.inputs[to.clone()].to_vec();
-        self.plant.turn(VirtualTime::from_nanos(self.now_ns), &self.inputs, &mut self.outputs).unwrap();
+        self.plant.turn(VirtualTime::from_nanos(self.now_ns), &self.inputs, &mut self.outputs).expect("whole");
         self.host.arrive(self.now_ns, &seen);
         act(&mut self.host);
         self.host.depart(self.now_ns, &seen, &mut said);
@@ -165,7 +165,7 @@ fn a_scanner_takes_commands_with_the_check_byte_of_its_manufacturer() {
         // the thesis' plain sum is the same where it has the highest bit anyway, as that of AR
         let mut plain = right.clone();
         let sum = right[..right.len() - 1].iter().fold(0_u8, |sum, byte| sum.wrapping_add(*byte));
-        *plain.last_mut().unwrap() = sum;
+        *plain.last_mut().expect("whole") = sum;
         let wanted = if text == "AR" { ACK } else { NAK };
         assert_eq!(rig.ask(&plain, 1, 50), [wanted], "{text}");
     }
@@ -198,7 +198,7 @@ fn a_hot_spot_is_where_the_closed_form_says_on_every_link() {
             let opposite = serial[(row + LINES / 2) % LINES][column + 1];
             (i32::from(byte) - i32::from(opposite), row, column)
         };
-        let most = cells.map(more).max_by_key(|(more, ..)| *more).unwrap();
+        let most = cells.map(more).max_by_key(|(more, ..)| *more).expect("whole");
         // α = atan((22 - 30)/30), and 130° of 360° in lines of 4°
         let column = ((libm::atan(-8.0 / 30.0).to_degrees() + 45.0) / 90.0 * points as f64) as usize;
         let row = (130.0 / 360.0 * LINES as f64).round() as usize;
@@ -231,11 +231,11 @@ fn a_scanner_goes_on_from_its_state_in_the_middle_of_a_line() {
         let mut line = Vec::new();
         for step in 0..200 {
             if interrupted && step == 60 {
-                let state = rig.plant.save().unwrap();
+                let state = rig.plant.save().expect("whole");
                 let outputs = rig.outputs.clone();
                 let fresh = Rig::serial("");
                 rig.plant = fresh.plant;
-                rig.plant.restore(&state).unwrap();
+                rig.plant.restore(&state).expect("whole");
                 rig.outputs = outputs;
             }
             rig.step(|host| line.extend(std::iter::from_fn(|| host.receive())));

@@ -88,7 +88,7 @@ impl Catalogue {
                 return Err(this.wrong(message, Some(name.span()), None));
             }
             let base = this.base(entry, &cases)?;
-            let variants = this.variants(entry, base, this.axes(places.leaves("campaign", number, "matrix"))?)?;
+            let variants = this.variants(entry, base, &this.axes(places.leaves("campaign", number, "matrix"))?)?;
             let expanded = campaign::expanded(entry, variants, number);
             campaigns.push(expanded.map_err(|found| this.wrong(found.message, found.place, found.help))?);
         }
@@ -109,10 +109,10 @@ impl Catalogue {
         &self,
         campaign: &CampaignFile,
         mut base: Case,
-        axes: Vec<Axis>,
+        axes: &[Axis],
     ) -> Result<Vec<(String, Case)>, ScenarioError> {
         base.until = campaign.until.or(base.until);
-        let Some(combinations) = combinations(&axes) else {
+        let Some(combinations) = combinations(axes) else {
             let message =
                 format!("the matrix of `{}` has more than {COMBINATIONS_MAX} combinations", campaign.name.get_ref());
             return Err(self.wrong(message, Some(campaign.name.span()), None));
@@ -196,13 +196,14 @@ impl Catalogue {
     fn axes(&self, lists: Vec<Setting>) -> Result<Vec<Axis>, ScenarioError> {
         let axis = |Setting { path, value, place }: Setting| match value {
             Value::Array(values) if !values.is_empty() => Ok(Axis { path, values, place }),
-            Value::String(text) if path == "seed" => match range(&text) {
-                Some(values) => Ok(Axis { path, values, place }),
-                None => {
+            Value::String(text) if path == "seed" => {
+                if let Some(values) = range(&text) {
+                    Ok(Axis { path, values, place })
+                } else {
                     let message = format!("`{text}` is no range of at most {COMBINATIONS_MAX} seeds");
                     Err(self.wrong(message, Some(place), Some("as in `seed = \"1..20\"`, with both ends".to_owned())))
                 }
-            },
+            }
             _ => {
                 let message = format!("`{path}` of a matrix is a list of values");
                 Err(self.wrong(message, Some(place), Some("as in `seed = [1, 2, 3]`".to_owned())))

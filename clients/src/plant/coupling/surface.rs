@@ -44,7 +44,7 @@ impl Tie for Heats {
         _: f64,
         world: &mut World,
     ) -> Result<(), ClientFault> {
-        world.heat(self.body, field);
+        world.heat(self.body, &field);
         Ok(())
     }
 

@@ -1,7 +1,7 @@
 //! A serial terminal with a process image of 22 bytes each way, and its handshake.
 //!
 //! Both images are a word and 22 bytes. The low byte of the control word has the bits TR, RA and IR, that of the status word
-//! TA, RR, IA and BUF_F; the high byte is a count of bytes. A change of TR says that bytes are to be sent, and TA follows
+//! TA, RR, IA and `BUF_F`; the high byte is a count of bytes. A change of TR says that bytes are to be sent, and TA follows
 //! when they are taken. A change of RR says that bytes have arrived, and RA follows when the program has read them. While IR
 //! is on the terminal forgets everything and IA is on.
 //!

@@ -167,7 +167,7 @@ impl InfraredScanner {
         &self,
         state: &mut State,
         heard: impl IntoIterator<Item = u8>,
-        inputs: &Inputs,
+        trigger: bool,
         turn: &Turn<TemperatureField>,
         said: &mut Vec<u8>,
     ) {
@@ -184,7 +184,7 @@ impl InfraredScanner {
         for byte in heard {
             match state.device.hear(byte) {
                 None => {}
-                Some(Answer::Line) => self.begin_line(state, inputs, turn, &mut answers),
+                Some(Answer::Line) => self.begin_line(state, trigger, turn, &mut answers),
                 Some(Answer::Bytes(bytes)) => {
                     let bytes = if turn.failed.has(Failure::Deaf) { vec![NAK] } else { bytes };
                     let count = if bytes.first() == Some(&ACK) { &mut state.accepted } else { &mut state.refused };
@@ -194,15 +194,15 @@ impl InfraredScanner {
             }
         }
         if was_bursting && state.device.is_bursting() && state.since_line_s >= self.p.line_s {
-            self.begin_line(state, inputs, turn, &mut answers);
+            self.begin_line(state, trigger, turn, &mut answers);
         }
         if !turn.failed.has(Failure::Silent) {
             said.extend(answers);
         }
     }
 
-    fn begin_line(&self, state: &mut State, inputs: &Inputs, turn: &Turn<TemperatureField>, said: &mut Vec<u8>) {
-        said.extend(self.line(&state.device, inputs.trigger, turn));
+    fn begin_line(&self, state: &mut State, trigger: bool, turn: &Turn<TemperatureField>, said: &mut Vec<u8>) {
+        said.extend(self.line(&state.device, trigger, turn));
         state.lines = state.lines.saturating_add(1);
         state.since_line_s = 0.0;
     }
@@ -245,7 +245,7 @@ impl Component for InfraredScanner {
         let Some(port) = talk.ports.first_mut() else { return };
         let mut said = Vec::new();
         let heard: Vec<u8> = std::iter::from_fn(|| port.receive()).collect();
-        self.converse(state, heard, inputs, turn, &mut said);
+        self.converse(state, heard, inputs.trigger, turn, &mut said);
         say(port, &said);
     }
 
@@ -294,7 +294,7 @@ mod tests {
         rig.seen = shell(angle_deg);
         let turn = Turn { dt_s: 0.01, seen: rig.seen, failed: rig.failed };
         let mut said = Vec::new();
-        rig.component.converse(&mut rig.state, bytes.iter().copied(), &IDLE, &turn, &mut said);
+        rig.component.converse(&mut rig.state, bytes.iter().copied(), IDLE.trigger, &turn, &mut said);
         said
     }
 

@@ -101,9 +101,9 @@ mod tests {
     use crate::plant::component::tests::Rig;
     use crate::plant::temperature_field::{Spot, ZONES};
 
-    fn rig(p: Parameters, angle_deg: f64) -> Rig<Pyrometer> {
+    fn rig(lag_s: f64, angle_deg: f64) -> Rig<Pyrometer> {
         let spot = Spot { more_k: 60.0, at_m: 22.0, at_rad: 130_f64.to_radians(), along_m: 0.8, around_m: 0.8 };
-        let mut rig = Rig::new(Pyrometer::new(Parameters { place_m: 22.0, ..p }));
+        let mut rig = Rig::new(Pyrometer::new(Parameters { place_m: 22.0, lag_s, ..Parameters::default() }));
         rig.seen = TemperatureField {
             zones_degc: [300.0; ZONES],
             spots: [spot, Spot::default()],
@@ -117,18 +117,18 @@ mod tests {
 
     #[test]
     fn it_sees_the_spot_pass() {
-        let at = |angle| rig(Parameters::default(), angle).run(Inputs {}, 0.01, 1).measured_degc;
+        let at = |angle| rig(Parameters::default().lag_s, angle).run(Inputs {}, 0.01, 1).measured_degc;
         assert!((at(130.0) - 360.0).abs() < 1e-9 && (at(310.0) - 300.0).abs() < 1e-9);
     }
 
     #[test]
     fn a_lag_and_each_failure_have_their_effect() {
-        let mut slow = rig(Parameters { lag_s: 1.0, ..Parameters::default() }, 310.0);
+        let mut slow = rig(1.0, 310.0);
         slow.run(Inputs {}, 0.01, 1);
         slow.seen.angle_rad = 130_f64.to_radians();
         let after = slow.run(Inputs {}, 0.01, 100).measured_degc;
         assert!((after - (300.0 + 60.0 * (1.0 - libm::exp(-1.0)))).abs() < 1e-6, "{after}");
-        let failing = |mode| rig(Parameters::default(), 310.0).failing(mode).run(Inputs {}, 0.01, 1).measured_degc;
+        let failing = |mode| rig(Parameters::default().lag_s, 310.0).failing(mode).run(Inputs {}, 0.01, 1).measured_degc;
         assert!(failing(Failure::Dirty) < 290.0 && failing(Failure::BrokenWire) == NOTHING_DEGC);
     }
 }
