@@ -42,6 +42,7 @@ use std::path::PathBuf;
 
 pub use error::EditorError;
 
+use crate::access::admission::Admission;
 use crate::web;
 use files::Files;
 use server::Editor;
@@ -63,7 +64,7 @@ pub struct EditConfig {
 /// # Errors
 /// Files that cannot be read; an address that cannot be listened on, or that others reach.
 pub fn serve(config: &EditConfig) -> Result<(), EditorError> {
-    web::of_this_machine(config.address)?;
+    web::of_this_machine(config.address, &Admission::ThisMachine)?;
     let editor = Editor::open(Files::of(&config.scenario)?, config.address)?;
     match web::Page::is_absent() {
         None => tracing::info!(target: NOTICE, "the editor is at {}", editor.url()),

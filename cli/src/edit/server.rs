@@ -19,7 +19,7 @@ use super::files::{Files, Unwritten};
 use super::join::{self, Tip};
 use super::state::{self, State};
 use crate::error::ListenError;
-use crate::web::{asset, guarded};
+use crate::web::{asset, guarded_here};
 
 /// The longest request, bytes.
 const REQUEST_MAX: usize = 64 * 1024;
@@ -176,7 +176,7 @@ impl Editor {
             .route("/api/library", get(library))
             .fallback(get(file))
             .layer(DefaultBodyLimit::max(REQUEST_MAX))
-            .layer(middleware::from_fn(guarded))
+            .layer(middleware::from_fn(guarded_here))
             .with_state(held);
         Ok(Self { listener, address, router })
     }

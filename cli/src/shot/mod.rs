@@ -27,10 +27,11 @@ use onescan_server::mailbox::Mailbox;
 use onescan_server::published::Published;
 use onescan_server::signal::{ClientName, did_you_mean};
 
+use crate::access::admission::Admission;
 use crate::error::{ExitCode, Usage};
 use crate::run::RunError;
 use crate::run::in_process::in_process;
-use crate::web::{self, Failing, Page};
+use crate::web::{self, Page};
 use browser::Browser;
 pub use config::{ShotConfig, Size, Theme};
 pub use error::ShotError;
@@ -52,15 +53,10 @@ pub fn run(config: &ShotConfig, out: &mut dyn Write) -> Result<ExitCode, ShotErr
     let published = shown(config, &scenario)?;
     let (sender, drawn) = mpsc::channel();
     let source = web::Source {
-        scenario: &scenario,
-        published,
-        mailbox: Mailbox::new(),
-        pace: "max".to_owned(),
-        failing: Failing::default(),
-        training: None,
         pictures: Some(sender),
+        ..web::Source::new(&scenario, published, Mailbox::new(), "max".to_owned())
     };
-    let page = Page::serve(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)), source)?;
+    let page = Page::serve(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)), &Admission::ThisMachine, source)?;
     let picture = browser.draw(&format!("{}?{query}", page.url()), &drawn, PATIENCE)?;
     file::write_whole(&config.out, &picture)?;
     writeln!(out, "{}", config.out.display()).map_err(OutputError)?;

@@ -21,6 +21,7 @@ use super::examination::Examination;
 use super::moments::{Moment, Moments};
 use super::record::{AttemptRecord, FILE_NAME, Fork, SessionRecord, run_folder};
 use super::starts::Starts;
+use crate::access::admission::Admission;
 use crate::error::Usage;
 use crate::interrupt::Interrupt;
 use crate::run::{NOTICE, operator_inputs};
@@ -227,12 +228,7 @@ impl Classroom<'_> {
             Pace::Factor(factor) => factor.to_string(),
         };
         let source = |role| web::Source {
-            scenario,
-            published: stage.published.clone(),
-            mailbox: stage.mailbox.clone(),
-            pace: pace.clone(),
             failing: stage.failing.clone(),
-            pictures: None,
             training: Some(Training {
                 role,
                 desk: desk.clone(),
@@ -240,9 +236,10 @@ impl Classroom<'_> {
                 about: self.lesson.about.clone(),
                 starts: self.book.starts().iter().map(|start| start.name.clone()).collect(),
             }),
+            ..web::Source::new(scenario, stage.published.clone(), stage.mailbox.clone(), pace.clone())
         };
-        let trainee = Page::serve(served.trainee, source(Role::Trainee))?;
-        let trainer = trainee.beside(served.trainer, source(Role::Trainer))?;
+        let trainee = Page::serve(served.trainee, &Admission::ThisMachine, source(Role::Trainee))?;
+        let trainer = trainee.beside(served.trainer, &Admission::ThisMachine, source(Role::Trainer))?;
         if let Some(how) = Page::is_absent() {
             tracing::warn!(target: NOTICE, "no pages: {how}");
         }

@@ -92,16 +92,14 @@ fn serve(config: &ViewConfig, recorded: &Recorded, kept: Kept, bench: Bench) -> 
     let scenario = &recorded.scenario;
     let rewinder = Rewinder::new(kept, rewound::former(scenario)).map_err(WebError::Thread)?;
     let onward = Onward::at(recorded.words(), Some(config.web), &config.admission);
+    // Nothing is published: a recording has no live edge.
+    let unpublished = Published::new(0);
     let source = web::Source {
-        scenario,
-        // nothing is published: a recording has no live edge
-        published: Published::new(0),
-        mailbox: Mailbox::new(),
-        pace: String::new(),
         past: Ok(rewinder),
         launch: rewound::launcher(onward),
         bench,
         recorded_to: Some(recorded.end),
+        ..web::Source::new(scenario, unpublished, Mailbox::new(), String::new())
     };
     Ok(Page::serve(config.web, &config.admission, source)?)
 }

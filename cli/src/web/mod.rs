@@ -117,6 +117,25 @@ pub(crate) struct Source<'s> {
     pub(crate) recorded_to: Option<VirtualTime>,
 }
 
+impl<'s> Source<'s> {
+    /// A session that is no lesson, keeps no past, and of which no picture is to be drawn.
+    pub(crate) fn new(scenario: &'s Scenario, published: Published, mailbox: Mailbox, pace: String) -> Self {
+        Self {
+            scenario,
+            published,
+            mailbox,
+            pace,
+            failing: Failing::default(),
+            training: None,
+            pictures: None,
+            past: Err("it keeps none".to_owned()),
+            launch: Arc::new(|_| Err("it keeps no past".to_owned())),
+            bench: Bench::default(),
+            recorded_to: None,
+        }
+    }
+}
+
 /// Begins a session that goes on from a checkpoint, given as a file's bytes; gives where its page is, or says in words why
 /// there is none.
 pub(crate) type Launch = Arc<dyn Fn(&[u8]) -> Result<String, String> + Send + Sync>;
@@ -377,17 +396,12 @@ fn router(session: Arc<Session>) -> Router {
         .with_state(session)
 }
 
-/// Every request passes here: what is foreign is refused, and each answer says what a page may do.
+/// Every request passes here: what is foreign is refused, who has no token where one is asked for does not come in, and each
+/// answer says what a page may do.
 async fn guarded(State(session): State<Arc<Session>>, mut request: Request, next: Next) -> Response {
-    const PLAIN: [(HeaderName, HeaderValue); 4] = [
-        (header::CONTENT_SECURITY_POLICY, HeaderValue::from_static(POLICY)),
-        (header::X_CONTENT_TYPE_OPTIONS, HeaderValue::from_static("nosniff")),
-        (header::REFERRER_POLICY, HeaderValue::from_static("same-origin")),
-        (header::CACHE_CONTROL, HeaderValue::from_static("no-store")),
-    ];
     let admitted = guard::admit(request.headers(), session.scheme).map(|()| session.entry.admit(request.headers()));
     let is_login = request.uri().path() == "/api/login";
-    let mut answer = match admitted {
+    dressed(match admitted {
         Err(foreign) => (StatusCode::FORBIDDEN, format!("{foreign}\n")).into_response(),
         Ok(Ok(rank)) => {
             request.extensions_mut().insert(rank);
@@ -399,7 +413,25 @@ async fn guarded(State(session): State<Arc<Session>>, mut request: Request, next
             (StatusCode::UNAUTHORIZED, Html(entry::form(None))).into_response()
         }
         Ok(Err(barred)) => (StatusCode::UNAUTHORIZED, format!("{barred}\n")).into_response(),
-    };
+    })
+}
+
+/// The same for pages that are served to this machine only.
+pub(crate) async fn guarded_here(request: Request, next: Next) -> Response {
+    dressed(match guard::admit(request.headers(), "http") {
+        Ok(()) => next.run(request).await,
+        Err(foreign) => (StatusCode::FORBIDDEN, format!("{foreign}\n")).into_response(),
+    })
+}
+
+/// An answer that says what a page may do.
+fn dressed(mut answer: Response) -> Response {
+    const PLAIN: [(HeaderName, HeaderValue); 4] = [
+        (header::CONTENT_SECURITY_POLICY, HeaderValue::from_static(POLICY)),
+        (header::X_CONTENT_TYPE_OPTIONS, HeaderValue::from_static("nosniff")),
+        (header::REFERRER_POLICY, HeaderValue::from_static("same-origin")),
+        (header::CACHE_CONTROL, HeaderValue::from_static("no-store")),
+    ];
     answer.headers_mut().extend(PLAIN);
     answer
         .headers_mut()
