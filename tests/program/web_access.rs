@@ -73,7 +73,7 @@ fn every_endpoint_asks_who_comes() {
             let status = status(&served, path, &with);
             format!("{path} {}", if status == "404" && path != "/nowhere" { "200" } else { status.as_str() })
         });
-        table += &format!("{who}: {}\n", answers.join(", "));
+        table.extend([who, ": ", answers.join(", ").as_str(), "\n"]);
     }
     insta::assert_snapshot!("web_access", table);
     for token in &bearer[..3] {

@@ -169,8 +169,7 @@ fn serve_page(
     lockstep.observe(failing.observer());
     let (published, mailbox) = (lockstep.published(), interrupt.mailbox());
     let launch = rewound::launcher(Onward::of(config));
-    let source =
-        web::Source { failing, past, launch, bench, ..web::Source::new(scenario, published, mailbox, pace) };
+    let source = web::Source { failing, past, launch, bench, ..web::Source::new(scenario, published, mailbox, pace) };
     let page = Page::serve(address, &config.doors.admission, source)?;
     match Page::is_absent() {
         None => tracing::info!(target: NOTICE, "{}{}", rewound::PAGE_AT, page.url()),

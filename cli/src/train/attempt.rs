@@ -129,6 +129,6 @@ fn moment(
 fn recorder(scenario: &Scenario, folder: &Path, number: u32, path: &Path) -> Result<Recorder, TrainError> {
     let request = RecordRequest { folder: folder.to_owned(), overwrite: true, choice: Choice::default() };
     let subject = Subject { scenario: path.to_owned(), case: None, until: Some(scenario.until()) };
-    let (_, recorder) = Recorded::begin(&request, &subject, Mode::Lockstep, scenario, number)?;
+    let (_, recorder) = Recorded::begin(&request, &subject, (Mode::Lockstep, &[]), scenario, number)?;
     Ok(recorder)
 }

@@ -169,12 +169,13 @@ struct Expectation {
 struct Source {
     path: String,
     text: String,
-    lines: Vec<Line>,
+    lines: Vec<SourceLine>,
 }
 
 #[derive(Debug, Serialize)]
-struct Line {
-    line: usize,
+struct SourceLine {
+    #[serde(rename = "line")]
+    number: usize,
     variables: Vec<String>,
     /// Numbers of variables of the PLC.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -356,7 +357,7 @@ fn sources(scenario: &Scenario, online: &Online) -> Vec<Source> {
 
 /// Signals by whose names, without those of what they are in, a line has words; and variables of the program that the line is
 /// in, which `inner` finds.
-fn lines(text: &str, scenario: &Scenario, inner: &dyn Fn(&str, &str) -> Option<usize>) -> Vec<Line> {
+fn lines(text: &str, scenario: &Scenario, inner: &dyn Fn(&str, &str) -> Option<usize>) -> Vec<SourceLine> {
     let mut by_word: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for declared in scenario.plan().signals() {
         let name = declared.name.to_string();
@@ -370,7 +371,7 @@ fn lines(text: &str, scenario: &Scenario, inner: &dyn Fn(&str, &str) -> Option<u
         let (mut variables, mut numbers): (Vec<String>, Vec<usize>) = (Vec::new(), Vec::new());
         let mut words = line.split(|c| !is_word(c)).filter(|word| !word.is_empty());
         match words.next() {
-            Some(word) if word.eq_ignore_ascii_case("PROGRAM") => program = words.next().unwrap_or_default().to_owned(),
+            Some(word) if word.eq_ignore_ascii_case("PROGRAM") => words.next().unwrap_or("").clone_into(&mut program),
             Some(word) if word.eq_ignore_ascii_case("END_PROGRAM") => program.clear(),
             _ => {}
         }
@@ -384,7 +385,7 @@ fn lines(text: &str, scenario: &Scenario, inner: &dyn Fn(&str, &str) -> Option<u
             numbers.extend(number.filter(|number| !numbers.contains(number)));
         }
         let is_told = !variables.is_empty() || !numbers.is_empty();
-        is_told.then_some(Line { line: index + 1, variables, inner: numbers })
+        is_told.then_some(SourceLine { number: index + 1, variables, inner: numbers })
     };
     text.lines().enumerate().filter_map(line).collect()
 }

@@ -116,9 +116,12 @@ struct Eye {
     /// The drawing that is shown, and which instance of it.
     drawn: Option<(usize, usize)>,
     /// The values of the drawing that were told last.
-    states: Option<((usize, usize), Vec<Option<f64>>)>,
+    states: Option<States>,
     rung: Rung,
 }
+
+/// A drawing with its instance, and the values of its states.
+type States = ((usize, usize), Vec<Option<f64>>);
 
 impl Eye {
     fn new(session: &Session) -> Self {
@@ -278,12 +281,7 @@ async fn picture(socket: &mut WebSocket, view: &SessionView, session: &Session, 
 }
 
 /// Tells what a picture goes with: the looks that are on, alarms, and the values of a drawing.
-async fn tell_drawn(
-    socket: &mut WebSocket,
-    view: &SessionView,
-    session: &Session,
-    eye: &mut Eye,
-) -> Result<(), Gone> {
+async fn tell_drawn(socket: &mut WebSocket, view: &SessionView, session: &Session, eye: &mut Eye) -> Result<(), Gone> {
     let active = session.known.looks.active(view, &session.layout);
     if eye.looks.as_ref() != Some(&active) {
         eye.looks = Some(active.clone());

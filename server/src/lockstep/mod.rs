@@ -96,6 +96,21 @@ pub enum Reached {
     End,
 }
 
+/// What else than its time ends a run.
+#[derive(Clone, Copy, Debug)]
+enum Heed {
+    /// Nothing.
+    TimeOnly,
+    /// The first reset after so many.
+    Resets { before: u64 },
+}
+
+impl Heed {
+    fn is_reset(self, resets: u64) -> bool {
+        matches!(self, Self::Resets { before } if resets != before)
+    }
+}
+
 impl Lockstep {
     /// A session whose clients have all joined, in the order of their ids.
     pub(crate) fn new(session: Session, carriers: Vec<Box<dyn Carrier>>) -> Self {
@@ -212,7 +227,7 @@ impl Lockstep {
     /// # Errors
     /// A recording cannot be written; the session is closed for all then.
     pub fn run_to(&mut self, t_v: VirtualTime) -> Result<Reached, RecordError> {
-        self.run_until(|lockstep| lockstep.session.t_v() >= t_v)
+        self.run_until(t_v, Heed::TimeOnly)
     }
 
     /// Runs as [`run_to`](Self::run_to) does, or to the first boundary after a reset.
@@ -220,12 +235,11 @@ impl Lockstep {
     /// # Errors
     /// A recording cannot be written; the session is closed for all then.
     pub fn run_to_or_reset(&mut self, t_v: VirtualTime) -> Result<Reached, RecordError> {
-        let resets = self.resets;
-        self.run_until(|lockstep| lockstep.session.t_v() >= t_v || lockstep.resets != resets)
+        self.run_until(t_v, Heed::Resets { before: self.resets })
     }
 
-    fn run_until(&mut self, is_there: impl Fn(&Self) -> bool) -> Result<Reached, RecordError> {
-        let reached = self.cycle_until(is_there);
+    fn run_until(&mut self, t_v: VirtualTime, heed: Heed) -> Result<Reached, RecordError> {
+        let reached = self.cycle_until(t_v, heed);
         match &reached {
             Ok(Reached::Boundary) => return reached,
             Ok(Reached::End) => {}
@@ -235,13 +249,13 @@ impl Lockstep {
     }
 
     /// The loop of a session. Everything that can happen between two states is decided here.
-    fn cycle_until(&mut self, is_there: impl Fn(&Self) -> bool) -> Result<Reached, RecordError> {
+    fn cycle_until(&mut self, t_v: VirtualTime, heed: Heed) -> Result<Reached, RecordError> {
         if std::mem::take(&mut self.begin_observers) {
             self.tell_beginning()?;
         }
         loop {
             if self.session.cycle().is_at_boundary() {
-                if self.digest.is_some() && is_there(self) {
+                if self.digest.is_some() && (self.session.t_v() >= t_v || heed.is_reset(self.resets)) {
                     return Ok(Reached::Boundary);
                 }
                 self.take_wishes()?;
