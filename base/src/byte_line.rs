@@ -13,23 +13,8 @@
 //! | 28 to 27 + n | the byte of number i at i modulo n |
 //! | the next ⌈n/8⌉ | bit i modulo n, from the lowest of the first byte: that byte was lost on its way |
 
-use crate::signal_type::SignalType;
-
-/// Bytes of a window whose length is not written.
-pub const DEFAULT_WINDOW: u16 = 64;
-
-/// The longest window: a step of it and what comes with it are below 64 KiB.
-pub const WINDOW_MAX: u16 = 32_766;
-
-/// Bytes before the window.
-const HEADER: usize = 28;
-
-/// Bytes of a value with a window of so many bytes.
-#[inline] // of the size of a type, which is asked for in every step
-#[must_use]
-pub const fn size(window: u16) -> usize {
-    HEADER + window as usize + (window as usize).div_ceil(8)
-}
+pub use crate::signal_type::{DEFAULT_WINDOW, WINDOW_MAX, line_size as size};
+use crate::signal_type::{LINE_HEADER as HEADER, SignalType};
 
 /// A value that is looked at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

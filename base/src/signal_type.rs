@@ -6,7 +6,6 @@ use std::str::FromStr;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use thiserror::Error;
 
-use crate::byte_line::{self, DEFAULT_WINDOW, WINDOW_MAX};
 use crate::elementary::ElementaryType;
 
 /// Characters of a STRING without a length, as most PLCs have it.
@@ -14,6 +13,22 @@ pub const DEFAULT_STRING_CAPACITY: u16 = 80;
 
 /// The longest string: 32,766 two-byte characters and their count are just below 64 KiB.
 pub const STRING_CAPACITY_MAX: u16 = 32_766;
+
+/// Bytes of a line's window whose length is not written.
+pub const DEFAULT_WINDOW: u16 = 64;
+
+/// The longest window of a line: a step of it and what comes with it are below 64 KiB.
+pub const WINDOW_MAX: u16 = 32_766;
+
+/// Bytes of a line's value before its window: [`crate::byte_line`].
+pub(crate) const LINE_HEADER: usize = 28;
+
+/// Bytes of the value of a line with a window of so many bytes.
+#[inline] // of the size of a type, which is asked for in every step
+#[must_use]
+pub const fn line_size(window: u16) -> usize {
+    LINE_HEADER + window as usize + (window as usize).div_ceil(8)
+}
 
 /// The type of a signal, as the session and its clients agree on it. In files and on the wire it is its name.
 ///
@@ -63,7 +78,7 @@ impl SignalType {
             Self::Elementary(ty) => ty.size() as usize,
             Self::String(capacity) => 2 + capacity as usize,
             Self::Wstring(capacity) => 2 + 2 * capacity as usize,
-            Self::Bytes(window) => byte_line::size(window),
+            Self::Bytes(window) => line_size(window),
         }
     }
 

@@ -24,7 +24,7 @@
 //! | [`mistake`] | a small mistake in the program of a soft PLC |
 //! | `mistaken` | the scenario with it |
 //! | `compilations` | soft PLCs compiled once for all cases |
-//! | [`timing`] | its `[timing]`, bound to its signals |
+//! | [`timing`], `leeway` | its `[timing]`, bound to its signals; all that it allows, tasks included |
 //! | [`falsify`] | its `[falsify]`, bound to its signals and clients |
 //! | [`ports_file`], `ports` | the ports and files of soft PLCs, as they are written and made |
 //! | [`gateway`] | its real PLCs |
@@ -54,6 +54,7 @@ pub mod figure;
 pub mod file;
 mod form;
 pub mod gateway;
+mod leeway;
 pub mod lesson;
 pub mod load;
 pub mod look;

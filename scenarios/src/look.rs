@@ -98,7 +98,7 @@ fn check(look: &Spanned<LookFile>, file: &ScenarioFile) -> Result<(), Wrong> {
     }
     let is_driven = inner.grow.is_some() || inner.colours.is_some() || inner.moves() || inner.run_m_s.is_some();
     let is_plain = inner.colour.is_some() || inner.hidden || inner.transparent.is_some() || inner.scale.is_some();
-    if !is_driven && !is_plain {
+    if !is_driven && !is_plain && inner.follows.is_none() {
         let help = "write `colour`, `hidden`, `transparent` or `scale`, or with `follows` what its value drives";
         return Err(at(look, "the look changes nothing", help));
     }

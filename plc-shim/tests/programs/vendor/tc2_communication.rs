@@ -85,14 +85,14 @@ fn files_are_written_and_read_back_by_line() {
     let mut rig = rig("PROGRAM P
         VAR
             open : FB_FileOpen; put : FB_FilePuts; gets : FB_FileGets; close : FB_FileClose; seek : FB_FileSeek;
-            tell : FB_FileTell; eof : FB_EOF; none : FB_FileOpen; bad : FB_FileClose; step : INT; line : STRING; at : DINT;
+            tell : FB_FileTell; eof : FB_EOF; none : FB_FileOpen; bad : FB_FileClose; step : INT; line : STRING; place : DINT;
             missing, handle : UDINT;
         END_VAR
             open(sPathName := 'C:\\TwinCAT\\log.txt', nMode := FOPEN_MODEWRITE OR FOPEN_MODEPLUS OR FOPEN_MODETEXT,
                 bExecute := step >= 1);
             put(hFile := open.hFile, sLine := 'first$Nsecond$N', bExecute := step >= 4);
             tell(hFile := open.hFile, bExecute := step >= 7);
-            at := tell.nSeekPos;
+            place := tell.nSeekPos;
             seek(hFile := open.hFile, nSeekPos := 7, bExecute := step >= 10);
             gets(hFile := open.hFile, bExecute := step >= 13);
             eof(hFile := open.hFile, bExecute := step >= 16);
@@ -107,7 +107,7 @@ fn files_are_written_and_read_back_by_line() {
         rig.scan().expect("no fault");
     }
     assert_eq!((rig.int("P.missing"), rig.int("P.handle")), (0x70c, 0x703));
-    assert_eq!(rig.int("P.at"), 15, "each line ends with CR LF in the file");
+    assert_eq!(rig.int("P.place"), 15, "each line ends with CR LF in the file");
     assert_eq!(rig.text("P.gets.sLine"), "second\n");
     assert!(rig.bool("P.eof.bEOF"));
     assert!(!rig.bool("P.close.bError") && !rig.bool("P.put.bError"));
