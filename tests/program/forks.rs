@@ -56,7 +56,10 @@ fn every_case_goes_on_from_the_checkpoint_of_the_scenario_as_it_is() {
             );
             assert_eq!(saved.len(), 1, "{said:?}");
             let (resumed, said) = run(&path, &["--case", &case.name, "--resume", file]);
-            if case.settings.is_empty() && case.seed.is_none() {
+            if at == VirtualTime::ZERO && said.err.contains("before the checkpoint at 0.000 s") {
+                // What happens in the set-up has no boundary before it.
+                refused += 1;
+            } else if case.settings.is_empty() && case.seed.is_none() {
                 let (whole, _) = run(&path, &["--case", &case.name]);
                 assert_eq!(digests(&resumed), digests(&whole), "{} {}: {said:?}", plain.name(), case.name);
                 forked += 1;
