@@ -73,7 +73,7 @@ async function watch_the_furnace() {
   await page.getByRole("button", { name: "For all" }).click();
   await page.getByRole("tab", { name: "PLC" }).click();
   await page.getByLabel("Source file").selectOption({ label: "Heat" });
-  await page.locator(".drawing .step.active").first().waitFor();
+  await page.locator(".drawing .step.active").first().waitFor({ state: "attached" });
   await shoot(page, "chart");
   assert.deepEqual([...errors, ...other.errors], []);
   await other.page.close();
@@ -86,7 +86,7 @@ async function read_the_ladder() {
   const { page, errors } = await open(url);
   await page.getByRole("tab", { name: "PLC" }).click();
   await page.getByLabel("Source file").selectOption({ label: "LowLevel" });
-  await page.locator(".drawing .wire.lit").first().waitFor();
+  await page.locator(".drawing .wire.lit").first().waitFor({ state: "attached" });
   const file = await readFile(join(scenarios, "shear", "plc-ld", "shear.xml"), "utf8");
   const body = /<LD>[\s\S]*?<\/LD>/.exec(file)[0];
   const expected = [...body.matchAll(/<(\w+) localId="(\w+)"[^>]*>\s*<position x="(\d+)" y="(\d+)"/g)].map(([, kind, id]) => `${kind} ${id}`);
