@@ -36,7 +36,7 @@ command = ["python3", "-B", "scale.py", "--server", "{server}"]
 
 [[expect]]
 name = "the whole line is received"
-formula = "F[0s, 1s] Got == 258"
+formula = "eventually[0s, 1s] Got = 258"
 "#;
 
 /// The command is the first line of a file; the answer is 258 bytes.
