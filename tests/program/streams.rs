@@ -117,7 +117,7 @@ fn a_device_in_python_answers_a_program_that_knows_its_vendor_s_blocks_alone() {
     };
     let whole = run(&[]);
     assert_eq!(run(&["--runs", "2"])[0], whole[0]);
-    run(&["--until", "334ms", "--save-at", "334ms", "--save", "half"]);
+    run(&["--until", "336ms", "--save-at", "334ms", "--save", "half"]);
     assert_eq!(run(&["--resume", "half"]), whole);
 }
 
