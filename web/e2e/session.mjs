@@ -150,7 +150,9 @@ async function look_back_at_the_shear() {
   await page.getByRole("button", { name: "Go on from here" }).click();
   const link = page.getByRole("link", { name: /^Session from/ });
   await link.waitFor({ timeout: 60_000 });
-  assert.match(await link.getAttribute("href"), /^http:\/\/127\.0\.0\.1:\d+\/$/);
+  const fork = await open(await link.getAttribute("href"), second);
+  assert.deepEqual(fork.errors, []);
+  await fork.page.close();
   await page.getByRole("button", { name: "Live" }).click();
   await page.waitForFunction((step) => !window.onescan.picture().isPast && window.onescan.picture().step > step, 500);
   assert.deepEqual(errors, []);

@@ -49,6 +49,11 @@ export class PanelView {
     this.seat_button = button("Take seat", () => desk.take(panel.name, this.seat !== "mine"));
     const grid = make("div", { class: "panel-grid" }, ...panel.elements.map((element) => this.place(element)));
     grid.style.gridTemplateColumns = `repeat(${panel.columns}, minmax(0, 1fr))`;
+    if (panel.picture !== null) {
+      grid.classList.add("pictured");
+      grid.style.gridTemplateRows = `repeat(${panel.rows}, minmax(44px, auto))`;
+      grid.style.backgroundImage = `url(${JSON.stringify(panel.picture)})`;
+    }
     const head = make("div", { class: "panel-head" }, make("h3", {}, panel.name), this.seat_text, this.seat_button);
     this.root = make("section", { class: "panel", "aria-label": `Panel ${panel.name}` }, head, grid);
     this.sit("free");

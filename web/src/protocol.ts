@@ -121,6 +121,8 @@ export interface Panel {
   readonly seat: string;
   readonly columns: number;
   readonly rows: number;
+  /** Where the picture is that lies behind it. */
+  readonly picture: string | null;
   readonly elements: readonly PanelElement[];
 }
 
@@ -442,6 +444,7 @@ function panel(field: Field): Panel {
     seat: field.at("seat").text(),
     columns: field.at("columns").number(),
     rows: field.at("rows").number(),
+    picture: nullableText(field.at("picture")),
     elements: field.at("elements").list(element),
   };
 }

@@ -87,6 +87,7 @@ enum Told {
 
 /// Speaks with a viewer until one of the two leaves.
 pub(super) async fn attend(mut socket: WebSocket, session: Arc<Session>, rank: Rank) {
+    session.attend();
     let viewer = session.seats.enter();
     // what ends it is that the viewer is gone
     let _ = converse(&mut socket, &session, (viewer, rank)).await;
