@@ -3,6 +3,7 @@
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
 use std::process::{Child, ChildStderr};
+use std::time::Duration;
 
 use serde_json::{Value, json};
 use tungstenite::client::IntoClientRequest;
@@ -77,6 +78,8 @@ impl Served {
 /// A viewer of the page at this address.
 pub(crate) fn view(address: &str) -> WebSocket<TcpStream> {
     let stream = TcpStream::connect(address).expect("served");
+    // What never comes fails the test; it does not hang it.
+    stream.set_read_timeout(Some(Duration::from_secs(120))).expect("a socket");
     let request = format!("ws://{address}/api/live").into_client_request().expect("a request");
     tungstenite::client(request, stream).expect("a viewer").0
 }

@@ -33,6 +33,7 @@ type Show = (value: number) => void;
 export class PanelView {
   readonly root: HTMLElement;
   private readonly shows = new Map<number, Show[]>();
+  private readonly cells = new Map<number, HTMLElement[]>();
   private readonly failures = new Map<string, Show[]>();
   private readonly inputs: (HTMLButtonElement | HTMLInputElement | HTMLSelectElement)[] = [];
   private readonly lines: Sparkline[] = [];
@@ -73,6 +74,11 @@ export class PanelView {
     for (const [name, shows] of this.failures) for (const one of shows) one(failed.has(name) ? 1 : 0);
   }
 
+  /** Marks what is forced: a press or a turn of it changes nothing. */
+  show_forced(forced: ReadonlySet<number>): void {
+    for (const [signal, cells] of this.cells) for (const cell of cells) cell.classList.toggle("forced", forced.has(signal));
+  }
+
   /** Shows the alarms that there are now. */
   alarms(): void {
     for (const list of this.lists) list();
@@ -100,6 +106,10 @@ export class PanelView {
     cell.style.gridRow = `${element.at[1] + 1} / span ${element.span[1]}`;
     if (element.colour !== null) cell.style.setProperty("--own", element.colour);
     this.fill(cell, element);
+    for (const name of [element.signal, element.signal_y]) {
+      const signal = this.session.signals.findIndex((one) => one.name === name);
+      if (signal >= 0) this.cells.set(signal, [...(this.cells.get(signal) ?? []), cell]);
+    }
     return cell;
   }
 
