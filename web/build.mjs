@@ -19,7 +19,7 @@ if (process.argv.includes("--tests")) {
   await rm("dist", { recursive: true, force: true });
   await mkdir("dist", { recursive: true });
   await build({
-    entryPoints: { page: "src/main.ts", edit: "src/construct/main.ts" },
+    entryPoints: { page: "src/main.ts", edit: "src/construct/main.ts", report: "src/report/main.ts" },
     outdir: "dist",
     bundle: true,
     minify: true,

@@ -67,6 +67,7 @@ pub mod mode;
 mod operated;
 mod panel;
 pub mod panel_file;
+pub mod panel_picture;
 pub mod permission;
 mod ports;
 pub mod ports_file;

@@ -163,7 +163,7 @@ impl Scenario {
             compilations: Compilations::default(),
             mistake: None,
         };
-        scenario.checked()
+        scenario.checked()?.pictured()
     }
 
     /// The case that is tried.
@@ -330,6 +330,7 @@ impl Scenario {
                 | ClientFile::External { .. } => {}
             }
         }
+        files.extend(self.file.panel.iter().filter_map(|panel| Some(panel.picture.as_ref()?.get_ref().into())));
         // cases and lessons stand beside the scenario
         files.extend(self.applied().and_then(|applied| Path::new(&applied.source.0).file_name()).map(PathBuf::from));
         files.dedup();

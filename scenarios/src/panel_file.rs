@@ -21,6 +21,9 @@ pub struct PanelFile {
     #[serde(default = "columns")]
     #[schemars(range(min = 1, max = 24))]
     pub columns: u32,
+    /// The picture that lies behind it, a file of the scenario: PNG, JPEG or SVG. It is stretched over the grid.
+    #[schemars(with = "Option<String>")]
+    pub picture: Option<Spanned<String>>,
     /// What is on it.
     #[schemars(with = "Vec<ElementFile>")]
     pub element: Vec<Spanned<ElementFile>>,

@@ -12,6 +12,7 @@ use arc_swap::ArcSwap;
 use crate::client::ClientView;
 use crate::digest::Digest;
 use crate::end::SessionEnd;
+use crate::signal::SignalId;
 use crate::state::ServerState;
 use crate::time::{StepCount, VirtualTime};
 
@@ -36,6 +37,8 @@ pub struct SessionView {
     pub end: Option<SessionEnd>,
     /// All signals, in the layout of the session's image.
     pub image: Vec<u8>,
+    /// The signals that are forced, in the order of the session's plan.
+    pub forced: Vec<SignalId>,
     /// What clients show beside their signals.
     pub clients: ClientView,
 }
@@ -53,6 +56,7 @@ impl SessionView {
             digest: None,
             end: None,
             image: vec![0; image_bytes],
+            forced: Vec::new(),
             clients: ClientView::default(),
         }
     }

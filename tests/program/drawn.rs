@@ -29,6 +29,13 @@ fn looks_are_on_while_their_condition_holds() {
     let mut viewer = served.view();
     let active = told(&mut viewer, "looks");
     assert!(active["active"].as_array().is_some_and(|active| active.iter().all(|one| one.as_u64().is_some())));
+    // Where there is a trainer's panel, who sits there calls views.
+    ask(&mut viewer, &json!({"type": "view", "view": "above"}));
+    assert!(
+        told(&mut viewer, "error")["message"].as_str().is_some_and(|message| message.contains("seat of a trainer"))
+    );
+    ask(&mut viewer, &json!({"type": "seat", "panel": "monitor", "take": true}));
+    while told(&mut viewer, "status")["seat"]["monitor"] != "mine" {}
     ask(&mut viewer, &json!({"type": "view", "view": "above"}));
     assert_eq!(told(&mut viewer, "view")["view"], "above");
     ask(&mut viewer, &json!({"type": "view", "view": "nowhere"}));

@@ -86,4 +86,5 @@ mod web;
 mod web_access;
 mod web_past;
 mod web_plc;
+mod web_tls;
 mod wiring;

@@ -3,6 +3,7 @@
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
 use std::process::{Child, ChildStderr};
+use std::time::Duration;
 
 use serde_json::{Value, json};
 use tungstenite::client::IntoClientRequest;
@@ -77,6 +78,8 @@ impl Served {
 /// A viewer of the page at this address.
 pub(crate) fn view(address: &str) -> WebSocket<TcpStream> {
     let stream = TcpStream::connect(address).expect("served");
+    // What never comes fails the test; it does not hang it.
+    stream.set_read_timeout(Some(Duration::from_secs(120))).expect("a socket");
     let request = format!("ws://{address}/api/live").into_client_request().expect("a request");
     tungstenite::client(request, stream).expect("a viewer").0
 }
@@ -238,4 +241,44 @@ fn people_stand_in_for_a_client() {
     assert_eq!(report["status"], "completed", "{said:?}");
     let unknown = typed(&scenario("filling-machine"), &["run", ".", "--operator", "pannel"]);
     assert!(unknown.code == Some(2) && unknown.err.contains("did you mean"), "{unknown:?}");
+}
+
+/// What lies behind a panel is a file of the scenario, and one that a browser shows.
+#[test]
+fn a_picture_lies_behind_a_panel() {
+    let served = Served::begin("filling-machine", &["--until", "1h"]);
+    let session: Value = serde_json::from_str(&served.get("/api/session", &[]).1).expect("JSON");
+    assert_eq!(session["panels"][0]["picture"], Value::Null);
+    assert_eq!(session["panels"][1]["picture"], "api/panel/0");
+    let (head, picture) = served.request("GET", "/api/panel/0", &[], "");
+    assert!(head.contains("200 OK") && head.contains("content-type: image/svg+xml"), "{head}");
+    let file = scenario("filling-machine").join("monitor.svg");
+    assert_eq!(picture, std::fs::read_to_string(file).expect("the picture"));
+    for other in ["/api/panel/1", "/api/panel/x", "/api/panel/-1"] {
+        assert!(served.get(other, &[]).0.contains("404"), "{other}");
+    }
+    let mut viewer = served.view();
+    ask(&mut viewer, &json!({"type": "operate", "operation": "stop"}));
+    assert_eq!(served.report()["status"], "stopped");
+    // a recording is shown and run again from its own files
+    let record = tempfile::tempdir().expect("a folder");
+    let folder = record.path().join("out");
+    let words = ["run", ".", "--until", "1s", "--record", folder.to_str().expect("UTF-8")];
+    assert_eq!(typed(&scenario("filling-machine"), &words).code, Some(0));
+    assert!(folder.join("run-1/scenario/monitor.svg").exists(), "the picture is recorded");
+}
+
+#[test]
+fn what_is_no_picture_is_refused() {
+    let shear = crate::typed::copied_shear();
+    let panel = "\n[[panel]]\nname = \"desk\"\npicture = \"plant.toml\"\nelement = []\n";
+    let file = shear.path().join("scenario.toml");
+    let text = std::fs::read_to_string(&file).expect("a scenario") + panel;
+    std::fs::write(&file, &text).expect("writable");
+    let said = typed(shear.path(), &["check", "."]);
+    assert!(said.code == Some(2) && said.err.contains("`plant.toml` is no picture that a browser shows"), "{said:?}");
+    assert!(said.err.contains("PNG, JPEG or SVG") && said.err.contains("picture = \"plant.toml\""), "{said:?}");
+    std::fs::write(&file, text.replace("picture = \"plant.toml\"", "picture = \"desk.png\"")).expect("writable");
+    let said = typed(shear.path(), &["check", "."]);
+    assert!(said.code == Some(2) && said.err.contains("desk.png"), "{said:?}");
 }

@@ -150,9 +150,20 @@ async function look_back_at_the_shear() {
   await page.getByRole("button", { name: "Go on from here" }).click();
   const link = page.getByRole("link", { name: /^Session from/ });
   await link.waitFor({ timeout: 60_000 });
-  assert.match(await link.getAttribute("href"), /^http:\/\/127\.0\.0\.1:\d+\/$/);
+  const fork = await open(await link.getAttribute("href"), second);
+  assert.deepEqual(fork.errors, []);
+  await fork.page.close();
   await page.getByRole("button", { name: "Live" }).click();
   await page.waitForFunction((step) => !window.onescan.picture().isPast && window.onescan.picture().step > step, 500);
+  // Forced and released from the table, marked as long as it is forced.
+  page.on("dialog", (dialog) => dialog.accept(dialog.message().includes("is forced") ? "" : "TRUE"));
+  const force = page.getByRole("button", { name: "Force Sensor_1", exact: true });
+  const cell = page.getByRole("row").filter({ has: force }).locator("td.value");
+  await force.click();
+  await cell.filter({ hasText: "TRUE (forced)" }).waitFor();
+  await page.waitForFunction(() => window.onescan.value("Sensor_1") === 1);
+  await force.click();
+  await cell.filter({ hasNotText: "forced" }).waitFor();
   assert.deepEqual(errors, []);
   await stop(session.url);
   await session.over;

@@ -60,7 +60,7 @@ export class Page {
     this.part = new PartSheet(session, this.values, this.machine, (ask) => this.ask(ask), again);
     const readout = make("span", { id: "readout", role: "status" });
     this.trends = new TrendsView(frame("lanes"), readout, session, again);
-    this.table = new SignalTable(session, this.values, (signal) => this.trends.toggle(signal), again);
+    this.table = new SignalTable(session, this.values, { trend: (signal) => this.trends.toggle(signal), changed: again, force: (signal, value) => this.ask({ type: "force", signal, value }) });
     const code = make("div", { class: "code" });
     this.online = new OnlineView(session, (ask) => this.ask(ask), again);
     this.source = new SourceView(code, session, this.values, this.online);
@@ -220,7 +220,9 @@ export class Page {
         for (const one of this.panels) {
           one.view.sit(message.seats.get(one.name) ?? "taken");
           one.view.show_failed(message.failed);
+          one.view.show_forced(message.forced);
         }
+        this.table.show_forced(message.forced);
         return this.timeline.reach(message.past_ns, message.shown_ns);
       case "event":
         this.ring(message.t_ns, message.kind, message.text);

@@ -33,6 +33,7 @@ type Show = (value: number) => void;
 export class PanelView {
   readonly root: HTMLElement;
   private readonly shows = new Map<number, Show[]>();
+  private readonly cells = new Map<number, HTMLElement[]>();
   private readonly failures = new Map<string, Show[]>();
   private readonly inputs: (HTMLButtonElement | HTMLInputElement | HTMLSelectElement)[] = [];
   private readonly lines: Sparkline[] = [];
@@ -49,6 +50,11 @@ export class PanelView {
     this.seat_button = button("Take seat", () => desk.take(panel.name, this.seat !== "mine"));
     const grid = make("div", { class: "panel-grid" }, ...panel.elements.map((element) => this.place(element)));
     grid.style.gridTemplateColumns = `repeat(${panel.columns}, minmax(0, 1fr))`;
+    if (panel.picture !== null) {
+      grid.classList.add("pictured");
+      grid.style.gridTemplateRows = `repeat(${panel.rows}, minmax(44px, auto))`;
+      grid.style.backgroundImage = `url(${JSON.stringify(panel.picture)})`;
+    }
     const head = make("div", { class: "panel-head" }, make("h3", {}, panel.name), this.seat_text, this.seat_button);
     this.root = make("section", { class: "panel", "aria-label": `Panel ${panel.name}` }, head, grid);
     this.sit("free");
@@ -66,6 +72,11 @@ export class PanelView {
   /** The failures that are at work now, as `component.mode`. */
   show_failed(failed: ReadonlySet<string>): void {
     for (const [name, shows] of this.failures) for (const one of shows) one(failed.has(name) ? 1 : 0);
+  }
+
+  /** Marks what is forced: a press or a turn of it changes nothing. */
+  show_forced(forced: ReadonlySet<number>): void {
+    for (const [signal, cells] of this.cells) for (const cell of cells) cell.classList.toggle("forced", forced.has(signal));
   }
 
   /** Shows the alarms that there are now. */
@@ -95,6 +106,10 @@ export class PanelView {
     cell.style.gridRow = `${element.at[1] + 1} / span ${element.span[1]}`;
     if (element.colour !== null) cell.style.setProperty("--own", element.colour);
     this.fill(cell, element);
+    for (const name of [element.signal, element.signal_y]) {
+      const signal = this.session.signals.findIndex((one) => one.name === name);
+      if (signal >= 0) this.cells.set(signal, [...(this.cells.get(signal) ?? []), cell]);
+    }
     return cell;
   }
 

@@ -121,6 +121,8 @@ export interface Panel {
   readonly seat: string;
   readonly columns: number;
   readonly rows: number;
+  /** Where the picture is that lies behind it. */
+  readonly picture: string | null;
   readonly elements: readonly PanelElement[];
 }
 
@@ -442,6 +444,7 @@ function panel(field: Field): Panel {
     seat: field.at("seat").text(),
     columns: field.at("columns").number(),
     rows: field.at("rows").number(),
+    picture: nullableText(field.at("picture")),
     elements: field.at("elements").list(element),
   };
 }
@@ -531,6 +534,8 @@ export type Message =
       readonly seats: ReadonlyMap<string, Seat>;
       /** Failures at work, as `component.mode`. */
       readonly failed: ReadonlySet<string>;
+      /** Numbers of the signals that are forced. */
+      readonly forced: ReadonlySet<number>;
       /** The time in the past that is shown; nothing at the live edge. */
       readonly shown_ns: number | null;
       readonly past_ns: readonly [number, number] | null;
@@ -586,6 +591,7 @@ export function decodeMessage(raw: string): Message {
         pace: root.at("pace").or("", (field) => field.shown()),
         seats: new Map(root.at("seat").or<[string, Seat][]>([], (all) => all.entries((key, item) => [key, seat(item)]))),
         failed: new Set(root.at("failed").or<string[]>([], (all) => all.list(text))),
+        forced: new Set(root.at("forced").or<number[]>([], (all) => all.list(number))),
         shown_ns: root.at("shown_ns").or<number | null>(null, number),
         past_ns: root.at("past_ns").or<readonly [number, number] | null>(null, (item) => item.numbers(2) as [number, number]),
       };

@@ -7,25 +7,34 @@ import type { Session } from "./protocol";
 /** Rows shown at once; a filter finds the others. */
 const ROWS = 60;
 
+export interface SignalDeeds {
+  /** Puts a signal on a trend, or takes it away. */
+  readonly trend: (signal: number) => void;
+  /** Other signals are in the table now. */
+  readonly changed: () => void;
+  /** Holds a signal at a value, or releases it. */
+  readonly force: (signal: number, value: string | null) => void;
+}
+
 export class SignalTable {
   readonly root: HTMLElement;
   private readonly body = make("tbody");
   private readonly cells = new Map<number, HTMLElement>();
   private filter = "";
+  private forced: ReadonlySet<number> = new Set();
 
   constructor(
     private readonly session: Session,
     private readonly values: ReadonlyMap<number, number>,
-    private readonly trend: (signal: number) => void,
-    private readonly changed: () => void,
+    private readonly does: SignalDeeds,
   ) {
     const input = make("input", { type: "search", class: "filter", placeholder: "Filter signals", "aria-label": "Filter signals" });
     input.addEventListener("input", () => {
       this.filter = input.value.toLowerCase();
       this.fill();
-      this.changed();
+      this.does.changed();
     });
-    const head = make("thead", {}, make("tr", {}, ...["Signal", "Writer", "Value", "Trend"].map((one) => make("th", { scope: "col" }, one))));
+    const head = make("thead", {}, make("tr", {}, ...["Signal", "Writer", "Value", ""].map((one) => make("th", { scope: "col" }, one))));
     this.root = make("div", {}, input, make("table", {}, head, this.body));
     this.fill();
   }
@@ -38,7 +47,16 @@ export class SignalTable {
   show(signal: number): void {
     const cell = this.cells.get(signal);
     const about = this.session.signals[signal];
-    if (cell !== undefined && about !== undefined) cell.textContent = shown(about, this.values.get(signal));
+    if (cell === undefined || about === undefined) return;
+    const isForced = this.forced.has(signal);
+    cell.textContent = `${shown(about, this.values.get(signal))}${isForced ? " (forced)" : ""}`;
+    cell.classList.toggle("forced", isForced);
+  }
+
+  /** The signals that are forced now. */
+  show_forced(forced: ReadonlySet<number>): void {
+    this.forced = forced;
+    for (const signal of this.cells.keys()) this.show(signal);
   }
 
   private fill(): void {
@@ -55,8 +73,31 @@ export class SignalTable {
     const cell = make("td", { class: "value" });
     this.cells.set(signal, cell);
     const name = about?.name ?? "";
-    const key = button("＋", () => this.trend(signal), `Trend of ${name}`);
+    const key = button("＋", () => this.does.trend(signal), `Trend of ${name}`);
     key.setAttribute("aria-label", `Trend of ${name}`);
-    return make("tr", {}, make("td", { class: "name", title: about?.about ?? "" }, name), make("td", {}, about?.writer ?? ""), cell, make("td", {}, key));
+    const keys = make("td", { class: "deeds" }, key);
+    if (this.session.live && this.session.training?.role !== "trainee") {
+      const force = button("Force", () => this.force(signal, name), `Force ${name}, or release it`);
+      force.setAttribute("aria-label", `Force ${name}`);
+      keys.append(force);
+    }
+    return make("tr", {}, make("td", { class: "name", title: about?.about ?? "" }, name), make("td", {}, about?.writer ?? ""), cell, keys);
+  }
+
+  /** The value as it is typed. */
+  private typed(signal: number): string {
+    const value = this.values.get(signal);
+    if (value === undefined) return "";
+    return this.session.signals[signal]?.type === "BOOL" ? (value === 0 ? "FALSE" : "TRUE") : String(value);
+  }
+
+  /** Asks for a value first: the machine moves by it. */
+  private force(signal: number, name: string): void {
+    const isForced = this.forced.has(signal);
+    const question = isForced ? `${name} is forced. Another value, or nothing to release it:` : `Force ${name} to:`;
+    const value = window.prompt(question, isForced ? "" : this.typed(signal));
+    if (value === null) return;
+    if (value.trim() !== "") this.does.force(signal, value.trim());
+    else if (isForced) this.does.force(signal, null);
   }
 }

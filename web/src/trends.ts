@@ -4,10 +4,9 @@ import uPlot from "uplot";
 import { button, make } from "./dom";
 import { shown } from "./format";
 import { History } from "./history";
+import { curve, lane_options, style, upright } from "./lane";
 import type { Session, Signal } from "./protocol";
 
-/** Colours of the curves, told apart by those who do not see red and green (Okabe and Ito 2008). */
-const CURVES = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"] as const;
 const WINDOW_S = 20;
 const LANE_PX = 62;
 
@@ -114,27 +113,11 @@ export class TrendsView {
   }
 
   private options(about: Signal, lane: number): uPlot.Options {
-    const isState = about.type === "BOOL" || about.names.size > 0;
-    const stroke = CURVES[lane % CURVES.length] ?? CURVES[0];
-    const axis: uPlot.Axis = { stroke: () => style("--text-2"), grid: { stroke: () => style("--line"), width: 1 }, ticks: { show: false }, gap: 3, font: "11px system-ui" };
-    const stepped = uPlot.paths.stepped?.({ align: 1 });
-    return {
-      width: 300,
-      height: LANE_PX,
-      padding: [6, 10, 0, 0],
-      legend: { show: false },
-      cursor: { sync: { key: "trends" }, drag: { x: true, y: false, setScale: false }, y: false },
-      scales: { x: { time: false }, y: isState && about.type === "BOOL" ? { range: [-0.1, 1.1] } : {} },
-      axes: [
-        { ...axis, size: 22, space: 60 },
-        { ...axis, size: 48, space: 22, ...(about.type === "BOOL" ? { splits: [0, 1] } : {}) },
-      ],
-      series: [{}, { stroke, width: 1.5, points: { show: false }, ...(isState ? { fill: `${stroke}38` } : {}), ...(stepped ? { paths: stepped } : {}) }],
-      hooks: {
-        setSelect: [(plot) => this.select(plot)],
-        draw: [(plot) => this.draw_marks(plot)],
-      },
-    };
+    const isBool = about.type === "BOOL";
+    return lane_options({
+      isBool, holds: true, isFilled: isBool || about.names.size > 0, strokes: [curve(lane)], group: "trends", height_px: LANE_PX,
+      hooks: { setSelect: [(plot) => this.select(plot)], draw: [(plot) => this.draw_marks(plot)] },
+    });
   }
 
   private select(plot: uPlot): void {
@@ -158,21 +141,8 @@ export class TrendsView {
   }
 
   private draw_marks(plot: uPlot): void {
-    const { ctx, bbox } = plot;
-    const line = (t_s: number, stroke: string, dash: number[]): void => {
-      const x = plot.valToPos(t_s, "x", true);
-      if (x < bbox.left || x > bbox.left + bbox.width) return;
-      ctx.save();
-      ctx.strokeStyle = stroke;
-      ctx.setLineDash(dash);
-      ctx.beginPath();
-      ctx.moveTo(x, bbox.top);
-      ctx.lineTo(x, bbox.top + bbox.height);
-      ctx.stroke();
-      ctx.restore();
-    };
-    for (const mark of this.marks) line(mark.t_ns / 1e9, style("--warn"), [2, 3]);
-    for (const cursor of this.cursors_s) line(cursor, style("--text"), []);
+    for (const mark of this.marks) upright(plot, mark.t_ns / 1e9, style("--warn"), [2, 3]);
+    for (const cursor of this.cursors_s) upright(plot, cursor, style("--text"), []);
   }
 
   private fit(): void {
@@ -214,8 +184,4 @@ export class TrendsView {
     const to = history.at(two);
     return from === null || to === null ? shown(about, value) : `${shown(about, to)} (Δ ${Number((to - from).toPrecision(5))})`;
   }
-}
-
-function style(name: string): string {
-  return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 }

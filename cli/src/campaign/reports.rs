@@ -25,7 +25,7 @@ pub(super) fn page(tables: &[Table]) -> Page {
         totals: tables.iter().map(totals).collect::<Vec<_>>().join("; "),
         wall: format!("{:.1} s of virtual time", virtual_time(tables).as_secs_f64()),
         sections: tables.iter().flat_map(of_table).collect(),
-        coverage: Vec::new(),
+        ..Page::default()
     }
 }
 

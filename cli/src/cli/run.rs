@@ -133,6 +133,9 @@ pub struct RunArgs {
     /// time unless `--pace` says otherwise [default ADDRESS: a free port]
     #[arg(long, value_name = "ADDRESS:PORT", num_args = 0..=1, require_equals = true, default_missing_value = "127.0.0.1:0")]
     pub web: Option<SocketAddr>,
+    /// Begin when the first viewer of the page looks
+    #[arg(long, requires = "web")]
+    pub await_viewer: bool,
     /// How much memory the past may take that the page of `--web` shows, as in `256MiB`; `0` for none
     #[arg(long, default_value_t, requires = "web", value_name = "MEMORY")]
     pub past_memory: Budget,
@@ -314,6 +317,7 @@ fn config(args: RunArgs) -> Result<RunConfig, CommandError> {
             listen: args.listen,
             admission,
             web: args.web,
+            awaits_viewer: args.await_viewer,
             past: args.past_memory,
             opcua: args.opcua,
             access,

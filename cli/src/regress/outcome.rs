@@ -131,6 +131,8 @@ pub struct Outcome {
 pub struct Picture {
     /// The trajectory, as SVG.
     pub svg: Option<String>,
+    /// The same as data for a chart.
+    pub chart: Option<String>,
     /// The trajectory over the reviewed one where the two differ, as SVG.
     pub against: Option<String>,
     /// The trajectory itself.
@@ -222,7 +224,12 @@ fn outcome(suite: &str, ran: &Ran, folder: &str, status: Status) -> Outcome {
         error: ran.error.clone(),
         place: ran.place.as_ref().map(found),
         step_ns: ran.step_ns,
-        shown: Picture { svg: ran.picture.clone(), events: ran.events.clone(), ..Picture::default() },
+        shown: Picture {
+            svg: ran.picture.clone(),
+            chart: ran.chart.clone(),
+            events: ran.events.clone(),
+            ..Picture::default()
+        },
     }
 }
 

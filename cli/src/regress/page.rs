@@ -11,6 +11,7 @@ use super::summary::{details, totals};
 use crate::run::page::{Event, covered, statistics, timeline};
 use crate::snapshot::Snapshot;
 use crate::snapshot::value::show;
+use crate::web::charts;
 
 /// The page of a test run.
 pub fn of_tests(report: &Report, coverage: &Coverage) -> Page {
@@ -20,6 +21,7 @@ pub fn of_tests(report: &Report, coverage: &Coverage) -> Page {
         wall: format!("{:.1} s", report.wall_time.as_secs_f64()),
         sections: report.outcomes.iter().map(section).collect(),
         coverage: covered(coverage),
+        charts: charts(),
     }
 }
 
@@ -53,8 +55,12 @@ fn section(outcome: &Outcome) -> Section {
 
 /// The new trajectory over the reviewed one where the two differ, and the whole of it.
 fn pictures(outcome: &Outcome) -> Vec<Picture> {
-    let against = outcome.shown.against.iter().map(|svg| Picture { title: "reviewed and new", svg: svg.clone() });
-    let whole = outcome.shown.svg.iter().map(|svg| Picture { title: "trajectories", svg: svg.clone() });
+    let against = outcome.shown.against.iter().map(|svg| Picture::still("reviewed and new", svg.clone()));
+    let whole = outcome
+        .shown
+        .svg
+        .iter()
+        .map(|svg| Picture { chart: outcome.shown.chart.clone(), ..Picture::still("trajectories", svg.clone()) });
     against.chain(whole).collect()
 }
 

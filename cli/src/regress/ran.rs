@@ -64,6 +64,8 @@ pub struct Ran {
     pub snapshot: Option<String>,
     /// Its trajectory, as SVG.
     pub picture: Option<String>,
+    /// The same as data for a chart.
+    pub chart: Option<String>,
 }
 
 /// What came of an expectation.
@@ -176,6 +178,7 @@ impl Ran {
             events: Vec::new(),
             snapshot: None,
             picture: None,
+            chart: None,
         }
     }
 

@@ -51,6 +51,7 @@ fn case(config: &WorkerConfig, folder: &Path) -> Result<Worked, TestError> {
     let mut ran = Ran::of(config.case.as_deref().unwrap_or(DEFAULT), &report, scenario.file().step.as_nanos());
     ran.snapshot = snapshot.borrow().as_ref().map(crate::snapshot::Snapshot::to_text);
     ran.picture = config.draw.then(|| plot.to_svg());
+    ran.chart = config.draw.then(|| plot.to_chart());
     ran.events = scenario.case_events().into_iter().map(|(at_ns, text)| Event { at_ns, text }).collect();
     let coverage =
         scenario.coverage().map(|sink| Covered::all(&sink.lock().unwrap_or_else(std::sync::PoisonError::into_inner)));

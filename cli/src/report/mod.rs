@@ -21,6 +21,7 @@ pub use error::ReportError;
 use crate::error::Usage;
 use crate::format::Format;
 use crate::run::production::{pictures, tables};
+use crate::web::charts;
 
 /// What is reported, and for whom.
 #[derive(Clone, Debug)]
@@ -166,6 +167,7 @@ fn page(all: &[Recorded]) -> Page {
         title: all.first().map_or_else(String::new, |first| first.scenario.clone()),
         totals: format!("{} recording{}", all.len(), if all.len() == 1 { "" } else { "s" }),
         sections: all.iter().map(Recorded::section).collect(),
+        charts: charts(),
         ..Page::default()
     }
 }

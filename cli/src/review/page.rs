@@ -4,12 +4,13 @@ use onescan_report::page::{Mood, Page, Picture, Section};
 
 use super::Waiting;
 use crate::snapshot::overlay::overlay;
+use crate::web::charts;
 
 /// The page.
 pub fn of(waiting: &[Waiting]) -> String {
     let sections = waiting.iter().map(section).collect();
     let (title, totals) = ("onescan review".to_owned(), format!("{} waiting", waiting.len()));
-    Page { title, totals, sections, ..Page::default() }.to_html()
+    Page { title, totals, sections, charts: charts(), ..Page::default() }.to_html()
 }
 
 fn section(waiting: &Waiting) -> Section {
@@ -23,7 +24,7 @@ fn section(waiting: &Waiting) -> Section {
         steps: Some(new.end.as_nanos() / new.step.as_nanos().max(1)),
         virtual_time: new.end.to_string(),
         lines: differences.iter().map(ToString::to_string).collect(),
-        pictures: vec![Picture { title, svg: plot.to_svg() }],
+        pictures: vec![Picture::of_plot(title, &plot)],
         ..Section::default()
     }
 }

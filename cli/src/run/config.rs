@@ -94,6 +94,8 @@ pub struct Doors {
     pub admission: Admission,
     /// Where the session is served as a page.
     pub web: Option<SocketAddr>,
+    /// Whether the session begins only when somebody looks at the page.
+    pub awaits_viewer: bool,
     /// How much memory the past takes that the page shows.
     pub past: Budget,
     /// Where the session is served over OPC UA.

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 use std::net::{Ipv4Addr, SocketAddr};
+use std::path::Path;
 
 use onescan_base::foreign::one_line;
 use onescan_base::regular::{self, Limit};
@@ -76,8 +77,10 @@ pub(super) fn run(
         lockstep.set_published(desk.published());
         lockstep.observe(desk.observer());
     }
+    // Before the page is there: whoever is told where it is may remove the file.
+    let checkpoint = config.course.resume.as_deref().map(|path| Ok::<_, RunError>((path, read(path)?))).transpose()?;
     let mut keeper = None;
-    let _page = match config.doors.web {
+    let page = match config.doors.web {
         Some(address) => {
             let past = past_of(config, scenario, &mut lockstep, &mut keeper)?;
             Some(serve_page(address, config, scenario, &mut lockstep, interrupt, (past, bench.clone()))?)
@@ -91,8 +94,13 @@ pub(super) fn run(
     if let Some(path) = &config.course.replay_operator {
         lockstep.replay(operator_inputs(path)?);
     }
-    if let Some(path) = &config.course.resume {
-        resume(&mut lockstep, path, config.course.accept_code.then_some(scenario))?;
+    if let Some(checkpoint) = checkpoint {
+        // Viewers see at once where the session goes on.
+        lockstep.published().ask();
+        resume(&mut lockstep, checkpoint, config.course.accept_code.then_some(scenario))?;
+    }
+    if let (Some(page), true) = (&page, config.doors.awaits_viewer) {
+        page.await_viewer(|| interrupt.is_raised());
     }
     let saved = match &config.course.save {
         Some(request) => save(&mut lockstep, request, &mut keeper),
@@ -319,8 +327,16 @@ pub(crate) fn operator_inputs(path: &std::path::Path) -> Result<Vec<OperatorInpu
 }
 
 /// Goes on from a checkpoint; from one of other PLC code if the scenario `accepts` that.
-fn resume(lockstep: &mut Lockstep, path: &std::path::Path, accepts: Option<&Scenario>) -> Result<(), RunError> {
-    let bytes = regular::read(path, Limit::DATA).map_err(Unreadable::at(path))?;
+/// The bytes of a checkpoint's file.
+fn read(path: &Path) -> Result<Vec<u8>, RunError> {
+    Ok(regular::read(path, Limit::DATA).map_err(Unreadable::at(path))?)
+}
+
+fn resume(
+    lockstep: &mut Lockstep,
+    (path, bytes): (&Path, Vec<u8>),
+    accepts: Option<&Scenario>,
+) -> Result<(), RunError> {
     let wrong = |source| RunError::Resume { path: path.to_owned(), source };
     let checkpoint = Checkpoint::from_bytes(&bytes).map_err(wrong)?;
     if let Some(scenario) = accepts {

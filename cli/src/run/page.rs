@@ -13,6 +13,7 @@ use super::coverage::share;
 use super::expectation::{ExpectationReport, SignalValue};
 use super::production::{pictures, tables};
 use super::report::{RunReport, RunStatus};
+use crate::web::charts;
 
 /// Something that happened to a run from outside.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -31,9 +32,9 @@ pub(super) fn of_runs(
     coverage: &Coverage,
 ) -> Page {
     // All runs are in one picture, which stands with the first.
-    let scenes = scenes.into_iter().map(|svg| Picture { title: "the machine", svg });
+    let scenes = scenes.into_iter().map(|svg| Picture::still("the machine", svg));
     let mut shared: Vec<Picture> = scenes.collect();
-    shared.push(Picture { title: "trajectories", svg: plot.to_svg() });
+    shared.push(Picture::of_plot("trajectories", plot));
     let wall: f64 = reports.iter().map(|report| report.wall_time_s).sum();
     let sections = reports
         .iter()
@@ -45,6 +46,7 @@ pub(super) fn of_runs(
         wall: format!("{wall:.1} s"),
         sections: sections.collect(),
         coverage: covered(coverage),
+        charts: charts(),
     }
 }
 

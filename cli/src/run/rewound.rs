@@ -72,6 +72,8 @@ impl Onward {
     pub(crate) fn at(mut words: Vec<OsString>, web: Option<SocketAddr>, admission: &Admission) -> Self {
         let web = web.map_or(IpAddr::V4(Ipv4Addr::LOCALHOST), |address| address.ip());
         words.push(format!("--web={}", SocketAddr::new(web, 0)).into());
+        // It may be short, and its viewer has yet to come.
+        words.push("--await-viewer".into());
         if let Admission::Holders(folder) = admission {
             words.extend(["--access".into(), folder.clone().into()]);
         }

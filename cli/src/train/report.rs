@@ -125,7 +125,7 @@ pub(super) fn page(record: &SessionRecord, lesson: &Lesson) -> Page {
         totals: format!("{}, {}", record.trainee, verdict(record.passed)),
         wall: lesson.about.clone().unwrap_or_default(),
         sections: record.attempts.iter().map(|attempt| section(attempt, expert)).collect(),
-        coverage: Vec::new(),
+        ..Page::default()
     }
 }
 

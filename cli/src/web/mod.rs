@@ -45,12 +45,12 @@ mod viewer;
 use std::net::{SocketAddr, TcpListener};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::Sender;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
 use axum::body::{Body, Bytes};
-use axum::extract::{DefaultBodyLimit, Request, State, WebSocketUpgrade};
+use axum::extract::{DefaultBodyLimit, Path, Request, State, WebSocketUpgrade};
 use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, header};
 use axum::middleware::{self, Next};
 use axum::response::{Html, IntoResponse, Response};
@@ -71,6 +71,7 @@ use crate::access::AccessError;
 use crate::access::admission::{Admission, Doorstep};
 use crate::error::{Exit, ExitCode, ListenError, Usage};
 use crate::past::Rewinder;
+pub(crate) use bundle::charts;
 pub(crate) use desk::{Desk, Failing, Role, Training, Turn};
 use entry::{Barred, Entry, Rank};
 use looks::Called;
@@ -88,6 +89,8 @@ const MESSAGE_MAX: usize = 64 * 1024;
 const PICTURE_MAX: usize = 256 * 1024 * 1024;
 /// The longest form, bytes.
 const FORM_MAX: usize = 4 * 1024;
+/// How often whoever waits for a viewer looks whether that is over.
+const GLANCE: Duration = Duration::from_millis(100);
 /// How long viewers have to take the end.
 const FAREWELL: Duration = Duration::from_millis(500);
 
@@ -170,6 +173,8 @@ struct Session {
     over: AtomicBool,
     /// A viewer of a recording has seen enough.
     left: AtomicBool,
+    /// Whether there has been a viewer, and who waits for that.
+    attended: (Mutex<bool>, Condvar),
     /// What all viewers are told, in its order.
     news: Mutex<Vec<News>>,
 }
@@ -195,6 +200,12 @@ impl Session {
     /// The newest moment that there is.
     fn edge(&self) -> VirtualTime {
         self.recorded_to.unwrap_or_else(|| self.published.latest().t_v)
+    }
+
+    /// Somebody looks.
+    fn attend(&self) {
+        *self.attended.0.lock().unwrap_or_else(PoisonError::into_inner) = true;
+        self.attended.1.notify_all();
     }
 
     fn ended(&self) -> bool {
@@ -323,6 +334,7 @@ impl Page {
             recorded_to: source.recorded_to,
             over: AtomicBool::new(false),
             left: AtomicBool::new(false),
+            attended: (Mutex::new(false), Condvar::new()),
             news: Mutex::default(),
         });
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(&listen)?;
@@ -360,6 +372,16 @@ impl Page {
         self.session.news.lock().unwrap_or_else(PoisonError::into_inner).push(news);
     }
 
+    /// Waits until the first viewer looks, or until `is_over`, which is asked now and then.
+    pub(crate) fn await_viewer(&self, is_over: impl Fn() -> bool) {
+        let (attended, told) = &self.session.attended;
+        let mut is_attended = attended.lock().unwrap_or_else(PoisonError::into_inner);
+        while !*is_attended && !is_over() {
+            let waited = told.wait_timeout(is_attended, GLANCE);
+            is_attended = waited.unwrap_or_else(PoisonError::into_inner).0;
+        }
+    }
+
     /// Whether a viewer of a recording has seen enough.
     pub(crate) fn is_left(&self) -> bool {
         self.session.left.load(Ordering::Acquire)
@@ -389,6 +411,7 @@ fn router(session: Arc<Session>) -> Router {
     Router::new()
         .route("/api/session", get(structure_of))
         .route("/api/live", get(live))
+        .route("/api/panel/{picture}", get(behind_panel))
         .route("/api/picture", post(picture).layer(DefaultBodyLimit::max(PICTURE_MAX)))
         .route("/api/login", post(log_in))
         .fallback(get(|request: Request| async move { asset(request.uri().path()) }))
@@ -462,6 +485,14 @@ async fn log_in(State(session): State<Arc<Session>>, body: Body) -> Response {
             (StatusCode::SEE_OTHER, [to, (header::SET_COOKIE, cookie)]).into_response()
         }
         Err(barred) => (StatusCode::UNAUTHORIZED, Html(entry::form(Some(&barred.to_string())))).into_response(),
+    }
+}
+
+/// The picture behind a panel.
+async fn behind_panel(State(session): State<Arc<Session>>, Path(number): Path<String>) -> Response {
+    match number.parse().ok().and_then(|number: usize| session.known.pictures.get(number)) {
+        Some(picture) => ([(header::CONTENT_TYPE, picture.media)], picture.bytes.clone()).into_response(),
+        None => (StatusCode::NOT_FOUND, "no panel has a picture of this number\n").into_response(),
     }
 }
 

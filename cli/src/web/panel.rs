@@ -2,9 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use onescan_scenario::Scenario;
 use onescan_scenario::file::ClientFile;
 use onescan_scenario::panel_file::{ElementFile, ElementKind, PanelFile, Seat};
+use onescan_scenario::panel_picture::PanelPicture;
+use onescan_scenario::{Scenario, ScenarioError};
 use onescan_server::signal::{ClientName, SignalDecl, SignalName, SignalType};
 use serde::Serialize;
 
@@ -16,6 +17,9 @@ pub(super) struct Panel {
     pub(super) seat: Seat,
     columns: u32,
     rows: u32,
+    /// Where a browser finds the picture behind it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) picture: Option<String>,
     elements: Vec<Element>,
 }
 
@@ -64,14 +68,25 @@ impl Panel {
     }
 }
 
-/// The panels of a scenario's page.
-pub(super) fn of(scenario: &Scenario) -> Vec<Panel> {
+/// The panels of a scenario's page, and the pictures behind them.
+///
+/// # Errors
+/// A picture that cannot be read; it was read before, so it has just changed.
+pub(super) fn of(scenario: &Scenario) -> Result<(Vec<Panel>, Vec<PanelPicture>), ScenarioError> {
     let laid_out = &scenario.file().panel;
     if laid_out.is_empty() {
-        pulpit(scenario).into_iter().collect()
-    } else {
-        laid_out.iter().map(|file| panel(file, scenario)).collect()
+        return Ok((pulpit(scenario).into_iter().collect(), Vec::new()));
     }
+    let (mut panels, mut pictures) = (Vec::new(), Vec::new());
+    for file in laid_out {
+        let mut panel = panel(file, scenario);
+        if let Some(picture) = scenario.picture_behind(file)? {
+            panel.picture = Some(format!("api/panel/{}", pictures.len()));
+            pictures.push(picture);
+        }
+        panels.push(panel);
+    }
+    Ok((panels, pictures))
 }
 
 fn panel(file: &PanelFile, scenario: &Scenario) -> Panel {
@@ -81,6 +96,7 @@ fn panel(file: &PanelFile, scenario: &Scenario) -> Panel {
         seat: file.seat,
         columns: file.columns,
         rows: elements.iter().map(|element| element.at[1] + element.span[1]).max().unwrap_or(1),
+        picture: None,
         elements: elements.into_iter().map(|element| laid_out(element, scenario)).collect(),
     }
 }
@@ -140,6 +156,7 @@ fn pulpit(scenario: &Scenario) -> Option<Panel> {
         seat: Seat::Operator,
         columns: COLUMNS,
         rows,
+        picture: None,
         elements,
     })
 }

@@ -7,6 +7,7 @@ use onescan_clients::plant::component::kind::{self, unit};
 use onescan_clients::plant::scene::model::{BodyKind, Component, Wire};
 use onescan_clients::plant::{Form, Frame, Geometry, Scene};
 use onescan_scenario::file::{ClientFile, SignalFile};
+use onescan_scenario::panel_picture::PanelPicture;
 use onescan_scenario::{Scenario, ScenarioError};
 use onescan_server::signal::{ClientName, SignalDecl};
 use serde::Serialize;
@@ -84,6 +85,8 @@ pub(super) struct Known {
     pub(super) looks: Judge,
     /// The panels, each with the signals that it writes.
     pub(super) panels: BTreeMap<String, BTreeSet<String>>,
+    /// What lies behind them.
+    pub(super) pictures: Vec<PanelPicture>,
     /// The PLCs, as they are looked into.
     pub(super) online: Online,
     /// The panels of trainers.
@@ -207,7 +210,8 @@ pub(super) fn of(scenario: &Scenario, training: Option<&Training>) -> Result<(St
     known.states = states;
     let looks = looks::of(scenario, &mut bodies, &components)?;
     (known.looks, known.bell) = (Judge::of(scenario), Bell::of(scenario));
-    let mut panels = panel::of(scenario);
+    let (mut panels, pictures) = panel::of(scenario)?;
+    known.pictures = pictures;
     known.panels = panels.iter().map(|panel| (panel.name.clone(), panel.written())).collect();
     known.trainers = panels.iter().filter(|panel| panel.is_trainers()).map(|panel| panel.name.clone()).collect();
     let (plcs, looked_into) = Online::of(scenario)?;

@@ -49,6 +49,8 @@ enum Told {
         seat: SeatView,
         #[serde(skip_serializing_if = "BTreeSet::is_empty")]
         failed: BTreeSet<String>,
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        forced: Vec<usize>,
         shown_ns: Option<u64>,
         past_ns: Option<[u64; 2]>,
     },
@@ -87,6 +89,7 @@ enum Told {
 
 /// Speaks with a viewer until one of the two leaves.
 pub(super) async fn attend(mut socket: WebSocket, session: Arc<Session>, rank: Rank) {
+    session.attend();
     let viewer = session.seats.enter();
     // what ends it is that the viewer is gone
     let _ = converse(&mut socket, &session, (viewer, rank)).await;
@@ -264,9 +267,10 @@ fn told(view: &SessionView, session: &Session, viewer: Viewer, eye: &Eye) -> Str
     let digest = view.end.as_ref().and(view.digest).map(|digest| digest.to_string());
     let is_secret = ask::trainer_only(session.training.as_ref()).is_err();
     let failed = if is_secret { BTreeSet::new() } else { session.failing.now() };
+    let forced = if is_secret { Vec::new() } else { view.forced.iter().map(|signal| signal.index()).collect() };
     let (pace, seat) = (session.pace.clone(), session.seats.seen_by(viewer));
     let (shown_ns, past_ns) = (eye.gaze.shown_ns(), eye.past_ns);
-    let told = Told::Status { state, digest, pace, seat, failed, shown_ns, past_ns };
+    let told = Told::Status { state, digest, pace, seat, failed, forced, shown_ns, past_ns };
     serde_json::to_string(&told).unwrap_or_else(|error| error.to_string())
 }
 

@@ -33,12 +33,25 @@ pub struct Page {
     pub sections: Vec<Section>,
     /// Files of the PLC's code; none where nothing was noted.
     pub coverage: Vec<CoveredFile>,
+    /// What draws charts in place of pictures that have the data for it; without it, the pictures stay.
+    pub charts: Option<ChartScript>,
+}
+
+/// Script and style of charts: a part of the page, as all else.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ChartScript {
+    /// The script, a module.
+    pub script: &'static str,
+    /// Its style.
+    pub style: &'static str,
 }
 
 impl Page {
     /// The page as HTML.
     pub fn to_html(&self) -> String {
-        let Self { title, totals, wall, sections, coverage } = self;
+        let Self { title, totals, wall, sections, coverage, charts } = self;
+        let has_data = sections.iter().flat_map(|section| &section.pictures).any(|picture| picture.chart.is_some());
+        let charts = charts.filter(|_| has_data);
         let made = format!("onescan {} {wall}", env!("CARGO_PKG_VERSION"));
         let page = html! {
             (DOCTYPE) (LINE)
@@ -49,6 +62,7 @@ impl Page {
                     meta name="color-scheme" content="light dark"; (LINE)
                     title { (title) } (LINE)
                     style { (LINE) (PreEscaped(STYLE)) } (LINE)
+                    @if let Some(charts) = charts { style { (PreEscaped(charts.style)) } (LINE) }
                 } (LINE)
                 body { (LINE)
                     header { h1 { (title) } (LINE)
@@ -60,6 +74,7 @@ impl Page {
                         @for (index, section) in sections.iter().enumerate() { (section.markup(index)) (LINE) }
                         @if !coverage.is_empty() { (coverage::markup(coverage)) (LINE) }
                     } (LINE)
+                    @if let Some(charts) = charts { script type="module" { (PreEscaped(charts.script)) } (LINE) }
                 } (LINE)
             } (LINE)
         };
@@ -99,5 +114,19 @@ mod tests {
     fn text_stays_text() {
         let page = Page { title: "a < b && \"c\"\u{1b}".to_owned(), ..Page::default() };
         assert!(page.to_html().contains("<h1>a &lt; b &amp;&amp; &quot;c&quot;\u{fffd}</h1>"));
+    }
+
+    #[test]
+    fn data_of_a_chart_cannot_end_its_script() {
+        let chart = Some("{\"signal\":\"</script><b>\"}".to_owned());
+        let picture = Picture { chart, ..Picture::still("trajectories", "<svg></svg>".to_owned()) };
+        let section = Section { pictures: vec![picture], ..Section::default() };
+        let charts = Some(ChartScript { script: "draw()", style: "a{}" });
+        let page = Page { sections: vec![section], charts, ..Page::default() };
+        let text = page.to_html();
+        assert!(text.contains("{\"signal\":\"\\u003c/script>\\u003cb>\"}</script>"), "{text}");
+        assert!(text.contains("<script type=\"module\">draw()</script>") && text.contains("<svg></svg>"));
+        let without = Page { sections: Vec::new(), ..page };
+        assert!(!without.to_html().contains("draw()"), "no data, no script");
     }
 }

@@ -4,6 +4,7 @@ use maud::{Markup, PreEscaped, html};
 
 use super::LINE;
 use crate::number::short;
+use crate::plot::Plot;
 use crate::table::Table;
 use crate::verdict::Verdict;
 
@@ -44,6 +45,31 @@ pub struct Picture {
     pub title: &'static str,
     /// An SVG document of this program.
     pub svg: String,
+    /// The same as data, for a chart in its place where the page has a script for it.
+    pub chart: Option<String>,
+}
+
+impl Picture {
+    /// A picture that stays as it is.
+    pub fn still(title: &'static str, svg: String) -> Self {
+        Self { title, svg, chart: None }
+    }
+
+    /// A plot, which becomes a chart where the page has a script for it.
+    pub fn of_plot(title: &'static str, plot: &Plot) -> Self {
+        Self { title, svg: plot.to_svg(), chart: Some(plot.to_chart()) }
+    }
+
+    fn markup(&self) -> Markup {
+        // `<` begins the end of a script, and means the same in a text of JSON when it is written so.
+        let chart = self.chart.as_ref().map(|data| data.replace('<', "\\u003c"));
+        html! {
+            figure {
+                figcaption { h3 { (self.title) } } (PreEscaped(&self.svg))
+                @if let Some(data) = chart { (LINE) script type="application/json" { (PreEscaped(data)) } }
+            } (LINE)
+        }
+    }
 }
 
 /// How a status is taken.
@@ -118,9 +144,7 @@ impl Section {
                 // The picture is a document of this program, whose own text is escaped.
                 @if !self.pictures.is_empty() {
                     div class="pictures" { (LINE)
-                        @for picture in &self.pictures {
-                            figure { figcaption { h3 { (picture.title) } } (PreEscaped(&picture.svg)) } (LINE)
-                        }
+                        @for picture in &self.pictures { (picture.markup()) }
                     } (LINE)
                 }
                 @if !self.events.is_empty() { (events(&self.events)) (LINE) }

@@ -24,6 +24,7 @@
 //! | `plane` | two signals against each other |
 //! | `bars` | parts of a whole |
 //! | `histogram` | how many times of which length |
+//! | `chart` | the same as data, for charts in a browser |
 //! | `value_map` | a table of values over two axes, as colours |
 //!
 //! Invariants. No input makes it panic, nothing is read from the machine (no clock, no fonts, no
@@ -53,6 +54,7 @@
 mod agreement;
 mod bars;
 mod caption;
+mod chart;
 mod figure;
 mod histogram;
 mod layout;

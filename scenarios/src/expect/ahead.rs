@@ -11,6 +11,11 @@ use super::truth::{Scale, Worth};
 pub(super) trait Foresight: Joined {
     /// `lead` is what lies between the sample and its window, `passed` when the window has.
     fn say(lead: Self, seen: Self, open: bool, here: Certain, passed: Certain) -> (Worth, Certain);
+
+    /// The last sample of a run that ends before the window begins: its value may be the one that holds there.
+    fn at_the_end(self) -> Self {
+        self
+    }
 }
 
 impl Foresight for All {
@@ -32,6 +37,11 @@ impl Foresight for Pursuit {
         let reached = lead.held.and(seen.reached);
         let hope = if open { lead.held.and(seen.held).and(Worth::UNKNOWN) } else { Worth::BOTTOM };
         (reached.or(hope), lead.then(seen).broken.unwrap_or(passed))
+    }
+
+    /// Before the window only the left one counts, in it the right one does, too.
+    fn at_the_end(self) -> Self {
+        Self { held: self.held.or(self.reached), ..self }
     }
 }
 
@@ -118,11 +128,12 @@ impl<J: Foresight> Ahead<J> {
         while self.seen.at(1).is_some_and(|second| second.t_ns <= from_ns) {
             self.step();
         }
-        // Its window begins behind the end of the run.
-        if over && self.newest.is_none_or(|newest| newest.t_ns < from_ns) {
-            while self.seen.at(0).is_some() {
-                self.step();
-            }
+        // Its window begins behind the end of the run: only the last sample is left.
+        if over
+            && self.newest.is_none_or(|newest| newest.t_ns < from_ns)
+            && let Some((last, member)) = self.seen.pop()
+        {
+            self.lead.push(last, member.at_the_end());
         }
         while self.lead.at(0).is_some_and(|first| first.number < sample.number) {
             self.lead.pop();

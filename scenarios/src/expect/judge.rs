@@ -239,6 +239,22 @@ mod tests {
         }
     }
 
+    /// A value holds until the next sample, so the last one of a run may reach into a window that begins later.
+    #[test]
+    fn a_run_that_ends_before_a_window_begins_decides_nothing_by_its_last_value() {
+        let truth = |text: &str, samples: &[(u64, f64)]| {
+            let mut judge = Judge::new([expectation(text)], 3);
+            samples.iter().for_each(|(t_ns, a)| judge.push(*t_ns, [*a, 0.0, 0.0]));
+            judge.settled().remove(0)
+        };
+        let text = "not ((a < 0) until[1ns,1ns] (a > 0))";
+        assert_eq!(truth(text, &[(0, 0.5)]), None);
+        assert_eq!(truth(text, &[(0, 0.5), (1, 0.5)]), Some(true));
+        assert_eq!(truth(text, &[(0, 0.5), (3, 0.5)]), Some(false));
+        // Neither holds: no sample that comes can mend it.
+        assert_eq!(truth(text, &[(0, 0.0)]), Some(true));
+    }
+
     /// What is kept does not grow with the run, where operators without an end stand outermost.
     #[test]
     fn what_is_kept_depends_on_windows_only() {

@@ -62,6 +62,11 @@ impl Interference {
         self.forces.contains_key(&signal)
     }
 
+    /// The signals that are forced.
+    pub(crate) fn forced(&self) -> impl Iterator<Item = SignalId> + '_ {
+        self.forces.keys().copied()
+    }
+
     /// Ends a force; false if there was none.
     pub(crate) fn release(&mut self, signal: SignalId) -> bool {
         self.forces.remove(&signal).is_some()

@@ -102,6 +102,8 @@ impl Lockstep {
         view.end = end.cloned();
         view.image.clear();
         view.image.extend_from_slice(self.session.image());
+        view.forced.clear();
+        view.forced.extend(self.session.forced());
         view.clients.clear();
         for berth in &self.berths {
             berth.carrier.show(&mut view.clients);

@@ -9,6 +9,11 @@ use crate::operation::{Control, Operation, OperationError, SignalFault};
 use crate::signal::{SignalId, SignalName};
 
 impl Session {
+    /// The signals that are forced.
+    pub fn forced(&self) -> impl Iterator<Item = SignalId> + '_ {
+        self.image.interference().forced()
+    }
+
     /// Asks for a stop, pause, single step or reset at the next step boundary.
     pub fn control(&mut self, control: Control) {
         match control {

@@ -10,10 +10,10 @@ const HOUR_NS: f64 = 3.6e12;
 
 /// What there is to draw of a report.
 pub(crate) fn of(report: &Report) -> Vec<Picture> {
-    let throughput = throughput(report).map(|plot| Picture { title: "throughput", svg: plot.to_svg() });
+    let throughput = throughput(report).map(|plot| Picture::of_plot("throughput", &plot));
     let histograms = report.cycles.iter().filter_map(histogram);
-    let histograms = histograms.map(|histogram| Picture { title: "cycle times", svg: histogram.to_svg() });
-    let down = report.down_time.as_ref().map(|down| Picture { title: "down time", svg: bars(down).to_svg() });
+    let histograms = histograms.map(|histogram| Picture::still("cycle times", histogram.to_svg()));
+    let down = report.down_time.as_ref().map(|down| Picture::still("down time", bars(down).to_svg()));
     throughput.into_iter().chain(histograms).chain(down).collect()
 }
 

@@ -60,11 +60,19 @@ fn until<S: Scale>(window: Window, left: &[S], right: &[S], trace: &Trace) -> Ve
     for index in (0..trace.len()).rev() {
         whole[index] = right[index].or(left[index].and(whole[index + 1]));
     }
-    let lead: Vec<Span> =
-        spans.iter().enumerate().map(|(index, span)| Span { first: index, end: span.first, open: false }).collect();
+    let last = trace.len().saturating_sub(1);
+    let lead: Vec<Span> = spans
+        .iter()
+        .enumerate()
+        .map(|(index, span)| Span { first: index, end: span.first.min(last), open: false })
+        .collect();
     let held = joined(left, &lead, S::and, S::TOP);
     let reached = any(right, &spans);
-    let at = |(index, span): (usize, &Span)| held[index].and(whole[span.first]).and(reached[index]);
+    let at = |(index, span): (usize, &Span)| {
+        // Where the run ends before the window begins, its last value may be the one that holds there.
+        let held = if span.first > last { held[index].and(left[last].or(right[last])) } else { held[index] };
+        held.and(whole[span.first]).and(reached[index])
+    };
     spans.iter().enumerate().map(at).collect()
 }
 

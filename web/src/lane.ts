@@ -1,0 +1,69 @@
+// A lane of trends: curves of one quantity over virtual time.
+
+import uPlot from "uplot";
+
+/** Colours of the curves, told apart by those who do not see red and green (Okabe and Ito 2008). */
+const CURVES = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"] as const;
+
+/** The colour of a curve. */
+export function curve(number: number): string {
+  return CURVES[number % CURVES.length] ?? CURVES[0];
+}
+
+/** A property of the page's style. */
+export function style(name: string): string {
+  return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+}
+
+export interface Lane {
+  readonly isBool: boolean;
+  /** A value holds until the next one. */
+  readonly holds: boolean;
+  readonly isFilled: boolean;
+  /** A colour a curve. */
+  readonly strokes: readonly string[];
+  /** Lanes of a group have one cursor. */
+  readonly group: string;
+  readonly hooks: uPlot.Hooks.Arrays;
+  readonly height_px: number;
+  /** How values are written at the axis; numbers if absent. */
+  readonly values?: (value: number) => string;
+}
+
+export function lane_options(lane: Lane): uPlot.Options {
+  const axis: uPlot.Axis = { stroke: () => style("--text-2"), grid: { stroke: () => style("--line"), width: 1 }, ticks: { show: false }, gap: 3, font: "11px system-ui" };
+  const stepped = uPlot.paths.stepped?.({ align: 1 });
+  const write = lane.values;
+  const series = lane.strokes.map<uPlot.Series>((stroke) => ({
+    stroke, width: 1.5, points: { show: false }, ...(lane.isFilled ? { fill: `${stroke}38` } : {}), ...(lane.holds && stepped ? { paths: stepped } : {}),
+  }));
+  return {
+    width: 300,
+    height: lane.height_px,
+    padding: [6, 10, 0, 0],
+    legend: { show: false },
+    cursor: { sync: { key: lane.group }, drag: { x: true, y: false, setScale: false }, y: false },
+    scales: { x: { time: false }, y: lane.isBool ? { range: [-0.1, 1.1] } : {} },
+    axes: [
+      { ...axis, size: 22, space: 60 },
+      { ...axis, size: 48, space: 22, ...(lane.isBool ? { splits: [0, 1] } : {}), ...(write === undefined ? {} : { values: (_, all) => all.map(write) }) },
+    ],
+    series: [{}, ...series],
+    hooks: lane.hooks,
+  };
+}
+
+/** A line from bottom to top at a time. */
+export function upright(plot: uPlot, t_s: number, stroke: string, dash: number[]): void {
+  const { ctx, bbox } = plot;
+  const x = plot.valToPos(t_s, "x", true);
+  if (x < bbox.left || x > bbox.left + bbox.width) return;
+  ctx.save();
+  ctx.strokeStyle = stroke;
+  ctx.setLineDash(dash);
+  ctx.beginPath();
+  ctx.moveTo(x, bbox.top);
+  ctx.lineTo(x, bbox.top + bbox.height);
+  ctx.stroke();
+  ctx.restore();
+}
