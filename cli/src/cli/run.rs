@@ -140,6 +140,9 @@ pub struct RunArgs {
     /// given several times
     #[arg(long = "operator", value_name = "CLIENT", value_parser = client_name)]
     pub operators: Vec<ClientName>,
+    /// Let others read variables of the soft PLCs over ADS at this address, as they read those of a TwinCAT PLC (`docs/gateway.md`)
+    #[arg(long, value_name = "ADDRESS:PORT")]
+    pub ads: Option<SocketAddr>,
     /// Serve the session over OPC UA at this address, for operators and clients (`docs/opcua.md`) [default: a free
     /// port of this machine, if a client needs one]
     #[arg(long, value_name = "ADDRESS:PORT")]
@@ -315,6 +318,7 @@ fn config(args: RunArgs) -> Result<RunConfig, CommandError> {
             admission,
             web: args.web,
             past: args.past_memory,
+            ads: args.ads,
             opcua: args.opcua,
             access,
         },

@@ -96,6 +96,8 @@ pub struct Doors {
     pub web: Option<SocketAddr>,
     /// How much memory the past takes that the page shows.
     pub past: Budget,
+    /// Where variables of the soft PLCs are served over ADS.
+    pub ads: Option<SocketAddr>,
     /// Where the session is served over OPC UA.
     pub opcua: Option<SocketAddr>,
     /// Who is let in there.

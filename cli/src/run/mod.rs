@@ -117,6 +117,9 @@ pub fn execute(config: &RunConfig, interrupt: &Interrupt, out: &mut dyn Write) -
     if config.course.accept_code {
         scenario.accept_code();
     }
+    if config.doors.ads.is_some() {
+        scenario.show_memories();
+    }
     config.check(&scenario)?;
     if let Some(request) = &config.reports.record {
         refuse_to_overwrite(request, config.runs)?;
