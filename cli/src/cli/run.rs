@@ -111,6 +111,10 @@ pub struct RunArgs {
     /// of several runs, those of the last one
     #[arg(long, value_name = "DIR")]
     pub map: Option<PathBuf>,
+    /// Write the files that the programs of the soft PLCs have at the end into this folder, each in one of its PLC's name; of several
+    /// runs, those of the last one
+    #[arg(long, value_name = "DIR")]
+    pub files: Option<PathBuf>,
     /// A variable of a soft PLC to look at, as `Main.axis[2].x`, with its PLC in front if there are several, as
     /// `plc2:Main.x`, and with a format for whole numbers behind, as `Main.status=bin`: `hex`, `dec` or `bin`;
     /// may be given several times
@@ -345,6 +349,7 @@ fn config(args: RunArgs) -> Result<RunConfig, CommandError> {
             coverage: args.coverage.map(|path| CoverageRequest::new(path, args.coverage_format.map(Into::into))),
             html: args.html,
             maps: args.map,
+            files: args.files,
         },
     })
 }
