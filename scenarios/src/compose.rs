@@ -277,6 +277,9 @@ impl Scenario {
         if let Some(journalling) = self.journalling() {
             client.journal(journalling);
         }
+        if self.shows_memories {
+            client.show_whole();
+        }
         if let Some(watched) = &self.watched {
             let (watches, changes, sink) = watched.of(name);
             let watched = client.watch(&watches, changes, sink);

@@ -75,6 +75,8 @@ pub struct Scenario {
     pub(crate) links: BTreeMap<ClientName, LinkSource>,
     /// What soft PLCs look at, if that is asked for.
     pub(crate) watched: Option<Watched>,
+    /// Whether soft PLCs show their memories, however large they are.
+    pub(crate) shows_memories: bool,
     /// What may happen at other times.
     timing: Timing,
     /// Whose states its soft PLCs take.
@@ -157,6 +159,7 @@ impl Scenario {
             gateways: BTreeMap::new(),
             links: BTreeMap::new(),
             watched: None,
+            shows_memories: false,
             timing,
             code_policy: CodePolicy::default(),
             varied,
@@ -265,6 +268,11 @@ impl Scenario {
         sink
     }
 
+    /// Lets soft PLCs show their memories to those who look at the session, however large they are.
+    pub fn show_memories(&mut self) {
+        self.shows_memories = true;
+    }
+
     /// Lets soft PLCs hand over what their scans do.
     pub fn journal(&mut self, journalling: Journalling) {
         self.journalling = Some(journalling);
@@ -310,6 +318,11 @@ impl Scenario {
     /// The folder's name, or the file's if that is not the folder's only one.
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// The file.
+    pub fn path(&self) -> &Path {
+        &self.path
     }
 
     /// The folder, to which all other files are relative.

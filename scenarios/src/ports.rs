@@ -114,7 +114,7 @@ impl Scenario {
 
     /// Refuses a window that does not cover what a serial line may carry while the PLC and who sends to it sleep.
     fn covers(&self, name: &ClientName, port: &PlcPort, period: TimeSpan) -> Result<(), ScenarioError> {
-        let PlcWay::Serial { rate, .. } = &port.way else { return Ok(()) };
+        let (PlcWay::Serial { rate, .. } | PlcWay::Module { rate, .. }) = &port.way else { return Ok(()) };
         let step = self.file().step;
         let writer = self.file().signals.get(&port.receive.0).map(|signal| &signal.get_ref().writer);
         let other = writer.and_then(|writer| self.file().clients.get(writer));
@@ -161,6 +161,18 @@ fn serial_way(file: &SerialFile) -> Result<PlcWay, (String, String)> {
     let rate = Rate::of(file.baud.unwrap_or(BAUD), file.bits_per_byte.unwrap_or(BITS_PER_BYTE));
     let rate =
         rate.ok_or_else(|| ("a rate of 0".to_owned(), "`baud` and `bits_per_byte` are at least 1".to_owned()))?;
+    let receive_buffer = file.receive_buffer.and_then(|bytes| usize::try_from(bytes).ok());
+    let (input, output) = match (&file.input, &file.output, file.module) {
+        (None, None, Some(number)) if file.terminal.is_none() => {
+            return Ok(PlcWay::Module { rate, number, receive_buffer });
+        }
+        (Some(input), Some(output), None) => (input.clone(), output.clone()),
+        _ => {
+            let help = "write `input` and `output`, the variables of a terminal's process image, or `module`, the number of a \
+                        communication module";
+            return Err(("it has neither a process image nor a module, or both".to_owned(), help.to_owned()));
+        }
+    };
     let terminal = match &file.terminal {
         None => TerminalKind::default(),
         Some(written) => TerminalKind::named(&written.to_ascii_uppercase()).ok_or_else(|| {
@@ -168,8 +180,7 @@ fn serial_way(file: &SerialFile) -> Result<PlcWay, (String, String)> {
             (format!("`{written}` is no terminal that is known"), help)
         })?,
     };
-    let receive_buffer = file.receive_buffer.and_then(|bytes| usize::try_from(bytes).ok());
-    Ok(PlcWay::Serial { rate, terminal, receive_buffer, input: file.input.clone(), output: file.output.clone() })
+    Ok(PlcWay::Serial { rate, terminal, receive_buffer, input, output })
 }
 
 fn tcp_way(file: &TcpFile) -> Result<PlcWay, (String, String)> {

@@ -41,9 +41,15 @@ pub struct SerialFile {
     #[serde(default)]
     pub receive_buffer: Option<u32>,
     /// Path of the variable that is the input of its process image, as `GVL.In`.
-    pub input: String,
+    #[serde(default)]
+    pub input: Option<String>,
     /// Path of the variable that is its output.
-    pub output: String,
+    #[serde(default)]
+    pub output: Option<String>,
+    /// In place of a terminal with a process image: the hardware identifier of a communication module, as the program's blocks
+    /// have it.
+    #[serde(default)]
+    pub module: Option<u16>,
 }
 
 /// A connection of TCP.

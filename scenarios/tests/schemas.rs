@@ -107,7 +107,10 @@ fn files(folder: &Path, name: &str, found: &mut Vec<PathBuf>) {
         let path = entry.expect("an entry").path();
         if path.is_dir() {
             files(&path, name, found);
-        } else if path.file_name().is_some_and(|file| file == name) {
+        } else if path
+            .file_name()
+            .is_some_and(|file| file == name || file.to_string_lossy().ends_with(&format!(".{name}")))
+        {
             found.push(path);
         }
     }

@@ -1,5 +1,5 @@
 //! Steps a second over the share of steps in which somebody is due, and each as a multiple of a session in which somebody
-//! always is: what a step costs in which everybody sleeps.
+//! always is: what a step costs in which everybody sleeps. At the end it prints the curve, as a table for `docs/rest.md`.
 //!
 //! `cargo bench -p onescan-tests --bench rest`
 
@@ -12,13 +12,16 @@ use onescan_tests::bench::{Ledger, two_sleepers};
 use onescan_tests::run::{boxed, in_process};
 
 /// What is measured: its name, and how many steps each client sleeps from turn to turn.
-const CASES: [(&str, u64); 7] = [
+const CASES: [(&str, u64); 10] = [
     ("all due", 1),
     ("1 of 2 due", 2),
     ("1 of 5 due", 5),
     ("1 of 10 due", 10),
+    ("1 of 20 due", 20),
+    ("1 of 50 due", 50),
     ("1 of 100 due", 100),
     ("1 of 1,000 due", 1_000),
+    ("1 of 10,000 due", 10_000),
     ("1 of 1,000,000 due", 1_000_000),
 ];
 
@@ -51,5 +54,12 @@ fn main() {
     criterion.final_summary();
     for (what, _) in CASES {
         ledger.compare(what, CASES[0].0);
+    }
+    println!("\n| somebody is due in | steps a second | times as many |\n|---|---|---|");
+    let rate = |what: &str| ledger.median(what).map(|step_s| 1.0 / step_s);
+    for (what, sleep) in CASES {
+        if let (Some(own), Some(all)) = (rate(what), rate(CASES[0].0)) {
+            println!("| {} % | {:.2} million | {:.1} |", 100.0 / sleep as f64, own / 1e6, own / all);
+        }
     }
 }

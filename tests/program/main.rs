@@ -66,6 +66,8 @@ mod reports;
 mod review;
 mod robot_cell;
 mod rotary_kiln;
+mod rotary_kiln_scanner;
+mod rotary_kiln_server;
 mod run;
 mod shear;
 mod shift;

@@ -76,6 +76,17 @@ fn a_map_has_the_shell_as_a_picture_and_as_text() {
 }
 
 #[test]
+fn a_page_shows_the_maps_of_a_run() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let page = folder.path().join("page.html");
+    let words = ["run", "month.toml", "--until", "2h", "--html", page.to_str().expect("UTF-8")];
+    let said = typed(&scenario("rotary-kiln"), &words);
+    assert_eq!(said.code, Some(0), "{said:?}");
+    let page = std::fs::read_to_string(page).expect("a page");
+    assert!(page.contains("map at the end") && page.contains("The shell after a month"), "no map");
+}
+
+#[test]
 fn a_scenario_without_maps_says_so() {
     let folder = tempfile::tempdir().expect("a folder");
     let said = typed(&scenario("rotary-kiln"), &["run", ".", "--map", folder.path().to_str().expect("UTF-8")]);

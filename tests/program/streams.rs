@@ -167,3 +167,38 @@ fn a_line_can_be_silent_and_a_number_cannot() {
     assert_eq!(code, Some(2));
     assert!(said.contains("`Got` is DINT, which cannot be silent"), "{said}");
 }
+
+#[test]
+fn files_that_a_program_has_written_are_there_after_the_run() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scenario = "version = 1
+step = \"10ms\"
+until = \"1s\"
+[signals]
+Steps = { type = \"INT\", writer = \"plc\" }
+[clients.plc]
+kind = \"soft-plc\"
+dialect = \"twincat\"
+sources = [\"main.st\"]
+tasks = [{ name = \"main\", interval = \"10ms\", programs = [\"Main\"] }]
+";
+    let program = "PROGRAM Main
+VAR_OUTPUT Steps : INT; END_VAR
+VAR open : FB_FileOpen; put : FB_FilePuts; close : FB_FileClose; END_VAR
+    Steps := Steps + 1;
+    open(sPathName := 'C:\\TwinCAT\\log.txt', nMode := FOPEN_MODEWRITE OR FOPEN_MODETEXT, bExecute := Steps >= 2);
+    put(hFile := open.hFile, sLine := 'first$Nsecond$N', bExecute := Steps >= 5);
+    close(hFile := open.hFile, bExecute := Steps >= 8);
+END_PROGRAM
+";
+    for (name, text) in [("scenario.toml", scenario), ("main.st", program)] {
+        std::fs::write(folder.path().join(name), text).expect("a file");
+    }
+    let said = typed(folder.path(), &["run", ".", "--files", "out"]);
+    assert_eq!(said.code, Some(0), "{said:?}");
+    let log = std::fs::read_to_string(folder.path().join("out/plc/log.txt")).expect("a file");
+    assert_eq!(log, "first\r\nsecond\r\n");
+    let far = typed(folder.path(), &["run", ".", "--files", "far", "--transport", "tcp"]);
+    assert_eq!(far.code, Some(2), "{far:?}");
+    assert!(far.err.contains("`plc` showed no memory"), "{far:?}");
+}

@@ -14,5 +14,6 @@ mod rest;
 mod security;
 mod shim;
 mod streams;
+mod streams_of_vendors;
 mod targets;
 mod wire;

@@ -26,7 +26,7 @@ const LINE: SignalType = SignalType::Bytes(WINDOW);
 
 /// What a device does with what it receives.
 #[derive(Clone, Copy)]
-enum Habit {
+pub(crate) enum Habit {
     /// It sends it back.
     Echo,
     /// It sends so many bytes at an instant, ms.
@@ -34,13 +34,13 @@ enum Habit {
 }
 
 /// A device at the other end of a line.
-struct Device {
+pub(crate) struct Device {
     port: Port,
     habit: Habit,
 }
 
 impl Device {
-    fn boxed(form: Form, habit: Habit) -> Box<dyn Client> {
+    pub(crate) fn boxed(form: Form, habit: Habit) -> Box<dyn Client> {
         Box::new(Self { port: Port::new(form, [WINDOW; 2], 3), habit })
     }
 }
@@ -149,12 +149,16 @@ fn signals() -> [(&'static str, SignalType, &'static str); 4] {
     [("answer", LINE, "device"), ("ask", LINE, "plc"), ("got", dint, "plc"), ("right", dint, "plc")]
 }
 
-fn session_plan() -> SessionPlan {
+pub(crate) fn session_plan() -> SessionPlan {
     plan(span_ms(2), &Coupling::Parallel, &signals(), &["device", "plc"])
 }
 
 fn soft_plc(text: &str, fast_ms: u64, way: PlcWay) -> SoftPlcClient {
-    let input = Input::from_text("device.st", SourceKind::Text, text).in_dialect(Dialect::TwinCat);
+    soft_plc_in(Dialect::TwinCat, text, fast_ms, way)
+}
+
+pub(crate) fn soft_plc_in(dialect: Dialect, text: &str, fast_ms: u64, way: PlcWay) -> SoftPlcClient {
+    let input = Input::from_text("device.st", SourceKind::Text, text).in_dialect(dialect);
     let application = Application::from_inputs([input]).unwrap_or_else(|error| panic!("{error}"));
     let task = |name: &str, interval_ms: u64, priority: u32, program: &str| Task {
         name: name.to_owned(),
@@ -174,7 +178,7 @@ fn soft_plc(text: &str, fast_ms: u64, way: PlcWay) -> SoftPlcClient {
     plc.with_ports(&[port], 1).unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn serial_rate() -> Rate {
+pub(crate) fn serial_rate() -> Rate {
     Rate::of(9600, 10).expect("not zero")
 }
 
@@ -188,7 +192,7 @@ fn tcp(cuts: Cuts) -> PlcWay {
 }
 
 /// A DINT that the PLC writes.
-fn number(lockstep: &Lockstep, name: &str) -> i32 {
+pub(crate) fn number(lockstep: &Lockstep, name: &str) -> i32 {
     let session = lockstep.session();
     let signal = session.signal_id(name).expect("a signal");
     let bytes = session.layout().bytes(signal, session.image());

@@ -70,8 +70,8 @@ impl Ledger {
         self.times.lock().expect("no panic while noting").entry(what).or_default().push(per_step);
     }
 
-    /// The median time of one step in seconds.
-    fn median(&self, what: &str) -> Option<f64> {
+    /// The median time of one step in seconds; nothing if it was not measured.
+    pub fn median(&self, what: &str) -> Option<f64> {
         let times = self.times.lock().expect("no panic while noting");
         let mut times = times.get(what)?.clone();
         times.sort_by(f64::total_cmp);

@@ -68,7 +68,7 @@ impl Subject {
     pub(super) fn of(scenario: &Scenario, campaign: &str) -> Result<Self, CampaignError> {
         let mut hasher = blake3::Hasher::new();
         let mut files = scenario.files();
-        files.push(PathBuf::from(onescan_scenario::case::FILE_NAME));
+        files.extend(onescan_scenario::case::beside(scenario.path()).file_name().map(PathBuf::from));
         files.sort();
         files.dedup();
         for name in files {

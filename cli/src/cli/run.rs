@@ -111,6 +111,10 @@ pub struct RunArgs {
     /// of several runs, those of the last one
     #[arg(long, value_name = "DIR")]
     pub map: Option<PathBuf>,
+    /// Write the files that the programs of the soft PLCs have at the end into this folder, each in one of its PLC's name; of several
+    /// runs, those of the last one
+    #[arg(long, value_name = "DIR")]
+    pub files: Option<PathBuf>,
     /// A variable of a soft PLC to look at, as `Main.axis[2].x`, with its PLC in front if there are several, as
     /// `plc2:Main.x`, and with a format for whole numbers behind, as `Main.status=bin`: `hex`, `dec` or `bin`;
     /// may be given several times
@@ -143,6 +147,9 @@ pub struct RunArgs {
     /// given several times
     #[arg(long = "operator", value_name = "CLIENT", value_parser = client_name)]
     pub operators: Vec<ClientName>,
+    /// Let others read variables of the soft PLCs over ADS at this address, as they read those of a TwinCAT PLC (`docs/gateway.md`)
+    #[arg(long, value_name = "ADDRESS:PORT")]
+    pub ads: Option<SocketAddr>,
     /// Serve the session over OPC UA at this address, for operators and clients (`docs/opcua.md`) [default: a free
     /// port of this machine, if a client needs one]
     #[arg(long, value_name = "ADDRESS:PORT")]
@@ -319,6 +326,7 @@ fn config(args: RunArgs) -> Result<RunConfig, CommandError> {
             web: args.web,
             awaits_viewer: args.await_viewer,
             past: args.past_memory,
+            ads: args.ads,
             opcua: args.opcua,
             access,
         },
@@ -345,6 +353,7 @@ fn config(args: RunArgs) -> Result<RunConfig, CommandError> {
             coverage: args.coverage.map(|path| CoverageRequest::new(path, args.coverage_format.map(Into::into))),
             html: args.html,
             maps: args.map,
+            files: args.files,
         },
     })
 }

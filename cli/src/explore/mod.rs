@@ -48,7 +48,7 @@ pub fn run(config: &ExploreConfig, out: &mut dyn Write) -> Result<ExitCode, Expl
     let (scenario, written) = match &config.case {
         None => (scenario, Written::default()),
         Some(name) => {
-            let catalogue = Catalogue::load(scenario.folder())?;
+            let catalogue = Catalogue::load(scenario.path())?;
             let case = catalogue.named(&scenario, name)?.clone();
             let written = catalogue.written(&case);
             (scenario.with_case(&catalogue, &case)?, written)

@@ -71,7 +71,7 @@ pub fn run(config: &FalsifyConfig, points: impl BufRead, out: &mut dyn Write) ->
 /// The scenario with the case that is asked for, and the case in pieces.
 fn chosen(config: &FalsifyConfig, scenario: &Scenario) -> Result<(Scenario, Written), FalsifyError> {
     let Some(name) = &config.case else { return Ok((scenario.clone(), Written::default())) };
-    let catalogue = Catalogue::load(scenario.folder())?;
+    let catalogue = Catalogue::load(scenario.path())?;
     let case = catalogue.named(scenario, name)?;
     Ok((scenario.clone().with_case(&catalogue, case)?, catalogue.written(case)))
 }

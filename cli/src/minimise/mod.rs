@@ -80,7 +80,7 @@ pub fn run(config: &MinimiseConfig, out: &mut dyn Write) -> Result<ExitCode, Min
 /// The scenario with the case that is asked for, and the case in pieces.
 fn chosen(config: &MinimiseConfig, scenario: &Scenario) -> Result<(Scenario, Written), MinimiseError> {
     let Some(name) = &config.case else { return Ok((scenario.clone(), Written::default())) };
-    let catalogue = Catalogue::load(scenario.folder())?;
+    let catalogue = Catalogue::load(scenario.path())?;
     let case = catalogue.named(scenario, name)?;
     Ok((scenario.clone().with_case(&catalogue, case)?, catalogue.written(case)))
 }

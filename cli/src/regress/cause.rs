@@ -70,7 +70,7 @@ fn cause(unit: &CaseUnit, outcome: &Outcome, references: &mut References) -> Res
     let (signals, until) = asked(outcome);
     let Some(why) = why::explain(sides.each_ref(), &signals, until)? else { return Ok(None) };
     let lines = lines(&why, &commit);
-    let folder = shown(&unit.place.scenario);
+    let folder = shown(unit.place.folder());
     let place = why.root().and_then(|root| root.at[1].as_ref().or(root.at[0].as_ref()));
     let place = place.map(|place| SourcePlace { file: within(&folder, &place.file), line: place.line, column: 1 });
     Ok(Some(Cause { commit, place, lines, why: why::report::json(&why) }))

@@ -9,7 +9,7 @@ use super::ran::Worked;
 pub fn merged(units: &[Unit], worked: &[Worked]) -> Coverage {
     let mut all = Coverage::default();
     for (unit, worked) in units.iter().zip(worked) {
-        let folder = if let Unit::Case(unit) = unit { shown(&unit.place.scenario) } else { String::new() };
+        let folder = if let Unit::Case(unit) = unit { shown(unit.place.folder()) } else { String::new() };
         worked.coverage.iter().for_each(|row| all.add(&row.row(&folder)));
     }
     all

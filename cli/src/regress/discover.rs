@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use onescan_plc_shim::input::kind::FileKind;
+use onescan_scenario::case::OWN_ENDING;
 use onescan_scenario::load::FILE_NAME;
 
 use super::error::TestError;
@@ -12,15 +13,15 @@ use crate::error::{Unreadable, Usage};
 /// Scenarios and sources, each once, in the order in which they were named; what a folder holds by name.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Found {
-    /// Folders of scenarios.
+    /// Folders of scenarios; files, for those of other names.
     pub scenarios: Vec<PathBuf>,
     /// PLC sources, which are one program together.
     pub sources: Vec<PathBuf>,
 }
 
 impl Found {
-    /// What is behind `paths`. A folder stands for the scenarios in it and below it; if there are none, for
-    /// the PLC sources there.
+    /// What is behind `paths`. A folder stands for the scenarios in it and below it, with those of other names that have cases
+    /// of their own; if there are none, for the PLC sources there.
     ///
     /// # Errors
     /// A path that is not there or is of no kind that is tested.
@@ -47,6 +48,8 @@ impl Found {
         } else if path.file_name().is_some_and(|name| name == FILE_NAME) {
             let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
             self.scenarios.push(folder.to_owned());
+        } else if path.extension().is_some_and(|ending| ending == "toml") {
+            self.scenarios.push(path.to_owned());
         } else if FileKind::of(path).is_some() {
             self.sources.push(path.to_owned());
         } else {
@@ -64,6 +67,7 @@ const PASSED_OVER: [&str; 3] = ["target", "node_modules", "templates"];
 fn gather(folder: &Path, found: &mut Vec<PathBuf>) -> Result<(), TestError> {
     if folder.join(FILE_NAME).is_file() {
         found.push(folder.to_owned());
+        found.extend(with_own_cases(folder)?);
         return Ok(());
     }
     let failed = Unreadable::at(folder);
@@ -78,4 +82,17 @@ fn gather(folder: &Path, found: &mut Vec<PathBuf>) -> Result<(), TestError> {
     }
     inner.sort();
     inner.iter().try_for_each(|folder| gather(folder, found))
+}
+
+/// The scenarios of other names in a folder that have cases of their own, by name.
+fn with_own_cases(folder: &Path) -> Result<Vec<PathBuf>, TestError> {
+    let failed = Unreadable::at(folder);
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(&failed)? {
+        let name = entry.map_err(&failed)?.file_name();
+        let scenario = name.to_string_lossy().strip_suffix(OWN_ENDING).map(|name| folder.join(format!("{name}.toml")));
+        found.extend(scenario.filter(|scenario| scenario.is_file()));
+    }
+    found.sort();
+    Ok(found)
 }

@@ -244,7 +244,7 @@ fn test_program(suite: &str, ran: &Ran) -> Outcome {
 }
 
 fn case(config: &TestConfig, unit: &CaseUnit, suite: &str, ran: &Ran) -> Result<Outcome, TestError> {
-    let folder = shown(&unit.place.scenario);
+    let folder = shown(unit.place.folder());
     let with = |status| Outcome { tags: unit.tags.clone(), ..outcome(suite, ran, &folder, status) };
     if ran.status != RunStatus::Completed {
         return Ok(with(Status::Fault));

@@ -62,9 +62,13 @@ impl Unit {
     }
 }
 
-/// A scenario's folder in reports: as it was typed, or its own name where that is `.`.
+/// A scenario in reports: its folder as it was typed, or its own name where that is `.`; one of several in a folder with its
+/// name behind that.
 pub fn suite_of(scenario: &Path) -> String {
     let typed = shown(scenario);
+    if let Some(named) = typed.strip_suffix(".toml") {
+        return named.to_owned();
+    }
     let own = || std::path::absolute(scenario).ok()?.file_name().map(|name| name.to_string_lossy().into_owned());
     if typed == "." { own().unwrap_or(typed) } else { typed }
 }

@@ -66,7 +66,7 @@ impl References {
         if names.is_empty() {
             names.push("HEAD".to_owned());
             let place = unit.place.reviewed();
-            let file = place.strip_prefix(&unit.place.scenario).unwrap_or(&place);
+            let file = place.strip_prefix(unit.place.folder()).unwrap_or(&place);
             // A snapshot that no commit has, or a history that is cut off, has no last change: HEAD remains.
             names.extend(repository.last_change(file).unwrap_or_default());
         }
@@ -78,7 +78,8 @@ impl References {
                 Err(_) => continue,
             };
             let Some(tree) = self.tree(&repository, &commit)? else { continue };
-            if let Some(scenario) = believed(&tree.join(repository.scenario()), unit, reviewed) {
+            let file = unit.place.scenario.strip_prefix(unit.place.folder()).unwrap_or(Path::new(""));
+            if let Some(scenario) = believed(&tree.join(repository.scenario()).join(file), unit, reviewed) {
                 let short = commit.get(..12).unwrap_or(&commit).to_owned();
                 let commit = if name == commit { short } else { name };
                 return Ok(Some(Reference { commit, scenario }));
@@ -107,11 +108,11 @@ impl References {
 }
 
 /// The scenario of another commit, if its run is the reviewed one.
-fn believed(folder: &Path, unit: &CaseUnit, reviewed: &Snapshot) -> Option<Scenario> {
-    let scenario = Scenario::load_case(folder, Some(&unit.place.case)).ok()?;
+fn believed(path: &Path, unit: &CaseUnit, reviewed: &Snapshot) -> Option<Scenario> {
+    let scenario = Scenario::load_case(path, Some(&unit.place.case)).ok()?;
     let snapshot = Rc::new(RefCell::new(None));
     let taker = Taker::new(&scenario, unit.choice.clone(), Rc::clone(&snapshot));
-    let config = RunConfig::headless(folder.to_owned(), Some(unit.place.case.clone()));
+    let config = RunConfig::headless(path.to_owned(), Some(unit.place.case.clone()));
     watched(&config, &scenario, &Interrupt::new(), vec![Box::new(taker)]).ok()?;
     let taken = snapshot.borrow_mut().take()?;
     compare(reviewed, &taken, &unit.choice.tolerances).is_empty().then_some(scenario)

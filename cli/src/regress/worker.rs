@@ -39,7 +39,7 @@ fn case(config: &WorkerConfig, folder: &Path) -> Result<Worked, TestError> {
     if config.cover {
         scenario.cover();
     }
-    let catalogue = Catalogue::load(scenario.folder())?;
+    let catalogue = Catalogue::load(scenario.path())?;
     let choice = Choice::of(&scenario, &catalogue)?;
     let snapshot = Rc::new(RefCell::new(None));
     let taker = Taker::new(&scenario, choice.clone(), Rc::clone(&snapshot));

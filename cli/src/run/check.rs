@@ -111,6 +111,7 @@ impl RunConfig {
             ("--pace", self.course.pace != Pace::Max),
             ("--listen", self.doors.listen.is_some()),
             ("--web", self.doors.web.is_some()),
+            ("--ads", self.doors.ads.is_some()),
             ("--opcua", self.doors.opcua.is_some()),
             ("--opcua-client", !self.reach.opcua_clients.is_empty()),
             ("--save-at", self.course.save.is_some()),

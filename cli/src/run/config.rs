@@ -98,6 +98,8 @@ pub struct Doors {
     pub awaits_viewer: bool,
     /// How much memory the past takes that the page shows.
     pub past: Budget,
+    /// Where variables of the soft PLCs are served over ADS.
+    pub ads: Option<SocketAddr>,
     /// Where the session is served over OPC UA.
     pub opcua: Option<SocketAddr>,
     /// Who is let in there.
@@ -221,6 +223,8 @@ pub struct Reports {
     pub html: Option<PathBuf>,
     /// Folder for the scenario's maps at the end of the last run.
     pub maps: Option<PathBuf>,
+    /// A folder for the files that the soft PLCs have at the end.
+    pub files: Option<PathBuf>,
 }
 
 /// What is to be recorded, and where.
@@ -261,6 +265,7 @@ impl RunConfig {
                 coverage: None,
                 html: None,
                 maps: None,
+                files: None,
             },
         }
     }
@@ -268,6 +273,13 @@ impl RunConfig {
     /// True if trajectories are drawn, in a picture or in a page.
     pub(super) fn is_drawn(&self) -> bool {
         self.picture.drawing != Drawing::Nothing || self.reports.html.is_some()
+    }
+}
+
+impl Reports {
+    /// True if something is made of what clients show when a run is over.
+    pub(super) fn want_the_end(&self) -> bool {
+        self.maps.is_some() || self.files.is_some() || self.html.is_some()
     }
 }
 

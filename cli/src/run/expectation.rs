@@ -13,7 +13,7 @@ use onescan_server::end::SessionEnd;
 use onescan_server::observer::{Observer, RecordError};
 use onescan_server::session::Session;
 use onescan_server::signal::SignalName;
-use onescan_server::time::VirtualTime;
+use onescan_server::time::{StepCount, VirtualTime};
 use serde::Serialize;
 
 use super::chosen::Chosen;
@@ -159,24 +159,41 @@ impl Observer for Copyist {
 pub(super) struct Witness {
     judge: Rc<RefCell<Judge>>,
     chosen: Chosen,
+    /// The step that it has shown last.
+    shown: StepCount,
 }
 
 impl Witness {
     pub(super) fn new(judge: Rc<RefCell<Judge>>, names: &[SignalName]) -> Self {
-        Self { judge, chosen: Chosen::new(names) }
+        Self { judge, chosen: Chosen::new(names), shown: StepCount(0) }
+    }
+
+    /// Shows so many steps with the same values, of which the session has just come to the last.
+    fn show(&mut self, session: &Session, steps: u64) {
+        let (t_ns, step_ns) = (session.t_v().as_nanos(), session.step().as_nanos());
+        let first_ns = t_ns.saturating_sub(step_ns.saturating_mul(steps.saturating_sub(1)));
+        self.judge.borrow_mut().push_run(first_ns, step_ns, steps, self.chosen.numbers(session));
+        self.shown = session.cycle().steps();
     }
 }
 
 impl Observer for Witness {
-    fn begin(&mut self, session: &Session, digest: &TrajectoryDigest) -> Result<(), RecordError> {
+    fn begin(&mut self, session: &Session, _digest: &TrajectoryDigest) -> Result<(), RecordError> {
         self.chosen.find(session);
         self.judge.borrow_mut().begin();
-        self.step(session, digest)
+        self.show(session, 1);
+        Ok(())
     }
 
     fn step(&mut self, session: &Session, _digest: &TrajectoryDigest) -> Result<(), RecordError> {
-        self.judge.borrow_mut().push(session.t_v().as_nanos(), self.chosen.numbers(session));
+        // the steps that it was not shown are those of a rest, with the image that they left
+        let steps = session.cycle().steps().0.saturating_sub(self.shown.0);
+        self.show(session, steps.max(1));
         Ok(())
+    }
+
+    fn wants_idle_steps(&self) -> bool {
+        false
     }
 
     fn end(&mut self, _session: &Session) -> Result<(), RecordError> {

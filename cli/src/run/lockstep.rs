@@ -6,6 +6,7 @@ use std::path::Path;
 
 use onescan_base::foreign::one_line;
 use onescan_base::regular::{self, Limit};
+use onescan_clients::inspection::{Inspected, Inspection};
 use onescan_recording::{Recording, event};
 use onescan_report::file;
 use onescan_scenario::compose::Member;
@@ -87,6 +88,10 @@ pub(super) fn run(
         }
         None => None,
     };
+    let _inspection = match config.doors.ads {
+        Some(address) => Some(inspected(address, scenario, &lockstep)?),
+        None => None,
+    };
     if config.reports.progress {
         let label = if config.runs == 1 { scenario.name().to_owned() } else { format!("run {number}/{}", config.runs) };
         lockstep.observe(Box::new(Progress::new(config.subject.end(scenario), label).with_log(log.clone())));
@@ -158,6 +163,26 @@ fn past_of(
     lockstep.observe(started.0.observer());
     *keeper = Some(started.0);
     Ok(Ok(started.1))
+}
+
+/// Serves variables of the soft PLCs over ADS, for as long as it is kept.
+fn inspected(address: SocketAddr, scenario: &Scenario, lockstep: &Lockstep) -> Result<Inspection, RunError> {
+    if !address.ip().is_loopback() {
+        let help = "ADS knows no users: serve it at an address of this machine, as 127.0.0.1:48898, and let others come through a tunnel";
+        return Err(
+            Usage::new(format!("--ads {address} can be reached from other machines"), Some(help.to_owned())).into()
+        );
+    }
+    let mut plcs = Vec::new();
+    for plc in scenario.plcs() {
+        if let Some(compiled) = scenario.compiled_plc(plc.name)? {
+            let find = move |path: &str| compiled.application.variable(path).ok();
+            plcs.push(Inspected { client: plc.name.clone(), find: Box::new(find) });
+        }
+    }
+    let inspection = Inspection::serve(address, lockstep.published(), plcs).map_err(ListenError::on(address))?;
+    tracing::info!(target: NOTICE, "serving ads://{}", inspection.address());
+    Ok(inspection)
 }
 
 /// Serves the session as a page, for as long as it is kept.

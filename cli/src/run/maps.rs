@@ -35,6 +35,12 @@ pub(super) fn write(scenario: &Scenario, tables: &[ValueTable], folder: &Path) -
     Ok(())
 }
 
+/// The pictures of all maps of which something was to be seen.
+pub(super) fn svgs(scenario: &Scenario, tables: &[ValueTable]) -> Vec<String> {
+    let table = |map: &MapFile| map.shown_as().and_then(|name| tables.iter().find(|table| *table.name == *name));
+    scenario.file().map.iter().filter_map(|map| Some(drawn(map, table(map)?).to_svg())).collect()
+}
+
 /// A table as the scenario wants it to be drawn.
 fn drawn(map: &MapFile, table: &ValueTable) -> ValueMap {
     let columns = table.columns.max(1);

@@ -16,6 +16,7 @@
 //! | `chosen` | signals chosen by name, as numbers |
 //! | [`sampler`] | what a plot shows |
 //! | [`maps`] | tables of values as they are at the end |
+//! | `plc_files` | files of PLCs as they are at the end |
 //! | [`recorded`] | a run's recording |
 //! | `in_process` | a session of which all clients are here |
 //! | `judged` | the same, judged step by step |
@@ -44,6 +45,7 @@ pub(crate) mod judged;
 mod lockstep;
 pub mod maps;
 pub mod page;
+mod plc_files;
 mod processes;
 pub(crate) mod production;
 mod progress;
@@ -72,7 +74,7 @@ use onescan_report::view::Side;
 use onescan_scenario::expect::TraceEnd;
 use onescan_scenario::{Mode, Scenario};
 use onescan_server::checkpoint::StateHash;
-use onescan_server::client::ValueTable;
+use onescan_server::client::{ClientView, ValueTable};
 use onescan_server::lockstep::Lockstep;
 use onescan_server::observer::Observer;
 
@@ -88,7 +90,7 @@ use crate::interrupt::Interrupt;
 use crate::plant::drawing;
 use crate::web::Bench;
 use expectation::{Copyist, Witness};
-use page::Event;
+use page::{Drawings, Event};
 use production::Metered;
 use recorded::{Recorded, refuse_to_overwrite};
 use sampler::{Sampler, Samples};
@@ -117,6 +119,9 @@ pub fn execute(config: &RunConfig, interrupt: &Interrupt, out: &mut dyn Write) -
     if config.course.accept_code {
         scenario.accept_code();
     }
+    if config.doors.ads.is_some() || config.reports.files.is_some() {
+        scenario.show_memories();
+    }
     config.check(&scenario)?;
     if let Some(request) = &config.reports.record {
         refuse_to_overwrite(request, config.runs)?;
@@ -125,13 +130,13 @@ pub fn execute(config: &RunConfig, interrupt: &Interrupt, out: &mut dyn Write) -
         scenario.watch(&config.watch.variables, config.watch.on == WatchOn::Change)?;
     }
     let mut reports: Vec<RunReport> = Vec::new();
-    let (mut samples, mut unsaved, mut tables) = (Vec::new(), None, Vec::new());
+    let (mut samples, mut unsaved, mut last) = (Vec::new(), None, ClientView::default());
     for number in 1..=config.runs {
         let ran = one_run(config, &scenario, number, interrupt, Vec::new())?;
         ran.report.write(config.reports.format, config.runs, reports.last(), out).map_err(OutputError)?;
         reports.push(ran.report);
         samples.push(ran.samples);
-        tables = ran.tables;
+        last = ran.last;
         unsaved = unsaved.or(ran.unsaved);
         if interrupt.is_raised() || reports.iter().any(RunReport::is_failed) {
             break;
@@ -146,11 +151,14 @@ pub fn execute(config: &RunConfig, interrupt: &Interrupt, out: &mut dyn Write) -
         unsaved = unsaved.or(not_there.map(Into::into));
     }
     if let Some(folder) = &config.reports.maps {
-        maps::write(&scenario, &tables, folder)?;
+        maps::write(&scenario, &last.tables, folder)?;
+    }
+    if let Some(folder) = &config.reports.files {
+        plc_files::write(&scenario, &last.memories, folder)?;
     }
     if let Some(path) = &config.reports.html {
         let plot = sampler::plot(&scenario, config.mode, &config.picture, &samples, &reports);
-        file::write_whole(path, page_of(&scenario, &reports, &plot).as_bytes())?;
+        file::write_whole(path, page_of(&scenario, &reports, &plot, &last.tables).as_bytes())?;
     }
     let verdict = Verdict::of(config.mode, &reports);
     verdict.write(config.reports.format, &reports, out).map_err(OutputError)?;
@@ -158,13 +166,14 @@ pub fn execute(config: &RunConfig, interrupt: &Interrupt, out: &mut dyn Write) -
 }
 
 /// The page about all runs.
-fn page_of(scenario: &Scenario, reports: &[RunReport], plot: &Plot) -> String {
+fn page_of(scenario: &Scenario, reports: &[RunReport], plot: &Plot, tables: &[ValueTable]) -> String {
     let events: Vec<Event> = scenario.case_events().into_iter().map(|(at_ns, text)| Event { at_ns, text }).collect();
     let coverage =
         scenario.coverage().map(|sink| sink.lock().unwrap_or_else(std::sync::PoisonError::into_inner).clone());
-    let scenes = drawing::of_scenario(scenario, Side::default());
+    let drawings =
+        Drawings { plot, scenes: drawing::of_scenario(scenario, Side::default()), maps: maps::svgs(scenario, tables) };
     // Without soft PLCs, or with clients in other processes, no coverage is gathered: the page then has no part about it.
-    page::of_runs(reports, &events, (plot, scenes), &coverage.unwrap_or_default()).to_html()
+    page::of_runs(reports, &events, drawings, &coverage.unwrap_or_default()).to_html()
 }
 
 /// One run that others watch, and its plot; without signals unless the run has a plot.
@@ -195,8 +204,8 @@ pub(crate) struct Ran {
     pub(crate) state: Option<StateHash>,
     /// How far a plant that follows was behind the PLC at each communication, ns.
     pub(crate) errors_ns: Vec<i64>,
-    /// What its clients showed at the end, if maps are asked for.
-    pub(crate) tables: Vec<ValueTable>,
+    /// What its clients showed at the end, if that is asked for.
+    pub(crate) last: ClientView,
 }
 
 /// One run.
@@ -263,7 +272,7 @@ pub(crate) fn one_run(
     if let Some(recorded) = &recorded {
         recorded.end(&report)?;
     }
-    let last = published.take().filter(|_| config.reports.maps.is_some()).map(|published| published.latest());
-    let tables = last.map(|view| view.clients.tables.clone()).unwrap_or_default();
-    Ok(Ran { report, samples: samples.replace(Samples::default()), unsaved, forks, state, errors_ns, tables })
+    let last = published.take().filter(|_| config.reports.want_the_end()).map(|published| published.latest());
+    let last = last.map(|view| view.clients.clone()).unwrap_or_default();
+    Ok(Ran { report, samples: samples.replace(Samples::default()), unsaved, forks, state, errors_ns, last })
 }

@@ -24,11 +24,21 @@ pub struct Event {
     pub text: String,
 }
 
+/// What is drawn of the runs of one scenario.
+pub(super) struct Drawings<'p> {
+    /// All runs in one picture.
+    pub(super) plot: &'p Plot,
+    /// The machine.
+    pub(super) scenes: Vec<String>,
+    /// Maps as they are at the end of the last run.
+    pub(super) maps: Vec<String>,
+}
+
 /// The page of the runs of one scenario, with what happened to each from outside.
 pub(super) fn of_runs(
     reports: &[RunReport],
     events: &[Event],
-    (plot, scenes): (&Plot, Vec<String>),
+    Drawings { plot, scenes, maps }: Drawings<'_>,
     coverage: &Coverage,
 ) -> Page {
     // All runs are in one picture, which stands with the first.
@@ -36,10 +46,14 @@ pub(super) fn of_runs(
     let mut shared: Vec<Picture> = scenes.collect();
     shared.push(Picture::of_plot("trajectories", plot));
     let wall: f64 = reports.iter().map(|report| report.wall_time_s).sum();
-    let sections = reports
-        .iter()
-        .enumerate()
-        .map(|(index, report)| section(report, events.to_vec(), if index == 0 { shared.clone() } else { Vec::new() }));
+    let of_run = |index: usize| {
+        let mut own = if index == 0 { shared.clone() } else { Vec::new() };
+        if index + 1 == reports.len() {
+            own.extend(maps.iter().map(|svg| Picture { title: "map at the end", svg: svg.clone() }));
+        }
+        own
+    };
+    let sections = reports.iter().enumerate().map(|(index, report)| section(report, events.to_vec(), of_run(index)));
     Page {
         title: reports.first().map_or_else(String::new, |report| report.scenario.clone()),
         totals: format!("{} run{}", reports.len(), if reports.len() == 1 { "" } else { "s" }),

@@ -69,7 +69,7 @@ fn chosen(config: &ShotConfig) -> Result<Scenario, ShotError> {
         scenario.operate(client)?;
     }
     let Some(name) = &config.case else { return Ok(scenario) };
-    let catalogue = Catalogue::load(scenario.folder())?;
+    let catalogue = Catalogue::load(scenario.path())?;
     let case = catalogue.named(&scenario, name)?;
     Ok(scenario.with_case(&catalogue, case)?)
 }

@@ -17,7 +17,7 @@ const PENDING: &str = ".traj.new";
 /// The snapshot of one case.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Place {
-    /// The scenario's folder.
+    /// The scenario's folder; its file, if that is not called as usual.
     pub scenario: PathBuf,
     /// The case.
     pub case: String,
@@ -26,12 +26,17 @@ pub struct Place {
 impl Place {
     /// The snapshot that was reviewed.
     pub fn reviewed(&self) -> PathBuf {
-        self.scenario.join(FOLDER).join(format!("{}{REVIEWED}", self.case))
+        shelf(&self.scenario).join(format!("{}{REVIEWED}", self.case))
     }
 
     /// The snapshot that waits for a review.
     pub fn pending(&self) -> PathBuf {
-        self.scenario.join(FOLDER).join(format!("{}{PENDING}", self.case))
+        shelf(&self.scenario).join(format!("{}{PENDING}", self.case))
+    }
+
+    /// The scenario's folder.
+    pub fn folder(&self) -> &Path {
+        folder_of(&self.scenario)
     }
 
     /// The reviewed snapshot, if there is one.
@@ -80,8 +85,27 @@ impl Place {
     }
 
     fn write(&self, path: &Path, snapshot: &Snapshot) -> Result<(), StoreError> {
-        file::create_folder(&self.scenario.join(FOLDER))?;
+        file::create_folder(&shelf(&self.scenario))?;
         Ok(file::write_whole(path, snapshot.to_text().as_bytes())?)
+    }
+}
+
+/// The folder of a scenario that is named by its folder or its file.
+fn folder_of(scenario: &Path) -> &Path {
+    if is_file(scenario) { scenario.parent().unwrap_or(Path::new("")) } else { scenario }
+}
+
+/// Whether a scenario is named by its file: several of a folder are told apart so.
+fn is_file(scenario: &Path) -> bool {
+    scenario.extension().is_some_and(|ending| ending == "toml") && !scenario.is_dir()
+}
+
+/// Where the snapshots of a scenario are: those of a file that is not called as usual in a folder of its name.
+fn shelf(scenario: &Path) -> PathBuf {
+    let all = folder_of(scenario).join(FOLDER);
+    match scenario.file_stem().filter(|_| is_file(scenario)) {
+        Some(name) => all.join(name),
+        None => all,
     }
 }
 
@@ -122,7 +146,7 @@ pub fn reviewed(scenario: &Path) -> Result<Vec<Place>, StoreError> {
 }
 
 fn named(scenario: &Path, ending: &str) -> Result<Vec<Place>, StoreError> {
-    let folder = scenario.join(FOLDER);
+    let folder = shelf(scenario);
     let failed = Unreadable::at(&folder);
     let entries = match std::fs::read_dir(&folder) {
         Ok(entries) => entries,

@@ -60,6 +60,8 @@ pub struct SoftPlcClient {
     tracing: Option<Tracing>,
     journal: Option<Keeper>,
     watcher: Option<Watcher>,
+    /// The largest memory that is shown, bytes.
+    shown_bytes_max: usize,
     ports: Ports,
     /// What the program finds in its file system at the set-up.
     files: Vec<PlcFile>,
@@ -128,6 +130,7 @@ impl SoftPlcClient {
             tracing: None,
             journal: None,
             watcher: None,
+            shown_bytes_max: SHOWN_BYTES_MAX,
             tables: Vec::new(),
             ports: Ports::default(),
             files: Vec::new(),
@@ -248,6 +251,11 @@ impl SoftPlcClient {
     ) -> Result<(), UnknownVariable> {
         self.watcher = Some(Watcher::new(self.plc.application(), watches, changes, sink)?);
         Ok(())
+    }
+
+    /// Shows its memory whole to those who look, however large it is: for those who look now and then.
+    pub fn show_whole(&mut self) {
+        self.shown_bytes_max = usize::MAX;
     }
 
     /// Shows the array at `path` as a table with rows of so many elements.
@@ -447,7 +455,7 @@ impl Client for SoftPlcClient {
     fn show(&self, view: &mut ClientView) {
         view.tables.extend(self.tables.iter().map(|table| table.of(self.plc.memory())));
         let memory = self.plc.memory();
-        if memory.len() > SHOWN_BYTES_MAX {
+        if memory.len() > self.shown_bytes_max {
             return;
         }
         view.memories.push(Memory {

@@ -42,6 +42,32 @@ pub enum FileError {
     Name(String),
 }
 
+/// The files of a PLC with this memory, each with its name, in the order of their places.
+pub fn files_in(application: &Application, memory: &[u8]) -> Vec<(String, Vec<u8>)> {
+    let file = |index: usize| {
+        let bytes = |member: &str| {
+            let found = application.variable(&format!("OnescanFiles[{index}].{member}")).ok()?;
+            let start = found.offset as usize;
+            Some((memory.get(start..start + found.size as usize)?, found))
+        };
+        let (used, _) = bytes("used")?;
+        let (size, _) = bytes("size")?;
+        let size = u32::from_le_bytes(size.try_into().ok()?) as usize;
+        let (name, of_name) = bytes("name")?;
+        let name = match of_name.zero_terminated {
+            Some(_) => name.split(|byte| *byte == 0).next()?,
+            None => {
+                let (length, text) = name.split_first_chunk::<2>()?;
+                text.get(..usize::from(u16::from_le_bytes(*length)))?
+            }
+        };
+        let (all, _) = bytes("bytes")?;
+        let content = all.get(..size)?.to_vec();
+        (used.first() == Some(&1)).then(|| (name.iter().copied().map(char::from).collect(), content))
+    };
+    (0..COUNT).filter_map(file).collect()
+}
+
 impl PlcFile {
     /// Whether a program has files at all.
     pub(super) fn are_in(application: &Application) -> bool {

@@ -33,6 +33,9 @@ pub enum Cuts {
     Every(u32),
     /// Once, at random: by the seed of the port.
     Random,
+    /// Once, of messages of one length each a byte further on than the one before: from the first uncut one to one that is
+    /// cut behind its last byte but one, and again.
+    Onwards,
 }
 
 /// How a connection is.
@@ -143,6 +146,11 @@ impl Connection {
             Cuts::Every(most) => {
                 let most = u64::from(most.max(1));
                 (1..message.div_ceil(most)).for_each(|segment| stop(segment * most));
+            }
+            // bytes sent so far tell how many messages that were
+            Cuts::Onwards => {
+                let messages = first.checked_div(message).unwrap_or(0);
+                stop(messages.checked_rem(message).unwrap_or(0));
             }
             Cuts::Random => {
                 if let Some(at) = self.random.bits().checked_rem(message) {

@@ -169,13 +169,33 @@ fn a_saved_port_goes_on_in_the_middle_of_a_byte() {
     assert_eq!(foreign.check(whole.ports[0].state()), Err(ForeignPort));
 }
 
+/// Messages of one length are cut at each of their places in turn: the rest of a message comes a turn later.
+#[test]
+fn a_cut_that_moves_onwards_comes_to_every_place() {
+    let mut pair = Pair::new(connection(Cuts::Onwards), 64, [1, 1]);
+    let (mut sent, mut parts) = (0, Vec::new());
+    for _ in 0..60 {
+        pair.step(|side, step, port| match side {
+            0 if step == 1 => port.connect(),
+            0 if step > 8 && step.is_multiple_of(5) && sent < 9 => {
+                assert!(port.send(&[7; 8]));
+                sent += 1;
+            }
+            0 => {}
+            _ => parts.extend(Some(port.take(usize::MAX).len()).filter(|count| *count > 0)),
+        });
+    }
+    assert_eq!(parts, [8, 1, 7, 2, 6, 3, 5, 4, 4, 5, 3, 6, 2, 7, 1, 8]);
+}
+
 fn cuts() -> impl Strategy<Value = Cuts> {
     prop_oneof![
         Just(Cuts::Nowhere),
         (1_u32..40).prop_map(Cuts::Behind),
         // a segment a turn: shorter ones would take too long
         (8_u32..40).prop_map(Cuts::Every),
-        Just(Cuts::Random)
+        Just(Cuts::Random),
+        Just(Cuts::Onwards)
     ]
 }
 

@@ -87,9 +87,12 @@ const PARTS: &[Part] = parts![
     Codesys BOTH, "caa_types";
     Codesys BOTH, "codesys_sysfile";
     Codesys BOTH, "codesys_nbs";
+    Codesys BOTH, "codesys_syssock";
     SiemensScl SCL, "siemens_conversion";
     SiemensScl SCL, "siemens_time";
     Iec3 SCL, "siemens_clock";
+    TwinCat SCL, "siemens_open_communication";
+    TwinCat SCL, "siemens_point_to_point";
     Codesys AX, "ax_unit";
     Matiec MATIEC, "matiec_control";
     Matiec MATIEC, "beremiz_hmi";

@@ -36,7 +36,7 @@ impl Scenario {
     pub fn load_case(path: &Path, name: Option<&str>) -> Result<Self, ScenarioError> {
         let scenario = Self::load(path)?;
         let Some(name) = name else { return Ok(scenario) };
-        let catalogue = Catalogue::load(scenario.folder())?;
+        let catalogue = Catalogue::load(scenario.path())?;
         let case = catalogue.named(&scenario, name)?.clone();
         scenario.with_case(&catalogue, &case)
     }

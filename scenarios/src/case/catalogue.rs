@@ -13,7 +13,7 @@ use toml::{Spanned, Value};
 use super::campaign::{self, Campaign};
 use super::file::{CampaignFile, CaseFile, CasesFile, SnapshotFile, VERSION};
 use super::matrix::{Axis, COMBINATIONS_MAX, combinations};
-use super::{Case, DEFAULT, FILE_NAME, Setting};
+use super::{Case, DEFAULT, Setting};
 use crate::arrays;
 use crate::error::{ScenarioError, wrong};
 use crate::expectations::place_within;
@@ -30,13 +30,13 @@ pub struct Catalogue {
 }
 
 impl Catalogue {
-    /// The cases of the scenario in `folder`.
+    /// The cases of the scenario in `scenario`, a folder or a file.
     ///
     /// # Errors
     /// `cases.toml` cannot be read or is wrong, each with its place.
-    pub fn load(folder: &Path) -> Result<Self, ScenarioError> {
-        let path = folder.join(FILE_NAME);
-        permission::granted().check(folder, &path)?;
+    pub fn load(scenario: &Path) -> Result<Self, ScenarioError> {
+        let path = super::beside(scenario);
+        permission::granted().check(path.parent().unwrap_or(Path::new("")), &path)?;
         match regular::read_text(&path) {
             Ok(text) => Self::parse(path, text),
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => {

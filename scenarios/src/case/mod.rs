@@ -22,6 +22,7 @@ pub mod value;
 pub mod written;
 
 use std::ops::Range;
+use std::path::{Path, PathBuf};
 
 use onescan_server::signal::ClientName;
 use onescan_server::time::VirtualTime;
@@ -35,6 +36,18 @@ pub use file::{CampaignVerdict, FaultKind};
 pub const DEFAULT: &str = "default";
 /// The file beside `scenario.toml`.
 pub const FILE_NAME: &str = "cases.toml";
+/// What the file with the cases of another scenario of the folder ends with.
+pub const OWN_ENDING: &str = ".cases.toml";
+
+/// The file with the cases of the scenario in `path`, a folder or a file: `cases.toml` beside it. A scenario in a file of another
+/// name than usual has its own, as `serial.toml` those of `serial.cases.toml`, if that file is there.
+pub fn beside(path: &Path) -> PathBuf {
+    if path.is_dir() {
+        return path.join(FILE_NAME);
+    }
+    let own = path.file_stem().map(|name| path.with_file_name(format!("{}{OWN_ENDING}", name.to_string_lossy())));
+    own.filter(|own| own.is_file()).unwrap_or_else(|| path.with_file_name(FILE_NAME))
+}
 
 /// A value that a case sets, by the path of what it sets.
 #[derive(Clone, Debug, PartialEq)]

@@ -71,6 +71,15 @@ impl<J: Foresight> Ahead<J> {
         self.window.to_ns.map_or(u64::MAX, |to_ns| sample.t_ns.saturating_add(to_ns))
     }
 
+    /// When the window of the one sample that is asked for begins and ends; `next` is the sample that comes next. Equal samples may then be left
+    /// out, but for the first and the last ones and those at these ends: joining is idempotent, what breaks first comes first,
+    /// and what is last is last.
+    pub(super) fn ends(&self, next: Option<Sample>) -> Option<[u64; 2]> {
+        let first = if self.newest.is_none() { next } else { self.waiting.front().copied() };
+        let first = first.filter(|_| self.demand == Demand::First)?;
+        Some([first.t_ns.saturating_add(self.window.from_ns), self.end_ns(first)])
+    }
+
     /// Takes what is known of the next sample, and says what follows from it of earlier ones.
     pub(super) fn push(&mut self, sample: Sample, member: J, out: &mut VecDeque<Judged>) {
         self.say_until(|end_ns| end_ns < sample.t_ns, out);

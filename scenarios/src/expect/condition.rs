@@ -301,7 +301,7 @@ mod tests {
             let (mut t_ns, mut now) = (0, Vec::new());
             for (dt_ns, x, on) in &samples {
                 let x = f64::from(*x);
-                block.push(t_ns, [f64::from(u8::from(*on)), x]);
+                block.push(t_ns, 1, 1, [f64::from(u8::from(*on)), x]);
                 let holds = &mut |(is_on, limit): &(bool, f64)| if *is_on { *on } else { x > *limit };
                 now.push(judged.judge(&mut memories, t_ns, holds));
                 let saved = serde_json::to_string(&memories).expect("JSON");

@@ -10,8 +10,10 @@ use super::sample::{Block, Judged, TraceEnd};
 use super::truth::{Margin, Scale, Truth};
 use super::verdict::{Outcome, Verdict};
 
-/// Samples that are judged at a time.
-const BLOCK_LEN: usize = 256;
+/// Runs of equal samples that are judged at a time.
+const BLOCK_RUNS: usize = 256;
+/// And samples, about: what an operator within another one says of each of them is kept until then.
+const BLOCK_SAMPLES: u64 = 8192;
 
 /// Takes the samples of a run and judges it by expectations.
 #[derive(Clone, Debug)]
@@ -53,12 +55,20 @@ impl Judge {
     /// Takes a sample: a value for each column. Times that do not increase are not taken: the
     /// sample before them stands.
     pub fn push(&mut self, t_ns: u64, values: impl IntoIterator<Item = f64>) {
-        if self.newest_ns.is_some_and(|newest_ns| newest_ns >= t_ns) {
-            return;
-        }
-        self.newest_ns = Some(t_ns);
-        self.open.push(t_ns, values);
-        if self.open.len() >= BLOCK_LEN {
+        self.push_run(t_ns, 1, 1, values);
+    }
+
+    /// Takes `count` samples with the same values, the first at `t_ns`, each `step_ns` behind the one before, which is more
+    /// than 0. It is as if they were pushed one by one.
+    pub fn push_run(&mut self, t_ns: u64, step_ns: u64, count: u64, values: impl IntoIterator<Item = f64>) {
+        let step_ns = step_ns.max(1);
+        let gap_ns = self.newest_ns.and_then(|newest_ns| newest_ns.checked_sub(t_ns));
+        let old = gap_ns.map_or(0, |gap_ns| gap_ns / step_ns + 1);
+        let Some(new) = count.checked_sub(old).filter(|new| *new > 0) else { return };
+        let t_ns = t_ns + old * step_ns;
+        self.newest_ns = Some(t_ns + (new - 1) * step_ns);
+        self.open.push(t_ns, step_ns, new, values);
+        if self.open.runs() >= BLOCK_RUNS || self.open.end() - self.open.first() >= BLOCK_SAMPLES {
             self.judge_open();
             self.forget();
         }
@@ -108,7 +118,7 @@ impl Judge {
         // What a formula is worth is what it is worth at the first sample, which a negation names whenever it is decided.
         let mut others = vec![0];
         let first = self.expectations.iter().map(|(_, monitor)| monitor.keeps(&mut others)).min();
-        let first = first.unwrap_or(u64::MAX).min(self.open_first().saturating_sub(1));
+        let first = first.unwrap_or(u64::MAX).min(self.open.first().saturating_sub(1));
         let mut index = 0;
         while let Some(block) = self.kept.get(index) {
             if block.end() > first || others.iter().any(|number| block.holds(*number)) {
@@ -117,11 +127,6 @@ impl Judge {
                 self.free.push(block);
             }
         }
-    }
-
-    /// The number of the first sample that is not judged yet.
-    fn open_first(&self) -> u64 {
-        self.open.end() - self.open.len() as u64
     }
 
     fn outcome(&self, expectation: &Expectation, judged: Option<&Judged>) -> Outcome {
@@ -186,6 +191,11 @@ mod tests {
         })
     }
 
+    /// How many equal samples follow each other.
+    fn run() -> impl Strategy<Value = u64> {
+        prop_oneof![12 => Just(1_u64), 3 => 2_u64..12, 1 => 12_u64..60]
+    }
+
     fn known() -> Vec<KnownSignal> {
         let signal = |name: &str, ty| KnownSignal { name: name.to_owned(), ty, unit: None };
         vec![signal("a", SignalType::LREAL), signal("b", SignalType::LREAL), signal("c", SignalType::BOOL)]
@@ -201,7 +211,7 @@ mod tests {
         #[test]
         fn a_run_is_judged_as_it_goes_like_as_a_whole(
             formulas in prop::collection::vec(formula(), 1..4),
-            samples in prop::collection::vec((1_u64..5, -9_i32..10, prop::num::i8::ANY, any::<bool>()), 0..60),
+            samples in prop::collection::vec((1_u64..5, -9_i32..10, prop::num::i8::ANY, any::<bool>(), run()), 0..60),
             start_ns in prop_oneof![Just(0_u64), 0_u64..30],
             cut in any::<bool>(),
             repeat in 1_usize..12,
@@ -213,17 +223,18 @@ mod tests {
             let mut trace = Trace::new(3);
             let mut settled = Vec::new();
             let mut t_ns = start_ns;
-            // Runs longer than a block, too.
-            for (dt_ns, a, b, c) in samples.iter().cycle().take(samples.len() * repeat) {
+            // Longer than a block, too.
+            for (dt_ns, a, b, c, count) in samples.iter().cycle().take(samples.len() * repeat) {
                 let b = if *b == i8::MIN { f64::NAN } else { f64::from(*b % 8) };
                 let values = [f64::from(*a) / 2.0, b, f64::from(u8::from(*c))];
-                judge.push(t_ns, values);
-                trace.push(t_ns, values);
+                // Equal samples at once are as good as one by one.
+                judge.push_run(t_ns, *dt_ns, *count, values);
+                (0..*count).for_each(|number| trace.push(t_ns + number * dt_ns, values));
                 // What is met early is met in the end, and looking changes nothing.
                 if asked && *dt_ns == 3 {
                     settled.push(judge.settled());
                 }
-                t_ns += dt_ns;
+                t_ns += dt_ns * count;
             }
             trace.set_end(end);
             let outcomes = judge.clone().finish(end);
@@ -253,6 +264,22 @@ mod tests {
         assert_eq!(truth(text, &[(0, 0.5), (3, 0.5)]), Some(false));
         // Neither holds: no sample that comes can mend it.
         assert_eq!(truth(text, &[(0, 0.0)]), Some(true));
+    }
+
+    /// Samples that are equal are not all looked at where a window cannot tell them apart, and cost nothing then.
+    #[test]
+    fn a_month_of_equal_samples_is_judged_at_once() {
+        let texts =
+            ["eventually[100s,700h] a > 5", "always[1s,100h] (a < 9 and not c)", "(a < 3) until[0,720h] (b > 3)"];
+        let mut judge = Judge::new(texts.map(expectation), 3);
+        let step_ns = 1_000_000;
+        let count = 720 * 3600 * 1000;
+        judge.push_run(0, step_ns, count, [1.0, 2.0, 0.0]);
+        judge.push_run(count * step_ns, step_ns, count, [7.0, 4.0, 0.0]);
+        let verdicts = judge.finish(TraceEnd::Complete).into_iter().map(|outcome| outcome.verdict).collect::<Vec<_>>();
+        assert!(matches!(verdicts[0], Verdict::Violated { .. }), "{verdicts:?}");
+        assert_eq!(verdicts[1], Verdict::Met);
+        assert_eq!(verdicts[2], Verdict::Met, "at 720 h, which is within");
     }
 
     /// What is kept does not grow with the run, where operators without an end stand outermost.

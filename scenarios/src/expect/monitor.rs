@@ -8,7 +8,7 @@ use std::collections::VecDeque;
 use super::ahead::Ahead;
 use super::back::Back;
 use super::formula::{Comparison, Edge, Formula};
-use super::sample::{Block, Certain, Demand, Judged, TraceEnd};
+use super::sample::{Block, Certain, Demand, Judged, Look, Sample, TraceEnd};
 use super::sliding::{All, Any, Pursuit, Since};
 use super::term::Number;
 use super::truth::{Scale, Worth};
@@ -18,6 +18,8 @@ use super::truth::{Scale, Worth};
 pub(super) struct Monitor {
     demand: Demand,
     part: Part,
+    /// Set where what is said of a sample depends on its values alone, so that equal samples need not all be asked for.
+    is_pointwise: bool,
     /// What has been said and not been taken yet.
     said: VecDeque<Judged>,
     /// Set when all has been said that is asked for.
@@ -83,33 +85,61 @@ impl Monitor {
             Formula::Since(window, left, right) => Part::Since(Back::new(*window), two(left, right, demand)),
             Formula::Edge(edge, inner) => Part::Edge(*edge, None, same(inner)),
         };
-        Self { demand, part, said: VecDeque::new(), done: false }
+        let is_pointwise = match &part {
+            Part::Constant(_) | Part::Signal(_) => true,
+            Part::Compare(_, left, right) => !left.remembers() && !right.remembers(),
+            Part::Not(inner) => inner.is_pointwise,
+            Part::Pair(_, operands) => operands.iter().all(|operand| operand.is_pointwise),
+            Part::Always(..) | Part::Eventually(..) | Part::Until(..) => false,
+            Part::Historically(..) | Part::Once(..) | Part::Since(..) | Part::Edge(..) => false,
+        };
+        Self { demand, part, is_pointwise, said: VecDeque::new(), done: false }
     }
 
     /// Takes the next samples.
     pub(super) fn push(&mut self, block: &Block) {
+        self.look(block, Look::Every);
+    }
+
+    fn look(&mut self, block: &Block, look: Look) {
         if self.done {
             return;
         }
         match &mut self.part {
             Part::Constant(value) => {
-                self.said.extend(block.samples().map(|(_, sample)| Judged::here(sample, Worth::of_bool(*value))));
+                self.said.extend(block.samples(look).map(|(_, sample)| Judged::here(sample, Worth::of_bool(*value))));
             }
             Part::Signal(column) => self.said.extend(
                 block
-                    .samples()
+                    .samples(look)
                     .map(|(place, sample)| Judged::here(sample, Worth::of_bool(block.value(*column, place) != 0.0))),
             ),
-            Part::Compare(comparison, left, right) => self.said.extend(block.samples().map(|(place, sample)| {
+            Part::Compare(comparison, left, right) => self.said.extend(block.samples(look).map(|(place, sample)| {
                 let (left, right) = (left.at(block, place, sample), right.at(block, place, sample));
                 Judged::here(sample, Worth::of_comparison(*comparison, left, right))
             })),
             _ => {
-                self.operands().iter_mut().for_each(|operand| operand.push(block));
+                let look = self.look_of_operands(look, block.first_sample());
+                self.operands().iter_mut().for_each(|operand| operand.look(block, look));
                 self.take();
             }
         }
         self.end_if_done();
+    }
+
+    /// Which samples its operands are asked for: of equal ones only those that its window tells apart, where that is enough.
+    fn look_of_operands(&self, look: Look, next: Option<Sample>) -> Look {
+        let around = |ends: Option<[u64; 2]>| ends.map_or(Look::Every, Look::Around);
+        match &self.part {
+            Part::Always(ahead, operand) if operand.is_pointwise => around(ahead.ends(next)),
+            Part::Eventually(ahead, operand) if operand.is_pointwise => around(ahead.ends(next)),
+            Part::Until(ahead, operands) if operands.iter().all(|operand| operand.is_pointwise) => {
+                around(ahead.ends(next))
+            }
+            Part::Always(..) | Part::Eventually(..) | Part::Until(..) => Look::Every,
+            // what remembers is never asked for less than all
+            _ => look,
+        }
     }
 
     /// Says what is left to say when the run is over.

@@ -43,7 +43,7 @@ impl Reaction {
             return;
         }
         self.block.begin(self.samples);
-        self.block.push(t_ns, values);
+        self.block.push(t_ns, 1, 1, values);
         self.samples += 1;
         self.inner.push(&self.block);
         self.look();

@@ -30,6 +30,16 @@ impl Number {
         }
     }
 
+    /// Whether it depends on the sample before.
+    pub(super) fn remembers(&self) -> bool {
+        match self {
+            Self::Constant(_) | Self::Signal(_) => false,
+            Self::Changed(_, inner) | Self::Scaled(inner, ..) => inner.remembers(),
+            Self::Joined(_, left, right) => left.remembers() || right.remembers(),
+            Self::Rate(..) => true,
+        }
+    }
+
     /// What it is at a sample; samples come in their order.
     pub(super) fn at(&mut self, block: &Block, place: usize, sample: Sample) -> f64 {
         match self {

@@ -98,7 +98,7 @@ impl Book {
                 return Err(self.wrong(format!("two starts are called `{name}`"), file.name.span(), None));
             }
             if let Some(case) = case {
-                let cases = Catalogue::load(scenario.folder())?;
+                let cases = Catalogue::load(scenario.path())?;
                 if cases.find(case.get_ref()).is_none() {
                     let help = did_you_mean(case.get_ref(), cases.cases().iter().map(|case| case.name.as_str()));
                     return Err(self.wrong(format!("there is no case `{}`", case.get_ref()), case.span(), help));
@@ -223,7 +223,7 @@ impl Book {
 
     /// A case of the scenario, and what it does.
     fn prepared_case(scenario: &Scenario, name: &str) -> Result<(Case, Option<CaseFile>), ScenarioError> {
-        let cases = Catalogue::load(scenario.folder())?;
+        let cases = Catalogue::load(scenario.path())?;
         let case = cases.named(scenario, name)?.clone();
         let entry = cases.healthy_entry(&case).cloned();
         Ok((case, entry))
@@ -250,7 +250,7 @@ impl Book {
     /// Its case is wrong.
     pub fn prepared(&self, scenario: &Scenario, start: &Start) -> Result<Scenario, ScenarioError> {
         let Some(name) = &start.case else { return Ok(scenario.clone()) };
-        let cases = Catalogue::load(scenario.folder())?;
+        let cases = Catalogue::load(scenario.path())?;
         let case = cases.named(scenario, name)?.clone();
         scenario.clone().with_case(&cases, &case)
     }

@@ -29,6 +29,8 @@ pub const TYPE_UPLOAD: u32 = 0xF00E;
 pub const UPLOAD_INFO_2: u32 = 0xF00F;
 /// Group: many reads as one; the offset is their count.
 pub const SUM_READ: u32 = 0xF080;
+/// Group: the same, and each part is answered with its length.
+pub const SUM_READ_EX: u32 = 0xF083;
 /// Group: many writes as one.
 pub const SUM_WRITE: u32 = 0xF081;
 

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | this file | the ports of a PLC, and their part in its turn |
 //! | [`terminal`] | a serial terminal with a process image of 22 bytes |
-//! | [`socket`] | a connection, as the blocks of vendors for TCP have it |
+//! | [`socket`] | a connection or a module's line, as the blocks of vendors have it |
 //!
 //! A turn lets bytes arrive and writes what is new into the PLC's variables, before the scan; after it, what the program
 //! wants to send goes on its way.
@@ -23,7 +23,7 @@ use thiserror::Error;
 use crate::stream::connection::{Cuts, Role};
 use crate::stream::serial::Rate;
 use crate::stream::{ForeignPort, Form, Losses, Port, PortState};
-use socket::Socket;
+use socket::{Reached, Socket};
 use terminal::Terminal;
 pub use terminal::TerminalKind;
 
@@ -55,6 +55,15 @@ pub enum PlcWay {
         input: String,
         /// Path of the variable that is its output.
         output: String,
+    },
+    /// A communication module, which the program reaches by its number and its vendor's blocks.
+    Module {
+        /// How fast bytes follow each other.
+        rate: Rate,
+        /// The number that its blocks have for it.
+        number: u16,
+        /// Bytes that it keeps until the program takes them, in place of 1024.
+        receive_buffer: Option<usize>,
     },
     /// A connection that the program begins, by its vendor's blocks.
     Tcp {
@@ -98,8 +107,14 @@ pub enum PortError {
         /// The port.
         port: String,
     },
+    /// No block that could use it is in the program.
+    #[error("port `{port}` is a module's, and the program has no block that sends or receives there")]
+    NoModuleBlock {
+        /// The port.
+        port: String,
+    },
     /// More than there is room for.
-    #[error("port `{port}` is one too many: a PLC has at most {} of TCP", socket::COUNT)]
+    #[error("port `{port}` is one too many: a PLC has at most {} of TCP and of modules", socket::COUNT)]
     Many {
         /// The port.
         port: String,
@@ -156,9 +171,16 @@ impl Ports {
                     let port = Port::new(Form::Serial(*rate), windows, seed).with_buffer(buffer);
                     (port, End::Terminal(Terminal::new(*terminal, input?, output?)))
                 }
+                PlcWay::Module { rate, number, receive_buffer } => {
+                    let buffer = receive_buffer.unwrap_or(socket::MODULE_BYTES);
+                    let port = Port::new(Form::Serial(*rate), windows, seed).with_buffer(buffer);
+                    let socket = Socket::bind(application, &each.name, sockets, Reached::Module(*number, *rate))?;
+                    sockets += 1;
+                    (port, End::Socket(socket))
+                }
                 PlcWay::Tcp { host, number, cuts } => {
                     let port = Port::new(Form::Connection(Role::Connects, *cuts), windows, seed);
-                    let socket = Socket::bind(application, &each.name, sockets, host, *number)?;
+                    let socket = Socket::bind(application, &each.name, sockets, Reached::Host(host, *number))?;
                     sockets += 1;
                     (port, End::Socket(socket))
                 }

@@ -1,16 +1,48 @@
-//! A connection as `OnescanPorts` has it, in `plc-shim/iec/vendor/onescan_ports.st`, on which the blocks of vendors stand.
+//! A connection, or the line of a communication module, as `OnescanPorts` has it, in `plc-shim/iec/vendor/onescan_ports.st`, on which the blocks of vendors stand.
 
 use onescan_plc_shim::{Application, SoftPlc, WriteError};
 
 use super::{PortError, variable};
 use crate::stream::Port;
 use crate::stream::connection::Link;
+use crate::stream::serial::Rate;
 
-/// Ports of TCP that a PLC can have: the length of `OnescanPorts`.
+/// Ports of TCP and of modules that a PLC can have: the length of `OnescanPorts`.
 pub(super) const COUNT: usize = 8;
 
 /// Bytes of either buffer.
 const ROOM: usize = 8192;
+
+/// Bytes that a communication module keeps.
+pub(super) const MODULE_BYTES: usize = 1024;
+
+/// Bit times of silence that end a message at a module.
+const PAUSE_BITS: u64 = 12;
+
+/// Whom a program reaches, as it says it.
+pub(super) enum Reached<'h> {
+    /// A host and the number of its port.
+    Host(&'h str, u16),
+    /// A communication module, whose line has this rate.
+    Module(u16, Rate),
+}
+
+impl Reached<'_> {
+    /// What the program is told: members of an element of `OnescanPorts`, and literals. A module's line is always there.
+    fn told(&self) -> Vec<(&'static str, String)> {
+        let yes = || "TRUE".to_owned();
+        match self {
+            Self::Host(host, number) => {
+                vec![("exists", yes()), ("host", format!("'{host}'")), ("number", number.to_string())]
+            }
+            Self::Module(number, rate) => {
+                let pause_ms = (PAUSE_BITS * 1000).div_ceil(u64::from(rate.baud.get()));
+                let pause = ("pause", format!("T#{pause_ms}ms"));
+                vec![("exists", yes()), ("number", number.to_string()), pause, ("used", yes()), ("wanted", yes())]
+            }
+        }
+    }
+}
 
 /// Where the members of an element of `OnescanPorts` lie in the PLC's memory.
 pub(super) struct Socket {
@@ -31,20 +63,23 @@ impl Socket {
         application: &Application,
         port: &str,
         index: usize,
-        host: &str,
-        number: u16,
+        reached: Reached<'_>,
     ) -> Result<Self, PortError> {
         if index >= COUNT {
             return Err(PortError::Many { port: port.to_owned() });
         }
         if application.variable("OnescanPorts[0].exists").is_err() {
-            return Err(PortError::NoBlock { port: port.to_owned() });
+            let port = port.to_owned();
+            return Err(match reached {
+                Reached::Host(..) => PortError::NoBlock { port },
+                Reached::Module(..) => PortError::NoModuleBlock { port },
+            });
         }
         let found = |member: &str| variable(application, port, &format!("OnescanPorts[{index}].{member}"));
         let place = |member: &str| found(member).map(|variable| variable.offset as usize);
-        let told = [("exists", "TRUE".to_owned()), ("host", format!("'{host}'")), ("number", number.to_string())];
+        let told = reached.told().into_iter();
         Ok(Self {
-            told: told.map(|(member, literal)| (format!("OnescanPorts[{index}].{member}"), literal)).to_vec(),
+            told: told.map(|(member, literal)| (format!("OnescanPorts[{index}].{member}"), literal)).collect(),
             attempt: place("attempt")?,
             served: place("served")?,
             wanted: place("wanted")?,

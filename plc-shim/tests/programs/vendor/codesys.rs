@@ -190,3 +190,28 @@ fn files_have_an_end() {
         ],
     );
 }
+
+/// Addresses in the order of their bytes, and what is refused.
+#[test]
+fn sockets() {
+    hold(
+        Dialect::Codesys,
+        "h, h2 : RTS_IEC_HANDLE; a : SOCKADDRESS; r, r2, r3, r4, r5 : RTS_IEC_RESULT; n : DINT; body : BYTE; ip : UDINT;",
+        "h := SysSockCreate(SOCKET_AF_INET, SOCKET_STREAM, SOCKET_IPPROTO_TCP, ADR(r));
+         h2 := SysSockCreate(SOCKET_AF_INET, SOCKET_DGRAM, SOCKET_IPPROTO_IP, ADR(r2));
+         r3 := SysSockInetAddr('10.0.0.1', ADR(a.sin_addr));
+         ip := a.sin_addr.ulAddr;
+         r4 := SysSockConnect(h, ADR(a), SIZEOF(a));
+         n := SysSockRecv(h, ADR(body), 1, 0, ADR(r5));",
+        &[
+            "r = Errors.ERR_OK AND h <> RTS_INVALID_HANDLE",
+            "r2 = Errors.ERR_SOCK_AFUNSUPPORTED AND h2 = RTS_INVALID_HANDLE",
+            "r3 = Errors.ERR_OK AND ip = 16#0100000A",
+            "SysSockInetAddr('10.0.0.256', ADR(a.sin_addr)) = Errors.ERR_PARAMETER",
+            "SysSockHtons(2727) = 16#A70A",
+            "r4 = Errors.ERR_SOCK_HOSTUNREACHABLE",
+            "n = -1 AND r5 = Errors.ERR_SOCK_NOTSOCKET",
+            "SysSockClose(h) = Errors.ERR_OK AND SysSockClose(h) = Errors.ERR_SOCK_NOTSOCKET",
+        ],
+    );
+}

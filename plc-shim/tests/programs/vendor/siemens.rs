@@ -3,6 +3,7 @@
 use onescan_plc_shim::Dialect;
 
 use super::hold;
+use crate::rig::Rig;
 
 #[test]
 fn scaling() {
@@ -40,5 +41,43 @@ fn date_and_time() {
             "a.YEAR = 2024 AND a.HOUR = 7 AND a.SECOND = 9 AND a.WEEKDAY = 2",
             "T_DIFF(IN1 := a, IN2 := b) = T#5s",
         ],
+    );
+}
+
+/// A partner that is no port of the scenario does not answer; wrong lengths and numbers are told at once.
+#[test]
+fn open_communication_tells_what_is_wrong() {
+    let mut rig = Rig::in_dialect(
+        Dialect::SiemensScl,
+        "PROGRAM P
+        VAR
+            partner, none : TCON_Param; send, long, nobody : TSEND_C; body : ARRAY [0..9] OF BYTE; scans, late : DINT;
+            wrong, missing : WORD; errors : DINT;
+        END_VAR
+            partner.ID := 1; partner.ACTIVE_EST := TRUE;
+            send(REQ := FALSE, CONT := TRUE, CONNECT := partner, DATA := body);
+            IF send.ERROR AND send.STATUS = 16#80C4 THEN errors := errors + 1; IF late = 0 THEN late := scans; END_IF; END_IF;
+            long(REQ := TRUE, CONT := TRUE, LEN := 11, CONNECT := partner, DATA := body);
+            IF long.ERROR AND wrong = 0 THEN wrong := long.STATUS; END_IF;
+            nobody(REQ := TRUE, CONT := TRUE, CONNECT := none, DATA := body);
+            missing := nobody.STATUS;
+            scans := scans + 1;
+        END_PROGRAM",
+    );
+    for _ in 0..2_500 {
+        rig.scan().expect("no fault");
+    }
+    assert_eq!((rig.int("P.wrong"), rig.int("P.missing")), (0x8088, 0x8086));
+    assert_eq!((rig.int("P.errors"), rig.int("P.late")), (2, 1_000), "every 10 s, at scans of 10 ms");
+    assert!(rig.bool("P.send.BUSY"), "it goes on asking");
+}
+
+#[test]
+fn a_module_that_is_not_there_is_told() {
+    hold(
+        Dialect::SiemensScl,
+        "send : SEND_PTP; get : RCV_PTP; body : ARRAY [0..9] OF BYTE;",
+        "send(REQ := TRUE, PORT := 270, BUFFER := body, LENGTH := 0); get(EN_R := TRUE, PORT := 270, BUFFER := body);",
+        &["send.ERROR AND send.STATUS = W#16#8090", "get.ERROR AND get.STATUS = W#16#8090 AND NOT get.NDR"],
     );
 }

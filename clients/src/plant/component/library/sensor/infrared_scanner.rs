@@ -66,6 +66,8 @@ parameters! {
         cut_behind: u32 = 0 => 0.0, 65_535.0;
         /// Ethernet: segments have so many bytes at most; 0 is no limit
         segment: u32 = 0 => 0.0, 65_535.0;
+        /// Ethernet: each message is cut once, a byte further on than the one before; goes before the two above
+        cut_onwards: bool = false;
         /// by how much it is warmer inside than the air around the shell
         inside_more_degc: f64 = 6.0 => -100.0, 200.0;
     }
@@ -229,10 +231,11 @@ impl Component for InfraredScanner {
     }
 
     fn ports(&self) -> Vec<Form> {
-        let cuts = match (self.p.cut_behind, self.p.segment) {
-            (0, 0) => Cuts::Nowhere,
-            (0, segment) => Cuts::Every(segment),
-            (behind, _) => Cuts::Behind(behind),
+        let cuts = match (self.p.cut_onwards, self.p.cut_behind, self.p.segment) {
+            (true, ..) => Cuts::Onwards,
+            (false, 0, 0) => Cuts::Nowhere,
+            (false, 0, segment) => Cuts::Every(segment),
+            (false, behind, _) => Cuts::Behind(behind),
         };
         let baud = NonZeroU32::new(self.p.baud).unwrap_or(NonZeroU32::MIN);
         vec![match self.p.link {
