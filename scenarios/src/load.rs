@@ -176,8 +176,9 @@ impl Scenario {
         self.code_policy = CodePolicy::AnyCode;
     }
 
-    pub(crate) fn code_policy(&self) -> CodePolicy {
-        self.code_policy
+    /// Whose states PLC `name` takes: a case with another program in it goes on from where the scenario's own was.
+    pub(crate) fn code_policy(&self, name: &ClientName) -> CodePolicy {
+        if self.code_of_case(name).next().is_some() { CodePolicy::AnyCode } else { self.code_policy }
     }
 
     /// What `[timing]` says.
@@ -330,6 +331,7 @@ impl Scenario {
                 | ClientFile::External { .. } => {}
             }
         }
+        files.extend(self.files_of_case());
         // cases and lessons stand beside the scenario
         files.extend(self.applied().and_then(|applied| Path::new(&applied.source.0).file_name()).map(PathBuf::from));
         files.dedup();
