@@ -7,8 +7,10 @@
 //! | module | subject |
 //! |---|---|
 //! | `cma_es` | CMA-ES, by the crate `cmaes` |
+//! | `annealing` | simulated annealing, by the crate `argmin` |
 //! | `random` | each point by itself |
 
+mod annealing;
 mod cma_es;
 mod random;
 
@@ -37,12 +39,26 @@ pub(super) fn new(
     let mut random = Random::new(seed_for(seed, "falsify", kind.word()));
     match kind {
         OptimiserKind::CmaEs => {
-            let corners = corners(&mut random);
-            let opening = corners.into_iter().flat_map(|corner| [anywhere(dimensions, &mut random), corner]).collect();
+            let opening = opening(dimensions, &mut random, corners);
             Box::new(cma_es::CmaEs::new(dimensions, random, opening))
+        }
+        OptimiserKind::Annealing => {
+            let opening = opening(dimensions, &mut random, corners);
+            Box::new(annealing::Annealing::new(dimensions, random, opening))
         }
         OptimiserKind::Random => Box::new(random::Evenly::new(dimensions, random)),
     }
+}
+
+/// What is looked at first.
+fn opening(dimensions: usize, random: &mut Random, corners: impl FnOnce(&mut Random) -> Vec<Point>) -> Vec<Point> {
+    let corners = corners(random);
+    corners.into_iter().flat_map(|corner| [anywhere(dimensions, random), corner]).collect()
+}
+
+/// The point that is worth least.
+fn best_of(points: Vec<Point>, values: &[f64]) -> Option<(Point, f64)> {
+    points.into_iter().zip(values.iter().copied()).min_by(|(_, one), (_, other)| one.total_cmp(other))
 }
 
 /// A point, evenly from the cube.
@@ -72,7 +88,7 @@ mod tests {
 
     #[test]
     fn a_search_is_a_function_of_its_seed() {
-        for kind in [OptimiserKind::CmaEs, OptimiserKind::Random] {
+        for kind in [OptimiserKind::CmaEs, OptimiserKind::Annealing, OptimiserKind::Random] {
             let (first, again, other) = (searched(kind, 1, 30), searched(kind, 1, 30), searched(kind, 2, 30));
             assert_eq!(first, again, "{kind:?}");
             assert_ne!(first.0, other.0, "{kind:?}");
@@ -83,5 +99,8 @@ mod tests {
     fn it_finds_the_bottom_of_a_bowl() {
         let (cma_es, by_chance) = (searched(OptimiserKind::CmaEs, 1, 40).1, searched(OptimiserKind::Random, 1, 20).1);
         assert!(cma_es < 1e-3 && cma_es < by_chance, "{cma_es}, by chance {by_chance}");
+        // A point at a time: as many as the 20 batches by chance.
+        let annealed = searched(OptimiserKind::Annealing, 1, 320).1;
+        assert!(annealed < by_chance, "{annealed}, by chance {by_chance}");
     }
 }
