@@ -13,9 +13,9 @@ use onescan_server::random::Random;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::SeedableRng;
 
-use super::{Optimiser, best_of};
+use super::Optimiser;
+use super::opening::Opening;
 use crate::falsify::space::Point;
-use crate::falsify::trial::FAR;
 
 /// The temperature at the beginning: a point that is worse by all that the opening spans is then accepted about once in four
 /// times, and jumps span the cube.
@@ -25,7 +25,8 @@ const PATIENCE: u64 = 40;
 
 /// One search, point by point.
 pub(super) struct Annealing {
-    opening: Vec<Point>,
+    /// Nothing once it is over.
+    opening: Option<Opening>,
     start: Point,
     /// What the start is worth, in units of the span.
     start_worth: f64,
@@ -38,10 +39,10 @@ pub(super) struct Annealing {
 }
 
 impl Annealing {
-    pub(super) fn new(dimensions: usize, mut random: Random, opening: Vec<Point>) -> Self {
+    pub(super) fn new(dimensions: usize, mut random: Random, opening: Opening) -> Self {
         let (moves, acceptance) = (Random::new(random.bits()), random.bits());
         let start = vec![0.5; dimensions];
-        Self { opening, start, start_worth: 0.0, span: 1.0, moves, acceptance, known: Vec::new() }
+        Self { opening: Some(opening), start, start_worth: 0.0, span: 1.0, moves, acceptance, known: Vec::new() }
     }
 
     /// The next point of the search.
@@ -66,23 +67,23 @@ impl Annealing {
 
 impl Optimiser for Annealing {
     fn ask(&mut self) -> Vec<Point> {
-        if !self.opening.is_empty() {
-            return self.opening.clone();
+        if let Some(opening) = &mut self.opening {
+            if let Some(points) = opening.ask() {
+                return points;
+            }
+            self.span = opening.span();
+            if let Some((best, worth)) = opening.best() {
+                (self.start, self.start_worth) = (best.clone(), worth / self.span);
+            }
+            self.opening = None;
         }
         vec![self.next().unwrap_or_else(|| self.start.clone())]
     }
 
     fn tell(&mut self, values: &[f64]) {
-        if self.opening.is_empty() {
-            self.known.extend(values.iter().map(|value| value / self.span));
-            return;
-        }
-        let opening = std::mem::take(&mut self.opening);
-        let finite = || values.iter().copied().filter(|value| value.abs() < FAR);
-        let span = finite().fold(f64::NEG_INFINITY, f64::max) - finite().fold(f64::INFINITY, f64::min);
-        self.span = if span.is_finite() && span > 0.0 { span } else { 1.0 };
-        if let Some((point, value)) = best_of(opening, values) {
-            (self.start, self.start_worth) = (point, value / self.span);
+        match &mut self.opening {
+            Some(opening) => opening.tell(values),
+            None => self.known.extend(values.iter().map(|value| value / self.span)),
         }
     }
 }

@@ -1,15 +1,12 @@
 //! CMA-ES, by the crate `cmaes`: from the best of its opening on, and again from anywhere when it has converged.
-//!
-//! Where several points are worth the same, and none less, nothing leads anywhere: then points are drawn evenly until one
-//! is worth less than all others, as chance is all that finds what there is.
 
 use std::cell::{Cell, RefCell};
-use std::cmp::Ordering;
 
 use cmaes::{CMAESOptions, DVector};
 use onescan_server::random::Random;
 
-use super::{Optimiser, anywhere, best_of};
+use super::opening::Opening;
+use super::{Optimiser, anywhere};
 use crate::falsify::space::Point;
 
 /// Standard deviation in each direction at the beginning, of a cube whose sides are 1.
@@ -18,14 +15,12 @@ const STEP_SIZE: f64 = 0.3;
 /// back, too little to matter else.
 const OUTSIDE: f64 = 1e-3;
 
-/// So many points are drawn at a time where nothing leads anywhere.
-const DRAWN: usize = 8;
-
 /// A search that begins again when it ends.
 pub(super) struct CmaEs {
     dimensions: usize,
     random: Random,
-    opening: Vec<Point>,
+    /// Nothing once it is over.
+    opening: Option<Opening>,
     /// Where this search begins.
     start: Point,
     seed: u64,
@@ -33,34 +28,13 @@ pub(super) struct CmaEs {
     known: Vec<f64>,
     /// The points that were asked for last, as the search has them: some lie outside of the cube.
     asked: Vec<Point>,
-    /// What of the points before the search was worth least, and how many were worth that; nothing once the search is led.
-    least: Option<(f64, usize)>,
 }
 
 impl CmaEs {
-    pub(super) fn new(dimensions: usize, mut random: Random, opening: Vec<Point>) -> Self {
+    pub(super) fn new(dimensions: usize, mut random: Random, opening: Opening) -> Self {
         let seed = random.bits();
         let start = vec![0.5; dimensions];
-        let least = Some((f64::INFINITY, 0));
-        Self { dimensions, random, opening, start, seed, known: Vec::new(), asked: Vec::new(), least }
-    }
-
-    /// Takes what points before the search are worth: it begins at the one that is worth less than all others, if one is.
-    fn look(&mut self, points: Vec<Point>, values: &[f64]) {
-        let Some((mut least, mut count)) = self.least else { return };
-        for value in values {
-            match value.total_cmp(&least) {
-                Ordering::Less => (least, count) = (*value, 1),
-                Ordering::Equal => count += 1,
-                Ordering::Greater => {}
-            }
-        }
-        if let Some((point, value)) = best_of(points, values)
-            && value <= least
-        {
-            self.start = point;
-        }
-        self.least = (count > 1).then_some((least, count));
+        Self { dimensions, random, opening: Some(opening), start, seed, known: Vec::new(), asked: Vec::new() }
     }
 
     /// The next generation of this search; nothing if it has ended.
@@ -94,12 +68,14 @@ impl CmaEs {
 
 impl Optimiser for CmaEs {
     fn ask(&mut self) -> Vec<Point> {
-        if !self.opening.is_empty() {
-            return self.opening.clone();
-        }
-        if self.least.is_some() {
-            self.asked = (0..DRAWN).map(|_| anywhere(self.dimensions, &mut self.random)).collect();
-            return self.asked.clone();
+        if let Some(opening) = &mut self.opening {
+            if let Some(points) = opening.ask() {
+                return points;
+            }
+            if let Some((best, _)) = opening.best() {
+                self.start.clone_from(best);
+            }
+            self.opening = None;
         }
         self.asked = self.generation().unwrap_or_else(|| {
             self.known.clear();
@@ -111,10 +87,8 @@ impl Optimiser for CmaEs {
     }
 
     fn tell(&mut self, values: &[f64]) {
-        if self.least.is_some() {
-            let opening = std::mem::take(&mut self.opening);
-            let points = if opening.is_empty() { std::mem::take(&mut self.asked) } else { opening };
-            self.look(points, values);
+        if let Some(opening) = &mut self.opening {
+            opening.tell(values);
             return;
         }
         for (point, value) in self.asked.drain(..).zip(values) {

@@ -6,18 +6,22 @@
 //!
 //! | module | subject |
 //! |---|---|
+//! | `opening` | what is looked at before a search is led |
 //! | `cma_es` | CMA-ES, by the crate `cmaes` |
 //! | `annealing` | simulated annealing, by the crate `argmin` |
 //! | `random` | each point by itself |
 
 mod annealing;
 mod cma_es;
+mod opening;
 mod random;
 
 use onescan_server::random::{Random, seed_for};
 
 use super::config::OptimiserKind;
 use super::space::Point;
+use super::trial::FAR;
+use opening::Opening;
 
 /// What chooses points.
 pub(super) trait Optimiser {
@@ -28,8 +32,8 @@ pub(super) trait Optimiser {
     fn tell(&mut self, values: &[f64]);
 }
 
-/// The optimiser that was asked for. Those that go on from something look at `corners` first, each after a point from
-/// anywhere: what breaks easily breaks anywhere, and much else in a corner.
+/// The optimiser that was asked for. Those that are led by margins look at some points by chance first, and at `corners`:
+/// what breaks easily breaks anywhere, and much else in a corner.
 pub(super) fn new(
     kind: OptimiserKind,
     dimensions: usize,
@@ -37,28 +41,19 @@ pub(super) fn new(
     corners: impl FnOnce(&mut Random) -> Vec<Point>,
 ) -> Box<dyn Optimiser> {
     let mut random = Random::new(seed_for(seed, "falsify", kind.word()));
+    let opening =
+        |corners: Vec<Point>, random: &mut Random| Opening::new(dimensions, Random::new(random.bits()), corners);
     match kind {
         OptimiserKind::CmaEs => {
-            let opening = opening(dimensions, &mut random, corners);
+            let opening = opening(corners(&mut random), &mut random);
             Box::new(cma_es::CmaEs::new(dimensions, random, opening))
         }
         OptimiserKind::Annealing => {
-            let opening = opening(dimensions, &mut random, corners);
+            let opening = opening(corners(&mut random), &mut random);
             Box::new(annealing::Annealing::new(dimensions, random, opening))
         }
         OptimiserKind::Random => Box::new(random::Evenly::new(dimensions, random)),
     }
-}
-
-/// What is looked at first.
-fn opening(dimensions: usize, random: &mut Random, corners: impl FnOnce(&mut Random) -> Vec<Point>) -> Vec<Point> {
-    let corners = corners(random);
-    corners.into_iter().flat_map(|corner| [anywhere(dimensions, random), corner]).collect()
-}
-
-/// The point that is worth least.
-fn best_of(points: Vec<Point>, values: &[f64]) -> Option<(Point, f64)> {
-    points.into_iter().zip(values.iter().copied()).min_by(|(_, one), (_, other)| one.total_cmp(other))
 }
 
 /// A point, evenly from the cube.
