@@ -335,8 +335,10 @@ pub struct CodeFile {
     #[schemars(with = "Option<String>")]
     pub by: Option<Spanned<String>>,
     /// The line at which `was` begins, from 1.
+    #[schemars(with = "Option<Ordinal>")]
     pub line: Option<u32>,
     /// The character of that line at which it begins, from 1.
+    #[schemars(with = "Option<Ordinal>")]
     pub column: Option<u32>,
     /// The text that stands there.
     pub was: Option<String>,

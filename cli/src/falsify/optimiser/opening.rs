@@ -4,10 +4,10 @@
 //! finds what there is: points are drawn, corners once among them, until one is worth less than all others.
 
 use std::cmp::Ordering;
+use std::f64::consts::FRAC_PI_2;
 
 use onescan_server::random::Random;
 
-use super::anywhere;
 use crate::falsify::space::Point;
 
 /// So many points are drawn first: enough to see whether their margins differ.
@@ -26,8 +26,6 @@ pub(super) struct Opening {
     least: Option<(Point, f64, usize)>,
     /// Whether points were drawn because nothing led anywhere.
     has_drifted: bool,
-    /// Whether the point that was drawn last had numbers at their ends.
-    at_ends: bool,
     /// The greatest worth that is none of an infinite margin.
     greatest: Option<f64>,
 }
@@ -91,29 +89,16 @@ impl Opening {
         span.filter(|span| span.is_finite() && *span > 0.0).unwrap_or(1.0)
     }
 
-    /// Points by chance: from anywhere, and every other one with each number at one of its ends as often as between them.
-    /// What holds between often breaks where an input jumps from end to end, and the other way round.
+    /// Points by chance. Numbers near their ends come more often than those between, by the distribution of the arcsine:
+    /// what holds between often breaks where an input jumps from end to end.
     fn drawn(&mut self, count: usize) -> Vec<Point> {
-        let points = (0..count).map(|_| {
-            self.at_ends = !self.at_ends;
-            if self.at_ends {
-                jumping(self.dimensions, &mut self.random)
-            } else {
-                anywhere(self.dimensions, &mut self.random)
-            }
-        });
-        points.collect()
+        let (dimensions, random) = (self.dimensions, &mut self.random);
+        let mut number = || {
+            let sine = libm::sin(FRAC_PI_2 * random.uniform());
+            sine * sine
+        };
+        (0..count).map(|_| (0..dimensions).map(|_| number()).collect()).collect()
     }
-}
-
-/// A point of which each number is at one of its ends as often as between them.
-fn jumping(dimensions: usize, random: &mut Random) -> Point {
-    let number = |_| match random.bits() >> 62 {
-        0 => 0.0,
-        1 => 1.0,
-        _ => random.uniform(),
-    };
-    (0..dimensions).map(number).collect()
 }
 
 #[cfg(test)]
