@@ -32,16 +32,7 @@ pub(super) struct Opening {
 
 impl Opening {
     pub(super) fn new(dimensions: usize, random: Random, corners: Vec<Point>) -> Self {
-        Self {
-            dimensions,
-            random,
-            corners,
-            asked: Vec::new(),
-            least: None,
-            has_drifted: false,
-            at_ends: false,
-            greatest: None,
-        }
+        Self { dimensions, random, corners, asked: Vec::new(), least: None, has_drifted: false, greatest: None }
     }
 
     /// The points that are to be simulated next; nothing once a search can be led.
