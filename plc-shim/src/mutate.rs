@@ -102,7 +102,21 @@ impl Input {
     /// The same with a mistake in it.
     #[must_use]
     pub fn with_mutant(&self, mutant: &Mutant) -> Self {
-        self.with_replaced(mutant.range.clone(), &mutant.replacement)
+        self.with_text(mutant.range.clone(), &mutant.replacement)
+    }
+
+    /// Bytes of the program text where `was` begins at a place, as its author sees the file; nothing if it does not stand
+    /// there.
+    pub fn range_of(&self, place: LineColumn, was: &str) -> Option<Range<u32>> {
+        let starts = self.file().text().match_indices(was).map(|(start, _)| start as u32);
+        let start = starts.into_iter().find(|start| self.file().line_column(*start) == place)?;
+        Some(start..start + was.len() as u32)
+    }
+
+    /// The same with another text in the place of some bytes of the program text.
+    #[must_use]
+    pub fn with_text(&self, range: Range<u32>, text: &str) -> Self {
+        self.with_replaced(range, text)
     }
 }
 

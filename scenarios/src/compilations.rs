@@ -8,6 +8,8 @@ use onescan_clients::plant::scene::Override;
 use onescan_plc_shim::{Application, Input};
 use onescan_server::signal::{ClientName, SignalName};
 
+use super::case::CodeChange;
+
 /// The variables of signals, as `bind` names them.
 pub type Paths = BTreeMap<SignalName, Vec<String>>;
 
@@ -28,6 +30,8 @@ pub(crate) struct Compilation {
     pub(crate) client: ClientName,
     /// What the case sets in it, some of which are constants of the program, by path.
     pub(crate) settings: Vec<(String, String)>,
+    /// What the case changes in its sources.
+    pub(crate) code: Vec<(String, CodeChange)>,
     pub(crate) is_traced: bool,
     pub(crate) is_covered: bool,
 }

@@ -132,6 +132,8 @@ impl Scenario {
 
     /// A source of PLC `name`, in whatever form and encoding it is; one of an unknown kind is text.
     fn source(&self, name: &ClientName, source: &str, dialect: Option<Dialect>) -> Result<Input, ScenarioError> {
+        let own = source;
+        let source = self.source_of_case(name, own).unwrap_or(own);
         let path = self.folder().join(source);
         let kind = match FileKind::of(&path) {
             Some(FileKind::Source(kind)) => kind,
@@ -152,8 +154,9 @@ impl Scenario {
             Some(dialect) => input.in_dialect(dialect),
             None => input,
         };
+        let input = self.with_texts_of_case(name, own, input)?;
         Ok(match self.mistake() {
-            Some(mistake) if mistake.client == *name && mistake.source == source => input.with_mutant(&mistake.mutant),
+            Some(mistake) if mistake.client == *name && mistake.source == own => input.with_mutant(&mistake.mutant),
             _ => input,
         })
     }
@@ -246,6 +249,7 @@ impl Scenario {
                 .filter(|one| one.path.split('.').next() == Some(name.as_str()))
                 .map(|one| (one.path.clone(), one.value.to_string()))
                 .collect(),
+            code: self.code_of_case(name).map(|at| (at.source.clone(), at.change.clone())).collect(),
             is_traced: self.is_traced(),
             is_covered: self.coverage().is_some(),
         };
@@ -263,7 +267,7 @@ impl Scenario {
         self.fits_step(name, &plan)?;
         let mut client = SoftPlcClient::new(name.clone(), application, &plan, &bindings, self.file().step)
             .map_err(|error| self.wrong_client(name, error.to_string(), None))?;
-        client.accept_states_of(self.code_policy());
+        client.accept_states_of(self.code_policy(name));
         client = self.connected(name, client)?;
         self.preset(&mut client, name, inputs)?;
         self.check_variables(&client, name)?;

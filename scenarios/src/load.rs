@@ -179,8 +179,9 @@ impl Scenario {
         self.code_policy = CodePolicy::AnyCode;
     }
 
-    pub(crate) fn code_policy(&self) -> CodePolicy {
-        self.code_policy
+    /// Whose states PLC `name` takes: a case with another program in it goes on from where the scenario's own was.
+    pub(crate) fn code_policy(&self, name: &ClientName) -> CodePolicy {
+        if self.code_of_case(name).next().is_some() { CodePolicy::AnyCode } else { self.code_policy }
     }
 
     /// What `[timing]` says.
@@ -344,6 +345,7 @@ impl Scenario {
             }
         }
         files.extend(self.file.panel.iter().filter_map(|panel| Some(panel.picture.as_ref()?.get_ref().into())));
+        files.extend(self.files_of_case());
         // cases and lessons stand beside the scenario
         files.extend(self.applied().and_then(|applied| Path::new(&applied.source.0).file_name()).map(PathBuf::from));
         files.dedup();

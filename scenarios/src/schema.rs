@@ -7,7 +7,7 @@ use schemars::{JsonSchema, Schema};
 use serde_json::{Value, json};
 
 use crate::case;
-use crate::case::file::CasesFile;
+use crate::case::cases_file::CasesFile;
 use crate::file::{self, ScenarioFile};
 use crate::lesson;
 use crate::lesson::file::LessonsFile;
@@ -20,7 +20,7 @@ pub fn scenario() -> Value {
 
 /// The schema of `cases.toml` (JSON Schema 2020-12).
 pub fn cases() -> Value {
-    schema::<CasesFile>("onescan cases", case::file::VERSION)
+    schema::<CasesFile>("onescan cases", case::cases_file::VERSION)
 }
 
 /// The schema of `lessons.toml` (JSON Schema 2020-12).

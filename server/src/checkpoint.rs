@@ -223,6 +223,11 @@ impl Checkpoint {
         self.digest.value()
     }
 
+    /// The same as it grows, for one who knows what images follow.
+    pub fn trajectory(&self) -> &TrajectoryDigest {
+        &self.digest
+    }
+
     /// What the session was made of.
     pub fn makeup(&self) -> &Makeup {
         &self.makeup

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::typed::{Said, begun, copied_shear, digests, scenario, typed};
+use crate::typed::{Said, begun, copied, copied_shear, digests, scenario, typed};
 
 /// Faults at the set-up, at times, on conditions that come true, with a past, and on one that never does.
 const CAMPAIGN: &str = r#"
@@ -83,6 +83,28 @@ fn a_state_that_is_the_healthy_one_again_is_told() {
     // Noise on the positions changes what is seen of them, and nothing that lasts.
     assert_eq!(rejoined("noisy/first-step"), Some(true));
     assert_eq!(rejoined("noisy/start"), Some(false), "it lasts to the end");
+}
+
+/// Where nothing of a fault is left its run ends, and nothing that is said of it is another thing.
+#[test]
+fn a_run_that_comes_together_with_the_healthy_one_ends_there() {
+    let mut joined = 0;
+    for (folder, name) in [(shear(), "feedback"), (copied("filling-machine"), "")] {
+        let named = [name];
+        let chosen = if name.is_empty() { &[][..] } else { &named[..] };
+        let table =
+            |words: &[&str]| lines(&campaign(folder.path(), &[chosen, words, &["--format", "json"]].concat()).out);
+        let (mut early, whole) = (table(&[]), table(&["--no-merge"]));
+        for (row, full) in early.iter_mut().zip(&whole) {
+            assert!(full["joined_ns"].is_null(), "{full}");
+            let Some(at) = row.as_object_mut().and_then(|row| row.remove("joined_ns")) else { continue };
+            joined += 1;
+            assert!(at.as_u64() >= full["activated_ns"].as_u64(), "{full}");
+            assert_eq!(full["rejoined"], true, "{full}");
+        }
+        assert_eq!(early, whole, "{name}");
+    }
+    assert!(joined >= 3, "{joined} runs ended early");
 }
 
 /// Lines of the journal of `folder`/keep.

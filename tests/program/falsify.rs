@@ -55,7 +55,7 @@ fn the_speed_of_the_transmission_is_broken_by_a_case_that_repeats_it() {
 #[test]
 fn a_search_is_the_same_again_and_with_several_at_a_time() {
     let folder = benchmark("automatic-transmission");
-    for optimiser in ["cma-es", "random"] {
+    for optimiser in ["cma-es", "annealing", "random"] {
         let search = |seed: &str, jobs: &str| {
             let words = ["--expect", "AT53", "--optimiser", optimiser, "--seed", seed, "--jobs", jobs, "--runs", "60"];
             searched(folder.path(), &words)

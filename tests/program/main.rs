@@ -59,6 +59,7 @@ mod plc_s7;
 mod plc_untrusted;
 mod plcopen_schema;
 mod processes;
+mod programs;
 mod python;
 mod recording;
 mod regression;

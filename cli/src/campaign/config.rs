@@ -36,6 +36,8 @@ pub struct Chosen {
     pub scenario: PathBuf,
     /// Which campaign; all if absent.
     pub campaign: Option<String>,
+    /// Whether each run goes to its end, also where it has come together with the run without faults.
+    pub no_merge: bool,
 }
 
 /// What is written about campaigns.
@@ -106,6 +108,8 @@ pub struct WorkerConfig {
     pub campaign: String,
     /// The folder of the checkpoints from which runs with faults fork.
     pub forks: PathBuf,
+    /// Whether each run goes to its end, also where it has come together with the run without faults.
+    pub no_merge: bool,
     /// Which of its runs.
     pub part: Part,
 }

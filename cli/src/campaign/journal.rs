@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 
 use onescan_base::regular::{self, Limit};
 use onescan_report::{FileError, file};
+use onescan_scenario::case::Campaign;
 use onescan_scenario::{Scenario, permission};
 use onescan_server::time::VirtualTime;
 use serde::{Deserialize, Serialize};
@@ -65,9 +66,10 @@ impl Subject {
     ///
     /// # Errors
     /// A file of the scenario cannot be read.
-    pub(super) fn of(scenario: &Scenario, campaign: &str) -> Result<Self, CampaignError> {
+    pub(super) fn of(scenario: &Scenario, campaign: &Campaign) -> Result<Self, CampaignError> {
         let mut hasher = blake3::Hasher::new();
         let mut files = scenario.files();
+        files.extend(campaign.program_files().map(PathBuf::from));
         files.extend(onescan_scenario::case::beside(scenario.path()).file_name().map(PathBuf::from));
         files.sort();
         files.dedup();
@@ -81,7 +83,7 @@ impl Subject {
             }
         }
         let files = hasher.finalize().to_hex().to_string();
-        Ok(Self { campaign: campaign.to_owned(), version: env!("CARGO_PKG_VERSION").to_owned(), files })
+        Ok(Self { campaign: campaign.name.clone(), version: env!("CARGO_PKG_VERSION").to_owned(), files })
     }
 
     /// Refuses a journal of anything else.

@@ -8,6 +8,7 @@
 //! | [`journal`] | what has been done, kept in a folder |
 //! | [`worker`] | one run, in a process of its own |
 //! | [`probe`] | what is read out of it while it goes |
+//! | `rejoin` | where it comes together with the run without faults |
 //! | [`reading`] | what a process says of its run |
 //! | [`table`] | the verdicts, by fault and activation |
 //! | [`summary`] | for people and as JSON |
@@ -24,6 +25,7 @@ mod error;
 mod journal;
 pub mod probe;
 pub mod reading;
+mod rejoin;
 pub mod reports;
 pub mod summary;
 pub mod table;
@@ -50,7 +52,7 @@ use config::{Begun, Chosen, MergeConfig, Reports};
 use error::Ended;
 use journal::{Done, Subject, Work};
 use reading::{Reading, Trunk, Way};
-use table::Table;
+use table::{Row, Table};
 
 /// So many runs in a process at most: what is lost if it is killed is little, and so is what it begins with.
 const BATCH_MAX: usize = 32;
@@ -91,7 +93,7 @@ pub fn merge(config: &MergeConfig, out: &mut dyn Write) -> Result<ExitCode, Camp
     let catalogue = Catalogue::load(scenario.path())?;
     let mut tables = Vec::new();
     for campaign in chosen(&config.chosen, &catalogue)? {
-        let subject = Subject::of(&scenario, &campaign.name)?;
+        let subject = Subject::of(&scenario, campaign)?;
         let mut all = Done::default();
         for folder in &config.folders {
             let part = Work::read(folder, &subject)?;
@@ -142,7 +144,7 @@ fn chosen<'c>(wanted: &Chosen, catalogue: &'c Catalogue) -> Result<Vec<&'c Campa
 
 /// All runs of a campaign that are to be done here, the one without faults first.
 fn tried(config: &CampaignConfig, scenario: &Scenario, campaign: &Campaign) -> Result<Done, CampaignError> {
-    let subject = Subject::of(scenario, &campaign.name)?;
+    let subject = Subject::of(scenario, campaign)?;
     let (work, mut done) = Work::open(config.keep.as_deref(), &subject)?;
     let trunk = if let Some(trunk) = done.healthy.take() {
         trunk
@@ -151,8 +153,10 @@ fn tried(config: &CampaignConfig, scenario: &Scenario, campaign: &Campaign) -> R
         work.healthy(&trunk)?;
         trunk
     };
-    for (reading, (variant, _)) in trunk.readings.iter().zip(&campaign.variants) {
-        if let Some(failure) = &reading.failure {
+    for (number, (reading, (variant, _))) in trunk.readings.iter().zip(&campaign.variants).enumerate() {
+        // That another program fails is a finding; that the scenario's own does leaves nothing to compare with.
+        let is_own = campaign.own_program_of(number) == number;
+        if let Some(failure) = reading.failure.as_ref().filter(|_| is_own) {
             let text = format!("without any fault: {}", failure.text);
             return Err(
                 Ended { name: format!("{}{variant}", campaign.name), text, code: ExitCode::Fault as i32 }.into()
@@ -207,18 +211,23 @@ fn batch(
     match together(cases) {
         Err(CampaignError::Ended(ended)) if cases.len() > 1 => {
             tracing::info!(%ended, "a process of {} runs came to nothing: each is done by itself", cases.len());
-            cases.iter().map(|case| finished(together(std::slice::from_ref(case)))).collect()
+            cases.iter().map(|case| finished(case.0, together(std::slice::from_ref(case)))).collect()
         }
-        done if cases.len() == 1 => finished(done).map(|one| vec![one]),
-        done => done,
+        done => match cases {
+            [(name, _)] => finished(name, done).map(|one| vec![one]),
+            _ => done,
+        },
     }
 }
 
-/// The reading of one run. Of one that came to nothing it is known only that it did: it is done again when the campaign is
-/// gone on with, because it is not in the journal.
-fn finished(done: Result<Vec<Reading>, CampaignError>) -> Result<Reading, CampaignError> {
+/// The reading of the run `name`. Of one that came to nothing it is known only that it did: it is done again when the
+/// campaign is gone on with, because it is not in the journal.
+fn finished(name: &str, done: Result<Vec<Reading>, CampaignError>) -> Result<Reading, CampaignError> {
     match done {
-        Ok(mut one) => Ok(one.pop().unwrap_or_default()),
+        Ok(readings) => <[Reading; 1]>::try_from(readings).map(|[reading]| reading).map_err(|others| {
+            let text = format!("1 run was asked for, {} were reported", others.len());
+            Ended { name: name.to_owned(), text, code: ExitCode::Fault as i32 }.into()
+        }),
         Err(CampaignError::Ended(ended)) if ended.code != ExitCode::WrongInput as i32 => {
             Ok(Reading { unfinished: Some(ended.text), ..Reading::default() })
         }
@@ -263,7 +272,8 @@ fn table_of(
             return Err(Ended { name: case.name.clone(), text, code: ExitCode::Fault as i32 }.into());
         };
         let reading = readings.remove(&case.name).unwrap_or_else(|| healthy.clone());
-        rows.push(table::row(case, reading, healthy, &measures.readouts, &injected.signals));
+        let row = table::row(case, reading, healthy, &measures.readouts, &injected.signals);
+        rows.push(Row { program: campaign.program_of(campaign.variant_of(number)).map(str::to_owned), ..row });
     }
     Ok(Table::new(&chosen.scenario, campaign, trunk.readings, rows))
 }
@@ -273,6 +283,9 @@ fn worker(chosen: &Chosen, campaign: &Campaign, work: &Work) -> Result<Command, 
     let mut command = this_program("campaign-worker")?;
     command.arg("--scenario").arg(&chosen.scenario).arg("--campaign").arg(&campaign.name);
     command.arg("--forks").arg(work.forks());
+    if chosen.no_merge {
+        command.arg("--no-merge");
+    }
     Ok(command)
 }
 

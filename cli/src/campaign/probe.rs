@@ -7,6 +7,7 @@ use onescan_scenario::apply::measure::{CampaignMeasures, Injected};
 use onescan_scenario::expect::{Judge, Reaction, TraceEnd, Verdict};
 use onescan_scenario::report::Measures;
 use onescan_server::digest::TrajectoryDigest;
+use onescan_server::layout::ImageLayout;
 use onescan_server::observer::{Observer, RecordError};
 use onescan_server::operation::{Author, OperatorInput};
 use onescan_server::session::Session;
@@ -14,9 +15,9 @@ use serde::{Deserialize, Serialize};
 
 use super::reading::Reading;
 use crate::run::chosen::Chosen;
-use crate::run::production::Metered;
+use crate::run::production::{Metered, Metering};
 
-/// Watches a run for what its campaign measures.
+/// What is read out of a run: of its images, one after the other.
 pub(super) struct Probe {
     injected: Option<Injected>,
     measures: CampaignMeasures,
@@ -25,9 +26,14 @@ pub(super) struct Probe {
     /// The trajectories up to where the run begins: nothing, or that of the run from which it forks.
     tracks: Vec<Track>,
     /// Counts alarms from the fault on.
-    metering: Option<Box<dyn Observer>>,
-    seen: Rc<RefCell<Seen>>,
+    metering: Option<Metering>,
+    /// Of the session that began last.
+    layout: Option<ImageLayout>,
+    seen: Seen,
 }
+
+/// Shows a run to a probe that others read.
+pub(super) struct Watch(pub(super) Rc<RefCell<Probe>>);
 
 /// What has been seen so far.
 pub(super) struct Seen {
@@ -80,8 +86,8 @@ impl Seen {
         }
     }
 
-    /// What it comes to at the end of the run.
-    pub(super) fn reading(self, measures: &CampaignMeasures, end: TraceEnd) -> Reading {
+    /// What it comes to at the end of the run, of which `known` is known already.
+    pub(super) fn reading(self, measures: &CampaignMeasures, end: TraceEnd, known: Reading) -> Reading {
         let judged = if self.activated_ns.is_some() { self.judge.finish(end) } else { Vec::new() };
         let mut held = judged.into_iter().map(|outcome| outcome.verdict == Verdict::Met);
         Reading {
@@ -90,17 +96,18 @@ impl Seen {
             safe: measures.safe.as_ref().and_then(|_| held.next()),
             collision: measures.collision.as_ref().and_then(|_| held.next()),
             readouts: self.tracks.iter().map(Track::hash).collect(),
-            ..Reading::default()
+            ..known
         }
     }
 }
 
 impl Probe {
-    pub(super) fn new(measures: &CampaignMeasures, injected: Option<Injected>, seen: Rc<RefCell<Seen>>) -> Self {
-        let tracks = seen.borrow().tracks.clone();
+    pub(super) fn new(measures: &CampaignMeasures, injected: Option<Injected>) -> Self {
+        let seen = Seen::nothing(measures);
         Self {
-            tracks,
+            tracks: seen.tracks.clone(),
             metering: None,
+            layout: None,
             injected,
             readouts: Chosen::new(&measures.readouts),
             columns: Chosen::new(&measures.columns),
@@ -116,55 +123,89 @@ impl Probe {
 
     /// The same, counting alarms from the fault on.
     pub(super) fn metering(self, metered: &Metered, measures: Option<&Measures>) -> Self {
-        Self { metering: metered.observer(measures), ..self }
+        Self { metering: metered.metering(measures), ..self }
+    }
+
+    /// What it has seen; it has seen nothing then.
+    pub(super) fn take_seen(&mut self) -> Seen {
+        std::mem::replace(&mut self.seen, Seen::nothing(&self.measures))
+    }
+
+    /// Looks at images that another run of the same plan has left: this one would have done the same.
+    pub(super) fn look_on<'i>(&mut self, images: impl Iterator<Item = (u64, &'i [u8])>) {
+        let Some(layout) = self.layout.take() else { return };
+        for (t_ns, image) in images {
+            self.look(t_ns, &layout, image);
+        }
+        self.layout = Some(layout);
+    }
+
+    fn begin(&mut self, session: &Session) {
+        self.readouts.find(session);
+        self.columns.find(session);
+        if let Some(metering) = &mut self.metering {
+            metering.find(session);
+        }
+        self.layout = Some(session.layout().clone());
+        self.seen = Seen { tracks: self.tracks.clone(), ..Seen::nothing(&self.measures) };
+        self.look(session.t_v().as_nanos(), session.layout(), session.image());
+    }
+
+    fn look(&mut self, t_ns: u64, layout: &ImageLayout, image: &[u8]) {
+        let seen = &mut self.seen;
+        for (track, bytes) in seen.tracks.iter_mut().zip(self.readouts.bytes_in(layout, image)) {
+            track.push(t_ns, bytes);
+        }
+        let at = self.injected.as_ref().and_then(|injected| injected.at);
+        let by_time = at.is_some_and(|at| t_ns >= at.as_nanos());
+        if (by_time || seen.coming) && seen.activated_ns.is_none() {
+            seen.activated_ns = Some(t_ns);
+            if let Some(metering) = &mut self.metering {
+                metering.begin_here();
+            }
+        }
+        if seen.activated_ns.is_some() {
+            if let Some(metering) = &mut self.metering {
+                metering.look(t_ns, layout, image);
+            }
+            if let Some(told) = &mut seen.told {
+                told.push(t_ns, self.columns.numbers_in(layout, image));
+            }
+            seen.judge.push(t_ns, self.columns.numbers_in(layout, image));
+        }
+    }
+
+    fn operated(&mut self, input: &OperatorInput) {
+        let of_fault = |injected: &Injected| injected.operations.contains(&input.operation);
+        if input.author == Author::Timeline && self.injected.as_ref().is_some_and(of_fault) {
+            self.seen.coming = true;
+        }
+    }
+
+    fn saved(&mut self, session: &Session) {
+        let tracks = self.seen.tracks.clone();
+        self.seen.kept.push((session.t_v().as_nanos(), tracks));
     }
 }
 
-impl Observer for Probe {
-    fn begin(&mut self, session: &Session, digest: &TrajectoryDigest) -> Result<(), RecordError> {
-        self.readouts.find(session);
-        self.columns.find(session);
-        self.seen.replace(Seen { tracks: self.tracks.clone(), ..Seen::nothing(&self.measures) });
-        self.step(session, digest)
+impl Observer for Watch {
+    fn begin(&mut self, session: &Session, _digest: &TrajectoryDigest) -> Result<(), RecordError> {
+        self.0.borrow_mut().begin(session);
+        Ok(())
     }
 
-    fn step(&mut self, session: &Session, digest: &TrajectoryDigest) -> Result<(), RecordError> {
-        let t_v = session.t_v();
-        let mut seen = self.seen.borrow_mut();
-        for (track, bytes) in seen.tracks.iter_mut().zip(self.readouts.bytes(session)) {
-            track.push(t_v.as_nanos(), bytes);
-        }
-        let by_time = self.injected.as_ref().and_then(|injected| injected.at).is_some_and(|at| t_v >= at);
-        let is_first = (by_time || seen.coming) && seen.activated_ns.is_none();
-        if is_first {
-            seen.activated_ns = Some(t_v.as_nanos());
-        }
-        if seen.activated_ns.is_some() {
-            match &mut self.metering {
-                Some(metering) if is_first => metering.begin(session, digest)?,
-                Some(metering) => metering.step(session, digest)?,
-                None => {}
-            }
-            if let Some(told) = &mut seen.told {
-                told.push(t_v.as_nanos(), self.columns.numbers(session));
-            }
-            seen.judge.push(t_v.as_nanos(), self.columns.numbers(session));
-        }
+    fn step(&mut self, session: &Session, _digest: &TrajectoryDigest) -> Result<(), RecordError> {
+        self.0.borrow_mut().look(session.t_v().as_nanos(), session.layout(), session.image());
         Ok(())
     }
 
     fn operated(&mut self, input: &OperatorInput) -> Result<(), RecordError> {
-        let of_fault = |injected: &Injected| injected.operations.contains(&input.operation);
-        if input.author == Author::Timeline && self.injected.as_ref().is_some_and(of_fault) {
-            self.seen.borrow_mut().coming = true;
-        }
+        self.0.borrow_mut().operated(input);
         Ok(())
     }
 
     fn saved(&mut self, session: &Session) {
-        let mut seen = self.seen.borrow_mut();
-        let tracks = seen.tracks.clone();
-        seen.kept.push((session.t_v().as_nanos(), tracks));
+        self.0.borrow_mut().saved(session);
     }
 
     fn end(&mut self, _session: &Session) -> Result<(), RecordError> {

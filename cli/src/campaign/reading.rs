@@ -29,6 +29,9 @@ pub struct Reading {
     /// A hash of its state at the end; nothing if it failed before, or if a client cannot save its state.
     #[serde(default)]
     pub state: Option<String>,
+    /// Where it was in the state of the run without faults again, so that the rest was read out of that one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub joined_ns: Option<u64>,
     /// Why its run came to no end, if it did not: nothing else is known of it then.
     #[serde(default)]
     pub unfinished: Option<String>,

@@ -8,7 +8,7 @@ use onescan_report::table;
 use onescan_scenario::case::campaign::CampaignFault;
 use onescan_server::time::VirtualTime;
 
-use super::summary::{cell, matrix, repeat, totals};
+use super::summary::{cell, matrix, programs, repeat, totals};
 use super::table::{Row, Table};
 
 /// So many signals of an effect are named.
@@ -38,13 +38,22 @@ fn overview(table: &Table) -> Section {
     let passed = table.is_passed();
     let mut rows = matrix(table);
     let head = rows.remove(0).split_off(1).into_iter().map(Into::into).collect();
+    let mut programs = programs(table);
+    let programs_head = programs.remove(0).split_off(1).into_iter().map(Into::into).collect();
+    let beside = (!programs.is_empty()).then(|| table::Table {
+        title: "program",
+        head: programs_head,
+        rows: programs,
+        ..table::Table::default()
+    });
+    let faults = table::Table { title: "fault", head, rows, ..table::Table::default() };
     Section {
         title: format!("{}: {}", table.scenario, table.campaign),
         status: if passed { "passed" } else { "not passed" }.to_owned(),
         mood: if passed { Mood::Good } else { Mood::Bad },
         virtual_time: VirtualTime::from_nanos(table.healthy.iter().map(|one| one.virtual_time_ns).sum()).to_string(),
         lines: table.about.iter().cloned().collect(),
-        tables: vec![table::Table { title: "fault", head, rows, ..table::Table::default() }],
+        tables: std::iter::once(faults).chain(beside).collect(),
         ..Section::default()
     }
 }
@@ -60,6 +69,7 @@ fn run(table: &Table, fault: &CampaignFault, row: &Row) -> Section {
         ("collision", row.collision.map(yes)),
         ("effect on", (!row.effects.is_empty()).then(|| effects(row))),
         ("at the end in the state of the run without faults", row.rejoined.map(yes)),
+        ("in that state from", row.joined_ns.map(time)),
         ("alarms", (!row.alarms.is_empty()).then(|| alarms(row))),
         ("digest", row.digest.clone()),
         ("again", Some(repeat(table, row))),

@@ -9,7 +9,7 @@ use onescan_server::time::VirtualTime;
 use serde_json::json;
 
 use super::config::Partition;
-use super::table::{Row, Table};
+use super::table::{Program, Row, Table};
 use crate::format::Format;
 
 /// So many cases that are not accepted are named.
@@ -26,6 +26,10 @@ pub fn write_human(tables: &[Table], out: &mut dyn Write) -> io::Result<()> {
         }
         writeln!(out, "{}: {}", table.scenario, totals(table))?;
         write(&matrix(table), out)?;
+        if !table.programs.is_empty() {
+            writeln!(out)?;
+            write(&programs(table), out)?;
+        }
         let bad: Vec<&Row> = table.rows.iter().filter(|row| !table.is_accepted(row)).collect();
         for row in bad.iter().take(NAMED_MAX) {
             writeln!(out, "  {}: {}", row.verdict.word(), repeat(table, row))?;
@@ -69,6 +73,17 @@ pub(super) fn matrix(table: &Table) -> Vec<Vec<String>> {
         names.into_iter().chain(rows.iter().map(cell)).collect()
     };
     std::iter::once(head.map(str::to_owned).collect()).chain(table.by_fault().map(row)).collect()
+}
+
+/// What the programs make of the same faults, with a head.
+pub(super) fn programs(table: &Table) -> Vec<Vec<String>> {
+    let head = ["program", "runs", "other verdicts", "first of them"].map(str::to_owned).to_vec();
+    let row = |program: &Program| {
+        let fails = program.failure.as_ref().map(|failure| format!("without any fault: {}", failure.text));
+        let first = fails.or_else(|| program.others.first().cloned()).unwrap_or_else(|| "none".to_owned());
+        vec![program.name.clone(), program.runs.to_string(), program.others.len().to_string(), first]
+    };
+    std::iter::once(head).chain(table.programs.iter().map(row)).collect()
 }
 
 /// A verdict, and how long it took if that is known.
@@ -123,7 +138,7 @@ pub fn write_json(tables: &[Table], out: &mut dyn Write) -> io::Result<()> {
         let total = json!({ "scenario": table.scenario, "campaign": table.campaign, "runs": table.rows.len(),
             "counts": counts, "passed": table.is_passed(), "healthy_digest": table.healthy.first().and_then(|first| first.digest.as_ref()),
             "healthy_digests": table.healthy.iter().map(|one| &one.digest).collect::<Vec<_>>(),
-            "version": env!("CARGO_PKG_VERSION") });
+            "programs": table.programs, "version": env!("CARGO_PKG_VERSION") });
         writeln!(out, "{total}")?;
     }
     out.flush()

@@ -26,6 +26,8 @@ pub struct Table {
     pub activations: Vec<String>,
     /// How many variants it has: combinations of its matrix.
     pub variants: usize,
+    /// The programs that were tried beside the scenario's own.
+    pub programs: Vec<Program>,
     /// The verdicts with which it is passed.
     pub accepted: Vec<CampaignVerdict>,
     /// The run without faults of each variant.
@@ -34,11 +36,28 @@ pub struct Table {
     pub rows: Vec<Row>,
 }
 
+/// A program that was tried beside the scenario's own, and what it makes of the same faults.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Program {
+    /// Its name.
+    pub name: String,
+    /// How its run without faults failed; the first of them with a matrix.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub failure: Option<Failure>,
+    /// Runs with faults.
+    pub runs: usize,
+    /// The cases of which another verdict came than with the scenario's own program.
+    pub others: Vec<String>,
+}
+
 /// What came of one fault at one activation. Its JSON form is a contract: fields are added, never changed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
     /// The case, as `onescan run --case` takes it.
     pub case: String,
+    /// The program with which it was tried, if that is not the scenario's own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub program: Option<String>,
     /// What came of it.
     pub verdict: CampaignVerdict,
     /// The end of the step in which the fault came.
@@ -61,6 +80,9 @@ pub struct Row {
     /// would go on alike. Absent if it failed, or if a client cannot save its state.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rejoined: Option<bool>,
+    /// Where the run ended early because its state was that of the run without faults: the rest was read out of that one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub joined_ns: Option<u64>,
     /// How often each alarm of the scenario's `[report]` came from the fault on, of those that did.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub alarms: BTreeMap<String, u64>,
@@ -90,6 +112,7 @@ impl Table {
             faults: campaign.faults.clone(),
             activations: columns.map(column).collect(),
             variants: campaign.variants.len(),
+            programs: programs(campaign, &healthy, &rows),
             accepted: campaign.accepted.clone(),
             healthy,
             rows,
@@ -101,9 +124,10 @@ impl Table {
         self.rows.iter().filter(|row| row.verdict == verdict).count()
     }
 
-    /// True if its verdict is one with which the campaign is passed.
+    /// True if its verdict is one with which the campaign is passed. What comes of another program is told beside: whether
+    /// the campaign is passed is asked of the scenario's own.
     pub fn is_accepted(&self, row: &Row) -> bool {
-        self.accepted.contains(&row.verdict)
+        row.program.is_some() || self.accepted.contains(&row.verdict)
     }
 
     /// True if all verdicts are.
@@ -115,6 +139,25 @@ impl Table {
     pub fn by_fault(&self) -> impl Iterator<Item = (&CampaignFault, &[Row])> {
         self.faults.iter().zip(self.rows.chunks(self.activations.len().max(1)))
     }
+}
+
+/// What the programs of a campaign make of its faults.
+fn programs(campaign: &Campaign, healthy: &[Reading], rows: &[Row]) -> Vec<Program> {
+    let count = campaign.variants.len().max(1);
+    let program = |name: &String| {
+        let is_it = |variant: usize| campaign.program_of(variant) == Some(name.as_str());
+        let own = |number: usize| rows.get(number - number % count + campaign.own_program_of(number % count));
+        let tried = || rows.iter().enumerate().filter(|(number, _)| is_it(number % count));
+        let others = tried().filter(|(number, row)| own(*number).is_some_and(|own| own.verdict != row.verdict));
+        let failures = healthy.iter().enumerate().filter(|(variant, _)| is_it(*variant));
+        Program {
+            name: name.clone(),
+            failure: failures.into_iter().find_map(|(_, reading)| reading.failure.clone()),
+            runs: tried().count(),
+            others: others.map(|(_, row)| row.case.clone()).collect(),
+        }
+    };
+    campaign.programs.iter().map(program).collect()
 }
 
 /// The row of a run. `own` are the signals that the fault itself holds or disturbs.
@@ -131,6 +174,7 @@ pub(super) fn row(
     let effects: Vec<String> = compared.filter(differs).map(|(signal, _)| signal.to_string()).collect();
     Row {
         case: case.name.clone(),
+        program: None,
         verdict: verdict(&reading, !effects.is_empty()),
         activated_ns: reading.activated_ns,
         told_after_ns: reading.told_after_ns,
@@ -138,6 +182,7 @@ pub(super) fn row(
         collision: reading.collision,
         effects,
         rejoined: reading.state.as_ref().zip(healthy.state.as_ref()).map(|(own, healthy)| own == healthy),
+        joined_ns: reading.joined_ns,
         alarms: reading.alarms,
         failure: reading.failure,
         unfinished: reading.unfinished,

@@ -10,19 +10,21 @@ use onescan_base::regular::{self, Limit};
 use onescan_report::{OutputError, file};
 use onescan_scenario::Scenario;
 use onescan_scenario::apply::departure::Departure;
-use onescan_scenario::apply::measure::CampaignMeasures;
+use onescan_scenario::apply::measure::{CampaignMeasures, Over};
 use onescan_scenario::case::{Campaign, Catalogue};
 use onescan_scenario::expect::TraceEnd;
 use onescan_scenario::file::ClientFile;
 use onescan_scenario::report::Report;
 use onescan_server::end::{Failure as EndedBy, FailureCause};
+use onescan_server::observer::Observer;
 use onescan_server::time::VirtualTime;
 
 use super::CampaignError;
 use super::config::{Begun, Part, WorkerConfig};
 use super::journal;
-use super::probe::{Probe, Seen, Track};
+use super::probe::{Probe, Track, Watch};
 use super::reading::{Failure, Reading, Trunk, Way};
+use super::rejoin::{self, Ahead, Images};
 use crate::error::{Unreadable, Usage};
 use crate::interrupt::Interrupt;
 use crate::regress::limited::end_with_parent;
@@ -55,12 +57,23 @@ pub fn work(config: &WorkerConfig, out: &mut dyn Write) -> Result<(), CampaignEr
         }
         Part::Cases { cases, journal } => {
             let mut readings = Vec::with_capacity(cases.len());
+            let mut aheads: BTreeMap<usize, Option<Rc<Ahead>>> = BTreeMap::new();
             for begun in cases {
                 let found = campaign.cases.iter().enumerate().find(|(_, case)| case.name == begun.case);
                 let (number, case) = found.ok_or_else(|| gone(&begun.case))?;
                 let scenario = scenario.clone().with_case(&catalogue, case)?;
-                let forks = journal::of_variant(&config.forks, campaign.variant_of(number));
-                let reading = with_fault(config, &scenario, &measures, (begun, &forks))?;
+                let variant = campaign.variant_of(number);
+                let forks = journal::of_variant(&config.forks, variant);
+                let ahead = match aheads.get(&variant) {
+                    Some(ahead) => Option::clone(ahead),
+                    None if config.no_merge => None,
+                    None => {
+                        let ahead = Ahead::of(&forks)?;
+                        aheads.insert(variant, ahead.clone());
+                        ahead
+                    }
+                };
+                let reading = with_fault(config, &scenario, &measures, (begun, &forks, ahead))?;
                 journal::note_done(journal, &begun.case, &reading)?;
                 readings.push(reading);
             }
@@ -76,10 +89,11 @@ fn with_fault(
     config: &WorkerConfig,
     scenario: &Scenario,
     measures: &CampaignMeasures,
-    (begun, forks): (&Begun, &Path),
+    (begun, forks, ahead): (&Begun, &Path, Option<Rc<Ahead>>),
 ) -> Result<Reading, CampaignError> {
     let mut run = RunConfig::headless(config.scenario.clone(), Some(begun.case.clone()));
-    let mut probing = Probing::new(scenario, measures);
+    let ahead = ahead.filter(|ahead| ahead.is_of(scenario.plan()));
+    let mut probing = Probing { ahead, ..Probing::new(scenario, measures) };
     if let Some(at) = begun.at {
         run.course.resume = Some(ForkRequest::fork_file(forks, at));
         probing = probing.forking(tracks_of(forks, at)?);
@@ -111,9 +125,19 @@ fn healthy(
         }
     }
     let folder = journal::of_variant(&config.forks, variant);
+    let (step, until) = (healthy.plan().step(), healthy.until());
+    let states = if config.no_merge { Vec::new() } else { rejoin::boundaries(&departures, step, until) };
+    let mut probing = Probing::new(&healthy, measures);
+    if let Some(first) = states.first() {
+        file::create_folder(&folder)?;
+        probing.images = Some(Images::new(&folder, *first, until));
+    }
     let mut run = RunConfig::headless(config.scenario.clone(), None);
-    run.course.forks = Some(ForkRequest { folder: folder.clone(), times, conditions });
-    let Probed { reading, ran, kept } = Probing::new(&healthy, measures).run(run)?;
+    run.course.forks = Some(ForkRequest { folder: folder.clone(), times, states, conditions });
+    let Probed { reading, ran, kept } = probing.run(run)?;
+    if let Some(state) = ran.state.filter(|_| ran.unsaved.is_none()) {
+        Ahead::leave(&folder, &ran.states, (step, ran.report.virtual_time, state))?;
+    }
     if let Some(error) = &ran.unsaved {
         tracing::info!(%error, "no run forks from the one without faults: all begin at the start");
     }
@@ -155,9 +179,12 @@ fn tracks_of(folder: &Path, t_v: VirtualTime) -> Result<Vec<Track>, CampaignErro
 struct Probing<'a> {
     scenario: &'a Scenario,
     measures: &'a CampaignMeasures,
-    seen: Rc<RefCell<Seen>>,
     metered: Metered,
     probe: Probe,
+    /// Keeps its images for others.
+    images: Option<Images>,
+    /// The run without faults, with which it may come together.
+    ahead: Option<Rc<Ahead>>,
 }
 
 /// A run that was probed.
@@ -170,35 +197,51 @@ struct Probed {
 
 impl<'a> Probing<'a> {
     fn new(scenario: &'a Scenario, measures: &'a CampaignMeasures) -> Self {
-        let seen = Rc::new(RefCell::new(Seen::nothing(measures)));
         let metered = Metered::new(scenario.measures());
-        let probe = Probe::new(measures, scenario.injected(), Rc::clone(&seen));
-        let probe = probe.metering(&metered, scenario.measures());
-        Self { scenario, measures, seen, metered, probe }
+        let probe = Probe::new(measures, scenario.injected()).metering(&metered, scenario.measures());
+        Self { scenario, measures, metered, probe, images: None, ahead: None }
     }
 
     fn forking(self, tracks: Vec<Track>) -> Self {
         Self { probe: self.probe.forking(tracks), ..self }
     }
 
-    /// Does the run to its end, with its state there as a hash.
+    /// Does the run to its end, with its state there as a hash; or to where it comes together with the run without faults,
+    /// whose images it goes on with.
     fn run(self, mut run: RunConfig) -> Result<Probed, CampaignError> {
         run.course.state_at_end = true;
-        let ran = one_run(&run, self.scenario, 1, &Interrupt::new(), vec![Box::new(self.probe)])?;
+        if let Some(ahead) = &self.ahead {
+            let over = self.scenario.injected().map_or(Over::Never, |injected| injected.over);
+            run.course.join = ahead.states(over);
+        }
+        let probe = Rc::new(RefCell::new(self.probe));
+        let mut observers: Vec<Box<dyn Observer>> = vec![Box::new(Watch(Rc::clone(&probe)))];
+        observers.extend(self.images.map(|images| -> Box<dyn Observer> { Box::new(images) }));
+        let ran = one_run(&run, self.scenario, 1, &Interrupt::new(), observers)?;
         let report = &ran.report;
-        let end = if report.status == RunStatus::Completed { TraceEnd::Complete } else { TraceEnd::Cut };
-        let mut seen = self.seen.replace(Seen::nothing(self.measures));
-        let kept = std::mem::take(&mut seen.kept);
-        let reading = Reading {
+        let mut reading = Reading {
             digest: report.digest.map(|digest| digest.to_string()),
             virtual_time_ns: report.virtual_time.as_nanos(),
-            // without `[report]` a scenario has no alarms
-            alarms: self.metered.report().as_ref().map(came).unwrap_or_default(),
             failure: report.failure.as_ref().map(|failure| told(self.scenario, failure)),
             state: ran.state.map(|state| state.to_string()),
-            ..seen.reading(self.measures, end)
+            ..Reading::default()
         };
-        Ok(Probed { reading, ran, kept })
+        let mut probe = probe.borrow_mut();
+        if let Some((joined, ahead)) = ran.joined.as_ref().zip(self.ahead) {
+            probe.look_on(ahead.after(joined.t_v));
+            let mut digest = joined.digest.clone();
+            ahead.after(joined.t_v).for_each(|(_, image)| digest.step(image));
+            reading.digest = Some(digest.value().to_string());
+            reading.virtual_time_ns = ahead.end_ns();
+            reading.state = Some(ahead.state().to_owned());
+            reading.joined_ns = Some(joined.t_v.as_nanos());
+        }
+        let end = if report.status == RunStatus::Completed { TraceEnd::Complete } else { TraceEnd::Cut };
+        let mut seen = probe.take_seen();
+        let kept = std::mem::take(&mut seen.kept);
+        // without `[report]` a scenario has no alarms
+        reading.alarms = self.metered.report().as_ref().map(came).unwrap_or_default();
+        Ok(Probed { reading: seen.reading(self.measures, end, reading), ran, kept })
     }
 }
 

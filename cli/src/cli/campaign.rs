@@ -70,6 +70,9 @@ pub struct ChosenArgs {
     pub scenario: PathBuf,
     /// Which campaign of its cases.toml [default: all]
     pub campaign: Option<String>,
+    /// Run each fault to the end, also where its state has come together with the run without faults
+    #[arg(long)]
+    pub no_merge: bool,
 }
 
 /// What is written about campaigns.
@@ -104,11 +107,14 @@ pub struct CampaignWorkerArgs {
     /// The journal of the cases
     #[arg(long)]
     pub journal: Option<PathBuf>,
+    /// Run to the end
+    #[arg(long)]
+    pub no_merge: bool,
 }
 
 impl From<ChosenArgs> for Chosen {
-    fn from(ChosenArgs { scenario, campaign }: ChosenArgs) -> Self {
-        Self { scenario, campaign }
+    fn from(ChosenArgs { scenario, campaign, no_merge }: ChosenArgs) -> Self {
+        Self { scenario, campaign, no_merge }
     }
 }
 
@@ -142,7 +148,7 @@ pub fn campaign(mut args: CampaignArgs) -> Result<ExitCode, CommandError> {
     Ok(match args.command.take() {
         None => crate::campaign::run(&args.config(), out)?,
         Some(CampaignCommand::Merge(MergeArgs { scenario, folders, campaign, reports })) => {
-            let chosen = Chosen { scenario, campaign };
+            let chosen = Chosen { scenario, campaign, no_merge: false };
             crate::campaign::merge(&MergeConfig { chosen, folders, reports: reports.into() }, out)?
         }
     })
@@ -153,11 +159,14 @@ pub fn campaign(mut args: CampaignArgs) -> Result<ExitCode, CommandError> {
 /// # Errors
 /// See [`CommandError`].
 pub fn work(args: CampaignWorkerArgs) -> Result<ExitCode, CommandError> {
-    let CampaignWorkerArgs { scenario, campaign, forks, case: cases, journal } = args;
+    let CampaignWorkerArgs { scenario, campaign, forks, case: cases, journal, no_merge } = args;
     let part = match journal {
         Some(journal) => Part::Cases { cases, journal },
         None => Part::Healthy,
     };
-    crate::campaign::worker::work(&WorkerConfig { scenario, campaign, forks, part }, &mut std::io::stdout().lock())?;
+    crate::campaign::worker::work(
+        &WorkerConfig { scenario, campaign, forks, no_merge, part },
+        &mut std::io::stdout().lock(),
+    )?;
     Ok(ExitCode::Ok)
 }

@@ -10,21 +10,17 @@ use crate::check::CheckError;
 use crate::diff::DiffError;
 use crate::edit::EditorError;
 use crate::error::{Usage, sum_of_errors};
-use crate::explore::ExploreError;
 use crate::export::ExportError;
-use crate::falsify::FalsifyError;
 use crate::instrument::InstrumentError;
 use crate::map::MapError;
-use crate::minimise::MinimiseError;
 use crate::model::ModelError;
-use crate::mutate::MutateError;
 use crate::new::NewError;
 use crate::plant::PlantError;
 use crate::plc::PlcError;
 use crate::regress::TestError;
 use crate::report::ReportError;
 use crate::review::ReviewError;
-use crate::run::RunError;
+use crate::run::{RunError, SearchError};
 use crate::session::SessionError;
 use crate::shot::ShotError;
 use crate::train::TrainError;
@@ -79,21 +75,12 @@ sum_of_errors! {
         /// `model` came to nothing.
         #[diagnostic(transparent)]
         Model(ModelError),
-        /// `explore` came to nothing.
-        #[diagnostic(transparent)]
-        Explore(ExploreError),
-        /// `falsify` came to nothing.
-        #[diagnostic(transparent)]
-        Falsify(FalsifyError),
-        /// `minimise` came to nothing.
-        #[diagnostic(transparent)]
-        Minimise(MinimiseError),
         /// `shot` came to nothing.
         #[diagnostic(transparent)]
         Shot(ShotError),
-        /// `mutate` came to nothing.
+        /// `explore`, `falsify`, `minimise` or `mutate` came to nothing.
         #[diagnostic(transparent)]
-        Mutate(MutateError),
+        Search(SearchError),
         /// `train` came to nothing.
         #[diagnostic(transparent)]
         Train(TrainError),

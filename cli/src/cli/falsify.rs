@@ -18,6 +18,8 @@ pub enum OptimiserArg {
     /// CMA-ES: a normal distribution that learns where it is better, begun again where it ends
     #[default]
     CmaEs,
+    /// Simulated annealing: jumps that get shorter, also to worse points as long as it is hot
+    Annealing,
     /// Each point by itself, evenly
     Random,
 }
@@ -90,6 +92,7 @@ pub fn falsify(args: FalsifyArgs) -> Result<ExitCode, CommandError> {
         until: args.until,
         optimiser: match args.optimiser {
             OptimiserArg::CmaEs => OptimiserKind::CmaEs,
+            OptimiserArg::Annealing => OptimiserKind::Annealing,
             OptimiserArg::Random => OptimiserKind::Random,
         },
         objective: match args.objective {

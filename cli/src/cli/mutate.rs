@@ -30,6 +30,9 @@ pub struct MutateArgs {
     /// Fail unless so many percent are noticed of those that can be told from the program
     #[arg(long, value_name = "PERCENT", value_parser = clap::value_parser!(u8).range(0..=100))]
     pub at_least: Option<u8>,
+    /// Write those that survived as cases into this file, each on top of the case in which it shows
+    #[arg(long = "cases", value_name = "FILE")]
+    pub written: Option<PathBuf>,
     /// How many at a time [default: as many as there are processors]
     #[arg(short, long, value_name = "N")]
     pub jobs: Option<NonZeroUsize>,
@@ -48,10 +51,10 @@ fn kind(text: &str) -> Result<MutantKind, String> {
 /// # Errors
 /// See [`CommandError`].
 pub fn mutate(args: MutateArgs) -> Result<ExitCode, CommandError> {
-    let MutateArgs { scenario, client, cases, kinds, at_least, jobs, format } = args;
+    let MutateArgs { scenario, client, cases, kinds, at_least, written, jobs, format } = args;
     let jobs = jobs.unwrap_or_else(|| std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN));
     let format = format.into();
     let progress = format == crate::format::Format::Human;
-    let config = MutateConfig { scenario, client, cases, kinds, at_least, jobs, progress, format };
+    let config = MutateConfig { scenario, client, cases, kinds, at_least, written, jobs, progress, format };
     Ok(mutate::run(&config, &mut std::io::stdout().lock())?)
 }

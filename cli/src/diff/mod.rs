@@ -100,11 +100,15 @@ pub fn compare(a: &Path, b: &Path, since: VirtualTime, signals: &[SignalPattern]
         }
         None => cause::Causes::default(),
     };
-    let around = divergence.as_ref().map(|found| comparison.around(found)).transpose()?;
+    let around = match &divergence {
+        Some(found) => comparison.around(found)?,
+        // Recordings that are equal part nowhere, so that there is nothing around it.
+        None => first::Around::default(),
+    };
     let files = sources::differing(&recordings);
     let ended = divergence.as_ref().and_then(|found| found.ended);
     let failure = ended.map(|ended| failure_of(&recordings[ended])).transpose()?.flatten();
-    Ok(Report { recordings, divergence, failure, causes, around: around.unwrap_or_default(), files })
+    Ok(Report { recordings, divergence, failure, causes, around, files })
 }
 
 /// How a client of a recorded run failed, if one did.

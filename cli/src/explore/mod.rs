@@ -3,7 +3,6 @@
 //! | module | subject |
 //! |---|---|
 //! | [`config`] | what is asked for |
-//! | [`error`] | why it came to nothing |
 //! | [`deviation`] | what happens later than it would, and as a case |
 //! | `place` | where something may happen later |
 //! | `known` | states from which everything is known to hold |
@@ -17,7 +16,6 @@
 
 pub mod config;
 pub mod deviation;
-mod error;
 mod known;
 mod path;
 mod place;
@@ -33,17 +31,17 @@ use onescan_scenario::case::Catalogue;
 use onescan_scenario::case::written::Written;
 
 pub use config::ExploreConfig;
-pub use error::ExploreError;
 
 use report::Told;
 
 use crate::error::{ExitCode, Usage};
+use crate::run::SearchError;
 
 /// Tries all timings that `config` asks for, and writes what came of it to `out`.
 ///
 /// # Errors
 /// The scenario is wrong, or cannot be forked.
-pub fn run(config: &ExploreConfig, out: &mut dyn Write) -> Result<ExitCode, ExploreError> {
+pub fn run(config: &ExploreConfig, out: &mut dyn Write) -> Result<ExitCode, SearchError> {
     let scenario = Scenario::load(&config.scenario)?;
     let (scenario, written) = match &config.case {
         None => (scenario, Written::default()),

@@ -12,14 +12,13 @@ use onescan_server::digest::Digest;
 use onescan_server::signal::ClientName;
 use onescan_server::time::{TimeSpan, VirtualTime};
 
-use super::ExploreError;
 use super::deviation::{Deviation, What};
 use super::known::{Key, Known, Mark, Past, looks};
 use super::place::{self, Watched};
 use crate::error::Usage;
-use crate::run::RunError;
 use crate::run::expectation::ExpectationReport;
 use crate::run::judged::{Judged, Moment};
+use crate::run::{RunError, SearchError};
 
 /// Something that may happen later, and the boundary before the step in which it happens.
 #[derive(Clone)]
@@ -88,7 +87,7 @@ impl<'a> Ground<'a> {
         from: Option<&Fork>,
         deviations: &[Deviation],
         wanted: Wanted<'_>,
-    ) -> Result<Path, ExploreError> {
+    ) -> Result<Path, SearchError> {
         let mut judged = self.form(deviations)?;
         let moment = from.and_then(|fork| fork.moment.as_ref());
         match moment {
@@ -186,17 +185,19 @@ impl<'a> Joining<'a> {
                 self.waiting.push_back((t_v, state));
             }
         }
+        // The same for all that wait, and asked for only if one of them has waited long enough.
+        let mut settled: Option<Vec<Option<bool>>> = None;
         while let Some((at, state)) = self.waiting.front().copied() {
             let alike_until = self.ground.memory.map_or(at, |memory| at + memory);
             if alike_until > t_v {
                 break;
             }
             self.waiting.pop_front();
-            let settled = judged.settled();
+            let settled = settled.get_or_insert_with(|| judged.settled());
             if settled.contains(&Some(false)) {
                 break;
             }
-            let key = Key { at, state, past: Past::Settled(settled), more };
+            let key = Key { at, state, past: Past::Settled(settled.clone()), more };
             if let Some(schedules) = self.is_known(key, t_v, known) {
                 return Ok(Some(schedules));
             }

@@ -13,7 +13,7 @@ use super::deviation::Deviation;
 use super::search::{Finding, Found};
 use crate::format::Format;
 
-/// All that is told of an exploration.
+/// All that is reported of an exploration.
 pub(super) struct Told<'a> {
     pub(super) config: &'a ExploreConfig,
     pub(super) scenario: &'a Scenario,

@@ -4,11 +4,11 @@ use std::ops::RangeInclusive;
 
 use onescan_server::random::{Random, seed_for};
 
-use super::ExploreError;
 use super::deviation::Deviation;
 use super::path::{Fork, Path, Wanted};
 use super::place;
 use super::search::{Finding, Search, is_next};
+use crate::run::SearchError;
 
 /// How often a schedule is drawn again in which too little could happen later.
 const DRAWS_MAX: u32 = 8;
@@ -25,7 +25,7 @@ impl Search<'_> {
     ///
     /// # Errors
     /// The session cannot be formed, saved or taken up.
-    pub(super) fn sample(&mut self) -> Result<(), ExploreError> {
+    pub(super) fn sample(&mut self) -> Result<(), SearchError> {
         if self.config.samples == 0 {
             return Ok(());
         }
@@ -49,7 +49,7 @@ impl Search<'_> {
     }
 
     /// A random schedule with more deviations than the bound; nothing if too little may happen later.
-    fn drawn(&mut self, trunk: &Path, random: &mut Random) -> Result<Option<(Fork, Vec<Deviation>)>, ExploreError> {
+    fn drawn(&mut self, trunk: &Path, random: &mut Random) -> Result<Option<(Fork, Vec<Deviation>)>, SearchError> {
         let sizes = self.sizes();
         for _ in 0..DRAWS_MAX {
             let span = u64::from(sizes.end() - sizes.start()) + 1;
@@ -90,7 +90,7 @@ impl Search<'_> {
     }
 
     /// The same with as few deviations as still fail, and then each as little late as can be. Each is left out by itself.
-    fn fewest(&mut self, mut finding: Finding) -> Result<Finding, ExploreError> {
+    fn fewest(&mut self, mut finding: Finding) -> Result<Finding, SearchError> {
         let drawn = finding.deviations.len();
         let mut number = drawn;
         while number > 0 {
@@ -120,7 +120,7 @@ impl Search<'_> {
         Ok(Finding { drawn: Some(drawn), ..finding })
     }
 
-    fn fails(&mut self, deviations: &[Deviation]) -> Result<Option<Finding>, ExploreError> {
+    fn fails(&mut self, deviations: &[Deviation]) -> Result<Option<Finding>, SearchError> {
         self.found.runs += 1;
         Ok(Finding::of(self.ground.go(None, deviations, TO_THE_END)?, deviations))
     }

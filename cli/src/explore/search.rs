@@ -6,12 +6,12 @@ use onescan_scenario::Scenario;
 use onescan_scenario::timing::Leeway;
 use onescan_server::time::VirtualTime;
 
-use super::ExploreError;
 use super::config::ExploreConfig;
 use super::deviation::Deviation;
 use super::known::{Known, Mark};
 use super::path::{Fork, Ground, Path, Wanted};
 use super::place;
+use crate::run::SearchError;
 use crate::run::expectation::ExpectationReport;
 
 /// What came of an exploration.
@@ -88,7 +88,7 @@ pub(super) fn search(
     scenario: &Scenario,
     leeways: &[Leeway],
     until: VirtualTime,
-) -> Result<Found, ExploreError> {
+) -> Result<Found, SearchError> {
     let found = Found {
         until,
         findings: Vec::new(),
@@ -114,12 +114,7 @@ pub(super) fn search(
 
 impl Search<'_> {
     /// Goes all ways with `more` deviations beyond these.
-    fn below(
-        &mut self,
-        from: Option<&Fork>,
-        deviations: &mut Vec<Deviation>,
-        more: u32,
-    ) -> Result<Going, ExploreError> {
+    fn below(&mut self, from: Option<&Fork>, deviations: &mut Vec<Deviation>, more: u32) -> Result<Going, SearchError> {
         if self.found.runs >= self.config.runs_max.get() {
             return Ok(Going::Enough);
         }

@@ -12,6 +12,8 @@ use crate::format::Format;
 pub enum OptimiserKind {
     /// Evolution of a normal distribution by the adaptation of its covariances, begun again where it ends.
     CmaEs,
+    /// Simulated annealing, hot again where nothing better comes.
+    Annealing,
     /// Each point by itself, evenly.
     Random,
 }
@@ -21,6 +23,7 @@ impl OptimiserKind {
     pub fn word(self) -> &'static str {
         match self {
             Self::CmaEs => "cma-es",
+            Self::Annealing => "annealing",
             Self::Random => "random",
         }
     }

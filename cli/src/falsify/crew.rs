@@ -2,9 +2,9 @@
 
 use std::num::NonZeroUsize;
 
-use super::FalsifyError;
 use super::space::Point;
 use super::trial::{Bench, Sample};
+use crate::run::SearchError;
 
 /// Benches, one a thread.
 pub(super) struct Crew<'a> {
@@ -20,7 +20,7 @@ impl<'a> Crew<'a> {
     ///
     /// # Errors
     /// A session cannot be formed or go on.
-    pub(super) fn simulate(&mut self, points: &[Point]) -> Result<Vec<Sample>, FalsifyError> {
+    pub(super) fn simulate(&mut self, points: &[Point]) -> Result<Vec<Sample>, SearchError> {
         let mut samples = Vec::new();
         for some in points.chunks(self.benches.len()) {
             for sample in self.at_once(some) {
@@ -36,7 +36,7 @@ impl<'a> Crew<'a> {
         Ok(samples)
     }
 
-    fn at_once(&mut self, points: &[Point]) -> Vec<Result<Sample, FalsifyError>> {
+    fn at_once(&mut self, points: &[Point]) -> Vec<Result<Sample, SearchError>> {
         if let ([point], [bench, ..]) = (points, &mut self.benches[..]) {
             return vec![bench.simulate(point)];
         }

@@ -3,7 +3,6 @@
 //! | module | subject |
 //! |---|---|
 //! | [`config`] | what is asked for |
-//! | [`error`] | why it came to nothing |
 //! | `space` | what is varied: a point of a cube is a case |
 //! | `optimiser` | which points are simulated next |
 //! | `trial` | a point simulated, forked from trials before it |
@@ -18,7 +17,6 @@
 
 pub mod config;
 mod crew;
-mod error;
 mod optimiser;
 mod picture;
 mod points;
@@ -35,19 +33,19 @@ use onescan_scenario::case::Catalogue;
 use onescan_scenario::case::written::Written;
 
 pub use config::FalsifyConfig;
-pub use error::FalsifyError;
 use report::Case;
 use search::Found;
 use space::Space;
 
 use crate::error::{ExitCode, Usage};
+use crate::run::SearchError;
 
 /// Looks for inputs and parameters that break what `config` names, and writes what came of it to `out`. `points` are those
 /// of another program, if it chooses them.
 ///
 /// # Errors
 /// The scenario is wrong, or a client is not in this process.
-pub fn run(config: &FalsifyConfig, points: impl BufRead, out: &mut dyn Write) -> Result<ExitCode, FalsifyError> {
+pub fn run(config: &FalsifyConfig, points: impl BufRead, out: &mut dyn Write) -> Result<ExitCode, SearchError> {
     let scenario = Scenario::load(&config.scenario)?;
     if scenario.varied().is_empty() {
         let help = "say in `[[falsify.input]]` and `[[falsify.parameter]]` what may be varied (docs/falsify.md)";
@@ -69,7 +67,7 @@ pub fn run(config: &FalsifyConfig, points: impl BufRead, out: &mut dyn Write) ->
 }
 
 /// The scenario with the case that is asked for, and the case in pieces.
-fn chosen(config: &FalsifyConfig, scenario: &Scenario) -> Result<(Scenario, Written), FalsifyError> {
+fn chosen(config: &FalsifyConfig, scenario: &Scenario) -> Result<(Scenario, Written), SearchError> {
     let Some(name) = &config.case else { return Ok((scenario.clone(), Written::default())) };
     let catalogue = Catalogue::load(scenario.path())?;
     let case = catalogue.named(scenario, name)?;
@@ -77,7 +75,7 @@ fn chosen(config: &FalsifyConfig, scenario: &Scenario) -> Result<(Scenario, Writ
 }
 
 /// The finding as a case, run from its start, with the files that were asked for. Nothing if there is none.
-fn kept(config: &FalsifyConfig, space: &Space<'_>, found: &Found) -> Result<Option<Case>, FalsifyError> {
+fn kept(config: &FalsifyConfig, space: &Space<'_>, found: &Found) -> Result<Option<Case>, SearchError> {
     if !found.best.is_finding() {
         return Ok(None);
     }

@@ -7,8 +7,8 @@ use onescan_server::digest::Digest;
 use onescan_server::signal::SignalName;
 use onescan_server::time::VirtualTime;
 
-use super::FalsifyError;
 use super::space::form;
+use crate::run::SearchError;
 use crate::run::chosen::Chosen;
 use crate::run::judged::Judged;
 use crate::run::sampler::{Samples, panel};
@@ -23,7 +23,7 @@ pub(super) struct Whole {
 ///
 /// # Errors
 /// The session cannot be formed or go on.
-pub(super) fn whole(scenario: &Scenario, until: VirtualTime) -> Result<Whole, FalsifyError> {
+pub(super) fn whole(scenario: &Scenario, until: VirtualTime) -> Result<Whole, SearchError> {
     let names = plotted(scenario);
     let mut chosen = Chosen::new(&names);
     let mut samples = Samples { values: vec![Vec::new(); names.len()], names, t_ns: Vec::new() };

@@ -5,10 +5,10 @@ use std::io::{BufRead, Write};
 use onescan_report::OutputError;
 use serde_json::json;
 
-use super::FalsifyError;
 use super::space::{Point, Space};
 use super::trial::{Bench, Forks, Wanted};
 use crate::error::Usage;
+use crate::run::SearchError;
 
 /// Simulates the point of each line of `points`, and writes what it is worth to `out` before it reads the next.
 ///
@@ -19,7 +19,7 @@ pub(super) fn serve(
     expect: Option<usize>,
     points: impl BufRead,
     out: &mut dyn Write,
-) -> Result<(), FalsifyError> {
+) -> Result<(), SearchError> {
     let mut bench = Bench::new(space, expect, Wanted::Margins, Forks::Everywhere);
     for (number, line) in points.lines().enumerate() {
         let wrong = |what: String| {

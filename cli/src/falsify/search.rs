@@ -5,13 +5,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use onescan_scenario::Scenario;
 use onescan_server::signal::did_you_mean;
 
-use super::FalsifyError;
 use super::config::{FalsifyConfig, Objective};
 use super::crew::Crew;
 use super::optimiser;
 use super::space::Space;
 use super::trial::{Bench, Branch, Forks, Sample, Wanted};
 use crate::error::Usage;
+use crate::run::SearchError;
 
 /// What came of a search.
 pub(super) struct Found {
@@ -47,7 +47,7 @@ pub(super) fn expectation(scenario: &Scenario, wanted: Option<&str>) -> Result<O
 ///
 /// # Errors
 /// A session cannot be formed or go on.
-pub(super) fn search(config: &FalsifyConfig, space: &Space<'_>, expect: Option<usize>) -> Result<Found, FalsifyError> {
+pub(super) fn search(config: &FalsifyConfig, space: &Space<'_>, expect: Option<usize>) -> Result<Found, SearchError> {
     let wanted = if config.objective == Objective::Robustness { Wanted::Margins } else { Wanted::Branches };
     let mut crew = Crew::new(config.jobs, || Bench::new(space, expect, wanted, Forks::First));
     let mut optimiser =

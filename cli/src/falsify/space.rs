@@ -13,10 +13,9 @@ use onescan_server::signal::{ClientName, SignalType};
 use onescan_server::time::{TimeSpan, VirtualTime};
 use toml::{Table, Value};
 
-use super::FalsifyError;
 use crate::error::Usage;
-use crate::run::RunError;
 use crate::run::judged::Judged;
+use crate::run::{RunError, SearchError};
 
 /// A point of the cube.
 pub(super) type Point = Vec<f64>;
@@ -154,7 +153,7 @@ impl<'a> Space<'a> {
     ///
     /// # Errors
     /// The case is wrong.
-    pub(super) fn applied(&self, text: &str) -> Result<Scenario, FalsifyError> {
+    pub(super) fn applied(&self, text: &str) -> Result<Scenario, SearchError> {
         let catalogue = Catalogue::parse(PathBuf::from(case::FILE_NAME), format!("version = 1\n{text}"))?;
         let mut applied = self.scenario.clone();
         for case in catalogue.cases() {
@@ -168,7 +167,7 @@ impl<'a> Space<'a> {
     ///
     /// # Errors
     /// All of these.
-    pub(super) fn check(&self) -> Result<(), FalsifyError> {
+    pub(super) fn check(&self) -> Result<(), SearchError> {
         let (written, bare) = (&self.written, self.applied(&self.written.to_toml(NAME, &self.written.entries))?);
         form(&bare, self.until)?;
         for parameter in &self.varied().parameters {

@@ -8,8 +8,8 @@ use onescan_scenario::expect::{Margin, Outcome, Verdict};
 use onescan_server::digest::Digest;
 use onescan_server::time::VirtualTime;
 
-use super::FalsifyError;
 use super::space::{Point, Space, form};
+use crate::run::SearchError;
 use crate::run::judged::{Judged, Moment};
 
 /// Moments that are kept of a run.
@@ -17,7 +17,7 @@ const MOMENTS_MAX: usize = 64;
 /// Runs of which moments are kept: those that were of use last.
 const TRUNKS_MAX: usize = 8;
 /// What an infinite margin is to who looks for a small one.
-const FAR: f64 = 1e12;
+pub(super) const FAR: f64 = 1e12;
 
 /// What a simulation is asked for beside its margins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -96,7 +96,7 @@ impl<'a> Bench<'a> {
     ///
     /// # Errors
     /// The session cannot be formed or go on.
-    pub(super) fn simulate(&mut self, point: &[f64]) -> Result<Sample, FalsifyError> {
+    pub(super) fn simulate(&mut self, point: &[f64]) -> Result<Sample, SearchError> {
         let mut scenario = self.space.applied(&self.space.text(None, point))?;
         if self.wanted == Wanted::Branches {
             scenario.cover();

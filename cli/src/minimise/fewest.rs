@@ -8,8 +8,8 @@
 
 use onescan_scenario::case::written::Entry;
 
-use super::MinimiseError;
 use super::trial::Trials;
+use crate::run::SearchError;
 
 /// Entries at either end that are tried before all are halved.
 const ENDS: [usize; 3] = [1, 2, 4];
@@ -18,7 +18,7 @@ const ENDS: [usize; 3] = [1, 2, 4];
 ///
 /// # Errors
 /// A session cannot be formed or go on.
-pub(super) fn fewest(trials: &mut Trials<'_>, entries: &[Entry]) -> Result<Vec<Entry>, MinimiseError> {
+pub(super) fn fewest(trials: &mut Trials<'_>, entries: &[Entry]) -> Result<Vec<Entry>, SearchError> {
     let mut needed: Vec<Entry> = Vec::new();
     let mut rest = entries;
     while !rest.is_empty() && (needed.is_empty() || !fails(trials, &[], &needed)?) {
@@ -50,7 +50,7 @@ pub(super) fn fewest(trials: &mut Trials<'_>, entries: &[Entry]) -> Result<Vec<E
 }
 
 /// A few of `rest` at one of its ends, if these with what is `needed` fail; all of it if not.
-fn narrowed<'e>(trials: &mut Trials<'_>, rest: &'e [Entry], needed: &[Entry]) -> Result<&'e [Entry], MinimiseError> {
+fn narrowed<'e>(trials: &mut Trials<'_>, rest: &'e [Entry], needed: &[Entry]) -> Result<&'e [Entry], SearchError> {
     for few in ENDS {
         if 2 * few >= rest.len() {
             break;
@@ -65,6 +65,6 @@ fn narrowed<'e>(trials: &mut Trials<'_>, rest: &'e [Entry], needed: &[Entry]) ->
 }
 
 /// Whether entries fail with those that are needed, which begin after them.
-fn fails(trials: &mut Trials<'_>, entries: &[Entry], needed: &[Entry]) -> Result<bool, MinimiseError> {
+fn fails(trials: &mut Trials<'_>, entries: &[Entry], needed: &[Entry]) -> Result<bool, SearchError> {
     Ok(trials.fails(&[entries, needed].concat())?.is_some())
 }

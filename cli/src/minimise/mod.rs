@@ -4,7 +4,6 @@
 //! | module | subject |
 //! |---|---|
 //! | [`config`] | what is asked for |
-//! | [`error`] | why it came to nothing |
 //! | `operator` | what operators did, as entries |
 //! | `target` | what fails, so that nothing else is taken for it |
 //! | `trial` | a set of entries tried, forked from trials before it |
@@ -16,7 +15,6 @@
 //! failed, unless the limit of trials was reached, which is said.
 
 pub mod config;
-mod error;
 mod fewest;
 mod operator;
 mod report;
@@ -32,18 +30,17 @@ use onescan_scenario::case::Catalogue;
 use onescan_scenario::case::written::{Entry, Written};
 
 pub use config::MinimiseConfig;
-pub use error::MinimiseError;
 use report::Minimised;
 use trial::Trials;
 
 use crate::error::ExitCode;
-use crate::run::operator_inputs;
+use crate::run::{SearchError, operator_inputs};
 
 /// Looks for the least that still fails, and writes it to `out`.
 ///
 /// # Errors
 /// The scenario or the case is wrong, nothing fails, or a client is not in this process.
-pub fn run(config: &MinimiseConfig, out: &mut dyn Write) -> Result<ExitCode, MinimiseError> {
+pub fn run(config: &MinimiseConfig, out: &mut dyn Write) -> Result<ExitCode, SearchError> {
     let mut scenario = Scenario::load(&config.scenario)?;
     for client in &config.operated {
         scenario.operate(client)?;
@@ -78,7 +75,7 @@ pub fn run(config: &MinimiseConfig, out: &mut dyn Write) -> Result<ExitCode, Min
 }
 
 /// The scenario with the case that is asked for, and the case in pieces.
-fn chosen(config: &MinimiseConfig, scenario: &Scenario) -> Result<(Scenario, Written), MinimiseError> {
+fn chosen(config: &MinimiseConfig, scenario: &Scenario) -> Result<(Scenario, Written), SearchError> {
     let Some(name) = &config.case else { return Ok((scenario.clone(), Written::default())) };
     let catalogue = Catalogue::load(scenario.path())?;
     let case = catalogue.named(scenario, name)?;

@@ -9,11 +9,11 @@ use onescan_scenario::expect::TraceEnd;
 use onescan_server::time::VirtualTime;
 use serde_json::json;
 
-use super::MinimiseError;
 use super::config::MinimiseConfig;
 use super::target::{self, Target};
 use super::trial::Trials;
 use crate::format::Format;
+use crate::run::SearchError;
 
 /// What came of a minimisation.
 pub(super) struct Minimised {
@@ -43,12 +43,12 @@ impl Minimised {
         config: &MinimiseConfig,
         until: VirtualTime,
         trials: &Trials<'_>,
-    ) -> Result<Case, MinimiseError> {
+    ) -> Result<Case, SearchError> {
         let about = match &config.case {
             Some(case) => format!("the least of `{case}` with which {}", self.target),
             None => format!("the least of what was done with which {}", self.target),
         };
-        let run = |until: VirtualTime| -> Result<(Case, bool), MinimiseError> {
+        let run = |until: VirtualTime| -> Result<(Case, bool), SearchError> {
             let text = trials.text(&config.name, &self.left, Some(until), Some(&about));
             let applied = trials.applied(&text)?;
             let mut judged = target::form(&applied, until)?;

@@ -8,8 +8,8 @@ use onescan_scenario::case::written::{Entry, List, spelt};
 use onescan_server::time::{TimeSpan, VirtualTime};
 use toml::Value;
 
-use super::MinimiseError;
 use super::trial::Trials;
+use crate::run::SearchError;
 
 /// Trials for a number that may have any fraction.
 const HALVINGS: u32 = 7;
@@ -29,7 +29,7 @@ enum Size {
 ///
 /// # Errors
 /// A session cannot be formed or go on.
-pub(super) fn smallest(trials: &mut Trials<'_>, mut entries: Vec<Entry>) -> Result<Vec<Entry>, MinimiseError> {
+pub(super) fn smallest(trials: &mut Trials<'_>, mut entries: Vec<Entry>) -> Result<Vec<Entry>, SearchError> {
     // What happens earlier may do with less, so all is tried again until nothing changes.
     loop {
         let before = entries.clone();
@@ -51,11 +51,11 @@ pub(super) fn smallest(trials: &mut Trials<'_>, mut entries: Vec<Entry>) -> Resu
     }
 }
 
-fn shrink(trials: &mut Trials<'_>, entries: &mut [Entry], number: usize, size: Size) -> Result<(), MinimiseError> {
+fn shrink(trials: &mut Trials<'_>, entries: &mut [Entry], number: usize, size: Size) -> Result<(), SearchError> {
     let (step, by) = (trials.step(), trials.by());
     let Some(mut fails) = size.steps(&entries[number], by, step) else { return Ok(()) };
     trials.fork_before(entries);
-    let is_less = |trials: &mut Trials<'_>, entries: &mut [Entry], steps: u64| -> Result<bool, MinimiseError> {
+    let is_less = |trials: &mut Trials<'_>, entries: &mut [Entry], steps: u64| -> Result<bool, SearchError> {
         let Some(smaller) = size.with(&entries[number], steps, step) else { return Ok(false) };
         let before = std::mem::replace(&mut entries[number], smaller);
         let failed = trials.fails(entries)?;
@@ -78,7 +78,7 @@ fn shrink(trials: &mut Trials<'_>, entries: &mut [Entry], number: usize, size: S
 }
 
 /// Makes the number of a disturbance less, with three digits.
-fn lessen(trials: &mut Trials<'_>, entries: &mut [Entry], number: usize) -> Result<(), MinimiseError> {
+fn lessen(trials: &mut Trials<'_>, entries: &mut [Entry], number: usize) -> Result<(), SearchError> {
     if entries[number].list != List::Disturbance {
         return Ok(());
     }
@@ -127,7 +127,8 @@ impl Size {
         let is_conditional = entry.keys.contains_key("when");
         match self {
             Self::Length => {
-                let lasts = !matches!(entry.list, List::Set | List::Input) && !entry.keys.contains_key("at");
+                let lasts =
+                    !matches!(entry.list, List::Set | List::Code | List::Input) && !entry.keys.contains_key("at");
                 let length = match (entry.time("for"), entry.time("until")) {
                     (Some(length), _) => length.as_nanos(),
                     (None, Some(until)) => until.as_nanos().saturating_sub(entry.begin().as_nanos()),
@@ -138,7 +139,9 @@ impl Size {
             Self::Late => {
                 matches!(entry.list, List::Disturbance | List::Task).then(|| entry.time("by").map(in_steps)).flatten()
             }
-            Self::Begin => (entry.list != List::Set && !is_conditional).then(|| in_steps(entry.begin())),
+            Self::Begin => {
+                (!matches!(entry.list, List::Set | List::Code) && !is_conditional).then(|| in_steps(entry.begin()))
+            }
         }
     }
 

@@ -9,11 +9,10 @@ use onescan_scenario::expect::TraceEnd;
 use onescan_server::signal::{ClientName, did_you_mean};
 use onescan_server::time::VirtualTime;
 
-use super::MinimiseError;
 use super::trial::Trunk;
 use crate::error::Usage;
-use crate::run::RunError;
 use crate::run::judged::{Judged, Judgement};
+use crate::run::{RunError, SearchError};
 
 /// What fails, so that another failure is not taken for it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -84,7 +83,7 @@ pub(super) fn first(
     until: VirtualTime,
     wanted: Option<&str>,
     spots: &BTreeSet<VirtualTime>,
-) -> Result<(First, Trunk), MinimiseError> {
+) -> Result<(First, Trunk), SearchError> {
     let names = || whole.expectations().named.iter().map(|(name, _)| name.as_str());
     if let Some(wanted) = wanted.filter(|wanted| names().all(|name| name != *wanted)) {
         let help = did_you_mean(wanted, names());

@@ -10,8 +10,8 @@ use onescan_scenario::case::{self, Catalogue};
 use onescan_scenario::expect::TraceEnd;
 use onescan_server::time::{TimeSpan, VirtualTime};
 
-use super::MinimiseError;
 use super::target::{self, First, Target};
+use crate::run::SearchError;
 use crate::run::judged::{Judged, Judgement, Moment};
 
 /// Moments that are kept of a run.
@@ -42,7 +42,7 @@ pub(super) struct Trials<'a> {
 ///
 /// # Errors
 /// The case is wrong.
-pub(super) fn applied(scenario: &Scenario, text: &str) -> Result<Scenario, MinimiseError> {
+pub(super) fn applied(scenario: &Scenario, text: &str) -> Result<Scenario, SearchError> {
     let catalogue = Catalogue::parse(PathBuf::from(case::FILE_NAME), format!("version = 1\n{text}"))?;
     let mut applied = scenario.clone();
     for case in catalogue.cases() {
@@ -133,7 +133,7 @@ impl<'a> Trials<'a> {
     }
 
     /// The scenario with a case alone.
-    pub(super) fn applied(&self, text: &str) -> Result<Scenario, MinimiseError> {
+    pub(super) fn applied(&self, text: &str) -> Result<Scenario, SearchError> {
         applied(self.scenario, text)
     }
 
@@ -146,7 +146,7 @@ impl<'a> Trials<'a> {
     ///
     /// # Errors
     /// The session cannot be formed or go on.
-    pub(super) fn fails(&mut self, entries: &[Entry]) -> Result<Option<VirtualTime>, MinimiseError> {
+    pub(super) fn fails(&mut self, entries: &[Entry]) -> Result<Option<VirtualTime>, SearchError> {
         let text = self.text("trial", entries, Some(self.by), None);
         if let Some(known) = self.known.get(&text) {
             return Ok(*known);
@@ -168,7 +168,7 @@ impl<'a> Trials<'a> {
     fn run(
         &mut self,
         scenario: &Scenario,
-    ) -> Result<(Option<VirtualTime>, BTreeMap<VirtualTime, Moment>), MinimiseError> {
+    ) -> Result<(Option<VirtualTime>, BTreeMap<VirtualTime, Moment>), SearchError> {
         let mut judged = target::form(scenario, self.by)?;
         if !self.resume(&mut judged, scenario) {
             judged.begin()?;

@@ -21,6 +21,8 @@ pub struct MutateConfig {
     pub kinds: Vec<MutantKind>,
     /// So many percent are to be noticed.
     pub at_least: Option<u8>,
+    /// The file for those that survived, as cases.
+    pub written: Option<PathBuf>,
     /// How many at a time.
     pub jobs: NonZeroUsize,
     /// Whether a bar is shown.

@@ -10,10 +10,9 @@ use onescan_scenario::mistake::Mistake;
 use onescan_scenario::{Scenario, ScenarioError};
 use onescan_server::signal::ClientName;
 
-use super::MutateError;
 use crate::error::Usage;
-use crate::run::RunError;
 use crate::run::judged::Judged;
+use crate::run::{RunError, SearchError};
 
 /// Steps between two looks at whether it is noticed.
 const LOOK_STRIDE: u64 = 64;
@@ -62,7 +61,7 @@ impl<'a> Trial<'a> {
         scenario: &'a Scenario,
         catalogue: &'a Catalogue,
         cases: Vec<&'a Case>,
-    ) -> Result<Self, MutateError> {
+    ) -> Result<Self, SearchError> {
         let mut covered = scenario.clone();
         covered.cover();
         let mut sound = Vec::new();
@@ -93,7 +92,7 @@ impl<'a> Trial<'a> {
     ///
     /// # Errors
     /// A session could not go on for a reason that is not the program's.
-    pub(super) fn verdict(&self, mistake: &Mistake) -> Result<Verdict, MutateError> {
+    pub(super) fn verdict(&self, mistake: &Mistake) -> Result<Verdict, SearchError> {
         if !self.is_reached(mistake) {
             return Ok(Verdict::Unreached);
         }

@@ -67,8 +67,16 @@ fn cause(unit: &CaseUnit, outcome: &Outcome, references: &mut References) -> Res
     let Ok(scenario) = Scenario::load_case(&unit.place.scenario, Some(&unit.place.case)) else { return Ok(None) };
     let Some(Reference { commit, scenario: before }) = references.of(unit, &reviewed)? else { return Ok(None) };
     let sides = [&before, &scenario].map(|scenario| Side { scenario, inputs: Vec::new() });
-    let (signals, until) = asked(outcome);
-    let Some(why) = why::explain(sides.each_ref(), &signals, until)? else { return Ok(None) };
+    let (signals, first) = asked(outcome);
+    // A PLC that stops has gone another way in the step that it does not end.
+    let end = VirtualTime::from_nanos(outcome.virtual_time_ns) + scenario.plan().step();
+    let until = first.unwrap_or(end);
+    let mut why = why::explain(sides.each_ref(), &signals, until)?;
+    if why.is_none() && until < end {
+        // An expectation is violated at the instant that it speaks of, which may lie before the first value that differs.
+        why = why::explain(sides.each_ref(), &signals, end)?;
+    }
+    let Some(why) = why else { return Ok(None) };
     let lines = lines(&why, &commit);
     let folder = shown(unit.place.folder());
     let place = why.root().and_then(|root| root.at[1].as_ref().or(root.at[0].as_ref()));
@@ -76,8 +84,8 @@ fn cause(unit: &CaseUnit, outcome: &Outcome, references: &mut References) -> Res
     Ok(Some(Cause { commit, place, lines, why: why::report::json(&why) }))
 }
 
-/// The signals that differ, and until when runs are looked at: to the first difference, violation or fault.
-fn asked(outcome: &Outcome) -> (Vec<SignalName>, VirtualTime) {
+/// The signals that differ, and the time of the first difference or violation, if there is one.
+fn asked(outcome: &Outcome) -> (Vec<SignalName>, Option<VirtualTime>) {
     let differing = outcome.differences.iter().filter_map(|difference| match difference {
         Difference::Values { signal, at_ns, .. } => Some((SignalName::new(signal.clone()).ok()?, *at_ns)),
         _ => None,
@@ -85,7 +93,7 @@ fn asked(outcome: &Outcome) -> (Vec<SignalName>, VirtualTime) {
     let (signals, times): (Vec<SignalName>, Vec<u64>) = differing.unzip();
     let violated = outcome.expectations.iter().filter(|shown| shown.is_violated()).filter_map(|shown| shown.at_ns);
     let first = times.into_iter().chain(violated).min();
-    (signals, VirtualTime::from_nanos(first.unwrap_or(outcome.virtual_time_ns)))
+    (signals, first.map(VirtualTime::from_nanos))
 }
 
 /// The way back in short: where the runs part, then how it comes to the signal.

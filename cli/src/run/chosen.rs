@@ -1,5 +1,6 @@
 //! Signals chosen by name, as numbers.
 
+use onescan_server::layout::ImageLayout;
 use onescan_server::session::Session;
 use onescan_server::signal::{SignalId, SignalName};
 
@@ -28,14 +29,21 @@ impl Chosen {
 
     /// Their bytes now, in their order.
     pub(crate) fn bytes<'s>(&self, session: &'s Session) -> impl Iterator<Item = &'s [u8]> {
-        self.signals.iter().map(|signal| session.layout().bytes(*signal, session.image()))
+        self.bytes_in(session.layout(), session.image())
     }
 
     /// What they are now, in their order; texts are no numbers.
     pub(crate) fn numbers(&self, session: &Session) -> impl Iterator<Item = f64> {
-        self.signals.iter().map(|signal| {
-            let bytes = session.layout().bytes(*signal, session.image());
-            session.layout().ty(*signal).as_f64(bytes).unwrap_or(f64::NAN)
-        })
+        self.numbers_in(session.layout(), session.image())
+    }
+
+    /// Their bytes in an image of the session in which they were found.
+    pub(crate) fn bytes_in<'s>(&self, layout: &ImageLayout, image: &'s [u8]) -> impl Iterator<Item = &'s [u8]> {
+        self.signals.iter().map(|signal| layout.bytes(*signal, image))
+    }
+
+    /// What they are in such an image.
+    pub(crate) fn numbers_in(&self, layout: &ImageLayout, image: &[u8]) -> impl Iterator<Item = f64> {
+        self.signals.iter().map(|signal| layout.ty(*signal).as_f64(layout.bytes(*signal, image)).unwrap_or(f64::NAN))
     }
 }

@@ -2,6 +2,7 @@
 //!
 //! Each part is what one room of a run needs to know; only [`super::execute`] sees the whole.
 
+use std::collections::BTreeMap;
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -123,6 +124,9 @@ pub struct Course {
     pub forks: Option<ForkRequest>,
     /// Whether its state at the end is wanted, as a hash.
     pub state_at_end: bool,
+    /// The states of another run, by virtual time: where this one is in the same state it ends, because it would do the
+    /// same as that one.
+    pub join: BTreeMap<VirtualTime, String>,
 }
 
 /// Checkpoints from which other cases fork.
@@ -132,6 +136,8 @@ pub struct ForkRequest {
     pub folder: PathBuf,
     /// The boundaries at which they are taken, in order.
     pub times: Vec<VirtualTime>,
+    /// The boundaries at which its state is wanted, in order: others may come together with it there.
+    pub states: Vec<VirtualTime>,
     /// Conditions: a checkpoint is taken at the last boundary before each comes true.
     pub conditions: Vec<When>,
 }

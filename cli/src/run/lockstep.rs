@@ -23,7 +23,7 @@ use onescan_server::transport::tcp::Lobby;
 
 use super::config::{Reach, RunConfig, SaveRequest, Transport};
 use super::error::RunError;
-use super::fork::{self, Fork};
+use super::fork::{self, Joined, Taken};
 use super::processes::{Passed, Processes};
 use super::progress::Progress;
 use super::rewound::{self, Onward};
@@ -43,8 +43,10 @@ pub(super) struct Driven {
     pub(super) outcome: Outcome,
     /// Why there is no checkpoint that was asked for: a run that could not be saved has been run all the same.
     pub(super) unsaved: Option<RunError>,
-    /// Where others can fork from it.
-    pub(super) forks: Vec<Fork>,
+    /// Where others can fork from it, and come together with it.
+    pub(super) taken: Taken,
+    /// Where it came together with another, and ended.
+    pub(super) joined: Option<Joined>,
     /// Its state at the end, if that was asked for and it came so far.
     pub(super) state: Option<StateHash>,
     /// How far a plant that follows was behind the PLC at each communication, ns.
@@ -53,7 +55,7 @@ pub(super) struct Driven {
 
 impl From<(Outcome, Vec<i64>)> for Driven {
     fn from((outcome, errors_ns): (Outcome, Vec<i64>)) -> Self {
-        Self { outcome, unsaved: None, forks: Vec::new(), state: None, errors_ns }
+        Self { outcome, unsaved: None, taken: Taken::default(), joined: None, state: None, errors_ns }
     }
 }
 
@@ -102,7 +104,7 @@ pub(super) fn run(
     if let Some(checkpoint) = checkpoint {
         // Viewers see at once where the session goes on.
         lockstep.published().ask();
-        resume(&mut lockstep, checkpoint, config.course.accept_code.then_some(scenario))?;
+        resume(&mut lockstep, checkpoint, scenario, config.course.accept_code)?;
     }
     if let (Some(page), true) = (&page, config.doors.awaits_viewer) {
         page.await_viewer(|| interrupt.is_raised());
@@ -116,23 +118,25 @@ pub(super) fn run(
         tracing::error!("{error}; the session goes on");
     }
     let mut unsaved = saved.err();
-    let mut forks = Vec::new();
+    let mut taken = Taken::default();
     if let Some(request) = &config.course.forks {
         match fork::take(&mut lockstep, request, config.subject.end(scenario)) {
-            Ok(taken) => forks = taken,
+            Ok(all) => taken = all,
             Err(error) => unsaved = Some(error),
         }
     }
+    let joined = fork::join(&mut lockstep, &config.course.join)?;
     if let Some(keeper) = &mut keeper {
         keeper.run_to(&mut lockstep, VirtualTime::MAX)?;
     }
-    let state = if config.course.state_at_end && lockstep.run_to(config.subject.end(scenario))? == Reached::Boundary {
+    let wants_state = config.course.state_at_end && joined.is_none();
+    let state = if wants_state && lockstep.run_to(config.subject.end(scenario))? == Reached::Boundary {
         let hash = lockstep.checkpoint().and_then(|checkpoint| checkpoint.state_hash());
         hash.inspect_err(|error| tracing::debug!(%error, "the state at the end is not known")).ok()
     } else {
         None
     };
-    Ok(Driven { outcome: lockstep.run()?, unsaved, forks, state, errors_ns: Vec::new() })
+    Ok(Driven { outcome: lockstep.run()?, unsaved, taken, joined, state, errors_ns: Vec::new() })
 }
 
 /// What the scenario does by itself, and what is looked out for on behalf of others.
@@ -351,29 +355,29 @@ pub(crate) fn operator_inputs(path: &std::path::Path) -> Result<Vec<OperatorInpu
     Ok(event::operator_inputs(&events))
 }
 
-/// Goes on from a checkpoint; from one of other PLC code if the scenario `accepts` that.
 /// The bytes of a checkpoint's file.
 fn read(path: &Path) -> Result<Vec<u8>, RunError> {
     Ok(regular::read(path, Limit::DATA).map_err(Unreadable::at(path))?)
 }
 
+/// Goes on from a checkpoint; from one of other PLC code if the case has its own, or if `accepts_code`.
 fn resume(
     lockstep: &mut Lockstep,
     (path, bytes): (&Path, Vec<u8>),
-    accepts: Option<&Scenario>,
+    scenario: &Scenario,
+    accepts_code: bool,
 ) -> Result<(), RunError> {
     let wrong = |source| RunError::Resume { path: path.to_owned(), source };
     let checkpoint = Checkpoint::from_bytes(&bytes).map_err(wrong)?;
-    if let Some(scenario) = accepts {
-        // Constants are code; what else a case sets is a state of the past, which it cannot change.
-        let mut constants = BTreeSet::new();
-        for path in scenario.makeup().differing(checkpoint.makeup()) {
-            if scenario.is_constant(path)? {
-                constants.insert(path.clone());
-            }
+    // Programs and constants are code; what else a case sets is a state of the past, which it cannot change.
+    let mut code = BTreeSet::new();
+    for path in scenario.makeup().differing(checkpoint.makeup()) {
+        let is_program = scenario.is_program(path) && (accepts_code || scenario.has_code_of_case());
+        if is_program || (accepts_code && scenario.is_constant(path)?) {
+            code.insert(path.clone());
         }
-        lockstep.accept_settings(constants);
     }
+    lockstep.accept_settings(code);
     lockstep.resume(&checkpoint).map_err(wrong)
 }
 

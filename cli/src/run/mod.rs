@@ -20,6 +20,7 @@
 //! | [`recorded`] | a run's recording |
 //! | `in_process` | a session of which all clients are here |
 //! | `judged` | the same, judged step by step |
+//! | `search` | why a search through many runs came to nothing |
 //! | [`rerun`] | a recorded run once more |
 //! | [`rewound`] | the past of a run, for its page |
 //! | [`expectation`] | what a run had to show |
@@ -54,6 +55,7 @@ pub mod report;
 pub mod rerun;
 pub(crate) mod rewound;
 pub(crate) mod sampler;
+mod search;
 #[cfg(feature = "opcua")]
 mod seats;
 #[cfg(not(feature = "opcua"))]
@@ -77,14 +79,16 @@ use onescan_server::checkpoint::StateHash;
 use onescan_server::client::{ClientView, ValueTable};
 use onescan_server::lockstep::Lockstep;
 use onescan_server::observer::Observer;
+use onescan_server::time::VirtualTime;
 
 use config::{Drawing, WatchOn};
 pub use config::{ForkRequest, RunConfig, Transport};
 pub use error::RunError;
-use fork::Fork;
+use fork::{Fork, Joined, Taken};
 use lockstep::Driven;
 pub(crate) use lockstep::{NOTICE, operator_inputs};
 pub use report::{RunReport, RunStatus, Verdict};
+pub use search::SearchError;
 
 use crate::interrupt::Interrupt;
 use crate::plant::drawing;
@@ -200,6 +204,10 @@ pub(crate) struct Ran {
     pub(crate) unsaved: Option<RunError>,
     /// Where others can fork from it.
     pub(crate) forks: Vec<Fork>,
+    /// Its states at boundaries, if that was asked for.
+    pub(crate) states: Vec<(VirtualTime, StateHash)>,
+    /// Where it came together with another run, and ended.
+    pub(crate) joined: Option<Joined>,
     /// Its state at the end, if that was asked for.
     pub(crate) state: Option<StateHash>,
     /// How far a plant that follows was behind the PLC at each communication, ns.
@@ -259,10 +267,11 @@ pub(crate) fn one_run(
             freewheel::run(config, scenario, number, interrupt, watch).map(Driven::from)
         }
     };
-    let Driven { outcome, unsaved, forks, state, errors_ns } = outcome.map_err(|error| match (&recorded, error) {
-        (Some(recorded), RunError::Record(source)) => RunError::RecordCut { source, kept: recorded.kept() },
-        (_, error) => error,
-    })?;
+    let Driven { outcome, unsaved, taken: Taken { forks, states }, joined, state, errors_ns } =
+        outcome.map_err(|error| match (&recorded, error) {
+            (Some(recorded), RunError::Record(source)) => RunError::RecordCut { source, kept: recorded.kept() },
+            (_, error) => error,
+        })?;
     let mut report = RunReport::new(config, scenario, number, &outcome, started.elapsed());
     report.latency = log.latencies();
     let end = if report.status == RunStatus::Completed { TraceEnd::Complete } else { TraceEnd::Cut };
@@ -274,5 +283,15 @@ pub(crate) fn one_run(
     }
     let last = published.take().filter(|_| config.reports.want_the_end()).map(|published| published.latest());
     let last = last.map(|view| view.clients.clone()).unwrap_or_default();
-    Ok(Ran { report, samples: samples.replace(Samples::default()), unsaved, forks, state, errors_ns, last })
+    Ok(Ran {
+        report,
+        samples: samples.replace(Samples::default()),
+        unsaved,
+        forks,
+        states,
+        joined,
+        state,
+        errors_ns,
+        last,
+    })
 }

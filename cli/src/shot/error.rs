@@ -5,35 +5,19 @@ use std::process::ExitStatus;
 use std::time::Duration;
 
 use miette::Diagnostic;
-use onescan_report::OutputError;
-use onescan_report::file::FileError;
-use onescan_scenario::ScenarioError;
 use onescan_server::time::VirtualTime;
 use thiserror::Error;
 
-use crate::error::{Exit, ExitCode, Usage};
+use crate::error::{Exit, ExitCode};
 use crate::run::RunError;
-use crate::web::WebError;
 
 /// Why there is no picture.
 #[derive(Debug, Error, Diagnostic)]
 pub enum ShotError {
-    /// The scenario or its case is wrong.
+    /// The session cannot be run or shown, or the picture not be written: as with any run.
     #[error(transparent)]
     #[diagnostic(transparent)]
-    Scenario(#[from] ScenarioError),
-    /// What was typed is wrong.
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    Usage(#[from] Usage),
-    /// The session cannot be run.
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    Run(#[from] RunError),
-    /// The page cannot be served.
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    Web(#[from] WebError),
+    Run(RunError),
     /// The session ended before its time.
     #[error("the session did not come to {at}: {why}")]
     Ended {
@@ -76,23 +60,21 @@ pub enum ShotError {
     /// The page says why.
     #[error("the page does not draw: {0}")]
     Page(String),
-    /// The picture cannot be written.
-    #[error(transparent)]
-    File(#[from] FileError),
-    /// It cannot be told where the picture is.
-    #[error(transparent)]
-    Output(#[from] OutputError),
+}
+
+impl<E> From<E> for ShotError
+where
+    RunError: From<E>,
+{
+    fn from(error: E) -> Self {
+        Self::Run(error.into())
+    }
 }
 
 impl Exit for ShotError {
     fn exit_code(&self) -> ExitCode {
         match self {
-            Self::Scenario(error) => error.exit_code(),
-            Self::Usage(error) => error.exit_code(),
             Self::Run(error) => error.exit_code(),
-            Self::Web(error) => error.exit_code(),
-            Self::File(error) => error.exit_code(),
-            Self::Output(error) => error.exit_code(),
             Self::NoBrowser { .. } => ExitCode::WrongInput,
             Self::Ended { .. } | Self::Browser { .. } | Self::Gone { .. } | Self::Late(_) | Self::Page(_) => {
                 ExitCode::Fault

@@ -29,7 +29,6 @@ use onescan_server::signal::{ClientName, did_you_mean};
 
 use crate::access::admission::Admission;
 use crate::error::{ExitCode, Usage};
-use crate::run::RunError;
 use crate::run::in_process::in_process;
 use crate::web::{self, Page};
 use browser::Browser;
@@ -99,7 +98,7 @@ fn shown(config: &ShotConfig, scenario: &Scenario) -> Result<Published, ShotErro
     let mut lockstep = in_process(scenario, config.at, [], elsewhere)?;
     let published = lockstep.published();
     let _follower = published.follow();
-    match lockstep.run().map_err(RunError::from)?.end {
+    match lockstep.run()?.end {
         SessionEnd::Failed(failure) => Err(ShotError::Ended { at: config.at, why: failure.to_string() }),
         SessionEnd::Completed { .. } | SessionEnd::Stopped { .. } => Ok(published),
     }

@@ -72,7 +72,7 @@ impl Flow {
         self.t_v = pair.t_v;
         let [a, b] = pair.acts.each_ref().map(|acts| tree(acts));
         let mut walk = Walk { flow: self, records };
-        walk.both([&a, &b]);
+        walk.both([&a, &b], None);
     }
 }
 
@@ -90,18 +90,22 @@ struct Progress {
     read: Option<usize>,
     /// The last decision in it that went another way, or statement that only one has.
     decided: Option<usize>,
+    /// The first differing value that the statement around it has read: it may have chosen whose statement this is, as the
+    /// index of an instance that is called does.
+    around: Option<usize>,
 }
 
 impl Progress {
     fn cause(&self) -> Option<usize> {
-        self.read.or(self.decided)
+        self.read.or(self.decided).or(self.around)
     }
 }
 
 impl Walk<'_> {
-    /// Goes through a statement that both runs have executed; gives the first differing value that it has read.
-    fn both(&mut self, nodes: [&Node; 2]) -> Option<usize> {
-        let mut progress = Progress::default();
+    /// Goes through a statement that both runs have executed, within one that has read the differing value `around`; gives the
+    /// first one that it has read itself.
+    fn both(&mut self, nodes: [&Node; 2], around: Option<usize>) -> Option<usize> {
+        let mut progress = Progress { around, ..Progress::default() };
         loop {
             self.plain(nodes, &mut progress);
             let next = [0, 1].map(|side| nodes[side].items.get(progress.at[side]));
@@ -157,7 +161,7 @@ impl Walk<'_> {
             _ => false,
         };
         if same {
-            let read = self.both(children);
+            let read = self.both(children, progress.read.or(progress.around));
             let is_value = [0, 1].iter().all(|&side| !Node::has_chosen(&nodes[side].items[..progress.at[side]]));
             // What a function has read is read by the statement that calls it; a branch is no part of a value.
             if is_value && nodes.iter().any(|node| node.statement.is_some()) {

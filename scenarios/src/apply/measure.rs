@@ -3,7 +3,7 @@
 use onescan_server::operation::Operation;
 use onescan_server::signal::{SignalName, did_you_mean};
 use onescan_server::time::VirtualTime;
-use onescan_server::timeline::When;
+use onescan_server::timeline::{Scheduled, When};
 use toml::Spanned;
 
 use crate::arrays;
@@ -37,6 +37,19 @@ pub struct Injected {
     pub operations: Vec<Operation>,
     /// The signals that it holds or disturbs: they are no effect of it.
     pub signals: Vec<SignalName>,
+    /// When it is over.
+    pub over: Over,
+}
+
+/// When nothing of a campaign's fault is to come any more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Over {
+    /// It lasts to the end of the run.
+    Never,
+    /// At this time.
+    At(VirtualTime),
+    /// That depends on when a condition comes true.
+    Unknown,
 }
 
 impl Scenario {
@@ -134,8 +147,37 @@ impl Scenario {
         let step = self.file().step.as_nanos();
         let grid = |at: VirtualTime| VirtualTime::from_nanos(at.as_nanos().div_ceil(step).saturating_mul(step));
         let at = injection.at.as_ref().map(|(at, _)| grid(*at));
-        Some(Injected { at, operations: operations.collect(), signals })
+        Some(Injected { at, operations: operations.collect(), signals, over: over(&applied.injected) })
     }
+}
+
+fn over(injected: &[Scheduled]) -> Over {
+    let count = |is_such: fn(&Operation) -> bool| injected.iter().filter(|one| is_such(&one.operation)).count();
+    // What begins and does not end lasts.
+    if count(lasts) > count(ends) {
+        return Over::Never;
+    }
+    let at = |one: &Scheduled| if let When::At(at) = one.when { Some(at) } else { None };
+    let all: Option<Vec<VirtualTime>> = injected.iter().map(at).collect();
+    all.and_then(|all| all.into_iter().max()).map_or(Over::Unknown, Over::At)
+}
+
+/// True if what an operation begins goes on until another one ends it.
+fn lasts(operation: &Operation) -> bool {
+    use Operation as O;
+    matches!(
+        operation,
+        O::Force { .. } | O::Disturb { .. } | O::Fail { .. } | O::ForceVariable { .. } | O::Postpone { .. }
+    )
+}
+
+/// True if an operation ends what another one began.
+fn ends(operation: &Operation) -> bool {
+    use Operation as O;
+    matches!(
+        operation,
+        O::Release { .. } | O::Mend { .. } | O::Repair { .. } | O::ReleaseVariable { .. } | O::CatchUp { .. }
+    )
 }
 
 /// The signal that an operation holds or disturbs.

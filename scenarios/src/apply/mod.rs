@@ -4,12 +4,14 @@
 //! |---|---|
 //! | this file | the case's own keys, and its expectations |
 //! | `settings` | parameters of plants, constants and initial values of PLCs |
+//! | `code` | other programs in soft PLCs |
 //! | `period` | when something begins and ends |
 //! | `disturbance` | faults on the way of signals |
 //! | [`departure`] | where a case departs from another |
 //! | [`measure`] | what a campaign reads out of its runs |
 //! | `timeline` | what a case does while a session runs, as operations |
 
+mod code;
 pub mod departure;
 mod disturbance;
 pub mod measure;
@@ -50,6 +52,8 @@ impl Scenario {
         for setting in &case.settings {
             self.settable(catalogue, setting)?;
         }
+        let code = case.code.iter().map(|entry| self.code(catalogue, entry));
+        applied.code = code.collect::<Result<_, _>>()?;
         if let Some(entry) = catalogue.entry(case)? {
             self.schedule(catalogue, &entry, &mut applied)?;
             if let Some(injection) = &case.injection {

@@ -213,6 +213,19 @@ impl Scenario {
         Ok(())
     }
 
+    /// Whether a setting of a checkpoint is a text or a file in the program of a soft PLC.
+    pub fn is_program(&self, path: &str) -> bool {
+        let of_client = |(name, client): (&ClientName, &toml::Spanned<ClientFile>)| {
+            let ClientFile::SoftPlc { sources, .. } = client.get_ref() else { return false };
+            let own = path.strip_prefix(name.as_str()).and_then(|rest| rest.strip_prefix('.'));
+            let is_of = |own: &str, source: &String| {
+                own.strip_prefix(source.as_str()).is_some_and(|rest| rest.is_empty() || rest.starts_with(':'))
+            };
+            own.is_some_and(|own| sources.iter().any(|source| is_of(own, source)))
+        };
+        self.file().clients.iter().any(of_client)
+    }
+
     /// Whether a setting is a constant of a soft PLC: part of its code, and not of its state.
     ///
     /// # Errors
@@ -236,6 +249,7 @@ impl Scenario {
         for setting in self.applied().into_iter().flat_map(|applied| &applied.case.settings) {
             settings.insert(setting.path.clone(), setting.value.to_string());
         }
+        settings.extend(self.applied().into_iter().flat_map(Applied::code_settings));
         let case = self.case().map_or(DEFAULT, |case| case.name.as_str());
         Makeup { name: format!("case `{case}`"), settings }
     }

@@ -7,10 +7,8 @@ use onescan_server::time::VirtualTime;
 use toml::Spanned;
 
 use super::Case;
-use super::file::{
-    ActivationFile, CampaignFaultFile, CampaignFile, CampaignVerdict, CaseFile, FaultFile, FaultKind, ForceFile,
-    VariableFile,
-};
+use super::campaign_file::{ActivationFile, CampaignFaultFile, CampaignFile, CampaignVerdict, FaultKind};
+use super::file::{CaseFile, FaultFile, ForceFile, VariableFile};
 use super::matrix::COMBINATIONS_MAX;
 use crate::arrays::Wrong;
 
@@ -29,8 +27,11 @@ pub struct Campaign {
     pub faults: Vec<CampaignFault>,
     /// The names of the activations, in the order of the file.
     pub activations: Vec<String>,
-    /// The run without faults for each combination of the matrix, and what that adds to names; one without a matrix.
+    /// The run without faults for each combination of the matrix and each program, and what that adds to names; one
+    /// without any. The program of the scenario comes first, before the others with the same combination.
     pub variants: Vec<(String, Case)>,
+    /// The names of the programs beside that of the scenario, in the order of the file.
+    pub programs: Vec<String>,
     /// A case for each fault, activation and variant: all of the first fault, then those of the second; the variant changes
     /// fastest.
     pub cases: Vec<Case>,
@@ -69,6 +70,7 @@ pub(crate) fn is_name(name: &str) -> bool {
 pub(super) fn expanded(file: &CampaignFile, variants: Vec<(String, Case)>, number: usize) -> Result<Campaign, Wrong> {
     names(file.faults.iter().map(|fault| &fault.get_ref().name), "faults")?;
     names(file.activations.iter().map(|activation| &activation.get_ref().name), "activations")?;
+    names(file.program.iter().map(|program| &program.get_ref().name), "programs")?;
     let place = file.name.span();
     if file.faults.is_empty() || file.activations.is_empty() {
         let what = if file.faults.is_empty() { "fault" } else { "activation" };
@@ -105,6 +107,7 @@ pub(super) fn expanded(file: &CampaignFile, variants: Vec<(String, Case)>, numbe
         faults: file.faults.iter().map(fault).collect(),
         activations: file.activations.iter().map(|one| one.get_ref().name.get_ref().clone()).collect(),
         variants,
+        programs: file.program.iter().map(|program| program.get_ref().name.get_ref().clone()).collect(),
         cases,
         accepted: file.accept.clone().unwrap_or_else(|| ACCEPTED.to_vec()),
         file: file.clone(),
@@ -115,6 +118,23 @@ impl Campaign {
     /// The number of the variant to which the case of this number belongs.
     pub fn variant_of(&self, case: usize) -> usize {
         case % self.variants.len().max(1)
+    }
+
+    /// The number of the variant with the same combination of the matrix and the scenario's own program.
+    pub fn own_program_of(&self, variant: usize) -> usize {
+        variant - variant % (self.programs.len() + 1)
+    }
+
+    /// The name of a variant's program, if it is not the scenario's own.
+    pub fn program_of(&self, variant: usize) -> Option<&str> {
+        let number = (variant % (self.programs.len() + 1)).checked_sub(1)?;
+        self.programs.get(number).map(String::as_str)
+    }
+
+    /// The files of all programs, as they are named: relative to the scenario. Those of several variants come several times.
+    pub fn program_files(&self) -> impl Iterator<Item = &str> {
+        let codes = self.variants.iter().flat_map(|(_, case)| &case.code);
+        codes.filter_map(|code| Some(code.get_ref().by.as_ref()?.get_ref().as_str()))
     }
 
     /// What the case of an injection does: what `base` does, and the fault.
@@ -166,6 +186,7 @@ fn empty(file: &CampaignFile) -> CaseFile {
         disturbances: Vec::new(),
         variables: Vec::new(),
         tasks: Vec::new(),
+        code: Vec::new(),
         waive: Vec::new(),
         expect: Vec::new(),
     }

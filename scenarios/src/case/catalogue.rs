@@ -11,7 +11,9 @@ use toml::de::{DeTable, DeValue};
 use toml::{Spanned, Value};
 
 use super::campaign::{self, Campaign};
-use super::file::{CampaignFile, CaseFile, CasesFile, SnapshotFile, VERSION};
+use super::campaign_file::CampaignFile;
+use super::cases_file::{CasesFile, SnapshotFile, VERSION};
+use super::file::CaseFile;
 use super::matrix::{Axis, COMBINATIONS_MAX, combinations};
 use super::{Case, DEFAULT, Setting};
 use crate::arrays;
@@ -117,12 +119,21 @@ impl Catalogue {
                 format!("the matrix of `{}` has more than {COMBINATIONS_MAX} combinations", campaign.name.get_ref());
             return Err(self.wrong(message, Some(campaign.name.span()), None));
         };
-        let variant = |(suffix, settings): (String, Vec<Setting>)| {
+        let mut programs = vec![(String::new(), Vec::new())];
+        for program in campaign.program.iter().map(Spanned::get_ref) {
+            programs.push((format!(",program={}", program.name.get_ref()), program.code.clone()));
+        }
+        let mut variants = Vec::with_capacity(combinations.len() * programs.len());
+        for (suffix, settings) in combinations {
             let mut case = base.clone();
             settings.into_iter().try_for_each(|setting| self.put(&mut case, setting))?;
-            Ok((suffix, case))
-        };
-        combinations.into_iter().map(variant).collect()
+            for (program, code) in &programs {
+                let mut changed = case.clone();
+                changed.code.extend(code.iter().cloned());
+                variants.push((format!("{suffix}{program}"), changed));
+            }
+        }
+        Ok(variants)
     }
 
     /// Expands the arrays among the signals of snapshots.
@@ -164,6 +175,7 @@ impl Catalogue {
                 seed: file.seed,
                 until: file.until,
                 settings: Vec::new(),
+                code: file.code.clone(),
                 entry: Some(index),
                 injection: None,
             };
@@ -224,6 +236,8 @@ impl Catalogue {
             case.seed = other.seed;
             case.settings.clone_from(&other.settings);
             case.settings.iter_mut().for_each(|setting| setting.place = place.clone());
+            let of_other = other.code.iter();
+            case.code = of_other.map(|code| Spanned::new(place.clone(), code.get_ref().clone())).collect();
         }
     }
 

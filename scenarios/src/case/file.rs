@@ -1,54 +1,15 @@
-//! `cases.toml` as it is written. Times are text with a unit, as in `"10ms"`.
-
-use std::collections::BTreeMap;
+//! `[[case]]` of `cases.toml` as it is written. Times are text with a unit, as in `"10ms"`.
 
 use onescan_server::signal::SignalName;
 use onescan_server::time::{TimeSpan, VirtualTime};
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 use toml::Spanned;
 
 use crate::file::ExpectFile;
 use crate::form::{
     Amount, CaseName, Deviation, Matrix, Name, Ordinal, Rate, Scalar, Settings, Time, from_optional_text, from_text,
 };
-
-/// The only version of the format so far.
-pub const VERSION: u32 = 1;
-
-/// `cases.toml`: what is tried on a scenario.
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct CasesFile {
-    /// Version of the format: 1.
-    pub version: u32,
-    /// What snapshots of trajectories contain.
-    #[serde(default)]
-    pub snapshot: SnapshotFile,
-    /// The cases; one called `default` if there are none.
-    #[serde(default, rename = "case")]
-    #[schemars(with = "Vec<CaseFile>")]
-    pub cases: Vec<Spanned<CaseFile>>,
-    /// Faults tried one by one, each at each of several instants.
-    #[serde(default, rename = "campaign")]
-    pub campaigns: Vec<CampaignFile>,
-}
-
-/// Which signals a snapshot contains, and how far a run may be from it.
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct SnapshotFile {
-    /// The signals; those of the plot if empty, all if there is no plot.
-    #[schemars(with = "Vec<Name>")]
-    pub signals: Vec<Spanned<SignalName>>,
-    /// How far apart samples of REAL and LREAL are; a hundredth of the run if absent.
-    #[serde(deserialize_with = "from_optional_text")]
-    #[schemars(with = "Option<Time>")]
-    pub sample: Option<TimeSpan>,
-    /// By how much a number may differ from its snapshot, in its own unit; not at all if absent.
-    #[schemars(with = "BTreeMap<String, f64>")]
-    pub tolerance: BTreeMap<SignalName, Spanned<f64>>,
-}
 
 /// One `[[case]]`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -101,6 +62,10 @@ pub struct CaseFile {
     #[serde(default, rename = "task")]
     #[schemars(with = "Vec<TaskFile>")]
     pub tasks: Vec<Spanned<TaskFile>>,
+    /// Other programs in soft PLCs.
+    #[serde(default)]
+    #[schemars(with = "Vec<CodeFile>")]
+    pub code: Vec<Spanned<CodeFile>>,
     /// Expectations of the scenario that this case need not meet.
     #[serde(default)]
     #[schemars(with = "Vec<String>")]
@@ -356,174 +321,46 @@ pub struct TaskFile {
     pub lasting: Option<TimeSpan>,
 }
 
-/// One `[[campaign]]`: every fault is tried with every activation.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+/// Another program in a soft PLC: a file in the place of one of its sources, or a text in the place of another.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct CampaignFile {
-    /// Its name: letters, digits, `-`, `_` and `.`; unique, without regard to case.
-    #[schemars(with = "CaseName")]
-    pub name: Spanned<String>,
-    /// What it is about, in one line.
-    pub about: Option<String>,
-    /// The case to which the faults come; the scenario as it is if absent.
+pub struct CodeFile {
+    /// The soft PLC, if there are several.
+    #[schemars(with = "Option<Name>")]
+    pub client: Option<Spanned<String>>,
+    /// The source, as the scenario names it.
+    #[schemars(with = "String")]
+    pub source: Spanned<String>,
+    /// The file in its place, relative to the scenario.
     #[schemars(with = "Option<String>")]
-    pub case: Option<Spanned<String>>,
-    /// Virtual time at which a run is complete; that of the case if absent.
-    #[serde(default, deserialize_with = "from_optional_text")]
-    #[schemars(with = "Option<Time>")]
-    pub until: Option<VirtualTime>,
-    /// Lists of values by path, or `seed`: all faults and activations for each combination.
-    #[serde(default)]
-    #[schemars(with = "Matrix")]
-    pub matrix: toml::Table,
-    /// What fails.
-    #[serde(default, rename = "fault")]
-    #[schemars(with = "Vec<CampaignFaultFile>")]
-    pub faults: Vec<Spanned<CampaignFaultFile>>,
-    /// When it fails, and for how long.
-    #[serde(default, rename = "activation")]
-    #[schemars(with = "Vec<ActivationFile>")]
-    pub activations: Vec<Spanned<ActivationFile>>,
-    /// The signals in which a fault shows its effect; all if empty. Ranges are allowed.
-    #[serde(default)]
-    #[schemars(with = "Vec<Name>")]
-    pub readouts: Vec<Spanned<SignalName>>,
-    /// The control has told of the fault: `eventually` with a window, or `within`, from the activation on.
-    #[schemars(with = "Option<String>")]
-    pub told: Option<Spanned<String>>,
-    /// The machine is safe: a formula, from the activation on.
-    #[schemars(with = "Option<String>")]
-    pub safe: Option<Spanned<String>>,
-    /// Something has come to harm: a formula, from the activation on.
-    #[schemars(with = "Option<String>")]
-    pub collision: Option<Spanned<String>>,
-    /// The verdicts with which the campaign is passed; `told`, `safe`, `no-effect` and `not-activated` if absent.
-    pub accept: Option<Vec<CampaignVerdict>>,
-}
-
-/// One fault of a campaign: exactly one of `fault`, `force`, `disturbance` and `variable`, without times.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct CampaignFaultFile {
-    /// Its name: letters, digits, `-`, `_` and `.`.
-    #[schemars(with = "CaseName")]
-    pub name: Spanned<String>,
-    /// By which method it is brought in.
-    pub kind: FaultKind,
-    /// What it is, in one line.
-    pub about: Option<String>,
-    /// A component that fails, as in `[[case.fault]]`.
-    #[schemars(with = "Option<FaultFile>")]
-    pub fault: Option<Spanned<FaultFile>>,
-    /// A signal that is held, as in `[[case.force]]`.
-    #[schemars(with = "Option<ForceFile>")]
-    pub force: Option<Spanned<ForceFile>>,
-    /// Signals that do not arrive as they were sent, as in `[[case.disturbance]]`.
-    #[schemars(with = "Option<DisturbanceFile>")]
-    pub disturbance: Option<Spanned<DisturbanceFile>>,
-    /// A variable of a PLC that is forced, as in `[[case.variable]]`.
-    #[schemars(with = "Option<VariableFile>")]
-    pub variable: Option<Spanned<VariableFile>>,
-}
-
-/// Where a fault is brought in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum FaultKind {
-    /// In the model of the machine.
-    Model,
-    /// In the software of the control.
-    Software,
-    /// In its wiring, its inputs and outputs, its links.
-    Hardware,
-}
-
-impl FaultKind {
-    /// As it is written.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Model => "model",
-            Self::Software => "software",
-            Self::Hardware => "hardware",
-        }
-    }
-}
-
-/// When the faults of a campaign come: `at` a time, or `when` a condition comes true.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ActivationFile {
-    /// Its name: letters, digits, `-`, `_` and `.`.
-    #[schemars(with = "CaseName")]
-    pub name: Spanned<String>,
-    /// What it is, in one line.
-    pub about: Option<String>,
-    /// At this time.
-    #[serde(default, deserialize_with = "from_optional_text")]
-    #[schemars(with = "Option<Time>")]
-    pub at: Option<VirtualTime>,
-    /// A condition on signals, now and in the past: in the step after it has come true.
-    #[schemars(with = "Option<String>")]
-    pub when: Option<Spanned<String>>,
-    /// Which time that the condition comes true; the first if absent.
+    pub by: Option<Spanned<String>>,
+    /// The line at which `was` begins, from 1.
     #[schemars(with = "Option<Ordinal>")]
-    pub nth: Option<Spanned<u32>>,
-    /// From when on the condition counts.
-    #[serde(default, deserialize_with = "from_optional_text")]
-    #[schemars(with = "Option<Time>")]
-    pub from: Option<VirtualTime>,
-    /// How long the fault lasts; to the end if absent.
-    #[serde(default, rename = "for", deserialize_with = "from_optional_text")]
-    #[schemars(with = "Option<Time>")]
-    pub lasting: Option<TimeSpan>,
+    pub line: Option<u32>,
+    /// The character of that line at which it begins, from 1.
+    #[schemars(with = "Option<Ordinal>")]
+    pub column: Option<u32>,
+    /// The text that stands there.
+    pub was: Option<String>,
+    /// The text in its place; empty to leave it out.
+    pub is: Option<String>,
 }
 
-/// What came of a fault. Exactly one of these holds; the first in this order counts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize, Serialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum CampaignVerdict {
-    /// Its run came to no end in the time that it had, or its process was lost.
-    Unfinished,
-    /// Its activation did not come.
-    NotActivated,
-    /// A PLC stopped on a fault.
-    PlcFault,
-    /// The readouts are those of the run without faults.
-    NoEffect,
-    /// Something came to harm.
-    Collision,
-    /// The control told of it.
-    Told,
-    /// The control did not tell of it, but the machine was safe.
-    Safe,
-    /// None of these.
-    Missed,
-}
-
-impl CampaignVerdict {
-    /// All of them, in the order in which they count.
-    pub const ALL: [Self; 8] = [
-        Self::Unfinished,
-        Self::NotActivated,
-        Self::PlcFault,
-        Self::NoEffect,
-        Self::Collision,
-        Self::Told,
-        Self::Safe,
-        Self::Missed,
-    ];
-
-    /// As it is shown.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Unfinished => "unfinished",
-            Self::NotActivated => "not activated",
-            Self::PlcFault => "plc fault",
-            Self::NoEffect => "no effect",
-            Self::Collision => "collision",
-            Self::Told => "told",
-            Self::Safe => "safe",
-            Self::Missed => "missed",
-        }
+impl CodeFile {
+    /// As it is written.
+    pub(super) fn keys(&self) -> toml::Table {
+        let text = |text: &Option<String>| text.as_deref().map(toml::Value::from);
+        let name = |name: Option<&Spanned<String>>| name.map(|name| toml::Value::from(name.get_ref().as_str()));
+        let number = |number: Option<u32>| number.map(|number| toml::Value::from(i64::from(number)));
+        let keys = [
+            ("client", name(self.client.as_ref())),
+            ("source", name(Some(&self.source))),
+            ("by", name(self.by.as_ref())),
+            ("line", number(self.line)),
+            ("column", number(self.column)),
+            ("was", text(&self.was)),
+            ("is", text(&self.is)),
+        ];
+        keys.into_iter().filter_map(|(key, value)| Some((key.to_owned(), value?))).collect()
     }
 }

@@ -2,7 +2,9 @@
 //!
 //! | module | subject |
 //! |---|---|
-//! | [`file`] | `cases.toml` as it is written |
+//! | [`file`] | `[[case]]` as it is written |
+//! | [`campaign_file`] | `[[campaign]]` as it is written |
+//! | [`cases_file`] | `cases.toml` as it is written |
 //! | [`catalogue`] | the file read; all cases, those of matrices one by one |
 //! | [`matrix`] | every combination of values |
 //! | [`campaign`] | every fault with every activation, as cases |
@@ -15,22 +17,28 @@
 //! [`DEFAULT`]: the scenario as it is.
 
 pub mod campaign;
+pub mod campaign_file;
+pub mod cases_file;
 pub mod catalogue;
 pub mod file;
 pub mod matrix;
 pub mod value;
 pub mod written;
 
+use std::fmt;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use onescan_plc_shim::source::LineColumn;
 use onescan_server::signal::ClientName;
 use onescan_server::time::VirtualTime;
 use onescan_server::timeline::Scheduled;
+use toml::Spanned;
 
 pub use campaign::{Campaign, Injection};
+pub use campaign_file::{CampaignVerdict, FaultKind};
 pub use catalogue::Catalogue;
-pub use file::{CampaignVerdict, FaultKind};
+pub use file::CodeFile;
 
 /// The one case of a scenario that names none.
 pub const DEFAULT: &str = "default";
@@ -75,6 +83,8 @@ pub struct Case {
     pub until: Option<VirtualTime>,
     /// Parameters of plants and initial values of PLCs.
     pub settings: Vec<Setting>,
+    /// What is another in the programs of PLCs than in the scenario's.
+    pub code: Vec<Spanned<CodeFile>>,
     /// The entry of `cases.toml` it comes from; nothing for the default case.
     pub entry: Option<usize>,
     /// What is a campaign's of it, if it is one of a campaign.
@@ -96,6 +106,8 @@ pub struct Applied {
     pub variables: Vec<VariableAt>,
     /// Tasks that run late, which can be checked only when their PLCs are made.
     pub tasks: Vec<TaskAt>,
+    /// Other programs in its PLCs; the texts in them can be checked only when the sources are read.
+    pub code: Vec<CodeAt>,
     /// `cases.toml`, for errors that are found when clients are made.
     pub source: (String, String),
 }
@@ -124,6 +136,44 @@ pub struct VariableAt {
     pub value: String,
     /// Where it stands in `cases.toml`.
     pub place: Range<usize>,
+}
+
+/// Another program in a PLC.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CodeAt {
+    /// The PLC.
+    pub client: ClientName,
+    /// Its source, as the scenario names it.
+    pub source: String,
+    /// What is another in it.
+    pub change: CodeChange,
+    /// Where it stands in `cases.toml`.
+    pub place: Range<usize>,
+}
+
+/// What is another in a source.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum CodeChange {
+    /// All of it: this file comes in its place.
+    File(String),
+    /// A text.
+    Text {
+        /// Where it begins, as the author of the source sees it.
+        at: LineColumn,
+        /// What stands there.
+        was: String,
+        /// What comes in its place.
+        is: String,
+    },
+}
+
+impl fmt::Display for CodeChange {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::File(by) => f.write_str(by),
+            Self::Text { at: LineColumn { line, column }, was, is } => write!(f, "{line}:{column} {was:?} is {is:?}"),
+        }
+    }
 }
 
 /// A task that runs late in a case.

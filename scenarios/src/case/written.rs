@@ -25,11 +25,13 @@ pub enum List {
     Variable,
     /// Tasks of PLCs that run late.
     Task,
+    /// Other programs in PLCs.
+    Code,
 }
 
 impl List {
-    const ALL: [Self; 7] =
-        [Self::Set, Self::Input, Self::Fault, Self::Force, Self::Disturbance, Self::Variable, Self::Task];
+    const ALL: [Self; 8] =
+        [Self::Set, Self::Input, Self::Fault, Self::Force, Self::Disturbance, Self::Variable, Self::Task, Self::Code];
 
     /// The key of `[[case]]` that holds it.
     pub fn key(self) -> &'static str {
@@ -41,6 +43,7 @@ impl List {
             Self::Disturbance => "disturbance",
             Self::Variable => "variable",
             Self::Task => "task",
+            Self::Code => "code",
         }
     }
 }
@@ -68,8 +71,13 @@ impl Entry {
 }
 
 /// Keys in the order in which people write them.
-const ORDER: [&str; 19] = [
+const ORDER: [&str; 24] = [
     "client",
+    "source",
+    "line",
+    "column",
+    "was",
+    "is",
     "component",
     "mode",
     "signal",
@@ -123,7 +131,10 @@ impl Catalogue {
             let keys = [(setting.path.clone(), setting.value.clone())].into_iter().collect();
             written.entries.push(Entry { list: List::Set, keys });
         }
-        for list in List::ALL.into_iter().filter(|list| *list != List::Set) {
+        // Programs are also those of a campaign's.
+        let code = case.code.iter().map(|code| Entry { list: List::Code, keys: code.get_ref().keys() });
+        written.entries.extend(code);
+        for list in List::ALL.into_iter().filter(|list| !matches!(list, List::Set | List::Code)) {
             let entries = own.and_then(|own| own.get(list.key())?.as_array()).into_iter().flatten();
             let tables = entries.filter_map(Value::as_table).cloned();
             written.entries.extend(tables.map(|keys| Entry { list, keys }));

@@ -94,14 +94,22 @@ impl Judge {
     /// The verdict of each expectation if the run were cut here; nothing for what is open. What is met stays met whatever
     /// comes; what is violated here may be so only because the run ends here.
     pub fn settled(&self) -> Vec<Option<bool>> {
-        // An operator without an end says nothing before the run is over, so the run is taken as over.
-        let outcomes = self.clone().finish(TraceEnd::Cut).into_iter();
-        let truth = |outcome: Outcome| match outcome.verdict {
-            Verdict::Met => Some(true),
-            Verdict::Violated { .. } => Some(false),
-            Verdict::Open => None,
+        let truth = |judged: &Judged| match judged.worth.truth {
+            Truth::True => Some(true),
+            Truth::False => Some(false),
+            Truth::Unknown => None,
         };
-        outcomes.map(truth).collect()
+        let settled = |(_, monitor): &(Expectation, Monitor)| match monitor.first() {
+            Some(judged) => truth(judged),
+            None => {
+                // An operator without an end says nothing before the run is over, so the run is taken as over.
+                let mut cut = monitor.clone();
+                cut.push(&self.open);
+                cut.finish(TraceEnd::Cut);
+                cut.first().and_then(truth)
+            }
+        };
+        self.expectations.iter().map(settled).collect()
     }
 
     fn judge_open(&mut self) {

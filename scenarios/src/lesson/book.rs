@@ -310,6 +310,7 @@ fn empty(name: &Spanned<String>) -> CaseFile {
         disturbances: Vec::new(),
         variables: Vec::new(),
         tasks: Vec::new(),
+        code: Vec::new(),
         waive: Vec::new(),
         expect: Vec::new(),
     }

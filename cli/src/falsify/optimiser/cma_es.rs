@@ -5,6 +5,7 @@ use std::cell::{Cell, RefCell};
 use cmaes::{CMAESOptions, DVector};
 use onescan_server::random::Random;
 
+use super::opening::Opening;
 use super::{Optimiser, anywhere};
 use crate::falsify::space::Point;
 
@@ -18,7 +19,8 @@ const OUTSIDE: f64 = 1e-3;
 pub(super) struct CmaEs {
     dimensions: usize,
     random: Random,
-    opening: Vec<Point>,
+    /// Nothing once it is over.
+    opening: Option<Opening>,
     /// Where this search begins.
     start: Point,
     seed: u64,
@@ -29,10 +31,10 @@ pub(super) struct CmaEs {
 }
 
 impl CmaEs {
-    pub(super) fn new(dimensions: usize, mut random: Random, opening: Vec<Point>) -> Self {
+    pub(super) fn new(dimensions: usize, mut random: Random, opening: Opening) -> Self {
         let seed = random.bits();
         let start = vec![0.5; dimensions];
-        Self { dimensions, random, opening, start, seed, known: Vec::new(), asked: Vec::new() }
+        Self { dimensions, random, opening: Some(opening), start, seed, known: Vec::new(), asked: Vec::new() }
     }
 
     /// The next generation of this search; nothing if it has ended.
@@ -66,8 +68,14 @@ impl CmaEs {
 
 impl Optimiser for CmaEs {
     fn ask(&mut self) -> Vec<Point> {
-        if !self.opening.is_empty() {
-            return self.opening.clone();
+        if let Some(opening) = &mut self.opening {
+            if let Some(points) = opening.ask() {
+                return points;
+            }
+            if let Some((best, _)) = opening.best() {
+                self.start.clone_from(best);
+            }
+            self.opening = None;
         }
         self.asked = self.generation().unwrap_or_else(|| {
             self.known.clear();
@@ -79,10 +87,8 @@ impl Optimiser for CmaEs {
     }
 
     fn tell(&mut self, values: &[f64]) {
-        if !self.opening.is_empty() {
-            let opening = std::mem::take(&mut self.opening);
-            let best = opening.into_iter().zip(values).min_by(|(_, one), (_, other)| one.total_cmp(other));
-            self.start = best.map_or_else(|| self.start.clone(), |(point, _)| point);
+        if let Some(opening) = &mut self.opening {
+            opening.tell(values);
             return;
         }
         for (point, value) in self.asked.drain(..).zip(values) {

@@ -6,16 +6,22 @@
 //!
 //! | module | subject |
 //! |---|---|
+//! | `opening` | what is looked at before a search is led |
 //! | `cma_es` | CMA-ES, by the crate `cmaes` |
+//! | `annealing` | simulated annealing, by the crate `argmin` |
 //! | `random` | each point by itself |
 
+mod annealing;
 mod cma_es;
+mod opening;
 mod random;
 
 use onescan_server::random::{Random, seed_for};
 
 use super::config::OptimiserKind;
 use super::space::Point;
+use super::trial::FAR;
+use opening::Opening;
 
 /// What chooses points.
 pub(super) trait Optimiser {
@@ -26,8 +32,8 @@ pub(super) trait Optimiser {
     fn tell(&mut self, values: &[f64]);
 }
 
-/// The optimiser that was asked for. Those that go on from something look at `corners` first, each after a point from
-/// anywhere: what breaks easily breaks anywhere, and much else in a corner.
+/// The optimiser that was asked for. Those that are led by margins look at some points by chance first, and at `corners`:
+/// what breaks easily breaks anywhere, and much else in a corner.
 pub(super) fn new(
     kind: OptimiserKind,
     dimensions: usize,
@@ -35,11 +41,16 @@ pub(super) fn new(
     corners: impl FnOnce(&mut Random) -> Vec<Point>,
 ) -> Box<dyn Optimiser> {
     let mut random = Random::new(seed_for(seed, "falsify", kind.word()));
+    let opening =
+        |corners: Vec<Point>, random: &mut Random| Opening::new(dimensions, Random::new(random.bits()), corners);
     match kind {
         OptimiserKind::CmaEs => {
-            let corners = corners(&mut random);
-            let opening = corners.into_iter().flat_map(|corner| [anywhere(dimensions, &mut random), corner]).collect();
+            let opening = opening(corners(&mut random), &mut random);
             Box::new(cma_es::CmaEs::new(dimensions, random, opening))
+        }
+        OptimiserKind::Annealing => {
+            let opening = opening(corners(&mut random), &mut random);
+            Box::new(annealing::Annealing::new(dimensions, random, opening))
         }
         OptimiserKind::Random => Box::new(random::Evenly::new(dimensions, random)),
     }
@@ -72,7 +83,7 @@ mod tests {
 
     #[test]
     fn a_search_is_a_function_of_its_seed() {
-        for kind in [OptimiserKind::CmaEs, OptimiserKind::Random] {
+        for kind in [OptimiserKind::CmaEs, OptimiserKind::Annealing, OptimiserKind::Random] {
             let (first, again, other) = (searched(kind, 1, 30), searched(kind, 1, 30), searched(kind, 2, 30));
             assert_eq!(first, again, "{kind:?}");
             assert_ne!(first.0, other.0, "{kind:?}");
@@ -83,5 +94,8 @@ mod tests {
     fn it_finds_the_bottom_of_a_bowl() {
         let (cma_es, by_chance) = (searched(OptimiserKind::CmaEs, 1, 40).1, searched(OptimiserKind::Random, 1, 20).1);
         assert!(cma_es < 1e-3 && cma_es < by_chance, "{cma_es}, by chance {by_chance}");
+        // A point at a time: as many as the 20 batches by chance.
+        let annealed = searched(OptimiserKind::Annealing, 1, 320).1;
+        assert!(annealed < by_chance, "{annealed}, by chance {by_chance}");
     }
 }

@@ -14,6 +14,7 @@ use std::rc::Rc;
 
 use onescan_scenario::report::{Measures, Meter, Report};
 use onescan_server::digest::TrajectoryDigest;
+use onescan_server::layout::ImageLayout;
 use onescan_server::observer::{Observer, RecordError};
 use onescan_server::session::Session;
 
@@ -30,10 +31,15 @@ impl Metered {
 
     /// What shows it the run.
     pub(crate) fn observer(&self, measures: Option<&Measures>) -> Option<Box<dyn Observer>> {
+        Some(Box::new(self.metering(measures)?))
+    }
+
+    /// The same, for one who shows it images.
+    pub(crate) fn metering(&self, measures: Option<&Measures>) -> Option<Metering> {
         let (meter, measures) = (self.0.as_ref()?, measures?);
         let names: Vec<_> = measures.signals().map(|(name, _)| name.clone()).collect();
         let chosen = Chosen::new(&names);
-        Some(Box::new(Metering { meter: Rc::clone(meter), measures: measures.clone(), chosen }))
+        Some(Metering { meter: Rc::clone(meter), measures: measures.clone(), chosen })
     }
 
     /// What came of the run.
@@ -43,21 +49,38 @@ impl Metered {
 }
 
 /// Shows a run to its meter.
-struct Metering {
+pub(crate) struct Metering {
     meter: Rc<RefCell<Meter>>,
     measures: Measures,
     chosen: Chosen,
 }
 
+impl Metering {
+    /// Finds its signals in a session that begins.
+    pub(crate) fn find(&mut self, session: &Session) {
+        self.chosen.find(session);
+    }
+
+    /// Forgets what it has seen: the run begins here.
+    pub(crate) fn begin_here(&mut self) {
+        self.meter.replace(Meter::new(&self.measures));
+    }
+
+    /// Shows it the next image of the session with which it began.
+    pub(crate) fn look(&mut self, t_ns: u64, layout: &ImageLayout, image: &[u8]) {
+        self.meter.borrow_mut().push(t_ns, self.chosen.bytes_in(layout, image));
+    }
+}
+
 impl Observer for Metering {
     fn begin(&mut self, session: &Session, digest: &TrajectoryDigest) -> Result<(), RecordError> {
-        self.chosen.find(session);
-        self.meter.replace(Meter::new(&self.measures));
+        self.find(session);
+        self.begin_here();
         self.step(session, digest)
     }
 
     fn step(&mut self, session: &Session, _digest: &TrajectoryDigest) -> Result<(), RecordError> {
-        self.meter.borrow_mut().push(session.t_v().as_nanos(), self.chosen.bytes(session));
+        self.look(session.t_v().as_nanos(), session.layout(), session.image());
         Ok(())
     }
 

@@ -1,27 +1,27 @@
-//! Why an exploration came to nothing.
+//! Why a search through many runs came to nothing: one error for all commands that search.
 
 use onescan_report::{FileError, OutputError};
 use onescan_scenario::ScenarioError;
 use onescan_server::observer::RecordError;
 
+use super::error::RunError;
 use crate::error::{Usage, sum_of_errors};
-use crate::run::RunError;
 
 sum_of_errors! {
-    /// Why an exploration came to nothing.
-    pub enum ExploreError {
+    /// Why `explore`, `falsify`, `minimise` or `mutate` came to nothing.
+    pub enum SearchError {
         /// The scenario is wrong.
         #[diagnostic(transparent)]
         Scenario(ScenarioError),
         /// What was typed is wrong.
         #[diagnostic(transparent)]
         Usage(Usage),
-        /// A session cannot be formed, saved or taken up.
+        /// A session cannot be formed, saved or forked.
         #[diagnostic(transparent)]
         Run(RunError),
         /// A session could not go on.
         Record(RecordError),
-        /// The cases cannot be written.
+        /// A case or a picture cannot be written.
         File(FileError),
         /// The output cannot be written.
         Output(OutputError),
