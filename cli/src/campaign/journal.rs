@@ -67,7 +67,7 @@ impl Subject {
     /// A file of the scenario cannot be read.
     pub(super) fn of(scenario: &Scenario, campaign: &str) -> Result<Self, CampaignError> {
         let mut hasher = blake3::Hasher::new();
-        let mut files = scenario.files();
+        let mut files = scenario.files()?;
         files.push(PathBuf::from(onescan_scenario::case::FILE_NAME));
         files.sort();
         files.dedup();
