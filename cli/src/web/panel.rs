@@ -1,6 +1,7 @@
 //! Panels: those that the scenario lays out, or one of all that operators write.
 
 use std::collections::BTreeSet;
+use std::ops::RangeFrom;
 
 use onescan_scenario::Scenario;
 use onescan_scenario::file::ClientFile;
@@ -14,9 +15,18 @@ use super::structure::written;
 pub(super) struct Panel {
     pub(super) name: String,
     pub(super) seat: Seat,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    page: Option<Page>,
     columns: u32,
     rows: u32,
     elements: Vec<Element>,
+}
+
+/// When a panel is shown that is one of several pages.
+#[derive(Debug, Serialize)]
+struct Page {
+    signal: String,
+    value: i64,
 }
 
 #[derive(Debug, Serialize)]
@@ -30,6 +40,9 @@ struct Element {
     /// The component and the mode of failure that it shows and causes.
     #[serde(skip_serializing_if = "Option::is_none")]
     failure: Option<[String; 2]>,
+    /// The fault on the way of signals that it shows and causes, by its number.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    disturbance: Option<usize>,
     at: [u32; 2],
     span: [u32; 2],
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -70,23 +83,29 @@ pub(super) fn of(scenario: &Scenario) -> Vec<Panel> {
     if laid_out.is_empty() {
         pulpit(scenario).into_iter().collect()
     } else {
-        laid_out.iter().map(|file| panel(file, scenario)).collect()
+        let mut disturbances = 0..;
+        laid_out.iter().map(|file| panel(file, scenario, &mut disturbances)).collect()
     }
 }
 
-fn panel(file: &PanelFile, scenario: &Scenario) -> Panel {
+/// A panel as the scenario has it; `disturbances` numbers those of all panels.
+fn panel(file: &PanelFile, scenario: &Scenario, disturbances: &mut RangeFrom<usize>) -> Panel {
     let elements: Vec<&ElementFile> = file.element.iter().map(toml::Spanned::get_ref).collect();
     Panel {
         name: file.name.get_ref().clone(),
         seat: file.seat,
+        page: file
+            .page
+            .as_ref()
+            .map(|page| Page { signal: page.get_ref().signal.get_ref().to_string(), value: page.get_ref().value }),
         columns: file.columns,
         rows: elements.iter().map(|element| element.at[1] + element.span[1]).max().unwrap_or(1),
-        elements: elements.into_iter().map(|element| laid_out(element, scenario)).collect(),
+        elements: elements.into_iter().map(|element| laid_out(element, scenario, disturbances)).collect(),
     }
 }
 
 /// An element as the scenario has it, with the names of its signal's values as choices.
-fn laid_out(file: &ElementFile, scenario: &Scenario) -> Element {
+fn laid_out(file: &ElementFile, scenario: &Scenario, disturbances: &mut RangeFrom<usize>) -> Element {
     let name = |signal: &toml::Spanned<SignalName>| signal.get_ref().to_string();
     let signal = file.signal.as_ref().map(name);
     let names = file.signal.as_ref().and_then(|signal| scenario.file().signals.get(signal.get_ref()));
@@ -102,6 +121,7 @@ fn laid_out(file: &ElementFile, scenario: &Scenario) -> Element {
             .as_ref()
             .and_then(|failure| failure.get_ref().parts())
             .map(|parts| parts.map(str::to_owned)),
+        disturbance: file.disturbance.as_ref().and_then(|_| disturbances.next()),
         at: file.at,
         span: file.span,
         mode: file.latching.then_some("toggle"),
@@ -138,6 +158,7 @@ fn pulpit(scenario: &Scenario) -> Option<Panel> {
     (!elements.is_empty()).then(|| Panel {
         name: "operator".to_owned(),
         seat: Seat::Operator,
+        page: None,
         columns: COLUMNS,
         rows,
         elements,
@@ -158,6 +179,7 @@ fn element(declared: &SignalDecl, scenario: &Scenario, at: [u32; 2], span: u32) 
         signal: Some(declared.name.to_string()),
         signal_y: None,
         failure: None,
+        disturbance: None,
         at,
         span: [span, 1],
         mode: None,
