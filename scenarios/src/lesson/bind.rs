@@ -157,7 +157,7 @@ fn malfunction(
     file: &MalfunctionFile,
     begin: Operation,
 ) -> Result<Malfunction, ScenarioError> {
-    let sought = |written: &Option<Spanned<String>>, within: &Option<TimeSpan>, key: &str, has_other: bool| {
+    let sought = |written: &Option<Spanned<String>>, within: Option<TimeSpan>, key: &str, has_other: bool| {
         if let (None, Some(_), false) = (written, within, has_other) {
             let message = format!("`{key}_within` says how long `{key}` may take, which is not there");
             return Err(sheet.wrong(message, file.name.span(), None));
@@ -168,7 +168,7 @@ fn malfunction(
         sought.transpose()
     };
     let opened = file.identify_page.as_ref().map(|page| opened(sheet, scenario, page)).transpose()?;
-    let identify = match (sought(&file.identify, &file.identify_within, "identify", opened.is_some())?, opened) {
+    let identify = match (sought(&file.identify, file.identify_within, "identify", opened.is_some())?, opened) {
         (sought, None) => sought,
         // What was parsed by itself is right, and so is what is made of it.
         (sought, Some(opened)) => {
@@ -186,7 +186,7 @@ fn malfunction(
         by_trainer: file.by_trainer,
         identify,
         identify_within: file.identify_within,
-        act: sought(&file.act, &file.act_within, "act", false)?,
+        act: sought(&file.act, file.act_within, "act", false)?,
         act_within: file.act_within,
     })
 }
