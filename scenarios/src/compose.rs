@@ -189,7 +189,7 @@ impl Scenario {
     }
 
     /// The same, read once for all cases that set the same in it.
-    fn scene_once(&self, name: &ClientName, file: &str) -> Result<Scene, ScenarioError> {
+    pub(crate) fn scene_once(&self, name: &ClientName, file: &str) -> Result<Scene, ScenarioError> {
         permission::granted().check(self.folder(), &self.folder().join(file))?;
         let scene = self.compilations().scene(name, &self.overrides(name), || self.scene_of(name, file))?;
         self.check_failures(name, &scene)?;

@@ -11,9 +11,11 @@
 //! | [`map_file`], `map` | its `[[map]]` as it is written, and what must hold of them |
 //! | [`timing_file`] | its `[timing]` as it is written |
 //! | [`falsify_file`] | its `[falsify]` as it is written |
+//! | [`panel_file`], `panel` | its `[[panel]]` as they are written, and what must hold of them |
+//! | [`disturbance_file`] | faults on the way of signals, as several files write them |
 //! | [`value_names`] | names of a signal's values |
 //! | [`permission`] | which files it may read, and whether it may start programs |
-//! | [`load`] | `scenario.toml` read and checked |
+//! | [`load`], `files` | `scenario.toml` read and checked; all files that it is made of |
 //! | `arrays` | signals written as arrays and patterns |
 //! | [`expectations`] | what it expects of every run |
 //! | [`case`] | one scenario, tried in many ways |
@@ -45,6 +47,7 @@ mod arrays;
 pub mod case;
 mod compilations;
 pub mod compose;
+pub mod disturbance_file;
 pub mod error;
 pub mod expect;
 pub mod expectations;
@@ -52,6 +55,7 @@ pub mod falsify;
 pub mod falsify_file;
 pub mod figure;
 pub mod file;
+mod files;
 mod form;
 pub mod gateway;
 mod leeway;

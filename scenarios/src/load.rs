@@ -17,7 +17,7 @@ use onescan_server::time::{TimeSpan, VirtualTime};
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::case::{self, Applied};
+use super::case::{self, Applied, Catalogue};
 use super::compilations::Compilations;
 use super::error::{ScenarioError, Wrong, wrong};
 use super::expectations::Expectations;
@@ -166,7 +166,13 @@ impl Scenario {
             compilations: Compilations::default(),
             mistake: None,
         };
+        scenario.panel_disturbances()?;
         scenario.checked()?.pictured()
+    }
+
+    /// The scenario's own file as if it were one of cases: for what both can say.
+    pub(crate) fn own_catalogue(&self) -> Catalogue {
+        Catalogue::without_cases(self.path.clone(), self.text.clone())
     }
 
     /// The case that is tried.
@@ -331,25 +337,9 @@ impl Scenario {
         &self.folder
     }
 
-    /// The files that the scenario is made of, itself first, as it names them: relative to its folder.
-    pub fn files(&self) -> Vec<PathBuf> {
-        let mut files = vec![self.path.file_name().map_or_else(|| FILE_NAME.into(), PathBuf::from)];
-        for client in self.file.clients.values() {
-            match client.get_ref() {
-                ClientFile::Plant { scene, .. } => files.push(scene.into()),
-                ClientFile::SoftPlc { sources, .. } => files.extend(sources.iter().map(PathBuf::from)),
-                ClientFile::Operator { .. }
-                | ClientFile::Gateway { .. }
-                | ClientFile::OpcUa { .. }
-                | ClientFile::External { .. } => {}
-            }
-        }
-        files.extend(self.file.panel.iter().filter_map(|panel| Some(panel.picture.as_ref()?.get_ref().into())));
-        files.extend(self.files_of_case());
-        // cases and lessons stand beside the scenario
-        files.extend(self.applied().and_then(|applied| Path::new(&applied.source.0).file_name()).map(PathBuf::from));
-        files.dedup();
-        files
+    /// Its own file.
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
     }
 
     /// The file as it is written.

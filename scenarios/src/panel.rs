@@ -2,12 +2,13 @@
 
 use std::ops::Range;
 
-use onescan_server::signal::{SignalName, did_you_mean};
+use onescan_server::signal::{SignalName, SignalType, did_you_mean};
 use toml::Spanned;
 
+use crate::disturbance_file::DisturbanceFile;
 use crate::error::Wrong;
 use crate::file::{ClientFile, ScenarioFile, SignalFile};
-use crate::panel_file::{ElementFile, ElementKind, FailureName, PanelFile};
+use crate::panel_file::{ElementFile, ElementKind, FailureName, PageFile, PanelFile};
 
 /// Colours by name, beside `#rrggbb`.
 const COLOURS: &[&str] = &["red", "orange", "yellow", "green", "blue", "white", "grey"];
@@ -33,6 +34,9 @@ pub(crate) fn check(file: &ScenarioFile) -> Result<(), Wrong> {
             let message = format!("panel `{name}` has {} columns; it may have 1 to {COLUMNS_MAX}", panel.columns);
             return Err(at(&panel.name, message, None));
         }
+        if let Some(page) = &panel.page {
+            check_page(file, page)?;
+        }
         for (index, element) in panel.element.iter().enumerate() {
             check_place(panel, element, &panel.element[..index])?;
             check_binding(file, element)?;
@@ -40,6 +44,18 @@ pub(crate) fn check(file: &ScenarioFile) -> Result<(), Wrong> {
         }
     }
     Ok(())
+}
+
+/// Which page is shown is a number that people write.
+fn check_page(file: &ScenarioFile, page: &Spanned<PageFile>) -> Result<(), Wrong> {
+    let PageFile { signal: name, value } = page.get_ref();
+    let signal = declared(file, name)?;
+    let is_whole = matches!(signal.ty, SignalType::Elementary(ty) if ty.is_integer());
+    if !is_whole || signal.ty.parse_text(&value.to_string()).is_err() {
+        let message = format!("`{}` is {}, which is never {value}", name.get_ref(), signal.ty);
+        return Err(at(page, message, Some("pages are numbered by a signal such as INT")));
+    }
+    refuse_plants(file, signal, name)
 }
 
 /// On the grid, and on nothing else.
@@ -76,6 +92,9 @@ fn check_binding(file: &ScenarioFile, element: &Spanned<ElementFile>) -> Result<
     if let Some(failure) = &inner.failure {
         return check_failure(inner, failure);
     }
+    if let Some(disturbance) = &inner.disturbance {
+        return check_disturbance(inner, disturbance);
+    }
     match (inner.kind, &inner.signal, &inner.signal_y) {
         (ElementKind::Alarms, None, None) => return Ok(()),
         (kind, _, Some(signal)) if kind != ElementKind::Joystick => {
@@ -96,6 +115,9 @@ fn check_failure(element: &ElementFile, failure: &Spanned<FailureName>) -> Resul
     if let Some(signal) = element.signal.as_ref().or(element.signal_y.as_ref()) {
         return Err(at(signal, "an element has a `signal` or a `failure`, not both".to_owned(), None));
     }
+    if let Some(disturbance) = &element.disturbance {
+        return Err(at(disturbance, "an element has a `failure` or a `disturbance`, not both".to_owned(), None));
+    }
     if !matches!(element.kind, ElementKind::Switch | ElementKind::Button | ElementKind::Lamp) {
         return Err(at(failure, "only a switch, a button and a lamp can have a `failure`".to_owned(), None));
     }
@@ -105,32 +127,56 @@ fn check_failure(element: &ElementFile, failure: &Spanned<FailureName>) -> Resul
     Ok(())
 }
 
-fn check_signal(file: &ScenarioFile, kind: ElementKind, name: &Spanned<SignalName>) -> Result<(), Wrong> {
-    let Some(signal) = file.signals.get(name.get_ref()).map(Spanned::get_ref) else {
+/// The same for a fault of signals, which lasts as long as the switch is on. Its signals and its own keys are checked when it
+/// is bound.
+fn check_disturbance(element: &ElementFile, disturbance: &Spanned<DisturbanceFile>) -> Result<(), Wrong> {
+    if let Some(signal) = element.signal.as_ref().or(element.signal_y.as_ref()) {
+        return Err(at(signal, "an element has a `signal` or a `disturbance`, not both".to_owned(), None));
+    }
+    if !matches!(element.kind, ElementKind::Switch | ElementKind::Button | ElementKind::Lamp) {
+        return Err(at(disturbance, "only a switch, a button and a lamp can have a `disturbance`".to_owned(), None));
+    }
+    let DisturbanceFile { from, until, when, nth, lasting, .. } = disturbance.get_ref();
+    if from.is_some() || until.is_some() || when.is_some() || nth.is_some() || lasting.is_some() {
+        let message = "the disturbance of a panel comes and goes by somebody's hand".to_owned();
+        return Err(at(disturbance, message, Some("leave out `from`, `until`, `when`, `nth` and `for`")));
+    }
+    Ok(())
+}
+
+fn declared<'f>(file: &'f ScenarioFile, name: &Spanned<SignalName>) -> Result<&'f SignalFile, Wrong> {
+    file.signals.get(name.get_ref()).map(Spanned::get_ref).ok_or_else(|| {
         let message = format!("the panel has a signal `{}` that is not declared", name.get_ref());
         let help = did_you_mean(name.get_ref().as_str(), file.signals.keys().map(SignalName::as_str));
-        return Err(Wrong { message, place: name.span(), help });
-    };
+        Wrong { message, place: name.span(), help }
+    })
+}
+
+/// People cannot write what a plant writes.
+fn refuse_plants(file: &ScenarioFile, signal: &SignalFile, name: &Spanned<SignalName>) -> Result<(), Wrong> {
+    let writer = file.clients.get(&signal.writer).map(Spanned::get_ref);
+    if !matches!(writer, Some(ClientFile::Plant { .. })) {
+        return Ok(());
+    }
+    let message =
+        format!("`{}` is written by the plant `{}`, and people cannot write it", name.get_ref(), signal.writer);
+    let help = "give it a writer of `kind = \"operator\"`, or show it with a lamp or a number";
+    Err(at(name, message, Some(help)))
+}
+
+fn check_signal(file: &ScenarioFile, kind: ElementKind, name: &Spanned<SignalName>) -> Result<(), Wrong> {
+    let signal = declared(file, name)?;
     if let Some(wanted) = misfit(kind, signal) {
         return Err(at(name, format!("`{}` is {}; {wanted}", name.get_ref(), signal.ty), None));
     }
-    let writer = file.clients.get(&signal.writer).map(Spanned::get_ref);
-    if (kind.writes() || kind == ElementKind::Alarms) && matches!(writer, Some(ClientFile::Plant { .. })) {
-        let message =
-            format!("`{}` is written by the plant `{}`, and people cannot write it", name.get_ref(), signal.writer);
-        return Err(at(
-            name,
-            message,
-            Some("give it a writer of `kind = \"operator\"`, or show it with a lamp or a number"),
-        ));
+    if kind.writes() || kind == ElementKind::Alarms {
+        return refuse_plants(file, signal, name);
     }
     Ok(())
 }
 
 /// What an element of this kind needs that a signal is not.
 fn misfit(kind: ElementKind, signal: &SignalFile) -> Option<&'static str> {
-    use onescan_server::signal::SignalType;
-
     if let SignalType::Bytes(_) = signal.ty {
         return Some("a line of bytes has no value that people show or write");
     }
@@ -223,6 +269,7 @@ name = "desk"
             element("lamp", "signal = \"Seen\"\nat = [1, 1]\ncolour = \"red\""),
             element("joystick", "signal = \"Speed\"\nsignal_y = \"Speed\"\nat = [2, 1]"),
             element("switch", "failure = \"wall.leak\"\nat = [3, 1]"),
+            element("switch", "disturbance = { signal = \"Speed\", kind = \"stuck\" }\nat = [4, 1]"),
             element("alarms", "at = [0, 2]\nspan = [6, 3]"),
             element("alarms", "signal = \"Start\"\nat = [0, 5]"),
         ];
@@ -256,9 +303,26 @@ name = "desk"
         assert!(wrong("switch", "failure = \"leak\"\nat = [0, 0]").0.contains("`component.mode`"));
         let both = "signal = \"Start\"\nfailure = \"wall.leak\"\nat = [0, 0]";
         assert!(wrong("switch", both).0.contains("not both"));
+        let stuck = "disturbance = { signal = \"Speed\", kind = \"stuck\" }\nat = [0, 0]";
+        assert!(wrong("slider", stuck).0.contains("only a switch, a button and a lamp"));
+        for also in ["signal = \"Start\"", "failure = \"wall.leak\""] {
+            assert!(wrong("switch", &format!("{also}\n{stuck}")).0.contains("not both"), "{also}");
+        }
+        let timed = "disturbance = { signal = \"Speed\", kind = \"stuck\", for = \"1s\" }\nat = [0, 0]";
+        assert!(wrong("switch", timed).0.contains("by somebody's hand"));
         let two = element("lamp", "signal = \"Start\"\nat = [0, 0]\nspan = [2, 2]");
         let over = told(&(two + &element("lamp", "signal = \"Start\"\nat = [1, 1]"))).expect_err("wrong");
         assert!(over.0.contains("lies on the one at column 0, row 0"), "{over:?}");
+        for (page, said) in [
+            ("{ signal = \"Mode\", value = 1 }", None),
+            ("{ signal = \"Mode\", value = 40000 }", Some("`Mode` is INT, which is never 40000")),
+            ("{ signal = \"Speed\", value = 1 }", Some("`Speed` is REAL, which is never 1")),
+            ("{ signal = \"Seen\", value = 1 }", Some("`Seen` is BOOL, which is never 1")),
+            ("{ signal = \"Mood\", value = 1 }", Some("the panel has a signal `Mood` that is not declared")),
+        ] {
+            let found = told(&format!("page = {page}\nelement = []")).err().map(|(message, _)| message);
+            assert_eq!(found.as_deref(), said, "{page}");
+        }
         assert!(
             told("element = []\n[[panel]]\nname = \"desk\"\nelement = []").expect_err("wrong").0.contains("two panels")
         );

@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
+use crate::disturbance_file::DisturbanceFile;
 use crate::form::Name;
 
 /// What people see and operate of a session, laid out on a grid.
@@ -17,6 +18,9 @@ pub struct PanelFile {
     /// Whose it is.
     #[serde(default)]
     pub seat: Seat,
+    /// It is a page: it is shown while a signal has a value.
+    #[schemars(with = "Option<PageFile>")]
+    pub page: Option<Spanned<PageFile>>,
     /// How many columns the grid has.
     #[serde(default = "columns")]
     #[schemars(range(min = 1, max = 24))]
@@ -27,6 +31,17 @@ pub struct PanelFile {
     /// What is on it.
     #[schemars(with = "Vec<ElementFile>")]
     pub element: Vec<Spanned<ElementFile>>,
+}
+
+/// When a panel is shown that is one of several pages.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PageFile {
+    /// The signal that says which page is shown; whoever opens a page writes it.
+    #[schemars(with = "Name")]
+    pub signal: Spanned<SignalName>,
+    /// Its value while this one is.
+    pub value: i64,
 }
 
 /// Whose a panel is.
@@ -57,6 +72,9 @@ pub struct ElementFile {
     /// What it lets fail and repairs, in place of a signal: `component.mode`.
     #[schemars(with = "Option<String>")]
     pub failure: Option<Spanned<FailureName>>,
+    /// The fault on the way of signals that it begins and ends, in place of a signal: the keys of a case's, without a time.
+    #[schemars(with = "Option<DisturbanceFile>")]
+    pub disturbance: Option<Spanned<DisturbanceFile>>,
     /// Column and row of its upper left corner, from 0.
     pub at: [u32; 2],
     /// How many columns and rows it takes.

@@ -66,6 +66,18 @@ impl Mailbox {
         self.inner.arrived.notify_all();
     }
 
+    /// Leaves several wishes, which are taken at one boundary.
+    pub fn post_all(&self, requests: impl IntoIterator<Item = Request>) {
+        let mut queue = self.lock();
+        queue.extend(requests);
+        let is_waiting = !queue.is_empty();
+        drop(queue);
+        if is_waiting {
+            self.inner.waiting.store(true, Ordering::Release);
+            self.inner.arrived.notify_all();
+        }
+    }
+
     /// Leaves a wish nobody wants an answer to.
     pub fn control(&self, control: Control) {
         self.post(Request { wish: Wish::Do(control.into()), reply: None });

@@ -6,7 +6,9 @@ use std::path::Path;
 
 use serde_json::Value;
 
+use crate::sitter::Sitter;
 use crate::typed::{copied, edit, is_the_same_over_tcp_and_resumed, rows, scenario, typed};
+use crate::web::Served;
 
 /// A run of the furnace: the values of these signals, a row a change, and what was said.
 fn run<const N: usize>(more: &[&str], signals: [&str; N]) -> (Vec<[String; N]>, String) {
@@ -183,4 +185,85 @@ fn an_experts_heat_is_repeated_over_every_way() {
     assert_eq!(digest(utf8(&record.join("run-1")), &[]), whole);
     let automatic = typed(&scenario("arc-furnace"), &["run", ".", "--until", "62min", "--format", "json"]);
     assert!(!automatic.out.contains(&whole), "the expert does something");
+}
+
+/// A heat that somebody drives at the pulpit of the page, by rules. What was done is repeated from its recording, in one
+/// process and over TCP, and from the recording of that.
+#[test]
+fn a_heat_at_the_page_is_repeated_over_every_way() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (taken, again) = (folder.path().join("taken"), folder.path().join("again"));
+    let words = ["--until", "68min", "--pace", "400", "--record", utf8(&taken)];
+    let served = Served::begin("arc-furnace", &words);
+    let mut person = Sitter::at(&served.address, "pulpit", &LOOKED_AT);
+    drive_a_heat(&mut person);
+    let report = served.report();
+    assert_eq!(report["status"], "completed", "{report}");
+
+    let events = fs::read_to_string(taken.join("run-1/events.jsonl")).expect("events");
+    assert_eq!(events.matches(r#""event":"operator""#).count(), person.written, "{events}");
+    let repeated = |source: &Path, more: &[&str]| {
+        let words = ["run", ".", "--until", "68min", "--format", "json", "--replay-operator", utf8(source)];
+        let said = typed(&scenario("arc-furnace"), &[&words, more].concat());
+        let run: Value = serde_json::from_str(&said.out).unwrap_or_else(|_| panic!("{said:?}"));
+        let hot = run["expectations"].as_array().expect("expectations").iter();
+        assert!(hot.clone().any(|one| one["name"] == "steel is tapped hot enough" && one["verdict"] == "met"), "{run}");
+        run["digest"].clone()
+    };
+    let digest = &report["digest"];
+    assert_eq!(repeated(&taken, &["--record", utf8(&again)]), *digest, "in process");
+    assert_eq!(repeated(&taken, &["--transport", "tcp"]), *digest, "over TCP");
+    assert_eq!(repeated(&again, &[]), *digest, "from the recording of the repetition");
+}
+
+/// What a person at the pulpit looks at.
+const LOOKED_AT: [&str; 8] = [
+    "Heat_step",
+    "Heats",
+    "Scrap",
+    "Bath_temperature",
+    "Tilt_angle",
+    "Electrode_automatic",
+    "Page",
+    "Tapping_temperature",
+];
+
+/// A heat, from the empty furnace to the tap.
+fn drive_a_heat(person: &mut Sitter) {
+    let at_step = |step: f64| move |person: &Sitter| person.value("Heat_step") >= step;
+    person.write("Tapping_temperature", 1640.0);
+    person.write("Carbon_limit", 0.24);
+    // less voltage while the electrodes bore down
+    person.until(at_step(6.0));
+    person.write("Tap_selector", 3.0);
+    person.until(at_step(7.0));
+    person.write("Tap_selector", 0.0);
+    for page in [1.0, 2.0, 3.0, 0.0] {
+        person.write("Page", page);
+        person.until(|person| person.value("Page") == page);
+    }
+    // the second charge, and the flat bath
+    person.until(|person| person.value("Heat_step") < 7.0);
+    person.until(at_step(7.0));
+    person.write("Tap_selector", 5.0);
+    person.until(|person| person.value("Scrap") < 15e3);
+    person.write("Tap_selector", 0.0);
+    person.until(at_step(8.0));
+    // electrodes by hand for a moment: they stay where they are
+    person.write("Electrode_automatic", 0.0);
+    person.until(|person| person.value("Electrode_automatic") == 0.0);
+    person.write("Electrode_automatic", 1.0);
+    person.until(|person| person.value("Bath_temperature") > 1550.0);
+    person.write("Tap_selector", 4.0);
+    person.until(|person| person.value("Bath_temperature") > 1600.0);
+    person.write("Tap_selector", 0.0);
+    person.write("Acknowledge", 1.0);
+    person.write("Acknowledge", 0.0);
+    // no further heat behind this one
+    person.until(|person| person.value("Tilt_angle") > 15.0);
+    person.write("Heat_start", 0.0);
+    person.until(|person| person.value("Heats") >= 1.0);
+    person.write("Carbon_limit", 0.25);
+    person.write("Tapping_temperature", 1625.0);
+    person.until(|person| person.value("Tapping_temperature") == 1625.0);
 }

@@ -11,6 +11,7 @@ use serde_json::{Value, json};
 use tungstenite::client::IntoClientRequest;
 use tungstenite::{Message, WebSocket};
 
+use crate::sitter::structure;
 use crate::typed::{Said, begun, copied, edit, scenario, typed};
 
 const STEP_NS: u64 = 20_000_000;
@@ -24,7 +25,7 @@ fn record(said: &Said) -> Value {
     serde_json::from_str(&said.out).unwrap_or_else(|_| panic!("{said:?}"))
 }
 
-fn train(starts: &Path, words: &[&str]) -> Said {
+pub(crate) fn train(starts: &Path, words: &[&str]) -> Said {
     typed(&scenario("arc-furnace"), &[&["train", ".", "--format", "json", "--starts", utf8(starts)], words].concat())
 }
 
@@ -123,14 +124,14 @@ fn lessons_are_listed_and_checked() {
 }
 
 /// A lesson on its pages.
-struct Lesson {
+pub(crate) struct Lesson {
     program: Child,
     said: BufReader<ChildStderr>,
-    pages: [String; 2],
+    pub(crate) pages: [String; 2],
 }
 
 impl Lesson {
-    fn begin(words: &[&str]) -> Self {
+    pub(crate) fn begin(words: &[&str]) -> Self {
         let words = [&["train", ".", "--format", "json", "--web"], words].concat();
         let mut program = begun(&scenario("arc-furnace"), &words);
         let mut said = BufReader::new(program.stderr.take().expect("piped"));
@@ -153,7 +154,7 @@ impl Lesson {
         tungstenite::client(request, stream).expect("a viewer").0
     }
 
-    fn record(mut self) -> Value {
+    pub(crate) fn record(mut self) -> Value {
         let mut rest = String::new();
         self.said.read_to_string(&mut rest).expect("text");
         let output = self.program.wait_with_output().expect("it ends");
@@ -195,7 +196,7 @@ fn until(viewer: &mut WebSocket<TcpStream>, is_it: impl Fn(u64) -> bool) -> u64 
     }
 }
 
-const SECOND_NS: u64 = 1_000_000_000;
+pub(crate) const SECOND_NS: u64 = 1_000_000_000;
 
 /// The trainer repeats the start twenty times, jumps to the flat bath, goes back: all attempts are in the record, forks too,
 /// and all of them are repeated to their digests. The trainee may do none of that.
@@ -257,7 +258,7 @@ fn a_trainer_repeats_jumps_and_goes_back() {
     }
 }
 
-fn record_of(said: &Said) -> Value {
+pub(crate) fn record_of(said: &Said) -> Value {
     assert!(matches!(said.code, Some(0 | 1)), "{said:?}");
     record(said)
 }
@@ -267,22 +268,13 @@ fn record_of(said: &Said) -> Value {
 fn the_trainee_sees_nothing_of_the_trainer() {
     let folder = tempfile::tempdir().expect("a folder");
     let lesson = Lesson::begin(&["three-malfunctions", "--starts", utf8(folder.path())]);
-    let structures = [0, 1].map(|page| {
-        let mut stream = TcpStream::connect(&lesson.pages[page]).expect("served");
-        let request = format!("GET /api/session HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n\r\n", lesson.pages[page]);
-        std::io::Write::write_all(&mut stream, request.as_bytes()).expect("writable");
-        let mut answer = Vec::new();
-        stream.read_to_end(&mut answer).expect("an answer");
-        let answer = String::from_utf8_lossy(&answer).into_owned();
-        let body = answer.split_once("\r\n\r\n").expect("a head").1.to_owned();
-        serde_json::from_str::<Value>(&body).expect("JSON")
-    });
+    let structures = [0, 1].map(|page| structure(&lesson.pages[page]));
     let panels = |structure: &Value| {
         let panels = structure["panels"].as_array().expect("panels").iter();
         panels.map(|panel| panel["name"].as_str().expect("a name").to_owned()).collect::<Vec<String>>()
     };
-    assert_eq!(panels(&structures[0]), ["pulpit"]);
-    assert_eq!(panels(&structures[1]), ["pulpit", "malfunctions"]);
+    assert_eq!(panels(&structures[0]), ["pulpit", "water", "hydraulics", "electrics"]);
+    assert_eq!(panels(&structures[1]), ["pulpit", "water", "hydraulics", "electrics", "malfunctions"]);
     let failures = |structure: &Value| {
         let parts = structure["components"].as_array().expect("components").iter();
         parts.map(|part| part["failures"].as_array().expect("failures").len()).sum::<usize>()

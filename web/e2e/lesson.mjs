@@ -2,78 +2,26 @@
 // `node e2e/lesson.mjs PROGRAM SCENARIOS [FOLDER]` writes its pictures to FOLDER.
 
 import assert from "node:assert/strict";
-import { spawn, spawnSync } from "node:child_process";
+import { spawnSync } from "node:child_process";
 import { mkdtemp, readFile, rm } from "node:fs/promises";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { chromium } from "playwright-core";
+import { begin, browse, open, panel, press, sit, until } from "./pulpit.mjs";
 
 const [program, scenarios, folder = null] = process.argv.slice(2);
 const furnace = join(scenarios, "arc-furnace");
 const STEP_NS = 20_000_000;
 const room = await mkdtemp(join(tmpdir(), "lesson-"));
 const [session, starts, report] = [join(room, "session"), join(room, "starts"), join(room, "lesson.html")];
-const browser = await chromium.launch({
-  executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
-  args: [
-    "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
-    "--disable-component-update", "--disable-sync", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
-  ],
-});
+const browser = await browse();
 const words = [
   "train", furnace, "three-malfunctions", "--trainee", "ann", "--web", "--pace", "4", "--starts", starts, "--record", session,
   "--html", report, "--format", "json",
 ];
-const child = spawn(program, words, { stdio: ["ignore", "pipe", "pipe"] });
-let [out, said] = ["", ""];
-child.stdout.on("data", (data) => (out += data));
-const over = new Promise((ended) => child.on("exit", (code) => ended(code)));
-const urls = await new Promise((found, lost) => {
-  child.stderr.on("data", (data) => {
-    said += data;
-    const lines = ["trainee", "trainer"].map((whose) => new RegExp(`${whose}'s page is at (http:\\S+)`).exec(said)?.[1]);
-    if (lines.every((line) => line !== undefined)) found(lines);
-  });
-  child.on("exit", () => lost(new Error(`no pages: ${said}`)));
-});
-
-async function open(url) {
-  const page = await browser.newPage({ viewport: { width: 1280, height: 900 } });
-  const errors = [];
-  page.on("pageerror", (error) => errors.push(String(error)));
-  await page.goto(url);
-  await page.waitForFunction(() => window.onescan?.picture().step > 5);
-  return { page, errors };
-}
-
-const panel = (page, name) => page.getByRole("region", { name: `Panel ${name}` });
-
-async function sit(page, name) {
-  await panel(page, name).getByRole("button", { name: "Take seat" }).click();
-  await panel(page, name).getByRole("button", { name: "Leave seat" }).waitFor();
-}
-
-/** Until the signals of the pulpit are so: each a name, `=`, `<` or `>`, and a value. */
-async function until(page, ...conditions) {
-  const hold = (all) => all.every(([name, relation, value]) => {
-    const shown = window.onescan.value(name);
-    return shown !== null && (relation === "=" ? shown === value : relation === "<" ? shown < value : shown > value);
-  });
-  await page.waitForFunction(hold, conditions, { timeout: 120_000 });
-}
-
-/** Holds a button down until a signal shows it. */
-async function press(page, label, signal) {
-  const key = panel(page, "pulpit").getByRole("button", { name: label, exact: true });
-  await key.focus();
-  await page.keyboard.down("Space");
-  await until(page, [signal, "=", 1]);
-  await page.keyboard.up("Space");
-  await until(page, [signal, "=", 0]);
-}
+const { child, said, over, urls } = await begin(program, words, ["trainee's page", "trainer's page"]);
 
 try {
-  const [trainee, trainer] = [await open(urls[0]), await open(urls[1])];
+  const [trainee, trainer] = [await open(browser, urls[0]), await open(browser, urls[1])];
   // What is the trainer's is on the trainer's page alone.
   assert.equal(await panel(trainee.page, "malfunctions").count(), 0);
   assert.equal(await trainee.page.getByRole("button", { name: "Hold" }).count(), 0);
@@ -128,8 +76,8 @@ try {
   await press(page, "New electrode", "Join_electrode");
   const code = await over;
   assert.deepEqual([...trainee.errors, ...trainer.errors], []);
-  assert.equal(code, 0, `${out}${said}`);
-  const record = JSON.parse(out);
+  assert.equal(code, 0, `${said.out}${said.err}`);
+  const record = JSON.parse(said.out);
   assert.equal(record.attempts.length, 25);
   const melting = record.attempts.filter((attempt) => attempt.start === "melting");
   for (const attempt of melting) assert.equal(attempt.begin_digest, melting[0].begin_digest);

@@ -39,6 +39,7 @@ export class Page {
   private sheet = "";
   /** The view that was chosen last. */
   private seen: string | null = null;
+  private readonly views = new Map<string, HTMLButtonElement>();
   private last: Picture | null = null;
   private wasPast = false;
 
@@ -53,6 +54,7 @@ export class Page {
         write: (signal, value) => this.ask({ type: "write", signal, value }),
         take: (name, take) => this.ask({ type: "seat", panel: name, take }),
         fail: (component, failure, active) => this.ask({ type: "fail", component, failure, active }),
+        disturb: (disturbance, active) => this.ask({ type: "disturb", disturbance, active }),
         alarms: () => this.alarms,
         acknowledge: () => this.acknowledge(),
       }),
@@ -103,7 +105,7 @@ export class Page {
 
   private lesson(): readonly HTMLElement[] {
     const lesson = this.session.training;
-    return lesson === null ? [] : [new TrainingView(lesson, () => this.last?.t_ns ?? 0, (ask) => this.ask(ask)).root];
+    return lesson === null ? [] : [new TrainingView(lesson, this.session.views, () => this.last?.t_ns ?? 0, (ask) => this.ask(ask)).root];
   }
 
   private plc(code: HTMLElement): HTMLElement {
@@ -141,12 +143,13 @@ export class Page {
       button(label, () => this.ask({ type: "operate", operation }));
     const is_ours = this.session.training?.role !== "trainee";
     if (this.session.live && is_ours) frame("controls").append(operate("hold", "Hold"), operate("step", "Step"), operate("go", "Go"));
-    const views = this.session.views.map((view) => button(view.name, () => this.see(view.name)));
+    for (const { name } of this.session.views) this.views.set(name, button(name, () => this.see(name)));
+    const views = [...this.views.values()];
     const call = (): void => {
       const name = this.session.views.find((one) => one.name === this.seen)?.name;
       if (name !== undefined) this.ask({ type: "view", view: name });
     };
-    if (views.length > 0) views.push(button("For all", call, "Shows the view that was chosen last to all viewers"));
+    if (views.length > 0 && is_ours) views.push(button("For all", call, "Shows the view that was chosen last to all viewers"));
     const [front, back] = this.machine.depth_m();
     const cut = make("input", { type: "range", min: "0", max: "1", step: "0.01", value: "0", "aria-label": "Section from the front" });
     cut.addEventListener("input", () => {
@@ -219,7 +222,7 @@ export class Page {
         frame("pace").textContent = message.pace;
         for (const one of this.panels) {
           one.view.sit(message.seats.get(one.name) ?? "taken");
-          one.view.show_failed(message.failed);
+          one.view.show_failed(message.failed, message.disturbed);
           one.view.show_forced(message.forced);
         }
         this.table.show_forced(message.forced);
@@ -275,6 +278,7 @@ export class Page {
     const view = this.session.views.find((one) => one.name === name);
     if (view === undefined) return;
     this.seen = name;
+    for (const [other, key] of this.views) key.setAttribute("aria-pressed", String(other === name));
     this.machine.see(view);
   }
 

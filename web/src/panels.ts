@@ -18,6 +18,8 @@ export interface Desk {
   readonly take: (panel: string, take: boolean) => void;
   /** Lets a component fail, or repairs it. */
   readonly fail: (component: string, failure: string, active: boolean) => void;
+  /** Puts a fault on the way of signals, or takes it away. */
+  readonly disturb: (disturbance: number, active: boolean) => void;
   /** What has been told, newest first. */
   readonly alarms: () => readonly Alarm[];
   /** All of it has been seen. */
@@ -35,6 +37,7 @@ export class PanelView {
   private readonly shows = new Map<number, Show[]>();
   private readonly cells = new Map<number, HTMLElement[]>();
   private readonly failures = new Map<string, Show[]>();
+  private readonly disturbances = new Map<number, Show[]>();
   private readonly inputs: (HTMLButtonElement | HTMLInputElement | HTMLSelectElement)[] = [];
   private readonly lines: Sparkline[] = [];
   private readonly lists: (() => void)[] = [];
@@ -57,6 +60,7 @@ export class PanelView {
     }
     const head = make("div", { class: "panel-head" }, make("h3", {}, panel.name), this.seat_text, this.seat_button);
     this.root = make("section", { class: "panel", "aria-label": `Panel ${panel.name}` }, head, grid);
+    this.turn(panel);
     this.sit("free");
   }
 
@@ -69,9 +73,19 @@ export class PanelView {
     for (const one of this.shows.get(signal) ?? []) one(value);
   }
 
-  /** The failures that are at work now, as `component.mode`. */
-  show_failed(failed: ReadonlySet<string>): void {
+  /** The failures that are at work now, as `component.mode`, and the numbers of the faults on the way of signals. */
+  show_failed(failed: ReadonlySet<string>, disturbed: ReadonlySet<number>): void {
     for (const [name, shows] of this.failures) for (const one of shows) one(failed.has(name) ? 1 : 0);
+    for (const [number, shows] of this.disturbances) for (const one of shows) one(disturbed.has(number) ? 1 : 0);
+  }
+
+  /** A page is there while its signal says so. Where nothing is written, nobody needs to sit. */
+  private turn(panel: Panel): void {
+    const page = panel.page;
+    if (page === null) return;
+    this.root.hidden = true;
+    this.bound(page.signal, (value) => (this.root.hidden = value !== page.value));
+    if (this.inputs.length === 0) [this.seat_button.hidden, this.seat_text.hidden] = [true, true];
   }
 
   /** Marks what is forced: a press or a turn of it changes nothing. */
@@ -144,27 +158,35 @@ export class PanelView {
   private bound(name: string | null, show: Show): number | null {
     const signal = this.session.signals.findIndex((one) => one.name === name);
     if (signal < 0) return null;
-    const all = this.shows.get(signal);
-    if (all === undefined) this.shows.set(signal, [show]);
-    else all.push(show);
+    this.listen(this.shows, signal, show);
     return signal;
+  }
+
+  private listen<Key>(all: Map<Key, Show[]>, key: Key, show: Show): void {
+    const known = all.get(key);
+    if (known === undefined) all.set(key, [show]);
+    else known.push(show);
   }
 
   private write(signal: number | null, value: number): void {
     if (signal !== null && this.seat === "mine") this.desk.write(signal, value);
   }
 
-  /** Shows the signal or the failure of an element; what it gives writes it. */
+  /** Shows the signal, the failure or the disturbance of an element; what it gives writes it. */
   private wire(element: PanelElement, show: Show): (value: number) => void {
+    const { disturbance } = element;
+    if (disturbance !== null) {
+      this.listen(this.disturbances, disturbance, show);
+      return (value) => {
+        if (this.seat === "mine") this.desk.disturb(disturbance, value !== 0);
+      };
+    }
     if (element.failure === null) {
       const signal = this.bound(element.signal, show);
       return (value) => this.write(signal, value);
     }
     const [component, mode] = element.failure;
-    const name = `${component}.${mode}`;
-    const all = this.failures.get(name);
-    if (all === undefined) this.failures.set(name, [show]);
-    else all.push(show);
+    this.listen(this.failures, `${component}.${mode}`, show);
     return (value) => {
       if (this.seat === "mine") this.desk.fail(component, mode, value !== 0);
     };
@@ -215,9 +237,9 @@ export class PanelView {
 
   /** A slider; one that springs goes back to the middle when it is let go. */
   private fill_slider(cell: HTMLElement, element: PanelElement, name: string | null, label: string, springs = false): void {
-    const step = (element.max - element.min) / 200;
+    const step = this.grain(name, (element.max - element.min) / 200);
     const slider = make("input", {
-      type: "range", min: String(element.min), max: String(element.max), step: step > 0 ? String(step) : "any",
+      type: "range", "aria-label": label, min: String(element.min), max: String(element.max), step: step > 0 ? String(step) : "any",
     });
     const output = make("output", {}, "–");
     const signal = this.bound(name, (value) => {
@@ -290,6 +312,12 @@ export class PanelView {
     // What only this page remembers needs no seat.
     if (signal !== null) this.inputs.push(key);
     cell.append(make("span", { class: "caption" }, element.label), list, key);
+  }
+
+  /** How fine a slider is: that of a whole number has no values in between. */
+  private grain(name: string | null, share: number): number {
+    const type = this.session.signals.find((one) => one.name === name)?.type ?? "";
+    return /^U?[SDL]?INT$/.test(type) ? Math.max(1, Math.round(share)) : share;
   }
 
   private text(name: string | null, value: number): string {

@@ -106,6 +106,8 @@ export interface PanelElement {
   readonly signal_y: string | null;
   /** The component and its mode of failure, in place of a signal. */
   readonly failure: readonly [string, string] | null;
+  /** The number of a fault on the way of signals, in place of a signal. */
+  readonly disturbance: number | null;
   /** Column and row, from 0. */
   readonly at: readonly [number, number];
   readonly span: readonly [number, number];
@@ -116,9 +118,17 @@ export interface PanelElement {
   readonly toggles: boolean;
 }
 
+/** A panel that is shown while a signal has a value. */
+export interface PanelPage {
+  readonly signal: string;
+  readonly value: number;
+}
+
 export interface Panel {
   readonly name: string;
   readonly seat: string;
+  /** Nothing for a panel that is always shown. */
+  readonly page: PanelPage | null;
   readonly columns: number;
   readonly rows: number;
   /** Where the picture is that lies behind it. */
@@ -409,6 +419,7 @@ function element(field: Field): PanelElement {
     signal: nullableText(field.at("signal")),
     signal_y: nullableText(field.at("signal_y")),
     failure: field.at("failure").or<readonly [string, string] | null>(null, failure),
+    disturbance: field.at("disturbance").or<number | null>(null, number),
     at: field.at("at").numbers(2) as unknown as [number, number],
     span: field.at("span").or<readonly [number, number]>([1, 1], (item) => item.numbers(2) as unknown as [number, number]),
     min: field.at("min").or(0, number),
@@ -442,6 +453,7 @@ function panel(field: Field): Panel {
   return {
     name: field.at("name").text(),
     seat: field.at("seat").text(),
+    page: field.at("page").or<PanelPage | null>(null, (item) => ({ signal: item.at("signal").text(), value: item.at("value").number() })),
     columns: field.at("columns").number(),
     rows: field.at("rows").number(),
     picture: nullableText(field.at("picture")),
@@ -536,6 +548,8 @@ export type Message =
       readonly failed: ReadonlySet<string>;
       /** Numbers of the signals that are forced. */
       readonly forced: ReadonlySet<number>;
+      /** Numbers of the faults on the way of signals that are at work. */
+      readonly disturbed: ReadonlySet<number>;
       /** The time in the past that is shown; nothing at the live edge. */
       readonly shown_ns: number | null;
       readonly past_ns: readonly [number, number] | null;
@@ -592,6 +606,7 @@ export function decodeMessage(raw: string): Message {
         seats: new Map(root.at("seat").or<[string, Seat][]>([], (all) => all.entries((key, item) => [key, seat(item)]))),
         failed: new Set(root.at("failed").or<string[]>([], (all) => all.list(text))),
         forced: new Set(root.at("forced").or<number[]>([], (all) => all.list(number))),
+        disturbed: new Set(root.at("disturbed").or<number[]>([], (all) => all.list(number))),
         shown_ns: root.at("shown_ns").or<number | null>(null, number),
         past_ns: root.at("past_ns").or<readonly [number, number] | null>(null, (item) => item.numbers(2) as [number, number]),
       };
@@ -696,6 +711,7 @@ export type Ask =
   | { readonly type: "operate"; readonly operation: "hold" | "go" | "step" | "stop"; readonly steps?: number }
   | { readonly type: "seat"; readonly panel: string; readonly take: boolean }
   | { readonly type: "fail"; readonly component: string; readonly failure: string; readonly active: boolean }
+  | { readonly type: "disturb"; readonly disturbance: number; readonly active: boolean }
   | { readonly type: "train"; readonly turn: "repeat" }
   | { readonly type: "train"; readonly turn: "back"; readonly t_ns: number }
   | { readonly type: "train"; readonly turn: "jump"; readonly start: string }

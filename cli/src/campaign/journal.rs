@@ -68,7 +68,7 @@ impl Subject {
     /// A file of the scenario cannot be read.
     pub(super) fn of(scenario: &Scenario, campaign: &Campaign) -> Result<Self, CampaignError> {
         let mut hasher = blake3::Hasher::new();
-        let mut files = scenario.files();
+        let mut files = scenario.files()?;
         files.extend(campaign.program_files().map(PathBuf::from));
         files.extend(onescan_scenario::case::beside(scenario.path()).file_name().map(PathBuf::from));
         files.sort();

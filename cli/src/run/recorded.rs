@@ -106,7 +106,7 @@ fn remove(path: &Path) -> Result<(), RunError> {
 /// Copies the scenario's files so that it can be run from the copy. Says where its own folder is
 /// among them, and all files with their hashes.
 fn copy_scenario(scenario: &Scenario, target: &Path) -> Result<(String, Vec<SourceFile>), RunError> {
-    let files: Vec<PathBuf> = scenario.files();
+    let files: Vec<PathBuf> = scenario.files()?;
     let own_folder = own_folder(scenario.folder(), &files);
     let mut copied = Vec::new();
     for file in files {

@@ -10,7 +10,7 @@ use onescan_scenario::expect::TraceEnd;
 use onescan_scenario::{Mode, Scenario};
 use onescan_server::digest::Digest;
 use onescan_server::end::SessionEnd;
-use onescan_server::lockstep::{Lockstep, Outcome, Reached};
+use onescan_server::lockstep::{Outcome, Reached};
 use onescan_server::mailbox::Mailbox;
 use onescan_server::operation::{Control, OperatorInput};
 use onescan_server::pacing::Pace;
@@ -84,6 +84,7 @@ pub(super) fn drive(course: Course<'_>, stage: &Stage, moments: &mut Moments) ->
     let examination = Rc::new(RefCell::new(from.examination.clone()));
     let heard = Rc::new(RefCell::new(Vec::new()));
     lockstep.observe(Box::new(Examiner { examination: Rc::clone(&examination), inputs: Rc::clone(&heard) }));
+    stage.failing.begin_with(from.at_work);
     lockstep.observe(stage.failing.observer());
     if let Some((folder, number, path)) = record {
         lockstep.observe(Box::new(recorder(scenario, folder, number, path)?));
@@ -105,7 +106,9 @@ pub(super) fn drive(course: Course<'_>, stage: &Stage, moments: &mut Moments) ->
             break;
         }
         if stage.keeps && moments.is_due(t_v) && lockstep.session().end().is_none() {
-            moments.keep(moment(&mut lockstep, examination.borrow().clone()).map_err(failed)?);
+            let at_work = stage.failing.now();
+            let checkpoint = lockstep.checkpoint().map_err(failed)?;
+            moments.keep(Moment { checkpoint, examination: examination.borrow().clone(), at_work });
         }
         if t_v >= scenario.until() || lockstep.run_to(t_v + step)? == Reached::End {
             break;
@@ -117,13 +120,6 @@ pub(super) fn drive(course: Course<'_>, stage: &Stage, moments: &mut Moments) ->
     let score = examination.borrow().clone().finish(scenario, end);
     let inputs = heard.take();
     Ok(Ended { outcome, began: from.checkpoint.digest(), score, inputs })
-}
-
-fn moment(
-    lockstep: &mut Lockstep,
-    examination: super::examination::Examination,
-) -> Result<Moment, onescan_server::checkpoint::CheckpointError> {
-    Ok(Moment { checkpoint: lockstep.checkpoint()?, examination })
 }
 
 fn recorder(scenario: &Scenario, folder: &Path, number: u32, path: &Path) -> Result<Recorder, TrainError> {

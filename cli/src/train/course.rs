@@ -25,7 +25,7 @@ use crate::access::admission::Admission;
 use crate::error::Usage;
 use crate::interrupt::Interrupt;
 use crate::run::{NOTICE, operator_inputs};
-use crate::web::{self, Desk, Failing, Page, Role, Training, Turn};
+use crate::web::{self, AtWork, Desk, Failing, Page, Role, Training, Turn};
 
 /// A lesson, and all that is needed to hold it.
 pub(super) struct Classroom<'a> {
@@ -118,8 +118,7 @@ impl Classroom<'_> {
     fn repeated(&self, start: &str, inputs: Vec<OperatorInput>, number: u32) -> Result<AttemptRecord, TrainError> {
         let prepared = self.prepare(start)?;
         let stage = self.stage(Pace::Max, Mailbox::new());
-        let moment = self.first_moment(&prepared);
-        let next = Next { start: start.to_owned(), moment, moments: Moments::default(), inputs, fork: None };
+        let next = Next { inputs, ..self.begins(start, &prepared) };
         let (record, _, _) = self.attempt(next, &prepared.scenario, &stage, number)?;
         Ok(record)
     }
@@ -127,7 +126,7 @@ impl Classroom<'_> {
     fn first_moment(&self, prepared: &Prepared) -> Moment {
         let lesson = Rc::new(self.lesson.clone());
         let examination = Examination::new(&prepared.scenario, &lesson);
-        Moment { checkpoint: prepared.checkpoint.clone(), examination }
+        Moment { checkpoint: prepared.checkpoint.clone(), examination, at_work: AtWork::default() }
     }
 
     /// Drives an attempt; gives its record, its moments and what operators did.
@@ -168,18 +167,16 @@ impl Classroom<'_> {
         let mailbox = self.interrupt.mailbox();
         let stage = Stage { keeps: true, ..self.stage(served.pace, mailbox.clone()) };
         let desk = Desk::new(mailbox);
-        let mut prepared: BTreeMap<String, Prepared> = BTreeMap::new();
-        let first = self.prepare(&self.lesson.start)?;
-        let _pages = self.pages(served, &first.scenario, &stage, &desk)?;
-        let mut next = self.begins(&self.lesson.start, &first);
-        prepared.insert(self.lesson.start.clone(), first);
+        let mut at = Rc::new(self.prepare(&self.lesson.start)?);
+        let mut prepared = BTreeMap::from([(self.lesson.start.clone(), Rc::clone(&at))]);
+        let _pages = self.pages(served, &at.scenario, &stage, &desk)?;
+        let mut next = self.begins(&self.lesson.start, &at);
         let mut attempts: Vec<AttemptRecord> = Vec::new();
         // what operators did since the start, along the way that led here
         let mut line: Vec<OperatorInput> = Vec::new();
         loop {
             let number = u32::try_from(attempts.len()).unwrap_or(u32::MAX).saturating_add(1);
             let start = next.start.clone();
-            let Some(at) = prepared.get(&start) else { return Ok(attempts) };
             let from = next.moment.steps();
             let (record, mut moments, heard) = self.attempt(next, &at.scenario, &stage, number)?;
             line.retain(|input| input.step < from);
@@ -190,21 +187,17 @@ impl Classroom<'_> {
             }
             next = match desk.take() {
                 None => return Ok(attempts),
-                Some(Turn::Repeat) => self.begins(&start, at),
+                Some(Turn::Repeat) => self.begins(&start, &at),
                 Some(Turn::Jump(name)) => {
-                    // The page knows the starts there are.
-                    let Some(known) = self.book.start(&name).map(|start| start.name.clone()) else {
-                        return Ok(attempts);
+                    at = match prepared.get(&name) {
+                        Some(known) => Rc::clone(known),
+                        None => Rc::new(self.prepare(&name)?),
                     };
-                    if !prepared.contains_key(&known) {
-                        let state = self.prepare(&known)?;
-                        prepared.insert(known.clone(), state);
-                    }
-                    let Some(state) = prepared.get(&known) else { return Ok(attempts) };
-                    self.begins(&known, state)
+                    prepared.insert(name.clone(), Rc::clone(&at));
+                    self.begins(&name, &at)
                 }
                 Some(Turn::Back(t_v)) => {
-                    let Some(moment) = moments.back_to(t_v) else { return Ok(attempts) };
+                    let moment = moments.back_to(t_v);
                     let t_v = t_v.max(moment.t_v());
                     let inputs = line.iter().filter(|input| input.step >= moment.steps() && input.t_v < t_v);
                     let inputs = inputs.cloned().collect();
@@ -218,7 +211,8 @@ impl Classroom<'_> {
     /// An attempt from a start on.
     fn begins(&self, start: &str, prepared: &Prepared) -> Next {
         let moment = self.first_moment(prepared);
-        Next { start: start.to_owned(), moment, moments: Moments::default(), inputs: Vec::new(), fork: None }
+        let moments = Moments::since(moment.clone());
+        Next { start: start.to_owned(), moment, moments, inputs: Vec::new(), fork: None }
     }
 
     /// The trainee's page and the trainer's.

@@ -43,9 +43,9 @@ impl Exit for StartError {
     }
 }
 
-/// The record of a session that is none.
+/// A file that is not the record of a session.
 #[derive(Debug, Error, Diagnostic)]
-#[error("{} is no record of a session: {source}", path.display())]
+#[error("{} is not the record of a session: {source}", path.display())]
 pub struct NoRecord {
     /// The file.
     pub path: PathBuf,
@@ -80,7 +80,7 @@ sum_of_errors! {
         Web(WebError),
         /// A file cannot be read.
         Unreadable(Unreadable),
-        /// A file is no record.
+        /// A file is not a record.
         NoRecord(NoRecord),
         /// A file cannot be written.
         File(FileError),

@@ -4,6 +4,7 @@ use onescan_server::checkpoint::Checkpoint;
 use onescan_server::time::{StepCount, VirtualTime};
 
 use super::examination::Examination;
+use crate::web::AtWork;
 
 /// The least distance between two moments, ns of virtual time.
 const LEAST_NS: u64 = 1_000_000_000;
@@ -15,6 +16,8 @@ const SHARE: u64 = 8;
 pub(super) struct Moment {
     pub(super) checkpoint: Checkpoint,
     pub(super) examination: Examination,
+    /// What did not work as it should.
+    pub(super) at_work: AtWork,
 }
 
 impl Moment {
@@ -27,33 +30,43 @@ impl Moment {
     }
 }
 
-/// The moments of what has happened since the start, the first of them the start itself.
-#[derive(Clone, Default)]
+/// The moments of what has happened since the start.
+#[derive(Clone)]
 pub(super) struct Moments {
+    /// The start itself, which always stays.
+    start: Moment,
     kept: Vec<Moment>,
 }
 
 impl Moments {
+    /// Nothing has happened yet.
+    pub(super) fn since(start: Moment) -> Self {
+        Self { start, kept: Vec::new() }
+    }
+
+    fn last(&self) -> &Moment {
+        self.kept.last().unwrap_or(&self.start)
+    }
+
     /// Whether one is due at `t_v`.
     pub(super) fn is_due(&self, t_v: VirtualTime) -> bool {
-        self.kept.last().is_none_or(|last| t_v - last.t_v() >= LEAST_NS)
+        t_v - self.last().t_v() >= LEAST_NS
     }
 
     /// Keeps one, and lets go those that have become too many.
     pub(super) fn keep(&mut self, moment: Moment) {
         let now = moment.t_v();
         self.kept.push(moment);
-        let times: Vec<u64> = self.kept.iter().map(|moment| moment.t_v().as_nanos()).collect();
-        let stays = thinned(&times, now.as_nanos());
-        let mut stays = stays.into_iter();
+        let all = std::iter::once(&self.start).chain(&self.kept);
+        let times: Vec<u64> = all.map(|moment| moment.t_v().as_nanos()).collect();
+        let mut stays = thinned(&times, now.as_nanos()).into_iter().skip(1);
         self.kept.retain(|_| stays.next().unwrap_or(true));
     }
 
-    /// The last moment at or before `t_v`; those after it have not happened any more.
-    pub(super) fn back_to(&mut self, t_v: VirtualTime) -> Option<Moment> {
-        let behind = self.kept.partition_point(|moment| moment.t_v() <= t_v).max(1);
-        self.kept.truncate(behind);
-        self.kept.last().cloned()
+    /// The last moment at or before `t_v`, or the start; those after it have not happened any more.
+    pub(super) fn back_to(&mut self, t_v: VirtualTime) -> Moment {
+        self.kept.truncate(self.kept.partition_point(|moment| moment.t_v() <= t_v));
+        self.last().clone()
     }
 }
 

@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use onescan_base::regular::{self, Limit};
 use onescan_report::file;
 use onescan_scenario::Scenario;
-use onescan_scenario::file::ClientFile;
 use onescan_scenario::lesson::{Book, Start};
 use onescan_server::checkpoint::Checkpoint;
 use onescan_server::lockstep::Reached;
@@ -65,9 +64,7 @@ impl<'a> Starts<'a> {
         };
         part(env!("CARGO_PKG_VERSION").as_bytes());
         part(&start.at.as_nanos().to_le_bytes());
-        let mut files = scenario.files();
-        files.extend(kinds(scenario)?);
-        for file in files {
+        for file in scenario.files()? {
             let path = scenario.folder().join(&file);
             part(file.to_string_lossy().as_bytes());
             part(&regular::read(&path, Limit::DATA).map_err(Unreadable::at(&path))?);
@@ -76,32 +73,6 @@ impl<'a> Starts<'a> {
         let short: String = hash.finalize().to_hex().chars().take(32).collect();
         Ok(format!("{}-{short}", self.scenario.name()))
     }
-}
-
-/// The files with kinds of component of the scenario's own, relative to its folder, in the order of their names.
-fn kinds(scenario: &Scenario) -> Result<Vec<PathBuf>, TrainError> {
-    let mut found = Vec::new();
-    for client in scenario.file().clients.values() {
-        let ClientFile::Plant { scene, .. } = client.get_ref() else { continue };
-        let path = scenario.folder().join(scene);
-        let text = regular::read_text(&path).map_err(Unreadable::at(&path))?;
-        // The scene was read before: what is no table here would have been told then.
-        let Ok(table) = text.parse::<toml::Table>() else { continue };
-        let libraries = table.get("libraries").and_then(toml::Value::as_array).into_iter().flatten();
-        for library in libraries.filter_map(toml::Value::as_str) {
-            let relative = Path::new(scene).parent().unwrap_or(Path::new("")).join(library);
-            let folder = scenario.folder().join(&relative);
-            let entries = std::fs::read_dir(&folder).map_err(Unreadable::at(&folder))?;
-            for entry in entries {
-                let entry = entry.map_err(Unreadable::at(&folder))?;
-                if entry.file_type().is_ok_and(|ty| ty.is_file()) {
-                    found.push(relative.join(entry.file_name()));
-                }
-            }
-        }
-    }
-    found.sort();
-    Ok(found)
 }
 
 /// A state that was kept; nothing if there is none, or one that is damaged or of another version.

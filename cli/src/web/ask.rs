@@ -1,13 +1,13 @@
 //! What a page asks, and what the session is to do for it.
 
 use onescan_server::layout::ImageLayout;
-use onescan_server::operation::Operation;
-use onescan_server::signal::{SignalDecl, SignalId, SignalType};
+use onescan_server::operation::{Operation, SignalFault};
+use onescan_server::signal::{SignalDecl, SignalId, SignalName, SignalType};
 use onescan_server::time::VirtualTime;
 use serde::Deserialize;
 use thiserror::Error;
 
-use super::desk::{Role, Training, Turn};
+use super::desk::{AtWork, Role, Training, Turn};
 use super::online::Action;
 use super::structure::Known;
 
@@ -25,6 +25,8 @@ pub(super) enum Ask {
     Seat { panel: String, take: bool },
     /// A component fails, or is repaired.
     Fail { component: String, failure: String, active: bool },
+    /// A fault on the way of signals, by its number on the panels, begins or ends.
+    Disturb { disturbance: usize, active: bool },
     /// The lesson goes on from its start, from an earlier moment, or from a prepared state.
     Train(TrainAsk),
     /// A moment of the past is to be shown.
@@ -79,6 +81,8 @@ pub(super) enum Refused {
     NoVariable(usize),
     #[error("there is no component `{0}`")]
     NoComponent(String),
+    #[error("there is no disturbance {0}")]
+    NoDisturbance(usize),
     #[error("that is the trainer's business")]
     Trainee,
     #[error("this session is no lesson")]
@@ -118,6 +122,7 @@ impl Ask {
             | Self::Operate { .. }
             | Self::Seat { .. }
             | Self::Fail { .. }
+            | Self::Disturb { .. }
             | Self::Variable { .. }
             | Self::Force { .. }
             | Self::Train(_)
@@ -167,6 +172,17 @@ pub(super) fn force(declared: &SignalDecl, value: Option<String>) -> Operation {
 pub(super) fn fail(component: String, mode: String, active: bool, known: &Known) -> Result<Operation, Refused> {
     let client = known.plants.get(&component).ok_or_else(|| Refused::NoComponent(component.clone()))?.clone();
     Ok(if active { Operation::Fail { client, component, mode } } else { Operation::Repair { client, component, mode } })
+}
+
+/// A fault on the way of signals begins, or ends where it is at work.
+pub(super) fn disturb(number: usize, active: bool, known: &Known, now: &AtWork) -> Result<Vec<Operation>, Refused> {
+    let disturbance = known.disturbances.get(number).ok_or(Refused::NoDisturbance(number))?;
+    let begun = disturbance.iter().filter(|(signal, fault)| active || now.has(signal, fault));
+    let operation = |(signal, fault): &(SignalName, SignalFault)| {
+        let (signal, fault) = (signal.clone(), fault.clone());
+        if active { Operation::Disturb { signal, fault } } else { Operation::Mend { signal } }
+    };
+    Ok(begun.map(operation).collect())
 }
 
 /// How the lesson goes on, if the page is the trainer's.

@@ -1,14 +1,15 @@
 //! A lesson on two pages: whose page it is, what the trainer asks, what has failed.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use onescan_scenario::panel_file::Seat;
 use onescan_server::digest::TrajectoryDigest;
 use onescan_server::mailbox::Mailbox;
 use onescan_server::observer::{Observer, RecordError};
-use onescan_server::operation::{Control, Operation, OperatorInput};
+use onescan_server::operation::{Control, Operation, OperatorInput, SignalFault};
 use onescan_server::session::Session;
+use onescan_server::signal::SignalName;
 use onescan_server::time::VirtualTime;
 
 /// What a page needs of a lesson.
@@ -84,27 +85,75 @@ fn lock<T>(value: &Mutex<T>) -> MutexGuard<'_, T> {
     value.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// The failures at work, as `component.mode`; clones share them.
+/// What does not work as it should at a moment.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct AtWork {
+    /// Failures, as `component.mode`.
+    failed: BTreeSet<String>,
+    /// Signals with the fault on their way.
+    disturbed: BTreeMap<SignalName, SignalFault>,
+}
+
+impl AtWork {
+    /// The failures.
+    pub(super) fn failed(&self) -> &BTreeSet<String> {
+        &self.failed
+    }
+
+    /// Whether a signal has this fault.
+    pub(super) fn has(&self, signal: &SignalName, fault: &SignalFault) -> bool {
+        self.disturbed.get(signal) == Some(fault)
+    }
+
+    fn take(&mut self, operation: &Operation) {
+        match operation {
+            Operation::Fail { component, mode, .. } => {
+                self.failed.insert(format!("{component}.{mode}"));
+            }
+            Operation::Repair { component, mode, .. } => {
+                self.failed.remove(&format!("{component}.{mode}"));
+            }
+            Operation::Disturb { signal, fault } => {
+                self.disturbed.insert(signal.clone(), fault.clone());
+            }
+            Operation::Mend { signal } => {
+                self.disturbed.remove(signal);
+            }
+            // Nothing else fails or disturbs.
+            _ => {}
+        }
+    }
+}
+
+/// What does not work as it should now; clones share it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Failing {
-    failed: Arc<Mutex<BTreeSet<String>>>,
+    now: Arc<Mutex<AtWork>>,
+    /// What the next session begins with.
+    first: Arc<Mutex<AtWork>>,
 }
 
 impl Failing {
-    /// Keeps them up to date with a session. What failed before it goes on from a checkpoint is not known.
+    /// Keeps it up to date with a session.
     pub(crate) fn observer(&self) -> Box<dyn Observer> {
         Box::new(self.clone())
     }
 
-    /// All of them.
-    pub(super) fn now(&self) -> BTreeSet<String> {
-        lock(&self.failed).clone()
+    /// The session that begins next goes on from a moment at which this was at work. What was before a checkpoint of others is
+    /// not known.
+    pub(crate) fn begin_with(&self, at_work: AtWork) {
+        *lock(&self.first) = at_work;
+    }
+
+    /// All of it.
+    pub(crate) fn now(&self) -> AtWork {
+        lock(&self.now).clone()
     }
 }
 
 impl Observer for Failing {
     fn begin(&mut self, _: &Session, _: &TrajectoryDigest) -> Result<(), RecordError> {
-        lock(&self.failed).clear();
+        *lock(&self.now) = std::mem::take(&mut *lock(&self.first));
         Ok(())
     }
 
@@ -113,15 +162,7 @@ impl Observer for Failing {
     }
 
     fn operated(&mut self, input: &OperatorInput) -> Result<(), RecordError> {
-        match &input.operation {
-            Operation::Fail { component, mode, .. } => {
-                lock(&self.failed).insert(format!("{component}.{mode}"));
-            }
-            Operation::Repair { component, mode, .. } => {
-                lock(&self.failed).remove(&format!("{component}.{mode}"));
-            }
-            _ => {}
-        }
+        lock(&self.now).take(&input.operation);
         Ok(())
     }
 

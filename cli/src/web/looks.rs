@@ -14,6 +14,7 @@ use serde::Serialize;
 use tokio::sync::watch;
 
 use super::ask::Refused;
+use super::desk::Role;
 use super::seats::{Seats, Viewer};
 use super::structure::{Body, Part, Shape};
 
@@ -170,12 +171,23 @@ impl Called {
         }
     }
 
-    /// Shows a view to everybody. Where there are panels of trainers, whoever calls sits at one of them.
-    pub(super) fn call(&self, view: String, viewer: Viewer, seats: &Seats) -> Result<(), Refused> {
+    /// Shows a view to everybody, on all pages of the session. A lesson's is called on the trainer's page; elsewhere, where there
+    /// are panels of trainers, whoever calls sits at one of them.
+    pub(super) fn call(
+        &self,
+        view: String,
+        (viewer, role): (Viewer, Option<Role>),
+        seats: &Seats,
+    ) -> Result<(), Refused> {
         if !self.views.contains(&view) {
             return Err(Refused::NoView(view));
         }
-        if !self.trainers.is_empty() && !seats.sits_at_one_of(&self.trainers, viewer) {
+        let may = match role {
+            Some(Role::Trainer) => true,
+            Some(Role::Trainee) => return Err(Refused::Trainee),
+            None => self.trainers.is_empty() || seats.sits_at_one_of(&self.trainers, viewer),
+        };
+        if !may {
             return Err(Refused::NoTrainer);
         }
         self.last.send_modify(|(count, last)| (*count, *last) = (*count + 1, view));

@@ -72,7 +72,7 @@ use crate::access::admission::{Admission, Doorstep};
 use crate::error::{Exit, ExitCode, ListenError, Usage};
 use crate::past::Rewinder;
 pub(crate) use bundle::charts;
-pub(crate) use desk::{Desk, Failing, Role, Training, Turn};
+pub(crate) use desk::{AtWork, Desk, Failing, Role, Training, Turn};
 use entry::{Barred, Entry, Rank};
 use looks::Called;
 use seats::{SeatView, Seats};
@@ -159,7 +159,7 @@ struct Session {
     failing: Failing,
     training: Option<Training>,
     seats: Arc<Seats>,
-    called: Called,
+    called: Arc<Called>,
     pictures: Option<Sender<Drawn>>,
     entry: Entry,
     /// `http` or `https`.
@@ -281,7 +281,7 @@ impl Page {
         Self::seated(address, admission, source, None)
     }
 
-    /// Serves the same session at another address, for others who share its seats.
+    /// Serves the same session at another address, for others who share its seats and are shown the views that somebody calls.
     ///
     /// # Errors
     /// See [`WebError`].
@@ -291,14 +291,15 @@ impl Page {
         admission: &Admission,
         source: Source<'_>,
     ) -> Result<Self, WebError> {
-        Self::seated(address, admission, source, Some(Arc::clone(&self.session.seats)))
+        let Session { seats, called, .. } = &*self.session;
+        Self::seated(address, admission, source, Some((Arc::clone(seats), Arc::clone(called))))
     }
 
     fn seated(
         address: SocketAddr,
         admission: &Admission,
         source: Source<'_>,
-        seats: Option<Arc<Seats>>,
+        shared: Option<(Arc<Seats>, Arc<Called>)>,
     ) -> Result<Self, WebError> {
         of_this_machine(address, admission)?;
         let House { register, identity } = match admission {
@@ -312,12 +313,16 @@ impl Page {
         let listener = TcpListener::bind(address).map_err(&listen)?;
         listener.set_nonblocking(true).map_err(&listen)?;
         let address = listener.local_addr().map_err(&listen)?;
+        let (seats, called) = shared.unwrap_or_else(|| {
+            let seats = Seats::at(std::mem::take(&mut known.panels));
+            (Arc::new(seats), Arc::new(Called::among(source.scenario)))
+        });
         let session = Arc::new(Session {
             entry: Entry::new(register, address.port(), identity.is_some()),
             scheme: if identity.is_some() { "https" } else { "http" },
             structure: serde_json::to_string(&structure)?,
-            seats: seats.unwrap_or_else(|| Arc::new(Seats::at(std::mem::take(&mut known.panels)))),
-            called: Called::among(source.scenario),
+            seats,
+            called,
             known,
             layout: ImageLayout::new(plan.signals()),
             plan,

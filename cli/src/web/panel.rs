@@ -1,6 +1,7 @@
 //! Panels: those that the scenario lays out, or one of all that operators write.
 
 use std::collections::BTreeSet;
+use std::ops::RangeFrom;
 
 use onescan_scenario::file::ClientFile;
 use onescan_scenario::panel_file::{ElementFile, ElementKind, PanelFile, Seat};
@@ -15,12 +16,21 @@ use super::structure::written;
 pub(super) struct Panel {
     pub(super) name: String,
     pub(super) seat: Seat,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    page: Option<Page>,
     columns: u32,
     rows: u32,
     /// Where a browser finds the picture behind it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) picture: Option<String>,
     elements: Vec<Element>,
+}
+
+/// When a panel is shown that is one of several pages.
+#[derive(Debug, Serialize)]
+struct Page {
+    signal: String,
+    value: i64,
 }
 
 #[derive(Debug, Serialize)]
@@ -34,6 +44,9 @@ struct Element {
     /// The component and the mode of failure that it shows and causes.
     #[serde(skip_serializing_if = "Option::is_none")]
     failure: Option<[String; 2]>,
+    /// The fault on the way of signals that it shows and causes, by its number.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    disturbance: Option<usize>,
     at: [u32; 2],
     span: [u32; 2],
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -77,9 +90,9 @@ pub(super) fn of(scenario: &Scenario) -> Result<(Vec<Panel>, Vec<PanelPicture>),
     if laid_out.is_empty() {
         return Ok((pulpit(scenario).into_iter().collect(), Vec::new()));
     }
-    let (mut panels, mut pictures) = (Vec::new(), Vec::new());
+    let (mut panels, mut pictures, mut disturbances) = (Vec::new(), Vec::new(), 0..);
     for file in laid_out {
-        let mut panel = panel(file, scenario);
+        let mut panel = panel(file, scenario, &mut disturbances);
         if let Some(picture) = scenario.picture_behind(file)? {
             panel.picture = Some(format!("api/panel/{}", pictures.len()));
             pictures.push(picture);
@@ -89,20 +102,25 @@ pub(super) fn of(scenario: &Scenario) -> Result<(Vec<Panel>, Vec<PanelPicture>),
     Ok((panels, pictures))
 }
 
-fn panel(file: &PanelFile, scenario: &Scenario) -> Panel {
+/// A panel as the scenario has it; `disturbances` numbers those of all panels.
+fn panel(file: &PanelFile, scenario: &Scenario, disturbances: &mut RangeFrom<usize>) -> Panel {
     let elements: Vec<&ElementFile> = file.element.iter().map(toml::Spanned::get_ref).collect();
     Panel {
         name: file.name.get_ref().clone(),
         seat: file.seat,
+        page: file
+            .page
+            .as_ref()
+            .map(|page| Page { signal: page.get_ref().signal.get_ref().to_string(), value: page.get_ref().value }),
         columns: file.columns,
         rows: elements.iter().map(|element| element.at[1] + element.span[1]).max().unwrap_or(1),
         picture: None,
-        elements: elements.into_iter().map(|element| laid_out(element, scenario)).collect(),
+        elements: elements.into_iter().map(|element| laid_out(element, scenario, disturbances)).collect(),
     }
 }
 
 /// An element as the scenario has it, with the names of its signal's values as choices.
-fn laid_out(file: &ElementFile, scenario: &Scenario) -> Element {
+fn laid_out(file: &ElementFile, scenario: &Scenario, disturbances: &mut RangeFrom<usize>) -> Element {
     let name = |signal: &toml::Spanned<SignalName>| signal.get_ref().to_string();
     let signal = file.signal.as_ref().map(name);
     let names = file.signal.as_ref().and_then(|signal| scenario.file().signals.get(signal.get_ref()));
@@ -118,6 +136,7 @@ fn laid_out(file: &ElementFile, scenario: &Scenario) -> Element {
             .as_ref()
             .and_then(|failure| failure.get_ref().parts())
             .map(|parts| parts.map(str::to_owned)),
+        disturbance: file.disturbance.as_ref().and_then(|_| disturbances.next()),
         at: file.at,
         span: file.span,
         mode: file.latching.then_some("toggle"),
@@ -154,6 +173,7 @@ fn pulpit(scenario: &Scenario) -> Option<Panel> {
     (!elements.is_empty()).then(|| Panel {
         name: "operator".to_owned(),
         seat: Seat::Operator,
+        page: None,
         columns: COLUMNS,
         rows,
         picture: None,
@@ -175,6 +195,7 @@ fn element(declared: &SignalDecl, scenario: &Scenario, at: [u32; 2], span: u32) 
         signal: Some(declared.name.to_string()),
         signal_y: None,
         failure: None,
+        disturbance: None,
         at,
         span: [span, 1],
         mode: None,

@@ -9,11 +9,12 @@ use onescan_clients::plant::{Form, Frame, Geometry, Scene};
 use onescan_scenario::file::{ClientFile, SignalFile};
 use onescan_scenario::panel_picture::PanelPicture;
 use onescan_scenario::{Scenario, ScenarioError};
-use onescan_server::signal::{ClientName, SignalDecl};
+use onescan_server::operation::SignalFault;
+use onescan_server::signal::{ClientName, SignalDecl, SignalName};
 use serde::Serialize;
 
 use super::alarms::Bell;
-use super::desk::{Role, Training};
+use super::desk::{AtWork, Role, Training};
 use super::drawings::{self, Drawing, States};
 use super::looks::{self, Judge, Look, View};
 use super::online::{self, Online};
@@ -75,6 +76,8 @@ pub(super) struct Known {
     pub(super) plants: BTreeMap<String, ClientName>,
     /// Clients that are people.
     pub(super) operators: BTreeSet<ClientName>,
+    /// The faults on the way of signals that panels begin and end, each with what it does to its signals.
+    pub(super) disturbances: Vec<Vec<(SignalName, SignalFault)>>,
     /// Panels that are not on this page.
     pub(super) hidden: BTreeSet<String>,
     /// Where the states of drawings are.
@@ -91,6 +94,14 @@ pub(super) struct Known {
     pub(super) online: Online,
     /// The panels of trainers.
     pub(super) trainers: BTreeSet<String>,
+}
+
+impl Known {
+    /// The numbers of the panels' disturbances that are at work: all of their signals have them.
+    pub(super) fn disturbed(&self, at_work: &AtWork) -> BTreeSet<usize> {
+        let is_on = |all: &[(SignalName, SignalFault)]| all.iter().all(|(signal, fault)| at_work.has(signal, fault));
+        self.disturbances.iter().enumerate().filter(|(_, all)| is_on(all)).map(|(number, _)| number).collect()
+    }
 }
 
 #[derive(Debug, Serialize)]
@@ -210,6 +221,7 @@ pub(super) fn of(scenario: &Scenario, training: Option<&Training>) -> Result<(St
     known.states = states;
     let looks = looks::of(scenario, &mut bodies, &components)?;
     (known.looks, known.bell) = (Judge::of(scenario), Bell::of(scenario));
+    known.disturbances = scenario.panel_disturbances()?;
     let (mut panels, pictures) = panel::of(scenario)?;
     known.pictures = pictures;
     known.panels = panels.iter().map(|panel| (panel.name.clone(), panel.written())).collect();

@@ -18,6 +18,7 @@ use tokio::time::{MissedTickBehavior, interval, timeout};
 
 use super::alarms::{Change, Rung};
 use super::ask::{self, Ask, Refused, Verb};
+use super::desk::AtWork;
 use super::entry::Rank;
 use super::gaze::{self, Gaze};
 use super::online::{Seen, Watching};
@@ -51,6 +52,8 @@ enum Told {
         failed: BTreeSet<String>,
         #[serde(skip_serializing_if = "Vec::is_empty")]
         forced: Vec<usize>,
+        #[serde(skip_serializing_if = "BTreeSet::is_empty")]
+        disturbed: BTreeSet<usize>,
         shown_ns: Option<u64>,
         past_ns: Option<[u64; 2]>,
     },
@@ -266,11 +269,13 @@ fn told(view: &SessionView, session: &Session, viewer: Viewer, eye: &Eye) -> Str
     };
     let digest = view.end.as_ref().and(view.digest).map(|digest| digest.to_string());
     let is_secret = ask::trainer_only(session.training.as_ref()).is_err();
-    let failed = if is_secret { BTreeSet::new() } else { session.failing.now() };
+    let at_work = if is_secret { AtWork::default() } else { session.failing.now() };
+    let disturbed = session.known.disturbed(&at_work);
+    let failed = at_work.failed().clone();
     let forced = if is_secret { Vec::new() } else { view.forced.iter().map(|signal| signal.index()).collect() };
     let (pace, seat) = (session.pace.clone(), session.seats.seen_by(viewer));
     let (shown_ns, past_ns) = (eye.gaze.shown_ns(), eye.past_ns);
-    let told = Told::Status { state, digest, pace, seat, failed, forced, shown_ns, past_ns };
+    let told = Told::Status { state, digest, pace, seat, failed, forced, disturbed, shown_ns, past_ns };
     serde_json::to_string(&told).unwrap_or_else(|error| error.to_string())
 }
 
@@ -393,6 +398,12 @@ fn heed(
             ask::trainer_only(session.training.as_ref())?;
             ask::fail(component, failure, active, &session.known)?
         }
+        Ask::Disturb { disturbance, active } => {
+            ask::trainer_only(session.training.as_ref())?;
+            let operations = ask::disturb(disturbance, active, &session.known, &session.failing.now())?;
+            wish(operations, session, outcomes);
+            return Ok(false);
+        }
         Ask::Train(asked) => {
             let turn = ask::turn(asked, session.training.as_ref())?;
             if let Some(training) = &session.training {
@@ -401,11 +412,12 @@ fn heed(
             return Ok(false);
         }
         Ask::View { view } => {
-            session.called.call(view, viewer, &session.seats)?;
+            let role = session.training.as_ref().map(|training| training.role);
+            session.called.call(view, (viewer, role), &session.seats)?;
             return Ok(false);
         }
     };
-    wish(operation, session, outcomes);
+    wish(vec![operation], session, outcomes);
     Ok(false)
 }
 
@@ -433,18 +445,24 @@ fn fork(t_ns: f64, session: &Session, gaze: &Gaze, outcomes: &mpsc::UnboundedSen
     Ok(())
 }
 
-/// Leaves a wish in the session's mailbox; what comes of it is told when the session has taken it.
-fn wish(operation: Operation, session: &Session, outcomes: &mpsc::UnboundedSender<Told>) {
-    let (reply, answer) = oneshot::channel::<Result<Taken, OperationError>>();
-    session.mailbox.post(Request { wish: Wish::Do(operation), reply: Some(reply) });
+/// Leaves wishes in the session's mailbox, which are taken at one boundary; what comes of them is told when the session has.
+fn wish(operations: Vec<Operation>, session: &Session, outcomes: &mpsc::UnboundedSender<Told>) {
+    let posted = operations.into_iter().map(|operation| {
+        let (reply, answer) = oneshot::channel::<Result<Taken, OperationError>>();
+        (Request { wish: Wish::Do(operation), reply: Some(reply) }, answer)
+    });
+    let (requests, answers): (Vec<_>, Vec<_>) = posted.unzip();
+    session.mailbox.post_all(requests);
     let outcomes = outcomes.clone();
     tokio::spawn(async move {
-        let message = match answer.await {
-            Ok(Ok(_)) => return,
-            Ok(Err(error)) => error.to_string(),
-            Err(_) => "the session is over".to_owned(),
-        };
-        // a viewer that has left hears nothing
-        outcomes.send(Told::Error { message }).ok();
+        for answer in answers {
+            let message = match answer.await {
+                Ok(Ok(_)) => continue,
+                Ok(Err(error)) => error.to_string(),
+                Err(_) => "the session is over".to_owned(),
+            };
+            // a viewer that has left hears nothing
+            outcomes.send(Told::Error { message }).ok();
+        }
     });
 }

@@ -22,6 +22,17 @@ struct Disturbed {
 }
 
 impl Scenario {
+    /// What the panels' disturbances do to each signal, in the order of the elements that have one.
+    ///
+    /// # Errors
+    /// A signal that is not there, or that cannot be disturbed so.
+    pub fn panel_disturbances(&self) -> Result<Vec<Vec<(SignalName, SignalFault)>>, ScenarioError> {
+        let catalogue = self.own_catalogue();
+        let elements = self.file().panel.iter().flat_map(|panel| &panel.element);
+        let disturbances = elements.filter_map(|element| element.get_ref().disturbance.as_ref());
+        disturbances.map(|one| self.signal_faults(&catalogue, one, self.file().seed)).collect()
+    }
+
     /// What `disturbance` does to each signal. `seed` is that of the case.
     pub(super) fn signal_faults(
         &self,

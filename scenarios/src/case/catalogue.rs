@@ -224,6 +224,11 @@ impl Catalogue {
         lists.into_iter().map(axis).collect()
     }
 
+    /// None, of a file that is not one of cases: errors have their places there.
+    pub(crate) fn without_cases(path: PathBuf, text: String) -> Self {
+        Self { path, text, ..Self::default() }
+    }
+
     /// One case alone, which stands in another file.
     pub(crate) fn of_lesson(path: PathBuf, text: String, entry: CaseFile, case: Case) -> Self {
         let file = CasesFile { version: VERSION, cases: vec![Spanned::new(0..0, entry)], ..CasesFile::default() };

@@ -7,12 +7,13 @@ use onescan_server::signal::{SignalName, did_you_mean};
 use onescan_server::time::TimeSpan;
 use toml::Spanned;
 
-use super::book::Book;
 use super::file::{CostFile, CostKind, LessonFile, MalfunctionFile};
+use super::sheet::Sheet;
 use crate::arrays;
 use crate::error::ScenarioError;
 use crate::expect::{Expectation, FormulaError, Judge, KnownSignal, Present};
 use crate::file::ScenarioFile;
+use crate::panel_file::PageFile;
 
 /// A lesson, checked.
 #[derive(Clone, Debug)]
@@ -77,7 +78,7 @@ pub struct Sought {
 impl Sought {
     fn parse(text: &str, known: &[KnownSignal]) -> Result<Self, FormulaError> {
         let mut columns = Vec::new();
-        // By itself first: what is wrong is told at its own place.
+        // By itself first: an error has its place in what was written.
         Expectation::parse(text, known, &mut columns)?;
         let never = Expectation::parse(&format!("always not ({text})"), known, &mut columns)?;
         Ok(Self { never, signals: names(columns) })
@@ -109,7 +110,7 @@ fn names(columns: Vec<String>) -> Vec<SignalName> {
 
 /// Binds what is written of a lesson; `begins` are the operations with which its malfunctions begin.
 pub(super) fn lesson(
-    book: &Book,
+    sheet: &Sheet,
     scenario: &ScenarioFile,
     file: &LessonFile,
     begins: Vec<Operation>,
@@ -118,24 +119,24 @@ pub(super) fn lesson(
     let done = file.done.as_ref().map(|done| {
         let mut columns = Vec::new();
         let present = Present::parse(done.get_ref(), &known, &mut columns);
-        present.map(|present| (present, names(columns))).map_err(|error| book.wrong_formula(done, error))
+        present.map(|present| (present, names(columns))).map_err(|error| sheet.wrong_formula(done, error))
     });
     let mut malfunctions: Vec<Malfunction> = Vec::new();
     for (file, begin) in file.malfunctions.iter().zip(begins) {
         let file = file.get_ref();
         if malfunctions.iter().any(|other| other.name == *file.name.get_ref()) {
             let message = format!("two malfunctions are called `{}`", file.name.get_ref());
-            return Err(book.wrong(message, file.name.span(), None));
+            return Err(sheet.wrong(message, file.name.span(), None));
         }
-        malfunctions.push(malfunction(book, &known, file, begin)?);
+        malfunctions.push(malfunction(sheet, scenario, &known, file, begin)?);
     }
     let mut costs: Vec<Cost> = Vec::new();
     for file in &file.costs {
         let file = file.get_ref();
         if costs.iter().any(|other| other.name == *file.name.get_ref()) {
-            return Err(book.wrong(format!("two costs are called `{}`", file.name.get_ref()), file.name.span(), None));
+            return Err(sheet.wrong(format!("two costs are called `{}`", file.name.get_ref()), file.name.span(), None));
         }
-        costs.push(cost(book, scenario, file)?);
+        costs.push(cost(sheet, scenario, file)?);
     }
     Ok(Lesson {
         name: file.name.get_ref().clone(),
@@ -150,53 +151,81 @@ pub(super) fn lesson(
 }
 
 fn malfunction(
-    book: &Book,
+    sheet: &Sheet,
+    scenario: &ScenarioFile,
     known: &[KnownSignal],
     file: &MalfunctionFile,
     begin: Operation,
 ) -> Result<Malfunction, ScenarioError> {
-    let sought = |written: &Option<Spanned<String>>, within: Option<TimeSpan>, key: &str| {
-        if let (None, Some(_)) = (written, within) {
+    let sought = |written: &Option<Spanned<String>>, within: Option<TimeSpan>, key: &str, has_other: bool| {
+        if let (None, Some(_), false) = (written, within, has_other) {
             let message = format!("`{key}_within` says how long `{key}` may take, which is not there");
-            return Err(book.wrong(message, file.name.span(), None));
+            return Err(sheet.wrong(message, file.name.span(), None));
         }
         let sought = written
             .as_ref()
-            .map(|text| Sought::parse(text.get_ref(), known).map_err(|error| book.wrong_formula(text, error)));
+            .map(|text| Sought::parse(text.get_ref(), known).map_err(|error| sheet.wrong_formula(text, error)));
         sought.transpose()
+    };
+    let opened = file.identify_page.as_ref().map(|page| opened(sheet, scenario, page)).transpose()?;
+    let identify = match (sought(&file.identify, file.identify_within, "identify", opened.is_some())?, opened) {
+        (sought, None) => sought,
+        // What was parsed by itself is right, and so is what is made of it.
+        (sought, Some(opened)) => {
+            let alone = sought.and(file.identify.as_ref()).map(|text| format!("({}) or {opened}", text.get_ref()));
+            let either = alone.unwrap_or(opened);
+            Some(
+                Sought::parse(&either, known)
+                    .map_err(|error| sheet.wrong(error.to_string(), file.name.span(), None))?,
+            )
+        }
     };
     Ok(Malfunction {
         name: file.name.get_ref().clone(),
         begin,
         by_trainer: file.by_trainer,
-        identify: sought(&file.identify, file.identify_within, "identify")?,
+        identify,
         identify_within: file.identify_within,
-        act: sought(&file.act, file.act_within, "act")?,
+        act: sought(&file.act, file.act_within, "act", false)?,
         act_within: file.act_within,
     })
 }
 
-fn cost(book: &Book, scenario: &ScenarioFile, file: &CostFile) -> Result<Cost, ScenarioError> {
+/// The formula that holds as somebody opens the panel of this name.
+fn opened(sheet: &Sheet, scenario: &ScenarioFile, named: &Spanned<String>) -> Result<String, ScenarioError> {
+    let panels = || scenario.panel.iter().filter(|panel| panel.page.is_some());
+    let Some(page) =
+        panels().find(|panel| panel.name.get_ref() == named.get_ref()).and_then(|panel| panel.page.as_ref())
+    else {
+        let help = did_you_mean(named.get_ref(), panels().map(|panel| panel.name.get_ref().as_str()));
+        let help = help.unwrap_or_else(|| "a panel is a page if it has the key `page` (docs/scenario.md)".to_owned());
+        return Err(sheet.wrong(format!("there is no page `{}`", named.get_ref()), named.span(), Some(help)));
+    };
+    let PageFile { signal, value } = page.get_ref();
+    Ok(format!("rose(`{}` = {value})", signal.get_ref()))
+}
+
+fn cost(sheet: &Sheet, scenario: &ScenarioFile, file: &CostFile) -> Result<Cost, ScenarioError> {
     let mut signals = Vec::new();
     let mut units = Vec::new();
     for written in &file.signals {
         let place = written.span();
         let all = arrays::names(written.get_ref().as_str(), place.clone());
-        for name in all.map_err(|found| book.wrong(found.message, place.clone(), found.help))? {
+        for name in all.map_err(|found| sheet.wrong(found.message, place.clone(), found.help))? {
             let Some(declared) = scenario.signals.get(&name) else {
                 let help = did_you_mean(name.as_str(), scenario.signals.keys().map(SignalName::as_str));
-                return Err(book.wrong(format!("there is no signal `{name}`"), place, help));
+                return Err(sheet.wrong(format!("there is no signal `{name}`"), place, help));
             };
             let ty = declared.get_ref().ty;
             if ty.as_f64(&vec![0; ty.size()]).is_none() {
-                return Err(book.wrong(format!("`{name}` is {ty}, which is no number"), place, None));
+                return Err(sheet.wrong(format!("`{name}` is {ty}, which is no number"), place, None));
             }
             units.push(declared.get_ref().unit.clone());
             signals.push(name);
         }
     }
     if signals.is_empty() {
-        return Err(book.wrong("a cost is made of at least one signal".to_owned(), file.name.span(), None));
+        return Err(sheet.wrong("a cost is made of at least one signal".to_owned(), file.name.span(), None));
     }
     let common = units.first().cloned().flatten().filter(|first| units.iter().all(|unit| unit.as_ref() == Some(first)));
     let unit = match (common, file.of) {

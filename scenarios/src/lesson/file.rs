@@ -1,4 +1,4 @@
-//! `lessons.toml` as it is written. Times are text with a unit, as in `"10ms"`, and count from the start of a lesson.
+//! `lessons.toml`, and each file of the folder `lessons`, as it is written. Times are text with a unit, as in `"10ms"`, and count from the start of a lesson.
 
 use std::path::PathBuf;
 
@@ -108,12 +108,15 @@ pub struct MalfunctionFile {
     /// A signal that is held.
     #[schemars(with = "Option<ForceFile>")]
     pub force: Option<Spanned<ForceFile>>,
-    /// It does not come by itself: the trainer lets the component of `fault` fail.
+    /// It does not come by itself: the trainer begins the `fault` or the `disturbance`.
     #[serde(default)]
     pub by_trainer: bool,
-    /// The trainee knows what it is as soon as this holds: an acknowledgement, the right page opened.
+    /// The trainee knows what it is as soon as this holds, as an acknowledgement.
     #[schemars(with = "Option<String>")]
     pub identify: Option<Spanned<String>>,
+    /// The trainee also knows as soon as this panel is opened, which is a page.
+    #[schemars(with = "Option<String>")]
+    pub identify_page: Option<Spanned<String>>,
     /// How long that may take.
     #[serde(default, deserialize_with = "from_optional_text")]
     #[schemars(with = "Option<Time>")]

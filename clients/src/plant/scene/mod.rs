@@ -284,6 +284,7 @@ fn check(written: &SceneFile, kinds: &Kinds, aliases: Aliases, faults: &mut Faul
         aliases,
         conditions,
         remarks: Vec::new(),
+        kind_files: kinds.files.clone(),
         reads,
         writes,
     }

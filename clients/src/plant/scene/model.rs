@@ -2,6 +2,8 @@
 //!
 //! Points and directions are in world coordinates, in the pose that the scene gives its bodies.
 
+use std::path::PathBuf;
+
 use onescan_server::signal::{Port, SignalName};
 use serde::Serialize;
 
@@ -49,6 +51,9 @@ pub struct Scene {
     /// What of robots' files was read otherwise than it is written, for people.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub remarks: Vec<String>,
+    /// The files that its kinds of the user's own were read from.
+    #[serde(skip)]
+    pub kind_files: Vec<PathBuf>,
     /// Signals that the plant reads, in the order of axes, then components.
     pub reads: Vec<Port>,
     /// Signals that the plant writes: those of axes, sensors, then components.

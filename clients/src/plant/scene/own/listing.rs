@@ -95,7 +95,7 @@ pub fn read(folder: &Path, within: &Within) -> std::io::Result<Listing> {
     let found = Folder::list(folder, &named)?;
     let names: Vec<String> = found.names().map(str::to_owned).collect();
     let mut faults = Faults::new("", &named, within);
-    let mut kinds = Kinds { folders: vec![found], own: BTreeMap::new() };
+    let mut kinds = Kinds { folders: vec![found], own: BTreeMap::new(), files: Vec::new() };
     let mut listed = Vec::new();
     for name in names {
         let before = faults.found_so_far();

@@ -24,6 +24,7 @@ mod parts;
 mod ports;
 
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use onescan_base::nearest;
@@ -48,6 +49,8 @@ pub(super) struct Kinds {
     folders: Vec<Folder>,
     /// What has been read of the user's own.
     own: BTreeMap<String, Own>,
+    /// The files that it was read from, in the order of reading.
+    pub(super) files: Vec<PathBuf>,
 }
 
 /// A kind of the user's own.
@@ -71,7 +74,7 @@ pub(super) struct Expanded {
 /// that are not there stay as they are.
 pub(super) fn expand(written: &mut SceneFile, faults: &mut Faults<'_>) -> Expanded {
     let folders = written.libraries.iter().filter_map(|named| Folder::read(named, faults)).collect();
-    let mut kinds = Kinds { folders, own: BTreeMap::new() };
+    let mut kinds = Kinds { folders, own: BTreeMap::new(), files: Vec::new() };
     let mut expansion = Expansion::default();
     for table in std::mem::take(&mut written.component) {
         expansion.take(table, &mut kinds, written, faults);
@@ -126,6 +129,8 @@ impl Kinds {
             }
             None => read(first, kind, faults).unwrap_or(Own::Faulty),
         };
+        let path = first.path.clone();
+        self.files.push(path);
         self.own.insert(name.to_owned(), own.clone());
         Some(own)
     }
