@@ -46,6 +46,8 @@ pub(super) struct Ahead<J> {
     lead: Sliding<J>,
     seen: Sliding<J>,
     newest: Option<Sample>,
+    /// Set where the run goes on after what is said at its end.
+    goes_on: bool,
 }
 
 impl<J: Foresight> Ahead<J> {
@@ -54,7 +56,13 @@ impl<J: Foresight> Ahead<J> {
         if demand == Demand::First {
             lead.grow_only();
         }
-        Self { window, demand, waiting: VecDeque::new(), lead, seen: Sliding::new(), newest: None }
+        Self { window, demand, waiting: VecDeque::new(), lead, seen: Sliding::new(), newest: None, goes_on: false }
+    }
+
+    /// The run goes on after its end: whether its last sample still holds where a window begins that has not begun is not
+    /// known then.
+    pub(super) fn go_on(&mut self) {
+        self.goes_on = true;
     }
 
     fn end_ns(&self, sample: Sample) -> u64 {
@@ -109,8 +117,14 @@ impl<J: Foresight> Ahead<J> {
         let open = self.window.to_ns.is_some() || end == TraceEnd::Cut;
         while let Some(sample) = self.waiting.pop_front() {
             let last = self.newest.unwrap_or(sample);
+            self.slide(sample, false);
+            let held = self.say(sample, open, last.t_ns);
             self.slide(sample, true);
-            out.push_back(self.say(sample, open, last.t_ns));
+            let mut said = self.say(sample, open, last.t_ns);
+            if self.goes_on {
+                said.worth = said.worth.either(held.worth);
+            }
+            out.push_back(said);
         }
     }
 

@@ -95,7 +95,9 @@ impl Judge {
     /// comes; what is violated here may be so only because the run ends here.
     pub fn settled(&self) -> Vec<Option<bool>> {
         // An operator without an end says nothing before the run is over, so the run is taken as over.
-        let outcomes = self.clone().finish(TraceEnd::Cut).into_iter();
+        let mut here = self.clone();
+        here.expectations.iter_mut().for_each(|(_, monitor)| monitor.go_on());
+        let outcomes = here.finish(TraceEnd::Cut).into_iter();
         let truth = |outcome: Outcome| match outcome.verdict {
             Verdict::Met => Some(true),
             Verdict::Violated { .. } => Some(false),

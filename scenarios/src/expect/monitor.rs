@@ -142,6 +142,17 @@ impl Monitor {
         }
     }
 
+    /// The run goes on after what is said at its end.
+    pub(super) fn go_on(&mut self) {
+        match &mut self.part {
+            Part::Always(ahead, _) => ahead.go_on(),
+            Part::Eventually(ahead, _) => ahead.go_on(),
+            Part::Until(ahead, _) => ahead.go_on(),
+            _ => {}
+        }
+        self.operands().iter_mut().for_each(Self::go_on);
+    }
+
     /// Says what is left to say when the run is over.
     pub(super) fn finish(&mut self, end: TraceEnd) {
         if self.done {

@@ -115,6 +115,13 @@ pub(super) struct Worth {
 }
 
 impl Worth {
+    /// One of the two, and it is not known which.
+    pub(super) fn either(self, other: Self) -> Self {
+        let truth = if self.truth == other.truth { self.truth } else { Truth::Unknown };
+        let (one, two) = (self.margin, other.margin);
+        Self { truth, margin: Margin { least: one.least.min(two.least), greatest: one.greatest.max(two.greatest) } }
+    }
+
     pub(super) fn is_false(self) -> bool {
         self.truth == Truth::False
     }
