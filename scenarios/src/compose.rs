@@ -8,6 +8,7 @@ use miette::{NamedSource, SourceSpan};
 use onescan_base::regular::{self, Limit};
 use onescan_clients::operator::Operator;
 use onescan_clients::plant::{Inside, Plant, Scene, SceneError, SceneFault};
+use onescan_clients::soft_plc::watch::Sightings;
 use onescan_clients::soft_plc::{Bindings, SoftPlcClient, bind};
 use onescan_plc_shim::input::kind::{FileKind, SourceKind};
 use onescan_plc_shim::{Application, Builder, Dialect, Input, MemoryLimit, Task, TaskPlan};
@@ -22,6 +23,7 @@ use super::error::{PlcReport, ScenarioError, SceneReport};
 use super::file::{ClientFile, TaskFile};
 use super::load::Scenario;
 use super::permission;
+use super::watch::Watched;
 
 /// A client of a scenario.
 pub enum Member {
@@ -81,6 +83,16 @@ impl Scenario {
                 Ok(Member::Seated { request: self.request(name)?, command: command.clone() })
             }
         }
+    }
+
+    /// Lets soft PLCs show their memories to those who look at the session, however large they are.
+    pub fn show_memories(&mut self) {
+        self.shows_memories = true;
+    }
+
+    /// What the PLCs of a run have seen; the next run begins with nothing.
+    pub fn take_sightings(&self) -> Sightings {
+        self.watched.as_ref().map_or_else(Sightings::default, Watched::take_sightings)
     }
 
     /// The soft PLC `name`, ready to join.

@@ -8,7 +8,6 @@ use std::sync::Arc;
 use onescan_base::regular;
 use onescan_clients::gateway::Settings;
 use onescan_clients::soft_plc::journal::{Journalling, Wanted};
-use onescan_clients::soft_plc::watch::Sightings;
 use onescan_clients::soft_plc::{CoverageSink, TraceSink};
 use onescan_plc_shim::CodePolicy;
 use onescan_server::plan::{Coupling, PlanError, SessionPlan};
@@ -275,11 +274,6 @@ impl Scenario {
         sink
     }
 
-    /// Lets soft PLCs show their memories to those who look at the session, however large they are.
-    pub fn show_memories(&mut self) {
-        self.shows_memories = true;
-    }
-
     /// Lets soft PLCs hand over what their scans do.
     pub fn journal(&mut self, journalling: Journalling) {
         self.journalling = Some(journalling);
@@ -295,11 +289,6 @@ impl Scenario {
         let watched = Watched::new(requests, &plcs.collect::<Vec<_>>(), changes);
         self.watched = Some(watched.map_err(|unclear| self.wrong_option(unclear.message, Some(unclear.help)))?);
         Ok(())
-    }
-
-    /// What the PLCs of a run have seen; the next run begins with nothing.
-    pub fn take_sightings(&self) -> Sightings {
-        self.watched.as_ref().map_or_else(Sightings::default, Watched::take_sightings)
     }
 
     /// The signals whose writers are asked for, and where they are told.
