@@ -8,12 +8,15 @@ use std::f64::consts::FRAC_PI_2;
 
 use onescan_server::random::Random;
 
+use super::anywhere;
 use crate::falsify::space::Point;
 
 /// So many points are drawn first: enough to see whether their margins differ.
 const FIRST: usize = 3;
 /// So many are drawn at a time where they do not.
 const MORE: usize = 8;
+/// So often, before corners come where nothing leads to them.
+const BEFORE_CORNERS: usize = 3;
 
 /// The points before a search.
 pub(super) struct Opening {
@@ -24,27 +27,27 @@ pub(super) struct Opening {
     asked: Vec<Point>,
     /// What was worth least so far, what that is, and how many points were worth as little.
     least: Option<(Point, f64, usize)>,
-    /// Whether points were drawn because nothing led anywhere.
-    has_drifted: bool,
+    /// How often more points were drawn because nothing led anywhere.
+    drifts: usize,
     /// The greatest worth that is none of an infinite margin.
     greatest: Option<f64>,
 }
 
 impl Opening {
     pub(super) fn new(dimensions: usize, random: Random, corners: Vec<Point>) -> Self {
-        Self { dimensions, random, corners, asked: Vec::new(), least: None, has_drifted: false, greatest: None }
+        Self { dimensions, random, corners, asked: Vec::new(), least: None, drifts: 0, greatest: None }
     }
 
     /// The points that are to be simulated next; nothing once a search can be led.
     pub(super) fn ask(&mut self) -> Option<Vec<Point>> {
         let is_flat = self.least.as_ref().is_none_or(|(_, _, count)| *count > 1);
         self.asked = if self.least.is_none() {
-            self.drawn(FIRST)
-        } else if !self.corners.is_empty() && (!is_flat || self.has_drifted) {
+            self.near_ends(FIRST)
+        } else if !self.corners.is_empty() && (!is_flat || self.drifts == BEFORE_CORNERS) {
             std::mem::take(&mut self.corners)
         } else if is_flat {
-            self.has_drifted = true;
-            self.drawn(MORE)
+            self.drifts += 1;
+            if self.drifts == 1 { self.near_ends(MORE) } else { self.evenly(MORE) }
         } else {
             return None;
         };
@@ -80,9 +83,14 @@ impl Opening {
         span.filter(|span| span.is_finite() && *span > 0.0).unwrap_or(1.0)
     }
 
+    /// Points by chance, evenly.
+    fn evenly(&mut self, count: usize) -> Vec<Point> {
+        (0..count).map(|_| anywhere(self.dimensions, &mut self.random)).collect()
+    }
+
     /// Points by chance. Numbers near their ends come more often than those between, by the distribution of the arcsine:
     /// what holds between often breaks where an input jumps from end to end.
-    fn drawn(&mut self, count: usize) -> Vec<Point> {
+    fn near_ends(&mut self, count: usize) -> Vec<Point> {
         let (dimensions, random) = (self.dimensions, &mut self.random);
         let mut number = || {
             let sine = libm::sin(FRAC_PI_2 * random.uniform());
@@ -120,8 +128,8 @@ mod tests {
     #[test]
     fn where_nothing_leads_points_are_drawn_until_something_does() {
         let (sizes, _) = opened(|number, _| if number < 30 { 0.5 } else { 0.4 - number as f64 / 1e3 });
-        assert_eq!(sizes, [3, 8, 2, 8, 8, 8]);
+        assert_eq!(sizes, [3, 8, 8, 8, 2, 8]);
         let (sizes, best) = opened(|_, point| if *point == vec![1.0; 3] { 0.0 } else { 0.5 });
-        assert_eq!((sizes, best), (vec![3, 8, 2], vec![1.0; 3]), "corners are tried, too");
+        assert_eq!((sizes, best), (vec![3, 8, 8, 8, 2], vec![1.0; 3]), "corners are tried, too");
     }
 }
