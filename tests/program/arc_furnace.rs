@@ -267,3 +267,19 @@ fn drive_a_heat(person: &mut Sitter) {
     person.write("Tapping_temperature", 1625.0);
     person.until(|person| person.value("Tapping_temperature") == 1625.0);
 }
+
+/// The paper's checks of consistency (a feedback within 100 ms) hold in lockstep, and fail where plant and PLC meet ten times a
+/// second.
+#[test]
+fn checks_of_consistency_fail_without_lockstep_alone() {
+    let words = ["compare", ".", "--case", "feedback", "--until", "6s", "--runs", "1", "--count", "Regulation_fault"];
+    let said = typed(&scenario("arc-furnace"), &[&words[..], &["--format", "json"]].concat());
+    assert_eq!(said.code, Some(0), "{said:?}");
+    let rows: Vec<Value> = said.out.lines().map(|line| serde_json::from_str(line).expect("JSON lines")).collect();
+    let counted = |mode: &str| {
+        let of = rows.iter().filter(|row| row["mode"] == mode);
+        of.map(|row| row["counted"].as_f64().expect("a number")).collect::<Vec<f64>>()
+    };
+    assert_eq!(counted("lockstep"), [0.0]);
+    assert!(counted("follow").into_iter().all(|times| times > 0.0), "{said:?}");
+}

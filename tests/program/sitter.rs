@@ -28,7 +28,7 @@ pub(crate) struct Sitter {
     values: BTreeMap<usize, f64>,
     /// The time of the last picture, ns.
     pub(crate) t_ns: u64,
-    /// The texts that have come since somebody looked at them.
+    /// The texts that nobody has looked at yet.
     texts: Vec<Value>,
     /// The newest status; it comes when it has changed.
     pub(crate) status: Value,
@@ -125,11 +125,11 @@ impl Sitter {
         }
     }
 
-    /// The next text that says this.
+    /// The first text that says this and that nobody has looked at yet.
     pub(crate) fn told(&mut self, kind: &str) -> Value {
         loop {
             if let Some(place) = self.texts.iter().position(|told| told["type"] == kind) {
-                return self.texts.drain(..=place).next_back().expect("it is there");
+                return self.texts.remove(place);
             }
             assert!(!self.is_over, "nothing says `{kind}`");
             self.hear();

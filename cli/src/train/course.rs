@@ -228,6 +228,7 @@ impl Classroom<'_> {
                 desk: desk.clone(),
                 lesson: self.lesson.name.clone(),
                 about: self.lesson.about.clone(),
+                view: self.lesson.view.clone(),
                 starts: self.book.starts().iter().map(|start| start.name.clone()).collect(),
             }),
             ..web::Source::new(scenario, stage.published.clone(), stage.mailbox.clone(), pace.clone())

@@ -23,6 +23,8 @@ pub(crate) struct Training {
     pub(crate) lesson: String,
     /// What the trainee is told.
     pub(crate) about: Option<String>,
+    /// The view with which its pages begin.
+    pub(crate) view: Option<String>,
     /// The prepared states by name.
     pub(crate) starts: Vec<String>,
 }

@@ -14,7 +14,7 @@ use serde::Serialize;
 use tokio::sync::watch;
 
 use super::ask::Refused;
-use super::desk::Role;
+use super::desk::{Role, Training};
 use super::seats::{Seats, Viewer};
 use super::structure::{Body, Part, Shape};
 
@@ -157,17 +157,22 @@ pub(super) struct Called {
     trainers: BTreeSet<String>,
     /// The view that was called last, and how many there were.
     last: watch::Sender<(u64, String)>,
+    /// Whether it is shown to those who come later, too.
+    is_kept: bool,
 }
 
 impl Called {
-    /// Of a scenario's views.
-    pub(super) fn among(scenario: &Scenario) -> Self {
+    /// Of a scenario's views. In a lesson, whoever comes is shown the last one, and at first that of the lesson.
+    pub(super) fn among(scenario: &Scenario, training: Option<&Training>) -> Self {
         let file = scenario.file();
         let trainers = file.panel.iter().filter(|panel| panel.seat == Seat::Trainer);
         Self {
             views: file.view.iter().map(|view| view.name.get_ref().clone()).collect(),
             trainers: trainers.map(|panel| panel.name.get_ref().clone()).collect(),
-            last: watch::Sender::new((0, String::new())),
+            last: watch::Sender::new(
+                training.and_then(|training| training.view.clone()).map_or((0, String::new()), |view| (1, view)),
+            ),
+            is_kept: training.is_some(),
         }
     }
 
@@ -194,8 +199,13 @@ impl Called {
         Ok(())
     }
 
-    /// What is called from now on.
+    /// What is called from now on, and what was last in a lesson.
     pub(super) fn follow(&self) -> watch::Receiver<(u64, String)> {
-        self.last.subscribe()
+        let mut called = self.last.subscribe();
+        let is_any = called.borrow().0 > 0;
+        if self.is_kept && is_any {
+            called.mark_changed();
+        }
+        called
     }
 }

@@ -315,7 +315,7 @@ impl Page {
         let address = listener.local_addr().map_err(&listen)?;
         let (seats, called) = shared.unwrap_or_else(|| {
             let seats = Seats::at(std::mem::take(&mut known.panels));
-            (Arc::new(seats), Arc::new(Called::among(source.scenario)))
+            (Arc::new(seats), Arc::new(Called::among(source.scenario, source.training.as_ref())))
         });
         let session = Arc::new(Session {
             entry: Entry::new(register, address.port(), identity.is_some()),

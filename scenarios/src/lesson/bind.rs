@@ -24,6 +24,8 @@ pub struct Lesson {
     pub about: Option<String>,
     /// The prepared state with which it begins.
     pub start: String,
+    /// The view of the scenario from which its pages see the machine at first.
+    pub view: Option<String>,
     /// How long it lasts at most.
     pub lasts: TimeSpan,
     /// It is over as soon as this holds on these signals.
@@ -142,6 +144,7 @@ pub(super) fn lesson(
         name: file.name.get_ref().clone(),
         about: file.about.clone(),
         start: file.start.get_ref().clone(),
+        view: file.view.as_ref().map(|named| view(sheet, scenario, named)).transpose()?,
         lasts: file.lasts,
         done: done.transpose()?,
         malfunctions,
@@ -189,6 +192,16 @@ fn malfunction(
         act: sought(&file.act, file.act_within, "act", false)?,
         act_within: file.act_within,
     })
+}
+
+/// A view that the scenario has.
+fn view(sheet: &Sheet, scenario: &ScenarioFile, named: &Spanned<String>) -> Result<String, ScenarioError> {
+    let views = scenario.view.iter().map(|view| view.name.get_ref());
+    if views.clone().any(|view| view == named.get_ref()) {
+        return Ok(named.get_ref().clone());
+    }
+    let help = did_you_mean(named.get_ref(), views.map(String::as_str));
+    Err(sheet.wrong(format!("there is no view `{}`", named.get_ref()), named.span(), help))
 }
 
 /// The formula that holds as somebody opens the panel of this name.

@@ -61,6 +61,9 @@ pub struct LessonFile {
     /// The `[[start]]` with which it begins.
     #[schemars(with = "String")]
     pub start: Spanned<String>,
+    /// The `[[view]]` of the scenario from which its pages see the machine at first.
+    #[schemars(with = "Option<String>")]
+    pub view: Option<Spanned<String>>,
     /// How long it lasts at most.
     #[serde(deserialize_with = "from_text")]
     #[schemars(with = "Time")]
