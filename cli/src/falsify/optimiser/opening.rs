@@ -16,7 +16,7 @@ const FIRST: usize = 3;
 /// So many are drawn at a time where they do not.
 const MORE: usize = 8;
 /// So often, before corners come where nothing leads to them.
-const BEFORE_CORNERS: usize = 3;
+const BEFORE_CORNERS: usize = 6;
 
 /// The points before a search.
 pub(super) struct Opening {
@@ -47,7 +47,12 @@ impl Opening {
             std::mem::take(&mut self.corners)
         } else if is_flat {
             self.drifts += 1;
-            if self.drifts == 1 { self.near_ends(MORE) } else { self.evenly(MORE) }
+            if self.drifts == 1 {
+                let (ends, evenly) = (self.near_ends(MORE / 2), self.evenly(MORE / 2));
+                ends.into_iter().zip(evenly).flat_map(|(one, other)| [one, other]).collect()
+            } else {
+                self.evenly(MORE)
+            }
         } else {
             return None;
         };
@@ -128,8 +133,8 @@ mod tests {
     #[test]
     fn where_nothing_leads_points_are_drawn_until_something_does() {
         let (sizes, _) = opened(|number, _| if number < 30 { 0.5 } else { 0.4 - number as f64 / 1e3 });
-        assert_eq!(sizes, [3, 8, 8, 8, 2, 8]);
+        assert_eq!(sizes, [3, 8, 8, 8, 8, 2]);
         let (sizes, best) = opened(|_, point| if *point == vec![1.0; 3] { 0.0 } else { 0.5 });
-        assert_eq!((sizes, best), (vec![3, 8, 8, 8, 2], vec![1.0; 3]), "corners are tried, too");
+        assert_eq!((sizes, best), (vec![3, 8, 8, 8, 8, 8, 8, 2], vec![1.0; 3]), "corners are tried, too");
     }
 }
