@@ -326,11 +326,6 @@ impl Scenario {
         &self.folder
     }
 
-    /// Its own file.
-    pub(crate) fn path(&self) -> &Path {
-        &self.path
-    }
-
     /// The file as it is written.
     pub fn file(&self) -> &ScenarioFile {
         &self.file

@@ -49,7 +49,7 @@ pub(super) fn of_runs(
     let of_run = |index: usize| {
         let mut own = if index == 0 { shared.clone() } else { Vec::new() };
         if index + 1 == reports.len() {
-            own.extend(maps.iter().map(|svg| Picture { title: "map at the end", svg: svg.clone() }));
+            own.extend(maps.iter().map(|svg| Picture::still("map at the end", svg.clone())));
         }
         own
     };
