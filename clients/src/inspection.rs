@@ -41,12 +41,15 @@ const GLANCES: u32 = 3_000;
 const IDLE_TIMEOUT: Duration = Duration::from_mins(10);
 const WRITE_TIMEOUT: Duration = Duration::from_secs(3);
 
+/// Finds a variable of a PLC by its path.
+pub type Find = Box<dyn Fn(&str) -> Option<Variable> + Send + Sync>;
+
 /// A soft PLC of the session, and where its variables are.
 pub struct Inspected {
     /// Its client.
     pub client: ClientName,
     /// Finds a variable by its path.
-    pub find: Box<dyn Fn(&str) -> Option<Variable> + Send + Sync>,
+    pub find: Find,
 }
 
 /// A server that ends when this is dropped.

@@ -49,7 +49,7 @@ fn read(address: SocketAddr) -> Read {
     let mut requests: Vec<_> =
         handles.iter().zip(buffers).map(|(handle, buffer)| ReadRequest::new(BY_HANDLE, handle.raw(), buffer)).collect();
     plc.read_multi(&mut requests).expect("they are there");
-    requests.iter().for_each(|request| assert!(request.data().is_ok()));
+    assert!(requests.iter().all(|request| request.data().is_ok()));
     drop(requests);
     Read {
         revolutions: i32::from_le_bytes(revolutions),

@@ -79,7 +79,7 @@ impl Served {
 pub(crate) fn view(address: &str) -> WebSocket<TcpStream> {
     let stream = TcpStream::connect(address).expect("served");
     // What never comes fails the test; it does not hang it.
-    stream.set_read_timeout(Some(Duration::from_secs(120))).expect("a socket");
+    stream.set_read_timeout(Some(Duration::from_mins(2))).expect("a socket");
     let request = format!("ws://{address}/api/live").into_client_request().expect("a request");
     tungstenite::client(request, stream).expect("a viewer").0
 }

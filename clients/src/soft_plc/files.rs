@@ -54,12 +54,11 @@ pub fn files_in(application: &Application, memory: &[u8]) -> Vec<(String, Vec<u8
         let (size, _) = bytes("size")?;
         let size = u32::from_le_bytes(size.try_into().ok()?) as usize;
         let (name, of_name) = bytes("name")?;
-        let name = match of_name.zero_terminated {
-            Some(_) => name.split(|byte| *byte == 0).next()?,
-            None => {
-                let (length, text) = name.split_first_chunk::<2>()?;
-                text.get(..usize::from(u16::from_le_bytes(*length)))?
-            }
+        let name = if of_name.zero_terminated.is_some() {
+            name.split(|byte| *byte == 0).next()?
+        } else {
+            let (length, text) = name.split_first_chunk::<2>()?;
+            text.get(..usize::from(u16::from_le_bytes(*length)))?
         };
         let (all, _) = bytes("bytes")?;
         let content = all.get(..size)?.to_vec();

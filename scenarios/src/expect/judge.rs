@@ -99,9 +99,10 @@ impl Judge {
             Truth::False => Some(false),
             Truth::Unknown => None,
         };
-        let settled = |(_, monitor): &(Expectation, Monitor)| match monitor.first() {
-            Some(judged) => truth(judged),
-            None => {
+        let settled = |(_, monitor): &(Expectation, Monitor)| {
+            if let Some(judged) = monitor.first() {
+                truth(judged)
+            } else {
                 // An operator without an end says nothing before the run is over, so the run is taken as over.
                 let mut cut = monitor.clone();
                 cut.push(&self.open);
@@ -263,7 +264,9 @@ mod tests {
     fn a_run_that_ends_before_a_window_begins_decides_nothing_by_its_last_value() {
         let truth = |text: &str, samples: &[(u64, f64)]| {
             let mut judge = Judge::new([expectation(text)], 3);
-            samples.iter().for_each(|(t_ns, a)| judge.push(*t_ns, [*a, 0.0, 0.0]));
+            for (t_ns, a) in samples {
+                judge.push(*t_ns, [*a, 0.0, 0.0]);
+            }
             judge.settled().remove(0)
         };
         let text = "not ((a < 0) until[1ns,1ns] (a > 0))";

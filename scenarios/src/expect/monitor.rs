@@ -90,8 +90,13 @@ impl Monitor {
             Part::Compare(_, left, right) => !left.remembers() && !right.remembers(),
             Part::Not(inner) => inner.is_pointwise,
             Part::Pair(_, operands) => operands.iter().all(|operand| operand.is_pointwise),
-            Part::Always(..) | Part::Eventually(..) | Part::Until(..) => false,
-            Part::Historically(..) | Part::Once(..) | Part::Since(..) | Part::Edge(..) => false,
+            Part::Always(..)
+            | Part::Eventually(..)
+            | Part::Until(..)
+            | Part::Historically(..)
+            | Part::Once(..)
+            | Part::Since(..)
+            | Part::Edge(..) => false,
         };
         Self { demand, part, is_pointwise, said: VecDeque::new(), done: false }
     }

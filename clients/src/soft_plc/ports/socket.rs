@@ -20,6 +20,7 @@ pub(super) const MODULE_BYTES: usize = 1024;
 const PAUSE_BITS: u64 = 12;
 
 /// Whom a program reaches, as it says it.
+#[derive(Clone, Copy)]
 pub(super) enum Reached<'h> {
     /// A host and the number of its port.
     Host(&'h str, u16),
