@@ -24,7 +24,7 @@ async function leaf(page, name) {
 
 /** Moves a slider of the pulpit by keys, and waits until its signal has the value. */
 async function slide(page, label, signal, value) {
-  const slider = panel(page, "pulpit").getByRole("slider", { name: new RegExp(`^${label}`) });
+  const slider = panel(page, "pulpit").getByRole("slider", { name: label, exact: true });
   await slider.fill(String(value));
   await until(page, [signal, "=", value]);
 }
