@@ -87,7 +87,7 @@ pub(super) fn expanded(file: &CampaignFile, variants: Vec<(String, Case)>, numbe
         for (column, activation) in file.activations.iter().enumerate() {
             let (fault, activation) = (fault.get_ref(), activation.get_ref());
             // What is wrong is told now; the entry itself is made when its case is asked for.
-            let at = put(&mut empty(file), fault, activation)?;
+            let at = put(&mut CaseFile::empty(&file.name), fault, activation)?;
             let path = [&file.name, &fault.name, &activation.name].map(|name| name.get_ref().as_str());
             cases.extend(variants.iter().map(|(suffix, healthy)| Case {
                 name: format!("{}{suffix}", path.join("/")),
@@ -142,7 +142,7 @@ impl Campaign {
     /// # Errors
     /// None for an injection of this campaign, which was checked when it was read.
     pub(super) fn entry(&self, base: Option<&CaseFile>, injection: &Injection) -> Result<CaseFile, Wrong> {
-        let mut entry = base.cloned().unwrap_or_else(|| empty(&self.file));
+        let mut entry = base.cloned().unwrap_or_else(|| CaseFile::empty(&self.file.name));
         let [_, row, column] = injection.place;
         if let (Some(fault), Some(activation)) = (self.file.faults.get(row), self.file.activations.get(column)) {
             put(&mut entry, fault.get_ref(), activation.get_ref())?;
@@ -168,28 +168,6 @@ fn names<'a>(all: impl Iterator<Item = &'a Spanned<String>>, what: &str) -> Resu
         }
     }
     Ok(())
-}
-
-/// The entry of a case that does nothing.
-fn empty(file: &CampaignFile) -> CaseFile {
-    CaseFile {
-        name: file.name.clone(),
-        about: None,
-        tags: Vec::new(),
-        seed: None,
-        until: None,
-        set: toml::Table::new(),
-        matrix: toml::Table::new(),
-        inputs: Vec::new(),
-        faults: Vec::new(),
-        forces: Vec::new(),
-        disturbances: Vec::new(),
-        variables: Vec::new(),
-        tasks: Vec::new(),
-        code: Vec::new(),
-        waive: Vec::new(),
-        expect: Vec::new(),
-    }
 }
 
 /// Takes the keys that say when from an activation.

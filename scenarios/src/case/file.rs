@@ -74,6 +74,30 @@ pub struct CaseFile {
     pub expect: Vec<ExpectFile>,
 }
 
+impl CaseFile {
+    /// A case that does nothing.
+    pub(crate) fn empty(name: &Spanned<String>) -> Self {
+        Self {
+            name: name.clone(),
+            about: None,
+            tags: Vec::new(),
+            seed: None,
+            until: None,
+            set: toml::Table::new(),
+            matrix: toml::Table::new(),
+            inputs: Vec::new(),
+            faults: Vec::new(),
+            forces: Vec::new(),
+            disturbances: Vec::new(),
+            variables: Vec::new(),
+            tasks: Vec::new(),
+            code: Vec::new(),
+            waive: Vec::new(),
+            expect: Vec::new(),
+        }
+    }
+}
+
 /// A signal takes a value at an instant and keeps it until its next input.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

@@ -37,7 +37,7 @@ pub(super) fn begin(
         let help = "give it a `fault` or a `disturbance`, without a time: a panel or the sheet of the part begins it";
         return wrong("comes by the trainer's hand", help);
     }
-    let mut entry = empty(&lesson.name);
+    let mut entry = CaseFile::empty(&lesson.name);
     add(&mut entry, malfunction, shift(scenario, start));
     let mut applied = Applied::default();
     scenario.schedule(&catalogue(sheet, lesson, entry.clone(), start), &entry, &mut applied)?;
@@ -77,7 +77,7 @@ pub(super) fn put(
     start: &Start,
 ) -> Result<Scenario, ScenarioError> {
     let shift = shift(scenario, start);
-    let mut entry = empty(&lesson.name);
+    let mut entry = CaseFile::empty(&lesson.name);
     entry.waive.clone_from(&lesson.waive);
     entry.expect.clone_from(&lesson.expect);
     let prepared = start.case.as_deref().map(|case| prepared_case(scenario, case)).transpose()?;
@@ -141,26 +141,4 @@ fn add(entry: &mut CaseFile, malfunction: &Spanned<MalfunctionFile>, shift: Shif
     entry.faults.extend(file.fault.iter().map(|fault| shift.fault(fault)));
     entry.disturbances.extend(file.disturbance.iter().map(|disturbance| shift.disturbance(disturbance)));
     entry.forces.extend(file.force.iter().map(|force| shift.force(force)));
-}
-
-/// A case that does nothing.
-fn empty(name: &Spanned<String>) -> CaseFile {
-    CaseFile {
-        name: name.clone(),
-        about: None,
-        tags: Vec::new(),
-        seed: None,
-        until: None,
-        set: toml::Table::new(),
-        matrix: toml::Table::new(),
-        inputs: Vec::new(),
-        faults: Vec::new(),
-        forces: Vec::new(),
-        disturbances: Vec::new(),
-        variables: Vec::new(),
-        tasks: Vec::new(),
-        code: Vec::new(),
-        waive: Vec::new(),
-        expect: Vec::new(),
-    }
 }
