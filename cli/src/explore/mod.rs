@@ -27,8 +27,6 @@ use std::io::Write;
 
 use onescan_report::{OutputError, file};
 use onescan_scenario::Scenario;
-use onescan_scenario::case::Catalogue;
-use onescan_scenario::case::written::Written;
 
 pub use config::ExploreConfig;
 
@@ -43,15 +41,7 @@ use crate::run::SearchError;
 /// The scenario is wrong, or cannot be forked.
 pub fn run(config: &ExploreConfig, out: &mut dyn Write) -> Result<ExitCode, SearchError> {
     let scenario = Scenario::load(&config.scenario)?;
-    let (scenario, written) = match &config.case {
-        None => (scenario, Written::default()),
-        Some(name) => {
-            let catalogue = Catalogue::load(scenario.path())?;
-            let case = catalogue.named(&scenario, name)?.clone();
-            let written = catalogue.written(&case);
-            (scenario.with_case(&catalogue, &case)?, written)
-        }
-    };
+    let (scenario, written) = scenario.case_in_pieces(config.case.as_deref())?;
     let leeways = scenario.leeways()?;
     if leeways.is_empty() {
         let help = "say in `[timing]` which signals may be late, and by how much (docs/explore.md)".to_owned();

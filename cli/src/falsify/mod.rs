@@ -29,8 +29,6 @@ use std::io::{BufRead, Write};
 
 use onescan_report::{OutputError, file};
 use onescan_scenario::Scenario;
-use onescan_scenario::case::Catalogue;
-use onescan_scenario::case::written::Written;
 
 pub use config::FalsifyConfig;
 use report::Case;
@@ -51,7 +49,7 @@ pub fn run(config: &FalsifyConfig, points: impl BufRead, out: &mut dyn Write) ->
         let help = "say in `[[falsify.input]]` and `[[falsify.parameter]]` what may be varied (docs/falsify.md)";
         return Err(Usage::new("the scenario does not say what may be varied", Some(help.to_owned())).into());
     }
-    let (cased, written) = chosen(config, &scenario)?;
+    let (cased, written) = scenario.case_in_pieces(config.case.as_deref())?;
     let expect = search::expectation(&cased, config.expect.as_deref())?;
     let until = config.until.unwrap_or(cased.until());
     let space = Space::new(&scenario, written, until);
@@ -64,14 +62,6 @@ pub fn run(config: &FalsifyConfig, points: impl BufRead, out: &mut dyn Write) ->
     let case = kept(config, &space, &found)?;
     report::write(config, &cased, expect, &found, case.as_ref(), out).map_err(OutputError)?;
     Ok(if case.is_some() { ExitCode::Unmet } else { ExitCode::Ok })
-}
-
-/// The scenario with the case that is asked for, and the case in pieces.
-fn chosen(config: &FalsifyConfig, scenario: &Scenario) -> Result<(Scenario, Written), SearchError> {
-    let Some(name) = &config.case else { return Ok((scenario.clone(), Written::default())) };
-    let catalogue = Catalogue::load(scenario.path())?;
-    let case = catalogue.named(scenario, name)?;
-    Ok((scenario.clone().with_case(&catalogue, case)?, catalogue.written(case)))
 }
 
 /// The finding as a case, run from its start, with the files that were asked for. Nothing if there is none.

@@ -1,11 +1,9 @@
 //! What is varied as a cube: a point of it, each number from 0 to 1, is a case.
 
 use std::collections::BTreeSet;
-use std::path::PathBuf;
 
 use onescan_scenario::Scenario;
 use onescan_scenario::case::written::{Entry, List, Written, spelt};
-use onescan_scenario::case::{self, Catalogue};
 use onescan_scenario::compose::Member;
 use onescan_scenario::falsify::{Shape, Varied, VariedInput};
 use onescan_server::random::Random;
@@ -154,12 +152,7 @@ impl<'a> Space<'a> {
     /// # Errors
     /// The case is wrong.
     pub(super) fn applied(&self, text: &str) -> Result<Scenario, SearchError> {
-        let catalogue = Catalogue::parse(PathBuf::from(case::FILE_NAME), format!("version = 1\n{text}"))?;
-        let mut applied = self.scenario.clone();
-        for case in catalogue.cases() {
-            applied = self.scenario.clone().with_case(&catalogue, case)?;
-        }
-        Ok(applied)
+        Ok(self.scenario.with_last_of(text)?)
     }
 
     /// Refuses a scenario that cannot run in this process, and parameters that are not there or cannot be what their

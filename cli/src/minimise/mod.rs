@@ -26,8 +26,7 @@ use std::io::Write;
 
 use onescan_report::{OutputError, file};
 use onescan_scenario::Scenario;
-use onescan_scenario::case::Catalogue;
-use onescan_scenario::case::written::{Entry, Written};
+use onescan_scenario::case::written::Entry;
 
 pub use config::MinimiseConfig;
 use report::Minimised;
@@ -45,10 +44,10 @@ pub fn run(config: &MinimiseConfig, out: &mut dyn Write) -> Result<ExitCode, Sea
     for client in &config.operated {
         scenario.operate(client)?;
     }
-    let (mut whole, mut written) = chosen(config, &scenario)?;
+    let (mut whole, mut written) = scenario.case_in_pieces(config.case.as_deref())?;
     if let Some(path) = &config.replay_operator {
         written.entries.extend(operator::entries(&operator_inputs(path)?, &scenario)?);
-        whole = trial::applied(&scenario, &written.to_toml("operated", &written.entries))?;
+        whole = scenario.with_last_of(&written.to_toml("operated", &written.entries))?;
     }
     let until = config.until.unwrap_or(whole.until());
     let spots = trial::spots(&written.entries, scenario.plan().step());
@@ -72,12 +71,4 @@ pub fn run(config: &MinimiseConfig, out: &mut dyn Write) -> Result<ExitCode, Sea
         file::write_whole(path, format!("version = 1\n\n{}", case.text).as_bytes())?;
     }
     Ok(ExitCode::Ok)
-}
-
-/// The scenario with the case that is asked for, and the case in pieces.
-fn chosen(config: &MinimiseConfig, scenario: &Scenario) -> Result<(Scenario, Written), SearchError> {
-    let Some(name) = &config.case else { return Ok((scenario.clone(), Written::default())) };
-    let catalogue = Catalogue::load(scenario.path())?;
-    let case = catalogue.named(scenario, name)?;
-    Ok((scenario.clone().with_case(&catalogue, case)?, catalogue.written(case)))
 }

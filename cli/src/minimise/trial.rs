@@ -2,11 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::num::NonZeroU64;
-use std::path::PathBuf;
 
 use onescan_scenario::Scenario;
 use onescan_scenario::case::written::{Entry, Written};
-use onescan_scenario::case::{self, Catalogue};
 use onescan_scenario::expect::TraceEnd;
 use onescan_server::time::{TimeSpan, VirtualTime};
 
@@ -36,19 +34,6 @@ pub(super) struct Trials<'a> {
     trunks: Vec<Trunk>,
     done: u64,
     runs_max: NonZeroU64,
-}
-
-/// The scenario with a case alone.
-///
-/// # Errors
-/// The case is wrong.
-pub(super) fn applied(scenario: &Scenario, text: &str) -> Result<Scenario, SearchError> {
-    let catalogue = Catalogue::parse(PathBuf::from(case::FILE_NAME), format!("version = 1\n{text}"))?;
-    let mut applied = scenario.clone();
-    for case in catalogue.cases() {
-        applied = scenario.clone().with_case(&catalogue, case)?;
-    }
-    Ok(applied)
 }
 
 /// The boundaries before these entries begin, or some of them if there are many.
@@ -134,7 +119,7 @@ impl<'a> Trials<'a> {
 
     /// The scenario with a case alone.
     pub(super) fn applied(&self, text: &str) -> Result<Scenario, SearchError> {
-        applied(self.scenario, text)
+        Ok(self.scenario.with_last_of(text)?)
     }
 
     /// Lets runs keep the boundaries before these entries begin.

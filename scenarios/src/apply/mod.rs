@@ -20,12 +20,14 @@ mod settings;
 mod timeline;
 
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use onescan_server::signal::{ClientName, did_you_mean};
 
+use crate::case::cases_file::VERSION;
 use crate::case::file::CaseFile;
-use crate::case::{Applied, Case, Catalogue, Injection, Setting};
+use crate::case::written::Written;
+use crate::case::{Applied, Case, Catalogue, FILE_NAME, Injection, Setting};
 use crate::error::{ScenarioError, wrong};
 use crate::file::ClientFile;
 use crate::load::Scenario;
@@ -41,6 +43,30 @@ impl Scenario {
         let catalogue = Catalogue::load(scenario.path())?;
         let case = catalogue.named(&scenario, name)?.clone();
         scenario.with_case(&catalogue, &case)
+    }
+
+    /// The scenario with one of its cases, and the case in pieces; as it is, and nothing, without a name.
+    ///
+    /// # Errors
+    /// As those of [`load_case`](Self::load_case).
+    pub fn case_in_pieces(&self, name: Option<&str>) -> Result<(Self, Written), ScenarioError> {
+        let Some(name) = name else { return Ok((self.clone(), Written::default())) };
+        let catalogue = Catalogue::load(self.path())?;
+        let case = catalogue.named(self, name)?;
+        Ok((self.clone().with_case(&catalogue, case)?, catalogue.written(case)))
+    }
+
+    /// The scenario with the last case of a text, which has `[[case]]`s and nothing else.
+    ///
+    /// # Errors
+    /// The text is wrong, or the case is.
+    pub fn with_last_of(&self, cases: &str) -> Result<Self, ScenarioError> {
+        let catalogue = Catalogue::parse(PathBuf::from(FILE_NAME), format!("version = {VERSION}\n{cases}"))?;
+        let mut applied = self.clone();
+        for case in catalogue.cases() {
+            applied = self.clone().with_case(&catalogue, case)?;
+        }
+        Ok(applied)
     }
 
     /// The scenario as `case` wants it.
