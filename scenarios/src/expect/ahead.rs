@@ -40,8 +40,9 @@ impl Foresight for Pursuit {
     }
 
     /// Before the window only the left one counts, in it the right one does, too.
-    fn at_the_end(self) -> Self {
-        Self { held: self.held.or(self.reached), ..self }
+    fn at_the_end(mut self) -> Self {
+        self.held = self.held.or(self.reached);
+        self
     }
 }
 

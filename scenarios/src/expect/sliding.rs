@@ -78,7 +78,7 @@ pub(super) struct Pursuit {
     /// Of the first at which the left one does not hold, if the right one was false until then and there.
     pub(super) broken: Option<Certain>,
     /// Whether the right one was not false somewhere.
-    pub(super) stopped: bool,
+    stopped: bool,
 }
 
 impl Pursuit {
