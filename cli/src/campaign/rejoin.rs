@@ -84,11 +84,10 @@ impl Images {
     pub(super) fn new(folder: &Path, from: VirtualTime, until: VirtualTime) -> Self {
         Self { path: images_file(folder), from, until, out: None, image_bytes: 0 }
     }
+}
 
-    fn wrong(&self) -> impl FnOnce(std::io::Error) -> RecordError + use<> {
-        let path = self.path.display().to_string();
-        move |source| RecordError { path, source }
-    }
+fn wrong(path: &Path) -> impl FnOnce(std::io::Error) -> RecordError {
+    |source| RecordError { path: path.display().to_string(), source }
 }
 
 impl Observer for Images {
@@ -96,21 +95,19 @@ impl Observer for Images {
         self.image_bytes = session.image().len();
         let steps = (self.until.as_nanos() - self.from.as_nanos()) / session.step().as_nanos() + 1;
         let fits = steps.saturating_mul(self.image_bytes as u64) <= IMAGES_MAX_BYTES;
-        self.out = if fits { Some(BufWriter::new(File::create(&self.path).map_err(self.wrong())?)) } else { None };
+        self.out = if fits { Some(BufWriter::new(File::create(&self.path).map_err(wrong(&self.path))?)) } else { None };
         self.step(session, digest)
     }
 
     fn step(&mut self, session: &Session, _: &TrajectoryDigest) -> Result<(), RecordError> {
-        let wrong = self.wrong();
         match &mut self.out {
-            Some(out) if session.t_v() >= self.from => out.write_all(session.image()).map_err(wrong),
+            Some(out) if session.t_v() >= self.from => out.write_all(session.image()).map_err(wrong(&self.path)),
             _ => Ok(()),
         }
     }
 
     fn end(&mut self, _: &Session) -> Result<(), RecordError> {
-        let wrong = self.wrong();
-        self.out.as_mut().map_or(Ok(()), |out| out.flush().map_err(wrong))
+        self.out.as_mut().map_or(Ok(()), |out| out.flush().map_err(wrong(&self.path)))
     }
 }
 

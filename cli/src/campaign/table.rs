@@ -124,8 +124,8 @@ impl Table {
         self.rows.iter().filter(|row| row.verdict == verdict).count()
     }
 
-    /// True if its verdict is one with which the campaign is passed. What comes of another program is told beside: whether
-    /// the campaign is passed is asked of the scenario's own.
+    /// True if its verdict is one with which the campaign is passed. What comes of another program is reported beside
+    /// it: whether the campaign is passed depends on the scenario's own.
     pub fn is_accepted(&self, row: &Row) -> bool {
         row.program.is_some() || self.accepted.contains(&row.verdict)
     }

@@ -26,7 +26,7 @@ pub(super) fn write(scenario: &Scenario, memories: &[Memory], folder: &Path) -> 
         file::create_folder(&target)?;
         let mut written = BTreeSet::new();
         for (path, bytes) in files_in(&compiled.application, &memory.bytes) {
-            let name = path.rsplit(['/', '\\', ':']).next().unwrap_or_default();
+            let name = path.rsplit_once(['/', '\\', ':']).map_or(path.as_str(), |(_, name)| name);
             let is_plain = name.chars().any(|letter| letter != '.') && !name.chars().any(char::is_control);
             if !is_plain || !written.insert(name.to_lowercase()) {
                 let message =
