@@ -187,7 +187,7 @@ fn serial(terminal: TerminalKind) -> PlcWay {
     PlcWay::Serial { rate: serial_rate(), terminal, receive_buffer: None, input, output }
 }
 
-fn tcp(cuts: Cuts) -> PlcWay {
+pub(crate) fn tcp(cuts: Cuts) -> PlcWay {
     PlcWay::Tcp { host: "192.168.42.30".to_owned(), number: 2727, cuts }
 }
 
@@ -223,19 +223,23 @@ fn what_is_sent_comes_back_whatever_the_line_and_its_cuts() {
 #[test]
 fn neither_transport_nor_a_checkpoint_in_the_middle_of_a_byte_changes_a_bit() {
     for is_serial in [true, false] {
-        let clients = || echo(is_serial, Cuts::Every(100));
-        let whole = run(in_process(session_plan(), clients()), at_ms(2_000));
-        assert_eq!(run(in_process(session_plan(), clients()), at_ms(2_000)), whole, "again");
-        let (remote, _threads) = over_tcp(session_plan(), clients(), PATIENCE);
-        assert_eq!(run(remote, at_ms(2_000)), whole, "over TCP");
-        for saved_ms in [50, 334, 1_210] {
-            let mut first = in_process(session_plan(), clients());
-            first.run_to(at_ms(saved_ms)).expect("no fault");
-            let bytes = first.checkpoint().expect("all save").to_bytes().expect("bytes");
-            let mut second = in_process(session_plan(), clients());
-            second.resume(&Checkpoint::from_bytes(&bytes).expect("a checkpoint")).expect("its own");
-            assert_eq!(run(second, at_ms(2_000)), whole, "saved at {saved_ms} ms");
-        }
+        no_way_changes_a_bit(|| echo(is_serial, Cuts::Every(100)));
+    }
+}
+
+/// A session of these clients is the same again, over TCP, and gone on with from a checkpoint on the way.
+pub(crate) fn no_way_changes_a_bit(clients: impl Fn() -> Vec<Box<dyn Client>>) {
+    let whole = run(in_process(session_plan(), clients()), at_ms(2_000));
+    assert_eq!(run(in_process(session_plan(), clients()), at_ms(2_000)), whole, "again");
+    let (remote, _threads) = over_tcp(session_plan(), clients(), PATIENCE);
+    assert_eq!(run(remote, at_ms(2_000)), whole, "over TCP");
+    for saved_ms in [50, 334, 1_210] {
+        let mut first = in_process(session_plan(), clients());
+        first.run_to(at_ms(saved_ms)).expect("no fault");
+        let bytes = first.checkpoint().expect("all save").to_bytes().expect("bytes");
+        let mut second = in_process(session_plan(), clients());
+        second.resume(&Checkpoint::from_bytes(&bytes).expect("a checkpoint")).expect("its own");
+        assert_eq!(run(second, at_ms(2_000)), whole, "saved at {saved_ms} ms");
     }
 }
 

@@ -4,13 +4,12 @@ use onescan_clients::soft_plc::ports::PlcWay;
 use onescan_clients::stream::Form;
 use onescan_clients::stream::connection::{Cuts, Role};
 use onescan_plc_shim::Dialect;
-use onescan_server::checkpoint::Checkpoint;
 use onescan_server::client::Client;
 use onescan_server::lockstep::{Lockstep, Reached};
 use onescan_tests::at_ms;
-use onescan_tests::run::{PATIENCE, in_process, over_tcp, run};
+use onescan_tests::run::in_process;
 
-use crate::streams::{Device, Habit, number, serial_rate, session_plan, soft_plc_in};
+use crate::streams::{Device, Habit, no_way_changes_a_bit, number, serial_rate, session_plan, soft_plc_in, tcp};
 
 /// 1,026 bytes go to a partner and come back, over one connection of two blocks.
 const TSEND_C: &str = "
@@ -122,10 +121,6 @@ END_VAR
     END_CASE
 END_PROGRAM";
 
-fn tcp(cuts: Cuts) -> PlcWay {
-    PlcWay::Tcp { host: "192.168.42.30".to_owned(), number: 2727, cuts }
-}
-
 fn module() -> PlcWay {
     PlcWay::Module { rate: serial_rate(), number: 270, receive_buffer: None }
 }
@@ -175,18 +170,6 @@ fn neither_transport_nor_a_checkpoint_on_the_way_changes_a_bit() {
         (Dialect::SiemensScl, SEND_PTP, module()),
         (Dialect::Codesys, SYSSOCK, tcp(Cuts::Every(100))),
     ] {
-        let clients = || echo(dialect, text, way.clone());
-        let whole = run(in_process(session_plan(), clients()), at_ms(2_000));
-        assert_eq!(run(in_process(session_plan(), clients()), at_ms(2_000)), whole, "again");
-        let (remote, _threads) = over_tcp(session_plan(), clients(), PATIENCE);
-        assert_eq!(run(remote, at_ms(2_000)), whole, "over TCP");
-        for saved_ms in [50, 334, 1_210] {
-            let mut first = in_process(session_plan(), clients());
-            first.run_to(at_ms(saved_ms)).expect("no fault");
-            let bytes = first.checkpoint().expect("all save").to_bytes().expect("bytes");
-            let mut second = in_process(session_plan(), clients());
-            second.resume(&Checkpoint::from_bytes(&bytes).expect("a checkpoint")).expect("its own");
-            assert_eq!(run(second, at_ms(2_000)), whole, "saved at {saved_ms} ms");
-        }
+        no_way_changes_a_bit(|| echo(dialect, text, way.clone()));
     }
 }

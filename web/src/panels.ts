@@ -121,8 +121,8 @@ export class PanelView {
     if (element.colour !== null) cell.style.setProperty("--own", element.colour);
     this.fill(cell, element);
     for (const name of [element.signal, element.signal_y]) {
-      const signal = this.session.signals.findIndex((one) => one.name === name);
-      if (signal >= 0) this.cells.set(signal, [...(this.cells.get(signal) ?? []), cell]);
+      const signal = this.number_of(name);
+      if (signal !== null) this.cells.set(signal, [...(this.cells.get(signal) ?? []), cell]);
     }
     return cell;
   }
@@ -154,10 +154,15 @@ export class PanelView {
     }
   }
 
+  private number_of(name: string | null): number | null {
+    const signal = this.session.signals.findIndex((one) => one.name === name);
+    return signal < 0 ? null : signal;
+  }
+
   /** The number of a signal by its name; an element of a signal that is not there stays dead and says so. */
   private bound(name: string | null, show: Show): number | null {
-    const signal = this.session.signals.findIndex((one) => one.name === name);
-    if (signal < 0) return null;
+    const signal = this.number_of(name);
+    if (signal === null) return null;
     this.listen(this.shows, signal, show);
     return signal;
   }
