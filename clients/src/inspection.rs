@@ -35,7 +35,7 @@ const HANDLES_MAX: usize = 10_000;
 const CLIENTS_MAX: usize = 16;
 /// How often somebody who waits looks.
 const GLANCE: Duration = Duration::from_millis(1);
-/// So many looks are taken for a step boundary before the last one is told.
+/// So many looks are taken for the next step boundary; then the view that there is must do.
 const GLANCES: u32 = 3_000;
 /// A client that says nothing, or takes nothing, for so long is left.
 const IDLE_TIMEOUT: Duration = Duration::from_mins(10);

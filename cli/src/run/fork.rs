@@ -16,7 +16,7 @@ use super::error::RunError;
 /// A checkpoint that was taken.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Fork {
-    /// The boundary.
+    /// Virtual time of the boundary at which its state was that of the other one.
     pub(crate) t_v: VirtualTime,
     /// The conditions that come true in the step that begins there.
     pub(crate) coming: Vec<When>,

@@ -80,7 +80,7 @@ pub(super) fn run(
         lockstep.set_published(desk.published());
         lockstep.observe(desk.observer());
     }
-    // Before the page is there: whoever is told where it is may remove the file.
+    // Read before the page is there: whoever reads its address may remove the file.
     let checkpoint = config.course.resume.as_deref().map(|path| Ok::<_, RunError>((path, read(path)?))).transpose()?;
     let mut keeper = None;
     let page = match config.doors.web {

@@ -282,6 +282,7 @@ pub(crate) fn one_run(
         recorded.end(&report)?;
     }
     let last = published.take().filter(|_| config.reports.want_the_end()).map(|published| published.latest());
+    // Where nobody asked for it, nothing is made of it.
     let last = last.map(|view| view.clients.clone()).unwrap_or_default();
     Ok(Ran {
         report,

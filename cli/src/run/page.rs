@@ -28,9 +28,9 @@ pub struct Event {
 pub(super) struct Drawings<'p> {
     /// All runs in one picture.
     pub(super) plot: &'p Plot,
-    /// The machine.
+    /// The machines of its plants, as SVG.
     pub(super) scenes: Vec<String>,
-    /// Maps as they are at the end of the last run.
+    /// Maps as they are at the end of the last run, as SVG.
     pub(super) maps: Vec<String>,
 }
 

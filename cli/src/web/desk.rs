@@ -97,7 +97,7 @@ pub(crate) struct AtWork {
 }
 
 impl AtWork {
-    /// The failures.
+    /// The failures, as `component.mode`.
     pub(super) fn failed(&self) -> &BTreeSet<String> {
         &self.failed
     }
