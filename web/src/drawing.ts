@@ -1,7 +1,7 @@
 // Ladders, function blocks and charts as they are laid out, with the power that flows and the steps that are active.
 
 import { FlowOf, type Flow } from "./flow";
-import type { Drawing, DrawingElement, DrawingWire } from "./protocol";
+import type { Drawing, DrawingElement, DrawingWire } from "./session";
 
 const SVG = "http://www.w3.org/2000/svg";
 const MARGIN = 30;

@@ -2,7 +2,8 @@
 
 import { make } from "./dom";
 import { DrawingView } from "./drawing";
-import type { Ask, Session } from "./protocol";
+import type { Ask } from "./message";
+import type { Session } from "./session";
 
 export class Drawings {
   readonly root = make("div", { class: "drawings" });

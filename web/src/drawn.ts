@@ -5,7 +5,7 @@ import {
   MeshLambertMaterial, Quaternion, RepeatWrapping, Vector3, type Object3D,
 } from "three";
 import type { Style } from "./looks";
-import type { Body, Quaternion as Turn, Vec3 } from "./protocol";
+import type { Body, Quaternion as Turn, Vec3 } from "./session";
 import { is_open } from "./shapes";
 
 /** What lies over a body's own colour. */

@@ -1,6 +1,6 @@
 // What flows in a drawing: the values of pins, from those of the variables, for the eye only.
 
-import type { Drawing, DrawingElement } from "./protocol";
+import type { Drawing, DrawingElement } from "./session";
 
 /** A value on a wire; nothing where it is not known. */
 export type Flow = number | null;

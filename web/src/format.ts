@@ -1,6 +1,6 @@
 // Values as they are read.
 
-import type { Signal } from "./protocol";
+import type { Signal } from "./session";
 
 /** Virtual time as seconds with three places. */
 export function seconds(t_ns: number): string {

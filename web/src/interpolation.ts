@@ -1,6 +1,7 @@
 // Poses between two pictures, for the eye only: nothing here is read back by the session.
 
-import type { Pose, Quaternion, Vec3 } from "./protocol";
+import type { Pose } from "./picture";
+import type { Quaternion, Vec3 } from "./session";
 
 interface Place {
   readonly position_m: Vec3;

@@ -1,6 +1,9 @@
 // The connection to the session: opens, reads, says what is wrong, and opens again.
 
-import { decodeMessage, decodePicture, ProtocolError, type Ask, type Message, type Picture, type Session } from "./protocol";
+import { ProtocolError } from "./field";
+import { decodeMessage, type Ask, type Message } from "./message";
+import { decodePicture, type Picture } from "./picture";
+import type { Session } from "./session";
 
 export type LinkState = "connecting" | "connected" | "lost";
 

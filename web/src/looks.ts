@@ -1,7 +1,7 @@
 // What bodies look like while something holds, or by the value of a signal: for the eye only.
 
 import { Color, Quaternion, Vector3 } from "three";
-import type { Look, Session, Vec3 } from "./protocol";
+import type { Look, Session, Vec3 } from "./session";
 
 /** How a body is drawn beside what it is. */
 export interface Style {

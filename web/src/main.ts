@@ -5,7 +5,8 @@ import "./page.css";
 import { frame, make } from "./dom";
 import { live_address } from "./link";
 import { Page } from "./page";
-import { ProtocolError, decodeSession } from "./protocol";
+import { ProtocolError } from "./field";
+import { decodeSession } from "./session";
 import { fail, shoot, wanted } from "./shot";
 import { begin_theme } from "./theme";
 

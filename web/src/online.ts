@@ -1,7 +1,8 @@
 // The PLC online: a tree of its variables, a list of those that are watched, and what is written and forced.
 
 import { button, make } from "./dom";
-import type { Ask, Session, Variables } from "./protocol";
+import type { Ask, Variables } from "./message";
+import type { Session } from "./session";
 
 const FOUND_MAX = 200;
 

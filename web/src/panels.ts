@@ -2,7 +2,8 @@
 
 import { button, make } from "./dom";
 import { shown } from "./format";
-import type { Panel, PanelElement, Seat, Session } from "./protocol";
+import type { Seat } from "./message";
+import type { Panel, PanelElement, Session } from "./session";
 import { Sparkline } from "./sparkline";
 
 /** Something that has been told: it is listed until it is gone and has been acknowledged. */

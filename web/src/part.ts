@@ -2,7 +2,8 @@
 
 import { button, make } from "./dom";
 import { shown } from "./format";
-import type { Ask, Component, Session } from "./protocol";
+import type { Ask } from "./message";
+import type { Component, Session } from "./session";
 import type { MachineView } from "./scene";
 
 export class PartSheet {

@@ -8,7 +8,8 @@ import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { Crowd, Single, type Drawn, type Glow, type Member } from "./drawn";
 import { Tracks } from "./interpolation";
 import { Looks, type Style } from "./looks";
-import type { Body, Pose, Session, View } from "./protocol";
+import type { Pose } from "./picture";
+import type { Body, Session, View } from "./session";
 import { Sharpness } from "./sharpness";
 import { geometry_of, is_open, key_of } from "./shapes";
 

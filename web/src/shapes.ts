@@ -1,7 +1,7 @@
 // Shapes of bodies as triangles: lengths in metres, what is round along z.
 
 import { BoxGeometry, BufferGeometry, CapsuleGeometry, CylinderGeometry, Float32BufferAttribute, SphereGeometry } from "three";
-import type { Shape } from "./protocol";
+import type { Shape } from "./session";
 
 /** The triangles of a shape; nothing for a body without one. */
 export function geometry_of(shape: Shape): BufferGeometry | null {

@@ -2,7 +2,8 @@
 
 import { frame } from "./dom";
 import { Link } from "./link";
-import type { Picture, Session } from "./protocol";
+import type { Picture } from "./picture";
+import type { Session } from "./session";
 import { MachineView } from "./scene";
 import { colour } from "./theme";
 

@@ -2,7 +2,7 @@
 
 import { button, make } from "./dom";
 import { shown } from "./format";
-import type { Session } from "./protocol";
+import type { Session } from "./session";
 
 /** Rows shown at once; a filter finds the others. */
 const ROWS = 60;

@@ -3,7 +3,7 @@
 import { EditorState, StateEffect, StateField } from "@codemirror/state";
 import { Decoration, EditorView, WidgetType, keymap, lineNumbers, type DecorationSet } from "@codemirror/view";
 import { shown } from "./format";
-import type { Session, Source } from "./protocol";
+import type { Session, Source } from "./session";
 
 class Values extends WidgetType {
   constructor(private readonly text: string) {

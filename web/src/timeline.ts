@@ -2,7 +2,9 @@
 
 import { button, make } from "./dom";
 import { seconds } from "./format";
-import type { Ask, Picture, Session } from "./protocol";
+import type { Ask } from "./message";
+import type { Picture } from "./picture";
+import type { Session } from "./session";
 
 /** How often a recording that plays asks for its next moment. */
 const PLAY_MS = 50;

@@ -1,7 +1,8 @@
 // A lesson on its pages: what the trainee is told, and what the trainer does with the lesson.
 
 import { button, make } from "./dom";
-import type { Ask, Lesson, View } from "./protocol";
+import type { Ask } from "./message";
+import type { Lesson, View } from "./session";
 
 /** How far back a trainer goes with one key, s. */
 const BACK_S = [10, 30, 120];

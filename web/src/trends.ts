@@ -5,7 +5,7 @@ import { button, make } from "./dom";
 import { shown } from "./format";
 import { History } from "./history";
 import { curve, lane_options, style, upright } from "./lane";
-import type { Session, Signal } from "./protocol";
+import type { Session, Signal } from "./session";
 
 const WINDOW_S = 20;
 const LANE_PX = 62;

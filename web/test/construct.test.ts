@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { ProtocolError } from "../src/protocol";
+import { ProtocolError } from "../src/field";
 import { decodeAnswer, decodeLibrary, decodeState } from "../src/construct/protocol";
 import { columns, fits, rows } from "../src/construct/rows";
 import { free, snap } from "../src/construct/snap";

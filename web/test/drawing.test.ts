@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { corners } from "../src/drawing";
 import { FlowOf } from "../src/flow";
-import type { Drawing, DrawingElement } from "../src/protocol";
+import type { Drawing, DrawingElement } from "../src/session";
 
 function element(kind: string, text: string, marks: string[] = [], pins: string[] = ["", ">"]): DrawingElement {
   return {

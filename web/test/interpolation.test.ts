@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { Tracks, slerp } from "../src/interpolation";
-import type { Quaternion } from "../src/protocol";
+import type { Quaternion } from "../src/session";
 
 const STILL: Quaternion = [0, 0, 0, 1];
 const about_z = (angle: number): Quaternion => [0, 0, Math.sin(angle / 2), Math.cos(angle / 2)];

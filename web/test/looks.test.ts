@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { Looks, share_of } from "../src/looks";
-import { decodeSession, type Session } from "../src/protocol";
+import { decodeSession, type Session } from "../src/session";
 
 function session(looks: readonly object[]): Session {
   return decodeSession({

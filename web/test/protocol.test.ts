@@ -1,6 +1,9 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { ProtocolError, decodeMessage, decodePicture, decodeSession } from "../src/protocol";
+import { ProtocolError } from "../src/field";
+import { decodeMessage } from "../src/message";
+import { decodePicture } from "../src/picture";
+import { decodeSession } from "../src/session";
 
 const SESSION = {
   protocol: 1, title: "t", scenario: "s", step_ns: 10_000_000, until_ns: null,

@@ -6,7 +6,7 @@ import {
   WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
-import type { Body } from "../protocol";
+import type { Body } from "../session";
 import { geometry_of } from "../shapes";
 import { colour } from "../theme";
 import type { Json, SceneState, Table } from "./protocol";

@@ -1,6 +1,7 @@
 // What the editor's server says and what the page wants of it. Nothing that arrives is trusted.
 
-import { Field, ProtocolError, body, type Body } from "../protocol";
+import { Field, ProtocolError } from "../field";
+import { body, type Body } from "../session";
 
 export type Json = string | number | boolean | readonly Json[] | { readonly [key: string]: Json } | null;
 
