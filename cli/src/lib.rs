@@ -24,6 +24,7 @@
 //! | [`shot`] | the machine at one time, as a picture |
 //! | [`run`] | runs of a scenario: in lockstep or not, recorded, reported |
 //! | [`freewheel`] | running without lockstep, to show what it is good for |
+//! | `value_map` | a map of the scenario, of what clients show |
 //! | [`past`] | the past of a session: moments that are kept, any other re-run |
 //! | [`access`] | who may take part in sessions over a network |
 //! | [`session`] | part in a session that another process serves |
@@ -81,6 +82,7 @@ pub mod session;
 pub mod shot;
 pub mod snapshot;
 pub mod train;
+mod value_map;
 pub mod view;
 mod web;
 pub mod why;

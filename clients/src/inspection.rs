@@ -11,6 +11,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Duration;
 
 use onescan_plc_shim::Variable;
+use onescan_server::client::Parts;
 use onescan_server::published::{Published, SessionView};
 use onescan_server::signal::{ClientName, SignalType};
 
@@ -94,6 +95,7 @@ fn accept(listener: &TcpListener, device: &Arc<Device>) {
                 present.fetch_add(1, Ordering::AcqRel);
                 let (device, present) = (Arc::clone(device), Arc::clone(&present));
                 std::thread::spawn(move || {
+                    let _memories = device.published.want(Parts::MEMORIES);
                     if let Err(error) = prepare(&stream).and_then(|()| device.attend(&stream)) {
                         tracing::info!(%peer, %error, "a reader over ADS has gone");
                     }
@@ -235,7 +237,8 @@ impl Device {
         self.published.ask();
         for _ in 0..GLANCES {
             let view = self.published.latest();
-            if view.revision != before.revision || self.is_over() {
+            let is_whole = view.clients.parts.memories || view.end.is_some();
+            if (view.revision != before.revision && is_whole) || self.is_over() {
                 return view;
             }
             std::thread::sleep(GLANCE);

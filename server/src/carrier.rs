@@ -6,7 +6,7 @@
 
 use std::time::Duration;
 
-use crate::client::{Client, ClientOperation, ClientView, JoinRequest, OperationRefused, StateError, Wake};
+use crate::client::{Client, ClientOperation, ClientView, JoinRequest, OperationRefused, Parts, StateError, Wake};
 use crate::end::{FailureCause, SessionEnd};
 use crate::signal::PortLayout;
 use crate::time::{StepCount, VirtualTime};
@@ -66,8 +66,8 @@ pub trait Carrier: Send {
     /// The client cannot do it.
     fn operate(&mut self, operation: &ClientOperation) -> Result<(), OperationRefused>;
 
-    /// Adds to `view` what can be seen of the client, without asking anybody elsewhere.
-    fn show(&self, view: &mut ClientView);
+    /// Adds to `view` those parts of what can be seen of the client, without asking anybody elsewhere.
+    fn show(&self, parts: Parts, view: &mut ClientView);
 
     /// The client's state.
     ///
@@ -162,8 +162,8 @@ impl Carrier for InProcess {
         self.client.operate(operation)
     }
 
-    fn show(&self, view: &mut ClientView) {
-        self.client.show(view);
+    fn show(&self, parts: Parts, view: &mut ClientView) {
+        self.client.show(parts, view);
     }
 
     fn save(&mut self) -> Result<Vec<u8>, StateError> {

@@ -97,10 +97,10 @@ pub trait Client: Send {
         Err(OperationRefused::Unsupported)
     }
 
-    /// Adds to `view` what can be seen of the client beside its signals. Called between two turns,
+    /// Adds to `view` those parts of what can be seen of the client beside its signals. Called between two turns,
     /// only when somebody looks.
-    fn show(&self, view: &mut ClientView) {
-        let _ = view;
+    fn show(&self, parts: Parts, view: &mut ClientView) {
+        let _ = (parts, view);
     }
 
     /// The complete state as bytes, taken between two turns.
@@ -217,9 +217,32 @@ pub enum OperationRefused {
     Because(#[serde(deserialize_with = "deserialize_line")] String),
 }
 
+/// Parts of what can be seen of clients beside their signals. A session pays for each that it shows, so it shows those that
+/// somebody wants.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Parts {
+    /// Where the bodies of plants are.
+    pub poses: bool,
+    /// Tables of values: every value is computed anew.
+    pub tables: bool,
+    /// The memories of PLCs: each is copied whole.
+    pub memories: bool,
+}
+
+impl Parts {
+    /// All there is to see.
+    pub const ALL: Self = Self { poses: true, tables: true, memories: true };
+    /// The bodies of plants alone.
+    pub const POSES: Self = Self { poses: true, tables: false, memories: false };
+    /// The memories of PLCs alone.
+    pub const MEMORIES: Self = Self { poses: false, tables: false, memories: true };
+}
+
 /// What can be seen of clients beside their signals.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ClientView {
+    /// The parts that are shown; what is not among them is empty, whatever there is.
+    pub parts: Parts,
     /// Where the bodies of plants are.
     pub poses: Vec<Pose>,
     /// Tables of values that clients have and no signal tells.
@@ -229,8 +252,9 @@ pub struct ClientView {
 }
 
 impl ClientView {
-    /// Forgets what was seen; the memory is kept for the next look.
-    pub fn clear(&mut self) {
+    /// Forgets what was seen, and is to show these parts; the memory is kept for that.
+    pub fn clear(&mut self, parts: Parts) {
+        self.parts = parts;
         self.poses.clear();
         self.tables.clear();
         self.memories.clear();
@@ -240,6 +264,8 @@ impl ClientView {
 /// A table of values, as of a surface, or an array of a program.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ValueTable {
+    /// Whose it is.
+    pub client: ClientName,
     /// What has it.
     pub name: std::sync::Arc<str>,
     /// Values of a row.

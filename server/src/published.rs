@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use arc_swap::ArcSwap;
 
-use crate::client::ClientView;
+use crate::client::{ClientView, Parts};
 use crate::digest::Digest;
 use crate::end::SessionEnd;
 use crate::signal::SignalId;
@@ -69,6 +69,8 @@ struct Inner {
     followers: AtomicUsize,
     /// Somebody wants one view.
     wanted: AtomicBool,
+    /// How many want bodies, tables and memories in their views.
+    parts: [AtomicUsize; 3],
 }
 
 /// Where a session publishes its views; clones share it.
@@ -77,17 +79,25 @@ pub struct Published {
     inner: Arc<Inner>,
 }
 
+/// Parts that views are to show, for as long as this lives.
+#[derive(Debug)]
+pub struct Wants {
+    published: Published,
+    parts: Parts,
+}
+
 /// A reader that wants a view of every step, for as long as it lives.
 #[derive(Debug)]
 pub struct Follower {
-    published: Published,
+    wants: Wants,
 }
 
 impl Published {
     /// Of a session that has not begun, with an image of `image_bytes` bytes.
     pub fn new(image_bytes: usize) -> Self {
         let latest = ArcSwap::from_pointee(SessionView::before(image_bytes));
-        Self { inner: Arc::new(Inner { latest, followers: AtomicUsize::new(0), wanted: AtomicBool::new(false) }) }
+        let (followers, wanted, parts) = (AtomicUsize::new(0), AtomicBool::new(false), Default::default());
+        Self { inner: Arc::new(Inner { latest, followers, wanted, parts }) }
     }
 
     /// The view that was published last. It is of the last step only while somebody
@@ -102,11 +112,33 @@ impl Published {
         self.inner.wanted.store(true, Ordering::Release);
     }
 
-    /// Asks for a view of every step.
+    /// From the next view on these parts are shown, until what this gives is dropped.
     #[must_use]
-    pub fn follow(&self) -> Follower {
+    pub fn want(&self, parts: Parts) -> Wants {
+        for wanted in self.wanted_of(parts) {
+            wanted.fetch_add(1, Ordering::AcqRel);
+        }
+        Wants { published: self.clone(), parts }
+    }
+
+    /// Asks for a view of every step, with these parts.
+    #[must_use]
+    pub fn follow(&self, parts: Parts) -> Follower {
         self.inner.followers.fetch_add(1, Ordering::AcqRel);
-        Follower { published: self.clone() }
+        Follower { wants: self.want(parts) }
+    }
+
+    /// How many want each of these parts.
+    fn wanted_of(&self, parts: Parts) -> impl Iterator<Item = &AtomicUsize> {
+        let Parts { poses, tables, memories } = parts;
+        self.inner.parts.iter().zip([poses, tables, memories]).filter_map(|(wanted, is_of)| is_of.then_some(wanted))
+    }
+
+    /// The parts that somebody wants.
+    pub(crate) fn parts(&self) -> Parts {
+        let [poses, tables, memories] = &self.inner.parts;
+        let is_wanted = |part: &AtomicUsize| part.load(Ordering::Acquire) > 0;
+        Parts { poses: is_wanted(poses), tables: is_wanted(tables), memories: is_wanted(memories) }
     }
 
     /// True if a view is to be published now; one that was asked for is asked for once.
@@ -131,13 +163,29 @@ impl Follower {
     /// The view of the last step.
     #[must_use]
     pub fn latest(&self) -> Arc<SessionView> {
-        self.published.latest()
+        self.wants.published.latest()
     }
 }
 
 impl Drop for Follower {
     fn drop(&mut self) {
-        self.published.inner.followers.fetch_sub(1, Ordering::AcqRel);
+        self.wants.published.inner.followers.fetch_sub(1, Ordering::AcqRel);
+    }
+}
+
+impl Wants {
+    /// The parts.
+    #[must_use]
+    pub fn parts(&self) -> Parts {
+        self.parts
+    }
+}
+
+impl Drop for Wants {
+    fn drop(&mut self) {
+        for wanted in self.published.wanted_of(self.parts) {
+            wanted.fetch_sub(1, Ordering::AcqRel);
+        }
     }
 }
 
@@ -152,7 +200,7 @@ mod tests {
         published.ask();
         assert!(published.is_wanted());
         assert!(!published.is_wanted(), "once");
-        let follower = published.follow();
+        let follower = published.follow(Parts::POSES);
         assert!(published.is_wanted() && published.is_wanted());
         let mut view = SessionView::before(2);
         view.revision = 1;
@@ -160,5 +208,20 @@ mod tests {
         assert_eq!((before.revision, follower.latest().revision), (0, 1));
         drop(follower);
         assert!(!published.is_wanted());
+    }
+
+    #[test]
+    fn a_view_shows_what_somebody_wants() {
+        let published = Published::new(0);
+        assert_eq!(published.parts(), Parts::default());
+        let (follower, both) = (published.follow(Parts::POSES), published.want(Parts { tables: true, ..Parts::POSES }));
+        let (again, memories) = (published.clone().want(Parts::POSES), published.want(Parts::MEMORIES));
+        assert_eq!(published.parts(), Parts::ALL);
+        drop((memories, both));
+        assert_eq!(published.parts(), Parts::POSES);
+        drop(follower);
+        assert_eq!(published.parts(), again.parts());
+        drop(again);
+        assert_eq!(published.parts(), Parts::default());
     }
 }

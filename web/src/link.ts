@@ -2,7 +2,7 @@
 
 import { ProtocolError } from "./field";
 import { decodeMessage, type Ask, type Message } from "./message";
-import { decodePicture, type Picture } from "./picture";
+import { decodeMapValues, decodePicture, isMap, type MapValues, type Picture } from "./picture";
 import type { Session } from "./session";
 
 export type LinkState = "connecting" | "connected" | "lost";
@@ -18,6 +18,7 @@ export function live_address(): string {
 export interface Hears {
   readonly message: (message: Message) => void;
   readonly picture: (picture: Picture) => void;
+  readonly map: (values: MapValues) => void;
   readonly state: (state: LinkState) => void;
   /** Something arrived that the page cannot read; it is left out. */
   readonly garbage: (error: ProtocolError) => void;
@@ -31,6 +32,7 @@ export class Link {
   private wait_ms = FIRST_WAIT_MS;
   private subscribed: readonly number[] = [];
   private watched: readonly number[] = [];
+  private maps: readonly number[] = [];
 
   constructor(
     private readonly url: string,
@@ -60,6 +62,13 @@ export class Link {
     this.ask({ type: "watch", variables });
   }
 
+  /** Asks for these maps from now on, and again after a loss. */
+  map(maps: readonly number[]): void {
+    if (maps.length === this.maps.length) return;
+    this.maps = maps;
+    this.ask({ type: "maps", maps });
+  }
+
   private open(): void {
     this.hears.state("connecting");
     const socket = new WebSocket(this.url);
@@ -70,6 +79,7 @@ export class Link {
       this.hears.state("connected");
       this.subscribe(this.subscribed);
       this.watch(this.watched);
+      if (this.maps.length > 0) this.ask({ type: "maps", maps: this.maps });
     });
     socket.addEventListener("message", (event: MessageEvent<unknown>) => this.read(event.data));
     socket.addEventListener("close", () => {
@@ -82,6 +92,7 @@ export class Link {
   private read(data: unknown): void {
     try {
       if (typeof data === "string") this.hears.message(decodeMessage(data));
+      else if (data instanceof ArrayBuffer && isMap(data)) this.hears.map(decodeMapValues(data, this.session.maps.length));
       else if (data instanceof ArrayBuffer) {
         this.hears.picture(decodePicture(data, this.session.signals.length, this.session.bodies.length));
       } else throw new ProtocolError("message", "is neither text nor bytes");

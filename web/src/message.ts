@@ -1,6 +1,7 @@
 // What session and page say to each other while it runs: types and decoders. Nothing that arrives is trusted.
 
 import { Field, ProtocolError, nullableText, number, text } from "./field";
+import type { Axis, Cells } from "./map";
 
 /** What is new of the PLC's variables. */
 export interface Variables {
@@ -41,6 +42,7 @@ export type Message =
   | { readonly type: "view"; readonly view: string }
   | { readonly type: "states"; readonly drawing: number; readonly instance: number; readonly values: readonly (number | null)[] }
   | ({ readonly type: "variables" } & Variables)
+  | ({ readonly type: "map"; readonly map: number } & Cells)
   /** A session goes on from a moment of the past; its page is at `url`. */
   | { readonly type: "forked"; readonly t_ns: number; readonly url: string }
   | { readonly type: "error"; readonly message: string };
@@ -53,6 +55,12 @@ function seat(field: Field): Seat {
 function couple<A, B>(field: Field, first: (item: Field) => A, second: (item: Field) => B): readonly [A, B] {
   const [a, b, ...more] = field.list((item) => item);
   return a === undefined || b === undefined || more.length > 0 ? field.fail("is no pair") : [first(a), second(b)];
+}
+
+function axis(field: Field): Axis {
+  const edges = field.at("edges").list(number);
+  if (edges.some((edge, index) => index > 0 && edge < (edges[index - 1] ?? edge))) field.at("edges").fail("do not rise");
+  return { name: field.at("name").text(), edges };
 }
 
 /** The address of a page: of this kind and no other, as it becomes a link. */
@@ -111,6 +119,8 @@ export function decodeMessage(raw: string): Message {
         forced: root.at("forced").list(number),
         executed: root.at("executed").or<(readonly [string, number])[]>([], (all) => all.list((item) => couple(item, text, number))),
       };
+    case "map":
+      return { type, map: root.at("map").number(), across: axis(root.at("across")), down: axis(root.at("down")) };
     case "forked":
       return { type, t_ns: root.at("t_ns").number(), url: page(root.at("url")) };
     case "error":
@@ -136,6 +146,7 @@ export type Ask =
   | { readonly type: "draw"; readonly drawing: number | null; readonly instance: number }
   | { readonly type: "live" }
   | { readonly type: "watch"; readonly variables: readonly number[] }
+  | { readonly type: "maps"; readonly maps: readonly number[] }
   | { readonly type: "variable"; readonly variable: number; readonly action: "write" | "force" | "release"; readonly value: string }
   | { readonly type: "force"; readonly signal: number; readonly value: string | null }
   | { readonly type: "fork"; readonly t_ns: number };

@@ -4,6 +4,7 @@ import { button, frame, make } from "./dom";
 import { Drawings } from "./drawings";
 import { seconds } from "./format";
 import { Link, live_address, type LinkState } from "./link";
+import { Maps } from "./maps";
 import { OnlineView } from "./online";
 import { PanelView, type Alarm } from "./panels";
 import { PartSheet } from "./part";
@@ -31,6 +32,7 @@ export class Page {
   private readonly table: SignalTable;
   private readonly source: SourceView;
   private readonly drawings: Drawings;
+  private readonly maps: Maps;
   private readonly online: OnlineView;
   private readonly trends: TrendsView;
   private readonly timeline: Timeline;
@@ -70,6 +72,7 @@ export class Page {
     this.source = new SourceView(code, session, this.values, this.online);
     // Values of a drawing are asked for where there is a connection.
     this.drawings = new Drawings(session, (ask) => void this.link?.ask(ask));
+    this.maps = new Maps(session);
     this.timeline = new Timeline(frame("timeline"), session, (ask) => this.ask(ask));
     this.sensors = session.components.flatMap((one) => {
       const signal = session.signals.findIndex((candidate) => candidate.name === one.senses);
@@ -83,6 +86,7 @@ export class Page {
     this.link = new Link(live_address(), session, {
       message: (message) => this.hear(message),
       picture: (picture) => this.show(picture),
+      map: (values) => this.maps.show(values),
       state: (state) => this.tell(state),
       garbage: (error) => this.notice(`Something that arrived cannot be read and is left out: ${error.message}.`),
     });
@@ -99,6 +103,7 @@ export class Page {
     sheets.add("Part", this.part.root);
     sheets.add("Signals", this.table.root);
     sheets.add("PLC", this.plc(code));
+    if (this.session.maps.length > 0) sheets.add("Maps", this.maps.root);
     sheets.add("Checks", this.checks());
     this.tabs = sheets;
     const shown = this.panels.flatMap((one) => one.view.signals()).slice(0, LANES_AT_FIRST);
@@ -189,6 +194,7 @@ export class Page {
       ...(this.sheet === "PLC" ? this.source.signals() : []),
     ]);
     this.link.subscribe([...wanted].sort((a, b) => a - b));
+    this.link.map(this.sheet === "Maps" ? this.maps.wanted() : []);
     this.link.watch(this.sheet === "PLC" ? this.online.wanted(this.source.variables()) : []);
   }
 
@@ -240,6 +246,8 @@ export class Page {
         return this.drawings.hear(message.drawing, message.instance, message.values);
       case "view":
         return this.see(message.view);
+      case "map":
+        return this.maps.lay(message.map, message);
       case "variables":
         this.online.show(message);
         return this.source.show();
@@ -311,6 +319,8 @@ export class Page {
       picture: () => ({ step: this.last?.step ?? null, t_ns: this.last?.t_ns ?? null, isPast: this.last?.isPast ?? false, isHeld: this.last?.isHeld ?? false }),
       position_m: (name: string) => this.machine.position_m(this.session.bodies.findIndex((one) => one.name === name)),
       value: (name: string) => this.values.get(this.session.signals.findIndex((one) => one.name === name)) ?? null,
+      map: (name: string) => this.maps.read(name),
+      map_pixel: (name: string, x: number, y: number) => this.maps.pixel(name, x, y),
       drawn: () => this.machine.drawn,
       drawn_m: (name: string) => this.machine.drawn_m(this.session.bodies.findIndex((one) => one.name === name)),
       style: (name: string) => {

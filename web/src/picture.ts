@@ -1,4 +1,4 @@
-// Pictures: bodies and values of one step, as bytes.
+// What comes as bytes: bodies and values of one step, and the values of maps.
 
 import { ProtocolError } from "./field";
 import type { Quaternion, Vec3 } from "./session";
@@ -60,4 +60,34 @@ function decodePose(view: DataView, at: number, bodies: number): Pose {
   const f = (place: number): number => view.getFloat32(at + 4 + place * 4, true);
   if (Number.isNaN(f(0))) return { body, place: null };
   return { body, place: { position_m: [f(0), f(1), f(2)], rotation: [f(3), f(4), f(5), f(6)] } };
+}
+
+/** The values of a map at one moment. */
+export interface MapValues {
+  readonly map: number;
+  readonly isPast: boolean;
+  readonly columns: number;
+  readonly rows: number;
+  /** Row after row. */
+  readonly values: Float32Array;
+}
+
+const MAP_HEAD_BYTES = 16;
+
+/** Whether bytes are the values of a map. */
+export function isMap(data: ArrayBuffer): boolean {
+  return data.byteLength > 0 && new DataView(data).getUint8(0) === 2;
+}
+
+/** Reads the values of a map of a session with so many; throws [`ProtocolError`]. */
+export function decodeMapValues(data: ArrayBuffer, maps: number): MapValues {
+  if (data.byteLength < MAP_HEAD_BYTES) throw new ProtocolError("map", `has ${data.byteLength} bytes, its head alone has ${MAP_HEAD_BYTES}`);
+  const view = new DataView(data);
+  const [map, columns, rows] = [view.getUint32(4, true), view.getUint32(8, true), view.getUint32(12, true)];
+  if (map >= maps) throw new ProtocolError("map", `is map ${map} of ${maps}`);
+  const expected = MAP_HEAD_BYTES + 4 * columns * rows;
+  if (data.byteLength !== expected) throw new ProtocolError("map", `has ${data.byteLength} bytes instead of ${expected}`);
+  const values = new Float32Array(columns * rows);
+  for (let index = 0; index < values.length; index += 1) values[index] = view.getFloat32(MAP_HEAD_BYTES + 4 * index, true);
+  return { map, isPast: (view.getUint8(1) & 2) !== 0, columns, rows, values };
 }

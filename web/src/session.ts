@@ -200,6 +200,18 @@ export interface Drawing {
   readonly states: readonly string[];
 }
 
+/** A map, as far as it is known before it is seen. */
+export interface MapInfo {
+  readonly name: string;
+  readonly title: string;
+  readonly unit: string;
+  readonly client: string;
+  /** The values of the scale's ends; those of the map without them. */
+  readonly scale: readonly [number, number] | null;
+  /** From the least value to the greatest, as `#rrggbb`. */
+  readonly colours: readonly string[];
+}
+
 /** The parts of a session that do not change while it runs. */
 export interface Session {
   readonly title: string;
@@ -218,6 +230,7 @@ export interface Session {
   readonly sources: readonly Source[];
   readonly drawings: readonly Drawing[];
   readonly plcs: readonly Plc[];
+  readonly maps: readonly MapInfo[];
 }
 
 const vec3 = (field: Field): Vec3 => field.numbers(3) as unknown as Vec3;
@@ -413,6 +426,23 @@ function drawing(field: Field): Drawing {
   };
 }
 
+/** A colour of a map: of this form and no other, as it becomes a style. */
+function colour(field: Field): string {
+  const one = field.text();
+  return /^#[0-9a-f]{6}$/.test(one) ? one : field.fail(`is \`${one}\`: a colour is written as #0a1a52`);
+}
+
+function map(field: Field): MapInfo {
+  return {
+    name: field.at("name").text(),
+    title: field.at("title").text(),
+    unit: field.at("unit").or("", text),
+    client: field.at("client").text(),
+    scale: field.at("scale").or<readonly [number, number] | null>(null, pair),
+    colours: field.at("colours").list(colour),
+  };
+}
+
 /** Reads the structure of a session; throws [`ProtocolError`] with the place that is wrong. */
 export function decodeSession(value: unknown): Session {
   const root = new Field(value, "");
@@ -451,5 +481,6 @@ export function decodeSession(value: unknown): Session {
       client: item.at("client").text(),
       variables: item.at("variables").list((one) => ({ path: one.at("path").text(), type: one.at("type").text() })),
     })),
+    maps: list("maps", map),
   };
 }

@@ -59,6 +59,7 @@ export function shoot(session: Session, url: string, wanted: Wanted): void {
       }
       void draw().catch(fail);
     },
+    map: () => {},
     picture: (picture) => {
       last = picture;
       for (const [signal, value] of picture.values) {

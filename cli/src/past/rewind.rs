@@ -8,8 +8,9 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 
 use onescan_server::checkpoint::Checkpoint;
+use onescan_server::client::Parts;
 use onescan_server::lockstep::{Lockstep, Reached};
-use onescan_server::published::SessionView;
+use onescan_server::published::{SessionView, Wants};
 use onescan_server::time::VirtualTime;
 use tokio::sync::{oneshot, watch};
 
@@ -194,6 +195,7 @@ impl Drop for Gazer {
 struct Run {
     life: u64,
     lockstep: Lockstep,
+    _wants: Wants,
 }
 
 struct Worker {
@@ -283,7 +285,9 @@ impl Worker {
             resumed.map_err(|error| error.to_string())?;
         }
         debug_assert!(way.from.checkpoint.is_none() || lockstep.session().cycle().steps() == way.from.steps);
-        Ok(Run { life: way.life, lockstep })
+        // Few views are made here, and each is looked at for all there is.
+        let wants = lockstep.published().want(Parts::ALL);
+        Ok(Run { life: way.life, lockstep, _wants: wants })
     }
 }
 

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use hdrhistogram::Histogram;
 use onescan_server::client::{
-    Client, ClientFault, ClientOperation, ClientView, JoinRequest, OperationRefused, StateError, Wake,
+    Client, ClientFault, ClientOperation, ClientView, JoinRequest, OperationRefused, Parts, StateError, Wake,
 };
 use onescan_server::signal::ClientName;
 use onescan_server::time::VirtualTime;
@@ -165,8 +165,8 @@ impl Client for Watched {
         self.client.operate(operation)
     }
 
-    fn show(&self, view: &mut ClientView) {
-        self.client.show(view);
+    fn show(&self, parts: Parts, view: &mut ClientView) {
+        self.client.show(parts, view);
     }
 
     fn turn(&mut self, t_v: VirtualTime, inputs: &[u8], outputs: &mut [u8]) -> Result<Wake, ClientFault> {

@@ -22,6 +22,7 @@ use onescan_report::{OutputError, file};
 use onescan_scenario::Scenario;
 use onescan_scenario::case::Catalogue;
 use onescan_scenario::compose::Member;
+use onescan_server::client::Parts;
 use onescan_server::end::SessionEnd;
 use onescan_server::mailbox::Mailbox;
 use onescan_server::published::Published;
@@ -97,7 +98,7 @@ fn shown(config: &ShotConfig, scenario: &Scenario) -> Result<Published, ShotErro
     };
     let mut lockstep = in_process(scenario, config.at, [], elsewhere)?;
     let published = lockstep.published();
-    let _follower = published.follow();
+    let _follower = published.follow(Parts::POSES);
     match lockstep.run()?.end {
         SessionEnd::Failed(failure) => Err(ShotError::Ended { at: config.at, why: failure.to_string() }),
         SessionEnd::Completed { .. } | SessionEnd::Stopped { .. } => Ok(published),

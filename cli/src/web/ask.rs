@@ -37,6 +37,8 @@ pub(super) enum Ask {
     Draw { drawing: Option<usize>, instance: usize },
     /// These variables of PLCs from now on.
     Watch { variables: Vec<usize> },
+    /// These maps from now on.
+    Maps { maps: Vec<usize> },
     /// A variable of a PLC is written, forced or released.
     Variable { variable: usize, action: Action, value: String },
     /// A signal is forced; released without a value.
@@ -93,6 +95,8 @@ pub(super) enum Refused {
     NoPanel(String),
     #[error("there is no drawing {0}, or not this instance of it")]
     NoDrawing(usize),
+    #[error("there is no map {0}")]
+    NoMap(usize),
     #[error("there is no view `{0}`")]
     NoView(String),
     #[error("a view is called for all from the seat of a trainer: take one first")]
@@ -117,7 +121,12 @@ impl Ask {
     /// Whether it changes nothing that anybody else sees.
     pub(super) fn only_looks(&self) -> bool {
         match self {
-            Self::Subscribe { .. } | Self::Watch { .. } | Self::Draw { .. } | Self::Show { .. } | Self::Live => true,
+            Self::Subscribe { .. }
+            | Self::Watch { .. }
+            | Self::Draw { .. }
+            | Self::Maps { .. }
+            | Self::Show { .. }
+            | Self::Live => true,
             Self::Write { .. }
             | Self::Operate { .. }
             | Self::Seat { .. }

@@ -12,6 +12,7 @@
 //! | [`drawings`] | ladders, function blocks and charts as they are laid out, with their states |
 //! | [`alarms`] | alarms as they come and go |
 //! | [`looks`] | figures, views, and what bodies look like while something holds |
+//! | [`maps`] | tables of values that no signal tells |
 //! | [`picture`] | what of a step is shown |
 //! | [`ask`] | what a page may ask |
 //! | [`gaze`] | where a viewer looks: live, or at the past |
@@ -33,6 +34,7 @@ mod entry;
 mod gaze;
 mod guard;
 mod looks;
+mod maps;
 mod online;
 mod panel;
 mod picture;

@@ -133,9 +133,17 @@ impl Watching {
         *self = Self { wanted: Some(variables), ..Self::default() };
     }
 
-    /// What is new in a step; nothing if nothing is, or nobody looks.
+    /// Whether any variable is looked at.
+    pub(super) fn is_wanted(&self) -> bool {
+        self.wanted.as_ref().is_some_and(|wanted| !wanted.is_empty())
+    }
+
+    /// What is new in a step; nothing if nothing is, nobody looks, or the step does not show it.
     pub(super) fn see(&mut self, view: &SessionView, online: &Online) -> Option<Seen> {
         let wanted = self.wanted.as_ref()?;
+        if !view.clients.parts.memories {
+            return None;
+        }
         let mut seen = Seen::default();
         for memory in &view.clients.memories {
             let Some(plc) = online.plcs.iter().find(|plc| plc.client == memory.client) else { continue };

@@ -7,6 +7,7 @@ use onescan_clients::plant::component::kind::{self, unit};
 use onescan_clients::plant::scene::model::{BodyKind, Component, Wire};
 use onescan_clients::plant::{Form, Frame, Geometry, Scene};
 use onescan_scenario::file::{ClientFile, SignalFile};
+use onescan_scenario::map_file::MapFile;
 use onescan_scenario::panel_picture::PanelPicture;
 use onescan_scenario::{Scenario, ScenarioError};
 use onescan_server::operation::SignalFault;
@@ -17,6 +18,7 @@ use super::alarms::Bell;
 use super::desk::{AtWork, Role, Training};
 use super::drawings::{self, Drawing, States};
 use super::looks::{self, Judge, Look, View};
+use super::maps::{self, Map};
 use super::online::{self, Online};
 use super::panel::{self, Panel};
 use super::picture::Stage;
@@ -47,6 +49,7 @@ pub(super) struct Structure {
     sources: Vec<Source>,
     drawings: Vec<Drawing>,
     plcs: Vec<online::Plc>,
+    maps: Vec<Map>,
 }
 
 /// A lesson, as its page shows it.
@@ -94,6 +97,8 @@ pub(super) struct Known {
     pub(super) online: Online,
     /// The panels of trainers.
     pub(super) trainers: BTreeSet<String>,
+    /// The maps, as the scenario has them.
+    pub(super) maps: Vec<MapFile>,
 }
 
 impl Known {
@@ -228,6 +233,7 @@ pub(super) fn of(scenario: &Scenario, training: Option<&Training>) -> Result<(St
     known.trainers = panels.iter().filter(|panel| panel.is_trainers()).map(|panel| panel.name.clone()).collect();
     let (plcs, looked_into) = Online::of(scenario)?;
     known.online = looked_into;
+    known.maps.clone_from(&file.map);
     if let Some(Training { role: role @ Role::Trainee, .. }) = training {
         let hidden = panels.iter().filter(|panel| !role.sees(panel.seat));
         known.hidden = hidden.map(|panel| panel.name.clone()).collect();
@@ -257,6 +263,7 @@ pub(super) fn of(scenario: &Scenario, training: Option<&Training>) -> Result<(St
             .collect(),
         sources: sources(scenario, &known.online),
         plcs,
+        maps: maps::of(scenario),
         drawings,
     };
     Ok((structure, known))

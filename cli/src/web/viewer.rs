@@ -8,9 +8,10 @@ use std::time::Duration;
 
 use axum::body::Bytes;
 use axum::extract::ws::{Message, WebSocket};
+use onescan_server::client::Parts;
 use onescan_server::mailbox::{Request, Wish};
 use onescan_server::operation::{Operation, OperationError};
-use onescan_server::published::SessionView;
+use onescan_server::published::{SessionView, Wants};
 use onescan_server::wire::message::Status as Taken;
 use serde::Serialize;
 use tokio::sync::{mpsc, oneshot};
@@ -21,6 +22,7 @@ use super::ask::{self, Ask, Refused, Verb};
 use super::desk::AtWork;
 use super::entry::Rank;
 use super::gaze::{self, Gaze};
+use super::maps::{Cells, Mapped, New};
 use super::online::{Seen, Watching};
 use super::picture::{FLAGS, PAST, Shown};
 use super::seats::Viewer;
@@ -72,6 +74,10 @@ enum Told {
         #[serde(flatten)]
         seen: Seen,
     },
+    Map {
+        #[serde(flatten)]
+        cells: Cells,
+    },
     Verdict {
         #[serde(flatten)]
         standing: Standing,
@@ -107,6 +113,9 @@ struct Eye {
     gaze: Gaze,
     shown: Shown,
     watching: Watching,
+    mapped: Mapped,
+    /// What of clients is to be seen in views.
+    wants: Wants,
     judged: Heard,
     /// The view of the live edge that was shown last.
     seen: Option<u64>,
@@ -135,6 +144,8 @@ impl Eye {
             gaze: Gaze::new(session),
             shown: Shown::default(),
             watching: Watching::default(),
+            mapped: Mapped::default(),
+            wants: session.published.want(Parts::POSES),
             judged: Heard::default(),
             seen: None,
             status: String::new(),
@@ -145,6 +156,15 @@ impl Eye {
             drawn: None,
             states: None,
             rung: Rung::default(),
+        }
+    }
+
+    /// Wants of views what is looked at now.
+    fn look_closer(&mut self, session: &Session) {
+        let memories = self.watching.is_wanted() || self.drawn.is_some();
+        let parts = Parts { poses: true, tables: self.mapped.is_wanted(), memories };
+        if parts != self.wants.parts() {
+            self.wants = session.published.want(parts);
         }
     }
 }
@@ -230,8 +250,8 @@ async fn tell_beside(
     }
     if eye.turns.is_multiple_of(VARIABLES_EACH) {
         let looked_at = if eye.gaze.is_past() { eye.gaze.seen() } else { Some(Arc::clone(view)) };
-        if let Some(seen) = looked_at.and_then(|view| eye.watching.see(&view, &session.known.online)) {
-            say(socket, &Told::Variables { seen }).await?;
+        if let Some(view) = looked_at {
+            tell_inside(socket, &view, session, eye).await?;
         }
     }
     if eye.turns.is_multiple_of(VERDICTS_EACH) {
@@ -241,6 +261,20 @@ async fn tell_beside(
     for News { t_v, kind, text } in session.news_after(eye.heard) {
         eye.heard += 1;
         say(socket, &Told::Event { t_ns: t_v.as_nanos(), kind, text }).await?;
+    }
+    Ok(())
+}
+
+/// Tells what clients have beside their signals: variables and tables.
+async fn tell_inside(socket: &mut WebSocket, view: &SessionView, session: &Session, eye: &mut Eye) -> Result<(), Gone> {
+    if let Some(seen) = eye.watching.see(view, &session.known.online) {
+        say(socket, &Told::Variables { seen }).await?;
+    }
+    for new in eye.mapped.see(view, &session.known.maps, eye.gaze.is_past()) {
+        match new {
+            New::Cells(cells) => say(socket, &Told::Map { cells }).await?,
+            New::Values(bytes) => send(socket, Message::Binary(Bytes::from(bytes))).await?,
+        }
     }
     Ok(())
 }
@@ -303,7 +337,8 @@ async fn tell_drawn(socket: &mut WebSocket, view: &SessionView, session: &Sessio
             say(socket, &Told::Event { t_ns, kind, text: name.to_owned() }).await?;
         }
     }
-    let now = eye.drawn.map(|drawn| (drawn, session.known.states.values(drawn, view)));
+    let drawn = eye.drawn.filter(|_| view.clients.parts.memories);
+    let now = drawn.map(|drawn| (drawn, session.known.states.values(drawn, view)));
     if let Some(((drawing, instance), values)) = now.clone().filter(|_| now != eye.states) {
         say(socket, &Told::States { drawing, instance, values }).await?;
     }
@@ -343,6 +378,7 @@ fn heed(
         Ask::Seat { panel, .. } if session.known.hidden.contains(&panel) => return Err(Refused::NoPanel(panel)),
         Ask::Draw { drawing, instance } => {
             eye.drawn = drawing.map(|drawing| session.known.states.check(drawing, instance)).transpose()?;
+            eye.look_closer(session);
             return Ok(true);
         }
         Ask::Watch { variables } => {
@@ -350,6 +386,12 @@ fn heed(
                 return Err(Refused::NoVariable(*unknown));
             }
             eye.watching.want(variables);
+            eye.look_closer(session);
+            return Ok(false);
+        }
+        Ask::Maps { maps } => {
+            eye.mapped.want(maps, &session.known.maps)?;
+            eye.look_closer(session);
             return Ok(false);
         }
         Ask::Show { t_ns } => {
@@ -385,9 +427,11 @@ fn heed(
             ask::write(declared, value, &session.known)?
         }
         Ask::Variable { variable, action, value } => {
+            ask::trainer_only(session.training.as_ref())?;
             session.known.online.operation(variable, action, value).ok_or(Refused::NoVariable(variable))?
         }
         Ask::Force { signal, value } => {
+            ask::trainer_only(session.training.as_ref())?;
             ask::force(session.plan.signals().get(signal).ok_or(Refused::NoSignal(signal))?, value)
         }
         Ask::Operate { operation } => {

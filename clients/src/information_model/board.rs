@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
-use onescan_server::client::JoinRequest;
+use onescan_server::client::{JoinRequest, Parts};
 use onescan_server::layout::ImageLayout;
 use onescan_server::mailbox::Mailbox;
 use onescan_server::plan::SessionPlan;
@@ -109,7 +109,7 @@ impl Board {
             plan,
             layout,
             mailbox,
-            follower: published.follow(),
+            follower: published.follow(Parts::default()),
             published,
             shared: Mutex::new(shared),
             answered: Condvar::new(),

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use onescan_base::regular;
 use onescan_server::client::{
-    Client, ClientFault, ClientOperation, ClientView, JoinRequest, OperationRefused, Pose, StateError, Wake,
+    Client, ClientFault, ClientOperation, ClientView, JoinRequest, OperationRefused, Parts, Pose, StateError, Wake,
 };
 use onescan_server::signal::{ClientName, Port};
 use onescan_server::time::{TimeSpan, VirtualTime};
@@ -206,14 +206,18 @@ impl Client for Plant {
         done.map_err(|refused| OperationRefused::Because(refused.to_string()))
     }
 
-    fn show(&self, view: &mut ClientView) {
-        view.poses.extend(self.poses().zip(&self.names).map(|(pose, name)| Pose {
-            body: Arc::clone(name),
-            position_m: pose.position_m,
-            rotation_xyzw: pose.rotation_xyzw,
-        }));
-        let heated = self.machine.iter().flat_map(Machine::heated);
-        view.tables.extend(heated.map(|(body, field)| field.unrolled(&self.names[body])));
+    fn show(&self, parts: Parts, view: &mut ClientView) {
+        if parts.poses {
+            view.poses.extend(self.poses().zip(&self.names).map(|(pose, name)| Pose {
+                body: Arc::clone(name),
+                position_m: pose.position_m,
+                rotation_xyzw: pose.rotation_xyzw,
+            }));
+        }
+        if parts.tables {
+            let heated = self.machine.iter().flat_map(Machine::heated);
+            view.tables.extend(heated.map(|(body, field)| field.unrolled(&self.name, &self.names[body])));
+        }
     }
 
     fn turn(&mut self, t_v: VirtualTime, inputs: &[u8], outputs: &mut [u8]) -> Result<Wake, ClientFault> {

@@ -7,6 +7,7 @@ use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 use onescan_server::client::ValueTable;
+use onescan_server::signal::ClientName;
 use serde::{Deserialize, Serialize};
 
 /// Zones along a shell.
@@ -95,11 +96,12 @@ impl TemperatureField {
 
     /// The surface as a table: position along it from left to right, m, and angle from top to bottom, °, each value in
     /// the middle of its cell.
-    pub(crate) fn unrolled(&self, name: &Arc<str>) -> ValueTable {
+    pub(crate) fn unrolled(&self, client: &ClientName, name: &Arc<str>) -> ValueTable {
         let x_m = |column: usize| (column as f64 + 0.5) / COLUMNS as f64 * self.length_m;
         let angle_rad = |row: usize| (row as f64 + 0.5) / ROWS as f64 * TAU;
         let cells = (0..ROWS).flat_map(|row| (0..COLUMNS).map(move |column| (row, column)));
         ValueTable {
+            client: client.clone(),
             name: Arc::clone(name),
             columns: COLUMNS,
             across: [0.0, self.length_m],

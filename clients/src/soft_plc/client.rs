@@ -9,8 +9,8 @@ use onescan_plc_shim::{
     Application, CodePolicy, Coverage, PlcFault, RestoreError, RunError, SoftPlc, TaskPlan, UnknownVariable, WriteError,
 };
 use onescan_server::client::{
-    Client, ClientFault, ClientOperation, ClientView, JoinRequest, Memory, OperationRefused, SourcePlace, StateError,
-    ValueTable, Wake,
+    Client, ClientFault, ClientOperation, ClientView, JoinRequest, Memory, OperationRefused, Parts, SourcePlace,
+    StateError, ValueTable, Wake,
 };
 use onescan_server::signal::{ClientName, Port, SignalName, SignalType};
 use onescan_server::time::{TimeSpan, VirtualTime};
@@ -329,7 +329,7 @@ impl SoftPlcClient {
 }
 
 impl Table {
-    fn of(&self, memory: &[u8]) -> ValueTable {
+    fn of(&self, client: &ClientName, memory: &[u8]) -> ValueTable {
         let size = self.ty.size() as usize;
         let of_array = memory.get(self.offset..self.offset + size * self.elements).unwrap_or_default();
         let number = |bytes: &[u8]| match (self.ty.is_real(), bytes) {
@@ -340,6 +340,7 @@ impl Table {
         let values: Vec<f64> = of_array.chunks_exact(size).map(number).collect();
         let rows = self.elements / self.columns;
         ValueTable {
+            client: client.clone(),
             name: Arc::clone(&self.name),
             columns: self.columns,
             across: [0.0, self.columns as f64],
@@ -452,10 +453,12 @@ impl Client for SoftPlcClient {
         })
     }
 
-    fn show(&self, view: &mut ClientView) {
-        view.tables.extend(self.tables.iter().map(|table| table.of(self.plc.memory())));
+    fn show(&self, parts: Parts, view: &mut ClientView) {
         let memory = self.plc.memory();
-        if memory.len() > self.shown_bytes_max {
+        if parts.tables {
+            view.tables.extend(self.tables.iter().map(|table| table.of(&self.request.name, memory)));
+        }
+        if !parts.memories || memory.len() > self.shown_bytes_max {
             return;
         }
         view.memories.push(Memory {

@@ -70,7 +70,7 @@ pub mod svg;
 mod ticks;
 mod time_axis;
 mod trace;
-mod value_map;
+pub mod value_map;
 
 pub use bars::{Bar, Bars};
 pub use histogram::Histogram;

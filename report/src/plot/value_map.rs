@@ -246,6 +246,11 @@ fn draw_scale(document: &mut Document, range: ValueRange, unit: &str) {
     document.text("text", &[("x", &left_px), ("y", &(TOP_PX - 8)), ("font-size", &NAME_PX)], unit);
 }
 
+/// The colours of the scale, from the least value to the greatest.
+pub fn colours() -> impl Iterator<Item = String> {
+    (0..LEVELS).map(colour)
+}
+
 /// The colour of a level of the scale.
 fn colour(level: usize) -> String {
     let place = (level as f64 + 0.5) / LEVELS as f64 * (ANCHORS.len() - 1) as f64;

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::Lockstep;
+use crate::client::Parts;
 use crate::digest::TrajectoryDigest;
 use crate::end::SessionEnd;
 use crate::observer::RecordError;
@@ -104,9 +105,11 @@ impl Lockstep {
         view.image.extend_from_slice(self.session.image());
         view.forced.clear();
         view.forced.extend(self.session.forced());
-        view.clients.clear();
+        // The last view is looked at by those who come when all is over, too.
+        let parts = if end.is_some() { Parts::ALL } else { self.shown.published.parts() };
+        view.clients.clear(parts);
         for berth in &self.berths {
-            berth.carrier.show(&mut view.clients);
+            berth.carrier.show(parts, &mut view.clients);
         }
         self.shown.spare = Some(self.shown.published.publish(shared));
     }

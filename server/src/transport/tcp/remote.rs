@@ -5,7 +5,7 @@ use std::time::Duration;
 use super::ReceiveError;
 use super::stream::FrameStream;
 use crate::carrier::{Answer, Carrier, Grant};
-use crate::client::{ClientOperation, ClientView, OperationRefused, StateError};
+use crate::client::{ClientOperation, ClientView, OperationRefused, Parts, StateError};
 use crate::end::{FailureCause, SessionEnd};
 use crate::time::{StepCount, VirtualTime};
 use crate::wire::{ClientMessage, Frame, FrameError, FrameRef, ServerMessage};
@@ -79,7 +79,7 @@ impl Carrier for Remote {
     }
 
     /// The protocol carries signals and states only.
-    fn show(&self, _view: &mut ClientView) {}
+    fn show(&self, _parts: Parts, _view: &mut ClientView) {}
 
     fn save(&mut self) -> Result<Vec<u8>, StateError> {
         self.connection.send_message(&ServerMessage::Save {}).map_err(|e| lost(&e.into()))?;
