@@ -7,7 +7,7 @@ use std::path::Path;
 use serde_json::Value;
 
 use crate::sitter::Sitter;
-use crate::typed::{copied, edit, is_the_same_over_tcp_and_resumed, rows, scenario, typed};
+use crate::typed::{copied, edit, is_the_same_over_tcp_and_resumed, rows, scenario, typed, utf8};
 use crate::web::Served;
 
 /// A run of the furnace: the values of these signals, a row a change, and what was said.
@@ -25,10 +25,6 @@ fn run<const N: usize>(more: &[&str], signals: [&str; N]) -> (Vec<[String; N]>, 
     let head = rows.next().expect("a head");
     let columns = signals.map(|signal| head.iter().position(|name| *name == signal).expect("a column"));
     (rows.map(|row| columns.map(|column| row[column].to_owned())).collect(), said.out)
-}
-
-fn utf8(path: &Path) -> &str {
-    path.to_str().expect("UTF-8")
 }
 
 #[test]

@@ -89,6 +89,7 @@ mod venv;
 mod watch;
 mod web;
 mod web_access;
+mod web_maps;
 mod web_past;
 mod web_plc;
 mod web_tls;

@@ -8,11 +8,7 @@ use serde_json::{Value, json};
 
 use crate::sitter::Sitter;
 use crate::training::{Lesson, SECOND_NS, record_of, train};
-use crate::typed::{copied, edit, scenario, typed};
-
-fn utf8(path: &Path) -> &str {
-    path.to_str().expect("UTF-8")
-}
+use crate::typed::{copied, edit, scenario, typed, utf8};
 
 /// The events of a recording.
 fn events(run: &Path) -> Vec<Value> {

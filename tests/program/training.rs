@@ -12,13 +12,9 @@ use tungstenite::client::IntoClientRequest;
 use tungstenite::{Message, WebSocket};
 
 use crate::sitter::structure;
-use crate::typed::{Said, begun, copied, edit, scenario, typed};
+use crate::typed::{Said, begun, copied, edit, scenario, typed, utf8};
 
 const STEP_NS: u64 = 20_000_000;
-
-fn utf8(path: &Path) -> &str {
-    path.to_str().expect("UTF-8")
-}
 
 /// The record that a lesson's end wrote to standard output.
 fn record(said: &Said) -> Value {
@@ -215,6 +211,8 @@ fn a_trainer_repeats_jumps_and_goes_back() {
         json!({"type": "operate", "operation": "hold"}),
         json!({"type": "fail", "component": "wall", "failure": "leak", "active": true}),
         json!({"type": "train", "turn": "repeat"}),
+        json!({"type": "force", "signal": 0, "value": "1"}),
+        json!({"type": "variable", "variable": 0, "action": "force", "value": "1"}),
     ] {
         ask(&mut trainee, &refused);
         let error = told(&mut trainee, "error");

@@ -11,6 +11,11 @@ pub(crate) fn scenario(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios").join(name)
 }
 
+/// A path as a word that is typed.
+pub(crate) fn utf8(path: &Path) -> &str {
+    path.to_str().expect("UTF-8")
+}
+
 /// The program, to be started in `folder`.
 pub(crate) fn onescan(folder: &Path) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_onescan-under-test"));

@@ -1,6 +1,6 @@
 //! A running session leaves its past: a checkpoint now and then, and what operators do.
 //!
-//! How far apart the checkpoints are depends on what one costs, so that all of them together take a fiftieth of the
+//! How far apart the checkpoints are depends on what one costs, so that all of them together take a hundredth of the
 //! session's time. What a session computes does not depend on when it is saved. What of it becomes bytes does so on a thread
 //! of its own; a checkpoint that comes while that is busy is dropped.
 
@@ -18,8 +18,8 @@ use onescan_server::time::{StepCount, VirtualTime};
 
 use super::store::{Kept, Mark};
 
-/// A fiftieth of the session's time is spent on checkpoints, at most.
-const SHARE: u32 = 50;
+/// A hundredth of the session's time is spent on checkpoints, at most; they become bytes in about as much of another core's.
+const SHARE: u32 = 100;
 /// Steps between two checkpoints, at least: so many are re-run sooner than an eye sees it.
 const STEPS_MIN: u64 = 50;
 /// Steps between two checkpoints, at most, before any has to go.

@@ -138,6 +138,7 @@ fn bytes(cells: &Cells, values: &[f64], is_past: bool) -> Vec<u8> {
 #[cfg(test)]
 mod tests {
     use onescan_server::client::{Parts, ValueTable};
+    use onescan_server::signal::ClientName;
     use onescan_server::time::VirtualTime;
 
     use super::*;

@@ -15,6 +15,7 @@
 //! | [`maps`] | tables of values that no signal tells |
 //! | [`picture`] | what of a step is shown |
 //! | [`ask`] | what a page may ask |
+//! | `beat` | when viewers look |
 //! | [`gaze`] | where a viewer looks: live, or at the past |
 //! | [`seats`] | who operates |
 //! | [`desk`] | a lesson on two pages |
@@ -27,6 +28,7 @@
 
 mod alarms;
 mod ask;
+mod beat;
 mod bundle;
 mod desk;
 mod drawings;
@@ -73,6 +75,7 @@ use crate::access::AccessError;
 use crate::access::admission::{Admission, Doorstep};
 use crate::error::{Exit, ExitCode, ListenError, Usage};
 use crate::past::Rewinder;
+use beat::Beat;
 pub(crate) use bundle::charts;
 pub(crate) use desk::{AtWork, Desk, Failing, Role, Training, Turn};
 use entry::{Barred, Entry, Rank};
@@ -156,6 +159,7 @@ struct Session {
     plan: SessionPlan,
     layout: ImageLayout,
     published: Published,
+    beat: Beat,
     mailbox: Mailbox,
     pace: String,
     failing: Failing,
@@ -329,6 +333,7 @@ impl Page {
             layout: ImageLayout::new(plan.signals()),
             plan,
             published: source.published,
+            beat: Beat::begin(),
             mailbox: source.mailbox,
             pace: source.pace,
             failing: source.failing,

@@ -5,6 +5,7 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
 
 use onescan_scenario::expect::{Judge, Outcome, TraceEnd, Verdict};
 use onescan_server::time::VirtualTime;
@@ -25,8 +26,13 @@ pub(super) struct Standing {
 struct Latest {
     /// A judge that nobody has asked yet.
     judge: Option<(VirtualTime, Judge, TraceEnd)>,
+    /// When one was asked for.
+    asked: Option<Instant>,
     standings: Vec<Standing>,
 }
+
+/// How often the session's thread copies its judge, however many look.
+const EACH: Duration = Duration::from_millis(250);
 
 /// Where judges are left; clones share it.
 #[derive(Clone, Debug, Default)]
@@ -51,10 +57,13 @@ impl Bench {
         self.lock().judge = Some((t_v, judge, end));
     }
 
-    /// What the judge says that was left last, by the names of its expectations. Asks for another one.
+    /// What the judge says that was left last, by the names of its expectations. Asks for another one, if it is time.
     pub(super) fn standings(&self, names: &[String]) -> Vec<Standing> {
-        self.wanted.store(true, Ordering::Release);
         let mut latest = self.lock();
+        if latest.asked.is_none_or(|asked| asked.elapsed() >= EACH) {
+            latest.asked = Some(Instant::now());
+            self.wanted.store(true, Ordering::Release);
+        }
         if let Some((t_v, judge, end)) = latest.judge.take() {
             let judged = judge.finish(end);
             latest.standings = names.iter().zip(judged).map(|(name, outcome)| standing(name, &outcome, t_v)).collect();
@@ -108,5 +117,7 @@ mod tests {
         assert!(!bench.is_wanted());
         assert_eq!(bench.standings(&[]), []);
         assert!(bench.is_wanted() && !bench.is_wanted());
+        assert_eq!(bench.standings(&[]), []);
+        assert!(!bench.is_wanted(), "another viewer has just asked");
     }
 }

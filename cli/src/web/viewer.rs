@@ -15,7 +15,7 @@ use onescan_server::published::{SessionView, Wants};
 use onescan_server::wire::message::Status as Taken;
 use serde::Serialize;
 use tokio::sync::{mpsc, oneshot};
-use tokio::time::{MissedTickBehavior, interval, timeout};
+use tokio::time::timeout;
 
 use super::alarms::{Change, Rung};
 use super::ask::{self, Ask, Refused, Verb};
@@ -30,8 +30,6 @@ use super::verdicts::{Heard, Standing};
 use super::{News, SeatView, Session};
 use crate::past::Moment;
 
-/// How often a picture is looked for.
-const PICTURE: Duration = Duration::from_millis(16);
 /// How many looks it takes until the viewer is told how far the past reaches by now.
 const PAST_EACH: u32 = 30;
 /// How many looks it takes until variables of PLCs are looked at again: people read ten values a second.
@@ -172,8 +170,7 @@ impl Eye {
 async fn converse(socket: &mut WebSocket, session: &Session, who: (Viewer, Rank)) -> Result<(), Gone> {
     let (outcomes, mut done) = mpsc::unbounded_channel::<Told>();
     let mut eye = Eye::new(session);
-    let mut look = interval(PICTURE);
-    look.set_missed_tick_behavior(MissedTickBehavior::Delay);
+    let mut look = session.beat.looks();
     let mut called = session.called.follow();
     loop {
         tokio::select! {
@@ -203,7 +200,9 @@ async fn converse(socket: &mut WebSocket, session: &Session, who: (Viewer, Rank)
             moment = eye.gaze.next() => turn(moment, socket, session, &mut eye).await?,
             _ = look.tick() => {
                 let view = session.published.latest();
-                session.published.ask();
+                if session.beat.is_first() {
+                    session.published.ask();
+                }
                 tell_beside(socket, &view, session, &mut eye).await?;
                 let told = told(&view, session, who.0, &eye);
                 if told != eye.status {
@@ -286,9 +285,12 @@ async fn tell_verdicts(socket: &mut WebSocket, session: &Session, eye: &mut Eye)
     Ok(())
 }
 
-/// The session is over: tells how it ended, and what came of its expectations.
+/// The session is over: tells how it ended, and what came of its expectations; what it holds is that of its last step.
 async fn part(socket: &mut WebSocket, view: &SessionView, session: &Session, eye: &mut Eye) -> Result<(), Gone> {
     tell_verdicts(socket, session, eye).await?;
+    if !eye.gaze.is_past() {
+        tell_inside(socket, view, session, eye).await?;
+    }
     let Some(end) = &view.end else { return Ok(()) };
     say(socket, &Told::Event { t_ns: view.t_v.as_nanos(), kind: "end", text: end.to_string() }).await
 }
