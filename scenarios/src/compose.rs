@@ -197,6 +197,7 @@ impl Scenario {
             }
         };
         self.check_failures(name, &scene)?;
+        self.check_parameters(name, &scene)?;
         Ok(scene)
     }
 
@@ -205,6 +206,7 @@ impl Scenario {
         permission::granted().check(self.folder(), &self.folder().join(file))?;
         let scene = self.compilations().scene(name, &self.overrides(name), || self.scene_of(name, file))?;
         self.check_failures(name, &scene)?;
+        self.check_parameters(name, &scene)?;
         Ok(Scene::clone(&scene))
     }
 

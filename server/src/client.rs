@@ -139,6 +139,22 @@ pub enum ClientOperation {
         /// The mode of failure.
         mode: String,
     },
+    /// A parameter of a component of a plant takes another value.
+    ChangeParameter {
+        /// The component.
+        component: String,
+        /// The parameter: one of those of its kind.
+        parameter: String,
+        /// A number, `TRUE` or `FALSE`, or a word.
+        value: String,
+    },
+    /// A parameter that was changed takes the value that the scene gives it.
+    RestoreParameter {
+        /// The component.
+        component: String,
+        /// The parameter.
+        parameter: String,
+    },
     /// A variable of a PLC takes a value, until the program writes it.
     WriteVariable {
         /// Its path, as `Main.limit`.
@@ -195,6 +211,12 @@ impl fmt::Display for ClientOperation {
         let text = match self {
             Self::Fail { component, mode } => format!("`{component}` fails: {mode}"),
             Self::Repair { component, mode } => format!("`{component}` is repaired: {mode}"),
+            Self::ChangeParameter { component, parameter, value } => {
+                format!("`{parameter}` of `{component}` becomes {value}")
+            }
+            Self::RestoreParameter { component, parameter } => {
+                format!("`{parameter}` of `{component}` is as the scene has it again")
+            }
             Self::WriteVariable { variable, value } => format!("`{variable}` is set to {value}"),
             Self::ForceVariable { variable, value } => format!("`{variable}` is forced to {value}"),
             Self::ReleaseVariable { variable } => format!("`{variable}` is released"),

@@ -79,6 +79,26 @@ pub enum Operation {
         /// The mode of failure.
         mode: String,
     },
+    /// A parameter of a component of a plant takes another value.
+    ChangeParameter {
+        /// The plant.
+        client: ClientName,
+        /// The component.
+        component: String,
+        /// The parameter: one of those of its kind.
+        parameter: String,
+        /// A number, `TRUE` or `FALSE`, or a word.
+        value: String,
+    },
+    /// A parameter that was changed takes the value that the scene gives it.
+    RestoreParameter {
+        /// The plant.
+        client: ClientName,
+        /// The component.
+        component: String,
+        /// The parameter.
+        parameter: String,
+    },
     /// A variable of a PLC takes a value, until the program writes it.
     WriteVariable {
         /// The PLC.
@@ -234,6 +254,12 @@ impl Operation {
         Some(match self.clone() {
             Self::Fail { component, mode, .. } => (self.client()?, C::Fail { component, mode }),
             Self::Repair { component, mode, .. } => (self.client()?, C::Repair { component, mode }),
+            Self::ChangeParameter { component, parameter, value, .. } => {
+                (self.client()?, C::ChangeParameter { component, parameter, value })
+            }
+            Self::RestoreParameter { component, parameter, .. } => {
+                (self.client()?, C::RestoreParameter { component, parameter })
+            }
             Self::WriteVariable { variable, value, .. } => (self.client()?, C::WriteVariable { variable, value }),
             Self::ForceVariable { variable, value, .. } => (self.client()?, C::ForceVariable { variable, value }),
             Self::ReleaseVariable { variable, .. } => (self.client()?, C::ReleaseVariable { variable }),
@@ -247,6 +273,8 @@ impl Operation {
         match self {
             Self::Fail { client, .. }
             | Self::Repair { client, .. }
+            | Self::ChangeParameter { client, .. }
+            | Self::RestoreParameter { client, .. }
             | Self::WriteVariable { client, .. }
             | Self::ForceVariable { client, .. }
             | Self::ReleaseVariable { client, .. }
@@ -309,6 +337,8 @@ impl fmt::Display for Operation {
             // Told above.
             Self::Fail { .. }
             | Self::Repair { .. }
+            | Self::ChangeParameter { .. }
+            | Self::RestoreParameter { .. }
             | Self::WriteVariable { .. }
             | Self::ForceVariable { .. }
             | Self::ReleaseVariable { .. }

@@ -44,6 +44,7 @@ mod operator;
 mod output;
 mod own_kinds;
 mod papers;
+mod parameters;
 mod peeling_line;
 mod plant;
 mod plc;

@@ -126,6 +126,54 @@ fault = [
 activation = [{ name = "early", at = "100ms", for = "50ms" }, { name = "late", at = "1600ms", for = "100ms" }]
 "#;
 
+const MUTANTS: &str = r#"
+[[campaign]]
+name = "mutants"
+until = "2s"
+safe = "eventually[0,100ms] not (Actuator_1_Up or Actuator_1_Down)"
+mutants = { KEYS }
+fault = [{ name = "sensor-on", kind = "hardware", force = { signal = "Sensor_1", value = true } }]
+activation = [{ name = "early", at = "100ms", for = "50ms" }]
+"#;
+
+/// Mutants are drawn by the seed, and each is a case that runs by itself and says what it is.
+#[test]
+fn mutants_are_columns_of_a_campaign() {
+    let folder = copied_shear();
+    let with = |keys: &str| {
+        cases(folder.path(), &MUTANTS.replace("KEYS", keys));
+        let said = typed(folder.path(), &["campaign", ".", "--format", "json"]);
+        assert_eq!(said.err, "", "{keys}");
+        lines(&said)
+    };
+    let drawn = with("each = 6, seed = 3");
+    let table = drawn.last().expect("a table").clone();
+    assert_eq!(table["programs"].as_array().map(Vec::len), Some(6));
+    insta::assert_snapshot!(serde_json::to_string_pretty(&table["programs"]).expect("JSON"));
+    let row = drawn.iter().find(|row| row["program"] == table["programs"][0]["name"]).expect("a row");
+    let case = row["case"].as_str().expect("a case");
+    let alone = typed(folder.path(), &["run", ".", "--case", case, "--format", "json"]);
+    assert_eq!(digests(&lines(&alone)), [row["digest"].as_str().expect("a digest")]);
+    // a larger draw has those of a smaller one, and all are those of `mutate`
+    let names = |lines: &[Value]| -> Vec<String> {
+        let programs = lines.last().expect("a table")["programs"].as_array().expect("a list");
+        programs.iter().map(|program| program["name"].as_str().expect("a name").to_owned()).collect()
+    };
+    let (few, more) = (names(&drawn), names(&with("each = 9, seed = 3")));
+    assert!(few.iter().all(|name| more.contains(name)), "{few:?} {more:?}");
+    let conditions = with("kinds = [\"condition\"], client = \"plc\"");
+    let mutated = typed(folder.path(), &["mutate", ".", "--kind", "condition", "--format", "json"]);
+    let counted = lines(&mutated).last().expect("a tally")["mutants"].as_u64().map(|count| count as usize);
+    assert_eq!(Some(names(&conditions).len()), counted);
+    let wrong = ["client = \"plq\"", "client = \"plant\"", "kinds = [\"typo\"]", "each = 0"].map(|keys| {
+        cases(folder.path(), &MUTANTS.replace("KEYS", keys));
+        let said = typed(folder.path(), &["campaign", "."]);
+        assert_eq!((said.code, said.out.as_str()), (Some(2), ""), "{keys}: {said:?}");
+        said.err.replace(&folder.path().display().to_string(), ".")
+    });
+    insta::assert_snapshot!(wrong.join("\n"));
+}
+
 /// A program of which the run without faults fails is a finding, and its cases are run all the same.
 #[test]
 fn programs_are_columns_of_a_campaign() {

@@ -77,11 +77,16 @@ pub(super) fn matrix(table: &Table) -> Vec<Vec<String>> {
 
 /// What the programs make of the same faults, with a head.
 pub(super) fn programs(table: &Table) -> Vec<Vec<String>> {
-    let head = ["program", "runs", "other verdicts", "first of them"].map(str::to_owned).to_vec();
+    let is_told = table.programs.iter().any(|program| program.about.is_some());
+    let what = is_told.then_some("what it is");
+    let head =
+        ["program", "runs", "other verdicts", "first of them"].into_iter().chain(what).map(str::to_owned).collect();
     let row = |program: &Program| {
         let fails = program.failure.as_ref().map(|failure| format!("without any fault: {}", failure.text));
         let first = fails.or_else(|| program.others.first().cloned()).unwrap_or_else(|| "none".to_owned());
-        vec![program.name.clone(), program.runs.to_string(), program.others.len().to_string(), first]
+        let about = is_told.then(|| program.about.clone().unwrap_or_default());
+        let cells = [program.name.clone(), program.runs.to_string(), program.others.len().to_string(), first];
+        cells.into_iter().chain(about).collect()
     };
     std::iter::once(head).chain(table.programs.iter().map(row)).collect()
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use onescan_scenario::case::campaign::CampaignFault;
+use onescan_scenario::case::campaign::{CampaignFault, CampaignProgram};
 use onescan_scenario::case::{Campaign, CampaignVerdict, Case};
 use onescan_server::signal::SignalName;
 use serde::Serialize;
@@ -41,6 +41,9 @@ pub struct Table {
 pub struct Program {
     /// Its name.
     pub name: String,
+    /// What it is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub about: Option<String>,
     /// How its run without faults failed; the first of them with a matrix.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failure: Option<Failure>,
@@ -144,7 +147,7 @@ impl Table {
 /// What the programs of a campaign make of its faults.
 fn programs(campaign: &Campaign, healthy: &[Reading], rows: &[Row]) -> Vec<Program> {
     let count = campaign.variants.len().max(1);
-    let program = |name: &String| {
+    let program = |CampaignProgram { name, about }: &CampaignProgram| {
         let is_it = |variant: usize| campaign.program_of(variant) == Some(name.as_str());
         let own = |number: usize| rows.get(number - number % count + campaign.own_program_of(number % count));
         let tried = || rows.iter().enumerate().filter(|(number, _)| is_it(number % count));
@@ -152,6 +155,7 @@ fn programs(campaign: &Campaign, healthy: &[Reading], rows: &[Row]) -> Vec<Progr
         let failures = healthy.iter().enumerate().filter(|(variant, _)| is_it(*variant));
         Program {
             name: name.clone(),
+            about: about.clone(),
             failure: failures.into_iter().find_map(|(_, reading)| reading.failure.clone()),
             runs: tried().count(),
             others: others.map(|(_, row)| row.case.clone()).collect(),

@@ -71,6 +71,15 @@ impl Script<'_> {
             Operation::Repair { client, component, mode } => {
                 self.end(&format!("fault {client} {component} {mode}"), at);
             }
+            Operation::ChangeParameter { client, component, parameter, value } => {
+                let keys = [("client", client.as_str()), ("component", component), ("parameter", parameter)];
+                let mut keys: Table = keys.map(|(key, text)| (key.to_owned(), word(text))).into_iter().collect();
+                keys.insert("value".to_owned(), scalar(value));
+                self.begin(format!("parameter {client} {component} {parameter}"), begun(List::Parameter, keys, at), at);
+            }
+            Operation::RestoreParameter { client, component, parameter } => {
+                self.end(&format!("parameter {client} {component} {parameter}"), at);
+            }
             Operation::WriteVariable { client, variable, value } => {
                 let mut keys = variable_keys(client.as_str(), variable, value);
                 keys.insert("at".to_owned(), word(&spelt(at)));
@@ -134,6 +143,14 @@ impl Script<'_> {
 fn begun(list: List, mut keys: Table, at: VirtualTime) -> Entry {
     keys.insert("from".to_owned(), Value::from(spelt(at)));
     Entry { list, keys }
+}
+
+/// The value of a parameter as a case has it: a number, a flag, or a word.
+fn scalar(text: &str) -> Value {
+    let number = text.parse().ok().map(Value::Float).filter(|_| text.contains(['.', 'e']));
+    let whole = || text.parse().ok().map(Value::Integer);
+    let flag = || text.to_ascii_lowercase().parse().ok().map(Value::Boolean);
+    number.or_else(whole).or_else(flag).unwrap_or_else(|| Value::from(text))
 }
 
 fn variable_keys(client: &str, variable: &str, value: &str) -> Table {

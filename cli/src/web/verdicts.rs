@@ -32,7 +32,7 @@ struct Latest {
 }
 
 /// How often the session's thread copies its judge, however many look.
-const EACH: Duration = Duration::from_millis(250);
+const EACH: Duration = Duration::from_millis(500);
 
 /// Where judges are left; clones share it.
 #[derive(Clone, Debug, Default)]

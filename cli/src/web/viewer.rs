@@ -34,6 +34,8 @@ use crate::past::Moment;
 const PAST_EACH: u32 = 30;
 /// How many looks it takes until variables of PLCs are looked at again: people read ten values a second.
 const VARIABLES_EACH: u32 = 6;
+/// How many looks it takes until the status is told again: seats, forces, how far the past reaches.
+const STATUS_EACH: u32 = 3;
 /// How many looks it takes until it is asked again what has become of expectations.
 const VERDICTS_EACH: u32 = 15;
 /// How long one message may take to a viewer that does not read before it is left.
@@ -203,11 +205,10 @@ async fn converse(socket: &mut WebSocket, session: &Session, who: (Viewer, Rank)
                 if session.beat.is_first() {
                     session.published.ask();
                 }
+                let is_time = eye.turns.is_multiple_of(STATUS_EACH) || view.is_held || view.end.is_some();
                 tell_beside(socket, &view, session, &mut eye).await?;
-                let told = told(&view, session, who.0, &eye);
-                if told != eye.status {
-                    send(socket, Message::Text(told.clone().into())).await?;
-                    eye.status = told;
+                if is_time {
+                    tell_status(socket, &view, session, who.0, &mut eye).await?;
                 }
                 // a view of a restarted session has a smaller time, and a revision of its own all the same
                 if eye.seen != Some(view.revision) && !eye.gaze.is_past() {
@@ -293,6 +294,21 @@ async fn part(socket: &mut WebSocket, view: &SessionView, session: &Session, eye
     }
     let Some(end) = &view.end else { return Ok(()) };
     say(socket, &Told::Event { t_ns: view.t_v.as_nanos(), kind: "end", text: end.to_string() }).await
+}
+
+async fn tell_status(
+    socket: &mut WebSocket,
+    view: &SessionView,
+    session: &Session,
+    viewer: Viewer,
+    eye: &mut Eye,
+) -> Result<(), Gone> {
+    let told = told(view, session, viewer, eye);
+    if told != eye.status {
+        send(socket, Message::Text(told.clone().into())).await?;
+        eye.status = told;
+    }
+    Ok(())
 }
 
 /// How the session is, in words that change only when it does.

@@ -13,7 +13,7 @@ use onescan_server::time::{TimeSpan, VirtualTime};
 use super::failure::FailureRefused;
 use super::identity::Identity;
 use super::machine::{Machine, Misfit};
-use super::scene::{Scene, SceneError};
+use super::scene::{ParameterRefused, Scene, SceneError};
 use super::state::{self, Restored};
 
 /// A simulated machine that takes part in a session.
@@ -108,16 +108,11 @@ impl Plant {
     /// # Errors
     /// Outputs of the wrong size, a component or mode that the scene does not have.
     pub fn set_up(&mut self, failing: &[(String, String)], outputs: &mut [u8]) -> Result<(), ClientFault> {
-        check_size("outputs", &self.scene.writes, outputs)?;
-        let found = failing.iter().map(|(component, mode)| self.scene.find_failure(component, mode));
-        let found = found.collect::<Result<Vec<_>, _>>().map_err(|unknown| ClientFault::new(unknown.to_string()))?;
-        let machine = Machine::build(&self.scene, self.period, self.seed)
-            .map_err(|unbuilt| ClientFault::new(unbuilt.to_string()))?;
-        let machine = self.machine.insert(machine);
-        for mode in found {
-            machine.fail(mode);
-        }
-        machine.begin(&self.scene, outputs)
+        let fails = |(component, mode): &(String, String)| ClientOperation::Fail {
+            component: component.clone(),
+            mode: mode.clone(),
+        };
+        self.begin(&failing.iter().map(fails).collect::<Vec<_>>(), outputs)
     }
 
     /// Makes a component fail by `mode` from the next half turn on, until it is repaired. A mode
@@ -145,6 +140,28 @@ impl Plant {
             return Ok(());
         }
         Err(FailureRefused::NotFailed { component: component.to_owned(), mode: mode.to_owned() })
+    }
+
+    /// Gives a parameter of a component another value from the next half turn on. The component keeps its state.
+    ///
+    /// # Errors
+    /// See [`ParameterRefused`].
+    pub fn change_parameter(&mut self, component: &str, parameter: &str, value: &str) -> Result<(), ParameterRefused> {
+        self.change(component, parameter, Some(value))
+    }
+
+    /// Gives a parameter that was changed the scene's own value again.
+    ///
+    /// # Errors
+    /// See [`ParameterRefused`].
+    pub fn restore_parameter(&mut self, component: &str, parameter: &str) -> Result<(), ParameterRefused> {
+        self.change(component, parameter, None)
+    }
+
+    fn change(&mut self, component: &str, parameter: &str, to: Option<&str>) -> Result<(), ParameterRefused> {
+        let found = self.scene.find_parameter(component, parameter)?;
+        let before_set_up = || ParameterRefused::BeforeSetUp { component: component.to_owned() };
+        self.machine.as_mut().ok_or_else(before_set_up)?.change(&self.scene, found, to)
     }
 
     fn identity(&self) -> Result<&Identity, StateError> {
@@ -176,34 +193,43 @@ impl Client for Plant {
     }
 
     fn setup(&mut self, outputs: &mut [u8]) -> Result<(), ClientFault> {
-        self.set_up(&[], outputs)
+        self.begin(&[], outputs)
     }
 
     fn begin(&mut self, operations: &[ClientOperation], outputs: &mut [u8]) -> Result<(), ClientFault> {
-        let mut failing: Vec<(String, String)> = Vec::new();
+        check_size("outputs", &self.scene.writes, outputs)?;
+        let machine = Machine::build(&self.scene, self.period, self.seed)
+            .map_err(|unbuilt| ClientFault::new(unbuilt.to_string()))?;
+        self.machine = Some(machine);
         for operation in operations {
-            match operation {
-                ClientOperation::Fail { component, mode } => failing.push((component.clone(), mode.clone())),
-                ClientOperation::Repair { component, mode } => {
-                    failing.retain(|failed| (&failed.0, &failed.1) != (component, mode));
-                }
-                variable => return Err(ClientFault::new(format!("{variable}: {}", OperationRefused::Unsupported))),
-            }
+            self.operate(operation).map_err(|refused| match refused {
+                OperationRefused::Because(why) => ClientFault::new(why),
+                OperationRefused::Unsupported => ClientFault::new(format!("{operation}: {refused}")),
+            })?;
         }
-        self.set_up(&failing, outputs)
+        let machine = self.machine.as_mut().ok_or_else(|| ClientFault::new("a plant lost its machine"))?;
+        machine.begin(&self.scene, outputs)
     }
 
     fn operate(&mut self, operation: &ClientOperation) -> Result<(), OperationRefused> {
-        let done = match operation {
-            ClientOperation::Fail { component, mode } => self.fail(component, mode),
-            ClientOperation::Repair { component, mode } => self.repair(component, mode),
+        let why = |refused: &dyn std::fmt::Display| OperationRefused::Because(refused.to_string());
+        match operation {
+            ClientOperation::Fail { component, mode } => self.fail(component, mode).map_err(|refused| why(&refused)),
+            ClientOperation::Repair { component, mode } => {
+                self.repair(component, mode).map_err(|refused| why(&refused))
+            }
+            ClientOperation::ChangeParameter { component, parameter, value } => {
+                self.change_parameter(component, parameter, value).map_err(|refused| why(&refused))
+            }
+            ClientOperation::RestoreParameter { component, parameter } => {
+                self.restore_parameter(component, parameter).map_err(|refused| why(&refused))
+            }
             ClientOperation::WriteVariable { .. }
             | ClientOperation::ForceVariable { .. }
             | ClientOperation::ReleaseVariable { .. }
             | ClientOperation::Postpone { .. }
-            | ClientOperation::CatchUp { .. } => return Err(OperationRefused::Unsupported),
-        };
-        done.map_err(|refused| OperationRefused::Because(refused.to_string()))
+            | ClientOperation::CatchUp { .. } => Err(OperationRefused::Unsupported),
+        }
     }
 
     fn show(&self, parts: Parts, view: &mut ClientView) {

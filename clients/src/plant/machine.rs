@@ -17,6 +17,7 @@ use super::follower::Follower;
 use super::part::{Moment, Part, PartMemory, Unbuilt};
 use super::placement::Placement;
 use super::scene::failures::FoundMode;
+use super::scene::parameters::{FoundParameter, ParameterRefused};
 use super::scene::{Scene, model};
 use super::sensor::Sensor;
 use super::setpoint::Setpoint;
@@ -143,6 +144,38 @@ impl Machine {
         self.parts[component].repair(mode)
     }
 
+    /// Gives a parameter another value, by its text, or the scene's own again.
+    ///
+    /// # Errors
+    /// A value that the component does not take while it runs, or the scene's own where it has that.
+    pub(super) fn change(
+        &mut self,
+        scene: &Scene,
+        found: FoundParameter,
+        to: Option<&str>,
+    ) -> Result<(), ParameterRefused> {
+        let FoundParameter { component, parameter } = found;
+        let (part, described) = (&mut self.parts[component], &scene.components[component]);
+        let named = || (described.name.clone(), described.kind.parameters[parameter].key.to_string());
+        let to = match to {
+            Some(text) => Some(scene.read_parameter(found, text, &part.settings(described))?),
+            None if part.has_changed(parameter) => {
+                // What the others have become meanwhile may not go with the scene's own value any more.
+                let own = described.settings[parameter].text();
+                scene.read_parameter(found, &own, &part.settings(described))?;
+                None
+            }
+            None => {
+                let (component, parameter) = named();
+                return Err(ParameterRefused::Unchanged { component, parameter });
+            }
+        };
+        part.change(described, parameter, to).map_err(|compiled| {
+            let ((component, parameter), why) = (named(), compiled.to_string());
+            ParameterRefused::Fixed { component, parameter, why }
+        })
+    }
+
     /// Takes a state in; it must fit in every part before any part takes its own.
     ///
     /// # Errors
@@ -152,7 +185,7 @@ impl Machine {
         self.world.physics = physics;
         self.world.restore_coordinates(memory.articulation)?;
         for ((part, described), memory) in self.parts.iter_mut().zip(&scene.components).zip(memory.parts) {
-            part.restore(memory, &described.name)?;
+            part.restore(memory, described)?;
         }
         for (channels, memory) in self.channels.iter_mut().flatten().zip(memory.channels.into_iter().flatten()) {
             channels.restore(memory);
@@ -179,7 +212,7 @@ impl Machine {
         }
         self.world.check(physics)?;
         for ((part, described), memory) in self.parts.iter().zip(&scene.components).zip(&memory.parts) {
-            part.check(memory, &described.name)?;
+            part.check(memory, described)?;
         }
         let mut channels = self.channels.iter().flatten().zip(memory.channels.iter().flatten());
         if channels.all(|(one, memory)| one.fits(memory)) {

@@ -92,4 +92,4 @@ pub use file_place::{Place, Source};
 pub use form::{Form, Frame, Geometry};
 pub use outline::{Outline, Surface};
 pub use placement::{BodyPose, Placement};
-pub use scene::{Inside, Scene, SceneError, SceneFault, SceneFaultKind, UnknownFailure};
+pub use scene::{Inside, ParameterRefused, Scene, SceneError, SceneFault, SceneFaultKind, UnknownFailure};

@@ -1,5 +1,6 @@
 //! A component of the scene at work: bound to its signals, to other components and to the world.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use onescan_server::client::ClientFault;
@@ -9,9 +10,9 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::command::NumberSlot;
-use super::component::behaviour::{Running, Surroundings};
+use super::component::behaviour::{Compiled, Running, Surroundings};
 use super::component::declare::{Failed, Value};
-use super::component::kind::{Signal, Values};
+use super::component::kind::{Setting, Signal, Values};
 use super::component::origin::{Making, Unmade};
 use super::coordinate::Measured;
 use super::effort::{Effort, Motion};
@@ -131,6 +132,8 @@ pub(super) struct Part {
     given: Vec<Value>,
     /// What has been made to fail while the plant runs, beside what the switches say.
     failed: Failed,
+    /// Parameters that have another value than in the scene, by their places.
+    changed: BTreeMap<usize, Setting>,
 }
 
 /// What a part remembers, as plain data.
@@ -140,6 +143,8 @@ pub(super) struct PartMemory {
     given: Vec<Value>,
     failed: Failed,
     ports: Vec<PortState>,
+    /// Changed parameters, as places and texts.
+    changed: Vec<(u32, String)>,
 }
 
 /// What surrounds a part in a half turn.
@@ -197,6 +202,7 @@ impl Part {
             taken,
             given: kind.outputs.iter().map(|output| Value::zero(output.values)).collect(),
             failed: Failed::default(),
+            changed: BTreeMap::new(),
         })
     }
 
@@ -305,19 +311,54 @@ impl Part {
         std::mem::replace(&mut self.failed, repaired) != repaired
     }
 
+    /// The settings with which it runs, one for each parameter.
+    pub(super) fn settings(&self, described: &model::Component) -> Vec<Setting> {
+        settings(described, &self.changed)
+    }
+
+    /// Gives a parameter another value from the next half turn on, or the scene's own again.
+    ///
+    /// # Errors
+    /// A component that is compiled with its parameters.
+    pub(super) fn change(
+        &mut self,
+        described: &model::Component,
+        parameter: usize,
+        to: Option<Setting>,
+    ) -> Result<(), Compiled> {
+        let mut changed = self.changed.clone();
+        match to {
+            Some(setting) => drop(changed.insert(parameter, setting)),
+            None => drop(changed.remove(&parameter)),
+        }
+        self.running.tune(&settings(described, &changed))?;
+        self.changed = changed;
+        Ok(())
+    }
+
+    /// Whether a parameter has another value than in the scene.
+    pub(super) fn has_changed(&self, parameter: usize) -> bool {
+        self.changed.contains_key(&parameter)
+    }
+
     /// # Errors
     /// A state that does not go into bytes, which no kind has: each is plain data.
     pub(super) fn memory(&self) -> Result<PartMemory, postcard::Error> {
         let ports = self.ports.iter().map(|port| port.state().clone()).collect();
-        Ok(PartMemory { state: self.running.save()?, given: self.given.clone(), failed: self.failed, ports })
+        // a kind has a handful of parameters
+        let changed = self.changed.iter().map(|(place, setting)| (*place as u32, setting.text())).collect();
+        Ok(PartMemory { state: self.running.save()?, given: self.given.clone(), failed: self.failed, ports, changed })
     }
 
-    /// Checks that a memory is one of such a part; `name` is the part in the refusal.
+    /// Checks that a memory is one of such a part.
     ///
     /// # Errors
     /// A memory of another part.
-    pub(super) fn check(&self, memory: &PartMemory, name: &str) -> Result<(), Misfit> {
-        let foreign = |why: &str| Misfit(format!("component `{name}`: {why}"));
+    pub(super) fn check(&self, memory: &PartMemory, described: &model::Component) -> Result<(), Misfit> {
+        let foreign = |why: &str| Misfit(format!("component `{}`: {why}", described.name));
+        if changed(described, memory).is_none() {
+            return Err(foreign("its changed parameters are others"));
+        }
         if !self.given.iter().map(Value::values).eq(memory.given.iter().map(Value::values)) {
             return Err(foreign("its outputs are others"));
         }
@@ -328,11 +369,18 @@ impl Part {
         self.running.check(&memory.state).map_err(|error| foreign(&error.to_string()))
     }
 
-    /// Takes a memory in; `name` is the part in the refusal.
+    /// Takes a memory in.
     ///
     /// # Errors
     /// A memory that [`check`](Self::check) refuses.
-    pub(super) fn restore(&mut self, memory: PartMemory, name: &str) -> Result<(), Misfit> {
+    pub(super) fn restore(&mut self, memory: PartMemory, described: &model::Component) -> Result<(), Misfit> {
+        let name = &described.name;
+        let changed = changed(described, &memory).unwrap_or_default();
+        if self.changed != changed {
+            let tuned = self.running.tune(&settings(described, &changed));
+            tuned.map_err(|error| Misfit(format!("component `{name}`: {error}")))?;
+            self.changed = changed;
+        }
         let taken = self.running.restore(&memory.state);
         taken.map_err(|error| Misfit(format!("component `{name}`: {error}")))?;
         for (port, state) in self.ports.iter_mut().zip(memory.ports) {
@@ -382,6 +430,22 @@ impl Part {
         }
         Surroundings { t_v_ns: moment.t_v_ns, dt_s: moment.dt_s, measured: moment.measured, failed }
     }
+}
+
+/// The settings of a component with some parameters changed.
+fn settings(described: &model::Component, changed: &BTreeMap<usize, Setting>) -> Vec<Setting> {
+    let own = described.settings.iter().enumerate();
+    own.map(|(place, setting)| *changed.get(&place).unwrap_or(setting)).collect()
+}
+
+/// The changed parameters of a memory; nothing if they are not those of such a component.
+fn changed(described: &model::Component, memory: &PartMemory) -> Option<BTreeMap<usize, Setting>> {
+    let parameters = &described.kind.parameters;
+    let setting = |(place, text): &(u32, String)| {
+        let place = usize::try_from(*place).ok()?;
+        Some((place, parameters.get(place)?.form.read_text(text)?))
+    };
+    memory.changed.iter().map(setting).collect()
 }
 
 /// The ports of a component: the first of its inputs and outputs that are lines are the first port, and so on.

@@ -422,7 +422,10 @@ impl Client for SoftPlcClient {
             ClientOperation::CatchUp { task, by } => {
                 self.plc.catch_up(task.as_deref(), *by).map_err(|error| refused(&error))
             }
-            ClientOperation::Fail { .. } | ClientOperation::Repair { .. } => Err(OperationRefused::Unsupported),
+            ClientOperation::Fail { .. }
+            | ClientOperation::Repair { .. }
+            | ClientOperation::ChangeParameter { .. }
+            | ClientOperation::RestoreParameter { .. } => Err(OperationRefused::Unsupported),
         }
     }
 

@@ -21,6 +21,7 @@ mod mechanism;
 mod meshes;
 mod motion;
 mod own_kinds;
+mod parameters;
 mod robots;
 mod robustness;
 mod sensors;

@@ -100,6 +100,7 @@ impl Scenario {
                 let tried = self.clone().with_case(catalogue, case)?;
                 if let Some(of_case) = tried.applied() {
                     applied.failures.extend(of_case.failures.iter().cloned());
+                    applied.parameters.extend(of_case.parameters.iter().cloned());
                     applied.variables.extend(of_case.variables.iter().cloned());
                     applied.tasks.extend(of_case.tasks.iter().cloned());
                 }
@@ -167,7 +168,12 @@ fn lasts(operation: &Operation) -> bool {
     use Operation as O;
     matches!(
         operation,
-        O::Force { .. } | O::Disturb { .. } | O::Fail { .. } | O::ForceVariable { .. } | O::Postpone { .. }
+        O::Force { .. }
+            | O::Disturb { .. }
+            | O::Fail { .. }
+            | O::ChangeParameter { .. }
+            | O::ForceVariable { .. }
+            | O::Postpone { .. }
     )
 }
 
@@ -176,7 +182,12 @@ fn ends(operation: &Operation) -> bool {
     use Operation as O;
     matches!(
         operation,
-        O::Release { .. } | O::Mend { .. } | O::Repair { .. } | O::ReleaseVariable { .. } | O::CatchUp { .. }
+        O::Release { .. }
+            | O::Mend { .. }
+            | O::Repair { .. }
+            | O::RestoreParameter { .. }
+            | O::ReleaseVariable { .. }
+            | O::CatchUp { .. }
     )
 }
 

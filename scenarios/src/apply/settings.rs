@@ -176,6 +176,21 @@ impl Scenario {
         Ok(())
     }
 
+    /// Refuses parameters that plant `name` does not have, and values that they do not take while it runs.
+    pub(crate) fn check_parameters(
+        &self,
+        name: &ClientName,
+        scene: &onescan_clients::plant::Scene,
+    ) -> Result<(), ScenarioError> {
+        let Some(applied) = self.applied() else { return Ok(()) };
+        for at in applied.parameters.iter().filter(|at| at.client == *name) {
+            scene
+                .check_parameter(&at.component, &at.parameter, &at.value)
+                .map_err(|refused| wrong_case(applied, refused.to_string(), at.place.clone(), None))?;
+        }
+        Ok(())
+    }
+
     /// Refuses failures of components that plant `name` does not have.
     pub(crate) fn check_failures(
         &self,

@@ -14,9 +14,9 @@ use onescan_server::timeline::{Scheduled, When};
 use toml::{Spanned, Value};
 
 use super::period::{Period, PeriodKeys, period, period_keys};
-use crate::case::file::{CaseFile, FaultFile, TaskFile, VariableFile};
+use crate::case::file::{CaseFile, FaultFile, ParameterFile, TaskFile, VariableFile};
 use crate::case::value::{bytes_of, literal_of};
-use crate::case::{Applied, Catalogue, FailureAt, TaskAt, VariableAt};
+use crate::case::{Applied, Catalogue, FailureAt, ParameterAt, TaskAt, VariableAt};
 use crate::error::ScenarioError;
 use crate::expect::KnownSignal;
 use crate::file::ClientFile;
@@ -90,6 +90,19 @@ impl Scenario {
                 let mend = Operation::Mend { signal: signal.clone() };
                 between(&mut timeline, period.clone(), Operation::Disturb { signal, fault }, mend);
             }
+        }
+        for parameter in &entry.parameters {
+            let period = ends(period_keys!(parameter.get_ref(), parameter.span()))?;
+            let at = self.parameter(catalogue, parameter)?;
+            let ParameterAt { client, component, parameter, value, .. } = at.clone();
+            let restore = Operation::RestoreParameter {
+                client: client.clone(),
+                component: component.clone(),
+                parameter: parameter.clone(),
+            };
+            let change = Operation::ChangeParameter { client, component, parameter, value };
+            between(&mut timeline, period, change, restore);
+            applied.parameters.push(at);
         }
         for variable in &entry.variables {
             self.variable(catalogue, variable, &known, &mut timeline, &mut applied.variables)?;
@@ -182,6 +195,25 @@ impl Scenario {
         Ok(FailureAt { client, component: component.get_ref().clone(), mode: mode.get_ref().clone(), place })
     }
 
+    /// Which parameter changes, and its value.
+    fn parameter(&self, catalogue: &Catalogue, entry: &Spanned<ParameterFile>) -> Result<ParameterAt, ScenarioError> {
+        let ParameterFile { client, component, parameter, value, .. } = entry.get_ref();
+        let what = ("plant", "whose parameters could change", component.span());
+        let is_plant = |client: &ClientFile| matches!(client, ClientFile::Plant { .. });
+        let client = self.chosen(catalogue, client.as_ref(), is_plant, what)?;
+        let Some(text) = literal_of(value.get_ref()) else {
+            let message = "a parameter takes a number, `true` or `false`, or a word".to_owned();
+            return Err(catalogue.wrong(message, Some(value.span()), None));
+        };
+        Ok(ParameterAt {
+            client,
+            component: component.get_ref().clone(),
+            parameter: parameter.get_ref().clone(),
+            value: text,
+            place: entry.span(),
+        })
+    }
+
     fn variable(
         &self,
         catalogue: &Catalogue,
@@ -268,6 +300,8 @@ fn told(operation: &Operation) -> String {
         Operation::Mend { signal } => format!("{signal} mended"),
         Operation::Fail { component, mode, .. } => format!("{component} fails: {mode}"),
         Operation::Repair { component, mode, .. } => format!("{component} works again: {mode}"),
+        Operation::ChangeParameter { component, parameter, value, .. } => format!("{component}.{parameter} = {value}"),
+        Operation::RestoreParameter { component, parameter, .. } => format!("{component}.{parameter} as before"),
         Operation::WriteVariable { variable, value, .. } => format!("{variable} set to {value}"),
         Operation::ForceVariable { variable, value, .. } => format!("{variable} held at {value}"),
         Operation::ReleaseVariable { variable, .. } => format!("{variable} let go"),

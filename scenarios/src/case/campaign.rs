@@ -7,8 +7,8 @@ use onescan_server::time::VirtualTime;
 use toml::Spanned;
 
 use super::Case;
-use super::campaign_file::{ActivationFile, CampaignFaultFile, CampaignFile, CampaignVerdict, FaultKind};
-use super::file::{CaseFile, FaultFile, ForceFile, VariableFile};
+use super::campaign_file::{ActivationFile, CampaignFaultFile, CampaignFile, CampaignVerdict, FaultKind, ProgramFile};
+use super::file::{CaseFile, FaultFile, ForceFile, ParameterFile, VariableFile};
 use super::matrix::COMBINATIONS_MAX;
 use crate::arrays::Wrong;
 
@@ -30,14 +30,23 @@ pub struct Campaign {
     /// The run without faults for each combination of the matrix and each program, and what that adds to names; one
     /// without any. The program of the scenario comes first, before the others with the same combination.
     pub variants: Vec<(String, Case)>,
-    /// The names of the programs beside that of the scenario, in the order of the file.
-    pub programs: Vec<String>,
+    /// The programs beside that of the scenario, in the order of the file, then mutants.
+    pub programs: Vec<CampaignProgram>,
     /// A case for each fault, activation and variant: all of the first fault, then those of the second; the variant changes
     /// fastest.
     pub cases: Vec<Case>,
     /// The verdicts with which it is passed.
     pub accepted: Vec<CampaignVerdict>,
     pub(crate) file: CampaignFile,
+}
+
+/// A program of a campaign.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CampaignProgram {
+    /// Its name.
+    pub name: String,
+    /// What it is.
+    pub about: Option<String>,
 }
 
 /// A fault of a campaign.
@@ -67,10 +76,15 @@ pub(crate) fn is_name(name: &str) -> bool {
 }
 
 /// The campaign of `file`, which is the one of this number in its file, and whose faults come to these variants.
-pub(super) fn expanded(file: &CampaignFile, variants: Vec<(String, Case)>, number: usize) -> Result<Campaign, Wrong> {
+pub(super) fn expanded(
+    file: &CampaignFile,
+    variants: Vec<(String, Case)>,
+    programs: &[Spanned<ProgramFile>],
+    number: usize,
+) -> Result<Campaign, Wrong> {
     names(file.faults.iter().map(|fault| &fault.get_ref().name), "faults")?;
     names(file.activations.iter().map(|activation| &activation.get_ref().name), "activations")?;
-    names(file.program.iter().map(|program| &program.get_ref().name), "programs")?;
+    names(programs.iter().map(|program| &program.get_ref().name), "programs")?;
     let place = file.name.span();
     if file.faults.is_empty() || file.activations.is_empty() {
         let what = if file.faults.is_empty() { "fault" } else { "activation" };
@@ -97,6 +111,8 @@ pub(super) fn expanded(file: &CampaignFile, variants: Vec<(String, Case)>, numbe
             }));
         }
     }
+    let program =
+        |program: &ProgramFile| CampaignProgram { name: program.name.get_ref().clone(), about: program.about.clone() };
     let fault = |fault: &Spanned<CampaignFaultFile>| {
         let CampaignFaultFile { name, kind, about, .. } = fault.get_ref();
         CampaignFault { name: name.get_ref().clone(), kind: *kind, about: about.clone() }
@@ -107,7 +123,7 @@ pub(super) fn expanded(file: &CampaignFile, variants: Vec<(String, Case)>, numbe
         faults: file.faults.iter().map(fault).collect(),
         activations: file.activations.iter().map(|one| one.get_ref().name.get_ref().clone()).collect(),
         variants,
-        programs: file.program.iter().map(|program| program.get_ref().name.get_ref().clone()).collect(),
+        programs: programs.iter().map(|one| program(one.get_ref())).collect(),
         cases,
         accepted: file.accept.clone().unwrap_or_else(|| ACCEPTED.to_vec()),
         file: file.clone(),
@@ -128,7 +144,7 @@ impl Campaign {
     /// The name of a variant's program, if it is not the scenario's own.
     pub fn program_of(&self, variant: usize) -> Option<&str> {
         let number = (variant % (self.programs.len() + 1)).checked_sub(1)?;
-        self.programs.get(number).map(String::as_str)
+        self.programs.get(number).map(|program| program.name.as_str())
     }
 
     /// The files of all programs, as they are named: relative to the scenario. Those of several variants come several times.
@@ -217,19 +233,23 @@ fn put(
             return Err(wrong(message, place, "write one of them"));
         }
     };
-    match (&fault.fault, &fault.force, &fault.disturbance, &fault.variable) {
-        (Some(fault), None, None, None) => entry.faults.push(timed!(fault, activation, FaultFile)),
-        (None, Some(force), None, None) => entry.forces.push(timed!(force, activation, ForceFile)),
-        (None, None, Some(disturbance), None) => {
+    let CampaignFaultFile { fault: failure, force, disturbance, parameter, variable, .. } = fault;
+    match (failure, force, disturbance, parameter, variable) {
+        (Some(failure), None, None, None, None) => entry.faults.push(timed!(failure, activation, FaultFile)),
+        (None, Some(force), None, None, None) => entry.forces.push(timed!(force, activation, ForceFile)),
+        (None, None, Some(disturbance), None, None) => {
             entry.disturbances.push(timed!(disturbance, activation, DisturbanceFile));
         }
-        (None, None, None, Some(variable)) if variable.get_ref().at.is_some() => {
+        (None, None, None, Some(parameter), None) => {
+            entry.parameters.push(timed!(parameter, activation, ParameterFile));
+        }
+        (None, None, None, None, Some(variable)) if variable.get_ref().at.is_some() => {
             return Err(said_twice(variable.span()));
         }
-        (None, None, None, Some(variable)) => entry.variables.push(timed!(variable, activation, VariableFile)),
+        (None, None, None, None, Some(variable)) => entry.variables.push(timed!(variable, activation, VariableFile)),
         _ => {
             let message = format!("what fault `{}` does is not said, or said twice", fault.name.get_ref());
-            let help = "write one of `fault`, `force`, `disturbance` and `variable`";
+            let help = "write one of `fault`, `force`, `disturbance`, `parameter` and `variable`";
             return Err(wrong(message, fault.name.span(), help));
         }
     }

@@ -1,12 +1,15 @@
 //! `[[campaign]]` of `cases.toml` as it is written.
 
+use std::num::NonZeroU32;
+
+use onescan_plc_shim::mutate::MutantKind;
 use onescan_server::signal::SignalName;
 use onescan_server::time::{TimeSpan, VirtualTime};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
-use super::file::{CodeFile, DisturbanceFile, FaultFile, ForceFile, VariableFile};
+use super::file::{CodeFile, DisturbanceFile, FaultFile, ForceFile, ParameterFile, VariableFile};
 use crate::form::{CaseName, Matrix, Name, Ordinal, Time, from_optional_text};
 
 /// One `[[campaign]]`: every fault is tried with every activation.
@@ -33,6 +36,9 @@ pub struct CampaignFile {
     #[serde(default)]
     #[schemars(with = "Vec<ProgramFile>")]
     pub program: Vec<Spanned<ProgramFile>>,
+    /// Programs with one small mistake each, tried as those of `program` are.
+    #[schemars(with = "Option<MutantsFile>")]
+    pub mutants: Option<Spanned<MutantsFile>>,
     /// What fails.
     #[serde(default, rename = "fault")]
     #[schemars(with = "Vec<CampaignFaultFile>")]
@@ -72,7 +78,54 @@ pub struct ProgramFile {
     pub code: Vec<Spanned<CodeFile>>,
 }
 
-/// One fault of a campaign: exactly one of `fault`, `force`, `disturbance` and `variable`, without times.
+/// The mutants of a campaign: small mistakes in the programs of its soft PLCs, as `onescan mutate` makes them.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MutantsFile {
+    /// The soft PLC; all if absent.
+    #[schemars(with = "Option<Name>")]
+    pub client: Option<Spanned<String>>,
+    /// What is changed; everything if empty.
+    #[serde(default)]
+    #[schemars(with = "Vec<MutantWord>")]
+    pub kinds: Vec<Spanned<MutantWord>>,
+    /// So many of them, drawn by `seed`; all if absent.
+    #[schemars(with = "Option<Ordinal>")]
+    pub each: Option<NonZeroU32>,
+    /// By what they are drawn.
+    #[serde(default)]
+    pub seed: u64,
+}
+
+/// What is changed in a mutant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum MutantWord {
+    /// An operator.
+    Operator,
+    /// A literal.
+    Constant,
+    /// What decides.
+    Condition,
+    /// A statement is left out.
+    Statement,
+    /// A timer or another standard block is of another kind.
+    Timer,
+}
+
+impl MutantWord {
+    pub(super) fn kind(self) -> MutantKind {
+        match self {
+            Self::Operator => MutantKind::Operator,
+            Self::Constant => MutantKind::Constant,
+            Self::Condition => MutantKind::Condition,
+            Self::Statement => MutantKind::Statement,
+            Self::Timer => MutantKind::Timer,
+        }
+    }
+}
+
+/// One fault of a campaign: exactly one of `fault`, `force`, `disturbance`, `parameter` and `variable`, without times.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CampaignFaultFile {
@@ -92,6 +145,9 @@ pub struct CampaignFaultFile {
     /// Signals that do not arrive as they were sent, as in `[[case.disturbance]]`.
     #[schemars(with = "Option<DisturbanceFile>")]
     pub disturbance: Option<Spanned<DisturbanceFile>>,
+    /// A parameter of a plant that changes, as in `[[case.parameter]]`.
+    #[schemars(with = "Option<ParameterFile>")]
+    pub parameter: Option<Spanned<ParameterFile>>,
     /// A variable of a PLC that is forced, as in `[[case.variable]]`.
     #[schemars(with = "Option<VariableFile>")]
     pub variable: Option<Spanned<VariableFile>>,

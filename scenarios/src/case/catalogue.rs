@@ -11,10 +11,11 @@ use toml::de::{DeTable, DeValue};
 use toml::{Spanned, Value};
 
 use super::campaign::{self, Campaign};
-use super::campaign_file::CampaignFile;
+use super::campaign_file::{CampaignFile, ProgramFile};
 use super::cases_file::{CasesFile, SnapshotFile, VERSION};
 use super::file::CaseFile;
 use super::matrix::{Axis, COMBINATIONS_MAX, combinations};
+use super::mutants::{self, NoMutants};
 use super::{Case, DEFAULT, Setting};
 use crate::arrays;
 use crate::error::{ScenarioError, wrong};
@@ -90,8 +91,10 @@ impl Catalogue {
                 return Err(this.wrong(message, Some(name.span()), None));
             }
             let base = this.base(entry, &cases)?;
-            let variants = this.variants(entry, base, &this.axes(places.leaves("campaign", number, "matrix"))?)?;
-            let expanded = campaign::expanded(entry, variants, number);
+            let programs = this.programs(entry)?;
+            let axes = this.axes(places.leaves("campaign", number, "matrix"))?;
+            let variants = this.variants(entry, base, &axes, &programs)?;
+            let expanded = campaign::expanded(entry, variants, &programs, number);
             campaigns.push(expanded.map_err(|found| this.wrong(found.message, found.place, found.help))?);
         }
         Ok(Self { file, cases, campaigns, ..this })
@@ -106,12 +109,26 @@ impl Catalogue {
         })
     }
 
+    /// The programs that a campaign tries beside that of the scenario: those that are written, then the mutants.
+    fn programs(&self, campaign: &CampaignFile) -> Result<Vec<Spanned<ProgramFile>>, ScenarioError> {
+        let mut programs = campaign.program.clone();
+        if let Some(wanted) = &campaign.mutants {
+            let mutants = mutants::programs(wanted, &super::scenario_beside(&self.path));
+            programs.extend(mutants.map_err(|none| match none {
+                NoMutants::Scenario(error) => error,
+                NoMutants::Wrong(message, place, help) => self.wrong(message, Some(place), help),
+            })?);
+        }
+        Ok(programs)
+    }
+
     /// The case to which the faults of a campaign come with each combination of its matrix, and what that adds to names.
     fn variants(
         &self,
         campaign: &CampaignFile,
         mut base: Case,
         axes: &[Axis],
+        others: &[Spanned<ProgramFile>],
     ) -> Result<Vec<(String, Case)>, ScenarioError> {
         base.until = campaign.until.or(base.until);
         let Some(combinations) = combinations(axes) else {
@@ -120,7 +137,7 @@ impl Catalogue {
             return Err(self.wrong(message, Some(campaign.name.span()), None));
         };
         let mut programs = vec![(String::new(), Vec::new())];
-        for program in campaign.program.iter().map(Spanned::get_ref) {
+        for program in others.iter().map(Spanned::get_ref) {
             programs.push((format!(",program={}", program.name.get_ref()), program.code.clone()));
         }
         let mut variants = Vec::with_capacity(combinations.len() * programs.len());

@@ -57,6 +57,10 @@ pub struct CaseFile {
     #[serde(default, rename = "variable")]
     #[schemars(with = "Vec<VariableFile>")]
     pub variables: Vec<Spanned<VariableFile>>,
+    /// Parameters of plants that change while it runs.
+    #[serde(default, rename = "parameter")]
+    #[schemars(with = "Vec<ParameterFile>")]
+    pub parameters: Vec<Spanned<ParameterFile>>,
     /// Tasks of PLCs that run late.
     #[serde(default, rename = "task")]
     #[schemars(with = "Vec<TaskFile>")]
@@ -89,6 +93,7 @@ impl CaseFile {
             faults: Vec::new(),
             forces: Vec::new(),
             disturbances: Vec::new(),
+            parameters: Vec::new(),
             variables: Vec::new(),
             tasks: Vec::new(),
             code: Vec::new(),
@@ -209,6 +214,42 @@ pub struct VariableFile {
     #[schemars(with = "Option<Ordinal>")]
     pub nth: Option<Spanned<u32>>,
     /// How long it is forced.
+    #[serde(default, rename = "for", deserialize_with = "from_optional_text")]
+    #[schemars(with = "Option<Time>")]
+    pub lasting: Option<TimeSpan>,
+}
+
+/// A parameter of a component has another value for a time: wear, a setting that somebody turned, a supply that gave way.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ParameterFile {
+    /// The plant, if there are several.
+    #[schemars(with = "Option<Name>")]
+    pub client: Option<Spanned<String>>,
+    /// The component.
+    #[schemars(with = "String")]
+    pub component: Spanned<String>,
+    /// The parameter: one of those that `onescan components KIND` lists.
+    #[schemars(with = "String")]
+    pub parameter: Spanned<String>,
+    /// A value that the parameter takes: `0.08`, `true`, `"nc"`.
+    #[schemars(with = "Scalar")]
+    pub value: Spanned<toml::Value>,
+    /// From when; from the start if absent. With `when`: from when on the condition counts.
+    #[serde(default, deserialize_with = "from_optional_text")]
+    #[schemars(with = "Option<Time>")]
+    pub from: Option<VirtualTime>,
+    /// Until when; never ends if absent. Not together with `when` or `for`.
+    #[serde(default, deserialize_with = "from_optional_text")]
+    #[schemars(with = "Option<Time>")]
+    pub until: Option<VirtualTime>,
+    /// A condition on signals, now and in the past: it begins in the step after the condition has come true.
+    #[schemars(with = "Option<String>")]
+    pub when: Option<Spanned<String>>,
+    /// Which time that the condition comes true; the first if absent.
+    #[schemars(with = "Option<Ordinal>")]
+    pub nth: Option<Spanned<u32>>,
+    /// How long it lasts.
     #[serde(default, rename = "for", deserialize_with = "from_optional_text")]
     #[schemars(with = "Option<Time>")]
     pub lasting: Option<TimeSpan>,

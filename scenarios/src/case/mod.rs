@@ -22,6 +22,7 @@ pub mod cases_file;
 pub mod catalogue;
 pub mod file;
 pub mod matrix;
+mod mutants;
 pub mod value;
 pub mod written;
 
@@ -55,6 +56,15 @@ pub fn beside(path: &Path) -> PathBuf {
     }
     let own = path.file_stem().map(|name| path.with_file_name(format!("{}{OWN_ENDING}", name.to_string_lossy())));
     own.filter(|own| own.is_file()).unwrap_or_else(|| path.with_file_name(FILE_NAME))
+}
+
+/// The scenario beside which these cases are: that of `FILE.cases.toml` is `FILE.toml`.
+pub(crate) fn scenario_beside(cases: &Path) -> PathBuf {
+    let own = cases.file_name().and_then(|name| name.to_str()?.strip_suffix(OWN_ENDING));
+    own.map_or_else(
+        || cases.parent().unwrap_or(Path::new("")).to_owned(),
+        |own| cases.with_file_name(format!("{own}.toml")),
+    )
 }
 
 /// A value that a case sets, by the path of what it sets.
@@ -102,6 +112,8 @@ pub struct Applied {
     pub injected: Vec<Scheduled>,
     /// Failures of components, which can be checked only when their plants are read.
     pub failures: Vec<FailureAt>,
+    /// Parameters that change, which can be checked only when their plants are read.
+    pub parameters: Vec<ParameterAt>,
     /// Variables that it writes or forces, which can be checked only when their PLCs are made.
     pub variables: Vec<VariableAt>,
     /// Tasks that run late, which can be checked only when their PLCs are made.
@@ -121,6 +133,21 @@ pub struct FailureAt {
     pub component: String,
     /// How it fails.
     pub mode: String,
+    /// Where it stands in `cases.toml`.
+    pub place: Range<usize>,
+}
+
+/// A parameter's value in a case.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ParameterAt {
+    /// The plant.
+    pub client: ClientName,
+    /// The component.
+    pub component: String,
+    /// The parameter.
+    pub parameter: String,
+    /// Its value, as text.
+    pub value: String,
     /// Where it stands in `cases.toml`.
     pub place: Range<usize>,
 }

@@ -21,6 +21,8 @@ pub enum List {
     Force,
     /// Signals that do not arrive as they were sent.
     Disturbance,
+    /// Parameters of plants that change while it runs.
+    Parameter,
     /// Variables of PLCs that are forced or written.
     Variable,
     /// Tasks of PLCs that run late.
@@ -30,8 +32,17 @@ pub enum List {
 }
 
 impl List {
-    const ALL: [Self; 8] =
-        [Self::Set, Self::Input, Self::Fault, Self::Force, Self::Disturbance, Self::Variable, Self::Task, Self::Code];
+    const ALL: [Self; 9] = [
+        Self::Set,
+        Self::Input,
+        Self::Fault,
+        Self::Force,
+        Self::Disturbance,
+        Self::Parameter,
+        Self::Variable,
+        Self::Task,
+        Self::Code,
+    ];
 
     /// The key of `[[case]]` that holds it.
     pub fn key(self) -> &'static str {
@@ -41,6 +52,7 @@ impl List {
             Self::Fault => "fault",
             Self::Force => "force",
             Self::Disturbance => "disturbance",
+            Self::Parameter => "parameter",
             Self::Variable => "variable",
             Self::Task => "task",
             Self::Code => "code",
@@ -71,7 +83,7 @@ impl Entry {
 }
 
 /// Keys in the order in which people write them.
-const ORDER: [&str; 24] = [
+const ORDER: [&str; 25] = [
     "client",
     "source",
     "line",
@@ -80,6 +92,7 @@ const ORDER: [&str; 24] = [
     "is",
     "component",
     "mode",
+    "parameter",
     "signal",
     "signals",
     "variable",

@@ -12,7 +12,7 @@ use thiserror::Error;
 
 use super::declare::{Failed, FailureSet, ParameterSet, SignalSet, Value};
 use super::dynamics::substeps;
-use super::kind::{Dependence, Frames, Kind, Signal};
+use super::kind::{Dependence, Frames, Kind, Parameter, Setting, Signal};
 use crate::plant::coordinate::Measured;
 use crate::plant::coupling::{Coupling, Tie, Unbound};
 use crate::plant::effort::{Effort, Motion};
@@ -35,6 +35,8 @@ pub(crate) trait Component: Sized + Send + 'static {
     const DEPENDENCES: &'static [Dependence] = &[];
     /// Which of its signals a scene may bind together.
     const FRAMES: Frames = Frames::NONE;
+    /// The parameters that it only begins with, by their keys.
+    const INITIAL: &'static [&'static str] = &[];
     /// Whether it has no `drive`, so that it need not look at the world before that has moved.
     const ONLY_SENSES: bool = false;
     /// What describes one of its kind.
@@ -179,12 +181,31 @@ pub(crate) trait Running: Send {
     fn advance(&mut self, motion: Motion, dt_s: f64) -> Effort;
     /// What it would exert at the end of a step in which its joint moves so; the state stays.
     fn foresee(&self, motion: Motion, dt_s: f64) -> Effort;
+    /// Takes other values of its parameters, one for each, and keeps its state.
+    ///
+    /// # Errors
+    /// A component that is compiled with its parameters.
+    fn tune(&mut self, settings: &[Setting]) -> Result<(), Compiled>;
     /// The state as bytes.
     fn save(&self) -> postcard::Result<Vec<u8>>;
     /// Checks that bytes are a state of such a component.
     fn check(&self, bytes: &[u8]) -> Result<(), StateError>;
     /// Takes the state in that [`check`](Self::check) accepts.
     fn restore(&mut self, bytes: &[u8]) -> Result<(), StateError>;
+}
+
+/// A component's parameters are compiled with it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error("its parameters are constants of its program")]
+pub(crate) struct Compiled;
+
+/// What the world is built with, of some parameters.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Built {
+    /// The way that the component's own stops leave to a joint, m or rad.
+    pub(crate) stops: Option<[f64; 2]>,
+    /// How its ports send.
+    pub(crate) ports: Vec<Form>,
 }
 
 /// Why bytes are no state of a component.
@@ -286,6 +307,11 @@ impl<C: Component> Running for Runner<C> {
         effort
     }
 
+    fn tune(&mut self, settings: &[Setting]) -> Result<(), Compiled> {
+        self.component = C::new(C::Parameters::read(settings));
+        Ok(())
+    }
+
     fn save(&self) -> postcard::Result<Vec<u8>> {
         postcard::to_stdvec(&(&self.state, self.tie.memory()))
     }
@@ -310,13 +336,20 @@ pub(super) fn kind<C: Component>() -> Kind {
         formula: C::FORMULA,
         source: C::SOURCE.into(),
         coupling: Coupling::of::<C::Tie>(),
-        parameters: C::Parameters::table(),
+        parameters: parameters::<C>(),
         inputs: inputs::<C>(),
         outputs: C::Outputs::table(),
         dependences: C::DEPENDENCES,
         frames: C::FRAMES,
         failures: C::Failure::table(),
     }
+}
+
+/// The parameters of a kind.
+fn parameters<C: Component>() -> Vec<Parameter> {
+    let is_initial = |key: &str| C::INITIAL.contains(&key);
+    let all = C::Parameters::table().into_iter();
+    all.map(|parameter| Parameter { initial: is_initial(&parameter.key), ..parameter }).collect()
 }
 
 /// The inputs of a kind, with what they are if nobody drives them.

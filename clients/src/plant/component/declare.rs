@@ -88,6 +88,7 @@ macro_rules! parameters {
                         <$ty as $crate::plant::component::declare::ParameterType>::form(bounds)
                     },
                     preset: <$ty as $crate::plant::component::declare::ParameterType>::write($preset),
+                    initial: false,
                 }, )* ]
             }
 

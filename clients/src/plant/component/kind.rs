@@ -98,6 +98,9 @@ pub struct Parameter {
     pub form: Form,
     /// What it is if the scene does not say.
     pub preset: Setting,
+    /// Whether a component only begins with it: it means nothing once the plant runs.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub initial: bool,
 }
 
 /// What a parameter may be.
@@ -139,6 +142,17 @@ impl Form {
         }
     }
 
+    /// The setting that a text gives, if it is allowed: `0.08`, `TRUE`, a word.
+    pub(crate) fn read_text(&self, text: &str) -> Option<Setting> {
+        let value = match self {
+            Self::Number { .. } => toml::Value::Float(text.parse().ok()?),
+            Self::Count { .. } => toml::Value::Integer(text.parse().ok()?),
+            Self::Flag => toml::Value::Boolean(text.to_ascii_lowercase().parse().ok()?),
+            Self::Choice(_) => toml::Value::String(text.to_owned()),
+        };
+        self.read(&value)
+    }
+
     /// Whether bounds leave every finite number.
     pub(crate) fn is_any(least: f64, most: f64) -> bool {
         least == f64::MIN && most == f64::MAX
@@ -175,6 +189,16 @@ pub enum Setting {
     Flag(bool),
     /// A word.
     Choice(&'static str),
+}
+
+impl Setting {
+    /// As [`Form::read_text`] reads it again.
+    pub(crate) fn text(&self) -> String {
+        match self {
+            Self::Choice(word) => (*word).to_owned(),
+            Self::Number(_) | Self::Count(_) | Self::Flag(_) => self.to_string(),
+        }
+    }
 }
 
 impl std::fmt::Display for Setting {

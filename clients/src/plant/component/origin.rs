@@ -8,7 +8,7 @@ use onescan_server::time::TimeSpan;
 use serde::{Serialize, Serializer};
 use thiserror::Error;
 
-use super::behaviour::{Conflict, Running};
+use super::behaviour::{Built, Conflict, Running};
 use super::declare::Value;
 use super::kind::{Kind, Setting};
 use super::library::{ENTRIES, Entry, kinds};
@@ -91,6 +91,19 @@ impl Origin {
         match &self.0 {
             Source::Library { entry, .. } => (entry.uses)(settings, input),
             Source::Program(_) => true,
+        }
+    }
+
+    /// Whether it is of the user's own, and its parameters are constants of its program.
+    pub(crate) fn is_program(&self) -> bool {
+        matches!(self.0, Source::Program(_))
+    }
+
+    /// What the world is built with, of these settings.
+    pub(crate) fn built(&self, settings: &[Setting]) -> Built {
+        match &self.0 {
+            Source::Library { entry, .. } => (entry.built)(settings),
+            Source::Program(_) => Built::default(),
         }
     }
 

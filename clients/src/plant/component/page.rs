@@ -26,9 +26,10 @@ pub fn page(kind: &Kind) -> String {
     if !kind.parameters.is_empty() {
         page.push_str("\n| parameter | preset | unit | may be | |\n|---|---|---|---|---|\n");
         for parameter in &kind.parameters {
-            let Parameter { key, about, form, preset } = parameter;
+            let Parameter { key, about, form, preset, initial } = parameter;
+            let begins = if *initial { " (at the start only)" } else { "" };
             let unit = unit(key).1.unwrap_or_default();
-            let _ = writeln!(page, "| `{key}` | {preset} | {unit} | {} | {about} |", range(form));
+            let _ = writeln!(page, "| `{key}` | {preset} | {unit} | {} | {about}{begins} |", range(form));
         }
     }
     inputs(&mut page, kind);

@@ -141,6 +141,7 @@
 //! | `robots`, `robot_tables` | robots' files, and the tables that one stands for |
 //! | [`own`] | kinds of component of the user's own |
 //! | `bodies`, `shapes`, `meshes`, `joints`, `fittings`, `couplings`, `axes`, `sensors`, `signals` | the second pass, one sort of table each |
+//! | `parameters` | which of them may change while a plant runs |
 //! | `components`, `bindings`, `failures`, `conditions` | the same, for components and what surrounds them |
 //! | [`model`] | the checked scene |
 //! | [`error`] | what can be wrong |
@@ -166,6 +167,7 @@ mod names;
 mod number;
 pub mod overrides;
 pub mod own;
+pub(super) mod parameters;
 mod placed;
 mod robot_tables;
 mod robots;
@@ -183,6 +185,7 @@ pub use error::{Inside, SceneError, SceneFault, SceneFaultKind, Thing};
 pub use failures::UnknownFailure;
 pub use model::Scene;
 pub use overrides::Override;
+pub use parameters::ParameterRefused;
 
 use bindings::Lookup;
 use faults::Faults;

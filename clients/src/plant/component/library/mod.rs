@@ -20,7 +20,7 @@
 
 use std::sync::LazyLock;
 
-use super::behaviour::{self, Component, Conflict, Running};
+use super::behaviour::{self, Built, Component, Conflict, Running};
 use super::declare::{ParameterSet, SignalSet, Value};
 use super::kind::{Kind, Setting};
 use crate::plant::coupling::Unbound;
@@ -42,6 +42,8 @@ pub(crate) struct Entry {
     pub(crate) start: Starter,
     /// Whether an input, by its place, is of use with these settings.
     pub(crate) uses: fn(&[Setting], usize) -> bool,
+    /// What the world is built with, of these settings.
+    pub(crate) built: fn(&[Setting]) -> Built,
     /// What its inputs hold where nothing is connected.
     pub(crate) unconnected: fn() -> Vec<Value>,
     /// What holds for every kind, tried on this one.
@@ -55,6 +57,11 @@ fn conflict<C: Component>(settings: &[Setting]) -> Option<Conflict> {
 
 fn uses<C: Component>(settings: &[Setting], input: usize) -> bool {
     C::uses(&C::Parameters::read(settings), input)
+}
+
+fn built<C: Component>(settings: &[Setting]) -> Built {
+    let component = C::new(C::Parameters::read(settings));
+    Built { stops: component.stops(), ports: component.ports() }
 }
 
 fn start<C: Component>(
@@ -78,6 +85,7 @@ macro_rules! library {
             conflict: conflict::<$group::$module::$component>,
             start: start::<$group::$module::$component>,
             uses: uses::<$group::$module::$component>,
+            built: built::<$group::$module::$component>,
             unconnected: <$group::$module::$component as Component>::Inputs::unconnected,
             #[cfg(test)]
             laws: super::tests::laws::<$group::$module::$component>,

@@ -117,7 +117,13 @@ impl Interface {
                     return Err(self.wrong(name, cause, None));
                 }
                 let (form, preset) = (Form::Flag, Setting::Flag(false));
-                self.kind.parameters.push(Parameter { key: name.to_owned().into(), about, form, preset });
+                self.kind.parameters.push(Parameter {
+                    key: name.to_owned().into(),
+                    about,
+                    form,
+                    preset,
+                    initial: false,
+                });
             }
             _ => {}
         }

@@ -4,9 +4,9 @@ use onescan_plc_shim::{FaultSite, PlcFault, SoftPlc, VirtualTime};
 use onescan_server::client::{ClientFault, SourcePlace};
 
 use super::socket::Sockets;
-use crate::plant::component::behaviour::{Running, StateError, Surroundings};
+use crate::plant::component::behaviour::{Compiled, Running, StateError, Surroundings};
 use crate::plant::component::declare::Value;
-use crate::plant::component::kind::Kind;
+use crate::plant::component::kind::{Kind, Setting};
 use crate::plant::effort::{Effort, Motion};
 use crate::plant::world::World;
 
@@ -96,6 +96,10 @@ impl Running for Block {
 
     fn foresee(&self, _: Motion, _: f64) -> Effort {
         Effort::of(0.0)
+    }
+
+    fn tune(&mut self, _: &[Setting]) -> Result<(), Compiled> {
+        Err(Compiled)
     }
 
     fn save(&self) -> postcard::Result<Vec<u8>> {

@@ -233,6 +233,7 @@ impl Component for HydraulicCylinder {
         "fed forward: u = A v / (Q_N √(Δp/Δp_N))",
     ];
     const SOURCE: &'static str = "M. Jelali, A. Kroll, Hydraulic Servo-systems, 2003, ch. 4; Nyyssönen 2018, 3.1.4";
+    const INITIAL: &'static [&'static str] = &["initial_m"];
     own_types!(sees Slides);
 
     fn new(p: Parameters) -> Self {

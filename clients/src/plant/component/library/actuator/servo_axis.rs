@@ -352,6 +352,7 @@ impl Component for ServoAxis {
         "L. Biagiotti, C. Melchiorri, Trajectory Planning, 2008, 3.4; PLCopen Motion Control 2.0 (states)";
     const DEPENDENCES: &'static [Dependence] =
         &[Dependence { inputs: &["execute", "home", "jog_forward", "jog_reverse"], on: &["enable"] }];
+    const INITIAL: &'static [&'static str] = &["initial_m"];
     own_types!(sees Slides);
 
     fn new(p: Parameters) -> Self {

@@ -356,6 +356,7 @@ impl Component for ArcBath {
         "bath to scrap k (ϑ_l - ϑ_m), bath to walls G (ϑ_l - ϑ_a)",
     ];
     const SOURCE: &'static str = "balances of mass and energy; sizes: Vergnano et al., 2012, sec. 4";
+    const INITIAL: &'static [&'static str] = &["heel_kg"];
     own_types!();
 
     fn new(p: Parameters) -> Self {

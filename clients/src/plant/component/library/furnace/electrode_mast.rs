@@ -168,6 +168,7 @@ impl Component for ElectrodeMast {
     const FORMULA: &'static [&'static str] =
         &["L = clamp + mast - electrode - surface", "F = k·(-L), broken above a force", "dm/dt = consumption·P"];
     const SOURCE: &'static str = "closed form; electrodes: Vergnano et al., 2012, sec. 4";
+    const INITIAL: &'static [&'static str] = &["start_m"];
     own_types!();
 
     fn new(p: Parameters) -> Self {

@@ -84,6 +84,7 @@ impl Component for Heater {
     const FORMULA: &'static [&'static str] = &["C dϑ/dt = P k - G (ϑ - ϑ_a)"];
     const SOURCE: &'static str = "Newton's law of cooling, in closed form";
     const DEPENDENCES: &'static [Dependence] = &[Dependence { inputs: &["fraction"], on: &["on"] }];
+    const INITIAL: &'static [&'static str] = &["initial_degc"];
     own_types!();
 
     fn new(p: Parameters) -> Self {

@@ -252,6 +252,7 @@ impl Component for KilnHeat {
         "spots A exp(-(x - x_i)²/2σ_x² - R²(φ - φ_i)²/2σ_a²)",
     ];
     const SOURCE: &'static str = "closed form; faults of the process: Jacket, 2009";
+    const INITIAL: &'static [&'static str] = &["start_degc", "coating_start_m", "ring_m"];
     own_types!(moves Heats);
 
     fn new(p: Parameters) -> Self {

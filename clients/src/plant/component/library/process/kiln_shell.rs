@@ -133,6 +133,7 @@ impl Component for KilnShell {
     const FORMULA: &'static [&'static str] =
         &["creep πδ a turn of the shell", "T_shell/T_ring = 1 + δ/D", "switch on for T·width/360°"];
     const SOURCE: &'static str = "closed form; Jacket, 2009, ch. 14";
+    const INITIAL: &'static [&'static str] = &["ring_start_deg", "shell_start_deg"];
     own_types!();
 
     fn new(p: Parameters) -> Self {

@@ -116,6 +116,7 @@ impl Component for Tank {
     const SUMMARY: &'static str = "tank with a filling pump and an outlet valve";
     const FORMULA: &'static [&'static str] = &["A dh/dt = q_in - q_out", "q_in = Q_P k_P", "q_out = μ a k_V √(2 g h)"];
     const SOURCE: &'static str = "E. Torricelli, De motu gravium (1643); flow coefficient: any hydraulics table";
+    const INITIAL: &'static [&'static str] = &["initial_m"];
     own_types!();
 
     fn new(p: Parameters) -> Self {

@@ -86,6 +86,7 @@ impl Component for TemperatureSensor {
     const SUMMARY: &'static str = "resistance thermometer (Pt100) with lag and noise";
     const FORMULA: &'static [&'static str] = &["τ dx/dt = ϑ - x", "y = x + N(0, σ)", "R = R_0 (1 + A y + B y² + C (y - 100) y³ for y < 0)"];
     const SOURCE: &'static str = "IEC 60751:2022, 4.2";
+    const INITIAL: &'static [&'static str] = &["initial_degc"];
     own_types!();
 
     fn new(p: Parameters) -> Self {

@@ -259,6 +259,7 @@ impl Component for CommandAxis {
         ],
         feedback: &["enabled", "in_position", "actual_position", "actual_speed"],
     };
+    const INITIAL: &'static [&'static str] = &["initial_units"];
     own_types!();
 
     fn new(p: Parameters) -> Self {
