@@ -44,8 +44,9 @@ async function open(url) {
   return { page, errors, first_ms: performance.now() - begin };
 }
 
-async function shoot(page, name) {
-  if (folder !== null) await page.screenshot({ path: `${folder}/${name}.png` });
+/** A picture of the page, or of a part of it. */
+async function shoot(part, name) {
+  if (folder !== null) await part.screenshot({ path: `${folder}/${name}.png` });
 }
 
 /** Figures are where the signals have them, and looks are on while their condition holds. */
@@ -73,8 +74,10 @@ async function watch_the_furnace() {
   await page.getByRole("button", { name: "For all" }).click();
   await page.getByRole("tab", { name: "PLC" }).click();
   await page.getByLabel("Source file").selectOption({ label: "Heat" });
-  await page.locator(".drawing .step.active").first().waitFor({ state: "attached" });
-  await shoot(page, "chart");
+  const active = page.locator(".drawing .step.active").first();
+  await active.waitFor({ state: "attached" });
+  await active.scrollIntoViewIfNeeded();
+  await shoot(page.locator("aside"), "chart");
   assert.deepEqual([...errors, ...other.errors], []);
   await other.page.close();
   await page.close();

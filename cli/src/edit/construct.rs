@@ -102,7 +102,7 @@ pub(super) fn add(
     let front = Sort::ALL.into_iter().take_while(|one| *one <= sort).collect::<Vec<_>>();
     let end = front.into_iter().rev().find_map(|sort| document.tables(sort.key()).filter_map(whole_end).max());
     let splice = document.lines_behind(end.unwrap_or(texts.scene(scene)?.len()), &lines);
-    Ok(texts.with_scene(scene, document.with(vec![splice])))
+    Ok(texts.with_scene(scene, document.with(vec![splice])?))
 }
 
 /// Another value for a key, or none.
@@ -134,7 +134,7 @@ pub(super) fn set(
             }
         }
     };
-    Ok(texts.with_scene(scene, document.with(splice)))
+    Ok(texts.with_scene(scene, document.with(splice)?))
 }
 
 /// The least change of a value: of a list of numbers, those that are others; whole numbers stay whole.
@@ -175,10 +175,10 @@ pub(super) fn rename(texts: &Texts, scene: &str, sort: Sort, name: &str, to: &st
         let renamed = mention.text.replacen(base(name), base(to), 1);
         Splice::new(mention.span, quoted(&renamed))
     });
-    let text = document.with(own.into_iter().chain(mentions).collect());
+    let text = document.with(own.into_iter().chain(mentions).collect())?;
     let scenario = Document::parse(wire::FILE, &texts.scenario)?;
     let set = set_keys(&scenario, scene, sort, name).into_iter().map(|(span, _)| Splice::new(span, key_text(to)));
-    let scenario = scenario.with(set.collect());
+    let scenario = scenario.with(set.collect())?;
     Ok(Texts { scenario, ..texts.with_scene(scene, text) })
 }
 
@@ -211,5 +211,5 @@ pub(super) fn remove(texts: &Texts, scene: &str, sort: Sort, name: &str) -> Resu
         return Err(EditError::Referred { what: sort.key().to_owned(), name: name.to_owned(), by });
     }
     let splice = document.remove_table(table).into_iter().collect();
-    Ok(texts.with_scene(scene, document.with(splice)))
+    Ok(texts.with_scene(scene, document.with(splice)?))
 }

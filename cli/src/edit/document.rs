@@ -202,18 +202,22 @@ impl<'t> Document<'t> {
     }
 
     /// The text with all of these changes.
-    pub(super) fn with(&self, mut splices: Vec<Splice>) -> String {
+    ///
+    /// # Errors
+    /// Two of them are of the same text.
+    pub(super) fn with(&self, mut splices: Vec<Splice>) -> Result<String, EditError> {
         // two at one place stay in their order
         splices.sort_by_key(|splice| splice.at.start);
         let mut text = String::with_capacity(self.text.len());
         let mut from = 0;
         for Splice { at, with } in splices {
-            text.push_str(self.text.get(from..at.start).unwrap_or_default());
+            let kept = self.text.get(from..at.start);
+            text.push_str(kept.ok_or_else(|| EditError::Overlap { file: self.file.to_owned() })?);
             text.push_str(&with);
-            from = at.end.max(from);
+            from = at.end;
         }
         text.push_str(&self.text[from..]);
-        text
+        Ok(text)
     }
 }
 
@@ -286,7 +290,7 @@ mod tests {
             let (key, item) = table.get_key_value(key).expect("there");
             held = Held::of(item, key.get()).expect("a table");
         }
-        document.with(vec![document.insert(held, "new", "1")])
+        document.with(vec![document.insert(held, "new", "1")]).expect("one change")
     }
 
     #[test]
@@ -307,7 +311,7 @@ mod tests {
     fn removed(text: &str, index: usize) -> String {
         let document = Document::parse("a.toml", text).expect("TOML");
         let table = document.tables("a").nth(index).expect("there");
-        document.with(vec![document.remove_table(table).expect("a span")])
+        document.with(vec![document.remove_table(table).expect("a span")]).expect("one change")
     }
 
     #[test]
@@ -323,7 +327,7 @@ mod tests {
         let document = Document::parse("a.toml", text).expect("TOML");
         let Some(Item::Table(table)) = document.root().get("c") else { panic!("a table") };
         let held = Held::of(&table["bind"], "bind").expect("a table");
-        let without = |key| document.with(vec![document.remove_key(held, key).expect("there")]);
+        let without = |key| document.with(vec![document.remove_key(held, key).expect("there")]).expect("one change");
         assert_eq!(without("a"), "[c]\nbind = { b = 2, c = 3 }\n");
         assert_eq!(without("c"), "[c]\nbind = { a = 1, b = 2 }\n");
     }

@@ -37,6 +37,12 @@ pub enum EditError {
         /// Where.
         place: Place,
     },
+    /// Two changes that would be made together are of the same text.
+    #[error("two changes of {file} are of the same text: make one after the other")]
+    Overlap {
+        /// The file.
+        file: String,
+    },
     /// A scene that the scenario does not name.
     #[error("the scenario has no scene `{0}`")]
     NoScene(String),

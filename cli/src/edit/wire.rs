@@ -57,7 +57,7 @@ pub(super) fn connect(texts: &Texts, plc: &str, signal: &str, variable: &str) ->
             None => document.insert(bind, signal, &path),
         },
     };
-    Ok(Texts { scenario: document.with(vec![splice]), ..texts.clone() })
+    Ok(Texts { scenario: document.with(vec![splice])?, ..texts.clone() })
 }
 
 /// Takes that line away; with the last of several in braces, `bind` itself.
@@ -69,7 +69,7 @@ pub(super) fn disconnect(texts: &Texts, plc: &str, signal: &str) -> Result<Texts
     let is_alone = matches!(bind, Held::Inline(table) if table.len() == 1 && table.contains_key(signal));
     let splice = if is_alone { document.remove_key(client, "bind") } else { document.remove_key(bind, signal) };
     let splice = splice.ok_or_else(|| covering(&document, bind, signal).unwrap_or_else(by_name))?;
-    Ok(Texts { scenario: document.with(vec![splice]), ..texts.clone() })
+    Ok(Texts { scenario: document.with(vec![splice])?, ..texts.clone() })
 }
 
 /// The pattern or array of `bind` by which a signal is bound.
@@ -106,7 +106,7 @@ pub(super) fn declare(texts: &Texts, declared: &Declared<'_>) -> Result<Texts, E
         Some(table) if !table.is_implicit() => document.insert(Held::Header(table), signal, &value),
         _ => document.lines_before_tables(&format!("[signals]\n{} = {value}", key_text(signal))),
     };
-    Ok(Texts { scenario: document.with(vec![splice]), ..texts.clone() })
+    Ok(Texts { scenario: document.with(vec![splice])?, ..texts.clone() })
 }
 
 fn signals<'d>(document: &'d Document<'_>) -> Option<&'d Table> {
