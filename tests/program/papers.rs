@@ -148,7 +148,8 @@ fn each_command_can_be_typed() {
     let folder = tempfile::tempdir().unwrap();
     let scenarios = folder.path().join("scenarios");
     std::fs::create_dir(&scenarios).unwrap();
-    for name in ["shear", "filling-machine", "gantry-robot", "robot-cell", "peeling-line", "arc-furnace"] {
+    for name in ["shear", "filling-machine", "gantry-robot", "robot-cell", "peeling-line", "arc-furnace", "rotary-kiln"]
+    {
         std::fs::rename(copied(name).keep(), scenarios.join(name)).unwrap();
     }
     let mut commands: Vec<String> =

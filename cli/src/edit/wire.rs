@@ -138,7 +138,7 @@ pub(super) fn withdraw(texts: &Texts, signal: &str) -> Result<Texts, EditError> 
         Some(Item::Table(table)) => document.remove_table(table),
         _ => None,
     };
-    let scenario = document.with(vec![splice.ok_or_else(missing)?]);
+    let scenario = document.with(vec![splice.ok_or_else(missing)?])?;
     Ok(Texts { scenario, ..texts.clone() })
 }
 
