@@ -38,7 +38,7 @@ pub enum UnknownFailure {
 }
 
 /// A hint as it follows a message.
-fn in_brackets(hint: Option<&str>) -> String {
+pub(super) fn in_brackets(hint: Option<&str>) -> String {
     hint.map_or_else(String::new, |hint| format!(" ({hint})"))
 }
 

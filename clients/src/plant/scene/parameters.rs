@@ -6,6 +6,7 @@
 use onescan_base::nearest;
 use thiserror::Error;
 
+use super::failures::in_brackets;
 use super::model::{Component, Driven, Scene, Wire};
 use crate::plant::component::kind::Setting;
 
@@ -66,10 +67,6 @@ pub enum ParameterRefused {
         /// The component.
         component: String,
     },
-}
-
-fn in_brackets(hint: Option<&str>) -> String {
-    hint.map_or_else(String::new, |hint| format!(" ({hint})"))
 }
 
 /// A parameter of a component: the component's index in the scene, the parameter's among those of its kind.
