@@ -198,7 +198,7 @@ fn what_a_page_writes_is_repeated_to_the_same_digest() {
     let folder = tempfile::tempdir().expect("a folder");
     let live = folder.path().join("live");
     let live = live.to_str().expect("UTF-8");
-    let served = Served::begin("rotary-kiln", &["--until", "1h", "--pace", "20", "--record", live]);
+    let served = Served::begin("rotary-kiln/thesis.toml", &["--until", "1h", "--pace", "20", "--record", live]);
     let session: Value = serde_json::from_str(&served.get("/api/session", &[]).1).expect("JSON");
     let signals = session["signals"].as_array().expect("a list");
     let speed = signals.iter().position(|signal| signal["name"] == "Speed").expect("a signal");
@@ -226,8 +226,8 @@ fn what_a_page_writes_is_repeated_to_the_same_digest() {
     let report = served.report();
     assert_eq!(report["status"], "stopped");
 
-    let again =
-        typed(&scenario("rotary-kiln"), &["run", ".", "--format", "json", "--until", "1h", "--replay-operator", live]);
+    let words = ["run", "thesis.toml", "--format", "json", "--until", "1h", "--replay-operator", live];
+    let again = typed(&scenario("rotary-kiln"), &words);
     let again: Value = serde_json::from_str(&again.out).expect("a report");
     assert_eq!((&again["digest"], &again["steps"]), (&report["digest"], &report["steps"]));
 }

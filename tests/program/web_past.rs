@@ -136,7 +136,7 @@ fn a_session_goes_on_from_a_moment_of_the_past() {
 /// What operators did is a part of the past.
 #[test]
 fn what_operators_did_is_shown_again() {
-    let served = Served::begin("rotary-kiln", &["--until", "1h", "--pace", "20"]);
+    let served = Served::begin("rotary-kiln/thesis.toml", &["--until", "1h", "--pace", "20"]);
     let speed = signal(&served, "Speed");
     let mut viewer = served.view();
     ask(&mut viewer, &json!({"type": "subscribe", "signals": [speed]}));

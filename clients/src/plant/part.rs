@@ -356,9 +356,7 @@ impl Part {
     /// A memory of another part.
     pub(super) fn check(&self, memory: &PartMemory, described: &model::Component) -> Result<(), Misfit> {
         let foreign = |why: &str| Misfit(format!("component `{}`: {why}", described.name));
-        if changed(described, memory).is_none() {
-            return Err(foreign("its changed parameters are others"));
-        }
+        changed(described, memory).ok_or_else(|| others(described))?;
         if !self.given.iter().map(Value::values).eq(memory.given.iter().map(Value::values)) {
             return Err(foreign("its outputs are others"));
         }
@@ -375,7 +373,7 @@ impl Part {
     /// A memory that [`check`](Self::check) refuses.
     pub(super) fn restore(&mut self, memory: PartMemory, described: &model::Component) -> Result<(), Misfit> {
         let name = &described.name;
-        let changed = changed(described, &memory).unwrap_or_default();
+        let changed = changed(described, &memory).ok_or_else(|| others(described))?;
         if self.changed != changed {
             let tuned = self.running.tune(&settings(described, &changed));
             tuned.map_err(|error| Misfit(format!("component `{name}`: {error}")))?;
@@ -446,6 +444,11 @@ fn changed(described: &model::Component, memory: &PartMemory) -> Option<BTreeMap
         Some((place, parameters.get(place)?.form.read_text(text)?))
     };
     memory.changed.iter().map(setting).collect()
+}
+
+/// Why a memory with these changed parameters is not one of such a component.
+fn others(described: &model::Component) -> Misfit {
+    Misfit(format!("component `{}`: its changed parameters are others", described.name))
 }
 
 /// The ports of a component: the first of its inputs and outputs that are lines are the first port, and so on.
