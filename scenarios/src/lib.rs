@@ -25,6 +25,7 @@
 //! | [`compose`] | a scenario's plan and its clients |
 //! | [`mistake`] | a small mistake in the program of a soft PLC |
 //! | `mistaken` | the scenario with it |
+//! | `mutants` | its cases, with the mutants that campaigns try |
 //! | `compilations` | soft PLCs compiled once for all cases |
 //! | [`timing`], `leeway` | its `[timing]`, bound to its signals; all that it allows, tasks included |
 //! | [`falsify`] | its `[falsify]`, bound to its signals and clients |
@@ -68,6 +69,7 @@ pub mod map_file;
 pub mod mistake;
 mod mistaken;
 pub mod mode;
+mod mutants;
 mod operated;
 mod panel;
 pub mod panel_file;

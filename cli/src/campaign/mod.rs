@@ -65,7 +65,7 @@ const BATCHES_PER_JOB: usize = 4;
 /// The scenario or a campaign is wrong, or a run came to nothing.
 pub fn run(config: &CampaignConfig, out: &mut dyn Write) -> Result<ExitCode, CampaignError> {
     let scenario = Scenario::load(&config.chosen.scenario)?;
-    let catalogue = Catalogue::load(scenario.path())?;
+    let catalogue = scenario.catalogue()?;
     let chosen = chosen(&config.chosen, &catalogue)?;
     // What is wrong with any of them is reported before anything runs.
     for campaign in &chosen {
@@ -90,7 +90,7 @@ pub fn run(config: &CampaignConfig, out: &mut dyn Write) -> Result<ExitCode, Cam
 /// A part is missing, or is of something else.
 pub fn merge(config: &MergeConfig, out: &mut dyn Write) -> Result<ExitCode, CampaignError> {
     let scenario = Scenario::load(&config.chosen.scenario)?;
-    let catalogue = Catalogue::load(scenario.path())?;
+    let catalogue = scenario.catalogue()?;
     let mut tables = Vec::new();
     for campaign in chosen(&config.chosen, &catalogue)? {
         let subject = Subject::of(&scenario, campaign)?;

@@ -39,7 +39,7 @@ use crate::run::{ForkRequest, Ran, RunConfig, RunStatus, one_run};
 pub fn work(config: &WorkerConfig, out: &mut dyn Write) -> Result<(), CampaignError> {
     end_with_parent();
     let scenario = Scenario::load(&config.scenario)?;
-    let catalogue = Catalogue::load(scenario.path())?;
+    let catalogue = scenario.catalogue()?;
     let gone = |name: &str| Usage::new(format!("the scenario has no `{name}` any more"), None);
     let campaign = catalogue.campaigns().iter().find(|campaign| campaign.name == config.campaign);
     let campaign = campaign.ok_or_else(|| gone(&config.campaign))?;

@@ -20,7 +20,6 @@ use std::time::Duration;
 
 use onescan_report::{OutputError, file};
 use onescan_scenario::Scenario;
-use onescan_scenario::case::Catalogue;
 use onescan_scenario::compose::Member;
 use onescan_server::client::Parts;
 use onescan_server::end::SessionEnd;
@@ -69,7 +68,7 @@ fn chosen(config: &ShotConfig) -> Result<Scenario, ShotError> {
         scenario.operate(client)?;
     }
     let Some(name) = &config.case else { return Ok(scenario) };
-    let catalogue = Catalogue::load(scenario.path())?;
+    let catalogue = scenario.catalogue()?;
     let case = catalogue.named(&scenario, name)?;
     Ok(scenario.with_case(&catalogue, case)?)
 }

@@ -40,7 +40,7 @@ impl Scenario {
     pub fn load_case(path: &Path, name: Option<&str>) -> Result<Self, ScenarioError> {
         let scenario = Self::load(path)?;
         let Some(name) = name else { return Ok(scenario) };
-        let catalogue = Catalogue::load(scenario.path())?;
+        let catalogue = scenario.catalogue()?;
         let case = catalogue.named(&scenario, name)?.clone();
         scenario.with_case(&catalogue, &case)
     }
@@ -51,7 +51,7 @@ impl Scenario {
     /// As those of [`load_case`](Self::load_case).
     pub fn case_in_pieces(&self, name: Option<&str>) -> Result<(Self, Written), ScenarioError> {
         let Some(name) = name else { return Ok((self.clone(), Written::default())) };
-        let catalogue = Catalogue::load(self.path())?;
+        let catalogue = self.catalogue()?;
         let case = catalogue.named(self, name)?;
         Ok((self.clone().with_case(&catalogue, case)?, catalogue.written(case)))
     }

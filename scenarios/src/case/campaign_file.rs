@@ -114,7 +114,7 @@ pub enum MutantWord {
 }
 
 impl MutantWord {
-    pub(super) fn kind(self) -> MutantKind {
+    pub(crate) fn kind(self) -> MutantKind {
         match self {
             Self::Operator => MutantKind::Operator,
             Self::Constant => MutantKind::Constant,

@@ -11,11 +11,10 @@ use toml::de::{DeTable, DeValue};
 use toml::{Spanned, Value};
 
 use super::campaign::{self, Campaign};
-use super::campaign_file::{CampaignFile, ProgramFile};
+use super::campaign_file::{CampaignFile, MutantsFile, ProgramFile};
 use super::cases_file::{CasesFile, SnapshotFile, VERSION};
 use super::file::CaseFile;
 use super::matrix::{Axis, COMBINATIONS_MAX, combinations};
-use super::mutants::{self, NoMutants};
 use super::{Case, DEFAULT, Setting};
 use crate::arrays;
 use crate::error::{ScenarioError, wrong};
@@ -32,16 +31,39 @@ pub struct Catalogue {
     campaigns: Vec<Campaign>,
 }
 
+/// Who makes the mutants that a campaign asks for.
+pub(crate) type Mutants<'m> = dyn Fn(&Spanned<MutantsFile>) -> Result<Vec<Spanned<ProgramFile>>, NoMutants> + 'm;
+
+/// Why there are none.
+pub(crate) enum NoMutants {
+    /// The scenario says why.
+    Scenario(ScenarioError),
+    /// What is wrong with what is asked for, where, and what to do.
+    Wrong(String, Range<usize>, Option<String>),
+}
+
+impl From<ScenarioError> for NoMutants {
+    fn from(error: ScenarioError) -> Self {
+        Self::Scenario(error)
+    }
+}
+
 impl Catalogue {
-    /// The cases of the scenario in `scenario`, a folder or a file.
+    /// The cases of the scenario in `scenario`, a folder or a file. Its campaigns are without their mutants, which only a
+    /// [scenario](crate::Scenario::catalogue) knows.
     ///
     /// # Errors
     /// `cases.toml` cannot be read or is wrong, each with its place.
     pub fn load(scenario: &Path) -> Result<Self, ScenarioError> {
+        Self::load_with(scenario, &|_| Ok(Vec::new()))
+    }
+
+    /// The same with the mutants that `mutants` makes.
+    pub(crate) fn load_with(scenario: &Path, mutants: &Mutants<'_>) -> Result<Self, ScenarioError> {
         let path = super::beside(scenario);
         permission::granted().check(path.parent().unwrap_or(Path::new("")), &path)?;
         match regular::read_text(&path) {
-            Ok(text) => Self::parse(path, text),
+            Ok(text) => Self::parse_with(path, text, mutants),
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
                 Ok(Self { path, cases: vec![default_case()], ..Self::default() })
             }
@@ -54,6 +76,10 @@ impl Catalogue {
     /// # Errors
     /// The text is wrong, with the place.
     pub fn parse(path: PathBuf, text: String) -> Result<Self, ScenarioError> {
+        Self::parse_with(path, text, &|_| Ok(Vec::new()))
+    }
+
+    fn parse_with(path: PathBuf, text: String, mutants: &Mutants<'_>) -> Result<Self, ScenarioError> {
         let this = Self { path, text, ..Self::default() };
         let form = |e: toml::de::Error| this.wrong(e.message().trim().to_owned(), e.span(), None);
         let mut file: CasesFile = toml::from_str(&this.text).map_err(form)?;
@@ -91,7 +117,7 @@ impl Catalogue {
                 return Err(this.wrong(message, Some(name.span()), None));
             }
             let base = this.base(entry, &cases)?;
-            let programs = this.programs(entry)?;
+            let programs = this.programs(entry, mutants)?;
             let axes = this.axes(places.leaves("campaign", number, "matrix"))?;
             let variants = this.variants(entry, base, &axes, &programs)?;
             let expanded = campaign::expanded(entry, variants, &programs, number);
@@ -110,11 +136,14 @@ impl Catalogue {
     }
 
     /// The programs that a campaign tries beside that of the scenario: those that are written, then the mutants.
-    fn programs(&self, campaign: &CampaignFile) -> Result<Vec<Spanned<ProgramFile>>, ScenarioError> {
+    fn programs(
+        &self,
+        campaign: &CampaignFile,
+        mutants: &Mutants<'_>,
+    ) -> Result<Vec<Spanned<ProgramFile>>, ScenarioError> {
         let mut programs = campaign.program.clone();
         if let Some(wanted) = &campaign.mutants {
-            let mutants = mutants::programs(wanted, &super::scenario_beside(&self.path));
-            programs.extend(mutants.map_err(|none| match none {
+            programs.extend(mutants(wanted).map_err(|none| match none {
                 NoMutants::Scenario(error) => error,
                 NoMutants::Wrong(message, place, help) => self.wrong(message, Some(place), help),
             })?);

@@ -22,7 +22,6 @@ pub mod cases_file;
 pub mod catalogue;
 pub mod file;
 pub mod matrix;
-mod mutants;
 pub mod value;
 pub mod written;
 
@@ -56,15 +55,6 @@ pub fn beside(path: &Path) -> PathBuf {
     }
     let own = path.file_stem().map(|name| path.with_file_name(format!("{}{OWN_ENDING}", name.to_string_lossy())));
     own.filter(|own| own.is_file()).unwrap_or_else(|| path.with_file_name(FILE_NAME))
-}
-
-/// The scenario beside which these cases are: that of `FILE.cases.toml` is `FILE.toml`.
-pub(crate) fn scenario_beside(cases: &Path) -> PathBuf {
-    let own = cases.file_name().and_then(|name| name.to_str()?.strip_suffix(OWN_ENDING));
-    own.map_or_else(
-        || cases.parent().unwrap_or(Path::new("")).to_owned(),
-        |own| cases.with_file_name(format!("{own}.toml")),
-    )
 }
 
 /// A value that a case sets, by the path of what it sets.

@@ -1,38 +1,35 @@
-//! The mutants of a campaign: programs with one small mistake each, as `onescan mutate` makes them, tried like any other program.
-
-use std::path::Path;
+//! The cases of a scenario with the mutants of its campaigns: programs with one small mistake each, as `onescan mutate` makes them,
+//! tried like any other program.
 
 use onescan_plc_shim::source::LineColumn;
 use onescan_server::random::seed_for;
 use onescan_server::signal::{ClientName, did_you_mean};
 use toml::Spanned;
 
-use super::campaign::is_name;
-use super::campaign_file::{MutantsFile, ProgramFile};
-use super::file::CodeFile;
+use crate::case::Catalogue;
+use crate::case::campaign_file::{MutantWord, MutantsFile, ProgramFile};
+use crate::case::catalogue::NoMutants;
+use crate::case::file::CodeFile;
 use crate::error::ScenarioError;
 use crate::load::Scenario;
 use crate::mistake::Mistake;
 
-/// Why there are none: in words, the place, and what to do.
-pub(super) enum NoMutants {
-    Scenario(ScenarioError),
-    Wrong(String, std::ops::Range<usize>, Option<String>),
-}
-
-impl From<ScenarioError> for NoMutants {
-    fn from(error: ScenarioError) -> Self {
-        Self::Scenario(error)
+impl Scenario {
+    /// All of its cases, and its campaigns with their mutants.
+    ///
+    /// # Errors
+    /// `cases.toml` or a source cannot be read or is wrong, each with its place.
+    pub fn catalogue(&self) -> Result<Catalogue, ScenarioError> {
+        Catalogue::load_with(self.path(), &|wanted| programs(self, wanted))
     }
 }
 
-/// The programs that `wanted` asks for, of the scenario at `path`. A mistake with which the PLC could not take part is none.
-pub(super) fn programs(wanted: &Spanned<MutantsFile>, path: &Path) -> Result<Vec<Spanned<ProgramFile>>, NoMutants> {
+/// The programs that a campaign asks for. A mistake with which the PLC could not take part is none.
+fn programs(scenario: &Scenario, wanted: &Spanned<MutantsFile>) -> Result<Vec<Spanned<ProgramFile>>, NoMutants> {
     let (place, asked) = (wanted.span(), wanted.get_ref());
-    let scenario = Scenario::load(path)?;
-    let only = asked.client.as_ref().map(|client| named(&scenario, client)).transpose()?;
+    let only = asked.client.as_ref().map(|client| named(scenario, client)).transpose()?;
     let is_wanted = |mistake: &Mistake| {
-        let is_kind = |kind: &Spanned<super::campaign_file::MutantWord>| kind.get_ref().kind() == mistake.mutant.kind;
+        let is_kind = |kind: &Spanned<MutantWord>| kind.get_ref().kind() == mistake.mutant.kind;
         asked.kinds.is_empty() || asked.kinds.iter().any(is_kind)
     };
     // Numbers are those among all mistakes, so that a draw of more has those of a draw of fewer.
@@ -48,10 +45,8 @@ pub(super) fn programs(wanted: &Spanned<MutantsFile>, path: &Path) -> Result<Vec
         return Err(NoMutants::Wrong(message, place, None));
     }
     drawn.sort_by_key(|(number, _)| *number);
-    Ok(drawn
-        .into_iter()
-        .map(|(number, mistake)| Spanned::new(place.clone(), program(number, mistake, wanted)))
-        .collect())
+    let spanned = |(number, mistake)| Spanned::new(place.clone(), program(number, mistake, wanted));
+    Ok(drawn.into_iter().map(spanned).collect())
 }
 
 fn named(scenario: &Scenario, client: &Spanned<String>) -> Result<ClientName, NoMutants> {
@@ -68,7 +63,6 @@ fn program(number: usize, mistake: &Mistake, wanted: &Spanned<MutantsFile>) -> P
     let LineColumn { line, column } = mutant.place;
     let text = |text: &str| Spanned::new(wanted.span(), text.to_owned());
     let name = format!("mutant-{number}");
-    debug_assert!(is_name(&name));
     let code = CodeFile {
         client: Some(text(client.as_str())),
         source: text(source),
