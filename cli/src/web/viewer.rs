@@ -1,10 +1,8 @@
 //! One viewer: what it asks and what it is shown. It looks at the session as often as it can take; views in between
 //! are dropped, so a slow viewer slows nobody.
 
-use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use std::time::Duration;
 
 use axum::body::Bytes;
 use axum::extract::ws::{Message, WebSocket};
@@ -13,21 +11,20 @@ use onescan_server::mailbox::{Request, Wish};
 use onescan_server::operation::{Operation, OperationError};
 use onescan_server::published::{SessionView, Wants};
 use onescan_server::wire::message::Status as Taken;
-use serde::Serialize;
 use tokio::sync::{mpsc, oneshot};
-use tokio::time::timeout;
 
 use super::alarms::{Change, Rung};
 use super::ask::{self, Ask, Refused, Verb};
 use super::desk::AtWork;
 use super::entry::Rank;
 use super::gaze::{self, Gaze};
-use super::maps::{Cells, Mapped, New};
-use super::online::{Seen, Watching};
+use super::maps::{Mapped, New};
+use super::online::Watching;
 use super::picture::{FLAGS, PAST, Shown};
 use super::seats::Viewer;
-use super::verdicts::{Heard, Standing};
-use super::{News, SeatView, Session};
+use super::told::{Gone, Told, say, send};
+use super::verdicts::Heard;
+use super::{News, Session};
 use crate::past::Moment;
 
 /// How many looks it takes until the viewer is told how far the past reaches by now.
@@ -38,63 +35,6 @@ const VARIABLES_EACH: u32 = 6;
 const STATUS_EACH: u32 = 3;
 /// How many looks it takes until it is asked again what has become of expectations.
 const VERDICTS_EACH: u32 = 15;
-/// How long one message may take to a viewer that does not read before it is left.
-const PATIENCE: Duration = Duration::from_secs(20);
-
-/// What a viewer is told.
-#[derive(Debug, Serialize)]
-#[serde(tag = "type", rename_all = "lowercase")]
-enum Told {
-    Status {
-        state: &'static str,
-        digest: Option<String>,
-        pace: String,
-        seat: SeatView,
-        #[serde(skip_serializing_if = "BTreeSet::is_empty")]
-        failed: BTreeSet<String>,
-        #[serde(skip_serializing_if = "Vec::is_empty")]
-        forced: Vec<usize>,
-        #[serde(skip_serializing_if = "BTreeSet::is_empty")]
-        disturbed: BTreeSet<usize>,
-        shown_ns: Option<u64>,
-        past_ns: Option<[u64; 2]>,
-    },
-    Looks {
-        active: Vec<usize>,
-    },
-    States {
-        drawing: usize,
-        instance: usize,
-        values: Vec<Option<f64>>,
-    },
-    View {
-        view: String,
-    },
-    Variables {
-        #[serde(flatten)]
-        seen: Seen,
-    },
-    Map {
-        #[serde(flatten)]
-        cells: Cells,
-    },
-    Verdict {
-        #[serde(flatten)]
-        standing: Standing,
-    },
-    Forked {
-        t_ns: u64,
-        url: String,
-    },
-    Event {
-        t_ns: u64,
-        kind: &'static str,
-        text: String,
-    },
-    Error {
-        message: String,
-    },
-}
 
 /// Speaks with a viewer until one of the two leaves.
 pub(super) async fn attend(mut socket: WebSocket, session: Arc<Session>, rank: Rank) {
@@ -104,9 +44,6 @@ pub(super) async fn attend(mut socket: WebSocket, session: Arc<Session>, rank: R
     let _ = converse(&mut socket, &session, (viewer, rank)).await;
     session.seats.leave(viewer);
 }
-
-/// The viewer is gone, or does not read.
-struct Gone;
 
 /// What one viewer looks at, and what it has been shown and told of it.
 struct Eye {
@@ -362,18 +299,6 @@ async fn tell_drawn(socket: &mut WebSocket, view: &SessionView, session: &Sessio
     }
     eye.states = now;
     Ok(())
-}
-
-async fn say(socket: &mut WebSocket, told: &Told) -> Result<(), Gone> {
-    let text = serde_json::to_string(told).map_err(|_| Gone)?;
-    send(socket, Message::Text(text.into())).await
-}
-
-async fn send(socket: &mut WebSocket, message: Message) -> Result<(), Gone> {
-    match timeout(PATIENCE, socket.send(message)).await {
-        Ok(Ok(())) => Ok(()),
-        Ok(Err(_)) | Err(_) => Err(Gone),
-    }
 }
 
 /// Does what is asked; true if the next picture is due at once.

@@ -1,7 +1,7 @@
 //! A rig to run one component without a scene, and what holds for every kind.
 
-use super::behaviour::{Component, SeenBy, Start, Turn};
-use super::declare::{Failed, FailureSet, SignalSet, Value};
+use super::behaviour::{self, Component, SeenBy, Start, Turn};
+use super::declare::{Failed, FailureSet, ParameterSet, SignalSet, Value};
 use super::kind::{Form, Setting, Values, unit};
 use super::library::{ENTRIES, kinds};
 use super::origin::Origin;
@@ -190,6 +190,43 @@ where
             assert_eq!(cut.is_ok(), saved.is_empty(), "{}: a cut state is refused", C::NAME);
         }
         assert!(k < 99 || state == other, "{} {k}", C::NAME);
+    }
+    goes_on_with_others::<C>(&state);
+}
+
+/// A component goes on from any state with the least and the greatest value of each parameter that may change.
+fn goes_on_with_others<C: Component>(state: &C::State)
+where
+    SeenBy<C>: Sight,
+{
+    let table = behaviour::kind::<C>().parameters;
+    let known = |key: &&str| table.iter().any(|parameter| parameter.key == **key);
+    assert!(C::INITIAL.iter().all(known), "{} begins with a parameter that it does not have", C::NAME);
+    let (inputs, modes) = (C::Inputs::table(), C::Failure::table().len());
+    for (place, parameter) in table.iter().enumerate().filter(|(_, parameter)| !parameter.initial) {
+        let ends = match parameter.form {
+            Form::Number { least, most } => vec![Setting::Number(least), Setting::Number(most)],
+            Form::Count { least, most } => vec![Setting::Count(least), Setting::Count(most)],
+            Form::Flag => vec![Setting::Flag(false), Setting::Flag(true)],
+            Form::Choice(words) => words.iter().map(|word| Setting::Choice(word)).collect(),
+        };
+        for end in ends {
+            let mut settings: Vec<Setting> = table.iter().map(|parameter| parameter.preset).collect();
+            settings[place] = end;
+            let changed = C::Parameters::read(&settings);
+            if C::conflict(&changed).is_some() {
+                continue;
+            }
+            let (changed, mut state, mut weather) = (C::new(changed), state.clone(), Weather(Random::new(8)));
+            for _ in 0..20 {
+                let taken = C::Inputs::read(&weather.inputs(&inputs));
+                let turn = weather.turn(modes);
+                changed.drive(&mut state, &taken, &turn);
+                let mut given = Vec::new();
+                changed.sense(&mut state, &taken, &turn).write(&mut given);
+                assert_eq!(given.len(), C::Outputs::table().len(), "{} {} {end}", C::NAME, parameter.key);
+            }
+        }
     }
 }
 
