@@ -16,6 +16,7 @@
 //! | [`maps`] | tables of values that no signal tells |
 //! | [`picture`] | what of a step is shown |
 //! | [`ask`] | what a page may ask |
+//! | `attendance` | who looks |
 //! | `beat` | when viewers look |
 //! | [`gaze`] | where a viewer looks: live, or at the past |
 //! | [`seats`] | who operates |
@@ -30,6 +31,7 @@
 
 mod alarms;
 mod ask;
+mod attendance;
 mod beat;
 mod bundle;
 mod desk;
@@ -53,7 +55,7 @@ mod viewer;
 use std::net::{SocketAddr, TcpListener};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::Sender;
-use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
@@ -72,6 +74,7 @@ use crate::access::AccessError;
 use crate::access::admission::{Admission, Doorstep};
 use crate::error::{Exit, ExitCode, ListenError, Usage};
 use crate::past::Rewinder;
+use attendance::Attendance;
 use beat::Beat;
 pub(crate) use bundle::charts;
 pub(crate) use desk::{AtWork, Desk, Failing, Role, Training, Turn};
@@ -84,9 +87,7 @@ use structure::Known;
 use tls::TlsDoor;
 pub(crate) use verdicts::Bench;
 
-/// How often whoever waits for a viewer looks whether that is over.
-const GLANCE: Duration = Duration::from_millis(100);
-/// How long viewers have to take the end.
+/// How long viewers have to take the end, at most.
 const FAREWELL: Duration = Duration::from_millis(500);
 
 /// What a session's page needs of it.
@@ -169,8 +170,7 @@ struct Session {
     over: AtomicBool,
     /// A viewer of a recording has seen enough.
     left: AtomicBool,
-    /// Whether there has been a viewer, and who waits for that.
-    attended: (Mutex<bool>, Condvar),
+    attendance: Attendance,
     /// What all viewers are told, in its order.
     news: Mutex<Vec<News>>,
 }
@@ -196,12 +196,6 @@ impl Session {
     /// The newest moment that there is.
     fn edge(&self) -> VirtualTime {
         self.recorded_to.unwrap_or_else(|| self.published.latest().t_v)
-    }
-
-    /// Somebody looks.
-    fn attend(&self) {
-        *self.attended.0.lock().unwrap_or_else(PoisonError::into_inner) = true;
-        self.attended.1.notify_all();
     }
 
     fn ended(&self) -> bool {
@@ -336,7 +330,7 @@ impl Page {
             recorded_to: source.recorded_to,
             over: AtomicBool::new(false),
             left: AtomicBool::new(false),
-            attended: (Mutex::new(false), Condvar::new()),
+            attendance: Attendance::default(),
             news: Mutex::default(),
         });
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(&listen)?;
@@ -376,12 +370,7 @@ impl Page {
 
     /// Waits until the first viewer looks, or until `is_over`, which is asked now and then.
     pub(crate) fn await_viewer(&self, is_over: impl Fn() -> bool) {
-        let (attended, told) = &self.session.attended;
-        let mut is_attended = attended.lock().unwrap_or_else(PoisonError::into_inner);
-        while !*is_attended && !is_over() {
-            let waited = told.wait_timeout(is_attended, GLANCE);
-            is_attended = waited.unwrap_or_else(PoisonError::into_inner).0;
-        }
+        self.session.attendance.await_first(is_over);
     }
 
     /// Whether a viewer of a recording has seen enough.
@@ -399,7 +388,7 @@ impl Drop for Page {
     /// Tells viewers of the end, and leaves them a moment to take it.
     fn drop(&mut self) {
         self.session.over.store(true, Ordering::Release);
-        std::thread::sleep(FAREWELL);
+        self.session.attendance.await_last(FAREWELL);
         self.stop.notify_one();
         if let Some(thread) = self.thread.take()
             && thread.join().is_err()

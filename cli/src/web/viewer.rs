@@ -38,7 +38,7 @@ const VERDICTS_EACH: u32 = 15;
 
 /// Speaks with a viewer until one of the two leaves.
 pub(super) async fn attend(mut socket: WebSocket, session: Arc<Session>, rank: Rank) {
-    session.attend();
+    let _present = session.attendance.enter();
     let viewer = session.seats.enter();
     // what ends it is that the viewer is gone
     let _ = converse(&mut socket, &session, (viewer, rank)).await;
