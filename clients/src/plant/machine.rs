@@ -156,22 +156,20 @@ impl Machine {
     ) -> Result<(), ParameterRefused> {
         let FoundParameter { component, parameter } = found;
         let (part, described) = (&mut self.parts[component], &scene.components[component]);
-        let named = || (described.name.clone(), described.kind.parameters[parameter].key.to_string());
         let to = match to {
             Some(text) => Some(scene.read_parameter(found, text, &part.settings(described))?),
             None if part.has_changed(parameter) => {
                 // What the others have become meanwhile may not go with the scene's own value any more.
-                let own = described.settings[parameter].text();
-                scene.read_parameter(found, &own, &part.settings(described))?;
+                scene.allow_parameter(found, described.settings[parameter], &part.settings(described))?;
                 None
             }
             None => {
-                let (component, parameter) = named();
+                let (component, parameter) = scene.names_of(found);
                 return Err(ParameterRefused::Unchanged { component, parameter });
             }
         };
         part.change(described, parameter, to).map_err(|compiled| {
-            let ((component, parameter), why) = (named(), compiled.to_string());
+            let ((component, parameter), why) = (scene.names_of(found), compiled.to_string());
             ParameterRefused::Fixed { component, parameter, why }
         })
     }

@@ -80,10 +80,8 @@ fn find(components: &[Component], aliases: &Aliases, component: &str, mode: &str
         }
         None => (component, mode),
     };
-    let Some(at) = components.iter().position(|known| known.name == component) else {
-        let near = nearest(component, components.iter().map(|known| known.name.as_str()));
-        return Err(UnknownFailure::Component { component: component.to_owned(), hint: near.map(did_you_mean) });
-    };
+    let at = place_of(components, component)
+        .map_err(|hint| UnknownFailure::Component { component: component.to_owned(), hint })?;
     let modes: Vec<&str> = components[at].kind.failures.iter().map(|failure| &*failure.mode).collect();
     match modes.iter().position(|known| *known == mode) {
         Some(mode) => Ok(FoundMode { component: at, mode }),
@@ -96,11 +94,22 @@ fn find(components: &[Component], aliases: &Aliases, component: &str, mode: &str
 }
 
 fn mode_hint(modes: &[&str], wrong: &str) -> String {
-    let listed = || {
-        let listed: Vec<_> = modes.iter().map(|known| format!("`{known}`")).collect();
-        if listed.is_empty() { "it has none".to_owned() } else { format!("it may be {}", listed.join(", ")) }
+    hint(modes, wrong, "it may be")
+}
+
+/// The place of the component of this name; else the nearest name, as a question, if one is near.
+pub(super) fn place_of(components: &[Component], name: &str) -> Result<usize, Option<String>> {
+    let near = || nearest(name, components.iter().map(|known| known.name.as_str())).map(did_you_mean);
+    components.iter().position(|known| known.name == name).ok_or_else(near)
+}
+
+/// The nearest of some names, as a question; all of them behind `listed` if none is near.
+pub(super) fn hint(known: &[&str], wrong: &str, listed: &str) -> String {
+    let all = || {
+        let all: Vec<_> = known.iter().map(|known| format!("`{known}`")).collect();
+        if all.is_empty() { "it has none".to_owned() } else { format!("{listed} {}", all.join(", ")) }
     };
-    nearest(wrong, modes.iter().copied()).map_or_else(listed, did_you_mean)
+    nearest(wrong, known.iter().copied()).map_or_else(all, did_you_mean)
 }
 
 fn did_you_mean(near: &str) -> String {

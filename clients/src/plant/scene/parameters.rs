@@ -3,10 +3,9 @@
 //! A component is its parameters and its state. The state stays, and from the next half turn on its equations have the other value.
 //! What the world was built with, as the stops of a joint, and what a component only begins with cannot change any more.
 
-use onescan_base::nearest;
 use thiserror::Error;
 
-use super::failures::in_brackets;
+use super::failures::{hint, in_brackets, place_of};
 use super::model::{Component, Driven, Scene, Wire};
 use crate::plant::component::kind::Setting;
 
@@ -24,7 +23,7 @@ pub enum ParameterRefused {
     /// Its kind does not have the parameter.
     #[error("component `{component}` has no parameter `{parameter}` ({hint})")]
     Parameter {
-        /// The component.
+        /// The component, by its name in the scene.
         component: String,
         /// The parameter that was looked for.
         parameter: String,
@@ -34,9 +33,9 @@ pub enum ParameterRefused {
     /// The parameter does not take the value.
     #[error("`{parameter}` of component `{component}` is {wanted}, which {value} is not")]
     Value {
-        /// The component.
+        /// The component, by its name in the scene.
         component: String,
-        /// The parameter.
+        /// The parameter, by its key with its unit.
         parameter: String,
         /// The value, as it was given.
         value: String,
@@ -46,9 +45,9 @@ pub enum ParameterRefused {
     /// The component cannot take it while it runs.
     #[error("`{parameter}` of component `{component}` stays as it is while the plant runs: {why}")]
     Fixed {
-        /// The component.
+        /// The component, by its name in the scene.
         component: String,
-        /// The parameter.
+        /// The parameter, by its key with its unit.
         parameter: String,
         /// What it decides.
         why: String,
@@ -56,15 +55,15 @@ pub enum ParameterRefused {
     /// The scene's own value is asked for, and the component has it.
     #[error("`{parameter}` of component `{component}` has not been changed")]
     Unchanged {
-        /// The component.
+        /// The component, by its name in the scene.
         component: String,
-        /// The parameter.
+        /// The parameter, by its key with its unit.
         parameter: String,
     },
     /// There is no plant before the set-up.
     #[error("component `{component}` cannot change before the set-up")]
     BeforeSetUp {
-        /// The component.
+        /// The component, by its name in the scene.
         component: String,
     },
 }
@@ -93,27 +92,18 @@ impl Scene {
         component: &str,
         parameter: &str,
     ) -> Result<FoundParameter, ParameterRefused> {
-        let Some(at) = self.components.iter().position(|known| known.name == component) else {
-            let near = nearest(component, self.components.iter().map(|known| known.name.as_str()));
-            let hint = if self.aliases.is_assembly(component) {
-                Some("it is an assembly: name one of its parts".to_owned())
-            } else {
-                near.map(|near| format!("did you mean `{near}`?"))
-            };
-            return Err(ParameterRefused::Component { component: component.to_owned(), hint });
-        };
-        let parameters = &self.components[at].kind.parameters;
-        if let Some(parameter) = parameters.iter().position(|known| known.key == parameter) {
-            return Ok(FoundParameter { component: at, parameter });
-        }
-        let keys = || parameters.iter().map(|known| &*known.key);
-        let listed = || keys().map(|key| format!("`{key}`")).collect::<Vec<_>>().join(", ");
-        let hint = match (nearest(parameter, keys()), parameters.is_empty()) {
-            (Some(near), _) => format!("did you mean `{near}`?"),
-            (None, true) => "it has none".to_owned(),
-            (None, false) => format!("it has {}", listed()),
-        };
-        Err(ParameterRefused::Parameter { component: component.to_owned(), parameter: parameter.to_owned(), hint })
+        let at = place_of(&self.components, component).map_err(|near| {
+            let assembly = self.aliases.is_assembly(component);
+            let hint = if assembly { Some("it is an assembly: name one of its parts".to_owned()) } else { near };
+            ParameterRefused::Component { component: component.to_owned(), hint }
+        })?;
+        let keys: Vec<&str> = self.components[at].kind.parameters.iter().map(|known| &*known.key).collect();
+        let place = keys.iter().position(|key| *key == parameter).ok_or_else(|| {
+            let (component, parameter) = (component.to_owned(), parameter.to_owned());
+            let hint = hint(&keys, &parameter, "it has");
+            ParameterRefused::Parameter { component, parameter, hint }
+        })?;
+        Ok(FoundParameter { component: at, parameter: place })
     }
 
     /// The setting that a text is for a parameter of a component with the settings `now`.
@@ -122,26 +112,41 @@ impl Scene {
     /// A value that the parameter does not take, or not while the plant runs.
     pub(in crate::plant) fn read_parameter(
         &self,
-        FoundParameter { component, parameter }: FoundParameter,
+        found: FoundParameter,
         text: &str,
         now: &[Setting],
     ) -> Result<Setting, ParameterRefused> {
-        let described = &self.components[component];
-        let about = &described.kind.parameters[parameter];
-        let names = || (described.name.clone(), about.key.to_string());
-        let setting = about.form.read_text(text).ok_or_else(|| {
-            let ((component, parameter), value) = (names(), text.to_owned());
-            ParameterRefused::Value { component, parameter, value, wanted: about.form.in_words() }
+        let form = &self.components[found.component].kind.parameters[found.parameter].form;
+        let setting = form.read_text(text).ok_or_else(|| {
+            let (component, parameter) = self.names_of(found);
+            ParameterRefused::Value { component, parameter, value: text.to_owned(), wanted: form.in_words() }
         })?;
+        self.allow_parameter(found, setting, now).map(|()| setting)
+    }
+
+    /// Checks that a component with the settings `now` can take a setting while it runs.
+    ///
+    /// # Errors
+    /// It cannot.
+    pub(in crate::plant) fn allow_parameter(
+        &self,
+        found: FoundParameter,
+        setting: Setting,
+        now: &[Setting],
+    ) -> Result<(), ParameterRefused> {
         let mut changed = now.to_vec();
-        changed[parameter] = setting;
-        match fixed(described, parameter, now, &changed) {
-            None => Ok(setting),
-            Some(why) => {
-                let (component, parameter) = names();
-                Err(ParameterRefused::Fixed { component, parameter, why })
-            }
-        }
+        changed[found.parameter] = setting;
+        let why = fixed(&self.components[found.component], found.parameter, now, &changed);
+        why.map_or(Ok(()), |why| {
+            let (component, parameter) = self.names_of(found);
+            Err(ParameterRefused::Fixed { component, parameter, why })
+        })
+    }
+
+    /// What the scene calls a component and its parameter.
+    pub(in crate::plant) fn names_of(&self, found: FoundParameter) -> (String, String) {
+        let component = &self.components[found.component];
+        (component.name.clone(), component.kind.parameters[found.parameter].key.to_string())
     }
 }
 
