@@ -196,8 +196,7 @@ impl Scenario {
                 return Err(self.wrong_override(name, index, message, help).unwrap_or_else(|| error(&with)));
             }
         };
-        self.check_failures(name, &scene)?;
-        self.check_parameters(name, &scene)?;
+        self.check_asked_of(name, &scene)?;
         Ok(scene)
     }
 
@@ -205,8 +204,7 @@ impl Scenario {
     pub(crate) fn scene_once(&self, name: &ClientName, file: &str) -> Result<Scene, ScenarioError> {
         permission::granted().check(self.folder(), &self.folder().join(file))?;
         let scene = self.compilations().scene(name, &self.overrides(name), || self.scene_of(name, file))?;
-        self.check_failures(name, &scene)?;
-        self.check_parameters(name, &scene)?;
+        self.check_asked_of(name, &scene)?;
         Ok(Scene::clone(&scene))
     }
 

@@ -6,6 +6,7 @@ use onescan_server::random::seed_for;
 use onescan_server::signal::{ClientName, did_you_mean};
 use toml::Spanned;
 
+use crate::arrays::Wrong;
 use crate::case::Catalogue;
 use crate::case::campaign_file::{MutantWord, MutantsFile, ProgramFile};
 use crate::case::catalogue::NoMutants;
@@ -42,7 +43,7 @@ fn programs(scenario: &Scenario, wanted: &Spanned<MutantsFile>) -> Result<Vec<Sp
         sound.take(asked.each.map_or(usize::MAX, |each| each.get() as usize)).collect();
     if drawn.is_empty() {
         let message = "there is no soft PLC in whose program such a mistake could be".to_owned();
-        return Err(NoMutants::Wrong(message, place, None));
+        return Err(NoMutants::Wrong(Wrong { message, place: Some(place), help: None }));
     }
     drawn.sort_by_key(|(number, _)| *number);
     let spanned = |(number, mistake)| Spanned::new(place.clone(), program(number, mistake, wanted));
@@ -53,7 +54,8 @@ fn named(scenario: &Scenario, client: &Spanned<String>) -> Result<ClientName, No
     let known = scenario.file().clients.keys();
     known.clone().find(|name| name.as_str() == client.get_ref()).cloned().ok_or_else(|| {
         let help = did_you_mean(client.get_ref(), known.map(ClientName::as_str));
-        NoMutants::Wrong(format!("there is no client `{}`", client.get_ref()), client.span(), help)
+        let message = format!("there is no client `{}`", client.get_ref());
+        NoMutants::Wrong(Wrong { message, place: Some(client.span()), help })
     })
 }
 

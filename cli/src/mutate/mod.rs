@@ -47,7 +47,7 @@ struct Judged {
 /// The scenario is wrong, has no soft PLC, or fails without any mistake.
 pub fn run(config: &MutateConfig, out: &mut dyn Write) -> Result<ExitCode, SearchError> {
     let scenario = Scenario::load(&config.scenario)?;
-    let catalogue = scenario.catalogue()?;
+    let catalogue = Catalogue::load(scenario.path())?;
     let cases = chosen(&scenario, &catalogue, &config.cases)?;
     let mut mistakes = scenario.mistakes(config.client.as_ref())?;
     mistakes.retain(|mistake| config.kinds.is_empty() || config.kinds.contains(&mistake.mutant.kind));

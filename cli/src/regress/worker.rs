@@ -7,7 +7,7 @@ use std::rc::Rc;
 
 use onescan_report::OutputError;
 use onescan_scenario::Scenario;
-use onescan_scenario::case::DEFAULT;
+use onescan_scenario::case::{Catalogue, DEFAULT};
 
 use super::TestError;
 use super::config::WorkerConfig;
@@ -39,7 +39,7 @@ fn case(config: &WorkerConfig, folder: &Path) -> Result<Worked, TestError> {
     if config.cover {
         scenario.cover();
     }
-    let catalogue = scenario.catalogue()?;
+    let catalogue = Catalogue::load(scenario.path())?;
     let choice = Choice::of(&scenario, &catalogue)?;
     let snapshot = Rc::new(RefCell::new(None));
     let taker = Taker::new(&scenario, choice.clone(), Rc::clone(&snapshot));

@@ -176,12 +176,13 @@ impl Scenario {
         Ok(())
     }
 
-    /// Refuses parameters that plant `name` does not have, and values that they do not take while it runs.
-    pub(crate) fn check_parameters(
+    /// Refuses failures and parameters that plant `name` does not have, and values that these do not take while it runs.
+    pub(crate) fn check_asked_of(
         &self,
         name: &ClientName,
         scene: &onescan_clients::plant::Scene,
     ) -> Result<(), ScenarioError> {
+        self.check_failures(name, scene)?;
         let Some(applied) = self.applied() else { return Ok(()) };
         for at in applied.parameters.iter().filter(|at| at.client == *name) {
             scene
@@ -192,11 +193,7 @@ impl Scenario {
     }
 
     /// Refuses failures of components that plant `name` does not have.
-    pub(crate) fn check_failures(
-        &self,
-        name: &ClientName,
-        scene: &onescan_clients::plant::Scene,
-    ) -> Result<(), ScenarioError> {
+    fn check_failures(&self, name: &ClientName, scene: &onescan_clients::plant::Scene) -> Result<(), ScenarioError> {
         self.check_panels(scene)?;
         let Some(applied) = self.applied() else { return Ok(()) };
         for failure in applied.failures.iter().filter(|failure| failure.client == *name) {

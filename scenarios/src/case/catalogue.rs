@@ -16,7 +16,7 @@ use super::cases_file::{CasesFile, SnapshotFile, VERSION};
 use super::file::CaseFile;
 use super::matrix::{Axis, COMBINATIONS_MAX, combinations};
 use super::{Case, DEFAULT, Setting};
-use crate::arrays;
+use crate::arrays::{self, Wrong};
 use crate::error::{ScenarioError, wrong};
 use crate::expectations::place_within;
 use crate::permission;
@@ -38,8 +38,8 @@ pub(crate) type Mutants<'m> = dyn Fn(&Spanned<MutantsFile>) -> Result<Vec<Spanne
 pub(crate) enum NoMutants {
     /// The scenario says why.
     Scenario(ScenarioError),
-    /// What is wrong with what is asked for, where, and what to do.
-    Wrong(String, Range<usize>, Option<String>),
+    /// What is wrong with what is asked for.
+    Wrong(Wrong),
 }
 
 impl From<ScenarioError> for NoMutants {
@@ -145,7 +145,7 @@ impl Catalogue {
         if let Some(wanted) = &campaign.mutants {
             programs.extend(mutants(wanted).map_err(|none| match none {
                 NoMutants::Scenario(error) => error,
-                NoMutants::Wrong(message, place, help) => self.wrong(message, Some(place), help),
+                NoMutants::Wrong(found) => self.wrong(found.message, found.place, found.help),
             })?);
         }
         Ok(programs)

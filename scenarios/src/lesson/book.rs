@@ -7,6 +7,7 @@ use super::file::LessonFile;
 use super::put::{begin, put};
 use super::sheet::Sheet;
 use super::start::{Start, read_starts};
+use crate::case::Catalogue;
 use crate::case::campaign::is_name;
 use crate::error::ScenarioError;
 use crate::load::Scenario;
@@ -88,7 +89,7 @@ impl Book {
     /// Its case is wrong.
     pub fn prepared(&self, scenario: &Scenario, start: &Start) -> Result<Scenario, ScenarioError> {
         let Some(name) = &start.case else { return Ok(scenario.clone()) };
-        let cases = scenario.catalogue()?;
+        let cases = Catalogue::load(scenario.path())?;
         let case = cases.named(scenario, name)?.clone();
         scenario.clone().with_case(&cases, &case)
     }

@@ -109,7 +109,7 @@ pub(super) fn put(
 
 /// A case of the scenario, and what it does.
 fn prepared_case(scenario: &Scenario, name: &str) -> Result<(Case, Option<CaseFile>), ScenarioError> {
-    let cases = scenario.catalogue()?;
+    let cases = Catalogue::load(scenario.path())?;
     let case = cases.named(scenario, name)?.clone();
     let entry = cases.healthy_entry(&case).cloned();
     Ok((case, entry))

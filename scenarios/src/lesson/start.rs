@@ -4,6 +4,7 @@ use onescan_server::signal::did_you_mean;
 use onescan_server::time::VirtualTime;
 
 use super::sheet::Sheet;
+use crate::case::Catalogue;
 use crate::error::ScenarioError;
 use crate::load::Scenario;
 
@@ -29,7 +30,7 @@ pub(super) fn read_starts(sheet: &Sheet, scenario: &Scenario, starts: &mut Vec<S
             return Err(sheet.wrong(format!("two starts are called `{name}`"), file.name.span(), None));
         }
         if let Some(case) = case {
-            let cases = scenario.catalogue()?;
+            let cases = Catalogue::load(scenario.path())?;
             if cases.find(case.get_ref()).is_none() {
                 let help = did_you_mean(case.get_ref(), cases.cases().iter().map(|case| case.name.as_str()));
                 return Err(sheet.wrong(format!("there is no case `{}`", case.get_ref()), case.span(), help));
