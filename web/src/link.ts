@@ -64,7 +64,8 @@ export class Link {
 
   /** Asks for these maps from now on, and again after a loss. */
   map(maps: readonly number[]): void {
-    if (maps.length === this.maps.length) return;
+    // A session shows all of a map anew to whoever asks.
+    if (String(maps) === String(this.maps)) return;
     this.maps = maps;
     this.ask({ type: "maps", maps });
   }

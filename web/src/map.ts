@@ -90,14 +90,15 @@ export function greatest_in(table: Table, column: Strip, row: Strip): number | n
 /** The least and the greatest cell of a map; nothing if it has no value. */
 export function extremes(table: Table): readonly [Cell, Cell] | null {
   const columns = Math.max(1, count(table.across));
-  let [least, greatest]: (Cell | null)[] = [null, null];
-  table.values.forEach((value, index) => {
-    if (!Number.isFinite(value)) return;
+  let least: Cell | null = null;
+  let greatest: Cell | null = null;
+  for (const [index, value] of table.values.entries()) {
+    if (!Number.isFinite(value)) continue;
     const cell = { column: index % columns, row: Math.floor(index / columns), value };
-    if (least === null || least === undefined || value < least.value) least = cell;
-    if (greatest === null || greatest === undefined || value > greatest.value) greatest = cell;
-  });
-  return least === null || least === undefined || greatest === null || greatest === undefined ? null : [least, greatest];
+    if (least === null || value < least.value) least = cell;
+    if (greatest === null || value > greatest.value) greatest = cell;
+  }
+  return least === null || greatest === null ? null : [least, greatest];
 }
 
 /** The place of a value among so many colours of a scale. */
