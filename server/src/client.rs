@@ -100,6 +100,7 @@ pub trait Client: Send {
     /// Adds to `view` those parts of what can be seen of the client beside its signals. Called between two turns,
     /// only when somebody looks.
     fn show(&self, parts: Parts, view: &mut ClientView) {
+        // A client shows nothing beside its signals unless it says otherwise.
         let _ = (parts, view);
     }
 

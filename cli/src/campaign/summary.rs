@@ -84,6 +84,7 @@ pub(super) fn programs(table: &Table) -> Vec<Vec<String>> {
     let row = |program: &Program| {
         let fails = program.failure.as_ref().map(|failure| format!("without any fault: {}", failure.text));
         let first = fails.or_else(|| program.others.first().cloned()).unwrap_or_else(|| "none".to_owned());
+        // A program that says nothing about itself leaves its cell empty.
         let about = is_told.then(|| program.about.clone().unwrap_or_default());
         let cells = [program.name.clone(), program.runs.to_string(), program.others.len().to_string(), first];
         cells.into_iter().chain(about).collect()

@@ -41,7 +41,7 @@ pub struct Table {
 pub struct Program {
     /// Its name.
     pub name: String,
-    /// What it is.
+    /// What it is, in one line: of a mutant, its place and the change.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub about: Option<String>,
     /// How its run without faults failed; the first of them with a matrix.

@@ -40,7 +40,7 @@ pub enum EditError {
     /// Two changes that would be made together are of the same text.
     #[error("two changes of {file} are of the same text: make one after the other")]
     Overlap {
-        /// The file.
+        /// The file, which stays as it is.
         file: String,
     },
     /// A scene that the scenario does not name.

@@ -147,10 +147,10 @@ fn begun(list: List, mut keys: Table, at: VirtualTime) -> Entry {
 
 /// The value of a parameter as a case has it: a number, a flag, or a word.
 fn scalar(text: &str) -> Value {
-    let number = text.parse().ok().map(Value::Float).filter(|_| text.contains(['.', 'e']));
-    let whole = || text.parse().ok().map(Value::Integer);
+    let whole = text.parse().ok().map(Value::Integer);
+    let number = || text.parse().ok().filter(|number: &f64| number.is_finite()).map(Value::Float);
     let flag = || text.to_ascii_lowercase().parse().ok().map(Value::Boolean);
-    number.or_else(whole).or_else(flag).unwrap_or_else(|| Value::from(text))
+    whole.or_else(number).or_else(flag).unwrap_or_else(|| Value::from(text))
 }
 
 fn variable_keys(client: &str, variable: &str, value: &str) -> Table {

@@ -32,7 +32,7 @@ impl Attendance {
         self.viewers.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// A viewer comes.
+    /// Counts a viewer until what this gives is dropped.
     pub(super) fn enter(&self) -> Present<'_> {
         let mut viewers = self.lock();
         viewers.present += 1;

@@ -24,10 +24,9 @@ impl Beat {
         Self { began: Instant::now(), asked: AtomicU64::new(0) }
     }
 
-    /// These moments from now on; one that is missed is left out.
+    /// Now, and then at these moments. One that is missed is left out, as all before now are.
     pub(super) fn looks(&self) -> Interval {
-        let next = PICTURE.saturating_mul(u32::try_from(self.number()).unwrap_or(u32::MAX));
-        let mut looks = interval_at(self.began.checked_add(next).unwrap_or_else(Instant::now), PICTURE);
+        let mut looks = interval_at(self.began, PICTURE);
         looks.set_missed_tick_behavior(MissedTickBehavior::Skip);
         looks
     }

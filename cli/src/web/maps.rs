@@ -1,10 +1,11 @@
 //! The scenario's maps on the page: tables of values that no signal tells, as they are now.
 //!
-//! A table is shown as often as people read it, and only if it has changed since. Its values go as bytes; where its cells
-//! lie goes before them, and again when it changes.
+//! A table is sent as often as people read it, and only if it has changed since. Its values are bytes. Where its cells lie is
+//! sent before the first values, and whenever it is no longer so.
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use axum::body::Bytes;
 use onescan_report::plot::value_map::colours;
 use onescan_report::plot::{MapAxis, ValueMap};
 use onescan_scenario::Scenario;
@@ -37,22 +38,8 @@ pub(super) struct Map {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(super) struct Cells {
     map: usize,
-    across: Axis,
-    down: Axis,
-}
-
-#[derive(Clone, Debug, PartialEq, Serialize)]
-struct Axis {
-    name: String,
-    /// One more than there are cells.
-    edges: Vec<f64>,
-}
-
-impl Axis {
-    fn of(axis: MapAxis) -> Self {
-        let MapAxis { name, edges } = axis;
-        Self { name, edges }
-    }
+    across: MapAxis,
+    down: MapAxis,
 }
 
 /// Something new of a map.
@@ -61,7 +48,7 @@ pub(super) enum New {
     /// Where its cells lie.
     Cells(Cells),
     /// Its values, as a message.
-    Values(Vec<u8>),
+    Values(Bytes),
 }
 
 /// The maps of a scenario.
@@ -81,7 +68,7 @@ pub(super) fn of(scenario: &Scenario) -> Vec<Map> {
 #[derive(Debug, Default)]
 pub(super) struct Mapped {
     wanted: BTreeSet<usize>,
-    shown: BTreeMap<usize, (Cells, Vec<u8>)>,
+    shown: BTreeMap<usize, (Cells, Bytes)>,
 }
 
 impl Mapped {
@@ -106,8 +93,8 @@ impl Mapped {
             let drawn = known.get(map).and_then(|file| value_map::of(file, &view.clients.tables));
             // A body that nothing heats yet has no table.
             let Some(ValueMap { across, down, values, .. }) = drawn else { continue };
-            let cells = Cells { map, across: Axis::of(across), down: Axis::of(down) };
-            let bytes = bytes(&cells, &values, is_past);
+            let cells = Cells { map, across, down };
+            let bytes = Bytes::from(bytes(&cells, &values, is_past));
             let shown = self.shown.get(&map);
             if shown.is_none_or(|(before, _)| *before != cells) {
                 news.push(New::Cells(cells.clone()));

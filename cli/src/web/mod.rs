@@ -22,7 +22,7 @@
 //! | [`seats`] | who operates |
 //! | [`desk`] | a lesson on two pages |
 //! | [`verdicts`] | what becomes of expectations while it runs |
-//! | [`told`] | what a viewer is told |
+//! | [`told`] | the texts that a viewer is sent |
 //! | [`viewer`] | one viewer |
 //!
 //! The server has a thread of its own. It reads what the session publishes and leaves wishes in its mailbox, as every other

@@ -95,6 +95,7 @@ async fn log_in(State(session): State<Arc<Session>>, body: Body) -> Response {
     let Ok(body) = axum::body::to_bytes(body, FORM_MAX).await else {
         return (StatusCode::PAYLOAD_TOO_LARGE, "a token is shorter\n").into_response();
     };
+    // A form without a token has an empty one, which nobody holds.
     match session.entry.log_in(entry::typed(&body).unwrap_or_default()) {
         Ok(cookie) => {
             let to = (header::LOCATION, "/".to_owned());

@@ -1,4 +1,4 @@
-//! What a viewer is told, and how: `web/PROTOCOL.md`.
+//! What the server sends to a viewer as text, and how long it waits for one: `web/PROTOCOL.md`.
 
 use std::collections::BTreeSet;
 use std::time::Duration;
@@ -15,7 +15,7 @@ use super::verdicts::Standing;
 /// How long one message may take to a viewer that does not read before it is left.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-/// What a viewer is told.
+/// A text for a viewer, as JSON.
 #[derive(Debug, Serialize)]
 #[serde(tag = "type", rename_all = "lowercase")]
 pub(super) enum Told {
@@ -73,7 +73,7 @@ pub(super) enum Told {
 /// The viewer is gone, or does not read.
 pub(super) struct Gone;
 
-/// Says something.
+/// Sends a text.
 ///
 /// # Errors
 /// The viewer is gone, or does not read.
@@ -82,7 +82,7 @@ pub(super) async fn say(socket: &mut WebSocket, told: &Told) -> Result<(), Gone>
     send(socket, Message::Text(text.into())).await
 }
 
-/// Sends a message.
+/// Sends a message, and waits until the viewer has taken it, [`PATIENCE`] at most.
 ///
 /// # Errors
 /// The viewer is gone, or does not read.

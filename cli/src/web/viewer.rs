@@ -31,7 +31,7 @@ use crate::past::Moment;
 const PAST_EACH: u32 = 30;
 /// How many looks it takes until variables of PLCs are looked at again: people read ten values a second.
 const VARIABLES_EACH: u32 = 6;
-/// How many looks it takes until the status is told again: seats, forces, how far the past reaches.
+/// How many looks it takes until the status is sent again, if it has changed: seats, forces, how far the past reaches.
 const STATUS_EACH: u32 = 3;
 /// How many looks it takes until it is asked again what has become of expectations.
 const VERDICTS_EACH: u32 = 15;
@@ -210,7 +210,7 @@ async fn tell_inside(socket: &mut WebSocket, view: &SessionView, session: &Sessi
     for new in eye.mapped.see(view, &session.known.maps, eye.gaze.is_past()) {
         match new {
             New::Cells(cells) => say(socket, &Told::Map { cells }).await?,
-            New::Values(bytes) => send(socket, Message::Binary(Bytes::from(bytes))).await?,
+            New::Values(bytes) => send(socket, Message::Binary(bytes)).await?,
         }
     }
     Ok(())

@@ -6,6 +6,8 @@
 
 use std::fmt::Write as _;
 
+use serde::Serialize;
+
 use super::layout::WIDTH_PX;
 use super::lettering::{NAME_PX, TICK_PX, TITLE_PX};
 use super::palette::{AXIS, FAINT_INK};
@@ -29,7 +31,7 @@ const ANCHORS: [[f64; 3]; 5] =
 const NO_VALUE: &str = "#d9d9d9";
 
 /// An axis of a map: where each of its cells begins, and where the last one ends.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MapAxis {
     /// What it is, with its unit.
     pub name: String,
