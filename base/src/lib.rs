@@ -1,4 +1,4 @@
-//! The ground floor of onescan: what both the session (`onescan-server`) and the PLC (`onescan-plc-shim`) stand on.
+//! The ground floor of onescan: what both the session (`onescan-server`) and the PLC (`onescan-iec`) stand on.
 //!
 //! | module | subject |
 //! |---|---|
@@ -8,6 +8,7 @@
 //! | [`signal_type`] | the types that a signal can have: the elementary types, strings with a length, lines of bytes |
 //! | [`byte_line`] | one direction of a line of bytes as the value of a signal |
 //! | [`value`] | values of these types: their bytes, and the text that recordings hold |
+//! | [`array`] | names with a range, as in `arm[0..9].hold` |
 //! | [`nearest`] | the name that was probably meant |
 //! | [`regular`] | files that are read: regular ones, up to a limit |
 //! | [`foreign`] | text from outside, made fit to be shown |
@@ -15,6 +16,7 @@
 //! Invariants: plain data and pure functions, but for [`regular`], which reads files. No clock, no random number,
 //! no iteration in hash order, and no dependency except serde, thiserror and strsim.
 
+pub mod array;
 pub mod byte_line;
 pub mod duration;
 pub mod elementary;

@@ -4,7 +4,8 @@
 
 use std::error::Error;
 
-use onescan_plc_shim::{Application, SoftPlc, TaskPlan, TimeSpan, VirtualTime};
+use onescan_iec::{TaskPlan, TimeSpan, VirtualTime};
+use onescan_iec_run::{Application, SoftPlc};
 
 const BLINK: &str = "
 PROGRAM Blink
@@ -23,7 +24,7 @@ END_PROGRAM";
 fn main() -> Result<(), Box<dyn Error>> {
     let application = Application::from_sources([("blink.st", BLINK)])?;
     let interval: TimeSpan = "10ms".parse()?;
-    let mut plc = SoftPlc::new(&application, &TaskPlan::single(&application, interval))?;
+    let mut plc = SoftPlc::new(&application, &application.single_task(interval))?;
     let blinks = plc.variable("Blink.blinks")?;
 
     // Virtual time is given to each scan; the PLC has no clock of its own.

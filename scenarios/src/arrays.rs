@@ -15,7 +15,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use onescan_clients::array;
+use onescan_base::array;
 use onescan_server::signal::{SignalName, did_you_mean};
 use toml::Spanned;
 

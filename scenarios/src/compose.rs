@@ -6,12 +6,13 @@ use std::sync::Arc;
 
 use miette::{NamedSource, SourceSpan};
 use onescan_base::regular::{self, Limit};
-use onescan_clients::operator::Operator;
-use onescan_clients::plant::{Inside, Plant, Scene, SceneError, SceneFault};
-use onescan_clients::soft_plc::watch::Sightings;
-use onescan_clients::soft_plc::{Bindings, SoftPlcClient, bind};
-use onescan_plc_shim::input::kind::{FileKind, SourceKind};
-use onescan_plc_shim::{Application, Builder, Dialect, Input, MemoryLimit, Task, TaskPlan};
+use onescan_operator::operator::Operator;
+use onescan_plant::{Inside, Plant, Scene, SceneError, SceneFault};
+use onescan_soft_plc::watch::Sightings;
+use onescan_soft_plc::{Bindings, SoftPlcClient, bind};
+use onescan_iec::input::kind::{FileKind, SourceKind};
+use onescan_iec::{Dialect, Input, MemoryLimit, Task, TaskPlan};
+use onescan_iec_run::{Application, Builder};
 use onescan_server::client::{Client, JoinRequest};
 use onescan_server::signal::{ClientName, Port, SignalName, did_you_mean};
 
@@ -168,7 +169,7 @@ impl Scenario {
         };
         let input = self.with_texts_of_case(name, own, input)?;
         Ok(match self.mistake() {
-            Some(mistake) if mistake.client == *name && mistake.source == own => input.with_mutant(&mistake.mutant),
+            Some(mistake) if mistake.client == *name && mistake.source == own => mistake.mutant.applied_to(&input),
             _ => input,
         })
     }
@@ -316,7 +317,7 @@ impl Scenario {
         application: &Application,
         tasks: &[TaskFile],
     ) -> Result<TaskPlan, ScenarioError> {
-        plan_of(tasks).or_else(|| TaskPlan::configured(application)).ok_or_else(|| {
+        plan_of(tasks).or_else(|| application.configured_tasks()).ok_or_else(|| {
             let help = "give it `tasks`, or declare a CONFIGURATION in its sources".to_owned();
             self.wrong_client(name, format!("nothing says when the programs of `{name}` run"), Some(help))
         })

@@ -1,7 +1,7 @@
 //! Views and figures: from where the machine is seen, and what is drawn of it beside the bodies of its plants.
 
-use onescan_clients::array;
-use onescan_clients::plant::Frame;
+use onescan_base::array;
+use onescan_plant::Frame;
 use toml::Spanned;
 
 use crate::error::Wrong;

@@ -5,8 +5,8 @@ use std::borrow::Cow;
 use std::str::FromStr;
 
 use onescan_base::ElementaryType;
-use onescan_clients::gateway::settings::Text;
-use onescan_plc_shim::{Dialect, MemoryLimit};
+use onescan_links::gateway::settings::Text;
+use onescan_iec::{Dialect, MemoryLimit};
 use onescan_server::signal::name::NAME_BYTES_MAX;
 use onescan_server::time::TimeSpan;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};

@@ -4,19 +4,20 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use onescan_base::regular;
-use onescan_clients::gateway::exchange::{Direction, Words};
-use onescan_clients::gateway::layout_number::layout_number;
-use onescan_clients::gateway::mapping::{self, Variables};
-use onescan_clients::gateway::{
+use onescan_links::gateway::exchange::{Direction, Words};
+use onescan_links::gateway::layout_number::layout_number;
+use onescan_links::gateway::mapping::{self, Variables};
+use onescan_links::gateway::{
     CountedGateway, Exchange, FreeGateway, Gateway, HandshakeKind, LinkFault, MappingFault, Point, Settings,
     SettingsFault,
 };
-use onescan_clients::soft_plc::{Bindings, SoftPlcClient};
-use onescan_plc_shim::input::kind::{FileKind, SourceKind};
-use onescan_plc_shim::instrument::{
+use onescan_soft_plc::{Bindings, SoftPlcClient};
+use onescan_iec::input::kind::{FileKind, SourceKind};
+use onescan_iec_project::instrument::{
     Address as DirectAddress, Exchanged, File, InstrumentError, Options, Project, Target, Way, instrument,
 };
-use onescan_plc_shim::{Application, BuildError, Input, Task, TaskPlan, TimeSpan};
+use onescan_iec::{Input, Task, TaskPlan, TimeSpan};
+use onescan_iec_run::{Application, BuildError};
 use onescan_server::client::{Client, JoinRequest};
 use onescan_server::signal::{ClientName, Port, SignalDecl, SignalName, did_you_mean};
 use serde::Deserialize;
@@ -392,7 +393,7 @@ impl Scenario {
         };
         // With a configuration of its own the scheduler is in its tasks.
         let is_configured = !project.located.is_empty();
-        let configured = TaskPlan::configured(&application).filter(|_| is_configured);
+        let configured = application.configured_tasks().filter(|_| is_configured);
         let plan = match configured.clone().or(project.tasks.map(TaskPlan::new)).or(asked) {
             Some(plan) if configured.is_some() => plan,
             Some(plan) if mode == Mode::Lockstep => in_one_task(&plan),

@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use onescan_base::regular;
-use onescan_clients::gateway::Settings;
-use onescan_clients::soft_plc::journal::{Journalling, Wanted};
-use onescan_clients::soft_plc::{CoverageSink, TraceSink};
-use onescan_plc_shim::CodePolicy;
+use onescan_links::gateway::Settings;
+use onescan_soft_plc::journal::{Journalling, Wanted};
+use onescan_soft_plc::{CoverageSink, TraceSink};
+use onescan_iec_run::CodePolicy;
 use onescan_server::plan::{Coupling, PlanError, SessionPlan};
 use onescan_server::signal::{ClientName, SignalDecl, SignalName, did_you_mean};
 use onescan_server::time::{TimeSpan, VirtualTime};

@@ -2,7 +2,7 @@
 //!
 //! A look is for the eye. It is judged on what a session publishes, beside the session, and leaves no trace in it.
 
-use onescan_clients::array;
+use onescan_base::array;
 use onescan_server::signal::{SignalName, SignalType, did_you_mean};
 use toml::Spanned;
 

@@ -1,6 +1,6 @@
 //! `[[map]]` of `scenario.toml`, as it is written: tables of values that a run draws when it is over.
 
-use onescan_clients::plant::scanner::Optics;
+use onescan_plant::scanner::Optics;
 use onescan_server::signal::ClientName;
 use schemars::JsonSchema;
 use serde::Deserialize;

@@ -1,6 +1,6 @@
 //! A small mistake in the program of a soft PLC, to find out whether anything would notice it.
 
-use onescan_plc_shim::mutate::Mutant;
+use onescan_iec_project::mutate::Mutant;
 use onescan_server::signal::ClientName;
 
 /// A mistake, and the source in which it is.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use onescan_plc_shim::mutate::mutants;
+use onescan_iec_project::mutate::mutants;
 use onescan_server::signal::ClientName;
 
 use crate::compilations::Compilations;

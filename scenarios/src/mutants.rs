@@ -1,7 +1,7 @@
 //! The cases of a scenario with the mutants of its campaigns: programs with one small mistake each, as `onescan mutate` makes them,
 //! tried like any other program.
 
-use onescan_plc_shim::source::LineColumn;
+use onescan_iec::source::LineColumn;
 use onescan_server::random::seed_for;
 use onescan_server::signal::{ClientName, did_you_mean};
 use toml::Spanned;

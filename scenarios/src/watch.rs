@@ -3,8 +3,8 @@
 use std::str::FromStr;
 use std::sync::PoisonError;
 
-use onescan_clients::soft_plc::watch::{SightingSink, Sightings, Watch};
-use onescan_plc_shim::Radix;
+use onescan_soft_plc::watch::{SightingSink, Sightings, Watch};
+use onescan_iec_run::Radix;
 use onescan_server::signal::ClientName;
 
 /// A variable to look at: `Main.x`, `plc2:Main.x`, `Main.status=bin`.

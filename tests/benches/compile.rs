@@ -5,8 +5,9 @@
 use std::fmt::Write;
 use std::time::Instant;
 
-use onescan_plc_shim::syntax::{FileId, parse};
-use onescan_plc_shim::{Application, SoftPlc, TaskPlan, TimeSpan};
+use onescan_iec::syntax::{FileId, parse};
+use onescan_iec::{TaskPlan, TimeSpan};
+use onescan_iec_run::{Application, SoftPlc};
 
 /// Function blocks of some hundred lines each, every one called by the program.
 fn program(lines: usize) -> String {
@@ -50,6 +51,6 @@ fn main() {
     let started = Instant::now();
     let application = Application::from_sources([("large.st", text)]).unwrap_or_else(|found| panic!("{found}"));
     println!("parse, check, WebAssembly {:>8.2} s", started.elapsed().as_secs_f64());
-    SoftPlc::new(&application, &TaskPlan::single(&application, TimeSpan::millis::<1>())).expect("it can run");
+    SoftPlc::new(&application, &application.single_task(TimeSpan::millis::<1>())).expect("it can run");
     println!("and machine code          {:>8.2} s", started.elapsed().as_secs_f64());
 }

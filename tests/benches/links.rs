@@ -9,13 +9,13 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use onescan_clients::gateway::exchange::Direction;
-use onescan_clients::gateway::modbus::RegisterMap;
-use onescan_clients::gateway::tcp::Layouts;
-use onescan_clients::gateway::{Exchange, Gateway, Link, Patience, Settings};
-use onescan_clients::opcua_server::Access;
-use onescan_clients::station::{Clockwork, Controller, Wires, ads, modbus, opcua, tcp};
-use onescan_plc_shim::SoftPlc;
+use onescan_links::gateway::exchange::Direction;
+use onescan_links::gateway::modbus::RegisterMap;
+use onescan_links::gateway::tcp::Layouts;
+use onescan_links::gateway::{Exchange, Gateway, Link, Patience, Settings};
+use onescan_links::opcua::Access;
+use onescan_links::station::{Clockwork, Controller, Wires, ads, modbus, opcua, tcp};
+use onescan_iec_run::SoftPlc;
 use onescan_scenario::{Mode, Scenario};
 use onescan_server::client::{Client, JoinRequest};
 use onescan_server::time::VirtualTime;
@@ -34,7 +34,7 @@ struct Station {
     settings: Settings,
     request: JoinRequest,
     urls: BTreeMap<&'static str, String>,
-    _opcua: onescan_clients::opcua_server::Running,
+    _opcua: onescan_links::opcua::Running,
     _clockwork: Clockwork,
 }
 
@@ -57,7 +57,7 @@ fn station() -> Station {
         ("ADS", format!("ads://{ads}")),
         ("OPC UA", format!("opc.tcp://{}", opcua.address())),
     ]);
-    let ports = |bound: &[onescan_clients::soft_plc::bind::Bound]| {
+    let ports = |bound: &[onescan_soft_plc::bind::Bound]| {
         bound.iter().map(|bound| port(bound.port.name.as_str(), bound.port.ty)).collect()
     };
     let (reads, writes) = (ports(&program.bindings.inputs), ports(&program.bindings.outputs));

@@ -7,7 +7,7 @@ use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 use criterion::Criterion;
-use onescan_clients::plant::Plant;
+use onescan_plant::Plant;
 use onescan_server::client::Client;
 use onescan_server::time::VirtualTime;
 use onescan_tests::bench::Ledger;

@@ -1,7 +1,7 @@
 //! `components` and `describe` as they are typed.
 
-use onescan_clients::plant::component::kind::Kind;
-use onescan_clients::plant::component::kinds;
+use onescan_plant::component::kind::Kind;
+use onescan_plant::component::kinds;
 
 use crate::typed::{copied_shear, edit, scenario, typed};
 

@@ -10,9 +10,9 @@ use std::process::Command;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use onescan_clients::gateway::Exchange;
-use onescan_clients::gateway::exchange::{Feed, Words};
-use onescan_clients::gateway::tcp::{Declaration, Layouts};
+use onescan_links::gateway::Exchange;
+use onescan_links::gateway::exchange::{Feed, Words};
+use onescan_links::gateway::tcp::{Declaration, Layouts};
 use onescan_server::signal::{Port, SignalName, SignalType};
 
 use crate::plc::Plc;

@@ -5,9 +5,9 @@ use std::fs::{read_dir, read_to_string, write};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::instrument::{Options, Target, instrument};
-use onescan_plc_shim::{Dialect, Input};
+use onescan_iec::input::kind::SourceKind;
+use onescan_iec_project::instrument::{Options, Target, instrument};
+use onescan_iec::{Dialect, Input};
 
 use crate::venv::python;
 

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use onescan_clients::replay::Replay;
+use onescan_operator::replay::Replay;
 use onescan_scenario::Scenario;
 use onescan_scenario::compose::Member;
 use onescan_server::client::JoinRequest;

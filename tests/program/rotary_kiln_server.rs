@@ -4,7 +4,7 @@ use std::net::SocketAddr;
 
 use ads::client::ReadRequest;
 use ads::{AmsAddr, AmsNetId, Client, Device, Handle, Source, Timeouts};
-use onescan_clients::inspection::{Inspected, Inspection};
+use onescan_links::inspection::{Inspected, Inspection};
 use onescan_scenario::Scenario;
 use onescan_scenario::compose::Member;
 use onescan_server::formation::Formation;

@@ -5,8 +5,9 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use onescan_plc_shim::input::kind::FileKind;
-use onescan_plc_shim::{Application, Dialect, Finding, Input, Severity, inspect};
+use onescan_iec::input::kind::FileKind;
+use onescan_iec::{Dialect, Finding, Input, Severity, inspect};
+use onescan_iec_run::Application;
 
 /// How many of the files parse, and how many of these compile, each by itself.
 const PARSING: usize = 27;

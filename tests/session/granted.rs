@@ -1,7 +1,7 @@
 //! An instrumented PLC as a client: a gateway in between, which grants steps.
 
-use onescan_clients::soft_plc::Bindings;
-use onescan_plc_shim::SoftPlc;
+use onescan_soft_plc::Bindings;
+use onescan_iec_run::SoftPlc;
 use onescan_server::client::{Client, ClientFault, JoinRequest, StateError, Wake};
 use onescan_server::time::VirtualTime;
 
@@ -39,7 +39,7 @@ impl Granted {
 
     fn cycle(&mut self) {
         self.own_ns += MS;
-        self.plc.scan(onescan_plc_shim::VirtualTime::from_nanos(self.own_ns)).expect("no fault");
+        self.plc.scan(onescan_iec::VirtualTime::from_nanos(self.own_ns)).expect("no fault");
     }
 
     fn grant(&mut self, t_v: VirtualTime) {

@@ -4,8 +4,8 @@ use std::io::{Read as _, Write as _};
 use std::net::{SocketAddr, TcpStream};
 use std::thread::JoinHandle;
 
-use onescan::access::certificate;
-use onescan::access::folder::{AUTHORITY, CLIENTS, Folder};
+use onescan_runner::access::certificate;
+use onescan_runner::access::folder::{AUTHORITY, CLIENTS, Folder};
 use onescan_server::access::{Day, Pass, Register, Role, Token};
 use onescan_server::formation::Formation;
 use onescan_server::lockstep::{Lockstep, Outcome};
@@ -26,7 +26,7 @@ use crate::wire::{HELLO, frame, send};
 fn certified() -> (tempfile::TempDir, Trust) {
     let place = tempfile::tempdir().expect("a folder");
     let folder = Folder(place.path());
-    certificate::new(folder, &[], onescan::access::tokens::today(), 30).expect("a certificate");
+    certificate::new(folder, &[], onescan_runner::access::tokens::today(), 30).expect("a certificate");
     let trust = Trust::from_pem(&std::fs::read(folder.file(AUTHORITY)).expect("written")).expect("an authority");
     (place, trust)
 }

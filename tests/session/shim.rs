@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use onescan_clients::soft_plc::bind;
-use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::instrument::{Options, instrument};
-use onescan_plc_shim::{Application, Input, SoftPlc, Task, TaskPlan, TimeSpan};
+use onescan_soft_plc::bind;
+use onescan_iec::input::kind::SourceKind;
+use onescan_iec_project::instrument::{Options, instrument};
+use onescan_iec::{Input, Task, TaskPlan, TimeSpan};
+use onescan_iec_run::{Application, SoftPlc};
 use onescan_scenario::Scenario;
 use onescan_scenario::compose::Member;
 use onescan_server::client::{Client, JoinRequest};

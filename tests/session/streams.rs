@@ -2,13 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use onescan_clients::soft_plc::ports::{PlcPort, PlcWay, TerminalKind};
-use onescan_clients::soft_plc::{SoftPlcClient, bind};
-use onescan_clients::stream::connection::{Cuts, Role};
-use onescan_clients::stream::serial::Rate;
-use onescan_clients::stream::{Form, Port, PortState};
-use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::{Application, Dialect, Input, Task, TaskPlan};
+use onescan_soft_plc::ports::{PlcPort, PlcWay, TerminalKind};
+use onescan_soft_plc::{SoftPlcClient, bind};
+use onescan_stream::connection::{Cuts, Role};
+use onescan_stream::serial::Rate;
+use onescan_stream::{Form, Port, PortState};
+use onescan_iec::input::kind::SourceKind;
+use onescan_iec::{Dialect, Input, Task, TaskPlan};
+use onescan_iec_run::Application;
 use onescan_server::checkpoint::Checkpoint;
 use onescan_server::client::{Client, ClientFault, JoinRequest, StateError, Wake};
 use onescan_server::lockstep::{Lockstep, Reached};

@@ -1,9 +1,9 @@
 //! Lines of bytes under the blocks of other vendors: Siemens' open and point-to-point communication, CODESYS' sockets.
 
-use onescan_clients::soft_plc::ports::PlcWay;
-use onescan_clients::stream::Form;
-use onescan_clients::stream::connection::{Cuts, Role};
-use onescan_plc_shim::Dialect;
+use onescan_soft_plc::ports::PlcWay;
+use onescan_stream::Form;
+use onescan_stream::connection::{Cuts, Role};
+use onescan_iec::Dialect;
 use onescan_server::client::Client;
 use onescan_server::lockstep::{Lockstep, Reached};
 use onescan_tests::at_ms;

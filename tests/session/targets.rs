@@ -3,9 +3,10 @@
 
 use std::path::{Path, PathBuf};
 
-use onescan_plc_shim::input::kind::{FileKind, SourceKind};
-use onescan_plc_shim::instrument::{File, InstrumentError, Options, Project, Target, instrument, remove};
-use onescan_plc_shim::{Input, Severity, SoftPlc};
+use onescan_iec::input::kind::{FileKind, SourceKind};
+use onescan_iec_project::instrument::{File, InstrumentError, Options, Project, Target, instrument, remove};
+use onescan_iec::{Input, Severity};
+use onescan_iec_run::SoftPlc;
 use onescan_scenario::{Mode, Scenario, ScenarioError};
 use onescan_server::client::Client;
 use onescan_tests::run::{in_process, run};
@@ -73,7 +74,7 @@ fn round_trip(given: &Given, target: Target) -> Result<Project, InstrumentError>
     let options = Options { target, ..Options::default() };
     let project = instrument(&inputs(before.iter().copied()), &options)?;
     let emitted = texts(&project.files);
-    let found = onescan_plc_shim::inspect(inputs(texts(project.program())), None);
+    let found = onescan_iec::inspect(inputs(texts(project.program())), None);
     assert!(found.iter().all(|each| each.severity != Severity::Error), "{target:?}: {found}");
     let twice = instrument(&inputs(emitted.iter().copied()), &options)?;
     assert_eq!(texts(&twice.files), emitted, "{target:?}");

@@ -1,7 +1,7 @@
 //! The trace that a program is to have, as its comment says it.
 
-use onescan_plc_shim::TimeSpan;
-use onescan_plc_shim::dialect::Dialect;
+use onescan_iec::TimeSpan;
+use onescan_iec::dialect::Dialect;
 
 use super::cell;
 

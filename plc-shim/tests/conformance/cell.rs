@@ -1,6 +1,7 @@
 //! Values as they stand in a trace, to bytes of the PLC's memory and back.
 
-use onescan_plc_shim::{ElementaryType, Variable};
+use onescan_iec::ElementaryType;
+use onescan_iec_run::Variable;
 
 use super::calendar;
 

@@ -4,9 +4,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::instrument::{Options, Project, Target, instrument};
-use onescan_plc_shim::{Application, Dialect, FaultKind, Input, SoftPlc, Task, TaskPlan, TimeSpan, VirtualTime};
+use onescan_iec::input::kind::SourceKind;
+use onescan_iec_project::instrument::{Options, Project, Target, instrument};
+use onescan_iec::{Dialect, Input, Task, TaskPlan, TimeSpan, VirtualTime};
+use onescan_iec_run::{Application, FaultKind, SoftPlc};
 
 use super::case::Case;
 use super::trace;
@@ -110,8 +111,8 @@ impl Three {
         };
         let plain = Application::from_inputs([input.clone()]);
         let plain = plain.map_err(|found| format!("does not compile: {}", first_error(&found)))?;
-        let configured = TaskPlan::configured(&plain);
-        let single = || TaskPlan::single(&plain, case.interval());
+        let configured = plain.configured_tasks();
+        let single = || plain.single_task(case.interval());
         let plan = configured.clone().unwrap_or_else(single);
         let tasks = configured.is_none().then(|| plan.tasks.clone());
         let project = instrument(&[input], &Options { tasks, target, ..Options::default() });
@@ -128,7 +129,7 @@ impl Three {
         });
         let shimmed = Application::from_inputs(files).unwrap_or_else(|found| panic!("{found}"));
         let called = project.tasks.clone().map_or_else(|| plan.clone(), TaskPlan::new);
-        let plans = TaskPlan::configured(&shimmed).map_or_else(|| plans(&called), |plan| [plan.clone(), plan]);
+        let plans = shimmed.configured_tasks().map_or_else(|| plans(&called), |plan| [plan.clone(), plan]);
         let [free, own] = plans.map(|plan| SoftPlc::new(&shimmed, &plan).expect("the plan suits"));
         let plc = SoftPlc::new(&plain, &plan).map_err(|error| error.to_string())?;
         let prefix = plain.programs().next().map(|program| program.name).unwrap_or_default();
@@ -167,7 +168,7 @@ impl Three {
     fn scan(&mut self) -> [Result<(), Stop>; 3] {
         self.now_ns += self.interval_ns;
         let now = VirtualTime::from_nanos(self.now_ns);
-        let fault = |fault: onescan_plc_shim::PlcFault| Stop::Fault(fault.kind);
+        let fault = |fault: onescan_iec_run::PlcFault| Stop::Fault(fault.kind);
         [self.plain.scan(now).map_err(fault), self.inert.scan(now).map_err(fault), self.granted.step(self.now_ns)]
     }
 

@@ -1,7 +1,8 @@
 //! A case run from its text to its last scan.
 
-use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::{Application, Input, PlcFault, SoftPlc, TaskPlan, TimeSpan, Variable, VirtualTime};
+use onescan_iec::input::kind::SourceKind;
+use onescan_iec::{Input, TaskPlan, TimeSpan, VirtualTime};
+use onescan_iec_run::{Application, PlcFault, SoftPlc, Variable};
 
 use super::case::{Case, Row};
 use super::cell;
@@ -20,8 +21,8 @@ pub(crate) fn run(case: &Case, text: &str) -> Result<(), String> {
     if case.findings.is_some() {
         same_findings(case, application.warnings())?;
     }
-    let single = || TaskPlan::single(&application, case.interval());
-    let plan = TaskPlan::configured(&application).unwrap_or_else(single);
+    let single = || application.single_task(case.interval());
+    let plan = application.configured_tasks().unwrap_or_else(single);
     let plc = SoftPlc::new(&application, &plan).map_err(|error| error.to_string())?;
     let interval_ns = plc.period().map_or(0, TimeSpan::as_nanos);
     let first = application.programs().next().map(|program| program.name);
@@ -32,7 +33,7 @@ pub(crate) fn run(case: &Case, text: &str) -> Result<(), String> {
     Ok(())
 }
 
-fn same_findings(case: &Case, found: &onescan_plc_shim::Diagnostics) -> Result<(), String> {
+fn same_findings(case: &Case, found: &onescan_iec::Diagnostics) -> Result<(), String> {
     let codes: Vec<_> = found.iter().map(|each| each.code.text()).collect();
     let wanted = case.findings.as_deref().unwrap_or(&[]);
     if codes == wanted { Ok(()) } else { Err(format!("wanted {}, found\n{found}", wanted.join(" "))) }

@@ -1,6 +1,7 @@
 //! Two axes and every motion block, with variables by name.
 
-use onescan_plc_shim::{Application, ElementaryType, SoftPlc, TaskPlan, TimeSpan, VirtualTime};
+use onescan_iec::{ElementaryType, TaskPlan, TimeSpan, VirtualTime};
+use onescan_iec_run::{Application, SoftPlc};
 
 const MS: u64 = 1_000_000;
 
@@ -98,7 +99,7 @@ impl Bench {
 
     /// Another program `P`.
     pub(crate) fn on(application: &Application) -> Self {
-        let plan = TaskPlan::single(application, TimeSpan::millis::<1>());
+        let plan = application.single_task(TimeSpan::millis::<1>());
         Self { plc: SoftPlc::new(application, &plan).expect("the plan suits"), now_ns: 0, step_ns: 10 * MS }
     }
 

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use onescan_plc_shim::input::kind::{FileKind, SourceKind};
-use onescan_plc_shim::syntax::tokenize;
+use onescan_iec::input::kind::{FileKind, SourceKind};
+use onescan_iec::syntax::tokenize;
 
 /// A source file.
 #[derive(Clone, Debug)]

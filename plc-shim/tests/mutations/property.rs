@@ -1,11 +1,11 @@
 //! What holds for any bytes in a source file of any kind: the front end neither panics nor hangs, and what parses is
 //! printed so that it parses to the same text again.
 
-use onescan_plc_shim::Input;
-use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::inspect;
-use onescan_plc_shim::syntax::printer::print_unit;
-use onescan_plc_shim::syntax::{FileId, parse};
+use onescan_iec::Input;
+use onescan_iec::input::kind::SourceKind;
+use onescan_iec::inspect;
+use onescan_iec::syntax::printer::print_unit;
+use onescan_iec::syntax::{FileId, parse};
 
 /// What came of a source.
 #[derive(Clone, Copy, Debug, Default)]

@@ -1,6 +1,6 @@
 //! Inputs of type `ANY`, `ANY_NUM` and the like (CODESYS, TwinCAT).
 
-use onescan_plc_shim::Dialect;
+use onescan_iec::Dialect;
 
 use crate::rig::{Rig, findings_in};
 

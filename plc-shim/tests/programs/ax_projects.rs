@@ -1,8 +1,8 @@
 //! What projects of SIMATIC AX hold: assertions of its unit tests, namespaces in parts, values that several
 //! enumerations share, parts of integers.
 
-use onescan_plc_shim::Dialect::{Iec2, Iec3, SiemensScl};
-use onescan_plc_shim::{Code, Severity};
+use onescan_iec::Dialect::{Iec2, Iec3, SiemensScl};
+use onescan_iec::{Code, Severity};
 
 use crate::rig::{Rig, findings_in};
 

@@ -1,8 +1,8 @@
 //! What follows from a mistake is not reported beside it.
 
-use onescan_plc_shim::Dialect;
-use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::{Input, inspect};
+use onescan_iec::Dialect;
+use onescan_iec::input::kind::SourceKind;
+use onescan_iec::{Input, inspect};
 
 use crate::rig::findings_in;
 

@@ -2,8 +2,9 @@
 
 use std::fmt::Write;
 
-use onescan_plc_shim::source::FileId;
-use onescan_plc_shim::{Application, Dialect, inspect};
+use onescan_iec::source::FileId;
+use onescan_iec::{Dialect, inspect};
+use onescan_iec_run::Application;
 
 use crate::rig::Rig;
 
@@ -125,7 +126,7 @@ fn what_is_wrong_in_a_row_is_told_once_and_warnings_are_found() {
     let messages: Vec<_> = found.iter().map(|each| each.message.as_str()).collect();
     assert_eq!(messages, ["`missing` is not declared"]);
     let text = format!("PROGRAM P VAR a, b : DINT; END_VAR a := {}; END_PROGRAM", row("a", "+"));
-    let file = onescan_plc_shim::Input::from_text("t.st", onescan_plc_shim::input::kind::SourceKind::Text, text);
+    let file = onescan_iec::Input::from_text("t.st", onescan_iec::input::kind::SourceKind::Text, text);
     let found = on_a_thread(move || inspect([file], None));
     assert_eq!(found.to_string().matches("W0706").count(), 1, "{found}");
 }
@@ -135,9 +136,9 @@ fn what_is_wrong_in_a_row_is_told_once_and_warnings_are_found() {
 fn a_tree_of_rows_is_low() {
     on_a_thread(|| {
         let text = format!("PROGRAM P a := {}; END_PROGRAM", row("a", "+"));
-        let parsed = onescan_plc_shim::syntax::parse(FileId(0), &text);
+        let parsed = onescan_iec::syntax::parse(FileId(0), &text);
         assert!(parsed.diagnostics.is_empty());
-        let printed = onescan_plc_shim::syntax::printer::print_unit(&parsed.unit.clone());
+        let printed = onescan_iec::syntax::printer::print_unit(&parsed.unit.clone());
         assert_eq!(printed.matches('+').count(), LONG - 1);
     });
 }

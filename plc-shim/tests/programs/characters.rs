@@ -1,6 +1,6 @@
 //! Single characters of strings, `s[i]` (3rd ed. 6.4.2.2).
 
-use onescan_plc_shim::Dialect;
+use onescan_iec::Dialect;
 
 use crate::rig::{Rig, findings, findings_in};
 

@@ -1,7 +1,8 @@
 //! What CODESYS adds to PLCopen XML in `addData`: lists with constants and variables, interfaces with a base.
 
-use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::{Application, Input, TaskPlan, TimeSpan};
+use onescan_iec::input::kind::SourceKind;
+use onescan_iec::{Input, TaskPlan, TimeSpan};
+use onescan_iec_run::Application;
 
 use crate::plcopen::program;
 use crate::rig::Rig;
@@ -21,7 +22,7 @@ fn rig(statements: &str, variables: &str, additions: &str) -> Rig {
         Ok(application) => application,
         Err(found) => panic!("{found}"),
     };
-    Rig::with_plan(&application, &TaskPlan::single(&application, TimeSpan::millis::<10>()))
+    Rig::with_plan(&application, &application.single_task(TimeSpan::millis::<10>()))
 }
 
 #[test]

@@ -2,14 +2,15 @@
 
 use std::fmt::Write;
 
-use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::{Application, Dialect, Input, SoftPlc, TaskPlan, VirtualTime};
+use onescan_iec::input::kind::SourceKind;
+use onescan_iec::{Dialect, Input, TaskPlan, VirtualTime};
+use onescan_iec_run::{Application, SoftPlc};
 
 use crate::rig::{MS, Rig, application, application_in, findings};
 
 fn configured(text: &str) -> Rig {
     let application = application(text);
-    let plan = TaskPlan::configured(&application).expect("a configuration");
+    let plan = application.configured_tasks().expect("a configuration");
     Rig::with_plan(&application, &plan)
 }
 
@@ -295,7 +296,7 @@ fn iec3_table_11_members_at_open_addresses_are_completed_by_var_config() {
         END_CONFIGURATION";
     for dialect in [Dialect::Iec3, Dialect::Codesys, Dialect::TwinCat] {
         let application = application_in(dialect, text);
-        let plan = TaskPlan::configured(&application).expect("it has tasks");
+        let plan = application.configured_tasks().expect("it has tasks");
         let mut rig = Rig::with_plan(&application, &plan);
         rig.plc.write("area.b", "TRUE").expect("a BOOL");
         rig.scan().expect("no fault");
@@ -414,7 +415,7 @@ fn a_configured_plc_is_restored_to_the_last_bit() {
 fn iec2_2_7_tasks_of_plcopen_xml_run() {
     let project = Input::from_text("line.xml", SourceKind::PlcOpen, include_str!("../inputs/line.xml"));
     let application = Application::from_inputs([project]).unwrap_or_else(|found| panic!("{found}"));
-    let plan = TaskPlan::configured(&application).expect("a configuration");
+    let plan = application.configured_tasks().expect("a configuration");
     let mut rig = Rig::with_plan(&application, &plan);
     rig.set("Go", 1);
     for _ in 0..3 {
@@ -447,7 +448,7 @@ fn tasks_of_a_twincat_project_are_one_configuration() {
     };
     let files = [program("MAIN"), program("Slow"), task("Fast", 10_000, "MAIN"), task("Other", 20_000, "Slow")];
     let application = Application::from_inputs(files).unwrap_or_else(|found| panic!("{found}"));
-    let plan = TaskPlan::configured(&application).expect("a configuration");
+    let plan = application.configured_tasks().expect("a configuration");
     let mut rig = Rig::with_plan(&application, &plan);
     for _ in 0..4 {
         rig.scan().expect("no fault");
@@ -461,9 +462,9 @@ fn tasks_of_a_twincat_project_are_one_configuration() {
 #[test]
 fn without_a_configuration_there_is_no_plan_of_ones_own() {
     let application = application("PROGRAM P ; END_PROGRAM");
-    assert_eq!(TaskPlan::configured(&application), None);
+    assert_eq!(application.configured_tasks(), None);
     let empty = Application::from_sources([("e.st", "CONFIGURATION c END_CONFIGURATION")]).expect("no errors");
-    let plan = TaskPlan::configured(&empty).expect("a configuration");
+    let plan = empty.configured_tasks().expect("a configuration");
     let error = SoftPlc::new(&empty, &plan).expect_err("nothing runs");
     assert_eq!(error.to_string(), "the plan has no tasks");
 }

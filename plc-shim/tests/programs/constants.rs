@@ -1,7 +1,8 @@
 //! Constants set from outside, in every form of source.
 
-use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::{Application, BuildError, Builder, Input, SoftPlc, TaskPlan, TimeSpan, VirtualTime};
+use onescan_iec::input::kind::SourceKind;
+use onescan_iec::{Input, TaskPlan, TimeSpan, VirtualTime};
+use onescan_iec_run::{Application, BuildError, Builder, SoftPlc};
 
 const TEXT: &str = "
 TYPE Colour : (Red, Green, Blue); END_TYPE
@@ -28,7 +29,7 @@ fn builder(text: &str) -> Builder {
 fn values(builder: Builder, paths: &[&str]) -> Vec<String> {
     let application = builder.build().unwrap_or_else(|error| panic!("{error}"));
     let plan =
-        TaskPlan::configured(&application).unwrap_or_else(|| TaskPlan::single(&application, TimeSpan::millis::<1>()));
+        application.configured_tasks().unwrap_or_else(|| application.single_task(TimeSpan::millis::<1>()));
     let mut plc = SoftPlc::new(&application, &plan).expect("a plan");
     plc.scan(VirtualTime::from_nanos(1_000_000)).expect("no fault");
     paths.iter().map(|path| plc.read(path).unwrap_or_else(|error| panic!("{error}"))).collect()
@@ -111,7 +112,7 @@ fn a_program_and_its_instances_have_the_same_constants() {
         assert_eq!(values(builder(text).constant(path, "6"), &paths), ["6", "6"], "{path}");
     }
     let application = builder(text).constant("every", "T#7ms").build().expect("a TIME");
-    assert_eq!(TaskPlan::configured(&application).expect("it has one").tasks[0].interval, TimeSpan::from_millis(7));
+    assert_eq!(application.configured_tasks().expect("it has one").tasks[0].interval, TimeSpan::from_millis(7));
     assert!(builder(text).constant("Left.side", "2").build().is_ok());
     let twice = builder(text).constant("one.k", "2").constant("two.k", "3").build().expect_err("one constant");
     assert_eq!(twice.to_string(), "the constant `Main.k` is set twice");

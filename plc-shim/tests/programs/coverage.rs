@@ -1,7 +1,8 @@
 //! Statement and branch coverage.
 
-use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::{Application, Coverage, Input, SoftPlc, TaskPlan, TimeSpan, VirtualTime};
+use onescan_iec::input::kind::SourceKind;
+use onescan_iec::{Input, TaskPlan, TimeSpan, VirtualTime};
+use onescan_iec_run::{Application, Coverage, SoftPlc};
 
 const PROGRAM: &str = "FUNCTION_BLOCK Unused
 VAR x : INT; END_VAR
@@ -46,7 +47,7 @@ fn input(name: &str) -> Input {
 /// After so many scans; and the PLC's memory.
 fn run(application: &Application, scans: u64) -> (Option<Coverage>, Vec<u8>) {
     let mut plc =
-        SoftPlc::new(application, &TaskPlan::single(application, TimeSpan::millis::<1>())).expect("it can run");
+        SoftPlc::new(application, &application.single_task(TimeSpan::millis::<1>())).expect("it can run");
     for scan in 1..=scans {
         plc.scan(VirtualTime::from_nanos(scan * 1_000_000)).expect("no fault");
     }
@@ -123,7 +124,7 @@ END_IF;]]></ST>
 fn a_resumed_run_is_counted_from_there_on() {
     let application = Application::from_inputs_with_coverage([input("plc.st")]).expect("a sound program");
     let new =
-        || SoftPlc::new(&application, &TaskPlan::single(&application, TimeSpan::millis::<1>())).expect("it can run");
+        || SoftPlc::new(&application, &application.single_task(TimeSpan::millis::<1>())).expect("it can run");
     let scan =
         |plc: &mut SoftPlc, number: u64| plc.scan(VirtualTime::from_nanos(number * 1_000_000)).expect("no fault");
     let mut first = new();

@@ -1,6 +1,6 @@
 //! Whatever is nested ten thousand deep is refused with an error; nothing exhausts the stack.
 
-use onescan_plc_shim::Application;
+use onescan_iec_run::Application;
 
 const DEEP: usize = 10_000;
 

@@ -121,7 +121,7 @@ fn a_clean_program_has_no_findings() {
 fn every_finding_is_a_related_diagnostic_with_its_own_source() {
     use miette::Diagnostic;
     let text = "PROGRAM P VAR x, x : INT; END_VAR x := y; END_PROGRAM";
-    let found = onescan_plc_shim::Application::from_sources([("two.st", text)]).expect_err("wrong");
+    let found = onescan_iec_run::Application::from_sources([("two.st", text)]).expect_err("wrong");
     let related: Vec<_> = found.related().expect("findings").collect();
     assert_eq!(related.len(), 3);
     assert_eq!(related[2].to_string(), "2 errors");
@@ -139,7 +139,7 @@ fn every_finding_is_a_related_diagnostic_with_its_own_source() {
 fn errors_are_read_last_and_counted() {
     use miette::Diagnostic;
     let text = "PROGRAM P VAR x : INT; END_VAR x := y; ABS(x); END_PROGRAM";
-    let found = onescan_plc_shim::Application::from_sources([("both.st", text)]).expect_err("wrong");
+    let found = onescan_iec_run::Application::from_sources([("both.st", text)]).expect_err("wrong");
     let read: Vec<_> = found.related().expect("findings").map(ToString::to_string).collect();
     assert_eq!(read, ["the result of this call is lost", "`y` is not declared", "1 error, 1 warning"]);
 }

@@ -1,8 +1,9 @@
 //! Every row of the table of dialects acts: what a dialect lacks is reported with the dialects that have
 //! it, what it has compiles, and what it does its own way is done.
 
-use onescan_plc_shim::dialect::{DivisionByZero, Feature, Ties, TimeRange};
-use onescan_plc_shim::{Code, Dialect, FaultKind, Severity};
+use onescan_iec::dialect::{DivisionByZero, Feature, Ties, TimeRange};
+use onescan_iec::{Code, Dialect, Severity};
+use onescan_iec_run::FaultKind;
 
 use crate::rig::{Rig, findings_in};
 
@@ -422,14 +423,15 @@ fn direct_addresses_count_what_the_dialect_counts() {
 
 #[test]
 fn a_library_keeps_its_dialect_in_a_program_of_another() {
-    use onescan_plc_shim::input::kind::SourceKind;
-    use onescan_plc_shim::{Application, Input, TaskPlan, TimeSpan};
+    use onescan_iec::input::kind::SourceKind;
+    use onescan_iec::{Input, TaskPlan, TimeSpan};
+    use onescan_iec_run::Application;
     let library = "FUNCTION half : DINT VAR_INPUT x : REAL; END_VAR half := REAL_TO_DINT(x); END_FUNCTION";
     let program = "PROGRAM P VAR a, b : DINT; x : REAL := 2.5; END_VAR a := half(x); b := REAL_TO_DINT(x); END_PROGRAM";
     let library = Input::from_text("lib.st", SourceKind::Text, library).in_dialect(Dialect::TwinCat);
     let program = Input::from_text("main.st", SourceKind::Text, program);
     let application = Application::from_inputs([library, program]).expect("it compiles");
-    let mut rig = Rig::with_plan(&application, &TaskPlan::single(&application, TimeSpan::millis::<10>()));
+    let mut rig = Rig::with_plan(&application, &application.single_task(TimeSpan::millis::<10>()));
     rig.scan().expect("no fault");
     assert_eq!((rig.int("P.a"), rig.int("P.b")), (3, 2));
 }

@@ -146,7 +146,7 @@ fn a_hierarchical_address_is_one_place_whoever_names_it() {
     let text = "PROGRAM P VAR a AT %IW2.5.7.1 : WORD; b AT %QW0.0.2.8193.0 : WORD := 16#12; c AT %IW2.5.7.2 : UINT; n, m : WORD; END_VAR
           n := %IW2.5.7.1; %QW0.0.2.8193.0 := %QW0.0.2.8193.0 + 1; m := Q.d; END_PROGRAM
         PROGRAM Q VAR d AT %iw2.5.7.1 : WORD; e AT %QX1.2.3 : BOOL; END_VAR e := TRUE; END_PROGRAM";
-    let mut rig = Rig::in_dialect(onescan_plc_shim::Dialect::Codesys, text);
+    let mut rig = Rig::in_dialect(onescan_iec::Dialect::Codesys, text);
     rig.plc.write("P.a", "16#ABCD").expect("it is a variable");
     rig.scan().expect("no fault");
     assert_eq!(["P.n", "P.m", "P.b", "P.c"].map(|path| rig.int(path)), [0xabcd, 0xabcd, 0x13, 0]);

@@ -1,7 +1,7 @@
 //! What is told of drawings that cannot be read: the element, and never another program instead.
 
-use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::{Input, inspect};
+use onescan_iec::input::kind::SourceKind;
+use onescan_iec::{Input, inspect};
 
 use crate::drawings::{LEVEL, RUNGS, VESSEL, changed, findings, with_a_condition_at_en};
 

@@ -1,7 +1,8 @@
 //! Bodies that are drawn in TwinCAT: what they do, scan by scan.
 
-use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::{Application, Dialect, Input, TaskPlan, TimeSpan, inspect};
+use onescan_iec::input::kind::SourceKind;
+use onescan_iec::{Dialect, Input, TaskPlan, TimeSpan, inspect};
+use onescan_iec_run::Application;
 
 use crate::rig::Rig;
 
@@ -27,7 +28,7 @@ pub(crate) fn rig(text: &str) -> Rig {
         Ok(application) => application,
         Err(found) => panic!("{found}"),
     };
-    Rig::with_plan(&application, &TaskPlan::single(&application, TimeSpan::millis::<10>()))
+    Rig::with_plan(&application, &application.single_task(TimeSpan::millis::<10>()))
 }
 
 fn made_of(text: &str) -> String {

@@ -1,6 +1,6 @@
 //! Siemens' DTL: a structure with literals and conversions.
 
-use onescan_plc_shim::Dialect;
+use onescan_iec::Dialect;
 
 use crate::rig::{Rig, findings_in};
 

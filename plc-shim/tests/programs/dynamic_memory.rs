@@ -1,7 +1,7 @@
 //! `__NEW` and `__DELETE`: what is made, what ends, and that memory comes back.
 
-use onescan_plc_shim::Dialect::{self, Codesys, TwinCat};
-use onescan_plc_shim::FaultKind;
+use onescan_iec::Dialect::{self, Codesys, TwinCat};
+use onescan_iec_run::FaultKind;
 
 use crate::rig::{Rig, findings, findings_in};
 

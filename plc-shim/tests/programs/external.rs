@@ -1,7 +1,7 @@
 //! `{external}`: what is declared here and done elsewhere; names of libraries; what stands beside them in projects.
 
-use onescan_plc_shim::syntax::printer::print_unit;
-use onescan_plc_shim::syntax::{FileId, parse};
+use onescan_iec::syntax::printer::print_unit;
+use onescan_iec::syntax::{FileId, parse};
 
 use crate::rig::{Rig, findings};
 

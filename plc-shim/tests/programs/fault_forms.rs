@@ -1,6 +1,6 @@
 //! Every form of every fault names its file, line, unit, caller and virtual time.
 
-use onescan_plc_shim::FaultKind;
+use onescan_iec_run::FaultKind;
 use std::collections::BTreeSet;
 
 use crate::rig::Rig;
@@ -86,7 +86,7 @@ const CASES: &[(FaultKind, &str, &str)] = {
 };
 
 /// Runs the statement in an instance that a program calls.
-fn fault(declarations: &str, statement: &str) -> onescan_plc_shim::PlcFault {
+fn fault(declarations: &str, statement: &str) -> onescan_iec_run::PlcFault {
     let text = format!(
         "FUNCTION_BLOCK Unit VAR {declarations} END_VAR\n{statement}\nEND_FUNCTION_BLOCK
 PROGRAM P VAR u : Unit; END_VAR\nu();\nEND_PROGRAM{OTHERS}"

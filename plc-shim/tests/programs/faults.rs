@@ -78,7 +78,7 @@ CONFIGURATION c
 END_CONFIGURATION";
     let of = |number: &str| {
         let application = crate::rig::application(&text.replace("NUMBER", number));
-        let plan = onescan_plc_shim::TaskPlan::configured(&application).expect("a configuration");
+        let plan = onescan_iec_run::application.configured_tasks().expect("a configuration");
         let fault = Rig::with_plan(&application, &plan).scan().expect_err("a division by zero");
         fault.to_string()
     };
@@ -96,14 +96,14 @@ CONFIGURATION c TASK t (INTERVAL := T#10ms);
   PROGRAM P1 WITH t : Prg (n := x);
 END_CONFIGURATION",
     );
-    let plan = onescan_plc_shim::TaskPlan::configured(&application).expect("a configuration");
+    let plan = onescan_iec_run::application.configured_tasks().expect("a configuration");
     let fault = Rig::with_plan(&application, &plan).scan().expect_err("out of the subrange");
     insta::assert_snapshot!(fault.to_string(), @"value out of subrange at test.st:4:33 in P1, t_v = 0.010 s");
 }
 
 #[test]
 fn iec2_annex_e_each_kind_of_fault_is_tested() {
-    use onescan_plc_shim::FaultKind;
+    use onescan_iec_run::FaultKind;
     let of = |declarations: &str, statements: &str| {
         let mut rig = Rig::new(&format!("PROGRAM P VAR {declarations} END_VAR {statements} END_PROGRAM"));
         rig.scan().expect_err(statements).kind

@@ -1,6 +1,6 @@
 //! Constructs as real code of the field has them, in programs of our own.
 
-use onescan_plc_shim::Dialect::{self, Codesys, TwinCat};
+use onescan_iec::Dialect::{self, Codesys, TwinCat};
 
 use crate::rig::{Rig, findings_in};
 

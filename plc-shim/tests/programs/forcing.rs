@@ -2,7 +2,8 @@
 
 use std::fmt::Write;
 
-use onescan_plc_shim::{Application, SoftPlc, TaskPlan, VirtualTime};
+use onescan_iec::{TaskPlan, VirtualTime};
+use onescan_iec_run::{Application, SoftPlc};
 
 use crate::rig::{MS, Rig, application};
 
@@ -142,7 +143,7 @@ END_CONFIGURATION";
 
 fn chain() -> Rig {
     let application = application(CHAIN);
-    let plan = TaskPlan::configured(&application).expect("a configuration");
+    let plan = application.configured_tasks().expect("a configuration");
     Rig::with_plan(&application, &plan)
 }
 
@@ -240,7 +241,7 @@ fn iec2_2_7_1_table_49_read_only_access_is_kept() {
             VAR_ACCESS Level : p.level : INT READ_ONLY; Set : p.level : INT READ_WRITE; END_VAR
         END_CONFIGURATION";
     let application = Application::from_sources([("t.st", text)]).expect("no errors");
-    let plan = TaskPlan::configured(&application).expect("a configuration");
+    let plan = application.configured_tasks().expect("a configuration");
     let mut plc = SoftPlc::new(&application, &plan).expect("a plan");
     assert_eq!(plc.write("Level", "5").expect_err("read only").to_string(), "`Level` is READ_ONLY");
     assert_eq!(plc.force("Level", "5").expect_err("read only").to_string(), "`Level` is READ_ONLY");

@@ -1,8 +1,9 @@
 //! What projects of other tools hold beside plain code: calls with EN alone, what CODESYS and `MatIEC` alone take.
 
-use onescan_plc_shim::Dialect::{self, Codesys, Iec3, Matiec, TwinCat};
-use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::{Application, Input, Severity, TaskPlan, TimeSpan};
+use onescan_iec::Dialect::{self, Codesys, Iec3, Matiec, TwinCat};
+use onescan_iec::input::kind::SourceKind;
+use onescan_iec::{Input, Severity, TaskPlan, TimeSpan};
+use onescan_iec_run::Application;
 
 use crate::rig::{Rig, findings_in};
 
@@ -129,7 +130,7 @@ fn a_task_may_be_faster_than_a_millisecond() {
         Input::from_text("MAIN.st", SourceKind::Text, "PROGRAM MAIN VAR n : INT; END_VAR n := n + 1; END_PROGRAM");
     let task = Input::from_text("Fast.TcTTO", SourceKind::TwinCat, task);
     let application = Application::from_inputs([program.in_dialect(TwinCat), task]).expect("it compiles");
-    let plan = TaskPlan::single(&application, TimeSpan::millis::<10>());
+    let plan = application.single_task(TimeSpan::millis::<10>());
     assert_eq!(Rig::with_plan(&application, &plan).int("MAIN.n"), 0);
 }
 
@@ -144,11 +145,11 @@ fn a_library_has_a_task_and_no_program() {
         ]
     };
     let block = "FUNCTION_BLOCK F VAR a : INT; END_VAR a := a + 1; END_FUNCTION_BLOCK";
-    let found = onescan_plc_shim::inspect(inputs(block), None);
+    let found = onescan_iec::inspect(inputs(block), None);
     assert!(found.iter().all(|found| found.severity == Severity::Warning), "{found}");
     assert!(found.iter().any(|found| found.code.text() == "D0431"), "{found}");
     let other = format!("{block} PROGRAM Other VAR f1 : F; END_VAR f1(); END_PROGRAM");
-    let found = onescan_plc_shim::inspect(inputs(&other), None);
+    let found = onescan_iec::inspect(inputs(&other), None);
     assert!(found.iter().any(|found| found.code.text() == "D0431" && found.severity == Severity::Error), "{found}");
 }
 
@@ -177,7 +178,7 @@ const ARGUMENTS: &str = r#"<?xml version="1.0" encoding="utf-8"?>
 fn arguments_of_instances_and_static_variables_are_read_from_xml() {
     let input = Input::from_text("app.xml", SourceKind::PlcOpen, ARGUMENTS);
     let application = Application::from_inputs([input]).expect("it compiles");
-    let mut rig = Rig::with_plan(&application, &TaskPlan::single(&application, TimeSpan::millis::<10>()));
+    let mut rig = Rig::with_plan(&application, &application.single_task(TimeSpan::millis::<10>()));
     rig.scan().expect("no fault");
     assert_eq!((rig.int("P.a.k"), rig.int("P.b.k")), (6, 8));
     // One variable of all instances.

@@ -1,8 +1,8 @@
 //! Generic blocks of CODESYS and TwinCAT: `VAR_GENERIC CONSTANT`, `FB<8>`.
 
-use onescan_plc_shim::Dialect;
-use onescan_plc_shim::syntax::printer::print_unit;
-use onescan_plc_shim::syntax::{FileId, parse_in};
+use onescan_iec::Dialect;
+use onescan_iec::syntax::printer::print_unit;
+use onescan_iec::syntax::{FileId, parse_in};
 
 use crate::rig::{Rig, findings_in};
 

@@ -1,8 +1,9 @@
 //! Files as they are found: whatever is in them, they are read, and places lead back into them.
 
-use onescan_plc_shim::input::encoding::{decode, encode};
-use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::{Application, Input, inspect};
+use onescan_iec::input::encoding::{decode, encode};
+use onescan_iec::input::kind::SourceKind;
+use onescan_iec::{Input, inspect};
+use onescan_iec_run::Application;
 use proptest::prelude::*;
 
 const PROJECT: &str = include_str!("../inputs/ramp.xml");

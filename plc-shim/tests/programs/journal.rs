@@ -1,7 +1,8 @@
 //! The journal of a scan: what statements read, write and decide, in their order.
 
-use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::{Act, Application, Input, SoftPlc, TaskPlan, TimeSpan, VirtualTime};
+use onescan_iec::input::kind::SourceKind;
+use onescan_iec::{Input, TaskPlan, TimeSpan, VirtualTime};
+use onescan_iec_run::{Act, Application, SoftPlc};
 
 const TEXT: &str = "
 FUNCTION_BLOCK Step
@@ -27,7 +28,7 @@ fn journal(plc: &SoftPlc) -> Vec<String> {
     let ways = application.ways();
     let text = |id| statements.iter().find(|each| each.id == id).map(|each| each.text.clone()).expect("a statement");
     let path = |start: usize, end: usize| {
-        let within = |each: &onescan_plc_shim::Variable| {
+        let within = |each: &onescan_iec_run::Variable| {
             let at = each.offset as usize;
             at < end && start < at + each.size as usize
         };
@@ -53,7 +54,7 @@ fn journal(plc: &SoftPlc) -> Vec<String> {
 fn a_scan_is_told_in_its_order() {
     let input = Input::from_text("test.st", SourceKind::Text, TEXT);
     let application = Application::builder().input(input).traced().build().expect("it compiles");
-    let plan = TaskPlan::single(&application, TimeSpan::millis::<10>());
+    let plan = application.single_task(TimeSpan::millis::<10>());
     let mut plc = SoftPlc::new(&application, &plan).expect("it runs");
     plc.watch([]);
     plc.keep_journal(true);
@@ -74,7 +75,7 @@ fn a_journal_leaves_no_trace() {
     let state = |journal: bool| {
         let input = Input::from_text("test.st", SourceKind::Text, TEXT);
         let application = Application::builder().input(input).traced().build().expect("it compiles");
-        let plan = TaskPlan::single(&application, TimeSpan::millis::<10>());
+        let plan = application.single_task(TimeSpan::millis::<10>());
         let mut plc = SoftPlc::new(&application, &plan).expect("it runs");
         plc.watch([]);
         plc.keep_journal(journal);

@@ -1,4 +1,4 @@
-use onescan_plc_shim::Dialect;
+use onescan_iec::Dialect;
 
 use crate::rig::{Rig, findings_in, result};
 

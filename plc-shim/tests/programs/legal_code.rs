@@ -1,8 +1,8 @@
 //! Code that other tools compile and that real projects hold, in small programs of our own: each line checks without
 //! an error, and those that say so give a value.
 
-use onescan_plc_shim::Dialect::{self, Codesys, Iec2, Iec3, Matiec, SiemensScl, TwinCat};
-use onescan_plc_shim::Severity;
+use onescan_iec::Dialect::{self, Codesys, Iec2, Iec3, Matiec, SiemensScl, TwinCat};
+use onescan_iec::Severity;
 
 use crate::rig::{Rig, findings_in};
 

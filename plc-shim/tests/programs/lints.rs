@@ -1,7 +1,7 @@
 //! What is legal and seldom meant, and what looks like it and is meant.
 
-use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::{Input, TaskPlan, inspect};
+use onescan_iec::input::kind::SourceKind;
+use onescan_iec::{Input, TaskPlan, inspect};
 
 use crate::rig::task;
 
@@ -129,5 +129,5 @@ VAR i : INT; u : UINT; w : WORD; d : DINT; l : LREAL; r : REAL; b : BOOL; END_VA
   u := 5; r := 0.1; w := b;
   i := UINT_TO_INT(u); r := LREAL_TO_REAL(l);
 END_PROGRAM";
-    insta::assert_snapshot!(crate::rig::findings_in(onescan_plc_shim::Dialect::Codesys, text));
+    insta::assert_snapshot!(crate::rig::findings_in(onescan_iec::Dialect::Codesys, text));
 }

@@ -1,8 +1,9 @@
 //! What projects of Beremiz and of `OpenPLC`'s editor hold, in text and in PLCopen XML.
 
-use onescan_plc_shim::Dialect::{Iec3, Matiec};
-use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::{Application, Code, Dialect, Input, Severity, TaskPlan, TimeSpan, inspect};
+use onescan_iec::Dialect::{Iec3, Matiec};
+use onescan_iec::input::kind::SourceKind;
+use onescan_iec::{Code, Dialect, Input, Severity, TaskPlan, TimeSpan, inspect};
+use onescan_iec_run::Application;
 
 use crate::plcopen::{pou, program, project};
 use crate::rig::{Rig, findings_in};
@@ -27,7 +28,7 @@ fn drawn(text: &str) -> Rig {
         Ok(application) => application,
         Err(found) => panic!("{found}"),
     };
-    Rig::with_plan(&application, &TaskPlan::single(&application, TimeSpan::millis::<10>()))
+    Rig::with_plan(&application, &application.single_task(TimeSpan::millis::<10>()))
 }
 
 fn codes(text: &str) -> Vec<(Severity, Code)> {

@@ -1,7 +1,8 @@
 //! How much memory the variables of a PLC may take.
 
-use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::{Application, Input, MemoryLimit, TaskPlan, TimeSpan, inspect, inspect_within};
+use onescan_iec::input::kind::SourceKind;
+use onescan_iec::{Input, MemoryLimit, TaskPlan, TimeSpan, inspect, inspect_within};
+use onescan_iec_run::Application;
 
 use crate::rig::Rig;
 
@@ -33,7 +34,7 @@ fn a_higher_limit_gives_room() {
     assert_eq!(inspect_within(limit, [input()], None).to_string(), "");
     let application = Application::builder().input(input()).memory_limit(limit).build();
     let application = application.unwrap_or_else(|error| panic!("{error}"));
-    let mut rig = Rig::with_plan(&application, &TaskPlan::single(&application, TimeSpan::millis::<10>()));
+    let mut rig = Rig::with_plan(&application, &application.single_task(TimeSpan::millis::<10>()));
     rig.scan().expect("a scan");
     assert_eq!(rig.int("Main.x"), 6);
 }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use onescan_plc_shim::Dialect;
+use onescan_iec::Dialect;
 
 use crate::rig::findings_in;
 

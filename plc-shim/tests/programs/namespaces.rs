@@ -1,7 +1,8 @@
 //! Namespaces (3rd ed. 6.9), the names of vendors' libraries and lists of global variables.
 
-use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::{Application, Dialect, Input, TaskPlan, TimeSpan};
+use onescan_iec::input::kind::SourceKind;
+use onescan_iec::{Dialect, Input, TaskPlan, TimeSpan};
+use onescan_iec_run::Application;
 
 use crate::rig::{Rig, findings};
 
@@ -73,7 +74,7 @@ VAR_GLOBAL x : INT := 5; END_VAR]]></Declaration></GVL><GVL Name=\"Open\"><Decla
     let lists = || Input::from_text("GVL.TcGVL", SourceKind::TwinCat, list);
     let good = [lists(), program("GVL.x := GVL.x + 1; y := y + 1; Open.y := y + 1;")];
     let application = Application::from_inputs(good).expect("it compiles");
-    let mut rig = Rig::with_plan(&application, &TaskPlan::single(&application, TimeSpan::millis::<10>()));
+    let mut rig = Rig::with_plan(&application, &application.single_task(TimeSpan::millis::<10>()));
     rig.scan().expect("no fault");
     assert_eq!((rig.int("GVL.x"), rig.int("Open.y"), rig.int("y")), (6, 2, 2));
     let found = Application::from_inputs([lists(), program("x := 1;")]).expect_err("x is qualified only");

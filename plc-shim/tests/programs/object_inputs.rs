@@ -1,7 +1,8 @@
 //! Methods, properties, actions and interfaces in the files of vendors.
 
-use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::{Application, Input, TaskPlan, TimeSpan, inspect};
+use onescan_iec::input::kind::SourceKind;
+use onescan_iec::{Input, TaskPlan, TimeSpan, inspect};
+use onescan_iec_run::Application;
 
 use crate::rig::Rig;
 
@@ -19,7 +20,7 @@ fn rig(inputs: impl IntoIterator<Item = Input>) -> Rig {
         Ok(application) => application,
         Err(found) => panic!("{found}"),
     };
-    let plan = TaskPlan::single(&application, TimeSpan::millis::<10>());
+    let plan = application.single_task(TimeSpan::millis::<10>());
     let mut rig = Rig::with_plan(&application, &plan);
     rig.scan().expect("no fault");
     rig

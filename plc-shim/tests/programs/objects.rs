@@ -1,6 +1,6 @@
 //! Classes, methods, interfaces (3rd ed. 6.6.5 to 6.6.7), and what vendors add to them.
 
-use onescan_plc_shim::Dialect;
+use onescan_iec::Dialect;
 
 use crate::rig::{Rig, findings_in};
 
@@ -325,8 +325,8 @@ INTERFACE INext METHOD Next : INext END_METHOD END_INTERFACE
 FUNCTION_BLOCK Chain IMPLEMENTS INext METHOD Next : INext Next := THIS; END_METHOD END_FUNCTION_BLOCK
 NAMESPACE GVL VAR_GLOBAL used, unused : INT; END_VAR END_NAMESPACE"
     );
-    let input = onescan_plc_shim::Input::from_text("test.st", onescan_plc_shim::input::kind::SourceKind::Text, text);
-    insta::assert_snapshot!(onescan_plc_shim::inspect([input], None), @r#"
+    let input = onescan_iec::Input::from_text("test.st", onescan_iec::input::kind::SourceKind::Text, text);
+    insta::assert_snapshot!(onescan_iec::inspect([input], None), @r#"
     test.st:21:39: warning[W0706]: variable `left` is never used
     test.st:22:26: warning[W0706]: variable `lost` is never used
     test.st:23:39: warning[W0705]: this is never reached

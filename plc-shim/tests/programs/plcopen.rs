@@ -2,8 +2,9 @@
 
 use std::fmt::Write;
 
-use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::{Application, Input, TaskPlan, TimeSpan, inspect};
+use onescan_iec::input::kind::SourceKind;
+use onescan_iec::{Input, TaskPlan, TimeSpan, inspect};
+use onescan_iec_run::Application;
 
 use crate::rig::Rig;
 
@@ -164,6 +165,6 @@ pub(crate) fn rig(text: &str) -> Rig {
         Ok(application) => application,
         Err(diagnostics) => panic!("{diagnostics}\n{}", made_of(text)),
     };
-    let plan = TaskPlan::single(&application, TimeSpan::millis::<10>());
+    let plan = application.single_task(TimeSpan::millis::<10>());
     Rig::with_plan(&application, &plan)
 }

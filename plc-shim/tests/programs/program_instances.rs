@@ -1,7 +1,8 @@
 //! Programs as the global instances that they are in CODESYS and TwinCAT.
 
-use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::{Application, Dialect, Input, Severity, TaskPlan, TimeSpan};
+use onescan_iec::input::kind::SourceKind;
+use onescan_iec::{Dialect, Input, Severity, TaskPlan, TimeSpan};
+use onescan_iec_run::Application;
 
 use crate::rig::{Rig, application_in, findings_in};
 
@@ -52,7 +53,7 @@ fn a_program_is_called_and_read_by_its_name() {
 #[test]
 fn a_program_that_another_calls_has_no_task_of_its_own() {
     let application = application_in(Dialect::TwinCat, CELL);
-    let plan = TaskPlan::single(&application, TimeSpan::millis::<10>());
+    let plan = application.single_task(TimeSpan::millis::<10>());
     assert_eq!(plan.tasks[0].programs, ["MAIN"]);
 }
 
@@ -63,7 +64,7 @@ fn the_instance_is_the_one_of_the_configuration() {
         CONFIGURATION C RESOURCE R ON PLC TASK T (INTERVAL := T#10ms, PRIORITY := 1);
         PROGRAM Line WITH T : Cell; PROGRAM MAIN WITH T : MAIN; END_RESOURCE END_CONFIGURATION";
     let application = application_in(Dialect::TwinCat, text);
-    let plan = TaskPlan::configured(&application).expect("there is a configuration");
+    let plan = application.configured_tasks().expect("there is a configuration");
     let mut rig = Rig::with_plan(&application, &plan);
     rig.scan().expect("no fault");
     assert_eq!((rig.int("Line.n"), rig.int("MAIN.x")), (1, 1));

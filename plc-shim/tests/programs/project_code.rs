@@ -1,7 +1,8 @@
 //! What whole projects of CODESYS and TwinCAT have in common and small examples do not, in programs of our own.
 
-use onescan_plc_shim::Dialect::{self, Codesys, TwinCat};
-use onescan_plc_shim::{FaultKind, Severity};
+use onescan_iec::Dialect::{self, Codesys, TwinCat};
+use onescan_iec::Severity;
+use onescan_iec_run::FaultKind;
 
 use crate::rig::{Rig, findings_in};
 
@@ -160,10 +161,10 @@ fn units_that_contain_one_another_are_reported_and_not_followed() {
 #[test]
 fn plain_text_names_its_dialect() {
     let text = "(* a library *) {dialect 'twincat'} PROGRAM P VAR a, b : BOOL; END_VAR a S= b; END_PROGRAM";
-    let found = onescan_plc_shim::Application::from_sources([("a.st", text)]);
+    let found = onescan_iec_run::Application::from_sources([("a.st", text)]);
     assert!(found.is_ok(), "{found:?}");
     let unknown = text.replace("twincat", "twinkat");
-    let found = onescan_plc_shim::Application::from_sources([("a.st", unknown.as_str())]).expect_err("no dialect");
+    let found = onescan_iec_run::Application::from_sources([("a.st", unknown.as_str())]).expect_err("no dialect");
     insta::assert_snapshot!(found, @r"
     a.st:1:27: error[S0110]: `twinkat` is no dialect: iec2, iec3, codesys, twincat, siemens-scl, matiec
     a.st:1:74: error[S0110]: `S=`, `R=` is not part of iec3 (it is part of codesys and twincat: --dialect chooses)

@@ -1,6 +1,6 @@
 //! What single lines of public projects of CODESYS and TwinCAT rest on, in programs of our own.
 
-use onescan_plc_shim::Dialect::{Codesys, TwinCat};
+use onescan_iec::Dialect::{Codesys, TwinCat};
 
 use crate::project_code::gives;
 use crate::rig::{Rig, findings_in};

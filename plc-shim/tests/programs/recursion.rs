@@ -1,6 +1,7 @@
 //! Methods and functions that call themselves (CODESYS, TwinCAT): how deep they may, and where they stop.
 
-use onescan_plc_shim::{Dialect, FaultKind};
+use onescan_iec::Dialect;
+use onescan_iec_run::FaultKind;
 
 use crate::rig::{Rig, findings, findings_in};
 

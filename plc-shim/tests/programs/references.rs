@@ -25,7 +25,7 @@ fn this_is_a_pointer_to_the_own_instance_and_its_bases() {
         METHOD Own q := THIS; d := THIS; q := d; q^.Add(10); d^.Add(100); END_METHOD END_FUNCTION_BLOCK
         PROGRAM P VAR b : Base; d : Derived; p : POINTER TO Base; END_VAR
         b.Keep(); p := b.Me(); p^.Add(1); d.Own(); END_PROGRAM";
-    for dialect in [onescan_plc_shim::Dialect::Codesys, onescan_plc_shim::Dialect::TwinCat] {
+    for dialect in [onescan_iec::Dialect::Codesys, onescan_iec::Dialect::TwinCat] {
         let mut rig = Rig::in_dialect(dialect, text);
         rig.scan().expect("no fault");
         assert_eq!((rig.int("P.b.n"), rig.int("P.d.n")), (1, 110), "{dialect}");
@@ -168,8 +168,8 @@ fn references_of_vendors_stand_for_what_they_refer_to() {
 fn a_variable_whose_address_is_taken_is_used_and_written() {
     let text = "PROGRAM P VAR a, b, c : INT; p : POINTER TO INT; r : REFERENCE TO INT; s : REF_TO INT; END_VAR
         VAR_OUTPUT o : INT; END_VAR p := ADR(a); p^ := 1; r REF= b; r := 2; s := REF(o); s^ := 3; p := ADR(c); END_PROGRAM";
-    let found = onescan_plc_shim::inspect(
-        [onescan_plc_shim::Input::from_text("t.st", onescan_plc_shim::input::kind::SourceKind::Text, text)],
+    let found = onescan_iec::inspect(
+        [onescan_iec::Input::from_text("t.st", onescan_iec::input::kind::SourceKind::Text, text)],
         None,
     );
     assert_eq!(found.to_string(), "");

@@ -1,6 +1,6 @@
 //! Members of structures where their addresses say, and those that share bytes (3rd ed. 6.4.4.6, Table 11).
 
-use onescan_plc_shim::Dialect;
+use onescan_iec::Dialect;
 
 use crate::rig::{Rig, findings, findings_in};
 

@@ -2,7 +2,8 @@
 
 use std::fmt::Write;
 
-use onescan_plc_shim::{SoftPlc, TaskPlan, TimeSpan};
+use onescan_iec::{TaskPlan, TimeSpan};
+use onescan_iec_run::SoftPlc;
 
 use crate::rig::{Rig, application};
 
@@ -10,7 +11,7 @@ use crate::rig::{Rig, application};
 fn starts(text: &str, paths: &[&str]) -> String {
     let application = application(text);
     let plan =
-        TaskPlan::configured(&application).unwrap_or_else(|| TaskPlan::single(&application, TimeSpan::millis::<10>()));
+        application.configured_tasks().unwrap_or_else(|| application.single_task(TimeSpan::millis::<10>()));
     let mut table = String::new();
     let mut rows: Vec<Vec<i64>> = vec![Vec::new(); paths.len()];
     let starts: [fn(&mut SoftPlc); 3] = [SoftPlc::warm_start, SoftPlc::cold_start, SoftPlc::reset];
@@ -18,7 +19,7 @@ fn starts(text: &str, paths: &[&str]) -> String {
         let mut rig = Rig::with_plan(&application, &plan);
         for _ in 0..2 {
             rig.now_ns += 10_000_000;
-            rig.plc.scan(onescan_plc_shim::VirtualTime::from_nanos(rig.now_ns)).expect("no fault");
+            rig.plc.scan(onescan_iec::VirtualTime::from_nanos(rig.now_ns)).expect("no fault");
         }
         start(&mut rig.plc);
         paths.iter().zip(&mut rows).for_each(|(path, row)| row.push(rig.int(path)));

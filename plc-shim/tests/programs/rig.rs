@@ -1,10 +1,8 @@
 //! A PLC under test, with its variables by name.
 
-use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::{
-    Application, Diagnostics, Dialect, ElementaryType, Input, PlcFault, SoftPlc, Task, TaskPlan, TimeSpan, Variable,
-    VirtualTime, inspect,
-};
+use onescan_iec::input::kind::SourceKind;
+use onescan_iec::{Diagnostics, Dialect, ElementaryType, Input, Task, TaskPlan, TimeSpan, VirtualTime, inspect};
+use onescan_iec_run::{Application, PlcFault, SoftPlc, Variable};
 
 pub(crate) const MS: u64 = 1_000_000;
 
@@ -61,14 +59,14 @@ impl Rig {
     /// All programs in one task of 10 ms, of a file read as `dialect`.
     pub(crate) fn in_dialect(dialect: Dialect, text: &str) -> Self {
         let application = application_in(dialect, text);
-        let plan = TaskPlan::single(&application, TimeSpan::millis::<10>());
+        let plan = application.single_task(TimeSpan::millis::<10>());
         Self::with_plan(&application, &plan)
     }
 
     /// All programs in one task of 10 ms.
     pub(crate) fn new(text: &str) -> Self {
         let application = application(text);
-        let plan = TaskPlan::single(&application, TimeSpan::millis::<10>());
+        let plan = application.single_task(TimeSpan::millis::<10>());
         Self::with_plan(&application, &plan)
     }
 

@@ -1,6 +1,7 @@
 //! Nothing that is written in a program makes the compiler or the PLC panic.
 
-use onescan_plc_shim::{Application, SoftPlc, TaskPlan, TimeSpan, VirtualTime};
+use onescan_iec::{TaskPlan, TimeSpan, VirtualTime};
+use onescan_iec_run::{Application, SoftPlc};
 use proptest::prelude::*;
 
 const PROGRAM: &str =
@@ -23,7 +24,7 @@ fn run(text: &str) {
     let Ok(application) = Application::from_sources([("mutated.st", text)]) else {
         return;
     };
-    let mut plan = TaskPlan::single(&application, TimeSpan::millis::<1>());
+    let mut plan = application.single_task(TimeSpan::millis::<1>());
     plan.fuel_per_task = 100_000;
     let Ok(mut plc) = SoftPlc::new(&application, &plan) else {
         return;

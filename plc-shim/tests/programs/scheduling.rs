@@ -1,4 +1,5 @@
-use onescan_plc_shim::{RunError, SoftPlc, TaskPlan, TimeSpan, VirtualTime};
+use onescan_iec::{TaskPlan, TimeSpan, VirtualTime};
+use onescan_iec_run::{RunError, SoftPlc};
 
 use crate::rig::{MS, Rig, application, task};
 

@@ -1,6 +1,6 @@
 //! SCL sources of Siemens' TIA Portal.
 
-use onescan_plc_shim::Dialect::SiemensScl;
+use onescan_iec::Dialect::SiemensScl;
 
 use crate::rig::{Rig, findings_in};
 

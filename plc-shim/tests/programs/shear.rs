@@ -41,7 +41,7 @@ fn the_reference_program_makes_its_strokes() {
 fn a_program_lists_its_variables() {
     let application = application(SHEAR);
     let programs: Vec<_> = application.programs().collect();
-    let names = |list: &[onescan_plc_shim::Variable]| {
+    let names = |list: &[onescan_iec_run::Variable]| {
         let each = list.iter().map(|variable| format!("{}: {}", variable.path, variable.type_name));
         each.collect::<Vec<_>>().join(", ")
     };

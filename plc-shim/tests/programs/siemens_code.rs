@@ -1,6 +1,6 @@
 //! SCL as classic STEP 7, PCS 7 and TIA Portal have it beside what `scl` shows.
 
-use onescan_plc_shim::Dialect::{self, SiemensScl};
+use onescan_iec::Dialect::{self, SiemensScl};
 
 use crate::rig::{Rig, findings_in};
 

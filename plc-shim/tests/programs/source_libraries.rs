@@ -1,8 +1,9 @@
 //! What libraries need that are read as source: their namespace, bodies by pointer, paths of instances, LTIME without
 //! sign.
 
-use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::{Application, Dialect, Input, TaskPlan, TimeSpan};
+use onescan_iec::input::kind::SourceKind;
+use onescan_iec::{Dialect, Input, TaskPlan, TimeSpan};
+use onescan_iec_run::Application;
 
 use crate::rig::{Rig, findings_in};
 
@@ -28,7 +29,7 @@ fn rig(program: &str) -> Rig {
         Input::from_text("main.st", SourceKind::Text, program).in_dialect(Dialect::TwinCat),
     ];
     let application = Application::from_inputs(inputs).unwrap_or_else(|found| panic!("{found}"));
-    Rig::with_plan(&application, &TaskPlan::single(&application, TimeSpan::millis::<10>()))
+    Rig::with_plan(&application, &application.single_task(TimeSpan::millis::<10>()))
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! What runs before the first scan: `FB_init`, `FB_exit` (CODESYS, TwinCAT), initial values that are no
 //! constants.
 
-use onescan_plc_shim::Dialect;
+use onescan_iec::Dialect;
 
 use crate::rig::{Rig, findings_in};
 

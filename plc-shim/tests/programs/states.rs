@@ -1,7 +1,6 @@
-use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::{
-    Application, Builder, CodePolicy, Input, RestoreError, SoftPlc, TaskPlan, TimeSpan, VirtualTime,
-};
+use onescan_iec::input::kind::SourceKind;
+use onescan_iec::{Input, TaskPlan, TimeSpan, VirtualTime};
+use onescan_iec_run::{Application, Builder, CodePolicy, RestoreError, SoftPlc};
 
 use crate::rig::{MS, Rig, application, task};
 
@@ -15,7 +14,7 @@ END_PROGRAM";
 #[test]
 fn a_restored_plc_goes_on_to_the_last_bit_from_every_scan() {
     let application = application(TEXT);
-    let plan = TaskPlan::single(&application, TimeSpan::millis::<10>());
+    let plan = application.single_task(TimeSpan::millis::<10>());
     let mut whole = Rig::with_plan(&application, &plan);
     let mut states = vec![whole.plc.save()];
     for _ in 0..40 {
@@ -84,7 +83,7 @@ fn built(builder: Builder) -> Application {
 
 /// A PLC with one task of 10 ms; a traced one watches something.
 fn plc(application: &Application) -> SoftPlc {
-    let mut plc = SoftPlc::new(application, &TaskPlan::single(application, TimeSpan::millis::<10>())).expect("a plan");
+    let mut plc = SoftPlc::new(application, &application.single_task(TimeSpan::millis::<10>())).expect("a plan");
     plc.watch([(64..68, None)]);
     plc
 }

@@ -1,6 +1,6 @@
 //! How strings lie in memory, for programs that walk them by pointer: `SIZEOF`, `ADR`, `MEMCPY`, arrays, structures.
 
-use onescan_plc_shim::Dialect;
+use onescan_iec::Dialect;
 
 use crate::rig::Rig;
 
@@ -63,8 +63,9 @@ fn a_full_string_needs_no_more_room() {
 
 #[test]
 fn strings_of_two_dialects_are_assigned_and_compared() {
-    use onescan_plc_shim::input::kind::SourceKind;
-    use onescan_plc_shim::{Application, Input, TaskPlan, TimeSpan};
+    use onescan_iec::input::kind::SourceKind;
+    use onescan_iec::{Input, TaskPlan, TimeSpan};
+    use onescan_iec_run::Application;
     let library = "FUNCTION twice : STRING(40) VAR_INPUT s : STRING(20); END_VAR twice := CONCAT(s, s); END_FUNCTION";
     let program = "PROGRAM P VAR s : STRING(20) := 'ab'; t : STRING(40); same : BOOL; n : INT; END_VAR
         t := twice(s); same := t = 'abab'; n := LEN(twice(t)); END_PROGRAM";
@@ -72,7 +73,7 @@ fn strings_of_two_dialects_are_assigned_and_compared() {
         let library = Input::from_text("lib.st", SourceKind::Text, library).in_dialect(first);
         let program = Input::from_text("main.st", SourceKind::Text, program).in_dialect(second);
         let application = Application::from_inputs([library, program]).expect("it compiles");
-        let mut rig = Rig::with_plan(&application, &TaskPlan::single(&application, TimeSpan::millis::<10>()));
+        let mut rig = Rig::with_plan(&application, &application.single_task(TimeSpan::millis::<10>()));
         rig.scan().expect("no fault");
         assert!(rig.bool("P.same"), "{first} and {second}");
         assert_eq!(rig.int("P.n"), 8);

@@ -203,7 +203,7 @@ fn an_endless_loop_over_strings_ends() {
          WHILE LEN(s) < 40000 DO s := CONCAT(s, 'x'); t := CONCAT(s, s); END_WHILE; END_PROGRAM",
     );
     let fault = rig.scan().expect_err("never ends");
-    assert_eq!(fault.kind, onescan_plc_shim::FaultKind::EndlessLoop);
+    assert_eq!(fault.kind, onescan_iec_run::FaultKind::EndlessLoop);
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Subranges and enumerations (2nd ed. 2.3.3, Tables 12 to 14; 3rd ed. 6.4.4).
 
-use onescan_plc_shim::{Dialect, FaultKind};
+use onescan_iec::Dialect;
+use onescan_iec_run::FaultKind;
 
 use crate::rig::{Rig, findings, result};
 

@@ -3,8 +3,8 @@
 use std::ops::Range;
 use std::path::PathBuf;
 
-use onescan_plc_shim::Input;
-use onescan_plc_shim::source::LineColumn;
+use onescan_iec::Input;
+use onescan_iec::source::LineColumn;
 use onescan_server::signal::{ClientName, did_you_mean};
 use toml::Spanned;
 
@@ -81,7 +81,7 @@ impl Scenario {
             let message = format!("two texts in the place of others in {source} overlap");
             return Err(wrong_case(applied, message, Range::clone(place), Some("make one of them".to_owned())));
         }
-        Ok(replaced.into_iter().fold(input, |input, (found, is, _)| input.with_text(found, is)))
+        Ok(replaced.into_iter().fold(input, |input, (found, is, _)| input.with_replaced(found, is)))
     }
 
     /// What the case changes in the program of PLC `name`.

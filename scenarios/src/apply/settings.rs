@@ -3,9 +3,10 @@
 
 use std::collections::BTreeMap;
 
-use onescan_clients::plant::scene::{Override, UnknownFailure};
-use onescan_clients::soft_plc::SoftPlcClient;
-use onescan_plc_shim::{Application, BuildError, Builder, ConstantError, Diagnostics, Input, WriteError};
+use onescan_plant::scene::{Override, UnknownFailure};
+use onescan_soft_plc::SoftPlcClient;
+use onescan_iec::{ConstantError, Diagnostics, Input};
+use onescan_iec_run::{Application, BuildError, Builder, WriteError};
 use onescan_server::checkpoint::Makeup;
 use onescan_server::signal::ClientName;
 
@@ -180,7 +181,7 @@ impl Scenario {
     pub(crate) fn check_asked_of(
         &self,
         name: &ClientName,
-        scene: &onescan_clients::plant::Scene,
+        scene: &onescan_plant::Scene,
     ) -> Result<(), ScenarioError> {
         self.check_failures(name, scene)?;
         let Some(applied) = self.applied() else { return Ok(()) };
@@ -193,7 +194,7 @@ impl Scenario {
     }
 
     /// Refuses failures of components that plant `name` does not have.
-    fn check_failures(&self, name: &ClientName, scene: &onescan_clients::plant::Scene) -> Result<(), ScenarioError> {
+    fn check_failures(&self, name: &ClientName, scene: &onescan_plant::Scene) -> Result<(), ScenarioError> {
         self.check_panels(scene)?;
         let Some(applied) = self.applied() else { return Ok(()) };
         for failure in applied.failures.iter().filter(|failure| failure.client == *name) {
@@ -207,7 +208,7 @@ impl Scenario {
 
     /// Refuses failures on panels that `scene` does not have. Where there are several plants, a component that it does not have
     /// may be another one's.
-    fn check_panels(&self, scene: &onescan_clients::plant::Scene) -> Result<(), ScenarioError> {
+    fn check_panels(&self, scene: &onescan_plant::Scene) -> Result<(), ScenarioError> {
         let is_plant = |client: &toml::Spanned<ClientFile>| matches!(client.get_ref(), ClientFile::Plant { .. });
         let is_only = self.file().clients.values().filter(|client| is_plant(client)).count() == 1;
         for element in self.file().panel.iter().flat_map(|panel| &panel.element) {

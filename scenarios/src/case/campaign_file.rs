@@ -2,7 +2,7 @@
 
 use std::num::NonZeroU32;
 
-use onescan_plc_shim::mutate::MutantKind;
+use onescan_iec_project::mutate::MutantKind;
 use onescan_server::signal::SignalName;
 use onescan_server::time::{TimeSpan, VirtualTime};
 use schemars::JsonSchema;

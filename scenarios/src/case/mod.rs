@@ -29,7 +29,7 @@ use std::fmt;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use onescan_plc_shim::source::LineColumn;
+use onescan_iec::source::LineColumn;
 use onescan_server::signal::ClientName;
 use onescan_server::time::VirtualTime;
 use onescan_server::timeline::Scheduled;

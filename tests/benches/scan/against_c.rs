@@ -16,7 +16,8 @@ mod timers;
 use std::time::Instant;
 
 use native::Native;
-use onescan_plc_shim::{Application, SoftPlc, TaskPlan, TimeSpan, VirtualTime};
+use onescan_iec::{TaskPlan, TimeSpan, VirtualTime};
+use onescan_iec_run::{Application, SoftPlc};
 
 const INTERVAL_NS: u64 = 10_000_000;
 const ROUNDS: usize = 40;
@@ -66,7 +67,7 @@ fn median(mut ratios: Vec<f64>) -> f64 {
 fn compare(case: &Case) -> [f64; 2] {
     let application = Application::from_sources([(format!("{}.st", case.name), case.st.as_str())]);
     let application = application.unwrap_or_else(|found| panic!("{}: {found}", case.name));
-    let plan = TaskPlan::single(&application, TimeSpan::from_nanos(INTERVAL_NS).expect("not zero"));
+    let plan = application.single_task(TimeSpan::from_nanos(INTERVAL_NS).expect("not zero"));
     let mut plc = SoftPlc::new(&application, &plan).expect("it can run");
     let native = Native::compile(case.name, &case.c);
     let (trial, _) = run(&mut plc, 100);

@@ -39,7 +39,7 @@ mod undisturbed;
 
 use std::sync::Mutex;
 
-use onescan_plc_shim::{Task, TimeSpan};
+use onescan_iec::{Task, TimeSpan};
 use stateright::{Checker, Model, Property};
 
 use self::gateway::{Gateway, Message, Progress, Verdict};

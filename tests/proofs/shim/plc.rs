@@ -3,9 +3,10 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::instrument::{Options, instrument};
-use onescan_plc_shim::{Application, Input, SoftPlc, Task, TaskPlan, TimeSpan, VirtualTime};
+use onescan_iec::input::kind::SourceKind;
+use onescan_iec_project::instrument::{Options, instrument};
+use onescan_iec::{Input, Task, TaskPlan, TimeSpan, VirtualTime};
+use onescan_iec_run::{Application, SoftPlc};
 
 use super::gateway::Message;
 

@@ -1,6 +1,6 @@
 //! A group `G` of axes `A[1]` to `A[6]`, and every block of coordinated motion.
 
-use onescan_plc_shim::Application;
+use onescan_iec_run::Application;
 
 use crate::bench::{Bench, State};
 

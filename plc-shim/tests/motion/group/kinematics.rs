@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use onescan_plc_shim::Application;
+use onescan_iec_run::Application;
 use proptest::prelude::*;
 
 use super::bench::{BLENDING_PREVIOUS, CORNER_DISTANCE, GroupState, apart, line, off_line, six, standby, state, trace};

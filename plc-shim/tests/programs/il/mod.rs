@@ -1,7 +1,7 @@
 //! Lists of instructions (2nd ed. 3.2, 3rd ed. 7.2).
 
-use onescan_plc_shim::syntax::printer::print_unit;
-use onescan_plc_shim::syntax::{FileId, parse};
+use onescan_iec::syntax::printer::print_unit;
+use onescan_iec::syntax::{FileId, parse};
 
 use crate::plcopen;
 use crate::rig::{Rig, findings};
@@ -181,7 +181,7 @@ fn a_jump_back_inside_of_a_loop_is_no_step_of_it() {
         END_WHILE;
         out:
         END_PROGRAM";
-    let mut rig = Rig::in_dialect(onescan_plc_shim::Dialect::Codesys, text);
+    let mut rig = Rig::in_dialect(onescan_iec::Dialect::Codesys, text);
     rig.scan().expect("no fault");
     assert_eq!((rig.int("P.i"), rig.int("P.a[9]"), rig.int("P.turns")), (15, 15, 15));
 }

@@ -1,7 +1,8 @@
 //! Three PLCs side by side: the original on its own clock, the instrumented one that is not simulated, and the
 //! instrumented one under grants.
 
-use onescan_plc_shim::{Application, SoftPlc, TaskPlan};
+use onescan_iec::TaskPlan;
+use onescan_iec_run::{Application, SoftPlc};
 
 use super::corpus::input;
 use super::driver::{Driver, scan, write};

@@ -1,8 +1,8 @@
 //! Charts on virtual time: what is written, and that it is the same.
 
-use onescan_plc_shim::Input;
-use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::instrument::{Options, Target, diff, instrument, remove};
+use onescan_iec::Input;
+use onescan_iec::input::kind::SourceKind;
+use onescan_iec_project::instrument::{Options, Target, diff, instrument, remove};
 use proptest::prelude::*;
 
 use super::driver::{Driver, Tasks, application, original, own_plan, scan, state, write};

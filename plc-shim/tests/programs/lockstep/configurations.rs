@@ -1,8 +1,9 @@
 //! Projects with a CONFIGURATION (2nd ed. 2.7): the scheduler is part of it.
 
-use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::instrument::{Options, diff, instrument, remove};
-use onescan_plc_shim::{Application, Input, SoftPlc, TaskPlan};
+use onescan_iec::input::kind::SourceKind;
+use onescan_iec_project::instrument::{Options, diff, instrument, remove};
+use onescan_iec::{Input, TaskPlan};
+use onescan_iec_run::{Application, SoftPlc};
 
 use super::driver::{Driver, scan};
 use crate::rig::MS;
@@ -49,7 +50,7 @@ fn instrumented(text: &str) -> Vec<(String, String)> {
 
 fn compiled(files: Vec<(String, String)>) -> (Application, TaskPlan) {
     let application = Application::from_sources(files).unwrap_or_else(|found| panic!("{found}"));
-    let plan = TaskPlan::configured(&application).expect("a configuration");
+    let plan = application.configured_tasks().expect("a configuration");
     (application, plan)
 }
 

@@ -1,6 +1,6 @@
 //! Programs for lockstep, with their tasks.
 
-use onescan_plc_shim::Task;
+use onescan_iec::Task;
 
 use crate::rig::task;
 

@@ -1,8 +1,8 @@
 //! Projects of TwinCAT with bodies that are drawn: what is drawn stays as it is.
 
-use onescan_plc_shim::Input;
-use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::instrument::{Options, Target, instrument};
+use onescan_iec::Input;
+use onescan_iec::input::kind::SourceKind;
+use onescan_iec_project::instrument::{Options, Target, instrument};
 
 use super::rewriting::round_trip;
 use crate::drawings::{LEVEL, RUNGS, VESSEL, inputs};

@@ -1,6 +1,6 @@
 //! Original, instrumented and not simulated, instrumented under grants: the same to the last bit.
 
-use onescan_plc_shim::{Task, TaskPlan};
+use onescan_iec::{Task, TaskPlan};
 
 use super::abreast::Abreast;
 use super::corpus::cases;

@@ -1,7 +1,8 @@
 //! Charts that are drawn, on virtual time: instrumented in place, taken back, and the same in lockstep.
 
-use onescan_plc_shim::instrument::{Options, Target, diff, instrument};
-use onescan_plc_shim::{Application, SoftPlc, Task, TaskPlan};
+use onescan_iec_project::instrument::{Options, Target, diff, instrument};
+use onescan_iec::{Task, TaskPlan};
+use onescan_iec_run::{Application, SoftPlc};
 use proptest::prelude::*;
 
 use super::abreast::Abreast;

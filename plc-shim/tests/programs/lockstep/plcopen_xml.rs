@@ -1,8 +1,9 @@
 //! Projects in PLCopen XML: instrumented in place, read back, taken back, and the same in lockstep.
 
-use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::instrument::{Options, Project, Target, diff, instrument, remove};
-use onescan_plc_shim::{Application, Input, SoftPlc, TaskPlan};
+use onescan_iec::input::kind::SourceKind;
+use onescan_iec_project::instrument::{Options, Project, Target, diff, instrument, remove};
+use onescan_iec::{Input, TaskPlan};
+use onescan_iec_run::{Application, SoftPlc};
 
 use super::driver::{Driver, Tasks, own_plan, scan, state, write};
 use crate::plcopen::{block, coil, contact, input, output, pou, project, rail};
@@ -171,9 +172,9 @@ fn several_instances_of_a_program_are_numbered() {
     let compiled =
         |text: &str| Application::from_inputs([read(text)]).unwrap_or_else(|found| panic!("{found}\n{text}"));
     let plain = compiled(&own);
-    let mut plain = SoftPlc::new(&plain, &TaskPlan::configured(&plain).expect("tasks")).expect("the plan suits");
+    let mut plain = SoftPlc::new(&plain, &plain.configured_tasks().expect("tasks")).expect("the plan suits");
     let application = compiled(&text(&round_trip(&own, &options)));
-    let mut driver = Driver::joined(&application, &TaskPlan::configured(&application).expect("tasks"));
+    let mut driver = Driver::joined(&application, &application.configured_tasks().expect("tasks"));
     for step in 1..80 {
         for (index, name) in ["text", "text2", "net", "net2", "rung", "rung2", "list", "list2"].iter().enumerate() {
             let value = super::corpus::input(index, step);

@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
-use onescan_plc_shim::input::kind::{FileKind, SourceKind};
-use onescan_plc_shim::instrument::{File, Options, Project, Target, instrument, remove};
-use onescan_plc_shim::{Application, Dialect, Input, Severity, SoftPlc, Task, TaskPlan};
+use onescan_iec::input::kind::{FileKind, SourceKind};
+use onescan_iec_project::instrument::{File, Options, Project, Target, instrument, remove};
+use onescan_iec::{Dialect, Input, Severity, Task, TaskPlan};
+use onescan_iec_run::{Application, SoftPlc};
 
 use super::corpus::{cases, input};
 use super::driver::{Driver, Tasks, own_plan, scan, state, write};
@@ -108,7 +109,7 @@ fn the_file_holds_project_shim_and_tasks() {
 fn everything_that_has_a_form_is_a_program() {
     let tasks = [task("main", 10, 0, &["Main", "List"])];
     let project = ported(PRESS, &options(&tasks)).expect("it has a form");
-    let found = onescan_plc_shim::inspect(project.program().map(read), None);
+    let found = onescan_iec::inspect(project.program().map(read), None);
     assert!(found.iter().all(|each| each.severity != Severity::Error), "{found}");
 }
 

@@ -1,8 +1,8 @@
 //! What instrumentation does to text: nothing but what is marked, and back again.
 
-use onescan_plc_shim::Input;
-use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::instrument::{InstrumentError, Options, Project, Target, diff, instrument, remove};
+use onescan_iec::Input;
+use onescan_iec::input::kind::SourceKind;
+use onescan_iec_project::instrument::{InstrumentError, Options, Project, Target, diff, instrument, remove};
 
 use super::corpus::cases;
 use crate::rig::task;
@@ -13,7 +13,7 @@ pub(super) fn inputs(files: &[(&str, SourceKind, &str)]) -> Vec<Input> {
 
 pub(super) fn again(project: &Project) -> Vec<Input> {
     let kind = |name: &str| if name.contains(".Tc") { SourceKind::TwinCat } else { SourceKind::Text };
-    let text = |file: &onescan_plc_shim::instrument::File| file.text.clone().expect("a text");
+    let text = |file: &onescan_iec_project::instrument::File| file.text.clone().expect("a text");
     project.files.iter().map(|file| Input::from_text(&file.name, kind(&file.name), text(file))).collect()
 }
 
@@ -91,7 +91,7 @@ fn twincat_objects_stay_objects() {
         let project = round_trip(&given, &options);
         let names: Vec<_> = project.files.iter().map(|file| file.name.as_str()).collect();
         assert_eq!(names, ["POUs/MAIN.TcPOU", "POUs/SDSP.TcGVL", "POUs/SDSP_Scheduler.TcPOU", "POUs/SDSP_TON.TcPOU"]);
-        let found = onescan_plc_shim::inspect(again(&project), None);
+        let found = onescan_iec::inspect(again(&project), None);
         assert!(!found.has_errors(), "{found}");
     }
     let given = inputs(&[("MAIN.TcPOU", SourceKind::TwinCat, &POU.replace("BODY", "t(IN := TRUE);"))]);
@@ -124,11 +124,11 @@ fn tasks_of_twincat_call_the_scheduler() {
     let scheduler = project.files.iter().find(|file| file.name == "SDSP_Scheduler.TcPOU").expect("a scheduler");
     let scheduler = scheduler.text.as_deref().expect("a text");
     assert!(scheduler.contains(":= [5000000, 20000000]; (* ns *)"), "{scheduler}");
-    let found = onescan_plc_shim::inspect(again(&project), None);
+    let found = onescan_iec::inspect(again(&project), None);
     assert!(!found.has_errors(), "{found}");
     let application =
-        onescan_plc_shim::Application::from_inputs(again(&project)).unwrap_or_else(|found| panic!("{found}"));
-    let plan = onescan_plc_shim::TaskPlan::configured(&application).expect("it has tasks");
+        onescan_iec_run::Application::from_inputs(again(&project)).unwrap_or_else(|found| panic!("{found}"));
+    let plan = onescan_iec_run::application.configured_tasks().expect("it has tasks");
     assert_eq!(plan.tasks[1].programs, ["SDSP_Scheduler", "Quick"]);
 }
 
@@ -143,7 +143,7 @@ fn a_twincat_project_lists_the_shim() {
     ];
     let project = instrument(&given, &options).expect("it is right");
     let listed = project.files.last().expect("files");
-    let names = onescan_plc_shim::input::project::files(listed.text.as_deref().expect("a text").as_bytes());
+    let names = onescan_iec::input::project::files(listed.text.as_deref().expect("a text").as_bytes());
     assert_eq!(
         names.expect("a project"),
         ["POUs/MAIN.TcPOU", "POUs/SDSP.TcGVL", "POUs/SDSP_Scheduler.TcPOU", "POUs/SDSP_TON.TcPOU"]

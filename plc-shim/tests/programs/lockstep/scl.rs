@@ -1,8 +1,9 @@
 //! Target `scl`: external sources of TIA Portal.
 
-use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::instrument::{Options, Project, Target, diff, instrument};
-use onescan_plc_shim::{Application, Input, SoftPlc, Task, TaskPlan};
+use onescan_iec::input::kind::SourceKind;
+use onescan_iec_project::instrument::{Options, Project, Target, diff, instrument};
+use onescan_iec::{Input, Task, TaskPlan};
+use onescan_iec_run::{Application, SoftPlc};
 
 use super::corpus::input;
 use super::driver::{Driver, Tasks, own_plan, scan, state, write};
@@ -121,7 +122,7 @@ fn given(text: &str) -> [Input; 1] {
 
 fn compiled(project: &Project) -> Application {
     let inputs = again(project);
-    let found = onescan_plc_shim::inspect(inputs.clone(), None);
+    let found = onescan_iec::inspect(inputs.clone(), None);
     assert!(!found.has_errors(), "{found}");
     Application::from_inputs(inputs).unwrap_or_else(|found| panic!("{found}"))
 }
@@ -151,7 +152,7 @@ fn blocks(plc: &SoftPlc) -> Vec<(String, Vec<u8>)> {
             .iter()
             .any(|known| path.starts_with(known))
     };
-    let bytes = |leaf: &onescan_plc_shim::Variable| plc.memory()[leaf.offset as usize..][..leaf.size as usize].to_vec();
+    let bytes = |leaf: &onescan_iec_run::Variable| plc.memory()[leaf.offset as usize..][..leaf.size as usize].to_vec();
     leaves.into_iter().filter(|leaf| own(&leaf.path)).map(|leaf| (leaf.path.clone(), bytes(&leaf))).collect()
 }
 

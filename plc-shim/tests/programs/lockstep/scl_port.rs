@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
-use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::instrument::{InstrumentError, Options, Project, Target, instrument};
-use onescan_plc_shim::{Application, Input, SoftPlc, Task, TaskPlan};
+use onescan_iec::input::kind::SourceKind;
+use onescan_iec_project::instrument::{InstrumentError, Options, Project, Target, instrument};
+use onescan_iec::{Input, Task, TaskPlan};
+use onescan_iec_run::{Application, SoftPlc};
 
 use super::abreast::Abreast;
 use super::corpus::cases;

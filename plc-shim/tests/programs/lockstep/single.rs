@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::instrument::{Options, Target, diff, instrument, remove};
-use onescan_plc_shim::{Application, Input, SoftPlc, Task, TaskPlan};
+use onescan_iec::input::kind::SourceKind;
+use onescan_iec_project::instrument::{Options, Target, diff, instrument, remove};
+use onescan_iec::{Input, Task, TaskPlan};
+use onescan_iec_run::{Application, SoftPlc};
 
 use super::abreast::Abreast;
 use super::driver::{Tasks, state};
@@ -19,7 +20,7 @@ fn instrumented(text: &str) -> Vec<(String, String)> {
 
 fn compiled(files: &[(String, String)]) -> (Application, TaskPlan) {
     let application = Application::from_sources(files.to_owned()).unwrap_or_else(|found| panic!("{found}\n{files:#?}"));
-    let plan = TaskPlan::configured(&application).expect("a configuration");
+    let plan = application.configured_tasks().expect("a configuration");
     (application, plan)
 }
 

@@ -1,8 +1,8 @@
 //! `instrument` checks what it wrote.
 
-use onescan_plc_shim::Input;
-use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::instrument::{InstrumentError, Options, instrument};
+use onescan_iec::Input;
+use onescan_iec::input::kind::SourceKind;
+use onescan_iec_project::instrument::{InstrumentError, Options, instrument};
 
 fn instrumented(text: &str) -> Result<(), InstrumentError> {
     instrument(&[Input::from_text("p.st", SourceKind::Text, text)], &Options::default()).map(|_| ())

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use onescan_plc_shim::Dialect;
+use onescan_iec::Dialect;
 
 use super::dice::Dice;
 use crate::rig::Rig;

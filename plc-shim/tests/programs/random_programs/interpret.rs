@@ -1,6 +1,6 @@
 //! What a program does, statement by statement.
 
-use onescan_plc_shim::FaultKind;
+use onescan_iec_run::FaultKind;
 
 use super::program::{DEPTH, Number, Statement, Truth, control};
 

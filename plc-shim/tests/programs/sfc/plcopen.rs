@@ -1,7 +1,8 @@
 //! Charts of PLCopen XML (TC6 2.01).
 
-use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::{Application, Input, TaskPlan, TimeSpan, inspect};
+use onescan_iec::input::kind::SourceKind;
+use onescan_iec::{Input, TaskPlan, TimeSpan, inspect};
+use onescan_iec_run::Application;
 
 use super::drawn::{Step, Transition, chart, condition};
 use crate::plcopen::{block, coil, contact, input, pou, project, rail};
@@ -21,7 +22,7 @@ fn elements_become_steps_and_transitions() {
 #[test]
 fn a_chart_of_xml_runs() {
     let application = Application::from_inputs([mixer(MIXER)]).unwrap_or_else(|found| panic!("{found}"));
-    let mut rig = Rig::with_plan(&application, &TaskPlan::single(&application, TimeSpan::millis::<10>()));
+    let mut rig = Rig::with_plan(&application, &application.single_task(TimeSpan::millis::<10>()));
     let steps = ["Idle", "Fill", "Stir", "Heat", "Soak", "Done"];
     let mut seen = Vec::new();
     for scan in 1..=12 {
@@ -125,7 +126,7 @@ fn conditions_are_wired_to_elements_of_the_chart() {
         input(42, (0, 0), "level") + &input(43, (0, 20), "50") + &block(44, (40, 0), "GE", "IN1=42 IN2=43", "OUT", "");
     let begins_at = |text: &str| {
         let application = Application::from_inputs([mixer(text)]).unwrap_or_else(|found| panic!("{found}"));
-        let mut rig = Rig::with_plan(&application, &TaskPlan::single(&application, TimeSpan::millis::<10>()));
+        let mut rig = Rig::with_plan(&application, &application.single_task(TimeSpan::millis::<10>()));
         (1..=8).find(|scan| {
             // The edge is seen in scan 4 only, the level from scan 6.
             rig.set("Mixer.start", i64::from(*scan == 4));
@@ -168,7 +169,7 @@ fn conditions_of_xml_are_networks_too() {
     let steps_after = |body: &str| {
         let input = mixer(&MIXER.replace(st, body));
         let application = Application::from_inputs([input]).unwrap_or_else(|found| panic!("{found}"));
-        let mut rig = Rig::with_plan(&application, &TaskPlan::single(&application, TimeSpan::millis::<10>()));
+        let mut rig = Rig::with_plan(&application, &application.single_task(TimeSpan::millis::<10>()));
         let mut seen = Vec::new();
         for scan in 1..=5 {
             rig.set("Mixer.start", 1);

@@ -2,8 +2,9 @@
 
 use std::fmt::Write as _;
 
-use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::{Application, Input, SoftPlc, TaskPlan, TimeSpan, VirtualTime};
+use onescan_iec::input::kind::SourceKind;
+use onescan_iec::{Input, TaskPlan, TimeSpan, VirtualTime};
+use onescan_iec_run::{Application, SoftPlc};
 
 use crate::rig::{MS, Rig};
 
@@ -45,7 +46,7 @@ END_PROGRAM";
     let input = Input::from_text("test.st", SourceKind::Text, text);
     let application = Application::from_inputs_with_coverage([input]).expect("a sound program");
     let mut plc =
-        SoftPlc::new(&application, &TaskPlan::single(&application, TimeSpan::millis::<10>())).expect("a plan");
+        SoftPlc::new(&application, &application.single_task(TimeSpan::millis::<10>())).expect("a plan");
     let mut report = String::new();
     for (scan, go) in [(1, 0), (2, 0), (3, 1)] {
         let variable = plc.variable("P.go").expect("a variable");

@@ -1,6 +1,6 @@
 //! CODESYS: `Util`, `SysTime`, `SysFile`, `CAA` types.
 
-use onescan_plc_shim::Dialect;
+use onescan_iec::Dialect;
 
 use super::hold;
 use crate::rig::Rig;

@@ -1,6 +1,6 @@
 //! `MatIEC` and Beremiz: controllers, types of the operator's page.
 
-use onescan_plc_shim::Dialect::Matiec;
+use onescan_iec::Dialect::Matiec;
 
 use super::{Rig, hold};
 

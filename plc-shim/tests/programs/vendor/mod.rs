@@ -9,7 +9,7 @@ mod tc2_standard;
 mod tc2_system;
 mod tc2_utilities;
 
-use onescan_plc_shim::Dialect;
+use onescan_iec::Dialect;
 
 use crate::rig::Rig;
 

@@ -1,6 +1,6 @@
 //! SIMATIC: scaling, date and time.
 
-use onescan_plc_shim::Dialect;
+use onescan_iec::Dialect;
 
 use super::hold;
 use crate::rig::Rig;

@@ -1,6 +1,6 @@
 //! TwinCAT: `Tc2_SerialCom`, `Tc2_TcpIp` and the files of `Tc2_System`.
 
-use onescan_plc_shim::Dialect;
+use onescan_iec::Dialect;
 
 use crate::rig::Rig;
 

@@ -1,6 +1,6 @@
 //! `Tc2_MC2`: TwinCAT's names of motion control, on the axis of `iec/motion`.
 
-use onescan_plc_shim::Dialect;
+use onescan_iec::Dialect;
 
 use super::hold;
 use crate::rig::{Rig, findings_in};

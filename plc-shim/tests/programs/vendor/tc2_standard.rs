@@ -1,6 +1,6 @@
 //! `Tc2_Standard`: functions of WSTRING, timers of LTIME.
 
-use onescan_plc_shim::Dialect;
+use onescan_iec::Dialect;
 
 use super::hold;
 use crate::rig::Rig;

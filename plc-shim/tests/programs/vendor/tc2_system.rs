@@ -1,6 +1,6 @@
 //! `Tc2_System`: types, constants, messages, counters.
 
-use onescan_plc_shim::Dialect;
+use onescan_iec::Dialect;
 
 use super::hold;
 use crate::rig::{Rig, findings_in};

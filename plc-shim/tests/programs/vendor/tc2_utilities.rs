@@ -1,6 +1,6 @@
 //! `Tc2_Utilities`: texts, conversions, formats, times, records in memory.
 
-use onescan_plc_shim::Dialect;
+use onescan_iec::Dialect;
 
 use super::hold;
 use crate::rig::Rig;

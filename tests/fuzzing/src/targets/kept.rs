@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use onescan::snapshot::{Snapshot, compare};
+use onescan_regress::snapshot::{Snapshot, compare};
 use onescan_base::VirtualTime;
 use onescan_recording::{Choice, ExportFormat, Provenance, Recorder, Recording};
 use onescan_scenario::Scenario;

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use onescan_base::{TimeSpan, VirtualTime};
-use onescan_clients::plant::Plant;
+use onescan_plant::Plant;
 use onescan_server::client::Client;
 use onescan_server::signal::ClientName;
 

@@ -4,12 +4,13 @@ use std::path::Path;
 
 use onescan::io_list::{Wanted, read};
 use onescan_base::VirtualTime;
-use onescan_plc_shim::input::kind::SourceKind;
-use onescan_plc_shim::input::project::{files as project_files, listing};
-use onescan_plc_shim::instrument::{Options, Target, instrument, remove};
-use onescan_plc_shim::syntax::printer::print_unit;
-use onescan_plc_shim::syntax::{FileId, parse};
-use onescan_plc_shim::{Application, Input, SoftPlc, Task, TaskPlan, inspect};
+use onescan_iec::input::kind::SourceKind;
+use onescan_iec::input::project::{files as project_files, listing};
+use onescan_iec_project::instrument::{Options, Target, instrument, remove};
+use onescan_iec::syntax::printer::print_unit;
+use onescan_iec::syntax::{FileId, parse};
+use onescan_iec::{Input, Task, TaskPlan, inspect};
+use onescan_iec_run::{Application, SoftPlc};
 
 use super::{Prepared, files, root, seed};
 
@@ -20,7 +21,7 @@ fn goes_all_the_way(name: &str, kind: SourceKind, bytes: &[u8]) -> bool {
         return false;
     }
     let Ok(application) = Application::builder().input(input.clone()).build() else { return false };
-    let plan = TaskPlan::configured(&application).unwrap_or_else(|| {
+    let plan = application.configured_tasks().unwrap_or_else(|| {
         let programs = application.programs().filter(|each| !each.is_called).map(|each| each.name).collect();
         let interval = "10ms".parse().ok();
         TaskPlan::new(vec![Task { name: "main".to_owned(), interval, programs, ..Task::default() }])

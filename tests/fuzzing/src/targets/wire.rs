@@ -3,14 +3,14 @@
 use std::path::Path;
 
 use bytes::BytesMut;
-use onescan_clients::gateway::Exchange;
-use onescan_clients::gateway::ads::frame::{Bytes, Frame as AdsFrame};
-use onescan_clients::gateway::ads::symbol::Symbol;
-use onescan_clients::gateway::exchange::{Direction, Feed, Words};
-use onescan_clients::gateway::s7::{iso, pdu};
-use onescan_clients::gateway::tcp::{BlockCodec, Declaration, Layouts};
-use onescan_clients::plant::scanner::protocol::{ACK, command};
-use onescan_clients::plant::scanner::{Answer, Device};
+use onescan_links::gateway::Exchange;
+use onescan_links::gateway::ads::frame::{Bytes, Frame as AdsFrame};
+use onescan_links::gateway::ads::symbol::Symbol;
+use onescan_links::gateway::exchange::{Direction, Feed, Words};
+use onescan_links::gateway::s7::{iso, pdu};
+use onescan_links::gateway::tcp::{BlockCodec, Declaration, Layouts};
+use onescan_plant::scanner::protocol::{ACK, command};
+use onescan_plant::scanner::{Answer, Device};
 use onescan_server::signal::{Port, SignalName, SignalType};
 use onescan_server::wire::frame::to_json;
 use onescan_server::wire::{ClientMessage, Endpoint, Frame, FrameCodec, HANDSHAKE_FRAME_BYTES_MAX, ServerMessage};
@@ -203,7 +203,7 @@ pub(super) fn telegrams(_: &Path) -> Prepared {
                 let mut table = Bytes(bytes);
                 let mut understood = false;
                 while let Some(symbol) = Symbol::take(&mut table) {
-                    onescan_clients::gateway::ads::symbol::elementary(&symbol);
+                    onescan_links::gateway::ads::symbol::elementary(&symbol);
                     understood = true;
                 }
                 understood

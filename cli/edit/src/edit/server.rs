@@ -1,0 +1,243 @@
+//! The editor's page, served to browsers of this machine by the rules of a session's page.
+
+use std::net::{SocketAddr, TcpListener};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use axum::Router;
+use axum::extract::{DefaultBodyLimit, Request, State as Shared};
+use axum::http::{StatusCode, header};
+use axum::middleware;
+use axum::response::{IntoResponse, Response};
+use axum::routing::get;
+use serde::{Deserialize, Serialize};
+use serde_json::json;
+
+use super::change::Edit;
+use super::desk::Desk;
+use super::error::{EditError, EditorError, Reference};
+use super::files::{Files, Unwritten};
+use super::join::{self, Tip};
+use super::state::{self, State};
+use onescan_runner::error::ListenError;
+use onescan_runner::web::{asset, guarded_here};
+
+/// The longest request, bytes.
+const REQUEST_MAX: usize = 64 * 1024;
+
+/// The files, and what is known of them.
+struct Bench {
+    files: Files,
+    desk: Desk,
+    state: State,
+}
+
+/// What a page wants.
+#[derive(Debug, Deserialize)]
+#[serde(tag = "want", rename_all = "lowercase", deny_unknown_fields)]
+enum Want {
+    /// These changes, together.
+    Change { revision: u64, edits: Vec<Edit> },
+    /// Two ends connected.
+    Join { revision: u64, one: Tip, other: Tip },
+    /// An end, or a signal that nobody uses, disconnected.
+    Part { revision: u64, tip: Tip },
+    /// The last change taken back.
+    Undo { revision: u64 },
+    /// The same made again.
+    Redo { revision: u64 },
+    /// The files read again, whatever was done to them.
+    Reload,
+}
+
+/// Why nothing was done.
+#[derive(Debug, Serialize)]
+struct Refusal {
+    message: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    file: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    line: Option<usize>,
+    references: Vec<Reference>,
+}
+
+/// A refusal with its status.
+type Refused = (StatusCode, Refusal);
+
+fn plain(status: StatusCode, message: impl Into<String>) -> Refused {
+    (status, Refusal { message: message.into(), file: None, line: None, references: Vec::new() })
+}
+
+fn refused(error: &EditError) -> Refused {
+    let place = error.place();
+    let refusal = Refusal {
+        message: error.to_string(),
+        file: place.map(|place| place.file.clone()),
+        line: place.map(|place| place.line),
+        references: error.references().to_vec(),
+    };
+    (StatusCode::UNPROCESSABLE_ENTITY, refusal)
+}
+
+impl From<Unwritten> for Refused {
+    fn from(error: Unwritten) -> Self {
+        let status = match error {
+            Unwritten::Changed(_) => StatusCode::CONFLICT,
+            Unwritten::Outside(_) => StatusCode::FORBIDDEN,
+            Unwritten::File(_) | Unwritten::Unreadable(_) => StatusCode::INTERNAL_SERVER_ERROR,
+        };
+        plain(status, error.to_string())
+    }
+}
+
+impl Bench {
+    fn open(files: Files) -> Result<Self, EditorError> {
+        let desk = Desk::new(files.read()?, 0);
+        let state = state::of(&files, &desk);
+        Ok(Self { files, desk, state })
+    }
+
+    /// Does what is wanted, or nothing.
+    fn heed(&mut self, want: Want) -> Result<(), Refused> {
+        let mut desk = self.desk.clone();
+        match want {
+            Want::Reload => {
+                let texts = self.files.read().map_err(|error| plain(StatusCode::CONFLICT, error.to_string()))?;
+                if texts != *desk.texts() {
+                    desk = Desk::new(texts, desk.revision() + 1);
+                }
+                self.take(desk);
+                return Ok(());
+            }
+            Want::Change { revision, edits } => {
+                self.seen(revision)?;
+                desk.change(&edits).map_err(|error| refused(&error))?;
+            }
+            Want::Join { revision, one, other } => {
+                self.seen(revision)?;
+                let edits = join::join(&self.state.ends, &self.state.lines, &one, &other);
+                edits.and_then(|edits| desk.change(&edits)).map_err(|error| refused(&error))?;
+            }
+            Want::Part { revision, tip } => {
+                self.seen(revision)?;
+                let edits = join::part(&self.state.ends, &self.state.lines, &tip);
+                edits.and_then(|edits| desk.change(&edits)).map_err(|error| refused(&error))?;
+            }
+            Want::Undo { revision } => {
+                self.seen(revision)?;
+                if !desk.undo() {
+                    return Err(plain(StatusCode::UNPROCESSABLE_ENTITY, "there is nothing to take back"));
+                }
+            }
+            Want::Redo { revision } => {
+                self.seen(revision)?;
+                if !desk.redo() {
+                    return Err(plain(StatusCode::UNPROCESSABLE_ENTITY, "there is nothing to do again"));
+                }
+            }
+        }
+        self.files.write(self.desk.texts(), desk.texts())?;
+        self.take(desk);
+        Ok(())
+    }
+
+    fn take(&mut self, desk: Desk) {
+        self.desk = desk;
+        self.state = state::of(&self.files, &self.desk);
+    }
+
+    /// Somebody who has not seen the last change does not change anything.
+    fn seen(&self, revision: u64) -> Result<(), Refused> {
+        if revision == self.desk.revision() {
+            return Ok(());
+        }
+        Err(plain(StatusCode::CONFLICT, "another page has changed the files: this page shows them now; try again"))
+    }
+}
+
+type Held = Arc<Mutex<Bench>>;
+
+/// A listener and what it serves; [`Editor::serve`] does so until the program ends.
+pub(super) struct Editor {
+    listener: TcpListener,
+    address: SocketAddr,
+    router: Router,
+}
+
+impl Editor {
+    /// Opens the files and the address.
+    pub(super) fn open(files: Files, address: SocketAddr) -> Result<Self, EditorError> {
+        let listen = ListenError::on(address);
+        let held: Held = Arc::new(Mutex::new(Bench::open(files)?));
+        let listener = TcpListener::bind(address).map_err(&listen)?;
+        listener.set_nonblocking(true).map_err(&listen)?;
+        let address = listener.local_addr().map_err(&listen)?;
+        let router = Router::new()
+            .route("/api/edit", get(look).post(heed))
+            .route("/api/library", get(library))
+            .fallback(get(file))
+            .layer(DefaultBodyLimit::max(REQUEST_MAX))
+            .layer(middleware::from_fn(guarded_here))
+            .with_state(held);
+        Ok(Self { listener, address, router })
+    }
+
+    /// Where a browser finds it.
+    pub(super) fn url(&self) -> String {
+        format!("http://{}/", self.address)
+    }
+
+    /// Serves until the program is ended.
+    pub(super) fn serve(self) -> Result<(), EditorError> {
+        let listen = ListenError::on(self.address);
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(&listen)?;
+        let served = async {
+            let listener = tokio::net::TcpListener::from_std(self.listener)?;
+            axum::serve(listener, self.router).await
+        };
+        Ok(runtime.block_on(served).map_err(listen)?)
+    }
+}
+
+fn answer(status: StatusCode, body: &impl Serialize) -> Response {
+    match serde_json::to_string(body) {
+        Ok(text) => (status, [(header::CONTENT_TYPE, "application/json")], text).into_response(),
+        Err(error) => (StatusCode::INTERNAL_SERVER_ERROR, format!("{error}\n")).into_response(),
+    }
+}
+
+async fn look(Shared(held): Shared<Held>) -> Response {
+    let mut bench = held.lock().unwrap_or_else(PoisonError::into_inner);
+    // files, scenes and programs may have changed since
+    let desk = bench.desk.clone();
+    bench.take(desk);
+    answer(StatusCode::OK, &bench.state)
+}
+
+async fn heed(Shared(held): Shared<Held>, body: String) -> Response {
+    let want: Want = match serde_json::from_str(&body) {
+        Ok(want) => want,
+        Err(error) => {
+            let (status, refusal) = plain(StatusCode::BAD_REQUEST, format!("not a request of the page: {error}"));
+            return answer(status, &json!({ "error": refusal }));
+        }
+    };
+    let mut bench = held.lock().unwrap_or_else(PoisonError::into_inner);
+    match bench.heed(want) {
+        Ok(()) => answer(StatusCode::OK, &json!({ "state": bench.state })),
+        Err((status, refusal)) => {
+            let changed = bench.files.changed(bench.desk.texts());
+            bench.state.changed = changed;
+            answer(status, &json!({ "error": refusal, "state": bench.state }))
+        }
+    }
+}
+
+async fn library() -> Response {
+    answer(StatusCode::OK, &state::library())
+}
+
+/// The files of the page; the first of them is the editor's own.
+async fn file(request: Request) -> Response {
+    let path = request.uri().path();
+    asset(if path == "/" { "/edit.html" } else { path })
+}

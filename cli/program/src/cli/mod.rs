@@ -1,0 +1,93 @@
+//! The command line: arguments to plain configurations, errors to exit codes. No logic of its own.
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`args`] | the commands, and who does them |
+//! | [`run`], [`compare`] | a scenario |
+//! | [`campaign`] | faults by campaigns |
+//! | [`explore`] | timings that links may have |
+//! | [`falsify`] | inputs and parameters that break what is expected |
+//! | [`mutate`] | small mistakes in programs |
+//! | [`shot`] | the machine at one time as a picture |
+//! | [`minimise`] | the least of a case that still fails |
+//! | [`train`] | lessons |
+//! | [`test`] | all scenarios, and test programs |
+//! | [`session`] | a session that another process serves |
+//! | [`recording`] | what was recorded |
+//! | [`source`] | PLC sources |
+//! | [`plc`] | PLCs |
+//! | [`access`] | who may take part: tokens, certificates |
+//! | [`opcua`] | who is let in over OPC UA |
+//! | [`plant`] | scenes |
+//! | [`model`] | the states of a session |
+//! | [`value`] | words that several commands know |
+
+pub mod access;
+pub mod args;
+pub mod campaign;
+pub mod compare;
+mod error;
+pub mod explore;
+pub mod falsify;
+mod logging;
+pub mod minimise;
+pub mod model;
+pub mod mutate;
+pub mod opcua;
+pub mod plant;
+pub mod plc;
+pub mod recording;
+pub mod run;
+pub mod session;
+pub mod shot;
+pub mod source;
+pub mod test;
+pub mod train;
+pub mod value;
+
+use std::io::Write;
+
+use clap::Parser;
+use onescan_base::foreign::for_terminal;
+use onescan_report::OutputError;
+
+pub use error::CommandError;
+
+use onescan_runner::error::{Exit, ExitCode};
+
+/// Runs the program with the process's arguments.
+pub fn main() -> std::process::ExitCode {
+    let args = args::Args::parse();
+    logging::start(args.verbose);
+    onescan_scenario::permission::grant(args.permission());
+    #[cfg(feature = "opcua")]
+    onescan_opc_ua::install();
+    render_errors_in_one_piece();
+    // What is still buffered must not be lost in silence when the process ends.
+    let done = args::dispatch(args.command)
+        .and_then(|code| std::io::stdout().flush().map(|()| code).map_err(|source| OutputError(source).into()));
+    let code = match done {
+        Ok(code) => code,
+        Err(error) => {
+            let code = error.exit_code();
+            if code != ExitCode::Ok {
+                report(error);
+            }
+            code
+        }
+    };
+    std::process::ExitCode::from(code as u8)
+}
+
+/// Errors go to standard error, with the place in the source where there is one.
+fn report(error: CommandError) {
+    // Where standard error takes nothing either, the exit code still says it.
+    let _ = writeln!(std::io::stderr(), "{}", for_terminal(&format!("{:?}", miette::Report::new(error))));
+}
+
+/// Messages of this program hold their causes, so that they read well anywhere; a list of causes
+/// behind them would say all of it again.
+fn render_errors_in_one_piece() {
+    // Only a second call fails, and this is the only one.
+    let _ = miette::set_hook(Box::new(|_| Box::new(miette::MietteHandlerOpts::new().without_cause_chain().build())));
+}

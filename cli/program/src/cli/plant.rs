@@ -1,0 +1,248 @@
+//! With scenes and scenarios: `onescan components`, `describe`, `wiring`, `edit` and `new`.
+
+use std::net::SocketAddr;
+use std::path::PathBuf;
+
+use clap::{Args as ClapArgs, ValueEnum};
+use onescan_report::view::Side;
+
+use super::error::CommandError;
+use super::value::FormatArg;
+use onescan_edit::edit::{self, EditConfig};
+use onescan_runner::error::ExitCode;
+use crate::io_list::{ListKind, Wanted};
+use crate::new::from_list::FromListConfig;
+use crate::new::{self, Template};
+use crate::plant::components::ComponentsConfig;
+use crate::plant::describe::DescribeConfig;
+use crate::plant::{components, describe};
+use onescan_edit::wiring::{self, WiringConfig};
+
+/// Options of `components`.
+#[derive(Debug, ClapArgs)]
+pub struct ComponentsArgs {
+    /// A kind, for its equations, parameters, signals and failure modes
+    pub kind: Option<String>,
+    /// A folder with kinds of your own, as the `libraries` of a scene name it; may be given several times
+    #[arg(long, value_name = "FOLDER")]
+    pub library: Vec<PathBuf>,
+    /// For people, or JSON for machines
+    #[arg(long, value_enum, default_value_t)]
+    pub format: FormatArg,
+}
+
+/// Lists the library of components and kinds of the user's own.
+///
+/// # Errors
+/// See [`CommandError`].
+pub fn components(args: &ComponentsArgs) -> Result<ExitCode, CommandError> {
+    let config =
+        ComponentsConfig { kind: args.kind.clone(), libraries: args.library.clone(), format: args.format.into() };
+    components::write(&config, &mut std::io::stdout().lock())?;
+    Ok(ExitCode::Ok)
+}
+
+/// Options of `describe`.
+#[derive(Debug, ClapArgs)]
+pub struct DescribeArgs {
+    /// The scene, a `plant.toml`; or a scenario, for the scenes of its plants
+    pub scene: PathBuf,
+    /// For people, or JSON for machines
+    #[arg(long, value_enum, default_value_t)]
+    pub format: FormatArg,
+    /// Draws the scene as it is set up to this file
+    #[arg(long, value_name = "FILE")]
+    pub svg: Option<PathBuf>,
+    /// From where the picture shows it
+    #[arg(long, value_enum, default_value_t, requires = "svg")]
+    pub view: ViewArg,
+}
+
+/// A side of a scene; x goes to the right of one who looks from the front, z is up.
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+pub enum ViewArg {
+    /// From above the corner between front and right
+    #[default]
+    Corner,
+    /// Along y
+    Front,
+    /// Against y
+    Back,
+    /// Along x
+    Left,
+    /// Against x
+    Right,
+    /// From above
+    Top,
+}
+
+impl From<ViewArg> for Side {
+    fn from(view: ViewArg) -> Self {
+        match view {
+            ViewArg::Corner => Self::Corner,
+            ViewArg::Front => Self::Front,
+            ViewArg::Back => Self::Back,
+            ViewArg::Left => Self::Left,
+            ViewArg::Right => Self::Right,
+            ViewArg::Top => Self::Top,
+        }
+    }
+}
+
+/// Tells what a scene is made of.
+///
+/// # Errors
+/// See [`CommandError`].
+pub fn describe(args: &DescribeArgs) -> Result<ExitCode, CommandError> {
+    let config = DescribeConfig {
+        path: args.scene.clone(),
+        format: args.format.into(),
+        svg: args.svg.clone(),
+        side: args.view.into(),
+    };
+    describe::write(&config, &mut std::io::stdout().lock())?;
+    Ok(ExitCode::Ok)
+}
+
+/// Options of `wiring`.
+#[derive(Debug, ClapArgs)]
+pub struct WiringArgs {
+    /// The scenario: a folder with a `scenario.toml`
+    pub scenario: PathBuf,
+    /// For people, or JSON for machines
+    #[arg(long, value_enum, default_value_t)]
+    pub format: FormatArg,
+    /// Draw it into this SVG file, too
+    #[arg(long, value_name = "FILE")]
+    pub svg: Option<PathBuf>,
+}
+
+/// Tells how signals connect clients.
+///
+/// # Errors
+/// See [`CommandError`].
+pub fn wiring(args: WiringArgs) -> Result<ExitCode, CommandError> {
+    let config = WiringConfig { scenario: args.scenario, format: args.format.into(), svg: args.svg };
+    let sound = wiring::write(&config, &mut std::io::stdout().lock())?;
+    Ok(if sound { ExitCode::Ok } else { ExitCode::WrongInput })
+}
+
+/// Options of `edit`.
+#[derive(Debug, ClapArgs)]
+pub struct EditArgs {
+    /// The scenario: a folder with a `scenario.toml`
+    pub scenario: PathBuf,
+    /// Where browsers of this machine find the page [default: a free port]
+    #[arg(long, value_name = "ADDRESS")]
+    pub web: Option<SocketAddr>,
+}
+
+/// Serves the editor of a scenario until the program is ended.
+///
+/// # Errors
+/// See [`CommandError`].
+pub fn edit(args: EditArgs) -> Result<ExitCode, CommandError> {
+    let address = args.web.unwrap_or_else(|| SocketAddr::from(([127, 0, 0, 1], 0)));
+    edit::serve(&EditConfig { scenario: args.scenario, address })?;
+    Ok(ExitCode::Ok)
+}
+
+/// Options of `new`.
+#[derive(Debug, ClapArgs)]
+pub struct NewArgs {
+    /// The folder to make; its name is the scenario's
+    pub folder: PathBuf,
+    /// What to begin with
+    #[arg(long, value_enum, default_value_t)]
+    pub template: TemplateArg,
+    /// Make it of an I/O list: a TwinCAT project, an ENI, a tag table of TIA Portal, an I/O mapping of CODESYS,
+    /// PLC sources (PLCopen XML too), or a PLC that can be browsed
+    #[arg(long, value_name = "FILE|FOLDER|URL", conflicts_with = "template")]
+    pub from: Option<String>,
+    /// What wrote the list [default: what its name and text say]
+    #[arg(long = "as", value_name = "KIND", value_enum, requires = "from")]
+    pub kind: Option<ListKindArg>,
+    /// Of a TwinCAT project with several PLCs, which one
+    #[arg(long, value_name = "NAME", requires = "from")]
+    pub plc: Option<String>,
+    /// What was taken over: for people, or one JSON object for machines
+    #[arg(long, value_enum, default_value_t, requires = "from")]
+    pub format: FormatArg,
+}
+
+/// See [`ListKind`].
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum ListKindArg {
+    /// A TwinCAT project, `.tsproj`, `.xti` or `.tmc`
+    Twincat,
+    /// EtherCAT Network Information
+    Eni,
+    /// PLC tags of TIA Portal, `.xlsx`
+    TiaXlsx,
+    /// PLC tags of TIA Portal, XML
+    TiaXml,
+    /// PLC tags of TIA Portal or STEP 7, `.sdf` or CSV
+    TiaText,
+    /// I/O mapping of CODESYS, CSV
+    Codesys,
+    /// PLC sources
+    Sources,
+    /// A PLC at a URL
+    Server,
+}
+
+impl From<ListKindArg> for ListKind {
+    fn from(arg: ListKindArg) -> Self {
+        match arg {
+            ListKindArg::Twincat => Self::TwinCat,
+            ListKindArg::Eni => Self::Eni,
+            ListKindArg::TiaXlsx => Self::TiaXlsx,
+            ListKindArg::TiaXml => Self::TiaXml,
+            ListKindArg::TiaText => Self::TiaText,
+            ListKindArg::Codesys => Self::Codesys,
+            ListKindArg::Sources => Self::Sources,
+            ListKindArg::Server => Self::Server,
+        }
+    }
+}
+
+/// See [`Template`].
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+pub enum TemplateArg {
+    /// A cylinder pushes boxes off a belt: bodies, a conveyor, a sensor, pneumatics
+    #[default]
+    Cell,
+    /// A tank with a pump, a valve and a level: process engineering, no bodies
+    Tank,
+    /// A plant of your own in Python, over TCP
+    Python,
+    /// A control program, and a machine to be built with `onescan edit`
+    Blank,
+}
+
+impl From<TemplateArg> for Template {
+    fn from(arg: TemplateArg) -> Self {
+        match arg {
+            TemplateArg::Cell => Self::Cell,
+            TemplateArg::Tank => Self::Tank,
+            TemplateArg::Python => Self::Python,
+            TemplateArg::Blank => Self::Blank,
+        }
+    }
+}
+
+/// Writes a scenario to begin with.
+///
+/// # Errors
+/// See [`CommandError`].
+pub fn new(args: NewArgs) -> Result<ExitCode, CommandError> {
+    let mut out = std::io::stdout().lock();
+    if let Some(from) = args.from {
+        let list = Wanted { from, kind: args.kind.map(Into::into), plc: args.plc };
+        let config = FromListConfig { folder: args.folder, list, format: args.format.into() };
+        new::from_list::write(&config, &mut out)?;
+        return Ok(ExitCode::Ok);
+    }
+    new::write(&args.folder, args.template.into(), &mut out)?;
+    Ok(ExitCode::Ok)
+}

@@ -1,0 +1,113 @@
+//! Why a list cannot be read.
+
+use miette::Diagnostic;
+use onescan_links::gateway::SettingsFault;
+use onescan_iec::input::encoding::EncodingError;
+use thiserror::Error;
+
+use onescan_regress::check::CheckError;
+use onescan_runner::error::{Exit, ExitCode, Unreadable, Usage};
+
+/// Why a list cannot be read.
+#[derive(Debug, Error, Diagnostic)]
+pub enum ListError {
+    /// The file cannot be read.
+    #[error(transparent)]
+    Unreadable(#[from] Unreadable),
+    /// What was typed is wrong.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Usage(#[from] Usage),
+    /// The PLC's sources cannot be read.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Sources(#[from] CheckError),
+    /// The PLC does not say what it has.
+    #[error(transparent)]
+    Server(#[from] SettingsFault),
+    /// It is too large.
+    #[error("{file} is larger than {mib} MiB, which no I/O list is")]
+    TooLarge {
+        /// The file.
+        file: String,
+        /// The limit.
+        mib: u64,
+    },
+    /// It has too many points.
+    #[error("{file} has more than {limit} inputs and outputs")]
+    #[diagnostic(help("export a part of it, such as one tag table or one device"))]
+    TooMany {
+        /// The file.
+        file: String,
+        /// The limit.
+        limit: usize,
+    },
+    /// It is no text.
+    #[error("{file}: {source}")]
+    NotText {
+        /// The file.
+        file: String,
+        /// Why.
+        source: EncodingError,
+    },
+    /// It is no XML, or ends within an element.
+    #[error("{file}:{line}: {cause}")]
+    #[diagnostic(help("this is no complete XML file: export it again"))]
+    NotXml {
+        /// The file.
+        file: String,
+        /// The line.
+        line: u32,
+        /// What the reader says.
+        cause: String,
+    },
+    /// It is no workbook.
+    #[error("{file}: {cause}")]
+    #[diagnostic(help("in TIA Portal, export the PLC tags of a tag table as `.xlsx`"))]
+    NotWorkbook {
+        /// The file.
+        file: String,
+        /// What is wrong.
+        cause: String,
+    },
+    /// It is well-formed, and no list of this kind.
+    #[error("{file}: {what}")]
+    Other {
+        /// The file.
+        file: String,
+        /// What is missing.
+        what: String,
+        /// What to do.
+        #[help]
+        help: Option<String>,
+    },
+    /// There is nothing in it that could be a signal.
+    #[error("{file}: there are no inputs and outputs in this {title}{}", left(*.left_out))]
+    #[diagnostic(help("inputs and outputs are what is linked or has an address in %I or %Q"))]
+    Empty {
+        /// The file.
+        file: String,
+        /// What it was read as.
+        title: &'static str,
+        /// How many entries cannot be signals.
+        left_out: usize,
+    },
+}
+
+fn left(count: usize) -> String {
+    match count {
+        0 => String::new(),
+        1 => ", and one entry was left out".to_owned(),
+        count => format!(", and {count} entries were left out"),
+    }
+}
+
+impl Exit for ListError {
+    fn exit_code(&self) -> ExitCode {
+        match self {
+            Self::Server(fault) => fault.exit_code(),
+            Self::Sources(error) => error.exit_code(),
+            _ => ExitCode::WrongInput,
+        }
+    }
+}

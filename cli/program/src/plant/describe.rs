@@ -1,0 +1,217 @@
+//! A scene as a tree: what hangs on what, what moves it, what senses it, and every signal.
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use onescan_base::regular::Within;
+use onescan_plant::component::open_inputs;
+use onescan_plant::scene::model::{Body, BodyKind, Component, Mass, Moved, Scene, Sensing, Shape, Wire};
+use onescan_report::OutputError;
+use onescan_report::file::write_whole;
+use onescan_report::view::Side;
+use onescan_scenario::compose::report;
+use onescan_scenario::file::ClientFile;
+use onescan_scenario::permission::granted;
+use onescan_scenario::{Scenario, ScenarioError};
+
+use onescan_runner::scene_drawing as drawing;
+use super::error::PlantError;
+use onescan_runner::error::Usage;
+use onescan_runner::format::Format;
+
+/// What to make of a scene.
+#[derive(Clone, Debug)]
+pub struct DescribeConfig {
+    /// A scene, or a scenario for the scenes of its plants.
+    pub path: PathBuf,
+    /// How to write what it is made of.
+    pub format: Format,
+    /// A file for its picture.
+    pub svg: Option<PathBuf>,
+    /// From where it is seen.
+    pub side: Side,
+}
+
+/// Reads the scene of a file, or those of a scenario's plants, and writes what it is made of; draws it if that is wanted.
+///
+/// # Errors
+/// A file that cannot be read or is not a scene, a scenario without one; a picture that cannot be written; those of
+/// `out`.
+pub fn write(config: &DescribeConfig, out: &mut dyn Write) -> Result<(), PlantError> {
+    let DescribeConfig { path, format, svg, side } = config;
+    let (scenes, within) = scenes(path)?;
+    if let (Some(_), [_, other, ..]) = (svg, &scenes[..]) {
+        let help = format!("give the scene to draw, as `onescan describe {} --svg FILE`", other.display());
+        return Err(Usage::new(format!("{} has several scenes", path.display()), Some(help)).into());
+    }
+    for path in &scenes {
+        if scenes.len() > 1 && *format == Format::Human {
+            writeln!(out, "{}", path.display()).map_err(OutputError)?;
+        }
+        let scene = read(path, &within)?;
+        if let Some(svg) = svg {
+            write_whole(svg, drawing::svg(&scene, &path.display().to_string(), *side).as_bytes())?;
+        }
+        match format {
+            Format::Json => {
+                serde_json::to_writer_pretty(&mut *out, &scene).map_err(io::Error::from).map_err(OutputError)?;
+                writeln!(out).map_err(OutputError)?;
+            }
+            Format::Human => tree(&scene, out).map_err(OutputError)?,
+        }
+    }
+    Ok(())
+}
+
+/// The scene files behind a path, and what they may read.
+fn scenes(path: &Path) -> Result<(Vec<PathBuf>, Within), PlantError> {
+    if !path.is_dir() {
+        let folder = path.parent().unwrap_or_else(|| Path::new(""));
+        return Ok((vec![path.to_owned()], granted().within(folder)));
+    }
+    let scenario = Scenario::load(path)?;
+    let scenes = scenario.file().clients.values().filter_map(|client| match client.get_ref() {
+        ClientFile::Plant { scene, .. } => Some(scenario.folder().join(scene)),
+        _ => None,
+    });
+    let scenes: Vec<_> = scenes.collect();
+    if scenes.is_empty() {
+        return Err(Usage::new(format!("no client of {} has a scene", path.display()), None).into());
+    }
+    Ok((scenes, granted().within(scenario.folder())))
+}
+
+fn read(path: &Path, within: &Within) -> Result<Scene, PlantError> {
+    let file = path.display().to_string();
+    let text = within.read_text(path).map_err(|source| {
+        let help = Some("give a scene, as `my-cell/plant.toml`, or the folder of its scenario".to_owned());
+        PlantError::Scenario(ScenarioError::Unreadable { path: path.to_owned(), source, help })
+    })?;
+    let scene = Scene::parse_with(&text, &file, &[], within);
+    Ok(scene.map_err(|error| ScenarioError::from(Box::new(report(&error, &file, &text))))?)
+}
+
+fn tree(scene: &Scene, out: &mut dyn Write) -> io::Result<()> {
+    writeln!(out, "bodies and joints")?;
+    writeln!(out, "  ground")?;
+    hanging(scene, None, 2, out)?;
+    let free = |index: &usize| !scene.joints.iter().any(|joint| joint.child == *index);
+    for index in (0..scene.bodies.len()).filter(free) {
+        writeln!(out, "  {}", body(&scene.bodies[index]))?;
+        hanging(scene, Some(index), 2, out)?;
+    }
+    section(
+        out,
+        "axes",
+        scene.axes.iter().map(|axis| {
+            let moved = match axis.moved {
+                Moved::Joint(joint) => format!("joint {}", scene.joints[joint].name),
+                Moved::Belt { body, .. } => format!("belt {}", scene.bodies[body].name),
+            };
+            format!("{}: {moved}", axis.name)
+        }),
+    )?;
+    section(
+        out,
+        "sensors",
+        scene.sensors.iter().map(|sensor| {
+            let what = match &sensor.sensing {
+                Sensing::EndPosition { joint, .. } => format!("end position of joint {}", scene.joints[*joint].name),
+                Sensing::Proximity { targets, .. } => format!("proximity of {} bodies", targets.len()),
+            };
+            format!("{}: {what} -> {}", sensor.name, sensor.signal)
+        }),
+    )?;
+    section(out, "assemblies", scene.assemblies().iter().map(|(name, kind)| format!("{name}: {kind}")))?;
+    section(out, "components", scene.components.iter().map(|component| one(component, scene)))?;
+    section(out, "remarks", scene.remarks.iter().cloned())?;
+    section(out, "reads", scene.reads.iter().map(|port| format!("{} : {}", port.name, port.ty)))?;
+    section(out, "writes", scene.writes.iter().map(|port| format!("{} : {}", port.name, port.ty)))
+}
+
+fn section(out: &mut dyn Write, title: &str, lines: impl Iterator<Item = String>) -> io::Result<()> {
+    for (index, line) in lines.enumerate() {
+        if index == 0 {
+            writeln!(out, "{title}")?;
+        }
+        writeln!(out, "  {line}")?;
+    }
+    Ok(())
+}
+
+/// The joints whose parent a body is, each with its child; a loop is shown where it closes.
+fn hanging(scene: &Scene, parent: Option<usize>, depth: usize, out: &mut dyn Write) -> io::Result<()> {
+    for (index, joint) in scene.joints.iter().enumerate().filter(|(_, joint)| joint.parent == parent) {
+        let child = &scene.bodies[joint.child];
+        let kind = format!("{:?}", joint.kind).to_lowercase();
+        let first = scene.joints.iter().position(|other| other.child == joint.child) == Some(index);
+        let shown = if first { body(child) } else { format!("{} (above or below)", child.name) };
+        writeln!(out, "{:width$}{} ({kind}): {shown}", "", joint.name, width = 2 * depth)?;
+        // a tree of joints is no deeper than there are bodies
+        if first && depth <= scene.bodies.len() + 1 {
+            hanging(scene, Some(joint.child), depth + 1, out)?;
+        }
+    }
+    Ok(())
+}
+
+fn body(body: &Body) -> String {
+    let kind = match body.kind {
+        BodyKind::Fixed => "fixed",
+        BodyKind::Dynamic => "dynamic",
+        BodyKind::Kinematic => "kinematic",
+    };
+    let shape = match &body.shape {
+        None => String::new(),
+        Some(Shape::Box { size_m: [x, y, z] }) => format!(", box {x} x {y} x {z} m"),
+        Some(Shape::Sphere { radius_m }) => format!(", sphere of radius {radius_m} m"),
+        Some(Shape::Cylinder { radius_m, length_m }) => format!(", cylinder of radius {radius_m} m, {length_m} m long"),
+        Some(Shape::Capsule { radius_m, length_m }) => format!(", capsule of radius {radius_m} m, {length_m} m long"),
+        Some(Shape::Hull { file, corners_m }) => format!(", hull of {file} with {} corners", corners_m.len()),
+        Some(Shape::Surface { file, triangles, .. }) => {
+            format!(", surface of {file} with {} triangles", triangles.len())
+        }
+    };
+    let mass = match (body.kind, body.mass) {
+        (BodyKind::Dynamic, Mass::Total { kg } | Mass::Stated { kg, .. }) => format!(", {kg} kg"),
+        (BodyKind::Dynamic, Mass::Density { kg_m3 }) => format!(", {kg_m3} kg/m³"),
+        _ => String::new(),
+    };
+    format!("{}: {kind}{shape}{mass}", body.name)
+}
+
+/// A component: what it is bound to, what of it is not preset, its wires, and its inputs without one.
+fn one(component: &Component, scene: &Scene) -> String {
+    let mut lines = vec![format!("{}: {}", component.name, component.kind.name)];
+    let kind = &component.kind;
+    let bound = kind.coupling.in_words(&component.bound, scene);
+    if !bound.is_empty() {
+        lines[0].push_str(", ");
+        lines[0].push_str(&bound);
+    }
+    for (parameter, setting) in kind.parameters.iter().zip(&component.settings) {
+        if parameter.preset != *setting {
+            lines.push(format!("{} = {setting}", parameter.key));
+        }
+    }
+    for (input, wire) in kind.inputs.iter().zip(&component.inputs) {
+        match wire {
+            Wire::Open => {}
+            Wire::Constant(value) => lines.push(format!("{} = {value}", input.key)),
+            Wire::Signal(name) => lines.push(format!("{} <- {name}", input.key)),
+            Wire::Output { component, output } => {
+                let from = &scene.components[*component];
+                lines.push(format!("{} <- {}.{}", input.key, from.name, from.kind.outputs[*output].key));
+            }
+        }
+    }
+    let open: Vec<_> = open_inputs(component).iter().map(|(key, preset)| format!("{key} = {preset}")).collect();
+    if !open.is_empty() {
+        lines.push(format!("driven by nobody: {}", open.join(", ")));
+    }
+    for (output, name) in kind.outputs.iter().zip(&component.outputs) {
+        lines.extend(name.as_ref().map(|name| format!("{} -> {name}", output.key)));
+    }
+    lines.extend(component.failures.iter().map(|failure| format!("may fail: {}", kind.failures[failure.mode].mode)));
+    lines.join("\n    ")
+}

@@ -1,0 +1,12 @@
+//! Plants without a session: what a scene is made of, what the library has.
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`components`] | the kinds of component |
+//! | [`describe`] | a scene as a tree: bodies, joints, what moves and senses, signals |
+
+pub mod components;
+pub mod describe;
+mod error;
+
+pub use error::PlantError;

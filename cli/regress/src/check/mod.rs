@@ -1,0 +1,100 @@
+//! PLC sources checked without being run.
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`collect`] | which files are meant, and what is in them |
+//! | [`report`] | how the findings are shown |
+//! | [`human`] | for people |
+//! | [`json`] | a JSON object a finding |
+//! | [`sarif`] | SARIF 2.1.0, which code hosts and editors read |
+//! | [`stubs`] | declarations of libraries that are not there |
+//! | [`explain`] | the page behind a code |
+
+pub mod collect;
+mod error;
+pub mod explain;
+pub mod human;
+pub mod json;
+pub mod report;
+pub mod sarif;
+pub mod stubs;
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use onescan_iec::{Dialect, MemoryLimit, inspect_within};
+use onescan_report::OutputError;
+
+pub use error::CheckError;
+
+use onescan_runner::error::ExitCode;
+use collect::Reading;
+use report::Report;
+
+/// For whom the findings are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CheckFormat {
+    /// People.
+    #[default]
+    Human,
+    /// Machines: one JSON object a finding and line.
+    Json,
+    /// Machines: one SARIF log.
+    Sarif,
+}
+
+/// What is asked for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CheckConfig {
+    /// Files, folders and scenarios.
+    pub paths: Vec<PathBuf>,
+    /// The dialect of all files, if not the one that each file's name says.
+    pub dialect: Option<Dialect>,
+    /// How much memory variables may take, if not what a scenario says or the default.
+    pub memory_limit: Option<MemoryLimit>,
+    /// Sources of libraries that the files use.
+    pub libraries: Vec<PathBuf>,
+    /// For whom the findings are.
+    pub format: CheckFormat,
+    /// Whether warnings alone make the check fail.
+    pub warnings: Warnings,
+    /// Whether calls of stubs make it fail, as errors do.
+    pub stubs: Warnings,
+}
+
+impl CheckConfig {
+    fn reading(&self) -> Reading<'_> {
+        let Self { dialect, memory_limit, .. } = *self;
+        Reading { dialect, memory_limit, libraries: &self.libraries }
+    }
+}
+
+/// What becomes of a check that has found nothing but warnings.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Warnings {
+    /// They are reported, and the exit code is 0.
+    #[default]
+    Allowed,
+    /// They make it fail.
+    Denied,
+}
+
+/// Checks the sources and writes what is found to `out`.
+///
+/// # Errors
+/// A file cannot be read, or the report not be written. What is wrong with the sources is no error
+/// here but an exit code.
+pub fn check(config: &CheckConfig, out: &mut dyn Write) -> Result<ExitCode, CheckError> {
+    let programs = collect::programs(&config.paths, config.reading())?;
+    let files = programs.iter().map(|program| program.inputs.len()).sum();
+    let findings =
+        programs.into_iter().map(|program| inspect_within(program.memory_limit, program.inputs, program.plan.as_ref()));
+    let report = Report { files, findings: findings.collect() };
+    let written = match config.format {
+        CheckFormat::Human => human::write(&report, out),
+        CheckFormat::Json => json::write(&report, out),
+        CheckFormat::Sarif => sarif::write(&report, out),
+    };
+    written.map_err(OutputError)?;
+    Ok(report.exit_code(config.warnings, config.stubs))
+}

@@ -1,0 +1,23 @@
+//! Why two recordings or snapshots cannot be compared.
+
+use onescan_recording::RecordingError;
+use onescan_report::OutputError;
+
+use onescan_runner::error::{Usage, sum_of_errors};
+use crate::snapshot::StoreError;
+
+sum_of_errors! {
+    /// Why two recordings or snapshots cannot be compared.
+    pub enum DiffError {
+        /// What was typed is wrong.
+        #[diagnostic(transparent)]
+        Usage(Usage),
+        /// A recording cannot be read.
+        Recording(RecordingError),
+        /// A snapshot cannot be read or written.
+        #[diagnostic(transparent)]
+        Snapshot(StoreError),
+        /// The report cannot be written.
+        Output(OutputError),
+    }
+}

@@ -1,0 +1,105 @@
+//! What is asked for.
+
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+use onescan_iec::{Dialect, MemoryLimit};
+use onescan_server::time::{TimeSpan, VirtualTime};
+
+use super::selection::Selection;
+use crate::check::collect::Reading;
+use onescan_runner::format::Format;
+use onescan_runner::run::coverage::CoverageRequest;
+
+/// What becomes of snapshots that are new or have changed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Policy {
+    /// They wait for a review.
+    #[default]
+    Pending,
+    /// They are accepted unseen.
+    Bless,
+    /// Nothing is written; one that is missing is a failure.
+    Check,
+}
+
+/// All options of a test run.
+#[derive(Clone, Debug)]
+pub struct TestConfig {
+    /// Scenarios, folders with scenarios, PLC sources.
+    pub paths: Vec<PathBuf>,
+    /// Which of their tests.
+    pub selection: Selection,
+    /// How many processes at a time.
+    pub jobs: NonZeroUsize,
+    /// How long a process may take.
+    pub timeout: TimeSpan,
+    /// What becomes of snapshots.
+    pub policy: Policy,
+    /// The commit with the reviewed program; found in the repository if absent.
+    pub against: Option<String>,
+    /// For whom the output is.
+    pub format: Format,
+    /// The cycle of test programs.
+    pub scan: TimeSpan,
+    /// When a test program that is not done has failed.
+    pub until: VirtualTime,
+    /// The dialect of test sources.
+    pub dialect: Option<Dialect>,
+    /// How much memory their variables may take.
+    pub memory_limit: Option<MemoryLimit>,
+    /// Sources of libraries that they use.
+    pub libraries: Vec<PathBuf>,
+    /// A report in the format of `JUnit`.
+    pub junit: Option<PathBuf>,
+    /// A SARIF log.
+    pub sarif: Option<PathBuf>,
+    /// A page.
+    pub html: Option<PathBuf>,
+    /// A coverage report.
+    pub coverage: Option<CoverageRequest>,
+    /// True where a progress bar would be seen.
+    pub progress: bool,
+}
+
+impl TestConfig {
+    /// True if processes are to note what PLCs execute.
+    pub fn covers(&self) -> bool {
+        self.coverage.is_some() || self.html.is_some()
+    }
+}
+
+/// What a process is to do.
+#[derive(Clone, Debug, Default)]
+pub struct WorkerConfig {
+    /// A scenario to run, and
+    pub scenario: Option<PathBuf>,
+    /// which case of it.
+    pub case: Option<String>,
+    /// Sources with test programs.
+    pub sources: Vec<PathBuf>,
+    /// Their cycle.
+    pub scan: Option<TimeSpan>,
+    /// When a test program that is not done has failed.
+    pub until: VirtualTime,
+    /// Their dialect.
+    pub dialect: Option<Dialect>,
+    /// How much memory their variables may take.
+    pub memory_limit: Option<MemoryLimit>,
+    /// Sources of libraries that they use.
+    pub libraries: Vec<PathBuf>,
+    /// Which of their tests; names are held against filters elsewhere.
+    pub selection: Selection,
+    /// Whether to note what is executed.
+    pub cover: bool,
+    /// Whether to draw trajectories.
+    pub draw: bool,
+}
+
+impl WorkerConfig {
+    /// How its sources are read.
+    pub fn reading(&self) -> Reading<'_> {
+        let Self { dialect, memory_limit, .. } = *self;
+        Reading { dialect, memory_limit, libraries: &self.libraries }
+    }
+}

@@ -1,0 +1,23 @@
+//! Why nothing was reviewed.
+
+use onescan_report::{FileError, OutputError};
+
+use onescan_runner::error::sum_of_errors;
+use crate::regress::TestError;
+use crate::snapshot::StoreError;
+
+sum_of_errors! {
+    /// Why nothing was reviewed.
+    pub enum ReviewError {
+        /// A path leads to no scenario.
+        #[diagnostic(transparent)]
+        Test(TestError),
+        /// A snapshot cannot be read or written.
+        #[diagnostic(transparent)]
+        Snapshot(StoreError),
+        /// A file cannot be written.
+        File(FileError),
+        /// The report cannot be written.
+        Output(OutputError),
+    }
+}

@@ -1,0 +1,169 @@
+//! Exit codes, and which of them each error stands for.
+
+use std::io;
+
+use onescan_links::gateway::{LinkFault, SettingsFault};
+use onescan_recording::RecordingError;
+use onescan_report::{FileError, OutputError};
+use onescan_scenario::ScenarioError;
+use onescan_server::formation::FormationError;
+use onescan_server::observer::RecordError;
+use onescan_server::transport::tcp::participant::ParticipantError;
+
+use super::{ListenError, SpawnError, Unreadable, Usage};
+
+/// The exit code of the program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ExitCode {
+    /// All is well.
+    Ok = 0,
+    /// A run failed its expectations: those of its scenario, or runs that must be equal are not.
+    Unmet = 1,
+    /// The input is wrong: options, scenario, sources, checkpoint.
+    WrongInput = 2,
+    /// A client or a link failed, or what was found cannot be written.
+    Fault = 3,
+}
+
+/// An error that ends the program.
+pub trait Exit {
+    /// Whose fault it is. [`ExitCode::Ok`] means that nobody is left to report to, and there is nothing to report.
+    fn exit_code(&self) -> ExitCode;
+}
+
+impl Exit for Usage {
+    fn exit_code(&self) -> ExitCode {
+        ExitCode::WrongInput
+    }
+}
+
+impl Exit for Unreadable {
+    fn exit_code(&self) -> ExitCode {
+        ExitCode::WrongInput
+    }
+}
+
+impl Exit for ListenError {
+    fn exit_code(&self) -> ExitCode {
+        ExitCode::WrongInput
+    }
+}
+
+impl Exit for SpawnError {
+    fn exit_code(&self) -> ExitCode {
+        ExitCode::Fault
+    }
+}
+
+impl Exit for OutputError {
+    /// A reader that has left (`onescan explain --list | head -2`) has what he wanted: that is no failure, and
+    /// a shell with `pipefail` must not take it for one.
+    fn exit_code(&self) -> ExitCode {
+        if self.is_closed_pipe() { ExitCode::Ok } else { ExitCode::Fault }
+    }
+}
+
+impl Exit for FileError {
+    fn exit_code(&self) -> ExitCode {
+        of_writing(&self.source)
+    }
+}
+
+impl Exit for RecordError {
+    /// The folder was there when the run began: whatever became of it since, nobody typed it.
+    fn exit_code(&self) -> ExitCode {
+        ExitCode::Fault
+    }
+}
+
+impl Exit for RecordingError {
+    fn exit_code(&self) -> ExitCode {
+        match self {
+            Self::Foreign { .. } | Self::Version { .. } | Self::Damaged { .. } | Self::Unmatched(_) => {
+                ExitCode::WrongInput
+            }
+            Self::Output(source) => of_writing(source),
+        }
+    }
+}
+
+/// A path that cannot be is a mistake of who typed it; a disk that is full or broken is not.
+fn of_writing(source: &io::Error) -> ExitCode {
+    use io::ErrorKind as Kind;
+    match source.kind() {
+        Kind::NotFound
+        | Kind::PermissionDenied
+        | Kind::AlreadyExists
+        | Kind::NotADirectory
+        | Kind::IsADirectory
+        | Kind::ReadOnlyFilesystem
+        | Kind::InvalidFilename
+        | Kind::InvalidInput => ExitCode::WrongInput,
+        _ => ExitCode::Fault,
+    }
+}
+
+impl Exit for ScenarioError {
+    fn exit_code(&self) -> ExitCode {
+        match self {
+            Self::Link { .. } => ExitCode::Fault,
+            Self::Unreadable { .. }
+            | Self::Outside { .. }
+            | Self::Wrong { .. }
+            | Self::UnknownCase { .. }
+            | Self::Scene(_)
+            | Self::Plc(_) => ExitCode::WrongInput,
+        }
+    }
+}
+
+impl Exit for SettingsFault {
+    fn exit_code(&self) -> ExitCode {
+        match self {
+            Self::Link(
+                LinkFault::Unreachable { .. }
+                | LinkFault::Listen { .. }
+                | LinkFault::NobodyCame { .. }
+                | LinkFault::Refused { .. }
+                | LinkFault::Lost(_),
+            ) => ExitCode::Fault,
+            Self::Url(_)
+            | Self::Mapping(_)
+            | Self::Link(LinkFault::Mapping(_) | LinkFault::Setting(_) | LinkFault::Nonsense(_)) => {
+                ExitCode::WrongInput
+            }
+        }
+    }
+}
+
+impl Exit for FormationError {
+    fn exit_code(&self) -> ExitCode {
+        match self {
+            Self::Missing { .. } | Self::Interrupted { .. } => ExitCode::Fault,
+            Self::Refused(_) | Self::Unwritten(_) => ExitCode::WrongInput,
+        }
+    }
+}
+
+impl Exit for ParticipantError {
+    fn exit_code(&self) -> ExitCode {
+        if matches!(self, Self::Refused(_)) { ExitCode::WrongInput } else { ExitCode::Fault }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::PathBuf;
+
+    use super::*;
+
+    #[test]
+    fn a_full_disk_is_a_fault_and_a_wrong_path_is_not() {
+        let file = |kind: io::ErrorKind| FileError { path: PathBuf::from("p.svg"), source: kind.into() }.exit_code();
+        assert_eq!(file(io::ErrorKind::StorageFull), ExitCode::Fault);
+        assert_eq!(file(io::ErrorKind::NotFound), ExitCode::WrongInput);
+        let output = |kind: io::ErrorKind| OutputError(kind.into()).exit_code();
+        assert_eq!(output(io::ErrorKind::StorageFull), ExitCode::Fault);
+        assert_eq!(output(io::ErrorKind::BrokenPipe), ExitCode::Ok);
+    }
+}

@@ -1,0 +1,184 @@
+//! Free-wheeling clients for some time, and what came of it.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::time::Duration;
+
+use onescan_operator::replay::Replay;
+use onescan_scenario::file::FreewheelFile;
+use onescan_server::client::{Client, ClientFault, JoinRequest};
+use onescan_server::end::{Failure, FailureCause, SessionEnd};
+use onescan_server::formation::{Formation, FormationError};
+use onescan_server::lockstep::Lockstep;
+use onescan_server::plan::SessionPlan;
+use onescan_server::signal::{PortLayout, SignalName};
+use onescan_server::state::ClientState;
+use onescan_server::time::VirtualTime;
+use onescan_server::timeline::Scheduled;
+
+use super::item::Items;
+use super::link::{OpcLink, Route};
+use super::timeline::OwnTimeline;
+use super::wheel::{Halt, Wheel};
+
+pub use super::wheel::Clock;
+
+/// A client and the clock it keeps.
+pub struct Freewheeler {
+    /// The client.
+    pub client: Box<dyn Client>,
+    /// How it keeps its cycle.
+    pub clock: Clock,
+}
+
+/// What free-wheeling left: a session that replays it, cycle by cycle, so that it is digested,
+/// recorded and plotted just as one in lockstep.
+pub struct Trace {
+    /// Each client's k-th cycle is the k-th turn of the replay.
+    pub replay: Lockstep,
+    /// How far all clients came, each by its own clock.
+    pub reached: VirtualTime,
+    /// The end of the run if a client failed.
+    pub failed: Option<SessionEnd>,
+    /// How far a plant that follows was behind the PLC at each communication, ns.
+    pub errors_ns: Vec<i64>,
+}
+
+/// Runs `clients` free-wheeling until each one's own clock has come to `until`, or until `stop`.
+///
+/// # Errors
+/// The clients do not fit the plan.
+pub fn run(
+    plan: &SessionPlan,
+    clients: Vec<Freewheeler>,
+    (link, timeline): (&FreewheelFile, &[Scheduled]),
+    until: VirtualTime,
+    stop: &AtomicBool,
+) -> Result<Trace, FormationError> {
+    let requests: Vec<JoinRequest> = clients.iter().map(|client| client.client.join()).collect();
+    replayed(plan, requests.iter().map(|request| (request.clone(), Vec::new())))?;
+    let (mut wheels, links) = connect(clients, &requests, link, timeline);
+    let mut failed = None;
+    for (wheel, request) in wheels.iter_mut().zip(&requests) {
+        if let Err(fault) = wheel.set_up(PortLayout::new(request.writes.clone()).size()) {
+            failed.get_or_insert_with(|| end_of(request, ClientState::Setup, VirtualTime::ZERO, fault));
+        }
+    }
+    if failed.is_none() {
+        failed = spin(&mut wheels, &links, &requests, until, stop);
+    }
+    let reached = wheels.iter().map(|wheel| wheel.reached).min().unwrap_or_default();
+    let errors_ns = wheels.iter_mut().flat_map(|wheel| std::mem::take(&mut wheel.errors_ns)).collect();
+    let recorded = requests.into_iter().zip(wheels.into_iter().map(|wheel| wheel.recorded));
+    Ok(Trace { replay: replayed(plan, recorded)?, reached, failed, errors_ns })
+}
+
+/// Lets all clients and links run beside each other, each in a thread of its own.
+fn spin(
+    wheels: &mut [Wheel],
+    links: &[OpcLink],
+    requests: &[JoinRequest],
+    until: VirtualTime,
+    stop: &AtomicBool,
+) -> Option<SessionEnd> {
+    let (links_stop, halted) = (AtomicBool::new(false), AtomicBool::new(false));
+    let halted = &halted;
+    std::thread::scope(|scope| {
+        for link in links {
+            scope.spawn(|| link.run(&links_stop));
+        }
+        let running: Vec<_> = wheels
+            .iter_mut()
+            .zip(requests)
+            .map(|(wheel, request)| {
+                let input_bytes = PortLayout::new(request.reads.clone()).size();
+                scope.spawn(move || {
+                    let result = wheel.run(input_bytes, until, [stop, halted]);
+                    if result.is_err() {
+                        halted.store(true, Ordering::Relaxed);
+                    }
+                    result
+                })
+            })
+            .collect();
+        let mut failed = None;
+        for (thread, request) in running.into_iter().zip(requests) {
+            let halt = match thread.join() {
+                Ok(Ok(())) => continue,
+                Ok(Err(halt)) => halt,
+                Err(_) => Halt { t: until, fault: ClientFault::new("the client's thread panicked") },
+            };
+            failed.get_or_insert_with(|| end_of(request, ClientState::Run, halt.t, halt.fault));
+        }
+        links_stop.store(true, Ordering::Relaxed);
+        failed
+    })
+}
+
+fn end_of(request: &JoinRequest, state: ClientState, t_v: VirtualTime, fault: ClientFault) -> SessionEnd {
+    SessionEnd::Failed(Failure { client: request.name.clone(), state, t_v, cause: FailureCause::Fault(fault) })
+}
+
+/// Gives every client its process images, and a link from its outputs to whoever reads them.
+fn connect(
+    clients: Vec<Freewheeler>,
+    requests: &[JoinRequest],
+    link: &FreewheelFile,
+    timeline: &[Scheduled],
+) -> (Vec<Wheel>, Vec<OpcLink>) {
+    let plc_clock = Arc::new(AtomicU64::new(0));
+    let wheels: Vec<Wheel> = clients
+        .into_iter()
+        .zip(requests)
+        .map(|(client, request)| Wheel {
+            client: client.client,
+            timeline: OwnTimeline::new(timeline, request),
+            period: request.period,
+            clock: client.clock,
+            inputs: Arc::new(Items::new(&PortLayout::new(request.reads.clone()))),
+            outputs: Arc::new(Items::new(&PortLayout::new(request.writes.clone()))),
+            own: Vec::new(),
+            recorded: Vec::new(),
+            reached: VirtualTime::ZERO,
+            errors_ns: Vec::new(),
+            plc_clock: Arc::clone(&plc_clock),
+        })
+        .collect();
+    let mut readers: BTreeMap<&SignalName, Vec<(Arc<Items>, usize)>> = BTreeMap::new();
+    for (wheel, request) in wheels.iter().zip(requests) {
+        for (index, port) in request.reads.iter().enumerate() {
+            readers.entry(&port.name).or_default().push((Arc::clone(&wheel.inputs), index));
+        }
+    }
+    let links = wheels
+        .iter()
+        .zip(requests)
+        .map(|(wheel, request)| OpcLink {
+            source: Arc::clone(&wheel.outputs),
+            routes: routes(request, &readers),
+            update_rate: Duration::from_nanos(link.update_rate.as_nanos()),
+            item_transfer: Duration::from_nanos(link.item_transfer.as_nanos()),
+        })
+        .collect();
+    (wheels, links)
+}
+
+/// A route for every output that somebody reads, in the order in which the client names them.
+fn routes(request: &JoinRequest, readers: &BTreeMap<&SignalName, Vec<(Arc<Items>, usize)>>) -> Vec<Route> {
+    let read = |(source, port): (usize, &onescan_server::signal::Port)| {
+        readers.get(&port.name).map(|targets| Route { source, targets: targets.clone() })
+    };
+    request.writes.iter().enumerate().filter_map(read).collect()
+}
+
+fn replayed(
+    plan: &SessionPlan,
+    clients: impl Iterator<Item = (JoinRequest, Vec<Vec<u8>>)>,
+) -> Result<Lockstep, FormationError> {
+    let mut formation = Formation::new(plan.clone());
+    for (request, recorded) in clients {
+        formation.join(Box::new(Replay::new(request, recorded)))?;
+    }
+    formation.start()
+}

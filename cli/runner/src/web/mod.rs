@@ -1,0 +1,399 @@
+//! The session as a page in a browser: `run --web`.
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`bundle`] | the page itself, a part of the program |
+//! | `routes` | what a browser may ask for |
+//! | [`guard`] | whose requests are answered |
+//! | [`entry`] | who comes in where a token is asked for |
+//! | `tls` | the page under TLS |
+//! | [`structure`] | what of a session does not change |
+//! | [`online`] | variables of PLCs that are no signals |
+//! | [`panel`] | what operators see and write with |
+//! | [`drawings`] | ladders, function blocks and charts as they are laid out, with their states |
+//! | [`alarms`] | alarms as they come and go |
+//! | [`looks`] | figures, views, and what bodies look like while something holds |
+//! | [`maps`] | tables of values that no signal tells |
+//! | [`picture`] | what of a step is shown |
+//! | [`ask`] | what a page may ask |
+//! | `attendance` | who looks |
+//! | `beat` | when viewers look |
+//! | [`gaze`] | where a viewer looks: live, or at the past |
+//! | [`seats`] | who operates |
+//! | [`desk`] | a lesson on two pages |
+//! | [`verdicts`] | what becomes of expectations while it runs |
+//! | [`told`] | the texts that a viewer is sent |
+//! | [`viewer`] | one viewer |
+//!
+//! The server has a thread of its own. It reads what the session publishes and leaves wishes in its mailbox, as every other
+//! operator does: nothing that is read leaves a trace, and what is written is an operator's input at a step boundary.
+//! The protocol is in `web/PROTOCOL.md`.
+
+mod alarms;
+mod ask;
+mod attendance;
+mod beat;
+mod bundle;
+mod desk;
+mod drawings;
+mod entry;
+mod gaze;
+mod guard;
+mod looks;
+mod maps;
+mod online;
+mod panel;
+mod picture;
+mod routes;
+mod seats;
+pub mod structure;
+mod tls;
+mod told;
+mod verdicts;
+mod viewer;
+
+use std::net::{SocketAddr, TcpListener};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::Sender;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use miette::Diagnostic;
+use onescan_scenario::{Scenario, ScenarioError};
+use onescan_server::layout::ImageLayout;
+use onescan_server::mailbox::Mailbox;
+use onescan_server::plan::SessionPlan;
+use onescan_server::published::Published;
+use onescan_server::time::VirtualTime;
+use onescan_server::transport::tcp::House;
+use thiserror::Error;
+use tokio::sync::Notify;
+
+use crate::access::AccessError;
+use crate::access::admission::{Admission, Doorstep};
+use crate::error::{Exit, ExitCode, ListenError, Usage};
+use crate::past::Rewinder;
+use attendance::Attendance;
+use beat::Beat;
+pub use bundle::charts;
+pub(crate) use desk::{AtWork, Desk, Failing, Role, Training, Turn};
+use entry::Entry;
+use looks::Called;
+use routes::router;
+pub use routes::{asset, guarded_here};
+use seats::Seats;
+use structure::Known;
+use tls::TlsDoor;
+pub(crate) use verdicts::Bench;
+
+/// How long viewers have to take the end, at most.
+const FAREWELL: Duration = Duration::from_millis(500);
+
+/// What a session's page needs of it.
+pub(crate) struct Source<'s> {
+    /// The scenario.
+    pub(crate) scenario: &'s Scenario,
+    /// Where the session publishes its steps.
+    pub(crate) published: Published,
+    /// Where wishes go.
+    pub(crate) mailbox: Mailbox,
+    /// How fast virtual time may run, in words.
+    pub(crate) pace: String,
+    /// What has failed.
+    pub(crate) failing: Failing,
+    /// The lesson, if it is one.
+    pub(crate) training: Option<Training>,
+    /// Where pictures go that the page draws, if it is to draw one.
+    pub(crate) pictures: Option<Sender<Drawn>>,
+    /// Who shows its past; or why nobody does.
+    pub(crate) past: Result<Rewinder, String>,
+    /// Who lets sessions go on from there.
+    pub(crate) launch: Launch,
+    /// Where it is seen what becomes of expectations.
+    pub(crate) bench: Bench,
+    /// Where a recording ends; nothing for a session that runs.
+    pub(crate) recorded_to: Option<VirtualTime>,
+}
+
+impl<'s> Source<'s> {
+    /// A session that is no lesson, keeps no past, and of which no picture is to be drawn.
+    pub(crate) fn new(scenario: &'s Scenario, published: Published, mailbox: Mailbox, pace: String) -> Self {
+        Self {
+            scenario,
+            published,
+            mailbox,
+            pace,
+            failing: Failing::default(),
+            training: None,
+            pictures: None,
+            past: Err("it keeps none".to_owned()),
+            launch: Arc::new(|_| Err("it keeps no past".to_owned())),
+            bench: Bench::default(),
+            recorded_to: None,
+        }
+    }
+}
+
+/// Begins a session that goes on from a checkpoint, given as a file's bytes; gives where its page is, or says in words why
+/// there is none.
+pub(crate) type Launch = Arc<dyn Fn(&[u8]) -> Result<String, String> + Send + Sync>;
+
+/// A picture that the page has drawn, a PNG, or why it has not.
+pub(crate) type Drawn = Result<Vec<u8>, String>;
+
+/// A session, as all viewers share it.
+struct Session {
+    /// The answer to `GET /api/session`.
+    structure: String,
+    known: Known,
+    plan: SessionPlan,
+    layout: ImageLayout,
+    published: Published,
+    beat: Beat,
+    mailbox: Mailbox,
+    pace: String,
+    failing: Failing,
+    training: Option<Training>,
+    seats: Arc<Seats>,
+    called: Arc<Called>,
+    pictures: Option<Sender<Drawn>>,
+    entry: Entry,
+    /// `http` or `https`.
+    scheme: &'static str,
+    past: Result<Rewinder, String>,
+    launch: Launch,
+    bench: Bench,
+    /// The names of the expectations.
+    expected: Vec<String>,
+    recorded_to: Option<VirtualTime>,
+    over: AtomicBool,
+    /// A viewer of a recording has seen enough.
+    left: AtomicBool,
+    attendance: Attendance,
+    /// What all viewers are told, in its order.
+    news: Mutex<Vec<News>>,
+}
+
+/// Something that happened beside the steps.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct News {
+    /// When.
+    pub(crate) t_v: VirtualTime,
+    /// What kind of thing.
+    pub(crate) kind: &'static str,
+    /// In words.
+    pub(crate) text: String,
+}
+
+impl Session {
+    /// What was told after the first `heard` news. A thread that panicked under the lock has left whole values.
+    fn news_after(&self, heard: usize) -> Vec<News> {
+        let news = self.news.lock().unwrap_or_else(PoisonError::into_inner);
+        news.get(heard..).unwrap_or_default().to_vec()
+    }
+
+    /// The newest moment that there is.
+    fn edge(&self) -> VirtualTime {
+        self.recorded_to.unwrap_or_else(|| self.published.latest().t_v)
+    }
+
+    fn ended(&self) -> bool {
+        self.over.load(Ordering::Acquire)
+    }
+}
+
+/// Why there is no page.
+#[derive(Debug, Error, Diagnostic)]
+pub enum WebError {
+    /// The address cannot be listened on.
+    #[error(transparent)]
+    Listen(#[from] ListenError),
+    /// Others could come in.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Open(#[from] Usage),
+    /// Others could come in, or nobody can.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Access(#[from] AccessError),
+    /// The scene has changed since it was read.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Scenario(#[from] ScenarioError),
+    /// The past cannot be kept or shown.
+    #[error("there is no thread for the past of the session: {0}")]
+    Thread(std::io::Error),
+    /// The structure cannot be written.
+    #[error("the structure of the session cannot be served: {0}")]
+    Structure(#[from] serde_json::Error),
+}
+
+impl Exit for WebError {
+    fn exit_code(&self) -> ExitCode {
+        match self {
+            Self::Listen(error) => error.exit_code(),
+            Self::Open(error) => error.exit_code(),
+            Self::Access(error) => error.exit_code(),
+            Self::Scenario(error) => error.exit_code(),
+            Self::Structure(_) | Self::Thread(_) => ExitCode::Fault,
+        }
+    }
+}
+
+/// Without tokens, everybody who reaches the page operates the session, so nobody from elsewhere may.
+pub fn of_this_machine(address: SocketAddr, admission: &Admission) -> Result<(), Usage> {
+    if address.ip().is_loopback() || matches!(admission, Admission::Holders(_)) {
+        return Ok(());
+    }
+    let port = address.port();
+    let help = format!(
+        "write `--web=127.0.0.1:{port}`, and come from elsewhere through a tunnel, as that of `ssh -L`; or name a folder with \
+         tokens and a certificate, with `--access DIR` (docs/security.md)"
+    );
+    Err(Usage::new(format!("--web {address}: the page is for browsers of this machine only"), Some(help)))
+}
+
+/// The server of a session's page. It ends when it is dropped.
+pub struct Page {
+    address: SocketAddr,
+    session: Arc<Session>,
+    stop: Arc<Notify>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Page {
+    /// Serves a session at `address`, an address of this machine, unless `admission` asks for tokens.
+    ///
+    /// # Errors
+    /// See [`WebError`].
+    pub(crate) fn serve(address: SocketAddr, admission: &Admission, source: Source<'_>) -> Result<Self, WebError> {
+        Self::seated(address, admission, source, None)
+    }
+
+    /// Serves the same session at another address, for others who share its seats and are shown the views that somebody calls.
+    ///
+    /// # Errors
+    /// See [`WebError`].
+    pub(crate) fn beside(
+        &self,
+        address: SocketAddr,
+        admission: &Admission,
+        source: Source<'_>,
+    ) -> Result<Self, WebError> {
+        let Session { seats, called, .. } = &*self.session;
+        Self::seated(address, admission, source, Some((Arc::clone(seats), Arc::clone(called))))
+    }
+
+    fn seated(
+        address: SocketAddr,
+        admission: &Admission,
+        source: Source<'_>,
+        shared: Option<(Arc<Seats>, Arc<Called>)>,
+    ) -> Result<Self, WebError> {
+        of_this_machine(address, admission)?;
+        let House { register, identity } = match admission {
+            Admission::Holders(_) => Doorstep::open(admission, address)?.into_house(),
+            Admission::ThisMachine | Admission::Anybody => House::default(),
+        };
+        let listen = ListenError::on(address);
+        let (mut structure, mut known) = structure::of(source.scenario, source.training.as_ref())?;
+        structure.live = source.recorded_to.is_none();
+        let plan = source.scenario.plan().clone();
+        let listener = TcpListener::bind(address).map_err(&listen)?;
+        listener.set_nonblocking(true).map_err(&listen)?;
+        let address = listener.local_addr().map_err(&listen)?;
+        let (seats, called) = shared.unwrap_or_else(|| {
+            let seats = Seats::at(std::mem::take(&mut known.panels));
+            (Arc::new(seats), Arc::new(Called::among(source.scenario, source.training.as_ref())))
+        });
+        let session = Arc::new(Session {
+            entry: Entry::new(register, address.port(), identity.is_some()),
+            scheme: if identity.is_some() { "https" } else { "http" },
+            structure: serde_json::to_string(&structure)?,
+            seats,
+            called,
+            known,
+            layout: ImageLayout::new(plan.signals()),
+            plan,
+            published: source.published,
+            beat: Beat::begin(),
+            mailbox: source.mailbox,
+            pace: source.pace,
+            failing: source.failing,
+            training: source.training,
+            pictures: source.pictures,
+            past: source.past,
+            launch: source.launch,
+            bench: source.bench,
+            expected: source.scenario.expectations().named.iter().map(|(name, _)| name.clone()).collect(),
+            recorded_to: source.recorded_to,
+            over: AtomicBool::new(false),
+            left: AtomicBool::new(false),
+            attendance: Attendance::default(),
+            news: Mutex::default(),
+        });
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(&listen)?;
+        let stop = Arc::new(Notify::new());
+        let (router, stopped) = (router(Arc::clone(&session)), Arc::clone(&stop));
+        let thread = std::thread::Builder::new().name("web".to_owned()).spawn(move || {
+            runtime.block_on(async move {
+                let served = async {
+                    let listener = tokio::net::TcpListener::from_std(listener)?;
+                    match identity {
+                        Some(identity) => axum::serve(TlsDoor::new(listener, &identity)?, router).await,
+                        None => axum::serve(listener, router).await,
+                    }
+                };
+                tokio::select! {
+                    outcome = served => if let Err(error) = outcome {
+                        tracing::error!(%error, "the page is not served any more; the session goes on");
+                    },
+                    () = stopped.notified() => {}
+                }
+            });
+            // viewers that do not read are not waited for
+            runtime.shutdown_timeout(FAREWELL);
+        });
+        Ok(Self { address, session, stop, thread: Some(thread.map_err(&listen)?) })
+    }
+
+    /// Where a browser finds it.
+    pub(crate) fn url(&self) -> String {
+        format!("{}://{}/", self.session.scheme, self.address)
+    }
+
+    /// Tells all viewers, those who are yet to come too.
+    pub(crate) fn tell(&self, news: News) {
+        self.session.news.lock().unwrap_or_else(PoisonError::into_inner).push(news);
+    }
+
+    /// Waits until the first viewer looks, or until `is_over`, which is asked now and then.
+    pub(crate) fn await_viewer(&self, is_over: impl Fn() -> bool) {
+        self.session.attendance.await_first(is_over);
+    }
+
+    /// Whether a viewer of a recording has seen enough.
+    pub(crate) fn is_left(&self) -> bool {
+        self.session.left.load(Ordering::Acquire)
+    }
+
+    /// What is missing, if the program was built without its page.
+    pub fn is_absent() -> Option<&'static str> {
+        (!bundle::is_there()).then_some(bundle::ABSENT)
+    }
+}
+
+impl Drop for Page {
+    /// Tells viewers of the end, and leaves them a moment to take it.
+    fn drop(&mut self) {
+        self.session.over.store(true, Ordering::Release);
+        self.session.attendance.await_last(FAREWELL);
+        self.stop.notify_one();
+        if let Some(thread) = self.thread.take()
+            && thread.join().is_err()
+        {
+            tracing::error!("the thread of the page has panicked");
+        }
+    }
+}

@@ -1,0 +1,215 @@
+//! One way in which the session may go, from its start or forked from another.
+
+use std::collections::VecDeque;
+use std::rc::Rc;
+
+use onescan_scenario::Scenario;
+use onescan_scenario::compose::Member;
+use onescan_scenario::expect::TraceEnd;
+use onescan_scenario::timing::Leeway;
+use onescan_server::checkpoint::StateHash;
+use onescan_server::digest::Digest;
+use onescan_server::signal::ClientName;
+use onescan_server::time::{TimeSpan, VirtualTime};
+
+use super::deviation::{Deviation, What};
+use super::known::{Key, Known, Mark, Past, looks};
+use super::place::{self, Watched};
+use onescan_runner::error::Usage;
+use onescan_runner::run::expectation::ExpectationReport;
+use onescan_runner::run::judged::{Judged, Moment};
+use onescan_runner::run::{RunError, SearchError};
+
+/// Something that may happen later, and the boundary before the step in which it happens.
+#[derive(Clone)]
+pub(super) struct Fork {
+    /// Number of what allows it.
+    pub(super) leeway: usize,
+    pub(super) what: What,
+    /// When it happens.
+    pub(super) edge: VirtualTime,
+    /// Nothing for what happens in the set-up.
+    moment: Option<Rc<Moment>>,
+}
+
+/// What came of a way.
+pub(super) struct Path {
+    pub(super) digest: Option<Digest>,
+    /// Expectations that did not hold.
+    pub(super) violated: Vec<ExpectationReport>,
+    /// How a client failed, if one did.
+    pub(super) failure: Option<String>,
+    /// What may happen later in it, in the order of time, if that was asked for.
+    pub(super) forks: Vec<Fork>,
+    /// Where it ended because its state was known, and how many schedules follow.
+    pub(super) joined: Option<u64>,
+    /// Where others may join it.
+    pub(super) marks: Vec<Mark>,
+}
+
+/// What all ways of an exploration have in common.
+pub(super) struct Ground<'a> {
+    pub(super) scenario: &'a Scenario,
+    pub(super) until: VirtualTime,
+    pub(super) leeways: &'a [Leeway],
+    /// How long expectations remember; nothing if all of a run may matter.
+    memory: Option<TimeSpan>,
+    /// Whether expectations remember anything.
+    forgets: bool,
+}
+
+/// What is asked of a way.
+#[derive(Clone, Copy)]
+pub(super) struct Wanted<'k> {
+    /// Whether it is to say what may happen later.
+    pub(super) forks: bool,
+    /// Exactly so many deviations come after its own, and what is known; nothing if it is to be gone to its end.
+    pub(super) known: Option<(u32, &'k Known)>,
+}
+
+impl<'a> Ground<'a> {
+    pub(super) fn new(scenario: &'a Scenario, until: VirtualTime, leeways: &'a [Leeway]) -> Self {
+        let step = scenario.plan().step();
+        let named = &scenario.expectations().named;
+        let memories: Option<Vec<u64>> =
+            named.iter().map(|(_, expectation)| expectation.memory_ns(step.as_nanos())).collect();
+        let longest_ns = memories.map(|all| all.into_iter().max().unwrap_or(0));
+        let memory = longest_ns.and_then(TimeSpan::from_nanos);
+        Self { scenario, until, leeways, memory, forgets: longest_ns == Some(0) }
+    }
+
+    /// Goes the way with these deviations, from the fork of the last of them if it has one.
+    ///
+    /// # Errors
+    /// The session cannot be formed, saved or taken up.
+    pub(super) fn go(
+        &self,
+        from: Option<&Fork>,
+        deviations: &[Deviation],
+        wanted: Wanted<'_>,
+    ) -> Result<Path, SearchError> {
+        let mut judged = self.form(deviations)?;
+        let moment = from.and_then(|fork| fork.moment.as_ref());
+        match moment {
+            Some(moment) => judged.resume(moment).map_err(RunError::Fork)?,
+            None => judged.begin()?,
+        }
+        let mut watched = Watched::new(self.leeways);
+        watched.begin(judged.session());
+        let mut forks = if wanted.forks && moment.is_none() { self.at_start() } else { Vec::new() };
+        let mut joining = Joining::new(self, deviations);
+        loop {
+            if let Some((more, known)) = wanted.known
+                && let Some(schedules) = joining.look(&mut judged, more, known)?
+            {
+                let marks = joining.marks;
+                return Ok(Path {
+                    digest: None,
+                    violated: Vec::new(),
+                    failure: None,
+                    forks,
+                    joined: Some(schedules),
+                    marks,
+                });
+            }
+            // Before the step, because what it brings is to be late.
+            let before = if wanted.forks { judged.moment()?.map(Rc::new) } else { None };
+            if !judged.step()? {
+                break;
+            }
+            watched.look(judged.session());
+            if let Some(moment) = before {
+                let t_v = judged.session().t_v();
+                for (number, leeway) in self.leeways.iter().enumerate() {
+                    let what = place::in_step(self.scenario, leeway, &watched, (t_v, deviations));
+                    let moment = Some(Rc::clone(&moment));
+                    forks.extend(what.map(|what| Fork { leeway: number, what, edge: t_v, moment }));
+                }
+            }
+        }
+        let judgement = judged.finish(TraceEnd::Complete)?;
+        let failure = judgement.failure.map(|failure| failure.to_string());
+        let (digest, violated, marks) = (judgement.digest, judgement.violated, joining.marks);
+        Ok(Path { digest, violated, failure, forks, joined: None, marks })
+    }
+
+    fn at_start(&self) -> Vec<Fork> {
+        let leeways = self.leeways.iter().enumerate();
+        let fork = |(leeway, what)| Fork { leeway, what, edge: VirtualTime::ZERO, moment: None };
+        leeways.filter_map(|(number, leeway)| Some((number, place::at_start(leeway)?))).map(fork).collect()
+    }
+
+    fn form(&self, deviations: &[Deviation]) -> Result<Judged<'a>, RunError> {
+        let elsewhere = |name: &ClientName, _: &Member| {
+            let message = format!("client `{name}` is not in this process, where it could be saved and forked");
+            Usage::new(message, Some("explore with a soft PLC in its place".to_owned()))
+        };
+        let deviating = deviations.iter().flat_map(Deviation::operations);
+        Judged::form(self.scenario, self.until, deviating, elsewhere)
+    }
+}
+
+/// A way that looks whether its state is known.
+struct Joining<'a> {
+    ground: &'a Ground<'a>,
+    /// When its last deviation was over.
+    over: VirtualTime,
+    /// The way without deviations is that which most others join, so it is known at each boundary.
+    always: bool,
+    /// Boundaries, and the states there, for which others would have been alike long enough only later.
+    waiting: VecDeque<(VirtualTime, StateHash)>,
+    marks: Vec<Mark>,
+}
+
+impl<'a> Joining<'a> {
+    fn new(ground: &'a Ground<'a>, deviations: &[Deviation]) -> Self {
+        let over = deviations.iter().map(|deviation| deviation.arrives).max().unwrap_or(VirtualTime::ZERO);
+        Self { ground, over, always: deviations.is_empty(), waiting: VecDeque::new(), marks: Vec::new() }
+    }
+
+    /// How many schedules follow from the boundary at which it is, if that is known.
+    fn look(&mut self, judged: &mut Judged<'_>, more: u32, known: &Known) -> Result<Option<u64>, RunError> {
+        let (t_v, step) = (judged.session().t_v(), judged.session().step());
+        if t_v < self.over || t_v >= self.ground.until {
+            return Ok(None);
+        }
+        let steps = (t_v.as_nanos() - self.over.as_nanos()) / step.as_nanos();
+        if (self.always || looks(steps))
+            && let Some(state) = judged.state()?
+        {
+            let key = Key { at: t_v, state, past: Past::Seen(judged.seen()), more };
+            if let Some(schedules) = self.is_known(key, t_v, known) {
+                return Ok(Some(schedules));
+            }
+            if self.ground.forgets || self.ground.memory.is_some() {
+                self.waiting.push_back((t_v, state));
+            }
+        }
+        // The same for all that wait, and asked for only if one of them has waited long enough.
+        let mut settled: Option<Vec<Option<bool>>> = None;
+        while let Some((at, state)) = self.waiting.front().copied() {
+            let alike_until = self.ground.memory.map_or(at, |memory| at + memory);
+            if alike_until > t_v {
+                break;
+            }
+            self.waiting.pop_front();
+            let settled = settled.get_or_insert_with(|| judged.settled());
+            if settled.contains(&Some(false)) {
+                break;
+            }
+            let key = Key { at, state, past: Past::Settled(settled.clone()), more };
+            if let Some(schedules) = self.is_known(key, t_v, known) {
+                return Ok(Some(schedules));
+            }
+        }
+        Ok(None)
+    }
+
+    fn is_known(&mut self, key: Key, joined: VirtualTime, known: &Known) -> Option<u64> {
+        let schedules = known.schedules(&key);
+        if schedules.is_none() {
+            self.marks.push(Mark { joined, key });
+        }
+        schedules
+    }
+}

@@ -1,0 +1,122 @@
+//! What fails.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
+
+use onescan_scenario::Scenario;
+use onescan_scenario::compose::Member;
+use onescan_scenario::expect::TraceEnd;
+use onescan_server::signal::{ClientName, did_you_mean};
+use onescan_server::time::VirtualTime;
+
+use super::trial::Trunk;
+use onescan_runner::error::Usage;
+use onescan_runner::run::judged::{Judged, Judgement};
+use onescan_runner::run::{RunError, SearchError};
+
+/// What fails, so that another failure is not taken for it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Target {
+    /// An expectation is violated.
+    Expectation(String),
+    /// A client fails.
+    Failure {
+        client: ClientName,
+        /// How, without the time.
+        cause: String,
+    },
+}
+
+/// The case as it is: what fails in it.
+pub(super) struct First {
+    pub(super) target: Target,
+    /// When that is certain.
+    pub(super) at: VirtualTime,
+}
+
+impl fmt::Display for Target {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Expectation(name) => write!(f, "`{name}` does not hold"),
+            Self::Failure { client, cause } => write!(f, "client `{client}` fails: {cause}"),
+        }
+    }
+}
+
+impl Target {
+    /// When a run has failed so, if it has.
+    pub(super) fn met(&self, judgement: &Judgement) -> Option<VirtualTime> {
+        match self {
+            Self::Expectation(name) => judgement.violated.iter().find(|one| one.name == *name).and_then(|one| one.at),
+            Self::Failure { client, cause } => {
+                let same = |failure: &&_| Self::of(failure) == (client, cause.clone());
+                judgement.failure.as_ref().filter(same).map(|failure| failure.t_v)
+            }
+        }
+    }
+
+    fn of(failure: &onescan_server::end::Failure) -> (&ClientName, String) {
+        (&failure.client, failure.cause.to_string())
+    }
+
+    /// The name of the expectation that it is.
+    pub(super) fn expectation(&self) -> Option<&str> {
+        if let Self::Expectation(name) = self { Some(name) } else { None }
+    }
+}
+
+/// A session of `scenario`, all of it in this process.
+pub(super) fn form(scenario: &Scenario, until: VirtualTime) -> Result<Judged<'_>, RunError> {
+    let elsewhere = |name: &ClientName, _: &Member| {
+        let message = format!("client `{name}` is not in this process, where it could be saved and forked");
+        Usage::new(message, Some("minimise with a soft PLC in its place".to_owned()))
+    };
+    Judged::form(scenario, until, [], elsewhere)
+}
+
+/// Runs the case as it is; of several failures the first counts, unless one is `wanted`.
+///
+/// # Errors
+/// It does not fail.
+pub(super) fn first(
+    whole: Scenario,
+    until: VirtualTime,
+    wanted: Option<&str>,
+    spots: &BTreeSet<VirtualTime>,
+) -> Result<(First, Trunk), SearchError> {
+    let names = || whole.expectations().named.iter().map(|(name, _)| name.as_str());
+    if let Some(wanted) = wanted.filter(|wanted| names().all(|name| name != *wanted)) {
+        let help = did_you_mean(wanted, names());
+        return Err(Usage::new(format!("the scenario has no expectation `{wanted}`"), help).into());
+    }
+    let mut judged = form(&whole, until)?;
+    let mut moments = BTreeMap::new();
+    judged.begin()?;
+    loop {
+        let t_v = judged.session().t_v();
+        if spots.contains(&t_v)
+            && let Some(moment) = judged.moment()?
+        {
+            moments.insert(t_v, moment);
+        }
+        if !judged.step()? {
+            break;
+        }
+    }
+    let judgement = judged.finish(TraceEnd::Complete)?;
+    let violated = judgement.violated.iter().filter(|one| wanted.is_none_or(|wanted| wanted == one.name));
+    let violations = violated.filter_map(|one| Some((one.at?, Target::Expectation(one.name.clone()))));
+    let failure = judgement.failure.as_ref().filter(|_| wanted.is_none());
+    let failure = failure.map(|failure| {
+        let (client, cause) = Target::of(failure);
+        (failure.t_v, Target::Failure { client: client.clone(), cause })
+    });
+    // The earliest; of those at one time, the first in the file, and what a client says last.
+    let first = violations.chain(failure).min_by_key(|(at, _)| *at);
+    if let Some((at, target)) = first {
+        return Ok((First { target, at }, Trunk { scenario: whole, moments }));
+    }
+    let what = wanted.map_or_else(|| "it does what is expected".to_owned(), |name| format!("`{name}` holds"));
+    let help = "minimise a case that fails, as those that `onescan explore --cases` writes (docs/minimise.md)";
+    Err(Usage::new(format!("there is nothing to minimise: {what} until {until}"), Some(help.to_owned())).into())
+}

@@ -1,0 +1,73 @@
+//! A body at whose place other bodies appear.
+
+use onescan_server::client::ClientFault;
+use rapier3d::prelude::RigidBodyHandle;
+
+use super::{BindingKey, Names, Targets, Tie, Unbound, Which, handles, needed, target, wanted};
+use crate::coordinate::Measured;
+use crate::scene::Scene;
+use crate::scene::model::Bound;
+use crate::world::{Surface, World};
+
+/// A body, and what appears at its place. What is seen is how many wait out of the world; the first
+/// of them only while no target is in the way.
+pub(crate) struct Place {
+    surface: Surface,
+    targets: Vec<RigidBodyHandle>,
+}
+
+/// Puts a target into the world, by its place among the targets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Put(pub(crate) Option<u32>);
+
+impl Tie for Place {
+    const NAME: &'static str = "place";
+    const KEYS: &'static [BindingKey] = &[
+        needed(
+            "body",
+            Names::Body,
+            "body at whose place the targets appear; if it has a shape, only when nothing is in it",
+        ),
+        needed(
+            "targets",
+            Names::Bodies { named: Which::Dynamic, absent: Which::Dynamic },
+            "dynamic bodies with a shape, out of the world until they appear",
+        ),
+    ];
+    type Seen = Targets;
+    type Effect = Put;
+    type Memory = ();
+
+    fn bind(bound: &Bound, _: &Scene, world: &mut World) -> Result<Self, Unbound> {
+        let body = world.handle(Some(wanted(bound.body, "body")?));
+        let targets = handles(world, &bound.targets);
+        for target in &targets {
+            world.take_out(*target).map_err(|_| Unbound("target in the world"))?;
+        }
+        Ok(Self { surface: world.surface(body, None), targets })
+    }
+
+    fn see(&self, _: Measured<'_>, world: &World) -> Targets {
+        let seen = Targets::see(&self.targets, |target| !world.body(target).is_enabled());
+        let ball = world.ball_around(self.surface);
+        let near = |target| ball.as_ref().is_some_and(|ball| world.is_near_ball(ball, target));
+        let free = !self.targets.iter().any(|target| near(*target) && world.touch(self.surface, *target));
+        Targets { first: seen.first.filter(|_| free), ..seen }
+    }
+
+    fn apply(&mut self, Put(placed): Put, _: Measured<'_>, _: f64, world: &mut World) -> Result<(), ClientFault> {
+        match placed {
+            None => Ok(()),
+            Some(place) => world.put_in(target(&self.targets, place)?, self.surface.body),
+        }
+    }
+
+    fn memory(&self) {}
+
+    fn restore(&mut self, (): ()) {}
+
+    fn in_words(bound: &Bound, scene: &Scene) -> String {
+        let name = bound.body.map(|body| &scene.bodies[body].name);
+        name.map_or_else(String::new, |name| format!("{} bodies at {name}", bound.targets.len()))
+    }
+}

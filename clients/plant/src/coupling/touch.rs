@@ -1,0 +1,86 @@
+//! A body, or one shape of it, that other bodies touch.
+
+use onescan_server::client::ClientFault;
+use rapier3d::prelude::RigidBodyHandle;
+
+use super::{BindingKey, Names, Targets, Tie, Unbound, Which, handles, needed, optional, wanted, without_effect};
+use crate::coordinate::Measured;
+use crate::scene::Scene;
+use crate::scene::model::Bound;
+use crate::world::{Surface, World};
+
+pub(super) const fn keys(named: Which) -> [BindingKey; 3] {
+    [
+        needed("body", Names::TouchedBody, "body with a shape, which the targets touch"),
+        optional("shape", Names::ShapeOfBody, "the one of its `[[shape]]`s that counts; all of it if absent"),
+        optional(
+            "targets",
+            Names::Bodies { named, absent: Which::Dynamic },
+            "bodies that count; all dynamic ones but itself if absent",
+        ),
+    ]
+}
+
+const DYNAMIC: [BindingKey; 3] = keys(Which::Dynamic);
+const ANY: [BindingKey; 3] = keys(Which::Any);
+
+/// What is touched, and by what.
+pub(super) struct Touched {
+    pub(super) surface: Surface,
+    pub(super) targets: Vec<RigidBodyHandle>,
+}
+
+impl Touched {
+    pub(super) fn bind(bound: &Bound, world: &World) -> Result<Self, Unbound> {
+        let body = world.handle(Some(wanted(bound.body, "body")?));
+        let surface = world.surface(body, bound.shape.map(|shape| world.shape(shape)));
+        Ok(Self { surface, targets: handles(world, &bound.targets) })
+    }
+
+    pub(super) fn see(&self, world: &World) -> Targets {
+        let Some(ball) = world.ball_around(self.surface) else { return Targets::default() };
+        Targets::see(&self.targets, |target| world.is_near_ball(&ball, target) && world.touch(self.surface, target))
+    }
+}
+
+pub(super) fn in_words(bound: &Bound, scene: &Scene) -> String {
+    let body = bound.body.map(|body| &scene.bodies[body].name);
+    let name = bound.shape.map(|shape| &scene.shapes[shape].name).or(body);
+    name.map_or_else(String::new, |name| format!("{name} and {} others", bound.targets.len()))
+}
+
+macro_rules! senses {
+    ($(#[$doc:meta])* $tie:ident, $name:literal, $keys:expr) => {
+        $(#[$doc])*
+        pub(crate) struct $tie(Touched);
+
+        impl Tie for $tie {
+            const NAME: &'static str = $name;
+            const KEYS: &'static [BindingKey] = &$keys;
+            type Seen = Targets;
+            without_effect!();
+
+            fn bind(bound: &Bound, _: &Scene, world: &mut World) -> Result<Self, Unbound> {
+                Touched::bind(bound, world).map(Self)
+            }
+
+            fn see(&self, _: Measured<'_>, world: &World) -> Targets {
+                self.0.see(world)
+            }
+
+            fn in_words(bound: &Bound, scene: &Scene) -> String {
+                in_words(bound, scene)
+            }
+        }
+    };
+}
+
+senses! {
+    /// A body that dynamic bodies touch, or one shape of it.
+    Touch, "touch", DYNAMIC
+}
+
+senses! {
+    /// A body that other bodies of any kind touch, or one shape of it.
+    Contact, "contact", ANY
+}

@@ -1,0 +1,226 @@
+//! Steps of a mechanism with drives, friction and stops.
+//!
+//! # Method
+//! The step is cut in parts of at most [`PART_S`]. In each, mass matrix and bias are taken at half way;
+//! over such a part they change little. Each part is cut again, as short as the drives' own equations
+//! want it: in such a sub-step every drive moves its state with its joint and says what it exerts, and
+//! velocities follow from momentum with all rows within their bounds ([`super::rows`]). So a stiff drive
+//! meets the real mass of its joint, and a stop or a friction holds exactly.
+
+use super::dynamics::{normalise, rates};
+use super::rows::Row;
+use super::{Mechanism, Surroundings, matrix};
+use crate::actuator::{Acts, Actuator};
+use crate::component::dynamics::substeps;
+use crate::effort::Motion;
+use crate::fitting::Fitting;
+
+/// Longest part of a step with one mass matrix, s.
+const PART_S: f64 = 1e-3;
+/// Of a deviation from its path, a drive makes up this part in a turn. Below 1 the loop settles
+/// without overshoot; the smaller, the gentler after a blocked joint comes free.
+pub(crate) const CORRECTED_A_TURN: f64 = 0.25;
+
+/// Viscous friction that takes less than this part of a velocity in a sub-step is taken as a force.
+const EXPLICIT_MAX: f64 = 0.05;
+/// A stop is looked at from this near on, m or rad.
+const NEAR: f64 = 1e-6;
+
+impl Mechanism {
+    /// Moves by a step; false, and unmoved, if its equations cannot be solved.
+    pub(super) fn step_driven(&mut self, dt_s: f64, around: &mut Surroundings<'_>) -> bool {
+        let n = self.tree.velocities;
+        if n == 0 {
+            return true;
+        }
+        let own: Vec<(usize, usize)> = self.own_actuators(around.actuators);
+        self.room.driven.clear();
+        self.room.driven.resize(n, false);
+        for (axis, actuator) in &own {
+            self.room.driven[*axis] = true;
+            around.actuators[*actuator].impulse = 0.0;
+        }
+        let longest = own.iter().map(|(_, actuator)| match around.actuators[*actuator].acts {
+            Acts::Law { drive } => around.drives.longest_s(drive),
+            Acts::Along(_) => PART_S,
+        });
+        let longest_s = longest.fold(PART_S, f64::min);
+        let (count, part_s) = substeps(dt_s, PART_S);
+        let (finer, finer_s) = substeps(part_s, longest_s);
+        for index in 0..count {
+            if !self.prepare(part_s, around) {
+                return false;
+            }
+            for inner in 0..finer {
+                let whole = f64::from(count * finer);
+                let [from, to] = around.part;
+                let at = |step: u32| from + (to - from) * f64::from(step) / whole;
+                let step = index * finer + inner;
+                self.substep(finer_s, [at(step), at(step + 1)], &own, around);
+            }
+        }
+        for (_, actuator) in &own {
+            let actuator = &mut around.actuators[*actuator];
+            actuator.effort = actuator.impulse / dt_s;
+        }
+        true
+    }
+
+    /// Its axes that have actuators, and these.
+    fn own_actuators(&self, actuators: &[Actuator]) -> Vec<(usize, usize)> {
+        let axis = |joint: usize| self.axes.iter().position(|(_, own)| *own == Some(joint));
+        let each = actuators.iter().enumerate();
+        each.filter_map(|(index, actuator)| axis(actuator.joint).map(|axis| (axis, index))).collect()
+    }
+
+    /// The equations half way through a part, and the inverse of their matrix.
+    fn prepare(&mut self, part_s: f64, around: &Surroundings<'_>) -> bool {
+        let n = self.tree.velocities;
+        let room = &mut self.room;
+        room.q.clone_from(&self.now.q);
+        room.rates[0].resize(self.tree.positions, 0.0);
+        rates(&self.lumps, &self.now.q, &self.now.v, &mut room.rates[0]);
+        for (q, rate) in room.q.iter_mut().zip(&room.rates[0]) {
+            *q += 0.5 * part_s * rate;
+        }
+        normalise(&self.lumps, &mut room.q);
+        self.moving.evaluate(&self.lumps, &room.q, &self.now.v, around.gravity);
+        if !self.moving.factor(&self.lumps) {
+            return false;
+        }
+        room.inverse.resize(n * n, 0.0);
+        matrix::inverse(&self.moving.mass, n, &mut room.inverse);
+        true
+    }
+
+    fn substep(&mut self, dt_s: f64, part: [f64; 2], own: &[(usize, usize)], around: &mut Surroundings<'_>) {
+        let n = self.tree.velocities;
+        self.rows.all.clear();
+        self.room.exact.clone_from(&self.room.driven);
+        self.room.force.resize(n, 0.0);
+        for k in 0..n {
+            let (position, joint) = self.axes[k];
+            let (q, v) = (self.now.q[position], self.now.v[k]);
+            self.room.force[k] = -self.moving.bias[k];
+            if let Some(fitting) = joint.map(|joint| &around.fittings[joint]) {
+                self.room.force[k] += fitting.force(q);
+                self.resist(k, fitting.dry(v), fitting.damping, dt_s);
+            }
+        }
+        for (axis, index) in own {
+            self.act(*axis, *index, dt_s, part, around);
+        }
+        self.room.v.clone_from(&self.now.v);
+        for k in 0..n {
+            let line = &self.room.inverse[k * n..(k + 1) * n];
+            let acceleration: f64 = line.iter().zip(&self.room.force).map(|(inverse, force)| inverse * force).sum();
+            self.room.v[k] += dt_s * acceleration;
+        }
+        self.couple(dt_s);
+        self.stop(dt_s, around.fittings);
+        self.rows.solve(&self.room.inverse, &mut self.room.v);
+        for row in &self.rows.all {
+            if let Some(index) = row.actuator {
+                let actuator = &mut around.actuators[index];
+                actuator.exerted = row.impulse / dt_s;
+                actuator.impulse += row.impulse;
+            }
+        }
+        self.go(dt_s, around.fittings);
+    }
+
+    /// Dry and viscous friction of an axis.
+    fn resist(&mut self, axis: usize, dry: f64, viscous: f64, dt_s: f64) {
+        if dry > 0.0 {
+            self.rows.all.push(Row::rigid(axis, 0.0, dry * dt_s));
+        }
+        let part = viscous * dt_s * self.room.inverse[axis * self.tree.velocities + axis];
+        if part > EXPLICIT_MAX {
+            self.rows.all.push(Row { softness: 1.0 / (viscous * dt_s), ..Row::rigid(axis, 0.0, f64::INFINITY) });
+        } else if part > 0.0 {
+            self.room.force[axis] -= viscous * self.now.v[axis];
+        }
+    }
+
+    /// What an actuator does to its axis in a sub-step.
+    fn act(&mut self, axis: usize, index: usize, dt_s: f64, [from, to]: [f64; 2], around: &mut Surroundings<'_>) {
+        let position = self.now.q[self.axes[axis].0];
+        let actuator = &mut around.actuators[index];
+        let fitting = &around.fittings[actuator.joint];
+        let coordinate = fitting.initial + position;
+        let drive = match actuator.acts {
+            Acts::Along(path) => {
+                let missing = path.at(from) - coordinate;
+                let wanted = (path.at(to) - path.at(from)) / dt_s + CORRECTED_A_TURN * missing / path.turn_s;
+                let wanted = wanted.clamp((fitting.lower - position) / dt_s, (fitting.upper - position) / dt_s);
+                Row::rigid(axis, wanted, actuator.most * dt_s)
+            }
+            Acts::Law { drive } => {
+                let velocity = self.now.v[axis];
+                let mass = 1.0 / self.room.inverse[axis * self.tree.velocities + axis];
+                let motion = Motion { position: coordinate, velocity, mass, exerted: actuator.exerted };
+                let effort = around.drives.advance(drive, motion, dt_s);
+                self.resist(axis, effort.dry, effort.viscous, dt_s);
+                let most = effort.most * dt_s;
+                if let Some(sought) = effort.sought {
+                    Row::rigid(axis, sought, most)
+                } else if effort.slope > 0.0 {
+                    let (wanted, softness) = (velocity + effort.force / effort.slope, 1.0 / (effort.slope * dt_s));
+                    Row { softness, ..Row::rigid(axis, wanted, most) }
+                } else {
+                    let force = effort.force.clamp(-effort.most, effort.most);
+                    self.room.force[axis] += force;
+                    actuator.exerted = force;
+                    actuator.impulse += force * dt_s;
+                    return;
+                }
+            }
+        };
+        self.rows.all.push(Row { actuator: Some(index), ..drive });
+    }
+
+    /// The rows of the stops that axes may come to in a sub-step.
+    fn stop(&mut self, dt_s: f64, fittings: &[Fitting]) {
+        for (axis, (position, joint)) in self.axes.iter().enumerate() {
+            let Some(fitting) = joint.map(|joint| &fittings[joint]) else { continue };
+            let q = self.now.q[*position];
+            let reach = 2.0 * dt_s * (self.now.v[axis].abs() + self.room.v[axis].abs()) + NEAR;
+            if q - fitting.lower < reach {
+                let wanted = (fitting.lower - q) / dt_s;
+                self.rows.all.push(Row { least: 0.0, ..Row::rigid(axis, wanted, f64::INFINITY) });
+                self.room.exact[axis] = true;
+            }
+            if fitting.upper - q < reach {
+                let wanted = (fitting.upper - q) / dt_s;
+                self.rows.all.push(Row { most: 0.0, ..Row::rigid(axis, wanted, f64::INFINITY) });
+                self.room.exact[axis] = true;
+            }
+        }
+    }
+
+    /// Takes the new velocities, and goes on with them.
+    ///
+    /// What is driven or stopped goes on with its new velocity, by which it comes to where it is to be;
+    /// the rest with the mean of old and new, which is of second order.
+    fn go(&mut self, dt_s: f64, fittings: &[Fitting]) {
+        let Self { lumps, now, axes, room, .. } = self;
+        for (k, exact) in room.exact.iter().enumerate() {
+            now.v[k] = if *exact { room.v[k] } else { 0.5 * (now.v[k] + room.v[k]) };
+        }
+        rates(lumps, &now.q, &now.v, &mut room.rates[0]);
+        for (q, rate) in now.q.iter_mut().zip(&room.rates[0]) {
+            *q += dt_s * rate;
+        }
+        normalise(lumps, &mut now.q);
+        now.v.copy_from_slice(&room.v);
+        for ((position, joint), v) in axes.iter().zip(&mut now.v) {
+            let Some(fitting) = joint.map(|joint| &fittings[joint]) else { continue };
+            let q = &mut now.q[*position];
+            let inside = q.clamp(fitting.lower, fitting.upper);
+            if inside != *q {
+                *v = if *q < inside { v.max(0.0) } else { v.min(0.0) };
+                *q = inside;
+            }
+        }
+    }
+}

@@ -1,0 +1,477 @@
+//! The robot of a MuJoCo model: bodies, joints, geoms.
+//!
+//! Read are `<compiler>`, `<default>` classes, `<asset>` meshes, and of `<worldbody>` the bodies with
+//! `<inertial>`, hinges, slides, balls, free joints and geoms; of `<equality>` the joints that follow others. What
+//! a geom weighs is taken where a body has no `<inertial>`, as MuJoCo does. Actuators, tendons, sensors and
+//! contacts are left aside, with a remark. A body with several joints is a fault: a scene has a body between
+//! any two joints.
+//!
+//! Source: MuJoCo documentation, XML reference (3.3).
+
+use rapier3d::glamx::{DMat3, DQuat, DVec3};
+use rapier3d::math::Pose;
+
+use super::tree::sorted;
+use super::urdf::is_tensor;
+use super::xml::{Element, RobotFault};
+use super::{Collision, Freedom, Geometry, Inertial, Joint, Link, Mimic, Origin, Robot, Weight};
+use crate::pose::to_rpy_deg;
+
+/// What MuJoCo takes where a geom says nothing.
+const DENSITY_KG_M3: f64 = 1000.0;
+
+/// The settings of `<compiler>`.
+struct Compiler {
+    degrees: bool,
+    euler: String,
+    mesh_folder: String,
+}
+
+/// A class of `<default>`: its name, that of the class around it, and its element.
+struct Class<'e> {
+    name: String,
+    parent: Option<usize>,
+    element: &'e Element,
+}
+
+/// A mesh of `<asset>`: its name, its file and what 1 means in it along each axis.
+struct Asset {
+    name: String,
+    file: String,
+    scale: [f64; 3],
+}
+
+struct Reader<'e> {
+    compiler: Compiler,
+    classes: Vec<Class<'e>>,
+    meshes: Vec<Asset>,
+    links: Vec<Link>,
+    joints: Vec<Joint>,
+    faults: Vec<RobotFault>,
+    remarks: Vec<String>,
+}
+
+/// The robot of a file's outermost element.
+///
+/// # Errors
+/// Every fault that was found.
+pub(super) fn robot(root: &Element) -> Result<Robot, Vec<RobotFault>> {
+    let compiler = root.child("compiler");
+    let get = |key: &str| compiler.and_then(|compiler| compiler.get(key));
+    let mut reader = Reader {
+        compiler: Compiler {
+            degrees: get("angle") != Some("radian"),
+            euler: get("eulerseq").unwrap_or("xyz").to_owned(),
+            mesh_folder: get("meshdir").or_else(|| get("assetdir")).unwrap_or_default().to_owned(),
+        },
+        classes: Vec::new(),
+        meshes: Vec::new(),
+        links: Vec::new(),
+        joints: Vec::new(),
+        faults: Vec::new(),
+        remarks: Vec::new(),
+    };
+    for include in root.all("include") {
+        reader.faults.push(include.wrong("<include> is not read: give the robot's own file"));
+    }
+    root.all("default").for_each(|element| reader.class(element, None));
+    for mesh in root.all("asset").flat_map(|asset| asset.all("mesh")) {
+        let read = reader.asset(mesh);
+        reader.keep(read);
+    }
+    let world = root.needed("worldbody").map_err(|fault| vec![fault])?;
+    reader.body(world, None, "main");
+    reader.follow(root);
+    for (section, what) in
+        [("actuator", "actuators"), ("tendon", "tendons"), ("sensor", "sensors"), ("contact", "contacts")]
+    {
+        let count: usize = root.all(section).map(|element| element.children.len()).sum();
+        if count > 0 {
+            reader.remarks.push(format!("{count} {what} of the model are not taken over"));
+        }
+    }
+    let Reader { links, joints, faults, remarks, .. } = reader;
+    if !faults.is_empty() {
+        return Err(faults);
+    }
+    let (links, joints) = sorted(&links, &joints, root).map_err(|fault| vec![fault])?;
+    Ok(Robot { links, joints, remarks })
+}
+
+impl<'e> Reader<'e> {
+    fn keep(&mut self, result: Result<(), RobotFault>) {
+        self.faults.extend(result.err());
+    }
+
+    fn class(&mut self, element: &'e Element, parent: Option<usize>) {
+        let name = element.get("class").unwrap_or("main").to_owned();
+        let own = self.classes.len();
+        self.classes.push(Class { name, parent, element });
+        element.all("default").for_each(|inner| self.class(inner, Some(own)));
+    }
+
+    /// An element with what its class says of it: its own attributes come first.
+    fn complete(&self, element: &Element, class: &str) -> Element {
+        let mut whole = element.clone();
+        let wanted = element.get("class").unwrap_or(class);
+        let mut at = self.classes.iter().position(|class| class.name == wanted);
+        while let Some(class) = at.map(|at| &self.classes[at]) {
+            let preset = class.element.child(&element.name);
+            for attribute in preset.into_iter().flat_map(|preset| &preset.attributes) {
+                if whole.attribute(&attribute.key).is_none() {
+                    whole.attributes.push(attribute.clone());
+                }
+            }
+            at = class.parent;
+        }
+        whole
+    }
+
+    fn asset(&mut self, mesh: &Element) -> Result<(), RobotFault> {
+        let mesh = self.complete(mesh, "main");
+        let file = mesh.text("file")?;
+        let stem = file.rsplit('/').next().and_then(|name| name.rsplit_once('.')).map_or(file, |(stem, _)| stem);
+        let name = mesh.get("name").unwrap_or(stem).to_owned();
+        let folder = &self.compiler.mesh_folder;
+        let file = if folder.is_empty() { file.to_owned() } else { format!("{folder}/{file}") };
+        let scale = mesh.triple("scale", [1.0; 3])?;
+        self.meshes.push(Asset { name, file, scale });
+        Ok(())
+    }
+
+    /// A body with all that is in it; the world is the root.
+    fn body(&mut self, element: &Element, parent: Option<usize>, class: &str) {
+        let class = element.get("childclass").unwrap_or(class);
+        let index = self.links.len();
+        let name = match (parent, element.get("name")) {
+            (None, _) => "world".to_owned(),
+            (Some(_), Some(name)) => name.to_owned(),
+            (Some(_), None) => format!("body[{index}]"),
+        };
+        if self.links.iter().any(|known| known.name == name) {
+            self.faults.push(element.wrong(format!("body `{name}` is there twice")));
+        }
+        let place = element.place.clone();
+        self.links.push(Link { name, inertial: None, collisions: Vec::new(), visuals: Vec::new(), place });
+        if let Some(written) = element.child("inertial") {
+            match self.inertial(written) {
+                Ok(inertial) => self.links[index].inertial = inertial,
+                Err(fault) => self.faults.push(fault),
+            }
+        }
+        if let Some(parent) = parent {
+            let joint = self.joint(element, [parent, index], class);
+            self.keep(joint);
+        }
+        for geom in element.all("geom") {
+            let geom = self.complete(geom, class);
+            match self.geom(&geom) {
+                Ok(Some(shape)) => self.links[index].collisions.push(shape),
+                Ok(None) => {}
+                Err(fault) => self.faults.push(fault),
+            }
+        }
+        element.all("body").for_each(|inner| self.body(inner, Some(index), class));
+    }
+
+    fn inertial(&self, element: &Element) -> Result<Option<Inertial>, RobotFault> {
+        let mass_kg = element.number("mass")?;
+        let diagonal = element.numbers::<3>("diaginertia")?.map(|[x, y, z]| [x, y, z, 0.0, 0.0, 0.0]);
+        let full = element.numbers::<6>("fullinertia")?;
+        let inertia_kg_m2 = full.or(diagonal).filter(|tensor| is_tensor(*tensor));
+        let origin = origin(&self.pose(element)?);
+        Ok((mass_kg > 0.0).then_some(Inertial { origin, mass_kg, inertia_kg_m2 }))
+    }
+
+    /// The joint of a body, which is fixed to its parent without one.
+    fn joint(&mut self, body: &Element, [parent, child]: [usize; 2], class: &str) -> Result<(), RobotFault> {
+        let origin = origin(&self.pose(body)?);
+        let name = self.links[child].name.clone();
+        let place = body.place.clone();
+        let base = Joint {
+            name,
+            freedom: Freedom::Fixed,
+            parent,
+            child,
+            origin,
+            anchor_m: [0.0; 3],
+            axis: [0.0, 0.0, 1.0],
+            limits: None,
+            mimic: None,
+            place,
+        };
+        let written: Vec<&Element> =
+            body.children.iter().filter(|inner| matches!(inner.name.as_str(), "joint" | "freejoint")).collect();
+        let joint = match written[..] {
+            [] => base,
+            [joint] if joint.name == "freejoint" => Joint { freedom: Freedom::Floats, ..base },
+            [joint] => {
+                let joint = self.complete(joint, class);
+                self.one_joint(&joint, base)?
+            }
+            [_, second, ..] => {
+                let told = format!("body `{}` has {} joints: give each a body of its own", base.name, written.len());
+                return Err(second.wrong(told));
+            }
+        };
+        if self.joints.iter().any(|known| known.name == joint.name) {
+            return Err(joint.place.wrong(format!("joint `{}` is there twice", joint.name)));
+        }
+        self.joints.push(joint);
+        Ok(())
+    }
+
+    fn one_joint(&self, joint: &Element, base: Joint) -> Result<Joint, RobotFault> {
+        let freedom = match joint.get("type").unwrap_or("hinge") {
+            "hinge" => Freedom::Turns,
+            "slide" => Freedom::Slides,
+            "ball" => Freedom::Rolls,
+            "free" => Freedom::Floats,
+            other => return Err(joint.wrong_at("type", format!("a joint of type `{other}` is not known"))),
+        };
+        let axis = joint.triple("axis", [0.0, 0.0, 1.0])?;
+        if axis.iter().all(|part| *part == 0.0) {
+            return Err(joint.wrong_at("axis", "an axis of no length"));
+        }
+        let limited = joint.get("limited").is_none_or(|limited| limited != "false");
+        let turns = freedom == Freedom::Turns && self.compiler.degrees;
+        let range = joint.numbers::<2>("range")?.filter(|[lower, upper]| limited && lower < upper);
+        let limits = range.map(|range| if turns { range.map(f64::to_radians) } else { range });
+        let limits = limits.filter(|_| matches!(freedom, Freedom::Turns | Freedom::Slides));
+        let name = joint.get("name").map_or(base.name, str::to_owned);
+        let (anchor_m, place) = (joint.triple("pos", [0.0; 3])?, joint.place.clone());
+        Ok(Joint { name, freedom, anchor_m, axis, limits, place, ..base })
+    }
+
+    /// A shape; none for what is only shown, and for planes, of which a robot has none.
+    fn geom(&mut self, geom: &Element) -> Result<Option<Collision>, RobotFault> {
+        let collides = geom.get("contype") != Some("0") || geom.get("conaffinity") != Some("0");
+        let mut place = self.pose(geom)?;
+        let sizes: Vec<f64> = geom
+            .get("size")
+            .map_or_else(Vec::new, |text| text.split_whitespace().filter_map(|word| word.parse().ok()).collect());
+        let ends = geom.numbers::<6>("fromto")?;
+        let half = ends.map(|[x, y, z, u, v, w]| {
+            let (from, to) = (DVec3::new(x, y, z), DVec3::new(u, v, w));
+            place = Pose::from_parts((from + to) * 0.5, along(to - from));
+            0.5 * (to - from).length()
+        });
+        let kind = geom.get("type").unwrap_or(if geom.attribute("mesh").is_some() { "mesh" } else { "sphere" });
+        // of what is round, half the length stands behind the radius, unless its ends are given
+        let half = half.or_else(|| sizes.get(1).copied());
+        let geometry = match (kind, &sizes[..], half) {
+            ("sphere", [radius, ..], _) => Geometry::Sphere(*radius),
+            ("box", [x, y, z, ..], _) => Geometry::Box([2.0 * x, 2.0 * y, 2.0 * z]),
+            ("cylinder", [radius, ..], Some(half)) => Geometry::Cylinder(*radius, 2.0 * half),
+            ("capsule", [radius, ..], Some(half)) => Geometry::Capsule(*radius, 2.0 * half),
+            ("mesh", ..) => {
+                let wanted = geom.text("mesh")?;
+                let asset = self.meshes.iter().find(|asset| asset.name == wanted);
+                let asset = asset.ok_or_else(|| geom.wrong_at("mesh", format!("there is no mesh `{wanted}`")))?;
+                Geometry::Mesh(asset.file.clone(), asset.scale)
+            }
+            ("plane" | "hfield", ..) => {
+                self.remarks.push(format!("a geom of type `{kind}` is not taken over"));
+                return Ok(None);
+            }
+            ("sphere" | "box" | "cylinder" | "capsule", ..) => {
+                return Err(geom.wrong(format!("a {kind} lacks numbers in its `size`")));
+            }
+            _ => return Err(geom.wrong_at("type", format!("a geom of type `{kind}` is not known"))),
+        };
+        let weight = match (geom.attribute("mass"), geom.attribute("density")) {
+            (Some(_), _) => Weight::Mass(geom.number("mass")?),
+            (None, Some(_)) => Weight::Density(geom.number("density")?),
+            (None, None) => Weight::Density(DENSITY_KG_M3),
+        };
+        let place_in_file = geom.place.clone();
+        Ok(Some(Collision { origin: origin(&place), geometry, collides, weight: Some(weight), place: place_in_file }))
+    }
+
+    /// The joints of `<equality>` that follow others in a straight line.
+    fn follow(&mut self, root: &Element) {
+        let mut others = 0;
+        for element in root.all("equality").flat_map(|equality| &equality.children) {
+            let Some((follower, leader)) = element.get("joint1").zip(element.get("joint2")) else {
+                others += 1;
+                continue;
+            };
+            let read = |key: &str| element.get(key).unwrap_or("0 1 0 0 0");
+            let numbers: Vec<f64> = read("polycoef").split_whitespace().filter_map(|word| word.parse().ok()).collect();
+            let [offset, factor, curved @ ..] = &numbers[..] else {
+                self.faults.push(element.wrong_at("polycoef", "`polycoef` must be numbers"));
+                continue;
+            };
+            let mimic = Mimic { joint: leader.to_owned(), factor: *factor, offset: *offset };
+            if curved.iter().any(|coefficient| *coefficient != 0.0) {
+                self.faults.push(element.wrong_at("polycoef", "a joint that follows another otherwise than straight"));
+            } else if let Some(joint) = self.joints.iter_mut().find(|joint| joint.name == follower) {
+                joint.mimic = Some(mimic);
+            } else {
+                self.faults.push(element.wrong_at("joint1", format!("there is no joint `{follower}`")));
+            }
+            if !self.joints.iter().any(|joint| joint.name == leader) {
+                self.faults.push(element.wrong_at("joint2", format!("there is no joint `{leader}`")));
+            }
+        }
+        if others > 0 {
+            self.remarks.push(format!("{others} equalities of the model are not taken over"));
+        }
+    }
+
+    /// `pos`, and one of `quat`, `axisangle`, `xyaxes`, `zaxis`, `euler`.
+    fn pose(&self, element: &Element) -> Result<Pose, RobotFault> {
+        let angle = |angle: f64| if self.compiler.degrees { angle.to_radians() } else { angle };
+        let position = DVec3::from_array(element.triple("pos", [0.0; 3])?);
+        let rotation = if let Some([w, x, y, z]) = element.numbers::<4>("quat")? {
+            let length = (w * w + x * x + y * y + z * z).sqrt();
+            if length == 0.0 {
+                return Err(element.wrong_at("quat", "a quaternion of no length"));
+            }
+            DQuat::from_xyzw(x / length, y / length, z / length, w / length)
+        } else if let Some([x, y, z, turned]) = element.numbers::<4>("axisangle")? {
+            about(DVec3::new(x, y, z), angle(turned))
+        } else if let Some([a, b, c, d, e, f]) = element.numbers::<6>("xyaxes")? {
+            let x = unit(DVec3::new(a, b, c));
+            let y = DVec3::new(d, e, f);
+            let y = unit(y - x * y.dot(x));
+            DQuat::from_mat3(&DMat3::from_cols(x, y, x.cross(y)))
+        } else if let Some(z) = element.numbers::<3>("zaxis")? {
+            along(DVec3::from_array(z))
+        } else if let Some(angles) = element.numbers::<3>("euler")? {
+            let mut turned = DQuat::IDENTITY;
+            for (axis, turn) in self.compiler.euler.chars().zip(angles) {
+                let vector = match axis.to_ascii_lowercase() {
+                    'x' => DVec3::X,
+                    'y' => DVec3::Y,
+                    _ => DVec3::Z,
+                };
+                let step = about(vector, angle(turn));
+                // small letters turn with the frame, capitals about fixed axes
+                turned = if axis.is_ascii_lowercase() { turned * step } else { step * turned };
+            }
+            turned
+        } else {
+            DQuat::IDENTITY
+        };
+        Ok(Pose::from_parts(position, rotation))
+    }
+}
+
+fn unit(vector: DVec3) -> DVec3 {
+    let length = vector.length();
+    if length > 0.0 { vector / length } else { DVec3::X }
+}
+
+fn about(axis: DVec3, angle_rad: f64) -> DQuat {
+    let (sin, cos) = libm::sincos(0.5 * angle_rad);
+    let axis = unit(axis) * sin;
+    DQuat::from_xyzw(axis.x, axis.y, axis.z, cos)
+}
+
+/// The least rotation that takes z to a direction.
+fn along(direction: DVec3) -> DQuat {
+    let to = unit(direction);
+    let across = DVec3::Z.cross(to);
+    if across.length() < 1e-12 {
+        return if to.z > 0.0 { DQuat::IDENTITY } else { DQuat::from_xyzw(1.0, 0.0, 0.0, 0.0) };
+    }
+    about(across, libm::atan2(across.length(), to.z))
+}
+
+fn origin(pose: &Pose) -> Origin {
+    Origin { xyz_m: pose.translation.to_array(), rpy_rad: to_rpy_deg(pose.rotation).map(f64::to_radians) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::robot::{Packages, Reading};
+    use std::path::Path;
+
+    const ARM: &str = r#"<mujoco model="arm">
+  <compiler angle="degree" meshdir="assets"/>
+  <default>
+    <geom type="capsule"/>
+    <default class="visual"><geom contype="0" conaffinity="0"/></default>
+    <default class="hinge"><joint axis="0 1 0" range="-90 90"/></default>
+  </default>
+  <asset><mesh file="tip.stl" scale="0.001 0.001 0.001"/></asset>
+  <worldbody>
+    <geom type="plane" size="1 1 1"/>
+    <body name="upper" pos="0 0 1" quat="0 1 0 0">
+      <joint name="shoulder" class="hinge" pos="0 0 0.1"/>
+      <geom fromto="0 0 0 0 0 0.5" size="0.05"/>
+      <geom class="visual" type="mesh" mesh="tip"/>
+      <body name="lower" pos="0 0 0.5" euler="0 90 0">
+        <joint name="elbow" type="slide" range="0 0.2"/>
+        <inertial pos="0 0 0.1" mass="2" diaginertia="0.1 0.1 0.01"/>
+        <geom type="box" size="0.1 0.2 0.3" mass="3"/>
+      </body>
+    </body>
+  </worldbody>
+  <actuator><motor joint="shoulder"/></actuator>
+</mujoco>"#;
+
+    fn read(text: &str) -> Result<Robot, Vec<RobotFault>> {
+        let packages = Packages::default();
+        let reading = Reading { file: "arm.xml", packages: &packages, arguments: &[] };
+        Robot::read(Path::new("arm.xml"), text.to_owned(), &reading)
+    }
+
+    #[test]
+    fn a_model_is_a_tree_of_links() {
+        let robot = read(ARM).unwrap();
+        let names: Vec<_> = robot.links.iter().map(|link| link.name.as_str()).collect();
+        assert_eq!(names, ["world", "upper", "lower"]);
+        let [shoulder, elbow] = &robot.joints[..] else { panic!("two joints") };
+        assert_eq!(
+            (shoulder.freedom, shoulder.axis, shoulder.anchor_m),
+            (Freedom::Turns, [0.0, 1.0, 0.0], [0.0, 0.0, 0.1])
+        );
+        assert_eq!(shoulder.limits, Some([-std::f64::consts::FRAC_PI_2, std::f64::consts::FRAC_PI_2]));
+        assert_eq!((elbow.freedom, elbow.limits), (Freedom::Slides, Some([0.0, 0.2])));
+        assert!((elbow.origin.rpy_rad[1] - std::f64::consts::FRAC_PI_2).abs() < 1e-7, "{:?}", elbow.origin);
+        assert!((shoulder.origin.rpy_rad[0].abs() - std::f64::consts::PI).abs() < 1e-12, "{:?}", shoulder.origin);
+        let [capsule, mesh] = &robot.links[1].collisions[..] else { panic!("two shapes") };
+        assert_eq!((&capsule.geometry, capsule.weight), (&Geometry::Capsule(0.05, 0.5), Some(Weight::Density(1000.0))));
+        assert_eq!(capsule.origin.xyz_m, [0.0, 0.0, 0.25]);
+        assert_eq!((&mesh.geometry, mesh.collides), (&Geometry::Mesh("assets/tip.stl".to_owned(), [0.001; 3]), false));
+        let lower = &robot.links[2];
+        assert_eq!(lower.collisions[0].geometry, Geometry::Box([0.2, 0.4, 0.6]));
+        assert_eq!(lower.inertial.unwrap().mass_kg, 2.0);
+        assert_eq!(
+            robot.remarks,
+            ["a geom of type `plane` is not taken over", "1 actuators of the model are not taken over"]
+        );
+    }
+
+    #[test]
+    fn a_joint_may_follow_another() {
+        let equality = "<equality><joint joint1=\"elbow\" joint2=\"shoulder\" polycoef=\"0.1 -0.5 0 0 0\"/></equality>";
+        let robot = read(&ARM.replace("<actuator>", &format!("{equality}<actuator>"))).unwrap();
+        assert_eq!(robot.joints[1].mimic, Some(Mimic { joint: "shoulder".to_owned(), factor: -0.5, offset: 0.1 }));
+    }
+
+    #[test]
+    fn all_faults_are_told_with_their_lines() {
+        let wrong = ARM
+            .replace("mesh=\"tip\"", "mesh=\"tap\"")
+            .replace("type=\"slide\"", "type=\"slyde\"")
+            .replace("size=\"0.1 0.2 0.3\"", "size=\"0.1\"");
+        let told: Vec<_> = read(&wrong).unwrap_err().iter().map(ToString::to_string).collect();
+        assert_eq!(
+            told,
+            [
+                "line 14: there is no mesh `tap`",
+                "line 16: a joint of type `slyde` is not known",
+                "line 18: a box lacks numbers in its `size`"
+            ]
+        );
+        let two = ARM.replace("<geom fromto", "<joint name=\"twist\"/><geom fromto");
+        assert_eq!(
+            read(&two).unwrap_err()[0].to_string(),
+            "line 13: body `upper` has 2 joints: give each a body of its own"
+        );
+    }
+}

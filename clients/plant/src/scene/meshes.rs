@@ -1,0 +1,84 @@
+//! Shapes from mesh files: read, brought to metres, checked to be bodies.
+
+use std::ops::Range;
+
+use super::placed::Placed;
+use rapier3d::math::Vector;
+use rapier3d::prelude::SharedShape;
+
+use super::error::SceneFaultKind;
+use super::faults::Faults;
+use super::model::Shape;
+use super::number::{Allowed, Entry};
+use super::shapes::Measures;
+use crate::mesh::Mesh;
+
+/// What a file's unit may be: from micrometres to kilometres.
+const UNIT_M: Allowed = Allowed::Within(1e-6, 1e3);
+/// How far from its body's origin a corner may be.
+const CORNER_M: f64 = 1e4;
+
+/// Part of the volume around it below which a hull is flat.
+const FLAT: f64 = 1e-9;
+
+/// The keys of a shape that is a mesh.
+#[derive(Clone, Copy)]
+pub(super) struct MeshKeys<'f> {
+    pub(super) mesh: Option<&'f Placed<String>>,
+    pub(super) unit_m: Option<&'f Placed<f64>>,
+    pub(super) hull: Option<&'f Placed<bool>>,
+    /// What 1 means along each axis, of a robot's mesh.
+    pub(super) stretch: Option<[f64; 3]>,
+}
+
+impl MeshKeys<'_> {
+    /// The places of these keys, where they are written.
+    pub(super) fn written(&self) -> [(Option<Range<usize>>, &'static str); 3] {
+        [
+            (self.mesh.map(Placed::span), "mesh"),
+            (self.unit_m.map(Placed::span), "unit_m"),
+            (self.hull.map(Placed::span), "hull"),
+        ]
+    }
+
+    /// The shape that the file has, unless something is wrong with it.
+    pub(super) fn shape(&self, of: &Measures<'_>, faults: &mut Faults<'_>) -> Option<Shape> {
+        let Some(name) = self.mesh else {
+            of.missing("mesh", faults);
+            return None;
+        };
+        let unit_m = faults.number(Entry::new("unit_m", self.unit_m), UNIT_M).unwrap_or(1.0);
+        let hull = self.hull.is_none_or(|hull| *hull.get_ref());
+        if let (true, false, Some(written)) = (of.dynamic, hull, self.hull) {
+            faults.add(written.span(), SceneFaultKind::OpenSurface(of.whose()));
+        }
+        let file = name.get_ref().clone();
+        let mesh = match Mesh::read_within(&faults.beside(&file), faults.within()) {
+            Ok(mesh) => mesh,
+            Err(cause) => {
+                faults.add(name.span(), SceneFaultKind::Mesh { file, cause: cause.to_string() });
+                return None;
+            }
+        };
+        let stretch = self.stretch.unwrap_or([unit_m; 3]);
+        let corners_m: Vec<_> =
+            mesh.corners.iter().map(|corner| [0, 1, 2].map(|axis| corner[axis] * stretch[axis])).collect();
+        if let Some(cause) = flaw(&corners_m) {
+            faults.add(name.span(), SceneFaultKind::Mesh { file, cause });
+            return None;
+        }
+        let triangles = mesh.triangles;
+        Some(if hull { Shape::Hull { file, corners_m } } else { Shape::Surface { file, corners_m, triangles } })
+    }
+}
+
+/// What keeps corners from being those of a body.
+fn flaw(corners_m: &[[f64; 3]]) -> Option<String> {
+    if corners_m.iter().flatten().any(|number| number.abs() > CORNER_M) {
+        return Some(format!("has a corner more than {CORNER_M} m away: `unit_m` is the file's unit, 0.001 for mm"));
+    }
+    let points: Vec<_> = corners_m.iter().map(|corner| Vector::from_array(*corner)).collect();
+    let extent_m = corners_m.iter().flatten().fold(0.0_f64, |most, number| most.max(number.abs()));
+    let volume_m3 = SharedShape::convex_hull(&points).map_or(0.0, |hull| hull.mass_properties(1.0).mass());
+    (volume_m3 <= FLAT * extent_m.powi(3)).then(|| "is flat, and no body".to_owned())
+}

@@ -1,0 +1,133 @@
+//! Files to trees and the checked program, with all that is wrong with them.
+//!
+//! | module | subject |
+//! |---|---|
+//! | `constant` | constants set from outside, as initial values |
+//! | `library` | the standard's and vendors' blocks that a program needs |
+//! | `twincat_motion` | TwinCAT's names for motion blocks |
+//! | `vendor_library` | libraries of vendors, by their names |
+//! | `room` | the stack that deep trees need |
+
+mod constant;
+pub mod library;
+mod room;
+mod twincat_motion;
+mod vendor_library;
+
+use std::collections::BTreeSet;
+
+use crate::check::{Checked, check};
+use crate::diagnostic::{Diagnostic, Severity};
+use crate::input::Input;
+use crate::ir::MemoryLimit;
+use crate::syntax::ast::{CompilationUnit, Configuration, Declaration};
+use crate::syntax::{FileId, SourceMap, parse_source};
+
+pub use constant::{ConstantError, Constants, Setting};
+use constant::is_declared;
+pub use room::with_room;
+
+/// What is known of files once they have been checked.
+pub struct Front {
+    pub sources: SourceMap,
+    /// The trees of the user's files and of the standard function blocks.
+    pub units: Vec<(FileId, CompilationUnit)>,
+    /// The files of the standard function blocks.
+    pub library: BTreeSet<FileId>,
+    pub checked: Checked,
+    pub findings: Vec<Diagnostic>,
+}
+
+impl Front {
+    pub fn new(inputs: impl IntoIterator<Item = Input>) -> Self {
+        Self::within(MemoryLimit::default(), inputs)
+    }
+
+    /// The same, with so much memory for variables.
+    pub fn within(limit: MemoryLimit, inputs: impl IntoIterator<Item = Input>) -> Self {
+        Parsed::new(inputs).checked(&Constants::default(), limit)
+    }
+
+    /// Beside it the constants, which have other initial values: path and literal each.
+    pub fn with_constants(
+        limit: MemoryLimit,
+        inputs: impl IntoIterator<Item = Input>,
+        constants: &[(String, String)],
+    ) -> Result<(Self, Constants), ConstantError> {
+        let mut parsed = Parsed::new(inputs);
+        let constants = Constants::new(constants, &parsed.units, &mut parsed.sources)?;
+        Ok((parsed.checked(&constants, limit), constants))
+    }
+
+    /// True if a path is that of a constant, whether or not the files are right.
+    pub fn has_constant(inputs: impl IntoIterator<Item = Input>, path: &str) -> bool {
+        is_declared(&Parsed::new(inputs).units, path)
+    }
+
+    pub fn has_errors(&self) -> bool {
+        self.findings.iter().any(|found| found.severity == Severity::Error)
+    }
+}
+
+/// Files as trees, with what is wrong with their text.
+pub struct Parsed {
+    pub sources: SourceMap,
+    pub units: Vec<(FileId, CompilationUnit)>,
+    pub library: BTreeSet<FileId>,
+    findings: Vec<Diagnostic>,
+}
+
+impl Parsed {
+    pub fn new(inputs: impl IntoIterator<Item = Input>) -> Self {
+        let mut sources = SourceMap::default();
+        let mut findings = Vec::new();
+        let mut library = BTreeSet::new();
+        for input in inputs {
+            findings.extend(input.add_to(&mut sources));
+        }
+        let needed = library::for_program(sources.iter().map(|(_, file)| file));
+        for file in needed {
+            library.insert(sources.add(file));
+        }
+        let mut units = Vec::new();
+        for (id, file) in sources.iter() {
+            let parsed = parse_source(id, file);
+            findings.extend(parsed.diagnostics);
+            units.push((id, parsed.unit));
+        }
+        join_configurations(&mut units);
+        Self { sources, units, library, findings }
+    }
+
+    fn checked(self, constants: &Constants, limit: MemoryLimit) -> Front {
+        let Self { sources, units, library, mut findings } = self;
+        let trees: Vec<_> = units.iter().chain(&constants.units).map(|(id, unit)| (*id, unit)).collect();
+        let (checked, found) = check(&trees, &library, &constants.overrides, limit);
+        findings.extend(constants.findings.iter().cloned().chain(found));
+        Front { sources, units, library, checked, findings }
+    }
+}
+
+/// Makes one of the parts of a configuration that stand in several files: TwinCAT has a file a task.
+fn join_configurations(units: &mut [(FileId, CompilationUnit)]) {
+    let mut parts: Vec<Configuration> = Vec::new();
+    for (file, unit) in &mut *units {
+        let first = parts.first().map(|first| (first.name.key(), first.name.span.file));
+        let is_part = |declared: &Configuration| match &first {
+            Some((name, home)) => declared.name.key() == *name && *home != *file,
+            None => true,
+        };
+        let at =
+            unit.declarations.iter().position(|each| matches!(each, Declaration::Configuration(it) if is_part(it)));
+        if let Some(Declaration::Configuration(part)) = at.map(|at| unit.declarations.remove(at)) {
+            parts.push(part);
+        }
+    }
+    let mut parts = parts.into_iter();
+    let Some(mut whole) = parts.next() else { return };
+    parts.for_each(|part| whole.absorb(part));
+    let home = units.iter_mut().find(|(file, _)| *file == whole.name.span.file);
+    if let Some((_, unit)) = home {
+        unit.declarations.insert(0, Declaration::Configuration(whole));
+    }
+}

@@ -1,0 +1,261 @@
+//! Files as they are found in the field, to program text.
+//!
+//! | module | in | out |
+//! |---|---|---|
+//! | [`encoding`] | bytes | text, and the way back |
+//! | [`kind`] | a file's name | what kind of file it is |
+//! | `foreign` | text | what it is, if it is no program |
+//! | `xml` | text | a tree whose nodes know their place |
+//! | `twincat`, `twincat_task` | TwinCAT's objects | program text |
+//! | `plcopen`, `plcopen_instances`, `plcopen_object` | PLCopen XML, and what CODESYS adds to it | program text |
+//! | `plcopen_chart`, `plcopen_chart_graph`, `plcopen_condition` | its Sequential Function Charts | program text |
+//! | `plcopen_network` | its networks in LD and FBD | statements |
+//! | [`layout`] | PLCopen XML | its drawings as they are laid out, for those who look at them |
+//! | `drawing` | bodies that TwinCAT keeps as archives of objects: CFC, LD, FBD and SFC | statements |
+//! | `statement` | statements while they are made | program text |
+//! | [`project`] | a TwinCAT project | the names of its files |
+//!
+//! Invariants: no file can make it fail, what is wrong with one is a diagnostic; what is not read is
+//! told; every place in program text leads back into the file that it was taken out of.
+
+mod drawing;
+pub mod encoding;
+mod foreign;
+pub mod kind;
+pub mod layout;
+mod needed;
+mod plcopen;
+pub mod plcopen_chart;
+pub mod plcopen_chart_graph;
+pub mod plcopen_condition;
+pub mod plcopen_instances;
+mod plcopen_network;
+pub mod plcopen_object;
+pub mod project;
+mod statement;
+mod twincat;
+mod twincat_task;
+pub mod xml;
+
+use std::sync::Arc;
+
+use self::encoding::{Encoding, decode};
+use self::foreign::Foreign;
+use self::kind::SourceKind;
+pub use self::needed::needed;
+use self::project::{Listed, Listing};
+use self::xml::XmlError;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::dialect::{Chosen, Dialect};
+use crate::source::LineColumn;
+use crate::source::origin::Extract;
+use crate::syntax::{FileId, SourceFile, SourceMap, Span};
+
+/// Greatest size of a file in bytes.
+const MAX_SIZE: usize = 256 << 20;
+
+/// A file's program text.
+#[derive(Debug, Clone)]
+pub struct Input {
+    file: SourceFile,
+    encoding: Option<Encoding>,
+    diagnostics: Vec<Diagnostic>,
+    owner: Owner,
+}
+
+/// Whose file it is.
+#[derive(Debug, Clone, PartialEq, Eq)]
+enum Owner {
+    Program,
+    /// A library, whose names are known by this namespace, too, if it has one.
+    Library(Option<String>),
+}
+
+impl Input {
+    /// Reads the bytes of the file `name`.
+    pub fn read(name: &str, kind: SourceKind, bytes: &[u8]) -> Self {
+        Self::read_in(None, name, kind, bytes)
+    }
+
+    /// Reads the bytes of the file `name` of a library. Its names are known with its namespace before them, and
+    /// without. Program text says for itself which namespace it is in.
+    pub fn of_library(namespace: Option<&str>, name: &str, kind: SourceKind, bytes: &[u8]) -> Self {
+        let owner = Owner::Library(namespace.map(str::to_owned));
+        Self { owner, ..Self::read_in(namespace, name, kind, bytes) }
+    }
+
+    fn read_in(namespace: Option<&str>, name: &str, kind: SourceKind, bytes: &[u8]) -> Self {
+        if bytes.len() > MAX_SIZE {
+            return Self::unreadable(name, Code::TooLarge, format!("the file is larger than {MAX_SIZE} bytes"));
+        }
+        match decode(bytes) {
+            Ok((text, encoding)) => {
+                Self { encoding: Some(encoding), ..Self::taken(namespace, name, kind, text.into()) }
+            }
+            Err(error) => Self::unreadable(name, Code::NotText, error.to_string()),
+        }
+    }
+
+    /// Takes the text of the file `name`.
+    pub fn from_text(name: &str, kind: SourceKind, text: impl Into<Arc<str>>) -> Self {
+        Self::taken(None, name, kind, text.into())
+    }
+
+    fn taken(namespace: Option<&str>, name: &str, kind: SourceKind, text: Arc<str>) -> Self {
+        let read = match kind {
+            SourceKind::Text => {
+                if let Some(foreign) = foreign::recognise(&text) {
+                    return Self::holding_no_program(name, &text, foreign);
+                }
+                let (dialect, diagnostics) = dialect_of(name, &text);
+                let file = SourceFile::new(name, text).in_dialect(dialect);
+                return Self { file, encoding: None, diagnostics, owner: Owner::Program };
+            }
+            SourceKind::TwinCat => twincat::extract(&text, namespace),
+            SourceKind::PlcOpen => plcopen::extract(&text),
+        };
+        let taken = read.unwrap_or_else(|error| Taken::malformed(&error));
+        let (extracted, origin) = taken.extract.finish(text);
+        let file = SourceFile::extracted(name, extracted, origin).in_dialect(taken.dialect);
+        Self { file, encoding: None, diagnostics: taken.diagnostics, owner: Owner::Program }
+    }
+
+    fn holding_no_program(name: &str, text: &Arc<str>, foreign: Foreign) -> Self {
+        let mut taken = Taken::default();
+        let start = (text.len() - text.trim_start().len()) as u32;
+        let first = text[start as usize..].chars().next().map_or(0, |first| first.len_utf8() as u32);
+        taken.report(start..start + first, Code::NotProgramText, &format!("this is {}, not a program", foreign.what));
+        for found in &mut taken.diagnostics {
+            found.help = foreign.help.map(str::to_owned);
+        }
+        let (extracted, origin) = taken.extract.finish(text.clone());
+        let file = SourceFile::extracted(name, extracted, origin).in_dialect(Dialect::of_file(name));
+        Self { file, encoding: None, diagnostics: taken.diagnostics, owner: Owner::Program }
+    }
+
+    /// A project that lists files that are not there: each is reported at its place. What is missed of them is an error
+    /// where it is used.
+    pub fn with_missing_files(name: &str, listing: &Listing, missing: &[&Listed]) -> Self {
+        let mut taken = Taken::default();
+        for file in missing {
+            let message = format!("`{}` is not there", file.path);
+            let help = "add the file, or take it out of the project; all others are read";
+            taken.warn(file.place.clone(), Code::MissingFile, &message, Some(help));
+        }
+        let (extracted, origin) = taken.extract.finish(listing.text.clone());
+        Self {
+            file: SourceFile::extracted(name, extracted, origin),
+            encoding: None,
+            diagnostics: taken.diagnostics,
+            owner: Owner::Program,
+        }
+    }
+
+    /// A file of which nothing is read.
+    pub fn unreadable(name: &str, code: Code, message: impl Into<String>) -> Self {
+        let found = Diagnostic::error(code, Span::new(UNNUMBERED, 0, 0), message);
+        Self { file: SourceFile::new(name, ""), encoding: None, diagnostics: vec![found], owner: Owner::Program }
+    }
+
+    /// The same file, read as `dialect` whatever its name says.
+    #[must_use]
+    pub fn in_dialect(self, dialect: Dialect) -> Self {
+        Self { file: self.file.in_dialect(dialect), ..self }
+    }
+
+    /// Its program text.
+    pub fn file(&self) -> &SourceFile {
+        &self.file
+    }
+
+    /// How the file is written; nothing if it was never bytes.
+    pub fn encoding(&self) -> Option<Encoding> {
+        self.encoding
+    }
+
+    /// Bytes of the program text where `was` begins at a place, as its author sees the file; nothing if it does not stand
+    /// there.
+    pub fn range_of(&self, place: LineColumn, was: &str) -> Option<std::ops::Range<u32>> {
+        let starts = self.file().text().match_indices(was).map(|(start, _)| start as u32);
+        let start = starts.into_iter().find(|start| self.file().line_column(*start) == place)?;
+        Some(start..start + was.len() as u32)
+    }
+
+    /// The same file with another text for a part of its program text.
+    pub fn with_replaced(&self, range: std::ops::Range<u32>, text: &str) -> Self {
+        Self { file: self.file.with_replaced(range, text), ..self.clone() }
+    }
+
+    /// Adds the file to `sources`, and gives what is wrong with it.
+    pub fn add_to(self, sources: &mut SourceMap) -> Vec<Diagnostic> {
+        let mut diagnostics = self.diagnostics;
+        let id = sources.add(self.file);
+        for found in &mut diagnostics {
+            found.span.file = id;
+        }
+        diagnostics
+    }
+}
+
+/// Stands in a span until its file has a number.
+const UNNUMBERED: FileId = FileId(0);
+
+/// Program text while it is taken out of a file, and what is wrong with it.
+#[derive(Debug, Default)]
+struct Taken {
+    extract: Extract,
+    dialect: Dialect,
+    diagnostics: Vec<Diagnostic>,
+}
+
+impl Taken {
+    fn malformed(error: &XmlError) -> Self {
+        let mut taken = Self::default();
+        taken.report(error.at..error.at, Code::MalformedXml, &error.message);
+        taken
+    }
+
+    /// Reports what stands at `place` of the file.
+    fn report(&mut self, place: std::ops::Range<u32>, code: Code, message: &str) {
+        // A blank stands in the program text for the place that the finding is about.
+        let start = self.extract.text().len() as u32;
+        self.extract.instead("\n", place);
+        let span = Span::new(UNNUMBERED, start, start + 1);
+        self.diagnostics.push(Diagnostic::error(code, span, message));
+    }
+
+    /// The same of what the program runs without.
+    fn warn(&mut self, place: std::ops::Range<u32>, code: Code, message: &str, help: Option<&str>) {
+        let start = self.extract.text().len() as u32;
+        self.extract.instead("\n", place);
+        let span = Span::new(UNNUMBERED, start, start + 1);
+        self.diagnostics.push(Diagnostic::warning(code, span, message).with_optional_help(help.map(str::to_owned)));
+    }
+
+    fn unsupported(&mut self, place: std::ops::Range<u32>, what: &str) {
+        self.report(place, Code::UnsupportedFeature, &format!("{what} is not supported yet"));
+    }
+
+    /// Appends the text that an element holds.
+    fn text_of(&mut self, file: &str, element: &xml::Element) {
+        for node in &element.children {
+            match node {
+                xml::Node::Verbatim(span) => self.extract.verbatim(file, span.clone()),
+                xml::Node::Reference(character, span) => self.extract.instead(&character.to_string(), span.clone()),
+                xml::Node::Element(_) => {}
+            }
+        }
+    }
+}
+
+/// The dialect that plain text names itself, or else the one of its file's name.
+fn dialect_of(name: &str, text: &str) -> (Dialect, Vec<Diagnostic>) {
+    match Chosen::in_text(text) {
+        Chosen::Dialect(dialect) => (dialect, Vec::new()),
+        Chosen::Nothing => (Dialect::of_file(name), Vec::new()),
+        Chosen::Unknown(error, place) => {
+            let span = Span::new(UNNUMBERED, place.start, place.end);
+            (Dialect::of_file(name), vec![Diagnostic::error(Code::WrongDialect, span, error.to_string())])
+        }
+    }
+}

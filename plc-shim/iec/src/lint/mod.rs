@@ -1,0 +1,71 @@
+//! What is legal and seldom meant: warnings on programs that have no errors.
+//!
+//! | module | subject |
+//! |---|---|
+//! | [`inspect`] | errors and warnings of files |
+//! | [`index`] | what the files declare, by name |
+//! | [`usage`] | what a unit does with each name |
+//! | [`types`] | the type of an expression, as far as a warning needs it |
+//! | [`outputs`] | W0701 |
+//! | [`instances`] | W0702, W0704 |
+//! | [`equality`] | W0703 |
+//! | [`reachability`] | W0705 |
+//! | [`unused`] | W0706 |
+//! | [`tasks`] | W0707 |
+//! | [`endless`] | W0709 |
+//!
+//! A warning that is wrong costs more trust than one that is missing: where names alone do not
+//! decide, nothing is said.
+
+mod endless;
+mod equality;
+mod index;
+mod inspect;
+mod instances;
+mod outputs;
+mod reachability;
+mod tasks;
+mod types;
+mod unused;
+mod usage;
+
+use self::index::Index;
+use self::usage::Usage;
+use crate::front::Front;
+use crate::diagnostic::Diagnostic;
+use crate::task_plan::TaskPlan;
+
+pub use inspect::{inspect, inspect_within};
+
+/// All warnings; `plan` tells which programs run in one task.
+fn lint(front: &Front, plan: Option<&TaskPlan>) -> Vec<Diagnostic> {
+    let index = Index::new(front);
+    let units: Vec<Unit<'_>> = index.own().map(|pou| Unit { usage: Usage::of(pou, &index), pou }).collect();
+    let mut findings = Vec::new();
+    for unit in &units {
+        outputs::lint(unit, &units, &mut findings);
+        instances::lint(unit, &index, &mut findings);
+        equality::lint(unit, &index, &mut findings);
+        reachability::lint(unit, &mut findings);
+        endless::lint(unit, &mut findings);
+        unused::lint(unit, &index, &mut findings);
+    }
+    for pou in index.own_members() {
+        let unit = Unit { usage: Usage::of(pou, &index), pou };
+        outputs::lint(&unit, &units, &mut findings);
+        equality::lint(&unit, &index, &mut findings);
+        reachability::lint(&unit, &mut findings);
+        endless::lint(&unit, &mut findings);
+        unused::lint(&unit, &index, &mut findings);
+    }
+    outputs::lint_globals(&units, &index, &mut findings);
+    unused::lint_globals(&units, &index, &mut findings);
+    tasks::lint(&units, &index, plan, &mut findings);
+    findings
+}
+
+/// A unit of the user's and what it does with names.
+struct Unit<'a> {
+    pou: &'a crate::syntax::ast::Pou,
+    usage: Usage,
+}
