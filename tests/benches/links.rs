@@ -34,7 +34,7 @@ struct Station {
     settings: Settings,
     request: JoinRequest,
     urls: BTreeMap<&'static str, String>,
-    _opcua: onescan_links::opcua::Running,
+    _opcua: Box<dyn onescan_links::station::opcua::ServedPlc>,
     _clockwork: Clockwork,
 }
 
@@ -113,6 +113,7 @@ fn lockstep(station: &Station, name: &str) -> Duration {
 }
 
 fn main() {
+    onescan_opc_ua::install();
     let station = station();
     let ledger = Ledger::default();
     let pairs = [

@@ -52,7 +52,7 @@ use onescan_iec::syntax::{FileId, parse};
 
 /// The files in `cases/`, by name.
 fn files() -> Vec<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/conformance/cases");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("conformance/cases");
     let entries = std::fs::read_dir(folder).expect("the folder exists");
     let mut files: Vec<_> = entries.map(|entry| entry.expect("an entry").path()).collect();
     files.sort();

@@ -43,7 +43,7 @@ fn tests() -> BTreeSet<String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut sources = Vec::new();
     // The text of durations is the ground floor's.
-    for folder in ["src", "tests", "../base/src"] {
+    for folder in ["../iec/src", "../iec-run/src", "../iec-project/src", ".", "../../base/src"] {
         source_files(&root.join(folder), &mut sources);
     }
     let mut names: BTreeSet<String> = files().iter().map(|path| stem(path)).collect();
@@ -62,7 +62,7 @@ fn tests() -> BTreeSet<String> {
 }
 
 fn conformance() -> String {
-    std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("CONFORMANCE.md")).expect("CONFORMANCE.md")
+    std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../CONFORMANCE.md")).expect("CONFORMANCE.md")
 }
 
 #[test]

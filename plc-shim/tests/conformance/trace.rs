@@ -1,7 +1,7 @@
 //! A case run from its text to its last scan.
 
 use onescan_iec::input::kind::SourceKind;
-use onescan_iec::{Input, TaskPlan, TimeSpan, VirtualTime};
+use onescan_iec::{Input, TimeSpan, VirtualTime};
 use onescan_iec_run::{Application, PlcFault, SoftPlc, Variable};
 
 use super::case::{Case, Row};

@@ -2,7 +2,6 @@
 
 use onescan_iec::explain::{page, pages};
 use onescan_iec::{Code, Input};
-use onescan_iec::input::Input;
 use onescan_iec::input::kind::SourceKind;
 
 /// The block marked `mark`: its language and its text.

@@ -1,6 +1,6 @@
 //! Two axes and every motion block, with variables by name.
 
-use onescan_iec::{ElementaryType, TaskPlan, TimeSpan, VirtualTime};
+use onescan_iec::{ElementaryType, TimeSpan, VirtualTime};
 use onescan_iec_run::{Application, SoftPlc};
 
 const MS: u64 = 1_000_000;

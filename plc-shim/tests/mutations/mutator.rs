@@ -23,9 +23,9 @@ pub(crate) struct Corpus {
 
 /// Where they are.
 const FOLDERS: [&str; 11] = [
-    "iec",
-    "iec/motion",
-    "iec/shim",
+    "iec/library",
+    "iec/library/motion",
+    "iec-project/shim",
     "docs/codes",
     "tests/inputs",
     "tests/conformance/cases",
@@ -38,7 +38,7 @@ const FOLDERS: [&str; 11] = [
 
 impl Corpus {
     pub(crate) fn read() -> Self {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the tests stand beside the crates");
         let files = FOLDERS.iter().flat_map(|folder| sorted(&root.join(folder)));
         let all = files.flat_map(|path| sources(&path));
         let (texts, documents): (Vec<_>, Vec<_>) = all.partition(|source| source.kind == SourceKind::Text);

@@ -1,7 +1,7 @@
 //! What CODESYS adds to PLCopen XML in `addData`: lists with constants and variables, interfaces with a base.
 
 use onescan_iec::input::kind::SourceKind;
-use onescan_iec::{Input, TaskPlan, TimeSpan};
+use onescan_iec::{Input, TimeSpan};
 use onescan_iec_run::Application;
 
 use crate::plcopen::program;

@@ -1,7 +1,7 @@
 //! Constants set from outside, in every form of source.
 
 use onescan_iec::input::kind::SourceKind;
-use onescan_iec::{Input, TaskPlan, TimeSpan, VirtualTime};
+use onescan_iec::{Input, TimeSpan, VirtualTime};
 use onescan_iec_run::{Application, BuildError, Builder, SoftPlc};
 
 const TEXT: &str = "

@@ -1,7 +1,7 @@
 //! Statement and branch coverage.
 
 use onescan_iec::input::kind::SourceKind;
-use onescan_iec::{Input, TaskPlan, TimeSpan, VirtualTime};
+use onescan_iec::{Input, TimeSpan, VirtualTime};
 use onescan_iec_run::{Application, Coverage, SoftPlc};
 
 const PROGRAM: &str = "FUNCTION_BLOCK Unused

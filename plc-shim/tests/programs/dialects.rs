@@ -424,7 +424,7 @@ fn direct_addresses_count_what_the_dialect_counts() {
 #[test]
 fn a_library_keeps_its_dialect_in_a_program_of_another() {
     use onescan_iec::input::kind::SourceKind;
-    use onescan_iec::{Input, TaskPlan, TimeSpan};
+    use onescan_iec::{Input, TimeSpan};
     use onescan_iec_run::Application;
     let library = "FUNCTION half : DINT VAR_INPUT x : REAL; END_VAR half := REAL_TO_DINT(x); END_FUNCTION";
     let program = "PROGRAM P VAR a, b : DINT; x : REAL := 2.5; END_VAR a := half(x); b := REAL_TO_DINT(x); END_PROGRAM";

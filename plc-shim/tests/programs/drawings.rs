@@ -1,7 +1,7 @@
 //! Bodies that are drawn in TwinCAT: what they do, scan by scan.
 
 use onescan_iec::input::kind::SourceKind;
-use onescan_iec::{Dialect, Input, TaskPlan, TimeSpan, inspect};
+use onescan_iec::{Dialect, Input, TimeSpan, inspect};
 use onescan_iec_run::Application;
 
 use crate::rig::Rig;

@@ -78,7 +78,7 @@ CONFIGURATION c
 END_CONFIGURATION";
     let of = |number: &str| {
         let application = crate::rig::application(&text.replace("NUMBER", number));
-        let plan = onescan_iec_run::application.configured_tasks().expect("a configuration");
+        let plan = application.configured_tasks().expect("a configuration");
         let fault = Rig::with_plan(&application, &plan).scan().expect_err("a division by zero");
         fault.to_string()
     };
@@ -96,7 +96,7 @@ CONFIGURATION c TASK t (INTERVAL := T#10ms);
   PROGRAM P1 WITH t : Prg (n := x);
 END_CONFIGURATION",
     );
-    let plan = onescan_iec_run::application.configured_tasks().expect("a configuration");
+    let plan = application.configured_tasks().expect("a configuration");
     let fault = Rig::with_plan(&application, &plan).scan().expect_err("out of the subrange");
     insta::assert_snapshot!(fault.to_string(), @"value out of subrange at test.st:4:33 in P1, t_v = 0.010 s");
 }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use onescan_iec::{TaskPlan, VirtualTime};
+use onescan_iec::VirtualTime;
 use onescan_iec_run::{Application, SoftPlc};
 
 use crate::rig::{MS, Rig, application};

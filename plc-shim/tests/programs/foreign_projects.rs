@@ -2,7 +2,7 @@
 
 use onescan_iec::Dialect::{self, Codesys, Iec3, Matiec, TwinCat};
 use onescan_iec::input::kind::SourceKind;
-use onescan_iec::{Input, Severity, TaskPlan, TimeSpan};
+use onescan_iec::{Input, Severity, TimeSpan};
 use onescan_iec_run::Application;
 
 use crate::rig::{Rig, findings_in};

@@ -1,7 +1,7 @@
 //! The journal of a scan: what statements read, write and decide, in their order.
 
 use onescan_iec::input::kind::SourceKind;
-use onescan_iec::{Input, TaskPlan, TimeSpan, VirtualTime};
+use onescan_iec::{Input, TimeSpan, VirtualTime};
 use onescan_iec_run::{Act, Application, SoftPlc};
 
 const TEXT: &str = "

@@ -2,7 +2,7 @@
 
 use onescan_iec::Dialect::{Iec3, Matiec};
 use onescan_iec::input::kind::SourceKind;
-use onescan_iec::{Code, Dialect, Input, Severity, TaskPlan, TimeSpan, inspect};
+use onescan_iec::{Code, Dialect, Input, Severity, TimeSpan, inspect};
 use onescan_iec_run::Application;
 
 use crate::plcopen::{pou, program, project};

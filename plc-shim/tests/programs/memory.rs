@@ -1,7 +1,7 @@
 //! How much memory the variables of a PLC may take.
 
 use onescan_iec::input::kind::SourceKind;
-use onescan_iec::{Input, MemoryLimit, TaskPlan, TimeSpan, inspect, inspect_within};
+use onescan_iec::{Input, MemoryLimit, TimeSpan, inspect, inspect_within};
 use onescan_iec_run::Application;
 
 use crate::rig::Rig;

@@ -1,7 +1,7 @@
 //! Namespaces (3rd ed. 6.9), the names of vendors' libraries and lists of global variables.
 
 use onescan_iec::input::kind::SourceKind;
-use onescan_iec::{Dialect, Input, TaskPlan, TimeSpan};
+use onescan_iec::{Dialect, Input, TimeSpan};
 use onescan_iec_run::Application;
 
 use crate::rig::{Rig, findings};

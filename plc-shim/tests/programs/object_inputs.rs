@@ -1,7 +1,7 @@
 //! Methods, properties, actions and interfaces in the files of vendors.
 
 use onescan_iec::input::kind::SourceKind;
-use onescan_iec::{Input, TaskPlan, TimeSpan, inspect};
+use onescan_iec::{Input, TimeSpan, inspect};
 use onescan_iec_run::Application;
 
 use crate::rig::Rig;

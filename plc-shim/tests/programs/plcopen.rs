@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use onescan_iec::input::kind::SourceKind;
-use onescan_iec::{Input, TaskPlan, TimeSpan, inspect};
+use onescan_iec::{Input, TimeSpan, inspect};
 use onescan_iec_run::Application;
 
 use crate::rig::Rig;

@@ -1,7 +1,7 @@
 //! Programs as the global instances that they are in CODESYS and TwinCAT.
 
 use onescan_iec::input::kind::SourceKind;
-use onescan_iec::{Dialect, Input, Severity, TaskPlan, TimeSpan};
+use onescan_iec::{Dialect, Input, Severity, TimeSpan};
 use onescan_iec_run::Application;
 
 use crate::rig::{Rig, application_in, findings_in};

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use onescan_iec::{TaskPlan, TimeSpan};
+use onescan_iec::TimeSpan;
 use onescan_iec_run::SoftPlc;
 
 use crate::rig::{Rig, application};

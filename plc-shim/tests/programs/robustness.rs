@@ -1,6 +1,6 @@
 //! Nothing that is written in a program makes the compiler or the PLC panic.
 
-use onescan_iec::{TaskPlan, TimeSpan, VirtualTime};
+use onescan_iec::{TimeSpan, VirtualTime};
 use onescan_iec_run::{Application, SoftPlc};
 use proptest::prelude::*;
 

@@ -2,7 +2,7 @@
 //! sign.
 
 use onescan_iec::input::kind::SourceKind;
-use onescan_iec::{Dialect, Input, TaskPlan, TimeSpan};
+use onescan_iec::{Dialect, Input, TimeSpan};
 use onescan_iec_run::Application;
 
 use crate::rig::{Rig, findings_in};

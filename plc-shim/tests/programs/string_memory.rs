@@ -64,7 +64,7 @@ fn a_full_string_needs_no_more_room() {
 #[test]
 fn strings_of_two_dialects_are_assigned_and_compared() {
     use onescan_iec::input::kind::SourceKind;
-    use onescan_iec::{Input, TaskPlan, TimeSpan};
+    use onescan_iec::{Input, TimeSpan};
     use onescan_iec_run::Application;
     let library = "FUNCTION twice : STRING(40) VAR_INPUT s : STRING(20); END_VAR twice := CONCAT(s, s); END_FUNCTION";
     let program = "PROGRAM P VAR s : STRING(20) := 'ab'; t : STRING(40); same : BOOL; n : INT; END_VAR

@@ -16,7 +16,7 @@ mod timers;
 use std::time::Instant;
 
 use native::Native;
-use onescan_iec::{TaskPlan, TimeSpan, VirtualTime};
+use onescan_iec::{TimeSpan, VirtualTime};
 use onescan_iec_run::{Application, SoftPlc};
 
 const INTERVAL_NS: u64 = 10_000_000;

@@ -4,7 +4,7 @@ use onescan_plant::Plant;
 
 use crate::bench::Bench;
 
-pub(crate) const SHEAR: &str = include_str!("../../../scenarios/shear/plant.toml");
+pub(crate) const SHEAR: &str = include_str!("../../../../scenarios/shear/plant.toml");
 
 /// Commands both actuators alike: up for positive, down for negative.
 fn command_both(bench: &mut Bench, direction: i32) {

@@ -94,7 +94,8 @@ impl SoftPlc {
 mod tests {
     use super::*;
     use onescan_iec::task_plan::{Task, TaskPlan};
-    use crate::{Application, VirtualTime};
+    use crate::Application;
+    use onescan_iec::VirtualTime;
 
     fn plc(background: bool) -> SoftPlc {
         let text = "PROGRAM One VAR n : INT; END_VAR n := n + 1; END_PROGRAM \

@@ -319,7 +319,7 @@ mod tests {
     use std::fmt::Write;
 
     use super::*;
-    use crate::front::front::Front;
+    use crate::front::Front;
     use crate::input::Input;
     use crate::input::kind::SourceKind;
     use crate::syntax::ast::{Declaration, Ident, NamespaceKind, PouKind, TypeSpecKind};

@@ -128,7 +128,7 @@ fn tasks_of_twincat_call_the_scheduler() {
     assert!(!found.has_errors(), "{found}");
     let application =
         onescan_iec_run::Application::from_inputs(again(&project)).unwrap_or_else(|found| panic!("{found}"));
-    let plan = onescan_iec_run::application.configured_tasks().expect("it has tasks");
+    let plan = application.configured_tasks().expect("it has tasks");
     assert_eq!(plan.tasks[1].programs, ["SDSP_Scheduler", "Quick"]);
 }
 

@@ -19,7 +19,7 @@ fn ported(files: &[(&str, &str)], tasks: Option<Vec<Task>>) -> Result<Project, I
 }
 
 fn scenario(name: &str) -> String {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios").join(name);
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(name);
     std::fs::read_to_string(path).expect("a source")
 }
 

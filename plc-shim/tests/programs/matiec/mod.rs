@@ -130,7 +130,7 @@ impl Told {
 
 #[expect(clippy::print_stdout, reason = "a difference is told at once, a long run before its end")]
 fn compare(folder: &Path, library: &Path, told: &Mutex<Told>) {
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/peers/matiec/compare.py");
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/peers/matiec/compare.py");
     let output =
         Command::new("python3").arg(script).arg(folder).arg(library).output().expect("Python is on the machine");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));

@@ -1,7 +1,7 @@
 //! Charts of PLCopen XML (TC6 2.01).
 
 use onescan_iec::input::kind::SourceKind;
-use onescan_iec::{Input, TaskPlan, TimeSpan, inspect};
+use onescan_iec::{Input, TimeSpan, inspect};
 use onescan_iec_run::Application;
 
 use super::drawn::{Step, Transition, chart, condition};

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use onescan_iec::input::kind::SourceKind;
-use onescan_iec::{Input, TaskPlan, TimeSpan, VirtualTime};
+use onescan_iec::{Input, TimeSpan, VirtualTime};
 use onescan_iec_run::{Application, SoftPlc};
 
 use crate::rig::{MS, Rig};

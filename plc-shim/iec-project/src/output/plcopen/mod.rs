@@ -205,7 +205,7 @@ mod tests {
     use onescan_iec::syntax::FileId;
     use onescan_iec::syntax::parser::parse_source;
 
-    const PRESS: &str = include_str!("../../../../../tests/inputs/press.st");
+    const PRESS: &str = include_str!("../../../../tests/inputs/press.st");
 
     fn written(name: &str, text: &str) -> Result<String, Vec<Refused>> {
         let file = SourceFile::new(name, text).in_dialect(onescan_iec::Dialect::Codesys);
@@ -227,7 +227,7 @@ mod tests {
         assert_eq!(parsed.diagnostics, []);
         insta::assert_snapshot!(input.file().text());
         // And it is a program.
-        let found = crate::inspect([input], None);
+        let found = onescan_iec::inspect([input], None);
         assert!(found.iter().all(|each| each.severity != onescan_iec::Severity::Error), "{found}");
     }
 
