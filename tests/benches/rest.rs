@@ -55,7 +55,7 @@ fn main() {
     for (what, _) in CASES {
         ledger.compare(what, CASES[0].0);
     }
-    println!("\n| somebody is due in | steps a second | times as many |\n|---|---|---|");
+    println!("\n| somebody is due in | steps/s | times as many |\n|---|---|---|");
     let rate = |what: &str| ledger.median(what).map(|step_s| 1.0 / step_s);
     for (what, sleep) in CASES {
         if let (Some(own), Some(all)) = (rate(what), rate(CASES[0].0)) {
