@@ -97,11 +97,25 @@ fn tables() -> String {
         "LTIME",
         "inputs of `SEL`",
     ];
-    text += "\n| behaviour | dialect | what it does | source |\n|---|---|---|---|\n";
+    text += "\n## Behaviour\n\n| behaviour | dialects | what they do | source |\n|---|---|---|---|\n";
     for (index, subject) in subjects.iter().enumerate() {
+        // Dialects that behave alike share a row.
+        let mut groups: Vec<(String, Vec<&str>, Vec<&str>)> = Vec::new();
         for row in BEHAVIOURS {
-            let cell = &behaviour_cells(row.behaviour)[index];
-            writeln!(text, "| {subject} | {} | {cell} | {} |", row.dialect, row.sources[index]).expect("a string");
+            let cell = behaviour_cells(row.behaviour)[index].clone();
+            let position = groups.iter().position(|(known, ..)| *known == cell).unwrap_or(groups.len());
+            if position == groups.len() {
+                groups.push((cell, Vec::new(), Vec::new()));
+            }
+            let (_, names, sources) = &mut groups[position];
+            names.push(row.dialect.name());
+            if !sources.contains(&row.sources[index]) {
+                sources.push(row.sources[index]);
+            }
+        }
+        for (cell, names, sources) in groups {
+            let (names, sources) = (names.join(", "), sources.join("; "));
+            writeln!(text, "| {subject} | {names} | {cell} | {sources} |").expect("a string");
         }
     }
     text
