@@ -76,12 +76,11 @@ fn behaviour_cells(behaviour: Behaviour) -> [String; 12] {
 
 /// The tables of `docs/dialects.md`.
 fn tables() -> String {
-    let names: Vec<_> = Dialect::ALL.iter().map(|one| one.name()).collect();
-    let rule = "|---".repeat(names.len() + 2);
-    let mut text = format!("| construct | {} | source |\n{rule}|\n", names.join(" | "));
+    let mut text = "| construct | dialects | source |\n|---|---|---|\n".to_owned();
     for row in FEATURES {
-        let marks = Dialect::ALL.map(|dialect| if dialect.has(row.feature) { "yes" } else { "" });
-        writeln!(text, "| {} | {} | {} |", row.feature.about(), marks.join(" | "), row.source).expect("a string");
+        let having = Dialect::ALL.into_iter().filter(|dialect| dialect.has(row.feature));
+        let names: Vec<_> = having.map(|dialect| dialect.name()).collect();
+        writeln!(text, "| {} | {} | {} |", row.feature.about(), names.join(", "), row.source).expect("a string");
     }
     let subjects = [
         "STRING without a length",
