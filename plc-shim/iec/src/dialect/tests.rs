@@ -76,12 +76,11 @@ fn behaviour_cells(behaviour: Behaviour) -> [String; 12] {
 
 /// The tables of `docs/dialects.md`.
 fn tables() -> String {
-    let names: Vec<_> = Dialect::ALL.iter().map(|one| one.name()).collect();
-    let rule = "|---".repeat(names.len() + 2);
-    let mut text = format!("| construct | {} | source |\n{rule}|\n", names.join(" | "));
+    let mut text = "| construct | dialects | source |\n|---|---|---|\n".to_owned();
     for row in FEATURES {
-        let marks = Dialect::ALL.map(|dialect| if dialect.has(row.feature) { "yes" } else { "" });
-        writeln!(text, "| {} | {} | {} |", row.feature.about(), marks.join(" | "), row.source).expect("a string");
+        let having = Dialect::ALL.into_iter().filter(|dialect| dialect.has(row.feature));
+        let names: Vec<_> = having.map(|dialect| dialect.name()).collect();
+        writeln!(text, "| {} | {} | {} |", row.feature.about(), names.join(", "), row.source).expect("a string");
     }
     let subjects = [
         "STRING without a length",
@@ -97,11 +96,25 @@ fn tables() -> String {
         "LTIME",
         "inputs of `SEL`",
     ];
-    text += "\n| behaviour | dialect | what it does | source |\n|---|---|---|---|\n";
+    text += "\n## Behaviour\n\n| behaviour | dialects | what they do | source |\n|---|---|---|---|\n";
     for (index, subject) in subjects.iter().enumerate() {
+        // Dialects that behave alike share a row.
+        let mut groups: Vec<(String, Vec<&str>, Vec<&str>)> = Vec::new();
         for row in BEHAVIOURS {
-            let cell = &behaviour_cells(row.behaviour)[index];
-            writeln!(text, "| {subject} | {} | {cell} | {} |", row.dialect, row.sources[index]).expect("a string");
+            let cell = behaviour_cells(row.behaviour)[index].clone();
+            let position = groups.iter().position(|(known, ..)| *known == cell).unwrap_or(groups.len());
+            if position == groups.len() {
+                groups.push((cell, Vec::new(), Vec::new()));
+            }
+            let (_, names, sources) = &mut groups[position];
+            names.push(row.dialect.name());
+            if !sources.contains(&row.sources[index]) {
+                sources.push(row.sources[index]);
+            }
+        }
+        for (cell, names, sources) in groups {
+            let (names, sources) = (names.join(", "), sources.join("; "));
+            writeln!(text, "| {subject} | {names} | {cell} | {sources} |").expect("a string");
         }
     }
     text

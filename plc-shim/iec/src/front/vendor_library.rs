@@ -395,9 +395,14 @@ mod tests {
             let (about, _) = part.text["(* ".len()..].split_once(" *)").expect("a comment at the head");
             let about = about.split_whitespace().collect::<Vec<_>>().join(" ");
             let homes: Vec<_> = part.homes.iter().map(|home| home.name()).collect();
-            let homes = if homes.len() == Dialect::ALL.len() { "all".to_owned() } else { homes.join(", ") };
+            // The page's head names the dialects that most files have.
+            let dialects = match homes.join(", ") {
+                usual if usual == "codesys, twincat" => String::new(),
+                _ if homes.len() == Dialect::ALL.len() => "Dialects: all.\n\n".to_owned(),
+                others => format!("Dialects: {others}.\n\n"),
+            };
             let short = part.name.rsplit('/').next().expect("a name");
-            write!(page, "\n## {short}\n\n{about}\n\nDialects: {homes}.\n\n").expect("a string");
+            write!(page, "\n## {short}\n\n{about}\n\n{dialects}").expect("a string");
             let mut kinds = BTreeMap::new();
             listed(&parsed.unit.declarations, "", &mut kinds);
             for (kind, names) in kinds {
