@@ -1,17 +1,12 @@
-//! Simulated annealing, by the crate `argmin`: from the best of its opening on, wide jumps at first, shorter ones as it
+//! Simulated annealing: from the best of its opening on, wide jumps at first, shorter ones as it
 //! cools, and hot again where nothing better comes for long.
 //!
 //! H. Szu and R. Hartley, "Fast simulated annealing", Physics Letters A 122 (1987): jumps are distributed after Cauchy, so
 //! that some are wide at any temperature, and the temperature falls with the number of the point.
 
-use std::cell::{Cell, RefCell};
 use std::f64::consts::PI;
 
-use argmin::core::{CostFunction, Error, Executor};
-use argmin::solver::simulatedannealing::{Anneal, SATempFunc, SimulatedAnnealing};
 use onescan_server::random::Random;
-use rand_xoshiro::Xoshiro256PlusPlus;
-use rand_xoshiro::rand_core::SeedableRng;
 
 use super::Optimiser;
 use super::opening::Opening;
@@ -27,41 +22,58 @@ const PATIENCE: u64 = 40;
 pub(super) struct Annealing {
     /// Nothing once it is over.
     opening: Option<Opening>,
-    start: Point,
-    /// What the start is worth, in units of the span.
-    start_worth: f64,
+    moves: Random,
+    acceptance: Random,
+    /// Where it is, and what that is worth in units of the span.
+    place: Point,
+    worth: f64,
+    /// The least worth so far, and how many points were no better since.
+    least: f64,
+    stalled: u64,
     /// By how much the points of the opening differ: the unit of the temperature.
     span: f64,
-    moves: Random,
-    acceptance: u64,
-    /// What its points were worth, in the order in which it asks for them.
-    known: Vec<f64>,
+    /// Points since it was hot.
+    cooled: u64,
+    /// The point that was asked for last.
+    asked: Point,
 }
 
 impl Annealing {
     pub(super) fn new(dimensions: usize, mut random: Random, opening: Opening) -> Self {
-        let (moves, acceptance) = (Random::new(random.bits()), random.bits());
-        let start = vec![0.5; dimensions];
-        Self { opening: Some(opening), start, start_worth: 0.0, span: 1.0, moves, acceptance, known: Vec::new() }
+        Self {
+            opening: Some(opening),
+            moves: Random::new(random.bits()),
+            acceptance: Random::new(random.bits()),
+            place: vec![0.5; dimensions],
+            worth: 0.0,
+            least: 0.0,
+            stalled: 0,
+            span: 1.0,
+            cooled: 0,
+            asked: Vec::new(),
+        }
     }
 
-    /// The next point of the search.
-    fn next(&self) -> Option<Point> {
-        let course = Course {
-            known: &self.known,
-            used: Cell::new(0),
-            moves: RefCell::new(self.moves),
-            asked: RefCell::new(None),
-        };
-        let generator = Xoshiro256PlusPlus::seed_from_u64(self.acceptance);
-        // It refuses no temperature above 0.
-        let annealing = SimulatedAnnealing::new_with_rng(HOT, generator).ok()?;
-        let annealing = annealing.with_temp_func(SATempFunc::TemperatureFast).with_reannealing_best(PATIENCE);
-        let search = Executor::new(&course, annealing).timer(false);
-        let begun = search.configure(|state| state.param(self.start.clone()).cost(self.start_worth));
-        // It ends with the first point that it does not know, which is what is asked for.
-        begun.run().err()?;
-        course.asked.into_inner()
+    fn temperature(&self) -> f64 {
+        HOT / (self.cooled + 1) as f64
+    }
+
+    /// Goes to the point that was asked for, or stays where it is.
+    fn judge(&mut self, worth: f64) {
+        // Half of those that are worth as much are accepted, and fewer of those that are worse: the rule of Glauber.
+        let share = 1.0 / (1.0 + libm::exp((worth - self.worth) / self.temperature()));
+        // Drawn for better points, too, so that what comes next does not depend on them.
+        let drawn = self.acceptance.uniform();
+        self.stalled = if worth < self.least { 0 } else { self.stalled + 1 };
+        self.least = self.least.min(worth);
+        if worth < self.worth || drawn < share {
+            self.place.clone_from(&self.asked);
+            self.worth = worth;
+        }
+        if self.stalled >= PATIENCE {
+            (self.stalled, self.cooled) = (0, 0);
+        }
+        self.cooled += 1;
     }
 }
 
@@ -73,52 +85,22 @@ impl Optimiser for Annealing {
             }
             self.span = opening.span();
             if let Some((best, worth)) = opening.best() {
-                (self.start, self.start_worth) = (best.clone(), worth / self.span);
+                (self.place, self.worth) = (best.clone(), worth / self.span);
+                self.least = self.worth;
             }
             self.opening = None;
         }
-        vec![self.next().unwrap_or_else(|| self.start.clone())]
+        let width = self.temperature() / 2.0;
+        let mut jump = |x: &f64| mirrored(x + width * libm::tan(PI * (self.moves.uniform() - 0.5)));
+        self.asked = self.place.iter().map(&mut jump).collect();
+        vec![self.asked.clone()]
     }
 
     fn tell(&mut self, values: &[f64]) {
         match &mut self.opening {
             Some(opening) => opening.tell(values),
-            None => self.known.extend(values.iter().map(|value| value / self.span)),
+            None => values.iter().for_each(|value| self.judge(value / self.span)),
         }
-    }
-}
-
-/// The search anew, up to the point that is not known yet.
-struct Course<'a> {
-    known: &'a [f64],
-    used: Cell<usize>,
-    moves: RefCell<Random>,
-    asked: RefCell<Option<Point>>,
-}
-
-impl CostFunction for &Course<'_> {
-    type Param = Point;
-    type Output = f64;
-
-    fn cost(&self, point: &Point) -> Result<f64, Error> {
-        let Some(value) = self.known.get(self.used.get()) else {
-            self.asked.replace(Some(point.clone()));
-            return Err(Error::msg("what comes next is not known yet"));
-        };
-        self.used.set(self.used.get() + 1);
-        Ok(*value)
-    }
-}
-
-impl Anneal for &Course<'_> {
-    type Param = Point;
-    type Output = Point;
-    type Float = f64;
-
-    fn anneal(&self, point: &Point, temperature: f64) -> Result<Point, Error> {
-        let mut moves = self.moves.borrow_mut();
-        let jump = |x: &f64| mirrored(x + temperature / 2.0 * libm::tan(PI * (moves.uniform() - 0.5)));
-        Ok(point.iter().map(jump).collect())
     }
 }
 

@@ -1,10 +1,8 @@
-//! CMA-ES, by the crate `cmaes`: from the best of its opening on, and again from anywhere when it has converged.
+//! CMA-ES: from the best of its opening on, and again from anywhere when it has converged.
 
-use std::cell::{Cell, RefCell};
-
-use cmaes::{CMAESOptions, DVector};
 use onescan_server::random::Random;
 
+use super::distribution::Distribution;
 use super::opening::Opening;
 use super::{Optimiser, anywhere};
 use crate::falsify::space::Point;
@@ -17,52 +15,18 @@ const OUTSIDE: f64 = 1e-3;
 
 /// A search that begins again when it ends.
 pub(super) struct CmaEs {
-    dimensions: usize,
     random: Random,
     /// Nothing once it is over.
     opening: Option<Opening>,
-    /// Where this search begins.
-    start: Point,
-    seed: u64,
-    /// What its points were worth, in the order in which it asks for them.
-    known: Vec<f64>,
+    search: Distribution,
     /// The points that were asked for last, as the search has them: some lie outside of the cube.
     asked: Vec<Point>,
 }
 
 impl CmaEs {
     pub(super) fn new(dimensions: usize, mut random: Random, opening: Opening) -> Self {
-        let seed = random.bits();
-        let start = vec![0.5; dimensions];
-        Self { dimensions, random, opening: Some(opening), start, seed, known: Vec::new(), asked: Vec::new() }
-    }
-
-    /// The next generation of this search; nothing if it has ended.
-    fn generation(&self) -> Option<Vec<Point>> {
-        let (used, fresh) = (Cell::new(0), RefCell::new(Vec::new()));
-        let worth = |point: &DVector<f64>| {
-            if let Some(value) = self.known.get(used.get()) {
-                used.set(used.get() + 1);
-                return *value;
-            }
-            fresh.borrow_mut().push(point.iter().copied().collect::<Point>());
-            // What comes of it is not looked at: the search is thrown away.
-            0.0
-        };
-        let options = CMAESOptions::new(self.start.clone(), STEP_SIZE).seed(self.seed);
-        // It refuses no dimension, no population and no step: there are some of each.
-        let mut search = options.build(worth).ok()?;
-        loop {
-            let has_ended = search.next().is_some();
-            if !fresh.borrow().is_empty() {
-                break;
-            }
-            if has_ended {
-                return None;
-            }
-        }
-        drop(search);
-        Some(fresh.into_inner())
+        let search = Distribution::new(vec![0.5; dimensions], STEP_SIZE, Random::new(random.bits()));
+        Self { random, opening: Some(opening), search, asked: Vec::new() }
     }
 }
 
@@ -73,16 +37,15 @@ impl Optimiser for CmaEs {
                 return points;
             }
             if let Some((best, _)) = opening.best() {
-                self.start.clone_from(best);
+                self.search.mean.clone_from(best);
             }
             self.opening = None;
         }
-        self.asked = self.generation().unwrap_or_else(|| {
-            self.known.clear();
-            self.start = anywhere(self.dimensions, &mut self.random);
-            self.seed = self.random.bits();
-            self.generation().unwrap_or_else(|| vec![self.start.clone()])
-        });
+        if self.search.is_over {
+            let start = anywhere(self.search.mean.len(), &mut self.random);
+            self.search = Distribution::new(start, STEP_SIZE, Random::new(self.random.bits()));
+        }
+        self.asked = self.search.generation();
         self.asked.iter().map(|point| point.iter().map(|x| x.clamp(0.0, 1.0)).collect()).collect()
     }
 
@@ -91,9 +54,11 @@ impl Optimiser for CmaEs {
             opening.tell(values);
             return;
         }
-        for (point, value) in self.asked.drain(..).zip(values) {
+        let worth = |(point, value): (Point, &f64)| {
             let outside: f64 = point.iter().map(|x| x - x.clamp(0.0, 1.0)).map(|far| far * far).sum();
-            self.known.push(value + OUTSIDE * value.abs().max(1.0) * outside);
-        }
+            value + OUTSIDE * value.abs().max(1.0) * outside
+        };
+        let worths: Vec<f64> = self.asked.drain(..).zip(values).map(worth).collect();
+        self.search.learn(&worths);
     }
 }

@@ -1,18 +1,22 @@
 //! Optimisers: which points are simulated next, by what those before them were worth.
 //!
-//! Those of crates call a function for what a point is worth. Here points are simulated several at a time, and elsewhere:
-//! so an optimiser is run anew for each batch, with the values that are known so far, and its points are taken where these
-//! end. That costs less than one simulation, and makes a search a function of its seed and of nothing else.
+//! Points are simulated several at a time, and elsewhere: so an optimiser is asked for a batch, and takes what its points
+//! were worth. A search is a function of its seed and of these values. It computes in a fixed order, and takes
+//! transcendental functions from `libm`: its points have the same bits on every platform.
 //!
 //! | module | subject |
 //! |---|---|
 //! | `opening` | what is looked at before a search is led |
-//! | `cma_es` | CMA-ES, by the crate `cmaes` |
-//! | `annealing` | simulated annealing, by the crate `argmin` |
+//! | `cma_es` | CMA-ES: when a search starts, and where |
+//! | `distribution` | one search of CMA-ES: points drawn from a normal distribution, which learns from them |
+//! | `eigen` | the axes of that distribution |
+//! | `annealing` | simulated annealing |
 //! | `random` | each point by itself |
 
 mod annealing;
 mod cma_es;
+mod distribution;
+mod eigen;
 mod opening;
 mod random;
 
@@ -87,6 +91,32 @@ mod tests {
             let (first, again, other) = (searched(kind, 1, 30), searched(kind, 1, 30), searched(kind, 2, 30));
             assert_eq!(first, again, "{kind:?}");
             assert_ne!(first.0, other.0, "{kind:?}");
+        }
+    }
+
+    /// The points of the first 200 simulations and more, each bit of each number, by FNV-1a.
+    fn digest(kind: OptimiserKind) -> u64 {
+        let mut optimiser = new(kind, 4, 1, |_| vec![vec![0.0; 4], vec![1.0; 4]]);
+        let (mut count, mut digest) = (0, 0xcbf2_9ce4_8422_2325_u64);
+        while count < 200 {
+            let points = optimiser.ask();
+            let worth = |point: &Point| point.iter().fold(0.0, |sum, x| 1.5 * sum + (x - 0.3) * (x - 0.3));
+            optimiser.tell(&points.iter().map(worth).collect::<Vec<_>>());
+            let bytes = points.iter().flatten().flat_map(|x| x.to_bits().to_le_bytes());
+            digest = bytes.fold(digest, |digest, byte| (digest ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3));
+            count += points.len();
+        }
+        digest
+    }
+
+    #[test]
+    fn points_have_the_same_bits_on_every_platform() {
+        for (kind, expected) in [
+            (OptimiserKind::CmaEs, 0xb6ae_083f_dfec_fa57_u64),
+            (OptimiserKind::Annealing, 0xcd34_5aa2_7a3c_5355),
+            (OptimiserKind::Random, 0xcb21_56d1_d128_1227),
+        ] {
+            assert_eq!(format!("{:016x}", digest(kind)), format!("{expected:016x}"), "{kind:?}");
         }
     }
 
