@@ -17,7 +17,7 @@ const DOCUMENTS: [&str; 5] = ["README.md", "CHANGELOG.md", "LICENSE-APACHE", "LI
 pub(super) fn build(root: &Path, version: &str) -> Result<Vec<PathBuf>, TaskError> {
     // The build takes in the page if it is there; without it the program would have none, and nobody would notice.
     if !root.join("web/dist/index.html").is_file() {
-        return Err(TaskError::NotReady("web/dist has no page: install Node, and tests/run builds it".to_owned()));
+        return Err(TaskError::NotReady("web/dist has no page: run `npm ci && npm run build` in `web`".to_owned()));
     }
     let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     run(Command::new(cargo)

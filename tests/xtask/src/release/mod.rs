@@ -40,8 +40,11 @@ pub(crate) fn release(root: &Path, dry_run: bool, out: &mut impl Write) -> Resul
     }
     out.flush()?;
     run(Command::new("cargo").args(["deny", "--locked", "check"]).current_dir(root))?;
-    if scripts::run(root, &[OsString::from("run")])? != 0 {
-        return Err(TaskError::Failed("tests/run".to_owned()));
+    // The other tests need a Unix shell and signals; RELEASING.md asks for them on Linux first.
+    let lane: &[&str] = if cfg!(windows) { &["run", "quick"] } else { &["run"] };
+    let words: Vec<OsString> = lane.iter().map(OsString::from).collect();
+    if scripts::run(root, &words)? != 0 {
+        return Err(TaskError::Failed(format!("tests/{}", lane.join(" "))));
     }
     for file in artefact::build(root, &found.version)? {
         writeln!(out, "{}", file.display())?;
