@@ -43,7 +43,7 @@ pub(crate) const SCRIPTS: &[Script] = &[
         file: "tests/web",
         language: Language::Bash,
         about: "the page: types, units, licences, and a session in Chromium",
-        time: "3 min",
+        time: "minutes",
         not_on_windows: None,
     },
     Script {
@@ -51,7 +51,7 @@ pub(crate) const SCRIPTS: &[Script] = &[
         file: "tests/mutants",
         language: Language::Python,
         about: "small faults in PLC programs that the scenarios' cases must find",
-        time: "20 min",
+        time: "many minutes, by `--each`",
         not_on_windows: None,
     },
     Script {
@@ -59,7 +59,7 @@ pub(crate) const SCRIPTS: &[Script] = &[
         file: "tests/mutate",
         language: Language::Python,
         about: "seeded changes of files and frames: exit codes, panics, time, memory",
-        time: "5 min",
+        time: "minutes",
         not_on_windows: Some("it limits memory with `setrlimit`"),
     },
     Script {
@@ -75,7 +75,7 @@ pub(crate) const SCRIPTS: &[Script] = &[
         file: "tests/kill",
         language: Language::Python,
         about: "`kill -9` of a session: which processes are left, what its recording loses",
-        time: "3 min",
+        time: "minutes",
         not_on_windows: Some("it looks for processes in /proc"),
     },
     Script {
@@ -83,7 +83,7 @@ pub(crate) const SCRIPTS: &[Script] = &[
         file: "tests/long",
         language: Language::Python,
         about: "the shear for a million steps or more: memory and digests",
-        time: "5 min; 10^8 steps: hours",
+        time: "minutes; 10^8 steps: hours",
         not_on_windows: Some("it reads memory from /proc"),
     },
     Script {
@@ -107,7 +107,7 @@ pub(crate) const SCRIPTS: &[Script] = &[
         file: "tests/platforms",
         language: Language::Bash,
         about: "equal digests on 64-bit Arm (qemu) and Windows (Wine)",
-        time: "30 min per platform, with its build",
+        time: "a build and minutes per platform",
         not_on_windows: Some("it builds on Linux and emulates the other platforms"),
     },
 ];
