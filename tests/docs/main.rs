@@ -1,6 +1,7 @@
 //! The repository's Markdown: its links lead somewhere, the index lists every document, and the manuals name every key.
 
 mod keys;
+mod libraries;
 mod links;
 mod markdown;
 

@@ -25,6 +25,7 @@ mod faults;
 mod files_named;
 mod filling_machine;
 mod forks;
+mod formats;
 mod freewheel;
 mod gantry_robot;
 mod help;
