@@ -35,10 +35,10 @@ const CLOCKS: &[(&str, &str)] = &[
     ("server/src/formation.rs", "how long clients are waited for"),
     ("server/recording/src/rhythm.rs", "when steps reach the disk, never what they are"),
     ("server/src/transport", "how long an answer is waited for"),
-    ("clients/src/gateway", "how long a PLC is waited for"),
-    ("clients/src/station", "a PLC on a clock of its own"),
-    ("clients/src/information_model/board.rs", "time stamps of OPC UA"),
-    ("clients/src/opcua_server/doorkeeper.rs", "the day on which a token ends"),
+    ("clients/links/src/gateway", "how long a PLC is waited for"),
+    ("clients/links/src/station", "a PLC on a clock of its own"),
+    ("clients/opc-ua/src/information_model/board.rs", "time stamps of OPC UA"),
+    ("clients/opc-ua/src/server/doorkeeper.rs", "the day on which a token ends"),
     ("cli/src", "how long a command took; sessions on a free-wheeling clock"),
 ];
 
@@ -47,7 +47,7 @@ const UNORDERED: &[&str] = &["HashMap", "HashSet", "RandomState", "thread_rng", 
 
 /// Where such a name stands nevertheless, and why that is harmless.
 const HARMLESS: &[(&str, &str)] = &[
-    ("clients/src/information_model/manager.rs", "the library's interface; looked up by key, never iterated"),
+    ("clients/opc-ua/src/information_model/manager.rs", "the library's interface; looked up by key, never iterated"),
     ("server/src/access/token.rs", "a new token: on which nothing that a session computes depends"),
 ];
 

@@ -42,10 +42,10 @@ const HOUSE: &[Floor] = &[
     open_floor("server/src/transport/tcp"),
     open_floor("server/recording/src"),
     open_floor("clients/src"),
-    open_floor("clients/src/gateway"),
-    open_floor("clients/src/plant/component"),
-    open_floor("clients/src/soft_plc"),
-    open_floor("clients/src/station"),
+    open_floor("clients/links/src/gateway"),
+    open_floor("clients/plant/src/component"),
+    open_floor("clients/soft-plc/src"),
+    open_floor("clients/links/src/station"),
     open_floor("scenarios/src"),
     open_floor("scenarios/src/case"),
     open_floor("scenarios/src/expect"),
@@ -53,9 +53,9 @@ const HOUSE: &[Floor] = &[
     open_floor("report/src/plot"),
     open_floor("cli/src"),
     open_floor("plc-shim/src"),
-    Floor { folder: "plc-shim/src/compile", closed: true, records: None, known: &[] },
+    Floor { folder: "plc-shim/iec-run/src/compile", closed: true, records: None, known: &[] },
     Floor {
-        folder: "plc-shim/src/check",
+        folder: "plc-shim/iec/src/check",
         closed: true,
         records: Some(&[
             // Declarations as they are handed on.

@@ -87,7 +87,7 @@ fn a_sensor_is_added_by_what_the_program_says() {
 
 /// The lists that the readers' own tests have.
 fn list(name: &str) -> String {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cli/src/io_list/fixtures");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cli/program/src/io_list/fixtures");
     folder.join(name).canonicalize().expect("a fixture").display().to_string()
 }
 

@@ -1,5 +1,5 @@
 //! A plant without a session: a belt carries a box through a light barrier. Run it by
-//! `cargo run -p onescan-clients --example plant`.
+//! `cargo run -p onescan-plant --example plant`.
 
 #![expect(clippy::print_stdout, reason = "an example is for the terminal")]
 

@@ -1,5 +1,5 @@
 //! Files that the program of a PLC finds: put into the variables of `OnescanFiles`, in
-//! `plc-shim/iec/vendor/codesys_sysfile.st`, at the set-up.
+//! `plc-shim/iec/library/vendor/codesys_sysfile.st`, at the set-up.
 //!
 //! From then on they are memory of the PLC: part of its state, and never the machine's.
 

@@ -3,7 +3,7 @@
 //! A small number of them runs with all tests. For more:
 //!
 //! ```sh
-//! ONESCAN_MUTATIONS=1000000 cargo test --release -p onescan-plc-shim --test mutations -- --nocapture
+//! ONESCAN_MUTATIONS=1000000 cargo test --release -p onescan-iec-tests --test mutations -- --nocapture
 //! ```
 //!
 //! A panic names the seed; `ONESCAN_MUTATION_SEED=n ONESCAN_MUTATIONS=1` repeats it.

@@ -111,7 +111,7 @@ fn long_rows() {
     }
 }
 
-/// `cargo test --release -p onescan-plc-shim --test programs -- --ignored a_million_lines`
+/// `cargo test --release -p onescan-iec-tests --test programs -- --ignored a_million_lines`
 #[test]
 #[ignore = "takes a minute without optimisation"]
 fn a_million_lines() {

@@ -2,7 +2,7 @@
 //!
 //! `[SDSP]` sec. V-A. The gateway writes inputs and `t_v`, then the number of the grant; it
 //! waits until the PLC names that number as done; it takes the outputs. The words are those of the shim
-//! (`plc-shim/iec/shim/globals.st`).
+//! (`plc-shim/iec-project/shim/globals.st`).
 //!
 //! | phase | asks for | left when |
 //! |---|---|---|

@@ -5,7 +5,7 @@ use super::*;
 /// Steps of a session.
 const STEPS: u64 = 5;
 
-/// A PLC with the shim's scheduler, as `plc-shim/iec/shim/scheduler.st` has it, and a program that writes down
+/// A PLC with the shim's scheduler, as `plc-shim/iec-project/shim/scheduler.st` has it, and a program that writes down
 /// what it ran for.
 #[derive(Clone, Debug, Default)]
 struct Plc {

@@ -103,7 +103,7 @@ fn outputs(page: &mut String, outputs: &[Signal]) {
 pub fn catalogue() -> String {
     let mut all = String::from(
         "# The library of components\n\n\
-         Made from the kinds themselves by `UPDATE_DOCS=1 cargo test -p onescan-clients catalogue`; a test holds it to \
+         Made from the kinds themselves by `UPDATE_DOCS=1 cargo test -p onescan-plant catalogue`; a test holds it to \
          them.\n\n\
          A scene names a component in a table `[[component]]` with `name`, `kind`, its parameters and what it is bound \
          to. `INPUT_signal` and `OUTPUT_signal` name the session's signals; `INPUT_from = \"component.output\"` wires \
@@ -127,6 +127,6 @@ mod tests {
 
     #[test]
     fn the_published_catalogue_is_that_of_the_kinds() {
-        is_published("clients/src/plant/component/README.md", &catalogue());
+        is_published("clients/plant/src/component/README.md", &catalogue());
     }
 }

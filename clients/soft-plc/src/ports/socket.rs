@@ -1,4 +1,4 @@
-//! A connection, or the line of a communication module, as `OnescanPorts` has it, in `plc-shim/iec/vendor/onescan_ports.st`, on which the blocks of vendors stand.
+//! A connection, or the line of a communication module, as `OnescanPorts` has it, in `plc-shim/iec/library/vendor/onescan_ports.st`, on which the blocks of vendors stand.
 
 use onescan_iec_run::{Application, SoftPlc, WriteError};
 

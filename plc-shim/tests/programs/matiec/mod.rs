@@ -14,7 +14,7 @@
 //! programs, and others:
 //!
 //! ```sh
-//! ONESCAN_MATIEC=10000 ONESCAN_MATIEC_SEED=0 cargo test --release -p onescan-plc-shim --test programs matiec -- --nocapture
+//! ONESCAN_MATIEC=10000 ONESCAN_MATIEC_SEED=0 cargo test --release -p onescan-iec-tests --test programs matiec -- --nocapture
 //! ```
 //!
 //! Seeds 0 to 9,999 with `MatIEC` of October 2024, 1,000,000 scans, took 13 minutes on two cores: of 30,338,100 values

@@ -70,7 +70,7 @@ pub(super) fn st(_: &Path) -> Prepared {
 
 /// Siemens' dialect.
 pub(super) fn scl(_: &Path) -> Prepared {
-    let mut seeds = files("plc-shim/iec/shim/scl", &[".scl"]);
+    let mut seeds = files("plc-shim/iec-project/shim/scl", &[".scl"]);
     seeds.extend(files("tests/session", &[".scl"]));
     Prepared::new(seeds, |input| goes_all_the_way("source.scl", SourceKind::Text, input))
 }
@@ -106,7 +106,7 @@ pub(super) fn project(_: &Path) -> Prepared {
 
 /// Lists of inputs and outputs; the first byte says whose.
 pub(super) fn io_list(scratch: &Path) -> Prepared {
-    let fixtures = root().join("cli/src/io_list/fixtures");
+    let fixtures = root().join("cli/program/src/io_list/fixtures");
     let mut names: Vec<String> = std::fs::read_dir(&fixtures)
         .expect("fixtures")
         .map(|entry| entry.expect("a fixture").file_name().to_string_lossy().into_owned())

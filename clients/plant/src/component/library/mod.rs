@@ -13,7 +13,7 @@
 //! 1. Its file in its group: what it states of itself, its equations, its tests. The nearest kind is
 //!    a good start; `own_types!` names its coupling.
 //! 2. Its line in the table below.
-//! 3. `UPDATE_DOCS=1 cargo test -p onescan-clients --lib plant` writes its page and its part of the
+//! 3. `UPDATE_DOCS=1 cargo test -p onescan-plant --lib` writes its page and its part of the
 //!    schema; without the switch the same tests compare them.
 //!
 //! `cargo fmt` does not see files behind a macro: `rustfmt --edition 2024 FILE` formats a kind.

@@ -1,4 +1,4 @@
-//! Program text to a PLC that scans. Run it by `cargo run -p onescan-plc-shim --example scan`.
+//! Program text to a PLC that scans. Run it by `cargo run -p onescan-iec --example scan`.
 
 #![expect(clippy::print_stdout, reason = "an example is for the terminal")]
 
