@@ -6,7 +6,6 @@
 //! | [`kind`] | a file's name | what kind of file it is |
 //! | [`found`] | a file's bytes | its text, and whether it is PLCopen's |
 //! | `foreign` | text | what it is, if it is no program |
-//! | `xml` | text | a tree whose nodes know their place |
 //! | `twincat`, `twincat_task` | TwinCAT's objects | program text |
 //! | `plcopen`, `plcopen_instances`, `plcopen_object` | PLCopen XML, and what CODESYS adds to it | program text |
 //! | `plcopen_chart`, `plcopen_chart_graph`, `plcopen_condition` | its Sequential Function Charts | program text |
@@ -37,9 +36,10 @@ pub mod project;
 mod statement;
 mod twincat;
 mod twincat_task;
-pub(crate) mod xml;
 
 use std::sync::Arc;
+
+use onescan_xml::{Element, Node, XmlError};
 
 use self::encoding::Encoding;
 use self::foreign::Foreign;
@@ -47,7 +47,6 @@ use self::found::{Found, NoText};
 use self::kind::SourceKind;
 pub use self::needed::needed;
 use self::project::{Listed, Listing};
-use self::xml::XmlError;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::{Chosen, Dialect};
 use crate::source::origin::Extract;
@@ -202,7 +201,7 @@ struct Taken {
 impl Taken {
     fn malformed(error: &XmlError) -> Self {
         let mut taken = Self::default();
-        taken.report(error.at..error.at, Code::MalformedXml, &error.message);
+        taken.report(error.at..error.at, Code::MalformedXml, &error.to_string());
         taken
     }
 
@@ -228,12 +227,12 @@ impl Taken {
     }
 
     /// Appends the text that an element holds.
-    fn text_of(&mut self, file: &str, element: &xml::Element) {
+    fn text_of(&mut self, file: &str, element: &Element) {
         for node in &element.children {
             match node {
-                xml::Node::Verbatim(span) => self.extract.verbatim(file, span.clone()),
-                xml::Node::Reference(character, span) => self.extract.instead(&character.to_string(), span.clone()),
-                xml::Node::Element(_) => {}
+                Node::Verbatim(span) => self.extract.verbatim(file, span.clone()),
+                Node::Reference(character, span) => self.extract.instead(&character.to_string(), span.clone()),
+                Node::Element(_) => {}
             }
         }
     }

@@ -3,9 +3,10 @@
 
 use std::ops::Range;
 
+use onescan_xml::{Element, Node, XmlError, parse};
+
 use super::Taken;
 use super::drawing::{Drawings, Keeps};
-use super::xml::{Element, Node, XmlError, parse};
 use crate::diagnostic::Code;
 use crate::dialect::Dialect;
 use crate::syntax::token::{Keyword, TokenKind};

@@ -12,6 +12,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
+use onescan_xml::Element;
+
 use super::chart_plan::{CONTROL, Plan, charts, controlled_by, elapsed, of_chart, own_flag};
 use super::marks;
 use super::plcopen::{self, Refused};
@@ -20,7 +22,6 @@ use super::plcopen_unit as unit;
 use crate::input::plcopen_chart::inline_action_name;
 use crate::input::plcopen_chart_graph::{End, Graph, Kind, number};
 use crate::input::plcopen_condition::named_transitions;
-use crate::input::xml::Element;
 use crate::source::edits::Edits;
 use crate::syntax::Span;
 use crate::syntax::ast::{Pou, PouKind};

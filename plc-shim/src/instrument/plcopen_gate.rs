@@ -14,6 +14,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
+use onescan_xml::Element;
+
 use super::chart_plan::Plan;
 use super::marks;
 use super::plcopen::{self, Refused};
@@ -22,7 +24,6 @@ use super::plcopen_unit as unit;
 use crate::input::plcopen_chart_graph::{Graph, Kind, Node, connections};
 use crate::input::plcopen_condition::{Form, Leaf, expression, is_negated, named, text_leaves};
 use crate::input::plcopen_object::inner_text;
-use crate::input::xml::Element;
 use crate::source::edits::Edits;
 use crate::syntax::ast::Transition;
 
