@@ -170,7 +170,7 @@ impl Parser<'_> {
                 let (behind_bracket, fault) = in_tag(&error);
                 wrong(1 + behind_bracket, fault)
             })?;
-            let name = attribute.key.as_ref();
+            let name = attribute.key.into_inner();
             let raw: &str = &attribute.value;
             let whole = find(from, name).unwrap_or(from);
             let key = whole + name.len();

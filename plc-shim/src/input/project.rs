@@ -62,7 +62,7 @@ pub fn listing(bytes: &[u8]) -> Result<Listing, ProjectError> {
     let (text, _) = decode(bytes)?;
     let root = onescan_xml::parse(&text).map_err(|error| {
         let before = text.get(..error.at as usize).unwrap_or("");
-        ProjectError::Xml { line: before.lines().count().max(1), message: error.message }
+        ProjectError::Xml { line: before.lines().count().max(1), message: error.to_string() }
     })?;
     let items = root.elements().filter(|group| group.name == "ItemGroup").flat_map(Element::elements);
     let included = items.filter(|item| item.name == "Compile").filter_map(|item| item.attribute("Include"));
