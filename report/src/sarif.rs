@@ -42,12 +42,12 @@ pub struct Found<'a> {
     pub region: Region,
 }
 
-/// The log as JSON, with a line break at its end.
-pub fn log<'a>(rules: &[Rule<'_>], found: impl Iterator<Item = Found<'a>>) -> String {
+/// The log as JSON, with a line break at its end. The notice is about the run and not a place in a file.
+pub fn log<'a>(rules: &[Rule<'_>], found: impl Iterator<Item = Found<'a>>, notice: Option<&str>) -> String {
     let results: Vec<Value> = found.map(|found| result(rules, &found)).collect();
     let rules: Vec<Value> =
         rules.iter().map(|Rule { id, about }| json!({ "id": id, "shortDescription": { "text": about } })).collect();
-    let log = json!({
+    let mut log = json!({
         "$schema": SCHEMA,
         "version": "2.1.0",
         "runs": [{
@@ -56,6 +56,12 @@ pub fn log<'a>(rules: &[Rule<'_>], found: impl Iterator<Item = Found<'a>>) -> St
             "results": results,
         }],
     });
+    if let Some(text) = notice {
+        log["runs"][0]["invocations"] = json!([{
+            "executionSuccessful": true,
+            "toolExecutionNotifications": [{ "level": "note", "message": { "text": text } }],
+        }]);
+    }
     format!("{log:#}\n")
 }
 

@@ -9,11 +9,12 @@ use crate::tokens::{Token, tokens};
 /// The crates of the program, and which of them each may stand on.
 const STANDS_ON: &[(&str, &[&str])] = &[
     ("base", &[]),
+    ("base/xml", &[]),
     ("server", &["onescan-base"]),
     ("server/recording", &["onescan-base", "onescan-server"]),
-    ("plc-shim", &["onescan-base"]),
+    ("plc-shim", &["onescan-base", "onescan-xml"]),
     ("report", &[]),
-    ("clients", &["onescan-base", "onescan-plc-shim", "onescan-server"]),
+    ("clients", &["onescan-base", "onescan-plc-shim", "onescan-server", "onescan-xml"]),
     ("scenarios", &["onescan-base", "onescan-clients", "onescan-plc-shim", "onescan-server"]),
     (
         "cli",
@@ -25,6 +26,7 @@ const STANDS_ON: &[(&str, &[&str])] = &[
             "onescan-report",
             "onescan-scenario",
             "onescan-server",
+            "onescan-xml",
         ],
     ),
 ];

@@ -36,6 +36,7 @@ const fn open_floor(folder: &'static str) -> Floor {
 
 const HOUSE: &[Floor] = &[
     open_floor("base/src"),
+    open_floor("base/xml/src"),
     open_floor("server/src"),
     open_floor("server/src/lockstep"),
     open_floor("server/src/wire"),

@@ -249,6 +249,71 @@ fn files_that_are_no_sources_are_told() {
     }
 }
 
+/// A PLCopen XML project with an undeclared name.
+const PROJECT: &str = r#"<?xml version="1.0" encoding="utf-16"?>
+<project xmlns="http://www.plcopen.org/xml/tc6_0201"><types><pous><pou name="B" pouType="program">
+<body><ST><xhtml xmlns="http://www.w3.org/1999/xhtml">nowhere := 1;</xhtml></ST></body>
+</pou></pous></types></project>
+"#;
+
+fn utf_16(text: &str) -> Vec<u8> {
+    "\u{feff}".encode_utf16().chain(text.encode_utf16()).flat_map(u16::to_le_bytes).collect()
+}
+
+#[test]
+fn a_folder_reads_every_encoding_that_a_named_file_may_have() {
+    let folder = folder(&[("a.st", CLEAN), ("b.xml", &utf_16(PROJECT))]);
+    let named = checked(folder.path(), &["b.xml"]);
+    assert!(named.code == Some(2) && named.out.contains("N0101"), "{named:?}");
+    assert_eq!(checked(folder.path(), &["."]), named);
+    std::fs::write(folder.path().join("b.xml"), PROJECT).unwrap();
+    assert_eq!(checked(folder.path(), &["."]), named);
+}
+
+#[test]
+fn what_is_passed_over_in_a_folder_is_counted() {
+    let page = utf_16("<?xml version=\"1.0\"?><page/>");
+    let folder = folder(&[("a.st", CLEAN), ("b/page.xml", b"<html/>"), ("c.xml", &page)]);
+    let said = checked(folder.path(), &[".", "b"]);
+    assert_eq!((said.code, said.out.as_str()), (Some(0), "1 file, no findings; 2 other XML files passed over\n"));
+    let said = checked(folder.path(), &[".", "--format", "json"]);
+    assert_eq!((said.code, said.out.as_str()), (Some(0), "{\"passed_over\":{\"other_xml\":2}}\n"));
+    let log: serde_json::Value =
+        serde_json::from_str(&checked(folder.path(), &[".", "--format", "sarif"]).out).unwrap();
+    let notice = &log["runs"][0]["invocations"][0]["toolExecutionNotifications"][0]["message"]["text"];
+    assert_eq!(notice, "2 other XML files passed over");
+    let said = checked(folder.path(), &["b"]);
+    assert!(said.code == Some(2) && said.err.contains("1 other XML file passed over"), "{said:?}");
+    // A named file is meant, whatever is in it.
+    let said = checked(folder.path(), &[".", "b/page.xml"]);
+    assert!(said.code == Some(2) && said.out.ends_with("in 1 file; 1 other XML file passed over\n"), "{said:?}");
+}
+
+#[test]
+fn a_project_with_its_shim_as_one_file_is_passed_over_beside_its_sources() {
+    let whole: &[u8] = b"(*@sdsp whole*)\nPROGRAM Main VAR_OUTPUT o : INT; END_VAR o := o + 1; END_PROGRAM\n";
+    let folder = folder(&[("a.st", CLEAN), ("sdsp.st", whole)]);
+    let said = checked(folder.path(), &["."]);
+    assert_eq!((said.code, said.out.as_str()), (Some(0), "1 file, no findings; 1 instrumented project passed over\n"));
+    let said = checked(folder.path(), &[".", "--format", "json"]);
+    assert_eq!(said.out, "{\"passed_over\":{\"instrumented_projects\":1}}\n");
+    std::fs::remove_file(folder.path().join("a.st")).unwrap();
+    assert_eq!(checked(folder.path(), &["."]).out, "1 file, no findings\n");
+}
+
+#[test]
+fn what_cannot_be_read_in_a_folder_is_an_error() {
+    let koi: &[u8] = b"<?xml version=\"1.0\" encoding=\"koi8-r\"?><a/>";
+    let folder = folder(&[("a.st", CLEAN), ("b.xml", koi)]);
+    let said = checked(folder.path(), &["."]);
+    assert!(said.code == Some(2) && said.out.contains("the encoding `koi8-r` is not read"), "{said:?}");
+    // A file of the largest size and a byte, of which nothing is on the disk.
+    let large = std::fs::File::create(folder.path().join("b.xml")).unwrap();
+    large.set_len((64 << 20) + 1).unwrap();
+    let said = checked(folder.path(), &["."]);
+    assert!(said.code == Some(2) && said.err.contains("b.xml: it is larger than 64 MiB"), "{said:?}");
+}
+
 #[test]
 fn strange_files_give_findings_and_never_a_panic() {
     let huge = format!("PROGRAM P VAR x : INT; END_VAR {} y := 1; END_PROGRAM", "x := x + 1;".repeat(50_000));

@@ -24,7 +24,7 @@ pub(crate) fn onescan(folder: &Path) -> Command {
 }
 
 /// What a command said, and its exit code.
-#[derive(Debug)]
+#[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Said {
     pub(crate) out: String,
     pub(crate) err: String,

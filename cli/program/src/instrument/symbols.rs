@@ -9,7 +9,7 @@ use onescan_links::gateway::listing::Listing;
 use onescan_links::gateway::settings::Settings;
 use onescan_iec_project::instrument::{Project, Target};
 use onescan_scenario::gateway::Agreement;
-use roxmltree::Document;
+use onescan_xml::Element;
 
 use crate::map::Fragment;
 
@@ -86,11 +86,12 @@ fn global_lists(project: &Project) -> BTreeMap<String, String> {
     let mut lists = BTreeMap::new();
     let files = project.files.iter().filter(|file| is_xml(&file.name)).filter_map(|file| file.text.as_deref());
     // What was emitted has been checked already.
-    for document in files.filter_map(|text| Document::parse(text).ok()) {
-        for list in document.descendants().filter(|node| node.tag_name().name() == "globalVars") {
-            let Some(name) = list.attribute("name") else { continue };
-            let variables = list.children().filter_map(|variable| variable.attribute("name"));
-            lists.extend(variables.map(|variable| (variable.to_ascii_uppercase(), name.to_owned())));
+    for root in files.filter_map(|text| onescan_xml::parse(text).ok()) {
+        for list in root.tree().filter(|element| element.name == "globalVars") {
+            let name_of = |element: &Element| element.attribute("name").map(|name| name.value.clone());
+            let Some(name) = name_of(list) else { continue };
+            let variables = list.elements().filter_map(name_of);
+            lists.extend(variables.map(|variable| (variable.to_ascii_uppercase(), name.clone())));
         }
     }
     lists

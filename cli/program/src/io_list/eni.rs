@@ -6,7 +6,7 @@ use super::collect::{Collected, Entry};
 use super::error::ListError;
 use super::flatten::{Nothing, elementary};
 use super::point::Direction;
-use super::xml::{Element, Lines, document, text};
+use super::xml::{Element, document, text};
 use super::{IoList, ListKind};
 
 /// Reads the process image.
@@ -16,7 +16,7 @@ use super::{IoList, ListKind};
 pub fn read(path: &Path, bytes: &[u8]) -> Result<IoList, ListError> {
     let text = text(path, bytes)?;
     let document = document(path, &text)?;
-    let (root, lines) = (Element::root(&document), Lines::of(&text));
+    let root = Element::root(&document);
     let other = |what: String| {
         let help = Some("export the configuration file (ENI) of the EtherCAT master".to_owned());
         ListError::Other { file: path.display().to_string(), what, help }
@@ -30,21 +30,17 @@ pub fn read(path: &Path, bytes: &[u8]) -> Result<IoList, ListError> {
     for (area, direction) in [("Inputs", Direction::Input), ("Outputs", Direction::Output)] {
         for variable in image.all(area).flat_map(|area| area.all("Variable")) {
             let name = variable.text_of("Name").unwrap_or_default();
-            let bits = variable.text_of("BitSize").unwrap_or_default();
+            let bits = bit_string(&variable.text_of("BitSize").unwrap_or_default());
             let ty = match variable.text_of("DataType") {
-                Some(ty) => ty.to_owned(),
-                // The type may be left out.
-                None => bit_string(bits).to_owned(),
-            };
-            let (address, comment) = (None, variable.text_of("Comment"));
-            let line = Some(variable.line(&lines));
-            if elementary(&ty).is_none() && !ty.contains('[') && !bit_string(bits).is_empty() {
                 // A type of the device's own, in as many bits as a type of the PLC's.
-                let ty = bit_string(bits);
-                collected.take(&Entry { name, ty, direction, address, comment, line }, &Nothing)?;
-                continue;
-            }
-            collected.take(&Entry { name, ty: &ty, direction, address, comment, line }, &Nothing)?;
+                Some(ty) if elementary(&ty).is_none() && !ty.contains('[') && !bits.is_empty() => bits.into(),
+                Some(ty) => ty,
+                // The type may be left out.
+                None => bits.into(),
+            };
+            let (comment, line) = (variable.text_of("Comment"), Some(variable.line()));
+            let (address, comment) = (None, comment.as_deref());
+            collected.take(&Entry { name: &name, ty: &ty, direction, address, comment, line }, &Nothing)?;
         }
     }
     Ok(collected.list(ListKind::Eni))

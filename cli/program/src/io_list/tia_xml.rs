@@ -6,7 +6,7 @@ use std::path::Path;
 use super::collect::Collected;
 use super::error::ListError;
 use super::tia::Tag;
-use super::xml::{Element, Lines, document, text};
+use super::xml::{Element, document, text};
 use super::{IoList, ListKind};
 
 /// Reads the tags.
@@ -16,23 +16,24 @@ use super::{IoList, ListKind};
 pub fn read(path: &Path, bytes: &[u8]) -> Result<IoList, ListError> {
     let text = text(path, bytes)?;
     let document = document(path, &text)?;
-    let (root, lines) = (Element::root(&document), Lines::of(&text));
+    let root = Element::root(&document);
     let mut collected = Collected::of(path);
     match root.name() {
         "Document" if root.below("SW.Tags.PlcTagTable").next().is_some() => {
             for element in root.below("SW.Tags.PlcTag") {
-                openness(element, &lines).into_list(&mut collected)?;
+                openness(element, &mut collected)?;
             }
         }
         "Tagtable" => {
             for element in root.below("Tag") {
                 let attribute = |name| element.attribute(name).unwrap_or_default();
+                let name = element.text();
                 let tag = Tag {
-                    name: element.text(),
+                    name: &name,
                     ty: attribute("type"),
                     address: attribute("addr"),
                     comment: attribute("remark"),
-                    line: Some(element.line(&lines)),
+                    line: Some(element.line()),
                 };
                 tag.into_list(&mut collected)?;
             }
@@ -47,17 +48,18 @@ pub fn read(path: &Path, bytes: &[u8]) -> Result<IoList, ListError> {
 }
 
 /// A tag of Openness: its attributes in one element, its comment in one for each language.
-fn openness<'d>(element: Element<'d>, lines: &Lines) -> Tag<'d> {
+fn openness(element: Element, collected: &mut Collected) -> Result<(), ListError> {
     let attributes = element.child("AttributeList");
     let attribute = |name| attributes.and_then(|list| list.text_of(name)).unwrap_or_default();
     let comments =
         element.below("MultilingualText").filter(|text| text.attribute("CompositionName") == Some("Comment"));
-    let comments = comments.flat_map(|text| text.below("Text")).map(Element::text);
-    Tag {
-        name: attribute("Name"),
-        ty: attribute("DataTypeName"),
-        address: attribute("LogicalAddress"),
-        comment: comments.into_iter().find(|text| !text.is_empty()).unwrap_or_default(),
-        line: Some(element.line(lines)),
-    }
+    let mut comments = comments.flat_map(|text| text.below("Text")).map(Element::text);
+    let tag = Tag {
+        name: &attribute("Name"),
+        ty: &attribute("DataTypeName"),
+        address: &attribute("LogicalAddress"),
+        comment: &comments.find(|text| !text.is_empty()).unwrap_or_default(),
+        line: Some(element.line()),
+    };
+    tag.into_list(collected)
 }

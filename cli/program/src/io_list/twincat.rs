@@ -1,5 +1,6 @@
 //! TwinCAT projects: the PLC's variables in its process images, with what they are linked to.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -9,7 +10,7 @@ use super::collect::{Collected, Entry};
 use super::error::ListError;
 use super::point::Direction;
 use super::twincat_types::{Types, written};
-use super::xml::{Element, Lines, document, text};
+use super::xml::{Element, document, text};
 use super::{IoList, ListKind, ListLink, bytes_of};
 use onescan_runner::error::Usage;
 
@@ -49,12 +50,12 @@ struct FarEnd {
 pub fn read(path: &Path, bytes: &[u8], wanted: Option<&str>) -> Result<IoList, ListError> {
     let text = text(path, bytes)?;
     let document = document(path, &text)?;
-    let (root, lines) = (Element::root(&document), Lines::of(&text));
+    let root = Element::root(&document);
     let mut types = Types::default();
     types.take(root);
     let plcs = match root.name() {
-        "TcSmProject" | "TcSmItem" => plcs(root, &lines, path, &mut types)?,
-        "TcModuleClass" => vec![compiled(root, &lines)],
+        "TcSmProject" | "TcSmItem" => plcs(root, path, &mut types)?,
+        "TcModuleClass" => vec![compiled(root)],
         other => {
             let what = format!("<{other}> is no TwinCAT project");
             let help = Some("a project is a `.tsproj`, a part of one an `.xti`, a compiled PLC a `.tmc`".to_owned());
@@ -63,7 +64,7 @@ pub fn read(path: &Path, bytes: &[u8], wanted: Option<&str>) -> Result<IoList, L
     };
     types.complete();
     if plcs.is_empty() && root.name() == "TcSmItem" {
-        return device(path, root, &lines, &types);
+        return device(path, root, &types);
     }
     let plc = chosen(path, plcs, wanted)?;
     let mut collected = Collected::of(path);
@@ -112,12 +113,12 @@ fn chosen(path: &Path, plcs: Vec<Plc>, wanted: Option<&str>) -> Result<Plc, List
 }
 
 /// The PLCs of a project, those in files of their own included.
-fn plcs(root: Element, lines: &Lines, path: &Path, types: &mut Types) -> Result<Vec<Plc>, ListError> {
+fn plcs(root: Element, path: &Path, types: &mut Types) -> Result<Vec<Plc>, ListError> {
     let mut plcs = Vec::new();
     let inside = root.below("Plc").flat_map(|plc| plc.all("Project"));
     for project in inside.chain(root.all("Project").filter(|project| project.child("Instance").is_some())) {
         let Some(file) = project.attribute("File") else {
-            plcs.extend(plc(root, project, lines));
+            plcs.extend(plc(root, project));
             continue;
         };
         let part = path.parent().unwrap_or(Path::new("")).join("_Config").join("PLC").join(file.replace('\\', "/"));
@@ -128,16 +129,16 @@ fn plcs(root: Element, lines: &Lines, path: &Path, types: &mut Types) -> Result<
         }
         let text = text(&part, &bytes_of(&part)?)?;
         let document = document(&part, &text)?;
-        let (root, lines) = (Element::root(&document), Lines::of(&text));
+        let root = Element::root(&document);
         types.take(root);
         for project in root.all("Project") {
-            plcs.extend(plc(root, project, &lines).map(|plc| Plc { file: Some(part.clone()), ..plc }));
+            plcs.extend(plc(root, project).map(|plc| Plc { file: Some(part.clone()), ..plc }));
         }
     }
     Ok(plcs)
 }
 
-fn plc(root: Element, project: Element, lines: &Lines) -> Option<Plc> {
+fn plc(root: Element, project: Element) -> Option<Plc> {
     let instance = project.child("Instance")?;
     let cycles = instance.below("CycleTime").filter_map(|time| time.text().parse().ok());
     Some(Plc {
@@ -145,13 +146,13 @@ fn plc(root: Element, project: Element, lines: &Lines) -> Option<Plc> {
         file: None,
         port: project.attribute("AmsPort").and_then(|port| port.parse().ok()),
         cycle: cycles.filter_map(TimeSpan::from_nanos).min(),
-        vars: instance.all("Vars").flat_map(|group| vars(group, lines)).collect(),
-        links: links(root, instance.text_of("Name").unwrap_or_default()),
+        vars: instance.all("Vars").flat_map(vars).collect(),
+        links: links(root, &instance.text_of("Name").unwrap_or_default()),
     })
 }
 
 /// The variables of a group that is an image of inputs or outputs.
-fn vars<'d>(group: Element<'d>, lines: &'d Lines) -> impl Iterator<Item = Var> {
+fn vars(group: Element) -> impl Iterator<Item = Var> {
     let direction = match group.attribute("VarGrpType") {
         Some("1") => Some(Direction::Input),
         Some("2") => Some(Direction::Output),
@@ -161,11 +162,11 @@ fn vars<'d>(group: Element<'d>, lines: &'d Lines) -> impl Iterator<Item = Var> {
     direction.into_iter().flat_map(move |direction| {
         group.all("Var").filter_map(move |var| {
             Some(Var {
-                name: var.text_of("Name")?.to_owned(),
+                name: var.text_of("Name")?.into_owned(),
                 ty: var.child("Type").map_or_else(String::new, |ty| written(ty, var)),
                 direction,
-                comment: var.text_of("Comment").map(str::to_owned),
-                line: var.line(lines),
+                comment: var.text_of("Comment").map(Cow::into_owned),
+                line: var.line(),
             })
         })
     })
@@ -195,7 +196,7 @@ fn links(root: Element, instance: &str) -> BTreeMap<String, FarEnd> {
 }
 
 /// The images of a compiled PLC.
-fn compiled(root: Element, lines: &Lines) -> Plc {
+fn compiled(root: Element) -> Plc {
     let mut vars = Vec::new();
     for area in root.below("DataArea") {
         let direction = match area.child("AreaNo").and_then(|number| number.attribute("AreaType")) {
@@ -205,11 +206,11 @@ fn compiled(root: Element, lines: &Lines) -> Plc {
         };
         vars.extend(area.all("Symbol").filter_map(|symbol| {
             Some(Var {
-                name: symbol.text_of("Name")?.to_owned(),
+                name: symbol.text_of("Name")?.into_owned(),
                 ty: symbol.child("BaseType").map_or_else(String::new, |ty| written(ty, symbol)),
                 direction,
-                comment: symbol.text_of("Comment").map(str::to_owned),
-                line: symbol.line(lines),
+                comment: symbol.text_of("Comment").map(Cow::into_owned),
+                line: symbol.line(),
             })
         }));
     }
@@ -217,19 +218,19 @@ fn compiled(root: Element, lines: &Lines) -> Plc {
 }
 
 /// What devices have for a PLC, of a part that is no PLC: their inputs are the PLC's inputs.
-fn device(path: &Path, root: Element, lines: &Lines, types: &Types) -> Result<IoList, ListError> {
+fn device(path: &Path, root: Element, types: &Types) -> Result<IoList, ListError> {
     let mut collected = Collected::of(path);
     let home = |of: Element| {
         let mut names: Vec<_> = of
             .around()
             .filter(|around| matches!(around.name(), "Box" | "Module" | "SubModule" | "Pdo"))
-            .filter_map(|around| around.attribute("Name").or_else(|| around.text_of("Name")))
+            .filter_map(|around| around.attribute("Name").map(Cow::Borrowed).or_else(|| around.text_of("Name")))
             .collect();
         names.reverse();
         names.into_iter().map(|name| format!("{name}.")).collect::<String>()
     };
     for group in root.below("Vars") {
-        for var in vars(group, lines) {
+        for var in vars(group) {
             let name = format!("{}{}", home(group), var.name);
             let comment = var.comment.as_deref();
             let (direction, line) = (var.direction, Some(var.line));
@@ -245,8 +246,8 @@ fn device(path: &Path, root: Element, lines: &Lines, types: &Types) -> Result<Io
         let direction = if is_output { Direction::Output } else { Direction::Input };
         // Two underlines stand for a level of the tree.
         let name = format!("{}{}", home(entry), name.replace("__", "."));
-        let line = Some(entry.line(lines));
-        collected.take(&Entry { name: &name, ty, direction, address: None, comment: None, line }, types)?;
+        let line = Some(entry.line());
+        collected.take(&Entry { name: &name, ty: &ty, direction, address: None, comment: None, line }, types)?;
     }
     Ok(collected.list(ListKind::TwinCat))
 }

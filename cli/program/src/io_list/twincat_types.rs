@@ -28,9 +28,9 @@ impl Types {
                 Shape::Structure(fields)
             };
             if let Some(base) = declared.text_of("ExtendsType") {
-                self.extends.entry(name.to_owned()).or_insert_with(|| base.to_owned());
+                self.extends.entry(name.clone().into_owned()).or_insert_with(|| base.into_owned());
             }
-            self.shapes.entry(name.to_owned()).or_insert(shape);
+            self.shapes.entry(name.into_owned()).or_insert(shape);
         }
     }
 
@@ -62,7 +62,7 @@ impl Declared for Types {
 fn fields(declared: Element) -> Vec<(String, String)> {
     let fields = declared.all("SubItem").filter_map(|field| {
         let ty = field.child("Type").map(|ty| written(ty, field))?;
-        Some((field.text_of("Name")?.to_owned(), ty))
+        Some((field.text_of("Name")?.into_owned(), ty))
     });
     fields.collect()
 }
@@ -81,5 +81,5 @@ pub(super) fn written(ty: Element, of: Element) -> String {
         Some(format!("{low}..{}", low.checked_add(elements)?.checked_sub(1)?))
     });
     let bounds: Vec<_> = bounds.collect();
-    if bounds.is_empty() { ty.text().to_owned() } else { format!("ARRAY [{}] OF {}", bounds.join(","), ty.text()) }
+    if bounds.is_empty() { ty.text().into_owned() } else { format!("ARRAY [{}] OF {}", bounds.join(","), ty.text()) }
 }

@@ -1,9 +1,10 @@
 //! Which files are meant by what was typed, and what is in them.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use onescan_base::regular::{self, Limit};
+use onescan_iec::input::found::Found;
 use onescan_iec::input::kind::{EXTENSIONS, FileKind};
 use onescan_iec::input::needed;
 use onescan_iec::input::project;
@@ -14,6 +15,7 @@ use onescan_scenario::load::FILE_NAME;
 use onescan_server::signal::ClientName;
 
 use super::error::CheckError;
+use super::passed_over::PassedOver;
 use super::stubs::FOLDER as LIBRARIES;
 use onescan_runner::error::{Unreadable, Usage};
 
@@ -27,6 +29,14 @@ pub struct Program {
     pub plan: Option<TaskPlan>,
     /// How much memory its variables may take.
     pub memory_limit: MemoryLimit,
+}
+
+/// What was typed, as programs.
+pub struct Collected {
+    /// The programs.
+    pub programs: Vec<Program>,
+    /// What is in the folders beside their sources.
+    pub passed_over: PassedOver,
 }
 
 /// How files are read.
@@ -44,7 +54,7 @@ pub struct Reading<'a> {
 ///
 /// # Errors
 /// A file is not there, cannot be read, or is of no kind that is read.
-pub fn programs(paths: &[PathBuf], reading: Reading) -> Result<Vec<Program>, CheckError> {
+pub fn collect(paths: &[PathBuf], reading: Reading) -> Result<Collected, CheckError> {
     let Reading { dialect, memory_limit, libraries } = reading;
     let mut programs = Vec::new();
     let mut files = Files { dialect, ..Files::default() };
@@ -57,21 +67,40 @@ pub fn programs(paths: &[PathBuf], reading: Reading) -> Result<Vec<Program>, Che
             files.named(path)?;
         }
     }
-    if !files.inputs.is_empty() {
+    let has_sources = !files.inputs.is_empty();
+    if has_sources {
         files.libraries(libraries)?;
+    }
+    let passed_over = files.passed_over();
+    if has_sources {
         let memory_limit = memory_limit.unwrap_or_default();
         programs.push(Program { inputs: needed(files.inputs), client: None, plan: None, memory_limit });
     }
     if programs.is_empty() {
-        let known: Vec<_> = EXTENSIONS.iter().map(|(extension, _)| format!(".{extension}")).collect();
-        let help = format!("files with PLC sources end in {}", known.join(" "));
+        let help = match passed_over {
+            none if none.is_empty() => endings(),
+            some => format!("{some}; {}", endings()),
+        };
         return Err(Usage::new("there are no PLC sources here", Some(help)).into());
     }
     if files.seen.is_empty() && !libraries.is_empty() {
         let help = "the PLCs of a scenario name all their sources in `scenario.toml`".to_owned();
         return Err(Usage::new("`--library` is for PLC sources, and there are none here", Some(help)).into());
     }
-    Ok(programs)
+    Ok(Collected { programs, passed_over })
+}
+
+/// As [`collect`], for those who need the programs alone.
+///
+/// # Errors
+/// As [`collect`].
+pub fn programs(paths: &[PathBuf], reading: Reading) -> Result<Vec<Program>, CheckError> {
+    Ok(collect(paths, reading)?.programs)
+}
+
+fn endings() -> String {
+    let known: Vec<_> = EXTENSIONS.iter().map(|(extension, _)| format!(".{extension}")).collect();
+    format!("files with PLC sources end in {}", known.join(" "))
 }
 
 fn scenario(
@@ -99,8 +128,34 @@ struct Files {
     /// The dialect of all of them, if not the one that each file's name says.
     dialect: Option<Dialect>,
     inputs: Vec<Input>,
-    seen: BTreeSet<PathBuf>,
+    /// The files of `inputs`, and the projects.
+    seen: BTreeSet<Identity>,
+    left_out: BTreeMap<Identity, Reason>,
     part: Part,
+}
+
+/// A file, by whatever name it was found.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Identity(PathBuf);
+
+impl Identity {
+    fn of(path: &Path) -> Self {
+        Self(path.canonicalize().unwrap_or_else(|_| path.to_owned()))
+    }
+}
+
+/// Why a file of a folder is left out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Reason {
+    OtherXml,
+    /// It was made of the sources beside it, and is the same program once more.
+    InstrumentedProject,
+}
+
+/// What a folder holds.
+enum Entry {
+    Folder(PathBuf),
+    Source(PathBuf, Found),
 }
 
 /// Whose files are being read.
@@ -124,38 +179,53 @@ impl Files {
         if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("l5x")) {
             return Err(logix(&path.display().to_string()).into());
         }
-        let known: Vec<_> = EXTENSIONS.iter().map(|(extension, _)| format!(".{extension}")).collect();
-        let help = format!("files with PLC sources end in {}", known.join(" "));
-        Err(Usage::new(format!("{} is of no kind that is read", path.display()), Some(help)).into())
+        Err(Usage::new(format!("{} is of no kind that is read", path.display()), Some(endings())).into())
     }
 
     fn file(&mut self, path: &Path, kind: FileKind) -> Result<(), CheckError> {
-        let bytes = regular::read(path, Limit::TEXT).map_err(Unreadable::at(path))?;
-        self.read(path, kind, &bytes)
-    }
-
-    fn read(&mut self, path: &Path, kind: FileKind, bytes: &[u8]) -> Result<(), CheckError> {
-        // The same file by two names is still one.
-        let identity = path.canonicalize().unwrap_or_else(|_| path.to_owned());
-        if !self.seen.insert(identity) {
+        if self.seen.contains(&Identity::of(path)) {
             return Ok(());
         }
+        let bytes = regular::read(path, Limit::TEXT).map_err(Unreadable::at(path))?;
         match kind {
             FileKind::Source(kind) => {
-                // A file of the folder `.` is named as if the folder had not been.
-                let name = path.strip_prefix(".").unwrap_or(path).display().to_string();
-                let input = match &self.part {
-                    Part::Own => Input::read(&name, kind, bytes),
-                    Part::Library(namespace) => Input::of_library(namespace.as_deref(), &name, kind, bytes),
-                };
-                self.inputs.push(match self.dialect {
-                    Some(dialect) => input.in_dialect(dialect),
-                    None => input,
-                });
+                self.source(path, Found::decode(kind, &bytes));
                 Ok(())
             }
-            FileKind::Project => self.project(path, bytes),
+            FileKind::Project => {
+                self.seen.insert(Identity::of(path));
+                self.project(path, &bytes)
+            }
         }
+    }
+
+    fn source(&mut self, path: &Path, found: Found) {
+        if !self.seen.insert(Identity::of(path)) {
+            return;
+        }
+        // A file of the folder `.` is named as if the folder had not been.
+        let name = path.strip_prefix(".").unwrap_or(path).display().to_string();
+        let input = match &self.part {
+            Part::Own => Input::found(&name, found),
+            Part::Library(namespace) => Input::of_library(namespace.as_deref(), &name, found),
+        };
+        self.inputs.push(match self.dialect {
+            Some(dialect) => input.in_dialect(dialect),
+            None => input,
+        });
+    }
+
+    /// What was left out of folders and not named elsewhere.
+    fn passed_over(&self) -> PassedOver {
+        let reasons = self.left_out.iter().filter(|(file, _)| !self.seen.contains(file)).map(|(_, reason)| *reason);
+        let mut counts = PassedOver::default();
+        for reason in reasons {
+            match reason {
+                Reason::OtherXml => counts.other_xml += 1,
+                Reason::InstrumentedProject => counts.instrumented_projects += 1,
+            }
+        }
+        counts
     }
 
     /// Sources of libraries: folders, projects and files.
@@ -179,13 +249,13 @@ impl Files {
                 let mut missing = Vec::new();
                 for listed in &listing.files {
                     let file = folder.join(&listed.path);
-                    let Some(kind @ FileKind::Source(_)) = FileKind::of(&file) else { continue };
+                    let Some(FileKind::Source(kind)) = FileKind::of(&file) else { continue };
                     // A library has no tasks of its own.
-                    if self.part != Part::Own && is_task(&file) {
+                    if self.part != Part::Own && is_task(&file) || self.seen.contains(&Identity::of(&file)) {
                         continue;
                     }
                     match regular::read(&file, Limit::TEXT) {
-                        Ok(bytes) => self.read(&file, kind, &bytes)?,
+                        Ok(bytes) => self.source(&file, Found::decode(kind, &bytes)),
                         // What is there is checked all the same.
                         Err(error) if error.kind() == std::io::ErrorKind::NotFound => missing.push(listed),
                         Err(error) => return Err(Unreadable::at(&file)(error).into()),
@@ -214,21 +284,46 @@ impl Files {
         if let Some(project) = entries.iter().find(is_project) {
             return self.file(project, FileKind::Project);
         }
-        let is_source = |file: &PathBuf| matches!(FileKind::of(file), Some(FileKind::Source(_))) && !is_other_xml(file);
-        let sources = entries.iter().filter(|file| is_source(file)).count();
+        let (entries, sources) = self.entries(entries)?;
         for entry in entries {
-            // A link to a folder may lead in a circle.
-            if entry.is_dir() && !entry.is_symlink() {
-                self.folder(&entry)?;
-            } else if let Some(kind) = FileKind::of(&entry).filter(|_| entry.is_file())
-                && !is_other_xml(&entry)
-                // What was made of the sources beside it is the same program once more.
-                && !(sources > 1 && is_whole(&entry))
-            {
-                self.file(&entry, kind)?;
+            match entry {
+                Entry::Folder(path) => self.folder(&path)?,
+                Entry::Source(path, found) if sources > 1 && is_instrumented_project(&path, &found) => {
+                    self.left_out.insert(Identity::of(&path), Reason::InstrumentedProject);
+                }
+                Entry::Source(path, found) => self.source(&path, found),
             }
         }
         Ok(())
+    }
+
+    /// The folders and the new sources among `paths`, and how many sources there are with those that are known. Each
+    /// file is read here, and only once.
+    fn entries(&mut self, paths: Vec<PathBuf>) -> Result<(Vec<Entry>, usize), CheckError> {
+        let mut entries = Vec::new();
+        let mut sources = 0;
+        for path in paths {
+            // A link to a folder may lead in a circle.
+            if path.is_dir() && !path.is_symlink() {
+                entries.push(Entry::Folder(path));
+                continue;
+            }
+            let Some(FileKind::Source(kind)) = FileKind::of(&path).filter(|_| path.is_file()) else { continue };
+            let identity = Identity::of(&path);
+            if self.seen.contains(&identity) {
+                sources += 1;
+                continue;
+            }
+            let bytes = regular::read(&path, Limit::TEXT).map_err(Unreadable::at(&path))?;
+            let found = Found::decode(kind, &bytes);
+            if found.is_other_xml() {
+                self.left_out.insert(identity, Reason::OtherXml);
+            } else {
+                sources += 1;
+                entries.push(Entry::Source(path, found));
+            }
+        }
+        Ok((entries, sources))
     }
 }
 
@@ -236,16 +331,10 @@ fn is_task(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("TcTTO"))
 }
 
-/// True for XML that is not PLCopen's: folders hold much of it.
-fn is_other_xml(path: &Path) -> bool {
-    let is_xml = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("xml"));
-    is_xml && !regular::read(path, Limit::TEXT).is_ok_and(|bytes| bytes.windows(11).any(|part| part == b"plcopen.org"))
-}
-
 /// True for a project with its shim that `instrument` wrote as one file.
-fn is_whole(path: &Path) -> bool {
+fn is_instrumented_project(path: &Path, found: &Found) -> bool {
     let is_own = path.file_stem().is_some_and(|stem| stem.eq_ignore_ascii_case("sdsp"));
-    is_own && regular::read(path, Limit::TEXT).is_ok_and(|bytes| instrument::is_whole(&String::from_utf8_lossy(&bytes)))
+    is_own && found.text().is_some_and(instrument::is_whole)
 }
 
 /// Why neither files nor targets of Logix controllers are taken: `docs/decisions/007`.

@@ -31,14 +31,19 @@ pub fn write(report: &Report, out: &mut dyn Write) -> io::Result<()> {
     errors.write("error", &handler, out)?;
     let (errors, warnings) = (report.count(Severity::Error), report.count(Severity::Warning));
     let files = counted(report.files, "file");
-    match (errors, warnings) {
-        (0, 0) => writeln!(out, "{files}, no findings"),
-        (errors, 0) => writeln!(out, "{} in {}", counted(errors, "error"), concerned(report)),
-        (0, warnings) => writeln!(out, "{} in {}", counted(warnings, "warning"), concerned(report)),
+    let summary = match (errors, warnings) {
+        (0, 0) => format!("{files}, no findings"),
+        (errors, 0) => format!("{} in {}", counted(errors, "error"), concerned(report)),
+        (0, warnings) => format!("{} in {}", counted(warnings, "warning"), concerned(report)),
         (errors, warnings) => {
             let (errors, warnings) = (counted(errors, "error"), counted(warnings, "warning"));
-            writeln!(out, "{errors}, {warnings} in {}", concerned(report))
+            format!("{errors}, {warnings} in {}", concerned(report))
         }
+    };
+    if report.passed_over.is_empty() {
+        writeln!(out, "{summary}")
+    } else {
+        writeln!(out, "{summary}; {}", report.passed_over)
     }
 }
 

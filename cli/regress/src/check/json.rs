@@ -1,4 +1,4 @@
-//! Findings for machines: one JSON object a line.
+//! Findings for machines: one JSON object per line. A last one counts the files that were passed over, if there are any.
 
 use std::io::{self, Write};
 
@@ -6,6 +6,7 @@ use onescan_iec::Finding;
 use onescan_report::Severity;
 use serde::Serialize;
 
+use super::passed_over::PassedOver;
 use super::report::{Report, severity};
 
 /// One finding. Lines and columns count from 1, columns count characters.
@@ -29,6 +30,13 @@ pub struct Line<'a> {
     pub message: &'a str,
     /// What to do about it, or `null`.
     pub help: Option<&'a str>,
+}
+
+/// The last line: files of folders that were left out.
+#[derive(Debug, Serialize)]
+pub struct LastLine {
+    /// How many, by the reason.
+    pub passed_over: PassedOver,
 }
 
 impl<'a> From<&'a Finding> for Line<'a> {
@@ -56,6 +64,10 @@ impl<'a> From<&'a Finding> for Line<'a> {
 pub fn write(report: &Report, out: &mut dyn Write) -> io::Result<()> {
     for finding in report.iter() {
         serde_json::to_writer(&mut *out, &Line::from(finding))?;
+        writeln!(out)?;
+    }
+    if !report.passed_over.is_empty() {
+        serde_json::to_writer(&mut *out, &LastLine { passed_over: report.passed_over })?;
         writeln!(out)?;
     }
     Ok(())

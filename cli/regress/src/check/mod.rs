@@ -3,6 +3,7 @@
 //! | module | subject |
 //! |---|---|
 //! | [`collect`] | which files are meant, and what is in them |
+//! | [`passed_over`] | which files of folders are left out |
 //! | [`report`] | how the findings are shown |
 //! | [`human`] | for people |
 //! | [`json`] | a JSON object a finding |
@@ -15,6 +16,7 @@ mod error;
 pub mod explain;
 pub mod human;
 pub mod json;
+pub mod passed_over;
 pub mod report;
 pub mod sarif;
 pub mod stubs;
@@ -28,7 +30,7 @@ use onescan_report::OutputError;
 pub use error::CheckError;
 
 use onescan_runner::error::ExitCode;
-use collect::Reading;
+use collect::{Collected, Reading};
 use report::Report;
 
 /// For whom the findings are.
@@ -85,11 +87,11 @@ pub enum Warnings {
 /// A file cannot be read, or the report not be written. What is wrong with the sources is no error
 /// here but an exit code.
 pub fn check(config: &CheckConfig, out: &mut dyn Write) -> Result<ExitCode, CheckError> {
-    let programs = collect::programs(&config.paths, config.reading())?;
+    let Collected { programs, passed_over } = collect::collect(&config.paths, config.reading())?;
     let files = programs.iter().map(|program| program.inputs.len()).sum();
     let findings =
         programs.into_iter().map(|program| inspect_within(program.memory_limit, program.inputs, program.plan.as_ref()));
-    let report = Report { files, findings: findings.collect() };
+    let report = Report { files, findings: findings.collect(), passed_over };
     let written = match config.format {
         CheckFormat::Human => human::write(&report, out),
         CheckFormat::Json => json::write(&report, out),

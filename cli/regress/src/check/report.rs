@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use onescan_iec::{Diagnostics, Finding, Severity};
 
 use super::Warnings;
+use super::passed_over::PassedOver;
 use super::stubs::is_stub;
 use onescan_runner::error::ExitCode;
 
@@ -23,6 +24,8 @@ pub struct Report {
     pub files: usize,
     /// The findings of each program.
     pub findings: Vec<Diagnostics>,
+    /// Files of folders that were left out.
+    pub passed_over: PassedOver,
 }
 
 impl Report {

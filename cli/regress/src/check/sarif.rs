@@ -16,7 +16,8 @@ pub fn write(report: &Report, out: &mut dyn Write) -> io::Result<()> {
     // Every code is a rule, so that none is left out.
     let rule = |finding: &Finding| Code::ALL.iter().position(|code| *code == finding.diagnostic().code);
     let found = report.iter().filter_map(|finding| Some(result(rule(finding)?, finding)));
-    out.write_all(log(&rules, found).as_bytes())
+    let passed_over = (!report.passed_over.is_empty()).then(|| report.passed_over.to_string());
+    out.write_all(log(&rules, found, passed_over.as_deref()).as_bytes())
 }
 
 fn result(rule: usize, finding: &Finding) -> Found<'_> {

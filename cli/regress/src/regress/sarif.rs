@@ -17,7 +17,7 @@ const RULES: [Rule<'static>; 3] = [
 
 /// The log as JSON.
 pub fn text(report: &Report) -> String {
-    log(&RULES, report.outcomes.iter().flat_map(results))
+    log(&RULES, report.outcomes.iter().flat_map(results), None)
 }
 
 fn results(outcome: &Outcome) -> Vec<Found<'_>> {

@@ -5,13 +5,15 @@
 
 use std::collections::BTreeMap;
 
+use onescan_xml::{Element, parse_within};
 use rapier3d::glamx::{DMat3, DQuat, DVec3};
-use roxmltree::{Document, Node, ParsingOptions};
 
 use super::{Mesh, MeshError};
 
 /// Deepest nesting of nodes.
 const DEPTH_MAX: usize = 64;
+/// Deepest nesting of elements: those that nobody looks at may be nested, too.
+const ELEMENTS_DEPTH_MAX: usize = 1024;
 
 /// A linear map and a translation.
 #[derive(Clone, Copy)]
@@ -29,8 +31,9 @@ impl Place {
 }
 
 struct File<'d> {
+    text: &'d str,
     /// Every element with an `id`.
-    known: BTreeMap<&'d str, Node<'d, 'd>>,
+    known: BTreeMap<&'d str, &'d Element>,
     mesh: Mesh,
     budget: usize,
 }
@@ -40,24 +43,22 @@ struct File<'d> {
 /// # Errors
 /// A text that is no COLLADA, or whose numbers do not go together.
 pub(super) fn read(bytes: &[u8]) -> Result<Mesh, MeshError> {
-    let text = String::from_utf8_lossy(bytes);
-    let options = ParsingOptions { nodes_limit: 2_000_000, ..ParsingOptions::default() };
-    let document = Document::parse_with_options(&text, options)
-        .map_err(|error| MeshError::Line { line: error.pos().row as usize, cause: error.to_string() })?;
-    let root = document.root_element();
-    if root.tag_name().name() != "COLLADA" {
-        return Err(wrong(root, "<COLLADA> is missing"));
+    let text = &*String::from_utf8_lossy(bytes);
+    let root = &parse_within(text, ELEMENTS_DEPTH_MAX)
+        .map_err(|error| MeshError::Line { line: line(text, error.at), cause: error.to_string() })?;
+    let known = root.tree().filter_map(|element| Some((value(element, "id")?, element))).collect();
+    let mut file = File { text, known, mesh: Mesh::default(), budget: 100_000 };
+    if root.name != "COLLADA" {
+        return Err(file.wrong(root, "<COLLADA> is missing"));
     }
-    let unit = child(root, "asset").and_then(|asset| child(asset, "unit")).and_then(|unit| unit.attribute("meter"));
+    let unit = root.child("asset").and_then(|asset| asset.child("unit")).and_then(|unit| value(unit, "meter"));
     let unit_m: f64 = unit.and_then(|text| text.trim().parse().ok()).unwrap_or(1.0);
-    let known = document.descendants().filter_map(|node| Some((node.attribute("id")?, node))).collect();
-    let mut file = File { known, mesh: Mesh::default(), budget: 100_000 };
     let all = Place { linear: DMat3::from_diagonal(DVec3::splat(unit_m)), shift: DVec3::ZERO };
-    let scene = child(root, "scene").and_then(|scene| child(scene, "instance_visual_scene"));
+    let scene = root.child("scene").and_then(|scene| scene.child("instance_visual_scene"));
     match scene.and_then(|instance| file.referred(instance)) {
         Some(scene) => file.nodes(scene, all, DEPTH_MAX)?,
         None => {
-            for geometry in document.descendants().filter(|node| node.tag_name().name() == "geometry") {
+            for geometry in root.tree().filter(|element| element.name == "geometry") {
                 file.geometry(geometry, all)?;
             }
         }
@@ -65,45 +66,50 @@ pub(super) fn read(bytes: &[u8]) -> Result<Mesh, MeshError> {
     Ok(file.mesh)
 }
 
-fn wrong(node: Node<'_, '_>, cause: &str) -> MeshError {
-    let line = node.document().text_pos_at(node.range().start).row as usize;
-    MeshError::Line { line, cause: cause.to_owned() }
+fn line(text: &str, at: u32) -> usize {
+    text.get(..at as usize).unwrap_or(text).matches('\n').count() + 1
 }
 
-fn child<'d>(node: Node<'d, 'd>, name: &str) -> Option<Node<'d, 'd>> {
-    node.children().find(|inner| inner.tag_name().name() == name)
-}
-
-fn numbers(node: Node<'_, '_>) -> Result<Vec<f64>, MeshError> {
-    // An element without text is an empty list.
-    let parsed = node.text().unwrap_or("").split_whitespace().map(str::parse).collect::<Result<_, _>>();
-    parsed.map_err(|_| wrong(node, "a number is expected"))
+fn value<'d>(element: &'d Element, name: &str) -> Option<&'d str> {
+    element.attribute(name).map(|attribute| &*attribute.value)
 }
 
 impl<'d> File<'d> {
+    fn wrong(&self, element: &Element, cause: &str) -> MeshError {
+        MeshError::Line { line: line(self.text, element.open.start), cause: cause.to_owned() }
+    }
+
+    fn numbers(&self, element: &Element) -> Result<Vec<f64>, MeshError> {
+        // An element without text is an empty list.
+        let text = element.text(self.text);
+        let parsed = text.split_whitespace().map(str::parse).collect::<Result<_, _>>();
+        parsed.map_err(|_| self.wrong(element, "a number is expected"))
+    }
+
     /// What `url="#id"` or `source="#id"` names.
-    fn referred(&self, node: Node<'d, 'd>) -> Option<Node<'d, 'd>> {
-        let named = node.attribute("url").or_else(|| node.attribute("source"))?;
+    fn referred(&self, element: &Element) -> Option<&'d Element> {
+        let named = value(element, "url").or_else(|| value(element, "source"))?;
         self.known.get(named.strip_prefix('#')?).copied()
     }
 
-    fn nodes(&mut self, parent: Node<'d, 'd>, above: Place, depth: usize) -> Result<(), MeshError> {
+    fn nodes(&mut self, parent: &Element, above: Place, depth: usize) -> Result<(), MeshError> {
         if depth == 0 || self.budget == 0 {
-            return Err(wrong(parent, "nodes are nested too deep, or too many"));
+            return Err(self.wrong(parent, "nodes are nested too deep, or too many"));
         }
         self.budget -= 1;
         let mut place = above;
-        for inner in parent.children().filter(Node::is_element) {
-            match inner.tag_name().name() {
-                "matrix" | "translate" | "scale" | "rotate" => place = place.then(transform(inner)?),
+        for inner in parent.elements() {
+            match &*inner.name {
+                "matrix" | "translate" | "scale" | "rotate" => place = place.then(self.transform(inner)?),
                 "node" => self.nodes(inner, place, depth - 1)?,
                 "instance_node" => {
-                    let node = self.referred(inner).ok_or_else(|| wrong(inner, "it names a node that is not there"))?;
+                    let node =
+                        self.referred(inner).ok_or_else(|| self.wrong(inner, "it names a node that is not there"))?;
                     self.nodes(node, place, depth - 1)?;
                 }
                 "instance_geometry" => {
                     let found = self.referred(inner);
-                    let geometry = found.ok_or_else(|| wrong(inner, "it names a geometry that is not there"))?;
+                    let geometry = found.ok_or_else(|| self.wrong(inner, "it names a geometry that is not there"))?;
                     self.geometry(geometry, place)?;
                 }
                 // lights, cameras, materials
@@ -113,10 +119,10 @@ impl<'d> File<'d> {
         Ok(())
     }
 
-    fn geometry(&mut self, geometry: Node<'d, 'd>, place: Place) -> Result<(), MeshError> {
-        let Some(mesh) = child(geometry, "mesh") else { return Ok(()) };
-        for faces in mesh.children().filter(Node::is_element) {
-            let kind = faces.tag_name().name();
+    fn geometry(&mut self, geometry: &Element, place: Place) -> Result<(), MeshError> {
+        let Some(mesh) = geometry.child("mesh") else { return Ok(()) };
+        for faces in mesh.elements() {
+            let kind = &*faces.name;
             if matches!(kind, "triangles" | "polylist" | "polygons" | "trifans" | "tristrips") {
                 self.faces(faces, kind, place)?;
                 self.mesh.bounded()?;
@@ -125,24 +131,25 @@ impl<'d> File<'d> {
         Ok(())
     }
 
-    fn faces(&mut self, faces: Node<'d, 'd>, kind: &str, place: Place) -> Result<(), MeshError> {
-        let inputs = || faces.children().filter(|inner| inner.tag_name().name() == "input");
-        let offset = |input: Node<'_, '_>| input.attribute("offset").and_then(|text| text.parse::<usize>().ok());
+    fn faces(&mut self, faces: &Element, kind: &str, place: Place) -> Result<(), MeshError> {
+        let inputs = || faces.elements().filter(|inner| inner.name == "input");
+        let offset = |input: &Element| value(input, "offset").and_then(|text| text.parse::<usize>().ok());
         // An input without an offset has the first place. The greatest number that a file can give is no count.
         let stride = inputs().filter_map(offset).max().unwrap_or(0).saturating_add(1);
-        let vertex = inputs().find(|input| input.attribute("semantic") == Some("VERTEX"));
-        let Some(vertex) = vertex.filter(|_| stride < 64) else { return Err(wrong(faces, "it has no corners")) };
+        let vertex = inputs().find(|input| value(input, "semantic") == Some("VERTEX"));
+        let Some(vertex) = vertex.filter(|_| stride < 64) else { return Err(self.wrong(faces, "it has no corners")) };
         let first = self.corners(vertex, place)?;
         let count = self.mesh.corners.len() - first;
         let at = offset(vertex).unwrap_or(0);
-        let counts = child(faces, "vcount").map(numbers).transpose()?;
-        for list in faces.children().filter(|inner| inner.tag_name().name() == "p") {
-            let indices: Vec<u32> = numbers(list)?
+        let counts = faces.child("vcount").map(|counts| self.numbers(counts)).transpose()?;
+        for list in faces.elements().filter(|inner| inner.name == "p") {
+            let indices: Vec<u32> = self
+                .numbers(list)?
                 .chunks_exact(stride)
                 .map(|corner| corner[at])
                 .map(|index| (index >= 0.0 && index < count as f64).then_some(first as u32 + index as u32))
                 .collect::<Option<_>>()
-                .ok_or_else(|| wrong(list, "it names a corner that is not there"))?;
+                .ok_or_else(|| self.wrong(list, "it names a corner that is not there"))?;
             match (kind, &counts) {
                 ("triangles", _) => self.mesh.triangles.extend(indices.chunks_exact(3).map(|c| [c[0], c[1], c[2]])),
                 ("tristrips", _) => self.mesh.triangles.extend(indices.windows(3).map(|c| [c[0], c[1], c[2]])),
@@ -150,7 +157,8 @@ impl<'d> File<'d> {
                     let mut rest = indices.as_slice();
                     for corners in counts {
                         let cut = rest.split_at_checked(*corners as usize);
-                        let (face, behind) = cut.ok_or_else(|| wrong(list, "it has fewer corners than it says"))?;
+                        let (face, behind) =
+                            cut.ok_or_else(|| self.wrong(list, "it has fewer corners than it says"))?;
                         self.fan(face);
                         rest = behind;
                     }
@@ -168,46 +176,46 @@ impl<'d> File<'d> {
     }
 
     /// Adds the corners of an input, each where it is, and gives the index of the first.
-    fn corners(&mut self, vertex: Node<'d, 'd>, place: Place) -> Result<usize, MeshError> {
-        let lost = || wrong(vertex, "its corners are not there");
+    fn corners(&mut self, vertex: &Element, place: Place) -> Result<usize, MeshError> {
+        let lost = || self.wrong(vertex, "its corners are not there");
         let vertices = self.referred(vertex).ok_or_else(lost)?;
-        let positions = vertices.children().find(|input| input.attribute("semantic") == Some("POSITION"));
+        let positions = vertices.elements().find(|input| value(input, "semantic") == Some("POSITION"));
         let source = positions.and_then(|input| self.referred(input)).ok_or_else(lost)?;
-        let array = child(source, "float_array").ok_or_else(lost)?;
-        let accessor = child(source, "technique_common").and_then(|technique| child(technique, "accessor"));
-        let stride = accessor.and_then(|accessor| accessor.attribute("stride")?.parse().ok()).unwrap_or(3_usize);
+        let array = source.child("float_array").ok_or_else(lost)?;
+        let accessor = source.child("technique_common").and_then(|technique| technique.child("accessor"));
+        let stride = accessor.and_then(|accessor| value(accessor, "stride")?.parse().ok()).unwrap_or(3_usize);
         if !(3..64).contains(&stride) {
-            return Err(wrong(source, "a corner has three numbers"));
+            return Err(self.wrong(source, "a corner has three numbers"));
         }
         let first = self.mesh.corners.len();
-        for corner in numbers(array)?.chunks_exact(stride) {
+        for corner in self.numbers(array)?.chunks_exact(stride) {
             let placed = place.linear * DVec3::new(corner[0], corner[1], corner[2]) + place.shift;
             self.mesh.corners.push(placed.to_array());
         }
         Ok(first)
     }
-}
 
-fn transform(node: Node<'_, '_>) -> Result<Place, MeshError> {
-    let numbers = numbers(node)?;
-    Ok(match (node.tag_name().name(), &numbers[..]) {
-        // three rows of four, and a fourth that says nothing
-        ("matrix", rows) if rows.len() == 16 => {
-            let [x, y, z, shift] =
-                [0, 1, 2, 3].map(|column| DVec3::new(rows[column], rows[column + 4], rows[column + 8]));
-            Place { linear: DMat3::from_cols(x, y, z), shift }
-        }
-        ("translate", [x, y, z]) => Place { shift: DVec3::new(*x, *y, *z), ..Place::IDENTITY },
-        ("scale", [x, y, z]) => Place { linear: DMat3::from_diagonal(DVec3::new(*x, *y, *z)), ..Place::IDENTITY },
-        ("rotate", [x, y, z, angle_deg]) => {
-            let axis = DVec3::new(*x, *y, *z);
-            let (sin, cos) = libm::sincos(0.5 * angle_deg.to_radians());
-            let about = if axis.length() > 0.0 { axis / axis.length() * sin } else { DVec3::ZERO };
-            let turned = DQuat::from_xyzw(about.x, about.y, about.z, cos);
-            Place { linear: DMat3::from_quat(turned), ..Place::IDENTITY }
-        }
-        _ => return Err(wrong(node, "it has another count of numbers than it should")),
-    })
+    fn transform(&self, element: &Element) -> Result<Place, MeshError> {
+        let numbers = self.numbers(element)?;
+        Ok(match (&*element.name, &numbers[..]) {
+            // three rows of four, and a fourth that says nothing
+            ("matrix", rows) if rows.len() == 16 => {
+                let [x, y, z, shift] =
+                    [0, 1, 2, 3].map(|column| DVec3::new(rows[column], rows[column + 4], rows[column + 8]));
+                Place { linear: DMat3::from_cols(x, y, z), shift }
+            }
+            ("translate", [x, y, z]) => Place { shift: DVec3::new(*x, *y, *z), ..Place::IDENTITY },
+            ("scale", [x, y, z]) => Place { linear: DMat3::from_diagonal(DVec3::new(*x, *y, *z)), ..Place::IDENTITY },
+            ("rotate", [x, y, z, angle_deg]) => {
+                let axis = DVec3::new(*x, *y, *z);
+                let (sin, cos) = libm::sincos(0.5 * angle_deg.to_radians());
+                let about = if axis.length() > 0.0 { axis / axis.length() * sin } else { DVec3::ZERO };
+                let turned = DQuat::from_xyzw(about.x, about.y, about.z, cos);
+                Place { linear: DMat3::from_quat(turned), ..Place::IDENTITY }
+            }
+            _ => return Err(self.wrong(element, "it has another count of numbers than it should")),
+        })
+    }
 }
 
 #[cfg(test)]

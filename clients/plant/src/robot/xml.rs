@@ -1,17 +1,15 @@
-//! XML of robots' files as a tree of its own, in which each element and each attribute knows its place.
-//!
-//! The tree owns what it has: a macro's body stands in many places of the expanded robot. Text between
-//! tags means nothing in URDF, xacro and MJCF, and is left out.
+//! The elements of a robot. They come from several files, so each element and each attribute knows its file with its
+//! place: a macro's body stands in many places of the expanded robot. Text between tags means nothing in URDF, xacro
+//! and MJCF, and is left out.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
-use roxmltree::{Document, Error, Node};
-
 use crate::file_place::{Place, Source};
 
-/// Deepest nesting of elements; robots have a tenth of it.
-const DEPTH_MAX: usize = 128;
+/// What the prefix `xml` always stands for.
+const XML: &str = "http://www.w3.org/XML/1998/namespace";
 
 impl Place {
     /// A fault at this place.
@@ -68,48 +66,92 @@ pub(super) struct Element {
 /// The outermost element of a file.
 ///
 /// # Errors
-/// A text that is not XML.
+/// A text that is not XML, or has a prefix without a namespace.
 pub(super) fn parse(source: &Arc<Source>) -> Result<Element, RobotFault> {
     let text = &source.text;
-    let at = |span: Range<usize>| Place { source: Arc::clone(source), span };
-    let document = Document::parse(text).map_err(|error| match error {
-        // the reader's place is where the element begins; what is missing is missing at the end
-        Error::UnclosedRootNode | Error::UnexpectedEndOfStream | Error::NoRootNode => {
-            at(text.len()..text.len()).wrong("the file ends within an element")
+    let file = File { source };
+    let root = onescan_xml::parse(text).map_err(|error| {
+        let at = error.at as usize;
+        if error.fault.is_truncation() {
+            return file.at(text.len()..text.len()).wrong("the file ends within an element");
         }
-        other => {
-            let pos = other.pos();
-            let start: usize = text.split_inclusive('\n').take(pos.row as usize - 1).map(str::len).sum();
-            let line = text.get(start..).and_then(|rest| rest.lines().next()).unwrap_or_default();
-            let column = line.chars().take(pos.col as usize - 1).map(char::len_utf8).sum::<usize>();
-            at(start + column..start + line.len().max(column)).wrong(other.to_string())
-        }
+        let line_end = text.get(at..).and_then(|rest| rest.find('\n')).map_or(text.len(), |end| at + end);
+        file.at(at..line_end).wrong(error.to_string())
     })?;
-    element(document.root_element(), source, DEPTH_MAX)
+    file.element(&root, None)
 }
 
-fn element(node: Node<'_, '_>, source: &Arc<Source>, depth: usize) -> Result<Element, RobotFault> {
-    let name = node.tag_name();
-    // the whole element may be a thousand lines; its first tag is what a reader looks for
-    let range = node.range();
-    let head =
-        source.text.get(range.clone()).and_then(|whole| whole.find('>')).map_or(range.end, |at| range.start + at + 1);
-    let place = Place { source: Arc::clone(source), span: range.start..head };
-    if depth == 0 {
-        return Err(place.wrong(format!("elements are nested more than {DEPTH_MAX} deep")));
+/// The namespaces that an element declares, by their prefixes, and those of the elements around it. No prefix is "".
+#[derive(Debug)]
+struct Namespaces<'x> {
+    declared: BTreeMap<&'x str, &'x str>,
+    around: Option<&'x Self>,
+}
+
+impl<'x> Namespaces<'x> {
+    fn of(element: &'x onescan_xml::Element, around: Option<&'x Self>) -> Self {
+        let declared = element.attributes.iter().filter_map(|each| Some((declared(&each.name)?, &*each.value)));
+        Self { declared: declared.collect(), around }
     }
-    let attributes = node.attributes().map(|attribute| Attribute {
-        key: attribute.name().to_owned(),
-        value: attribute.value().to_owned(),
-        place: Place { source: Arc::clone(source), span: attribute.range() },
-    });
-    let inner = node.children().filter(Node::is_element);
-    Ok(Element {
-        name: name.name().to_owned(),
-        is_xacro: name.namespace().is_some_and(|space| space.contains("xacro")),
-        attributes: attributes.collect(),
-        children: inner.map(|child| element(child, source, depth - 1)).collect::<Result<_, _>>()?,
-        place,
+
+    fn get(&self, prefix: &str) -> Option<&'x str> {
+        let own = self.declared.get(prefix).copied();
+        own.or_else(|| self.around?.get(prefix)).or((prefix == "xml").then_some(XML))
+    }
+}
+
+/// The prefix that an attribute of this name declares, if it declares one.
+fn declared(name: &str) -> Option<&str> {
+    let rest = name.strip_prefix("xmlns")?;
+    if rest.is_empty() { Some("") } else { rest.strip_prefix(':') }
+}
+
+struct File<'s> {
+    source: &'s Arc<Source>,
+}
+
+impl File<'_> {
+    fn at(&self, span: Range<usize>) -> Place {
+        Place { source: Arc::clone(self.source), span }
+    }
+
+    fn place(&self, span: &Range<u32>) -> Place {
+        self.at(span.start as usize..span.end as usize)
+    }
+
+    fn element(&self, element: &onescan_xml::Element, around: Option<&Namespaces<'_>>) -> Result<Element, RobotFault> {
+        // the whole element may be a thousand lines; its first tag is what a reader looks for
+        let place = self.place(&element.open);
+        let namespaces = Namespaces::of(element, around);
+        let namespace = match element.prefix(&self.source.text) {
+            Some(prefix) => Some(needed(&namespaces, prefix, &place)?),
+            None => namespaces.get(""),
+        };
+        let mut attributes = Vec::new();
+        for attribute in element.attributes.iter().filter(|attribute| declared(&attribute.name).is_none()) {
+            let place = self.place(&attribute.whole);
+            let key = match attribute.name.split_once(':') {
+                Some((prefix, key)) => needed(&namespaces, prefix, &place).map(|_| key)?,
+                None => &*attribute.name,
+            };
+            attributes.push(Attribute { key: key.to_owned(), value: attribute.value.clone(), place });
+        }
+        let children = element.elements().map(|child| self.element(child, Some(&namespaces)));
+        Ok(Element {
+            name: element.name.clone(),
+            is_xacro: namespace.is_some_and(|namespace| namespace.contains("xacro")),
+            attributes,
+            children: children.collect::<Result<_, _>>()?,
+            place,
+        })
+    }
+}
+
+/// The namespace of a prefix that stands at a place.
+fn needed<'x>(namespaces: &Namespaces<'x>, prefix: &str, place: &Place) -> Result<&'x str, RobotFault> {
+    namespaces.get(prefix).ok_or_else(|| {
+        let hint = format!("declare it in the outermost element: xmlns:{prefix}=\"…\"");
+        place.wrong(format!("the prefix `{prefix}:` has no namespace")).hinted(hint)
     })
 }
 
@@ -181,5 +223,56 @@ impl Element {
     /// A fault at one of its attributes.
     pub(super) fn wrong_at(&self, key: &str, cause: impl Into<String>) -> RobotFault {
         self.attribute(key).map_or(&self.place, |attribute| &attribute.place).wrong(cause)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Result<Element, RobotFault> {
+        parse(&Arc::new(Source { file: "r.xacro".to_owned(), text: text.into() }))
+    }
+
+    fn told(text: &str) -> String {
+        read(text).expect_err(text).to_string()
+    }
+
+    #[test]
+    fn namespaces_decide_what_is_xacro() {
+        let text = "<robot xmlns:x='http://ros.org/xacro'><x:a/><a xml:lang='en' x:b='1'/>\
+            <c xmlns='http://ros.org/xacro'><d/></c><e xmlns:x='urn:other'><x:f/></e></robot>";
+        let root = read(text).unwrap();
+        let names: Vec<_> = root.children.iter().flat_map(|each| std::iter::once(each).chain(&each.children)).collect();
+        let names: String = names.iter().filter(|each| each.is_xacro).map(|each| &*each.name).collect();
+        assert_eq!(names, "acd");
+        let keys: Vec<_> = root.children[1].attributes.iter().map(|attribute| &*attribute.key).collect();
+        assert_eq!((keys, root.attributes.len()), (vec!["lang", "b"], 0));
+        assert!(told("<robot>\n<x:a/></robot>").starts_with("line 2: the prefix `x:` has no namespace (declare it"));
+        assert!(told("<robot>\n<a\n x:b='1'/></robot>").starts_with("line 3: the prefix `x:` has no namespace"));
+    }
+
+    #[test]
+    fn what_is_no_xml_has_its_line() {
+        let cases = [
+            ("<robot>\n<link>\n</robot>", "line 3: ill-formed document: expected `</link>`, but `</robot>` was found"),
+            ("<robot>\n<link a='1' a='2'/></robot>", "line 2: the attribute `a` stands there twice"),
+            ("<robot>\n&x;</robot>", "line 2: `&x;` is not known"),
+            ("\n<!DOCTYPE robot>\n<robot/>", "line 2: a DTD is not read: remove the <!DOCTYPE>"),
+            ("<robot>\n<link", "line 2: the file ends within an element"),
+            ("", "line 1: the file ends within an element"),
+        ];
+        for (text, said) in cases {
+            assert_eq!(told(text), said, "{text}");
+        }
+        assert!(told(&"<a>".repeat(100_000)).contains("nested deeper than 128 levels"));
+    }
+
+    #[test]
+    fn a_place_is_that_of_the_first_tag_and_of_the_whole_attribute() {
+        let root = read("<robot><link\n name = 'a'><visual/></link></robot>").unwrap();
+        let at = |place: &Place| place.source.text[place.span.clone()].to_owned();
+        assert_eq!(at(&root.children[0].place), "<link\n name = 'a'>");
+        assert_eq!(at(&root.children[0].attributes[0].place), "name = 'a'");
     }
 }

@@ -7,6 +7,7 @@
 use std::ops::Range;
 
 use onescan_base::duration::XmlDuration;
+use onescan_xml::Element;
 
 use super::controller;
 use super::marks;
@@ -15,7 +16,6 @@ use super::target::Sources;
 use super::tasks::{TaskTable, literal};
 use super::template::{self, Controller, Number};
 use onescan_iec::input::plcopen_instances;
-use onescan_iec::input::xml::{self, Element};
 use onescan_iec::source::edits::Edits;
 use onescan_iec::syntax::SourceFile;
 use onescan_iec::syntax::ast::{Pou, PouKind};
@@ -25,7 +25,7 @@ const ACTION: &str = "SDSP_Body";
 
 /// The file as a tree; it has been read once already.
 pub(super) fn tree(file: &SourceFile) -> Option<Element> {
-    xml::parse(file.shown_text()).ok()
+    onescan_xml::parse(file.shown_text()).ok()
 }
 
 /// Every element of this name.

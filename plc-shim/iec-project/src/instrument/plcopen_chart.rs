@@ -12,6 +12,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
+use onescan_xml::Element;
+
 use super::chart_plan::{CONTROL, Plan, charts, controlled_by, elapsed, of_chart, own_flag};
 use super::marks;
 use super::plcopen::{self, Refused};
@@ -20,7 +22,6 @@ use super::plcopen_unit as unit;
 use onescan_iec::input::plcopen_chart::inline_action_name;
 use onescan_iec::input::plcopen_chart_graph::{End, Graph, Kind, number};
 use onescan_iec::input::plcopen_condition::named_transitions;
-use onescan_iec::input::xml::Element;
 use onescan_iec::source::edits::Edits;
 use onescan_iec::syntax::Span;
 use onescan_iec::syntax::ast::{Pou, PouKind};

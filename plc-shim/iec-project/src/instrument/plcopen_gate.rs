@@ -14,6 +14,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
+use onescan_xml::Element;
+
 use super::chart_plan::Plan;
 use super::marks;
 use super::plcopen::{self, Refused};
@@ -22,7 +24,6 @@ use super::plcopen_unit as unit;
 use onescan_iec::input::plcopen_chart_graph::{Graph, Kind, Node, connections};
 use onescan_iec::input::plcopen_condition::{Form, Leaf, expression, is_negated, named, text_leaves};
 use onescan_iec::input::plcopen_object::inner_text;
-use onescan_iec::input::xml::Element;
 use onescan_iec::source::edits::Edits;
 use onescan_iec::syntax::ast::Transition;
 

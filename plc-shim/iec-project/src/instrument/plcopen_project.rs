@@ -1,5 +1,7 @@
 //! A project in PLCopen XML as a whole: one file, with its changes and all that is the shim's.
 
+use onescan_xml::Element;
+
 use super::chart_plan::Plan as ChartPlan;
 use super::motion_use::Motion;
 use super::plain::Plain;
@@ -8,7 +10,6 @@ use super::target::Sources;
 use super::tasks::TaskTable;
 use super::{File, InstrumentError, clock, plcopen, plcopen_chart};
 use onescan_iec::diagnostic::{Code, Diagnostic, Diagnostics};
-use onescan_iec::input::xml::Element;
 use onescan_iec::source::edits::{Edited, Edits};
 use onescan_iec::syntax::{FileId, SourceFile, Span};
 

@@ -4,7 +4,6 @@ use std::path::{Component, Path};
 
 use super::target::Source;
 use super::{configuration, marks};
-use onescan_iec::input::xml;
 use onescan_iec::source::edits::Edits;
 use onescan_iec::syntax::SourceFile;
 use onescan_iec::syntax::ast::Configuration;
@@ -56,7 +55,7 @@ fn object(kind: &str, name: &str, parts: &str) -> String {
 /// The language that the body of a file's unit is drawn in.
 pub(super) fn drawn_in(file: &SourceFile) -> Option<&'static str> {
     const DRAWN: [(&str, &str); 3] = [("CFC", "CFC"), ("NWL", "LD or FBD"), ("SFC", "SFC")];
-    let unit = xml::parse(file.shown_text()).ok()?.into_child("POU")?;
+    let unit = onescan_xml::parse(file.shown_text()).ok()?.into_child("POU")?;
     let body = unit.child("Implementation")?;
     DRAWN.iter().find(|(name, _)| body.child(name).is_some()).map(|(_, language)| *language)
 }
@@ -74,7 +73,7 @@ pub(super) fn first_task<'a>(parts: &[&'a Configuration], constants: &Constants<
 /// Lets a task, in its file, call the scheduler before its programs.
 pub(super) fn call_scheduler(file: &SourceFile, edits: &mut Edits) {
     let text = file.shown_text();
-    let Some(task) = xml::parse(text).ok().and_then(|root| root.into_child("Task")) else { return };
+    let Some(task) = onescan_xml::parse(text).ok().and_then(|root| root.into_child("Task")) else { return };
     let at = task.child("PouCall").map_or(task.close.start, |call| call.open.start);
     let start = marks::line_start(text, at);
     let indentation = text.get(start as usize..at as usize).unwrap_or("");

@@ -125,7 +125,7 @@ impl Constants {
 }
 
 /// True if a path is that of a constant, or of several.
-pub fn is_declared(units: &[(FileId, CompilationUnit)], path: &str) -> bool {
+pub(crate) fn is_declared(units: &[(FileId, CompilationUnit)], path: &str) -> bool {
     matches!(find(&Collector::of(units).found, path), Ok(_) | Err(ConstantError::Ambiguous { .. }))
 }
 

@@ -4,8 +4,8 @@
 //! |---|---|---|
 //! | [`encoding`] | bytes | text, and the way back |
 //! | [`kind`] | a file's name | what kind of file it is |
+//! | [`found`] | a file's bytes | its text, and whether it is PLCopen's |
 //! | `foreign` | text | what it is, if it is no program |
-//! | `xml` | text | a tree whose nodes know their place |
 //! | `twincat`, `twincat_task` | TwinCAT's objects | program text |
 //! | `plcopen`, `plcopen_instances`, `plcopen_object` | PLCopen XML, and what CODESYS adds to it | program text |
 //! | `plcopen_chart`, `plcopen_chart_graph`, `plcopen_condition` | its Sequential Function Charts | program text |
@@ -21,6 +21,7 @@
 mod drawing;
 pub mod encoding;
 mod foreign;
+pub mod found;
 pub mod kind;
 pub mod layout;
 mod needed;
@@ -35,24 +36,22 @@ pub mod project;
 mod statement;
 mod twincat;
 mod twincat_task;
-pub mod xml;
 
 use std::sync::Arc;
 
-use self::encoding::{Encoding, decode};
+use onescan_xml::{Element, Node, XmlError};
+
+use self::encoding::Encoding;
 use self::foreign::Foreign;
+use self::found::{Found, NoText};
 use self::kind::SourceKind;
 pub use self::needed::needed;
 use self::project::{Listed, Listing};
-use self::xml::XmlError;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::{Chosen, Dialect};
 use crate::source::LineColumn;
 use crate::source::origin::Extract;
 use crate::syntax::{FileId, SourceFile, SourceMap, Span};
-
-/// Greatest size of a file in bytes.
-const MAX_SIZE: usize = 256 << 20;
 
 /// A file's program text.
 #[derive(Debug, Clone)]
@@ -74,25 +73,25 @@ enum Owner {
 impl Input {
     /// Reads the bytes of the file `name`.
     pub fn read(name: &str, kind: SourceKind, bytes: &[u8]) -> Self {
-        Self::read_in(None, name, kind, bytes)
+        Self::found(name, Found::decode(kind, bytes))
     }
 
-    /// Reads the bytes of the file `name` of a library. Its names are known with its namespace before them, and
+    /// Takes the file `name` as it was found.
+    pub fn found(name: &str, found: Found) -> Self {
+        Self::found_in(None, name, found)
+    }
+
+    /// Takes the file `name` of a library as it was found. Its names are known with its namespace before them, and
     /// without. Program text says for itself which namespace it is in.
-    pub fn of_library(namespace: Option<&str>, name: &str, kind: SourceKind, bytes: &[u8]) -> Self {
+    pub fn of_library(namespace: Option<&str>, name: &str, found: Found) -> Self {
         let owner = Owner::Library(namespace.map(str::to_owned));
-        Self { owner, ..Self::read_in(namespace, name, kind, bytes) }
+        Self { owner, ..Self::found_in(namespace, name, found) }
     }
 
-    fn read_in(namespace: Option<&str>, name: &str, kind: SourceKind, bytes: &[u8]) -> Self {
-        if bytes.len() > MAX_SIZE {
-            return Self::unreadable(name, Code::TooLarge, format!("the file is larger than {MAX_SIZE} bytes"));
-        }
-        match decode(bytes) {
-            Ok((text, encoding)) => {
-                Self { encoding: Some(encoding), ..Self::taken(namespace, name, kind, text.into()) }
-            }
-            Err(error) => Self::unreadable(name, Code::NotText, error.to_string()),
+    fn found_in(namespace: Option<&str>, name: &str, found: Found) -> Self {
+        match found.text {
+            Ok((text, encoding)) => Self { encoding: Some(encoding), ..Self::taken(namespace, name, found.kind, text) },
+            Err(NoText { code, message }) => Self::unreadable(name, code, message),
         }
     }
 
@@ -211,7 +210,7 @@ struct Taken {
 impl Taken {
     fn malformed(error: &XmlError) -> Self {
         let mut taken = Self::default();
-        taken.report(error.at..error.at, Code::MalformedXml, &error.message);
+        taken.report(error.at..error.at, Code::MalformedXml, &error.to_string());
         taken
     }
 
@@ -237,12 +236,12 @@ impl Taken {
     }
 
     /// Appends the text that an element holds.
-    fn text_of(&mut self, file: &str, element: &xml::Element) {
+    fn text_of(&mut self, file: &str, element: &Element) {
         for node in &element.children {
             match node {
-                xml::Node::Verbatim(span) => self.extract.verbatim(file, span.clone()),
-                xml::Node::Reference(character, span) => self.extract.instead(&character.to_string(), span.clone()),
-                xml::Node::Element(_) => {}
+                Node::Verbatim(span) => self.extract.verbatim(file, span.clone()),
+                Node::Reference(character, span) => self.extract.instead(&character.to_string(), span.clone()),
+                Node::Element(_) => {}
             }
         }
     }

@@ -95,10 +95,13 @@ fn mentioned(input: &Input) -> BTreeSet<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::input::found::Found;
     use crate::input::kind::SourceKind;
 
     fn left(own: &str, library: &[(&str, &str)]) -> Vec<String> {
-        let of_library = |(name, text): &(&str, &str)| Input::of_library(None, name, SourceKind::Text, text.as_bytes());
+        let of_library = |(name, text): &(&str, &str)| {
+            Input::of_library(None, name, Found::decode(SourceKind::Text, text.as_bytes()))
+        };
         let own = Input::from_text("own.st", SourceKind::Text, own);
         let inputs = std::iter::once(own).chain(library.iter().map(of_library)).collect();
         needed(inputs).iter().map(|input| input.file().name().to_owned()).collect()

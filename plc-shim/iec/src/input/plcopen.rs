@@ -6,9 +6,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
+use onescan_xml::{Element, XmlError, parse};
+
 use super::Taken;
 use super::plcopen_object::sections_of;
-use super::xml::{Element, XmlError, parse};
 use crate::diagnostic::Code;
 use crate::dialect::{Dialect, Feature};
 

@@ -9,10 +9,11 @@
 //! | `<inline>` of an action | an ACTION named after the step |
 //! | `SFC` as the body of an `action` | steps and transitions of that ACTION |
 
+use onescan_xml::Element;
+
 use super::plcopen::Writer;
 use super::plcopen_chart_graph::{End, Graph, Kind, Node, NodeId};
 use super::plcopen_condition::{named, named_transitions};
-use super::xml::Element;
 use crate::diagnostic::Code;
 
 /// A chart and the transitions that its unit defines beside it.
@@ -26,7 +27,7 @@ impl<'e> Chart<'e> {
         named(&self.named, name)
     }
 
-    fn name_of(&self, id: NodeId) -> Option<&'e super::xml::Attribute> {
+    fn name_of(&self, id: NodeId) -> Option<&'e onescan_xml::Attribute> {
         self.graph.node(id)?.element.attribute("name")
     }
 }

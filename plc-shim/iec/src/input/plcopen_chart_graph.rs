@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::xml::Element;
+use onescan_xml::Element;
 
 /// An element of a chart, by its number.
 pub(crate) type NodeId = usize;

@@ -11,11 +11,12 @@
 
 use std::ops::Range;
 
+use onescan_xml::{Attribute, Element, Node as Content};
+
 use super::plcopen::Writer;
 use super::plcopen_chart::Chart;
 use super::plcopen_chart_graph::Node;
 use super::plcopen_object::inner_text;
-use super::xml::{Attribute, Element, Node as Content};
 use crate::diagnostic::Code;
 use crate::syntax::parser::parse_expression;
 

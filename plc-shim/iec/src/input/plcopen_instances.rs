@@ -1,9 +1,9 @@
 //! PLCopen XML: configurations, resources, tasks and instances of programs (TC6 2.01, `instances`).
 
 use onescan_base::duration::XmlDuration;
+use onescan_xml::{Attribute, Element};
 
 use super::plcopen::Writer;
-use super::xml::{Attribute, Element};
 
 /// What an element of a configuration or resource may hold beside what is read.
 const REMARKS: [&str; 2] = ["documentation", "addData"];

@@ -1,8 +1,9 @@
 //! What PLCopen XML has for actions, and what CODESYS adds to it in `addData`: methods, properties,
 //! interfaces, bases, unions, lists of global variables.
 
+use onescan_xml::{Element, Node};
+
 use super::plcopen::Writer;
-use super::xml::{Element, Node};
 
 /// Beginning of the names of CODESYS' additions.
 const VENDOR: &str = "http://www.3s-software.com/plcopenxml/";

@@ -3,8 +3,9 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use onescan_xml::Element;
+
 use super::encoding::decode;
-use super::xml;
 use crate::syntax::token::TokenKind;
 use crate::syntax::tokenize;
 
@@ -59,20 +60,20 @@ pub fn files(bytes: &[u8]) -> Result<Vec<String>, ProjectError> {
 /// It is no project.
 pub fn listing(bytes: &[u8]) -> Result<Listing, ProjectError> {
     let (text, _) = decode(bytes)?;
-    let root = xml::parse(&text).map_err(|error| {
+    let root = onescan_xml::parse(&text).map_err(|error| {
         let before = text.get(..error.at as usize).unwrap_or("");
-        ProjectError::Xml { line: before.lines().count().max(1), message: error.message }
+        ProjectError::Xml { line: before.lines().count().max(1), message: error.to_string() }
     })?;
-    let items = root.elements().filter(|group| group.name == "ItemGroup").flat_map(xml::Element::elements);
+    let items = root.elements().filter(|group| group.name == "ItemGroup").flat_map(Element::elements);
     let included = items.filter(|item| item.name == "Compile").filter_map(|item| item.attribute("Include"));
     let listed = included.map(|include| Listed { path: path(&include.value), place: include.span.clone() });
     let files = listed.collect();
     Ok(Listing { files, namespace: namespace(&text, &root), text: text.into() })
 }
 
-fn namespace(text: &str, root: &xml::Element) -> Option<String> {
+fn namespace(text: &str, root: &Element) -> Option<String> {
     let properties: Vec<_> =
-        root.elements().filter(|group| group.name == "PropertyGroup").flat_map(xml::Element::elements).collect();
+        root.elements().filter(|group| group.name == "PropertyGroup").flat_map(Element::elements).collect();
     let value = |name: &str| properties.iter().find(|property| property.name == name).map(|found| found.text(text));
     let named = ["DefaultNamespace", "Title", "Name"].iter().filter_map(|name| value(name));
     named.map(|name| name.trim().to_owned()).find(|name| !name.is_empty()).filter(|name| is_identifier(name))

@@ -97,7 +97,7 @@ impl Text {
     }
 
     /// `self operator other`; one that is missing is TRUE of AND.
-    pub fn joined(self, operator: &str, other: Self, place: &Range<u32>) -> Self {
+    pub(crate) fn joined(self, operator: &str, other: Self, place: &Range<u32>) -> Self {
         let mut text = Self::default();
         text.operand(self, place);
         text.push(&format!(" {operator} "), place);

@@ -3,9 +3,10 @@
 
 use std::ops::Range;
 
+use onescan_xml::{Element, Node, XmlError, parse};
+
 use super::Taken;
 use super::drawing::{Drawings, Keeps};
-use super::xml::{Element, Node, XmlError, parse};
 use crate::diagnostic::Code;
 use crate::dialect::Dialect;
 use crate::syntax::token::{Keyword, TokenKind};
@@ -202,6 +203,7 @@ fn place(object: &Element) -> Range<u32> {
 #[cfg(test)]
 mod tests {
     use crate::input::Input;
+    use crate::input::found::Found;
     use crate::input::kind::SourceKind;
 
     const POU: &str = r#"<?xml version="1.0" encoding="utf-8"?>
@@ -275,7 +277,7 @@ VAR_GLOBAL x : INT; END_VAR]]></Declaration></GVL><GVL Name=\"Open\"><Declaratio
     fn what_is_of_a_library_is_in_its_namespace() {
         let text =
             "<TcPlcObject><GVL Name=\"GVL\"><Declaration>VAR_GLOBAL x : INT; END_VAR</Declaration></GVL></TcPlcObject>";
-        let input = Input::of_library(Some("Gears"), "a.TcGVL", SourceKind::TwinCat, text.as_bytes());
+        let input = Input::of_library(Some("Gears"), "a.TcGVL", Found::decode(SourceKind::TwinCat, text.as_bytes()));
         insta::assert_snapshot!(input.file().text(), @r"
         NAMESPACE OPEN Gears
         NAMESPACE OPEN GVL

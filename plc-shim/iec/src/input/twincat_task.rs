@@ -2,8 +2,9 @@
 //!
 //! Each file becomes a part of one configuration. A program has one instance, of its own name.
 
+use onescan_xml::{Element, Node};
+
 use super::Taken;
-use super::xml::{Element, Node};
 use crate::diagnostic::Code;
 
 /// Name of the configuration that a project's tasks make up.

@@ -1,270 +1,214 @@
-//! The YAML that robots' parameters are kept in: dictionaries and lists by indentation or in brackets,
-//! plain and quoted scalars, anchors, comments. Block texts, merged dictionaries and several documents are
-//! refused; of a key that is there twice the last one holds, as ROS reads it.
+//! The YAML that robots' parameters are kept in, as values. Merged dictionaries and several documents are refused; of a
+//! key that is there twice the last one holds, as ROS reads it.
 //!
-//! Source: YAML 1.1, chs. 7 and 8; the tags `!degrees` and `!radians` are of ROS.
+//! Source: YAML 1.1, chs. 7 and 8, for what plain scalars mean; the tags `!degrees` and `!radians` are of ROS.
+
+use std::collections::BTreeMap;
+
+use saphyr_parser::{Event, Parser, ScalarStyle, StrInput, Tag};
 
 use super::value::Value;
 
-/// Deepest nesting.
+/// Deepest nesting, with what aliases stand for.
 const DEPTH_MAX: usize = 32;
-
-struct Line<'t> {
-    number: usize,
-    indent: usize,
-    text: &'t str,
-}
+/// Most memory that a file's values take, with what aliases stand for: ten lines of aliases of each other could fill any.
+const SIZE_MAX: usize = 64 << 20;
+/// About what a value takes beside its text.
+const SIZE_OF_VALUE: usize = 64;
 
 /// The value of a file's text.
 ///
 /// # Errors
 /// What is not understood, with its line.
 pub(super) fn parse(text: &str) -> Result<Value, String> {
-    let mut lines = Vec::new();
-    for (index, line) in text.lines().enumerate() {
-        let line = uncommented(line).trim_end();
-        let inner = line.trim_start();
-        if inner.is_empty() || inner == "---" || line.starts_with('%') {
-            continue;
+    let last_line = text.trim_end().lines().count().max(1);
+    let mut reader = Reader { parser: Parser::new_from_str(text), last_line, anchors: BTreeMap::new(), size: 0 };
+    let mut value = None;
+    loop {
+        match reader.next()? {
+            (Event::StreamEnd, _) => return Ok(value.unwrap_or(Value::None)),
+            (Event::Nothing | Event::StreamStart | Event::DocumentEnd, _) => {}
+            (Event::DocumentStart(_), line) if value.is_some() => {
+                return Err(format!("line {line}: a second document is not read"));
+            }
+            (Event::DocumentStart(_), _) => {
+                let first = reader.next()?;
+                value = Some(reader.node(first, DEPTH_MAX)?.value);
+            }
+            (_, line) => return Err(format!("line {line}: it stands outside of the document")),
         }
-        if line[..line.len() - inner.len()].contains('\t') {
-            return Err(format!("line {}: a tab in an indentation", index + 1));
-        }
-        lines.push(Line { number: index + 1, indent: line.len() - inner.len(), text: inner });
-    }
-    let mut reader = Reader { lines, at: 0, anchors: Vec::new() };
-    let Some(first) = reader.lines.first() else { return Ok(Value::None) };
-    let indent = first.indent;
-    let value = reader.block(indent, DEPTH_MAX)?;
-    match reader.lines.get(reader.at) {
-        None => Ok(value),
-        Some(line) => Err(format!("line {}: `{}` fits in no list or dictionary", line.number, line.text)),
     }
 }
 
-/// A line without its comment.
-fn uncommented(line: &str) -> &str {
-    let mut quote = None;
-    let mut before = ' ';
-    for (at, letter) in line.char_indices() {
-        match (quote, letter) {
-            (None, '#') if before.is_whitespace() => return &line[..at],
-            (None, '\'' | '"') if !before.is_alphanumeric() => quote = Some(letter),
-            (Some(open), letter) if open == letter => quote = None,
-            _ => {}
-        }
-        before = letter;
-    }
-    line
+/// A value, and what an alias of it adds.
+#[derive(Clone)]
+struct Measured {
+    value: Value,
+    size: usize,
+    depth: usize,
 }
 
 struct Reader<'t> {
-    lines: Vec<Line<'t>>,
-    at: usize,
-    anchors: Vec<(&'t str, Value)>,
+    parser: Parser<'t, StrInput<'t>>,
+    /// What is missing is missed by the parser behind it.
+    last_line: usize,
+    anchors: BTreeMap<usize, Measured>,
+    /// Of all values that were made.
+    size: usize,
 }
 
 impl<'t> Reader<'t> {
-    /// The list or dictionary whose lines are indented so far.
-    fn block(&mut self, indent: usize, depth: usize) -> Result<Value, String> {
-        let Some(first) = self.lines.get(self.at) else { return Ok(Value::None) };
-        if depth == 0 {
-            return Err(format!("line {}: nested more than {DEPTH_MAX} deep", first.number));
-        }
-        if first.text == "-" || first.text.starts_with("- ") {
-            return self.list(indent, depth);
-        }
-        if split_key(first.text).is_some() {
-            return self.map(indent, depth);
-        }
-        let (number, text) = (first.number, first.text);
-        self.at += 1;
-        self.value(text, number, indent, depth)
-    }
-
-    fn list(&mut self, indent: usize, depth: usize) -> Result<Value, String> {
-        let mut list = Vec::new();
-        while let Some(line) = self.lines.get(self.at).filter(|line| line.indent == indent) {
-            let Some(item) = line.text.strip_prefix('-').filter(|rest| rest.is_empty() || rest.starts_with(' ')) else {
-                break;
-            };
-            let inner = item.trim_start();
-            let number = line.number;
-            if split_key(inner).is_some() {
-                // the item is a dictionary that begins behind the dash
-                let indent = indent + line.text.len() - inner.len();
-                self.lines[self.at] = Line { number, indent, text: inner };
-                list.push(self.map(indent, depth - 1)?);
-            } else {
-                self.at += 1;
-                list.push(self.value(inner, number, indent + 1, depth)?);
+    /// The next event, with its line.
+    fn next(&mut self) -> Result<(Event<'t>, usize), String> {
+        match self.parser.next_event() {
+            Some(Ok((event, span))) => Ok((event, span.start.line())),
+            Some(Err(error)) => {
+                let line = error.marker().line().min(self.last_line);
+                Err(format!("line {line}: {}", error.info()))
             }
+            None => Err(format!("line {}: it ends within a value", self.last_line)),
         }
-        Ok(Value::List(list))
     }
 
-    fn map(&mut self, indent: usize, depth: usize) -> Result<Value, String> {
-        let mut map: Vec<(String, Value)> = Vec::new();
-        while let Some(line) = self.lines.get(self.at).filter(|line| line.indent == indent) {
-            let number = line.number;
-            let Some((key, rest)) = split_key(line.text) else {
-                return Err(format!("line {number}: `{}` is no `key: value`", line.text));
-            };
-            let key = match scalar(key, number)? {
+    /// The value that begins with an event.
+    fn node(&mut self, (event, line): (Event<'t>, usize), depth_left: usize) -> Result<Measured, String> {
+        let Some(inner_depth) = depth_left.checked_sub(1) else {
+            return Err(format!("line {line}: nested more than {DEPTH_MAX} deep"));
+        };
+        let (anchor, found) = match event {
+            Event::Alias(anchor) => {
+                // Only what has ended has a value.
+                let within = || format!("line {line}: an alias stands within what it names");
+                let &Measured { size, depth, .. } = self.anchors.get(&anchor).ok_or_else(within)?;
+                if depth > depth_left {
+                    return Err(format!("line {line}: nested more than {DEPTH_MAX} deep"));
+                }
+                self.grow(size, line)?;
+                return self.anchors.get(&anchor).cloned().ok_or_else(within);
+            }
+            Event::Scalar(text, style, anchor, tag) => {
+                let size = SIZE_OF_VALUE + text.len();
+                self.grow(size, line)?;
+                let value = scalar(&text, style, tag.as_deref()).map_err(|wrong| format!("line {line}: {wrong}"))?;
+                (anchor, Measured { value, size, depth: 1 })
+            }
+            Event::SequenceStart(anchor, None) => (anchor, self.list(line, inner_depth)?),
+            Event::MappingStart(anchor, None) => (anchor, self.map(line, inner_depth)?),
+            Event::SequenceStart(_, Some(tag)) | Event::MappingStart(_, Some(tag)) => {
+                return Err(format!("line {line}: `{tag}` is not understood here"));
+            }
+            _ => return Err(format!("line {line}: a value is expected")),
+        };
+        // 0 stands for no anchor.
+        if anchor != 0 {
+            self.grow(found.size, line)?;
+            self.anchors.insert(anchor, found.clone());
+        }
+        Ok(found)
+    }
+
+    fn list(&mut self, line: usize, depth_left: usize) -> Result<Measured, String> {
+        self.grow(SIZE_OF_VALUE, line)?;
+        let (mut list, mut size, mut depth) = (Vec::new(), SIZE_OF_VALUE, 1);
+        loop {
+            let next = self.next()?;
+            if matches!(next.0, Event::SequenceEnd) {
+                return Ok(Measured { value: Value::List(list), size, depth });
+            }
+            let item = self.node(next, depth_left)?;
+            (size, depth) = (size + item.size, depth.max(1 + item.depth));
+            list.push(item.value);
+        }
+    }
+
+    fn map(&mut self, line: usize, depth_left: usize) -> Result<Measured, String> {
+        self.grow(SIZE_OF_VALUE, line)?;
+        let (mut map, mut size, mut depth) = (Map::default(), SIZE_OF_VALUE, 1);
+        loop {
+            let next = self.next()?;
+            if matches!(next.0, Event::MappingEnd) {
+                return Ok(Measured { value: Value::Map(map.entries), size, depth });
+            }
+            let line = next.1;
+            let is_plain = matches!(next.0, Event::Scalar(_, ScalarStyle::Plain, ..));
+            let key = self.node(next, depth_left)?;
+            size += key.size;
+            let key = match key.value {
                 Value::Text(text) => text,
+                list @ (Value::List(_) | Value::Map(_)) => {
+                    return Err(format!("line {line}: {} cannot be a key", list.sort()));
+                }
                 other => other.to_string(),
             };
-            if key == "<<" {
-                return Err(format!("line {number}: `<<` is not understood here"));
+            if is_plain && key == "<<" {
+                return Err(format!("line {line}: `<<` is not understood here"));
             }
-            self.at += 1;
-            let value = self.value(rest, number, indent + 1, depth)?;
-            match map.iter_mut().find(|(known, _)| *known == key) {
-                Some((_, known)) => *known = value,
-                None => map.push((key, value)),
+            let next = self.next()?;
+            let value = self.node(next, depth_left)?;
+            (size, depth) = (size + value.size, depth.max(1 + value.depth));
+            map.put(key, value.value);
+        }
+    }
+
+    fn grow(&mut self, size: usize, line: usize) -> Result<(), String> {
+        self.size = self.size.saturating_add(size);
+        if self.size > SIZE_MAX {
+            return Err(format!(
+                "line {line}: the values take more than {} MiB with what aliases stand for",
+                SIZE_MAX >> 20
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// Entries in their order, found by key.
+#[derive(Default)]
+struct Map {
+    entries: Vec<(String, Value)>,
+    places: BTreeMap<String, usize>,
+}
+
+impl Map {
+    fn put(&mut self, key: String, value: Value) {
+        match self.places.get(&key) {
+            Some(place) => self.entries[*place].1 = value,
+            None => {
+                self.places.insert(key.clone(), self.entries.len());
+                self.entries.push((key, value));
             }
         }
-        Ok(Value::Map(map))
-    }
-
-    /// What stands behind a key or a dash, or in the lines below that are indented by `indent` or more.
-    fn value(&mut self, text: &'t str, number: usize, indent: usize, depth: usize) -> Result<Value, String> {
-        if let Some(anchored) = text.strip_prefix('&') {
-            let (name, rest) = anchored.split_once(' ').unwrap_or((anchored, ""));
-            let value = self.value(rest.trim(), number, indent, depth)?;
-            self.anchors.push((name, value.clone()));
-            return Ok(value);
-        }
-        if let Some(name) = text.strip_prefix('*') {
-            let found = self.anchors.iter().rev().find(|(known, _)| *known == name).map(|(_, value)| value.clone());
-            return found.ok_or_else(|| format!("line {number}: there is no `&{name}`"));
-        }
-        if text.is_empty() {
-            let Some(next) = self.lines.get(self.at) else { return Ok(Value::None) };
-            // a list may stand right below its key
-            let beside = next.indent + 1 == indent && next.text.starts_with('-');
-            let inner = next.indent;
-            return if inner >= indent || beside { self.block(inner, depth - 1) } else { Ok(Value::None) };
-        }
-        if !text.starts_with(['[', '{']) {
-            return scalar(text, number);
-        }
-        let mut whole = text.to_owned();
-        while !is_closed(&whole) {
-            let Some(next) = self.lines.get(self.at) else {
-                return Err(format!("line {number}: a bracket is not closed"));
-            };
-            whole.push(' ');
-            whole.push_str(next.text);
-            self.at += 1;
-        }
-        let mut rest = whole.as_str();
-        let value = flow(&mut rest, number, depth)?;
-        if rest.trim().is_empty() { Ok(value) } else { Err(format!("line {number}: `{rest}` stands behind a bracket")) }
     }
 }
 
-/// Key and rest of a line; none for a line without a key.
-fn split_key(text: &str) -> Option<(&str, &str)> {
-    if text.starts_with(['[', '{']) {
-        return None;
+fn scalar(text: &str, style: ScalarStyle, tag: Option<&Tag>) -> Result<Value, String> {
+    let value = if style == ScalarStyle::Plain { plain(text) } else { Value::Text(text.to_owned()) };
+    let Some(tag) = tag else { return Ok(value) };
+    let angle = || value.number().ok_or_else(|| format!("`{text}` is no angle"));
+    match (&*tag.handle, &*tag.suffix) {
+        ("!", "degrees") => Ok(Value::Number(angle()?.to_radians())),
+        ("!", "radians") => Ok(Value::Number(angle()?)),
+        // What has this tag and nothing else is a text, as if it had quotes.
+        ("", "!") => Ok(Value::Text(text.to_owned())),
+        _ => Err(format!("`{tag}` is not understood here")),
     }
-    let behind_quote = match text.chars().next() {
-        Some(quote @ ('\'' | '"')) => text[1..].find(quote).map(|end| end + 2)?,
-        _ => 0,
-    };
-    let colon = text[behind_quote..].match_indices(':').map(|(at, _)| at + behind_quote);
-    let at = colon.into_iter().find(|at| text[at + 1..].is_empty() || text[at + 1..].starts_with(' '))?;
-    Some((text[..at].trim(), text[at + 1..].trim()))
 }
 
-fn is_closed(text: &str) -> bool {
-    let count = |signs: [char; 2]| text.matches(signs).count();
-    count(['[', '{']) <= count([']', '}'])
-}
-
-/// A list or a dictionary in brackets, or a scalar in one.
-fn flow(rest: &mut &str, number: usize, depth: usize) -> Result<Value, String> {
-    let wrong = |what: &str| Err(format!("line {number}: {what}"));
-    if depth == 0 {
-        return wrong("brackets are nested too deep");
-    }
-    *rest = rest.trim_start();
-    if let Some(inner) = rest.strip_prefix('[') {
-        *rest = inner;
-        let mut list = Vec::new();
-        loop {
-            *rest = rest.trim_start();
-            if let Some(behind) = rest.strip_prefix(']') {
-                *rest = behind;
-                return Ok(Value::List(list));
-            }
-            list.push(flow(rest, number, depth - 1)?);
-            separator(rest, ']', number)?;
-        }
-    }
-    if let Some(inner) = rest.strip_prefix('{') {
-        *rest = inner;
-        let mut map = Vec::new();
-        loop {
-            *rest = rest.trim_start();
-            if let Some(behind) = rest.strip_prefix('}') {
-                *rest = behind;
-                return Ok(Value::Map(map));
-            }
-            let Some((key, behind)) = rest.split_once(':') else { return wrong("a dictionary's key lacks a `:`") };
-            let key = scalar(key.trim(), number)?.to_string();
-            *rest = behind;
-            map.push((key, flow(rest, number, depth - 1)?));
-            separator(rest, '}', number)?;
-        }
-    }
-    let end = match rest.chars().next() {
-        Some(quote @ ('\'' | '"')) => rest[1..].find(quote).map_or(rest.len(), |end| end + 2),
-        _ => rest.find([',', ']', '}']).unwrap_or(rest.len()),
-    };
-    let (text, behind) = rest.split_at(end);
-    *rest = behind;
-    scalar(text.trim(), number)
-}
-
-fn separator(rest: &mut &str, close: char, number: usize) -> Result<(), String> {
-    *rest = rest.trim_start();
-    if let Some(behind) = rest.strip_prefix(',') {
-        *rest = behind;
-        return Ok(());
-    }
-    if rest.starts_with(close) { Ok(()) } else { Err(format!("line {number}: a `,` or a `{close}` is missing")) }
-}
-
-fn scalar(text: &str, number: usize) -> Result<Value, String> {
-    let text = text.trim();
-    for quote in ['\'', '"'] {
-        if let Some(inner) = text.strip_prefix(quote).and_then(|rest| rest.strip_suffix(quote)) {
-            return Ok(Value::Text(inner.to_owned()));
-        }
-    }
-    if let Some(tagged) = text.strip_prefix("!degrees ").or_else(|| text.strip_prefix("!radians ")) {
-        let angle = scalar(tagged, number)?;
-        let angle = angle.number().ok_or_else(|| format!("line {number}: `{tagged}` is no angle"))?;
-        return Ok(Value::Number(if text.starts_with("!degrees") { angle.to_radians() } else { angle }));
-    }
-    if text.starts_with(['&', '*', '|', '>', '!', '%', '@', '`']) {
-        return Err(format!("line {number}: `{text}` is not understood here"));
-    }
-    Ok(match text {
+fn plain(text: &str) -> Value {
+    match text {
         "" | "~" | "null" | "Null" | "NULL" => Value::None,
         "true" | "True" | "TRUE" | "yes" | "Yes" | "on" | "On" => Value::Bool(true),
         "false" | "False" | "FALSE" | "no" | "No" | "off" | "Off" => Value::Bool(false),
         ".inf" => Value::Number(f64::INFINITY),
         "-.inf" => Value::Number(f64::NEG_INFINITY),
         _ => Value::literal(text),
-    })
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
     #[test]
     fn what_robots_keep_is_read() {
@@ -282,20 +226,71 @@ mod tests {
     }
 
     #[test]
+    fn all_forms_of_scalars_are_read() {
+        let text = "%YAML 1.1\n---\r\na: \"x\\ty\"\r\nb: 'it''s'\nc: |\n  two\n  lines\nd: >\n  one\n  line\n\
+            1: !radians 2\n? on\n: ~\ne: two\n  words\nf: \"1\"\n...\n";
+        let read = parse(text).unwrap().to_string();
+        assert_eq!(
+            read,
+            "{'a': 'x\ty', 'b': 'it's', 'c': 'two\nlines\n', 'd': 'one line\n', '1': 2.0, 'True': None, 'e': 'two words', \
+             'f': '1'}"
+        );
+        assert_eq!([parse(""), parse("# nothing\n"), parse("---\n")], [const { Ok(Value::None) }; 3]);
+    }
+
+    #[test]
     fn what_is_not_understood_has_its_line() {
         let cases = [
-            ("a: 1\nb: *x\n", "line 2: there is no `&x`"),
-            ("a: 1\nb: |\n", "line 2: `|` is not understood here"),
-            ("a: [1, 2\n", "line 1: a bracket is not closed"),
-            ("a: 1\n  b: 2\n", "line 2: `b: 2` fits in no list or dictionary"),
-            ("a:\n\tb: 2\n", "line 2: a tab in an indentation"),
-            ("a: 1\nrubbish\n", "line 2: `rubbish` is no `key: value`"),
-            ("a: [1 2}]\n", "line 1: a `,` or a `]` is missing"),
+            ("a: 1\nb: *x\n", "line 2: while parsing node, found unknown anchor"),
+            ("a: 1\nb: !x y\n", "line 2: `!x` is not understood here"),
+            ("a: 1\nb: !degrees y\n", "line 2: `y` is no angle"),
+            ("a: [1, 2\n", "line 1: while parsing a flow sequence, expected ',' or ']'"),
+            ("a: 1\n  b: 2\n", "line 2: mapping values are not allowed in this context"),
+            ("a:\n\tb: 2\n", "line 2: tabs disallowed within this context (block indentation)"),
+            ("a: 1\nrubbish\n", "line 2: simple key expect ':'"),
+            ("a: [1 2}]\n", "line 1: while parsing a flow sequence, expected ',' or ']'"),
+            ("a: 1\n<<: {b: 2}\n", "line 2: `<<` is not understood here"),
+            ("a: 1\n? [b]\n: 2\n", "line 2: a list cannot be a key"),
+            ("a: 1\n---\nb: 2\n", "line 2: a second document is not read"),
+            ("a: &b [1, *b]\n", "line 1: an alias stands within what it names"),
         ];
         for (text, told) in cases {
             assert_eq!(parse(text), Err(told.to_owned()), "{text}");
         }
+    }
+
+    #[test]
+    fn depth_is_limited_also_through_aliases() {
         let deep: String = (0..100).map(|k| format!("{}k:\n", " ".repeat(k))).collect();
-        assert!(parse(&deep).is_err() && parse(&format!("a: {}", "[".repeat(100_000) + &"]".repeat(100_000))).is_err());
+        assert!(parse(&deep).unwrap_err().contains("nested more than 32 deep"));
+        for text in
+            [format!("a: {}", "[".repeat(100_000) + &"]".repeat(100_000)), "- ".repeat(100_000), "? ".repeat(100_000)]
+        {
+            assert!(parse(&text).unwrap_err().starts_with("line 1: "));
+        }
+        let chain: String = (1..40).map(|k| format!("a{k}: &a{k} [*a{}]\n", k - 1)).collect();
+        let error = parse(&format!("a0: &a0 x\n{chain}")).unwrap_err();
+        assert_eq!(error, "line 32: nested more than 32 deep");
+    }
+
+    #[test]
+    fn aliases_of_aliases_do_not_fill_the_memory() {
+        let many = |first: &str| {
+            let lines = (1..20).map(|k| format!("a{k}: &a{k} [{}]\n", vec![format!("*a{}", k - 1); 10].join(", ")));
+            format!("a0: &a0 {first}\n{}", lines.collect::<String>())
+        };
+        assert_eq!(
+            parse(&many("x")).unwrap_err(),
+            "line 7: the values take more than 64 MiB with what aliases stand for"
+        );
+        assert!(parse(&many(&"x".repeat(1 << 20))).unwrap_err().starts_with("line 3: the values take"));
+    }
+
+    proptest! {
+        #[test]
+        fn any_text_is_borne(text in r#"[-?:,\[\]{}#&*!|>'"%@` \n\r\t~<ax1.é\u{feff}\u{85}]{0,60}"#) {
+            let read = parse(&text);
+            prop_assert!(read.as_ref().err().is_none_or(|error| error.starts_with("line ")), "{read:?}");
+        }
     }
 }

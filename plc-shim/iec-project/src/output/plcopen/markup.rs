@@ -66,12 +66,12 @@ mod tests {
     fn text_comes_back_as_it_was() {
         let value = "'a\t\"b\"' & x < y > z\n";
         let file = format!("<a v=\"{}\">{}</a>", escaped(value), escaped_text("x <> '&'"));
-        let root = onescan_iec::input::xml::parse(&file).expect("it is XML");
+        let root = onescan_xml::parse(&file).expect("it is XML");
         assert_eq!(root.attribute("v").map(|found| found.value.as_str()), Some(value));
         assert_eq!(onescan_iec::input::plcopen_object::inner_text(&file, &root), "x <> '&'");
         for wrapper in [Wrapper::Paragraph, Wrapper::Codesys] {
             let file = wrapper.around("a[b[1]]>2 & c");
-            let root = onescan_iec::input::xml::parse(&file).expect("it is XML");
+            let root = onescan_xml::parse(&file).expect("it is XML");
             assert_eq!(onescan_iec::input::plcopen_object::inner_text(&file, &root), "a[b[1]]>2 & c");
         }
     }

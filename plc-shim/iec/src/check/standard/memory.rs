@@ -14,6 +14,6 @@ pub(in crate::check) const FUNCTIONS: [(&str, MemoryFunction, [&str; 3]); 7] = [
 ];
 
 /// True for the name of one, in capitals. A user's own function goes before.
-pub fn exists(key: &str) -> bool {
+pub(crate) fn exists(key: &str) -> bool {
     FUNCTIONS.iter().any(|(name, ..)| *name == key)
 }

@@ -24,7 +24,7 @@ pub(in crate::check) fn operation(operator: Binary, left: Expr, right: Expr) -> 
 }
 
 /// All operands joined by an operator; nothing without any.
-pub fn joined(operator: Binary, operands: impl IntoIterator<Item = Expr>) -> Option<Expr> {
+pub(crate) fn joined(operator: Binary, operands: impl IntoIterator<Item = Expr>) -> Option<Expr> {
     operands.into_iter().reduce(|left, right| operation(operator, left, right))
 }
 

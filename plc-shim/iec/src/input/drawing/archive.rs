@@ -9,8 +9,9 @@
 
 use std::ops::Range;
 
+use onescan_xml::{Element, Node};
+
 use crate::input::statement::{Piece, Text};
-use crate::input::xml::{Element, Node};
 
 /// An object and the type that it or its list tells.
 #[derive(Debug, Clone, Copy)]

@@ -304,7 +304,7 @@ impl Chart<'_, '_, '_> {
 }
 
 /// The place of the setting that lets TwinCAT order a chart by the flow of its data; nothing if the user ordered it.
-pub(super) fn ordered_by_data_flow(file: &str, object: &crate::input::xml::Element) -> Option<Range<u32>> {
+pub(super) fn ordered_by_data_flow(file: &str, object: &onescan_xml::Element) -> Option<Range<u32>> {
     let properties = object.child("ObjectProperties")?;
     let property = Object::first(properties, "CFCProperty")?;
     let explicit = property.value(file, "UseExplicitExecutionOrder")?;

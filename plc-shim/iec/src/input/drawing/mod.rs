@@ -26,11 +26,12 @@ mod sheet;
 
 use std::collections::BTreeMap;
 
+use onescan_xml::Element;
+
 use self::archive::{Object, Written};
 use self::sheet::{Fault, Memories, Sheet};
 use super::Taken;
 use super::statement::{self, Line, Text};
-use super::xml::Element;
 use crate::diagnostic::Code;
 use crate::syntax::tokenize;
 

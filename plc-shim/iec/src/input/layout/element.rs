@@ -1,6 +1,7 @@
 //! Elements of a drawing with their texts, sizes and pins (TC6 2.01, `commonObjects`, `fbdObjects`, `ldObjects`, `sfcObjects`).
 
-use super::super::xml::Element as Xml;
+use onescan_xml::Element as Xml;
+
 use super::{Element, Language, Lines, Pin};
 
 /// How wide a character is where the file does not say how wide an element is.

@@ -11,7 +11,7 @@
 mod element;
 mod wire;
 
-use super::xml::{Element as Xml, parse};
+use onescan_xml::{Element as Xml, parse};
 
 /// A drawing: the body of a unit, of one of its actions or of one of its transitions.
 #[derive(Clone, Debug, PartialEq)]

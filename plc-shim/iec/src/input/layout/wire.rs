@@ -29,7 +29,7 @@ pub(super) fn wires(lines: &Lines, sources: &[Source<'_>], elements: &[Element])
     sources.iter().filter_map(wire).collect()
 }
 
-fn corner(position: &super::super::xml::Element) -> Option<[f64; 2]> {
+fn corner(position: &onescan_xml::Element) -> Option<[f64; 2]> {
     let part = |name: &str| value(position, name).parse().ok().filter(|number: &f64| number.is_finite());
     Some([part("x")?, part("y")?])
 }

@@ -3,12 +3,13 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+use onescan_xml::{Element, Node as Content};
+
 use super::element::{Edge, Input, Kind, Link, Modifiers, Node, Storage, attribute};
 use crate::diagnostic::Code;
 use crate::dialect::Dialect;
 use crate::input::plcopen::Writer;
 use crate::input::statement::{Line, Piece, Text};
-use crate::input::xml::{Element, Node as Content};
 use crate::syntax::ast::ExprKind;
 use crate::syntax::parser::parse_expression;
 

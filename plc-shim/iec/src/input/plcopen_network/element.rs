@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::input::xml::Element;
+use onescan_xml::Element;
 
 /// What an element of a network is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

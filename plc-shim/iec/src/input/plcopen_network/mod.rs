@@ -20,11 +20,12 @@ mod trigger;
 
 use std::collections::BTreeSet;
 
+use onescan_xml::Element;
+
 use self::builder::Builder;
 use self::element::{Input, Modifiers, Node, nodes};
 use super::plcopen::Writer;
 use super::statement;
-use super::xml::Element;
 use crate::diagnostic::Code;
 
 /// Which elements of a body are evaluated.

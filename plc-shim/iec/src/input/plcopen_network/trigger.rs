@@ -2,9 +2,10 @@
 
 use std::collections::BTreeSet;
 
+use onescan_xml::Element;
+
 use super::element::{Edge, Modifiers};
 use crate::input::plcopen::Writer;
-use crate::input::xml::Element;
 
 /// The edge that the element sees, on either side.
 fn edge(element: &Element) -> Option<Edge> {

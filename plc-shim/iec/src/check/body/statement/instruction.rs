@@ -22,7 +22,7 @@ use crate::syntax::ast::{
 /// Greatest height to which the current result grows.
 const MAX_HEIGHT: u16 = 100;
 
-pub fn is_list(list: &[Statement]) -> bool {
+pub(crate) fn is_list(list: &[Statement]) -> bool {
     list.iter().any(|statement| matches!(statement.kind, StatementKind::Instruction(_)))
 }
 

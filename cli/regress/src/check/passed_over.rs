@@ -1,0 +1,53 @@
+//! Files of a folder that are left out on purpose. They are counted, so that nobody takes them for checked.
+
+use std::fmt;
+
+use onescan_iec::diagnostic::counted;
+use serde::Serialize;
+
+/// How many files of folders are left out, by the reason.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct PassedOver {
+    /// XML that is not PLCopen's.
+    #[serde(skip_serializing_if = "is_none")]
+    pub other_xml: usize,
+    /// Projects with their shim in one file, which `instrument` wrote beside the sources.
+    #[serde(skip_serializing_if = "is_none")]
+    pub instrumented_projects: usize,
+}
+
+#[allow(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+fn is_none(count: &usize) -> bool {
+    *count == 0
+}
+
+impl PassedOver {
+    /// True if no file is left out.
+    pub fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+impl fmt::Display for PassedOver {
+    /// `1 other XML file passed over`
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let kinds = [(self.other_xml, "other XML file"), (self.instrumented_projects, "instrumented project")];
+        let kinds = kinds.into_iter().filter(|(count, _)| *count > 0).map(|(count, word)| counted(count, word));
+        write!(f, "{} passed over", kinds.collect::<Vec<_>>().join(" and "))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_reason_has_its_count() {
+        let both = PassedOver { other_xml: 2, instrumented_projects: 1 };
+        assert_eq!(both.to_string(), "2 other XML files and 1 instrumented project passed over");
+        let one = PassedOver { other_xml: 1, ..PassedOver::default() };
+        assert_eq!(one.to_string(), "1 other XML file passed over");
+        assert_eq!(serde_json::to_string(&one).unwrap(), "{\"other_xml\":1}");
+        assert!(PassedOver::default().is_empty() && !one.is_empty());
+    }
+}
