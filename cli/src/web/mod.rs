@@ -187,6 +187,48 @@ pub(crate) struct News {
 }
 
 impl Session {
+    /// The session of `source`. A second page of it shares the seats and the views that somebody calls with the first.
+    fn new(
+        source: Source<'_>,
+        entry: Entry,
+        scheme: &'static str,
+        shared: Option<(Arc<Seats>, Arc<Called>)>,
+    ) -> Result<Self, WebError> {
+        let (mut structure, mut known) = structure::of(source.scenario, source.training.as_ref())?;
+        structure.live = source.recorded_to.is_none();
+        let plan = source.scenario.plan().clone();
+        let (seats, called) = shared.unwrap_or_else(|| {
+            let seats = Seats::at(std::mem::take(&mut known.panels));
+            (Arc::new(seats), Arc::new(Called::among(source.scenario, source.training.as_ref())))
+        });
+        Ok(Self {
+            entry,
+            scheme,
+            structure: serde_json::to_string(&structure)?,
+            seats,
+            called,
+            known,
+            layout: ImageLayout::new(plan.signals()),
+            plan,
+            published: source.published,
+            beat: Beat::begin(),
+            mailbox: source.mailbox,
+            pace: source.pace,
+            failing: source.failing,
+            training: source.training,
+            pictures: source.pictures,
+            past: source.past,
+            launch: source.launch,
+            bench: source.bench,
+            expected: source.scenario.expectations().named.iter().map(|(name, _)| name.clone()).collect(),
+            recorded_to: source.recorded_to,
+            over: AtomicBool::new(false),
+            left: AtomicBool::new(false),
+            attendance: Attendance::default(),
+            news: Mutex::default(),
+        })
+    }
+
     /// What was told after the first `heard` news. A thread that panicked under the lock has left whole values.
     fn news_after(&self, heard: usize) -> Vec<News> {
         let news = self.news.lock().unwrap_or_else(PoisonError::into_inner);
@@ -297,42 +339,12 @@ impl Page {
             Admission::ThisMachine | Admission::Anybody => House::default(),
         };
         let listen = ListenError::on(address);
-        let (mut structure, mut known) = structure::of(source.scenario, source.training.as_ref())?;
-        structure.live = source.recorded_to.is_none();
-        let plan = source.scenario.plan().clone();
         let listener = TcpListener::bind(address).map_err(&listen)?;
         listener.set_nonblocking(true).map_err(&listen)?;
         let address = listener.local_addr().map_err(&listen)?;
-        let (seats, called) = shared.unwrap_or_else(|| {
-            let seats = Seats::at(std::mem::take(&mut known.panels));
-            (Arc::new(seats), Arc::new(Called::among(source.scenario, source.training.as_ref())))
-        });
-        let session = Arc::new(Session {
-            entry: Entry::new(register, address.port(), identity.is_some()),
-            scheme: if identity.is_some() { "https" } else { "http" },
-            structure: serde_json::to_string(&structure)?,
-            seats,
-            called,
-            known,
-            layout: ImageLayout::new(plan.signals()),
-            plan,
-            published: source.published,
-            beat: Beat::begin(),
-            mailbox: source.mailbox,
-            pace: source.pace,
-            failing: source.failing,
-            training: source.training,
-            pictures: source.pictures,
-            past: source.past,
-            launch: source.launch,
-            bench: source.bench,
-            expected: source.scenario.expectations().named.iter().map(|(name, _)| name.clone()).collect(),
-            recorded_to: source.recorded_to,
-            over: AtomicBool::new(false),
-            left: AtomicBool::new(false),
-            attendance: Attendance::default(),
-            news: Mutex::default(),
-        });
+        let entry = Entry::new(register, address.port(), identity.is_some());
+        let scheme = if identity.is_some() { "https" } else { "http" };
+        let session = Arc::new(Session::new(source, entry, scheme, shared)?);
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(&listen)?;
         let stop = Arc::new(Notify::new());
         let (router, stopped) = (router(Arc::clone(&session)), Arc::clone(&stop));

@@ -27,6 +27,9 @@ use super::verdicts::Heard;
 use super::{News, Session};
 use crate::past::Moment;
 
+#[cfg(test)]
+mod tests;
+
 /// How many looks it takes until the viewer is told how far the past reaches by now.
 const PAST_EACH: u32 = 30;
 /// How many looks it takes until variables of PLCs are looked at again: people read ten values a second.

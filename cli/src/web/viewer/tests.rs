@@ -1,0 +1,210 @@
+//! Who may do what on the page: every message from everybody, as one table.
+
+use std::fmt::Write as _;
+use std::fs;
+
+use onescan_scenario::Scenario;
+use onescan_server::mailbox::Mailbox;
+use onescan_server::published::Published;
+use onescan_server::time::VirtualTime;
+use tempfile::TempDir;
+
+use super::*;
+use crate::web::desk::{Desk, Role, Training};
+use crate::web::entry::Entry;
+use crate::web::{Session, Source};
+
+const SCENE: &str = include_str!("../../../../scenarios/templates/cell/plant.toml");
+const PROGRAM: &str = include_str!("../../../../scenarios/templates/cell/plc/main.st");
+const SCENARIO: &str = include_str!("../../../../scenarios/templates/cell/scenario.toml");
+const PANELS: &str = r#"
+[clients.desk]
+kind = "operator"
+
+[[panel]]
+name = "operator"
+element = [{ kind = "button", signal = "Start", at = [0, 0] }]
+
+[[panel]]
+name = "trainer"
+seat = "trainer"
+element = [
+    { kind = "switch", label = "leaks", failure = "cylinder.leaking", at = [0, 0] },
+    { kind = "switch", label = "sticks", disturbance = { signal = "Box_There", kind = "stuck" }, at = [1, 0] },
+]
+
+[[view]]
+name = "front"
+position_m = [0, -4, 1]
+target_m = [0, 0, 0]
+"#;
+
+/// A cell with a panel of each sort, a view, and something that fails; a variable of its PLC is numbered 0.
+fn scenario() -> (TempDir, Scenario) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let start = "[signals]\nStart = { type = \"BOOL\", writer = \"desk\" }\n";
+    let text = SCENARIO.replacen("[signals]\n", start, 1) + PANELS;
+    fs::create_dir(folder.path().join("plc")).expect("writable");
+    for (name, text) in [("scenario.toml", &*text), ("plant.toml", SCENE), ("plc/main.st", PROGRAM)] {
+        fs::write(folder.path().join(name), text).expect("writable");
+    }
+    let scenario = Scenario::load(folder.path()).expect("a scenario");
+    (folder, scenario)
+}
+
+/// What a page is of.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Of {
+    Session,
+    Lesson(Role),
+    Recording,
+}
+
+/// Somebody with a page.
+struct Who {
+    name: &'static str,
+    rank: Rank,
+    of: Of,
+    seat: Option<&'static str>,
+}
+
+const fn who(name: &'static str, rank: Rank, of: Of, seat: Option<&'static str>) -> Who {
+    Who { name, rank, of, seat }
+}
+
+const EVERYBODY: [Who; 11] = [
+    who("looker", Rank::Looks, Of::Session, None),
+    who("operator", Rank::Operates, Of::Session, None),
+    who("seat", Rank::Operates, Of::Session, Some("operator")),
+    who("chief", Rank::Trains, Of::Session, Some("trainer")),
+    who("trainee", Rank::Operates, Of::Lesson(Role::Trainee), Some("operator")),
+    who("guest", Rank::Trains, Of::Lesson(Role::Trainee), None),
+    who("trainer", Rank::Trains, Of::Lesson(Role::Trainer), None),
+    who("aide", Rank::Operates, Of::Lesson(Role::Trainer), None),
+    who("witness", Rank::Looks, Of::Lesson(Role::Trainer), None),
+    who("past", Rank::Trains, Of::Recording, Some("operator")),
+    who("archive", Rank::Looks, Of::Recording, None),
+];
+
+/// Every message, some of them more than once where it depends on what is in it who may send it. Signal 0 is `Start`, the
+/// operator's; signal 1 is the PLC's.
+const EVERY: [&str; 26] = [
+    r#"{"type":"subscribe","signals":[0]}"#,
+    r#"{"type":"watch","variables":[0]}"#,
+    r#"{"type":"draw","drawing":null,"instance":0}"#,
+    r#"{"type":"maps","maps":[]}"#,
+    r#"{"type":"show","t_ns":0}"#,
+    r#"{"type":"live"}"#,
+    r#"{"type":"fork","t_ns":0}"#,
+    r#"{"type":"seat","panel":"operator","take":true}"#,
+    r#"{"type":"seat","panel":"trainer","take":true}"#,
+    r#"{"type":"seat","panel":"nobody","take":true}"#,
+    r#"{"type":"write","signal":0,"value":1}"#,
+    r#"{"type":"write","signal":1,"value":1}"#,
+    r#"{"type":"write","signal":99,"value":1}"#,
+    r#"{"type":"operate","operation":"hold"}"#,
+    r#"{"type":"operate","operation":"go"}"#,
+    r#"{"type":"operate","operation":"step"}"#,
+    r#"{"type":"operate","operation":"stop"}"#,
+    r#"{"type":"fail","component":"cylinder","failure":"leaking","active":true}"#,
+    r#"{"type":"disturb","disturbance":0,"active":true}"#,
+    r#"{"type":"variable","variable":0,"action":"force","value":"TRUE"}"#,
+    r#"{"type":"force","signal":1,"value":"1"}"#,
+    r#"{"type":"train","turn":"repeat"}"#,
+    r#"{"type":"train","turn":"back","t_ns":0}"#,
+    r#"{"type":"train","turn":"jump","start":"melting"}"#,
+    r#"{"type":"view","view":"front"}"#,
+    r#"{"type":"view","view":"nowhere"}"#,
+];
+
+/// The place of each kind of message; one that is added does not compile before it has one.
+const KINDS: usize = 16;
+fn kind(ask: &Ask) -> usize {
+    match ask {
+        Ask::Subscribe { .. } => 0,
+        Ask::Write { .. } => 1,
+        Ask::Operate { .. } => 2,
+        Ask::Seat { .. } => 3,
+        Ask::Fail { .. } => 4,
+        Ask::Disturb { .. } => 5,
+        Ask::Train(_) => 6,
+        Ask::Show { .. } => 7,
+        Ask::View { .. } => 8,
+        Ask::Draw { .. } => 9,
+        Ask::Watch { .. } => 10,
+        Ask::Maps { .. } => 11,
+        Ask::Variable { .. } => 12,
+        Ask::Force { .. } => 13,
+        Ask::Live => 14,
+        Ask::Fork { .. } => 15,
+    }
+}
+
+fn session(scenario: &Scenario, of: Of) -> Session {
+    let mailbox = Mailbox::new();
+    let layout = onescan_server::layout::ImageLayout::new(scenario.plan().signals());
+    let published = Published::new(layout.size());
+    let training = match of {
+        Of::Lesson(role) => Some(Training {
+            role,
+            desk: Desk::new(mailbox.clone()),
+            lesson: "lesson".to_owned(),
+            about: None,
+            view: None,
+            starts: vec!["melting".to_owned()],
+        }),
+        Of::Session | Of::Recording => None,
+    };
+    let recorded_to = (of == Of::Recording).then_some(VirtualTime::ZERO);
+    let source =
+        Source { training, recorded_to, ..Source::new(scenario, published, mailbox, "max".to_owned()) };
+    Session::new(source, Entry::new(None, 0, false), "http", None).expect("a session")
+}
+
+/// What comes of a message: `yes`, or why not, as the error is called.
+fn outcome(text: &str, session: &Session, who: &Who) -> String {
+    let viewer = session.seats.enter();
+    if let Some(panel) = who.seat {
+        session.seats.claim(panel, viewer, true).expect("a free seat");
+    }
+    let (outcomes, _done) = mpsc::unbounded_channel();
+    let mut eye = Eye::new(session);
+    let outcome = match heed(text, session, (viewer, who.rank), &mut eye, &outcomes) {
+        Ok(_) => "yes".to_owned(),
+        Err(refused) => {
+            let shown = format!("{refused:?}");
+            shown.split(|c: char| !c.is_alphanumeric()).next().unwrap_or_default().to_owned()
+        }
+    };
+    session.seats.leave(viewer);
+    outcome
+}
+
+#[test]
+fn everybody_may_do_what_is_theirs() {
+    let (_folder, scenario) = scenario();
+    let runtime = tokio::runtime::Builder::new_current_thread().build().expect("a runtime");
+    let columns = runtime.block_on(async {
+        let column = |who: &Who| {
+            let session = session(&scenario, who.of);
+            EVERY.map(|text| outcome(text, &session, who))
+        };
+        EVERYBODY.each_ref().map(column)
+    });
+    let mut table = format!("{:42}", "");
+    for who in &EVERYBODY {
+        write!(table, " {:10}", who.name).expect("a string takes all");
+    }
+    let mut seen = [false; KINDS];
+    for (row, text) in EVERY.iter().enumerate() {
+        seen[kind(&Ask::read(text).expect("a message"))] = true;
+        let bare: String = text.trim_start_matches(r#"{"type":"#).chars().filter(|c| !"\"{}".contains(*c)).collect();
+        write!(table, "\n{:42}", bare.chars().take(42).collect::<String>()).expect("a string takes all");
+        for column in &columns {
+            write!(table, " {:10}", column[row]).expect("a string takes all");
+        }
+    }
+    assert_eq!(seen, [true; KINDS], "every kind of message");
+    let table: String = table.lines().map(|line| format!("{}\n", line.trim_end())).collect();
+    insta::assert_snapshot!(table);
+}
