@@ -15,7 +15,7 @@ use super::field::{self, Field};
 use super::files::{Files, scenes_of};
 use super::finding::{self, Finding};
 use super::join::Line;
-use crate::web::structure::{self, Body};
+use crate::web::machine::{self, Body};
 use crate::wiring::Map;
 
 /// The version of the protocol, `web/PROTOCOL.md`.
@@ -112,7 +112,7 @@ fn check(state: &mut State, scenario: &Scenario, texts: &Texts) {
                         state.ends.extend(ends::of_plant(name.as_str(), file, &scene, &document));
                     }
                     if let Some(known) = state.scenes.iter_mut().find(|known| known.file == *file) {
-                        known.bodies = Some(structure::bodies_of(&scene));
+                        known.bodies = Some(machine::bodies_of(&scene));
                     }
                 }
                 Err(error) => finding::of_error(&error, &mut state.findings),

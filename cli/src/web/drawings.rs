@@ -10,7 +10,8 @@ use onescan_server::published::SessionView;
 use onescan_server::signal::ClientName;
 use serde::Serialize;
 
-use super::ask::Refused;
+use super::error::Refused;
+
 
 /// Most instances of a unit that can be chosen.
 const INSTANCES_MAX: usize = 500;

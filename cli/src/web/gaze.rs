@@ -6,7 +6,7 @@ use onescan_server::published::SessionView;
 use onescan_server::time::VirtualTime;
 
 use super::Session;
-use super::ask::Refused;
+use super::error::Refused;
 use crate::past::{Gazer, Moment};
 
 /// Where one viewer looks.

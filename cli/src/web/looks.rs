@@ -13,10 +13,10 @@ use onescan_server::signal::SignalId;
 use serde::Serialize;
 use tokio::sync::watch;
 
-use super::ask::Refused;
 use super::desk::{Role, Training};
+use super::error::Refused;
+use super::machine::{Body, Part, Shape};
 use super::seats::{Seats, Viewer};
-use super::structure::{Body, Part, Shape};
 
 /// A place from which the machine is seen.
 #[derive(Debug, Serialize)]

@@ -13,7 +13,7 @@ use onescan_scenario::map_file::MapFile;
 use onescan_server::published::SessionView;
 use serde::Serialize;
 
-use super::ask::Refused;
+use super::error::Refused;
 use super::picture::PAST;
 use crate::value_map;
 

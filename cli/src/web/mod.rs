@@ -8,6 +8,10 @@
 //! | [`entry`] | who comes in where a token is asked for |
 //! | `tls` | the page under TLS |
 //! | [`structure`] | what of a session does not change |
+//! | [`machine`] | bodies and components |
+//! | [`signals`] | signals |
+//! | [`sources`] | programs as text |
+//! | [`known`] | what the server knows beside it |
 //! | [`online`] | variables of PLCs that are no signals |
 //! | [`panel`] | what operators see and write with |
 //! | [`drawings`] | ladders, function blocks and charts as they are laid out, with their states |
@@ -16,6 +20,7 @@
 //! | [`maps`] | tables of values that no signal tells |
 //! | [`picture`] | what of a step is shown |
 //! | [`ask`] | what a page may ask |
+//! | [`error`] | why it is refused |
 //! | `attendance` | who looks |
 //! | `beat` | when viewers look |
 //! | [`gaze`] | where a viewer looks: live, or at the past |
@@ -37,16 +42,21 @@ mod bundle;
 mod desk;
 mod drawings;
 mod entry;
+mod error;
 mod gaze;
 mod guard;
+mod known;
 mod looks;
+pub(crate) mod machine;
 mod maps;
 mod online;
 mod panel;
 mod picture;
 mod routes;
 mod seats;
-pub(crate) mod structure;
+mod signals;
+mod sources;
+mod structure;
 mod tls;
 mod told;
 mod verdicts;
@@ -79,11 +89,11 @@ use beat::Beat;
 pub(crate) use bundle::charts;
 pub(crate) use desk::{AtWork, Desk, Failing, Role, Training, Turn};
 use entry::Entry;
+use known::Known;
 use looks::Called;
 use routes::router;
 pub(crate) use routes::{asset, guarded_here};
 use seats::Seats;
-use structure::Known;
 use tls::TlsDoor;
 pub(crate) use verdicts::Bench;
 

@@ -10,7 +10,7 @@ use onescan_scenario::{Scenario, ScenarioError};
 use onescan_server::signal::{ClientName, SignalDecl, SignalName, SignalType};
 use serde::Serialize;
 
-use super::structure::written;
+use super::signals::written;
 
 #[derive(Debug, Serialize)]
 pub(super) struct Panel {

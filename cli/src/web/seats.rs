@@ -5,7 +5,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use serde::Serialize;
 
-use super::ask::Refused;
+use super::error::Refused;
+
 
 /// A viewer, in the order of coming.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

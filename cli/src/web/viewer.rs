@@ -14,9 +14,10 @@ use onescan_server::wire::message::Status as Taken;
 use tokio::sync::{mpsc, oneshot};
 
 use super::alarms::{Change, Rung};
-use super::ask::{self, Ask, Refused, Verb};
+use super::ask::{self, Ask, Verb};
 use super::desk::AtWork;
 use super::entry::Rank;
+use super::error::Refused;
 use super::gaze::{self, Gaze};
 use super::maps::{Mapped, New};
 use super::online::Watching;

@@ -1,0 +1,142 @@
+//! The machine: the bodies and components of a scene, as the page draws and lists them.
+
+use onescan_clients::plant::component::kind::{self, unit};
+use onescan_clients::plant::scene::model::{BodyKind, Component, Wire};
+use onescan_clients::plant::{Form, Frame, Geometry, Scene};
+use serde::Serialize;
+
+use super::picture::Stage;
+
+/// A body, or a shape of one, where the scene has it.
+#[derive(Debug, Serialize)]
+pub(crate) struct Body {
+    pub(super) name: String,
+    pub(super) kind: &'static str,
+    pub(super) shape: Shape,
+    pub(super) position_m: [f64; 3],
+    pub(super) rotation: [f64; 4],
+    /// The body in whose frame it is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) on: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) colour: Option<String>,
+    #[serde(skip_serializing_if = "is_zero")]
+    pub(super) transparent: f64,
+}
+
+#[derive(Debug, Serialize)]
+#[serde(tag = "kind", rename_all = "lowercase")]
+pub(super) enum Shape {
+    None,
+    Box { size_m: [f64; 3] },
+    Sphere { radius_m: f64 },
+    Cylinder { radius_m: f64, length_m: f64 },
+    Round { radius_m: f64, top_radius_m: f64, length_m: f64, open: bool },
+    Capsule { radius_m: f64, length_m: f64 },
+    Mesh { positions_m: Vec<f64>, indices: Vec<u32> },
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde asks for it")]
+fn is_zero(share: &f64) -> bool {
+    *share == 0.0
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct Part {
+    pub(super) name: String,
+    kind: String,
+    pub(super) body: Option<String>,
+    signals: Vec<String>,
+    senses: Option<String>,
+    parameters: Vec<Parameter>,
+    pub(super) failures: Vec<Failure>,
+}
+
+#[derive(Debug, Serialize)]
+struct Parameter {
+    name: String,
+    value: String,
+    unit: Option<&'static str>,
+}
+
+#[derive(Debug, Serialize)]
+struct Failure {
+    name: String,
+}
+
+/// The bodies of a scene, as it is set up.
+pub(crate) fn bodies_of(scene: &Scene) -> Vec<Body> {
+    let mut bodies = Vec::new();
+    add_bodies(scene, &mut bodies, &mut Stage::default());
+    bodies
+}
+
+/// Adds the bodies of a scene to those of others; `stage` learns which of them move with which.
+pub(super) fn add_bodies(scene: &Scene, bodies: &mut Vec<Body>, stage: &mut Stage) {
+    let frames: Vec<Frame> = scene.frames().collect();
+    for form in scene.forms() {
+        let number = u32::try_from(bodies.len()).unwrap_or(u32::MAX);
+        if form.kind != BodyKind::Fixed {
+            stage.follow(form.body, number, form.within);
+        }
+        let place = form.within.seen_from(frames[form.index]);
+        let Form { body, attached, kind, geometry, .. } = form;
+        bodies.push(Body {
+            name: attached.map_or_else(|| body.to_owned(), |shape| format!("{body}/{shape}")),
+            kind: match kind {
+                BodyKind::Fixed => "fixed",
+                BodyKind::Kinematic => "kinematic",
+                BodyKind::Dynamic => "dynamic",
+            },
+            shape: shape(geometry),
+            position_m: place.position_m,
+            rotation: place.rotation_xyzw,
+            on: None,
+            colour: None,
+            transparent: 0.0,
+        });
+    }
+}
+
+fn shape(geometry: Geometry) -> Shape {
+    match geometry {
+        Geometry::Nothing => Shape::None,
+        Geometry::Box { size_m } => Shape::Box { size_m },
+        Geometry::Sphere { radius_m } => Shape::Sphere { radius_m },
+        Geometry::Cylinder { radius_m, length_m } => Shape::Cylinder { radius_m, length_m },
+        Geometry::Capsule { radius_m, length_m } => Shape::Capsule { radius_m, length_m },
+        Geometry::Mesh { corners_m, triangles } => Shape::Mesh {
+            positions_m: corners_m.into_iter().flatten().collect(),
+            indices: triangles.into_iter().flatten().collect(),
+        },
+    }
+}
+
+/// A component of a scene.
+pub(super) fn part(component: &Component, scene: &Scene) -> Part {
+    let taken = component.inputs.iter().filter_map(|wire| match wire {
+        Wire::Signal(name) => Some(name.to_string()),
+        Wire::Open | Wire::Constant(_) | Wire::Output { .. } => None,
+    });
+    let given: Vec<String> = component.outputs.iter().flatten().map(ToString::to_string).collect();
+    let parameter = |(parameter, setting): (&kind::Parameter, &kind::Setting)| {
+        let (name, unit) = unit(&parameter.key);
+        Parameter { name: name.to_owned(), value: setting.to_string(), unit }
+    };
+    Part {
+        name: component.name.clone(),
+        kind: component.kind.name.to_string(),
+        body: component.bound.body.and_then(|body| scene.bodies.get(body)).map(|body| body.name.clone()),
+        senses: senses(component),
+        signals: taken.chain(given.iter().cloned()).collect(),
+        parameters: component.kind.parameters.iter().zip(&component.settings).map(parameter).collect(),
+        failures: component.kind.failures.iter().map(|mode| Failure { name: mode.mode.to_string() }).collect(),
+    }
+}
+
+/// The signal that is true while a sensor sees something.
+fn senses(component: &Component) -> Option<String> {
+    const SEES: &[&str] = &["detected", "contact", "pulse", "present", "in_range"];
+    let mut outputs = component.kind.outputs.iter().zip(&component.outputs);
+    outputs.find(|(output, _)| SEES.contains(&&*output.key))?.1.as_ref().map(ToString::to_string)
+}
