@@ -6,7 +6,7 @@ use onescan_server::signal::{SignalDecl, SignalId, SignalName, SignalType};
 use onescan_server::time::VirtualTime;
 use serde::Deserialize;
 
-use super::desk::{AtWork, Role, Training, Turn};
+use super::desk::{AtWork, Training, Turn};
 use super::error::Refused;
 use super::known::Known;
 use super::online::Action;
@@ -69,28 +69,6 @@ pub(super) enum Verb {
 }
 
 impl Ask {
-    /// Whether it changes nothing that anybody else sees.
-    pub(super) fn only_looks(&self) -> bool {
-        match self {
-            Self::Subscribe { .. }
-            | Self::Watch { .. }
-            | Self::Draw { .. }
-            | Self::Maps { .. }
-            | Self::Show { .. }
-            | Self::Live => true,
-            Self::Write { .. }
-            | Self::Operate { .. }
-            | Self::Seat { .. }
-            | Self::Fail { .. }
-            | Self::Disturb { .. }
-            | Self::Variable { .. }
-            | Self::Force { .. }
-            | Self::Train(_)
-            | Self::View { .. }
-            | Self::Fork { .. } => false,
-        }
-    }
-
     /// Reads a message.
     pub(super) fn read(text: &str) -> Result<Self, Refused> {
         serde_json::from_str(text).map_err(|error| Refused::Garbage(error.to_string()))
@@ -145,30 +123,20 @@ pub(super) fn disturb(number: usize, active: bool, known: &Known, now: &AtWork) 
     Ok(begun.map(operation).collect())
 }
 
-/// How the lesson goes on, if the page is the trainer's.
-pub(super) fn turn(asked: TrainAsk, training: Option<&Training>) -> Result<Turn, Refused> {
-    let training = training.ok_or(Refused::NoLesson)?;
-    trainer_only(Some(training))?;
-    Ok(match asked {
-        TrainAsk::Repeat => Turn::Repeat,
-        TrainAsk::Back { t_ns } => Turn::Back(past(t_ns)),
-        TrainAsk::Jump { start } if training.starts.contains(&start) => Turn::Jump(start),
-        TrainAsk::Jump { start } => return Err(Refused::NoStart(start)),
-    })
+/// How the lesson goes on.
+pub(super) fn turn(asked: TrainAsk, training: &Training) -> Result<Turn, Refused> {
+    match asked {
+        TrainAsk::Repeat => Ok(Turn::Repeat),
+        TrainAsk::Back { t_ns } => Ok(Turn::Back(past(t_ns))),
+        TrainAsk::Jump { start } if training.starts.contains(&start) => Ok(Turn::Jump(start)),
+        TrainAsk::Jump { start } => Err(Refused::NoStart(start)),
+    }
 }
 
 /// A time as a page has it: what is before the start is the start.
 fn past(t_ns: f64) -> VirtualTime {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates, and a time has no sign")]
     VirtualTime::from_nanos(t_ns.max(0.0) as u64)
-}
-
-/// Refuses what a trainee may not do.
-pub(super) fn trainer_only(training: Option<&Training>) -> Result<(), Refused> {
-    match training {
-        Some(Training { role: Role::Trainee, .. }) => Err(Refused::Trainee),
-        Some(_) | None => Ok(()),
-    }
 }
 
 impl From<Verb> for Operation {

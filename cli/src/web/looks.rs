@@ -176,27 +176,28 @@ impl Called {
         }
     }
 
-    /// Shows a view to everybody, on all pages of the session. A lesson's is called on the trainer's page; elsewhere, where there
-    /// are panels of trainers, whoever calls sits at one of them.
-    pub(super) fn call(
+    /// Whether a viewer may show this view to everybody. A lesson's is called on the trainer's page; elsewhere, where there are
+    /// panels of trainers, whoever calls sits at one of them.
+    pub(super) fn may_call(
         &self,
-        view: String,
+        view: &str,
         (viewer, role): (Viewer, Option<Role>),
         seats: &Seats,
     ) -> Result<(), Refused> {
-        if !self.views.contains(&view) {
-            return Err(Refused::NoView(view));
+        if !self.views.contains(view) {
+            return Err(Refused::NoView(view.to_owned()));
         }
-        let may = match role {
-            Some(Role::Trainer) => true,
-            Some(Role::Trainee) => return Err(Refused::Trainee),
-            None => self.trainers.is_empty() || seats.sits_at_one_of(&self.trainers, viewer),
-        };
-        if !may {
-            return Err(Refused::NoTrainer);
+        match role {
+            Some(Role::Trainer) => Ok(()),
+            Some(Role::Trainee) => Err(Refused::Trainee),
+            None if self.trainers.is_empty() || seats.sits_at_one_of(&self.trainers, viewer) => Ok(()),
+            None => Err(Refused::NoTrainer),
         }
+    }
+
+    /// Shows a view to everybody, on all pages of the session.
+    pub(super) fn call(&self, view: String) {
         self.last.send_modify(|(count, last)| (*count, *last) = (*count + 1, view));
-        Ok(())
     }
 
     /// What is called from now on, and what was last in a lesson.

@@ -20,6 +20,7 @@
 //! | [`maps`] | tables of values that no signal tells |
 //! | [`picture`] | what of a step is shown |
 //! | [`ask`] | what a page may ask |
+//! | `rights` | who may do what |
 //! | [`error`] | why it is refused |
 //! | `attendance` | who looks |
 //! | `beat` | when viewers look |
@@ -52,6 +53,7 @@ mod maps;
 mod online;
 mod panel;
 mod picture;
+mod rights;
 mod routes;
 mod seats;
 mod signals;
@@ -75,6 +77,7 @@ use onescan_server::layout::ImageLayout;
 use onescan_server::mailbox::Mailbox;
 use onescan_server::plan::SessionPlan;
 use onescan_server::published::Published;
+use onescan_server::signal::SignalDecl;
 use onescan_server::time::VirtualTime;
 use onescan_server::transport::tcp::House;
 use thiserror::Error;
@@ -89,6 +92,7 @@ use beat::Beat;
 pub(crate) use bundle::charts;
 pub(crate) use desk::{AtWork, Desk, Failing, Role, Training, Turn};
 use entry::Entry;
+use error::Refused;
 use known::Known;
 use looks::Called;
 use routes::router;
@@ -243,6 +247,11 @@ impl Session {
     fn news_after(&self, heard: usize) -> Vec<News> {
         let news = self.news.lock().unwrap_or_else(PoisonError::into_inner);
         news.get(heard..).unwrap_or_default().to_vec()
+    }
+
+    /// The signal of this number.
+    fn declared(&self, signal: usize) -> Result<&SignalDecl, Refused> {
+        self.plan.signals().get(signal).ok_or(Refused::NoSignal(signal))
     }
 
     /// The newest moment that there is.

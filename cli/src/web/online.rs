@@ -14,6 +14,8 @@ use onescan_server::published::SessionView;
 use onescan_server::signal::ClientName;
 use serde::{Deserialize, Serialize};
 
+use super::error::Refused;
+
 /// Variables of one PLC that can be looked at.
 const VARIABLES_MAX: usize = 20_000;
 
@@ -110,9 +112,12 @@ impl Online {
         self.numbers.get(&(client.clone(), path.to_ascii_uppercase())).copied()
     }
 
-    /// Whether there is a variable of this number.
-    pub(super) fn knows(&self, number: usize) -> bool {
-        self.plc_of(number).is_some()
+    /// Refuses numbers of which there is no variable.
+    pub(super) fn check(&self, numbers: &[usize]) -> Result<(), Refused> {
+        match numbers.iter().find(|number| self.plc_of(**number).is_none()) {
+            Some(unknown) => Err(Refused::NoVariable(*unknown)),
+            None => Ok(()),
+        }
     }
 
     /// What `action` is for the session.

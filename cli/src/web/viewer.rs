@@ -25,7 +25,7 @@ use super::picture::{FLAGS, PAST, Shown};
 use super::seats::Viewer;
 use super::told::{Gone, Told, say, send};
 use super::verdicts::Heard;
-use super::{News, Session};
+use super::{News, Session, rights};
 use crate::past::Moment;
 
 #[cfg(test)]
@@ -261,7 +261,7 @@ fn told(view: &SessionView, session: &Session, viewer: Viewer, eye: &Eye) -> Str
         (None, false) => "run",
     };
     let digest = view.end.as_ref().and(view.digest).map(|digest| digest.to_string());
-    let is_secret = ask::trainer_only(session.training.as_ref()).is_err();
+    let is_secret = rights::is_trainee(session);
     let at_work = if is_secret { AtWork::default() } else { session.failing.now() };
     let disturbed = session.known.disturbed(&at_work);
     let failed = at_work.failed().clone();
@@ -305,7 +305,17 @@ async fn tell_drawn(socket: &mut WebSocket, view: &SessionView, session: &Sessio
     Ok(())
 }
 
-/// Does what is asked; true if the next picture is due at once.
+/// What is left to do once a message has been handled.
+enum Next {
+    /// Nothing.
+    Nothing,
+    /// The next picture, at once.
+    Picture,
+    /// These operations, all at one step boundary.
+    Operations(Vec<Operation>),
+}
+
+/// Does what a message asks, if its sender has the right; true if the next picture is due at once.
 fn heed(
     text: &str,
     session: &Session,
@@ -314,102 +324,91 @@ fn heed(
     outcomes: &mpsc::UnboundedSender<Told>,
 ) -> Result<bool, Refused> {
     let ask = Ask::read(text)?;
-    if rank < Rank::Operates && !ask.only_looks() {
-        return Err(Refused::LooksOnly);
-    }
-    let operation = match ask {
+    rights::check(ask.needs(), session, (viewer, rank))?;
+    Ok(match perform(ask, session, viewer, eye, outcomes)? {
+        Next::Nothing => false,
+        Next::Picture => true,
+        Next::Operations(operations) => {
+            wish(operations, session, outcomes);
+            false
+        }
+    })
+}
+
+/// Does what a message asks. Whoever calls has checked the right.
+fn perform(
+    ask: Ask,
+    session: &Session,
+    viewer: Viewer,
+    eye: &mut Eye,
+    outcomes: &mpsc::UnboundedSender<Told>,
+) -> Result<Next, Refused> {
+    let known = &session.known;
+    let one = |operation: Operation| Next::Operations(vec![operation]);
+    Ok(match ask {
         Ask::Subscribe { signals } => {
             eye.shown.want(ask::signals(&signals, &session.layout)?);
-            return Ok(true);
+            Next::Picture
         }
-        Ask::Seat { panel, .. } if session.known.hidden.contains(&panel) => return Err(Refused::NoPanel(panel)),
         Ask::Draw { drawing, instance } => {
-            eye.drawn = drawing.map(|drawing| session.known.states.check(drawing, instance)).transpose()?;
+            eye.drawn = drawing.map(|drawing| known.states.check(drawing, instance)).transpose()?;
             eye.look_closer(session);
-            return Ok(true);
+            Next::Picture
         }
         Ask::Watch { variables } => {
-            if let Some(unknown) = variables.iter().find(|number| !session.known.online.knows(**number)) {
-                return Err(Refused::NoVariable(*unknown));
-            }
+            known.online.check(&variables)?;
             eye.watching.want(variables);
             eye.look_closer(session);
-            return Ok(false);
+            Next::Nothing
         }
         Ask::Maps { maps } => {
-            eye.mapped.want(maps, &session.known.maps)?;
+            eye.mapped.want(maps, &known.maps)?;
             eye.look_closer(session);
-            return Ok(false);
+            Next::Nothing
         }
         Ask::Show { t_ns } => {
             eye.gaze.show(t_ns, session)?;
-            return Ok(false);
+            Next::Nothing
         }
         Ask::Live => {
-            let turned = eye.gaze.live(session);
-            if turned {
+            let has_turned = eye.gaze.live(session);
+            if has_turned {
                 eye.shown.forget();
             }
-            return Ok(turned);
+            if has_turned { Next::Picture } else { Next::Nothing }
         }
         Ask::Fork { t_ns } => {
             fork(t_ns, session, &eye.gaze, outcomes)?;
-            return Ok(false);
+            Next::Nothing
         }
         Ask::Operate { operation: Verb::Stop } if session.recorded_to.is_some() => {
             session.left.store(true, Ordering::Release);
-            return Ok(false);
+            Next::Nothing
         }
-        _ if session.recorded_to.is_some() => return Err(Refused::Recorded),
-        Ask::Seat { panel, .. } if rank < Rank::Trains && session.known.trainers.contains(&panel) => {
-            return Err(Refused::Trainers(panel));
-        }
+        Ask::Operate { operation } => one(operation.into()),
         Ask::Seat { panel, take } => {
             session.seats.claim(&panel, viewer, take)?;
-            return Ok(false);
+            Next::Nothing
         }
-        Ask::Write { signal, value } => {
-            let declared = session.plan.signals().get(signal).ok_or(Refused::NoSignal(signal))?;
-            session.seats.may_write(viewer, declared.name.as_str())?;
-            ask::write(declared, value, &session.known)?
-        }
+        Ask::Write { signal, value } => one(ask::write(session.declared(signal)?, value, known)?),
         Ask::Variable { variable, action, value } => {
-            ask::trainer_only(session.training.as_ref())?;
-            session.known.online.operation(variable, action, value).ok_or(Refused::NoVariable(variable))?
+            one(known.online.operation(variable, action, value).ok_or(Refused::NoVariable(variable))?)
         }
-        Ask::Force { signal, value } => {
-            ask::trainer_only(session.training.as_ref())?;
-            ask::force(session.plan.signals().get(signal).ok_or(Refused::NoSignal(signal))?, value)
-        }
-        Ask::Operate { operation } => {
-            ask::trainer_only(session.training.as_ref())?;
-            operation.into()
-        }
-        Ask::Fail { component, failure, active } => {
-            ask::trainer_only(session.training.as_ref())?;
-            ask::fail(component, failure, active, &session.known)?
-        }
+        Ask::Force { signal, value } => one(ask::force(session.declared(signal)?, value)),
+        Ask::Fail { component, failure, active } => one(ask::fail(component, failure, active, known)?),
         Ask::Disturb { disturbance, active } => {
-            ask::trainer_only(session.training.as_ref())?;
-            let operations = ask::disturb(disturbance, active, &session.known, &session.failing.now())?;
-            wish(operations, session, outcomes);
-            return Ok(false);
+            Next::Operations(ask::disturb(disturbance, active, known, &session.failing.now())?)
         }
         Ask::Train(asked) => {
-            let turn = ask::turn(asked, session.training.as_ref())?;
-            if let Some(training) = &session.training {
-                training.desk.ask(turn);
-            }
-            return Ok(false);
+            let training = session.training.as_ref().ok_or(Refused::NoLesson)?;
+            training.desk.ask(ask::turn(asked, training)?);
+            Next::Nothing
         }
         Ask::View { view } => {
-            let role = session.training.as_ref().map(|training| training.role);
-            session.called.call(view, (viewer, role), &session.seats)?;
-            return Ok(false);
+            session.called.call(view);
+            Next::Nothing
         }
-    };
-    wish(vec![operation], session, outcomes);
-    Ok(false)
+    })
 }
 
 /// Lets a session go on from a moment of the past, beside this one; the viewer is told where it is.
