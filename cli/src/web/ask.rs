@@ -6,10 +6,10 @@ use onescan_server::signal::{SignalDecl, SignalId, SignalName, SignalType};
 use onescan_server::time::VirtualTime;
 use serde::Deserialize;
 
-use super::desk::{AtWork, Training, Turn};
 use super::error::Refused;
 use super::known::Known;
 use super::online::Action;
+use super::training::{AtWork, Training, Turn};
 
 /// A message of a page.
 #[derive(Clone, Debug, PartialEq, Deserialize)]

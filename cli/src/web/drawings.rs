@@ -12,7 +12,6 @@ use serde::Serialize;
 
 use super::error::Refused;
 
-
 /// Most instances of a unit that can be chosen.
 const INSTANCES_MAX: usize = 500;
 

@@ -8,11 +8,11 @@ use onescan_server::operation::SignalFault;
 use onescan_server::signal::{ClientName, SignalName};
 
 use super::alarms::Bell;
-use super::desk::AtWork;
 use super::drawings::States;
 use super::looks::Judge;
 use super::online::Online;
 use super::picture::Stage;
+use super::training::AtWork;
 
 /// What does not change while the session runs.
 #[derive(Debug, Default)]

@@ -13,10 +13,10 @@ use onescan_server::signal::SignalId;
 use serde::Serialize;
 use tokio::sync::watch;
 
-use super::desk::{Role, Training};
 use super::error::Refused;
 use super::machine::{Body, Part, Shape};
 use super::seats::{Seats, Viewer};
+use super::training::{Role, Training};
 
 /// A place from which the machine is seen.
 #[derive(Debug, Serialize)]

@@ -1,4 +1,4 @@
-//! The scenario's maps on the page: tables of values that no signal tells, as they are now.
+//! The scenario's maps on the page: tables of values that no signal has, as they are now.
 //!
 //! A table is sent as often as people read it, and only if it has changed since. Its values are bytes. Where its cells lie is
 //! sent before the first values, and whenever it is no longer so.

@@ -17,18 +17,18 @@
 //! | [`drawings`] | ladders, function blocks and charts as they are laid out, with their states |
 //! | [`alarms`] | alarms as they come and go |
 //! | [`looks`] | figures, views, and what bodies look like while something holds |
-//! | [`maps`] | tables of values that no signal tells |
+//! | [`maps`] | tables of values that no signal has |
 //! | [`picture`] | what of a step is shown |
 //! | [`ask`] | what a page may ask |
 //! | `rights` | who may do what |
 //! | [`error`] | why it is refused |
 //! | `attendance` | who looks |
-//! | `beat` | when viewers look |
-//! | [`gaze`] | where a viewer looks: live, or at the past |
+//! | `frames` | when viewers look |
+//! | [`playhead`] | where a viewer looks: live, or at the past |
 //! | [`seats`] | who operates |
-//! | [`desk`] | a lesson on two pages |
+//! | [`training`] | a lesson on two pages |
 //! | [`verdicts`] | what becomes of expectations while it runs |
-//! | [`told`] | the texts that a viewer is sent |
+//! | [`response`] | the texts that a viewer is sent |
 //! | [`viewer`] | one viewer |
 //!
 //! The server has a thread of its own. It reads what the session publishes and leaves wishes in its mailbox, as every other
@@ -38,13 +38,11 @@
 mod alarms;
 mod ask;
 mod attendance;
-mod beat;
 mod bundle;
-mod desk;
 mod drawings;
 mod entry;
 mod error;
-mod gaze;
+mod frames;
 mod guard;
 mod known;
 mod looks;
@@ -53,6 +51,8 @@ mod maps;
 mod online;
 mod panel;
 mod picture;
+mod playhead;
+mod response;
 mod rights;
 mod routes;
 mod seats;
@@ -60,7 +60,7 @@ mod signals;
 mod sources;
 mod structure;
 mod tls;
-mod told;
+mod training;
 mod verdicts;
 mod viewer;
 
@@ -88,17 +88,17 @@ use crate::access::admission::{Admission, Doorstep};
 use crate::error::{Exit, ExitCode, ListenError, Usage};
 use crate::past::Rewinder;
 use attendance::Attendance;
-use beat::Beat;
 pub(crate) use bundle::charts;
-pub(crate) use desk::{AtWork, Desk, Failing, Role, Training, Turn};
 use entry::Entry;
 use error::Refused;
+use frames::Frames;
 use known::Known;
 use looks::Called;
 use routes::router;
 pub(crate) use routes::{asset, guarded_here};
 use seats::Seats;
 use tls::TlsDoor;
+pub(crate) use training::{AtWork, Failing, Role, Training, Turn, TurnQueue};
 pub(crate) use verdicts::Bench;
 
 /// How long viewers have to take the end, at most.
@@ -164,7 +164,7 @@ struct Session {
     plan: SessionPlan,
     layout: ImageLayout,
     published: Published,
-    beat: Beat,
+    frames: Frames,
     mailbox: Mailbox,
     pace: String,
     failing: Failing,
@@ -185,7 +185,7 @@ struct Session {
     /// A viewer of a recording has seen enough.
     left: AtomicBool,
     attendance: Attendance,
-    /// What all viewers are told, in its order.
+    /// What all viewers are notified of, in its order.
     news: Mutex<Vec<News>>,
 }
 
@@ -225,7 +225,7 @@ impl Session {
             layout: ImageLayout::new(plan.signals()),
             plan,
             published: source.published,
-            beat: Beat::begin(),
+            frames: Frames::begin(),
             mailbox: source.mailbox,
             pace: source.pace,
             failing: source.failing,
@@ -243,10 +243,10 @@ impl Session {
         })
     }
 
-    /// What was told after the first `heard` news. A thread that panicked under the lock has left whole values.
-    fn news_after(&self, heard: usize) -> Vec<News> {
+    /// The news after the first `reported`. A thread that panicked under the lock has left whole values.
+    fn news_after(&self, reported: usize) -> Vec<News> {
         let news = self.news.lock().unwrap_or_else(PoisonError::into_inner);
-        news.get(heard..).unwrap_or_default().to_vec()
+        news.get(reported..).unwrap_or_default().to_vec()
     }
 
     /// The signal of this number.
@@ -394,8 +394,8 @@ impl Page {
         format!("{}://{}/", self.session.scheme, self.address)
     }
 
-    /// Tells all viewers, those who are yet to come too.
-    pub(crate) fn tell(&self, news: News) {
+    /// Notifies all viewers, those who are yet to come too.
+    pub(crate) fn notify(&self, news: News) {
         self.session.news.lock().unwrap_or_else(PoisonError::into_inner).push(news);
     }
 
@@ -416,7 +416,7 @@ impl Page {
 }
 
 impl Drop for Page {
-    /// Tells viewers of the end, and leaves them a moment to take it.
+    /// Notifies viewers of the end, and leaves them a moment to take it.
     fn drop(&mut self) {
         self.session.over.store(true, Ordering::Release);
         self.session.attendance.await_last(FAREWELL);

@@ -60,7 +60,7 @@ pub(super) enum Action {
     Release,
 }
 
-/// What a viewer is told of variables.
+/// What is reported to a viewer of variables.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub(super) struct Seen {
     /// Number and value of those that have changed.
@@ -71,7 +71,7 @@ pub(super) struct Seen {
     executed: Vec<(String, u32)>,
 }
 
-/// What one viewer looks at, and what of it it has been told.
+/// What one viewer looks at, and what of it has been reported.
 #[derive(Debug, Default)]
 pub(super) struct Watching {
     wanted: Option<Vec<usize>>,
@@ -133,7 +133,7 @@ impl Online {
 }
 
 impl Watching {
-    /// From now on these variables; the next time all of them are told.
+    /// From now on these variables; the next report has all of them.
     pub(super) fn want(&mut self, variables: Vec<usize>) {
         *self = Self { wanted: Some(variables), ..Self::default() };
     }

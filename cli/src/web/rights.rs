@@ -4,10 +4,10 @@
 
 use super::Session;
 use super::ask::{Ask, Verb};
-use super::desk::Role;
 use super::entry::Rank;
 use super::error::Refused;
 use super::seats::Viewer;
+use super::training::Role;
 
 /// What a message needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

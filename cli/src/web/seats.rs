@@ -7,7 +7,6 @@ use serde::Serialize;
 
 use super::error::Refused;
 
-
 /// A viewer, in the order of coming.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Viewer(u64);

@@ -74,8 +74,8 @@ fn lines(text: &str, scenario: &Scenario, inner: &dyn Fn(&str, &str) -> Option<u
             let number = if program.is_empty() { None } else { inner(&program, word) };
             numbers.extend(number.filter(|number| !numbers.contains(number)));
         }
-        let is_told = !variables.is_empty() || !numbers.is_empty();
-        is_told.then_some(SourceLine { number: index + 1, variables, inner: numbers })
+        let is_linked = !variables.is_empty() || !numbers.is_empty();
+        is_linked.then_some(SourceLine { number: index + 1, variables, inner: numbers })
     };
     text.lines().enumerate().filter_map(line).collect()
 }

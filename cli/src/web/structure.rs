@@ -5,7 +5,6 @@ use onescan_scenario::{Scenario, ScenarioError};
 use serde::Serialize;
 
 use super::alarms::Bell;
-use super::desk::{Role, Training};
 use super::drawings::{self, Drawing};
 use super::known::Known;
 use super::looks::{self, Judge, Look, View};
@@ -15,6 +14,7 @@ use super::online::{self, Online};
 use super::panel::{self, Panel};
 use super::signals::{self, Signal};
 use super::sources::{self, Source};
+use super::training::{Role, Training};
 
 /// The version of the protocol, `web/PROTOCOL.md`.
 const PROTOCOL: u32 = 1;

@@ -10,8 +10,8 @@ use onescan_server::time::VirtualTime;
 use tempfile::TempDir;
 
 use super::*;
-use crate::web::desk::{Desk, Role, Training};
 use crate::web::entry::Entry;
+use crate::web::training::{Role, Training, TurnQueue};
 use crate::web::{Session, Source};
 
 const SCENE: &str = include_str!("../../../../scenarios/templates/cell/plant.toml");
@@ -147,7 +147,7 @@ fn session(scenario: &Scenario, of: Of) -> Session {
     let training = match of {
         Of::Lesson(role) => Some(Training {
             role,
-            desk: Desk::new(mailbox.clone()),
+            turns: TurnQueue::new(mailbox.clone()),
             lesson: "lesson".to_owned(),
             about: None,
             view: None,
@@ -156,8 +156,7 @@ fn session(scenario: &Scenario, of: Of) -> Session {
         Of::Session | Of::Recording => None,
     };
     let recorded_to = (of == Of::Recording).then_some(VirtualTime::ZERO);
-    let source =
-        Source { training, recorded_to, ..Source::new(scenario, published, mailbox, "max".to_owned()) };
+    let source = Source { training, recorded_to, ..Source::new(scenario, published, mailbox, "max".to_owned()) };
     Session::new(source, Entry::new(None, 0, false), "http", None).expect("a session")
 }
 
@@ -168,8 +167,8 @@ fn outcome(text: &str, session: &Session, who: &Who) -> String {
         session.seats.claim(panel, viewer, true).expect("a free seat");
     }
     let (outcomes, _done) = mpsc::unbounded_channel();
-    let mut eye = Eye::new(session);
-    let outcome = match heed(text, session, (viewer, who.rank), &mut eye, &outcomes) {
+    let mut subscription = Subscription::new(session);
+    let outcome = match handle(text, session, (viewer, who.rank), &mut subscription, &outcomes) {
         Ok(_) => "yes".to_owned(),
         Err(refused) => {
             let shown = format!("{refused:?}");

@@ -18,7 +18,7 @@ const PATIENCE: Duration = Duration::from_secs(20);
 /// A text for a viewer, as JSON.
 #[derive(Debug, Serialize)]
 #[serde(tag = "type", rename_all = "lowercase")]
-pub(super) enum Told {
+pub(super) enum Response {
     Status {
         state: &'static str,
         digest: Option<String>,
@@ -77,8 +77,8 @@ pub(super) struct Gone;
 ///
 /// # Errors
 /// The viewer is gone, or does not read.
-pub(super) async fn say(socket: &mut WebSocket, told: &Told) -> Result<(), Gone> {
-    let text = serde_json::to_string(told).map_err(|_| Gone)?;
+pub(super) async fn notify(socket: &mut WebSocket, response: &Response) -> Result<(), Gone> {
+    let text = serde_json::to_string(response).map_err(|_| Gone)?;
     send(socket, Message::Text(text.into())).await
 }
 

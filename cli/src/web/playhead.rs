@@ -10,14 +10,14 @@ use super::error::Refused;
 use crate::past::{Gazer, Moment};
 
 /// Where one viewer looks.
-pub(super) struct Gaze {
+pub(super) struct Playhead {
     gazer: Option<Gazer>,
     /// Whether it is shown the past, or is about to be.
     is_past: bool,
     seen: Option<Arc<SessionView>>,
 }
 
-impl Gaze {
+impl Playhead {
     /// At the live edge; a recording has none, and is looked at from its beginning.
     pub(super) fn new(session: &Session) -> Self {
         let gazer = session.past.as_ref().ok().map(crate::past::Rewinder::enter);
