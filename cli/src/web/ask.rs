@@ -4,6 +4,7 @@ use onescan_server::layout::ImageLayout;
 use onescan_server::operation::{Operation, SignalFault};
 use onescan_server::signal::{SignalDecl, SignalId, SignalName, SignalType};
 use onescan_server::time::VirtualTime;
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::error::Refused;
@@ -11,46 +12,47 @@ use super::known::Known;
 use super::online::Action;
 use super::training::{AtWork, Training, Turn};
 
-/// A message of a page.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+/// What the page asks.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(tag = "type", rename_all = "lowercase", deny_unknown_fields)]
 pub(super) enum Ask {
-    /// These signals from now on.
+    /// The signals that pictures have from now on; the next picture has all of them.
     Subscribe { signals: Vec<usize> },
-    /// An operator's input.
+    /// An operator's input at the next step boundary.
     Write { signal: usize, value: f64 },
-    /// Virtual time is held, goes on, makes one step; the session ends.
+    /// Holds virtual time, lets it go on, makes one step; or ends the session.
     Operate { operation: Verb },
-    /// A seat is taken or left.
+    /// Takes or leaves a seat.
     Seat { panel: String, take: bool },
-    /// A component fails, or is repaired.
+    /// Fails a component, or repairs it.
     Fail { component: String, failure: String, active: bool },
-    /// A fault on the way of signals, by its number on the panels, begins or ends.
+    /// Begins a fault on the way of signals, or ends it; all of its signals at one boundary. It is named by its number on the
+    /// panels.
     Disturb { disturbance: usize, active: bool },
-    /// The lesson goes on from its start, from an earlier moment, or from a prepared state.
+    /// How the lesson continues, on the trainer's page: from its start, from an earlier moment, or from a prepared state.
     Train(TrainAsk),
-    /// A moment of the past is to be shown.
+    /// Shows this viewer a moment of the past: the last step at or before it. What it asked for before counts no more.
     Show { t_ns: f64 },
-    /// A view of the scenario for all viewers.
+    /// Shows a view of the scenario to all viewers; from a trainer's seat where there is one, of a lesson on the trainer's page.
     View { view: String },
-    /// The values of a drawing's instance from now on, or of none.
+    /// The values of a drawing's instance from now on; `null` for none.
     Draw { drawing: Option<usize>, instance: usize },
-    /// These variables of PLCs from now on.
+    /// The PLCs' own variables that `variables` has from now on.
     Watch { variables: Vec<usize> },
     /// These maps from now on.
     Maps { maps: Vec<usize> },
-    /// A variable of a PLC is written, forced or released.
+    /// Writes, forces or releases a variable of a PLC; the value is a literal of the variable's type.
     Variable { variable: usize, action: Action, value: String },
-    /// A signal is forced; released without a value.
+    /// Forces a signal; releases it without a value.
     Force { signal: usize, value: Option<String> },
-    /// The live edge again.
+    /// Shows this viewer the live edge again.
     Live,
-    /// A session that goes on from a moment of the past.
+    /// Starts a session from a moment of the past, beside this one.
     Fork { t_ns: f64 },
 }
 
-/// How a lesson is to go on.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+/// How a lesson continues.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(tag = "turn", rename_all = "lowercase", deny_unknown_fields)]
 pub(super) enum TrainAsk {
     Repeat,
@@ -59,7 +61,7 @@ pub(super) enum TrainAsk {
 }
 
 /// What is done with virtual time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum Verb {
     Hold,

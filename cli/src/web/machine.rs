@@ -3,37 +3,56 @@
 use onescan_clients::plant::component::kind::{self, unit};
 use onescan_clients::plant::scene::model::{BodyKind, Component, Wire};
 use onescan_clients::plant::{Form, Frame, Geometry, Scene};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::picture::Stage;
 
 /// A body, or a shape of one, where the scene has it.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub(crate) struct Body {
     pub(super) name: String,
     pub(super) kind: &'static str,
     pub(super) shape: Shape,
     pub(super) position_m: [f64; 3],
+    /// x, y, z, w.
+    #[schemars(default = "upright")]
     pub(super) rotation: [f64; 4],
-    /// The body in whose frame it is.
+    /// The body in whose frame it is; its place is in the world's without one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) on: Option<usize>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) colour: Option<String>,
+    /// How much one sees through it, 0 to 1.
     #[serde(skip_serializing_if = "is_zero")]
+    #[schemars(default)]
     pub(super) transparent: f64,
 }
 
-#[derive(Debug, Serialize)]
+/// The shape of a body; a cylinder and a capsule lie along z.
+#[derive(Debug, Serialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "lowercase")]
+#[schemars(extend("x-check" = "shape"))]
 pub(super) enum Shape {
     None,
     Box { size_m: [f64; 3] },
     Sphere { radius_m: f64 },
     Cylinder { radius_m: f64, length_m: f64 },
-    Round { radius_m: f64, top_radius_m: f64, length_m: f64, open: bool },
+    /// A cylinder or a cone, without ends if it is open.
+    Round {
+        radius_m: f64,
+        top_radius_m: f64,
+        length_m: f64,
+        #[schemars(default)]
+        open: bool,
+    },
     Capsule { radius_m: f64, length_m: f64 },
+    /// Positions are flat triples, indices flat triangles.
     Mesh { positions_m: Vec<f64>, indices: Vec<u32> },
+}
+
+fn upright() -> [f64; 4] {
+    [0.0, 0.0, 0.0, 1.0]
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde asks for it")]
@@ -41,26 +60,35 @@ fn is_zero(share: &f64) -> bool {
     *share == 0.0
 }
 
-#[derive(Debug, Serialize)]
+/// A component of a plant.
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "Component")]
 pub(super) struct Part {
     pub(super) name: String,
     kind: String,
     pub(super) body: Option<String>,
+    /// The names of the signals that it reads and writes.
+    #[schemars(default)]
     signals: Vec<String>,
+    /// The signal that is true while a sensor sees something; its body is lit then.
     senses: Option<String>,
+    #[schemars(default)]
     parameters: Vec<Parameter>,
+    #[schemars(default)]
     pub(super) failures: Vec<Failure>,
 }
 
-#[derive(Debug, Serialize)]
+/// A parameter of a component, as it is shown.
+#[derive(Debug, Serialize, JsonSchema)]
 struct Parameter {
     name: String,
     value: String,
     unit: Option<&'static str>,
 }
 
-#[derive(Debug, Serialize)]
-struct Failure {
+/// A mode in which a component can fail.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(super) struct Failure {
     name: String,
 }
 

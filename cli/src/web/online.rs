@@ -12,6 +12,7 @@ use onescan_scenario::{Scenario, ScenarioError};
 use onescan_server::operation::Operation;
 use onescan_server::published::SessionView;
 use onescan_server::signal::ClientName;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::error::Refused;
@@ -19,14 +20,15 @@ use super::error::Refused;
 /// Variables of one PLC that can be looked at.
 const VARIABLES_MAX: usize = 20_000;
 
-/// A PLC as the page reads it.
-#[derive(Debug, Serialize)]
+/// A PLC whose variables can be looked at. Variables of all PLCs are numbered through.
+#[derive(Debug, Serialize, JsonSchema)]
 pub(super) struct Plc {
     client: String,
     variables: Vec<Shown>,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "Variable")]
 struct Shown {
     path: String,
     #[serde(rename = "type")]
@@ -52,7 +54,7 @@ pub(super) struct Online {
 }
 
 /// What is done with a variable.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum Action {
     Write,
@@ -61,13 +63,14 @@ pub(super) enum Action {
 }
 
 /// What is reported to a viewer of variables.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub(super) struct Seen {
     /// Number and value of those that have changed.
     values: Vec<(usize, String)>,
     /// All that are forced, of those that are known.
     forced: Vec<usize>,
     /// File and line of all statements that have been executed, where that is noted.
+    #[schemars(default)]
     executed: Vec<(String, u32)>,
 }
 

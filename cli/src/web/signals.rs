@@ -5,18 +5,23 @@ use std::collections::BTreeMap;
 use onescan_scenario::Scenario;
 use onescan_scenario::file::SignalFile;
 use onescan_server::signal::SignalDecl;
+use schemars::JsonSchema;
 use serde::Serialize;
 
-#[derive(Debug, Serialize)]
+/// A signal of the session. Signals are named by their place in its list.
+#[derive(Debug, Serialize, JsonSchema)]
 pub(super) struct Signal {
     name: String,
     #[serde(rename = "type")]
     ty: String,
     writer: String,
     unit: Option<String>,
+    #[schemars(default)]
     about: String,
+    /// Names of values.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
-    names: BTreeMap<String, String>,
+    #[schemars(default)]
+    names: BTreeMap<i64, String>,
 }
 
 /// The signals of a scenario, in the order of its plan.
@@ -38,6 +43,6 @@ fn signal(declared: &SignalDecl, scenario: &Scenario) -> Signal {
         writer: declared.writer.as_ref().map(ToString::to_string).unwrap_or_default(),
         unit: declared.unit.clone(),
         about: file.as_ref().and_then(|file| file.about.clone()).unwrap_or_default(),
-        names: names.map(|(value, name)| (value.to_string(), name)).collect(),
+        names: names.collect(),
     }
 }

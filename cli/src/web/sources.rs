@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use onescan_base::regular;
 use onescan_scenario::Scenario;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::online::Online;
@@ -11,20 +12,26 @@ use super::online::Online;
 /// The largest source that is shown, bytes.
 const SOURCE_MAX: usize = 1_000_000;
 
-#[derive(Debug, Serialize)]
+/// A program of a PLC as text.
+#[derive(Debug, Serialize, JsonSchema)]
 pub(super) struct Source {
     path: String,
     text: String,
+    #[schemars(default)]
     lines: Vec<SourceLine>,
 }
 
-#[derive(Debug, Serialize)]
+/// A line that names signals or variables.
+#[derive(Debug, Serialize, JsonSchema)]
 struct SourceLine {
+    /// From 1.
     #[serde(rename = "line")]
     number: usize,
+    /// Names of signals.
     variables: Vec<String>,
-    /// Numbers of variables of the PLC.
+    /// Numbers of the PLCs' own variables.
     #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schemars(default)]
     inner: Vec<usize>,
 }
 

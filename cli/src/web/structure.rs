@@ -2,6 +2,7 @@
 
 use onescan_scenario::file::ClientFile;
 use onescan_scenario::{Scenario, ScenarioError};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::alarms::Bell;
@@ -19,39 +20,59 @@ use super::training::{Role, Training};
 /// The version of the protocol, `web/PROTOCOL.md`.
 const PROTOCOL: u32 = 1;
 
-/// The answer to `GET /api/session`.
-#[derive(Debug, Serialize)]
+/// The parts of a session that do not change while it runs.
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "Session")]
 pub(super) struct Structure {
     protocol: u32,
     title: String,
     scenario: String,
     step_ns: u64,
+    #[schemars(with = "Option<u64>")]
     until_ns: u64,
+    /// False for a recording: it is shown from its beginning, and nobody operates it.
+    #[schemars(default = "yes")]
     pub(super) live: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
     training: Option<Lesson>,
     signals: Vec<Signal>,
+    #[schemars(default)]
     bodies: Vec<Body>,
+    #[schemars(default)]
     components: Vec<Part>,
+    #[schemars(default)]
     views: Vec<View>,
+    #[schemars(default)]
     looks: Vec<Look>,
+    #[schemars(default)]
     panels: Vec<Panel>,
+    #[schemars(default)]
     expectations: Vec<Expectation>,
+    #[schemars(default)]
     sources: Vec<Source>,
+    #[schemars(default)]
     drawings: Vec<Drawing>,
+    #[schemars(default)]
     plcs: Vec<online::Plc>,
+    #[schemars(default)]
     maps: Vec<Map>,
 }
 
-/// A lesson, as its page shows it.
-#[derive(Debug, Serialize)]
+/// The lesson that a session is, on the page of one of its two people.
+#[derive(Debug, Serialize, JsonSchema)]
 struct Lesson {
     role: Role,
     #[serde(rename = "lesson")]
     name: String,
     about: Option<String>,
     /// Prepared states to jump to; none on the trainee's page.
+    #[schemars(default)]
     starts: Vec<String>,
+}
+
+/// A session is live where it does not say otherwise.
+fn yes() -> bool {
+    true
 }
 
 impl Lesson {
@@ -61,9 +82,11 @@ impl Lesson {
     }
 }
 
-#[derive(Debug, Serialize)]
+/// An expectation of the scenario.
+#[derive(Debug, Serialize, JsonSchema)]
 struct Expectation {
     name: String,
+    #[schemars(default)]
     text: String,
 }
 
@@ -133,4 +156,22 @@ pub(super) fn of(scenario: &Scenario, training: Option<&Training>) -> Result<(St
         drawings,
     };
     Ok((structure, known))
+}
+
+#[cfg(test)]
+mod tests {
+    use onescan_page_types::Types;
+    use onescan_page_types::published::{is_published, is_published_in};
+
+    use super::*;
+    use crate::web::ask::Ask;
+    use crate::web::response::Response;
+
+    #[test]
+    fn the_page_has_the_types_of_this_server() {
+        let types = Types::default().receive::<Structure>().receive::<Response>().send::<Ask>();
+        is_published("src/generated/session.ts", &types.module(PROTOCOL));
+        is_published_in("PROTOCOL.md", "asks", &types.table("Ask"));
+        is_published_in("PROTOCOL.md", "messages", &types.table("Message"));
+    }
 }

@@ -30,7 +30,7 @@ pub(crate) struct Training {
 }
 
 /// Whose page it is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Role {
     /// Who takes the lesson: virtual time, failures and the trainer's panels are not theirs.

@@ -9,10 +9,11 @@ use std::time::{Duration, Instant};
 
 use onescan_scenario::expect::{Judge, Outcome, TraceEnd, Verdict};
 use onescan_server::time::VirtualTime;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// What has become of one expectation so far.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub(super) struct Standing {
     pub(super) name: String,
     verdict: &'static str,

@@ -1,6 +1,7 @@
 //! One viewer: what it asks and what it is shown. It looks at the session as often as it can take; views in between
 //! are dropped, so a slow viewer slows nobody.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
@@ -21,7 +22,7 @@ use super::maps::{Mapped, New};
 use super::online::Watching;
 use super::picture::{FLAGS, PAST, Shown};
 use super::playhead::{self, Playhead};
-use super::response::{Gone, Response, notify, send};
+use super::response::{Gone, Response, SessionState, notify, send};
 use super::seats::Viewer;
 use super::training::AtWork;
 use super::verdicts::Reported;
@@ -275,17 +276,17 @@ async fn notify_status(
 /// How the session is, in words that change only when it does.
 fn describe_status(view: &SessionView, session: &Session, viewer: Viewer, subscription: &Subscription) -> String {
     let state = match (&view.end, view.is_held) {
-        _ if session.recorded_to.is_some() => "recorded",
-        (Some(_), _) => "end",
-        (None, true) => "hold",
-        (None, false) => "run",
+        _ if session.recorded_to.is_some() => SessionState::Recorded,
+        (Some(_), _) => SessionState::End,
+        (None, true) => SessionState::Hold,
+        (None, false) => SessionState::Run,
     };
     let digest = view.end.as_ref().and(view.digest).map(|digest| digest.to_string());
     let is_secret = rights::is_trainee(session);
     let at_work = if is_secret { AtWork::default() } else { session.failing.now() };
     let disturbed = session.known.disturbed(&at_work);
     let failed = at_work.failed().clone();
-    let forced = if is_secret { Vec::new() } else { view.forced.iter().map(|signal| signal.index()).collect() };
+    let forced = if is_secret { BTreeSet::new() } else { view.forced.iter().map(|signal| signal.index()).collect() };
     let (pace, seat) = (session.pace.clone(), session.seats.seen_by(viewer));
     let (shown_ns, past_ns) = (subscription.playhead.shown_ns(), subscription.past_ns);
     let status = Response::Status { state, digest, pace, seat, failed, forced, disturbed, shown_ns, past_ns };
