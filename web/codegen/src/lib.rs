@@ -76,10 +76,8 @@ impl Types {
             }
         }
         let mut text = "// Generated from the types of the server; see web/README.md. Do not edit.\n\n".to_owned();
-        // Every other piece is a text in quotation marks.
-        let code = read.split('"').step_by(2);
-        let words: BTreeSet<&str> = code.flat_map(|code| code.split(|c: char| !c.is_alphanumeric() && c != '_')).collect();
-        let used = readers::PRIMITIVES.iter().filter(|word| words.contains(**word)).copied();
+        let words: BTreeSet<&str> = read.split(|c: char| !c.is_alphanumeric() && c != '_').collect();
+        let used = readers::PRIMITIVES.iter().filter(|word| readers::uses(&read, word)).copied();
         let types = [("Field", "type Field"), ("Json", "type Json")];
         let all: BTreeSet<&str> = body.split(|c: char| !c.is_alphanumeric() && c != '_').collect();
         let types = types.into_iter().filter(|(name, _)| all.contains(name)).map(|(_, import)| import);
@@ -139,13 +137,15 @@ fn members(schema: &Value) -> Option<&[Value]> {
     members.filter(|members| schema["properties"].is_null() && members.iter().all(|member| tag(member).is_some()))
 }
 
-/// The keys of a table, its tag first and the others in alphabetical order, each with its schema and whether it is required.
+/// The keys of a table, each with its schema and whether it is required: first its tag, then what is required in the order of
+/// the Rust type, then the others in alphabetical order. That order does not depend on how `serde_json` keeps its maps.
 fn keys(table: &Value) -> Vec<(&str, &Value, bool)> {
     let required: Vec<&str> = table["required"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
     let properties = table["properties"].as_object().into_iter().flatten();
     let mut keys: Vec<(&str, &Value, bool)> =
         properties.map(|(key, schema)| (key.as_str(), schema, required.contains(&key.as_str()))).collect();
-    keys.sort_by_key(|(key, schema, _)| (schema["const"].is_null(), *key));
+    let place = |key: &str| required.iter().position(|one| *one == key).unwrap_or(usize::MAX);
+    keys.sort_by_key(|(key, schema, _)| (schema["const"].is_null(), place(key), *key));
     keys
 }
 
@@ -224,7 +224,7 @@ mod tests {
             past_ns: Option<[u64; 2]>,
         },
         /// Where something is.
-        Shape(Shape),
+        Shape { shape: Shape },
         /// Values.
         Values {
             #[serde(flatten)]
@@ -283,6 +283,29 @@ mod tests {
     #[test]
     fn a_module_has_types_and_readers() {
         let types = Types::default().receive::<Message>().send::<Ask>();
-        insta::assert_snapshot!(format!("{}\n{}{}", types.module(1), types.table("Message"), types.table("Ask")));
+        let made = format!("{}{}{}", types.module(1), types.table("Message"), types.table("Ask"));
+        for line in [
+            r#"import { json, list, matching, nullable, number, numbered, one_of, set, text, tuple, whole, type Field, type Json }"#,
+            r#"export const PROTOCOL = 1;"#,
+            r#"  | { readonly type: "status"; readonly state: State; readonly failed: ReadonlySet<string>; readonly past_ns: readonly [number, number] | null }"#,
+            r#"        state: readState(field.at("state")),"#,
+            r#"        failed: set(text)(field.at("failed", [])),"#,
+            r#"export type State = "run" | "hold";"#,
+            r#"  return one_of("run", "hold")(field);"#,
+            r#"readonly names: ReadonlyMap<number, string>"#,
+            r#"values: list(tuple(whole, nullable(text)))(field.at("values"))"#,
+            r#"colour: matching(/^#[0-9a-f]{6}$/)(field.at("colour"))"#,
+            r#"more: json(field.at("more"))"#,
+            r#"span: tuple(whole, whole)(field.at("span", [1,1]))"#,
+            r#"check_shape(field, "#,
+            r#"      return field.unknown("type", type);"#,
+            r#"  | { readonly type: "watch"; readonly variables: readonly number[]; readonly one?: number | null }"#,
+            r#"  | ({ readonly type: "train" } & ("#,
+            r#"| `status` | `state: "run" \| "hold"`<br>`failed?: string[]`<br>`past_ns?: [number, number] \| null` | How it is. |"#,
+            r#"| `live` |  | Nothing. |"#,
+        ] {
+            assert!(made.contains(line), "{line}\n{made}");
+        }
+        assert!(!made.contains("readAsk"), "the page does not read what it sends");
     }
 }

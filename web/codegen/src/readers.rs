@@ -7,8 +7,18 @@ use serde_json::Value;
 use super::{Keys, keys, map, members, name_of, tag, tuple, without_null, words};
 
 /// What `web/src/field.ts` has for readers.
-pub(crate) const PRIMITIVES: &[&str] =
-    &["flag", "json", "list", "map", "matching", "nullable", "number", "numbered", "one_of", "set", "text", "tuple", "whole"];
+pub(crate) const PRIMITIVES: &[&str] = &[
+    "flag", "json", "list", "map", "matching", "nullable", "number", "numbered", "one_of", "set", "text", "tuple",
+    "whole",
+];
+
+/// Whether a primitive is called, or handed to another one; keys and words may have its name, too.
+pub(crate) fn uses(code: &str, primitive: &str) -> bool {
+    code.match_indices(primitive).any(|(at, _)| {
+        let (before, after) = (code[..at].chars().next_back(), code[at + primitive.len()..].chars().next());
+        matches!(before, Some(' ' | '(')) && matches!(after, Some('(' | ')' | ','))
+    })
+}
 
 /// The reader of a named type.
 pub(crate) fn declare(name: &str, schema: &Value) -> String {
@@ -25,9 +35,11 @@ pub(crate) fn declare(name: &str, schema: &Value) -> String {
         writeln!(text, "  const {key} = field.at(\"{key}\").text();\n  switch ({key}) {{").expect("a string takes all");
         for member in members {
             let (_, word) = tag(member).expect("a member has a tag");
-            writeln!(text, "    case \"{word}\":\n      {}", give(&table(member, Some(key), "      "))).expect("a string takes all");
+            writeln!(text, "    case \"{word}\":\n      {}", give(&table(member, Some(key), "      ")))
+                .expect("a string takes all");
         }
-        writeln!(text, "    default:\n      return field.unknown(\"{key}\", {key});\n  }}").expect("a string takes all");
+        writeln!(text, "    default:\n      return field.unknown(\"{key}\", {key});\n  }}")
+            .expect("a string takes all");
     } else if let Some(check) = check {
         writeln!(text, "  return check_{check}(field, {});", read(schema, "field")).expect("a string takes all");
     } else {
@@ -47,6 +59,7 @@ fn read(schema: &Value, field: &str) -> String {
 
 /// The keys of a table; its tag, where it has one, has been read. Lines after the first are indented.
 fn table(schema: &Value, tag: Option<&str>, indent: &str) -> String {
+    assert!(schema["$ref"].is_null() && schema["oneOf"].is_null(), "keys of another type are not read yet: {schema}");
     let mut parts: Vec<String> = tag.map(str::to_owned).into_iter().collect();
     for (key, schema, is_required) in keys(schema) {
         if tag == Some(key) {

@@ -43,5 +43,16 @@ fn written(schema: &Value, definitions: &Definitions) -> String {
             }
         }
     }
-    text.replace(" | ", " \\| ")
+    as_json(text).replace(" | ", " \\| ")
+}
+
+/// Sets and maps as they are on the wire: lists, and objects of any keys.
+fn as_json(mut text: String) -> String {
+    for (name, begin, end) in [("ReadonlySet<", "", "[]"), ("ReadonlyMap<", "{ [", " }")] {
+        while let Some((before, rest)) = text.split_once(name) {
+            let (inside, after) = rest.split_once('>').expect("it is closed");
+            text = format!("{before}{begin}{}{end}{after}", inside.replacen(", ", "]: ", 1));
+        }
+    }
+    text
 }

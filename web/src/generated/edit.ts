@@ -20,43 +20,43 @@ export function readAnswer(field: Field): Answer {
 
 /** A body, or a shape of one, where the scene has it. */
 export interface Body {
-  readonly colour: string | null;
-  readonly kind: string;
   readonly name: string;
+  readonly kind: string;
+  readonly shape: Shape;
+  readonly position_m: readonly [number, number, number];
+  readonly colour: string | null;
   /** The body in whose frame it is; its place is in the world's without one. */
   readonly on: number | null;
-  readonly position_m: readonly [number, number, number];
   /** x, y, z, w. */
   readonly rotation: readonly [number, number, number, number];
-  readonly shape: Shape;
   /** How much one sees through it, 0 to 1. */
   readonly transparent: number;
 }
 
 export function readBody(field: Field): Body {
   return {
-    colour: nullable(text)(field.at("colour")),
-    kind: text(field.at("kind")),
     name: text(field.at("name")),
-    on: nullable(whole)(field.at("on")),
-    position_m: tuple(number, number, number)(field.at("position_m")),
-    rotation: tuple(number, number, number, number)(field.at("rotation", [0.0,0.0,0.0,1.0])),
+    kind: text(field.at("kind")),
     shape: readShape(field.at("shape")),
+    position_m: tuple(number, number, number)(field.at("position_m")),
+    colour: nullable(text)(field.at("colour")),
+    on: nullable(whole)(field.at("on")),
+    rotation: tuple(number, number, number, number)(field.at("rotation", [0.0,0.0,0.0,1.0])),
     transparent: number(field.at("transparent", 0)),
   };
 }
 
 /** A client, as far as its file says it. */
 export interface Client {
-  readonly kind: string;
   readonly name: string;
+  readonly kind: string;
   readonly scene: string | null;
 }
 
 export function readClient(field: Field): Client {
   return {
-    kind: text(field.at("kind")),
     name: text(field.at("name")),
+    kind: text(field.at("kind")),
     scene: nullable(text)(field.at("scene")),
   };
 }
@@ -68,94 +68,94 @@ export type Edit =
   /** That line goes. */
   | { readonly do: "disconnect"; readonly client: string; readonly signal: string }
   /** A signal of the session. */
-  | { readonly do: "declare"; readonly about?: string | null; readonly signal: string; readonly type: string; readonly unit?: string | null; readonly writer: string }
+  | { readonly do: "declare"; readonly signal: string; readonly type: string; readonly writer: string; readonly about?: string | null; readonly unit?: string | null }
   /** A signal goes that nobody refers to. */
   | { readonly do: "withdraw"; readonly signal: string }
   /** A body, a joint, a component, … */
-  | { readonly do: "add"; readonly keys: readonly (readonly [string, Given])[]; readonly name: string; readonly scene: string; readonly sort: Sort }
+  | { readonly do: "add"; readonly scene: string; readonly sort: Sort; readonly name: string; readonly keys: readonly (readonly [string, Given])[] }
   /** A key gets another value, or goes. */
-  | { readonly do: "set"; readonly key: string; readonly name: string; readonly scene: string; readonly sort: Sort; readonly value?: Given | null }
+  | { readonly do: "set"; readonly scene: string; readonly sort: Sort; readonly name: string; readonly key: string; readonly value?: Given | null }
   /** A body gets another place. */
-  | { readonly do: "move"; readonly body: string; readonly position_m: readonly [number, number, number]; readonly scene: string }
+  | { readonly do: "move"; readonly scene: string; readonly body: string; readonly position_m: readonly [number, number, number] }
   /** A thing gets another name, with all that refers to it. */
-  | { readonly do: "rename"; readonly name: string; readonly scene: string; readonly sort: Sort; readonly to: string }
+  | { readonly do: "rename"; readonly scene: string; readonly sort: Sort; readonly name: string; readonly to: string }
   /** A thing goes that nobody refers to. */
-  | { readonly do: "remove"; readonly name: string; readonly scene: string; readonly sort: Sort };
+  | { readonly do: "remove"; readonly scene: string; readonly sort: Sort; readonly name: string };
 
 /** What is known of the files as they are. */
 export interface EditState {
+  readonly protocol: number;
+  readonly scenario: string;
+  readonly revision: number;
   /** Files that somebody else has changed since. */
   readonly changed: readonly string[];
-  readonly clients: readonly Client[];
-  readonly ends: readonly End[];
   readonly findings: readonly Finding[];
-  /** None while something keeps the wiring from being known. */
-  readonly map: Wiring | null;
-  readonly protocol: number;
-  readonly redo: string | null;
-  readonly revision: number;
-  readonly scenario: string;
-  readonly scenes: readonly SceneState[];
+  readonly clients: readonly Client[];
   /** The signals that are declared, arrays and structures as they are written. */
   readonly signals: readonly string[];
+  readonly ends: readonly End[];
+  readonly scenes: readonly SceneState[];
+  /** None while something keeps the wiring from being known. */
+  readonly map: Wiring | null;
+  readonly redo: string | null;
   /** What would be taken back, and done again. */
   readonly undo: string | null;
 }
 
 export function readEditState(field: Field): EditState {
   return {
-    changed: list(text)(field.at("changed")),
-    clients: list(readClient)(field.at("clients")),
-    ends: list(readEnd)(field.at("ends")),
-    findings: list(readFinding)(field.at("findings")),
-    map: nullable(readWiring)(field.at("map")),
     protocol: whole(field.at("protocol")),
-    redo: nullable(text)(field.at("redo")),
-    revision: whole(field.at("revision")),
     scenario: text(field.at("scenario")),
-    scenes: list(readSceneState)(field.at("scenes")),
+    revision: whole(field.at("revision")),
+    changed: list(text)(field.at("changed")),
+    findings: list(readFinding)(field.at("findings")),
+    clients: list(readClient)(field.at("clients")),
     signals: list(text)(field.at("signals")),
+    ends: list(readEnd)(field.at("ends")),
+    scenes: list(readSceneState)(field.at("scenes")),
+    map: nullable(readWiring)(field.at("map")),
+    redo: nullable(text)(field.at("redo")),
     undo: nullable(text)(field.at("undo")),
   };
 }
 
 /** Where a connection can begin or end. */
 export interface End {
-  /** What it is there: an input or output of a component, a variable. */
-  readonly at: string;
   /** The client. */
   readonly client: string;
-  /** Whether it writes. */
-  readonly gives: boolean;
-  /** What says so. */
-  readonly hand: Hand;
-  /** The signals that it is connected to. */
-  readonly signals: readonly string[];
+  /** What it is there: an input or output of a component, a variable. */
+  readonly at: string;
   /** Its type. */
   readonly type: string;
+  /** Whether it writes. */
+  readonly gives: boolean;
+  /** The signals that it is connected to. */
+  readonly signals: readonly string[];
+  /** What says so. */
+  readonly hand: Hand;
 }
 
 export function readEnd(field: Field): End {
   return {
-    at: text(field.at("at")),
     client: text(field.at("client")),
-    gives: flag(field.at("gives")),
-    hand: readHand(field.at("hand")),
-    signals: list(text)(field.at("signals")),
+    at: text(field.at("at")),
     type: text(field.at("type")),
+    gives: flag(field.at("gives")),
+    signals: list(text)(field.at("signals")),
+    hand: readHand(field.at("hand")),
   };
 }
 
 /** A key. */
 export interface FieldInfo {
-  /** What it means. */
-  readonly about: string;
-  /** What it may be. */
-  readonly form: Form;
   /** As it is written. */
   readonly key: string;
   /** What it is called, without unit and ending. */
   readonly name: string;
+  /** What it means. */
+  readonly about: string;
+  /** What it may be. */
+  readonly form: Form;
   /** Whether nothing goes without it. */
   readonly needed: boolean;
   /** What part it has in its table. */
@@ -168,10 +168,10 @@ export interface FieldInfo {
 
 export function readFieldInfo(field: Field): FieldInfo {
   return {
-    about: text(field.at("about")),
-    form: readForm(field.at("form")),
     key: text(field.at("key")),
     name: text(field.at("name")),
+    about: text(field.at("about")),
+    form: readForm(field.at("form")),
     needed: flag(field.at("needed")),
     part: readPart(field.at("part")),
     preset: json(field.at("preset")),
@@ -181,25 +181,25 @@ export function readFieldInfo(field: Field): FieldInfo {
 
 /** Something that is wrong. */
 export interface Finding {
+  /** Whether a session could not start. */
+  readonly is_error: boolean;
+  /** What is wrong. */
+  readonly message: string;
   /** The file. */
   readonly file: string | null;
   /** What to do. */
   readonly help: string | null;
-  /** Whether a session could not start. */
-  readonly is_error: boolean;
   /** Its line, from 1. */
   readonly line: number | null;
-  /** What is wrong. */
-  readonly message: string;
 }
 
 export function readFinding(field: Field): Finding {
   return {
+    is_error: flag(field.at("is_error")),
+    message: text(field.at("message")),
     file: nullable(text)(field.at("file")),
     help: nullable(text)(field.at("help")),
-    is_error: flag(field.at("is_error")),
     line: nullable(whole)(field.at("line")),
-    message: text(field.at("message")),
   };
 }
 
@@ -248,7 +248,7 @@ export type Given = boolean | number | string | readonly number[] | readonly str
 /** What is written to connect an end. */
 export type Hand =
   /** A key of a table of a scene. */
-  | { readonly kind: "key"; readonly key: string; readonly name: string; readonly scene: string; readonly sort: Sort }
+  | { readonly kind: "key"; readonly scene: string; readonly sort: Sort; readonly name: string; readonly key: string }
   /** A line of `bind`. */
   | { readonly kind: "variable"; readonly path: string }
   /** Nothing that the editor writes: an element of an array, a part of a kind of the user's own. */
@@ -260,10 +260,10 @@ export function readHand(field: Field): Hand {
     case "key":
       return {
         kind,
-        key: text(field.at("key")),
-        name: text(field.at("name")),
         scene: text(field.at("scene")),
         sort: readSort(field.at("sort")),
+        name: text(field.at("name")),
+        key: text(field.at("key")),
       };
     case "variable":
       return { kind, path: text(field.at("path")) };
@@ -276,60 +276,60 @@ export function readHand(field: Field): Hand {
 
 /** One client's part of a signal. */
 export interface Hook {
-  /** Outputs, inputs or variables; empty if they are not known. */
-  readonly at: readonly string[];
   /** The client. */
   readonly client: string;
+  /** Outputs, inputs or variables; empty if they are not known. */
+  readonly at: readonly string[];
 }
 
 export function readHook(field: Field): Hook {
-  return { at: list(text)(field.at("at")), client: text(field.at("client")) };
+  return { client: text(field.at("client")), at: list(text)(field.at("at")) };
 }
 
 export interface Kind {
-  readonly about: string;
-  readonly fields: readonly FieldInfo[];
   readonly name: string;
+  readonly about: string;
   /** Types of inputs and outputs, by the keys that name their signals. */
   readonly types: ReadonlyMap<string, string>;
+  readonly fields: readonly FieldInfo[];
 }
 
 export function readKind(field: Field): Kind {
   return {
-    about: text(field.at("about")),
-    fields: list(readFieldInfo)(field.at("fields")),
     name: text(field.at("name")),
+    about: text(field.at("about")),
     types: map(text)(field.at("types")),
+    fields: list(readFieldInfo)(field.at("fields")),
   };
 }
 
 /** What can be placed: the kinds of components, and the keys of every sort of table. */
 export interface Library {
-  readonly kinds: readonly Kind[];
   readonly protocol: number;
+  readonly kinds: readonly Kind[];
   readonly sorts: readonly SortFields[];
 }
 
 export function readLibrary(field: Field): Library {
   return {
-    kinds: list(readKind)(field.at("kinds")),
     protocol: whole(field.at("protocol")),
+    kinds: list(readKind)(field.at("kinds")),
     sorts: list(readSortFields)(field.at("sorts")),
   };
 }
 
 /** A client. */
 export interface Member {
+  /** Its name. */
+  readonly name: string;
   /** Its kind, as the scenario has it. */
   readonly kind: string;
   /** Whether what it reads and writes is known before it joins. */
   readonly known: boolean;
-  /** Its name. */
-  readonly name: string;
 }
 
 export function readMember(field: Field): Member {
-  return { kind: text(field.at("kind")), known: flag(field.at("known")), name: text(field.at("name")) };
+  return { name: text(field.at("name")), kind: text(field.at("kind")), known: flag(field.at("known")) };
 }
 
 /** An input of a component that nobody drives. */
@@ -373,34 +373,34 @@ export function readReference(field: Field): Reference {
 
 /** Why nothing was done. */
 export interface Refusal {
-  readonly file: string | null;
-  readonly line: number | null;
   readonly message: string;
   readonly references: readonly Reference[];
+  readonly file: string | null;
+  readonly line: number | null;
 }
 
 export function readRefusal(field: Field): Refusal {
   return {
-    file: nullable(text)(field.at("file")),
-    line: nullable(whole)(field.at("line")),
     message: text(field.at("message")),
     references: list(readReference)(field.at("references")),
+    file: nullable(text)(field.at("file")),
+    line: nullable(whole)(field.at("line")),
   };
 }
 
 /** A scene, for the machine and for the forms. */
 export interface SceneState {
-  /** None while the scene is wrong. */
-  readonly bodies: readonly Body[] | null;
   readonly file: string;
   readonly tables: readonly Table[];
+  /** None while the scene is wrong. */
+  readonly bodies: readonly Body[] | null;
 }
 
 export function readSceneState(field: Field): SceneState {
   return {
-    bodies: nullable(list(readBody))(field.at("bodies")),
     file: text(field.at("file")),
     tables: list(readTable)(field.at("tables")),
+    bodies: nullable(list(readBody))(field.at("bodies")),
   };
 }
 
@@ -409,12 +409,12 @@ export type Shape =
   | { readonly kind: "none" }
   | { readonly kind: "box"; readonly size_m: readonly [number, number, number] }
   | { readonly kind: "sphere"; readonly radius_m: number }
-  | { readonly kind: "cylinder"; readonly length_m: number; readonly radius_m: number }
+  | { readonly kind: "cylinder"; readonly radius_m: number; readonly length_m: number }
   /** A cylinder or a cone, without ends if it is open. */
-  | { readonly kind: "round"; readonly length_m: number; readonly open: boolean; readonly radius_m: number; readonly top_radius_m: number }
-  | { readonly kind: "capsule"; readonly length_m: number; readonly radius_m: number }
+  | { readonly kind: "round"; readonly radius_m: number; readonly top_radius_m: number; readonly length_m: number; readonly open: boolean }
+  | { readonly kind: "capsule"; readonly radius_m: number; readonly length_m: number }
   /** Positions are flat triples, indices flat triangles. */
-  | { readonly kind: "mesh"; readonly indices: readonly number[]; readonly positions_m: readonly number[] };
+  | { readonly kind: "mesh"; readonly positions_m: readonly number[]; readonly indices: readonly number[] };
 
 export function readShape(field: Field): Shape {
   const kind = field.at("kind").text();
@@ -426,22 +426,22 @@ export function readShape(field: Field): Shape {
     case "sphere":
       return check_shape(field, { kind, radius_m: number(field.at("radius_m")) });
     case "cylinder":
-      return check_shape(field, { kind, length_m: number(field.at("length_m")), radius_m: number(field.at("radius_m")) });
+      return check_shape(field, { kind, radius_m: number(field.at("radius_m")), length_m: number(field.at("length_m")) });
     case "round":
       return check_shape(field, {
         kind,
-        length_m: number(field.at("length_m")),
-        open: flag(field.at("open", false)),
         radius_m: number(field.at("radius_m")),
         top_radius_m: number(field.at("top_radius_m")),
+        length_m: number(field.at("length_m")),
+        open: flag(field.at("open", false)),
       });
     case "capsule":
-      return check_shape(field, { kind, length_m: number(field.at("length_m")), radius_m: number(field.at("radius_m")) });
+      return check_shape(field, { kind, radius_m: number(field.at("radius_m")), length_m: number(field.at("length_m")) });
     case "mesh":
       return check_shape(field, {
         kind,
-        indices: list(whole)(field.at("indices")),
         positions_m: list(number)(field.at("positions_m")),
+        indices: list(whole)(field.at("indices")),
       });
     default:
       return field.unknown("kind", kind);
@@ -456,49 +456,49 @@ export function readSort(field: Field): Sort {
 }
 
 export interface SortFields {
-  readonly fields: readonly FieldInfo[];
   readonly sort: Sort;
+  readonly fields: readonly FieldInfo[];
 }
 
 export function readSortFields(field: Field): SortFields {
-  return { fields: list(readFieldInfo)(field.at("fields")), sort: readSort(field.at("sort")) };
+  return { sort: readSort(field.at("sort")), fields: list(readFieldInfo)(field.at("fields")) };
 }
 
 /** A table of a scene as it is written. */
 export interface Table {
-  readonly keys: ReadonlyMap<string, Json>;
-  readonly line: number;
-  readonly name: string;
   readonly sort: Sort;
+  readonly name: string;
+  readonly line: number;
+  readonly keys: ReadonlyMap<string, Json>;
 }
 
 export function readTable(field: Field): Table {
   return {
-    keys: map(json)(field.at("keys")),
-    line: whole(field.at("line")),
-    name: text(field.at("name")),
     sort: readSort(field.at("sort")),
+    name: text(field.at("name")),
+    line: whole(field.at("line")),
+    keys: map(json)(field.at("keys")),
   };
 }
 
 /** What a line is drawn to. */
-export type Tip = { readonly at: string; readonly client: string } | { readonly signal: string };
+export type Tip = { readonly client: string; readonly at: string } | { readonly signal: string };
 
 /** Something that is wrong with the wiring. */
 export interface Trouble {
   /** What sort of trouble. */
   readonly kind: TroubleKind;
-  /** What is wrong with it, and what could be done. */
-  readonly message: string;
   /** The signal. */
   readonly signal: string;
+  /** What is wrong with it, and what could be done. */
+  readonly message: string;
 }
 
 export function readTrouble(field: Field): Trouble {
   return {
     kind: readTroubleKind(field.at("kind")),
-    message: text(field.at("message")),
     signal: text(field.at("signal")),
+    message: text(field.at("message")),
   };
 }
 
@@ -512,9 +512,9 @@ export function readTroubleKind(field: Field): TroubleKind {
 /** What a page wants. */
 export type Want =
   /** These changes, together. */
-  | { readonly want: "change"; readonly edits: readonly Edit[]; readonly revision: number }
+  | { readonly want: "change"; readonly revision: number; readonly edits: readonly Edit[] }
   /** Two ends connected. */
-  | { readonly want: "join"; readonly one: Tip; readonly other: Tip; readonly revision: number }
+  | { readonly want: "join"; readonly revision: number; readonly one: Tip; readonly other: Tip }
   /** An end, or a signal that nobody uses, disconnected. */
   | { readonly want: "part"; readonly revision: number; readonly tip: Tip }
   /** The last change taken back. */
@@ -528,43 +528,43 @@ export type Want =
 export interface Wired {
   /** Its name. */
   readonly name: string;
-  /** Who reads it, and where to. */
-  readonly readers: readonly Hook[];
   /** Its declared type. */
   readonly type: string;
-  /** Its unit, if it has one. */
-  readonly unit: string | null;
   /** Who writes it, and from where. */
   readonly writer: Hook;
+  /** Who reads it, and where to. */
+  readonly readers: readonly Hook[];
+  /** Its unit, if it has one. */
+  readonly unit: string | null;
 }
 
 export function readWired(field: Field): Wired {
   return {
     name: text(field.at("name")),
-    readers: list(readHook)(field.at("readers")),
     type: text(field.at("type")),
-    unit: nullable(text)(field.at("unit")),
     writer: readHook(field.at("writer")),
+    readers: list(readHook)(field.at("readers")),
+    unit: nullable(text)(field.at("unit")),
   };
 }
 
 /** The wiring of a scenario. */
 export interface Wiring {
-  /** The clients by name. */
-  readonly clients: readonly Member[];
-  /** Inputs of a plant's components that nobody drives: no fault, but a reason to look. */
-  readonly open: readonly OpenInput[];
   /** The declared signals by name. */
   readonly signals: readonly Wired[];
   /** What is wrong, signal by signal. */
   readonly troubles: readonly Trouble[];
+  /** The clients by name. */
+  readonly clients: readonly Member[];
+  /** Inputs of a plant's components that nobody drives: no fault, but a reason to look. */
+  readonly open: readonly OpenInput[];
 }
 
 export function readWiring(field: Field): Wiring {
   return {
-    clients: list(readMember)(field.at("clients", [])),
-    open: list(readOpenInput)(field.at("open", [])),
     signals: list(readWired)(field.at("signals")),
     troubles: list(readTrouble)(field.at("troubles")),
+    clients: list(readMember)(field.at("clients", [])),
+    open: list(readOpenInput)(field.at("open", [])),
   };
 }

@@ -19,9 +19,9 @@ export type Ask =
   /** Takes or leaves a seat. */
   | { readonly type: "seat"; readonly panel: string; readonly take: boolean }
   /** Fails a component, or repairs it. */
-  | { readonly type: "fail"; readonly active: boolean; readonly component: string; readonly failure: string }
+  | { readonly type: "fail"; readonly component: string; readonly failure: string; readonly active: boolean }
   /** Begins a fault on the way of signals, or ends it; all of its signals at one boundary. It is named by its number on the panels. */
-  | { readonly type: "disturb"; readonly active: boolean; readonly disturbance: number }
+  | { readonly type: "disturb"; readonly disturbance: number; readonly active: boolean }
   /** How the lesson continues, on the trainer's page: from its start, from an earlier moment, or from a prepared state. */
   | ({ readonly type: "train" } & ({ readonly turn: "repeat" } | { readonly turn: "back"; readonly t_ns: number } | { readonly turn: "jump"; readonly start: string }))
   /** Shows this viewer a moment of the past: the last step at or before it. What it asked for before counts no more. */
@@ -29,13 +29,13 @@ export type Ask =
   /** Shows a view of the scenario to all viewers; from a trainer's seat where there is one, of a lesson on the trainer's page. */
   | { readonly type: "view"; readonly view: string }
   /** The values of a drawing's instance from now on; `null` for none. */
-  | { readonly type: "draw"; readonly drawing?: number | null; readonly instance: number }
+  | { readonly type: "draw"; readonly instance: number; readonly drawing?: number | null }
   /** The PLCs' own variables that `variables` has from now on. */
   | { readonly type: "watch"; readonly variables: readonly number[] }
   /** These maps from now on. */
   | { readonly type: "maps"; readonly maps: readonly number[] }
   /** Writes, forces or releases a variable of a PLC; the value is a literal of the variable's type. */
-  | { readonly type: "variable"; readonly action: Action; readonly value: string; readonly variable: number }
+  | { readonly type: "variable"; readonly variable: number; readonly action: Action; readonly value: string }
   /** Forces a signal; releases it without a value. */
   | { readonly type: "force"; readonly signal: number; readonly value?: string | null }
   /** Shows this viewer the live edge again. */
@@ -45,38 +45,38 @@ export type Ask =
 
 /** An axis of a map: where each of its cells begins, and where the last one ends, in rising order. */
 export interface Axis {
-  readonly edges: readonly number[];
   readonly name: string;
+  readonly edges: readonly number[];
 }
 
 export function readAxis(field: Field): Axis {
-  return check_axis(field, { edges: list(number)(field.at("edges")), name: text(field.at("name")) });
+  return check_axis(field, { name: text(field.at("name")), edges: list(number)(field.at("edges")) });
 }
 
 /** A body, or a shape of one, where the scene has it. */
 export interface Body {
-  readonly colour: string | null;
-  readonly kind: string;
   readonly name: string;
+  readonly kind: string;
+  readonly shape: Shape;
+  readonly position_m: readonly [number, number, number];
+  readonly colour: string | null;
   /** The body in whose frame it is; its place is in the world's without one. */
   readonly on: number | null;
-  readonly position_m: readonly [number, number, number];
   /** x, y, z, w. */
   readonly rotation: readonly [number, number, number, number];
-  readonly shape: Shape;
   /** How much one sees through it, 0 to 1. */
   readonly transparent: number;
 }
 
 export function readBody(field: Field): Body {
   return {
-    colour: nullable(text)(field.at("colour")),
-    kind: text(field.at("kind")),
     name: text(field.at("name")),
-    on: nullable(whole)(field.at("on")),
-    position_m: tuple(number, number, number)(field.at("position_m")),
-    rotation: tuple(number, number, number, number)(field.at("rotation", [0.0,0.0,0.0,1.0])),
+    kind: text(field.at("kind")),
     shape: readShape(field.at("shape")),
+    position_m: tuple(number, number, number)(field.at("position_m")),
+    colour: nullable(text)(field.at("colour")),
+    on: nullable(whole)(field.at("on")),
+    rotation: tuple(number, number, number, number)(field.at("rotation", [0.0,0.0,0.0,1.0])),
     transparent: number(field.at("transparent", 0)),
   };
 }
@@ -90,20 +90,20 @@ export function readButtonMode(field: Field): ButtonMode {
 
 /** A value of a selector. */
 export interface Choice {
-  readonly label: string;
   readonly value: number;
+  readonly label: string;
 }
 
 export function readChoice(field: Field): Choice {
-  return { label: text(field.at("label")), value: whole(field.at("value")) };
+  return { value: whole(field.at("value")), label: text(field.at("label")) };
 }
 
 /** A component of a plant. */
 export interface Component {
+  readonly name: string;
+  readonly kind: string;
   readonly body: string | null;
   readonly failures: readonly Failure[];
-  readonly kind: string;
-  readonly name: string;
   readonly parameters: readonly Parameter[];
   /** The signal that is true while a sensor sees something; its body is lit then. */
   readonly senses: string | null;
@@ -113,10 +113,10 @@ export interface Component {
 
 export function readComponent(field: Field): Component {
   return {
+    name: text(field.at("name")),
+    kind: text(field.at("kind")),
     body: nullable(text)(field.at("body")),
     failures: list(readFailure)(field.at("failures", [])),
-    kind: text(field.at("kind")),
-    name: text(field.at("name")),
     parameters: list(readParameter)(field.at("parameters", [])),
     senses: nullable(text)(field.at("senses")),
     signals: list(text)(field.at("signals", [])),
@@ -125,40 +125,40 @@ export function readComponent(field: Field): Component {
 
 /** A body of a unit that is drawn, as it is laid out in its file. */
 export interface Drawing {
+  readonly path: string;
+  readonly unit: string;
+  readonly language: DrawingLanguage;
   readonly elements: readonly DrawingElement[];
+  readonly wires: readonly DrawingWire[];
   /** What there is of its unit. */
   readonly instances: readonly Instance[];
-  readonly language: DrawingLanguage;
-  readonly part: string | null;
-  readonly path: string;
   /** The paths of all states within the unit, in the order of their values. */
   readonly states: readonly string[];
-  readonly unit: string;
-  readonly wires: readonly DrawingWire[];
+  readonly part: string | null;
 }
 
 export function readDrawing(field: Field): Drawing {
   return check_drawing(field, {
-    elements: list(readDrawingElement)(field.at("elements")),
-    instances: list(readInstance)(field.at("instances")),
-    language: readDrawingLanguage(field.at("language")),
-    part: nullable(text)(field.at("part")),
     path: text(field.at("path")),
-    states: list(text)(field.at("states")),
     unit: text(field.at("unit")),
+    language: readDrawingLanguage(field.at("language")),
+    elements: list(readDrawingElement)(field.at("elements")),
     wires: list(readDrawingWire)(field.at("wires")),
+    instances: list(readInstance)(field.at("instances")),
+    states: list(text)(field.at("states")),
+    part: nullable(text)(field.at("part")),
   });
 }
 
 export interface DrawingElement {
-  readonly at: readonly [number, number];
   readonly id: string;
-  readonly instance: string | null;
   readonly kind: string;
-  readonly line: number;
-  readonly marks: readonly string[];
-  readonly pins: readonly DrawingPin[];
+  readonly at: readonly [number, number];
   readonly size: readonly [number, number];
+  readonly pins: readonly DrawingPin[];
+  readonly line: number;
+  readonly instance: string | null;
+  readonly marks: readonly string[];
   /** The path of the variable that is its state, within the unit. */
   readonly state: string | null;
   readonly text: string;
@@ -166,14 +166,14 @@ export interface DrawingElement {
 
 export function readDrawingElement(field: Field): DrawingElement {
   return {
-    at: tuple(number, number)(field.at("at")),
     id: text(field.at("id")),
-    instance: nullable(text)(field.at("instance")),
     kind: text(field.at("kind")),
-    line: whole(field.at("line")),
-    marks: list(text)(field.at("marks", [])),
-    pins: list(readDrawingPin)(field.at("pins")),
+    at: tuple(number, number)(field.at("at")),
     size: tuple(number, number)(field.at("size")),
+    pins: list(readDrawingPin)(field.at("pins")),
+    line: whole(field.at("line")),
+    instance: nullable(text)(field.at("instance")),
+    marks: list(text)(field.at("marks", [])),
     state: nullable(text)(field.at("state")),
     text: text(field.at("text", "")),
   };
@@ -208,17 +208,17 @@ export function readDrawingPin(field: Field): DrawingPin {
 /** From an output to an input, each an element and one of its pins. */
 export interface DrawingWire {
   readonly from: readonly [number, number];
-  readonly line: number;
-  readonly points: readonly (readonly [number, number])[];
   readonly to: readonly [number, number];
+  readonly points: readonly (readonly [number, number])[];
+  readonly line: number;
 }
 
 export function readDrawingWire(field: Field): DrawingWire {
   return {
     from: tuple(whole, whole)(field.at("from")),
-    line: whole(field.at("line")),
-    points: list(tuple(number, number))(field.at("points")),
     to: tuple(whole, whole)(field.at("to")),
+    points: list(tuple(number, number))(field.at("points")),
+    line: whole(field.at("line")),
   };
 }
 
@@ -259,18 +259,18 @@ export function readInstance(field: Field): Instance {
 
 /** The lesson that a session is, on the page of one of its two people. */
 export interface Lesson {
-  readonly about: string | null;
-  readonly lesson: string;
   readonly role: Role;
+  readonly lesson: string;
+  readonly about: string | null;
   /** Prepared states to jump to; none on the trainee's page. */
   readonly starts: readonly string[];
 }
 
 export function readLesson(field: Field): Lesson {
   return {
-    about: nullable(text)(field.at("about")),
-    lesson: text(field.at("lesson")),
     role: readRole(field.at("role")),
+    lesson: text(field.at("lesson")),
+    about: nullable(text)(field.at("about")),
     starts: list(text)(field.at("starts", [])),
   };
 }
@@ -323,23 +323,23 @@ export function readLookAxis(field: Field): LookAxis {
 
 /** A map, as far as it is known before it is seen. */
 export interface MapInfo {
+  readonly name: string;
+  readonly title: string;
   readonly client: string;
   /** From the least value to the greatest, each written as `#0a1a52`. */
   readonly colours: readonly string[];
-  readonly name: string;
   /** The values of the scale's ends; those of the map if absent. */
   readonly scale: readonly [number, number] | null;
-  readonly title: string;
   readonly unit: string;
 }
 
 export function readMapInfo(field: Field): MapInfo {
   return {
+    name: text(field.at("name")),
+    title: text(field.at("title")),
     client: text(field.at("client")),
     colours: list(matching(/^#[0-9a-f]{6}$/))(field.at("colours")),
-    name: text(field.at("name")),
     scale: nullable(tuple(number, number))(field.at("scale")),
-    title: text(field.at("title")),
     unit: text(field.at("unit", "")),
   };
 }
@@ -347,7 +347,7 @@ export function readMapInfo(field: Field): MapInfo {
 /** A text for a viewer, as JSON. */
 export type Message =
   /** How the session is. `seat` is as this viewer sees it; `failed` are the failures at work, as `component.mode`; `forced` and `disturbed` are the numbers of the signals that are forced and of the faults on the way of signals that are at work; `shown_ns` is null at the live edge, `past_ns` where no past is kept. */
-  | { readonly type: "status"; readonly digest: string | null; readonly disturbed: ReadonlySet<number>; readonly failed: ReadonlySet<string>; readonly forced: ReadonlySet<number>; readonly pace: string; readonly past_ns: readonly [number, number] | null; readonly seat: ReadonlyMap<string, SeatState>; readonly shown_ns: number | null; readonly state: SessionState }
+  | { readonly type: "status"; readonly state: SessionState; readonly digest: string | null; readonly disturbed: ReadonlySet<number>; readonly failed: ReadonlySet<string>; readonly forced: ReadonlySet<number>; readonly pace: string; readonly past_ns: readonly [number, number] | null; readonly seat: ReadonlyMap<string, SeatState>; readonly shown_ns: number | null }
   /** The places of the looks whose condition holds. */
   | { readonly type: "looks"; readonly active: readonly number[] }
   /** The values of the states of a drawing, in their order; null where there is none. */
@@ -355,15 +355,15 @@ export type Message =
   /** Somebody shows this view to all. */
   | { readonly type: "view"; readonly view: string }
   /** Values of variables that have changed, by their numbers; all variables that are forced; file and line of all statements that have been executed, if the run notes it. */
-  | { readonly type: "variables"; readonly executed: readonly (readonly [string, number])[]; readonly forced: readonly number[]; readonly values: readonly (readonly [number, string])[] }
+  | { readonly type: "variables"; readonly values: readonly (readonly [number, string])[]; readonly forced: readonly number[]; readonly executed: readonly (readonly [string, number])[] }
   /** Where the cells of a map lie: one edge more than cells. It comes before their values, and again when it changes. */
-  | { readonly type: "map"; readonly across: Axis; readonly down: Axis; readonly map: number }
+  | { readonly type: "map"; readonly map: number; readonly across: Axis; readonly down: Axis }
   /** What has become of an expectation: `pass`, `fail` or `open`. */
-  | { readonly type: "verdict"; readonly name: string; readonly robustness: number | null; readonly t_ns: number; readonly verdict: string }
+  | { readonly type: "verdict"; readonly name: string; readonly verdict: string; readonly t_ns: number; readonly robustness: number | null }
   /** Where the page is of a session that goes on from a moment of the past. */
   | { readonly type: "forked"; readonly t_ns: number; readonly url: string }
   /** Marked in the trends and listed in the panels' alarms; of kind `gone`, the alarm of this text is over. */
-  | { readonly type: "event"; readonly kind: string; readonly t_ns: number; readonly text: string }
+  | { readonly type: "event"; readonly t_ns: number; readonly kind: string; readonly text: string }
   /** Shown to the viewer. */
   | { readonly type: "error"; readonly message: string };
 
@@ -373,6 +373,7 @@ export function readMessage(field: Field): Message {
     case "status":
       return {
         type,
+        state: readSessionState(field.at("state")),
         digest: nullable(text)(field.at("digest")),
         disturbed: set(whole)(field.at("disturbed", [])),
         failed: set(text)(field.at("failed", [])),
@@ -381,7 +382,6 @@ export function readMessage(field: Field): Message {
         past_ns: nullable(tuple(whole, whole))(field.at("past_ns")),
         seat: map(readSeatState)(field.at("seat", {})),
         shown_ns: nullable(whole)(field.at("shown_ns")),
-        state: readSessionState(field.at("state")),
       };
     case "looks":
       return { type, active: list(whole)(field.at("active")) };
@@ -397,29 +397,29 @@ export function readMessage(field: Field): Message {
     case "variables":
       return {
         type,
-        executed: list(tuple(text, whole))(field.at("executed", [])),
-        forced: list(whole)(field.at("forced")),
         values: list(tuple(whole, text))(field.at("values")),
+        forced: list(whole)(field.at("forced")),
+        executed: list(tuple(text, whole))(field.at("executed", [])),
       };
     case "map":
       return {
         type,
+        map: whole(field.at("map")),
         across: readAxis(field.at("across")),
         down: readAxis(field.at("down")),
-        map: whole(field.at("map")),
       };
     case "verdict":
       return {
         type,
         name: text(field.at("name")),
-        robustness: nullable(number)(field.at("robustness")),
-        t_ns: whole(field.at("t_ns")),
         verdict: text(field.at("verdict")),
+        t_ns: whole(field.at("t_ns")),
+        robustness: nullable(number)(field.at("robustness")),
       };
     case "forked":
       return { type, t_ns: whole(field.at("t_ns")), url: matching(/^https?:\/\/[^\s"'<>]+$/)(field.at("url")) };
     case "event":
-      return { type, kind: text(field.at("kind")), t_ns: whole(field.at("t_ns")), text: text(field.at("text")) };
+      return { type, t_ns: whole(field.at("t_ns")), kind: text(field.at("kind")), text: text(field.at("text")) };
     case "error":
       return { type, message: text(field.at("message")) };
     default:
@@ -429,30 +429,32 @@ export function readMessage(field: Field): Message {
 
 /** A panel of the page. */
 export interface Panel {
-  readonly columns: number;
-  readonly elements: readonly PanelElement[];
   readonly name: string;
+  readonly seat: Seat;
+  readonly columns: number;
+  readonly rows: number;
+  readonly elements: readonly PanelElement[];
   readonly page: PanelPage | null;
   /** Where a browser finds the picture behind it. */
   readonly picture: string | null;
-  readonly rows: number;
-  readonly seat: Seat;
 }
 
 export function readPanel(field: Field): Panel {
   return {
-    columns: whole(field.at("columns")),
-    elements: list(readPanelElement)(field.at("elements")),
     name: text(field.at("name")),
+    seat: readSeat(field.at("seat")),
+    columns: whole(field.at("columns")),
+    rows: whole(field.at("rows")),
+    elements: list(readPanelElement)(field.at("elements")),
     page: nullable(readPanelPage)(field.at("page")),
     picture: nullable(text)(field.at("picture")),
-    rows: whole(field.at("rows")),
-    seat: readSeat(field.at("seat")),
   };
 }
 
 /** One thing on a panel. */
 export interface PanelElement {
+  readonly kind: ElementKind;
+  readonly label: string;
   /** Column and row, from 0. */
   readonly at: readonly [number, number];
   readonly choices: readonly Choice[];
@@ -461,8 +463,6 @@ export interface PanelElement {
   readonly disturbance: number | null;
   /** The component and the mode of failure that it shows and causes. */
   readonly failure: readonly [string, string] | null;
-  readonly kind: ElementKind;
-  readonly label: string;
   readonly max: number;
   readonly min: number;
   readonly mode: ButtonMode | null;
@@ -474,13 +474,13 @@ export interface PanelElement {
 
 export function readPanelElement(field: Field): PanelElement {
   return {
+    kind: readElementKind(field.at("kind")),
+    label: text(field.at("label")),
     at: tuple(whole, whole)(field.at("at")),
     choices: list(readChoice)(field.at("choices", [])),
     colour: nullable(text)(field.at("colour")),
     disturbance: nullable(whole)(field.at("disturbance")),
     failure: nullable(tuple(text, text))(field.at("failure")),
-    kind: readElementKind(field.at("kind")),
-    label: text(field.at("label")),
     max: number(field.at("max", 1.0)),
     min: number(field.at("min", 0.0)),
     mode: nullable(readButtonMode)(field.at("mode")),
@@ -503,15 +503,15 @@ export function readPanelPage(field: Field): PanelPage {
 /** A parameter of a component, as it is shown. */
 export interface Parameter {
   readonly name: string;
-  readonly unit: string | null;
   readonly value: string;
+  readonly unit: string | null;
 }
 
 export function readParameter(field: Field): Parameter {
   return {
     name: text(field.at("name")),
-    unit: nullable(text)(field.at("unit")),
     value: text(field.at("value")),
+    unit: nullable(text)(field.at("unit")),
   };
 }
 
@@ -548,6 +548,11 @@ export function readSeatState(field: Field): SeatState {
 
 /** The parts of a session that do not change while it runs. */
 export interface Session {
+  readonly protocol: number;
+  readonly title: string;
+  readonly scenario: string;
+  readonly step_ns: number;
+  readonly signals: readonly Signal[];
   readonly bodies: readonly Body[];
   readonly components: readonly Component[];
   readonly drawings: readonly Drawing[];
@@ -558,12 +563,7 @@ export interface Session {
   readonly maps: readonly MapInfo[];
   readonly panels: readonly Panel[];
   readonly plcs: readonly Plc[];
-  readonly protocol: number;
-  readonly scenario: string;
-  readonly signals: readonly Signal[];
   readonly sources: readonly Source[];
-  readonly step_ns: number;
-  readonly title: string;
   readonly training: Lesson | null;
   readonly until_ns: number | null;
   readonly views: readonly View[];
@@ -571,6 +571,11 @@ export interface Session {
 
 export function readSession(field: Field): Session {
   return {
+    protocol: whole(field.at("protocol")),
+    title: text(field.at("title")),
+    scenario: text(field.at("scenario")),
+    step_ns: whole(field.at("step_ns")),
+    signals: list(readSignal)(field.at("signals")),
     bodies: list(readBody)(field.at("bodies", [])),
     components: list(readComponent)(field.at("components", [])),
     drawings: list(readDrawing)(field.at("drawings", [])),
@@ -580,12 +585,7 @@ export function readSession(field: Field): Session {
     maps: list(readMapInfo)(field.at("maps", [])),
     panels: list(readPanel)(field.at("panels", [])),
     plcs: list(readPlc)(field.at("plcs", [])),
-    protocol: whole(field.at("protocol")),
-    scenario: text(field.at("scenario")),
-    signals: list(readSignal)(field.at("signals")),
     sources: list(readSource)(field.at("sources", [])),
-    step_ns: whole(field.at("step_ns")),
-    title: text(field.at("title")),
     training: nullable(readLesson)(field.at("training")),
     until_ns: nullable(whole)(field.at("until_ns")),
     views: list(readView)(field.at("views", [])),
@@ -604,12 +604,12 @@ export type Shape =
   | { readonly kind: "none" }
   | { readonly kind: "box"; readonly size_m: readonly [number, number, number] }
   | { readonly kind: "sphere"; readonly radius_m: number }
-  | { readonly kind: "cylinder"; readonly length_m: number; readonly radius_m: number }
+  | { readonly kind: "cylinder"; readonly radius_m: number; readonly length_m: number }
   /** A cylinder or a cone, without ends if it is open. */
-  | { readonly kind: "round"; readonly length_m: number; readonly open: boolean; readonly radius_m: number; readonly top_radius_m: number }
-  | { readonly kind: "capsule"; readonly length_m: number; readonly radius_m: number }
+  | { readonly kind: "round"; readonly radius_m: number; readonly top_radius_m: number; readonly length_m: number; readonly open: boolean }
+  | { readonly kind: "capsule"; readonly radius_m: number; readonly length_m: number }
   /** Positions are flat triples, indices flat triangles. */
-  | { readonly kind: "mesh"; readonly indices: readonly number[]; readonly positions_m: readonly number[] };
+  | { readonly kind: "mesh"; readonly positions_m: readonly number[]; readonly indices: readonly number[] };
 
 export function readShape(field: Field): Shape {
   const kind = field.at("kind").text();
@@ -621,22 +621,22 @@ export function readShape(field: Field): Shape {
     case "sphere":
       return check_shape(field, { kind, radius_m: number(field.at("radius_m")) });
     case "cylinder":
-      return check_shape(field, { kind, length_m: number(field.at("length_m")), radius_m: number(field.at("radius_m")) });
+      return check_shape(field, { kind, radius_m: number(field.at("radius_m")), length_m: number(field.at("length_m")) });
     case "round":
       return check_shape(field, {
         kind,
-        length_m: number(field.at("length_m")),
-        open: flag(field.at("open", false)),
         radius_m: number(field.at("radius_m")),
         top_radius_m: number(field.at("top_radius_m")),
+        length_m: number(field.at("length_m")),
+        open: flag(field.at("open", false)),
       });
     case "capsule":
-      return check_shape(field, { kind, length_m: number(field.at("length_m")), radius_m: number(field.at("radius_m")) });
+      return check_shape(field, { kind, radius_m: number(field.at("radius_m")), length_m: number(field.at("length_m")) });
     case "mesh":
       return check_shape(field, {
         kind,
-        indices: list(whole)(field.at("indices")),
         positions_m: list(number)(field.at("positions_m")),
+        indices: list(whole)(field.at("indices")),
       });
     default:
       return field.unknown("kind", kind);
@@ -645,56 +645,56 @@ export function readShape(field: Field): Shape {
 
 /** A signal of the session. Signals are named by their place in its list. */
 export interface Signal {
-  readonly about: string;
   readonly name: string;
+  readonly type: string;
+  readonly writer: string;
+  readonly about: string;
   /** Names of values. */
   readonly names: ReadonlyMap<number, string>;
-  readonly type: string;
   readonly unit: string | null;
-  readonly writer: string;
 }
 
 export function readSignal(field: Field): Signal {
   return {
-    about: text(field.at("about", "")),
     name: text(field.at("name")),
-    names: numbered(text)(field.at("names", {})),
     type: text(field.at("type")),
-    unit: nullable(text)(field.at("unit")),
     writer: text(field.at("writer")),
+    about: text(field.at("about", "")),
+    names: numbered(text)(field.at("names", {})),
+    unit: nullable(text)(field.at("unit")),
   };
 }
 
 /** A program of a PLC as text. */
 export interface Source {
-  readonly lines: readonly SourceLine[];
   readonly path: string;
   readonly text: string;
+  readonly lines: readonly SourceLine[];
 }
 
 export function readSource(field: Field): Source {
   return {
-    lines: list(readSourceLine)(field.at("lines", [])),
     path: text(field.at("path")),
     text: text(field.at("text")),
+    lines: list(readSourceLine)(field.at("lines", [])),
   };
 }
 
 /** A line that names signals or variables. */
 export interface SourceLine {
-  /** Numbers of the PLCs' own variables. */
-  readonly inner: readonly number[];
   /** From 1. */
   readonly line: number;
   /** Names of signals. */
   readonly variables: readonly string[];
+  /** Numbers of the PLCs' own variables. */
+  readonly inner: readonly number[];
 }
 
 export function readSourceLine(field: Field): SourceLine {
   return {
-    inner: list(whole)(field.at("inner", [])),
     line: whole(field.at("line")),
     variables: list(text)(field.at("variables")),
+    inner: list(whole)(field.at("inner", [])),
   };
 }
 

@@ -86,10 +86,10 @@ const EVERYBODY: [Who; 11] = [
     who("archive", Rank::Looks, Of::Recording, None),
 ];
 
-/// Every message, some of them more than once where it depends on what is in it who may send it. Signal 0 is `Start`, the
-/// operator's; signal 1 is the PLC's.
+/// Every message, some of them more than once where it depends on what is in it who may send it. `START` stands for
+/// the number of the operator's signal, `PUSH` for that of a PLC's.
 const EVERY: [&str; 26] = [
-    r#"{"type":"subscribe","signals":[0]}"#,
+    r#"{"type":"subscribe","signals":[START]}"#,
     r#"{"type":"watch","variables":[0]}"#,
     r#"{"type":"draw","drawing":null,"instance":0}"#,
     r#"{"type":"maps","maps":[]}"#,
@@ -99,8 +99,8 @@ const EVERY: [&str; 26] = [
     r#"{"type":"seat","panel":"operator","take":true}"#,
     r#"{"type":"seat","panel":"trainer","take":true}"#,
     r#"{"type":"seat","panel":"nobody","take":true}"#,
-    r#"{"type":"write","signal":0,"value":1}"#,
-    r#"{"type":"write","signal":1,"value":1}"#,
+    r#"{"type":"write","signal":START,"value":1}"#,
+    r#"{"type":"write","signal":PUSH,"value":1}"#,
     r#"{"type":"write","signal":99,"value":1}"#,
     r#"{"type":"operate","operation":"hold"}"#,
     r#"{"type":"operate","operation":"go"}"#,
@@ -109,7 +109,7 @@ const EVERY: [&str; 26] = [
     r#"{"type":"fail","component":"cylinder","failure":"leaking","active":true}"#,
     r#"{"type":"disturb","disturbance":0,"active":true}"#,
     r#"{"type":"variable","variable":0,"action":"force","value":"TRUE"}"#,
-    r#"{"type":"force","signal":1,"value":"1"}"#,
+    r#"{"type":"force","signal":PUSH,"value":"1"}"#,
     r#"{"type":"train","turn":"repeat"}"#,
     r#"{"type":"train","turn":"back","t_ns":0}"#,
     r#"{"type":"train","turn":"jump","start":"melting"}"#,
@@ -182,21 +182,24 @@ fn outcome(text: &str, session: &Session, who: &Who) -> String {
 #[test]
 fn everybody_may_do_what_is_theirs() {
     let (_folder, scenario) = scenario();
+    let number = |name: &str| scenario.plan().signals().iter().position(|signal| signal.name.as_str() == name);
+    let [start, push] = ["Start", "Push"].map(|name| number(name).expect("declared").to_string());
+    let every = EVERY.map(|text| text.replace("START", &start).replace("PUSH", &push));
     let runtime = tokio::runtime::Builder::new_current_thread().build().expect("a runtime");
     let columns = runtime.block_on(async {
         let column = |who: &Who| {
             let session = session(&scenario, who.of);
-            EVERY.map(|text| outcome(text, &session, who))
+            every.each_ref().map(|text| outcome(text, &session, who))
         };
         EVERYBODY.each_ref().map(column)
     });
-    let mut table = format!("{:42}", "");
+    let mut table = format!("{:42}", "message");
     for who in &EVERYBODY {
         write!(table, " {:10}", who.name).expect("a string takes all");
     }
     let mut seen = [false; KINDS];
     for (row, text) in EVERY.iter().enumerate() {
-        seen[kind(&Ask::read(text).expect("a message"))] = true;
+        seen[kind(&Ask::read(&every[row]).expect("a message"))] = true;
         let bare: String = text.trim_start_matches(r#"{"type":"#).chars().filter(|c| !"\"{}".contains(*c)).collect();
         write!(table, "\n{:42}", bare.chars().take(42).collect::<String>()).expect("a string takes all");
         for column in &columns {
@@ -205,5 +208,33 @@ fn everybody_may_do_what_is_theirs() {
     }
     assert_eq!(seen, [true; KINDS], "every kind of message");
     let table: String = table.lines().map(|line| format!("{}\n", line.trim_end())).collect();
-    insta::assert_snapshot!(table);
+    insta::assert_snapshot!(table, @r"
+    message                                    looker     operator   seat       chief      trainee    guest      trainer    aide       witness    past       archive
+    subscribe,signals:[START]                  yes        yes        yes        yes        yes        yes        yes        yes        yes        yes        yes
+    watch,variables:[0]                        yes        yes        yes        yes        yes        yes        yes        yes        yes        yes        yes
+    draw,drawing:null,instance:0               yes        yes        yes        yes        yes        yes        yes        yes        yes        yes        yes
+    maps,maps:[]                               yes        yes        yes        yes        yes        yes        yes        yes        yes        yes        yes
+    show,t_ns:0                                Past       Past       Past       Past       Past       Past       Past       Past       Past       Past       Past
+    live                                       yes        yes        yes        yes        yes        yes        yes        yes        yes        yes        yes
+    fork,t_ns:0                                LooksOnly  Past       Past       Past       Trainee    Trainee    Past       Past       LooksOnly  Past       LooksOnly
+    seat,panel:operator,take:true              LooksOnly  yes        yes        yes        yes        yes        yes        yes        LooksOnly  Recorded   LooksOnly
+    seat,panel:trainer,take:true               LooksOnly  Trainers   Trainers   yes        NoPanel    NoPanel    yes        Trainers   LooksOnly  Recorded   LooksOnly
+    seat,panel:nobody,take:true                LooksOnly  NoPanel    NoPanel    NoPanel    NoPanel    NoPanel    NoPanel    NoPanel    LooksOnly  Recorded   LooksOnly
+    write,signal:START,value:1                 LooksOnly  NoSeat     yes        NoSeat     yes        NoSeat     NoSeat     NoSeat     LooksOnly  Recorded   LooksOnly
+    write,signal:PUSH,value:1                  LooksOnly  NoSeat     NoSeat     NoSeat     NoSeat     NoSeat     NoSeat     NoSeat     LooksOnly  Recorded   LooksOnly
+    write,signal:99,value:1                    LooksOnly  NoSignal   NoSignal   NoSignal   NoSignal   NoSignal   NoSignal   NoSignal   LooksOnly  Recorded   LooksOnly
+    operate,operation:hold                     LooksOnly  yes        yes        yes        Trainee    Trainee    yes        yes        LooksOnly  Recorded   LooksOnly
+    operate,operation:go                       LooksOnly  yes        yes        yes        Trainee    Trainee    yes        yes        LooksOnly  Recorded   LooksOnly
+    operate,operation:step                     LooksOnly  yes        yes        yes        Trainee    Trainee    yes        yes        LooksOnly  Recorded   LooksOnly
+    operate,operation:stop                     LooksOnly  yes        yes        yes        Trainee    Trainee    yes        yes        LooksOnly  yes        LooksOnly
+    fail,component:cylinder,failure:leaking,ac LooksOnly  yes        yes        yes        Trainee    Trainee    yes        yes        LooksOnly  Recorded   LooksOnly
+    disturb,disturbance:0,active:true          LooksOnly  yes        yes        yes        Trainee    Trainee    yes        yes        LooksOnly  Recorded   LooksOnly
+    variable,variable:0,action:force,value:TRU LooksOnly  yes        yes        yes        Trainee    Trainee    yes        yes        LooksOnly  Recorded   LooksOnly
+    force,signal:PUSH,value:1                  LooksOnly  yes        yes        yes        Trainee    Trainee    yes        yes        LooksOnly  Recorded   LooksOnly
+    train,turn:repeat                          LooksOnly  NoLesson   NoLesson   NoLesson   Trainee    Trainee    yes        yes        LooksOnly  Recorded   LooksOnly
+    train,turn:back,t_ns:0                     LooksOnly  NoLesson   NoLesson   NoLesson   Trainee    Trainee    yes        yes        LooksOnly  Recorded   LooksOnly
+    train,turn:jump,start:melting              LooksOnly  NoLesson   NoLesson   NoLesson   Trainee    Trainee    yes        yes        LooksOnly  Recorded   LooksOnly
+    view,view:front                            LooksOnly  NoTrainer  NoTrainer  yes        Trainee    Trainee    yes        yes        LooksOnly  Recorded   LooksOnly
+    view,view:nowhere                          LooksOnly  NoView     NoView     NoView     NoView     NoView     NoView     NoView     LooksOnly  Recorded   LooksOnly
+    ");
 }
