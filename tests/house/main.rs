@@ -53,6 +53,7 @@ const HOUSE: &[Floor] = &[
     open_floor("report/src"),
     open_floor("report/src/plot"),
     open_floor("cli/src"),
+    open_floor("cli/src/web"),
     open_floor("plc-shim/src"),
     Floor { folder: "plc-shim/iec-run/src/compile", closed: true, records: None, known: &[] },
     Floor {

@@ -108,7 +108,7 @@ async function draw_a_connection() {
   await change(() => page.keyboard.press("Delete"));
   assert.equal(await text("scenario.toml"), before);
 
-  // What cannot be connected is told, and nothing is written.
+  // What cannot be connected is reported, and nothing is written.
   await draw(page, "cylinder.position_m", "Main.Box_Seen");
   await page.getByRole("alert").filter({ hasText: "is LREAL" }).waitFor();
   assert.equal(await text("scenario.toml"), before);
@@ -162,7 +162,7 @@ async function build_a_machine() {
   await place(page, change, "workpiece source", "source", { body: "infeed", targets: ["box[0..3]"], "interval_s in s": 4, enable_signal: "Belt_On", count_signal: "Boxes_In" });
   await place(page, change, "workpiece sink", "sink", { body: "chute", targets: ["box[0..3]"], count_signal: "Boxes_Out" });
 
-  // A number outside of its range is told, and not written.
+  // A number outside of its range is reported, and not written.
   const scene = await text("plant.toml");
   await page.getByRole("button", { name: /^cylinder/ }).click();
   const stroke = page.getByLabel("stroke_m in m");
@@ -198,7 +198,7 @@ async function build_a_machine() {
   assert.deepEqual(await place_of("pusher"), [0.35, -0.17, 0.06]);
   await shoot(page, "edit-machine");
 
-  // What others need stays; who needs it is told.
+  // What others need stays; who needs it is reported.
   await page.getByRole("button", { name: "Delete", exact: true }).click();
   await page.getByRole("alert").filter({ hasText: "is needed by joint `slide`, child" }).waitFor();
 

@@ -58,18 +58,18 @@ try {
   assert.ok(hot[0] > 220 && hot[1] > 200 && hot[2] < 100 && hot[3] === 255, `the hottest cell is ${hot}`);
   const frame = await shell.boundingBox();
   await shell.hover({ position: { x: at.x * frame.width, y: at.y * frame.height } });
-  const told = page.locator("figure", { has: shell }).getByRole("status");
+  const status = page.locator("figure", { has: shell }).getByRole("status");
   const degrees = String(Number(machine.greatest.value.toPrecision(4)));
   // A cell is hardly wider than a pixel here, so the pointer may be on the one beside it.
-  await told.filter({ hasText: /^position 2[12]\..* m, angle 1[23]\d.*°: 3\d\d\.?\d* °C$/ }).waitFor();
+  await status.filter({ hasText: /^position 2[12]\..* m, angle 1[23]\d.*°: 3\d\d\.?\d* °C$/ }).waitFor();
   // By keyboard: the first arrow goes to the hottest cell, the next one to its neighbour.
   await page.mouse.move(2, 2);
   await shell.focus();
   await page.keyboard.press("ArrowLeft");
-  await told.filter({ hasText: `: ${degrees} °C` }).waitFor();
+  await status.filter({ hasText: `: ${degrees} °C` }).waitFor();
   await page.keyboard.press("ArrowLeft");
   const beside = Number(machine.values[machine.greatest.row * machine.columns + machine.greatest.column - 1].toPrecision(4));
-  await told.filter({ hasText: `: ${beside} °C` }).waitFor();
+  await status.filter({ hasText: `: ${beside} °C` }).waitFor();
   if (folder !== null) await page.screenshot({ path: join(folder, "maps.png") });
   // The past: the same step, of another run.
   const slider = page.getByLabel("Time that is shown");

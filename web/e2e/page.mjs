@@ -57,7 +57,7 @@ async function operate_the_desk() {
   await page.getByRole("button", { name: "Live" }).click();
   await page.waitForFunction(() => !window.onescan.picture().isPast);
 
-  // Garbage is told, and the page goes on; so it does after a loss.
+  // Garbage is reported, and the page goes on; so it does after a loss.
   session.say("{");
   await page.getByText("cannot be read and is left out").waitFor();
   session.say(Buffer.from([9, 9, 9]));

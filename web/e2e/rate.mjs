@@ -12,10 +12,10 @@ const words = ["run", scenario, "--pace", "max", "--until", until, "--format", "
 /** The report of a run that so many viewers see, and how many bytes they took. */
 async function seen(count) {
   let bytes = 0;
-  const heard = reads === "never" ? null : (data) => (bytes += data.length);
+  const received = reads === "never" ? null : (data) => (bytes += data.length);
   const session = await begin(program, [...words, "--web", "--await-viewer"], ["the session"]);
   const { host } = new URL(session.urls[0]);
-  await Promise.all(Array.from({ length: count }, () => look(host, { heard })));
+  await Promise.all(Array.from({ length: count }, () => look(host, { received })));
   await session.over;
   return { ...JSON.parse(session.said.out), bytes };
 }

@@ -15,11 +15,11 @@ const SIGNALS = [
 /** A structure with `packages` packages on a belt of 4 m. */
 export function structure(packages) {
   const box = (name, kind, size_m, position_m, colour) =>
-    ({ name, kind, shape: { kind: "box", size_m }, colour, position_m, rotation: [0, 0, 0, 1], visible: true });
+    ({ name, kind, shape: { kind: "box", size_m }, colour, position_m, rotation: [0, 0, 0, 1] });
   const bodies = [
     box("belt", "kinematic", [4, 0.5, 0.08], [0, 0, 0.8], "#5c656c"),
     ...[-1.8, 1.8].flatMap((x, side) => [-0.2, 0.2].map((y, at) => box(`leg[${2 * side + at}]`, "fixed", [0.06, 0.06, 0.76], [x, y, 0.38], null))),
-    { name: "eye", kind: "fixed", shape: { kind: "cylinder", radius_m: 0.04, length_m: 0.3 }, colour: "#39424a", position_m: [0.8, -0.32, 0.98], rotation: [0, 0, 0, 1], visible: true },
+    { name: "eye", kind: "fixed", shape: { kind: "cylinder", radius_m: 0.04, length_m: 0.3 }, colour: "#39424a", position_m: [0.8, -0.32, 0.98], rotation: [0, 0, 0, 1] },
     ...Array.from({ length: packages }, (_, index) => box(`package[${index}]`, "dynamic", [0.16, 0.2, 0.14], [-1.8, 0, 0.91], "#b88a54")),
   ];
   const element = (kind, label, signal, at, more = {}) => ({ kind, label, signal, at, span: [2, 1], ...more });
@@ -29,7 +29,7 @@ export function structure(packages) {
     bodies,
     components: [{
       name: "barrier", kind: "light-barrier", body: "eye", signals: ["Eye"], senses: "Eye",
-      parameters: [{ name: "range", value: 0.6, unit: "m" }], failures: [{ name: "stuck", active: false }],
+      parameters: [{ name: "range", value: "0.6", unit: "m" }], failures: [{ name: "stuck" }],
     }],
     looks: [], views: [{ name: "front", position_m: [0, -4, 1.6], target_m: [0, 0, 0.8] }],
     panels: [{
@@ -101,7 +101,7 @@ export async function serve({ packages = 8 } = {}) {
     const values = state.subscribed.map((signal) => [signal, all[signal]]);
     say(picture(step, { packages, first: session.bodies.length - packages, values, isPast: state.shown !== null, isHeld: state.isHeld }));
   };
-  const hear = {
+  const handle = {
     subscribe: (ask) => (state.subscribed = ask.signals),
     seat: (ask) => (state.seat = ask.take),
     write: (ask) => (ask.signal === 0 ? (state.start = ask.value) : (state.setpoint = ask.value)),
@@ -119,20 +119,20 @@ export async function serve({ packages = 8 } = {}) {
     socket.on("message", (data) => {
       const ask = JSON.parse(String(data));
       asked.push(ask);
-      hear[ask.type](ask);
+      handle[ask.type](ask);
       status();
       show();
     });
     status();
     show();
   });
-  const beat = setInterval(() => {
+  const ticker = setInterval(() => {
     if (!state.isHeld) state.step += 2;
     show();
   }, 20);
   await new Promise((ready) => http.listen(0, "127.0.0.1", ready));
   const close = async () => {
-    clearInterval(beat);
+    clearInterval(ticker);
     sockets.clients.forEach((one) => one.terminate());
     await new Promise((closed) => http.close(closed));
   };

@@ -12,13 +12,13 @@ function frame(text) {
   return Buffer.concat([head, body]);
 }
 
-/** A viewer of all signals and of so many variables. What it is shown goes to `heard`; it never reads without one. */
-export async function look(host, { variables = 0, heard = null } = {}) {
+/** A viewer of all signals and of so many variables. What it is shown goes to `received`; it never reads without one. */
+export async function look(host, { variables = 0, received = null } = {}) {
   const { hostname, port } = new URL(`http://${host}`);
   const structure = await (await fetch(`http://${host}/api/session`)).json();
   const socket = connect(Number(port), hostname);
-  if (heard === null) socket.pause();
-  else socket.on("data", heard);
+  if (received === null) socket.pause();
+  else socket.on("data", received);
   socket.on("error", () => {});
   socket.write(`GET /api/live HTTP/1.1\r\nHost: ${host}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n`);
   const ask = (what) => socket.write(frame(JSON.stringify(what).padEnd(200)));

@@ -159,9 +159,9 @@ export class DrawingView {
 
   private pins(element: DrawingElement): SVGElement[] {
     return element.pins.flatMap((pin) => {
-      const x = pin.at[0] + (pin.isOutput ? -4 : 4);
-      const name = draw("text", { class: "pin", x, y: pin.at[1] + 4, "text-anchor": pin.isOutput ? "end" : "start" }, pin.name);
-      const negated = pin.marks.includes("negated") ? [draw("circle", { class: "stroke", cx: pin.at[0] + (pin.isOutput ? 4 : -4), cy: pin.at[1], r: 3.5 })] : [];
+      const x = pin.at[0] + (pin.output ? -4 : 4);
+      const name = draw("text", { class: "pin", x, y: pin.at[1] + 4, "text-anchor": pin.output ? "end" : "start" }, pin.name);
+      const negated = pin.marks.includes("negated") ? [draw("circle", { class: "stroke", cx: pin.at[0] + (pin.output ? 4 : -4), cy: pin.at[1], r: 3.5 })] : [];
       return [name, ...negated];
     });
   }

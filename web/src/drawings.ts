@@ -53,7 +53,7 @@ export class Drawings {
   }
 
   /** Takes the values of the states of a drawing. */
-  hear(drawing: number, instance: number, values: readonly (number | null)[]): void {
+  handle(drawing: number, instance: number, values: readonly (number | null)[]): void {
     if (this.open?.drawing !== drawing || this.open.instance !== instance) return;
     const states = new Map((this.session.drawings[drawing]?.states ?? []).map((path, index) => [path, values[index] ?? null]));
     this.view?.show((path) => states.get(path) ?? null);

@@ -1,4 +1,4 @@
-// JSON that arrived, read field by field; what is wrong is told with its place.
+// JSON that arrived, read field by field; what is wrong is reported with its place.
 
 /** A place that cannot be read, and why. */
 export class ProtocolError extends Error {
@@ -11,6 +11,8 @@ export class ProtocolError extends Error {
   }
 }
 
+export type Json = string | number | boolean | readonly Json[] | { readonly [key: string]: Json } | null;
+
 /** A value of JSON with the place that it was found at. */
 export class Field {
   constructor(
@@ -22,9 +24,18 @@ export class Field {
     throw new ProtocolError(this.place, reason);
   }
 
-  at(key: string): Field {
+  /** The value of a key; `preset` in its place where it is absent. */
+  at(key: string, preset?: unknown): Field {
     if (typeof this.value !== "object" || this.value === null || Array.isArray(this.value)) this.fail("is not an object");
-    return new Field((this.value as Record<string, unknown>)[key], this.place === "" ? key : `${this.place}.${key}`);
+    const value = (this.value as Record<string, unknown>)[key];
+    const isAbsent = value === undefined || value === null;
+    return new Field(isAbsent && preset !== undefined ? preset : value, this.place === "" ? key : `${this.place}.${key}`);
+  }
+
+  /** Fails because of the word `kind` at `key`, which no member of a union has. */
+  unknown(key: string, kind: string): never {
+    const place = this.place === "" ? key : this.place;
+    throw new ProtocolError(place, `is a \`${kind}\`, which this page does not have`);
   }
 
   get isAbsent(): boolean {
@@ -57,21 +68,58 @@ export class Field {
   or<T>(fallback: T, read: (field: Field) => T): T {
     return this.isAbsent ? fallback : read(this);
   }
-
-  /** Exactly `count` numbers. */
-  numbers(count: number): number[] {
-    const all = this.list((item) => item.number());
-    return all.length === count ? all : this.fail(`has ${all.length} numbers instead of ${count}`);
-  }
-
-  /** A parameter as it is shown. */
-  shown(): string {
-    if (typeof this.value === "string") return this.value;
-    return JSON.stringify(this.value) ?? this.fail("is not there");
-  }
 }
+
+/** Reads a value, or fails with the place that is wrong. */
+export type Reader<T> = (field: Field) => T;
 
 export const text = (field: Field): string => field.text();
 export const number = (field: Field): number => field.number();
 export const flag = (field: Field): boolean => field.flag();
-export const nullableText = (field: Field): string | null => field.or<string | null>(null, text);
+
+/** Any value; whoever uses it looks at what it is. */
+export function json(field: Field): Json {
+  const value = field.value;
+  if (value === undefined) return null;
+  if (value === null || typeof value === "string" || typeof value === "boolean") return value;
+  if (typeof value === "number") return field.number();
+  if (Array.isArray(value)) return field.list(json);
+  return Object.fromEntries(field.entries((key, item) => [key, json(item)]));
+}
+
+/** A whole number: a place, a count, nanoseconds. */
+export function whole(field: Field): number {
+  const value = field.number();
+  return Number.isInteger(value) ? value : field.fail("is not a whole number");
+}
+
+/** A text of this form. */
+export const matching = (form: RegExp) => (field: Field): string => {
+  const value = field.text();
+  return form.test(value) ? value : field.fail(`is \`${value}\`, which is not of the form ${form.source}`);
+};
+
+/** One of these words. */
+export const one_of = <T extends string>(...words: readonly T[]) => (field: Field): T => {
+  const value = field.text();
+  return words.find((word) => word === value) ?? field.fail(`is \`${value}\`: ${words.join(", ")}`);
+};
+
+export const nullable = <T>(read: Reader<T>) => (field: Field): T | null => field.or<T | null>(null, read);
+export const list = <T>(read: Reader<T>) => (field: Field): readonly T[] => field.list(read);
+export const set = <T>(read: Reader<T>) => (field: Field): ReadonlySet<T> => new Set(field.list(read));
+
+/** A list with one item for each reader. */
+export const tuple = <T extends readonly unknown[]>(...readers: { readonly [K in keyof T]: Reader<T[K]> }) => (field: Field): T => {
+  const items = field.list((item) => item);
+  if (items.length !== readers.length) field.fail(`has ${items.length} items instead of ${readers.length}`);
+  return items.map((item, place) => readers[place]?.(item)) as unknown as T;
+};
+
+/** Values by texts. */
+export const map = <T>(read: Reader<T>) => (field: Field): ReadonlyMap<string, T> =>
+  new Map(field.entries((key, item) => [key, read(item)] as const));
+
+/** Values by whole numbers. */
+export const numbered = <T>(read: Reader<T>) => (field: Field): ReadonlyMap<number, T> =>
+  new Map(field.entries((key, item) => [/^-?\d+$/.test(key) ? Number(key) : item.fail("has a key that is not a number"), read(item)] as const));

@@ -104,7 +104,7 @@ export class FlowOf {
   /** The value that goes into the first input of an element. */
   private inlet(index: number): Flow {
     const element = this.drawing.elements[index];
-    const inputs = element?.pins.flatMap((pin, at) => (pin.isOutput || pin.name === "condition" ? [] : [at])) ?? [];
+    const inputs = element?.pins.flatMap((pin, at) => (pin.output || pin.name === "condition" ? [] : [at])) ?? [];
     const values = inputs.map((at) => this.into(index, at));
     if (values.some((one) => one !== null && one !== 0)) return 1;
     return values.length === 0 || values.some((one) => one === null) ? null : 0;
@@ -121,7 +121,7 @@ export class FlowOf {
   private block(element: DrawingElement, index: number, pin: number): Flow {
     const own = element.pins[pin];
     if (own?.state !== null && own?.state !== undefined) return this.value(own.state);
-    const inputs = element.pins.flatMap((one, at) => (one.isOutput ? [] : [{ name: one.name.toUpperCase(), at }]));
+    const inputs = element.pins.flatMap((one, at) => (one.output ? [] : [{ name: one.name.toUpperCase(), at }]));
     const enable = inputs.find((one) => one.name === "EN");
     const enabled = enable === undefined ? 1 : this.into(index, enable.at);
     if (own?.name.toUpperCase() === "ENO") return enabled;

@@ -2,7 +2,7 @@
 
 import uPlot from "uplot";
 
-/** Colours of the curves, told apart by those who do not see red and green (Okabe and Ito 2008). */
+/** Colours of the curves, distinguished also by those who do not see red and green (Okabe and Ito 2008). */
 const CURVES = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"] as const;
 
 /** The colour of a curve. */

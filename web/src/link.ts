@@ -15,7 +15,7 @@ export function live_address(): string {
   return url.href;
 }
 
-export interface Hears {
+export interface Handlers {
   readonly message: (message: Message) => void;
   readonly picture: (picture: Picture) => void;
   readonly map: (values: MapValues) => void;
@@ -37,7 +37,7 @@ export class Link {
   constructor(
     private readonly url: string,
     private readonly session: Session,
-    private readonly hears: Hears,
+    private readonly handlers: Handlers,
   ) {
     this.open();
   }
@@ -71,20 +71,20 @@ export class Link {
   }
 
   private open(): void {
-    this.hears.state("connecting");
+    this.handlers.state("connecting");
     const socket = new WebSocket(this.url);
     socket.binaryType = "arraybuffer";
     this.socket = socket;
     socket.addEventListener("open", () => {
       this.wait_ms = FIRST_WAIT_MS;
-      this.hears.state("connected");
+      this.handlers.state("connected");
       this.subscribe(this.subscribed);
       this.watch(this.watched);
       if (this.maps.length > 0) this.ask({ type: "maps", maps: this.maps });
     });
     socket.addEventListener("message", (event: MessageEvent<unknown>) => this.read(event.data));
     socket.addEventListener("close", () => {
-      this.hears.state("lost");
+      this.handlers.state("lost");
       window.setTimeout(() => this.open(), this.wait_ms);
       this.wait_ms = Math.min(LONGEST_WAIT_MS, this.wait_ms * 2);
     });
@@ -92,14 +92,14 @@ export class Link {
 
   private read(data: unknown): void {
     try {
-      if (typeof data === "string") this.hears.message(decodeMessage(data));
-      else if (data instanceof ArrayBuffer && isMap(data)) this.hears.map(decodeMapValues(data, this.session.maps.length));
+      if (typeof data === "string") this.handlers.message(decodeMessage(data));
+      else if (data instanceof ArrayBuffer && isMap(data)) this.handlers.map(decodeMapValues(data, this.session.maps.length));
       else if (data instanceof ArrayBuffer) {
-        this.hears.picture(decodePicture(data, this.session.signals.length, this.session.bodies.length));
+        this.handlers.picture(decodePicture(data, this.session.signals.length, this.session.bodies.length));
       } else throw new ProtocolError("message", "is neither text nor bytes");
     } catch (error) {
       if (!(error instanceof ProtocolError)) throw error;
-      this.hears.garbage(error);
+      this.handlers.garbage(error);
     }
   }
 }

@@ -20,14 +20,14 @@ class MapView {
   private readonly colours: readonly (readonly [number, number, number])[];
   private cells: Cells | null = null;
   private table: Table | null = null;
-  /** The cell whose value is told. */
+  /** The cell whose value is shown. */
   private cursor: readonly [number, number] | null = null;
 
   constructor(private readonly info: MapInfo) {
     this.colours = info.colours.map((text) => [1, 3, 5].map((at) => parseInt(text.slice(at, at + 2), 16)) as [number, number, number]);
     this.canvas.setAttribute("aria-label", `${info.title}: nothing yet`);
     this.canvas.addEventListener("pointermove", (event) => this.point(event));
-    this.canvas.addEventListener("pointerleave", () => this.tell(null));
+    this.canvas.addEventListener("pointerleave", () => this.describe(null));
     this.canvas.addEventListener("keydown", (event) => this.walk(event));
     const bar = make("div", { class: "bar", style: `background: linear-gradient(to top, ${info.colours.join(", ")})` });
     this.root = make("figure", { class: "map" }, make("figcaption", {}, make("h2", {}, info.title)),
@@ -54,7 +54,7 @@ class MapView {
       : `From ${this.number(least.value)} to ${this.number(greatest.value)}, which is at ${this.place(greatest)}.`;
     this.about.textContent = text;
     this.canvas.setAttribute("aria-label", `${this.info.title}: ${text}`);
-    this.tell(this.cursor);
+    this.describe(this.cursor);
   }
 
   /** What a test reads. */
@@ -122,7 +122,7 @@ class MapView {
       return found < 0 ? count(axis) - 1 : found;
     };
     const share = (at: number, from: number, length: number): number => Math.min(1, Math.max(0, (at - from) / length));
-    this.tell([cell(this.table.across, share(event.clientX, frame.left, frame.width)), cell(this.table.down, share(event.clientY, frame.top, frame.height))]);
+    this.describe([cell(this.table.across, share(event.clientX, frame.left, frame.width)), cell(this.table.down, share(event.clientY, frame.top, frame.height))]);
   }
 
   private walk(event: KeyboardEvent): void {
@@ -135,10 +135,10 @@ class MapView {
     const [column, row] = this.cursor ?? [hottest?.column ?? 0, hottest?.row ?? 0];
     const step = event.shiftKey ? 10 : 1;
     const within = (at: number, axis: Axis): number => Math.min(count(axis) - 1, Math.max(0, at));
-    this.tell(this.cursor === null ? [column, row] : [within(column + way[0] * step, this.table.across), within(row + way[1] * step, this.table.down)]);
+    this.describe(this.cursor === null ? [column, row] : [within(column + way[0] * step, this.table.across), within(row + way[1] * step, this.table.down)]);
   }
 
-  private tell(cursor: readonly [number, number] | null): void {
+  private describe(cursor: readonly [number, number] | null): void {
     this.cursor = cursor;
     const value = cursor === null || this.table === null ? undefined : this.table.values[cursor[1] * count(this.table.across) + cursor[0]];
     if (cursor === null || value === undefined) this.readout.textContent = "";

@@ -33,7 +33,7 @@ export function tree(plcs: Session["plcs"]): Branch {
 
 export class OnlineView {
   readonly root = make("div", { class: "online" });
-  private readonly variables: readonly { readonly path: string; readonly type: string }[];
+  private readonly variables: Session["plcs"][number]["variables"];
   private readonly values = new Map<number, string>();
   private readonly watched: number[] = [];
   private readonly list = make("tbody");

@@ -84,10 +84,10 @@ export class Page {
       again();
     });
     this.link = new Link(live_address(), session, {
-      message: (message) => this.hear(message),
+      message: (message) => this.handle(message),
       picture: (picture) => this.show(picture),
       map: (values) => this.maps.show(values),
-      state: (state) => this.tell(state),
+      state: (state) => this.show_link(state),
       garbage: (error) => this.notice(`Something that arrived cannot be read and is left out: ${error.message}.`),
     });
     this.fill_sheets(sheets, code);
@@ -223,13 +223,13 @@ export class Page {
     this.timeline.at(picture);
   }
 
-  private hear(message: Message): void {
+  private handle(message: Message): void {
     switch (message.type) {
       case "status":
         frame("state").textContent = message.state;
         frame("pace").textContent = message.pace;
         for (const one of this.panels) {
-          one.view.sit(message.seats.get(one.name) ?? "taken");
+          one.view.sit(message.seat.get(one.name) ?? "taken");
           one.view.show_failed(message.failed, message.disturbed);
           one.view.show_forced(message.forced);
         }
@@ -243,7 +243,7 @@ export class Page {
       case "looks":
         return this.machine.look(message.active);
       case "states":
-        return this.drawings.hear(message.drawing, message.instance, message.values);
+        return this.drawings.handle(message.drawing, message.instance, message.values);
       case "view":
         return this.see(message.view);
       case "map":
@@ -292,7 +292,7 @@ export class Page {
     this.machine.see(view);
   }
 
-  private tell(state: LinkState): void {
+  private show_link(state: LinkState): void {
     const link = frame("link");
     link.textContent = { connecting: "connecting…", connected: "connected", lost: "connection lost" }[state];
     link.className = state;

@@ -2,18 +2,18 @@
 
 import { button, make } from "./dom";
 import { shown } from "./format";
-import type { Seat } from "./message";
+import type { SeatState } from "./message";
 import type { Panel, PanelElement, Session } from "./session";
 import { Sparkline } from "./sparkline";
 
-/** Something that has been told: it is listed until it is gone and has been acknowledged. */
+/** Something that was reported: it is listed until it is gone and has been acknowledged. */
 export interface Alarm {
   readonly text: string;
   readonly isGone: boolean;
   readonly isSeen: boolean;
 }
 
-export interface Desk {
+export interface PanelActions {
   /** Writes a value of a signal, as an operator's input at the next step boundary. */
   readonly write: (signal: number, value: number) => void;
   readonly take: (panel: string, take: boolean) => void;
@@ -21,7 +21,7 @@ export interface Desk {
   readonly fail: (component: string, failure: string, active: boolean) => void;
   /** Puts a fault on the way of signals, or takes it away. */
   readonly disturb: (disturbance: number, active: boolean) => void;
-  /** What has been told, newest first. */
+  /** What was reported, newest first. */
   readonly alarms: () => readonly Alarm[];
   /** All of it has been seen. */
   readonly acknowledge: () => void;
@@ -44,14 +44,14 @@ export class PanelView {
   private readonly lists: (() => void)[] = [];
   private readonly seat_text = make("span", { class: "seat-text", role: "status" });
   private readonly seat_button: HTMLButtonElement;
-  private seat: Seat = "free";
+  private seat: SeatState = "free";
 
   constructor(
     private readonly panel: Panel,
     private readonly session: Session,
-    private readonly desk: Desk,
+    private readonly actions: PanelActions,
   ) {
-    this.seat_button = button("Take seat", () => desk.take(panel.name, this.seat !== "mine"));
+    this.seat_button = button("Take seat", () => actions.take(panel.name, this.seat !== "mine"));
     const grid = make("div", { class: "panel-grid" }, ...panel.elements.map((element) => this.place(element)));
     grid.style.gridTemplateColumns = `repeat(${panel.columns}, minmax(0, 1fr))`;
     if (panel.picture !== null) {
@@ -105,9 +105,9 @@ export class PanelView {
   }
 
   /** Who sits here: inputs work for the one who does. */
-  sit(seat: Seat): void {
+  sit(seat: SeatState): void {
     this.seat = seat;
-    const words: Record<Seat, string> = { free: "free", mine: "you sit here", taken: "taken by another viewer" };
+    const words: Record<SeatState, string> = { free: "free", mine: "you sit here", taken: "taken by another viewer" };
     this.seat_text.textContent = `${this.panel.seat}: ${words[seat]}`;
     this.seat_button.textContent = seat === "mine" ? "Leave seat" : "Take seat";
     this.seat_button.disabled = seat === "taken";
@@ -131,7 +131,7 @@ export class PanelView {
   private fill(cell: HTMLElement, element: PanelElement): void {
     switch (element.kind) {
       case "button":
-        return element.toggles ? this.fill_switch(cell, element) : this.fill_button(cell, element);
+        return element.mode === "toggle" ? this.fill_switch(cell, element) : this.fill_button(cell, element);
       case "switch":
         return this.fill_switch(cell, element);
       case "selector":
@@ -175,7 +175,7 @@ export class PanelView {
   }
 
   private write(signal: number | null, value: number): void {
-    if (signal !== null && this.seat === "mine") this.desk.write(signal, value);
+    if (signal !== null && this.seat === "mine") this.actions.write(signal, value);
   }
 
   /** Shows the signal, the failure or the disturbance of an element; what it gives writes it. */
@@ -184,7 +184,7 @@ export class PanelView {
     if (disturbance !== null) {
       this.listen(this.disturbances, disturbance, show);
       return (value) => {
-        if (this.seat === "mine") this.desk.disturb(disturbance, value !== 0);
+        if (this.seat === "mine") this.actions.disturb(disturbance, value !== 0);
       };
     }
     if (element.failure === null) {
@@ -194,7 +194,7 @@ export class PanelView {
     const [component, mode] = element.failure;
     this.listen(this.failures, `${component}.${mode}`, show);
     return (value) => {
-      if (this.seat === "mine") this.desk.fail(component, mode, value !== 0);
+      if (this.seat === "mine") this.actions.fail(component, mode, value !== 0);
     };
   }
 
@@ -303,7 +303,7 @@ export class PanelView {
   private fill_alarms(cell: HTMLElement, element: PanelElement): void {
     const list = make("ul", { "aria-label": element.label === "" ? "Alarms" : element.label, "aria-live": "polite" });
     this.lists.push(() => {
-      list.replaceChildren(...this.desk.alarms().map((one) => {
+      list.replaceChildren(...this.actions.alarms().map((one) => {
         const state = one.isGone ? "gone" : "on";
         return make("li", { class: `${state} ${one.isSeen ? "seen" : "new"}` }, one.text, make("span", {}, one.isSeen ? state : `${state}, new`));
       }));
@@ -311,7 +311,7 @@ export class PanelView {
     const key = make("button", { type: "button" }, "Acknowledge");
     const signal = this.bound(element.signal, () => {});
     key.addEventListener("click", () => {
-      this.desk.acknowledge();
+      this.actions.acknowledge();
       this.write(signal, 1);
       if (signal !== null) window.setTimeout(() => this.write(signal, 0), PRESSED_MS);
     });

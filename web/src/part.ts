@@ -80,7 +80,7 @@ export class PartSheet {
     const parameters = one.parameters.map((parameter) => make("tr", {},
       make("td", { class: "name" }, parameter.name),
       make("td", { class: "value" }, parameter.unit === null ? parameter.value : `${parameter.value} ${parameter.unit}`)));
-    const failures = one.failures.map((failure) => make("tr", {}, make("td", { class: "name" }, failure), make("td", { class: "value" },
+    const failures = one.failures.map(({ name: failure }) => make("tr", {}, make("td", { class: "name" }, failure), make("td", { class: "value" },
       button("Fail", () => this.ask({ type: "fail", component: one.name, failure, active: true }), `Fail ${one.name}: ${failure}`),
       button("Repair", () => this.ask({ type: "fail", component: one.name, failure, active: false }), `Repair ${one.name}: ${failure}`))));
     return [make("h3", {}, `${one.name} (${one.kind})`), make("table", {}, make("tbody", {}, ...signals, ...parameters, ...failures))];

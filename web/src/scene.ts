@@ -54,7 +54,7 @@ export class MachineView {
   /** Pictures drawn since the page was opened. */
   drawn = 0;
 
-  /** Draws into `place`; `choose` hears the number of the body that is clicked, or nothing. */
+  /** Draws into `place`; `choose` is called with the number of the body that is clicked, or with nothing. */
   constructor(
     private readonly place: HTMLElement,
     session: Session,
@@ -305,7 +305,7 @@ export class MachineView {
       const part = { body, drawn, colour, style: null, ran_m: 0, isHiddenByHand: false };
       parts.push(part);
       drawn.paint(colour, null, body.transparent);
-      drawn.show(body.visible);
+      drawn.show(true);
     });
     return parts;
   }
@@ -374,7 +374,7 @@ export class MachineView {
 
   private isVisible(part: Part, body: number): boolean {
     const isAway = this.tracks.exact(body) === null;
-    return part.body.visible && !part.isHiddenByHand && !isAway && !(part.style?.isHidden ?? false);
+    return !part.isHiddenByHand && !isAway && !(part.style?.isHidden ?? false);
   }
 
   private draw(): void {

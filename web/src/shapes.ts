@@ -11,7 +11,7 @@ export function geometry_of(shape: Shape): BufferGeometry | null {
     case "cylinder":
       return new CylinderGeometry(shape.radius_m, shape.radius_m, shape.length_m, 40).rotateX(Math.PI / 2);
     case "round":
-      return new CylinderGeometry(shape.top_radius_m, shape.radius_m, shape.length_m, 48, 1, shape.isOpen).rotateX(Math.PI / 2);
+      return new CylinderGeometry(shape.top_radius_m, shape.radius_m, shape.length_m, 48, 1, shape.open).rotateX(Math.PI / 2);
     case "capsule":
       return new CapsuleGeometry(shape.radius_m, shape.length_m, 8, 24).rotateX(Math.PI / 2);
     case "sphere":
@@ -35,5 +35,5 @@ export function key_of(name: string, shape: Shape): string {
 
 /** True for a shape that is seen from within, too. */
 export function is_open(shape: Shape): boolean {
-  return shape.kind === "round" && shape.isOpen;
+  return shape.kind === "round" && shape.open;
 }

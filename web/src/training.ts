@@ -1,4 +1,4 @@
-// A lesson on its pages: what the trainee is told, and what the trainer does with the lesson.
+// A lesson on its pages: what the trainee reads, and what the trainer does with the lesson.
 
 import { button, make } from "./dom";
 import type { Ask } from "./message";
@@ -15,7 +15,7 @@ export class TrainingView {
     const about = make("p", {}, lesson.about ?? "");
     const heading = make("h3", {}, `Lesson ${lesson.lesson}`);
     this.root = make("section", { class: "lesson", "aria-label": "Lesson" }, heading, about);
-    if (lesson.role === "trainer") this.root.append(this.desk(lesson, now_ns, ask));
+    if (lesson.role === "trainer") this.root.append(this.controls(lesson, now_ns, ask));
   }
 
   /** From where the trainee is to see the machine. */
@@ -25,7 +25,7 @@ export class TrainingView {
     return [views, button("Show view", () => ask({ type: "view", view: views.value }), "Shows it on the trainee's page, too")];
   }
 
-  private desk(lesson: Lesson, now_ns: () => number, ask: (ask: Ask) => void): HTMLElement {
+  private controls(lesson: Lesson, now_ns: () => number, ask: (ask: Ask) => void): HTMLElement {
     const starts = make("select", { "aria-label": "Prepared state" }, ...lesson.starts.map((one) => make("option", { value: one }, one)));
     const back = BACK_S.map((seconds) =>
       button(`Back ${seconds} s`, () => ask({ type: "train", turn: "back", t_ns: Math.max(0, now_ns() - seconds * NS) })));

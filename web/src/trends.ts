@@ -38,11 +38,11 @@ export class TrendsView {
     private readonly changed: () => void,
   ) {
     new ResizeObserver(() => this.fit()).observe(place);
-    const beat = (): void => {
+    const tick = (): void => {
       if (this.isStale) this.draw();
-      window.setTimeout(beat, 100);
+      window.setTimeout(tick, 100);
     };
-    beat();
+    tick();
   }
 
   signals(): readonly number[] {

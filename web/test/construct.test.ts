@@ -46,7 +46,7 @@ test("what is wrong in a state is named by its place", () => {
   for (const value of [null, 1, "x", [], { error: 3 }]) assert.throws(() => decodeAnswer(value), ProtocolError);
 });
 
-test("a library is read, and a form that is not known is told", () => {
+test("a library is read, and a form that is not known is refused", () => {
   const field = (form: object): object => ({ key: "speed_m_s", name: "speed", unit: "m/s", about: "a", form, needed: false, preset: 0.5, part: "parameter" });
   const library = (form: object): object => ({ protocol: 1, kinds: [{ name: "conveyor", about: "a", types: { run_signal: "BOOL" }, fields: [field(form)] }], sorts: [] });
   const read = decodeLibrary(library({ kind: "number", least: 0, most: 2 }));

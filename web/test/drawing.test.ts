@@ -8,7 +8,7 @@ function element(kind: string, text: string, marks: string[] = [], pins: string[
   return {
     id: text, kind, text, instance: null, state: kind === "contact" || kind === "coil" || kind === "inVariable" ? text : kind === "step" ? `${text}.X` : null,
     marks, at: [0, 0], size: [1, 1], line: 1,
-    pins: pins.map((name) => ({ name: name.replace(">", ""), isOutput: name.startsWith(">"), marks: [], state: null, at: [0, 0] })),
+    pins: pins.map((name) => ({ name: name.replace(">", ""), output: name.startsWith(">"), marks: [], state: null, at: [0, 0] })),
   };
 }
 

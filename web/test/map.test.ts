@@ -49,7 +49,7 @@ test("axes are marked at round values", () => {
   assert.deepEqual(ticks([1, 1], 5), []);
 });
 
-test("a place is told with its unit", () => {
+test("a place is described with its unit", () => {
   const all = ["position (m)", "angle (°)", "line of the revolution"].map((name) => named({ name, edges: [] }, 22.5));
   assert.deepEqual(all, ["position 22.5 m", "angle 22.5°", "line of the revolution 22.5"]);
 });

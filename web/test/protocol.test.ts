@@ -91,8 +91,8 @@ test("variables of the PLC are read, in a session and as they change", () => {
 });
 
 test("messages are read; garbage is an error", () => {
-  const status = decodeMessage('{"type":"status","state":"run","pace":1,"seat":{"desk":"free"},"past_ns":[0,5]}');
-  assert.ok(status.type === "status" && status.seats.get("desk") === "free" && status.past_ns?.[1] === 5);
+  const status = decodeMessage('{"type":"status","state":"run","pace":"1","seat":{"desk":"free"},"past_ns":[0,5]}');
+  assert.ok(status.type === "status" && status.seat.get("desk") === "free" && status.past_ns?.[1] === 5);
   for (const garbage of ["", "{", "null", '{"type":"x"}', '{"type":"status"}', '{"type":"status","state":"run","seat":{"a":"b"}}']) {
     assert.throws(() => decodeMessage(garbage), ProtocolError);
   }

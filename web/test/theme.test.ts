@@ -47,7 +47,7 @@ for (const [name, theme] of Object.entries(themes)) {
     assert.ok(contrast(of("on-accent"), of("accent")) >= 4.5, "text on what is chosen");
     assert.ok(contrast(of("sheet"), of("good")) >= 4.5, "the name of a step that is active");
   });
-  test(`lamps are told apart in the ${name} theme`, () => {
+  test(`lamps are distinguished in the ${name} theme`, () => {
     assert.ok(contrast(of("bulb"), of("bulb-off")) >= 3, "on and off");
     assert.ok(contrast(of("text-2"), of("raised")) >= 3, "the rim of a lamp");
   });

@@ -4,7 +4,7 @@
 
 use std::error::Error;
 
-use onescan_iec::{TaskPlan, TimeSpan, VirtualTime};
+use onescan_iec::{TimeSpan, VirtualTime};
 use onescan_iec_run::{Application, SoftPlc};
 
 const BLINK: &str = "

@@ -48,7 +48,7 @@ export class Bench {
   private isTurned = false;
   grid_m = 0.05;
 
-  /** Draws into `place`; `choose` hears of a body that is clicked, `move` of one that is put elsewhere. */
+  /** Draws into `place`; `choose` is called with a body that is clicked, `move` with one that is put elsewhere. */
   constructor(
     private readonly place: HTMLElement,
     private readonly choose: (body: string | null) => void,
@@ -166,7 +166,7 @@ export class Bench {
   private listen(): void {
     const canvas = this.renderer.domElement;
     let down = { x: 0, y: 0 };
-    // before the controls hear of it, so that a body is moved and the view is not
+    // before the controls handle it, so that a body is moved and the view is not
     canvas.addEventListener("pointerdown", (event) => {
       down = { x: event.clientX, y: event.clientY };
       const part = event.button === 0 ? this.under(event) : null;

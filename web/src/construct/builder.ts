@@ -3,11 +3,11 @@
 import { button, make } from "../dom";
 import { Bench } from "./bench";
 import { fieldset, type Surroundings } from "./form";
-import type { Client, Edit, EditState, FieldInfo, Given, Json, Library, SceneState, Table } from "./protocol";
+import type { Client, Edit, EditState, FieldInfo, Given, Json, Library, SceneState, Sort, Table } from "./protocol";
 import { free } from "./snap";
 
 /** Things that are often placed, with what makes them so. */
-const PLACES: readonly { readonly name: string; readonly about: string; readonly sort: string; readonly keys: Readonly<Record<string, Given>> }[] = [
+const PLACES: readonly { readonly name: string; readonly about: string; readonly sort: Sort; readonly keys: Readonly<Record<string, Given>> }[] = [
   { name: "belt", about: "a surface that a conveyor runs", sort: "body", keys: { kind: "kinematic", shape: "box", size_m: [2, 0.3, 0.1], position_m: [0, 0, -0.05], friction: 0.8 } },
   { name: "box", about: "a body that forces move; `box[0..3]` are four", sort: "body", keys: { kind: "dynamic", shape: "box", size_m: [0.1, 0.1, 0.1], position_m: [0, 0, 0.05], mass_kg: 0.5, friction: 0.4 } },
   { name: "table", about: "a body that stays", sort: "body", keys: { kind: "fixed", shape: "box", size_m: [0.4, 0.4, 0.4], position_m: [0, 0, 0.2] } },
@@ -24,7 +24,7 @@ const MAIN: Readonly<Record<string, readonly string[]>> = {
 };
 
 /** What is chosen: a table, or one that is about to be added. */
-type Chosen = { readonly sort: string; readonly name: string; readonly draft: Map<string, Given> | null };
+type Chosen = { readonly sort: Sort; readonly name: string; readonly draft: Map<string, Given> | null };
 
 export class Builder {
   private readonly palette = make("nav", { class: "palette", "aria-label": "What can be placed" });
@@ -136,7 +136,7 @@ export class Builder {
     return ware;
   }
 
-  private draft(sort: string, name: string, keys: Map<string, Given>): void {
+  private draft(sort: Sort, name: string, keys: Map<string, Given>): void {
     const others = this.names(sort);
     if (sort === "component") {
       // what there is only one of is what is meant
@@ -161,11 +161,11 @@ export class Builder {
     this.tree.replaceChildren(...(items.length > 0 ? items : [make("p", { class: "empty" }, "Nothing yet: place a body first.")]));
   }
 
-  private fields(sort: string, kind: Json | Given): readonly FieldInfo[] {
+  private fields(sort: Sort, kind: Json | Given): readonly FieldInfo[] {
     if (sort === "component") return this.library.kinds.find((one) => one.name === kind)?.fields ?? [];
     const main = MAIN[sort] ?? [];
     const rank = (field: FieldInfo): number => (main.includes(field.key) ? main.indexOf(field.key) : main.length);
-    return [...(this.library.sorts.get(sort) ?? [])].sort((one, other) => rank(one) - rank(other));
+    return [...(this.library.sorts.find((one) => one.sort === sort)?.fields ?? [])].sort((one, other) => rank(one) - rank(other));
   }
 
   private around(): Surroundings {
@@ -173,7 +173,7 @@ export class Builder {
   }
 
   /** Which keys are shown at once: of a body, the measures of its shape. */
-  private main(sort: string, shape: Json | Given): ((field: FieldInfo) => boolean) | null {
+  private main(sort: Sort, shape: Json | Given): ((field: FieldInfo) => boolean) | null {
     const keys = MAIN[sort];
     const off = shape === "box" ? ["radius_m", "length_m"] : shape === "sphere" ? ["size_m", "length_m"] : ["size_m"];
     return keys === undefined ? null : (field) => keys.includes(field.key) && !off.includes(field.key);
@@ -205,7 +205,7 @@ export class Builder {
     ];
   }
 
-  private async add(sort: string, name: string, fields: readonly FieldInfo[], draft: ReadonlyMap<string, Given>): Promise<void> {
+  private async add(sort: Sort, name: string, fields: readonly FieldInfo[], draft: ReadonlyMap<string, Given>): Promise<void> {
     const scene = this.scene();
     if (scene === null) return;
     // in the order of the form, the kind first
@@ -220,7 +220,7 @@ export class Builder {
   }
 
   /** The signal of an input or an output, if the session has none of this name. */
-  private declaration(sort: string, kind: Json | Given, key: string, value: Given | null, keys: readonly (readonly [string, Given | Json])[]): readonly Edit[] {
+  private declaration(sort: Sort, kind: Json | Given, key: string, value: Given | null, keys: readonly (readonly [string, Given | Json])[]): readonly Edit[] {
     if (sort !== "component" || typeof value !== "string") return [];
     const field = this.fields(sort, kind).find((one) => one.key === key);
     const type = this.library.kinds.find((one) => one.name === kind)?.types.get(key);

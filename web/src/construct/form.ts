@@ -9,7 +9,7 @@ export interface Surroundings {
   readonly names: (sort: string) => readonly string[];
 }
 
-/** What `changed` is told: a value, or that the key is to go. */
+/** What `changed` is called with: a value, or that the key is to go. */
 export type Changed = (key: string, value: Given | null) => void;
 
 const PART_TITLES: readonly (readonly [readonly string[], string, boolean])[] = [
@@ -56,7 +56,7 @@ function control(field: FieldInfo, value: Json | undefined, around: Surroundings
   const unit = field.unit === null || field.part === "input" || field.part === "output" ? [] : [make("span", { class: "unit" }, field.unit)];
   const preset = field.preset === null ? "" : String(field.preset);
   const { form, key } = field;
-  const tell = (given: Given | null): void => changed(key, given);
+  const notify = (given: Given | null): void => changed(key, given);
   switch (form.kind) {
     case "number":
     case "whole": {
@@ -66,15 +66,15 @@ function control(field: FieldInfo, value: Json | undefined, around: Surroundings
         value: typeof value === "number" ? String(value) : "",
       });
       input.addEventListener("change", () => {
-        if (input.value === "") tell(null);
-        else if (input.reportValidity()) tell(input.valueAsNumber);
+        if (input.value === "") notify(null);
+        else if (input.reportValidity()) notify(input.valueAsNumber);
       });
       return make("span", { class: "control" }, input, ...unit);
     }
     case "flag":
-      return choice(name, ["true", "false"], value === undefined ? "" : String(value), preset, (word) => tell(word === null ? null : word === "true"));
+      return choice(name, ["true", "false"], value === undefined ? "" : String(value), preset, (word) => notify(word === null ? null : word === "true"));
     case "choice":
-      return choice(name, form.words, typeof value === "string" ? value : "", preset, tell);
+      return choice(name, form.words, typeof value === "string" ? value : "", preset, notify);
     case "numbers": {
       const numbers = Array.isArray(value) ? (value as readonly Json[]) : [];
       const inputs = Array.from({ length: form.count }, (_, index) => {
@@ -86,8 +86,8 @@ function control(field: FieldInfo, value: Json | undefined, around: Surroundings
         input.addEventListener("change", () => {
           const filled = inputs.filter((one) => one.value !== "");
           // one number makes the others 0; none takes the key away
-          if (filled.length === 0) tell(null);
-          else tell(inputs.map((one) => (one.value === "" ? 0 : one.valueAsNumber)));
+          if (filled.length === 0) notify(null);
+          else notify(inputs.map((one) => (one.value === "" ? 0 : one.valueAsNumber)));
         });
       }
       return make("span", { class: "control numbers" }, ...inputs, ...unit);
@@ -100,7 +100,7 @@ function control(field: FieldInfo, value: Json | undefined, around: Surroundings
         box.addEventListener("change", () => {
           if (box.checked) chosen.add(one);
           else chosen.delete(one);
-          tell(chosen.size === 0 ? null : [...chosen]);
+          notify(chosen.size === 0 ? null : [...chosen]);
         });
         return make("label", { class: "check" }, box, one);
       });
@@ -111,19 +111,19 @@ function control(field: FieldInfo, value: Json | undefined, around: Surroundings
         const ground = key === "parent" || key === "body" ? ["ground"] : [];
         const names = [...ground, ...around.names(form.names)];
         const known = typeof value === "string" ? value : "";
-        return choice(name, known === "" || names.includes(known) ? names : [known, ...names], known, preset, tell);
+        return choice(name, known === "" || names.includes(known) ? names : [known, ...names], known, preset, notify);
       }
       const is_signal = field.part === "input" || field.part === "output";
       const input = make("input", { type: "text", "aria-label": name, placeholder: is_signal ? "no signal" : "", value: typeof value === "string" ? value : "", ...(is_signal ? { list: "signals" } : {}) });
-      input.addEventListener("change", () => tell(input.value.trim() === "" ? null : input.value.trim()));
+      input.addEventListener("change", () => notify(input.value.trim() === "" ? null : input.value.trim()));
       return make("span", { class: "control" }, input);
     }
   }
 }
 
-function choice(name: string, words: readonly string[], value: string, preset: string, tell: (word: string | null) => void): HTMLElement {
+function choice(name: string, words: readonly string[], value: string, preset: string, notify: (word: string | null) => void): HTMLElement {
   const none = make("option", { value: "" }, preset === "" ? "–" : `${preset} (preset)`);
   const select = make("select", { "aria-label": name }, none, ...words.map((word) => make("option", { value: word, selected: word === value }, word)));
-  select.addEventListener("change", () => tell(select.value === "" ? null : select.value));
+  select.addEventListener("change", () => notify(select.value === "" ? null : select.value));
   return make("span", { class: "control" }, select);
 }

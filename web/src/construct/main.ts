@@ -5,7 +5,7 @@ import "./edit.css";
 import { button, frame, make } from "../dom";
 import { begin_theme } from "../theme";
 import { Builder } from "./builder";
-import { Desk } from "./desk";
+import { Editor } from "./editor";
 import type { EditState, Finding, Refusal } from "./protocol";
 import { WiringView } from "./wiring";
 
@@ -25,7 +25,7 @@ function findings(all: readonly Finding[]): readonly HTMLElement[] {
   if (all.length === 0) return [make("p", { class: "empty" }, "Nothing is wrong.")];
   return all.map((finding) => {
     const where = finding.file === null ? "" : `${finding.file}${finding.line === null ? "" : `:${finding.line}`}`;
-    const row = make("li", { class: finding.isError ? "finding error" : "finding" }, make("span", { class: "where" }, where), make("span", {}, finding.message));
+    const row = make("li", { class: finding.is_error ? "finding error" : "finding" }, make("span", { class: "where" }, where), make("span", {}, finding.message));
     if (finding.help !== null) row.append(make("span", { class: "help" }, finding.help));
     return row;
   });
@@ -39,7 +39,7 @@ async function begin(): Promise<void> {
     notice.hidden = refusal === null;
     if (refusal === null) return;
     const where = refusal.references.map((one) => ` ${one.file}:${one.line}`).join(",");
-    notice.replaceChildren(`${refusal.message}${where === "" ? "" : ` (${where.trim()})`} `, ...(is_theirs ? [button("Read again", () => void desk.want({ want: "reload" }))] : []));
+    notice.replaceChildren(`${refusal.message}${where === "" ? "" : ` (${where.trim()})`} `, ...(is_theirs ? [button("Read again", () => void editor.want({ want: "reload" }))] : []));
   };
   const show = (state: EditState): void => {
     frame("title").textContent = state.scenario;
@@ -48,7 +48,7 @@ async function begin(): Promise<void> {
     redo.disabled = state.redo === null;
     undo.title = state.undo === null ? "Nothing to take back" : `Take back: ${state.undo}`;
     redo.title = state.redo === null ? "Nothing to do again" : `Do again: ${state.redo}`;
-    const errors = state.findings.filter((finding) => finding.isError).length;
+    const errors = state.findings.filter((finding) => finding.is_error).length;
     const status = frame("check");
     status.textContent = state.changed.length > 0 ? "changed by somebody else" : errors === 0 ? "sound" : `${errors} wrong`;
     status.className = errors === 0 && state.changed.length === 0 ? "sound" : "wrong";
@@ -59,22 +59,22 @@ async function begin(): Promise<void> {
     parts.wiring?.show(state);
     parts.builder?.show(state);
   };
-  const desk = await Desk.open(show, refuse);
-  const undo = button("Undo", () => void desk.want({ want: "undo" }));
-  const redo = button("Redo", () => void desk.want({ want: "redo" }));
-  frame("controls").append(undo, redo, button("Read again", () => void desk.want({ want: "reload" }), "Read the files again"));
+  const editor = await Editor.open(show, refuse);
+  const undo = button("Undo", () => void editor.want({ want: "undo" }));
+  const redo = button("Redo", () => void editor.want({ want: "redo" }));
+  frame("controls").append(undo, redo, button("Read again", () => void editor.want({ want: "reload" }), "Read the files again"));
   window.addEventListener("keydown", (event) => {
     const is_field = event.target instanceof HTMLInputElement || event.target instanceof HTMLSelectElement;
     if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "z" || is_field) return;
     event.preventDefault();
-    void desk.want({ want: event.shiftKey ? "redo" : "undo" });
+    void editor.want({ want: event.shiftKey ? "redo" : "undo" });
   });
   tabs();
-  parts.builder = new Builder(frame("build"), desk.library, (edits) => desk.want({ want: "change", edits }));
-  parts.wiring = new WiringView(frame("wiring"), (one, other) => void desk.want({ want: "join", one, other }), (tip) => void desk.want({ want: "part", tip }));
-  show(desk.state);
+  parts.builder = new Builder(frame("build"), editor.library, (edits) => editor.want({ want: "change", edits }));
+  parts.wiring = new WiringView(frame("wiring"), (one, other) => void editor.want({ want: "join", one, other }), (tip) => void editor.want({ want: "part", tip }));
+  show(editor.state);
   const bench = parts.builder.bench;
-  window.onescanEdit = { revision: () => desk.state.revision, screen: (body) => bench.screen(body) };
+  window.onescanEdit = { revision: () => editor.state.revision, screen: (body) => bench.screen(body) };
 }
 
 /** The two sheets, by mouse and arrow keys. */

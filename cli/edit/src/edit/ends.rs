@@ -4,6 +4,7 @@ use onescan_plant::Scene;
 use onescan_plant::component::kind::Values;
 use onescan_plant::scene::model::Wire;
 use onescan_iec_run::{Application, Variable};
+use schemars::JsonSchema;
 use serde::Serialize;
 use toml_edit::Item;
 
@@ -12,7 +13,7 @@ use super::document::Document;
 use crate::wiring::Map;
 
 /// Where a connection can begin or end.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct End {
     /// The client.
     pub client: String,
@@ -30,7 +31,7 @@ pub struct End {
 }
 
 /// What is written to connect an end.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub enum Hand {
     /// A key of a table of a scene.

@@ -2,13 +2,14 @@
 
 use onescan_report::FileError;
 use onescan_scenario::ScenarioError;
+use schemars::JsonSchema;
 use serde::Serialize;
 use thiserror::Error;
 
 use onescan_runner::error::{ListenError, Unreadable, Usage, sum_of_errors};
 
 /// A line of a file, from 1.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Place {
     /// The file, as the scenario names it.
     pub file: String,
@@ -17,7 +18,7 @@ pub struct Place {
 }
 
 /// Something that refers to a thing.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Reference {
     /// What refers to it, as in "component `cylinder`, joint".
     pub by: String,

@@ -5,6 +5,7 @@ use onescan_plant::component::kind::{self, Kind, Setting, unit};
 use onescan_plant::component::kinds;
 use onescan_plant::coupling::{BindingKey, Names};
 use onescan_plant::scene::schema::schema;
+use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::Value as Json;
 
@@ -12,7 +13,8 @@ use super::change::{Given, Sort};
 use super::error::EditError;
 
 /// A key.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(rename = "FieldInfo")]
 pub(super) struct Field {
     /// As it is written.
     pub(super) key: String,
@@ -35,7 +37,7 @@ pub(super) struct Field {
 }
 
 /// The part of a key in its table.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum Part {
     /// Describes the thing.
@@ -51,7 +53,7 @@ pub(super) enum Part {
 }
 
 /// What may be written.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub(super) enum Form {
     /// A number, bounds included.

@@ -1,6 +1,7 @@
 //! What the check of a scenario finds, each with its place: the same errors that every command reports.
 
 use miette::Diagnostic;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::change::Texts;
@@ -9,7 +10,7 @@ use super::wire;
 use crate::wiring::{Map, Trouble};
 
 /// Something that is wrong.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub(super) struct Finding {
     /// Whether a session could not start.
     is_error: bool,

@@ -1,5 +1,6 @@
 //! Two ends put together, or one let go: which changes that takes.
 
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::change::{Edit, Given};
@@ -7,7 +8,7 @@ use super::ends::{End, Hand};
 use super::error::EditError;
 
 /// What a line is drawn to.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(untagged, deny_unknown_fields)]
 pub enum Tip {
     /// An end of a client.

@@ -9,8 +9,8 @@ use axum::http::{StatusCode, header};
 use axum::middleware;
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::json;
 
 use super::change::Edit;
 use super::desk::Desk;
@@ -32,7 +32,7 @@ struct Bench {
 }
 
 /// What a page wants.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(tag = "want", rename_all = "lowercase", deny_unknown_fields)]
 enum Want {
     /// These changes, together.
@@ -50,7 +50,7 @@ enum Want {
 }
 
 /// Why nothing was done.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 struct Refusal {
     message: String,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -58,6 +58,15 @@ struct Refusal {
     #[serde(skip_serializing_if = "Option::is_none")]
     line: Option<usize>,
     references: Vec<Reference>,
+}
+
+/// The answer to what a page wants.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Answer<'s> {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    error: Option<Refusal>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    state: Option<&'s State>,
 }
 
 /// A refusal with its status.
@@ -218,16 +227,16 @@ async fn heed(Shared(held): Shared<Held>, body: String) -> Response {
         Ok(want) => want,
         Err(error) => {
             let (status, refusal) = plain(StatusCode::BAD_REQUEST, format!("not a request of the page: {error}"));
-            return answer(status, &json!({ "error": refusal }));
+            return answer(status, &Answer { error: Some(refusal), state: None });
         }
     };
     let mut bench = held.lock().unwrap_or_else(PoisonError::into_inner);
     match bench.heed(want) {
-        Ok(()) => answer(StatusCode::OK, &json!({ "state": bench.state })),
+        Ok(()) => answer(StatusCode::OK, &Answer { error: None, state: Some(&bench.state) }),
         Err((status, refusal)) => {
             let changed = bench.files.changed(bench.desk.texts());
             bench.state.changed = changed;
-            answer(status, &json!({ "error": refusal, "state": bench.state }))
+            answer(status, &Answer { error: Some(refusal), state: Some(&bench.state) })
         }
     }
 }
@@ -240,4 +249,20 @@ async fn library() -> Response {
 async fn file(request: Request) -> Response {
     let path = request.uri().path();
     asset(if path == "/" { "/edit.html" } else { path })
+}
+
+#[cfg(test)]
+mod tests {
+    use onescan_page_types::Types;
+    use onescan_page_types::published::{is_published, is_published_in};
+
+    use super::*;
+
+    #[test]
+    fn the_page_has_the_types_of_this_server() {
+        let types = Types::default().receive::<State>().receive::<Answer>().receive::<state::Library>().send::<Want>();
+        is_published("src/generated/edit.ts", &types.module(state::PROTOCOL));
+        is_published_in("PROTOCOL.md", "wants", &types.table("Want"));
+        is_published_in("PROTOCOL.md", "edits", &types.table("Edit"));
+    }
 }

@@ -1,8 +1,11 @@
 //! All that the page shows: the files checked by the code of every other command, and what came of it.
 
+use std::collections::BTreeMap;
+
 use onescan_plant::component::kinds;
 use onescan_scenario::Scenario;
 use onescan_scenario::file::ClientFile;
+use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::{Map as Object, Value as Json};
 use toml_edit::{Item, Value};
@@ -15,14 +18,15 @@ use super::field::{self, Field};
 use super::files::{Files, scenes_of};
 use super::finding::{self, Finding};
 use super::join::Line;
-use onescan_runner::web::structure::{self, Body};
+use onescan_runner::web::machine::{self, Body};
 use crate::wiring::Map;
 
 /// The version of the protocol, `web/PROTOCOL.md`.
-const PROTOCOL: u32 = 1;
+pub(super) const PROTOCOL: u32 = 1;
 
 /// What is known of the files as they are.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "EditState")]
 pub(super) struct State {
     protocol: u32,
     scenario: String,
@@ -45,7 +49,7 @@ pub(super) struct State {
 }
 
 /// A client, as far as its file says it.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 struct Client {
     name: String,
     kind: String,
@@ -54,7 +58,7 @@ struct Client {
 }
 
 /// A scene, for the machine and for the forms.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 struct SceneState {
     file: String,
     /// None while the scene is wrong.
@@ -63,11 +67,12 @@ struct SceneState {
 }
 
 /// A table of a scene as it is written.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 struct Table {
     sort: Sort,
     name: String,
     line: usize,
+    #[schemars(with = "BTreeMap<String, Json>")]
     keys: Object<String, Json>,
 }
 
@@ -112,7 +117,7 @@ fn check(state: &mut State, scenario: &Scenario, texts: &Texts) {
                         state.ends.extend(ends::of_plant(name.as_str(), file, &scene, &document));
                     }
                     if let Some(known) = state.scenes.iter_mut().find(|known| known.file == *file) {
-                        known.bodies = Some(structure::bodies_of(&scene));
+                        known.bodies = Some(machine::bodies_of(&scene));
                     }
                 }
                 Err(error) => finding::of_error(&error, &mut state.findings),
@@ -205,23 +210,26 @@ fn json(value: &Value) -> Json {
 }
 
 /// What can be placed: the kinds of components, and the keys of every sort of table.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub(super) struct Library {
     protocol: u32,
     kinds: Vec<KindState>,
     sorts: Vec<SortState>,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "Kind")]
 struct KindState {
     name: String,
     about: String,
     /// Types of inputs and outputs, by the keys that name their signals.
+    #[schemars(with = "BTreeMap<String, String>")]
     types: Object<String, Json>,
     fields: Vec<Field>,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "SortFields")]
 struct SortState {
     sort: Sort,
     fields: Vec<Field>,

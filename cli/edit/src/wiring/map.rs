@@ -5,36 +5,41 @@ use onescan_scenario::compose::Compiled;
 use onescan_scenario::file::ClientFile;
 use onescan_scenario::{Scenario, ScenarioError};
 use onescan_server::signal::{ClientName, SignalName, SignalType, nearest};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::ends::{End, Ends, of_plant, of_plc};
 
 /// The wiring of a scenario.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[schemars(rename = "Wiring")]
 pub struct Map {
     /// The clients by name.
+    #[schemars(default)]
     pub clients: Vec<Member>,
     /// The declared signals by name.
     pub signals: Vec<Wired>,
     /// Inputs of a plant's components that nobody drives: no fault, but a reason to look.
+    #[schemars(default)]
     pub open: Vec<OpenInput>,
     /// What is wrong, signal by signal.
     pub troubles: Vec<Trouble>,
 }
 
 /// An input of a component that nobody drives.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct OpenInput {
     /// The plant that has the component.
     pub client: String,
     /// Component and input, as in `heater.on`.
     pub input: String,
     /// What it is all the time.
+    #[schemars(with = "serde_json::Value")]
     pub preset: Setting,
 }
 
 /// A client.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Member {
     /// Its name.
     pub name: String,
@@ -45,7 +50,7 @@ pub struct Member {
 }
 
 /// A declared signal.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Wired {
     /// Its name.
     pub name: String,
@@ -62,7 +67,7 @@ pub struct Wired {
 }
 
 /// One client's part of a signal.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Hook {
     /// The client.
     pub client: String,
@@ -71,7 +76,7 @@ pub struct Hook {
 }
 
 /// Something that is wrong with the wiring.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Trouble {
     /// What sort of trouble.
     pub kind: TroubleKind,
@@ -82,7 +87,7 @@ pub struct Trouble {
 }
 
 /// Sorts of trouble.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum TroubleKind {
     /// One end has nothing at the other.

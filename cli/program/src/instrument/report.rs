@@ -10,6 +10,7 @@ use serde::Serialize;
 
 use super::error::InstrumentError;
 use super::{Destination, Diff, Direction, InstrumentConfig};
+use onescan_regress::check::passed_over::PassedOver;
 use onescan_regress::check::json::Line;
 use onescan_regress::check::report::Report;
 use onescan_regress::check::{human, json};
@@ -57,7 +58,7 @@ pub fn findings(
     format: Format,
     out: &mut dyn Write,
 ) -> Result<(), InstrumentError> {
-    let report = Report { files, findings: vec![findings.clone()] };
+    let report = Report { files, findings: vec![findings.clone()], passed_over: PassedOver::default() };
     let written = match format {
         Format::Human => human::write(&report, out),
         Format::Json => json::write(&report, out),

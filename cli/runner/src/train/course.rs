@@ -25,7 +25,7 @@ use crate::access::admission::Admission;
 use crate::error::Usage;
 use crate::interrupt::Interrupt;
 use crate::run::{NOTICE, operator_inputs};
-use crate::web::{self, AtWork, Desk, Failing, Page, Role, Training, Turn};
+use crate::web::{self, AtWork, Failing, Page, Role, Training, Turn, TurnQueue};
 
 /// A lesson, and all that is needed to hold it.
 pub(super) struct Classroom<'a> {
@@ -166,10 +166,10 @@ impl Classroom<'_> {
         self.interrupt.heed();
         let mailbox = self.interrupt.mailbox();
         let stage = Stage { keeps: true, ..self.stage(served.pace, mailbox.clone()) };
-        let desk = Desk::new(mailbox);
+        let turns = TurnQueue::new(mailbox);
         let mut at = Rc::new(self.prepare(&self.lesson.start)?);
         let mut prepared = BTreeMap::from([(self.lesson.start.clone(), Rc::clone(&at))]);
-        let _pages = self.pages(served, &at.scenario, &stage, &desk)?;
+        let _pages = self.pages(served, &at.scenario, &stage, &turns)?;
         let mut next = self.begins(&self.lesson.start, &at);
         let mut attempts: Vec<AttemptRecord> = Vec::new();
         // what operators did since the start, along the way that led here
@@ -185,7 +185,7 @@ impl Classroom<'_> {
             if self.interrupt.is_raised() {
                 return Ok(attempts);
             }
-            next = match desk.take() {
+            next = match turns.take() {
                 None => return Ok(attempts),
                 Some(Turn::Repeat) => self.begins(&start, &at),
                 Some(Turn::Jump(name)) => {
@@ -216,7 +216,13 @@ impl Classroom<'_> {
     }
 
     /// The trainee's page and the trainer's.
-    fn pages(&self, served: &Served, scenario: &Scenario, stage: &Stage, desk: &Desk) -> Result<[Page; 2], TrainError> {
+    fn pages(
+        &self,
+        served: &Served,
+        scenario: &Scenario,
+        stage: &Stage,
+        turns: &TurnQueue,
+    ) -> Result<[Page; 2], TrainError> {
         let pace = match served.pace {
             Pace::Max => "max".to_owned(),
             Pace::Factor(factor) => factor.to_string(),
@@ -225,7 +231,7 @@ impl Classroom<'_> {
             failing: stage.failing.clone(),
             training: Some(Training {
                 role,
-                desk: desk.clone(),
+                turns: turns.clone(),
                 lesson: self.lesson.name.clone(),
                 about: self.lesson.about.clone(),
                 view: self.lesson.view.clone(),

@@ -77,7 +77,7 @@ pub fn view(config: &ViewConfig, interrupt: &Interrupt, out: &mut dyn Write) -> 
                 if checked.differs() {
                     code = ExitCode::Unmet;
                 }
-                page.tell(News { t_v: checked.t_v(), kind: "check", text: checked.to_string() });
+                page.notify(News { t_v: checked.t_v(), kind: "check", text: checked.to_string() });
                 writeln!(out, "{checked}").and_then(|()| out.flush()).map_err(OutputError)?;
             }
             if is_over {

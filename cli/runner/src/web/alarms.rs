@@ -15,9 +15,9 @@ pub(super) struct Bell {
     signals: Vec<SignalId>,
 }
 
-/// What one viewer has been told of alarms.
+/// The alarms that one viewer knows to be on.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Rung(BTreeSet<usize>);
+pub(super) struct ReportedAlarms(BTreeSet<usize>);
 
 /// An alarm that has come or gone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,20 +43,25 @@ impl Bell {
         }
     }
 
-    /// What has changed for a viewer since it was told last.
-    pub(super) fn changes(&self, rung: &mut Rung, view: &SessionView, layout: &ImageLayout) -> Vec<Change<'_>> {
+    /// What has changed for a viewer since the last report.
+    pub(super) fn changes(
+        &self,
+        reported: &mut ReportedAlarms,
+        view: &SessionView,
+        layout: &ImageLayout,
+    ) -> Vec<Change<'_>> {
         let value =
             |signal: &SignalId| layout.ty(*signal).as_f64(layout.bytes(*signal, &view.image)).unwrap_or(f64::NAN);
         let values: Vec<f64> = self.signals.iter().map(value).collect();
         let mut changes = Vec::new();
         for (number, (name, when)) in self.alarms.iter().enumerate() {
-            match (when.holds(&values), rung.0.contains(&number)) {
+            match (when.holds(&values), reported.0.contains(&number)) {
                 (true, false) => {
-                    rung.0.insert(number);
+                    reported.0.insert(number);
                     changes.push(Change { kind: "alarm", name });
                 }
                 (false, true) => {
-                    rung.0.remove(&number);
+                    reported.0.remove(&number);
                     changes.push(Change { kind: "gone", name });
                 }
                 (true, true) | (false, false) => {}

@@ -4,53 +4,55 @@ use onescan_server::layout::ImageLayout;
 use onescan_server::operation::{Operation, SignalFault};
 use onescan_server::signal::{SignalDecl, SignalId, SignalName, SignalType};
 use onescan_server::time::VirtualTime;
+use schemars::JsonSchema;
 use serde::Deserialize;
-use thiserror::Error;
 
-use super::desk::{AtWork, Role, Training, Turn};
+use super::error::Refused;
+use super::known::Known;
 use super::online::Action;
-use super::structure::Known;
+use super::training::{AtWork, Training, Turn};
 
-/// A message of a page.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+/// What the page asks.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(tag = "type", rename_all = "lowercase", deny_unknown_fields)]
 pub(super) enum Ask {
-    /// These signals from now on.
+    /// The signals that pictures have from now on; the next picture has all of them.
     Subscribe { signals: Vec<usize> },
-    /// An operator's input.
+    /// An operator's input at the next step boundary.
     Write { signal: usize, value: f64 },
-    /// Virtual time is held, goes on, makes one step; the session ends.
+    /// Holds virtual time, lets it go on, makes one step; or ends the session.
     Operate { operation: Verb },
-    /// A seat is taken or left.
+    /// Takes or leaves a seat.
     Seat { panel: String, take: bool },
-    /// A component fails, or is repaired.
+    /// Fails a component, or repairs it.
     Fail { component: String, failure: String, active: bool },
-    /// A fault on the way of signals, by its number on the panels, begins or ends.
+    /// Begins a fault on the way of signals, or ends it; all of its signals at one boundary. It is named by its number on the
+    /// panels.
     Disturb { disturbance: usize, active: bool },
-    /// The lesson goes on from its start, from an earlier moment, or from a prepared state.
+    /// How the lesson continues, on the trainer's page: from its start, from an earlier moment, or from a prepared state.
     Train(TrainAsk),
-    /// A moment of the past is to be shown.
+    /// Shows this viewer a moment of the past: the last step at or before it. What it asked for before counts no more.
     Show { t_ns: f64 },
-    /// A view of the scenario for all viewers.
+    /// Shows a view of the scenario to all viewers; from a trainer's seat where there is one, of a lesson on the trainer's page.
     View { view: String },
-    /// The values of a drawing's instance from now on, or of none.
+    /// The values of a drawing's instance from now on; `null` for none.
     Draw { drawing: Option<usize>, instance: usize },
-    /// These variables of PLCs from now on.
+    /// The PLCs' own variables that `variables` has from now on.
     Watch { variables: Vec<usize> },
     /// These maps from now on.
     Maps { maps: Vec<usize> },
-    /// A variable of a PLC is written, forced or released.
+    /// Writes, forces or releases a variable of a PLC; the value is a literal of the variable's type.
     Variable { variable: usize, action: Action, value: String },
-    /// A signal is forced; released without a value.
+    /// Forces a signal; releases it without a value.
     Force { signal: usize, value: Option<String> },
-    /// The live edge again.
+    /// Shows this viewer the live edge again.
     Live,
-    /// A session that goes on from a moment of the past.
+    /// Starts a session from a moment of the past, beside this one.
     Fork { t_ns: f64 },
 }
 
-/// How a lesson is to go on.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+/// How a lesson continues.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(tag = "turn", rename_all = "lowercase", deny_unknown_fields)]
 pub(super) enum TrainAsk {
     Repeat,
@@ -59,7 +61,7 @@ pub(super) enum TrainAsk {
 }
 
 /// What is done with virtual time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum Verb {
     Hold,
@@ -68,78 +70,7 @@ pub(super) enum Verb {
     Stop,
 }
 
-/// Why nothing is done.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub(super) enum Refused {
-    #[error("not a message of the page: {0}")]
-    Garbage(String),
-    #[error("there is no signal {0}")]
-    NoSignal(usize),
-    #[error("`{signal}` is {ty}, which {value} is not")]
-    Value { signal: String, ty: SignalType, value: String },
-    #[error("`{signal}` is written by `{writer}`: `run --operator {writer}` lets people write it")]
-    Writer { signal: String, writer: String },
-    #[error("there is no variable {0}")]
-    NoVariable(usize),
-    #[error("there is no component `{0}`")]
-    NoComponent(String),
-    #[error("there is no disturbance {0}")]
-    NoDisturbance(usize),
-    #[error("that is the trainer's business")]
-    Trainee,
-    #[error("this session is no lesson")]
-    NoLesson,
-    #[error("there is no start `{0}`")]
-    NoStart(String),
-    #[error("there is no panel `{0}`")]
-    NoPanel(String),
-    #[error("there is no drawing {0}, or not this instance of it")]
-    NoDrawing(usize),
-    #[error("there is no map {0}")]
-    NoMap(usize),
-    #[error("there is no view `{0}`")]
-    NoView(String),
-    #[error("a view is called for all from the seat of a trainer: take one first")]
-    NoTrainer,
-    #[error("the past of this session cannot be shown: {0}")]
-    Past(String),
-    #[error("{t_ns} ns is no moment of the past, which ends at {end}")]
-    NoMoment { t_ns: String, end: VirtualTime },
-    #[error("a recording is looked at: nobody operates it; `Go on from here` makes a session of it")]
-    Recorded,
-    #[error("a viewer's token lets its holder look, and change nothing")]
-    LooksOnly,
-    #[error("panel `{0}` is a trainer's, and an operator's token does not let its holder sit there")]
-    Trainers(String),
-    #[error("somebody else has the seat of panel `{0}`")]
-    Taken(String),
-    #[error("`{0}` is written from the seat of a panel that has it: take that seat first")]
-    NoSeat(String),
-}
-
 impl Ask {
-    /// Whether it changes nothing that anybody else sees.
-    pub(super) fn only_looks(&self) -> bool {
-        match self {
-            Self::Subscribe { .. }
-            | Self::Watch { .. }
-            | Self::Draw { .. }
-            | Self::Maps { .. }
-            | Self::Show { .. }
-            | Self::Live => true,
-            Self::Write { .. }
-            | Self::Operate { .. }
-            | Self::Seat { .. }
-            | Self::Fail { .. }
-            | Self::Disturb { .. }
-            | Self::Variable { .. }
-            | Self::Force { .. }
-            | Self::Train(_)
-            | Self::View { .. }
-            | Self::Fork { .. } => false,
-        }
-    }
-
     /// Reads a message.
     pub(super) fn read(text: &str) -> Result<Self, Refused> {
         serde_json::from_str(text).map_err(|error| Refused::Garbage(error.to_string()))
@@ -194,30 +125,20 @@ pub(super) fn disturb(number: usize, active: bool, known: &Known, now: &AtWork) 
     Ok(begun.map(operation).collect())
 }
 
-/// How the lesson goes on, if the page is the trainer's.
-pub(super) fn turn(asked: TrainAsk, training: Option<&Training>) -> Result<Turn, Refused> {
-    let training = training.ok_or(Refused::NoLesson)?;
-    trainer_only(Some(training))?;
-    Ok(match asked {
-        TrainAsk::Repeat => Turn::Repeat,
-        TrainAsk::Back { t_ns } => Turn::Back(past(t_ns)),
-        TrainAsk::Jump { start } if training.starts.contains(&start) => Turn::Jump(start),
-        TrainAsk::Jump { start } => return Err(Refused::NoStart(start)),
-    })
+/// How the lesson goes on.
+pub(super) fn turn(asked: TrainAsk, training: &Training) -> Result<Turn, Refused> {
+    match asked {
+        TrainAsk::Repeat => Ok(Turn::Repeat),
+        TrainAsk::Back { t_ns } => Ok(Turn::Back(past(t_ns))),
+        TrainAsk::Jump { start } if training.starts.contains(&start) => Ok(Turn::Jump(start)),
+        TrainAsk::Jump { start } => Err(Refused::NoStart(start)),
+    }
 }
 
 /// A time as a page has it: what is before the start is the start.
 fn past(t_ns: f64) -> VirtualTime {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates, and a time has no sign")]
     VirtualTime::from_nanos(t_ns.max(0.0) as u64)
-}
-
-/// Refuses what a trainee may not do.
-pub(super) fn trainer_only(training: Option<&Training>) -> Result<(), Refused> {
-    match training {
-        Some(Training { role: Role::Trainee, .. }) => Err(Refused::Trainee),
-        Some(_) | None => Ok(()),
-    }
 }
 
 impl From<Verb> for Operation {

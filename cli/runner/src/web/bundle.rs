@@ -7,7 +7,7 @@ pub(super) type File = (&'static str, &'static str, &'static [u8]);
 
 include!(concat!(env!("OUT_DIR"), "/page.rs"));
 
-/// What a browser is told by a program that was built without the page.
+/// The answer of a program that was built without the page.
 pub(super) const ABSENT: &str =
     "this program was built without its page: `npm ci && npm run build` in `web/`, then build the program again";
 

@@ -8,33 +8,50 @@ use onescan_iec_run::{Application, Variable};
 use onescan_scenario::{Scenario, ScenarioError};
 use onescan_server::published::SessionView;
 use onescan_server::signal::ClientName;
+use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::ask::Refused;
+use super::error::Refused;
 
 /// Most instances of a unit that can be chosen.
 const INSTANCES_MAX: usize = 500;
 
-/// A drawing, with the paths of all its states.
-#[derive(Debug, Serialize)]
+/// A body of a unit that is drawn, as it is laid out in its file.
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(extend("x-check" = "drawing"))]
 pub(super) struct Drawing {
     path: String,
     unit: String,
     part: Option<String>,
-    language: &'static str,
+    language: DrawingLanguage,
     elements: Vec<Element>,
     wires: Vec<Wire>,
+    /// What there is of its unit.
     instances: Vec<Instance>,
+    /// The paths of all states within the unit, in the order of their values.
     states: Vec<String>,
 }
 
-#[derive(Debug, Serialize)]
+/// How a body is drawn.
+#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+enum DrawingLanguage {
+    Ladder,
+    Blocks,
+    Chart,
+}
+
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "DrawingElement")]
 struct Element {
     id: String,
     kind: String,
+    #[schemars(default)]
     text: String,
     instance: Option<String>,
+    /// The path of the variable that is its state, within the unit.
     state: Option<String>,
+    #[schemars(default)]
     marks: Vec<&'static str>,
     at: [f64; 2],
     size: [f64; 2],
@@ -42,16 +59,23 @@ struct Element {
     line: u32,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "DrawingPin")]
 struct Pin {
+    #[schemars(default)]
     name: String,
+    #[schemars(default)]
     output: bool,
+    #[schemars(default)]
     marks: Vec<&'static str>,
+    /// The path of the variable that it gives, within the unit.
     state: Option<String>,
     at: [f64; 2],
 }
 
-#[derive(Debug, Serialize)]
+/// From an output to an input, each an element and one of its pins.
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "DrawingWire")]
 struct Wire {
     from: [usize; 2],
     to: [usize; 2],
@@ -59,7 +83,7 @@ struct Wire {
     line: u32,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 struct Instance {
     client: String,
     path: String,
@@ -146,9 +170,9 @@ fn drawing(
         unit,
         part,
         language: match language {
-            Language::Ladder => "ladder",
-            Language::Blocks => "blocks",
-            Language::Chart => "chart",
+            Language::Ladder => DrawingLanguage::Ladder,
+            Language::Blocks => DrawingLanguage::Blocks,
+            Language::Chart => DrawingLanguage::Chart,
         },
         elements: elements.into_iter().map(element).collect(),
         wires: wires

@@ -48,7 +48,7 @@ pub(super) enum Entry {
 }
 
 impl Entry {
-    /// The door of a page at `port`: cookies do not tell ports apart, so their names do.
+    /// The door of a page at `port`: cookies do not distinguish ports, so their names do.
     pub(super) fn new(register: Option<Register>, port: u16, is_tls: bool) -> Self {
         match register {
             None => Self::Open,

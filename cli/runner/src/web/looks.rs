@@ -10,29 +10,32 @@ use onescan_scenario::{Scenario, ScenarioError};
 use onescan_server::layout::ImageLayout;
 use onescan_server::published::SessionView;
 use onescan_server::signal::SignalId;
+use schemars::JsonSchema;
 use serde::Serialize;
 use tokio::sync::watch;
 
-use super::ask::Refused;
-use super::desk::{Role, Training};
+use super::error::Refused;
+use super::machine::{Body, Part, Shape};
 use super::seats::{Seats, Viewer};
-use super::structure::{Body, Part, Shape};
+use super::training::{Role, Training};
 
 /// A place from which the machine is seen.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub(super) struct View {
     name: String,
     position_m: [f64; 3],
     target_m: [f64; 3],
 }
 
-/// A look, with the places of its bodies and of the signal that it follows.
-#[derive(Debug, Serialize)]
+/// How bodies look while a condition holds, always without one, or by the value of the signal that it follows; bodies and the
+/// signal by their places.
+#[derive(Debug, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(super) struct Look {
     when: Option<String>,
     bodies: Vec<usize>,
     colour: Option<String>,
+    #[schemars(default)]
     hidden: bool,
     transparent: Option<f64>,
     scale: Option<f64>,
@@ -42,9 +45,18 @@ pub(super) struct Look {
     move_m: Option<[f64; 3]>,
     turn_deg: Option<[f64; 3]>,
     turn_about_m: Option<[f64; 3]>,
-    grow: Option<&'static str>,
+    grow: Option<LookAxis>,
     colours: Option<[String; 2]>,
     run_m_s: Option<[f64; 3]>,
+}
+
+/// The axis along which a body grows.
+#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum LookAxis {
+    X,
+    Y,
+    Z,
 }
 
 /// The views of a scenario.
@@ -92,9 +104,9 @@ fn look(file: &LookFile, bodies: Vec<usize>, places: &BTreeMap<&str, usize>) -> 
         turn_deg: file.turn_deg,
         turn_about_m: file.turn_about_m,
         grow: file.grow.map(|axis| match axis {
-            Axis::X => "x",
-            Axis::Y => "y",
-            Axis::Z => "z",
+            Axis::X => LookAxis::X,
+            Axis::Y => LookAxis::Y,
+            Axis::Z => LookAxis::Z,
         }),
         colours: file.colours.as_ref().map(|colours| colours.get_ref().clone()),
         run_m_s: file.run_m_s,
@@ -176,27 +188,28 @@ impl Called {
         }
     }
 
-    /// Shows a view to everybody, on all pages of the session. A lesson's is called on the trainer's page; elsewhere, where there
-    /// are panels of trainers, whoever calls sits at one of them.
-    pub(super) fn call(
+    /// Whether a viewer may show this view to everybody. A lesson's is called on the trainer's page; elsewhere, where there are
+    /// panels of trainers, whoever calls sits at one of them.
+    pub(super) fn may_call(
         &self,
-        view: String,
+        view: &str,
         (viewer, role): (Viewer, Option<Role>),
         seats: &Seats,
     ) -> Result<(), Refused> {
-        if !self.views.contains(&view) {
-            return Err(Refused::NoView(view));
+        if !self.views.contains(view) {
+            return Err(Refused::NoView(view.to_owned()));
         }
-        let may = match role {
-            Some(Role::Trainer) => true,
-            Some(Role::Trainee) => return Err(Refused::Trainee),
-            None => self.trainers.is_empty() || seats.sits_at_one_of(&self.trainers, viewer),
-        };
-        if !may {
-            return Err(Refused::NoTrainer);
+        match role {
+            Some(Role::Trainer) => Ok(()),
+            Some(Role::Trainee) => Err(Refused::Trainee),
+            None if self.trainers.is_empty() || seats.sits_at_one_of(&self.trainers, viewer) => Ok(()),
+            None => Err(Refused::NoTrainer),
         }
+    }
+
+    /// Shows a view to everybody, on all pages of the session.
+    pub(super) fn call(&self, view: String) {
         self.last.send_modify(|(count, last)| (*count, *last) = (*count + 1, view));
-        Ok(())
     }
 
     /// What is called from now on, and what was last in a lesson.

@@ -1,4 +1,4 @@
-//! The scenario's maps on the page: tables of values that no signal tells, as they are now.
+//! The scenario's maps on the page: tables of values that no signal has, as they are now.
 //!
 //! A table is sent as often as people read it, and only if it has changed since. Its values are bytes. Where its cells lie is
 //! sent before the first values, and whenever it is no longer so.
@@ -11,9 +11,10 @@ use onescan_report::plot::{MapAxis, ValueMap};
 use onescan_scenario::Scenario;
 use onescan_scenario::map_file::MapFile;
 use onescan_server::published::SessionView;
+use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::ask::Refused;
+use super::error::Refused;
 use super::picture::PAST;
 use crate::value_map;
 
@@ -22,24 +23,38 @@ const KIND: u8 = 2;
 const HEAD_BYTES: usize = 16;
 
 /// A map, as far as it is known before it is seen.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "MapInfo")]
 pub(super) struct Map {
     name: String,
     title: String,
+    #[schemars(default)]
     unit: String,
     client: String,
     /// The values of the scale's ends; those of the map if absent.
     scale: Option<[f64; 2]>,
-    /// From the least value to the greatest.
+    /// From the least value to the greatest, each written as `#0a1a52`.
+    #[schemars(inner(regex(pattern = "^#[0-9a-f]{6}$")))]
     colours: Vec<String>,
 }
 
 /// Where the cells of a map lie.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub(super) struct Cells {
     map: usize,
+    #[schemars(with = "Axis")]
     across: MapAxis,
+    #[schemars(with = "Axis")]
     down: MapAxis,
+}
+
+/// An axis of a map: where each of its cells begins, and where the last one ends, in rising order.
+#[derive(JsonSchema)]
+#[schemars(extend("x-check" = "axis"))]
+#[expect(dead_code, reason = "the form of `MapAxis`, whose crate has no schemas")]
+struct Axis {
+    name: String,
+    edges: Vec<f64>,
 }
 
 /// Something new of a map.

@@ -8,21 +8,27 @@
 //! | [`entry`] | who comes in where a token is asked for |
 //! | `tls` | the page under TLS |
 //! | [`structure`] | what of a session does not change |
+//! | [`machine`] | bodies and components |
+//! | [`signals`] | signals |
+//! | [`sources`] | programs as text |
+//! | [`known`] | what the server knows beside it |
 //! | [`online`] | variables of PLCs that are no signals |
 //! | [`panel`] | what operators see and write with |
 //! | [`drawings`] | ladders, function blocks and charts as they are laid out, with their states |
 //! | [`alarms`] | alarms as they come and go |
 //! | [`looks`] | figures, views, and what bodies look like while something holds |
-//! | [`maps`] | tables of values that no signal tells |
+//! | [`maps`] | tables of values that no signal has |
 //! | [`picture`] | what of a step is shown |
 //! | [`ask`] | what a page may ask |
+//! | `rights` | who may do what |
+//! | [`error`] | why it is refused |
 //! | `attendance` | who looks |
-//! | `beat` | when viewers look |
-//! | [`gaze`] | where a viewer looks: live, or at the past |
+//! | `frames` | when viewers look |
+//! | [`playhead`] | where a viewer looks: live, or at the past |
 //! | [`seats`] | who operates |
-//! | [`desk`] | a lesson on two pages |
+//! | [`training`] | a lesson on two pages |
 //! | [`verdicts`] | what becomes of expectations while it runs |
-//! | [`told`] | the texts that a viewer is sent |
+//! | [`response`] | the texts that a viewer is sent |
 //! | [`viewer`] | one viewer |
 //!
 //! The server has a thread of its own. It reads what the session publishes and leaves wishes in its mailbox, as every other
@@ -32,23 +38,29 @@
 mod alarms;
 mod ask;
 mod attendance;
-mod beat;
 mod bundle;
-mod desk;
 mod drawings;
 mod entry;
-mod gaze;
+mod error;
+mod frames;
 mod guard;
+mod known;
 mod looks;
+pub mod machine;
 mod maps;
 mod online;
 mod panel;
 mod picture;
+mod playhead;
+mod response;
+mod rights;
 mod routes;
 mod seats;
-pub mod structure;
+mod signals;
+mod sources;
+mod structure;
 mod tls;
-mod told;
+mod training;
 mod verdicts;
 mod viewer;
 
@@ -65,6 +77,7 @@ use onescan_server::layout::ImageLayout;
 use onescan_server::mailbox::Mailbox;
 use onescan_server::plan::SessionPlan;
 use onescan_server::published::Published;
+use onescan_server::signal::SignalDecl;
 use onescan_server::time::VirtualTime;
 use onescan_server::transport::tcp::House;
 use thiserror::Error;
@@ -75,16 +88,17 @@ use crate::access::admission::{Admission, Doorstep};
 use crate::error::{Exit, ExitCode, ListenError, Usage};
 use crate::past::Rewinder;
 use attendance::Attendance;
-use beat::Beat;
 pub use bundle::charts;
-pub(crate) use desk::{AtWork, Desk, Failing, Role, Training, Turn};
 use entry::Entry;
+use error::Refused;
+use frames::Frames;
+use known::Known;
 use looks::Called;
 use routes::router;
 pub use routes::{asset, guarded_here};
 use seats::Seats;
-use structure::Known;
 use tls::TlsDoor;
+pub(crate) use training::{AtWork, Failing, Role, Training, Turn, TurnQueue};
 pub(crate) use verdicts::Bench;
 
 /// How long viewers have to take the end, at most.
@@ -150,7 +164,7 @@ struct Session {
     plan: SessionPlan,
     layout: ImageLayout,
     published: Published,
-    beat: Beat,
+    frames: Frames,
     mailbox: Mailbox,
     pace: String,
     failing: Failing,
@@ -171,7 +185,7 @@ struct Session {
     /// A viewer of a recording has seen enough.
     left: AtomicBool,
     attendance: Attendance,
-    /// What all viewers are told, in its order.
+    /// What all viewers are notified of, in its order.
     news: Mutex<Vec<News>>,
 }
 
@@ -187,10 +201,57 @@ pub(crate) struct News {
 }
 
 impl Session {
-    /// What was told after the first `heard` news. A thread that panicked under the lock has left whole values.
-    fn news_after(&self, heard: usize) -> Vec<News> {
+    /// The session of `source`. A second page of it shares the seats and the views that somebody calls with the first.
+    fn new(
+        source: Source<'_>,
+        entry: Entry,
+        scheme: &'static str,
+        shared: Option<(Arc<Seats>, Arc<Called>)>,
+    ) -> Result<Self, WebError> {
+        let (mut structure, mut known) = structure::of(source.scenario, source.training.as_ref())?;
+        structure.live = source.recorded_to.is_none();
+        let plan = source.scenario.plan().clone();
+        let (seats, called) = shared.unwrap_or_else(|| {
+            let seats = Seats::at(std::mem::take(&mut known.panels));
+            (Arc::new(seats), Arc::new(Called::among(source.scenario, source.training.as_ref())))
+        });
+        Ok(Self {
+            entry,
+            scheme,
+            structure: serde_json::to_string(&structure)?,
+            seats,
+            called,
+            known,
+            layout: ImageLayout::new(plan.signals()),
+            plan,
+            published: source.published,
+            frames: Frames::begin(),
+            mailbox: source.mailbox,
+            pace: source.pace,
+            failing: source.failing,
+            training: source.training,
+            pictures: source.pictures,
+            past: source.past,
+            launch: source.launch,
+            bench: source.bench,
+            expected: source.scenario.expectations().named.iter().map(|(name, _)| name.clone()).collect(),
+            recorded_to: source.recorded_to,
+            over: AtomicBool::new(false),
+            left: AtomicBool::new(false),
+            attendance: Attendance::default(),
+            news: Mutex::default(),
+        })
+    }
+
+    /// The news after the first `reported`. A thread that panicked under the lock has left whole values.
+    fn news_after(&self, reported: usize) -> Vec<News> {
         let news = self.news.lock().unwrap_or_else(PoisonError::into_inner);
-        news.get(heard..).unwrap_or_default().to_vec()
+        news.get(reported..).unwrap_or_default().to_vec()
+    }
+
+    /// The signal of this number.
+    fn declared(&self, signal: usize) -> Result<&SignalDecl, Refused> {
+        self.plan.signals().get(signal).ok_or(Refused::NoSignal(signal))
     }
 
     /// The newest moment that there is.
@@ -297,42 +358,12 @@ impl Page {
             Admission::ThisMachine | Admission::Anybody => House::default(),
         };
         let listen = ListenError::on(address);
-        let (mut structure, mut known) = structure::of(source.scenario, source.training.as_ref())?;
-        structure.live = source.recorded_to.is_none();
-        let plan = source.scenario.plan().clone();
         let listener = TcpListener::bind(address).map_err(&listen)?;
         listener.set_nonblocking(true).map_err(&listen)?;
         let address = listener.local_addr().map_err(&listen)?;
-        let (seats, called) = shared.unwrap_or_else(|| {
-            let seats = Seats::at(std::mem::take(&mut known.panels));
-            (Arc::new(seats), Arc::new(Called::among(source.scenario, source.training.as_ref())))
-        });
-        let session = Arc::new(Session {
-            entry: Entry::new(register, address.port(), identity.is_some()),
-            scheme: if identity.is_some() { "https" } else { "http" },
-            structure: serde_json::to_string(&structure)?,
-            seats,
-            called,
-            known,
-            layout: ImageLayout::new(plan.signals()),
-            plan,
-            published: source.published,
-            beat: Beat::begin(),
-            mailbox: source.mailbox,
-            pace: source.pace,
-            failing: source.failing,
-            training: source.training,
-            pictures: source.pictures,
-            past: source.past,
-            launch: source.launch,
-            bench: source.bench,
-            expected: source.scenario.expectations().named.iter().map(|(name, _)| name.clone()).collect(),
-            recorded_to: source.recorded_to,
-            over: AtomicBool::new(false),
-            left: AtomicBool::new(false),
-            attendance: Attendance::default(),
-            news: Mutex::default(),
-        });
+        let entry = Entry::new(register, address.port(), identity.is_some());
+        let scheme = if identity.is_some() { "https" } else { "http" };
+        let session = Arc::new(Session::new(source, entry, scheme, shared)?);
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(&listen)?;
         let stop = Arc::new(Notify::new());
         let (router, stopped) = (router(Arc::clone(&session)), Arc::clone(&stop));
@@ -363,8 +394,8 @@ impl Page {
         format!("{}://{}/", self.session.scheme, self.address)
     }
 
-    /// Tells all viewers, those who are yet to come too.
-    pub(crate) fn tell(&self, news: News) {
+    /// Notifies all viewers, those who are yet to come too.
+    pub(crate) fn notify(&self, news: News) {
         self.session.news.lock().unwrap_or_else(PoisonError::into_inner).push(news);
     }
 
@@ -385,7 +416,7 @@ impl Page {
 }
 
 impl Drop for Page {
-    /// Tells viewers of the end, and leaves them a moment to take it.
+    /// Notifies viewers of the end, and leaves them a moment to take it.
     fn drop(&mut self) {
         self.session.over.store(true, Ordering::Release);
         self.session.attendance.await_last(FAREWELL);

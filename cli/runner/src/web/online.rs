@@ -12,19 +12,23 @@ use onescan_scenario::{Scenario, ScenarioError};
 use onescan_server::operation::Operation;
 use onescan_server::published::SessionView;
 use onescan_server::signal::ClientName;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+
+use super::error::Refused;
 
 /// Variables of one PLC that can be looked at.
 const VARIABLES_MAX: usize = 20_000;
 
-/// A PLC as the page reads it.
-#[derive(Debug, Serialize)]
+/// A PLC whose variables can be looked at. Variables of all PLCs are numbered through.
+#[derive(Debug, Serialize, JsonSchema)]
 pub(super) struct Plc {
     client: String,
     variables: Vec<Shown>,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "Variable")]
 struct Shown {
     path: String,
     #[serde(rename = "type")]
@@ -50,7 +54,7 @@ pub(super) struct Online {
 }
 
 /// What is done with a variable.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum Action {
     Write,
@@ -58,18 +62,19 @@ pub(super) enum Action {
     Release,
 }
 
-/// What a viewer is told of variables.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+/// What is reported to a viewer of variables.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub(super) struct Seen {
     /// Number and value of those that have changed.
     values: Vec<(usize, String)>,
     /// All that are forced, of those that are known.
     forced: Vec<usize>,
     /// File and line of all statements that have been executed, where that is noted.
+    #[schemars(default)]
     executed: Vec<(String, u32)>,
 }
 
-/// What one viewer looks at, and what of it it has been told.
+/// What one viewer looks at, and what of it has been reported.
 #[derive(Debug, Default)]
 pub(super) struct Watching {
     wanted: Option<Vec<usize>>,
@@ -110,9 +115,12 @@ impl Online {
         self.numbers.get(&(client.clone(), path.to_ascii_uppercase())).copied()
     }
 
-    /// Whether there is a variable of this number.
-    pub(super) fn knows(&self, number: usize) -> bool {
-        self.plc_of(number).is_some()
+    /// Refuses numbers of which there is no variable.
+    pub(super) fn check(&self, numbers: &[usize]) -> Result<(), Refused> {
+        match numbers.iter().find(|number| self.plc_of(**number).is_none()) {
+            Some(unknown) => Err(Refused::NoVariable(*unknown)),
+            None => Ok(()),
+        }
     }
 
     /// What `action` is for the session.
@@ -128,7 +136,7 @@ impl Online {
 }
 
 impl Watching {
-    /// From now on these variables; the next time all of them are told.
+    /// From now on these variables; the next report has all of them.
     pub(super) fn want(&mut self, variables: Vec<usize>) {
         *self = Self { wanted: Some(variables), ..Self::default() };
     }

@@ -8,11 +8,13 @@ use onescan_scenario::panel_file::{ElementFile, ElementKind, PanelFile, Seat};
 use onescan_scenario::panel_picture::PanelPicture;
 use onescan_scenario::{Scenario, ScenarioError};
 use onescan_server::signal::{ClientName, SignalDecl, SignalName, SignalType};
+use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::structure::written;
+use super::signals::written;
 
-#[derive(Debug, Serialize)]
+/// A panel of the page.
+#[derive(Debug, Serialize, JsonSchema)]
 pub(super) struct Panel {
     pub(super) name: String,
     pub(super) seat: Seat,
@@ -26,19 +28,23 @@ pub(super) struct Panel {
     elements: Vec<Element>,
 }
 
-/// When a panel is shown that is one of several pages.
-#[derive(Debug, Serialize)]
+/// When a panel is shown that is one of several pages: while the signal has the value.
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "PanelPage")]
 struct Page {
     signal: String,
     value: i64,
 }
 
-#[derive(Debug, Serialize)]
+/// One thing on a panel.
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "PanelElement")]
 struct Element {
     kind: ElementKind,
     label: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     signal: Option<String>,
+    /// The second axis of a joystick.
     #[serde(skip_serializing_if = "Option::is_none")]
     signal_y: Option<String>,
     /// The component and the mode of failure that it shows and causes.
@@ -47,21 +53,51 @@ struct Element {
     /// The fault on the way of signals that it shows and causes, by its number.
     #[serde(skip_serializing_if = "Option::is_none")]
     disturbance: Option<usize>,
+    /// Column and row, from 0.
     at: [u32; 2],
+    #[schemars(default = "one_cell")]
     span: [u32; 2],
     #[serde(skip_serializing_if = "Option::is_none")]
-    mode: Option<&'static str>,
+    mode: Option<ButtonMode>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "f64", default = "least")]
     min: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "f64", default = "most")]
     max: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     colour: Option<String>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schemars(default)]
     choices: Vec<Choice>,
 }
 
-#[derive(Debug, Serialize)]
+fn one_cell() -> [u32; 2] {
+    [1, 1]
+}
+
+#[expect(clippy::unnecessary_wraps, reason = "the default of an optional key")]
+fn least() -> Option<f64> {
+    Some(0.0)
+}
+
+#[expect(clippy::unnecessary_wraps, reason = "the default of an optional key")]
+fn most() -> Option<f64> {
+    Some(1.0)
+}
+
+/// Whether a button stays where it is put.
+#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+enum ButtonMode {
+    Toggle,
+    /// As without a mode.
+    #[expect(dead_code, reason = "other servers may say so")]
+    Momentary,
+}
+
+/// A value of a selector.
+#[derive(Debug, Serialize, JsonSchema)]
 struct Choice {
     value: i64,
     label: String,
@@ -139,7 +175,7 @@ fn laid_out(file: &ElementFile, scenario: &Scenario, disturbances: &mut RangeFro
         disturbance: file.disturbance.as_ref().and_then(|_| disturbances.next()),
         at: file.at,
         span: file.span,
-        mode: file.latching.then_some("toggle"),
+        mode: file.latching.then_some(ButtonMode::Toggle),
         min: file.min,
         max: file.max,
         colour: file.colour.clone(),
@@ -205,7 +241,7 @@ fn element(declared: &SignalDecl, scenario: &Scenario, at: [u32; 2], span: u32) 
         choices: Vec::new(),
     };
     if declared.ty == SignalType::BOOL {
-        return Some(Element { mode: Some("toggle"), ..plain(ElementKind::Switch) });
+        return Some(Element { mode: Some(ButtonMode::Toggle), ..plain(ElementKind::Switch) });
     }
     if !names.is_empty() {
         let choices = choices(names);

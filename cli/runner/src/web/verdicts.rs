@@ -9,10 +9,11 @@ use std::time::{Duration, Instant};
 
 use onescan_scenario::expect::{Judge, Outcome, TraceEnd, Verdict};
 use onescan_server::time::VirtualTime;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// What has become of one expectation so far.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub(super) struct Standing {
     pub(super) name: String,
     verdict: &'static str,
@@ -84,11 +85,11 @@ fn standing(name: &str, outcome: &Outcome, now: VirtualTime) -> Standing {
     Standing { name: name.to_owned(), verdict, robustness: is_known.then_some(margin), t_ns: at.as_nanos() }
 }
 
-/// What one viewer has been told.
+/// What has been reported to one viewer.
 #[derive(Debug, Default)]
-pub(super) struct Heard(Vec<(String, &'static str, Option<u64>)>);
+pub(super) struct Reported(Vec<(String, &'static str, Option<u64>)>);
 
-impl Heard {
+impl Reported {
     /// What is new to the viewer: another verdict, or another robustness.
     pub(super) fn news(&mut self, standings: Vec<Standing>) -> Vec<Standing> {
         let key = |one: &Standing| (one.name.clone(), one.verdict, one.robustness.map(f64::to_bits));
@@ -105,10 +106,10 @@ mod tests {
     #[test]
     fn a_viewer_hears_what_is_new() {
         let standing = |verdict, t_ns| Standing { name: "level".to_owned(), verdict, robustness: Some(0.5), t_ns };
-        let mut heard = Heard::default();
-        assert_eq!(heard.news(vec![standing("open", 1)]).len(), 1);
-        assert_eq!(heard.news(vec![standing("open", 2)]), []);
-        assert_eq!(heard.news(vec![standing("fail", 2)]), [standing("fail", 2)]);
+        let mut reported = Reported::default();
+        assert_eq!(reported.news(vec![standing("open", 1)]).len(), 1);
+        assert_eq!(reported.news(vec![standing("open", 2)]), []);
+        assert_eq!(reported.news(vec![standing("fail", 2)]), [standing("fail", 2)]);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! One viewer: what it asks and what it is shown. It looks at the session as often as it can take; views in between
 //! are dropped, so a slow viewer slows nobody.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
@@ -13,27 +14,31 @@ use onescan_server::published::{SessionView, Wants};
 use onescan_server::wire::message::Status as Taken;
 use tokio::sync::{mpsc, oneshot};
 
-use super::alarms::{Change, Rung};
-use super::ask::{self, Ask, Refused, Verb};
-use super::desk::AtWork;
+use super::alarms::{Change, ReportedAlarms};
+use super::ask::{self, Ask, Verb};
 use super::entry::Rank;
-use super::gaze::{self, Gaze};
+use super::error::Refused;
 use super::maps::{Mapped, New};
 use super::online::Watching;
 use super::picture::{FLAGS, PAST, Shown};
+use super::playhead::{self, Playhead};
+use super::response::{Gone, Response, SessionState, notify, send};
 use super::seats::Viewer;
-use super::told::{Gone, Told, say, send};
-use super::verdicts::Heard;
-use super::{News, Session};
+use super::training::AtWork;
+use super::verdicts::Reported;
+use super::{News, Session, rights};
 use crate::past::Moment;
 
-/// How many looks it takes until the viewer is told how far the past reaches by now.
+#[cfg(test)]
+mod tests;
+
+/// How many frames it takes until it is asked again how far the past reaches by now.
 const PAST_EACH: u32 = 30;
-/// How many looks it takes until variables of PLCs are looked at again: people read ten values a second.
+/// How many frames it takes until variables of PLCs are looked at again: people read ten values a second.
 const VARIABLES_EACH: u32 = 6;
-/// How many looks it takes until the status is sent again, if it has changed: seats, forces, how far the past reaches.
+/// How many frames it takes until the status is sent again, if it has changed: seats, forces, how far the past reaches.
 const STATUS_EACH: u32 = 3;
-/// How many looks it takes until it is asked again what has become of expectations.
+/// How many frames it takes until it is asked again what has become of expectations.
 const VERDICTS_EACH: u32 = 15;
 
 /// Speaks with a viewer until one of the two leaves.
@@ -45,59 +50,59 @@ pub(super) async fn attend(mut socket: WebSocket, session: Arc<Session>, rank: R
     session.seats.leave(viewer);
 }
 
-/// What one viewer looks at, and what it has been shown and told of it.
-struct Eye {
-    gaze: Gaze,
+/// What one viewer looks at, and what of it has been shown and reported.
+struct Subscription {
+    playhead: Playhead,
     shown: Shown,
     watching: Watching,
     mapped: Mapped,
     /// What of clients is to be seen in views.
     wants: Wants,
-    judged: Heard,
+    judged: Reported,
     /// The view of the live edge that was shown last.
     seen: Option<u64>,
-    /// The status that was told last.
+    /// The status as it was reported last.
     status: String,
-    /// How many of the news were told.
-    heard: usize,
+    /// How many of the news were reported.
+    reported: usize,
     past_ns: Option<[u64; 2]>,
     /// How often it was looked for something new.
     turns: u32,
-    /// The looks that were on when they were told last.
+    /// The looks that were on when they were reported last.
     looks: Option<Vec<usize>>,
     /// The drawing that is shown, and which instance of it.
     drawn: Option<(usize, usize)>,
-    /// The values of the drawing that were told last.
+    /// The values of the drawing as they were reported last.
     states: Option<States>,
-    rung: Rung,
+    alarms: ReportedAlarms,
 }
 
 /// A drawing with its instance, and the values of its states.
 type States = ((usize, usize), Vec<Option<f64>>);
 
-impl Eye {
+impl Subscription {
     fn new(session: &Session) -> Self {
         Self {
-            gaze: Gaze::new(session),
+            playhead: Playhead::new(session),
             shown: Shown::default(),
             watching: Watching::default(),
             mapped: Mapped::default(),
             wants: session.published.want(Parts::POSES),
-            judged: Heard::default(),
+            judged: Reported::default(),
             seen: None,
             status: String::new(),
-            heard: 0,
+            reported: 0,
             past_ns: None,
             turns: 0,
             looks: None,
             drawn: None,
             states: None,
-            rung: Rung::default(),
+            alarms: ReportedAlarms::default(),
         }
     }
 
     /// Wants of views what is looked at now.
-    fn look_closer(&mut self, session: &Session) {
+    fn update_wants(&mut self, session: &Session) {
         let memories = self.watching.is_wanted() || self.drawn.is_some();
         let parts = Parts { poses: true, tables: self.mapped.is_wanted(), memories };
         if parts != self.wants.parts() {
@@ -107,53 +112,53 @@ impl Eye {
 }
 
 async fn converse(socket: &mut WebSocket, session: &Session, who: (Viewer, Rank)) -> Result<(), Gone> {
-    let (outcomes, mut done) = mpsc::unbounded_channel::<Told>();
-    let mut eye = Eye::new(session);
-    let mut look = session.beat.looks();
+    let (outcomes, mut done) = mpsc::unbounded_channel::<Response>();
+    let mut subscription = Subscription::new(session);
+    let mut frame = session.frames.ticks();
     let mut called = session.called.follow();
     loop {
         tokio::select! {
             message = socket.recv() => match message {
-                Some(Ok(Message::Text(text))) => match heed(&text, session, who, &mut eye, &outcomes) {
+                Some(Ok(Message::Text(text))) => match handle(&text, session, who, &mut subscription, &outcomes) {
                     Ok(true) => {
-                        eye.seen = None;
-                        if let Some(view) = eye.gaze.seen() {
-                            picture(socket, &view, session, &mut eye).await?;
+                        subscription.seen = None;
+                        if let Some(view) = subscription.playhead.seen() {
+                            picture(socket, &view, session, &mut subscription).await?;
                         }
                     }
                     Ok(false) => {}
-                    Err(refused) => say(socket, &Told::Error { message: refused.to_string() }).await?,
+                    Err(refused) => notify(socket, &Response::Error { message: refused.to_string() }).await?,
                 },
                 Some(Ok(Message::Binary(_))) => {
                     let message = Refused::Garbage("bytes, where a text is expected".to_owned()).to_string();
-                    say(socket, &Told::Error { message }).await?;
+                    notify(socket, &Response::Error { message }).await?;
                 }
                 Some(Ok(Message::Ping(_) | Message::Pong(_))) => {}
                 Some(Ok(Message::Close(_)) | Err(_)) | None => return Ok(()),
             },
             Ok(()) = called.changed() => {
                 let (_, view) = called.borrow_and_update().clone();
-                say(socket, &Told::View { view }).await?;
+                notify(socket, &Response::View { view }).await?;
             }
-            Some(told) = done.recv() => say(socket, &told).await?,
-            moment = eye.gaze.next() => turn(moment, socket, session, &mut eye).await?,
-            _ = look.tick() => {
+            Some(response) = done.recv() => notify(socket, &response).await?,
+            moment = subscription.playhead.next() => turn(moment, socket, session, &mut subscription).await?,
+            _ = frame.tick() => {
                 let view = session.published.latest();
-                if session.beat.is_first() {
+                if session.frames.is_first() {
                     session.published.ask();
                 }
-                let is_time = eye.turns.is_multiple_of(STATUS_EACH) || view.is_held || view.end.is_some();
-                tell_beside(socket, &view, session, &mut eye).await?;
+                let is_time = subscription.turns.is_multiple_of(STATUS_EACH) || view.is_held || view.end.is_some();
+                notify_news(socket, &view, session, &mut subscription).await?;
                 if is_time {
-                    tell_status(socket, &view, session, who.0, &mut eye).await?;
+                    notify_status(socket, &view, session, who.0, &mut subscription).await?;
                 }
                 // a view of a restarted session has a smaller time, and a revision of its own all the same
-                if eye.seen != Some(view.revision) && !eye.gaze.is_past() {
-                    eye.seen = Some(view.revision);
-                    picture(socket, &view, session, &mut eye).await?;
+                if subscription.seen != Some(view.revision) && !subscription.playhead.is_past() {
+                    subscription.seen = Some(view.revision);
+                    picture(socket, &view, session, &mut subscription).await?;
                 }
                 if session.ended() && (view.end.is_some() || session.recorded_to.is_some()) {
-                    return part(socket, &view, session, &mut eye).await;
+                    return part(socket, &view, session, &mut subscription).await;
                 }
             }
         }
@@ -161,257 +166,291 @@ async fn converse(socket: &mut WebSocket, session: &Session, who: (Viewer, Rank)
 }
 
 /// A moment of the past has come that the viewer has asked for.
-async fn turn(moment: Moment, socket: &mut WebSocket, session: &Session, eye: &mut Eye) -> Result<(), Gone> {
-    let was_past = eye.gaze.seen().is_some();
-    match eye.gaze.see(moment) {
+async fn turn(
+    moment: Moment,
+    socket: &mut WebSocket,
+    session: &Session,
+    subscription: &mut Subscription,
+) -> Result<(), Gone> {
+    let was_past = subscription.playhead.seen().is_some();
+    match subscription.playhead.see(moment) {
         Ok(Some(view)) => {
             if !was_past {
-                eye.shown.forget();
+                subscription.shown.forget();
             }
-            picture(socket, &view, session, eye).await
+            picture(socket, &view, session, subscription).await
         }
         Ok(None) => Ok(()),
-        Err(refused) => say(socket, &Told::Error { message: refused.to_string() }).await,
+        Err(refused) => notify(socket, &Response::Error { message: refused.to_string() }).await,
     }
 }
 
-/// Tells what is new beside pictures, each thing as often as people read it.
-async fn tell_beside(
+/// Reports what is new beside pictures, each thing as often as people read it.
+async fn notify_news(
     socket: &mut WebSocket,
     view: &Arc<SessionView>,
     session: &Session,
-    eye: &mut Eye,
+    subscription: &mut Subscription,
 ) -> Result<(), Gone> {
-    if eye.turns.is_multiple_of(PAST_EACH) {
-        eye.past_ns = gaze::past_ns(session);
+    if subscription.turns.is_multiple_of(PAST_EACH) {
+        subscription.past_ns = playhead::past_ns(session);
     }
-    if eye.turns.is_multiple_of(VARIABLES_EACH) {
-        let looked_at = if eye.gaze.is_past() { eye.gaze.seen() } else { Some(Arc::clone(view)) };
+    if subscription.turns.is_multiple_of(VARIABLES_EACH) {
+        let looked_at =
+            if subscription.playhead.is_past() { subscription.playhead.seen() } else { Some(Arc::clone(view)) };
         if let Some(view) = looked_at {
-            tell_inside(socket, &view, session, eye).await?;
+            notify_clients(socket, &view, session, subscription).await?;
         }
     }
-    if eye.turns.is_multiple_of(VERDICTS_EACH) {
-        tell_verdicts(socket, session, eye).await?;
+    if subscription.turns.is_multiple_of(VERDICTS_EACH) {
+        notify_verdicts(socket, session, subscription).await?;
     }
-    eye.turns = eye.turns.wrapping_add(1);
-    for News { t_v, kind, text } in session.news_after(eye.heard) {
-        eye.heard += 1;
-        say(socket, &Told::Event { t_ns: t_v.as_nanos(), kind, text }).await?;
+    subscription.turns = subscription.turns.wrapping_add(1);
+    for News { t_v, kind, text } in session.news_after(subscription.reported) {
+        subscription.reported += 1;
+        notify(socket, &Response::Event { t_ns: t_v.as_nanos(), kind, text }).await?;
     }
     Ok(())
 }
 
-/// Tells what clients have beside their signals: variables and tables.
-async fn tell_inside(socket: &mut WebSocket, view: &SessionView, session: &Session, eye: &mut Eye) -> Result<(), Gone> {
-    if let Some(seen) = eye.watching.see(view, &session.known.online) {
-        say(socket, &Told::Variables { seen }).await?;
+/// Reports what clients have beside their signals: variables and tables.
+async fn notify_clients(
+    socket: &mut WebSocket,
+    view: &SessionView,
+    session: &Session,
+    subscription: &mut Subscription,
+) -> Result<(), Gone> {
+    if let Some(seen) = subscription.watching.see(view, &session.known.online) {
+        notify(socket, &Response::Variables { seen }).await?;
     }
-    for new in eye.mapped.see(view, &session.known.maps, eye.gaze.is_past()) {
+    for new in subscription.mapped.see(view, &session.known.maps, subscription.playhead.is_past()) {
         match new {
-            New::Cells(cells) => say(socket, &Told::Map { cells }).await?,
+            New::Cells(cells) => notify(socket, &Response::Map { cells }).await?,
             New::Values(bytes) => send(socket, Message::Binary(bytes)).await?,
         }
     }
     Ok(())
 }
 
-async fn tell_verdicts(socket: &mut WebSocket, session: &Session, eye: &mut Eye) -> Result<(), Gone> {
-    for standing in eye.judged.news(session.bench.standings(&session.expected)) {
-        say(socket, &Told::Verdict { standing }).await?;
+async fn notify_verdicts(
+    socket: &mut WebSocket,
+    session: &Session,
+    subscription: &mut Subscription,
+) -> Result<(), Gone> {
+    for standing in subscription.judged.news(session.bench.standings(&session.expected)) {
+        notify(socket, &Response::Verdict { standing }).await?;
     }
     Ok(())
 }
 
-/// The session is over: tells how it ended, and what came of its expectations; what it holds is that of its last step.
-async fn part(socket: &mut WebSocket, view: &SessionView, session: &Session, eye: &mut Eye) -> Result<(), Gone> {
-    tell_verdicts(socket, session, eye).await?;
-    if !eye.gaze.is_past() {
-        tell_inside(socket, view, session, eye).await?;
+/// The session is over: reports how it ended and what came of its expectations. Its values are those of its last step.
+async fn part(
+    socket: &mut WebSocket,
+    view: &SessionView,
+    session: &Session,
+    subscription: &mut Subscription,
+) -> Result<(), Gone> {
+    notify_verdicts(socket, session, subscription).await?;
+    if !subscription.playhead.is_past() {
+        notify_clients(socket, view, session, subscription).await?;
     }
     let Some(end) = &view.end else { return Ok(()) };
-    say(socket, &Told::Event { t_ns: view.t_v.as_nanos(), kind: "end", text: end.to_string() }).await
+    notify(socket, &Response::Event { t_ns: view.t_v.as_nanos(), kind: "end", text: end.to_string() }).await
 }
 
-async fn tell_status(
+async fn notify_status(
     socket: &mut WebSocket,
     view: &SessionView,
     session: &Session,
     viewer: Viewer,
-    eye: &mut Eye,
+    subscription: &mut Subscription,
 ) -> Result<(), Gone> {
-    let told = told(view, session, viewer, eye);
-    if told != eye.status {
-        send(socket, Message::Text(told.clone().into())).await?;
-        eye.status = told;
+    let status = describe_status(view, session, viewer, subscription);
+    if status != subscription.status {
+        send(socket, Message::Text(status.clone().into())).await?;
+        subscription.status = status;
     }
     Ok(())
 }
 
 /// How the session is, in words that change only when it does.
-fn told(view: &SessionView, session: &Session, viewer: Viewer, eye: &Eye) -> String {
+fn describe_status(view: &SessionView, session: &Session, viewer: Viewer, subscription: &Subscription) -> String {
     let state = match (&view.end, view.is_held) {
-        _ if session.recorded_to.is_some() => "recorded",
-        (Some(_), _) => "end",
-        (None, true) => "hold",
-        (None, false) => "run",
+        _ if session.recorded_to.is_some() => SessionState::Recorded,
+        (Some(_), _) => SessionState::End,
+        (None, true) => SessionState::Hold,
+        (None, false) => SessionState::Run,
     };
     let digest = view.end.as_ref().and(view.digest).map(|digest| digest.to_string());
-    let is_secret = ask::trainer_only(session.training.as_ref()).is_err();
+    let is_secret = rights::is_trainee(session);
     let at_work = if is_secret { AtWork::default() } else { session.failing.now() };
     let disturbed = session.known.disturbed(&at_work);
     let failed = at_work.failed().clone();
-    let forced = if is_secret { Vec::new() } else { view.forced.iter().map(|signal| signal.index()).collect() };
+    let forced = if is_secret { BTreeSet::new() } else { view.forced.iter().map(|signal| signal.index()).collect() };
     let (pace, seat) = (session.pace.clone(), session.seats.seen_by(viewer));
-    let (shown_ns, past_ns) = (eye.gaze.shown_ns(), eye.past_ns);
-    let told = Told::Status { state, digest, pace, seat, failed, forced, disturbed, shown_ns, past_ns };
-    serde_json::to_string(&told).unwrap_or_else(|error| error.to_string())
+    let (shown_ns, past_ns) = (subscription.playhead.shown_ns(), subscription.past_ns);
+    let status = Response::Status { state, digest, pace, seat, failed, forced, disturbed, shown_ns, past_ns };
+    serde_json::to_string(&status).unwrap_or_else(|error| error.to_string())
 }
 
 /// Shows a step, and whether it is of the past.
-async fn picture(socket: &mut WebSocket, view: &SessionView, session: &Session, eye: &mut Eye) -> Result<(), Gone> {
-    let mut picture = eye.shown.picture(view, &session.layout, &session.known.stage);
-    if eye.gaze.is_past() {
+async fn picture(
+    socket: &mut WebSocket,
+    view: &SessionView,
+    session: &Session,
+    subscription: &mut Subscription,
+) -> Result<(), Gone> {
+    let mut picture = subscription.shown.picture(view, &session.layout, &session.known.stage);
+    if subscription.playhead.is_past() {
         picture[FLAGS] |= PAST;
     }
     send(socket, Message::Binary(Bytes::from(picture))).await?;
-    tell_drawn(socket, view, session, eye).await
+    notify_drawn(socket, view, session, subscription).await
 }
 
-/// Tells what a picture goes with: the looks that are on, alarms, and the values of a drawing.
-async fn tell_drawn(socket: &mut WebSocket, view: &SessionView, session: &Session, eye: &mut Eye) -> Result<(), Gone> {
+/// Reports what a picture goes with: the looks that are on, alarms, and the values of a drawing.
+async fn notify_drawn(
+    socket: &mut WebSocket,
+    view: &SessionView,
+    session: &Session,
+    subscription: &mut Subscription,
+) -> Result<(), Gone> {
     let active = session.known.looks.active(view, &session.layout);
-    if eye.looks.as_ref() != Some(&active) {
-        eye.looks = Some(active.clone());
-        say(socket, &Told::Looks { active }).await?;
+    if subscription.looks.as_ref() != Some(&active) {
+        subscription.looks = Some(active.clone());
+        notify(socket, &Response::Looks { active }).await?;
     }
-    // Alarms are those of the live edge: who looks at the past has been told of them.
-    if !eye.gaze.is_past() {
+    // Alarms are those of the live edge: whoever looks at the past has seen them come.
+    if !subscription.playhead.is_past() {
         let t_ns = view.t_v.as_nanos();
-        for Change { kind, name } in session.known.bell.changes(&mut eye.rung, view, &session.layout) {
-            say(socket, &Told::Event { t_ns, kind, text: name.to_owned() }).await?;
+        for Change { kind, name } in session.known.bell.changes(&mut subscription.alarms, view, &session.layout) {
+            notify(socket, &Response::Event { t_ns, kind, text: name.to_owned() }).await?;
         }
     }
-    let drawn = eye.drawn.filter(|_| view.clients.parts.memories);
+    let drawn = subscription.drawn.filter(|_| view.clients.parts.memories);
     let now = drawn.map(|drawn| (drawn, session.known.states.values(drawn, view)));
-    if let Some(((drawing, instance), values)) = now.clone().filter(|_| now != eye.states) {
-        say(socket, &Told::States { drawing, instance, values }).await?;
+    if let Some(((drawing, instance), values)) = now.clone().filter(|_| now != subscription.states) {
+        notify(socket, &Response::States { drawing, instance, values }).await?;
     }
-    eye.states = now;
+    subscription.states = now;
     Ok(())
 }
 
-/// Does what is asked; true if the next picture is due at once.
-fn heed(
+/// What is left to do once a message has been handled.
+enum Next {
+    /// Nothing.
+    Nothing,
+    /// The next picture, at once.
+    Picture,
+    /// These operations, all at one step boundary.
+    Operations(Vec<Operation>),
+}
+
+/// Does what a message asks, if its sender has the right; true if the next picture is due at once.
+fn handle(
     text: &str,
     session: &Session,
     (viewer, rank): (Viewer, Rank),
-    eye: &mut Eye,
-    outcomes: &mpsc::UnboundedSender<Told>,
+    subscription: &mut Subscription,
+    outcomes: &mpsc::UnboundedSender<Response>,
 ) -> Result<bool, Refused> {
     let ask = Ask::read(text)?;
-    if rank < Rank::Operates && !ask.only_looks() {
-        return Err(Refused::LooksOnly);
-    }
-    let operation = match ask {
-        Ask::Subscribe { signals } => {
-            eye.shown.want(ask::signals(&signals, &session.layout)?);
-            return Ok(true);
+    rights::check(ask.needs(), session, (viewer, rank))?;
+    Ok(match perform(ask, session, viewer, subscription, outcomes)? {
+        Next::Nothing => false,
+        Next::Picture => true,
+        Next::Operations(operations) => {
+            wish(operations, session, outcomes);
+            false
         }
-        Ask::Seat { panel, .. } if session.known.hidden.contains(&panel) => return Err(Refused::NoPanel(panel)),
+    })
+}
+
+/// Does what a message asks. Whoever calls has checked the right.
+fn perform(
+    ask: Ask,
+    session: &Session,
+    viewer: Viewer,
+    subscription: &mut Subscription,
+    outcomes: &mpsc::UnboundedSender<Response>,
+) -> Result<Next, Refused> {
+    let known = &session.known;
+    let one = |operation: Operation| Next::Operations(vec![operation]);
+    Ok(match ask {
+        Ask::Subscribe { signals } => {
+            subscription.shown.want(ask::signals(&signals, &session.layout)?);
+            Next::Picture
+        }
         Ask::Draw { drawing, instance } => {
-            eye.drawn = drawing.map(|drawing| session.known.states.check(drawing, instance)).transpose()?;
-            eye.look_closer(session);
-            return Ok(true);
+            subscription.drawn = drawing.map(|drawing| known.states.check(drawing, instance)).transpose()?;
+            subscription.update_wants(session);
+            Next::Picture
         }
         Ask::Watch { variables } => {
-            if let Some(unknown) = variables.iter().find(|number| !session.known.online.knows(**number)) {
-                return Err(Refused::NoVariable(*unknown));
-            }
-            eye.watching.want(variables);
-            eye.look_closer(session);
-            return Ok(false);
+            known.online.check(&variables)?;
+            subscription.watching.want(variables);
+            subscription.update_wants(session);
+            Next::Nothing
         }
         Ask::Maps { maps } => {
-            eye.mapped.want(maps, &session.known.maps)?;
-            eye.look_closer(session);
-            return Ok(false);
+            subscription.mapped.want(maps, &known.maps)?;
+            subscription.update_wants(session);
+            Next::Nothing
         }
         Ask::Show { t_ns } => {
-            eye.gaze.show(t_ns, session)?;
-            return Ok(false);
+            subscription.playhead.show(t_ns, session)?;
+            Next::Nothing
         }
         Ask::Live => {
-            let turned = eye.gaze.live(session);
-            if turned {
-                eye.shown.forget();
+            let has_turned = subscription.playhead.live(session);
+            if has_turned {
+                subscription.shown.forget();
             }
-            return Ok(turned);
+            if has_turned { Next::Picture } else { Next::Nothing }
         }
         Ask::Fork { t_ns } => {
-            fork(t_ns, session, &eye.gaze, outcomes)?;
-            return Ok(false);
+            fork(t_ns, session, &subscription.playhead, outcomes)?;
+            Next::Nothing
         }
         Ask::Operate { operation: Verb::Stop } if session.recorded_to.is_some() => {
             session.left.store(true, Ordering::Release);
-            return Ok(false);
+            Next::Nothing
         }
-        _ if session.recorded_to.is_some() => return Err(Refused::Recorded),
-        Ask::Seat { panel, .. } if rank < Rank::Trains && session.known.trainers.contains(&panel) => {
-            return Err(Refused::Trainers(panel));
-        }
+        Ask::Operate { operation } => one(operation.into()),
         Ask::Seat { panel, take } => {
             session.seats.claim(&panel, viewer, take)?;
-            return Ok(false);
+            Next::Nothing
         }
-        Ask::Write { signal, value } => {
-            let declared = session.plan.signals().get(signal).ok_or(Refused::NoSignal(signal))?;
-            session.seats.may_write(viewer, declared.name.as_str())?;
-            ask::write(declared, value, &session.known)?
-        }
+        Ask::Write { signal, value } => one(ask::write(session.declared(signal)?, value, known)?),
         Ask::Variable { variable, action, value } => {
-            ask::trainer_only(session.training.as_ref())?;
-            session.known.online.operation(variable, action, value).ok_or(Refused::NoVariable(variable))?
+            one(known.online.operation(variable, action, value).ok_or(Refused::NoVariable(variable))?)
         }
-        Ask::Force { signal, value } => {
-            ask::trainer_only(session.training.as_ref())?;
-            ask::force(session.plan.signals().get(signal).ok_or(Refused::NoSignal(signal))?, value)
-        }
-        Ask::Operate { operation } => {
-            ask::trainer_only(session.training.as_ref())?;
-            operation.into()
-        }
-        Ask::Fail { component, failure, active } => {
-            ask::trainer_only(session.training.as_ref())?;
-            ask::fail(component, failure, active, &session.known)?
-        }
+        Ask::Force { signal, value } => one(ask::force(session.declared(signal)?, value)),
+        Ask::Fail { component, failure, active } => one(ask::fail(component, failure, active, known)?),
         Ask::Disturb { disturbance, active } => {
-            ask::trainer_only(session.training.as_ref())?;
-            let operations = ask::disturb(disturbance, active, &session.known, &session.failing.now())?;
-            wish(operations, session, outcomes);
-            return Ok(false);
+            Next::Operations(ask::disturb(disturbance, active, known, &session.failing.now())?)
         }
         Ask::Train(asked) => {
-            let turn = ask::turn(asked, session.training.as_ref())?;
-            if let Some(training) = &session.training {
-                training.desk.ask(turn);
-            }
-            return Ok(false);
+            let training = session.training.as_ref().ok_or(Refused::NoLesson)?;
+            training.turns.push(ask::turn(asked, training)?);
+            Next::Nothing
         }
         Ask::View { view } => {
-            let role = session.training.as_ref().map(|training| training.role);
-            session.called.call(view, (viewer, role), &session.seats)?;
-            return Ok(false);
+            session.called.call(view);
+            Next::Nothing
         }
-    };
-    wish(vec![operation], session, outcomes);
-    Ok(false)
+    })
 }
 
-/// Lets a session go on from a moment of the past, beside this one; the viewer is told where it is.
-fn fork(t_ns: f64, session: &Session, gaze: &Gaze, outcomes: &mpsc::UnboundedSender<Told>) -> Result<(), Refused> {
-    let t_v = gaze::moment(t_ns, session)?;
-    let saved = gaze.gazer(session)?.save(t_v);
+/// Starts a session from a moment of the past, beside this one, and reports its address to the viewer.
+fn fork(
+    t_ns: f64,
+    session: &Session,
+    playhead: &Playhead,
+    outcomes: &mpsc::UnboundedSender<Response>,
+) -> Result<(), Refused> {
+    let t_v = playhead::moment(t_ns, session)?;
+    let saved = playhead.gazer(session)?.save(t_v);
     let (outcomes, launch) = (outcomes.clone(), Arc::clone(&session.launch));
     tokio::spawn(async move {
         let saved: Result<Vec<u8>, String> = saved.await.unwrap_or_else(|_| Err("the session is over".to_owned()));
@@ -422,18 +461,18 @@ fn fork(t_ns: f64, session: &Session, gaze: &Gaze, outcomes: &mpsc::UnboundedSen
             }
             Err(why) => Err(why),
         };
-        let told = match forked {
-            Ok(url) => Told::Forked { t_ns: t_v.as_nanos(), url },
-            Err(why) => Told::Error { message: format!("no session goes on from {t_v}: {why}") },
+        let response = match forked {
+            Ok(url) => Response::Forked { t_ns: t_v.as_nanos(), url },
+            Err(why) => Response::Error { message: format!("no session goes on from {t_v}: {why}") },
         };
         // a viewer that has left hears nothing
-        outcomes.send(told).ok();
+        outcomes.send(response).ok();
     });
     Ok(())
 }
 
-/// Leaves wishes in the session's mailbox, which are taken at one boundary; what comes of them is told when the session has.
-fn wish(operations: Vec<Operation>, session: &Session, outcomes: &mpsc::UnboundedSender<Told>) {
+/// Leaves operations in the session's mailbox, which takes them at one boundary; reports those that fail once it has.
+fn wish(operations: Vec<Operation>, session: &Session, outcomes: &mpsc::UnboundedSender<Response>) {
     let posted = operations.into_iter().map(|operation| {
         let (reply, answer) = oneshot::channel::<Result<Taken, OperationError>>();
         (Request { wish: Wish::Do(operation), reply: Some(reply) }, answer)
@@ -449,7 +488,7 @@ fn wish(operations: Vec<Operation>, session: &Session, outcomes: &mpsc::Unbounde
                 Err(_) => "the session is over".to_owned(),
             };
             // a viewer that has left hears nothing
-            outcomes.send(Told::Error { message }).ok();
+            outcomes.send(Response::Error { message }).ok();
         }
     });
 }

@@ -1,4 +1,4 @@
-//! When viewers look: all of them at the same moments, so that the session shows one view to all.
+//! When viewers look: all of them at the same frames, so that the session shows one view to all.
 //!
 //! A session has a core of its own at best. Viewers that look when each of them likes wake this thread and ask the session
 //! as often as there are viewers; together they do so once.
@@ -8,30 +8,30 @@ use std::time::Duration;
 
 use tokio::time::{Instant, Interval, MissedTickBehavior, interval_at};
 
-/// From one look to the next.
-const PICTURE: Duration = Duration::from_millis(16);
+/// From one frame to the next.
+const FRAME: Duration = Duration::from_millis(16);
 
-/// The moments, counted from where the page begins.
+/// The frames, counted from where the page begins.
 #[derive(Debug)]
-pub(super) struct Beat {
+pub(super) struct Frames {
     began: Instant,
-    /// The last one in which the session was asked for a view.
+    /// The last frame in which the session was asked for a view.
     asked: AtomicU64,
 }
 
-impl Beat {
+impl Frames {
     pub(super) fn begin() -> Self {
         Self { began: Instant::now(), asked: AtomicU64::new(0) }
     }
 
-    /// Now, and then at these moments. One that is missed is left out, as all before now are.
-    pub(super) fn looks(&self) -> Interval {
-        let mut looks = interval_at(self.began, PICTURE);
-        looks.set_missed_tick_behavior(MissedTickBehavior::Skip);
-        looks
+    /// One tick now, and then one per frame. A tick that is missed is left out, as all before now are.
+    pub(super) fn ticks(&self) -> Interval {
+        let mut ticks = interval_at(self.began, FRAME);
+        ticks.set_missed_tick_behavior(MissedTickBehavior::Skip);
+        ticks
     }
 
-    /// True for the first who asks in each of them.
+    /// True for the first who asks in a frame.
     pub(super) fn is_first(&self) -> bool {
         self.is_first_in(self.number())
     }
@@ -40,15 +40,15 @@ impl Beat {
         self.asked.swap(number, Ordering::Relaxed) != number
     }
 
-    /// The number of the next one, from 1.
+    /// The number of the next frame, from 1.
     fn number(&self) -> u64 {
         next(self.began.elapsed())
     }
 }
 
-/// The number of the next moment, so long after the page has begun.
+/// The number of the next frame, so long after the page has begun.
 fn next(passed: Duration) -> u64 {
-    u64::try_from(passed.as_nanos() / PICTURE.as_nanos()).unwrap_or(u64::MAX).saturating_add(1)
+    u64::try_from(passed.as_nanos() / FRAME.as_nanos()).unwrap_or(u64::MAX).saturating_add(1)
 }
 
 #[cfg(test)]
@@ -63,7 +63,10 @@ mod tests {
 
     #[test]
     fn one_asks_for_all() {
-        let beat = Beat { began: Instant::now(), asked: AtomicU64::new(0) };
-        assert_eq!([1, 1, 1, 2, 2, 5].map(|number| beat.is_first_in(number)), [true, false, false, true, false, true]);
+        let frames = Frames { began: Instant::now(), asked: AtomicU64::new(0) };
+        assert_eq!(
+            [1, 1, 1, 2, 2, 5].map(|number| frames.is_first_in(number)),
+            [true, false, false, true, false, true]
+        );
     }
 }

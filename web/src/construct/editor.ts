@@ -2,7 +2,7 @@
 
 import { decodeAnswer, decodeLibrary, decodeState, type Answer, type EditState, type Library, type Refusal, type Want } from "./protocol";
 
-export class Desk {
+export class Editor {
   private constructor(
     readonly library: Library,
     private known: EditState,
@@ -10,10 +10,10 @@ export class Desk {
     private readonly refuse: (refusal: Refusal | null) => void,
   ) {}
 
-  /** Asks for everything once; `show` hears of every change, `refuse` of what is not done, and of nothing once something is. */
-  static async open(show: (state: EditState) => void, refuse: (refusal: Refusal | null) => void): Promise<Desk> {
+  /** Asks for everything once; `show` is called with every change, `refuse` with what is not done, and with nothing once something is. */
+  static async open(show: (state: EditState) => void, refuse: (refusal: Refusal | null) => void): Promise<Editor> {
     const [library, state] = await Promise.all([read("api/library"), read("api/edit")]);
-    return new Desk(decodeLibrary(library), decodeState(state), show, refuse);
+    return new Editor(decodeLibrary(library), decodeState(state), show, refuse);
   }
 
   get state(): EditState {
@@ -25,10 +25,10 @@ export class Desk {
     const body = want.want === "reload" ? want : { ...want, revision: this.known.revision };
     let answer: Answer;
     try {
-      const said = await fetch("api/edit", { method: "POST", body: JSON.stringify(body) });
-      answer = decodeAnswer(await said.json());
+      const response = await fetch("api/edit", { method: "POST", body: JSON.stringify(body) });
+      answer = decodeAnswer(await response.json());
     } catch (error) {
-      this.refuse({ message: `the editor does not answer: ${told(error)}`, file: null, line: null, references: [] });
+      this.refuse({ message: `the editor does not answer: ${describe(error)}`, file: null, line: null, references: [] });
       return false;
     }
     this.refuse(answer.error);
@@ -46,6 +46,6 @@ async function read(path: string): Promise<unknown> {
   return answer.json();
 }
 
-function told(error: unknown): string {
+function describe(error: unknown): string {
   return error instanceof Error ? error.message : String(error);
 }

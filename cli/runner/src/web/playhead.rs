@@ -6,18 +6,18 @@ use onescan_server::published::SessionView;
 use onescan_server::time::VirtualTime;
 
 use super::Session;
-use super::ask::Refused;
+use super::error::Refused;
 use crate::past::{Gazer, Moment};
 
 /// Where one viewer looks.
-pub(super) struct Gaze {
+pub(super) struct Playhead {
     gazer: Option<Gazer>,
     /// Whether it is shown the past, or is about to be.
     is_past: bool,
     seen: Option<Arc<SessionView>>,
 }
 
-impl Gaze {
+impl Playhead {
     /// At the live edge; a recording has none, and is looked at from its beginning.
     pub(super) fn new(session: &Session) -> Self {
         let gazer = session.past.as_ref().ok().map(crate::past::Rewinder::enter);

@@ -17,11 +17,11 @@ use onescan_server::time::VirtualTime;
 pub(crate) struct Training {
     /// Whose page it is.
     pub(crate) role: Role,
-    /// Where the trainer's wishes go.
-    pub(crate) desk: Desk,
+    /// Where the trainer's requests wait.
+    pub(crate) turns: TurnQueue,
     /// The lesson's name.
     pub(crate) lesson: String,
-    /// What the trainee is told.
+    /// What the trainee reads about it.
     pub(crate) about: Option<String>,
     /// The view with which its pages begin.
     pub(crate) view: Option<String>,
@@ -30,7 +30,7 @@ pub(crate) struct Training {
 }
 
 /// Whose page it is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Role {
     /// Who takes the lesson: virtual time, failures and the trainer's panels are not theirs.
@@ -57,21 +57,22 @@ pub(crate) enum Turn {
     Jump(String),
 }
 
-/// The trainer's wish, from any thread for the one that drives the lesson; clones share it. The newest counts.
+/// The trainer's request, from any thread for the one that drives the lesson; clones share it. One waits at most: a newer one
+/// replaces it.
 #[derive(Clone, Debug)]
-pub(crate) struct Desk {
+pub(crate) struct TurnQueue {
     turn: Arc<Mutex<Option<Turn>>>,
     mailbox: Mailbox,
 }
 
-impl Desk {
+impl TurnQueue {
     /// Nobody has asked; `mailbox` is that of the session.
     pub(crate) fn new(mailbox: Mailbox) -> Self {
         Self { turn: Arc::default(), mailbox }
     }
 
     /// Lets the attempt that is under way end, and the lesson go on like this.
-    pub(super) fn ask(&self, turn: Turn) {
+    pub(super) fn push(&self, turn: Turn) {
         *lock(&self.turn) = Some(turn);
         self.mailbox.control(Control::Stop);
     }

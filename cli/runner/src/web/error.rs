@@ -1,0 +1,54 @@
+//! Why the session refuses what a page asks.
+
+use onescan_server::signal::SignalType;
+use onescan_server::time::VirtualTime;
+use thiserror::Error;
+
+/// Why nothing is done.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub(super) enum Refused {
+    #[error("not a message of the page: {0}")]
+    Garbage(String),
+    #[error("there is no signal {0}")]
+    NoSignal(usize),
+    #[error("`{signal}` is {ty}, which {value} is not")]
+    Value { signal: String, ty: SignalType, value: String },
+    #[error("`{signal}` is written by `{writer}`: `run --operator {writer}` lets people write it")]
+    Writer { signal: String, writer: String },
+    #[error("there is no variable {0}")]
+    NoVariable(usize),
+    #[error("there is no component `{0}`")]
+    NoComponent(String),
+    #[error("there is no disturbance {0}")]
+    NoDisturbance(usize),
+    #[error("that is the trainer's business")]
+    Trainee,
+    #[error("this session is no lesson")]
+    NoLesson,
+    #[error("there is no start `{0}`")]
+    NoStart(String),
+    #[error("there is no panel `{0}`")]
+    NoPanel(String),
+    #[error("there is no drawing {0}, or not this instance of it")]
+    NoDrawing(usize),
+    #[error("there is no map {0}")]
+    NoMap(usize),
+    #[error("there is no view `{0}`")]
+    NoView(String),
+    #[error("a view is called for all from the seat of a trainer: take one first")]
+    NoTrainer,
+    #[error("the past of this session cannot be shown: {0}")]
+    Past(String),
+    #[error("{t_ns} ns is no moment of the past, which ends at {end}")]
+    NoMoment { t_ns: String, end: VirtualTime },
+    #[error("a recording is looked at: nobody operates it; `Go on from here` makes a session of it")]
+    Recorded,
+    #[error("a viewer's token lets its holder look, and change nothing")]
+    LooksOnly,
+    #[error("panel `{0}` is a trainer's, and an operator's token does not let its holder sit there")]
+    Trainers(String),
+    #[error("somebody else has the seat of panel `{0}`")]
+    Taken(String),
+    #[error("`{0}` is written from the seat of a panel that has it: take that seat first")]
+    NoSeat(String),
+}

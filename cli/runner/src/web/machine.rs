@@ -1,0 +1,170 @@
+//! The machine: the bodies and components of a scene, as the page draws and lists them.
+
+use onescan_plant::component::kind::{self, unit};
+use onescan_plant::scene::model::{BodyKind, Component, Wire};
+use onescan_plant::{Form, Frame, Geometry, Scene};
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::picture::Stage;
+
+/// A body, or a shape of one, where the scene has it.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Body {
+    pub(super) name: String,
+    pub(super) kind: &'static str,
+    pub(super) shape: Shape,
+    pub(super) position_m: [f64; 3],
+    /// x, y, z, w.
+    #[schemars(default = "upright")]
+    pub(super) rotation: [f64; 4],
+    /// The body in whose frame it is; its place is in the world's without one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) on: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) colour: Option<String>,
+    /// How much one sees through it, 0 to 1.
+    #[serde(skip_serializing_if = "is_zero")]
+    #[schemars(default)]
+    pub(super) transparent: f64,
+}
+
+/// The shape of a body; a cylinder and a capsule lie along z.
+#[derive(Debug, Serialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "lowercase")]
+#[schemars(extend("x-check" = "shape"))]
+pub(super) enum Shape {
+    None,
+    Box { size_m: [f64; 3] },
+    Sphere { radius_m: f64 },
+    Cylinder { radius_m: f64, length_m: f64 },
+    /// A cylinder or a cone, without ends if it is open.
+    Round {
+        radius_m: f64,
+        top_radius_m: f64,
+        length_m: f64,
+        #[schemars(default)]
+        open: bool,
+    },
+    Capsule { radius_m: f64, length_m: f64 },
+    /// Positions are flat triples, indices flat triangles.
+    Mesh { positions_m: Vec<f64>, indices: Vec<u32> },
+}
+
+fn upright() -> [f64; 4] {
+    [0.0, 0.0, 0.0, 1.0]
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde asks for it")]
+fn is_zero(share: &f64) -> bool {
+    *share == 0.0
+}
+
+/// A component of a plant.
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "Component")]
+pub(super) struct Part {
+    pub(super) name: String,
+    kind: String,
+    pub(super) body: Option<String>,
+    /// The names of the signals that it reads and writes.
+    #[schemars(default)]
+    signals: Vec<String>,
+    /// The signal that is true while a sensor sees something; its body is lit then.
+    senses: Option<String>,
+    #[schemars(default)]
+    parameters: Vec<Parameter>,
+    #[schemars(default)]
+    pub(super) failures: Vec<Failure>,
+}
+
+/// A parameter of a component, as it is shown.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Parameter {
+    name: String,
+    value: String,
+    unit: Option<&'static str>,
+}
+
+/// A mode in which a component can fail.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(super) struct Failure {
+    name: String,
+}
+
+/// The bodies of a scene, as it is set up.
+pub fn bodies_of(scene: &Scene) -> Vec<Body> {
+    let mut bodies = Vec::new();
+    add_bodies(scene, &mut bodies, &mut Stage::default());
+    bodies
+}
+
+/// Adds the bodies of a scene to those of others; `stage` learns which of them move with which.
+pub(super) fn add_bodies(scene: &Scene, bodies: &mut Vec<Body>, stage: &mut Stage) {
+    let frames: Vec<Frame> = scene.frames().collect();
+    for form in scene.forms() {
+        let number = u32::try_from(bodies.len()).unwrap_or(u32::MAX);
+        if form.kind != BodyKind::Fixed {
+            stage.follow(form.body, number, form.within);
+        }
+        let place = form.within.seen_from(frames[form.index]);
+        let Form { body, attached, kind, geometry, .. } = form;
+        bodies.push(Body {
+            name: attached.map_or_else(|| body.to_owned(), |shape| format!("{body}/{shape}")),
+            kind: match kind {
+                BodyKind::Fixed => "fixed",
+                BodyKind::Kinematic => "kinematic",
+                BodyKind::Dynamic => "dynamic",
+            },
+            shape: shape(geometry),
+            position_m: place.position_m,
+            rotation: place.rotation_xyzw,
+            on: None,
+            colour: None,
+            transparent: 0.0,
+        });
+    }
+}
+
+fn shape(geometry: Geometry) -> Shape {
+    match geometry {
+        Geometry::Nothing => Shape::None,
+        Geometry::Box { size_m } => Shape::Box { size_m },
+        Geometry::Sphere { radius_m } => Shape::Sphere { radius_m },
+        Geometry::Cylinder { radius_m, length_m } => Shape::Cylinder { radius_m, length_m },
+        Geometry::Capsule { radius_m, length_m } => Shape::Capsule { radius_m, length_m },
+        Geometry::Mesh { corners_m, triangles } => Shape::Mesh {
+            positions_m: corners_m.into_iter().flatten().collect(),
+            indices: triangles.into_iter().flatten().collect(),
+        },
+    }
+}
+
+/// A component of a scene.
+pub(super) fn part(component: &Component, scene: &Scene) -> Part {
+    let taken = component.inputs.iter().filter_map(|wire| match wire {
+        Wire::Signal(name) => Some(name.to_string()),
+        Wire::Open | Wire::Constant(_) | Wire::Output { .. } => None,
+    });
+    let given: Vec<String> = component.outputs.iter().flatten().map(ToString::to_string).collect();
+    let parameter = |(parameter, setting): (&kind::Parameter, &kind::Setting)| {
+        let (name, unit) = unit(&parameter.key);
+        Parameter { name: name.to_owned(), value: setting.to_string(), unit }
+    };
+    Part {
+        name: component.name.clone(),
+        kind: component.kind.name.to_string(),
+        body: component.bound.body.and_then(|body| scene.bodies.get(body)).map(|body| body.name.clone()),
+        senses: senses(component),
+        signals: taken.chain(given.iter().cloned()).collect(),
+        parameters: component.kind.parameters.iter().zip(&component.settings).map(parameter).collect(),
+        failures: component.kind.failures.iter().map(|mode| Failure { name: mode.mode.to_string() }).collect(),
+    }
+}
+
+/// The signal that is true while a sensor sees something.
+fn senses(component: &Component) -> Option<String> {
+    const SEES: &[&str] = &["detected", "contact", "pulse", "present", "in_range"];
+    let mut outputs = component.kind.outputs.iter().zip(&component.outputs);
+    outputs.find(|(output, _)| SEES.contains(&&*output.key))?.1.as_ref().map(ToString::to_string)
+}

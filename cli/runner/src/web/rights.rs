@@ -1,0 +1,120 @@
+//! Who may do what on a page: the right that each message needs, and who has it.
+//!
+//! A message that is added does not compile before its right is named here, and a right not before somebody has it.
+
+use super::Session;
+use super::ask::{Ask, Verb};
+use super::entry::Rank;
+use super::error::Refused;
+use super::seats::Viewer;
+use super::training::Role;
+
+/// What a message needs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Right<'a> {
+    /// Look, which changes nothing for anybody else.
+    Look,
+    /// Start another session from a moment of this one.
+    Fork,
+    /// End the session, or close a recording.
+    Stop,
+    /// Take or leave the seat of this panel.
+    Sit(&'a str),
+    /// Write the signal of this number, as the panels do.
+    Write(usize),
+    /// Act past the panels: on virtual time, failures, forced values.
+    Control,
+    /// Decide how a lesson continues.
+    Train,
+    /// Show this view to all viewers.
+    Present(&'a str),
+}
+
+impl Ask {
+    /// The right to send this message.
+    pub(super) fn needs(&self) -> Right<'_> {
+        match self {
+            Self::Subscribe { .. }
+            | Self::Watch { .. }
+            | Self::Draw { .. }
+            | Self::Maps { .. }
+            | Self::Show { .. }
+            | Self::Live => Right::Look,
+            Self::Fork { .. } => Right::Fork,
+            Self::Operate { operation: Verb::Stop } => Right::Stop,
+            Self::Seat { panel, .. } => Right::Sit(panel),
+            Self::Write { signal, .. } => Right::Write(*signal),
+            Self::Operate { operation: Verb::Hold | Verb::Go | Verb::Step }
+            | Self::Fail { .. }
+            | Self::Disturb { .. }
+            | Self::Variable { .. }
+            | Self::Force { .. } => Right::Control,
+            Self::Train(_) => Right::Train,
+            Self::View { view } => Right::Present(view),
+        }
+    }
+}
+
+/// Refuses what a viewer of this rank does not have the right to do.
+pub(super) fn check(right: Right<'_>, session: &Session, (viewer, rank): (Viewer, Rank)) -> Result<(), Refused> {
+    // Whoever only looks does nothing else, whatever right is added.
+    if right != Right::Look && rank < Rank::Operates {
+        return Err(Refused::LooksOnly);
+    }
+    match right {
+        Right::Look => Ok(()),
+        Right::Fork => is_not_trainee(session),
+        Right::Stop if session.recorded_to.is_some() => Ok(()),
+        Right::Stop | Right::Control => is_live(session).and_then(|()| is_not_trainee(session)),
+        Right::Sit(panel) => may_sit(panel, session, rank),
+        Right::Write(signal) => is_live(session).and_then(|()| may_write(signal, session, viewer)),
+        Right::Train => is_live(session).and_then(|()| may_train(session)),
+        Right::Present(view) => {
+            let whose = (viewer, role(session));
+            is_live(session).and_then(|()| session.called.may_call(view, whose, &session.seats))
+        }
+    }
+}
+
+/// Whether failures and forces are kept from whoever has this page.
+pub(super) fn is_trainee(session: &Session) -> bool {
+    role(session) == Some(Role::Trainee)
+}
+
+fn role(session: &Session) -> Option<Role> {
+    session.training.as_ref().map(|training| training.role)
+}
+
+/// Nobody operates a recording.
+fn is_live(session: &Session) -> Result<(), Refused> {
+    if session.recorded_to.is_some() { Err(Refused::Recorded) } else { Ok(()) }
+}
+
+fn is_not_trainee(session: &Session) -> Result<(), Refused> {
+    if is_trainee(session) { Err(Refused::Trainee) } else { Ok(()) }
+}
+
+fn may_train(session: &Session) -> Result<(), Refused> {
+    match role(session) {
+        Some(Role::Trainer) => Ok(()),
+        Some(Role::Trainee) => Err(Refused::Trainee),
+        None => Err(Refused::NoLesson),
+    }
+}
+
+/// A panel that is not on the page does not exist for its viewers, so that is checked first.
+fn may_sit(panel: &str, session: &Session, rank: Rank) -> Result<(), Refused> {
+    if session.known.hidden.contains(panel) {
+        return Err(Refused::NoPanel(panel.to_owned()));
+    }
+    is_live(session)?;
+    if rank < Rank::Trains && session.known.trainers.contains(panel) {
+        return Err(Refused::Trainers(panel.to_owned()));
+    }
+    Ok(())
+}
+
+fn may_write(signal: usize, session: &Session, viewer: Viewer) -> Result<(), Refused> {
+    let declared = session.declared(signal)?;
+    session.seats.may_write(viewer, declared.name.as_str())
+}

@@ -1,0 +1,726 @@
+// Generated from the types of the server; see web/README.md. Do not edit.
+
+import { flag, list, map, matching, nullable, number, numbered, one_of, set, text, tuple, whole, type Field } from "../field";
+import { check_axis, check_drawing, check_shape } from "../checks";
+
+export const PROTOCOL = 1;
+
+/** What is done with a variable. */
+export type Action = "write" | "force" | "release";
+
+/** What the page asks. */
+export type Ask =
+  /** The signals that pictures have from now on; the next picture has all of them. */
+  | { readonly type: "subscribe"; readonly signals: readonly number[] }
+  /** An operator's input at the next step boundary. */
+  | { readonly type: "write"; readonly signal: number; readonly value: number }
+  /** Holds virtual time, lets it go on, makes one step; or ends the session. */
+  | { readonly type: "operate"; readonly operation: Verb }
+  /** Takes or leaves a seat. */
+  | { readonly type: "seat"; readonly panel: string; readonly take: boolean }
+  /** Fails a component, or repairs it. */
+  | { readonly type: "fail"; readonly component: string; readonly failure: string; readonly active: boolean }
+  /** Begins a fault on the way of signals, or ends it; all of its signals at one boundary. It is named by its number on the panels. */
+  | { readonly type: "disturb"; readonly disturbance: number; readonly active: boolean }
+  /** How the lesson continues, on the trainer's page: from its start, from an earlier moment, or from a prepared state. */
+  | ({ readonly type: "train" } & ({ readonly turn: "repeat" } | { readonly turn: "back"; readonly t_ns: number } | { readonly turn: "jump"; readonly start: string }))
+  /** Shows this viewer a moment of the past: the last step at or before it. What it asked for before counts no more. */
+  | { readonly type: "show"; readonly t_ns: number }
+  /** Shows a view of the scenario to all viewers; from a trainer's seat where there is one, of a lesson on the trainer's page. */
+  | { readonly type: "view"; readonly view: string }
+  /** The values of a drawing's instance from now on; `null` for none. */
+  | { readonly type: "draw"; readonly instance: number; readonly drawing?: number | null }
+  /** The PLCs' own variables that `variables` has from now on. */
+  | { readonly type: "watch"; readonly variables: readonly number[] }
+  /** These maps from now on. */
+  | { readonly type: "maps"; readonly maps: readonly number[] }
+  /** Writes, forces or releases a variable of a PLC; the value is a literal of the variable's type. */
+  | { readonly type: "variable"; readonly variable: number; readonly action: Action; readonly value: string }
+  /** Forces a signal; releases it without a value. */
+  | { readonly type: "force"; readonly signal: number; readonly value?: string | null }
+  /** Shows this viewer the live edge again. */
+  | { readonly type: "live" }
+  /** Starts a session from a moment of the past, beside this one. */
+  | { readonly type: "fork"; readonly t_ns: number };
+
+/** An axis of a map: where each of its cells begins, and where the last one ends, in rising order. */
+export interface Axis {
+  readonly name: string;
+  readonly edges: readonly number[];
+}
+
+export function readAxis(field: Field): Axis {
+  return check_axis(field, { name: text(field.at("name")), edges: list(number)(field.at("edges")) });
+}
+
+/** A body, or a shape of one, where the scene has it. */
+export interface Body {
+  readonly name: string;
+  readonly kind: string;
+  readonly shape: Shape;
+  readonly position_m: readonly [number, number, number];
+  readonly colour: string | null;
+  /** The body in whose frame it is; its place is in the world's without one. */
+  readonly on: number | null;
+  /** x, y, z, w. */
+  readonly rotation: readonly [number, number, number, number];
+  /** How much one sees through it, 0 to 1. */
+  readonly transparent: number;
+}
+
+export function readBody(field: Field): Body {
+  return {
+    name: text(field.at("name")),
+    kind: text(field.at("kind")),
+    shape: readShape(field.at("shape")),
+    position_m: tuple(number, number, number)(field.at("position_m")),
+    colour: nullable(text)(field.at("colour")),
+    on: nullable(whole)(field.at("on")),
+    rotation: tuple(number, number, number, number)(field.at("rotation", [0.0,0.0,0.0,1.0])),
+    transparent: number(field.at("transparent", 0)),
+  };
+}
+
+/** Whether a button stays where it is put. */
+export type ButtonMode = "toggle" | "momentary";
+
+export function readButtonMode(field: Field): ButtonMode {
+  return one_of("toggle", "momentary")(field);
+}
+
+/** A value of a selector. */
+export interface Choice {
+  readonly value: number;
+  readonly label: string;
+}
+
+export function readChoice(field: Field): Choice {
+  return { value: whole(field.at("value")), label: text(field.at("label")) };
+}
+
+/** A component of a plant. */
+export interface Component {
+  readonly name: string;
+  readonly kind: string;
+  readonly body: string | null;
+  readonly failures: readonly Failure[];
+  readonly parameters: readonly Parameter[];
+  /** The signal that is true while a sensor sees something; its body is lit then. */
+  readonly senses: string | null;
+  /** The names of the signals that it reads and writes. */
+  readonly signals: readonly string[];
+}
+
+export function readComponent(field: Field): Component {
+  return {
+    name: text(field.at("name")),
+    kind: text(field.at("kind")),
+    body: nullable(text)(field.at("body")),
+    failures: list(readFailure)(field.at("failures", [])),
+    parameters: list(readParameter)(field.at("parameters", [])),
+    senses: nullable(text)(field.at("senses")),
+    signals: list(text)(field.at("signals", [])),
+  };
+}
+
+/** A body of a unit that is drawn, as it is laid out in its file. */
+export interface Drawing {
+  readonly path: string;
+  readonly unit: string;
+  readonly language: DrawingLanguage;
+  readonly elements: readonly DrawingElement[];
+  readonly wires: readonly DrawingWire[];
+  /** What there is of its unit. */
+  readonly instances: readonly Instance[];
+  /** The paths of all states within the unit, in the order of their values. */
+  readonly states: readonly string[];
+  readonly part: string | null;
+}
+
+export function readDrawing(field: Field): Drawing {
+  return check_drawing(field, {
+    path: text(field.at("path")),
+    unit: text(field.at("unit")),
+    language: readDrawingLanguage(field.at("language")),
+    elements: list(readDrawingElement)(field.at("elements")),
+    wires: list(readDrawingWire)(field.at("wires")),
+    instances: list(readInstance)(field.at("instances")),
+    states: list(text)(field.at("states")),
+    part: nullable(text)(field.at("part")),
+  });
+}
+
+export interface DrawingElement {
+  readonly id: string;
+  readonly kind: string;
+  readonly at: readonly [number, number];
+  readonly size: readonly [number, number];
+  readonly pins: readonly DrawingPin[];
+  readonly line: number;
+  readonly instance: string | null;
+  readonly marks: readonly string[];
+  /** The path of the variable that is its state, within the unit. */
+  readonly state: string | null;
+  readonly text: string;
+}
+
+export function readDrawingElement(field: Field): DrawingElement {
+  return {
+    id: text(field.at("id")),
+    kind: text(field.at("kind")),
+    at: tuple(number, number)(field.at("at")),
+    size: tuple(number, number)(field.at("size")),
+    pins: list(readDrawingPin)(field.at("pins")),
+    line: whole(field.at("line")),
+    instance: nullable(text)(field.at("instance")),
+    marks: list(text)(field.at("marks", [])),
+    state: nullable(text)(field.at("state")),
+    text: text(field.at("text", "")),
+  };
+}
+
+/** How a body is drawn. */
+export type DrawingLanguage = "ladder" | "blocks" | "chart";
+
+export function readDrawingLanguage(field: Field): DrawingLanguage {
+  return one_of("ladder", "blocks", "chart")(field);
+}
+
+export interface DrawingPin {
+  readonly at: readonly [number, number];
+  readonly marks: readonly string[];
+  readonly name: string;
+  readonly output: boolean;
+  /** The path of the variable that it gives, within the unit. */
+  readonly state: string | null;
+}
+
+export function readDrawingPin(field: Field): DrawingPin {
+  return {
+    at: tuple(number, number)(field.at("at")),
+    marks: list(text)(field.at("marks", [])),
+    name: text(field.at("name", "")),
+    output: flag(field.at("output", false)),
+    state: nullable(text)(field.at("state")),
+  };
+}
+
+/** From an output to an input, each an element and one of its pins. */
+export interface DrawingWire {
+  readonly from: readonly [number, number];
+  readonly to: readonly [number, number];
+  readonly points: readonly (readonly [number, number])[];
+  readonly line: number;
+}
+
+export function readDrawingWire(field: Field): DrawingWire {
+  return {
+    from: tuple(whole, whole)(field.at("from")),
+    to: tuple(whole, whole)(field.at("to")),
+    points: list(tuple(number, number))(field.at("points")),
+    line: whole(field.at("line")),
+  };
+}
+
+/** What an element is. */
+export type ElementKind = "button" | "switch" | "selector" | "slider" | "joystick" | "lamp" | "number" | "bar" | "trend" | "alarms";
+
+export function readElementKind(field: Field): ElementKind {
+  return one_of("button", "switch", "selector", "slider", "joystick", "lamp", "number", "bar", "trend", "alarms")(field);
+}
+
+/** An expectation of the scenario. */
+export interface Expectation {
+  readonly name: string;
+  readonly text: string;
+}
+
+export function readExpectation(field: Field): Expectation {
+  return { name: text(field.at("name")), text: text(field.at("text", "")) };
+}
+
+/** A mode in which a component can fail. */
+export interface Failure {
+  readonly name: string;
+}
+
+export function readFailure(field: Field): Failure {
+  return { name: text(field.at("name")) };
+}
+
+export interface Instance {
+  readonly client: string;
+  readonly path: string;
+}
+
+export function readInstance(field: Field): Instance {
+  return { client: text(field.at("client")), path: text(field.at("path")) };
+}
+
+/** The lesson that a session is, on the page of one of its two people. */
+export interface Lesson {
+  readonly role: Role;
+  readonly lesson: string;
+  readonly about: string | null;
+  /** Prepared states to jump to; none on the trainee's page. */
+  readonly starts: readonly string[];
+}
+
+export function readLesson(field: Field): Lesson {
+  return {
+    role: readRole(field.at("role")),
+    lesson: text(field.at("lesson")),
+    about: nullable(text)(field.at("about")),
+    starts: list(text)(field.at("starts", [])),
+  };
+}
+
+/** How bodies look while a condition holds, always without one, or by the value of the signal that it follows; bodies and the signal by their places. */
+export interface Look {
+  readonly bodies: readonly number[];
+  readonly colour: string | null;
+  readonly colours: readonly [string, string] | null;
+  readonly follows: number | null;
+  readonly grow: LookAxis | null;
+  readonly hidden: boolean;
+  readonly move_m: readonly [number, number, number] | null;
+  readonly over: readonly [number, number] | null;
+  readonly run_m_s: readonly [number, number, number] | null;
+  readonly scale: number | null;
+  readonly takes_s: number | null;
+  readonly transparent: number | null;
+  readonly turn_about_m: readonly [number, number, number] | null;
+  readonly turn_deg: readonly [number, number, number] | null;
+  readonly when: string | null;
+}
+
+export function readLook(field: Field): Look {
+  return {
+    bodies: list(whole)(field.at("bodies")),
+    colour: nullable(text)(field.at("colour")),
+    colours: nullable(tuple(text, text))(field.at("colours")),
+    follows: nullable(whole)(field.at("follows")),
+    grow: nullable(readLookAxis)(field.at("grow")),
+    hidden: flag(field.at("hidden", false)),
+    move_m: nullable(tuple(number, number, number))(field.at("move_m")),
+    over: nullable(tuple(number, number))(field.at("over")),
+    run_m_s: nullable(tuple(number, number, number))(field.at("run_m_s")),
+    scale: nullable(number)(field.at("scale")),
+    takes_s: nullable(number)(field.at("takes_s")),
+    transparent: nullable(number)(field.at("transparent")),
+    turn_about_m: nullable(tuple(number, number, number))(field.at("turn_about_m")),
+    turn_deg: nullable(tuple(number, number, number))(field.at("turn_deg")),
+    when: nullable(text)(field.at("when")),
+  };
+}
+
+/** The axis along which a body grows. */
+export type LookAxis = "x" | "y" | "z";
+
+export function readLookAxis(field: Field): LookAxis {
+  return one_of("x", "y", "z")(field);
+}
+
+/** A map, as far as it is known before it is seen. */
+export interface MapInfo {
+  readonly name: string;
+  readonly title: string;
+  readonly client: string;
+  /** From the least value to the greatest, each written as `#0a1a52`. */
+  readonly colours: readonly string[];
+  /** The values of the scale's ends; those of the map if absent. */
+  readonly scale: readonly [number, number] | null;
+  readonly unit: string;
+}
+
+export function readMapInfo(field: Field): MapInfo {
+  return {
+    name: text(field.at("name")),
+    title: text(field.at("title")),
+    client: text(field.at("client")),
+    colours: list(matching(/^#[0-9a-f]{6}$/))(field.at("colours")),
+    scale: nullable(tuple(number, number))(field.at("scale")),
+    unit: text(field.at("unit", "")),
+  };
+}
+
+/** A text for a viewer, as JSON. */
+export type Message =
+  /** How the session is. `seat` is as this viewer sees it; `failed` are the failures at work, as `component.mode`; `forced` and `disturbed` are the numbers of the signals that are forced and of the faults on the way of signals that are at work; `shown_ns` is null at the live edge, `past_ns` where no past is kept. */
+  | { readonly type: "status"; readonly state: SessionState; readonly digest: string | null; readonly disturbed: ReadonlySet<number>; readonly failed: ReadonlySet<string>; readonly forced: ReadonlySet<number>; readonly pace: string; readonly past_ns: readonly [number, number] | null; readonly seat: ReadonlyMap<string, SeatState>; readonly shown_ns: number | null }
+  /** The places of the looks whose condition holds. */
+  | { readonly type: "looks"; readonly active: readonly number[] }
+  /** The values of the states of a drawing, in their order; null where there is none. */
+  | { readonly type: "states"; readonly drawing: number; readonly instance: number; readonly values: readonly (number | null)[] }
+  /** Somebody shows this view to all. */
+  | { readonly type: "view"; readonly view: string }
+  /** Values of variables that have changed, by their numbers; all variables that are forced; file and line of all statements that have been executed, if the run notes it. */
+  | { readonly type: "variables"; readonly values: readonly (readonly [number, string])[]; readonly forced: readonly number[]; readonly executed: readonly (readonly [string, number])[] }
+  /** Where the cells of a map lie: one edge more than cells. It comes before their values, and again when it changes. */
+  | { readonly type: "map"; readonly map: number; readonly across: Axis; readonly down: Axis }
+  /** What has become of an expectation: `pass`, `fail` or `open`. */
+  | { readonly type: "verdict"; readonly name: string; readonly verdict: string; readonly t_ns: number; readonly robustness: number | null }
+  /** Where the page is of a session that goes on from a moment of the past. */
+  | { readonly type: "forked"; readonly t_ns: number; readonly url: string }
+  /** Marked in the trends and listed in the panels' alarms; of kind `gone`, the alarm of this text is over. */
+  | { readonly type: "event"; readonly t_ns: number; readonly kind: string; readonly text: string }
+  /** Shown to the viewer. */
+  | { readonly type: "error"; readonly message: string };
+
+export function readMessage(field: Field): Message {
+  const type = field.at("type").text();
+  switch (type) {
+    case "status":
+      return {
+        type,
+        state: readSessionState(field.at("state")),
+        digest: nullable(text)(field.at("digest")),
+        disturbed: set(whole)(field.at("disturbed", [])),
+        failed: set(text)(field.at("failed", [])),
+        forced: set(whole)(field.at("forced", [])),
+        pace: text(field.at("pace", "")),
+        past_ns: nullable(tuple(whole, whole))(field.at("past_ns")),
+        seat: map(readSeatState)(field.at("seat", {})),
+        shown_ns: nullable(whole)(field.at("shown_ns")),
+      };
+    case "looks":
+      return { type, active: list(whole)(field.at("active")) };
+    case "states":
+      return {
+        type,
+        drawing: whole(field.at("drawing")),
+        instance: whole(field.at("instance")),
+        values: list(nullable(number))(field.at("values")),
+      };
+    case "view":
+      return { type, view: text(field.at("view")) };
+    case "variables":
+      return {
+        type,
+        values: list(tuple(whole, text))(field.at("values")),
+        forced: list(whole)(field.at("forced")),
+        executed: list(tuple(text, whole))(field.at("executed", [])),
+      };
+    case "map":
+      return {
+        type,
+        map: whole(field.at("map")),
+        across: readAxis(field.at("across")),
+        down: readAxis(field.at("down")),
+      };
+    case "verdict":
+      return {
+        type,
+        name: text(field.at("name")),
+        verdict: text(field.at("verdict")),
+        t_ns: whole(field.at("t_ns")),
+        robustness: nullable(number)(field.at("robustness")),
+      };
+    case "forked":
+      return { type, t_ns: whole(field.at("t_ns")), url: matching(/^https?:\/\/[^\s"'<>]+$/)(field.at("url")) };
+    case "event":
+      return { type, t_ns: whole(field.at("t_ns")), kind: text(field.at("kind")), text: text(field.at("text")) };
+    case "error":
+      return { type, message: text(field.at("message")) };
+    default:
+      return field.unknown("type", type);
+  }
+}
+
+/** A panel of the page. */
+export interface Panel {
+  readonly name: string;
+  readonly seat: Seat;
+  readonly columns: number;
+  readonly rows: number;
+  readonly elements: readonly PanelElement[];
+  readonly page: PanelPage | null;
+  /** Where a browser finds the picture behind it. */
+  readonly picture: string | null;
+}
+
+export function readPanel(field: Field): Panel {
+  return {
+    name: text(field.at("name")),
+    seat: readSeat(field.at("seat")),
+    columns: whole(field.at("columns")),
+    rows: whole(field.at("rows")),
+    elements: list(readPanelElement)(field.at("elements")),
+    page: nullable(readPanelPage)(field.at("page")),
+    picture: nullable(text)(field.at("picture")),
+  };
+}
+
+/** One thing on a panel. */
+export interface PanelElement {
+  readonly kind: ElementKind;
+  readonly label: string;
+  /** Column and row, from 0. */
+  readonly at: readonly [number, number];
+  readonly choices: readonly Choice[];
+  readonly colour: string | null;
+  /** The fault on the way of signals that it shows and causes, by its number. */
+  readonly disturbance: number | null;
+  /** The component and the mode of failure that it shows and causes. */
+  readonly failure: readonly [string, string] | null;
+  readonly max: number;
+  readonly min: number;
+  readonly mode: ButtonMode | null;
+  readonly signal: string | null;
+  /** The second axis of a joystick. */
+  readonly signal_y: string | null;
+  readonly span: readonly [number, number];
+}
+
+export function readPanelElement(field: Field): PanelElement {
+  return {
+    kind: readElementKind(field.at("kind")),
+    label: text(field.at("label")),
+    at: tuple(whole, whole)(field.at("at")),
+    choices: list(readChoice)(field.at("choices", [])),
+    colour: nullable(text)(field.at("colour")),
+    disturbance: nullable(whole)(field.at("disturbance")),
+    failure: nullable(tuple(text, text))(field.at("failure")),
+    max: number(field.at("max", 1.0)),
+    min: number(field.at("min", 0.0)),
+    mode: nullable(readButtonMode)(field.at("mode")),
+    signal: nullable(text)(field.at("signal")),
+    signal_y: nullable(text)(field.at("signal_y")),
+    span: tuple(whole, whole)(field.at("span", [1,1])),
+  };
+}
+
+/** When a panel is shown that is one of several pages: while the signal has the value. */
+export interface PanelPage {
+  readonly signal: string;
+  readonly value: number;
+}
+
+export function readPanelPage(field: Field): PanelPage {
+  return { signal: text(field.at("signal")), value: whole(field.at("value")) };
+}
+
+/** A parameter of a component, as it is shown. */
+export interface Parameter {
+  readonly name: string;
+  readonly value: string;
+  readonly unit: string | null;
+}
+
+export function readParameter(field: Field): Parameter {
+  return {
+    name: text(field.at("name")),
+    value: text(field.at("value")),
+    unit: nullable(text)(field.at("unit")),
+  };
+}
+
+/** A PLC whose variables can be looked at. Variables of all PLCs are numbered through. */
+export interface Plc {
+  readonly client: string;
+  readonly variables: readonly Variable[];
+}
+
+export function readPlc(field: Field): Plc {
+  return { client: text(field.at("client")), variables: list(readVariable)(field.at("variables")) };
+}
+
+/** Whose page it is. */
+export type Role = "trainee" | "trainer";
+
+export function readRole(field: Field): Role {
+  return one_of("trainee", "trainer")(field);
+}
+
+/** Whose a panel is. */
+export type Seat = "operator" | "trainer";
+
+export function readSeat(field: Field): Seat {
+  return one_of("operator", "trainer")(field);
+}
+
+/** A seat as one viewer sees it. */
+export type SeatState = "free" | "mine" | "taken";
+
+export function readSeatState(field: Field): SeatState {
+  return one_of("free", "mine", "taken")(field);
+}
+
+/** The parts of a session that do not change while it runs. */
+export interface Session {
+  readonly protocol: number;
+  readonly title: string;
+  readonly scenario: string;
+  readonly step_ns: number;
+  readonly signals: readonly Signal[];
+  readonly bodies: readonly Body[];
+  readonly components: readonly Component[];
+  readonly drawings: readonly Drawing[];
+  readonly expectations: readonly Expectation[];
+  /** False for a recording: it is shown from its beginning, and nobody operates it. */
+  readonly live: boolean;
+  readonly looks: readonly Look[];
+  readonly maps: readonly MapInfo[];
+  readonly panels: readonly Panel[];
+  readonly plcs: readonly Plc[];
+  readonly sources: readonly Source[];
+  readonly training: Lesson | null;
+  readonly until_ns: number | null;
+  readonly views: readonly View[];
+}
+
+export function readSession(field: Field): Session {
+  return {
+    protocol: whole(field.at("protocol")),
+    title: text(field.at("title")),
+    scenario: text(field.at("scenario")),
+    step_ns: whole(field.at("step_ns")),
+    signals: list(readSignal)(field.at("signals")),
+    bodies: list(readBody)(field.at("bodies", [])),
+    components: list(readComponent)(field.at("components", [])),
+    drawings: list(readDrawing)(field.at("drawings", [])),
+    expectations: list(readExpectation)(field.at("expectations", [])),
+    live: flag(field.at("live", true)),
+    looks: list(readLook)(field.at("looks", [])),
+    maps: list(readMapInfo)(field.at("maps", [])),
+    panels: list(readPanel)(field.at("panels", [])),
+    plcs: list(readPlc)(field.at("plcs", [])),
+    sources: list(readSource)(field.at("sources", [])),
+    training: nullable(readLesson)(field.at("training")),
+    until_ns: nullable(whole)(field.at("until_ns")),
+    views: list(readView)(field.at("views", [])),
+  };
+}
+
+/** How a session is. */
+export type SessionState = "run" | "hold" | "end" | "recorded";
+
+export function readSessionState(field: Field): SessionState {
+  return one_of("run", "hold", "end", "recorded")(field);
+}
+
+/** The shape of a body; a cylinder and a capsule lie along z. */
+export type Shape =
+  | { readonly kind: "none" }
+  | { readonly kind: "box"; readonly size_m: readonly [number, number, number] }
+  | { readonly kind: "sphere"; readonly radius_m: number }
+  | { readonly kind: "cylinder"; readonly radius_m: number; readonly length_m: number }
+  /** A cylinder or a cone, without ends if it is open. */
+  | { readonly kind: "round"; readonly radius_m: number; readonly top_radius_m: number; readonly length_m: number; readonly open: boolean }
+  | { readonly kind: "capsule"; readonly radius_m: number; readonly length_m: number }
+  /** Positions are flat triples, indices flat triangles. */
+  | { readonly kind: "mesh"; readonly positions_m: readonly number[]; readonly indices: readonly number[] };
+
+export function readShape(field: Field): Shape {
+  const kind = field.at("kind").text();
+  switch (kind) {
+    case "none":
+      return check_shape(field, { kind });
+    case "box":
+      return check_shape(field, { kind, size_m: tuple(number, number, number)(field.at("size_m")) });
+    case "sphere":
+      return check_shape(field, { kind, radius_m: number(field.at("radius_m")) });
+    case "cylinder":
+      return check_shape(field, { kind, radius_m: number(field.at("radius_m")), length_m: number(field.at("length_m")) });
+    case "round":
+      return check_shape(field, {
+        kind,
+        radius_m: number(field.at("radius_m")),
+        top_radius_m: number(field.at("top_radius_m")),
+        length_m: number(field.at("length_m")),
+        open: flag(field.at("open", false)),
+      });
+    case "capsule":
+      return check_shape(field, { kind, radius_m: number(field.at("radius_m")), length_m: number(field.at("length_m")) });
+    case "mesh":
+      return check_shape(field, {
+        kind,
+        positions_m: list(number)(field.at("positions_m")),
+        indices: list(whole)(field.at("indices")),
+      });
+    default:
+      return field.unknown("kind", kind);
+  }
+}
+
+/** A signal of the session. Signals are named by their place in its list. */
+export interface Signal {
+  readonly name: string;
+  readonly type: string;
+  readonly writer: string;
+  readonly about: string;
+  /** Names of values. */
+  readonly names: ReadonlyMap<number, string>;
+  readonly unit: string | null;
+}
+
+export function readSignal(field: Field): Signal {
+  return {
+    name: text(field.at("name")),
+    type: text(field.at("type")),
+    writer: text(field.at("writer")),
+    about: text(field.at("about", "")),
+    names: numbered(text)(field.at("names", {})),
+    unit: nullable(text)(field.at("unit")),
+  };
+}
+
+/** A program of a PLC as text. */
+export interface Source {
+  readonly path: string;
+  readonly text: string;
+  readonly lines: readonly SourceLine[];
+}
+
+export function readSource(field: Field): Source {
+  return {
+    path: text(field.at("path")),
+    text: text(field.at("text")),
+    lines: list(readSourceLine)(field.at("lines", [])),
+  };
+}
+
+/** A line that names signals or variables. */
+export interface SourceLine {
+  /** From 1. */
+  readonly line: number;
+  /** Names of signals. */
+  readonly variables: readonly string[];
+  /** Numbers of the PLCs' own variables. */
+  readonly inner: readonly number[];
+}
+
+export function readSourceLine(field: Field): SourceLine {
+  return {
+    line: whole(field.at("line")),
+    variables: list(text)(field.at("variables")),
+    inner: list(whole)(field.at("inner", [])),
+  };
+}
+
+export interface Variable {
+  readonly path: string;
+  readonly type: string;
+}
+
+export function readVariable(field: Field): Variable {
+  return { path: text(field.at("path")), type: text(field.at("type")) };
+}
+
+/** What is done with virtual time. */
+export type Verb = "hold" | "go" | "step" | "stop";
+
+/** A place from which the machine is seen. */
+export interface View {
+  readonly name: string;
+  readonly position_m: readonly [number, number, number];
+  readonly target_m: readonly [number, number, number];
+}
+
+export function readView(field: Field): View {
+  return {
+    name: text(field.at("name")),
+    position_m: tuple(number, number, number)(field.at("position_m")),
+    target_m: tuple(number, number, number)(field.at("target_m")),
+  };
+}
