@@ -17,7 +17,6 @@ mod trial;
 
 use std::io::Write;
 
-use onescan_plc_shim::mutate::MutantKind;
 use onescan_plc_shim::source::LineColumn;
 use onescan_report::{OutputError, file};
 use onescan_scenario::Scenario;
@@ -112,7 +111,3 @@ fn nothing(scenario: &Scenario, client: Option<&ClientName>) -> Usage {
     let message = format!("the scenario has no soft PLC `{client}` in whose program a mistake could be");
     Usage::new(message, did_you_mean(client.as_str(), names))
 }
-
-/// What may be changed, as it is typed.
-pub(crate) const KINDS: [MutantKind; 5] =
-    [MutantKind::Operator, MutantKind::Constant, MutantKind::Condition, MutantKind::Statement, MutantKind::Timer];
