@@ -12,6 +12,7 @@
 //! | [`timing_file`] | its `[timing]` as it is written |
 //! | [`falsify_file`] | its `[falsify]` as it is written |
 //! | [`panel_file`], `panel` | its `[[panel]]` as they are written, and what must hold of them |
+//! | `timed` | the keys that say when, of all entries that have them |
 //! | [`disturbance_file`] | faults on the way of signals, as several files write them |
 //! | [`value_names`] | names of a signal's values |
 //! | [`permission`] | which files it may read, and whether it may start programs |
@@ -82,6 +83,7 @@ pub mod report;
 pub mod report_file;
 pub mod schema;
 mod structure;
+mod timed;
 pub mod timing;
 pub mod timing_file;
 pub mod value_names;
