@@ -16,7 +16,9 @@
 //! | [`disturbance_file`] | faults on the way of signals, as several files write them |
 //! | [`value_names`] | names of a signal's values |
 //! | [`permission`] | which files it may read, and whether it may start programs |
+//! | `texts`, `merge`, `base` | places in several files; a file that takes in another; `base` of `scenario.toml` |
 //! | [`load`], `files` | `scenario.toml` read and checked; all files that it is made of |
+//! | `whole` | a scenario as one file, with everything that it takes in |
 //! | `arrays` | signals written as arrays and patterns |
 //! | [`expectations`] | what it expects of every run |
 //! | [`case`] | one scenario, tried in many ways |
@@ -46,6 +48,7 @@
 
 pub mod apply;
 mod arrays;
+mod base;
 pub mod case;
 mod compilations;
 pub mod compose;
@@ -67,6 +70,7 @@ pub mod look;
 pub mod look_file;
 mod map;
 pub mod map_file;
+mod merge;
 pub mod mistake;
 mod mistaken;
 pub mod mode;
@@ -83,12 +87,14 @@ pub mod report;
 pub mod report_file;
 pub mod schema;
 mod structure;
+mod texts;
 mod timed;
 pub mod timing;
 pub mod timing_file;
 pub mod value_names;
 pub mod visible;
 pub mod watch;
+mod whole;
 
 pub use error::ScenarioError;
 pub use load::Scenario;

@@ -17,15 +17,15 @@ use super::file::CaseFile;
 use super::matrix::{Axis, COMBINATIONS_MAX, combinations};
 use super::{Case, DEFAULT, Setting};
 use crate::arrays::{self, Wrong};
-use crate::error::{ScenarioError, wrong};
+use crate::error::ScenarioError;
 use crate::expectations::place_within;
 use crate::permission;
+use crate::texts::Texts;
 
 /// All cases of a scenario.
 #[derive(Clone, Debug, Default)]
 pub struct Catalogue {
-    path: PathBuf,
-    text: String,
+    texts: Texts,
     file: CasesFile,
     cases: Vec<Case>,
     campaigns: Vec<Campaign>,
@@ -60,12 +60,12 @@ impl Catalogue {
 
     /// The same with the mutants that `mutants` makes.
     pub(crate) fn load_with(scenario: &Path, mutants: &Mutants<'_>) -> Result<Self, ScenarioError> {
-        let path = super::beside(scenario);
+        let path = super::beside(scenario)?;
         permission::granted().check(path.parent().unwrap_or(Path::new("")), &path)?;
         match regular::read_text(&path) {
             Ok(text) => Self::parse_with(path, text, mutants),
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
-                Ok(Self { path, cases: vec![default_case()], ..Self::default() })
+                Ok(Self { texts: Texts::of(path, String::new()), cases: vec![default_case()], ..Self::default() })
             }
             Err(source) => Err(ScenarioError::Unreadable { path, source, help: None }),
         }
@@ -80,15 +80,15 @@ impl Catalogue {
     }
 
     fn parse_with(path: PathBuf, text: String, mutants: &Mutants<'_>) -> Result<Self, ScenarioError> {
-        let this = Self { path, text, ..Self::default() };
+        let this = Self { texts: Texts::of(path, text), ..Self::default() };
         let form = |e: toml::de::Error| this.wrong(e.message().trim().to_owned(), e.span(), None);
-        let mut file: CasesFile = toml::from_str(&this.text).map_err(form)?;
+        let mut file: CasesFile = toml::from_str(this.texts.text()).map_err(form)?;
         this.expand(&mut file)?;
         if file.version != VERSION {
             let message = format!("version {} of the format of cases is not known", file.version);
             return Err(this.wrong(message, None, Some(format!("write `version = {VERSION}`"))));
         }
-        let places = Places::of(&this.text);
+        let places = Places::of(this.texts.text());
         let mut seen = BTreeSet::new();
         let mut cases = Vec::new();
         for (index, entry) in file.cases.iter().enumerate() {
@@ -271,14 +271,14 @@ impl Catalogue {
     }
 
     /// None, of a file that is not one of cases: errors have their places there.
-    pub(crate) fn without_cases(path: PathBuf, text: String) -> Self {
-        Self { path, text, ..Self::default() }
+    pub(crate) fn without_cases(texts: Texts) -> Self {
+        Self { texts, ..Self::default() }
     }
 
     /// One case alone, which stands in another file.
     pub(crate) fn of_lesson(path: PathBuf, text: String, entry: CaseFile, case: Case) -> Self {
         let file = CasesFile { version: VERSION, cases: vec![Spanned::new(0..0, entry)], ..CasesFile::default() };
-        Self { path, text, file, cases: vec![case], campaigns: Vec::new() }
+        Self { texts: Texts::of(path, text), file, cases: vec![case], ..Self::default() }
     }
 
     /// Sets in all cases what `other` sets, as if it stood at `place`.
@@ -332,17 +332,18 @@ impl Catalogue {
 
     /// The file's name and text.
     pub(crate) fn source(&self) -> (String, String) {
-        (self.path.display().to_string(), self.text.clone())
+        let path = self.texts.paths().next().map(|path| path.display().to_string());
+        (path.unwrap_or_default(), self.texts.text().to_owned())
     }
 
     /// The place of a part of a formula.
     pub(crate) fn place_within(&self, formula: &Spanned<String>, part: &Range<usize>) -> Range<usize> {
-        place_within(formula, &self.text, part)
+        place_within(formula, self.texts.text(), part)
     }
 
     /// An error at a place of the file.
     pub fn wrong(&self, message: String, place: Option<Range<usize>>, help: Option<String>) -> ScenarioError {
-        wrong(&self.path, &self.text, message, place, help)
+        self.texts.wrong(message, place, help)
     }
 }
 
