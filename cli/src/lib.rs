@@ -34,6 +34,7 @@
 //! | [`instrument`] | PLC projects made to run in lockstep, and back |
 //! | [`check`] | PLC sources checked without being run |
 //! | [`wiring`] | signals between clients, listed and drawn |
+//! | [`show`] | a scenario with everything that it takes in, as one file |
 //! | [`plant`] | scenes and components, described without a session |
 //! | [`edit`] | a scenario wired and built in a browser |
 //! | [`model`] | the states of a session, as a table and for a model checker |
@@ -80,6 +81,7 @@ pub mod review;
 pub mod run;
 pub mod session;
 pub mod shot;
+pub mod show;
 pub mod snapshot;
 pub mod train;
 mod value_map;

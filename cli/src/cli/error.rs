@@ -23,6 +23,7 @@ use crate::review::ReviewError;
 use crate::run::{RunError, SearchError};
 use crate::session::SessionError;
 use crate::shot::ShotError;
+use crate::show::ShowError;
 use crate::train::TrainError;
 use crate::view::ViewError;
 use crate::wiring::WiringError;
@@ -90,6 +91,9 @@ sum_of_errors! {
         /// `wiring` came to nothing.
         #[diagnostic(transparent)]
         Wiring(WiringError),
+        /// `show` came to nothing.
+        #[diagnostic(transparent)]
+        Show(ShowError),
         /// `edit` came to nothing.
         #[diagnostic(transparent)]
         Edit(EditorError),
