@@ -5,6 +5,7 @@
 //! | module | subject |
 //! |---|---|
 //! | `form` | the forms of values in the files, for schemas |
+//! | `keys` | the keys of a file's type |
 //! | [`file`] | `scenario.toml` as it is written |
 //! | [`look_file`] | its `[[view]]`, `[[figure]]` and `[[look]]` as they are written |
 //! | [`report_file`] | its `[report]` as it is written |
@@ -63,6 +64,7 @@ pub mod file;
 mod files;
 mod form;
 pub mod gateway;
+mod keys;
 mod leeway;
 pub mod lesson;
 pub mod load;

@@ -54,14 +54,14 @@ pub struct CaseFile {
     #[serde(default, rename = "disturbance")]
     #[schemars(with = "Vec<DisturbanceFile>")]
     pub disturbances: Vec<Spanned<DisturbanceFile>>,
-    /// Variables of PLCs that are forced or written.
-    #[serde(default, rename = "variable")]
-    #[schemars(with = "Vec<VariableFile>")]
-    pub variables: Vec<Spanned<VariableFile>>,
     /// Parameters of plants that change while it runs.
     #[serde(default, rename = "parameter")]
     #[schemars(with = "Vec<ParameterFile>")]
     pub parameters: Vec<Spanned<ParameterFile>>,
+    /// Variables of PLCs that are forced or written.
+    #[serde(default, rename = "variable")]
+    #[schemars(with = "Vec<VariableFile>")]
+    pub variables: Vec<Spanned<VariableFile>>,
     /// Tasks of PLCs that run late.
     #[serde(default, rename = "task")]
     #[schemars(with = "Vec<TaskFile>")]
@@ -108,16 +108,16 @@ impl CaseFile {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct InputFile {
-    /// From when on the signal has the value.
-    #[serde(deserialize_with = "from_text")]
-    #[schemars(with = "Time")]
-    pub at: VirtualTime,
     /// The signal's name.
     #[schemars(with = "Name")]
     pub signal: Spanned<SignalName>,
     /// A value of the signal's type: `true`, `3`, `2.5`, `"200ms"`.
     #[schemars(with = "Scalar")]
     pub value: Spanned<toml::Value>,
+    /// From when on the signal has the value.
+    #[serde(deserialize_with = "from_text")]
+    #[schemars(with = "Time")]
+    pub at: VirtualTime,
 }
 
 timed! {
