@@ -6,6 +6,7 @@
 //! | [`duration`] | the text forms of durations: `10 ms`, `T#1s500ms`, `PT0.02S` |
 //! | [`elementary`] | the elementary types of IEC 61131-3: names, sizes, ranges, conversions |
 //! | [`signal_type`] | the types that a signal can have: the elementary types, strings with a length, lines of bytes |
+//! | [`field`] | members of structures, `Name: TYPE` |
 //! | [`byte_line`] | one direction of a line of bytes as the value of a signal |
 //! | [`value`] | values of these types: their bytes, and the text that recordings hold |
 //! | [`array`] | names with a range, as in `arm[0..9].hold` |
@@ -20,6 +21,7 @@ pub mod array;
 pub mod byte_line;
 pub mod duration;
 pub mod elementary;
+pub mod field;
 pub mod foreign;
 pub mod nearest;
 pub mod regular;

@@ -1,60 +1,43 @@
 //! Faults on the way of signals, as cases, lessons and panels write them.
 
 use onescan_server::signal::SignalName;
-use onescan_server::time::{TimeSpan, VirtualTime};
+use onescan_server::time::TimeSpan;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use toml::Spanned;
 
-use crate::form::{Amount, Deviation, Name, Ordinal, Rate, Time, from_optional_text, from_text};
+use crate::form::{Amount, Deviation, Name, Rate, Time, from_optional_text, from_text};
+use crate::timed::timed;
 
-/// A fault on the way of signals from their writer to their readers.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct DisturbanceFile {
-    /// The signal's name; or `signals`, or `client`.
-    #[schemars(with = "Option<Name>")]
-    pub signal: Option<Spanned<SignalName>>,
-    /// Several signals, which are one frame; ranges are allowed.
-    #[serde(default)]
-    #[schemars(with = "Vec<Name>")]
-    pub signals: Vec<Spanned<SignalName>>,
-    /// A client: all signals that it writes are one frame.
-    #[schemars(with = "Option<Name>")]
-    pub client: Option<Spanned<String>>,
-    /// What is wrong with the signal.
-    pub kind: DisturbanceKind,
-    /// By how much: a number of the signal's type for `offset`, a time as in `"20ms"` for `late`.
-    #[schemars(with = "Option<Amount>")]
-    pub by: Option<Spanned<toml::Value>>,
-    /// How often, from 0 to 1: of the changes for `lost` (of the steps, if it is a frame), of the steps for `flipped`; of the
-    /// bytes of a line for both.
-    #[schemars(with = "Option<Rate>")]
-    pub rate: Option<Spanned<f64>>,
-    /// Standard deviation of `noisy`, in the signal's unit.
-    #[schemars(with = "Option<Deviation>")]
-    pub sigma: Option<Spanned<f64>>,
-    /// From push to push of `pushed`.
-    #[schemars(with = "Option<IntervalFile>")]
-    pub interval: Option<Spanned<IntervalFile>>,
-    /// From when; from the start if absent. With `when`: from when on the condition counts.
-    #[serde(default, deserialize_with = "from_optional_text")]
-    #[schemars(with = "Option<Time>")]
-    pub from: Option<VirtualTime>,
-    /// Until when; never ends if absent. Not together with `when` or `for`.
-    #[serde(default, deserialize_with = "from_optional_text")]
-    #[schemars(with = "Option<Time>")]
-    pub until: Option<VirtualTime>,
-    /// A condition on signals, now and in the past: it begins in the step after the condition has come true.
-    #[schemars(with = "Option<String>")]
-    pub when: Option<Spanned<String>>,
-    /// Which time that the condition comes true; the first if absent.
-    #[schemars(with = "Option<Ordinal>")]
-    pub nth: Option<Spanned<u32>>,
-    /// How long it lasts.
-    #[serde(default, rename = "for", deserialize_with = "from_optional_text")]
-    #[schemars(with = "Option<Time>")]
-    pub lasting: Option<TimeSpan>,
+timed! {
+    /// A fault on the way of signals from their writer to their readers.
+    pub struct DisturbanceFile {
+        /// The signal's name; or `signals`, or `client`.
+        #[schemars(with = "Option<Name>")]
+        pub signal: Option<Spanned<SignalName>>,
+        /// Several signals, which are one frame; ranges are allowed.
+        #[serde(default)]
+        #[schemars(with = "Vec<Name>")]
+        pub signals: Vec<Spanned<SignalName>>,
+        /// A client: all signals that it writes are one frame.
+        #[schemars(with = "Option<Name>")]
+        pub client: Option<Spanned<String>>,
+        /// What is wrong with the signal.
+        pub kind: DisturbanceKind,
+        /// By how much: a number of the signal's type for `offset`, a time as in `"20ms"` for `late`.
+        #[schemars(with = "Option<Amount>")]
+        pub by: Option<Spanned<toml::Value>>,
+        /// How often, from 0 to 1: of the changes for `lost` (of the steps, if it is a frame), of the steps for `flipped`; of the
+        /// bytes of a line for both.
+        #[schemars(with = "Option<Rate>")]
+        pub rate: Option<Spanned<f64>>,
+        /// Standard deviation of `noisy`, in the signal's unit.
+        #[schemars(with = "Option<Deviation>")]
+        pub sigma: Option<Spanned<f64>>,
+        /// From push to push of `pushed`.
+        #[schemars(with = "Option<IntervalFile>")]
+        pub interval: Option<Spanned<IntervalFile>>,
+    }
 }
 
 /// How long it is from one push of a frame to the next: normally distributed, held within bounds.

@@ -21,6 +21,8 @@ use crate::report_file::ReportFile;
 use crate::timing_file::TimingFile;
 use crate::value_names::ValueNames;
 
+/// The file that makes a folder a scenario.
+pub const FILE_NAME: &str = "scenario.toml";
 /// The only version of the format so far.
 pub const VERSION: u32 = 1;
 

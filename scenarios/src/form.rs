@@ -6,6 +6,7 @@ use std::str::FromStr;
 
 use onescan_base::ElementaryType;
 use onescan_links::gateway::settings::Text;
+use onescan_iec_project::mutate::MutantKind;
 use onescan_iec::{Dialect, MemoryLimit};
 use onescan_server::signal::name::NAME_BYTES_MAX;
 use onescan_server::time::TimeSpan;
@@ -70,6 +71,12 @@ form!(
     /// The dialect of a PLC's sources.
     DialectName,
     json_schema!({ "type": "string", "enum": Dialect::ALL.map(Dialect::name) })
+);
+
+form!(
+    /// What is changed in a mutant.
+    MutantWord,
+    json_schema!({ "type": "string", "enum": MutantKind::ALL.map(MutantKind::word) })
 );
 
 form!(

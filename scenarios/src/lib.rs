@@ -5,6 +5,7 @@
 //! | module | subject |
 //! |---|---|
 //! | `form` | the forms of values in the files, for schemas |
+//! | `keys` | the keys of a file's type |
 //! | [`file`] | `scenario.toml` as it is written |
 //! | [`look_file`] | its `[[view]]`, `[[figure]]` and `[[look]]` as they are written |
 //! | [`report_file`] | its `[report]` as it is written |
@@ -12,10 +13,13 @@
 //! | [`timing_file`] | its `[timing]` as it is written |
 //! | [`falsify_file`] | its `[falsify]` as it is written |
 //! | [`panel_file`], `panel` | its `[[panel]]` as they are written, and what must hold of them |
+//! | `timed` | the keys that say when, of all entries that have them |
 //! | [`disturbance_file`] | faults on the way of signals, as several files write them |
 //! | [`value_names`] | names of a signal's values |
 //! | [`permission`] | which files it may read, and whether it may start programs |
+//! | `texts`, `merge`, `base` | places in several files; a file that takes in another; `base` of `scenario.toml` |
 //! | [`load`], `files` | `scenario.toml` read and checked; all files that it is made of |
+//! | `whole` | a scenario as one file, with everything that it takes in |
 //! | `arrays` | signals written as arrays and patterns |
 //! | [`expectations`] | what it expects of every run |
 //! | [`case`] | one scenario, tried in many ways |
@@ -45,6 +49,7 @@
 
 pub mod apply;
 mod arrays;
+mod base;
 pub mod case;
 mod compilations;
 pub mod compose;
@@ -59,6 +64,7 @@ pub mod file;
 mod files;
 mod form;
 pub mod gateway;
+mod keys;
 mod leeway;
 pub mod lesson;
 pub mod load;
@@ -66,6 +72,7 @@ pub mod look;
 pub mod look_file;
 mod map;
 pub mod map_file;
+mod merge;
 pub mod mistake;
 mod mistaken;
 pub mod mode;
@@ -82,11 +89,14 @@ pub mod report;
 pub mod report_file;
 pub mod schema;
 mod structure;
+mod texts;
+mod timed;
 pub mod timing;
 pub mod timing_file;
 pub mod value_names;
 pub mod visible;
 pub mod watch;
+mod whole;
 
 pub use error::ScenarioError;
 pub use load::Scenario;

@@ -5,7 +5,6 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use onescan_base::regular;
 use onescan_links::gateway::Settings;
 use onescan_soft_plc::journal::{Journalling, Wanted};
 use onescan_soft_plc::{CoverageSink, TraceSink};
@@ -14,13 +13,15 @@ use onescan_server::plan::{Coupling, PlanError, SessionPlan};
 use onescan_server::signal::{ClientName, SignalDecl, SignalName, did_you_mean};
 use onescan_server::time::{TimeSpan, VirtualTime};
 use serde::Deserialize;
-use toml::Spanned;
+use toml::de::{DeTable, Deserializer};
 
+use super::base::{self, Chain};
 use super::case::{self, Applied, Catalogue};
 use super::compilations::Compilations;
 use super::error::{ScenarioError, Wrong, wrong};
 use super::expectations::Expectations;
 use super::falsify::{self, Varied, VariedParameter};
+pub use super::file::FILE_NAME;
 use super::file::{ClientFile, CouplingFile, ScenarioFile, VERSION};
 use super::look::Looks;
 use super::map;
@@ -30,11 +31,13 @@ use super::timing::Timing;
 use super::watch::{WatchRequest, Watched};
 use super::{arrays, panel, structure, timing};
 
-/// The file that makes a folder a scenario.
-pub const FILE_NAME: &str = "scenario.toml";
-
-/// Where in `folder` the scenario `name` is: a file that is not called as usual has given it its name.
-pub fn kept_as(folder: &Path, name: &str) -> PathBuf {
+/// Where in `folder` the scenario `name` is that was kept there. `file` is its file if that is not called as usual; recordings
+/// of earlier versions do not say it, but have one scenario alone, which has given them its name.
+pub fn kept_as(folder: &Path, name: &str, file: Option<&str>) -> PathBuf {
+    // A recording is somebody else's: its file is one of this folder, whatever it says.
+    if let Some(file) = file.and_then(|file| Path::new(file).file_name()) {
+        return folder.join(file);
+    }
     let usual = folder.join(FILE_NAME);
     if usual.is_file() { usual } else { folder.join(format!("{name}.toml")) }
 }
@@ -54,7 +57,8 @@ pub struct Scenario {
     name: String,
     folder: PathBuf,
     path: PathBuf,
-    text: String,
+    /// Its file, and those that it takes in.
+    chain: Chain,
     file: ScenarioFile,
     plan: SessionPlan,
     expectations: Expectations,
@@ -95,29 +99,25 @@ impl Scenario {
     /// See [`ScenarioError`].
     pub fn load(path: &Path) -> Result<Self, ScenarioError> {
         let path = if path.is_dir() { path.join(FILE_NAME) } else { path.to_owned() };
-        let text = regular::read_text(&path).map_err(|source| ScenarioError::Unreadable {
-            path: path.clone(),
-            help: (source.kind() == std::io::ErrorKind::NotFound)
-                .then(|| format!("a scenario is a folder with a `{FILE_NAME}`; give the folder")),
-            source,
-        })?;
         let folder = path.parent().map(Path::to_owned).unwrap_or_default();
-        Self::parse(text, path, folder)
+        Self::of(base::read(&path)?, path, folder)
     }
 
-    fn parse(text: String, path: PathBuf, folder: PathBuf) -> Result<Self, ScenarioError> {
-        let wrong = |message: String, place: Option<Range<usize>>, help| wrong(&path, &text, message, place, help);
-        let mut file: ScenarioFile =
-            toml::from_str(&text).map_err(|e| wrong(e.message().trim().to_owned(), e.span(), None))?;
+    fn of(chain: Chain, path: PathBuf, folder: PathBuf) -> Result<Self, ScenarioError> {
+        let texts = chain.texts();
+        let wrong = |message: String, place: Option<Range<usize>>, help| texts.wrong(message, place, help);
+        let mut file = ScenarioFile::deserialize(Deserializer::from(chain.tree()?))
+            .map_err(|e| wrong(e.message().trim().to_owned(), e.span(), None))?;
         if file.version != VERSION {
             let message = format!("version {} of the scenario format is not known", file.version);
-            return Err(wrong(message, place_of(&text, "version"), Some(format!("write `version = {VERSION}`"))));
+            let place = place_of(texts.text(), "version");
+            return Err(wrong(message, place, Some(format!("write `version = {VERSION}`"))));
         }
         structure::expand(&mut file)
             .and_then(|()| arrays::expand_plot(&mut file))
             .map_err(|found| wrong(found.message, found.place, found.help))?;
         let plan = plan_of(&file).map_err(|error| {
-            let place = place_of_plan_error(&error, &file, &text);
+            let place = place_of_plan_error(&error, &file, texts.text());
             wrong(error.to_string(), place, None)
         })?;
         for signal in file.signals.values() {
@@ -137,15 +137,15 @@ impl Scenario {
         map::check(&file).map_err(placed)?;
         let timing = timing::bind(&file).map_err(placed)?;
         let varied = falsify::bind(&file).map_err(placed)?;
-        let expectations = Expectations::bind(&file, &text).map_err(placed)?;
-        let measures = Measures::bind(&file, &text).map_err(placed)?;
-        let looks = Looks::bind(&file, &text).map_err(placed)?;
+        let expectations = Expectations::bind(&file, texts.text()).map_err(placed)?;
+        let measures = Measures::bind(&file, texts.text()).map_err(placed)?;
+        let looks = Looks::bind(&file, texts.text()).map_err(placed)?;
         let name = name_of(&path);
         let scenario = Self {
             name,
             folder,
             path,
-            text,
+            chain,
             file,
             plan,
             expectations,
@@ -171,7 +171,7 @@ impl Scenario {
 
     /// The scenario's own file as if it were one of cases: for what both can say.
     pub(crate) fn own_catalogue(&self) -> Catalogue {
-        Catalogue::without_cases(self.path.clone(), self.text.clone())
+        Catalogue::without_cases(self.chain.texts().clone())
     }
 
     /// The case that is tried.
@@ -196,7 +196,7 @@ impl Scenario {
 
     /// An error in `[timing]` that is found when PLCs are made.
     pub(crate) fn wrong_timing(&self, message: String, place: &Range<usize>, help: Option<String>) -> ScenarioError {
-        wrong(&self.path, &self.text, message, Some(place.clone()), help)
+        self.chain.texts().wrong(message, Some(place.clone()), help)
     }
 
     /// What may be varied, by `[falsify]`.
@@ -206,7 +206,7 @@ impl Scenario {
 
     /// An error of a parameter that is varied.
     pub fn wrong_parameter(&self, parameter: &VariedParameter, message: String, help: Option<String>) -> ScenarioError {
-        wrong(&self.path, &self.text, message, Some(parameter.place.clone()), help)
+        self.chain.texts().wrong(message, Some(parameter.place.clone()), help)
     }
 
     pub(crate) fn mistake(&self) -> Option<&Mistake> {
@@ -326,7 +326,16 @@ impl Scenario {
         &self.folder
     }
 
-    /// The file as it is written.
+    pub(crate) fn chain(&self) -> &Chain {
+        &self.chain
+    }
+
+    /// The files that it takes in, the nearest first.
+    pub fn bases(&self) -> impl Iterator<Item = &Path> {
+        self.chain.texts().paths().skip(1)
+    }
+
+    /// The file as it is written, with everything of its bases.
     pub fn file(&self) -> &ScenarioFile {
         &self.file
     }
@@ -353,7 +362,7 @@ impl Scenario {
 
     /// An error at a place of the scenario's file.
     pub(crate) fn wrong_at(&self, found: Wrong) -> ScenarioError {
-        wrong(&self.path, &self.text, found.message, Some(found.place), found.help)
+        self.chain.texts().wrong(found.message, Some(found.place), found.help)
     }
 
     /// What is counted and timed in every run, if that is asked for.
@@ -364,7 +373,7 @@ impl Scenario {
     /// An error at the entry of client `name`.
     pub fn wrong_client(&self, name: &ClientName, message: String, help: Option<String>) -> ScenarioError {
         let place = self.file.clients.get(name).map(toml::Spanned::span);
-        wrong(&self.path, &self.text, message, place, help)
+        self.chain.texts().wrong(message, place, help)
     }
 
     /// An error at the line of `key` in the mapping of client `name`: in the file of its link, or in the scenario. Nothing if
@@ -375,23 +384,33 @@ impl Scenario {
         key: &str,
         (message, help): (&str, Option<&String>),
     ) -> Option<ScenarioError> {
-        let (path, text) = match self.links.get(name) {
-            Some(link) => (&link.path, &link.text),
-            None => (&self.path, &self.text),
-        };
-        let place = place_of_mapping(text, name, key)?;
-        Some(wrong(path, text, message.to_owned(), Some(place), help.cloned()))
+        match self.links.get(name) {
+            Some(link) => {
+                let root = DeTable::parse(&link.text).ok()?;
+                let place = place_of_mapping(root.get_ref(), name, key)?;
+                Some(wrong(&link.path, &link.text, message.to_owned(), Some(place), help.cloned()))
+            }
+            None => {
+                // The files were read before, so that they are TOML.
+                let root = match self.chain.tree() {
+                    Ok(root) => root,
+                    Err(error) => return Some(error),
+                };
+                let place = place_of_mapping(root.get_ref(), name, key)?;
+                Some(self.chain.texts().wrong(message.to_owned(), Some(place), help.cloned()))
+            }
+        }
     }
 
     /// An error of an option, which has no place in the file.
     pub(crate) fn wrong_option(&self, message: String, help: Option<String>) -> ScenarioError {
-        wrong(&self.path, &self.text, message, None, help)
+        self.chain.texts().wrong(message, None, help)
     }
 
     /// An error at the entry of signal `name`.
     pub(crate) fn wrong_signal(&self, name: &SignalName, message: String, help: Option<String>) -> ScenarioError {
         let place = self.file.signals.get(name).map(toml::Spanned::span);
-        wrong(&self.path, &self.text, message, place, help)
+        self.chain.texts().wrong(message, place, help)
     }
 }
 
@@ -404,27 +423,13 @@ pub(crate) struct LinkSource {
 }
 
 /// The line of `key` in the mapping of client `name`.
-fn place_of_mapping(text: &str, name: &ClientName, key: &str) -> Option<Range<usize>> {
-    // The entries of a client's table lose their places because its kind is one of its keys.
-    let lines: Lines = toml::from_str(text).ok()?;
-    let map = lines.clients.get(name.as_str())?.gateway.as_ref()?.map.as_ref()?;
-    map.iter().find(|(known, _)| known.get_ref() == key).map(|(known, value)| known.span().start..value.span().end)
-}
-
-/// The mappings of a `scenario.toml`, or of a file with links alone, with their places.
-#[derive(Deserialize)]
-struct Lines {
-    clients: BTreeMap<String, ClientLines>,
-}
-
-#[derive(Deserialize)]
-struct ClientLines {
-    gateway: Option<GatewayLines>,
-}
-
-#[derive(Deserialize)]
-struct GatewayLines {
-    map: Option<BTreeMap<Spanned<String>, Spanned<toml::Value>>>,
+fn place_of_mapping(root: &DeTable<'_>, name: &ClientName, key: &str) -> Option<Range<usize>> {
+    // The entries of a client's table lose their places when they are read because its kind is one of its keys.
+    let mut table = root;
+    for step in ["clients", name.as_str(), "gateway", "map"] {
+        table = table.get(step)?.get_ref().as_table()?;
+    }
+    table.get_key_value(key).map(|(known, value)| known.span().start..value.span().end)
 }
 
 /// The name of the folder of a `scenario.toml`; any other file has its own.

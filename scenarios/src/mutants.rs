@@ -8,7 +8,7 @@ use toml::Spanned;
 
 use crate::arrays::Wrong;
 use crate::case::Catalogue;
-use crate::case::campaign_file::{MutantWord, MutantsFile, ProgramFile};
+use crate::case::campaign_file::{MutantsFile, ProgramFile};
 use crate::case::catalogue::NoMutants;
 use crate::case::file::CodeFile;
 use crate::error::ScenarioError;
@@ -29,10 +29,8 @@ impl Scenario {
 fn programs(scenario: &Scenario, wanted: &Spanned<MutantsFile>) -> Result<Vec<Spanned<ProgramFile>>, NoMutants> {
     let (place, asked) = (wanted.span(), wanted.get_ref());
     let only = asked.client.as_ref().map(|client| named(scenario, client)).transpose()?;
-    let is_wanted = |mistake: &Mistake| {
-        let is_kind = |kind: &Spanned<MutantWord>| kind.get_ref().kind() == mistake.mutant.kind;
-        asked.kinds.is_empty() || asked.kinds.iter().any(is_kind)
-    };
+    let is_wanted =
+        |mistake: &Mistake| asked.kinds.is_empty() || asked.kinds.iter().any(|kind| kind.0 == mistake.mutant.kind);
     // Numbers are those among all mistakes, so that a draw of more has those of a draw of fewer.
     let all = scenario.mistakes(only.as_ref())?;
     let mut numbered: Vec<(usize, &Mistake)> = (1..).zip(&all).filter(|(_, mistake)| is_wanted(mistake)).collect();

@@ -9,6 +9,7 @@ use crate::disturbance_file::DisturbanceFile;
 use crate::error::Wrong;
 use crate::file::{ClientFile, ScenarioFile, SignalFile};
 use crate::panel_file::{ElementFile, ElementKind, FailureName, PageFile, PanelFile};
+use crate::timed::Timed;
 
 /// Colours by name, beside `#rrggbb`.
 const COLOURS: &[&str] = &["red", "orange", "yellow", "green", "blue", "white", "grey"];
@@ -136,8 +137,7 @@ fn check_disturbance(element: &ElementFile, disturbance: &Spanned<DisturbanceFil
     if !matches!(element.kind, ElementKind::Switch | ElementKind::Button | ElementKind::Lamp) {
         return Err(at(disturbance, "only a switch, a button and a lamp can have a `disturbance`".to_owned(), None));
     }
-    let DisturbanceFile { from, until, when, nth, lasting, .. } = disturbance.get_ref();
-    if from.is_some() || until.is_some() || when.is_some() || nth.is_some() || lasting.is_some() {
+    if disturbance.get_ref().says_when() {
         let message = "the disturbance of a panel comes and goes by somebody's hand".to_owned();
         return Err(at(disturbance, message, Some("leave out `from`, `until`, `when`, `nth` and `for`")));
     }

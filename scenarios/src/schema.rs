@@ -6,6 +6,7 @@ use schemars::transform::transform_subschemas;
 use schemars::{JsonSchema, Schema};
 use serde_json::{Value, json};
 
+use crate::base::BaseFile;
 use crate::case;
 use crate::case::cases_file::CasesFile;
 use crate::file::{self, ScenarioFile};
@@ -15,7 +16,69 @@ use crate::report::Report;
 
 /// The schema of `scenario.toml` (JSON Schema 2020-12).
 pub fn scenario() -> Value {
-    schema::<ScenarioFile>("onescan scenario", file::VERSION)
+    let mut top = schema::<ScenarioFile>("onescan scenario", file::VERSION);
+    let whole = needed(&top);
+    relax(&mut top);
+    let own = into_schema::<BaseFile>();
+    if let (Value::Object(keys), Value::Object(own)) = (&mut top["properties"], &own["properties"]) {
+        keys.extend(own.clone());
+    }
+    top["required"] = json!(["version"]);
+    top["if"] = json!({ "required": ["base"] });
+    top["else"] = whole;
+    top
+}
+
+/// Lets a schema take a part of what it describes: the base of a scenario states the rest. A list without names is never taken in
+/// in parts.
+fn relax(schema: &mut Value) {
+    let Value::Object(keywords) = schema else { return };
+    if let Some(Value::Array(keys)) = keywords.get_mut("required") {
+        keys.retain(|key| key == "name");
+    }
+    if let Some(Value::Object(keys)) = keywords.get_mut("properties") {
+        keys.values_mut().for_each(relax);
+    }
+    if let Some(values) = keywords.get_mut("additionalProperties") {
+        relax(values);
+    }
+    if let Some(items) = keywords.get_mut("items").filter(|items| is_named(items)) {
+        relax(items);
+    }
+    // A part may fit several kinds.
+    if let Some(Value::Array(mut choices)) = keywords.remove("oneOf") {
+        choices.iter_mut().for_each(relax);
+        keywords.insert("anyOf".to_owned(), choices.into());
+    }
+    keywords.retain(|_, value| *value != json!([]));
+}
+
+fn is_named(items: &Value) -> bool {
+    items["required"].as_array().is_some_and(|keys| keys.iter().any(|key| key == "name"))
+}
+
+/// Of a schema only what must be there.
+fn needed(schema: &Value) -> Value {
+    let mut all = serde_json::Map::new();
+    for (keyword, value) in schema.as_object().into_iter().flatten() {
+        let kept = match (keyword.as_str(), value) {
+            ("required" | "const", value) => value.clone(),
+            ("properties", Value::Object(keys)) => {
+                let keys = keys.iter().map(|(key, value)| (key.clone(), needed(value)));
+                Value::Object(keys.filter(|(_, value)| *value != json!({})).collect())
+            }
+            ("items" | "additionalProperties", Value::Object(_)) => needed(value),
+            ("oneOf", Value::Array(choices)) => {
+                all.insert("anyOf".to_owned(), choices.iter().map(needed).collect());
+                continue;
+            }
+            _ => continue,
+        };
+        if kept != json!({}) {
+            all.insert(keyword.clone(), kept);
+        }
+    }
+    Value::Object(all)
 }
 
 /// The schema of `cases.toml` (JSON Schema 2020-12).
@@ -30,20 +93,21 @@ pub fn lessons() -> Value {
 
 /// The schema of `report` in the line of a run, and of `onescan report` (JSON Schema 2020-12).
 pub fn report() -> Value {
-    let settings = SchemaSettings::draft2020_12().with(|settings| settings.inline_subschemas = true);
-    let mut top = settings.into_generator().into_root_schema_for::<Report>();
-    as_written(&mut top);
-    let mut top = top.to_value();
+    let mut top = into_schema::<Report>();
     top["title"] = json!("onescan report");
     top
 }
 
-fn schema<File: JsonSchema>(title: &str, version: u32) -> Value {
+fn into_schema<File: JsonSchema>() -> Value {
     // References are resolved, since not every editor follows them.
     let settings = SchemaSettings::draft2020_12().with(|settings| settings.inline_subschemas = true);
     let mut top = settings.into_generator().into_root_schema_for::<File>();
     as_written(&mut top);
-    let mut top = top.to_value();
+    top.to_value()
+}
+
+fn schema<File: JsonSchema>(title: &str, version: u32) -> Value {
+    let mut top = into_schema::<File>();
     top["title"] = json!(title);
     let about = top["properties"]["version"]["description"].take();
     top["properties"]["version"] = json!({ "const": version, "description": about });
@@ -128,6 +192,10 @@ mod tests {
         match schema {
             Value::Object(fields) => {
                 for (key, value) in fields {
+                    // It repeats which keys must be there, and describes none.
+                    if key == "else" {
+                        continue;
+                    }
                     if key != "properties" {
                         undescribed(value, at, found);
                         continue;

@@ -8,16 +8,12 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use onescan_base::did_you_mean;
+use onescan_base::field::{DEPTH_MAX, Field, ROOM};
 use onescan_server::signal::{SignalName, SignalType};
 
 use crate::arrays::{Wrong, names};
 use crate::file::{DeclaredSignal, ScenarioFile, SignalFile};
 use toml::Spanned;
-
-/// How deep structures may lie in structures.
-const DEPTH_MAX: u32 = 8;
-/// The member that is only room.
-const ROOM: &str = "_";
 
 /// Writes each declared signal out: arrays as their elements, structures as their members.
 ///
@@ -98,7 +94,7 @@ impl Expansion<'_> {
             return Err(Wrong { help, ..wrong(format!("`{structure}` is no structure of `[structures]`")) });
         };
         for field in fields {
-            let Some((member, ty)) = field.split_once(':').map(|(member, ty)| (member.trim(), ty.trim())) else {
+            let Some(Field { name: member, ty }) = Field::parse(field) else {
                 return Err(wrong(format!("member `{field}` of structure `{structure}` is not `Name: TYPE`")));
             };
             if member == ROOM {

@@ -52,6 +52,12 @@ fn faults_of(schema: &Map<String, Value>, keyword: &str, wanted: &Value, value: 
             let nearest = choices.into_iter().min_by_key(Vec::len).unwrap_or_default();
             return [vec![format!("{at}: {fitting} of the choices fit")], nearest].concat();
         }
+        "if" => {
+            let branch = if faults(wanted, value, at).is_empty() { "then" } else { "else" };
+            return schema.get(branch).map_or_else(Vec::new, |branch| faults(branch, value, at));
+        }
+        // what `if` leads to
+        "then" | "else" => true,
         "maxItems" => {
             value.as_array().is_none_or(|items| wanted.as_u64().is_some_and(|most| items.len() as u64 <= most))
         }

@@ -74,6 +74,7 @@ mod rotary_kiln_server;
 mod run;
 mod shear;
 mod shift;
+mod show;
 mod sitter;
 mod streams;
 mod stubs;

@@ -9,6 +9,9 @@ fn a_drawn_chart_under_grants_has_the_digest_of_the_run_in_one_process() {
     let folder = copied("filling-machine");
     let text = std::fs::read_to_string(folder.path().join("sfc.toml")).unwrap();
     let link = "\n[clients.plc.gateway]\nurl = \"tcp://127.0.0.1:2000\"\nsystem_words = true\n";
+    // The chart becomes the folder's scenario, and takes in the one that was.
+    std::fs::rename(folder.path().join("scenario.toml"), folder.path().join("text.toml")).unwrap();
+    let text = text.replace("base = \"scenario.toml\"", "base = \"text.toml\"");
     std::fs::write(folder.path().join("scenario.toml"), text + link).unwrap();
     let run = |words: &[&str]| {
         // Both wheels turn by then, in the second step of the chart.

@@ -44,6 +44,7 @@ pub fn provenance() -> Provenance {
         onescan: "0".to_owned(),
         scenario: "toy".to_owned(),
         folder: String::new(),
+        file: None,
         case: None,
         operated: Vec::new(),
         mode: "lockstep".to_owned(),

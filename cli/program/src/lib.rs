@@ -6,6 +6,7 @@
 //! | [`new`] | scenarios to begin with |
 //! | [`io_list`] | inputs and outputs of a PLC, as engineering tools list them |
 //! | [`instrument`] | PLC projects made to run in lockstep, and back |
+//! | [`show`] | a scenario with everything that it takes in, as one file |
 //! | [`plant`] | scenes and components, described without a session |
 //! | [`browse`] | what a real PLC has |
 //! | [`map`] | where the points of a gateway lie |
@@ -21,3 +22,4 @@ pub mod map;
 pub mod model;
 pub mod new;
 pub mod plant;
+pub mod show;

@@ -17,6 +17,7 @@
 
 use std::fmt;
 use std::ops::Range;
+use std::str::FromStr;
 
 use onescan_iec::input::Input;
 use onescan_iec::source::{FileId, LineColumn, SourceFile, Span};
@@ -42,8 +43,16 @@ pub enum MutantKind {
     Timer,
 }
 
+/// A word that is not one of a [`MutantKind`].
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("write one of {}", MutantKind::ALL.map(MutantKind::word).join(", "))]
+pub struct UnknownMutantKind;
+
 impl MutantKind {
-    /// As it is shown.
+    /// All of them.
+    pub const ALL: [Self; 5] = [Self::Operator, Self::Constant, Self::Condition, Self::Statement, Self::Timer];
+
+    /// As it is written and shown.
     pub fn word(self) -> &'static str {
         match self {
             Self::Operator => "operator",
@@ -52,6 +61,20 @@ impl MutantKind {
             Self::Statement => "statement",
             Self::Timer => "timer",
         }
+    }
+}
+
+impl fmt::Display for MutantKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.word())
+    }
+}
+
+impl FromStr for MutantKind {
+    type Err = UnknownMutantKind;
+
+    fn from_str(word: &str) -> Result<Self, UnknownMutantKind> {
+        Self::ALL.into_iter().find(|kind| kind.word() == word).ok_or(UnknownMutantKind)
     }
 }
 

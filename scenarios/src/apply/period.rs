@@ -3,13 +3,13 @@
 use std::num::NonZeroU32;
 use std::ops::Range;
 
-use onescan_server::time::{TimeSpan, VirtualTime};
+use onescan_server::time::VirtualTime;
 use onescan_server::timeline::When;
-use toml::Spanned;
 
 use crate::case::Catalogue;
 use crate::error::ScenarioError;
 use crate::expect::{KnownSignal, condition};
+use crate::timed::Times;
 
 /// When something of a case begins and ends.
 #[derive(Clone)]
@@ -18,40 +18,15 @@ pub(super) struct Period {
     pub(super) end: Option<When>,
 }
 
-/// The keys that say so, as they are written.
-pub(super) struct PeriodKeys<'a> {
-    pub(super) from: Option<VirtualTime>,
-    pub(super) until: Option<VirtualTime>,
-    pub(super) when: Option<&'a Spanned<String>>,
-    pub(super) nth: Option<&'a Spanned<u32>>,
-    pub(super) lasting: Option<TimeSpan>,
-    pub(super) place: Range<usize>,
-}
-
-/// The keys of an entry, which all have the same names.
-macro_rules! period_keys {
-    ($entry:expr, $place:expr) => {{
-        let entry = $entry;
-        PeriodKeys {
-            from: entry.from,
-            until: entry.until,
-            when: entry.when.as_ref(),
-            nth: entry.nth.as_ref(),
-            lasting: entry.lasting,
-            place: $place,
-        }
-    }};
-}
-pub(super) use period_keys;
-
 /// When something begins and ends.
 pub(super) fn period(
     catalogue: &Catalogue,
     known: &[KnownSignal],
-    keys: PeriodKeys<'_>,
+    times: &Times,
+    place: Range<usize>,
 ) -> Result<Period, ScenarioError> {
-    let nth = nth(catalogue, &keys)?;
-    let PeriodKeys { from, until, when, lasting, place, .. } = keys;
+    let nth = nth(catalogue, times)?;
+    let Times { from, until, when, lasting, .. } = times.clone();
     // without `from` it begins with the run
     let start = from.unwrap_or_default();
     if let (Some(_), Some(_)) = (until, lasting) {
@@ -60,7 +35,7 @@ pub(super) fn period(
     }
     if let Some(written) = when {
         let condition = condition(written.get_ref(), known).map_err(|error| {
-            let place = catalogue.place_within(written, &error.place);
+            let place = catalogue.place_within(&written, &error.place);
             catalogue.wrong(error.to_string(), Some(place), error.help)
         })?;
         let end = match (until, lasting) {
@@ -86,12 +61,12 @@ pub(super) fn period(
 }
 
 /// Which time that the condition comes true.
-fn nth(catalogue: &Catalogue, keys: &PeriodKeys<'_>) -> Result<NonZeroU32, ScenarioError> {
-    let Some(written) = keys.nth else { return Ok(NonZeroU32::MIN) };
+fn nth(catalogue: &Catalogue, times: &Times) -> Result<NonZeroU32, ScenarioError> {
+    let Some(written) = &times.nth else { return Ok(NonZeroU32::MIN) };
     let wrong = |message: &str, help: &str| {
         Err(catalogue.wrong(message.to_owned(), Some(written.span()), Some(help.to_owned())))
     };
-    match (keys.when, NonZeroU32::new(*written.get_ref())) {
+    match (&times.when, NonZeroU32::new(*written.get_ref())) {
         (None, _) => wrong(
             "`nth` counts how often a condition comes true",
             "write the condition, as in `when = \"rose(Start)\"`",

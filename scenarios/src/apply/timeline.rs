@@ -13,7 +13,7 @@ use onescan_server::time::{TimeSpan, VirtualTime};
 use onescan_server::timeline::{Scheduled, When};
 use toml::{Spanned, Value};
 
-use super::period::{Period, PeriodKeys, period, period_keys};
+use super::period::{Period, period};
 use crate::case::file::{CaseFile, FaultFile, ParameterFile, TaskFile, VariableFile};
 use crate::case::value::{bytes_of, literal_of};
 use crate::case::{Applied, Catalogue, FailureAt, ParameterAt, TaskAt, VariableAt};
@@ -21,6 +21,7 @@ use crate::error::ScenarioError;
 use crate::expect::KnownSignal;
 use crate::file::ClientFile;
 use crate::load::Scenario;
+use crate::timed::Timed;
 
 /// A value that a signal has for a time.
 struct Held {
@@ -44,7 +45,6 @@ impl Scenario {
         applied: &mut Applied,
     ) -> Result<(), ScenarioError> {
         let known = self.file().known_signals();
-        let ends = |keys: PeriodKeys<'_>| period(catalogue, &known, keys);
         let mut held: BTreeMap<SignalName, Vec<Held>> = BTreeMap::new();
         let mut timeline = Vec::new();
         let mut inputs: Vec<_> = entry.inputs.iter().map(Spanned::get_ref).collect();
@@ -58,7 +58,7 @@ impl Scenario {
             let place = force.span();
             let force = force.get_ref();
             let (signal, value) = (force.signal.get_ref(), self.value(catalogue, &force.signal, &force.value)?);
-            let period = ends(period_keys!(force, place))?;
+            let period = period(catalogue, &known, &force.times(), place)?;
             match period {
                 Period { begin: When::At(from), end: None } => {
                     held.entry(signal.clone()).or_default().push(Held { from, until: None, value });
@@ -77,22 +77,22 @@ impl Scenario {
         }
         for fault in &entry.faults {
             let failure = self.failure(catalogue, fault)?;
-            let keys = period_keys!(fault.get_ref(), fault.span());
+            let period = period_of(catalogue, &known, fault)?;
             let FailureAt { client, component, mode, .. } = failure.clone();
             let repair = Operation::Repair { client: client.clone(), component: component.clone(), mode: mode.clone() };
-            between(&mut timeline, ends(keys)?, Operation::Fail { client, component, mode }, repair);
+            between(&mut timeline, period, Operation::Fail { client, component, mode }, repair);
             applied.failures.push(failure);
         }
         let seed = applied.case.seed.unwrap_or(self.file().seed);
         for disturbance in &entry.disturbances {
-            let period = ends(period_keys!(disturbance.get_ref(), disturbance.span()))?;
+            let period = period_of(catalogue, &known, disturbance)?;
             for (signal, fault) in self.signal_faults(catalogue, disturbance, seed)? {
                 let mend = Operation::Mend { signal: signal.clone() };
                 between(&mut timeline, period.clone(), Operation::Disturb { signal, fault }, mend);
             }
         }
         for parameter in &entry.parameters {
-            let period = ends(period_keys!(parameter.get_ref(), parameter.span()))?;
+            let period = period_of(catalogue, &known, parameter)?;
             let at = self.parameter(catalogue, parameter)?;
             let ParameterAt { client, component, parameter, value, .. } = at.clone();
             let restore = Operation::RestoreParameter {
@@ -108,7 +108,7 @@ impl Scenario {
             self.variable(catalogue, variable, &known, &mut timeline, &mut applied.variables)?;
         }
         for task in &entry.tasks {
-            let period = ends(period_keys!(task.get_ref(), task.span()))?;
+            let period = period_of(catalogue, &known, task)?;
             let (at, by) = self.late_task(catalogue, task)?;
             let TaskAt { client, task, .. } = at.clone();
             let in_time = Operation::CatchUp { client: client.clone(), task: task.clone(), by };
@@ -223,7 +223,7 @@ impl Scenario {
         checked: &mut Vec<VariableAt>,
     ) -> Result<(), ScenarioError> {
         let place = entry.span();
-        let VariableFile { client, variable, value, at, from, until, when, nth, lasting } = entry.get_ref();
+        let VariableFile { client, variable, value, at, .. } = entry.get_ref();
         let what = ("soft PLC", "whose variables could be set", variable.span());
         let is_plc = |client: &ClientFile| matches!(client, ClientFile::SoftPlc { .. });
         let client = self.chosen(catalogue, client.as_ref(), is_plc, what)?;
@@ -236,7 +236,7 @@ impl Scenario {
         let place = value_at.place.clone();
         checked.push(value_at);
         if let Some(at) = at {
-            if from.is_some() || until.is_some() || when.is_some() || nth.is_some() || lasting.is_some() {
+            if entry.get_ref().says_when() {
                 let help = "`at` writes once; `from`, `until`, `when`, `nth` and `for` force for a time".to_owned();
                 let message = format!("`{variable}` is both written and forced");
                 return Err(catalogue.wrong(message, Some(place), Some(help)));
@@ -245,10 +245,9 @@ impl Scenario {
             timeline.push(Scheduled { when: When::At(*at), operation });
             return Ok(());
         }
-        let keys = period_keys!(entry.get_ref(), place);
         let release = Operation::ReleaseVariable { client: client.clone(), variable: variable.clone() };
         let force = Operation::ForceVariable { client, variable, value };
-        between(timeline, period(catalogue, known, keys)?, force, release);
+        between(timeline, period(catalogue, known, &entry.get_ref().times(), place)?, force, release);
         Ok(())
     }
 
@@ -289,6 +288,15 @@ impl Scenario {
         events.sort();
         events
     }
+}
+
+/// When an entry begins and ends.
+fn period_of<Entry: Timed>(
+    catalogue: &Catalogue,
+    known: &[KnownSignal],
+    entry: &Spanned<Entry>,
+) -> Result<Period, ScenarioError> {
+    period(catalogue, known, &entry.get_ref().times(), entry.span())
 }
 
 /// An operation as the mark of a plot: short, without marks of code.

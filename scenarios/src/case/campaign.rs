@@ -8,9 +8,10 @@ use toml::Spanned;
 
 use super::Case;
 use super::campaign_file::{ActivationFile, CampaignFaultFile, CampaignFile, CampaignVerdict, FaultKind, ProgramFile};
-use super::file::{CaseFile, FaultFile, ForceFile, ParameterFile, VariableFile};
+use super::file::CaseFile;
 use super::matrix::COMBINATIONS_MAX;
 use crate::arrays::Wrong;
+use crate::timed::{Timed, Times};
 
 /// The verdicts with which a campaign is passed unless it says otherwise.
 const ACCEPTED: [CampaignVerdict; 4] =
@@ -186,25 +187,15 @@ fn names<'a>(all: impl Iterator<Item = &'a Spanned<String>>, what: &str) -> Resu
     Ok(())
 }
 
-/// Takes the keys that say when from an activation.
-macro_rules! timed {
-    ($fault:expr, $activation:expr, $kind:ident) => {{
-        let (place, mut entry) = ($fault.span(), $fault.get_ref().clone());
-        let untimed = entry.from.is_none()
-            && entry.until.is_none()
-            && entry.when.is_none()
-            && entry.nth.is_none()
-            && entry.lasting.is_none();
-        if !untimed {
-            return Err(said_twice(place));
-        }
-        let ActivationFile { at, when, nth, from, lasting, .. } = $activation;
-        entry.from = at.or(*from);
-        entry.when.clone_from(when);
-        entry.nth.clone_from(nth);
-        entry.lasting = *lasting;
-        Spanned::<$kind>::new(place, entry)
-    }};
+/// A fault with the keys of an activation that say when.
+fn timed<Fault: Timed + Clone>(fault: &Spanned<Fault>, activation: &ActivationFile) -> Result<Spanned<Fault>, Wrong> {
+    let (place, mut entry) = (fault.span(), fault.get_ref().clone());
+    if entry.says_when() {
+        return Err(said_twice(place));
+    }
+    let ActivationFile { at, when, nth, from, lasting, .. } = activation.clone();
+    entry.set_times(Times { from: at.or(from), until: None, when, nth, lasting });
+    Ok(Spanned::new(place, entry))
 }
 
 fn said_twice(place: Range<usize>) -> Wrong {
@@ -218,7 +209,6 @@ fn put(
     fault: &CampaignFaultFile,
     activation: &ActivationFile,
 ) -> Result<Option<(VirtualTime, Range<usize>)>, Wrong> {
-    use super::file::DisturbanceFile;
     let place = activation.name.span();
     let at = match (activation.at, &activation.when) {
         (Some(_), None) if activation.nth.is_some() || activation.from.is_some() => {
@@ -235,18 +225,18 @@ fn put(
     };
     let CampaignFaultFile { fault: failure, force, disturbance, parameter, variable, .. } = fault;
     match (failure, force, disturbance, parameter, variable) {
-        (Some(failure), None, None, None, None) => entry.faults.push(timed!(failure, activation, FaultFile)),
-        (None, Some(force), None, None, None) => entry.forces.push(timed!(force, activation, ForceFile)),
+        (Some(failure), None, None, None, None) => entry.faults.push(timed(failure, activation)?),
+        (None, Some(force), None, None, None) => entry.forces.push(timed(force, activation)?),
         (None, None, Some(disturbance), None, None) => {
-            entry.disturbances.push(timed!(disturbance, activation, DisturbanceFile));
+            entry.disturbances.push(timed(disturbance, activation)?);
         }
         (None, None, None, Some(parameter), None) => {
-            entry.parameters.push(timed!(parameter, activation, ParameterFile));
+            entry.parameters.push(timed(parameter, activation)?);
         }
         (None, None, None, None, Some(variable)) if variable.get_ref().at.is_some() => {
             return Err(said_twice(variable.span()));
         }
-        (None, None, None, None, Some(variable)) => entry.variables.push(timed!(variable, activation, VariableFile)),
+        (None, None, None, None, Some(variable)) => entry.variables.push(timed(variable, activation)?),
         _ => {
             let message = format!("what fault `{}` does is not said, or said twice", fault.name.get_ref());
             let help = "write one of `fault`, `force`, `disturbance`, `parameter` and `variable`";

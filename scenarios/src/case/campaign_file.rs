@@ -2,6 +2,7 @@
 
 use std::num::NonZeroU32;
 
+use onescan_links::gateway::settings::Text;
 use onescan_iec_project::mutate::MutantKind;
 use onescan_server::signal::SignalName;
 use onescan_server::time::{TimeSpan, VirtualTime};
@@ -10,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
 use super::file::{CodeFile, DisturbanceFile, FaultFile, ForceFile, ParameterFile, VariableFile};
-use crate::form::{CaseName, Matrix, Name, Ordinal, Time, from_optional_text};
+use crate::form::{CaseName, Matrix, MutantWord, Name, Ordinal, Time, from_optional_text};
 
 /// One `[[campaign]]`: every fault is tried with every activation.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -85,44 +86,17 @@ pub struct MutantsFile {
     /// The soft PLC; all if absent.
     #[schemars(with = "Option<Name>")]
     pub client: Option<Spanned<String>>,
-    /// What is changed; everything if empty.
+    /// What is changed: operators, constants, conditions, statements that are left out, timers and other standard blocks;
+    /// everything if empty.
     #[serde(default)]
     #[schemars(with = "Vec<MutantWord>")]
-    pub kinds: Vec<Spanned<MutantWord>>,
+    pub kinds: Vec<Text<MutantKind>>,
     /// So many of them, drawn by `seed`; all if absent.
     #[schemars(with = "Option<Ordinal>")]
     pub each: Option<NonZeroU32>,
     /// By what they are drawn.
     #[serde(default)]
     pub seed: u64,
-}
-
-/// What is changed in a mutant.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum MutantWord {
-    /// An operator.
-    Operator,
-    /// A literal.
-    Constant,
-    /// What decides.
-    Condition,
-    /// A statement is left out.
-    Statement,
-    /// A timer or another standard block is of another kind.
-    Timer,
-}
-
-impl MutantWord {
-    pub(crate) fn kind(self) -> MutantKind {
-        match self {
-            Self::Operator => MutantKind::Operator,
-            Self::Constant => MutantKind::Constant,
-            Self::Condition => MutantKind::Condition,
-            Self::Statement => MutantKind::Statement,
-            Self::Timer => MutantKind::Timer,
-        }
-    }
 }
 
 /// One fault of a campaign: exactly one of `fault`, `force`, `disturbance`, `parameter` and `variable`, without times.

@@ -7,8 +7,9 @@ use std::path::{Path, PathBuf};
 
 use onescan_base::regular;
 use onescan_server::signal::did_you_mean;
-use toml::de::{DeTable, DeValue};
-use toml::{Spanned, Value};
+use serde::Deserialize;
+use toml::de::{DeTable, DeValue, Deserializer};
+use toml::{Spanned, Table, Value};
 
 use super::campaign::{self, Campaign};
 use super::campaign_file::{CampaignFile, MutantsFile, ProgramFile};
@@ -17,18 +18,27 @@ use super::file::CaseFile;
 use super::matrix::{Axis, COMBINATIONS_MAX, combinations};
 use super::{Case, DEFAULT, Setting};
 use crate::arrays::{self, Wrong};
-use crate::error::{ScenarioError, wrong};
+use crate::error::ScenarioError;
 use crate::expectations::place_within;
 use crate::permission;
+use crate::texts::Texts;
 
 /// All cases of a scenario.
 #[derive(Clone, Debug, Default)]
 pub struct Catalogue {
-    path: PathBuf,
-    text: String,
+    texts: Texts,
     file: CasesFile,
     cases: Vec<Case>,
     campaigns: Vec<Campaign>,
+    tables: Tables,
+}
+
+/// The entries of the file as tables: of a case what it does and must show, of a campaign its faults and activations. Paths that
+/// are set stand in the cases themselves.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Tables {
+    pub(super) cases: Vec<Table>,
+    pub(super) campaigns: Vec<Table>,
 }
 
 /// Who makes the mutants that a campaign asks for.
@@ -60,12 +70,12 @@ impl Catalogue {
 
     /// The same with the mutants that `mutants` makes.
     pub(crate) fn load_with(scenario: &Path, mutants: &Mutants<'_>) -> Result<Self, ScenarioError> {
-        let path = super::beside(scenario);
+        let path = super::beside(scenario)?;
         permission::granted().check(path.parent().unwrap_or(Path::new("")), &path)?;
         match regular::read_text(&path) {
             Ok(text) => Self::parse_with(path, text, mutants),
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
-                Ok(Self { path, cases: vec![default_case()], ..Self::default() })
+                Ok(Self { texts: Texts::of(path, String::new()), cases: vec![default_case()], ..Self::default() })
             }
             Err(source) => Err(ScenarioError::Unreadable { path, source, help: None }),
         }
@@ -80,15 +90,20 @@ impl Catalogue {
     }
 
     fn parse_with(path: PathBuf, text: String, mutants: &Mutants<'_>) -> Result<Self, ScenarioError> {
-        let this = Self { path, text, ..Self::default() };
+        let this = Self { texts: Texts::of(path, text), ..Self::default() };
         let form = |e: toml::de::Error| this.wrong(e.message().trim().to_owned(), e.span(), None);
-        let mut file: CasesFile = toml::from_str(&this.text).map_err(form)?;
+        let root = DeTable::parse(this.texts.text()).map_err(form)?;
+        let mut file = CasesFile::deserialize(Deserializer::from(root.clone())).map_err(form)?;
         this.expand(&mut file)?;
         if file.version != VERSION {
             let message = format!("version {} of the format of cases is not known", file.version);
             return Err(this.wrong(message, None, Some(format!("write `version = {VERSION}`"))));
         }
-        let places = Places::of(&this.text);
+        let tables = Tables {
+            cases: this.tables_of(root.get_ref(), "case", |key| !matches!(key, "seed" | "set" | "matrix"))?,
+            campaigns: this.tables_of(root.get_ref(), "campaign", |key| matches!(key, "fault" | "activation"))?,
+        };
+        let places = Places { root };
         let mut seen = BTreeSet::new();
         let mut cases = Vec::new();
         for (index, entry) in file.cases.iter().enumerate() {
@@ -123,7 +138,7 @@ impl Catalogue {
             let expanded = campaign::expanded(entry, variants, &programs, number);
             campaigns.push(expanded.map_err(|found| this.wrong(found.message, found.place, found.help))?);
         }
-        Ok(Self { file, cases, campaigns, ..this })
+        Ok(Self { file, cases, campaigns, tables, ..this })
     }
 
     /// The case to which the faults of a campaign come.
@@ -271,14 +286,14 @@ impl Catalogue {
     }
 
     /// None, of a file that is not one of cases: errors have their places there.
-    pub(crate) fn without_cases(path: PathBuf, text: String) -> Self {
-        Self { path, text, ..Self::default() }
+    pub(crate) fn without_cases(texts: Texts) -> Self {
+        Self { texts, ..Self::default() }
     }
 
     /// One case alone, which stands in another file.
     pub(crate) fn of_lesson(path: PathBuf, text: String, entry: CaseFile, case: Case) -> Self {
         let file = CasesFile { version: VERSION, cases: vec![Spanned::new(0..0, entry)], ..CasesFile::default() };
-        Self { path, text, file, cases: vec![case], campaigns: Vec::new() }
+        Self { texts: Texts::of(path, text), file, cases: vec![case], ..Self::default() }
     }
 
     /// Sets in all cases what `other` sets, as if it stood at `place`.
@@ -330,19 +345,42 @@ impl Catalogue {
         entry.map(|entry| Some(Cow::Owned(entry))).map_err(|found| self.wrong(found.message, found.place, found.help))
     }
 
+    /// The entries as tables.
+    pub(super) fn tables(&self) -> &Tables {
+        &self.tables
+    }
+
+    /// The tables of a list with those of their keys that are wanted.
+    fn tables_of(
+        &self,
+        root: &DeTable<'_>,
+        list: &str,
+        is_wanted: impl Fn(&str) -> bool,
+    ) -> Result<Vec<Table>, ScenarioError> {
+        let list = root.get(list).and_then(|list| list.get_ref().as_array());
+        let tables = list.into_iter().flat_map(|list| list.iter()).filter_map(|entry| entry.get_ref().as_table());
+        let pair = |(key, value): (&Spanned<Cow<'_, str>>, &Spanned<DeValue<'_>>)| -> Result<_, ScenarioError> {
+            let no_room =
+                || self.wrong(format!("`{}` has too large a number", key.get_ref()), Some(value.span()), None);
+            Ok((key.get_ref().to_string(), plain(value.get_ref()).ok_or_else(no_room)?))
+        };
+        tables.map(|table| table.iter().filter(|(key, _)| is_wanted(key.get_ref())).map(pair).collect()).collect()
+    }
+
     /// The file's name and text.
     pub(crate) fn source(&self) -> (String, String) {
-        (self.path.display().to_string(), self.text.clone())
+        let path = self.texts.paths().next().map(|path| path.display().to_string());
+        (path.unwrap_or_default(), self.texts.text().to_owned())
     }
 
     /// The place of a part of a formula.
     pub(crate) fn place_within(&self, formula: &Spanned<String>, part: &Range<usize>) -> Range<usize> {
-        place_within(formula, &self.text, part)
+        place_within(formula, self.texts.text(), part)
     }
 
     /// An error at a place of the file.
     pub fn wrong(&self, message: String, place: Option<Range<usize>>, help: Option<String>) -> ScenarioError {
-        wrong(&self.path, &self.text, message, place, help)
+        self.texts.wrong(message, place, help)
     }
 }
 
@@ -361,17 +399,13 @@ fn default_case() -> Case {
 /// The tables of the file with the places of all their values, which serde does not give for tables
 /// of any shape.
 struct Places<'t> {
-    root: Option<Spanned<DeTable<'t>>>,
+    root: Spanned<DeTable<'t>>,
 }
 
-impl<'t> Places<'t> {
-    fn of(text: &'t str) -> Self {
-        Self { root: DeTable::parse(text).ok() }
-    }
-
+impl Places<'_> {
     /// Every value below the table `key` of an entry of a list, by its path, in the order of the file.
     fn leaves(&self, list: &str, index: usize, key: &str) -> Vec<Setting> {
-        let all = self.root.as_ref().and_then(|root| root.get_ref().get(list));
+        let all = self.root.get_ref().get(list);
         let table = all.and_then(|all| all.get_ref().as_array()?.get(index)?.get_ref().as_table()?.get(key));
         let mut found = Vec::new();
         if let Some(table) = table.and_then(|table| table.get_ref().as_table()) {

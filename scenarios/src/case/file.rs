@@ -1,7 +1,7 @@
 //! `[[case]]` of `cases.toml` as it is written. Times are text with a unit, as in `"10ms"`.
 
 use onescan_server::signal::SignalName;
-use onescan_server::time::{TimeSpan, VirtualTime};
+use onescan_server::time::VirtualTime;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use toml::Spanned;
@@ -9,6 +9,7 @@ use toml::Spanned;
 pub use crate::disturbance_file::{DisturbanceFile, DisturbanceKind, IntervalFile};
 use crate::file::ExpectFile;
 use crate::form::{CaseName, Matrix, Name, Ordinal, Scalar, Settings, Time, from_optional_text, from_text};
+use crate::timed::timed;
 
 /// One `[[case]]`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -53,14 +54,14 @@ pub struct CaseFile {
     #[serde(default, rename = "disturbance")]
     #[schemars(with = "Vec<DisturbanceFile>")]
     pub disturbances: Vec<Spanned<DisturbanceFile>>,
-    /// Variables of PLCs that are forced or written.
-    #[serde(default, rename = "variable")]
-    #[schemars(with = "Vec<VariableFile>")]
-    pub variables: Vec<Spanned<VariableFile>>,
     /// Parameters of plants that change while it runs.
     #[serde(default, rename = "parameter")]
     #[schemars(with = "Vec<ParameterFile>")]
     pub parameters: Vec<Spanned<ParameterFile>>,
+    /// Variables of PLCs that are forced or written.
+    #[serde(default, rename = "variable")]
+    #[schemars(with = "Vec<VariableFile>")]
+    pub variables: Vec<Spanned<VariableFile>>,
     /// Tasks of PLCs that run late.
     #[serde(default, rename = "task")]
     #[schemars(with = "Vec<TaskFile>")]
@@ -107,185 +108,95 @@ impl CaseFile {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct InputFile {
+    /// The signal's name.
+    #[schemars(with = "Name")]
+    pub signal: Spanned<SignalName>,
+    /// A value of the signal's type: `true`, `3`, `2.5`, `"200ms"`.
+    #[schemars(with = "Scalar")]
+    pub value: Spanned<toml::Value>,
     /// From when on the signal has the value.
     #[serde(deserialize_with = "from_text")]
     #[schemars(with = "Time")]
     pub at: VirtualTime,
-    /// The signal's name.
-    #[schemars(with = "Name")]
-    pub signal: Spanned<SignalName>,
-    /// A value of the signal's type: `true`, `3`, `2.5`, `"200ms"`.
-    #[schemars(with = "Scalar")]
-    pub value: Spanned<toml::Value>,
 }
 
-/// A component fails for a time.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct FaultFile {
-    /// The plant, if there are several.
-    #[schemars(with = "Option<Name>")]
-    pub client: Option<Spanned<String>>,
-    /// The component that fails.
-    #[schemars(with = "String")]
-    pub component: Spanned<String>,
-    /// How it fails: one of the modes that `onescan components KIND` lists.
-    #[schemars(with = "String")]
-    pub mode: Spanned<String>,
-    /// From when; from the start if absent. With `when`: from when on the condition counts.
-    #[serde(default, deserialize_with = "from_optional_text")]
-    #[schemars(with = "Option<Time>")]
-    pub from: Option<VirtualTime>,
-    /// Until when; never ends if absent. Not together with `when` or `for`.
-    #[serde(default, deserialize_with = "from_optional_text")]
-    #[schemars(with = "Option<Time>")]
-    pub until: Option<VirtualTime>,
-    /// A condition on signals, now and in the past: it begins in the step after the condition has come true.
-    #[schemars(with = "Option<String>")]
-    pub when: Option<Spanned<String>>,
-    /// Which time that the condition comes true; the first if absent.
-    #[schemars(with = "Option<Ordinal>")]
-    pub nth: Option<Spanned<u32>>,
-    /// How long it lasts.
-    #[serde(default, rename = "for", deserialize_with = "from_optional_text")]
-    #[schemars(with = "Option<Time>")]
-    pub lasting: Option<TimeSpan>,
+timed! {
+    /// A component fails for a time.
+    pub struct FaultFile {
+        /// The plant, if there are several.
+        #[schemars(with = "Option<Name>")]
+        pub client: Option<Spanned<String>>,
+        /// The component that fails.
+        #[schemars(with = "String")]
+        pub component: Spanned<String>,
+        /// How it fails: one of the modes that `onescan components KIND` lists.
+        #[schemars(with = "String")]
+        pub mode: Spanned<String>,
+    }
 }
 
-/// A signal keeps a value for a time, whatever its writer gives.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ForceFile {
-    /// The signal's name.
-    #[schemars(with = "Name")]
-    pub signal: Spanned<SignalName>,
-    /// A value of the signal's type: `true`, `3`, `2.5`, `"200ms"`.
-    #[schemars(with = "Scalar")]
-    pub value: Spanned<toml::Value>,
-    /// From when; from the start if absent. With `when`: from when on the condition counts.
-    #[serde(default, deserialize_with = "from_optional_text")]
-    #[schemars(with = "Option<Time>")]
-    pub from: Option<VirtualTime>,
-    /// Until when; never ends if absent. Not together with `when` or `for`.
-    #[serde(default, deserialize_with = "from_optional_text")]
-    #[schemars(with = "Option<Time>")]
-    pub until: Option<VirtualTime>,
-    /// A condition on signals, now and in the past: it begins in the step after the condition has come true.
-    #[schemars(with = "Option<String>")]
-    pub when: Option<Spanned<String>>,
-    /// Which time that the condition comes true; the first if absent.
-    #[schemars(with = "Option<Ordinal>")]
-    pub nth: Option<Spanned<u32>>,
-    /// How long it lasts.
-    #[serde(default, rename = "for", deserialize_with = "from_optional_text")]
-    #[schemars(with = "Option<Time>")]
-    pub lasting: Option<TimeSpan>,
+timed! {
+    /// A signal keeps a value for a time, whatever its writer gives.
+    pub struct ForceFile {
+        /// The signal's name.
+        #[schemars(with = "Name")]
+        pub signal: Spanned<SignalName>,
+        /// A value of the signal's type: `true`, `3`, `2.5`, `"200ms"`.
+        #[schemars(with = "Scalar")]
+        pub value: Spanned<toml::Value>,
+    }
 }
 
-/// A variable of a PLC is forced for a time, or written once.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct VariableFile {
-    /// The soft PLC, if there are several.
-    #[schemars(with = "Option<Name>")]
-    pub client: Option<Spanned<String>>,
-    /// The variable's path: `Main.limit`.
-    #[schemars(with = "String")]
-    pub variable: Spanned<String>,
-    /// A number, a BOOL, or a literal of IEC 61131-3 as text.
-    #[schemars(with = "Scalar")]
-    pub value: Spanned<toml::Value>,
-    /// When it is written, once; the program may overwrite it. Without `at` it is forced.
-    #[serde(default, deserialize_with = "from_optional_text")]
-    #[schemars(with = "Option<Time>")]
-    pub at: Option<VirtualTime>,
-    /// From when it is forced; from the start if absent. With `when`: from when on the condition counts.
-    #[serde(default, deserialize_with = "from_optional_text")]
-    #[schemars(with = "Option<Time>")]
-    pub from: Option<VirtualTime>,
-    /// Until when; never ends if absent. Not together with `when` or `for`.
-    #[serde(default, deserialize_with = "from_optional_text")]
-    #[schemars(with = "Option<Time>")]
-    pub until: Option<VirtualTime>,
-    /// A condition on signals, now and in the past: it begins in the step after the condition has come true.
-    #[schemars(with = "Option<String>")]
-    pub when: Option<Spanned<String>>,
-    /// Which time that the condition comes true; the first if absent.
-    #[schemars(with = "Option<Ordinal>")]
-    pub nth: Option<Spanned<u32>>,
-    /// How long it is forced.
-    #[serde(default, rename = "for", deserialize_with = "from_optional_text")]
-    #[schemars(with = "Option<Time>")]
-    pub lasting: Option<TimeSpan>,
+timed! {
+    /// A variable of a PLC is forced for a time, or written once.
+    pub struct VariableFile {
+        /// The soft PLC, if there are several.
+        #[schemars(with = "Option<Name>")]
+        pub client: Option<Spanned<String>>,
+        /// The variable's path: `Main.limit`.
+        #[schemars(with = "String")]
+        pub variable: Spanned<String>,
+        /// A number, a BOOL, or a literal of IEC 61131-3 as text.
+        #[schemars(with = "Scalar")]
+        pub value: Spanned<toml::Value>,
+        /// When it is written, once; the program may overwrite it. Without `at` it is forced.
+        #[serde(default, deserialize_with = "from_optional_text")]
+        #[schemars(with = "Option<Time>")]
+        pub at: Option<VirtualTime>,
+    }
 }
 
-/// A parameter of a component has another value for a time: wear, a setting that somebody turned, a supply that gave way.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ParameterFile {
-    /// The plant, if there are several.
-    #[schemars(with = "Option<Name>")]
-    pub client: Option<Spanned<String>>,
-    /// The component.
-    #[schemars(with = "String")]
-    pub component: Spanned<String>,
-    /// The parameter: one of those that `onescan components KIND` lists.
-    #[schemars(with = "String")]
-    pub parameter: Spanned<String>,
-    /// A value that the parameter takes: `0.08`, `true`, `"nc"`.
-    #[schemars(with = "Scalar")]
-    pub value: Spanned<toml::Value>,
-    /// From when; from the start if absent. With `when`: from when on the condition counts.
-    #[serde(default, deserialize_with = "from_optional_text")]
-    #[schemars(with = "Option<Time>")]
-    pub from: Option<VirtualTime>,
-    /// Until when; never ends if absent. Not together with `when` or `for`.
-    #[serde(default, deserialize_with = "from_optional_text")]
-    #[schemars(with = "Option<Time>")]
-    pub until: Option<VirtualTime>,
-    /// A condition on signals, now and in the past: it begins in the step after the condition has come true.
-    #[schemars(with = "Option<String>")]
-    pub when: Option<Spanned<String>>,
-    /// Which time that the condition comes true; the first if absent.
-    #[schemars(with = "Option<Ordinal>")]
-    pub nth: Option<Spanned<u32>>,
-    /// How long it lasts.
-    #[serde(default, rename = "for", deserialize_with = "from_optional_text")]
-    #[schemars(with = "Option<Time>")]
-    pub lasting: Option<TimeSpan>,
+timed! {
+    /// A parameter of a component has another value for a time: wear, a setting that somebody turned, a supply that gave way.
+    pub struct ParameterFile {
+        /// The plant, if there are several.
+        #[schemars(with = "Option<Name>")]
+        pub client: Option<Spanned<String>>,
+        /// The component.
+        #[schemars(with = "String")]
+        pub component: Spanned<String>,
+        /// The parameter: one of those that `onescan components KIND` lists.
+        #[schemars(with = "String")]
+        pub parameter: Spanned<String>,
+        /// A value that the parameter takes: `0.08`, `true`, `"nc"`.
+        #[schemars(with = "Scalar")]
+        pub value: Spanned<toml::Value>,
+    }
 }
 
-/// A task of a PLC runs late: as long as this lasts each time, and in time again afterwards.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct TaskFile {
-    /// The soft PLC, if there are several.
-    #[schemars(with = "Option<Name>")]
-    pub client: Option<Spanned<String>>,
-    /// The task; all tasks of the PLC if absent, as if it had been started later.
-    #[schemars(with = "Option<String>")]
-    pub task: Option<Spanned<String>>,
-    /// By how much it is late, in whole steps.
-    #[schemars(with = "Time")]
-    pub by: Spanned<String>,
-    /// From when; from the start if absent. With `when`: from when on the condition counts.
-    #[serde(default, deserialize_with = "from_optional_text")]
-    #[schemars(with = "Option<Time>")]
-    pub from: Option<VirtualTime>,
-    /// Until when; never ends if absent. Not together with `when` or `for`.
-    #[serde(default, deserialize_with = "from_optional_text")]
-    #[schemars(with = "Option<Time>")]
-    pub until: Option<VirtualTime>,
-    /// A condition on signals, now and in the past: it begins in the step after the condition has come true.
-    #[schemars(with = "Option<String>")]
-    pub when: Option<Spanned<String>>,
-    /// Which time that the condition comes true; the first if absent.
-    #[schemars(with = "Option<Ordinal>")]
-    pub nth: Option<Spanned<u32>>,
-    /// How long it lasts.
-    #[serde(default, rename = "for", deserialize_with = "from_optional_text")]
-    #[schemars(with = "Option<Time>")]
-    pub lasting: Option<TimeSpan>,
+timed! {
+    /// A task of a PLC runs late: as long as this lasts each time, and in time again afterwards.
+    pub struct TaskFile {
+        /// The soft PLC, if there are several.
+        #[schemars(with = "Option<Name>")]
+        pub client: Option<Spanned<String>>,
+        /// The task; all tasks of the PLC if absent, as if it had been started later.
+        #[schemars(with = "Option<String>")]
+        pub task: Option<Spanned<String>>,
+        /// By how much it is late, in whole steps.
+        #[schemars(with = "Time")]
+        pub by: Spanned<String>,
+    }
 }
 
 /// Another program in a soft PLC: a file in the place of one of its sources, or a text in the place of another.

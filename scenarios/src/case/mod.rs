@@ -35,6 +35,10 @@ use onescan_server::time::VirtualTime;
 use onescan_server::timeline::Scheduled;
 use toml::Spanned;
 
+use crate::base;
+use crate::error::ScenarioError;
+use crate::file::FILE_NAME as SCENARIO_NAME;
+
 pub use campaign::{Campaign, Injection};
 pub use campaign_file::{CampaignVerdict, FaultKind};
 pub use catalogue::Catalogue;
@@ -48,13 +52,32 @@ pub const FILE_NAME: &str = "cases.toml";
 pub const OWN_ENDING: &str = ".cases.toml";
 
 /// The file with the cases of the scenario in `path`, a folder or a file: `cases.toml` beside it. A scenario in a file of another
-/// name than usual has its own, as `serial.toml` those of `serial.cases.toml`, if that file is there.
-pub fn beside(path: &Path) -> PathBuf {
-    if path.is_dir() {
-        return path.join(FILE_NAME);
+/// name than usual has its own, as `serial.toml` those of `serial.cases.toml`, if that file is there; else it has those of its
+/// nearest base that has some.
+///
+/// # Errors
+/// A base cannot be read.
+pub fn beside(path: &Path) -> Result<PathBuf, ScenarioError> {
+    let file = if path.is_dir() { path.join(SCENARIO_NAME) } else { path.to_owned() };
+    if let Some(own) = own_cases(&file).find(|own| own.is_file()) {
+        return Ok(own);
     }
-    let own = path.file_stem().map(|name| path.with_file_name(format!("{}{OWN_ENDING}", name.to_string_lossy())));
-    own.filter(|own| own.is_file()).unwrap_or_else(|| path.with_file_name(FILE_NAME))
+    let mut chain = vec![file];
+    // There may be cases without a scenario.
+    if chain[0].is_file() {
+        chain.extend(base::bases(&chain[0])?);
+    }
+    let usual = |file: &PathBuf| file.with_file_name(FILE_NAME);
+    let found =
+        chain.iter().flat_map(|file| own_cases(file)).chain(chain.iter().map(usual)).find(|cases| cases.is_file());
+    Ok(found.unwrap_or_else(|| usual(&chain[0])))
+}
+
+/// The files with cases that are those of the scenario in `file` alone.
+fn own_cases(file: &Path) -> impl Iterator<Item = PathBuf> {
+    let name = file.file_stem().map(|name| file.with_file_name(format!("{}{OWN_ENDING}", name.to_string_lossy())));
+    let usual = file.file_name().is_some_and(|name| name == SCENARIO_NAME).then(|| file.with_file_name(FILE_NAME));
+    name.into_iter().chain(usual)
 }
 
 /// A value that a case sets, by the path of what it sets.

@@ -6,7 +6,11 @@ use std::fmt::Write as _;
 use onescan_server::time::VirtualTime;
 use toml::{Table, Value};
 
+use super::file::{
+    CaseFile, CodeFile, DisturbanceFile, FaultFile, ForceFile, InputFile, ParameterFile, TaskFile, VariableFile,
+};
 use super::{Case, Catalogue};
+use crate::keys::keys_of;
 
 /// A list of a case in which an entry stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -31,33 +35,50 @@ pub enum List {
     Code,
 }
 
-impl List {
-    const ALL: [Self; 9] = [
-        Self::Set,
-        Self::Input,
-        Self::Fault,
-        Self::Force,
-        Self::Disturbance,
-        Self::Parameter,
-        Self::Variable,
-        Self::Task,
-        Self::Code,
-    ];
+/// The lists with their keys in `[[case]]` and the entries of each.
+macro_rules! lists {
+    ($( $list:ident $key:literal $entry:ty, )*) => {
+        impl List {
+            /// The key of `[[case]]` that holds it.
+            pub fn key(self) -> &'static str {
+                match self { $( Self::$list => $key, )* }
+            }
 
-    /// The key of `[[case]]` that holds it.
-    pub fn key(self) -> &'static str {
-        match self {
-            Self::Set => "set",
-            Self::Input => "input",
-            Self::Fault => "fault",
-            Self::Force => "force",
-            Self::Disturbance => "disturbance",
-            Self::Parameter => "parameter",
-            Self::Variable => "variable",
-            Self::Task => "task",
-            Self::Code => "code",
+            /// The list that a key of `[[case]]` holds, if it holds one.
+            fn of(key: &str) -> Option<Self> {
+                match key { $( $key => Some(Self::$list), )* _ => None }
+            }
+
+            /// The keys of its entries, in the order in which people write them; of what is set, keys are paths.
+            fn keys(self) -> &'static [&'static str] {
+                match self { $( Self::$list => keys_of::<$entry>(), )* }
+            }
         }
+    };
+}
+
+lists! {
+    Set "set" toml::Table,
+    Input "input" InputFile,
+    Fault "fault" FaultFile,
+    Force "force" ForceFile,
+    Disturbance "disturbance" DisturbanceFile,
+    Parameter "parameter" ParameterFile,
+    Variable "variable" VariableFile,
+    Task "task" TaskFile,
+    Code "code" CodeFile,
+}
+
+impl List {
+    /// All of them, in the order in which a case is written.
+    fn all() -> impl Iterator<Item = Self> {
+        keys_of::<CaseFile>().iter().filter_map(|key| Self::of(key))
     }
+}
+
+/// The tables of a case that are written as they stand, `code` and `set` not: matrices and campaigns add to those.
+fn is_own(list: List) -> bool {
+    !matches!(list, List::Set | List::Code)
 }
 
 /// One entry of a case.
@@ -82,35 +103,6 @@ impl Entry {
     }
 }
 
-/// Keys in the order in which people write them.
-const ORDER: [&str; 25] = [
-    "client",
-    "source",
-    "line",
-    "column",
-    "was",
-    "is",
-    "component",
-    "mode",
-    "parameter",
-    "signal",
-    "signals",
-    "variable",
-    "task",
-    "kind",
-    "by",
-    "rate",
-    "sigma",
-    "interval",
-    "value",
-    "at",
-    "from",
-    "until",
-    "when",
-    "nth",
-    "for",
-];
-
 /// A case in pieces.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Written {
@@ -129,10 +121,7 @@ pub struct Written {
 impl Catalogue {
     /// A case of this catalogue in pieces.
     pub fn written(&self, case: &Case) -> Written {
-        // The text was read before, so that it is one of TOML.
-        let root: Table = toml::from_str(&self.source().1).unwrap_or_default();
-        let table = |list: &str, index: usize| root.get(list)?.as_array()?.get(index)?.as_table();
-        let own = case.entry.and_then(|index| table("case", index));
+        let own = case.entry.and_then(|index| self.tables().cases.get(index));
         let mut written =
             Written { about: case.about.clone(), seed: case.seed, until: case.until, ..Written::default() };
         for key in ["waive", "expect"] {
@@ -147,14 +136,14 @@ impl Catalogue {
         // Programs are also those of a campaign's.
         let code = case.code.iter().map(|code| Entry { list: List::Code, keys: code.get_ref().keys() });
         written.entries.extend(code);
-        for list in List::ALL.into_iter().filter(|list| !matches!(list, List::Set | List::Code)) {
+        for list in List::all().filter(|list| is_own(*list)) {
             let entries = own.and_then(|own| own.get(list.key())?.as_array()).into_iter().flatten();
             let tables = entries.filter_map(Value::as_table).cloned();
             written.entries.extend(tables.map(|keys| Entry { list, keys }));
         }
         if let Some(injection) = &case.injection {
             let [campaign, fault, activation] = injection.place;
-            let campaign = table("campaign", campaign);
+            let campaign = self.tables().campaigns.get(campaign);
             let part = |list: &str, index: usize| campaign?.get(list)?.as_array()?.get(index)?.as_table();
             written.entries.extend(part("fault", fault).zip(part("activation", activation)).and_then(injected));
         }
@@ -164,15 +153,14 @@ impl Catalogue {
 
 /// The fault of a campaign with the times of an activation.
 fn injected((fault, activation): (&Table, &Table)) -> Option<Entry> {
-    let list = List::ALL.into_iter().find(|list| fault.contains_key(list.key()))?;
+    let list = List::all().find(|list| fault.contains_key(list.key()))?;
     let mut keys = fault.get(list.key())?.as_table()?.clone();
     for (key, value) in activation {
-        let key = match key.as_str() {
-            "at" => "from",
-            known @ ("when" | "nth" | "from" | "for") => known,
-            _ => continue,
-        };
-        keys.insert(key.to_owned(), value.clone());
+        let key = if key == "at" { "from" } else { key.as_str() };
+        // the activation's name is not the fault's
+        if list.keys().contains(&key) {
+            keys.insert(key.to_owned(), value.clone());
+        }
     }
     Some(Entry { list, keys })
 }
@@ -195,7 +183,7 @@ impl Written {
                 line(&mut text, &format!("set.{}", Value::from(path.as_str())), value);
             }
         }
-        for list in List::ALL.into_iter().filter(|list| *list != List::Set) {
+        for list in List::all().filter(|list| *list != List::Set) {
             let of_list: Vec<&Entry> = entries.iter().filter(|entry| entry.list == list).collect();
             if of_list.is_empty() {
                 continue;
@@ -204,7 +192,7 @@ impl Written {
             text.push_str(" = [\n");
             for entry in of_list {
                 text.push_str("    { ");
-                text.push_str(&inline(&entry.keys));
+                text.push_str(&inline(entry));
                 text.push_str(" },\n");
             }
             text.push_str("]\n");
@@ -224,11 +212,10 @@ fn line(text: &mut String, key: &str, value: &Value) {
     let _ = writeln!(text, "{key} = {value}");
 }
 
-/// The keys of a table on one line.
-fn inline(keys: &Table) -> String {
-    let known = ORDER.iter().filter_map(|key| keys.get_key_value(*key));
-    let others = keys.iter().filter(|(key, _)| !ORDER.contains(&key.as_str()));
-    known.chain(others).map(|(key, value)| format!("{key} = {value}")).collect::<Vec<_>>().join(", ")
+/// The keys of an entry on one line.
+fn inline(entry: &Entry) -> String {
+    let known = entry.list.keys().iter().filter_map(|key| entry.keys.get_key_value(*key));
+    known.map(|(key, value)| format!("{key} = {value}")).collect::<Vec<_>>().join(", ")
 }
 
 #[cfg(test)]
@@ -264,6 +251,16 @@ case = "worn,seed=2,speed_m_s=0.25"
 fault = [{ name = "stuck", kind = "model", disturbance = { signal = "Start", kind = "stuck" } }]
 activation = [{ name = "early", at = "1ns", for = "20ms" }]
 "#;
+
+    #[test]
+    fn every_list_is_one_of_a_case_and_has_keys() {
+        assert_eq!(List::all().count(), 9);
+        for list in List::all().filter(|list| *list != List::Set) {
+            assert!(!list.keys().is_empty(), "{list:?}");
+        }
+        assert_eq!(List::Input.keys(), ["signal", "value", "at"]);
+        assert_eq!(List::Task.keys(), ["client", "task", "by", "from", "until", "when", "nth", "for"]);
+    }
 
     /// What is written of a case is the case, also that of a matrix and of a campaign.
     #[test]

@@ -8,10 +8,11 @@ use super::file::{LessonFile, MalfunctionFile};
 use super::sheet::Sheet;
 use super::shift::Shift;
 use super::start::Start;
-use crate::case::file::{CaseFile, DisturbanceFile, FaultFile};
+use crate::case::file::CaseFile;
 use crate::case::{Applied, Case, Catalogue};
 use crate::error::ScenarioError;
 use crate::load::Scenario;
+use crate::timed::Timed;
 
 /// The operation with which a malfunction begins.
 pub(super) fn begin(
@@ -118,14 +119,8 @@ fn prepared_case(scenario: &Scenario, name: &str) -> Result<(Case, Option<CaseFi
 /// Whether what goes wrong can be begun by somebody: no time says when.
 fn is_by_hand(file: &MalfunctionFile) -> bool {
     match (&file.fault, &file.disturbance) {
-        (Some(fault), None) => {
-            let FaultFile { from, until, when, nth, lasting, .. } = fault.get_ref();
-            from.is_none() && until.is_none() && when.is_none() && nth.is_none() && lasting.is_none()
-        }
-        (None, Some(disturbance)) => {
-            let DisturbanceFile { from, until, when, nth, lasting, .. } = disturbance.get_ref();
-            from.is_none() && until.is_none() && when.is_none() && nth.is_none() && lasting.is_none()
-        }
+        (Some(fault), None) => !fault.get_ref().says_when(),
+        (None, Some(disturbance)) => !disturbance.get_ref().says_when(),
         (None, None) | (Some(_), Some(_)) => false,
     }
 }
@@ -138,7 +133,7 @@ fn shift(scenario: &Scenario, start: &Start) -> Shift {
 /// Adds what a malfunction does to a case.
 fn add(entry: &mut CaseFile, malfunction: &Spanned<MalfunctionFile>, shift: Shift) {
     let file = malfunction.get_ref();
-    entry.faults.extend(file.fault.iter().map(|fault| shift.fault(fault)));
-    entry.disturbances.extend(file.disturbance.iter().map(|disturbance| shift.disturbance(disturbance)));
-    entry.forces.extend(file.force.iter().map(|force| shift.force(force)));
+    entry.faults.extend(file.fault.iter().map(|fault| shift.entry(fault)));
+    entry.disturbances.extend(file.disturbance.iter().map(|disturbance| shift.entry(disturbance)));
+    entry.forces.extend(file.force.iter().map(|force| shift.entry(force)));
 }

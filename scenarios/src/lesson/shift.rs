@@ -3,7 +3,8 @@
 use onescan_server::time::{TimeSpan, VirtualTime};
 use toml::Spanned;
 
-use crate::case::file::{DisturbanceFile, FaultFile, ForceFile, InputFile};
+use crate::case::file::InputFile;
+use crate::timed::Timed;
 
 /// Where a lesson begins, and how long a step is.
 #[derive(Clone, Copy, Debug)]
@@ -35,22 +36,12 @@ impl Shift {
         Spanned::new(input.span(), moved)
     }
 
-    pub(super) fn fault(self, fault: &Spanned<FaultFile>) -> Spanned<FaultFile> {
-        let mut moved = fault.get_ref().clone();
-        self.period(&mut moved.from, &mut moved.until, moved.when.is_some());
-        Spanned::new(fault.span(), moved)
-    }
-
-    pub(super) fn disturbance(self, disturbance: &Spanned<DisturbanceFile>) -> Spanned<DisturbanceFile> {
-        let mut moved = disturbance.get_ref().clone();
-        self.period(&mut moved.from, &mut moved.until, moved.when.is_some());
-        Spanned::new(disturbance.span(), moved)
-    }
-
-    pub(super) fn force(self, force: &Spanned<ForceFile>) -> Spanned<ForceFile> {
-        let mut moved = force.get_ref().clone();
-        self.period(&mut moved.from, &mut moved.until, moved.when.is_some());
-        Spanned::new(force.span(), moved)
+    /// The same for what has a beginning and an end.
+    pub(super) fn entry<Entry: Timed + Clone>(self, entry: &Spanned<Entry>) -> Spanned<Entry> {
+        let (mut moved, mut times) = (entry.get_ref().clone(), entry.get_ref().times());
+        self.period(&mut times.from, &mut times.until, times.when.is_some());
+        moved.set_times(times);
+        Spanned::new(entry.span(), moved)
     }
 }
 

@@ -21,6 +21,9 @@ pub struct Provenance {
     pub scenario: String,
     /// The scenario's folder within `scenario/`, empty if it is that itself.
     pub folder: String,
+    /// The scenario's file there, if it is not called `scenario.toml`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub file: Option<String>,
     /// The case of it that was tried, if one was.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub case: Option<String>,

@@ -13,7 +13,7 @@ use toml_edit::Item;
 use super::change::Texts;
 use super::error::{Changed, EditorError};
 use super::wire;
-use onescan_runner::error::Unreadable;
+use onescan_runner::error::{Unreadable, Usage};
 
 /// Where the files of a scenario are.
 #[derive(Clone, Debug)]
@@ -50,6 +50,7 @@ impl Files {
     /// All of them, as they are.
     pub(super) fn read(&self) -> Result<Texts, EditorError> {
         let scenario = regular::read_text(&self.path).map_err(Unreadable::at(&self.path))?;
+        refuse_base(&scenario)?;
         let mut texts = Texts { scenario, ..Texts::default() };
         for scene in scenes_of(&texts.scenario) {
             let path = self.folder().join(&scene);
@@ -88,6 +89,14 @@ impl Files {
         }
         Ok(write_all_whole(&writes)?)
     }
+}
+
+/// What a scenario takes in stands in another file, which the editor would not see.
+fn refuse_base(scenario: &str) -> Result<(), Usage> {
+    let Ok(document) = toml_edit::Document::parse(scenario) else { return Ok(()) };
+    let Some(base) = document.as_table().get("base").and_then(Item::as_str) else { return Ok(()) };
+    let help = format!("edit `{base}`, or make one file of both with `onescan show`");
+    Err(Usage::new(format!("the scenario takes in `{base}`, and one file is edited at a time"), Some(help)))
 }
 
 /// The files of the scenes that a scenario names; none where it is no TOML.

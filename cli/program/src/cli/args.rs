@@ -15,7 +15,7 @@ use super::falsify::FalsifyArgs;
 use super::minimise::MinimiseArgs;
 use super::model::ModelArgs;
 use super::mutate::MutateArgs;
-use super::plant::{ComponentsArgs, DescribeArgs, EditArgs, NewArgs, WiringArgs};
+use super::plant::{ComponentsArgs, DescribeArgs, EditArgs, NewArgs, ShowArgs, WiringArgs};
 use super::plc::{BrowseArgs, MapArgs, PlcArgs};
 use super::recording::{BisectArgs, DiffArgs, ExportArgs, ReportArgs, ViewArgs};
 use super::run::RunArgs;
@@ -146,6 +146,8 @@ pub enum Command {
     /// Tell and draw how the signals of a scenario connect its clients, and what is unconnected, doubly written
     /// or of unequal type
     Wiring(WiringArgs),
+    /// Print a scenario with everything that it takes in from its `base`, as one file that loads to the same session
+    Show(ShowArgs),
     /// Wire a scenario and build its machine in a browser of this machine; both are written into its files
     Edit(EditArgs),
     /// Write a scenario that runs at once, to begin with: a small one, or one made of an I/O list
@@ -193,6 +195,7 @@ pub fn dispatch(command: Command) -> Result<ExitCode, CommandError> {
         Command::Components(args) => plant::components(&args),
         Command::Describe(args) => plant::describe(&args),
         Command::Wiring(args) => plant::wiring(args),
+        Command::Show(args) => plant::show(args),
         Command::Edit(args) => plant::edit(args),
         Command::New(args) => plant::new(args),
         Command::Model(args) => model::model(args),

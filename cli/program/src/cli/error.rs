@@ -23,6 +23,7 @@ use onescan_regress::review::ReviewError;
 use onescan_runner::run::{RunError, SearchError};
 use onescan_runner::session::SessionError;
 use onescan_runner::shot::ShotError;
+use crate::show::ShowError;
 use onescan_runner::train::TrainError;
 use onescan_runner::view::ViewError;
 use onescan_edit::wiring::WiringError;
@@ -90,6 +91,9 @@ sum_of_errors! {
         /// `wiring` came to nothing.
         #[diagnostic(transparent)]
         Wiring(WiringError),
+        /// `show` came to nothing.
+        #[diagnostic(transparent)]
+        Show(ShowError),
         /// `edit` came to nothing.
         #[diagnostic(transparent)]
         Edit(EditorError),

@@ -25,7 +25,7 @@ pub struct MutateArgs {
     #[arg(long = "case", value_name = "NAME")]
     pub cases: Vec<String>,
     /// What is changed: `operator`, `constant`, `condition`, `statement`, `timer`; may be given several times [default: all]
-    #[arg(long = "kind", value_name = "KIND", value_parser = kind)]
+    #[arg(long = "kind", value_name = "KIND")]
     pub kinds: Vec<MutantKind>,
     /// Fail unless so many percent are noticed of those that can be told from the program
     #[arg(long, value_name = "PERCENT", value_parser = clap::value_parser!(u8).range(0..=100))]
@@ -39,11 +39,6 @@ pub struct MutateArgs {
     /// For people; or a JSON object a mutant, and one for all
     #[arg(long, value_enum, default_value_t)]
     pub format: FormatArg,
-}
-
-fn kind(text: &str) -> Result<MutantKind, String> {
-    let known = mutate::KINDS.into_iter().find(|kind| kind.word() == text);
-    known.ok_or_else(|| format!("write one of {}", mutate::KINDS.map(MutantKind::word).join(", ")))
 }
 
 /// Makes mistakes in a scenario's programs.

@@ -1,4 +1,4 @@
-//! With scenes and scenarios: `onescan components`, `describe`, `wiring`, `edit` and `new`.
+//! With scenes and scenarios: `onescan components`, `describe`, `wiring`, `show`, `edit` and `new`.
 
 use std::net::SocketAddr;
 use std::path::PathBuf;
@@ -16,6 +16,7 @@ use crate::new::{self, Template};
 use crate::plant::components::ComponentsConfig;
 use crate::plant::describe::DescribeConfig;
 use crate::plant::{components, describe};
+use crate::show::{self, ShowConfig};
 use onescan_edit::wiring::{self, WiringConfig};
 
 /// Options of `components`.
@@ -125,6 +126,26 @@ pub fn wiring(args: WiringArgs) -> Result<ExitCode, CommandError> {
     let config = WiringConfig { scenario: args.scenario, format: args.format.into(), svg: args.svg };
     let sound = wiring::write(&config, &mut std::io::stdout().lock())?;
     Ok(if sound { ExitCode::Ok } else { ExitCode::WrongInput })
+}
+
+/// Options of `show`.
+#[derive(Debug, ClapArgs)]
+pub struct ShowArgs {
+    /// The scenario: a folder with a `scenario.toml`, or a file of another name
+    pub scenario: PathBuf,
+    /// TOML for people, or JSON for machines
+    #[arg(long, value_enum, default_value_t)]
+    pub format: FormatArg,
+}
+
+/// Shows a scenario with its bases.
+///
+/// # Errors
+/// See [`CommandError`].
+pub fn show(args: ShowArgs) -> Result<ExitCode, CommandError> {
+    let config = ShowConfig { scenario: args.scenario, format: args.format.into() };
+    show::write(&config, &mut std::io::stdout().lock())?;
+    Ok(ExitCode::Ok)
 }
 
 /// Options of `edit`.

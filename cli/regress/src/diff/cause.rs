@@ -102,11 +102,9 @@ fn repeatable(recording: &Recording) -> Result<Repeatable, String> {
     if Mode::named(&header.provenance.mode) != Some(Mode::Lockstep) {
         return Err(format!("a run in mode {} cannot be repeated", header.provenance.mode));
     }
-    let scenario = Scenario::load_case(
-        &kept_as(&recording.scenario(), &header.provenance.scenario),
-        header.provenance.case.as_deref(),
-    )
-    .map_err(|error| error.to_string())?;
+    let kept = &header.provenance;
+    let path = kept_as(&recording.scenario(), &kept.scenario, kept.file.as_deref());
+    let scenario = Scenario::load_case(&path, kept.case.as_deref()).map_err(|error| error.to_string())?;
     if header.first_step.0 != 0 {
         return Err("the run went on from a checkpoint".to_owned());
     }

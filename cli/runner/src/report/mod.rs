@@ -92,7 +92,8 @@ fn recorded(folder: &Path, asked: Option<&Scenario>) -> Result<Recorded, ReportE
 
 /// The recorded scenario.
 fn own_scenario(recording: &Recording) -> Result<Scenario, ReportError> {
-    Ok(Scenario::load(&kept_as(&recording.scenario(), &recording.header().provenance.scenario))?)
+    let kept = &recording.header().provenance;
+    Ok(Scenario::load(&kept_as(&recording.scenario(), &kept.scenario, kept.file.as_deref()))?)
 }
 
 fn measured(recording: &Recording, measures: &Measures) -> Result<Report, ReportError> {

@@ -8,6 +8,7 @@ use onescan_recording::recorder::{EVENTS, HEADER};
 use onescan_recording::{Provenance, Recorder, Recording, SourceFile};
 use onescan_report::OutputError;
 use onescan_report::{FileError, file};
+use onescan_scenario::load::FILE_NAME;
 use onescan_scenario::{Mode, Scenario, ScenarioError, permission};
 use onescan_server::signal::ClientName;
 use onescan_server::time::VirtualTime;
@@ -42,6 +43,7 @@ impl Recorded {
             onescan: env!("CARGO_PKG_VERSION").to_owned(),
             scenario: scenario.name().to_owned(),
             folder: own_folder,
+            file: unusual_name(scenario.path()),
             case: subject.case.clone(),
             operated: operated.to_vec(),
             mode: mode.name().to_owned(),
@@ -131,6 +133,12 @@ fn copy_scenario(scenario: &Scenario, target: &Path) -> Result<(String, Vec<Sour
     }
     copied.sort_by(|a, b| a.path.cmp(&b.path));
     Ok((with_slashes(&own_folder), copied))
+}
+
+/// The name of a scenario's file that is not called as usual.
+fn unusual_name(path: &Path) -> Option<String> {
+    let name = path.file_name().filter(|name| *name != FILE_NAME)?;
+    Some(name.to_string_lossy().into_owned())
 }
 
 /// The scenario's folder below the topmost that its files lead to by `..`.

@@ -45,7 +45,8 @@ impl Recorded {
             );
         }
         let steps = recording.steps().ok_or_else(|| refuse("it has no step".to_owned()))?;
-        let path = kept_as(&recording.scenario(), &header.provenance.scenario);
+        let kept = &header.provenance;
+        let path = kept_as(&recording.scenario(), &kept.scenario, kept.file.as_deref());
         let mut scenario = Scenario::load_case(&path, header.provenance.case.as_deref())?;
         for client in &header.provenance.operated {
             scenario.operate(client)?;

@@ -70,7 +70,7 @@ impl Subject {
         let mut hasher = blake3::Hasher::new();
         let mut files = scenario.files()?;
         files.extend(campaign.program_files().map(PathBuf::from));
-        files.extend(onescan_scenario::case::beside(scenario.path()).file_name().map(PathBuf::from));
+        files.push(scenario.cases_file()?);
         files.sort();
         files.dedup();
         for name in files {

@@ -17,7 +17,6 @@ mod trial;
 
 use std::io::Write;
 
-use onescan_iec_project::mutate::MutantKind;
 use onescan_iec::source::LineColumn;
 use onescan_report::{OutputError, file};
 use onescan_scenario::Scenario;
@@ -113,6 +112,3 @@ fn nothing(scenario: &Scenario, client: Option<&ClientName>) -> Usage {
     Usage::new(message, did_you_mean(client.as_str(), names))
 }
 
-/// What may be changed, as it is typed.
-pub const KINDS: [MutantKind; 5] =
-    [MutantKind::Operator, MutantKind::Constant, MutantKind::Condition, MutantKind::Statement, MutantKind::Timer];

@@ -116,6 +116,7 @@ fn recorded(scratch: &Path) -> PathBuf {
         onescan: "0".to_owned(),
         scenario: "shear".to_owned(),
         folder: String::new(),
+        file: None,
         case: None,
         operated: Vec::new(),
         mode: "lockstep".to_owned(),

@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use onescan_base::did_you_mean;
+use onescan_base::field::{DEPTH_MAX, Field, is_room};
 use onescan_server::signal::SignalType;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -19,8 +20,6 @@ use crate::gateway::fault::MappingFault;
 
 /// The largest block; a data block of an S7 has no more.
 const BLOCK_BYTES_MAX: usize = 65_534;
-/// How deep structures may lie in structures.
-const DEPTH_MAX: u32 = 8;
 
 /// The blocks as a scenario declares them. A field is written `Name: TYPE`, the type elementary or a
 /// structure's name; fields named `_` are room that nobody uses.
@@ -267,11 +266,10 @@ struct Ruler<'d> {
 
 impl Ruler<'_> {
     fn field(&mut self, prefix: &str, field: &str, depth: u32) -> Result<(), MappingFault> {
-        let Some((name, ty)) = field.split_once(':') else {
+        let Some(Field { name, ty }) = Field::parse(field) else {
             let message = format!("`{field}` is no field: write `Name: TYPE`");
             return Err(MappingFault::new(field, message));
         };
-        let (name, ty) = (name.trim(), ty.trim());
         let path = if prefix.is_empty() { name.to_owned() } else { format!("{prefix}.{name}") };
         self.add(&path, ty, depth)
     }
@@ -286,8 +284,7 @@ impl Ruler<'_> {
             return Err(MappingFault::new(path, message).with_help(help));
         };
         let place = self.place(path, elementary)?;
-        let is_room = path.rsplit('.').next() == Some("_");
-        if !is_room && self.places.insert(path.to_owned(), place).is_some() {
+        if !is_room(path) && self.places.insert(path.to_owned(), place).is_some() {
             return Err(MappingFault::new(path, format!("field `{path}` is declared twice")));
         }
         Ok(())
