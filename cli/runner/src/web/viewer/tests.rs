@@ -14,9 +14,9 @@ use crate::web::entry::Entry;
 use crate::web::training::{Role, Training, TurnQueue};
 use crate::web::{Session, Source};
 
-const SCENE: &str = include_str!("../../../../scenarios/templates/cell/plant.toml");
-const PROGRAM: &str = include_str!("../../../../scenarios/templates/cell/plc/main.st");
-const SCENARIO: &str = include_str!("../../../../scenarios/templates/cell/scenario.toml");
+const SCENE: &str = include_str!("../../../../../scenarios/templates/cell/plant.toml");
+const PROGRAM: &str = include_str!("../../../../../scenarios/templates/cell/plc/main.st");
+const SCENARIO: &str = include_str!("../../../../../scenarios/templates/cell/scenario.toml");
 const PANELS: &str = r#"
 [clients.desk]
 kind = "operator"
