@@ -58,7 +58,7 @@ pub(crate) fn of(schema: &Value, way: Way) -> String {
     if let Some(one) = without_null(schema) {
         return format!("{} | null", of(&one, way));
     }
-    if !schema["$ref"].is_null() {
+    if !schema["$ref"].is_null() && schema["properties"].is_null() {
         return name_of(schema).to_owned();
     }
     if let Some(word) = schema["const"].as_str() {

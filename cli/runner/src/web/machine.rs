@@ -35,9 +35,16 @@ pub struct Body {
 #[schemars(extend("x-check" = "shape"))]
 pub(super) enum Shape {
     None,
-    Box { size_m: [f64; 3] },
-    Sphere { radius_m: f64 },
-    Cylinder { radius_m: f64, length_m: f64 },
+    Box {
+        size_m: [f64; 3],
+    },
+    Sphere {
+        radius_m: f64,
+    },
+    Cylinder {
+        radius_m: f64,
+        length_m: f64,
+    },
     /// A cylinder or a cone, without ends if it is open.
     Round {
         radius_m: f64,
@@ -46,9 +53,15 @@ pub(super) enum Shape {
         #[schemars(default)]
         open: bool,
     },
-    Capsule { radius_m: f64, length_m: f64 },
+    Capsule {
+        radius_m: f64,
+        length_m: f64,
+    },
     /// Positions are flat triples, indices flat triangles.
-    Mesh { positions_m: Vec<f64>, indices: Vec<u32> },
+    Mesh {
+        positions_m: Vec<f64>,
+        indices: Vec<u32>,
+    },
 }
 
 fn upright() -> [f64; 4] {
