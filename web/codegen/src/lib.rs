@@ -300,7 +300,7 @@ mod tests {
             r#"check_shape(field, "#,
             r#"      return field.unknown("type", type);"#,
             r#"  | { readonly type: "watch"; readonly variables: readonly number[]; readonly one?: number | null }"#,
-            r#"  | ({ readonly type: "train" } & ("#,
+            r#"  | ({ readonly type: "train" } & Turn)"#,
             r#"| `status` | `state: "run" \| "hold"`<br>`failed?: string[]`<br>`past_ns?: [number, number] \| null` | How it is. |"#,
             r#"| `live` |  | Nothing. |"#,
         ] {
