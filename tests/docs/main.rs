@@ -1,9 +1,11 @@
-//! The repository's Markdown: its links lead somewhere, the index lists every document, and the manuals name every key.
+//! The repository's Markdown: its links lead somewhere, the index lists every document, the manuals name every key, and
+//! the page of modules has the tables of the sources.
 
 mod keys;
 mod libraries;
 mod links;
 mod markdown;
+mod rooms;
 
 use std::path::{Path, PathBuf};
 
