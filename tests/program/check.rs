@@ -72,7 +72,7 @@ fn a_dialect_is_told_by_name_flag_and_scenario() {
     assert_eq!(checked(shear.path(), &["."]).code, Some(0));
     edit(shear.path(), "scenario.toml", "\"codesys\"", "\"s7\"");
     let said = checked(shear.path(), &["."]);
-    assert!(said.code == Some(2) && said.err.contains("`s7` is no dialect"), "{said:?}");
+    assert!(said.code == Some(2) && said.err.contains("`s7` is not a dialect"), "{said:?}");
 }
 
 #[test]

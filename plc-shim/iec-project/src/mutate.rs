@@ -200,7 +200,7 @@ impl Finder<'_> {
     fn operator(&mut self, left: Span, operator: BinaryOp, right: Span) {
         let between = Span::new(left.file, left.end, right.start);
         let tokens = tokenize_in(self.file.dialect(), self.text(between));
-        // Brackets around the operands stand between them, too; they are no operators.
+        // Brackets around the operands stand between them, too; they are not operators.
         let spelt = |start: u32, end: u32| {
             self.text(Span::new(left.file, left.end + start, left.end + end)).to_ascii_uppercase()
         };

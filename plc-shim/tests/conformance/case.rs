@@ -73,7 +73,7 @@ impl Case {
         } else if let Some((path, values)) = line.split_once(" = ") {
             self.wanted.push(Row::new(path, values));
         } else {
-            let (word, value) = line.split_once(':').ok_or("this is no line of a trace")?;
+            let (word, value) = line.split_once(':').ok_or("this is not a line of a trace")?;
             self.setting(word.trim(), value.trim())?;
         }
         Ok(())
@@ -86,13 +86,13 @@ impl Case {
 
     fn setting(&mut self, word: &str, value: &str) -> Result<(), String> {
         match word {
-            "scans" => self.scans = value.parse().map_err(|_| "this is no number")?,
+            "scans" => self.scans = value.parse().map_err(|_| "this is not a number")?,
             "interval" => {
-                let ns = cell::duration_ns(value).ok_or("this is no duration")?;
+                let ns = cell::duration_ns(value).ok_or("this is not a duration")?;
                 let interval = u64::try_from(ns).ok().and_then(TimeSpan::from_nanos);
-                self.interval = Some(interval.ok_or("this is no interval")?);
+                self.interval = Some(interval.ok_or("this is not an interval")?);
             }
-            "dialect" => self.dialect = Some(Dialect::find(value).ok_or("this is no dialect")?),
+            "dialect" => self.dialect = Some(Dialect::find(value).ok_or("this is not a dialect")?),
             "restart" => self.restarts = value.split_whitespace().map(str::to_owned).collect(),
             "fault" => self.fault = Some(value.to_owned()),
             "findings" => self.findings = Some(value.split_whitespace().map(str::to_owned).collect()),

@@ -1,5 +1,5 @@
 //! The suite in lockstep: each case as it is, instrumented and not simulated, and instrumented under the scheduler with
-//! a grant a scan, side by side. All three hold the same after every scan, bit for bit. Once as text, once as
+//! one grant per scan, side by side. All three hold the same after every scan, bit for bit. Once as text, once as
 //! PLCopen XML for CODESYS, in whose dialect the cases are then read, and once written in SCL for TIA Portal.
 
 use std::collections::{BTreeMap, BTreeSet};

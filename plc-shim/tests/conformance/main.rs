@@ -3,7 +3,7 @@
 //!
 //! A case is a file in `cases/`, named by edition and clause. Adding one is all that is needed; the
 //! table in `CONFORMANCE.md` must name it. It is a program like any other, with a comment that
-//! says what its variables hold, one column a scan:
+//! says what its variables hold, one column per scan:
 //!
 //! ```text
 //! (* TRACE

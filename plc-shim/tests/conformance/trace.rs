@@ -63,7 +63,7 @@ impl Run {
             Some("warm") => self.plc.warm_start(),
             Some("cold") => self.plc.cold_start(),
             Some("-") | None => {}
-            Some(other) => return Err(format!("`{other}` is no start")),
+            Some(other) => return Err(format!("`{other}` is not a start")),
         }
         for row in &case.given {
             give(&mut self.plc, &self.prefix, row, scan)?;
@@ -107,7 +107,7 @@ pub(crate) fn give(plc: &mut SoftPlc, prefix: &str, row: &Row, scan: usize) -> R
 }
 
 fn encoded(value: &str, variable: &Variable) -> Result<Vec<u8>, String> {
-    cell::bytes(value, variable).ok_or_else(|| format!("`{value}` is no value of {}", variable.type_name))
+    cell::bytes(value, variable).ok_or_else(|| format!("`{value}` is not a value of {}", variable.type_name))
 }
 
 fn same_outcome(wanted: Option<&str>, outcome: Result<(), PlcFault>) -> Result<(), String> {

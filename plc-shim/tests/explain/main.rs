@@ -29,7 +29,7 @@ fn codes_of((language, text): (&str, &str)) -> Vec<&'static str> {
             let bytes = text.split_whitespace().map(|byte| u8::from_str_radix(byte, 16).expect("a byte"));
             Input::read("example.st", SourceKind::Text, &bytes.collect::<Vec<_>>())
         }
-        other => panic!("{other:?} is no language of examples"),
+        other => panic!("{other:?} is not a language of examples"),
     };
     let findings = if instrumented {
         match onescan_iec_project::instrument::instrument(&[input], &onescan_iec_project::instrument::Options::default()) {

@@ -1,4 +1,4 @@
-//! The outputs of blocks over time (2.4.1): one column a scan.
+//! The outputs of blocks over time (2.4.1): one column per scan.
 
 use std::fmt::Write;
 

@@ -480,6 +480,6 @@ fn a_plan_of_ones_own_goes_before_the_configuration() {
     let read = |path: &str| plc.memory()[plc.variable(path).expect("there").offset as usize];
     assert_eq!((read("P1.c.n"), read("P2.c.n")), (0, 1));
     let plan = TaskPlan::new(vec![crate::rig::task("own", 5, 0, &["Pump"])]);
-    let error = SoftPlc::new(&application, &plan).expect_err("the program is no instance");
+    let error = SoftPlc::new(&application, &plan).expect_err("the program is not an instance");
     assert_eq!(error.to_string(), "task `own` runs program `Pump`, which is not declared");
 }

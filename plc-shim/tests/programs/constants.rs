@@ -91,7 +91,7 @@ fn constants_are_told_from_variables() {
     );
 }
 
-/// A wrong value is no finding of the sources, which may have findings of their own.
+/// A wrong value is not a finding of the sources, which may have findings of their own.
 #[test]
 fn who_is_to_blame_is_said() {
     let wrong = builder(TEXT).constant("Main.a", "TRUE").build();
@@ -156,5 +156,5 @@ fn constants_of_plcopen_xml_are_set() {
     assert_eq!(values(file(), &["Main.x"]), ["11"]);
     assert_eq!(values(file().constant("Main.k", "5"), &["Main.x"]), ["15"]);
     let error = file().constant("Main.k", "'text'").build().expect_err("an INT");
-    assert!(error.to_string().starts_with("`'text'` is no value of `Main.k`: "), "{error}");
+    assert!(error.to_string().starts_with("`'text'` is not a value of `Main.k`: "), "{error}");
 }

@@ -1,4 +1,4 @@
-//! Timing diagrams, one column a scan.
+//! Timing diagrams, one column per scan.
 
 use std::fmt::Write;
 

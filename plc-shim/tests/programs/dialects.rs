@@ -197,7 +197,7 @@ fn every_construct_is_for_its_dialects_alone() {
     }
 }
 
-/// Constructs whose absence is no syntax of its own: another error says it.
+/// Constructs whose absence is not a syntax of its own: another error says it.
 const TOLD_OTHERWISE: [Feature; 45] = [
     Feature::LoneOutputs,
     Feature::IntegerParts,
@@ -512,7 +512,7 @@ fn the_clock_is_virtual_time() {
     let mut rig = Rig::in_dialect(Dialect::Codesys, text);
     rig.scan().expect("no fault");
     assert_eq!((rig.int("P.t"), rig.int("P.l")), (10_000_000, 10_000_000));
-    // 32 bits of milliseconds begin anew after 49.7 days.
+    // 32 bits of milliseconds restart after 49.7 days.
     rig.now_ns = (1_u64 << 32) * 1_000_000;
     rig.scan().expect("no fault");
     assert_eq!(rig.int("P.t"), 10_000_000);

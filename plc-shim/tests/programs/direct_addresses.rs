@@ -100,14 +100,14 @@ fn an_address_that_the_program_does_not_use_is_unknown() {
 #[test]
 fn wrong_addresses_are_told() {
     let statements = [
-        ("%IX1.8 := TRUE;", "test.st:1:24: error[R0901]: `%IX1.8` is no direct address: a byte has the bits 0 to 7"),
+        ("%IX1.8 := TRUE;", "test.st:1:24: error[R0901]: `%IX1.8` is not a direct address: a byte has the bits 0 to 7"),
         (
             "%QZ1 := 1;",
-            "test.st:1:24: error[R0901]: `%QZ1` is no direct address: behind the area stands X, B, W, D, L or a number",
+            "test.st:1:24: error[R0901]: `%QZ1` is not a direct address: behind the area stands X, B, W, D, L or a number",
         ),
         (
             "%MD999999 := 1;",
-            "test.st:1:24: error[R0901]: `%MD999999` is no direct address: an area ends at byte 1048575",
+            "test.st:1:24: error[R0901]: `%MD999999` is not a direct address: an area ends at byte 1048575",
         ),
         ("%QX* := TRUE;", "test.st:1:24: error[R0901]: `%QX*` is open, so it stands in declarations only"),
         ("%QX0.0 := 2;", "test.st:1:34: error[T0202]: 2 does not fit BOOL (0 to 1)"),

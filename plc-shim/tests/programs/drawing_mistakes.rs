@@ -21,14 +21,14 @@ fn elements_of_a_chart_that_cannot_be_read() {
     insta::assert_snapshot!(told(LEVEL, "<v n=\"EnEno\">false", "<v n=\"EnEno\">true"), @"Drawing.TcPOU:45:19: error[L0501]: EN and ENO of `ADD` (element 25) in a chart is not supported yet");
     insta::assert_snapshot!(told(LEVEL, "\"SetReset\">Set<", "\"SetReset\">Toggle<"), @"Drawing.TcPOU:464:21: error[L0501]: what a pin does with its value (element 96) is not supported yet");
     insta::assert_snapshot!(told(LEVEL, "t=\"SetResetRef\">None", "t=\"SetResetRef\">Ref"), @"Drawing.TcPOU:20:21: error[L0501]: an assignment of a reference at a pin (element 13) is not supported yet");
-    insta::assert_snapshot!(told(LEVEL, "\"times + 1\"", "\"times +\""), @"Drawing.TcPOU:586:36: error[S0101]: `times +` is no expression");
+    insta::assert_snapshot!(told(LEVEL, "\"times + 1\"", "\"times +\""), @"Drawing.TcPOU:586:36: error[S0101]: `times +` is not an expression");
     insta::assert_snapshot!(told(LEVEL, "\"times + 1\"", "\"LEN(\"x\")\""), @r#"Drawing.TcPOU:586:36: error[L0501]: `"` in an expression of a drawing is not supported yet"#);
 }
 
 #[test]
 fn lines_of_a_chart_that_lead_nowhere() {
     let without_a_line = LEVEL.replace("SourcePinId", "Nothing");
-    insta::assert_snapshot!(findings(&without_a_line).lines().next().unwrap_or(""), @"Drawing.TcPOU:48:25: error[G1102]: the line to the pin 17 does not tell where it begins");
+    insta::assert_snapshot!(findings(&without_a_line).lines().next().unwrap_or(""), @"Drawing.TcPOU:48:25: error[G1102]: the connection to pin 17 has no source");
     let cut = |id: u32| {
         let from = format!("<v n=\"DestPinId\">{id}L</v>");
         told(LEVEL, &from, "<v n=\"DestPinId\">9999L</v>")
@@ -97,7 +97,7 @@ fn an_edge_in_a_function() {
 #[test]
 fn elements_of_a_sequential_chart_that_cannot_be_read() {
     insta::assert_snapshot!(told(VESSEL, "\"Fill\"", "\"\""), @r"
-    Drawing.TcPOU:103:33: error[F0602]: `` is no name of a step (element 28)
+    Drawing.TcPOU:103:33: error[F0602]: `` is not the name of a step (element 28)
     Drawing.TcPOU:364:21: error[F0602]: there is no step before this transition
     Drawing.TcPOU:379:21: error[Q1208]: step `Check` can never be active
     ");
@@ -110,11 +110,11 @@ fn elements_of_a_sequential_chart_that_cannot_be_read() {
     insta::assert_snapshot!(told(VESSEL, "<v n=\"Value\">\"TRUE\"", "<v n=\"Value\">\"FALSE\""), @"Drawing.TcPOU:17:21: error[Q1203]: no step is the initial one (write `INITIAL_STEP Idle:`)");
     insta::assert_snapshot!(told(VESSEL, "go, bad", "go, SFCPause, bad"), @"Drawing.TcPOU:4:5: error[L0501]: the variable `SFCPause`, which governs a chart, is not supported yet");
     insta::assert_snapshot!(told(VESSEL, "turns >= 2;", "Stirred := turns >= 2;"), @r"
-    Drawing.TcPOU:744:9: error[L0501]: the transition `Stirred` that is no single expression is not supported yet
+    Drawing.TcPOU:744:9: error[L0501]: the transition `Stirred` that is not a single expression is not supported yet
     Drawing.TcPOU:264:33: error[Q1208]: step `Rest` can never be active
     ");
     insta::assert_snapshot!(told(VESSEL, "\"quit\"", "\"quit AND\""), @r"
-    Drawing.TcPOU:537:55: error[S0101]: `quit AND` is no expression
+    Drawing.TcPOU:537:55: error[S0101]: `quit AND` is not an expression
     Drawing.TcPOU:465:33: warning[Q1212]: no transition leads on from `Alarm`
     ");
 }

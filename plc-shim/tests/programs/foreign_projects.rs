@@ -215,7 +215,7 @@ fn an_enumeration_is_shifted_as_its_number() {
     for dialect in VENDORS {
         assert_eq!(values(dialect, text, 1, ["x", "y"]), [8, 8], "{dialect}");
     }
-    // Without a base type it is no number in the standard.
+    // Without a base type it is not a number in the standard.
     let plain = text.replace(" BYTE; END_TYPE", "; END_TYPE");
     assert!(findings_in(Iec3, &plain).iter().any(|found| found.code.text() == "T0201"));
 }

@@ -142,7 +142,7 @@ END_FUNCTION_BLOCK
     insta::assert_snapshot!(used("f1 : F<k>;"), @"test.st:6:31: error[T0204]: a constant is wanted here");
     insta::assert_snapshot!(used("f1 : F<300>;"), @"test.st:6:31: error[T0202]: 300 does not fit USINT (0 to 255)");
     insta::assert_snapshot!(used("f1 : F<1.5>;"), @"test.st:6:31: error[T0201]: an integer is wanted, this is a real number");
-    insta::assert_snapshot!(used("f1 : TON<1>;"), @"test.st:6:29: error[C0303]: `TON` is no generic block");
+    insta::assert_snapshot!(used("f1 : TON<1>;"), @"test.st:6:29: error[C0303]: `TON` is not a generic block");
     insta::assert_snapshot!(used("f1 : G<1>;"), @"test.st:6:29: error[N0103]: type `G<1>` is not declared");
     insta::assert_snapshot!(used("f1 : F<>;"), @"test.st:6:30: error[S0101]: `;` expected, found `<>`");
     insta::assert_snapshot!(used("f1 : F<2>;"), @"");

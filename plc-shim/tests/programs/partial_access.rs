@@ -60,10 +60,10 @@ fn wrong_parts_are_told() {
         ("b := w.%B2;", "test.st:2:6: error[R0903]: WORD has the parts 0 to 1 of this width, not 2"),
         ("w := w.%W0;", "test.st:2:6: error[R0903]: WORD has no parts of 16 bits"),
         ("l := l.%L0;", "test.st:2:6: error[R0903]: LWORD has no parts of 64 bits"),
-        ("x := w.%Y0;", "test.st:2:8: error[R0903]: `%Y0` is no part: write %X, %B, %W or %D and a number"),
+        ("x := w.%Y0;", "test.st:2:8: error[R0903]: `%Y0` is not a part: write %X, %B, %W or %D and a number"),
         (
             "x := w.%X99999999999;",
-            "test.st:2:8: error[R0903]: `%X99999999999` is no part: write %X, %B, %W or %D and a number",
+            "test.st:2:8: error[R0903]: `%X99999999999` is not a part: write %X, %B, %W or %D and a number",
         ),
         ("x := i.%X16;", "test.st:2:6: error[R0903]: INT has the parts 0 to 15 of this width, not 16"),
         ("x := i.16;", "test.st:2:6: error[R0903]: INT has the parts 0 to 15 of this width, not 16"),

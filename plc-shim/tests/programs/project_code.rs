@@ -166,7 +166,7 @@ fn plain_text_names_its_dialect() {
     let unknown = text.replace("twincat", "twinkat");
     let found = onescan_iec_run::Application::from_sources([("a.st", unknown.as_str())]).expect_err("no dialect");
     insta::assert_snapshot!(found, @r"
-    a.st:1:27: error[S0110]: `twinkat` is no dialect: iec2, iec3, codesys, twincat, siemens-scl, matiec
+    a.st:1:27: error[S0110]: `twinkat` is not a dialect: iec2, iec3, codesys, twincat, siemens-scl, matiec
     a.st:1:74: error[S0110]: `S=`, `R=` is not part of iec3 (it is part of codesys and twincat: --dialect chooses)
     ");
 }
@@ -285,7 +285,7 @@ fn what_gives_a_reference_is_a_variable() {
          FUNCTION_BLOCK Holder PROPERTY Kept : DINT GET Kept := 1; END_GET END_PROPERTY END_FUNCTION_BLOCK
          PROGRAM P VAR h : Holder; c : Counter; END_VAR c(n := h.Kept); END_PROGRAM",
     );
-    assert!(found.to_string().contains("`Kept` is a property, which is no variable"), "{found}");
+    assert!(found.to_string().contains("`Kept` is a property, which is not a variable"), "{found}");
 }
 
 #[test]

@@ -160,7 +160,7 @@ fn views_that_would_show_something_else_are_refused() {
     insta::assert_snapshot!(findings_in(SiemensScl, text), @r"
     test.st:1:74: error[L0501]: a view `AT` of or as STRING[9] is not supported (BOOL, bit strings, integers, reals, CHAR, and arrays and structures of them have the same form there)
     test.st:2:11: error[R0902]: `big` has 4 bytes, and `c` 2 (a view is no larger than what it looks at)
-    test.st:2:37: error[N0101]: `x` is no variable of this block
+    test.st:2:37: error[N0101]: `x` is not a variable of this block
     test.st:3:19: error[L0501]: `i` has a view, and counts turns (count with another variable)
     test.st:5:69: error[L0501]: A, B lie in the same memory, and each may be written here (write one of them, or hand over a copy)
     ");

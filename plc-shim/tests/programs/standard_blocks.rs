@@ -1,4 +1,4 @@
-//! Timing diagrams of the standard function blocks, one column a scan.
+//! Timing diagrams of the standard function blocks, one column per scan.
 
 use crate::rig::Rig;
 

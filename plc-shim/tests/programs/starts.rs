@@ -1,4 +1,4 @@
-//! What runs before the first scan: `FB_init`, `FB_exit` (CODESYS, TwinCAT), initial values that are no
+//! What runs before the first scan: `FB_init`, `FB_exit` (CODESYS, TwinCAT), initial values that are not
 //! constants.
 
 use onescan_iec::Dialect;

@@ -57,7 +57,7 @@ fn read_outside(pou: &Pou, chart: &Pou) -> Vec<Diagnostic> {
     found.collect()
 }
 
-/// Transitions that enter a step anew whose time is read.
+/// Transitions that enter a step again whose time is read.
 fn restarting(pou: &Pou, reads: &Reads) -> Vec<Diagnostic> {
     let restarts = |transition: &&Transition| {
         let timed = |step: &&Ident| reads.times.iter().any(|(name, _)| name.key() == step.key());

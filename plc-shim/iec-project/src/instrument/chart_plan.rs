@@ -11,7 +11,9 @@ use super::template::{self, ChartController, Number};
 use onescan_iec::source::edits::Edits;
 use onescan_iec::syntax::SourceFile;
 use onescan_iec::syntax::Span;
-use onescan_iec::syntax::ast::{ActionQualifier, Association, ChartStep, Expr, ExprKind, Ident, MemberKind, Pou, PouKind};
+use onescan_iec::syntax::ast::{
+    ActionQualifier, Association, ChartStep, Expr, ExprKind, Ident, MemberKind, Pou, PouKind,
+};
 use onescan_iec::syntax::walk::{self, Visitor};
 
 /// The action that runs in every scan of the unit's own chart.

@@ -4,13 +4,13 @@ use super::plain::Plain;
 use super::target::Source;
 use super::tasks::shortest;
 use super::{Attached, File, InstrumentError, marks};
-use onescan_iec::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::output::plcopen::configuration::Cycle;
 use crate::output::{Refused, plcopen};
-use onescan_iec::task_plan::Task;
+use onescan_iec::diagnostic::{Code, Diagnostic, Diagnostics};
 use onescan_iec::syntax::ast::CompilationUnit;
 use onescan_iec::syntax::parser::parse_source;
 use onescan_iec::syntax::{FileId, SourceFile, Span};
+use onescan_iec::task_plan::Task;
 
 /// The whole project with its shim, from its text with the shim attached.
 pub(super) fn port(plain: &Plain, attached: &Attached) -> Result<Source, InstrumentError> {

@@ -6,12 +6,12 @@ use super::marks;
 use super::single;
 use super::tasks::{self, ALWAYS, TaskTable};
 use onescan_iec::diagnostic::{Code, Diagnostic};
-use onescan_iec::task_plan::Task;
 use onescan_iec::source::edits::Edits;
 use onescan_iec::syntax::SourceFile;
 use onescan_iec::syntax::ast::{Configuration, Connection, Ident, Resource, TaskDeclaration};
 use onescan_iec::syntax::constant::{self, Constant, Constants};
 use onescan_iec::syntax::lexer::tokenize_in;
+use onescan_iec::task_plan::Task;
 
 /// The name of an instance of a program, as tasks have it.
 pub(super) fn entry_name(resource: &Resource, instance: &Ident) -> String {
@@ -147,14 +147,14 @@ fn rest(text: &str, from: u32) -> &str {
     text.get(from as usize..).unwrap_or("")
 }
 
-/// The first token behind `at` that is no blank or comment.
+/// The first token behind `at` that is not a blank or comment.
 fn token_behind(file: &SourceFile, at: u32) -> Option<std::ops::Range<usize>> {
     let tokens = tokenize_in(file.dialect(), file.text());
     let behind = tokens.iter().find(|token| token.start >= at && !token.kind.is_trivia());
     behind.map(|token| token.start as usize..token.end as usize)
 }
 
-/// Where the last token before `at` begins that is no blank or comment.
+/// Where the last token before `at` begins that is not a blank or comment.
 fn token_before(file: &SourceFile, at: u32) -> Option<u32> {
     let tokens = tokenize_in(file.dialect(), file.text());
     let before = tokens.iter().rev().find(|token| token.end <= at && !token.kind.is_trivia());

@@ -82,12 +82,12 @@ impl Carrier {
     }
 }
 
-/// Where a scenario wants an exchanged variable; an error text if that is no place for it.
+/// Where a scenario wants an exchanged variable; an error text if that is not a place for it.
 pub(super) fn wanted(exchanged: &Exchanged, carrier: Carrier) -> Result<Option<Address>, String> {
     let Some(text) = &exchanged.address else { return Ok(None) };
     let name = &exchanged.signal;
     let found = Address::parse(text).or_else(|| Address::at_modbus(text));
-    let address = found.ok_or_else(|| format!("`{name}` is to lie at `{text}`, which is no address"))?;
+    let address = found.ok_or_else(|| format!("`{name}` is to lie at `{text}`, which is not an address"))?;
     if address.width() != carrier.width {
         return Err(format!("`{name}` is {}, and {address} does not hold that", exchanged.ty));
     }

@@ -13,16 +13,16 @@ use super::taken_over::{self, Handover};
 use super::target::{Source as Own, Target};
 use super::tasks::{Entry, Line, TaskTable, literal};
 use super::{InstrumentError, Options, Project, attach, entries, marks, motion_use};
+use crate::output::matiec::{self, Cycle, Globals, Unsaid};
 use onescan_iec::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
 use onescan_iec::dialect::Dialect;
 use onescan_iec::input::Input;
 use onescan_iec::input::kind::SourceKind;
-use crate::output::matiec::{self, Cycle, Globals, Unsaid};
-use onescan_iec::task_plan::Task;
 use onescan_iec::source::edits::Edits;
 use onescan_iec::syntax::ast::{CompilationUnit, Declaration, Pou, Section};
 use onescan_iec::syntax::parser::parse_source;
 use onescan_iec::syntax::{FileId, SourceFile, Span};
+use onescan_iec::task_plan::Task;
 
 /// The file that the tool takes.
 const NAME: &str = "sdsp.st";
@@ -254,7 +254,8 @@ impl Layout {
         let used = own.chain(asked).filter_map(|text| Address::parse(text).or_else(|| Address::at_modbus(text)));
         let used: Vec<Address> = used.collect();
         let words_at = options.words_at.as_deref().map(|text| {
-            Address::parse(text).ok_or_else(|| format!("`{text}` is no address such as %MD0, where words could begin"))
+            Address::parse(text)
+                .ok_or_else(|| format!("`{text}` is not an address such as %MD0, where words could begin"))
         });
         let room = Room::beside(used.into_iter(), words_at.transpose()?);
         let mut layout = Self { room, globals, addresses: BTreeMap::new(), located: Vec::new() };

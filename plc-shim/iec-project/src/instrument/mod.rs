@@ -86,11 +86,11 @@ use self::tasks::{Entry, Line, TaskTable};
 use onescan_iec::diagnostic::{Diagnostics, Severity};
 use onescan_iec::input::Input;
 use onescan_iec::input::encoding::Encoding;
-use onescan_iec::task_plan::Task;
-use onescan_iec_run::run::RunError;
 use onescan_iec::source::edits::{Conflict, LineMap};
 use onescan_iec::syntax::ast::{Configuration, ProgramDeclaration};
 use onescan_iec::syntax::parser::parse_source;
+use onescan_iec::task_plan::Task;
+use onescan_iec_run::run::RunError;
 
 /// How a project is to be instrumented.
 #[derive(Debug, Clone, Default)]

@@ -8,8 +8,8 @@ use std::sync::OnceLock;
 
 use super::target::Target;
 use super::template;
-use onescan_iec::front::library;
 use crate::output::scl;
+use onescan_iec::front::library;
 use onescan_iec::syntax::ast::{CompilationUnit, Declaration, Pou, PouKind, SectionKind, TypeSpecKind};
 use onescan_iec::syntax::{FileId, SourceFile, SourceMap, parse};
 

@@ -200,7 +200,8 @@ impl Reader {
             Some(Kind::Block(block)) => {
                 let known = self.blocks.get_mut(&block).is_some_and(|uses| note(&block, uses, &key));
                 if !known && !motion::is_axis(&block, &key) {
-                    let message = format!("`{}` is no input or output of PLCopen's `{}`", name.text, spelled(&block));
+                    let message =
+                        format!("`{}` is not an input or output of PLCopen's `{}`", name.text, spelled(&block));
                     self.problem(name.span, message);
                 }
             }

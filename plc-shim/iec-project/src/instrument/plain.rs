@@ -16,10 +16,10 @@ use onescan_iec::diagnostic::{Code, Diagnostic, Diagnostics};
 use onescan_iec::input::Input;
 use onescan_iec::input::encoding::Encoding;
 use onescan_iec::input::kind::{FileKind, SourceKind};
-use onescan_iec::task_plan::Task;
 use onescan_iec::source::edits::{Edited, Edits, LineMap};
 use onescan_iec::syntax::ast::{Ident, Pou};
 use onescan_iec::syntax::{FileId, SourceFile, SourceMap, Span};
+use onescan_iec::task_plan::Task;
 
 /// A project without the shim.
 pub(super) struct Plain {

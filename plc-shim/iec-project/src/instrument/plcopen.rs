@@ -1,7 +1,7 @@
 //! The shim in a project of PLCopen XML (TC6 2.01): its units and variables become elements of the project.
 //!
 //! A body in ST gets header and footer in its text. Any other body stays as it is, to the byte, and becomes the
-//! action `SDSP_Body`, which a body in ST calls for a grant: so no network is drawn anew, positions and ids stay,
+//! action `SDSP_Body`, which a body in ST calls for a grant: so no network is drawn again, positions and ids stay,
 //! and a RETURN in it ends the action, not the controller.
 
 use std::ops::Range;
@@ -20,7 +20,7 @@ use onescan_iec::source::edits::Edits;
 use onescan_iec::syntax::SourceFile;
 use onescan_iec::syntax::ast::{Pou, PouKind};
 
-/// The action that a body becomes which is no text.
+/// The action that a body becomes which is not text.
 const ACTION: &str = "SDSP_Body";
 
 /// The file as a tree; it has been read once already.

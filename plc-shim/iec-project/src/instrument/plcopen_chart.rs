@@ -1,5 +1,5 @@
 //! Charts that are drawn, in PLCopen XML, on virtual time (`[SDSP]` sec. V-B). Nothing is
-//! drawn anew, nothing moves:
+//! drawn again, nothing moves:
 //!
 //! | in the chart | becomes |
 //! |---|---|

@@ -26,7 +26,7 @@ impl Plain {
         let (Some(given), Some(file)) = (self.given.first(), self.sources.get(FileId(0))) else {
             return Err(InstrumentError::NoPrograms);
         };
-        let root = plcopen::tree(file).ok_or_else(|| self.refused(whole, "this is no XML"))?;
+        let root = plcopen::tree(file).ok_or_else(|| self.refused(whole, "this is not XML"))?;
         let mut edits = Edits::default();
         let line = tasks.line_type();
         rename(survey, motion, file, &root, &mut edits);

@@ -16,7 +16,6 @@ use super::clock::{self, Form};
 use super::marks;
 use super::survey::Survey;
 use onescan_iec::dialect::Dialect;
-use onescan_iec::task_plan::Task;
 use onescan_iec::source::edits::Edits;
 use onescan_iec::syntax::ast::{
     Call, CompilationUnit, Declaration, Expr, ExprKind, Ident, Pou, Section, SectionKind, TypeSpec, TypeSpecKind,
@@ -26,6 +25,7 @@ use onescan_iec::syntax::lexer::tokenize_in;
 use onescan_iec::syntax::token::{Keyword, Punctuation, Token, TokenKind};
 use onescan_iec::syntax::walk::{self, Visitor};
 use onescan_iec::syntax::{FileId, SourceFile, Span};
+use onescan_iec::task_plan::Task;
 
 /// What a call on an instance may name.
 const TIMERS: [&str; 3] = ["TON", "TOF", "TP"];

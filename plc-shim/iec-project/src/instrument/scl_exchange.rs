@@ -12,8 +12,8 @@ use onescan_base::{ElementaryType, SignalType};
 
 use super::exchanged::{Exchanged, Way};
 use super::template;
-use onescan_iec::diagnostic::{Code, Diagnostic};
 use crate::output::scl;
+use onescan_iec::diagnostic::{Code, Diagnostic};
 use onescan_iec::syntax::{FileId, Span};
 
 /// The number of the block to the PLC; low ones are those that a project gives to its own blocks.

@@ -12,15 +12,15 @@ use super::survey::survey;
 use super::target::{Source as Own, Target};
 use super::tasks::{Line, TaskTable};
 use super::{Exchanged, File, InstrumentError, Options, Project, entries, instrument, marks, motion_use};
-use onescan_iec::front::Front;
-use onescan_iec_run::application::Application;
+use crate::output::scl::{self, Source, StartValues};
 use onescan_iec::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
 use onescan_iec::dialect::Dialect;
+use onescan_iec::front::Front;
 use onescan_iec::input::Input;
 use onescan_iec::input::kind::SourceKind;
-use crate::output::scl::{self, Source, StartValues};
-use onescan_iec::task_plan::Task;
 use onescan_iec::syntax::{FileId, Span};
+use onescan_iec::task_plan::Task;
+use onescan_iec_run::application::Application;
 
 /// The file that TIA Portal imports.
 const NAME: &str = "sdsp.scl";

@@ -10,13 +10,13 @@ use super::survey::Survey;
 use super::target::Target;
 use super::template;
 use onescan_iec::diagnostic::{Code, Diagnostic};
-use onescan_iec::task_plan::Task;
-use onescan_iec_run::run::RunError;
 use onescan_iec::source::edits::Edits;
 use onescan_iec::syntax::SourceFile;
 use onescan_iec::syntax::ast::{Configuration, Expr, ExprKind, Ident, Resource, Section, TaskDeclaration};
 use onescan_iec::syntax::lexer::tokenize_in;
 use onescan_iec::syntax::token::{Punctuation, TokenKind};
+use onescan_iec::task_plan::Task;
+use onescan_iec_run::run::RunError;
 
 /// What the scheduler reads for a task.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
@@ -41,7 +41,7 @@ pub(super) fn check_given(
         let reason = match target {
             Target::TwinCat => "tasks of TwinCAT are cyclic",
             Target::OpenPlc | Target::Beremiz => "MatIEC connects nothing to the inputs of a program",
-            Target::Scl => "SCL does not tell what starts an organization block",
+            Target::Scl => "SCL does not say what starts an organization block",
             Target::Codesys if is_xml => "it is not instrumented in PLCopen XML yet",
             Target::Iec | Target::Codesys if !survey.is_global(path) => "the scheduler reads a global variable",
             Target::Iec | Target::Codesys => continue,

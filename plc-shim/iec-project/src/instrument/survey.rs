@@ -10,9 +10,9 @@ use super::real_inputs::RealInputs;
 use super::scl::{self, TimerCalls};
 use super::target::Target;
 use super::template::Only;
-use onescan_iec::front::library;
 use onescan_iec::check::{VIRTUAL_TIME_NAME, is_standard_function};
 use onescan_iec::diagnostic::{Code, Diagnostic};
+use onescan_iec::front::library;
 use onescan_iec::ir::ElementaryType;
 use onescan_iec::syntax::ast::{
     Call, CompilationUnit, Configuration, Declaration, Expr, ExprKind, Ident, Initialiser, InitialiserKind, Pou,

@@ -18,7 +18,7 @@ pub enum Target {
     /// Program text of the standard, in one file.
     #[default]
     Iec,
-    /// TwinCAT 3: an object a file.
+    /// TwinCAT 3: one object per file.
     TwinCat,
     /// CODESYS: a project in PLCopen XML.
     Codesys,

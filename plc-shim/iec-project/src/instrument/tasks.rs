@@ -8,9 +8,9 @@ use onescan_base::duration::IecDuration;
 use super::single::{self, Single};
 use super::template::{self, Number};
 use onescan_iec::diagnostic::did_you_mean;
+use onescan_iec::syntax::ast::Pou;
 use onescan_iec::task_plan::Task;
 use onescan_iec_run::run::RunError;
-use onescan_iec::syntax::ast::Pou;
 
 /// What is due at every grant has this interval.
 pub(super) const ALWAYS: TimeSpan = TimeSpan::nanos::<1>();

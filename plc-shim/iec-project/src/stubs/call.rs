@@ -142,7 +142,7 @@ impl<'a> Collector<'a> {
             return None;
         }
         let (rest, in_library) = self.behind_libraries(&path, scope);
-        // What a library has is no member of a base; arguments still stand where they stand.
+        // What a library has is not a member of a base; arguments still stand where they stand.
         let outside = Scope { home: scope.home.clone(), class: None, local: None };
         let around = if in_library { &outside } else { scope };
         let first = match rest {

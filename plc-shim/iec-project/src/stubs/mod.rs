@@ -42,8 +42,8 @@ use self::collect::Collector;
 use self::foreign::{Foreign, Needs};
 use self::ty::{Slots, Ty};
 use self::world::World;
-use onescan_iec::front::{Parsed, with_room};
 use onescan_iec::dialect::Dialect;
+use onescan_iec::front::{Parsed, with_room};
 use onescan_iec::input::Input;
 use onescan_iec::input::kind::SourceKind;
 

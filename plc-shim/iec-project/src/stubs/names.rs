@@ -246,7 +246,7 @@ impl<'a> Collector<'a> {
         Ty::Slot(slot)
     }
 
-    /// `a.b.c` that begins with a name which is no variable; nothing if it is one.
+    /// `a.b.c` that begins with a name which is not a variable; nothing if it is one.
     pub(super) fn dotted(&mut self, expr: &Expr, access: Access, scope: &Scope<'a>) -> Option<Ty> {
         let ExprKind::Member(base, last) = &expr.kind else { return None };
         let path = path_of(base)?;

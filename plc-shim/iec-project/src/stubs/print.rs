@@ -257,7 +257,7 @@ impl Printer<'_, '_> {
         members.collect()
     }
 
-    /// True for what is called and is no instance.
+    /// True for what is called and is not an instance.
     fn is_method(&self, member: &Member) -> bool {
         let is_instance = member
             .field
@@ -337,7 +337,7 @@ impl Printer<'_, '_> {
 
     fn globals(&self, lists: &mut BTreeMap<String, String>, globals: &mut String, added: &mut usize) {
         let mut sections: BTreeMap<(String, bool), String> = BTreeMap::new();
-        // A wire of a network is no variable, even where its value is wrong.
+        // A wire of a network is not a variable, even where its value is wrong.
         let named = self.collector.needs.globals.values().filter(|global| !global.name.starts_with('`'));
         let mut constants = 0;
         for global in named {

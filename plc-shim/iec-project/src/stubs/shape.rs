@@ -1,4 +1,4 @@
-//! What a type that nobody declares is: by its use first, by its name where that does not tell.
+//! What a type that nobody declares is: by its use first, by its name where that does not decide.
 
 use super::collect::Collector;
 use super::foreign::Foreign;

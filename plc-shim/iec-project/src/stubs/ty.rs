@@ -175,7 +175,7 @@ impl Slots {
         }
         let in_order = || to.iter().chain(&from).chain(&beside);
         let named = |ty: &&Ty| matches!(ty, Ty::Declared(_) | Ty::Foreign(_));
-        // What is indexed is no instance, whatever it is given.
+        // What is indexed is not an instance, whatever it is given.
         let is_indexed = in_order().any(|ty| matches!(ty, Ty::Array(..)));
         if let Some(found) = in_order().find(named).filter(|_| !is_indexed) {
             return Some(found.clone());
@@ -194,7 +194,7 @@ impl Slots {
         if from.iter().any(is_pointer) && from.iter().any(is_number) {
             return Some(Ty::Elementary(ElementaryType::Lword));
         }
-        // A reference to it is made here, and a value goes into it there: it is no reference itself.
+        // A reference to it is made here, and a value goes into it there: it is not a reference itself.
         let is_value = |ty: &Ty| matches!(ty, Ty::Elementary(_) | Ty::Integer | Ty::Wide(_) | Ty::Real | Ty::Text(_));
         let referred = to.iter().find_map(|ty| match ty {
             Ty::Pointer(ReferenceKind::Reference, inner) if matches!(**inner, Ty::Elementary(_)) => Some(&**inner),

@@ -17,10 +17,10 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
-use onescan_iec::check::Checked;
 use crate::compile::fault::FaultTable;
 use crate::compile::points::{Point, PointKind};
 use crate::compile::{Compiled, Noted, compile};
+use onescan_iec::check::Checked;
 use onescan_iec::diagnostic::Diagnostics;
 use onescan_iec::front::{Constants, Front, Setting, with_room};
 use onescan_iec::input::Input;
@@ -195,7 +195,7 @@ impl Application {
     }
 
     /// File and line, from 1, of each place that notes whether it has been executed, in the order of
-    /// [`SoftPlc::executed`](crate::SoftPlc::executed); nothing for one that is no statement.
+    /// [`SoftPlc::executed`](crate::SoftPlc::executed); nothing for one that is not a statement.
     pub fn noted_places(&self) -> impl Iterator<Item = Option<(&str, u32)>> {
         self.points().iter().map(|point| {
             let (file, place) = self.sources().locate(point.span);
@@ -222,7 +222,7 @@ impl Application {
     pub(crate) fn code(&self) -> &Code {
         let Inner { code, sources, library, constants, .. } = &*self.inner;
         code.get_or_init(|| {
-            // The values of constants are no files of the project.
+            // The values of constants are not files of the project.
             let is_value = |file| constants.iter().any(|constant| constant.file == file);
             let is_library = |file| (!is_value(file)).then(|| library.contains(&file));
             let constants = constants.iter().map(|Setting { path, literal, .. }| (path.clone(), literal.clone()));

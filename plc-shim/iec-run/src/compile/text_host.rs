@@ -9,7 +9,7 @@ use super::host;
 /// Module name of the imports.
 pub(crate) const MODULE: &str = "text";
 
-/// Stands for no type but for a LTIME without sign, where a value becomes text.
+/// Stands for no type except an LTIME without sign, where a value becomes text.
 pub(crate) const LONG_TIME: i32 = i32::MAX;
 
 /// An import. Its position follows those of the mathematical functions.

@@ -1,7 +1,7 @@
 //! The tasks that an application's own configuration declares (2nd ed. 2.7).
 
-use onescan_iec::task_plan::{Task, TaskPlan};
 use crate::application::Application;
+use onescan_iec::task_plan::{Task, TaskPlan};
 
 impl Application {
     /// The tasks of its own configuration; nothing if it has none.

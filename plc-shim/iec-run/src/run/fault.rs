@@ -165,7 +165,7 @@ fn active<'a>(frames: &[Frame<'a>], mark: Option<Mark>) -> Vec<Active<'a>> {
     found
 }
 
-/// The sites of units that were active, the outermost first. What a task runs is no unit of its
+/// The sites of units that were active, the outermost first. What a task runs is not a unit of its
 /// own, unless the fault is in it.
 fn sites(application: &Application, active: &[Active<'_>]) -> Vec<FaultSite> {
     let mut sites = Vec::new();

@@ -59,7 +59,7 @@ impl SoftPlc {
     /// Lets the variable at `path` keep a value, given as a literal, until [`SoftPlc::unforce`].
     ///
     /// # Errors
-    /// There is no such variable, it is a constant or `READ_ONLY`, or the text is no value of its
+    /// There is no such variable, it is a constant or `READ_ONLY`, or the text is not a value of its
     /// type.
     pub fn force(&mut self, path: &str, value: &str) -> Result<(), WriteError> {
         let (variable, bytes) = self.parsed(path, value)?;
@@ -95,7 +95,7 @@ impl SoftPlc {
     /// keeps its forced value.
     ///
     /// # Errors
-    /// There is no such variable, it is a constant or `READ_ONLY`, or the text is no value of its
+    /// There is no such variable, it is a constant or `READ_ONLY`, or the text is not a value of its
     /// type.
     pub fn write(&mut self, path: &str, value: &str) -> Result<(), WriteError> {
         let (variable, bytes) = self.parsed(path, value)?;

@@ -35,7 +35,7 @@ pub enum Act {
 /// Memory that has changed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Wrote {
-    /// The statement that did it; nothing if it was written from outside, or by what is no statement, as by the
+    /// The statement that did it; nothing if it was written from outside, or by what is not a statement, as by the
     /// steps of a chart.
     pub statement: Option<StatementId>,
     frames: Frames,
@@ -153,7 +153,7 @@ fn changes(last: &[u8], now: &[u8]) -> Vec<(u32, Vec<u8>)> {
 }
 
 impl Application {
-    /// All its statements that are no library's; none unless it was compiled for
+    /// All its statements that are not a library's; none unless it was compiled for
     /// [`SoftPlc::journal`](crate::SoftPlc::journal).
     pub fn statements(&self) -> Vec<Statement> {
         let statements = self.points().iter().zip(0..).filter(|(point, _)| point.kind == PointKind::Statement);

@@ -93,9 +93,9 @@ impl SoftPlc {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use onescan_iec::task_plan::{Task, TaskPlan};
     use crate::Application;
     use onescan_iec::VirtualTime;
+    use onescan_iec::task_plan::{Task, TaskPlan};
 
     fn plc(background: bool) -> SoftPlc {
         let text = "PROGRAM One VAR n : INT; END_VAR n := n + 1; END_PROGRAM \

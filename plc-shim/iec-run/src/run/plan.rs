@@ -49,7 +49,7 @@ pub enum RunError {
         /// The second task.
         task: String,
     },
-    /// A task's trigger is no variable.
+    /// A task's trigger is not a variable.
     #[error("task `{task}` is triggered by `{path}`: {reason}")]
     Trigger {
         /// The task.

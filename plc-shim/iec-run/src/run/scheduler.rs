@@ -1,7 +1,7 @@
 //! Which task is due when (2nd ed. 2.7.2, non-preemptive).
 //!
 //! A task waits for its interval, for a rising edge of its SINGLE input, or for either. Inputs are
-//! looked at when a scan begins and after each task; an edge starts a task at most once a scan, a
+//! looked at when a scan begins and after each task; an edge starts a task at most once per scan, a
 //! later one waits for the next scan.
 
 use onescan_base::{TimeSpan, VirtualTime};

@@ -10,15 +10,15 @@ use super::force::Forces;
 use super::journal::{Act, Journal};
 use super::machine::{Machine, Occasion, Trapped};
 use super::plan::{Resolved, RunError, resolve};
-use onescan_iec::task_plan::TaskPlan;
 use super::scheduler::Scheduler;
 use super::state::{CodePolicy, Decoder, Meaning, RestoreError, State};
 use super::task_info::TaskInfo;
 use super::trace::{Trace, Watched};
 use super::way::WayId;
 use crate::application::{Application, UnknownVariable, Variable};
-use onescan_iec::check::{INIT_RETAINS_OFFSET, VIRTUAL_TIME_OFFSET};
 use crate::coverage::Coverage;
+use onescan_iec::check::{INIT_RETAINS_OFFSET, VIRTUAL_TIME_OFFSET};
+use onescan_iec::task_plan::TaskPlan;
 
 /// Runs an application's programs by a task plan, one scan at a time.
 ///

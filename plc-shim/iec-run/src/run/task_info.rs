@@ -2,8 +2,8 @@
 
 use onescan_base::VirtualTime;
 
-use onescan_iec::task_plan::TaskPlan;
 use crate::application::{Application, Variable};
+use onescan_iec::task_plan::TaskPlan;
 
 const LIST: &str = "TwinCAT_SystemInfoVarList";
 

@@ -32,7 +32,7 @@ pub(super) struct Writer {
 #[derive(Debug, Default)]
 pub(in crate::run) struct Trace {
     pub(super) watched: Vec<Watched>,
-    /// The statements that have begun and not ended, but for those that were left early, each with
+    /// The statements that have begun and not ended, except those that were left early, each with
     /// the way that it went last.
     active: Vec<(u32, Option<u32>)>,
     /// The ways of all decisions of the scan, in their order.

@@ -117,7 +117,7 @@ fn words(statement: &str, outcome: u32, is_last: bool) -> (String, String) {
     (question, answer)
 }
 
-/// The statement's own conditions with the word before each, but for those of statements inside it. Comments are
+/// The statement's own conditions with the word before each, except those of statements inside it. Comments are
 /// part of none.
 fn heads(statement: &str) -> Vec<String> {
     let of = |range: &Range<usize>| {
@@ -166,7 +166,7 @@ fn conditions(statement: &str) -> Vec<Range<usize>> {
 }
 
 /// What a statement says itself, line by line from `first` on: all of it, or its conditions if it has statements in
-/// it. Comments are no part of it.
+/// it. Comments are not part of it.
 pub(super) fn rows(statement: &str, first: u32) -> Vec<(u32, String)> {
     let mut own = conditions(statement);
     if own.is_empty() {

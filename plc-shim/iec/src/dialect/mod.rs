@@ -137,9 +137,9 @@ impl Dialect {
     }
 }
 
-/// A name that is no dialect's.
+/// A name that is not a dialect's.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("`{name}` is no dialect: {}", Dialect::ALL.map(Dialect::name).join(", "))]
+#[error("`{name}` is not a dialect: {}", Dialect::ALL.map(Dialect::name).join(", "))]
 pub struct UnknownDialect {
     name: String,
 }
@@ -310,7 +310,7 @@ features! {
     InstanceSection "`VAR_INST`",
     FleetingInstances "an instance that lasts for one call of a function or method",
     InitArguments "an instance's arguments for `FB_init`",
-    ComputedInitialValues "an initial value that is no constant",
+    ComputedInitialValues "an initial value that is not a constant",
     BitArithmetic "a bit string as a number, or a number as a bit string",
     EnumerationsAsIntegers "an enumeration as an integer, or an integer as an enumeration",
     NamedValues "named values as numbers of their type, and the other way, `TYPE C : INT (A := 1);`",

@@ -45,8 +45,8 @@ pub enum ConstantError {
         /// The path as declared.
         path: String,
     },
-    /// The text is no initial value for it. Places of the findings are places in the text.
-    #[error("`{literal}` is no value of `{path}`: {}", first_message(.findings))]
+    /// The text is not an initial value for it. Places of the findings are places in the text.
+    #[error("`{literal}` is not a value of `{path}`: {}", first_message(.findings))]
     Value {
         /// The path as declared.
         path: String,

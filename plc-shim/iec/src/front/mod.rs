@@ -23,8 +23,8 @@ use crate::ir::MemoryLimit;
 use crate::syntax::ast::{CompilationUnit, Configuration, Declaration};
 use crate::syntax::{FileId, SourceMap, parse_source};
 
-pub use constant::{ConstantError, Constants, Setting};
 use constant::is_declared;
+pub use constant::{ConstantError, Constants, Setting};
 pub use room::with_room;
 
 /// What is known of files once they have been checked.

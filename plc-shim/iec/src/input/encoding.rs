@@ -41,7 +41,7 @@ impl fmt::Display for Charset {
     }
 }
 
-/// Why bytes are no text.
+/// Why bytes are not text.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum EncodingError {
     /// Byte order mark or declaration promise an encoding, and the bytes are not in it.
@@ -51,7 +51,7 @@ pub enum EncodingError {
     #[error("the encoding `{0}` is not read")]
     Unknown(String),
     /// There is a zero character.
-    #[error("this is no text: there are zero characters in it")]
+    #[error("this is not text: there are zero characters in it")]
     Binary,
     /// A character that the file's encoding has not.
     #[error("`{0}` cannot be written in {1}")]
@@ -61,7 +61,7 @@ pub enum EncodingError {
 /// The text of a file.
 ///
 /// # Errors
-/// The bytes are no text, or not the text they are said to be.
+/// The bytes are not text, or not the text they are said to be.
 pub fn decode(bytes: &[u8]) -> Result<(String, Encoding), EncodingError> {
     let (encoding, rest) = detect(bytes)?;
     let skipped = bytes.len() - rest.len();

@@ -1,6 +1,6 @@
 //! Text that is something else than a program, by how it begins: one finding says so, not one for each of its words.
 
-/// What a file holds that is no program text, and what may help.
+/// What a file holds that is not program text, and what may help.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Foreign {
     pub(super) what: &'static str,

@@ -5,7 +5,7 @@
 //! | [`encoding`] | bytes | text, and the way back |
 //! | [`kind`] | a file's name | what kind of file it is |
 //! | [`found`] | a file's bytes | its text, and whether it is PLCopen's |
-//! | `foreign` | text | what it is, if it is no program |
+//! | `foreign` | text | what it is, if it is not a program |
 //! | `twincat`, `twincat_task` | TwinCAT's objects | program text |
 //! | `plcopen`, `plcopen_instances`, `plcopen_object` | PLCopen XML, and what CODESYS adds to it | program text |
 //! | `plcopen_chart`, `plcopen_chart_graph`, `plcopen_condition` | its Sequential Function Charts | program text |

@@ -12,10 +12,10 @@ use crate::syntax::tokenize;
 /// Why a project cannot be read.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ProjectError {
-    /// It is no text.
+    /// It is not text.
     #[error(transparent)]
     Encoding(#[from] super::encoding::EncodingError),
-    /// It is no XML.
+    /// It is not XML.
     #[error("line {line}: {message}")]
     Xml {
         /// The line, from 1.
@@ -33,7 +33,7 @@ pub struct Listing {
     /// The files that it compiles, in their order.
     pub files: Vec<Listed>,
     /// The namespace that others know it by when they use it as a library: its default namespace, else its title, else
-    /// its name; nothing if that is no name of a program.
+    /// its name; nothing if that is not the name of a program.
     pub namespace: Option<String>,
 }
 
@@ -49,7 +49,7 @@ pub struct Listed {
 /// The files that a project compiles, with `/` between folders, relative to the project's folder.
 ///
 /// # Errors
-/// It is no project.
+/// It is not a project.
 pub fn files(bytes: &[u8]) -> Result<Vec<String>, ProjectError> {
     Ok(listing(bytes)?.files.into_iter().map(|file| file.path).collect())
 }
@@ -57,7 +57,7 @@ pub fn files(bytes: &[u8]) -> Result<Vec<String>, ProjectError> {
 /// The same, with where the project names each.
 ///
 /// # Errors
-/// It is no project.
+/// It is not a project.
 pub fn listing(bytes: &[u8]) -> Result<Listing, ProjectError> {
     let (text, _) = decode(bytes)?;
     let root = onescan_xml::parse(&text).map_err(|error| {

@@ -9,14 +9,14 @@ pub struct MemoryLimit {
     mib: u32,
 }
 
-/// Why a number is no limit.
+/// Why a number is not a limit.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum MemoryLimitError {
     /// It is 0, or more than the addresses of a PLC reach.
-    #[error("{0} MiB is no limit: from 1 to {greatest} MiB can be addressed", greatest = MemoryLimit::GREATEST_MIB)]
+    #[error("{0} MiB is not a limit: from 1 to {greatest} MiB can be addressed", greatest = MemoryLimit::GREATEST_MIB)]
     OutOfRange(u32),
-    /// It is no number.
-    #[error("`{0}` is no whole number of MiB")]
+    /// It is not a number.
+    #[error("`{0}` is not a whole number of MiB")]
     NotANumber(String),
 }
 

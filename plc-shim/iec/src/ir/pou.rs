@@ -18,7 +18,7 @@ pub struct PouId(pub u32);
 /// What becomes of a variable when the PLC starts again (2nd ed. 2.4.2, 3rd ed. 6.5.6).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Retention {
-    /// `NON_RETAIN`: it begins anew.
+    /// `NON_RETAIN`: it gets its initial value at each start.
     NonRetain,
     /// `RETAIN`: it survives a warm start.
     Retain,

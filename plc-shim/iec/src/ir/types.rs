@@ -251,12 +251,7 @@ impl TypeTable {
     }
 
     /// An enumeration; without a base type in its declaration, of INT.
-    pub fn enumeration(
-        &mut self,
-        name: String,
-        base: Option<ElementaryType>,
-        values: Vec<(String, i128)>,
-    ) -> TypeId {
+    pub fn enumeration(&mut self, name: String, base: Option<ElementaryType>, values: Vec<(String, i128)>) -> TypeId {
         let (base, has_base) = (base.unwrap_or(ElementaryType::Int), base.is_some());
         // A variable begins with the first value (2nd ed. Table 13).
         let first = values.first().map_or(0, |(_, value)| *value);

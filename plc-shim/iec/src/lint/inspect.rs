@@ -1,8 +1,8 @@
 //! All that can be said about files without running them.
 
 use super::lint;
-use crate::front::{Front, with_room};
 use crate::diagnostic::Diagnostics;
+use crate::front::{Front, with_room};
 use crate::input::Input;
 use crate::ir::MemoryLimit;
 use crate::task_plan::TaskPlan;

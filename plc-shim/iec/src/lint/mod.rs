@@ -31,8 +31,8 @@ mod usage;
 
 use self::index::Index;
 use self::usage::Usage;
-use crate::front::Front;
 use crate::diagnostic::Diagnostic;
+use crate::front::Front;
 use crate::task_plan::TaskPlan;
 
 pub use inspect::{inspect, inspect_within};

@@ -5,9 +5,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::Unit;
 use super::index::{Index, declared};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::task_plan::TaskPlan;
 use crate::syntax::Span;
 use crate::syntax::ast::{Ident, PouKind, SectionKind};
+use crate::task_plan::TaskPlan;
 
 /// Without a plan the configuration says which task runs what; without one of those every program
 /// is taken to have a task of its own.

@@ -77,7 +77,7 @@ fn parse_time_of_day(text: &str) -> Result<i64, String> {
     let (whole, fraction) = seconds.split_once('.').unwrap_or((&seconds, ""));
     let second = field(Some(whole), "second", 0..=59)?;
     if !fraction.bytes().all(|digit| digit.is_ascii_digit()) {
-        return Err("the fraction of a second is no number".to_owned());
+        return Err("the fraction of a second is not a number".to_owned());
     }
     let mut ns = ((hour * 60 + minute) * 60 + second) * 1_000_000_000;
     let mut weight = 100_000_000;

@@ -99,7 +99,7 @@ pub struct DirectAddress {
     pub position: Position,
 }
 
-/// Why a text is no direct address.
+/// Why a text is not a direct address.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum AddressError {
     /// The area's letter is missing.

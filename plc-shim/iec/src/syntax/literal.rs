@@ -20,7 +20,7 @@ pub fn parse_integer(text: &str) -> Result<i128, String> {
     let digits = without_underscores(digits)?;
     i128::from_str_radix(&digits, radix).map_err(|error| match error.kind() {
         std::num::IntErrorKind::PosOverflow => "integer is too large".to_owned(),
-        _ => format!("`{digits}` is no number of base {radix}"),
+        _ => format!("`{digits}` is not a number of base {radix}"),
     })
 }
 
@@ -30,7 +30,7 @@ pub fn parse_integer(text: &str) -> Result<i128, String> {
 /// A sentence that says what is wrong.
 pub fn parse_real(text: &str) -> Result<f64, String> {
     let digits = without_underscores(text)?;
-    let value: f64 = digits.parse().map_err(|_| format!("`{text}` is no real number"))?;
+    let value: f64 = digits.parse().map_err(|_| format!("`{text}` is not a real number"))?;
     if value.is_finite() { Ok(value) } else { Err("real number is too large".to_owned()) }
 }
 

@@ -34,7 +34,7 @@ use crate::syntax::Span;
 /// Greatest depth to which statements, types and parentheses may be nested.
 pub const MAX_NESTING: u16 = 200;
 
-/// More characters than these that begin no token are no slips, if the file declares nothing.
+/// More characters than these that begin no token are not slips, if the file declares nothing.
 const RUBBISH: usize = 3;
 
 /// A file's tree, beside its tokens.
@@ -79,7 +79,7 @@ fn parse_text(dialect: Dialect, file: FileId, text: &str, origin: Option<&Origin
     Parsed { tokens, unit, diagnostics }
 }
 
-/// In a file that declares nothing, its first error says it all: what stands in it is no program.
+/// In a file that declares nothing, its first error says it all: what stands in it is not a program.
 fn leave_out_rubbish(diagnostics: &mut Vec<Diagnostic>) {
     let unknown = |found: &Diagnostic| found.code == Code::UnknownCharacter;
     let grammar = diagnostics.iter().position(|found| found.code == Code::UnexpectedToken);

@@ -65,7 +65,7 @@ fn after(from: GroupState, block: &str) -> Result<GroupState, i64> {
     Ok(state(&bench))
 }
 
-/// The state diagram, one row a command.
+/// The state diagram, one row per command.
 #[test]
 fn commands_lead_from_state_to_state() {
     use GroupState::{Disabled, Homing, Moving, Standby, Stopping};

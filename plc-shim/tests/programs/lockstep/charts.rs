@@ -139,7 +139,7 @@ fn is_the_same(text: &str, inputs: Vec<([bool; INPUTS], bool)>) -> Result<(), Te
     Ok(())
 }
 
-/// An action that is a chart, called by a program that is none.
+/// An action that is a chart, called by a program that is not a chart.
 #[test]
 fn a_chart_that_statements_call_gives_the_same_under_grants() {
     let text = "PROGRAM P

@@ -144,7 +144,7 @@ impl Driver {
             .expect("the grant is done some time")
     }
 
-    /// Begins anew, as after power on.
+    /// Restarts, as after power on.
     pub(crate) fn restart(&mut self) {
         self.rig.plc.cold_start();
         self.rig.now_ns = 0;
@@ -157,7 +157,7 @@ pub(crate) fn original(text: &str, tasks: &[Task]) -> SoftPlc {
     SoftPlc::new(&application, &TaskPlan::new(tasks.to_vec())).expect("the plan suits")
 }
 
-/// All variables of all programs that are no instances, with their bytes.
+/// All variables of all programs that are not instances, with their bytes.
 pub(crate) fn state(plc: &SoftPlc) -> Vec<(String, Vec<u8>)> {
     let programs = plc.application().programs().filter(|program| !program.name.starts_with("SDSP_"));
     let variables = programs.flat_map(|program| [program.inputs, program.outputs, program.locals].concat());

@@ -97,7 +97,7 @@ fn a_session_begins_before_any_program_has_run() {
 }
 
 /// A start at any cycle: the PLC takes part no more, which the gateway sees, and nothing runs until a
-/// session is joined anew.
+/// session is joined again.
 #[test]
 fn a_start_of_the_plc_is_seen() {
     for cycles in 0..25 {

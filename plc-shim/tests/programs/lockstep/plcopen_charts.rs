@@ -162,7 +162,7 @@ fn conditions_and_actions_of_every_form_give_the_same() {
     assert_equal(&forms(), &tasks, &["P.i", "P.j", "Main.i", "Main.j"]);
 }
 
-/// With statements in a step of the inner one; with the time of its step; and in a unit that is none itself.
+/// With statements in a step of the inner one; with the time of its step; and in a unit that is not a chart itself.
 #[test]
 fn a_chart_in_an_action_gives_the_same() {
     let tasks = [task("main", 5, 1, &["P"])];

@@ -3,7 +3,7 @@
 use super::peer_program::PeerProgram;
 use crate::random_programs::program::{DEPTH, Number, Statement, Truth, Wording, control};
 
-/// C computes an INT as `int`; an empty statement is no statement to the peer.
+/// C computes an INT as `int`; an empty statement is not a statement to the peer.
 const WORDING: Wording = Wording { narrow: "W_INT", nothing: "v0 := v0;\n" };
 
 pub(super) fn program(mut body: Vec<Statement>) -> PeerProgram {

@@ -1,4 +1,4 @@
-//! Timing diagrams of charts: each action qualifier, step flags and times, divergences; one column a scan of 10 ms.
+//! Timing diagrams of charts: each action qualifier, step flags and times, divergences; one column per scan of 10 ms.
 
 use crate::diagram::diagram;
 use crate::rig::Rig;

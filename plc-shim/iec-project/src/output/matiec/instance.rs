@@ -109,7 +109,7 @@ fn rounds(
     let number = |expr: &Expr| page.names.integer_with(expr, &scope.constants);
     let step = each.by.as_ref().map_or(Some(1), number).filter(|step| *step != 0);
     let (Some(from), Some(to), Some(step)) = (number(&each.from), number(&each.to), step) else {
-        return Err(Finding::new(span, "a loop over function blocks whose bounds are no numbers", HELP));
+        return Err(Finding::new(span, "a loop over function blocks whose bounds are not numbers", HELP));
     };
     if jumps(&each.body) {
         let help = "let an IF around the statements do what EXIT does";

@@ -7,7 +7,9 @@ use super::names::{Shape, member};
 use super::scope::Scope;
 use super::standard::{self, Function};
 use onescan_iec::ir::ElementaryType;
-use onescan_iec::syntax::ast::{Argument, Call, Expr, ExprKind, Ident, InitialiserKind, Pou, PouKind, SectionKind, Variable};
+use onescan_iec::syntax::ast::{
+    Argument, Call, Expr, ExprKind, Ident, InitialiserKind, Pou, PouKind, SectionKind, Variable,
+};
 use onescan_iec::syntax::token::{Punctuation, TokenKind};
 
 /// The values that a call gives, in their order.
@@ -37,7 +39,7 @@ fn parameters(pou: &Pou) -> Vec<Parameter<'_>> {
 }
 
 impl<'a> Body<'_, 'a> {
-    /// A call, but for the values of its arguments.
+    /// A call, except the values of its arguments.
     pub(super) fn called(&mut self, call: &Call) {
         for argument in &call.arguments {
             match argument {

@@ -9,8 +9,8 @@ use super::spec;
 use super::unit::HEAD;
 use super::variables::{semicolon, value};
 use onescan_iec::diagnostic::Diagnostic;
-use onescan_iec::task_plan::Task;
 use onescan_iec::syntax::constant::Constants;
+use onescan_iec::task_plan::Task;
 
 /// Start values by data block: paths within it, and literals.
 pub(crate) type StartValues = BTreeMap<String, Vec<(String, String)>>;

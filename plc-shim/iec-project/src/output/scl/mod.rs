@@ -48,10 +48,10 @@ use order::{Part, ordered};
 pub(crate) use spec::elementary as elementary_name;
 
 use onescan_iec::diagnostic::{Code, Diagnostic};
-use onescan_iec::task_plan::Task;
 use onescan_iec::syntax::ast::{CompilationUnit, Connection, Declaration, PouKind, Section};
 use onescan_iec::syntax::token::{Token, TokenKind};
 use onescan_iec::syntax::{FileId, SourceMap, Span, tokenize_in};
+use onescan_iec::task_plan::Task;
 
 /// A checked project, with the standard's blocks that it may use.
 #[derive(Clone, Copy)]
@@ -178,7 +178,7 @@ impl<'a> Writer<'_, 'a> {
                 let Some(span) = span(declaration) else { continue };
                 above.push_str(&layout::comments(file, behind, span.start));
                 behind = span.end;
-                // What is written above a type that is none in SCL stands above what follows.
+                // What is written above a type that SCL does not have stands above what follows.
                 if self.declaration(declaration, &above, is_own) {
                     above.clear();
                 }
@@ -219,7 +219,7 @@ impl<'a> Writer<'_, 'a> {
         }
     }
 
-    /// The names in a declaration, but for its own.
+    /// The names in a declaration, except its own.
     fn mentioned(&self, span: Span, own: &str) -> Vec<String> {
         let Some(file) = self.source.sources.get(span.file) else { return Vec::new() };
         let tokens = layout::tokens(file, span.start, span.end);

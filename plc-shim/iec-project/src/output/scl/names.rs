@@ -240,7 +240,7 @@ impl<'a> Names<'a> {
             Some(declared) if !self.is_own(declared.span.file) => match native(&key) {
                 Some(native) => native.to_owned(),
                 None if is_left(&key) => declared.text.clone(),
-                // The standard's own names are no names of blocks.
+                // The standard's own names are not names of blocks.
                 None => quoted(&format!("IEC_{}", declared.text)),
             },
             Some(declared) => quoted(&declared.text),

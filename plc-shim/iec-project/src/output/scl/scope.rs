@@ -67,7 +67,7 @@ impl<'a> Scope<'a> {
         }
     }
 
-    /// The elementary type of a value; nothing if the text does not tell it.
+    /// The elementary type of a value; nothing if the text does not say it.
     pub(in crate::output) fn type_of(&self, names: &Names<'a>, expr: &Expr) -> Option<ElementaryType> {
         match &expr.kind {
             ExprKind::Literal(literal) => of_literal(literal),

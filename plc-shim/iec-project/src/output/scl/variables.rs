@@ -1,4 +1,4 @@
-//! Sections of variables: one of each kind, in the order that TIA Portal exports, a variable a line.
+//! Sections of variables: one of each kind, in the order that TIA Portal exports, one variable per line.
 
 use std::collections::BTreeMap;
 
@@ -152,7 +152,7 @@ impl<'a> Writer<'_, 'a> {
         replace_declaration(self.file, span, variable, &|name| format!("{name} : {spec}{value};"), edits);
     }
 
-    /// True for what begins anew in each call, for which SCL has no initial values.
+    /// True for what starts over in each call, for which SCL has no initial values.
     fn is_assigned(&self, kind: Kind) -> bool {
         kind == Kind::Temporary || self.keeps_nothing && kind == Kind::Output
     }

@@ -1,7 +1,7 @@
 //! The code that computed a state: sources as the compiler reads them, the standard library, constants set
 //! from outside.
 //!
-//! Comments and white space are no part of it, nor is the case of names: a state stays valid when they change.
+//! Comments and white space are not part of it, nor is the case of names: a state stays valid when they change.
 
 use std::fmt;
 

@@ -1,6 +1,6 @@
 //! Which variables there are, of which types, and where they lie.
 //!
-//! Constants are no part of it: they are code. Nor is what no variable has, such as string literals and
+//! Constants are not part of it: they are code. Nor is what no variable has, such as string literals and
 //! temporary variables, which hold nothing between two scans.
 
 use std::collections::BTreeMap;

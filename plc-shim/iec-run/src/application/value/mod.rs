@@ -32,8 +32,8 @@ pub enum WriteError {
         /// Why.
         access: VariableAccess,
     },
-    /// The text is no value of its type.
-    #[error("`{text}` is no value of `{path}`, which is {type_name}: {reason}")]
+    /// The text is not a value of its type.
+    #[error("`{text}` is not a value of `{path}`, which is {type_name}: {reason}")]
     Value {
         /// The variable.
         path: String,

@@ -18,7 +18,7 @@ impl Application {
     /// arrays are written by their members.
     ///
     /// # Errors
-    /// The text is no value of the type.
+    /// The text is not a value of the type.
     pub fn value_bytes(&self, variable: &Variable, text: &str) -> Result<Vec<u8>, WriteError> {
         self.literal(variable, text).map_err(|reason| WriteError::Value {
             path: variable.path.clone(),
@@ -83,8 +83,8 @@ fn elementary(ty: ElementaryType, text: &str) -> Result<Value, String> {
     if ty.is_character() {
         return character(ty, text);
     }
-    let expr = parse_expression(text).ok_or("it is no literal")?;
-    let (negative, literal) = literal_of(&expr).ok_or("it is no literal")?;
+    let expr = parse_expression(text).ok_or("it is not a literal")?;
+    let (negative, literal) = literal_of(&expr).ok_or("it is not a literal")?;
     let sign = |value: i128| if negative { -value } else { value };
     match (literal, ty.kind()) {
         (Literal::Bool(value), Kind::Bool) if !negative => Ok(Value::Bool(*value)),

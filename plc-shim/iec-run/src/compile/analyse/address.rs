@@ -86,7 +86,7 @@ impl Roots {
     }
 
     /// The extent counted from a base that stays, if the register it counts from is one `set`
-    /// anew.
+    /// again.
     pub(crate) fn settled(&self, extent: Extent, set: impl Fn(Register) -> bool) -> Extent {
         match extent.base {
             Base::Register(register) if set(register) => self.widest(extent),

@@ -70,7 +70,7 @@ impl Refinement<'_, '_> {
                 self.comparison(left, operator, right);
                 self.comparison(right, mirrored(operator), left);
             }
-            // A variable, a constant or a call: true and false are no range.
+            // A variable, a constant or a call: true and false are not ranges.
             _ => {}
         }
     }

@@ -50,7 +50,7 @@ impl Emitter<'_, '_> {
         self.shared_mut().points_mut()?.index(kind, &pou.name, span)
     }
 
-    /// Initial values are given by declarations, which are no statements.
+    /// Initial values are given by declarations, which are not statements.
     pub(super) fn is_declaration(&self, span: Span) -> bool {
         let pou = self.scope().unit().and_then(|id| self.program().pou(id));
         pou.is_some_and(|pou| pou.variables.iter().any(|variable| variable.span == span))

@@ -5,9 +5,9 @@ use wasm_encoder::{ConstExpr, ElementSection, Elements, Instruction, MemArg, Ref
 
 use super::emitter::{Emitter, Shared, value_type};
 use super::inline::Call;
-use onescan_iec::check::CALL_DEPTH_OFFSET;
 use crate::compile::analyse::Address;
 use crate::compile::fault::FaultKind;
+use onescan_iec::check::CALL_DEPTH_OFFSET;
 use onescan_iec::ir::{Cast, Dispatch, Guard, Pou, PouId, Receiver, Row};
 
 /// Deepest nesting of calls that come back to a unit that still runs.

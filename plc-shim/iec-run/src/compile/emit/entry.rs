@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::emitter::Shared;
 use super::function::{self, Made};
-use onescan_iec::check::Checked;
 use crate::compile::fault::FunctionMarks;
+use onescan_iec::check::Checked;
 use onescan_iec::ir::{Pou, PouId, StatementKind, Storage};
 
 /// No unit has it.

@@ -32,7 +32,7 @@ impl Emitter<'_, '_> {
         if !self.shared().points().is_some_and(|points| points.is_traced() && points.is_own(span)) {
             return;
         }
-        // A register is no place that a variable outlives its unit in. What calls something must not do so twice.
+        // A register is not a place that a variable outlives its unit in. What calls something must not do so twice.
         if matches!(place.storage, Storage::Register(_)) || !is_pure(place) {
             return;
         }
@@ -47,7 +47,7 @@ impl Emitter<'_, '_> {
         });
     }
 
-    /// True if a unit is no user's.
+    /// True if a unit is not a user's.
     pub(crate) fn is_of_library(&self, pou: PouId) -> bool {
         let span = self.program().pou(pou).map(|pou| pou.span);
         self.shared().points().is_some_and(|points| span.is_some_and(|span| !points.is_own(span)))

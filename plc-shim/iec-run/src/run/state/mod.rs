@@ -16,7 +16,7 @@
 //! | module | subject |
 //! |---|---|
 //! | [`tasks`] | the task plan in it |
-//! | [`error`] | why bytes are no state of a PLC |
+//! | [`error`] | why bytes are not the state of a PLC |
 
 mod error;
 mod tasks;
@@ -27,15 +27,15 @@ use onescan_base::VirtualTime;
 
 use super::fault::{FaultSite, PlcFault};
 use super::force::Forces;
-use onescan_iec::task_plan::TaskPlan;
 use super::scheduler::Waiting;
 use crate::application::Application;
 use crate::application::identity::bytes::{Reader, Writer};
 use crate::application::identity::code::Code;
 use crate::application::identity::layout::Layout;
 use crate::application::identity::{Digest, VariableDifference, digest};
-use onescan_iec::check::VIRTUAL_TIME_OFFSET;
 use crate::compile::fault::FaultKind;
+use onescan_iec::check::VIRTUAL_TIME_OFFSET;
+use onescan_iec::task_plan::TaskPlan;
 
 /// How a saved state writes an instant that does not come.
 const NEVER_NS: u64 = u64::MAX;

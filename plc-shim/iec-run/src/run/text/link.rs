@@ -6,9 +6,9 @@ use super::view::{Outside, Target, View};
 use super::{edit, parse};
 use crate::application::text::{Line, format, format_long_time};
 use crate::compile::text_host::{LONG_TIME, MODULE, TextImport};
+use crate::run::trace::Trace;
 use onescan_iec::ir::ElementaryType;
 use onescan_iec::ir::text::Edit;
-use crate::run::trace::Trace;
 
 /// What host functions work on.
 #[derive(Debug, Default)]
@@ -47,7 +47,7 @@ fn with_memory<T>(
 
 fn pay(caller: &mut Caller<'_, HostState>, cost: u64) -> Result<(), Error> {
     let budget = caller.data().budget.ok_or_else(|| Error::msg("the module has no budget"))?;
-    let left = budget.get(&mut *caller).i64().ok_or_else(|| Error::msg("the budget is no LINT"))?;
+    let left = budget.get(&mut *caller).i64().ok_or_else(|| Error::msg("the budget is not a LINT"))?;
     let left = left.saturating_sub(cost.cast_signed());
     budget.set(&mut *caller, Val::I64(left))?;
     if left < 0 { Err(Trap::OutOfFuel.into()) } else { Ok(()) }

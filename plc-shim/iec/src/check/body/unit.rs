@@ -80,7 +80,7 @@ impl Body<'_, '_> {
         statements
     }
 
-    /// What makes an initial value that is no constant.
+    /// What makes an initial value that is not a constant.
     fn computed(&mut self, variable: &Variable) -> Vec<Statement> {
         // Outside of units nothing is declared for one call.
         let fleeting = self.pou.map(|id| self.declarations.pou(id).fleeting().clone()).unwrap_or_default();

@@ -81,7 +81,7 @@ impl Body<'_, '_> {
             Some(found) => found.clone(),
             None if self.scope.is_broken(&viewed.key()) => return None,
             None => {
-                let message = format!("`{}` is no variable of this block", viewed.text);
+                let message = format!("`{}` is not a variable of this block", viewed.text);
                 self.report(Diagnostic::error(Code::UnknownName, viewed.span, message));
                 return None;
             }

@@ -15,7 +15,7 @@ enum Piece<'e> {
     Index(&'e [Expr], Span),
 }
 
-/// `a.b[1]` in pieces; nothing for what is no path.
+/// `a.b[1]` in pieces; nothing for what is not a path.
 fn pieces(expr: &Expr) -> Option<Vec<Piece<'_>>> {
     let mut found = Vec::new();
     let mut next = expr;
@@ -90,7 +90,7 @@ impl Configurer<'_, '_> {
         }
         if let Some(index) = self.resource_named(first) {
             let Some((Piece::Name(second), rest)) = rest.split_first() else {
-                return self.no_path(first, "a resource is no variable", None);
+                return self.no_path(first, "a resource is not a variable", None);
             };
             if let Some(found) = self.global_target(second, Some(index)) {
                 return Some((found.ok()?, rest));

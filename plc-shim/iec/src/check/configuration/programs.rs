@@ -90,13 +90,16 @@ impl<'a> Configurer<'_, 'a> {
             return Some(pou);
         }
         if found.is_none() && self.is_task_of_library(name) {
-            let message = format!("program `{}` is not there, and no other: nothing runs in this task", name.text);
+            let message = format!(
+                "program `{}` does not exist, and the project has no other program; this task runs nothing",
+                name.text
+            );
             let help = "a library needs no program; an application declares one of this name";
             self.declarations.report(Diagnostic::warning(Code::UnknownProgram, name.span, message).with_help(help));
             return None;
         }
         let (message, help) = if found.is_some() {
-            (format!("`{}` is no program", name.text), None)
+            (format!("`{}` is not a program", name.text), None)
         } else {
             let programs = self.declarations.unit_names(|kind| kind == PouKind::Program);
             let help = did_you_mean(&name.text, programs);
@@ -121,7 +124,8 @@ impl<'a> Configurer<'_, 'a> {
             let Some(scope) = self.declarations.pou(program.pou).scope().cloned() else { continue };
             for variable in scope.variables().iter().filter(|variable| variable.section == SectionKind::InOut) {
                 let (name, given) = (&program.name, &variable.name);
-                let message = format!("nobody gives `{given}` of program `{name}`: a task passes no VAR_IN_OUT");
+                let message =
+                    format!("VAR_IN_OUT `{given}` of program `{name}` is never assigned; a task cannot pass one");
                 let help = format!("call it from another program, as `{name}({given} := ..);`");
                 self.declarations.report(Diagnostic::error(Code::WrongSection, variable.span, message).with_help(help));
             }

@@ -58,7 +58,7 @@ impl<'a> Configurer<'_, 'a> {
 
     /// Nothing for an interval of 0, which is as good as none.
     fn interval(&mut self, value: &Expr) -> Option<TimeSpan> {
-        // A cycle is no TIME of the program: it may be shorter than what a TIME counts.
+        // A cycle is not a TIME of the program: it may be shorter than what a TIME counts.
         let ns = if let ExprKind::Literal(Literal::Duration { ns, .. }) = &value.kind {
             i128::from(*ns)
         } else {

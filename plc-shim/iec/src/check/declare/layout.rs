@@ -5,7 +5,7 @@
 //! | 0 | nothing; a reference of 0 refers to nothing |
 //! | 8 | virtual time in nanoseconds, `ONESCAN_TV`, written before every task |
 //! | 16 | how deep calls are nested that come back to a unit that still runs |
-//! | 24 | BOOL, `ONESCAN_INIT_RETAINS`, written before a start: RETAIN variables begin anew |
+//! | 24 | BOOL, `ONESCAN_INIT_RETAINS`, written before a start: RETAIN variables get their initial values |
 //! | 64 | global variables, programs, frames |
 //! | behind them | the areas of direct addresses, `%I`, `%Q`, `%M`, as far as they are used |
 

@@ -31,7 +31,7 @@ pub(in crate::check) enum Placement {
 
 impl Declarations<'_> {
     pub(in crate::check) fn invalid_address<T>(&mut self, text: &str, error: AddressError, span: Span) -> Option<T> {
-        let message = format!("`{text}` is no direct address: {error}");
+        let message = format!("`{text}` is not a direct address: {error}");
         self.report(Diagnostic::error(Code::InvalidAddress, span, message));
         None
     }

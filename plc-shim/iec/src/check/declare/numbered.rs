@@ -40,7 +40,7 @@ impl Scope {
     /// The input or output of a number, if there are as many as in the drawing.
     pub(in crate::check) fn numbered(&self, wanted: Numbered<'_>) -> Option<&Variable> {
         let pins: Vec<&Variable> = if wanted.direction == "in" {
-            // A box has its inputs first and what it changes in its place behind them; a constant input is no pin.
+            // A box has its inputs first and what it changes in its place behind them; a constant input is not a pin.
             let pins = self.positional().filter(|variable| !variable.is_constant);
             let (inputs, changed): (Vec<_>, Vec<_>) = pins.partition(|pin| pin.section == SectionKind::Input);
             inputs.into_iter().chain(changed).collect()

@@ -17,7 +17,7 @@ impl Declarations<'_> {
     pub(in crate::check) fn program_instance(&mut self, id: PouId, name: &Ident) -> Option<Variable> {
         let dialect = self.dialect(name.span);
         if !dialect.has(Feature::ProgramInstances) {
-            let message = format!("`{}` is a program, which in {dialect} is no instance", name.text);
+            let message = format!("`{}` is a program, which in {dialect} is not an instance", name.text);
             let homes = Feature::ProgramInstances.homes();
             let help = format!("it is one in {homes}: --dialect chooses; else make it a function block");
             self.report(Diagnostic::error(Code::NotCallable, name.span, message).with_help(help));

@@ -1,4 +1,4 @@
-//! What runs before the first scan and before another start, as declarations say it: initial values that are no
+//! What runs before the first scan and before another start, as declarations say it: initial values that are not
 //! constants, instances with hooks.
 //!
 //! A variable's initial bytes and what a start adds to them come together from its type and its
@@ -66,7 +66,7 @@ pub(in crate::check) enum StartKind<'a> {
     Instance(PouId, Given<'a>),
     /// The same for so many elements, so many bytes apart.
     Each { count: u32, stride: u32, starts: Starts<'a> },
-    /// Assigns an initial value that is no constant.
+    /// Assigns an initial value that is not a constant.
     Value(TypeId, &'a ast::Expr),
     /// Gives what `FB_init` may have written the value that its instance is declared with.
     Bytes(TypeId, Arc<[u8]>),

@@ -165,7 +165,7 @@ impl<'a> Declarations<'a> {
         if count != used.arguments.len() {
             let (name, given) = (&ast.name.text, used.arguments.len());
             let message = match count {
-                0 => format!("`{name}` is no generic block"),
+                0 => format!("`{name}` is not a generic block"),
                 1 => format!("`{name}` has one generic constant, {given} are given"),
                 _ => format!("`{name}` has {count} generic constants, {given} are given"),
             };

@@ -160,7 +160,7 @@ impl<'c, 'a> Interface<'c, 'a> {
         }
     }
 
-    /// A view has memory of its own for one call, and is no parameter whatever its section.
+    /// A view has memory of its own for one call, and is not a parameter whatever its section.
     fn declare_views(&mut self, ast: &'a ast::Pou) {
         let declared = ast.sections.iter().flat_map(|section| &section.variables);
         for view in declared.filter(|variable| variable.viewed().is_some()) {

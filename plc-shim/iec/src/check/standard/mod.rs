@@ -29,7 +29,7 @@ pub(in crate::check) fn is_reserved(key: &str) -> bool {
     form::is_reserved(key) || !conversion::is_of_vendors(key) && conversion()
 }
 
-/// True for every function that is no unit: those of the standard, those on memory, places and instances, and what of
+/// True for every function that is not a unit: those of the standard, those on memory, places and instances, and what of
 /// a vendor's runtime is known by its name.
 pub fn is_known(key: &str) -> bool {
     exists(key)

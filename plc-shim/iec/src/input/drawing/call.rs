@@ -130,7 +130,7 @@ impl Sheet<'_> {
             text.append(Text::wire(wire, place));
             arguments.push(text);
             if !is_pin(&output.name) {
-                let message = format!("`{}` is no name of an output of `{name}` (id {id})", output.name);
+                let message = format!("`{}` is not the name of an output of `{name}` (id {id})", output.name);
                 self.report(place, Code::MalformedXml, message);
             }
         }
@@ -176,7 +176,7 @@ impl Sheet<'_> {
             };
             let mut text = Text::default();
             if named && !is_pin(&argument.name) {
-                let message = format!("`{}` is no name of an input of `{name}` (id {})", argument.name, block.id);
+                let message = format!("`{}` is not the name of an input of `{name}` (id {})", argument.name, block.id);
                 self.report(&argument.place, Code::MalformedXml, message);
                 sound = false;
             }

@@ -111,7 +111,7 @@ impl Chart<'_, '_, '_> {
         };
         let Some(&(index, output)) = self.owners.get(source.as_str()) else {
             let message = match source.as_str() {
-                "" => format!("the line to the pin {} does not tell where it begins", pin.id),
+                "" => format!("the connection to pin {} has no source", pin.id),
                 _ => format!("there is no pin {source}, which the line to the pin {} begins at", pin.id),
             };
             self.sheet.report(&pin.place, Code::DanglingConnection, message);
@@ -156,7 +156,7 @@ impl Chart<'_, '_, '_> {
     /// False if composers and selectors lead to one another without end.
     fn may_go_deeper(&mut self, element: &Element<'_>) -> bool {
         if self.depth >= MAX_DEPTH {
-            let message = format!("the value of element {} is wanted for itself", element.id);
+            let message = format!("element {} depends on its own value", element.id);
             self.sheet.report(&element.place, Code::FeedbackWithoutVariable, message);
         }
         self.depth < MAX_DEPTH
@@ -178,7 +178,7 @@ impl Chart<'_, '_, '_> {
         self.depth += 1;
         for pin in &element.inputs {
             if !is_name(&pin.name) {
-                let message = format!("`{}` is no name of a member (element {})", pin.name, element.id);
+                let message = format!("`{}` is not the name of a member (element {})", pin.name, element.id);
                 self.sheet.report(&pin.place, Code::MalformedXml, message);
             } else if let Some(value) = self.value(pin) {
                 let target = Text::word(format!("{name}.{}", pin.name), &pin.place);
@@ -244,7 +244,7 @@ impl Chart<'_, '_, '_> {
         if is_name(name) {
             return Some(name.to_owned());
         }
-        let message = format!("`{name}` is no name of a label (element {})", element.id);
+        let message = format!("`{name}` is not the name of a label (element {})", element.id);
         self.sheet.report(&element.place, Code::MalformedXml, message);
         None
     }

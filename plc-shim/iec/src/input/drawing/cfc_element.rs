@@ -42,7 +42,7 @@ pub(super) enum Kind {
     Jump,
     Return,
     Label,
-    /// A structure whose members are the inputs; nothing of the type if the archive does not tell it.
+    /// A structure whose members are the inputs; nothing of the type if the archive does not say it.
     Composer {
         type_name: String,
     },

@@ -92,7 +92,7 @@ impl Step {
         let place = element.place();
         let name = attributes.value(NAME).map_or("", |name| name.plain.trim()).to_owned();
         if !is_name(&name) {
-            let message = format!("`{name}` is no name of a step (element {})", element.id(sheet.file));
+            let message = format!("`{name}` is not the name of a step (element {})", element.id(sheet.file));
             sheet.report(&place, Code::MalformedXml, message);
             return None;
         }
@@ -103,7 +103,7 @@ impl Step {
             if is_name(called) {
                 return Some(called.to_owned());
             }
-            let message = format!("`{called}` is no name of an action");
+            let message = format!("`{called}` is not the name of an action");
             sheet.report(&written.place, Code::MalformedXml, message);
             None
         };
@@ -166,7 +166,7 @@ impl Transition {
         let named = bodies.get(&self.condition.plain.trim().to_ascii_uppercase());
         let condition = named.map_or(&self.condition, |body| *body);
         if named.is_some() && !matches!(Form::of(&condition.plain), Form::Expression) {
-            let what = format!("the transition `{}` that is no single expression", self.condition.plain.trim());
+            let what = format!("the transition `{}` that is not a single expression", self.condition.plain.trim());
             return sheet.unsupported(&condition.place, &what);
         }
         let Some(condition) = sheet.expression(&condition.without_end()) else { return };

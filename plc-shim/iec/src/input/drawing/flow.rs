@@ -2,7 +2,7 @@
 //!
 //! TwinCAT ("Automatic execution order by data flow") takes the networks from top to bottom and from left to right. In a
 //! network an element follows those that its lines come from, and what an element brings to a variable comes right
-//! behind it. Where a loop begins the archive does not tell, so a chart with one has no order here.
+//! behind it. Where a loop begins the archive does not say, so a chart with one has no order here.
 
 use std::collections::{BTreeMap, BTreeSet};
 

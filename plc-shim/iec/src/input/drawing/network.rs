@@ -184,7 +184,7 @@ impl Networks<'_, '_> {
             flag::RETURN => self.sheet.control("RETURN", signal, &place),
             flag::JUMP if is_name(plain) => self.sheet.control(&format!("JMP {plain}"), signal, &place),
             flag::JUMP => {
-                let message = format!("`{plain}` is no name of a label (id {})", target.id(file));
+                let message = format!("`{plain}` is not the name of a label (id {})", target.id(file));
                 self.sheet.report(&place, Code::MalformedXml, message);
             }
             _ if !is_given(plain) => {

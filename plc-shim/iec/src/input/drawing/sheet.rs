@@ -128,7 +128,7 @@ impl<'s> Sheet<'s> {
             return None;
         }
         let Some(parsed) = parse_expression(plain) else {
-            let message = format!("`{}` is no expression", plain.trim());
+            let message = format!("`{}` is not an expression", plain.trim());
             self.report(&written.place, Code::UnexpectedToken, message);
             return None;
         };

@@ -92,7 +92,7 @@ pub struct Wire {
     pub line: u32,
 }
 
-/// All drawings of a file of PLCopen XML; none if it is no such file.
+/// All drawings of a file of PLCopen XML; none if it is not such a file.
 pub fn sheets(file: &str) -> Vec<Sheet> {
     let Ok(root) = parse(file) else { return Vec::new() };
     let mut units = Vec::new();

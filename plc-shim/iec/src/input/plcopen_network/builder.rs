@@ -131,7 +131,7 @@ impl<'w, 'f, 'n> Builder<'w, 'f, 'n> {
         let (text, plain) = self.expression(holder, name)?;
         if !is_atomic(&plain) && parse_expression(&plain).is_none() {
             let place = holder.child(name).map_or(holder.open.clone(), |inner| inner.open.clone());
-            self.report(&place, Code::UnexpectedToken, &format!("`{}` is no variable", plain.trim()));
+            self.report(&place, Code::UnexpectedToken, &format!("`{}` is not a variable", plain.trim()));
             return None;
         }
         let place = holder.child(name).map_or_else(|| holder.open.clone(), |inner| inner.open.clone());
@@ -404,7 +404,7 @@ impl<'w, 'f, 'n> Builder<'w, 'f, 'n> {
         if plain && name.starts_with(|one: char| !one.is_ascii_digit()) {
             return Some(name.to_owned());
         }
-        self.report(&node.place(), Code::MalformedXml, &format!("`{name}` is no name of a label"));
+        self.report(&node.place(), Code::MalformedXml, &format!("`{name}` is not the name of a label"));
         None
     }
 }

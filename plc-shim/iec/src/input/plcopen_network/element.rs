@@ -209,7 +209,7 @@ fn outputs(element: &Element) -> Vec<Output<'_>> {
     variables.map(output).collect()
 }
 
-/// The elements of a body in the order of the file; what is no part of a network is left out.
+/// The elements of a body in the order of the file; what is not part of a network is left out.
 pub(super) fn nodes(body: &Element) -> Vec<Node<'_>> {
     body.elements().filter_map(Node::of).collect()
 }

@@ -2,7 +2,7 @@
 
 use super::{Expr, Ident, Span, Statement};
 
-/// The steps and transitions of a unit, each kind in its order; none where the unit is no chart.
+/// The steps and transitions of a unit, each kind in its order; none where the unit is not a chart.
 #[derive(Debug, Clone, Default)]
 pub struct Chart {
     /// The steps (2nd ed. 2.6.2).

@@ -39,7 +39,7 @@ pub enum PouKind {
 }
 
 impl PouKind {
-    /// True for what begins anew in every call: functions and methods.
+    /// True for what starts over in every call: functions and methods.
     pub fn keeps_nothing(self) -> bool {
         matches!(self, Self::Function | Self::Method | Self::Action)
     }
@@ -198,7 +198,7 @@ pub enum TypeSpecKind {
     Instance(Ident, InitArguments),
     /// `(Red, Green := 5)`, `(Red, Green) USINT` or `USINT (Red, Green)`
     Enumeration(Vec<EnumValue>, Option<Ident>),
-    /// Text that is no type; a diagnostic has been given.
+    /// Text that is not a type; a diagnostic has been given.
     Error,
 }
 

@@ -59,7 +59,7 @@ pub enum ExprKind {
     Assign(Box<Expr>, Box<Expr>),
     /// `POINTER TO T`, a type where vendors want one: in `SIZEOF` and `__NEW`.
     Type(Box<TypeSpec>),
-    /// Text that is no expression; a diagnostic has been given.
+    /// Text that is not an expression; a diagnostic has been given.
     Error,
 }
 

@@ -56,7 +56,7 @@ pub enum StatementKind {
     Jump(Ident),
     /// One of a list of instructions.
     Instruction(Box<Instruction>),
-    /// Text that is no statement; a diagnostic has been given.
+    /// Text that is not a statement; a diagnostic has been given.
     Error,
 }
 

@@ -177,7 +177,7 @@ impl Cursor<'_> {
         self.take_identifier().map(StatementKind::Jump)
     }
 
-    /// True for the name of an elementary type or `ARRAY`: what is before it is no label.
+    /// True for the name of an elementary type or `ARRAY`: what is before it is not a label.
     fn at_type(&self) -> bool {
         let text = self.next_text();
         let string = || ["STRING", "WSTRING"].iter().any(|name| name.eq_ignore_ascii_case(text));

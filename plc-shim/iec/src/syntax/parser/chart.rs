@@ -88,7 +88,7 @@ impl Cursor<'_> {
             let known = ActionQualifier::ALL.map(ActionQualifier::text);
             let list = format!("one of {}", known.join(", "));
             let help = did_you_mean(text, known).unwrap_or(list);
-            let message = format!("`{text}` is no action qualifier");
+            let message = format!("`{text}` is not an action qualifier");
             self.report(Diagnostic::error(Code::UnknownQualifier, span, message).with_help(help));
         }
         found

@@ -1,6 +1,6 @@
 //! Configurations, resources, tasks and instances of programs (2nd ed. 2.7, 3rd ed. 6.8).
 //!
-//! Their words are no keywords elsewhere: programs have variables called `task` and `on`.
+//! Their words are not keywords elsewhere: programs have variables called `task` and `on`.
 
 use super::cursor::Cursor;
 use crate::syntax::ast::{

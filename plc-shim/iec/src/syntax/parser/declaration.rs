@@ -198,7 +198,7 @@ impl Cursor<'_> {
         Section { kind, qualifiers, variables, span: self.span_from(start) }
     }
 
-    /// True where a variable is declared, be it under a name that is none.
+    /// True where a variable is declared, even if what names it is not a name.
     fn at_variable(&mut self) -> bool {
         self.name_keyword();
         match self.peek() {

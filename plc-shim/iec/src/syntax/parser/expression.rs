@@ -370,7 +370,7 @@ impl Cursor<'_> {
         if unit.start != number.end || self.peek() != Some(TokenKind::Identifier) {
             return false;
         }
-        let message = format!("`{}` is no number", self.text(number.start, unit.end));
+        let message = format!("`{}` is not a number", self.text(number.start, unit.end));
         let help = format!("a duration is written `T#{}`", self.text(number.start, unit.end));
         let times = ["d", "h", "m", "s", "ms", "us", "ns"];
         let help = times.iter().any(|name| self.at_word(name)).then_some(help);
@@ -380,7 +380,7 @@ impl Cursor<'_> {
         true
     }
 
-    /// Reports what is no operand, with a hint for what other languages write.
+    /// Reports what is not an operand, with a hint for what other languages write.
     fn unexpected_operand(&mut self) {
         use Punctuation as P;
         let previous = self.previous();

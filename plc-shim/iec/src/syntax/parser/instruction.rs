@@ -152,7 +152,7 @@ impl Cursor<'_> {
             }
             self.skip_line();
         }
-        // What is no instruction may end its own line: it is passed over all the same.
+        // What is not an instruction may end its own line: it is passed over all the same.
         if self.peek().is_some() && self.span() == start {
             self.advance();
         }
@@ -165,7 +165,7 @@ impl Cursor<'_> {
         let message = if word(text).is_some() {
             format!("`{text}` lacks its operand")
         } else {
-            format!("`{text}` is no instruction")
+            format!("`{text}` is not an instruction")
         };
         self.report_syntax(Diagnostic::error(Code::UnknownInstruction, start, message));
     }

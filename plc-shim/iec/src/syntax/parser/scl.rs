@@ -141,7 +141,7 @@ impl Cursor<'_> {
         }
     }
 
-    /// Passes the `#` of `#name` where it is no part of a name, and says whose it is.
+    /// Passes the `#` of `#name` where it is not part of a name, and says whose it is.
     pub(super) fn pass_hash(&mut self) {
         if self.at_mark(Punctuation::Hash) && self.peek_ahead(1) == Some(TokenKind::Identifier) {
             self.require(Feature::QuotedNames, self.span());

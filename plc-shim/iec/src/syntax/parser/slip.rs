@@ -27,7 +27,7 @@ impl Cursor<'_> {
         let (message, help) = if self.at_word("ELSEIF") || self.at_word("ELIF") {
             ("this begins no branch", "write `ELSIF`".to_owned())
         } else if self.at_word("BREAK") && ends {
-            ("this is no statement", "write `EXIT` to leave a loop; a branch of CASE ends by itself".to_owned())
+            ("this is not a statement", "write `EXIT` to leave a loop; a branch of CASE ends by itself".to_owned())
         } else if self.at_mark(Punctuation::Star) && next == Some(TokenKind::Punctuation(Punctuation::RightParen)) {
             self.advance();
             ("there is no `(*` before this", "a comment in a comment has an end of its own".to_owned())
@@ -157,7 +157,7 @@ impl Cursor<'_> {
         if self.reported() == known {
             let bounds = bounds_for(self.text(count.span.start, count.span.end), &count);
             let help = format!("write `ARRAY [{bounds}] OF {}`", element.text);
-            self.report_slip(self.span_from(start), "this is no type", help);
+            self.report_slip(self.span_from(start), "this is not a type", help);
         }
         let spec = TypeSpec { span: element.span, kind: TypeSpecKind::Name(element) };
         TypeSpecKind::Array(vec![Dimension { low: zero(count.span), high: count }], Box::new(spec))

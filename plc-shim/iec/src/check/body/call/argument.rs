@@ -184,7 +184,7 @@ impl Body<'_, '_> {
     }
 
     /// A string of another length for a `VAR_IN_OUT`, as vendors take it: one with more room as it is, of another one a
-    /// copy that is copied back, so that nothing is written behind its end. Nothing if it is no such string.
+    /// copy that is copied back, so that nothing is written behind its end. Nothing if it is not such a string.
     fn other_string(&mut self, parameter: &Variable, place: &Place, passing: &mut Passing) -> Meant<Place> {
         let (wanted, found) = (self.shape(parameter.ty)?, self.shape(place.ty)?);
         let is_allowed = self.declarations.dialect(place.span).has(Feature::LooseStrings);

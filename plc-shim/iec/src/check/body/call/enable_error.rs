@@ -6,7 +6,7 @@
 //! |---|---|
 //! | DIV, and time functions that divide | the divisor is 0 |
 //! | MUX | the selector is outside of the inputs |
-//! | SQRT, LN, LOG, ASIN, ACOS, EXPT and the like | the result is no number |
+//! | SQRT, LN, LOG, ASIN, ACOS, EXPT and the like | the result is not a number |
 //! | conversions of numbers to a type with fewer of them | the number does not fit, or is none |
 
 use crate::check::body::Body;
@@ -148,7 +148,7 @@ impl Bounds {
             return narrower.then_some(Self { held: from, low, strict: false, high, closed: true });
         }
         // Limits are even below and odd above, so that ties go to the first and beyond the second. A 64 bit
-        // limit's neighbour is no LREAL; there the limit itself stands in.
+        // limit's neighbour is not an LREAL; there the limit itself stands in.
         let narrow = to.size() < 8;
         let (down, strict) = match rounding {
             Rounding::NearestEven => (0.5, false),

@@ -62,7 +62,7 @@ impl Body<'_, '_> {
         for parameter in scope.inputs() {
             let given = matched.inputs.get(&parameter.name.to_ascii_uppercase()).copied();
             let Some(expr) = given else {
-                // An input that is not given keeps its value; a reference must be given anew.
+                // An input that is not given keeps its value; a reference must be given again.
                 if parameter.section == SectionKind::InOut
                     && !self.declarations.dialect(span).has(Feature::ReadableInOuts)
                 {

@@ -17,7 +17,7 @@
 //!    those behind it. In the first scan nothing is tested, so that the actions of the initial steps run
 //!    before anything else (2nd ed. 2.6.5).
 //! 3. The steps before all cleared transitions are deactivated, then those behind them activated: one
-//!    evolution in a scan. A step that is both begins anew.
+//!    evolution in a scan. A step that is both restarts.
 //! 4. The action control of each action sees the steps that are active now. Actions have the order in
 //!    which the steps name them first. A Boolean action takes the value of its flag `Q`.
 //! 5. Actions run whose flag is FALSE: those of `P0` and `P1`, and the final scan of those that end. Then
@@ -42,7 +42,7 @@ use crate::syntax::Span;
 use crate::syntax::ast::{self, PouKind, StatementKind};
 
 impl Body<'_, '_> {
-    /// What a unit's chart does in each scan; nothing where it is no chart.
+    /// What a unit's chart does in each scan; nothing where it is not a chart.
     pub(in crate::check) fn chart(&mut self, ast: &ast::Pou) -> Vec<Statement> {
         let Some(first) = ast.chart.span() else { return Vec::new() };
         let owner = if ast.kind == PouKind::Action { self.own_class() } else { None };

@@ -205,7 +205,7 @@ impl Body<'_, '_> {
         narrow.or_else(|| left.common(right)).or_else(numbers).or_else(unsigned).or_else(real)
     }
 
-    /// `AND_THEN`, `OR_ELSE`: the right operand is evaluated only if the left one does not tell.
+    /// `AND_THEN`, `OR_ELSE`: the right operand is evaluated only if the left one does not decide.
     pub(super) fn short_circuit(
         &mut self,
         operator: BinaryOp,

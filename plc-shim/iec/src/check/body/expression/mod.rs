@@ -124,7 +124,7 @@ impl Body<'_, '_> {
     }
 
     pub(super) fn malformed_literal(&mut self, prefix: &str, value: &str, span: Span) -> Option<Operand> {
-        let message = format!("`{value}` is no value of {}", prefix.to_ascii_uppercase());
+        let message = format!("`{value}` is not a value of {}", prefix.to_ascii_uppercase());
         self.report(Diagnostic::error(Code::InvalidLiteral, span, message));
         None
     }

@@ -17,7 +17,7 @@ pub(in crate::check) struct Pair {
 
 fn resolved(operator: BinaryOp) -> Option<Binary> {
     Some(match operator {
-        // Those that are evaluated in part only are no operations on two values.
+        // Those that are evaluated in part only are not operations on two values.
         BinaryOp::Power | BinaryOp::AndThen | BinaryOp::OrElse => return None,
         BinaryOp::Multiply => Binary::Multiply,
         BinaryOp::Divide => Binary::Divide,

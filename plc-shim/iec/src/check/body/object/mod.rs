@@ -151,7 +151,7 @@ impl Body<'_, '_> {
             Role::Method | Role::Body | Role::Start | Role::End => {
                 (Code::NotAVariable, format!("`{0}` is a method: call it as `{0}()`", name.text))
             }
-            Role::Getter => (Code::WrongProperty, format!("`{}` is a property, which is no variable", name.text)),
+            Role::Getter => (Code::WrongProperty, format!("`{}` is a property, which is not a variable", name.text)),
             Role::Setter => (Code::WrongProperty, format!("the property `{}` has no GET", name.text)),
         };
         self.report(Diagnostic::error(code, name.span, message));

@@ -177,7 +177,7 @@ impl Body<'_, '_> {
         None
     }
 
-    /// Reports a variable without bounds that is no such parameter.
+    /// Reports a variable without bounds that is not such a parameter.
     pub(in crate::check) fn reject_open_array(&mut self, ty: TypeId, span: Span) -> Option<()> {
         if !self.is_open(ty) {
             return Some(());

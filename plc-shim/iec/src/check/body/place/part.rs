@@ -14,7 +14,7 @@ impl Body<'_, '_> {
     /// The part of `base` that is written as `name`.
     pub(in crate::check) fn part(&mut self, base: Located, name: &Ident, span: Span) -> Option<Located> {
         let Some((width, number)) = parse(&name.text) else {
-            let message = format!("`{}` is no part: write %X, %B, %W or %D and a number", name.text);
+            let message = format!("`{}` is not a part: write %X, %B, %W or %D and a number", name.text);
             self.report(Diagnostic::error(Code::InvalidPart, name.span, message));
             return None;
         };

@@ -119,7 +119,7 @@ impl Body<'_, '_> {
         Some(Operand::Integer { value: i128::from(self.declarations.types().size(ty)), span })
     }
 
-    /// The type that an expression names; nothing if it is no type's name.
+    /// The type that an expression names; nothing if it is not a type's name.
     pub(in crate::check::body) fn type_written(&mut self, expr: &ast::Expr) -> Meant<TypeId> {
         match &expr.kind {
             ast::ExprKind::Name(name) if self.variable_named(name).is_none() && self.names_type(name) => {

@@ -307,7 +307,7 @@ impl Body<'_, '_> {
         Some(Statement { kind: StatementKind::Assign(place, value), span })
     }
 
-    /// Reports a target of `REF=` that is no `REFERENCE TO`.
+    /// Reports a target of `REF=` that is not a `REFERENCE TO`.
     pub(super) fn require_reference_target(&mut self, ty: TypeId, span: Span) -> Option<()> {
         if self.is_reference_to(ty) {
             return Some(());

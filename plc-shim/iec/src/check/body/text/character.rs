@@ -99,7 +99,7 @@ impl Body<'_, '_> {
         Some(Operand::Typed(Expr { kind, ty: ty.into(), span }))
     }
 
-    /// `s[i] := value` where a 0 ends a string; nothing at all if the target is no character of one.
+    /// `s[i] := value` where a 0 ends a string; nothing at all if the target is not a character of one.
     pub(in crate::check::body) fn character_assignment(
         &mut self,
         target: &ast::Expr,
