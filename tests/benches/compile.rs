@@ -5,8 +5,8 @@
 use std::fmt::Write;
 use std::time::Instant;
 
-use onescan_iec::syntax::{FileId, parse};
 use onescan_iec::TimeSpan;
+use onescan_iec::syntax::{FileId, parse};
 use onescan_iec_run::{Application, SoftPlc};
 
 /// Function blocks of some hundred lines each, every one called by the program.

@@ -9,13 +9,13 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use onescan_iec_run::SoftPlc;
 use onescan_links::gateway::exchange::Direction;
 use onescan_links::gateway::modbus::RegisterMap;
 use onescan_links::gateway::tcp::Layouts;
 use onescan_links::gateway::{Exchange, Gateway, Link, Patience, Settings};
 use onescan_links::opcua::Access;
 use onescan_links::station::{Clockwork, Controller, Wires, ads, modbus, opcua, tcp};
-use onescan_iec_run::SoftPlc;
 use onescan_scenario::{Mode, Scenario};
 use onescan_server::client::{Client, JoinRequest};
 use onescan_server::time::VirtualTime;

@@ -6,29 +6,66 @@ use std::path::{Path, PathBuf};
 use crate::root;
 use crate::tokens::{Token, tokens};
 
-/// The crates of the program, and which of them each may stand on.
+/// The crates of the program, in an order in which each stands only on crates before it, and which of them it may name.
 const STANDS_ON: &[(&str, &[&str])] = &[
     ("base", &[]),
     ("base/xml", &[]),
-    ("server", &["onescan-base"]),
-    ("server/recording", &["onescan-base", "onescan-server"]),
-    ("plc-shim", &["onescan-base", "onescan-xml"]),
     ("report", &[]),
-    ("clients", &["onescan-base", "onescan-plc-shim", "onescan-server", "onescan-xml"]),
-    ("scenarios", &["onescan-base", "onescan-clients", "onescan-plc-shim", "onescan-server"]),
+    ("server", &["base"]),
+    ("server/recording", &["base", "server"]),
+    ("plc-shim/iec", &["base", "base/xml"]),
+    ("plc-shim/iec-run", &["base", "plc-shim/iec"]),
+    ("plc-shim/iec-project", &["base", "base/xml", "plc-shim/iec", "plc-shim/iec-run"]),
+    ("clients/stream", &["base", "server"]),
+    ("clients/operator", &["server"]),
+    ("clients/plant", &["base", "base/xml", "server", "plc-shim/iec", "plc-shim/iec-run", "clients/stream"]),
+    ("clients/soft-plc", &["base", "server", "plc-shim/iec", "plc-shim/iec-run", "clients/stream"]),
+    ("clients/links", &["base", "server", "plc-shim/iec", "plc-shim/iec-run", "clients/soft-plc"]),
+    ("clients/opc-ua", &["base", "server", "clients/links"]),
     (
-        "cli",
+        "scenarios",
         &[
-            "onescan-base",
-            "onescan-clients",
-            "onescan-plc-shim",
-            "onescan-recording",
-            "onescan-report",
-            "onescan-scenario",
-            "onescan-server",
-            "onescan-xml",
+            "base",
+            "server",
+            "plc-shim",
+            "clients/stream",
+            "clients/operator",
+            "clients/plant",
+            "clients/soft-plc",
+            "clients/links",
         ],
     ),
+    (
+        "cli/runner",
+        &[
+            "base",
+            "server",
+            "report",
+            "plc-shim/iec",
+            "plc-shim/iec-run",
+            "clients/operator",
+            "clients/plant",
+            "clients/soft-plc",
+            "clients/links",
+            "scenarios",
+        ],
+    ),
+    ("cli/regress", &["base", "server", "report", "plc-shim", "clients/soft-plc", "scenarios", "cli/runner"]),
+    ("cli/search", &["base", "server", "report", "plc-shim", "scenarios", "cli/runner", "cli/regress"]),
+    (
+        "cli/edit",
+        &[
+            "base",
+            "server",
+            "report",
+            "plc-shim/iec-run",
+            "clients/plant",
+            "clients/soft-plc",
+            "scenarios",
+            "cli/runner",
+        ],
+    ),
+    ("cli/program", &["base", "server", "report", "plc-shim", "clients", "scenarios", "cli"]),
 ];
 
 /// Where a wall clock is read, and for what. A folder stands for all that is in it.
@@ -41,7 +78,7 @@ const CLOCKS: &[(&str, &str)] = &[
     ("clients/links/src/station", "a PLC on a clock of its own"),
     ("clients/opc-ua/src/information_model/board.rs", "time stamps of OPC UA"),
     ("clients/opc-ua/src/server/doorkeeper.rs", "the day on which a token ends"),
-    ("cli/src", "how long a command took; sessions on a free-wheeling clock"),
+    ("cli", "how long a command took; sessions on a free-wheeling clock"),
 ];
 
 /// Maps without an order, and random numbers: names that no source needs.
@@ -54,8 +91,7 @@ const HARMLESS: &[(&str, &str)] = &[
 ];
 
 /// Where a file is read otherwise than by `onescan_base::regular`, which refuses what has no end.
-const READS: &[(&str, &str)] =
-    &[("base/src/regular.rs", "it is this one"), ("clients/src/published.rs", "what is published, compared by tests")];
+const READS: &[(&str, &str)] = &[("base/src/regular.rs", "it is this one")];
 
 fn rust_files(folder: &Path, found: &mut Vec<PathBuf>) {
     let entries = std::fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
@@ -107,20 +143,51 @@ fn against(places: &BTreeMap<String, Vec<String>>, allowed: &[(&str, &str)]) -> 
     found
 }
 
+/// A crate's manifest, and the folders of the crates of ours that it names.
+fn dependencies(folder: &str, table: &str) -> Vec<String> {
+    let workspace: toml::Table = manifest(".");
+    let paths = workspace["workspace"]["dependencies"].as_table().expect("a table of dependencies").clone();
+    let folder_of = |name: &str| paths[name]["path"].as_str().expect("a crate of ours has a path").to_owned();
+    let manifest = manifest(folder);
+    let named = manifest.get(table).and_then(toml::Value::as_table);
+    let ours = named.into_iter().flat_map(toml::Table::keys).filter(|name| name.starts_with("onescan"));
+    ours.map(|name| folder_of(name)).collect()
+}
+
+fn manifest(folder: &str) -> toml::Table {
+    let text = std::fs::read_to_string(root().join(folder).join("Cargo.toml")).expect("a manifest that can be read");
+    text.parse().expect("a manifest")
+}
+
 #[test]
 fn crates_stand_on_each_other_in_one_order() {
     let mut found = String::new();
-    for (folder, allowed) in STANDS_ON {
-        let path = root().join(folder).join("Cargo.toml");
-        let text = std::fs::read_to_string(&path).expect("a manifest that can be read");
-        let manifest: toml::Table = text.parse().expect("a manifest");
-        let dependencies = manifest.get("dependencies").and_then(toml::Value::as_table);
-        let ours = dependencies.into_iter().flat_map(toml::Table::keys).filter(|name| name.starts_with("onescan"));
-        for name in ours.filter(|name| !allowed.contains(&name.as_str())) {
-            found += &format!("    {folder} stands on {name}\n");
+    for (at, (folder, allowed)) in STANDS_ON.iter().enumerate() {
+        for named in dependencies(folder, "dependencies") {
+            if !allowed.iter().any(|place| Path::new(&named).starts_with(place)) {
+                found += &format!("    {folder} may not stand on {named}\n");
+            }
+            if !STANDS_ON[..at].iter().any(|(before, _)| *before == named) {
+                found += &format!("    {folder} stands on {named}, which does not come before it\n");
+            }
+        }
+        for place in *allowed {
+            if !dependencies(folder, "dependencies").iter().any(|named| Path::new(named).starts_with(place)) {
+                found += &format!("    {folder} may stand on {place}, but does not any more\n");
+            }
         }
     }
     assert!(found.is_empty(), "\n{found}");
+}
+
+/// Every crate with sources has its place in the table.
+#[test]
+fn every_crate_has_its_floor() {
+    let tests = ["tests", "plc-shim/tests", "web/codegen"];
+    let mut crates = crate::crates();
+    crates.retain(|source| !tests.iter().any(|test| Path::new(source).starts_with(test)));
+    let listed: BTreeSet<String> = STANDS_ON.iter().map(|(folder, _)| format!("{folder}/src")).collect();
+    assert_eq!(crates.into_iter().collect::<BTreeSet<_>>(), listed);
 }
 
 #[test]

@@ -175,22 +175,46 @@ impl Reader<'_> {
         self.is_mark(1, '[') && (plain || cfg && self.peek(4).is_some_and(|token| token.is_word("test")))
     }
 
-    /// Skips attributes, then to the end of the item: its `;`, or the brace that closes it.
+    /// Skips attributes, then to the end of what they stand before: an item ends with its `;` or the brace that closes it,
+    /// a field or an entry of a list with its `,` or before the bracket of what it is in.
     fn skip_item(&mut self) {
+        const ITEMS: [&str; 14] = [
+            "const",
+            "enum",
+            "extern",
+            "fn",
+            "impl",
+            "macro_rules",
+            "mod",
+            "pub",
+            "static",
+            "struct",
+            "trait",
+            "type",
+            "unsafe",
+            "use",
+        ];
         let mut depth = 0_usize;
+        let mut is_item = false;
         while let Some(token) = self.peek(0).cloned() {
-            self.at += 1;
             match token {
                 Token::Mark('{' | '[' | '(') => depth += 1,
+                Token::Mark('}' | ']' | ')') if depth == 0 => return,
                 Token::Mark(close @ ('}' | ']' | ')')) => {
                     depth -= 1;
                     if depth == 0 && close == '}' {
+                        self.at += 1;
                         return;
                     }
                 }
-                Token::Mark(';') if depth == 0 => return,
+                Token::Mark(end) if depth == 0 && (end == ';' || end == ',' && !is_item) => {
+                    self.at += 1;
+                    return;
+                }
+                Token::Word(word) if depth == 0 && ITEMS.contains(&word.as_str()) => is_item = true,
                 _ => {}
             }
+            self.at += 1;
         }
     }
 

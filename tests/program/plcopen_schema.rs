@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use onescan_iec::input::kind::SourceKind;
-use onescan_iec_project::instrument::{Options, Target, instrument};
 use onescan_iec::{Dialect, Input};
+use onescan_iec_project::instrument::{Options, Target, instrument};
 
 use crate::venv::python;
 

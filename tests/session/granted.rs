@@ -1,9 +1,9 @@
 //! An instrumented PLC as a client: a gateway in between, which grants steps.
 
-use onescan_soft_plc::Bindings;
 use onescan_iec_run::SoftPlc;
 use onescan_server::client::{Client, ClientFault, JoinRequest, StateError, Wake};
 use onescan_server::time::VirtualTime;
+use onescan_soft_plc::Bindings;
 
 const MS: u64 = 1_000_000;
 

@@ -3,15 +3,15 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use onescan_soft_plc::bind;
 use onescan_iec::input::kind::SourceKind;
-use onescan_iec_project::instrument::{Options, instrument};
 use onescan_iec::{Input, Task, TaskPlan, TimeSpan};
+use onescan_iec_project::instrument::{Options, instrument};
 use onescan_iec_run::{Application, SoftPlc};
 use onescan_scenario::Scenario;
 use onescan_scenario::compose::Member;
 use onescan_server::client::{Client, JoinRequest};
 use onescan_server::signal::SignalDecl;
+use onescan_soft_plc::bind;
 use onescan_tests::run::{in_process, run};
 use onescan_tests::{at_ms, client};
 

@@ -2,11 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use onescan_soft_plc::ports::{PlcPort, PlcWay, TerminalKind};
-use onescan_soft_plc::{SoftPlcClient, bind};
-use onescan_stream::connection::{Cuts, Role};
-use onescan_stream::serial::Rate;
-use onescan_stream::{Form, Port, PortState};
 use onescan_iec::input::kind::SourceKind;
 use onescan_iec::{Dialect, Input, Task, TaskPlan};
 use onescan_iec_run::Application;
@@ -19,6 +14,11 @@ use onescan_server::random::Random;
 use onescan_server::signal::{SignalName, SignalType};
 use onescan_server::time::VirtualTime;
 use onescan_server::timeline::{Scheduled, Timeline, When};
+use onescan_soft_plc::ports::{PlcPort, PlcWay, TerminalKind};
+use onescan_soft_plc::{SoftPlcClient, bind};
+use onescan_stream::connection::{Cuts, Role};
+use onescan_stream::serial::Rate;
+use onescan_stream::{Form, Port, PortState};
 use onescan_tests::run::{PATIENCE, in_process, over_tcp, run};
 use onescan_tests::{at_ms, client, plan, port, span_ms};
 

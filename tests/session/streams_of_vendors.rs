@@ -1,11 +1,11 @@
 //! Lines of bytes under the blocks of other vendors: Siemens' open and point-to-point communication, CODESYS' sockets.
 
-use onescan_soft_plc::ports::PlcWay;
-use onescan_stream::Form;
-use onescan_stream::connection::{Cuts, Role};
 use onescan_iec::Dialect;
 use onescan_server::client::Client;
 use onescan_server::lockstep::{Lockstep, Reached};
+use onescan_soft_plc::ports::PlcWay;
+use onescan_stream::Form;
+use onescan_stream::connection::{Cuts, Role};
 use onescan_tests::at_ms;
 use onescan_tests::run::in_process;
 

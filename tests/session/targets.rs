@@ -4,8 +4,8 @@
 use std::path::{Path, PathBuf};
 
 use onescan_iec::input::kind::{FileKind, SourceKind};
-use onescan_iec_project::instrument::{File, InstrumentError, Options, Project, Target, instrument, remove};
 use onescan_iec::{Input, Severity};
+use onescan_iec_project::instrument::{File, InstrumentError, Options, Project, Target, instrument, remove};
 use onescan_iec_run::SoftPlc;
 use onescan_scenario::{Mode, Scenario, ScenarioError};
 use onescan_server::client::Client;

@@ -14,8 +14,8 @@ mod timers;
 use std::time::Instant;
 
 use onescan_iec::input::kind::SourceKind;
-use onescan_iec_project::instrument::{Options, instrument};
 use onescan_iec::{Input, Task, TaskPlan, TimeSpan, VirtualTime};
+use onescan_iec_project::instrument::{Options, instrument};
 use onescan_iec_run::{Application, SoftPlc};
 
 const INTERVAL_NS: u64 = 10_000_000;

@@ -4,8 +4,8 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use onescan_iec::input::kind::SourceKind;
-use onescan_iec_project::instrument::{Options, instrument};
 use onescan_iec::{Input, Task, TaskPlan, TimeSpan, VirtualTime};
+use onescan_iec_project::instrument::{Options, instrument};
 use onescan_iec_run::{Application, SoftPlc};
 
 use super::gateway::Message;
