@@ -45,9 +45,11 @@ pub struct Sources {
 }
 
 impl Sources {
+    /// `None` for a folder that has no file of its own, such as one of texts that are included.
+    ///
     /// # Panics
-    /// If the folder cannot be read.
-    pub fn read(folder: &Path) -> Self {
+    /// If a source cannot be read.
+    pub fn read(folder: &Path) -> Option<Self> {
         let above = folder.components().map(|part| part.as_os_str().to_string_lossy().into_owned());
         let above: Vec<String> = above.collect();
         let src = above.iter().rposition(|part| part == "src").expect("rooms stand below `src`");
@@ -59,10 +61,10 @@ impl Sources {
             named: Vec::new(),
             imports: BTreeMap::new(),
         };
-        let root = ["mod.rs", "lib.rs"].map(|name| folder.join(name)).into_iter().find(|file| file.exists());
+        let root = ["mod.rs", "lib.rs", "main.rs"].map(|name| folder.join(name)).into_iter().find(|file| file.exists());
         let root = root.or_else(|| Some(folder.with_extension("rs")).filter(|file| file.exists()));
-        read.module(&root.expect("a folder of modules has a file of its own"), folder, Vec::new());
-        read
+        read.module(&root?, folder, Vec::new());
+        Some(read)
     }
 
     /// Reads the file of a module, then those of the modules that it declares; the files that are theirs lie in `folder`.
@@ -94,6 +96,9 @@ impl Sources {
         }
     }
 }
+
+/// Words that begin an item; without one of them an attribute stands before an entry, a field or a statement.
+const ITEMS: &[&str] = &["const", "enum", "fn", "impl", "mod", "static", "struct", "trait", "type", "union", "use"];
 
 struct Reader<'s> {
     tokens: Vec<(Token, usize)>,
@@ -175,46 +180,31 @@ impl Reader<'_> {
         self.is_mark(1, '[') && (plain || cfg && self.peek(4).is_some_and(|token| token.is_word("test")))
     }
 
-    /// Skips attributes, then to the end of what they stand before: an item ends with its `;` or the brace that closes it,
-    /// a field or an entry of a list with its `,` or before the bracket of what it is in.
+    /// Skips attributes, then to the end of the item: its `;`, or the brace that closes it. An entry of a list, or a
+    /// field, ends at its comma or before the bracket that closes what it stands in.
     fn skip_item(&mut self) {
-        const ITEMS: [&str; 14] = [
-            "const",
-            "enum",
-            "extern",
-            "fn",
-            "impl",
-            "macro_rules",
-            "mod",
-            "pub",
-            "static",
-            "struct",
-            "trait",
-            "type",
-            "unsafe",
-            "use",
-        ];
         let mut depth = 0_usize;
         let mut is_item = false;
         while let Some(token) = self.peek(0).cloned() {
+            // The bracket of what stands around belongs to the reader of that.
+            if depth == 0 && matches!(token, Token::Mark('}' | ']' | ')')) {
+                return;
+            }
+            self.at += 1;
             match token {
+                Token::Word(word) if depth == 0 && ITEMS.contains(&word.as_str()) => is_item = true,
                 Token::Mark('{' | '[' | '(') => depth += 1,
-                Token::Mark('}' | ']' | ')') if depth == 0 => return,
                 Token::Mark(close @ ('}' | ']' | ')')) => {
                     depth -= 1;
                     if depth == 0 && close == '}' {
-                        self.at += 1;
                         return;
                     }
                 }
-                Token::Mark(end) if depth == 0 && (end == ';' || end == ',' && !is_item) => {
-                    self.at += 1;
-                    return;
-                }
-                Token::Word(word) if depth == 0 && ITEMS.contains(&word.as_str()) => is_item = true,
+                Token::Mark(';') if depth == 0 => return,
+                // The commas of an item stand between its type parameters, or in its bounds.
+                Token::Mark(',') if depth == 0 && !is_item => return,
                 _ => {}
             }
-            self.at += 1;
         }
     }
 
@@ -321,5 +311,45 @@ impl Reader<'_> {
 
     fn add(&mut self, to: Vec<String>, line: usize) {
         self.sources.named.push(Named { file: self.file.to_owned(), line, from: self.place.clone(), to });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The paths that a text names, read as a module of its own.
+    fn named(text: &str) -> Vec<String> {
+        let mut sources = Sources {
+            above: Vec::new(),
+            modules: BTreeSet::new(),
+            private: BTreeSet::new(),
+            fields: Vec::new(),
+            named: Vec::new(),
+            imports: BTreeMap::new(),
+        };
+        Reader {
+            tokens: tokens(text),
+            at: 0,
+            file: Path::new("text.rs"),
+            place: Vec::new(),
+            around: Vec::new(),
+            children: Vec::new(),
+            sources: &mut sources,
+        }
+        .read();
+        sources.named.iter().map(|named| named.to.join("::")).collect()
+    }
+
+    #[test]
+    fn what_only_tests_compile_ends_where_it_stands() {
+        let list = "fn all() { [crate::a, #[cfg(test)] crate::b, crate::c, #[cfg(test)] crate::d] } use crate::e;";
+        assert_eq!(named(list), ["crate::a", "crate::c", "crate::e"]);
+        let field = "struct S { a: crate::a, #[cfg(test)] b: crate::b } fn f() { crate::c() }";
+        assert_eq!(named(field), ["crate::a", "crate::c"]);
+        let item = "#[cfg(test)] fn f<A, B>(a: crate::a) -> B where A: X, B: Y { crate::b() } use crate::c;";
+        assert_eq!(named(item), ["crate::c"]);
+        let tests = "mod m { fn f() { crate::a() } #[cfg(test)] mod tests { use crate::b; } } use crate::c;";
+        assert_eq!(named(tests), ["crate::a", "crate::c"]);
     }
 }
