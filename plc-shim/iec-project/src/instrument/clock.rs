@@ -1,17 +1,9 @@
 //! What reads the clock (`[SDSP]` sec. V-C), as a table: what replaces it, or what
 //! is told of it.
 
+use super::foreign::Kind;
 use super::target::Target;
 use super::{foreign, motion, template};
-
-/// What a source of time is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
-    /// A function block.
-    Block,
-    /// A function.
-    Function,
-}
 
 /// What becomes of it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -2,7 +2,16 @@
 //!
 //! `docs/clocks.md` shows the table. A name that is in no table, and whose source is not in the project, is told as well.
 
-use super::clock::Kind::{self, Block, Function};
+use self::Kind::{Block, Function};
+
+/// What a source of time is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// A function block.
+    Block,
+    /// A function.
+    Function,
+}
 
 /// What a vendor's library has of the kind.
 pub(super) struct Library {

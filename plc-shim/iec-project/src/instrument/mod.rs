@@ -17,16 +17,16 @@
 //! | [`controller`] | execution controllers |
 //! | [`exchanged`] | the variables that a gateway writes and reads |
 //! | [`real_inputs`] | inputs that the PLC's I/O image writes, taken over by name |
-//! | [`scl`] | SCL of TIA Portal: organization blocks, timers |
+//! | [`scl`], [`scl_timer`] | SCL of TIA Portal: organization blocks, timers |
 //! | [`scl_exchange`] | what a gateway exchanges with it: data blocks and copies |
 //! | [`plcopen_project`], [`plcopen`], [`plcopen_unit`] | projects in PLCopen XML |
-//! | [`chart`], [`chart_plan`], [`chart_script`], [`chart_action`] | Sequential Function Charts: execution signal, action control, times of steps |
-//! | [`plcopen_chart`], [`plcopen_gate`] | the same of charts that are drawn, in PLCopen XML |
+//! | [`chart`], [`chart_plan`], [`chart_time`], [`chart_script`], [`chart_action`] | Sequential Function Charts: execution signal, action control, times of steps |
+//! | [`plcopen_chart`], [`plcopen_gate`], [`plcopen_drawing`] | the same of charts that are drawn, in PLCopen XML |
 //! | [`port`], [`codesys`] | a project in text for a tool that takes another form |
 //! | [`matiec`], [`taken_over`] | a project in text for MatIEC, with all that the gateway exchanges at addresses |
 //! | [`address`], [`located`] | direct addresses, and what lies there |
 //! | [`verify`] | what has been written is checked |
-//! | [`target`], [`twincat`] | the shim's sources as a vendor's tool takes them |
+//! | [`target`], [`sources`], [`twincat`] | the shim's sources as a vendor's tool takes them |
 //!
 //! Invariants: text goes in and comes out, no file is touched; what is not marked stays byte for byte;
 //! instrumenting twice is instrumenting once; what cannot be replaced is told.
@@ -36,6 +36,7 @@ mod chart;
 mod chart_action;
 mod chart_plan;
 mod chart_script;
+mod chart_time;
 mod clock;
 mod codesys;
 mod configuration;
@@ -51,6 +52,7 @@ mod motion_use;
 mod plain;
 mod plcopen;
 mod plcopen_chart;
+mod plcopen_drawing;
 mod plcopen_gate;
 mod plcopen_project;
 mod plcopen_unit;
@@ -59,7 +61,9 @@ mod real_inputs;
 mod scl;
 mod scl_exchange;
 mod scl_port;
+mod scl_timer;
 mod single;
+mod sources;
 mod survey;
 mod taken_over;
 mod target;
@@ -79,9 +83,9 @@ pub use self::located::Located;
 use self::plain::Plain;
 pub use self::real_inputs::Inputs;
 pub use self::scl_exchange::{DB_FROM_PLC, DB_TO_PLC, goes_in_blocks};
+use self::sources::{Globals, Sources};
 use self::survey::{Survey, survey};
 pub use self::target::Target;
-use self::target::{Globals, Sources};
 use self::tasks::{Entry, Line, TaskTable};
 use onescan_iec::diagnostic::{Diagnostics, Severity};
 use onescan_iec::input::Input;

@@ -164,7 +164,7 @@ impl Plain {
         let wrong = |found| InstrumentError::Text(Diagnostics::new(vec![found], &self.sources));
         if let Some(tasks) = &options.tasks {
             single::refused_beside(&survey.configurations).map_or(Ok(()), |found| Err(wrong(found)))?;
-            single::check_given(tasks, survey, (options.target, self.is_xml()))?;
+            single::check_given(tasks, |name| survey.is_global(name), (options.target, self.is_xml()))?;
             return Ok(tasks.clone());
         }
         if !survey.configurations.is_empty() {

@@ -12,7 +12,7 @@ use onescan_xml::Element;
 use super::controller;
 use super::marks;
 use super::plcopen_unit as unit;
-use super::target::Sources;
+use super::sources::Sources;
 use super::tasks::{TaskTable, literal};
 use super::template::{self, Controller, Number};
 use onescan_iec::input::plcopen_instances;

@@ -16,18 +16,15 @@ use onescan_xml::Element;
 
 use super::chart_plan::{CONTROL, Plan, charts, controlled_by, elapsed, of_chart, own_flag};
 use super::marks;
-use super::plcopen::{self, Refused};
+use super::plcopen;
+use super::plcopen_drawing::{LocalIds, RefusedAt, position};
 use super::plcopen_gate::{Closed, Gate, SIGNAL};
 use super::plcopen_unit as unit;
 use onescan_iec::input::plcopen_chart::inline_action_name;
 use onescan_iec::input::plcopen_chart_graph::{End, Graph, Kind, number};
 use onescan_iec::input::plcopen_condition::named_transitions;
 use onescan_iec::source::edits::Edits;
-use onescan_iec::syntax::Span;
 use onescan_iec::syntax::ast::{Pou, PouKind};
-
-/// What cannot be put on virtual time, and where it stands.
-pub(super) type RefusedAt = (Span, Refused);
 
 /// Puts the charts in `<pou>` on virtual time. Other changes of their text have been made before.
 pub(super) fn control(plan: &Plan<'_>, pou: &Element, edits: &mut Edits) -> Result<(), RefusedAt> {
@@ -69,38 +66,6 @@ fn drawing<'e>(chart: &Pou, pou: &'e Element) -> Option<&'e Element> {
         _ => pou,
     };
     holder.elements().filter(|inner| inner.name == "body").find_map(|body| body.child("SFC"))
-}
-
-/// Numbers of new elements: those that no element of the unit has.
-pub(super) struct LocalIds {
-    next: u64,
-}
-
-impl LocalIds {
-    fn of(pou: &Element) -> Self {
-        let mut open = vec![pou];
-        let mut greatest = 0;
-        while let Some(element) = open.pop() {
-            let id = element.attribute("localId").and_then(|id| id.value.trim().parse().ok());
-            greatest = greatest.max(id.unwrap_or(0));
-            open.extend(element.elements());
-        }
-        Self { next: greatest }
-    }
-
-    pub(super) fn next(&mut self) -> u64 {
-        self.next = self.next.saturating_add(1);
-        self.next
-    }
-}
-
-/// Where an element stands.
-pub(super) fn position(element: &Element) -> (i64, i64) {
-    let coordinate = |name| {
-        let position = element.child("position").or_else(|| element.child("relPosition"));
-        position.and_then(|position| position.attribute(name)).and_then(|found| number(&found.value)).unwrap_or(0)
-    };
-    (coordinate("x"), coordinate("y"))
 }
 
 struct Writer<'w> {

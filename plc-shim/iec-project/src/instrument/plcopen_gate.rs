@@ -19,7 +19,7 @@ use onescan_xml::Element;
 use super::chart_plan::Plan;
 use super::marks;
 use super::plcopen::{self, Refused};
-use super::plcopen_chart::{LocalIds, RefusedAt, position};
+use super::plcopen_drawing::{LocalIds, RefusedAt, position};
 use super::plcopen_unit as unit;
 use onescan_iec::input::plcopen_chart_graph::{Graph, Kind, Node, connections};
 use onescan_iec::input::plcopen_condition::{Form, Leaf, expression, is_negated, named, text_leaves};

@@ -3,8 +3,9 @@
 //! A source of the shim's that has no form gives nothing; tests see to it that there is none.
 
 use crate::output::page::Page;
+use crate::output::page::Wrapper;
 use crate::output::plcopen::about::About;
-use crate::output::plcopen::markup::{self, Wrapper};
+use crate::output::plcopen::markup;
 use crate::output::plcopen::{body as bodies, types, unit as units, variables};
 use onescan_iec::syntax::ast::{Declaration, Pou, Section};
 use onescan_iec::syntax::{FileId, parse};

@@ -6,7 +6,6 @@
 //! program of the shim, since an edge may come and go within a scan.
 
 use super::marks;
-use super::survey::Survey;
 use super::target::Target;
 use super::template;
 use onescan_iec::diagnostic::{Code, Diagnostic};
@@ -33,7 +32,7 @@ pub(super) enum Single {
 /// It cannot.
 pub(super) fn check_given(
     tasks: &[Task],
-    survey: &Survey<'_>,
+    is_global: impl Fn(&str) -> bool,
     (target, is_xml): (Target, bool),
 ) -> Result<(), RunError> {
     for task in tasks {
@@ -43,7 +42,7 @@ pub(super) fn check_given(
             Target::OpenPlc | Target::Beremiz => "MatIEC connects nothing to the inputs of a program",
             Target::Scl => "SCL does not say what starts an organization block",
             Target::Codesys if is_xml => "it is not instrumented in PLCopen XML yet",
-            Target::Iec | Target::Codesys if !survey.is_global(path) => "the scheduler reads a global variable",
+            Target::Iec | Target::Codesys if !is_global(path) => "the scheduler reads a global variable",
             Target::Iec | Target::Codesys => continue,
         };
         let (task, path, reason) = (task.name.clone(), path.clone(), reason.to_owned());

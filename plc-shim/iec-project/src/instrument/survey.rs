@@ -3,11 +3,12 @@
 use std::collections::BTreeSet;
 
 use super::chart_plan::charts;
-use super::clock::{self, Fate, Form, Kind};
-use super::foreign;
+use super::chart_time;
+use super::clock::{self, Fate, Form};
+use super::foreign::{self, Kind};
 use super::motion::Role;
 use super::real_inputs::RealInputs;
-use super::scl::{self, TimerCalls};
+use super::scl_timer::TimerCalls;
 use super::target::Target;
 use super::template::Only;
 use onescan_iec::check::{VIRTUAL_TIME_NAME, is_standard_function};
@@ -77,7 +78,7 @@ pub(super) fn survey<'a>(units: &[(FileId, &'a CompilationUnit)], target: Target
     let mut surveyor = Surveyor { names: &names, target, unit: String::new(), local: BTreeSet::new(), survey };
     declarations().for_each(|declaration| surveyor.declaration(declaration));
     let mut survey = surveyor.survey;
-    survey.cuts = scl::cuts(units, &survey);
+    survey.cuts = survey.timer_calls.cuts(units, &survey.renames);
     survey
 }
 
@@ -187,7 +188,7 @@ impl<'a> Surveyor<'_, 'a> {
         pou.sections.iter().for_each(|section| self.section(section));
         if charts(pou).next().is_some() {
             self.survey.charts.push(pou);
-            self.survey.findings.extend(super::chart::findings(pou));
+            self.survey.findings.extend(chart_time::findings(pou));
         }
         self.own_parts(pou);
         walk::unit(pou, self);

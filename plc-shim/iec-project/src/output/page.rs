@@ -2,10 +2,18 @@
 
 use std::ops::Range;
 
-use super::plcopen::markup::Wrapper;
 use onescan_iec::syntax::SourceFile;
 use onescan_iec::syntax::lexer::tokenize_in;
 use onescan_iec::syntax::token::{Token, TokenKind};
+
+/// What holds formatted text: the schema leaves the element open.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Wrapper {
+    /// A paragraph, as Beremiz and OpenPLC write it.
+    Paragraph,
+    /// An element of a name of its own, as CODESYS writes it.
+    Codesys,
+}
 
 /// The text of a file.
 pub(crate) struct Page<'t> {

@@ -137,7 +137,7 @@ impl<'a> Collector<'a> {
         is_used: bool,
         scope: &Scope<'a>,
     ) -> Option<Ty> {
-        let path = super::names::path_of(base)?;
+        let path = super::collect::path_of(base)?;
         if self.seen(path.first()?, scope).is_some() {
             return None;
         }
@@ -402,7 +402,7 @@ impl<'a> Collector<'a> {
             ExprKind::Call(inner) => (&*inner.callee, inner.arguments.as_slice()),
             _ => (wanted, [].as_slice()),
         };
-        let Some(path) = super::names::path_of(named) else { return Ty::Unknown };
+        let Some(path) = super::collect::path_of(named) else { return Ty::Unknown };
         let text = path.iter().map(|name| name.text.as_str()).collect::<Vec<_>>().join(".");
         let ty = self.named(&Ident { text, span: named.span }, &scope.home, 0);
         if !arguments.is_empty() {

@@ -1,7 +1,8 @@
 //! What every declaration and statement wants of what nobody declares.
 
 use super::foreign::{Foreign, Needs};
-use super::ty::{Slots, Ty};
+use super::slots::Slots;
+use super::ty::Ty;
 use super::world::{Home, Unit, World};
 use onescan_iec::ElementaryType;
 use onescan_iec::check::of_pointer_width;
@@ -137,7 +138,7 @@ impl<'a> Collector<'a> {
                 let bounds =
                     dimensions.iter().map(|each| match (self.bound(&each.low, home), self.bound(&each.high, home)) {
                         (Some(low), Some(high)) => format!("{low}..{high}"),
-                        _ => super::ty::ANY_BOUNDS.to_owned(),
+                        _ => super::slots::ANY_BOUNDS.to_owned(),
                     });
                 let bounds = bounds.collect::<Vec<_>>();
                 match self.type_of(inner, home, depth) {
@@ -148,7 +149,7 @@ impl<'a> Collector<'a> {
             // A structure without a name goes to no other parameter.
             TypeSpecKind::Struct(_) => Ty::Any,
             TypeSpecKind::OpenArray(count, inner) => {
-                let bounds = (0..*count).map(|_| super::ty::ANY_BOUNDS.to_owned()).collect();
+                let bounds = (0..*count).map(|_| super::slots::ANY_BOUNDS.to_owned()).collect();
                 Ty::Array(bounds, Box::new(self.type_of(inner, home, depth)))
             }
             TypeSpecKind::Reference(kind, inner) => Ty::Pointer(*kind, Box::new(self.type_of(inner, home, depth))),
@@ -167,7 +168,7 @@ impl<'a> Collector<'a> {
                 Some(format!("({} {} {})", self.bound(left, home)?, op.text(), self.bound(right, home)?))
             }
             _ => {
-                let path = super::names::path_of(expr)?;
+                let path = path_of(expr)?;
                 let key = path.iter().map(|name| name.key()).collect::<Vec<_>>().join(".");
                 let known = self.world.global_key(home, &key);
                 let foreign = self.needs.globals.get(&key).filter(|global| global.is_constant);
@@ -304,4 +305,17 @@ fn arguments_in(given: &str) -> usize {
         }
     }
     count
+}
+
+/// The names of `a.b.c`, if it is nothing else.
+pub(super) fn path_of(expr: &Expr) -> Option<Vec<&Ident>> {
+    match &expr.kind {
+        ExprKind::Name(name) => (!name.text.starts_with('`')).then(|| vec![name]),
+        ExprKind::Member(base, name) => {
+            let mut path = path_of(base)?;
+            path.push(name);
+            Some(path)
+        }
+        _ => None,
+    }
 }

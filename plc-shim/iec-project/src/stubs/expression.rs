@@ -93,7 +93,7 @@ impl<'a> Collector<'a> {
             return found;
         }
         // `__SYSTEM.Kind.Value`
-        if let Some(path) = super::names::path_of(base)
+        if let Some(path) = super::collect::path_of(base)
             && let full = path.iter().map(|name| name.key()).collect::<Vec<_>>().join(".")
             && path.len() > 1
             && self.needs.types.contains_key(&full)
@@ -108,7 +108,7 @@ impl<'a> Collector<'a> {
             self.foreign(&key).member(&name.text).via_super = true;
         }
         if let ExprKind::Member(inner, middle) = &base.kind
-            && let Some(path) = super::names::path_of(inner)
+            && let Some(path) = super::collect::path_of(inner)
             && let [first] = path[..]
         {
             self.note_depth(first, middle);
@@ -183,7 +183,7 @@ impl<'a> Collector<'a> {
             && !matches!(known, Ty::Pointer(..) | Ty::Text(_) | Ty::Foreign(_) | Ty::Declared(_))
         {
             let inner = Ty::Slot(self.slots.below(*slot, "[]"));
-            let bounds = vec![super::ty::ANY_BOUNDS.to_owned(); dimensions];
+            let bounds = vec![super::slots::ANY_BOUNDS.to_owned(); dimensions];
             self.slots.given(*slot, &Ty::Array(bounds, Box::new(inner)));
         }
         match known {

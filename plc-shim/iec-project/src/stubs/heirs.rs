@@ -3,8 +3,8 @@
 
 use super::class::Found;
 use super::collect::Collector;
-use super::signature::{INIT, INIT_INPUTS};
 use super::ty::Ty;
+use super::world::{INIT, INIT_INPUTS};
 use super::world::{Part, Unit};
 use onescan_iec::syntax::ast::{Pou, PouKind, SectionKind, TypeSpec};
 

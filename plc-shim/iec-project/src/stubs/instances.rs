@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 
 use super::collect::Collector;
 use super::shape::Shape;
-use super::signature::INIT;
 use super::ty::{Slot, Ty};
+use super::world::INIT;
 use onescan_iec::syntax::ast::ReferenceKind;
 
 impl Collector<'_> {

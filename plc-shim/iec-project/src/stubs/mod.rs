@@ -3,7 +3,7 @@
 //! | module | subject |
 //! |---|---|
 //! | [`world`] | what the project declares |
-//! | [`ty`] | types, slots for those that are not known, and what was wanted of them |
+//! | [`ty`], [`slots`] | types, slots for those that are not known, and what was wanted of them |
 //! | [`hint`] | what a name says where its use does not |
 //! | [`foreign`] | what is named and not declared, and how it is used |
 //! | [`names`] | what a name stands for |
@@ -32,6 +32,7 @@ mod names;
 mod print;
 mod shape;
 mod signature;
+mod slots;
 mod statement;
 #[cfg(test)]
 mod tests;
@@ -40,7 +41,8 @@ mod world;
 
 use self::collect::Collector;
 use self::foreign::{Foreign, Needs};
-use self::ty::{Slots, Ty};
+use self::slots::Slots;
+use self::ty::Ty;
 use self::world::World;
 use onescan_iec::dialect::Dialect;
 use onescan_iec::front::{Parsed, with_room};

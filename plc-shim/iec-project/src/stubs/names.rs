@@ -1,7 +1,7 @@
 //! What names mean: what the project declares, or what somebody else must have.
 
 use super::class::Found;
-use super::collect::{Collector, Scope};
+use super::collect::{Collector, Scope, path_of};
 use super::foreign::{Function, Global, Head};
 use super::hint;
 use super::ty::Ty;
@@ -372,18 +372,5 @@ impl<'a> Collector<'a> {
                 Some(self.member(&ty, last, access, false))
             }
         }
-    }
-}
-
-/// The names of `a.b.c`, if it is nothing else.
-pub(super) fn path_of(expr: &Expr) -> Option<Vec<&Ident>> {
-    match &expr.kind {
-        ExprKind::Name(name) => (!name.text.starts_with('`')).then(|| vec![name]),
-        ExprKind::Member(base, name) => {
-            let mut path = path_of(base)?;
-            path.push(name);
-            Some(path)
-        }
-        _ => None,
     }
 }

@@ -6,13 +6,9 @@ use super::foreign::{Argument, Foreign, Function, Signature};
 use super::print::Printer;
 use super::shape::Shape;
 use super::ty::{Slot, Ty};
-use super::world::Part;
+use super::world::{INIT, INIT_INPUTS, Part};
 use onescan_iec::ElementaryType;
 use onescan_iec::syntax::ast::{Pou, SectionKind, TypeSpec};
-
-/// What runs with the arguments of a declaration, and what it is always given.
-pub(super) const INIT: &str = "FB_init";
-pub(super) const INIT_INPUTS: [&str; 2] = ["bInitRetains", "bInCopyCode"];
 
 impl<'c> Printer<'c, '_> {
     /// The method that is run with the arguments of a declaration.

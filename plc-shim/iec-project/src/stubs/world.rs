@@ -283,6 +283,10 @@ fn is_library(namespace: &Namespace) -> bool {
     namespace.kind == NamespaceKind::Open && !is_list
 }
 
+/// What runs with the arguments of a declaration, and what it is always given.
+pub(super) const INIT: &str = "FB_init";
+pub(super) const INIT_INPUTS: [&str; 2] = ["bInitRetains", "bInCopyCode"];
+
 /// The type of a value of an enumeration that has no name.
 pub(super) const VALUE: Ty = Ty::Elementary(ElementaryType::Int);
 

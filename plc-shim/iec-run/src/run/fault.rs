@@ -5,8 +5,7 @@ use std::fmt;
 use onescan_base::VirtualTime;
 use wasmtime::Trap;
 
-use super::machine::Trapped;
-use super::trace::Writer;
+use super::frames::{MAX_CALLERS, Trapped, Writer};
 use super::way::WayId;
 use crate::application::Application;
 use crate::compile::fault::{Callee, FaultKind, FunctionMarks, Mark};
@@ -87,8 +86,6 @@ impl fmt::Display for PlcFault {
 
 impl std::error::Error for PlcFault {}
 
-/// Most callers that a fault knows, the innermost.
-pub(super) const MAX_CALLERS: usize = 1024;
 /// How many a message shows of the innermost, and as many of the outermost, if the way is long.
 const SHOWN_CALLERS: usize = 16;
 

@@ -6,7 +6,7 @@
 use std::ops::Range;
 
 use super::fault::{self, WriteSite};
-use super::trace::{Frames, Writer};
+use super::frames::{Frames, Writer};
 use super::way::{WayId, rows};
 use crate::application::Application;
 use crate::compile::points::PointKind;

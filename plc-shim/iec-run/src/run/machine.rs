@@ -4,12 +4,14 @@ use std::num::NonZeroUsize;
 
 use wasmtime::{Config, Engine, Global, Instance, Linker, Memory, Module, Store, Trap, TypedFunc, Val, WasmBacktrace};
 
-use super::fault::MAX_CALLERS;
+use super::frames::{MAX_CALLERS, Trapped};
+use super::host_state::HostState;
 use super::journal::Journal;
 use super::plan::RunError;
 use super::row;
-use super::text::link::{HostState, link};
-use super::trace::{self, Trace};
+use super::text::link::link;
+use super::trace::Trace;
+use super::trace_link;
 use crate::application::Application;
 use crate::compile::{BUDGET_EXPORT, END_EXPORT, MEMORY_EXPORT, NOTES_EXPORT, START_EXPORT, entry_export, host};
 
@@ -39,19 +41,6 @@ pub(super) enum Occasion {
     Start,
     /// Before another start.
     End,
-}
-
-/// A trap: its cause and the functions that were active, innermost first, each with the offset
-/// in its body.
-#[derive(Debug)]
-pub(super) struct Trapped {
-    pub(super) trap: Option<Trap>,
-    pub(super) frames: Vec<(u32, Option<u32>)>,
-}
-
-impl Trapped {
-    /// What cannot happen has, outside of the program: an internal fault without a place in the source.
-    const NOWHERE: Self = Self { trap: None, frames: Vec::new() };
 }
 
 fn engine() -> Result<Engine, String> {
@@ -243,7 +232,7 @@ fn linker(engine: &Engine) -> Result<Linker<HostState>, wasmtime::Error> {
         };
     }
     link(&mut linker)?;
-    trace::link(&mut linker)?;
+    trace_link::link(&mut linker)?;
     Ok(linker)
 }
 

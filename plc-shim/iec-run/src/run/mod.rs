@@ -7,21 +7,26 @@
 //! | `scheduler` | which task is due when |
 //! | `machine` | the compiled module with its memory |
 //! | `row` | the programs of a task as one call |
+//! | `frames` | the functions that were active when something happened |
 //! | `fault` | a trap as an error in the source |
 //! | `task_info` | what programs read about their task |
 //! | `soft_plc` | the PLC itself |
 //! | `late` | tasks that are late, once or for good |
-//! | `force` | variables that keep a value, reading and writing by path |
+//! | `force`, `forces` | variables that keep a value, reading and writing by path |
 //! | `asserts` | what the asserts of a test program have found |
+//! | `host_state` | what functions of the host work on |
 //! | `text` | functions on character strings |
 //! | `state` | its state as bytes |
-//! | `trace`, `way` | which statement wrote a byte; which ways decisions went |
+//! | `trace`, `trace_link`, `way` | which statement wrote a byte; which ways decisions went |
 //! | `journal` | all that a scan did |
 
 mod asserts;
 mod configured;
 mod fault;
 mod force;
+mod forces;
+mod frames;
+mod host_state;
 mod journal;
 mod late;
 mod machine;
@@ -33,6 +38,7 @@ mod state;
 mod task_info;
 pub(crate) mod text;
 mod trace;
+mod trace_link;
 mod way;
 
 pub use asserts::{Asserts, FailedAssert};

@@ -6,9 +6,10 @@ use std::sync::OnceLock;
 use onescan_base::{TimeSpan, VirtualTime};
 
 use super::fault::{self, PlcFault, WriteSite, explain};
-use super::force::Forces;
+use super::forces::Forces;
+use super::frames::Trapped;
 use super::journal::{Act, Journal};
-use super::machine::{Machine, Occasion, Trapped};
+use super::machine::{Machine, Occasion};
 use super::plan::{Resolved, RunError, resolve};
 use super::scheduler::Scheduler;
 use super::state::{CodePolicy, Decoder, Meaning, RestoreError, State};

@@ -3,11 +3,8 @@
 
 use std::ops::Range;
 
-use wasmtime::{Caller, Error, Linker, WasmBacktrace};
-
+use super::frames::{Frames, Writer};
 use super::journal::Journal;
-use super::text::link::HostState;
-use crate::compile::trace::{BEGIN, CHOOSE, END, MODULE, READ};
 
 /// Bytes of memory that are watched.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -19,22 +16,13 @@ pub(super) struct Watched {
     pub(super) writer: Option<Writer>,
 }
 
-/// The statement that wrote, by its point, and the functions that were active.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Writer {
-    pub(super) point: u32,
-    pub(super) frames: Vec<(u32, Option<u32>)>,
-    /// The ways that decisions around it had gone, by their points, innermost first.
-    pub(super) within: Vec<u32>,
-}
-
 /// What the statements of a scan are held against.
 #[derive(Debug, Default)]
 pub(in crate::run) struct Trace {
     pub(super) watched: Vec<Watched>,
     /// The statements that have begun and not ended, except those that were left early, each with
     /// the way that it went last.
-    active: Vec<(u32, Option<u32>)>,
+    pub(super) active: Vec<(u32, Option<u32>)>,
     /// The ways of all decisions of the scan, in their order.
     pub(super) ways: Vec<u32>,
     /// What the scan does, if that is asked for.
@@ -97,7 +85,7 @@ impl Trace {
     }
 
     /// The statement `statement` goes a way. What began in it and was left early is over.
-    fn choose(&mut self, statement: u32, way: u32) {
+    pub(super) fn choose(&mut self, statement: u32, way: u32) {
         self.ways.push(way);
         if let Some(at) = self.active.iter().rposition(|(active, _)| *active == statement) {
             self.active.truncate(at + 1);
@@ -106,7 +94,13 @@ impl Trace {
     }
 
     /// The statement `point` has just done something; `stored` is what it says that it has written.
-    fn look(&mut self, point: Option<u32>, stored: &Range<usize>, memory: &[u8], frames: impl Fn() -> Frames) {
+    pub(super) fn look(
+        &mut self,
+        point: Option<u32>,
+        stored: &Range<usize>,
+        memory: &[u8],
+        frames: impl Fn() -> Frames,
+    ) {
         if let Some(journal) = &mut self.journal {
             journal.wrote(point, memory, &frames);
         }
@@ -118,70 +112,4 @@ impl Trace {
             }
         }
     }
-}
-
-pub(super) type Frames = Vec<(u32, Option<u32>)>;
-
-/// The functions that are active, innermost first, each with the offset in its body.
-fn frames(caller: &Caller<'_, HostState>) -> Frames {
-    let backtrace = WasmBacktrace::force_capture(caller);
-    let frame = |frame: &wasmtime::FrameInfo| (frame.func_index(), frame.func_offset().map(|offset| offset as u32));
-    backtrace.frames().iter().map(frame).collect()
-}
-
-fn with_trace(caller: &mut Caller<'_, HostState>, work: impl FnOnce(&mut Trace, &[u8], &Caller<'_, HostState>)) {
-    let Some(memory) = caller.data().memory else { return };
-    let Some(mut trace) = caller.data_mut().trace.take() else { return };
-    work(&mut trace, memory.data(&*caller), caller);
-    caller.data_mut().trace = Some(trace);
-}
-
-/// What changed before a statement begins was the one's around it.
-fn begin(mut caller: Caller<'_, HostState>, point: u32) {
-    with_trace(&mut caller, |trace, memory, caller| {
-        let around = trace.active.last().map(|(statement, _)| *statement);
-        trace.look(around, &(0..0), memory, || frames(caller));
-        trace.active.push((point, None));
-        if let Some(journal) = &mut trace.journal {
-            journal.statement_begins(point);
-        }
-    });
-}
-
-fn end(mut caller: Caller<'_, HostState>, point: u32, address: u32, size: u32) {
-    with_trace(&mut caller, |trace, memory, caller| {
-        let stored = address as usize..(address as usize).saturating_add(size as usize);
-        trace.look(Some(point), &stored, memory, || frames(caller));
-        if let Some(at) = trace.active.iter().rposition(|(active, _)| *active == point) {
-            trace.active.truncate(at);
-        }
-        if let Some(journal) = &mut trace.journal {
-            journal.statement_ends(point);
-        }
-    });
-}
-
-fn choose(mut caller: Caller<'_, HostState>, statement: u32, way: u32) {
-    with_trace(&mut caller, |trace, memory, caller| {
-        if let Some(journal) = &mut trace.journal {
-            journal.wrote(Some(statement), memory, || frames(caller));
-            journal.chose(statement, way);
-        }
-        trace.choose(statement, way);
-    });
-}
-
-fn read(mut caller: Caller<'_, HostState>, address: u32, size: u32) {
-    if let Some(journal) = caller.data_mut().trace.as_mut().and_then(|trace| trace.journal.as_mut()) {
-        journal.read(address, size);
-    }
-}
-
-/// Gives the module what its statements call.
-pub(super) fn link(linker: &mut Linker<HostState>) -> Result<(), Error> {
-    linker.func_wrap(MODULE, BEGIN, begin)?;
-    linker.func_wrap(MODULE, END, end)?;
-    linker.func_wrap(MODULE, CHOOSE, choose)?;
-    linker.func_wrap(MODULE, READ, read)?;
-    Ok(())
 }

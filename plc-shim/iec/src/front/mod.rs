@@ -4,12 +4,14 @@
 //! |---|---|
 //! | `constant` | constants set from outside, as initial values |
 //! | `library` | the standard's and vendors' blocks that a program needs |
+//! | `motion_library` | motion control as program text, and whose of it a program has |
 //! | `twincat_motion` | TwinCAT's names for motion blocks |
 //! | `vendor_library` | libraries of vendors, by their names |
 //! | `room` | the stack that deep trees need |
 
 mod constant;
 pub mod library;
+mod motion_library;
 mod room;
 mod twincat_motion;
 mod vendor_library;

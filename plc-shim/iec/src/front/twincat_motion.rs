@@ -6,7 +6,7 @@
 
 use std::sync::OnceLock;
 
-use super::library::MOTION;
+use super::motion_library::MOTION;
 use crate::syntax::token::TokenKind;
 use crate::syntax::tokenize;
 

@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
-use super::library::Motion;
+use super::motion_library::Motion;
 use crate::check::is_qualified_only;
 use crate::dialect::Dialect;
 use crate::syntax::token::{Keyword, Punctuation, Token, TokenKind};

@@ -26,6 +26,7 @@ pub mod kind;
 pub mod layout;
 mod needed;
 mod plcopen;
+mod plcopen_addition;
 pub mod plcopen_chart;
 pub mod plcopen_chart_graph;
 pub mod plcopen_condition;

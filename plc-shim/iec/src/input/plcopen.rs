@@ -9,7 +9,7 @@ use std::ops::Range;
 use onescan_xml::{Element, XmlError, parse};
 
 use super::Taken;
-use super::plcopen_object::sections_of;
+use super::plcopen_addition::sections_of;
 use crate::diagnostic::Code;
 use crate::dialect::{Dialect, Feature};
 

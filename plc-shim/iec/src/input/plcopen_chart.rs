@@ -13,24 +13,8 @@ use onescan_xml::Element;
 
 use super::plcopen::Writer;
 use super::plcopen_chart_graph::{End, Graph, Kind, Node, NodeId};
-use super::plcopen_condition::{named, named_transitions};
+use super::plcopen_condition::{Chart, named_transitions};
 use crate::diagnostic::Code;
-
-/// A chart and the transitions that its unit defines beside it.
-pub(super) struct Chart<'e> {
-    pub(super) graph: Graph<'e>,
-    named: Vec<&'e Element>,
-}
-
-impl<'e> Chart<'e> {
-    pub(super) fn named(&self, name: &str) -> Option<&'e Element> {
-        named(&self.named, name)
-    }
-
-    fn name_of(&self, id: NodeId) -> Option<&'e onescan_xml::Attribute> {
-        self.graph.node(id)?.element.attribute("name")
-    }
-}
 
 /// What is written in a step, under a name of its own.
 type Inline<'e> = Vec<(String, &'e Element)>;

@@ -14,11 +14,26 @@ use std::ops::Range;
 use onescan_xml::{Attribute, Element, Node as Content};
 
 use super::plcopen::Writer;
-use super::plcopen_chart::Chart;
-use super::plcopen_chart_graph::Node;
+use super::plcopen_chart_graph::{Graph, Node, NodeId};
 use super::plcopen_object::inner_text;
 use crate::diagnostic::Code;
 use crate::syntax::parser::parse_expression;
+
+/// A chart and the transitions that its unit defines beside it.
+pub(super) struct Chart<'e> {
+    pub(super) graph: Graph<'e>,
+    pub(super) named: Vec<&'e Element>,
+}
+
+impl<'e> Chart<'e> {
+    pub(super) fn named(&self, name: &str) -> Option<&'e Element> {
+        named(&self.named, name)
+    }
+
+    pub(super) fn name_of(&self, id: NodeId) -> Option<&'e Attribute> {
+        self.graph.node(id)?.element.attribute("name")
+    }
+}
 
 impl Writer<'_> {
     pub(super) fn condition<'c>(&mut self, chart: &Chart<'c>, node: &Node<'c>) -> Condition<'c> {

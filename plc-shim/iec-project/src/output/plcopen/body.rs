@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::super::page::Page;
-use super::markup::Wrapper;
+use super::super::page::Wrapper;
 use onescan_iec::syntax::ast::{Member, MemberKind, Pou, Section, Statement, StatementKind};
 
 /// `<body>` of a unit, between its declarations and its end, without what is a member of it.

@@ -1,5 +1,7 @@
 //! Pieces of XML: what stands for a character, text in XHTML, what CODESYS adds.
 
+use super::super::page::Wrapper;
+
 /// The namespace of formatted text.
 const XHTML: &str = "http://www.w3.org/1999/xhtml";
 /// Beginning of the names of CODESYS' additions.
@@ -22,15 +24,6 @@ pub(super) fn documentation(words: &str) -> String {
     } else {
         format!("<documentation>{}</documentation>", Wrapper::Codesys.around(words))
     }
-}
-
-/// What holds formatted text: the schema leaves the element open.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Wrapper {
-    /// A paragraph, as Beremiz and OpenPLC write it.
-    Paragraph,
-    /// An element of a name of its own, as CODESYS writes it.
-    Codesys,
 }
 
 impl Wrapper {

@@ -3,7 +3,7 @@
 //! | module | subject |
 //! |---|---|
 //! | [`configuration`] | configurations, tasks |
-//! | [`unit`], [`object`] | units, their interfaces and members |
+//! | [`unit`], [`interface`], [`object`] | units, their interfaces and members |
 //! | [`body`] | statements and instructions |
 //! | [`chart`], [`chart_element`] | Sequential Function Charts, drawn |
 //! | [`variables`], [`types`], [`value`] | declarations |
@@ -19,6 +19,7 @@ pub(crate) mod body;
 mod chart;
 mod chart_element;
 pub(crate) mod configuration;
+mod interface;
 pub(crate) mod markup;
 mod object;
 pub(crate) mod types;

@@ -3,7 +3,7 @@
 use super::super::Written;
 use super::super::page::Page;
 use super::markup::{additions, data, escaped, escaped_text};
-use super::{body, unit};
+use super::{body, interface};
 use onescan_iec::syntax::ast::{Ident, Member, MemberKind, Modifier, Object, Pou};
 
 /// What a unit is derived from, and which interfaces it has.
@@ -69,7 +69,7 @@ fn is_half(member: &Member, key: &str) -> bool {
 }
 
 fn method(pou: &Pou, given: Body, page: &Page<'_>) -> Written {
-    let interface = unit::interface(pou, &modifiers(&pou.object.modifiers), page)?;
+    let interface = interface::interface(pou, &modifiers(&pou.object.modifiers), page)?;
     let body = if given == Body::Given { body::of_unit(pou, page) } else { String::new() };
     Ok(format!("<Method name=\"{}\">\n{interface}{body}</Method>\n", escaped(&pou.name.text)))
 }
@@ -81,10 +81,10 @@ fn property(members: &[Member], name: &Ident, given: Body, page: &Page<'_>) -> W
         bare.result = None;
         let element = if member.kind == MemberKind::Getter { "GetAccessor" } else { "SetAccessor" };
         let body = if given == Body::Given { body::of_unit(&member.pou, page) } else { String::new() };
-        let halves = format!("<{element}>\n{}{body}</{element}>\n", unit::interface(&bare, "", page)?);
+        let halves = format!("<{element}>\n{}{body}</{element}>\n", interface::interface(&bare, "", page)?);
         bare.result.clone_from(&member.pou.result);
         bare.sections.clear();
-        head = unit::interface(&bare, &modifiers(&member.pou.object.modifiers), page)?;
+        head = interface::interface(&bare, &modifiers(&member.pou.object.modifiers), page)?;
         Ok(halves)
     };
     let own = members.iter().filter(|member| is_half(member, &name.key()));

@@ -3,9 +3,9 @@
 use super::super::page::Page;
 use super::super::{Refused, Written};
 use super::about::About;
+use super::interface::interface;
 use super::markup::{additions, escaped};
-use super::types::type_of;
-use super::{body, chart, object, variables};
+use super::{body, chart, object};
 use onescan_iec::syntax::ast::{Member, MemberKind, Pou, PouKind};
 
 /// `<pou>`
@@ -35,16 +35,6 @@ pub(crate) fn unit(pou: &Pou, about: About, page: &Page<'_>) -> Written {
         additions(&object::members(pou, page)?),
         about.documentation(),
     ))
-}
-
-/// `<interface>`: result, variables, and CODESYS' additions.
-pub(super) fn interface(pou: &Pou, added: &str, page: &Page<'_>) -> Written {
-    let result = match &pou.result {
-        Some(result) => format!("<returnType>{}</returnType>\n", type_of(result, page)?),
-        None => String::new(),
-    };
-    let sections = variables::sections(&pou.sections, page)?;
-    Ok(format!("<interface>\n{result}{sections}{}</interface>\n", additions(added)))
 }
 
 /// `<actions>`, and the transitions to which those refer that are charts.

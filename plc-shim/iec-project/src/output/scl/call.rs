@@ -4,24 +4,13 @@ use onescan_base::elementary::Kind;
 
 use super::body::Body;
 use super::names::{Shape, member};
-use super::scope::Scope;
+use super::scope::{Scope, values};
 use super::standard::{self, Function};
 use onescan_iec::ir::ElementaryType;
 use onescan_iec::syntax::ast::{
     Argument, Call, Expr, ExprKind, Ident, InitialiserKind, Pou, PouKind, SectionKind, Variable,
 };
 use onescan_iec::syntax::token::{Punctuation, TokenKind};
-
-/// The values that a call gives, in their order.
-pub(super) fn values(call: &Call) -> Vec<&Expr> {
-    let mut values = Vec::new();
-    for argument in &call.arguments {
-        if let Argument::Positional(value) | Argument::Input(_, value) = argument {
-            values.push(value);
-        }
-    }
-    values
-}
 
 /// What a call can give to or take from a unit.
 struct Parameter<'a> {

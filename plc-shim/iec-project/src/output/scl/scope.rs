@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::names::{Names, Shape};
 use onescan_iec::ir::ElementaryType;
 use onescan_iec::syntax::ast::{
-    BinaryOp, Call, Edge, Expr, ExprKind, Ident, Literal, Pou, Qualifier, SectionKind, TypeSpec, UnaryOp,
+    Argument, BinaryOp, Call, Edge, Expr, ExprKind, Ident, Literal, Pou, Qualifier, SectionKind, TypeSpec, UnaryOp,
 };
 use onescan_iec::syntax::constant::{self, Constants};
 
@@ -106,7 +106,7 @@ impl<'a> Scope<'a> {
         if let Some(to) = to {
             return ElementaryType::find(to);
         }
-        let inputs = super::call::values(call);
+        let inputs = values(call);
         let value = |at: usize| self.type_of(names, inputs.get(at)?);
         match key.as_str() {
             "LEN" | "FIND" => Some(ElementaryType::Int),
@@ -160,4 +160,15 @@ fn wider(left: Option<ElementaryType>, right: Option<ElementaryType>) -> Option<
         }
         (left, right) => left.or(right),
     }
+}
+
+/// The values that a call gives, in their order.
+pub(super) fn values(call: &Call) -> Vec<&Expr> {
+    let mut values = Vec::new();
+    for argument in &call.arguments {
+        if let Argument::Positional(value) | Argument::Input(_, value) = argument {
+            values.push(value);
+        }
+    }
+    values
 }

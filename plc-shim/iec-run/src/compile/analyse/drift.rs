@@ -6,57 +6,8 @@ use super::interval::range_of;
 use super::range::{Interval, Ranges, Slot};
 use super::refine::assume;
 use super::scope::Scope;
+use super::step::Step;
 use onescan_iec::ir::{Binary, ElementaryType, Expr, ExprKind, Place};
-
-/// Constants that a loop's body adds to a variable, each at most once a turn.
-#[derive(Debug, Clone, Copy)]
-struct Step {
-    slot: Slot,
-    ty: ElementaryType,
-    up: i128,
-    down: i128,
-    count: u32,
-}
-
-/// The steps of a loop's body.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Steps {
-    found: Vec<Step>,
-    /// How many loops are open: in an inner one, a step may be taken any number of times.
-    depth: u32,
-}
-
-/// Most variables that are looked at. A body that counts more is a table, not a loop.
-const MAX_STEPS: usize = 32;
-
-impl Steps {
-    pub(crate) fn open_turn(&mut self) {
-        self.depth += 1;
-    }
-
-    pub(crate) fn close_turn(&mut self) {
-        self.depth -= 1;
-    }
-
-    pub(crate) fn note(&mut self, slot: Slot, ty: ElementaryType, by: i128) {
-        if self.depth != 1 {
-            return;
-        }
-        let known = self.found.iter().position(|step| step.slot == slot && step.ty == ty);
-        let index = known.unwrap_or(self.found.len());
-        if known.is_none() {
-            if index >= MAX_STEPS {
-                return;
-            }
-            self.found.push(Step { slot, ty, up: 0, down: 0, count: 0 });
-        }
-        if let Some(step) = self.found.get_mut(index) {
-            step.up += by.max(0);
-            step.down += (-by).max(0);
-            step.count += 1;
-        }
-    }
-}
 
 /// A variable that drifts, and where it was before the loop.
 #[derive(Debug, Clone, Copy)]
@@ -138,6 +89,7 @@ impl Driven {
 
 #[cfg(test)]
 mod tests {
+    use super::super::step::Steps;
     use super::*;
     use crate::compile::analyse::address::Register;
 

@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::address::{Address, Base, Extent, Register, Roots};
-use super::drift::Steps;
 use super::range::Slot;
+use super::step::Steps;
 use onescan_iec::ir::ElementaryType;
 
 /// Most different accesses that are told apart: each is compared with each.

@@ -8,7 +8,7 @@
 //! | [`address`], [`scope`] | where variables and pointers lead; what names mean at a place |
 //! | [`range`], [`interval`], [`refine`] | between what integers lie: variables, expressions, behind conditions |
 //! | [`survey`], [`effect`], [`price`] | what the turns of a loop read, change and cost |
-//! | [`counting`], [`drift`] | how loops count |
+//! | [`counting`], [`step`], [`drift`] | how loops count |
 //! | [`known`] | what registers hold already of what is in memory |
 //! | [`choice`], [`nan`] | forms of statements and values |
 //!
@@ -32,6 +32,7 @@ mod reach;
 mod refine;
 mod scope;
 mod size;
+mod step;
 mod survey;
 
 pub(super) use address::{Address, Base, Extent, Register};

@@ -3,7 +3,7 @@
 
 use wasm_encoder::{ConstExpr, ElementSection, Elements, Instruction, MemArg, RefType, TableSection, TableType};
 
-use super::emitter::{Emitter, Shared, value_type};
+use super::emitter::{Emitter, RowPlace, Shared, value_type};
 use super::inline::Call;
 use crate::compile::analyse::Address;
 use crate::compile::fault::FaultKind;
@@ -15,14 +15,6 @@ const MAX_CALL_DEPTH: i32 = 128;
 
 const WORD: MemArg = MemArg { offset: 0, align: 2, memory_index: 0 };
 const BYTE: MemArg = MemArg { offset: 0, align: 0, memory_index: 0 };
-
-/// Where a row stands in the table, and its signature.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct RowPlace {
-    pub(crate) start: u32,
-    pub(crate) first: u32,
-    pub(crate) signature: u32,
-}
 
 /// The rows behind one another; `add_type` gives a signature its index.
 pub(crate) fn place_rows(

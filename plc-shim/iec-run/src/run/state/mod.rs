@@ -26,7 +26,7 @@ pub use self::tasks::PlanDifference;
 use onescan_base::VirtualTime;
 
 use super::fault::{FaultSite, PlcFault};
-use super::force::Forces;
+use super::forces::Forces;
 use super::scheduler::Waiting;
 use crate::application::Application;
 use crate::application::identity::bytes::{Reader, Writer};

@@ -1,25 +1,14 @@
 //! The imports of the module, bound to the PLC's memory.
 
-use wasmtime::{Caller, Error, Global, Linker, Memory, Trap, Val};
+use wasmtime::{Caller, Error, Linker, Trap, Val};
 
 use super::view::{Outside, Target, View};
 use super::{edit, parse};
 use crate::application::text::{Line, format, format_long_time};
 use crate::compile::text_host::{LONG_TIME, MODULE, TextImport};
-use crate::run::trace::Trace;
+use crate::run::host_state::HostState;
 use onescan_iec::ir::ElementaryType;
 use onescan_iec::ir::text::Edit;
-
-/// What host functions work on.
-#[derive(Debug, Default)]
-pub(in crate::run) struct HostState {
-    /// Set as soon as the module has one.
-    pub(in crate::run) memory: Option<Memory>,
-    /// What is left of the task's budget of instructions.
-    pub(in crate::run) budget: Option<Global>,
-    /// What statements are held against, if the program is traced.
-    pub(in crate::run) trace: Option<Box<Trace>>,
-}
 
 /// Characters that cost as much as one instruction.
 const CHARACTERS_PER_INSTRUCTION: u64 = 4;

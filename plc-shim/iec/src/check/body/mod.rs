@@ -28,6 +28,7 @@ mod statement;
 mod text;
 mod unit;
 mod view;
+mod wire;
 
 use std::collections::BTreeMap;
 

@@ -3,7 +3,6 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::Declarations;
-use super::start::Occasion;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::ir::PouId;
 use crate::syntax::Span;
@@ -30,6 +29,26 @@ impl From<MemberKind> for Role {
             MemberKind::Method | MemberKind::Action => Self::Method,
             MemberKind::Getter => Self::Getter,
             MemberKind::Setter => Self::Setter,
+        }
+    }
+}
+
+/// When a unit's variables are gone through.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(in crate::check) enum Occasion {
+    /// Before the first scan after a start.
+    Start,
+    /// Before another start.
+    End,
+}
+
+impl Occasion {
+    pub(super) const ALL: [Self; 2] = [Self::Start, Self::End];
+
+    pub(super) fn role(self) -> Role {
+        match self {
+            Self::Start => Role::Start,
+            Self::End => Role::End,
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::Declarations;
-use super::start::Occasion;
+use super::class::Occasion;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::PouId;
 use crate::syntax::Span;

@@ -1,9 +1,8 @@
 //! The methods that run without a call: `FB_init`, `FB_reinit`, `FB_exit` (CODESYS, TwinCAT), and their inputs.
 
 use super::Declarations;
-use super::class::Role;
+use super::class::{Occasion, Role};
 use super::scope::Scope;
-use super::start::Occasion;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{ElementaryType, PouId, TypeId};
 

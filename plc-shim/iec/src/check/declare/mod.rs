@@ -50,7 +50,7 @@ use crate::dialect::{AddressUnit, Dialect};
 use crate::ir::{Areas, ElementaryType, MemoryLimit, PouId, Program, TypeId, TypeTable};
 use crate::syntax::{FileId, Span, ast};
 
-pub(super) use self::class::{Membership, Role};
+pub(super) use self::class::{Membership, Occasion, Role};
 pub(super) use self::demand::{Need, Resolve};
 pub(super) use self::entry::{Declared, Enumerator, Rank, TypedImage};
 pub(super) use self::hook::{EXIT_INPUTS, INIT_INPUTS, is_hook, suits_init};
@@ -65,7 +65,7 @@ pub(super) use self::numbered::Numbered;
 pub use self::overrides::Overrides;
 pub(super) use self::query::Outcome;
 pub(super) use self::scope::Scope;
-pub(super) use self::start::{Given, Occasion, Start, StartKind, Started, Starts, Within, moved, stages};
+pub(super) use self::start::{Given, Start, StartKind, Started, Starts, Within, moved, stages};
 pub(super) use self::template::Templates;
 pub(super) use self::visibility::method_visibility;
 

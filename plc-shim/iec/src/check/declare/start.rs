@@ -9,31 +9,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::Declarations;
-use super::class::{Membership, Role};
+use super::class::{Membership, Occasion, Role};
 use super::namespace::Home;
 use crate::ir::{Place, PouId, TypeId};
 use crate::syntax::Span;
 use crate::syntax::ast::{self, Argument, CompilationUnit, Declaration, Ident, PouKind};
-
-/// When a unit's variables are gone through.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(in crate::check) enum Occasion {
-    /// Before the first scan after a start.
-    Start,
-    /// Before another start.
-    End,
-}
-
-impl Occasion {
-    const ALL: [Self; 2] = [Self::Start, Self::End];
-
-    fn role(self) -> Role {
-        match self {
-            Self::Start => Role::Start,
-            Self::End => Role::End,
-        }
-    }
-}
 
 /// What is done at a start, in its order.
 pub(in crate::check) type Starts<'a> = Arc<[Start<'a>]>;

@@ -7,8 +7,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use super::archive::Object;
-use super::network_box::stored;
-use super::sheet::{Edge, Sheet, Signal, is_name};
+use super::sheet::{Edge, Sheet, Signal, Storing, is_name};
 use crate::diagnostic::Code;
 use crate::input::statement::Text;
 
@@ -212,4 +211,16 @@ pub(super) fn outputs(object: Object<'_>) -> Vec<Option<Object<'_>>> {
 /// False for what editors write where the user has written nothing.
 pub(super) fn is_given(text: &str) -> bool {
     !matches!(text.trim(), "" | "???")
+}
+
+/// What the flags of a target say: negation and set together are a reset.
+pub(super) fn stored(flags: u32) -> Option<Storing> {
+    const RESET: u32 = flag::NEGATION | flag::SET;
+    Some(match flags {
+        0 => Storing::Plain,
+        flag::NEGATION => Storing::Negated,
+        flag::SET => Storing::Set,
+        RESET => Storing::Reset,
+        _ => return None,
+    })
 }

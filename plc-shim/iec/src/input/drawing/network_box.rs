@@ -7,22 +7,10 @@ use std::ops::Range;
 
 use super::archive::{Object, Written};
 use super::call::{Argument, Block, Callee, EN, Output, Taker};
-use super::network::{Networks, flag, is_given, outputs};
-use super::sheet::{Signal, Storing, is_name};
+use super::network::{Networks, is_given, outputs, stored};
+use super::sheet::{Signal, is_name};
 use crate::diagnostic::Code;
 use crate::input::statement::Text;
-
-/// What the flags of a target say: negation and set together are a reset.
-pub(super) fn stored(flags: u32) -> Option<Storing> {
-    const RESET: u32 = flag::NEGATION | flag::SET;
-    Some(match flags {
-        0 => Storing::Plain,
-        flag::NEGATION => Storing::Negated,
-        flag::SET => Storing::Set,
-        RESET => Storing::Reset,
-        _ => return None,
-    })
-}
 
 /// An output of a box in the archive.
 struct Slot<'e> {

@@ -59,7 +59,7 @@ impl Writer<'_> {
         let needed: Option<BTreeSet<usize>> = match wanted {
             Wanted::All => None,
             Wanted::For(..) => {
-                Some(graph::finished(vec![nodes.len().saturating_sub(1)], &sources).into_iter().collect())
+                Some(order::finished(vec![nodes.len().saturating_sub(1)], &sources).into_iter().collect())
             }
         };
         faults.extend(graph::cut_loops(&nodes, &mut sources));

@@ -11,7 +11,6 @@
 //! A network stands where its highest element does, and has its lowest id.
 
 use super::element::{Kind, Node};
-use super::graph::finished;
 
 /// Where an element comes if nothing else says so.
 pub(super) type Key = (u32, (i64, i64), usize);
@@ -55,5 +54,30 @@ pub(super) fn order(nodes: &[Node<'_>], networks: &[usize], sources: &[Vec<usize
     let mut seen = vec![false; nodes.len()];
     // A power rail is needed by many networks.
     order.retain(|index| seen.get_mut(*index).is_some_and(|seen| !std::mem::replace(seen, true)));
+    order
+}
+
+/// `starts` and all that they need, each behind what it needs itself.
+pub(super) fn finished(starts: Vec<usize>, sources: &[Vec<usize>]) -> Vec<usize> {
+    let mut order = Vec::new();
+    let mut seen = vec![false; sources.len()];
+    for start in starts {
+        let mut open = vec![(start, 0)];
+        if std::mem::replace(seen.get_mut(start).unwrap_or(&mut false), true) {
+            continue;
+        }
+        while let Some((index, next)) = open.last_mut() {
+            let source = sources.get(*index).and_then(|list| list.get(*next)).copied();
+            *next += 1;
+            if let Some(source) = source {
+                if seen.get_mut(source).is_some_and(|seen| !std::mem::replace(seen, true)) {
+                    open.push((source, 0));
+                }
+            } else {
+                order.push(*index);
+                open.pop();
+            }
+        }
+    }
     order
 }

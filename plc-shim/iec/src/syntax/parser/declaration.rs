@@ -3,7 +3,6 @@
 use onescan_base::ElementaryType;
 
 use super::cursor::Cursor;
-use super::object::ends_object;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Feature;
 use crate::syntax::ast::{
@@ -393,4 +392,20 @@ pub(super) fn ends_unit(kind: TokenKind) -> bool {
         || matches!(keyword, K::EndProgram | K::EndFunctionBlock | K::EndFunction)
         || matches!(keyword, K::EndOrganizationBlock | K::EndDataBlock)
         || ends_object(keyword)
+}
+
+/// Keywords that end a class, an interface, a member of one, or a namespace.
+pub(super) fn ends_object(keyword: Keyword) -> bool {
+    use Keyword as K;
+    matches!(
+        keyword,
+        K::EndClass
+            | K::EndInterface
+            | K::EndMethod
+            | K::EndProperty
+            | K::EndGet
+            | K::EndSet
+            | K::EndAction
+            | K::EndNamespace
+    )
 }

@@ -14,22 +14,6 @@ use crate::syntax::ast::{
 use crate::syntax::literal::parse_typed;
 use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 
-/// Keywords that end what this module reads.
-pub(super) fn ends_object(keyword: Keyword) -> bool {
-    use Keyword as K;
-    matches!(
-        keyword,
-        K::EndClass
-            | K::EndInterface
-            | K::EndMethod
-            | K::EndProperty
-            | K::EndGet
-            | K::EndSet
-            | K::EndAction
-            | K::EndNamespace
-    )
-}
-
 impl Cursor<'_> {
     /// A unit from its keyword to its end; nothing if it has no name.
     pub(super) fn unit(&mut self, kind: PouKind, end: Keyword) -> Option<Pou> {

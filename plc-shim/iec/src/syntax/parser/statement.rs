@@ -1,7 +1,7 @@
 //! Statements (2nd ed. 3.3.2), with recovery inside a statement.
 
 use super::cursor::Cursor;
-use super::object::ends_object;
+use super::declaration::ends_object;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Feature;
 use crate::source::Span;

@@ -27,7 +27,6 @@ use wasm_encoder::{Function, Instruction, ValType};
 use self::code::Code;
 use self::frame::Frame;
 use self::registers::Registers;
-use super::dispatch::RowPlace;
 use crate::compile::analyse::{Address, Effects, Entry, Extent, Known, Program, Register, Scope};
 use crate::compile::fault::{FaultKind, Mark, Unit};
 use crate::compile::points::Points;
@@ -38,6 +37,14 @@ use onescan_iec::syntax::Span;
 pub(crate) use self::budget::globals;
 pub(crate) use self::code::Label;
 pub(crate) use self::frame::{Back, JumpTo, LoopLabels};
+
+/// Where a row stands in the table, and its signature.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct RowPlace {
+    pub(crate) start: u32,
+    pub(crate) first: u32,
+    pub(crate) signature: u32,
+}
 
 /// How a value of the type is held.
 pub(crate) fn value_type(ty: ElementaryType) -> ValType {

@@ -1,5 +1,6 @@
 //! Arguments of calls: values, references, and what goes through memory (2nd ed. 2.5.1.1, 2.5.2.1).
 
+use super::Matched;
 use crate::check::body::place::Access;
 use crate::check::body::{Body, Meant};
 use crate::check::types::constant::decode;
@@ -246,6 +247,26 @@ impl Body<'_, '_> {
         let offset = self.declarations.allocate(size, align, span)?;
         self.scope.keep_memory();
         Some(Place::whole(Storage::Absolute(offset), ty, span))
+    }
+
+    /// The array that an output of a call is given, which the unit writes to. It must be given: without it
+    /// the output has no bounds.
+    pub(in crate::check::body) fn open_output(
+        &mut self,
+        output: &Variable,
+        matched: &Matched<'_>,
+        passing: &mut Passing,
+        span: Span,
+    ) -> Option<Argument> {
+        let given = matched.outputs.iter().find(|wanted| wanted.variable.name == output.name);
+        let Some(given) = given else {
+            return self.missing_argument(&output.name, span);
+        };
+        if given.negated {
+            let found = self.type_name(output.ty);
+            return self.mismatch("BOOL", &found, given.target.span);
+        }
+        self.described(output, given.target, &mut passing.before).map(Argument::Reference)
     }
 }
 

@@ -5,11 +5,12 @@ use std::sync::Arc;
 use super::argument::Passing;
 use super::{Matched, enable};
 use crate::check::body::Body;
+use crate::check::body::place::member::member_place;
 use crate::check::declare::Scope;
 use crate::check::types::parameter::ENO;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Feature;
-use crate::ir::{Argument, ElementaryType, InstanceCall, Place, Statement, StatementKind, Storage, Type, Variable};
+use crate::ir::{Argument, ElementaryType, InstanceCall, Place, Statement, StatementKind, Storage, Type};
 use crate::syntax::Span;
 use crate::syntax::ast::{Call, SectionKind};
 
@@ -86,14 +87,4 @@ impl Body<'_, '_> {
         }
         sound.then_some(())
     }
-}
-
-/// A variable inside an instance, seen from outside.
-pub(in crate::check::body) fn member_place(base: &Place, variable: &Variable, span: Span) -> Place {
-    let (offset, ty) = match variable.storage {
-        Storage::Instance(offset) => (offset, variable.ty),
-        Storage::InstancePointer(offset) => (offset, ElementaryType::Udint.into()),
-        _ => (0, variable.ty),
-    };
-    Place { span, ..base.clone().member(offset, ty) }
 }

@@ -1,8 +1,8 @@
 //! Calls of methods and actions (3rd ed. 6.6.5.4 and 6.6.5.5).
 
 use crate::check::body::call::argument::Passing;
-use crate::check::body::call::instance_call::member_place;
 use crate::check::body::call::{enable, is_formal};
+use crate::check::body::place::member::member_place;
 use crate::check::body::{Body, Meant};
 use crate::check::declare::{Role, Scope};
 use crate::check::types::operand::Operand;

@@ -1,7 +1,7 @@
 //! A `VAR_IN_OUT` of an instance, read and written from outside, as `MatIEC` has it: its instances hold what they were
 //! given last, by a call or by an assignment.
 
-use crate::check::body::call::instance_call::member_place;
+use super::member::member_place;
 use crate::check::body::{Body, Meant};
 use crate::check::types::constant::decode;
 use crate::check::types::operand::{Operand, constant};

@@ -3,13 +3,13 @@
 pub(super) mod direct;
 mod in_out;
 mod later_constant;
+pub(super) mod member;
 pub(super) mod namespace;
 pub(super) mod open_array;
 pub(super) mod part;
 
 use super::expression::enumeration_value;
-use super::statement::wire;
-use super::{Body, Meant};
+use super::{Body, Meant, wire};
 use crate::check::declare::{Numbered, chart};
 use crate::check::types::constant;
 use crate::check::types::operand::Operand;

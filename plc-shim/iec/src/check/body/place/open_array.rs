@@ -5,15 +5,12 @@
 
 use super::{Access, Located};
 use crate::check::body::Body;
-use crate::check::body::call::Matched;
-use crate::check::body::call::argument::Passing;
 use crate::check::standard::place::PlaceFunction;
 use crate::check::types::operand::Operand;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::types::OPEN_BOUNDS;
 use crate::ir::{
-    Argument, Dimension, ElementaryType, Expr, ExprKind, Place, Statement, StatementKind, Step, Type, TypeId, Value,
-    Variable,
+    Dimension, ElementaryType, Expr, ExprKind, Place, Statement, StatementKind, Step, Type, TypeId, Value, Variable,
 };
 use crate::syntax::Span;
 use crate::syntax::ast::{self, SectionKind};
@@ -82,26 +79,6 @@ impl Body<'_, '_> {
             return None;
         };
         self.description(parameter.ty, &dimensions, place, before)
-    }
-
-    /// The array that an output of a call is given, which the unit writes to. It must be given: without it
-    /// the output has no bounds.
-    pub(in crate::check::body) fn open_output(
-        &mut self,
-        output: &Variable,
-        matched: &Matched<'_>,
-        passing: &mut Passing,
-        span: Span,
-    ) -> Option<Argument> {
-        let given = matched.outputs.iter().find(|wanted| wanted.variable.name == output.name);
-        let Some(given) = given else {
-            return self.missing_argument(&output.name, span);
-        };
-        if given.negated {
-            let found = self.type_name(output.ty);
-            return self.mismatch("BOOL", &found, given.target.span);
-        }
-        self.described(output, given.target, &mut passing.before).map(Argument::Reference)
     }
 
     pub(in crate::check) fn is_open(&self, ty: TypeId) -> bool {

@@ -9,8 +9,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::wire;
 use crate::check::body::Body;
+use crate::check::body::wire;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::Type;
 use crate::syntax::Span;

@@ -4,7 +4,6 @@ pub(super) mod assignment;
 mod exception;
 pub(super) mod instruction;
 pub(super) mod jump;
-pub(super) mod wire;
 
 use std::collections::BTreeMap;
 

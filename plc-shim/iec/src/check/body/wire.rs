@@ -3,18 +3,18 @@
 //! A wire is written `` `name` `` and is not declared: it has the type of the first value that it is
 //! given. Only text that was made of networks and lists of instructions has wires.
 
-use crate::check::body::Body;
+use super::Body;
 use crate::ir::{Place, Statement, TypeId, TypeTable};
 use crate::syntax::Span;
 use crate::syntax::ast::{self, Ident};
 
-pub(in crate::check::body) fn is_wire(name: &Ident) -> bool {
+pub(super) fn is_wire(name: &Ident) -> bool {
     name.text.starts_with('`')
 }
 
 impl Body<'_, '_> {
     /// The name of a wire that has no value yet.
-    pub(in crate::check::body) fn new_wire<'e>(&self, target: &'e ast::Expr) -> Option<&'e Ident> {
+    pub(super) fn new_wire<'e>(&self, target: &'e ast::Expr) -> Option<&'e Ident> {
         match &target.kind {
             ast::ExprKind::Name(name) if is_wire(name) && !self.wires.contains_key(&name.text) => Some(name),
             _ => None,
@@ -22,7 +22,7 @@ impl Body<'_, '_> {
     }
 
     /// The wire from now on, for values of `ty`.
-    pub(in crate::check::body) fn wire(&mut self, name: &Ident, ty: TypeId, span: Span) -> Option<Place> {
+    pub(super) fn wire(&mut self, name: &Ident, ty: TypeId, span: Span) -> Option<Place> {
         let place = self.kept(ty, span)?;
         self.wires.insert(name.text.clone(), place.clone());
         Some(place)

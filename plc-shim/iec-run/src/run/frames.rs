@@ -1,0 +1,31 @@
+//! The functions that were active when something happened in the module, as wasmtime knows them.
+
+use wasmtime::Trap;
+
+/// Functions by their index, innermost first, each with the offset in its body.
+pub(super) type Frames = Vec<(u32, Option<u32>)>;
+
+/// Most callers that a fault knows, the innermost.
+pub(super) const MAX_CALLERS: usize = 1024;
+
+/// A trap: its cause and the functions that were active, innermost first, each with the offset
+/// in its body.
+#[derive(Debug)]
+pub(super) struct Trapped {
+    pub(super) trap: Option<Trap>,
+    pub(super) frames: Frames,
+}
+
+impl Trapped {
+    /// What cannot happen has, outside of the program: an internal fault without a place in the source.
+    pub(super) const NOWHERE: Self = Self { trap: None, frames: Vec::new() };
+}
+
+/// The statement that wrote, by its point, and the functions that were active.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Writer {
+    pub(super) point: u32,
+    pub(super) frames: Frames,
+    /// The ways that decisions around it had gone, by their points, innermost first.
+    pub(super) within: Vec<u32>,
+}
