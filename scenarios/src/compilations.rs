@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use onescan_plant::Scene;
-use onescan_plant::scene::Override;
 use onescan_iec::Input;
 use onescan_iec_run::Application;
+use onescan_plant::Scene;
+use onescan_plant::scene::Override;
 use onescan_server::signal::{ClientName, SignalName};
 
 use super::case::CodeChange;

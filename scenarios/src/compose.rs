@@ -6,15 +6,15 @@ use std::sync::Arc;
 
 use miette::{NamedSource, SourceSpan};
 use onescan_base::regular::{self, Limit};
-use onescan_operator::operator::Operator;
-use onescan_plant::{Inside, Plant, Scene, SceneError, SceneFault};
-use onescan_soft_plc::watch::Sightings;
-use onescan_soft_plc::{Bindings, SoftPlcClient, bind};
 use onescan_iec::input::kind::{FileKind, SourceKind};
 use onescan_iec::{Dialect, Input, MemoryLimit, Task, TaskPlan};
 use onescan_iec_run::{Application, Builder};
+use onescan_operator::operator::Operator;
+use onescan_plant::{Inside, Plant, Scene, SceneError, SceneFault};
 use onescan_server::client::{Client, JoinRequest};
 use onescan_server::signal::{ClientName, Port, SignalName, did_you_mean};
+use onescan_soft_plc::watch::Sightings;
+use onescan_soft_plc::{Bindings, SoftPlcClient, bind};
 
 use super::arrays;
 use super::case::value::bytes_of;

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use miette::{Diagnostic, NamedSource, SourceSpan};
-use onescan_links::gateway::LinkFault;
 use onescan_iec::Diagnostics;
+use onescan_links::gateway::LinkFault;
 use onescan_server::signal::ClientName;
 use thiserror::Error;
 

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use onescan_links::gateway::Settings;
 use onescan_iec::{Dialect, MemoryLimit};
+use onescan_links::gateway::Settings;
 use onescan_server::signal::{ClientName, SignalName, SignalType};
 use onescan_server::time::{TimeSpan, VirtualTime};
 use schemars::JsonSchema;

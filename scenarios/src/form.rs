@@ -5,9 +5,9 @@ use std::borrow::Cow;
 use std::str::FromStr;
 
 use onescan_base::ElementaryType;
-use onescan_links::gateway::settings::Text;
-use onescan_iec_project::mutate::MutantKind;
 use onescan_iec::{Dialect, MemoryLimit};
+use onescan_iec_project::mutate::MutantKind;
+use onescan_links::gateway::settings::Text;
 use onescan_server::signal::name::NAME_BYTES_MAX;
 use onescan_server::time::TimeSpan;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};

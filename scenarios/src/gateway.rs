@@ -4,6 +4,12 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use onescan_base::regular;
+use onescan_iec::input::kind::{FileKind, SourceKind};
+use onescan_iec::{Input, Task, TaskPlan, TimeSpan};
+use onescan_iec_project::instrument::{
+    Address as DirectAddress, Exchanged, File, InstrumentError, Options, Project, Target, Way, instrument,
+};
+use onescan_iec_run::{Application, BuildError};
 use onescan_links::gateway::exchange::{Direction, Words};
 use onescan_links::gateway::layout_number::layout_number;
 use onescan_links::gateway::mapping::{self, Variables};
@@ -11,15 +17,9 @@ use onescan_links::gateway::{
     CountedGateway, Exchange, FreeGateway, Gateway, HandshakeKind, LinkFault, MappingFault, Point, Settings,
     SettingsFault,
 };
-use onescan_soft_plc::{Bindings, SoftPlcClient};
-use onescan_iec::input::kind::{FileKind, SourceKind};
-use onescan_iec_project::instrument::{
-    Address as DirectAddress, Exchanged, File, InstrumentError, Options, Project, Target, Way, instrument,
-};
-use onescan_iec::{Input, Task, TaskPlan, TimeSpan};
-use onescan_iec_run::{Application, BuildError};
 use onescan_server::client::{Client, JoinRequest};
 use onescan_server::signal::{ClientName, Port, SignalDecl, SignalName, did_you_mean};
+use onescan_soft_plc::{Bindings, SoftPlcClient};
 use serde::Deserialize;
 
 use super::arrays;

@@ -5,13 +5,13 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use onescan_links::gateway::Settings;
-use onescan_soft_plc::journal::{Journalling, Wanted};
-use onescan_soft_plc::{CoverageSink, TraceSink};
 use onescan_iec_run::CodePolicy;
+use onescan_links::gateway::Settings;
 use onescan_server::plan::{Coupling, PlanError, SessionPlan};
 use onescan_server::signal::{ClientName, SignalDecl, SignalName, did_you_mean};
 use onescan_server::time::{TimeSpan, VirtualTime};
+use onescan_soft_plc::journal::{Journalling, Wanted};
+use onescan_soft_plc::{CoverageSink, TraceSink};
 use serde::Deserialize;
 use toml::de::{DeTable, Deserializer};
 

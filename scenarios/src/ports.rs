@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use onescan_base::regular::{self, Limit};
+use onescan_server::signal::{ClientName, SignalName, SignalType, did_you_mean};
+use onescan_server::time::TimeSpan;
 use onescan_soft_plc::SoftPlcClient;
 use onescan_soft_plc::ports::{PlcPort, PlcWay, TerminalKind};
 use onescan_stream::connection::Cuts;
 use onescan_stream::serial::Rate;
-use onescan_server::signal::{ClientName, SignalName, SignalType, did_you_mean};
-use onescan_server::time::TimeSpan;
 
 use crate::error::ScenarioError;
 use crate::file::ClientFile;

@@ -3,9 +3,9 @@
 use std::str::FromStr;
 use std::sync::PoisonError;
 
-use onescan_soft_plc::watch::{SightingSink, Sightings, Watch};
 use onescan_iec_run::Radix;
 use onescan_server::signal::ClientName;
+use onescan_soft_plc::watch::{SightingSink, Sightings, Watch};
 
 /// A variable to look at: `Main.x`, `plc2:Main.x`, `Main.status=bin`.
 #[derive(Clone, Debug, PartialEq, Eq)]

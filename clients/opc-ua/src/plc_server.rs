@@ -13,12 +13,12 @@ use opcua::server::node_manager::memory::{
 };
 use opcua::types::{DataValue, NodeId, ObjectId, StatusCode, Variant};
 
-use onescan_links::station::Controller;
-use onescan_links::gateway::exchange::{Direction, Point};
-use onescan_links::opcua::NAMESPACE;
 use crate::link::value;
 use crate::server::{self, Admitted, Channels, Running};
+use onescan_links::gateway::exchange::{Direction, Point};
+use onescan_links::opcua::NAMESPACE;
 use onescan_links::opcua::{Access, Refusals, ServeError};
+use onescan_links::station::Controller;
 
 /// Serves the PLC's variables at `address`, until what is returned is dropped.
 ///

@@ -20,10 +20,10 @@ use super::machine::Misfit;
 use super::scene::Scene;
 use super::scene::model::{self, When, Wire};
 use super::world::World;
-use onescan_stream::{Port, PortState};
 use onescan_base::SignalType;
 use onescan_base::byte_line::DEFAULT_WINDOW;
 use onescan_server::random::seed_for;
+use onescan_stream::{Port, PortState};
 
 /// Why a plant cannot be built; no checked scene is the cause.
 #[derive(Clone, Debug, PartialEq, Error)]

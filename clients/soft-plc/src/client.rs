@@ -6,7 +6,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use onescan_base::ElementaryType;
 use onescan_iec::TaskPlan;
-use onescan_iec_run::{Application, CodePolicy, Coverage, PlcFault, RestoreError, RunError, SoftPlc, UnknownVariable, WriteError};
+use onescan_iec_run::{
+    Application, CodePolicy, Coverage, PlcFault, RestoreError, RunError, SoftPlc, UnknownVariable, WriteError,
+};
 use onescan_server::client::{
     Client, ClientFault, ClientOperation, ClientView, JoinRequest, Memory, OperationRefused, Parts, SourcePlace,
     StateError, ValueTable, Wake,

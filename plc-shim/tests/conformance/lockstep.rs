@@ -5,8 +5,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use onescan_iec::input::kind::SourceKind;
-use onescan_iec_project::instrument::{Options, Project, Target, instrument};
 use onescan_iec::{Dialect, Input, Task, TaskPlan, TimeSpan, VirtualTime};
+use onescan_iec_project::instrument::{Options, Project, Target, instrument};
 use onescan_iec_run::{Application, FaultKind, SoftPlc};
 
 use super::case::Case;

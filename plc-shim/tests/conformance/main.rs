@@ -46,9 +46,9 @@ mod trace;
 use std::path::{Path, PathBuf};
 
 use case::Case;
-use onescan_iec_run::Application;
 use onescan_iec::syntax::printer::print_unit;
 use onescan_iec::syntax::{FileId, parse};
+use onescan_iec_run::Application;
 
 /// The files in `cases/`, by name.
 fn files() -> Vec<PathBuf> {

@@ -1,8 +1,8 @@
 //! The page of each code: what its examples yield.
 
 use onescan_iec::explain::{page, pages};
-use onescan_iec::{Code, Input};
 use onescan_iec::input::kind::SourceKind;
+use onescan_iec::{Code, Input};
 
 /// The block marked `mark`: its language and its text.
 fn block<'a>(page: &'a str, mark: &str) -> (&'a str, &'a str) {
@@ -21,8 +21,7 @@ fn codes_of((language, text): (&str, &str)) -> Vec<&'static str> {
         "plcproj" => {
             // Only the main program is there.
             let listing = onescan_iec::input::project::listing(text.as_bytes()).expect("a project");
-            let missing =
-                listing.files.iter().filter(|file| !file.path.ends_with("MAIN.TcPOU")).collect::<Vec<_>>();
+            let missing = listing.files.iter().filter(|file| !file.path.ends_with("MAIN.TcPOU")).collect::<Vec<_>>();
             Input::with_missing_files("example.plcproj", &listing, &missing)
         }
         "hex" => {
@@ -32,7 +31,10 @@ fn codes_of((language, text): (&str, &str)) -> Vec<&'static str> {
         other => panic!("{other:?} is not a language of examples"),
     };
     let findings = if instrumented {
-        match onescan_iec_project::instrument::instrument(&[input], &onescan_iec_project::instrument::Options::default()) {
+        match onescan_iec_project::instrument::instrument(
+            &[input],
+            &onescan_iec_project::instrument::Options::default(),
+        ) {
             Ok(project) => project.warnings,
             Err(onescan_iec_project::instrument::InstrumentError::Text(findings)) => findings,
             Err(error) => panic!("{error}"),

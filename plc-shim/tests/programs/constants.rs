@@ -28,8 +28,7 @@ fn builder(text: &str) -> Builder {
 /// The values at `paths` after a scan.
 fn values(builder: Builder, paths: &[&str]) -> Vec<String> {
     let application = builder.build().unwrap_or_else(|error| panic!("{error}"));
-    let plan =
-        application.configured_tasks().unwrap_or_else(|| application.single_task(TimeSpan::millis::<1>()));
+    let plan = application.configured_tasks().unwrap_or_else(|| application.single_task(TimeSpan::millis::<1>()));
     let mut plc = SoftPlc::new(&application, &plan).expect("a plan");
     plc.scan(VirtualTime::from_nanos(1_000_000)).expect("no fault");
     paths.iter().map(|path| plc.read(path).unwrap_or_else(|error| panic!("{error}"))).collect()

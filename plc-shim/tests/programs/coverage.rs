@@ -46,8 +46,7 @@ fn input(name: &str) -> Input {
 
 /// After so many scans; and the PLC's memory.
 fn run(application: &Application, scans: u64) -> (Option<Coverage>, Vec<u8>) {
-    let mut plc =
-        SoftPlc::new(application, &application.single_task(TimeSpan::millis::<1>())).expect("it can run");
+    let mut plc = SoftPlc::new(application, &application.single_task(TimeSpan::millis::<1>())).expect("it can run");
     for scan in 1..=scans {
         plc.scan(VirtualTime::from_nanos(scan * 1_000_000)).expect("no fault");
     }
@@ -123,8 +122,7 @@ END_IF;]]></ST>
 #[test]
 fn a_resumed_run_is_counted_from_there_on() {
     let application = Application::from_inputs_with_coverage([input("plc.st")]).expect("a sound program");
-    let new =
-        || SoftPlc::new(&application, &application.single_task(TimeSpan::millis::<1>())).expect("it can run");
+    let new = || SoftPlc::new(&application, &application.single_task(TimeSpan::millis::<1>())).expect("it can run");
     let scan =
         |plc: &mut SoftPlc, number: u64| plc.scan(VirtualTime::from_nanos(number * 1_000_000)).expect("no fault");
     let mut first = new();

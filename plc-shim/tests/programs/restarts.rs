@@ -10,8 +10,7 @@ use crate::rig::{Rig, application};
 /// After two scans, the values after a warm start, a cold start and a reset.
 fn starts(text: &str, paths: &[&str]) -> String {
     let application = application(text);
-    let plan =
-        application.configured_tasks().unwrap_or_else(|| application.single_task(TimeSpan::millis::<10>()));
+    let plan = application.configured_tasks().unwrap_or_else(|| application.single_task(TimeSpan::millis::<10>()));
     let mut table = String::new();
     let mut rows: Vec<Vec<i64>> = vec![Vec::new(); paths.len()];
     let starts: [fn(&mut SoftPlc); 3] = [SoftPlc::warm_start, SoftPlc::cold_start, SoftPlc::reset];

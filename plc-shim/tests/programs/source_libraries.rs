@@ -17,10 +17,9 @@ fn object(kind: &str, name: &str, declaration: &str, body: &str) -> String {
 
 /// A library of a block, a function and two lists, and a program that uses it.
 fn rig(program: &str) -> Rig {
-    let library =
-        |name: &str, text: String| {
-            Input::of_library(Some("Gears"), name, Found::decode(SourceKind::TwinCat, text.as_bytes()))
-        };
+    let library = |name: &str, text: String| {
+        Input::of_library(Some("Gears"), name, Found::decode(SourceKind::TwinCat, text.as_bytes()))
+    };
     let list = "{attribute 'qualified_only'} VAR_GLOBAL made : INT; size : ST_Size; END_VAR";
     let inputs = [
         library("list.TcGVL", object("GVL", "GVL_Gears", list, "")),

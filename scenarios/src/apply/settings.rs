@@ -3,12 +3,12 @@
 
 use std::collections::BTreeMap;
 
-use onescan_plant::scene::{Override, UnknownFailure};
-use onescan_soft_plc::SoftPlcClient;
 use onescan_iec::{ConstantError, Diagnostics, Input};
 use onescan_iec_run::{Application, BuildError, Builder, WriteError};
+use onescan_plant::scene::{Override, UnknownFailure};
 use onescan_server::checkpoint::Makeup;
 use onescan_server::signal::ClientName;
+use onescan_soft_plc::SoftPlcClient;
 
 use super::{settings_of, wrong_case};
 use crate::case::value::{literal_of, quoted};
@@ -178,11 +178,7 @@ impl Scenario {
     }
 
     /// Refuses failures and parameters that plant `name` does not have, and values that these do not take while it runs.
-    pub(crate) fn check_asked_of(
-        &self,
-        name: &ClientName,
-        scene: &onescan_plant::Scene,
-    ) -> Result<(), ScenarioError> {
+    pub(crate) fn check_asked_of(&self, name: &ClientName, scene: &onescan_plant::Scene) -> Result<(), ScenarioError> {
         self.check_failures(name, scene)?;
         let Some(applied) = self.applied() else { return Ok(()) };
         for at in applied.parameters.iter().filter(|at| at.client == *name) {

@@ -2,8 +2,8 @@
 
 use std::num::NonZeroU32;
 
-use onescan_links::gateway::settings::Text;
 use onescan_iec_project::mutate::MutantKind;
+use onescan_links::gateway::settings::Text;
 use onescan_server::signal::SignalName;
 use onescan_server::time::{TimeSpan, VirtualTime};
 use schemars::JsonSchema;

@@ -1,9 +1,9 @@
 //! The ends of connections: what of each client can be connected, and by what it is written.
 
+use onescan_iec_run::{Application, Variable};
 use onescan_plant::Scene;
 use onescan_plant::component::kind::Values;
 use onescan_plant::scene::model::Wire;
-use onescan_iec_run::{Application, Variable};
 use schemars::JsonSchema;
 use serde::Serialize;
 use toml_edit::Item;

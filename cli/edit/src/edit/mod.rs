@@ -42,9 +42,9 @@ use std::path::PathBuf;
 
 pub use error::EditorError;
 
+use files::Files;
 use onescan_runner::access::admission::Admission;
 use onescan_runner::web;
-use files::Files;
 use server::Editor;
 
 /// What is said without `-v`, too.

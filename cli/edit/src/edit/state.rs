@@ -18,8 +18,8 @@ use super::field::{self, Field};
 use super::files::{Files, scenes_of};
 use super::finding::{self, Finding};
 use super::join::Line;
-use onescan_runner::web::machine::{self, Body};
 use crate::wiring::Map;
+use onescan_runner::web::machine::{self, Body};
 
 /// The version of the protocol, `web/PROTOCOL.md`.
 pub(super) const PROTOCOL: u32 = 1;

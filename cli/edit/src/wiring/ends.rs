@@ -1,12 +1,12 @@
 //! Where signals begin and end inside of a client: at components of a scene, at variables of a PLC.
 
+use onescan_iec_run::Application;
 use onescan_plant::component::kind::Setting;
 use onescan_plant::component::open_inputs;
 use onescan_plant::scene::model::{Component, Drive, Scene, When, Wire};
-use onescan_soft_plc::{BindError, bind};
-use onescan_iec_run::Application;
 use onescan_scenario::compose::Paths;
 use onescan_server::signal::{ClientName, SignalDecl, SignalName, SignalType};
+use onescan_soft_plc::{BindError, bind};
 
 /// A signal at a client: its type there, and what it is there.
 #[derive(Clone, Debug)]

@@ -22,8 +22,8 @@ use serde::Serialize;
 
 pub use error::BrowseError;
 
-use onescan_runner::format::Format;
 use crate::map::fragment::{Entry, Fragment, Place, by_name};
+use onescan_runner::format::Format;
 
 /// What is asked for.
 #[derive(Clone, Debug)]

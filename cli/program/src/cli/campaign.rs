@@ -8,9 +8,11 @@ use onescan_server::time::TimeSpan;
 
 use super::error::CommandError;
 use super::value::FormatArg;
-use onescan_search::campaign::config::{Begun, CampaignConfig, Chosen, MergeConfig, Part, Partition, Reports, WorkerConfig};
 use onescan_runner::error::ExitCode;
 use onescan_runner::format::Format;
+use onescan_search::campaign::config::{
+    Begun, CampaignConfig, Chosen, MergeConfig, Part, Partition, Reports, WorkerConfig,
+};
 
 /// Options of `campaign`.
 #[derive(Debug, ClapArgs)]

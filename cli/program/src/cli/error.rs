@@ -2,31 +2,31 @@
 
 use onescan_report::OutputError;
 
-use onescan_runner::access::AccessError;
-use onescan_regress::bisect::BisectError;
 use crate::browse::BrowseError;
-use onescan_search::campaign::CampaignError;
-use onescan_regress::check::CheckError;
-use onescan_regress::diff::DiffError;
-use onescan_edit::edit::EditorError;
-use onescan_runner::error::{Usage, sum_of_errors};
 use crate::export::ExportError;
 use crate::instrument::InstrumentError;
 use crate::map::MapError;
 use crate::model::ModelError;
 use crate::new::NewError;
 use crate::plant::PlantError;
-use onescan_runner::plc::PlcError;
+use crate::show::ShowError;
+use onescan_edit::edit::EditorError;
+use onescan_edit::wiring::WiringError;
+use onescan_regress::bisect::BisectError;
+use onescan_regress::check::CheckError;
+use onescan_regress::diff::DiffError;
 use onescan_regress::regress::TestError;
-use onescan_runner::report::ReportError;
 use onescan_regress::review::ReviewError;
+use onescan_runner::access::AccessError;
+use onescan_runner::error::{Usage, sum_of_errors};
+use onescan_runner::plc::PlcError;
+use onescan_runner::report::ReportError;
 use onescan_runner::run::{RunError, SearchError};
 use onescan_runner::session::SessionError;
 use onescan_runner::shot::ShotError;
-use crate::show::ShowError;
 use onescan_runner::train::TrainError;
 use onescan_runner::view::ViewError;
-use onescan_edit::wiring::WiringError;
+use onescan_search::campaign::CampaignError;
 
 sum_of_errors! {
     /// Why nothing came of what was typed.

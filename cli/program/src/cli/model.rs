@@ -6,8 +6,8 @@ use clap::Args as ClapArgs;
 use onescan_server::nusmv::Size;
 
 use super::error::CommandError;
-use onescan_runner::error::{ExitCode, Usage};
 use crate::model::{self, ModelConfig};
+use onescan_runner::error::{ExitCode, Usage};
 
 /// Options of `model`.
 #[derive(Debug, ClapArgs)]

@@ -8,8 +8,6 @@ use onescan_report::view::Side;
 
 use super::error::CommandError;
 use super::value::FormatArg;
-use onescan_edit::edit::{self, EditConfig};
-use onescan_runner::error::ExitCode;
 use crate::io_list::{ListKind, Wanted};
 use crate::new::from_list::FromListConfig;
 use crate::new::{self, Template};
@@ -17,7 +15,9 @@ use crate::plant::components::ComponentsConfig;
 use crate::plant::describe::DescribeConfig;
 use crate::plant::{components, describe};
 use crate::show::{self, ShowConfig};
+use onescan_edit::edit::{self, EditConfig};
 use onescan_edit::wiring::{self, WiringConfig};
+use onescan_runner::error::ExitCode;
 
 /// Options of `components`.
 #[derive(Debug, ClapArgs)]

@@ -13,9 +13,9 @@ use super::opcua::AccessArgs;
 use super::run::gateway;
 use super::value::{FormatArg, client_name};
 use crate::browse::BrowseConfig;
+use crate::map::{self, MapConfig};
 use onescan_runner::error::ExitCode;
 use onescan_runner::interrupt::Interrupt;
-use crate::map::{self, MapConfig};
 use onescan_runner::plc::{self, Cycle, PlcConfig};
 
 /// Options of `plc`.

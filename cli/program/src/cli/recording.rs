@@ -10,12 +10,12 @@ use onescan_server::time::VirtualTime;
 
 use super::error::CommandError;
 use super::value::FormatArg;
-use onescan_runner::access::admission::Admission;
+use crate::export::ExportConfig;
 use onescan_regress::bisect::BisectConfig;
 use onescan_regress::diff::DiffConfig;
+use onescan_runner::access::admission::Admission;
 use onescan_runner::error::ExitCode;
 use onescan_runner::error::Usage;
-use crate::export::ExportConfig;
 use onescan_runner::interrupt::Interrupt;
 use onescan_runner::past::Budget;
 use onescan_runner::report::ReportConfig;
@@ -188,5 +188,10 @@ pub fn bisect(args: BisectArgs) -> Result<ExitCode, CommandError> {
     interrupt.on_signals();
     let BisectArgs { scenario, good, bad, until, format } = args;
     let config = BisectConfig { scenario, good, bad, until, format: format.into() };
-    Ok(onescan_regress::bisect::bisect(&config, &interrupt, &mut std::io::stdout().lock(), &mut std::io::stderr().lock())?)
+    Ok(onescan_regress::bisect::bisect(
+        &config,
+        &interrupt,
+        &mut std::io::stdout().lock(),
+        &mut std::io::stderr().lock(),
+    )?)
 }

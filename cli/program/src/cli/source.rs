@@ -3,20 +3,20 @@
 use std::path::PathBuf;
 
 use clap::{Args as ClapArgs, ValueEnum};
-use onescan_iec_project::instrument::{Inputs, Target};
 use onescan_iec::{Dialect, MemoryLimit, Task};
+use onescan_iec_project::instrument::{Inputs, Target};
 use onescan_report::OutputError;
 use onescan_server::signal::ClientName;
 use onescan_server::time::TimeSpan;
 
 use super::error::CommandError;
 use super::value::{FormatArg, client_name};
+use crate::instrument::{Destination, Diff, Direction, InstrumentConfig};
 use onescan_regress::check::collect::logix;
 use onescan_regress::check::stubs::{self, StubsConfig};
 use onescan_regress::check::{self, CheckConfig, CheckFormat, Warnings};
 use onescan_runner::error::ExitCode;
 use onescan_runner::error::Usage;
-use crate::instrument::{Destination, Diff, Direction, InstrumentConfig};
 
 /// Options of `check`.
 #[derive(Debug, ClapArgs)]

@@ -11,11 +11,11 @@ use super::error::CommandError;
 use super::run::CoverageArg;
 use super::value::FormatArg;
 use onescan_regress::check::collect::Reading;
-use onescan_runner::error::ExitCode;
-use onescan_runner::format::Format;
 use onescan_regress::regress::config::WorkerConfig;
 use onescan_regress::regress::{Policy, Selection, TestConfig};
 use onescan_regress::review::{Choice, ReviewConfig};
+use onescan_runner::error::ExitCode;
+use onescan_runner::format::Format;
 use onescan_runner::run::coverage::CoverageRequest;
 
 /// Options of `test`.

@@ -3,11 +3,11 @@
 
 use std::collections::BTreeMap;
 
+use onescan_iec_project::instrument::{DB_FROM_PLC, DB_TO_PLC, goes_in_blocks};
 use onescan_links::gateway::listing::Listing;
 use onescan_links::gateway::s7::Options;
 use onescan_links::gateway::settings::Settings;
 use onescan_links::gateway::tcp::Declaration;
-use onescan_iec_project::instrument::{DB_FROM_PLC, DB_TO_PLC, goes_in_blocks};
 use onescan_scenario::gateway::Agreement;
 
 use crate::map::Fragment;

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use onescan_iec_project::instrument::Located;
 use onescan_links::gateway::addresses::Addresses;
 use onescan_links::gateway::listing::Listing;
 use onescan_links::gateway::settings::Settings;
-use onescan_iec_project::instrument::Located;
 use onescan_scenario::Scenario;
 use onescan_server::signal::ClientName;
 

@@ -20,8 +20,8 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use onescan_iec::input::kind::FileKind;
-use onescan_iec_project::instrument::{self, Inputs, InstrumentError as Refusal, Options, Target};
 use onescan_iec::{Diagnostics, Input, Task, TaskPlan, TimeSpan};
+use onescan_iec_project::instrument::{self, Inputs, InstrumentError as Refusal, Options, Target};
 use onescan_report::file::write_all_whole;
 use onescan_scenario::Scenario;
 use onescan_scenario::gateway::Agreement;

@@ -10,8 +10,8 @@ use serde::Serialize;
 
 use super::error::InstrumentError;
 use super::{Destination, Diff, Direction, InstrumentConfig};
-use onescan_regress::check::passed_over::PassedOver;
 use onescan_regress::check::json::Line;
+use onescan_regress::check::passed_over::PassedOver;
 use onescan_regress::check::report::Report;
 use onescan_regress::check::{human, json};
 use onescan_runner::format::Format;

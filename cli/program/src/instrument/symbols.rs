@@ -4,10 +4,10 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use onescan_iec_project::instrument::{Project, Target};
 use onescan_links::gateway::exchange::Point;
 use onescan_links::gateway::listing::Listing;
 use onescan_links::gateway::settings::Settings;
-use onescan_iec_project::instrument::{Project, Target};
 use onescan_scenario::gateway::Agreement;
 use onescan_xml::Element;
 

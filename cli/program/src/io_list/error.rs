@@ -1,8 +1,8 @@
 //! Why a list cannot be read.
 
 use miette::Diagnostic;
-use onescan_links::gateway::SettingsFault;
 use onescan_iec::input::encoding::EncodingError;
+use onescan_links::gateway::SettingsFault;
 use thiserror::Error;
 
 use onescan_regress::check::CheckError;

@@ -3,9 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
+use onescan_iec::Input;
 use onescan_iec::input::kind::FileKind;
 use onescan_iec::syntax::remark::Remarks;
-use onescan_iec::Input;
 use onescan_iec_run::{Application, BuildError, Variable, VariableAccess};
 use onescan_server::time::TimeSpan;
 

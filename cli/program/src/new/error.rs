@@ -2,8 +2,8 @@
 
 use onescan_report::{FileError, OutputError};
 
-use onescan_runner::error::{Usage, sum_of_errors};
 use crate::io_list::ListError;
+use onescan_runner::error::{Usage, sum_of_errors};
 
 sum_of_errors! {
     /// Why there is no new scenario.

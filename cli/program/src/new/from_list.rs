@@ -8,9 +8,9 @@ use onescan_report::file::{Write as Output, write_all_whole};
 use super::listed::{Listed, report};
 use super::names::Taken;
 use super::{NewError, name_of, text};
+use crate::io_list::{self, IoList, IoPoint, Wanted};
 use onescan_runner::error::Unreadable;
 use onescan_runner::format::Format;
-use crate::io_list::{self, IoList, IoPoint, Wanted};
 
 /// What is asked for.
 #[derive(Clone, Debug)]

@@ -8,8 +8,8 @@ use onescan_report::OutputError;
 use serde::Serialize;
 
 use super::from_list::Signal;
-use onescan_runner::format::Format;
 use crate::io_list::{Direction, IoList, ListKind};
+use onescan_runner::format::Format;
 
 /// How many lines of a kind people are shown.
 const SHOWN: usize = 20;

@@ -14,10 +14,10 @@ use onescan_scenario::file::ClientFile;
 use onescan_scenario::permission::granted;
 use onescan_scenario::{Scenario, ScenarioError};
 
-use onescan_runner::scene_drawing as drawing;
 use super::error::PlantError;
 use onescan_runner::error::Usage;
 use onescan_runner::format::Format;
+use onescan_runner::scene_drawing as drawing;
 
 /// What to make of a scene.
 #[derive(Clone, Debug)]

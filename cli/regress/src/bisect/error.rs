@@ -3,8 +3,8 @@
 use onescan_report::{FileError, OutputError};
 
 use crate::diff::DiffError;
-use onescan_runner::error::{Usage, sum_of_errors};
 use crate::repository::RepositoryError;
+use onescan_runner::error::{Usage, sum_of_errors};
 
 sum_of_errors! {
     /// Why no commit was found.

@@ -22,9 +22,9 @@ use crate::diff;
 use onescan_runner::error::ExitCode;
 use onescan_runner::error::Usage;
 
+use crate::repository::Repository;
 use onescan_runner::format::Format;
 use onescan_runner::interrupt::Interrupt;
-use crate::repository::Repository;
 use onescan_runner::run::config::RecordRequest;
 use onescan_runner::run::{RunConfig, execute};
 

@@ -29,8 +29,8 @@ use onescan_report::OutputError;
 
 pub use error::CheckError;
 
-use onescan_runner::error::ExitCode;
 use collect::{Collected, Reading};
+use onescan_runner::error::ExitCode;
 use report::Report;
 
 /// For whom the findings are.

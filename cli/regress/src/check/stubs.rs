@@ -4,8 +4,8 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use onescan_base::regular;
-use onescan_iec_project::stubs::{self, MARK};
 use onescan_iec::{Code, Dialect, Finding, Input, inspect};
+use onescan_iec_project::stubs::{self, MARK};
 use onescan_report::OutputError;
 
 use super::collect::{self, Reading};

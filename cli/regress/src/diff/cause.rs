@@ -6,18 +6,18 @@
 use std::collections::BTreeSet;
 use std::sync::PoisonError;
 
-use onescan_soft_plc::{Traced, Written};
 use onescan_recording::Recording;
 use onescan_scenario::load::kept_as;
 use onescan_scenario::{Mode, Scenario, ScenarioError};
 use onescan_server::operation::OperatorInput;
 use onescan_server::signal::{ClientName, SignalName};
 use onescan_server::time::VirtualTime;
+use onescan_soft_plc::{Traced, Written};
 
 use super::first::Difference;
 use super::parting::{Parting, parting};
-use onescan_runner::run::rerun::{Rerun, rerun};
 use crate::why::{self, Side, Why};
+use onescan_runner::run::rerun::{Rerun, rerun};
 
 /// Who wrote one signal.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -3,8 +3,8 @@
 use onescan_recording::RecordingError;
 use onescan_report::OutputError;
 
-use onescan_runner::error::{Usage, sum_of_errors};
 use crate::snapshot::StoreError;
+use onescan_runner::error::{Usage, sum_of_errors};
 
 sum_of_errors! {
     /// Why two recordings or snapshots cannot be compared.

@@ -5,10 +5,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use onescan_soft_plc::Ways;
 use onescan_iec_run::{Way, WayId};
 use onescan_server::signal::ClientName;
 use onescan_server::time::VirtualTime;
+use onescan_soft_plc::Ways;
 
 /// Where two runs of a PLC's program first go different ways.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -2,11 +2,11 @@
 
 use std::io::{self, Write};
 
-use onescan_soft_plc::Written;
 use onescan_iec_run::{FaultSite, Way};
 use onescan_recording::Recording;
 use onescan_report::table;
 use onescan_server::end::Failure;
+use onescan_soft_plc::Written;
 use serde_json::{Value, json};
 
 use super::cause::{Cause, Causes};

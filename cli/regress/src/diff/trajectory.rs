@@ -12,10 +12,10 @@ use serde_json::{Value, json};
 
 use super::error::DiffError;
 use super::report::NAMES;
-use onescan_runner::error::Usage;
 use crate::snapshot::store::read;
 use crate::snapshot::value::show;
 use crate::snapshot::{Difference, Sampled, Snapshot, Track, compare};
+use onescan_runner::error::Usage;
 
 /// Signals that are listed for people.
 const LISTED: usize = 20;

@@ -6,10 +6,10 @@ use onescan_scenario::ScenarioError;
 use thiserror::Error;
 
 use crate::check::CheckError;
-use onescan_runner::error::{Exit, ExitCode, SpawnError, Unreadable, Usage, sum_of_errors};
 use crate::repository::RepositoryError;
-use onescan_runner::run::RunError;
 use crate::snapshot::StoreError;
+use onescan_runner::error::{Exit, ExitCode, SpawnError, Unreadable, Usage, sum_of_errors};
+use onescan_runner::run::RunError;
 
 sum_of_errors! {
     /// Why nothing was tested. What is wrong with a test is no error but an outcome.

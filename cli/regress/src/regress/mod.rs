@@ -58,9 +58,9 @@ pub use selection::Selection;
 
 use crate::check::collect::Reading;
 use crate::check::stubs;
+use discover::Found;
 use onescan_runner::error::ExitCode;
 use onescan_runner::format::Format;
-use discover::Found;
 use outcome::Outcome;
 
 /// Refuses tests whose sources call stubs.

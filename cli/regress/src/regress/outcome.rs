@@ -11,11 +11,11 @@ use super::config::{Policy, TestConfig};
 use super::error::TestError;
 use super::plan::{CaseUnit, Unit, shown};
 use super::ran::{FailedAssert, Ran, Shown, Worked, within};
+use crate::snapshot::overlay::overlay;
+use crate::snapshot::{Difference, Snapshot, compare};
 use onescan_runner::error::ExitCode;
 use onescan_runner::run::RunStatus;
 use onescan_runner::run::page::Event;
-use crate::snapshot::overlay::overlay;
-use crate::snapshot::{Difference, Snapshot, compare};
 
 /// How a test ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]

@@ -8,9 +8,9 @@ use onescan_server::time::VirtualTime;
 use super::outcome::{Outcome, Report, Status};
 use super::ran::Shown;
 use super::summary::{details, totals};
-use onescan_runner::run::page::{Event, covered, statistics, timeline};
 use crate::snapshot::Snapshot;
 use crate::snapshot::value::show;
+use onescan_runner::run::page::{Event, covered, statistics, timeline};
 use onescan_runner::web::charts;
 
 /// The page of a test run.

@@ -12,10 +12,10 @@ use onescan_scenario::permission::granted;
 use super::config::TestConfig;
 use super::discover::Found;
 use super::error::TestError;
-use onescan_runner::error::Usage;
-use onescan_runner::run::NOTICE;
 use crate::snapshot::store::{Place, reviewed};
 use crate::snapshot::take::Choice;
+use onescan_runner::error::Usage;
+use onescan_runner::run::NOTICE;
 
 /// What one process does.
 #[derive(Clone, Debug, PartialEq)]

@@ -28,12 +28,7 @@ pub fn work(config: &TestConfig, units: &[Unit]) -> Result<Vec<Worked>, TestErro
 }
 
 /// Does `count` pieces of work, so many at a time; the results are in their order.
-pub fn spread<T: Send>(
-    jobs: NonZeroUsize,
-    count: usize,
-    bar: &ProgressBar,
-    one: impl Fn(usize) -> T + Sync,
-) -> Vec<T> {
+pub fn spread<T: Send>(jobs: NonZeroUsize, count: usize, bar: &ProgressBar, one: impl Fn(usize) -> T + Sync) -> Vec<T> {
     let next = AtomicUsize::new(0);
     let worker = || {
         let mut done = Vec::new();

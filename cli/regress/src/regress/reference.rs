@@ -13,11 +13,11 @@ use tempfile::TempDir;
 
 use super::TestError;
 use super::plan::CaseUnit;
-use onescan_runner::interrupt::Interrupt;
 use crate::repository::Repository;
-use onescan_runner::run::{RunConfig, watched};
 use crate::snapshot::take::Taker;
 use crate::snapshot::{Snapshot, compare};
+use onescan_runner::interrupt::Interrupt;
+use onescan_runner::run::{RunConfig, watched};
 
 /// Scenarios of commits that have been taken out; kept until the tests are over.
 #[derive(Debug)]

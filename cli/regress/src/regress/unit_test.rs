@@ -7,8 +7,8 @@
 //! A unit with `{attribute 'test'}` is a test of CODESYS' Test Manager. If it is started by an input `xExecute`, it
 //! runs until one of its outputs `xDone`, `xError` and `xAborted` is TRUE.
 
-use onescan_iec_run::run::FailedAssert as Failed;
 use onescan_iec::{ElementaryType, Input, Task, TaskPlan, VirtualTime};
+use onescan_iec_run::run::FailedAssert as Failed;
 use onescan_iec_run::{Application, BuildError, Coverage, PlcFault, SoftPlc, Variable};
 use onescan_server::client::SourcePlace;
 use onescan_server::time::TimeSpan;

@@ -14,11 +14,11 @@ use super::config::WorkerConfig;
 use super::limited::end_with_parent;
 use super::ran::{Covered, Ran, Worked};
 use super::unit_test;
+use crate::snapshot::take::{Choice, Taker};
 use onescan_runner::interrupt::Interrupt;
 use onescan_runner::run::config::{Drawing, Picture};
 use onescan_runner::run::page::Event;
 use onescan_runner::run::{RunConfig, watched};
-use crate::snapshot::take::{Choice, Taker};
 
 /// Does the work and writes what came of it to `out`.
 ///

@@ -2,9 +2,9 @@
 
 use onescan_report::{FileError, OutputError};
 
-use onescan_runner::error::sum_of_errors;
 use crate::regress::TestError;
 use crate::snapshot::StoreError;
+use onescan_runner::error::sum_of_errors;
 
 sum_of_errors! {
     /// Why nothing was reviewed.

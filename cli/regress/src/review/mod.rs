@@ -32,8 +32,8 @@ use crate::snapshot::store::{Place, pending};
 use crate::snapshot::take;
 use crate::snapshot::{Difference, Snapshot, compare};
 
-use onescan_runner::error::ExitCode;
 use desk::{Desk, Go};
+use onescan_runner::error::ExitCode;
 
 /// Columns of a terminal that does not say how wide it is.
 const WIDTH: usize = 80;

@@ -4,12 +4,12 @@ use std::collections::{BTreeMap, VecDeque};
 use std::sync::mpsc::{Receiver, sync_channel};
 use std::thread;
 
-use onescan_soft_plc::journal::{Journalling, Part, Scan, Seen, Wanted};
 use onescan_iec_run::Act;
 use onescan_scenario::Scenario;
 use onescan_server::operation::OperatorInput;
 use onescan_server::signal::ClientName;
 use onescan_server::time::VirtualTime;
+use onescan_soft_plc::journal::{Journalling, Part, Scan, Seen, Wanted};
 
 use onescan_runner::run::rerun::rerun;
 

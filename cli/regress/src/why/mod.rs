@@ -23,7 +23,6 @@ mod tree;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use onescan_soft_plc::{Bindings, Bound};
 use onescan_iec_run::Application;
 use onescan_iec_run::run::ACTS_MAX;
 use onescan_scenario::compose::Compiled;
@@ -31,6 +30,7 @@ use onescan_scenario::file::ClientFile;
 use onescan_scenario::{Scenario, ScenarioError};
 use onescan_server::signal::{ClientName, SignalName};
 use onescan_server::time::VirtualTime;
+use onescan_soft_plc::{Bindings, Bound};
 
 pub use abreast::Side;
 pub use record::{Origin, Place, Record, What};

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use super::record::Place;
-use onescan_soft_plc::journal::Part;
 use onescan_iec_run::{Application, Declaration, Statement, StatementId, Variable, Way, WayId};
+use onescan_soft_plc::journal::Part;
 use similar::{Algorithm, DiffOp, capture_diff_slices};
 
 /// The statements of two programs.

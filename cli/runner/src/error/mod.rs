@@ -18,9 +18,9 @@ mod sum;
 pub mod unreadable;
 pub mod usage;
 
+pub use crate::sum_of_errors;
 pub use exit::{Exit, ExitCode};
 pub use listen::ListenError;
 pub use process::SpawnError;
-pub use crate::sum_of_errors;
 pub use unreadable::Unreadable;
 pub use usage::Usage;

@@ -13,13 +13,13 @@ use std::io::Write;
 use std::sync::Arc;
 use std::time::Duration;
 
+use onescan_iec_run::SoftPlc;
 use onescan_links::gateway::modbus::RegisterMap;
 use onescan_links::gateway::tcp::Layouts;
 use onescan_links::gateway::{HandshakeKind, MappingFault};
 use onescan_links::opcua::ServeError;
 use onescan_links::station::opcua::ServedPlc;
 use onescan_links::station::{Clockwork, Controller, Wires, ads, modbus, opcua, s7, tcp};
-use onescan_iec_run::SoftPlc;
 use onescan_report::OutputError;
 use onescan_scenario::file::ClientFile;
 use onescan_scenario::gateway::Instrumented;

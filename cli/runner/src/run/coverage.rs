@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use onescan_soft_plc::CoverageSink;
 use onescan_iec_run::Coverage;
 use onescan_report::{OutputError, file};
+use onescan_soft_plc::CoverageSink;
 
 use super::error::RunError;
 

@@ -170,8 +170,11 @@ fn page_of(scenario: &Scenario, reports: &[RunReport], plot: &Plot, tables: &[Va
     let events: Vec<Event> = scenario.case_events().into_iter().map(|(at_ns, text)| Event { at_ns, text }).collect();
     let coverage =
         scenario.coverage().map(|sink| sink.lock().unwrap_or_else(std::sync::PoisonError::into_inner).clone());
-    let drawings =
-        Drawings { plot, scenes: scene_drawing::of_scenario(scenario, Side::default()), maps: maps::svgs(scenario, tables) };
+    let drawings = Drawings {
+        plot,
+        scenes: scene_drawing::of_scenario(scenario, Side::default()),
+        maps: maps::svgs(scenario, tables),
+    };
     // Without soft PLCs, or with clients in other processes, no coverage is gathered: the page then has no part about it.
     page::of_runs(reports, &events, drawings, &coverage.unwrap_or_default()).to_html()
 }

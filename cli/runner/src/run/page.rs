@@ -112,12 +112,7 @@ fn shown(expectation: &ExpectationReport) -> Shown {
 }
 
 /// Step statistics: how many, how long, and the digest over all of them.
-pub fn statistics(
-    steps: u64,
-    step_ns: u64,
-    end_ns: u64,
-    digest: Option<&String>,
-) -> Vec<(&'static str, String)> {
+pub fn statistics(steps: u64, step_ns: u64, end_ns: u64, digest: Option<&String>) -> Vec<(&'static str, String)> {
     let step = TimeSpan::from_nanos(step_ns).map(|step| step.to_string()).unwrap_or_default();
     let mut facts = vec![
         ("steps", steps.to_string()),
@@ -129,10 +124,7 @@ pub fn statistics(
 }
 
 /// All that happened, violations of expectations among it, in the order of time.
-pub fn timeline<'n>(
-    mut events: Vec<Event>,
-    violations: impl Iterator<Item = (u64, &'n str)>,
-) -> Vec<page::Event> {
+pub fn timeline<'n>(mut events: Vec<Event>, violations: impl Iterator<Item = (u64, &'n str)>) -> Vec<page::Event> {
     events.extend(violations.map(|(at_ns, name)| Event { at_ns, text: format!("expectation `{name}` violated") }));
     events.sort_by(|a, b| (a.at_ns, &a.text).cmp(&(b.at_ns, &b.text)));
     let shown = |Event { at_ns, text }| page::Event { at: VirtualTime::from_nanos(at_ns).to_string(), what: text };

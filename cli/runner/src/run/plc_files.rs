@@ -3,10 +3,10 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use onescan_soft_plc::files::files_in;
 use onescan_report::file;
 use onescan_scenario::Scenario;
 use onescan_server::client::Memory;
+use onescan_soft_plc::files::files_in;
 
 use super::error::RunError;
 use crate::error::Usage;

@@ -45,12 +45,12 @@ use serde::de::DeserializeOwned;
 pub use config::CampaignConfig;
 pub use error::CampaignError;
 
-use onescan_runner::error::{ExitCode, Usage};
-use onescan_runner::format::Format;
-use onescan_regress::regress::pool::{answer, bar, spread, this_program};
 use config::{Begun, Chosen, MergeConfig, Reports};
 use error::Ended;
 use journal::{Done, Subject, Work};
+use onescan_regress::regress::pool::{answer, bar, spread, this_program};
+use onescan_runner::error::{ExitCode, Usage};
+use onescan_runner::format::Format;
 use reading::{Reading, Trunk, Way};
 use table::{Row, Table};
 

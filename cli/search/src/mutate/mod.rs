@@ -30,8 +30,8 @@ pub use config::MutateConfig;
 use tally::Tally;
 use trial::{Trial, Verdict};
 
-use onescan_runner::error::{ExitCode, Usage};
 use onescan_regress::regress::pool::{bar, spread};
+use onescan_runner::error::{ExitCode, Usage};
 use onescan_runner::run::SearchError;
 
 /// A mistake, and what came of it.
@@ -111,4 +111,3 @@ fn nothing(scenario: &Scenario, client: Option<&ClientName>) -> Usage {
     let message = format!("the scenario has no soft PLC `{client}` in whose program a mistake could be");
     Usage::new(message, did_you_mean(client.as_str(), names))
 }
-

@@ -6,7 +6,6 @@ use std::sync::{Arc, Mutex, PoisonError};
 use onescan_server::access::Register;
 use thiserror::Error;
 
-
 /// Who is let in.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Access {

@@ -11,9 +11,9 @@ use opcua::types::{
 use tokio::runtime::Runtime;
 use tokio::task::JoinHandle;
 
-use onescan_links::opcua::Options;
-use onescan_links::gateway::fault::LinkFault;
 use crate::server::pki::Pki;
+use onescan_links::gateway::fault::LinkFault;
+use onescan_links::opcua::Options;
 
 /// A session, and the task that carries its messages.
 pub struct Connection {

@@ -7,12 +7,12 @@ use opcua::types::{AttributeId, DataValue, NodeId, ReadValueId, StatusCode, Time
 use tokio::runtime::Runtime;
 
 use super::connection::{Connection, lost};
-use onescan_links::opcua::Options;
 use super::{browse, value};
+use crate::server::pki::Pki;
 use onescan_links::gateway::exchange::{Direction, Exchange, Point};
 use onescan_links::gateway::fault::{LinkFault, MappingFault};
 use onescan_links::gateway::link::{Found, Link};
-use crate::server::pki::Pki;
+use onescan_links::opcua::Options;
 
 /// Variables of an OPC UA server.
 pub struct OpcUaLink {

@@ -15,8 +15,8 @@ use tokio::net::TcpListener;
 use super::door::{self, Channels};
 use super::doorkeeper::Doorkeeper;
 use super::pki::Pki;
-use onescan_links::opcua::{Access, Refusals, ServeError};
 use onescan_links::listener::bind;
+use onescan_links::opcua::{Access, Refusals, ServeError};
 
 /// Shortest publishing interval, and how often subscriptions are looked at.
 const SUBSCRIPTIONS_MS: u64 = 1;

@@ -6,9 +6,9 @@ use onescan_server::client::SourcePlace;
 use onescan_server::signal::BadName;
 use thiserror::Error;
 
-use onescan_base::array::ArrayError;
 use crate::component::kind::Text;
 use crate::file_place::Place;
+use onescan_base::array::ArrayError;
 
 /// Why a scene file is not a scene.
 #[derive(Clone, Debug, PartialEq, Error)]

@@ -87,11 +87,7 @@ impl Scene {
     }
 
     /// The parameter of a component that these names mean.
-    pub(crate) fn find_parameter(
-        &self,
-        component: &str,
-        parameter: &str,
-    ) -> Result<FoundParameter, ParameterRefused> {
+    pub(crate) fn find_parameter(&self, component: &str, parameter: &str) -> Result<FoundParameter, ParameterRefused> {
         let at = place_of(&self.components, component).map_err(|near| {
             let assembly = self.aliases.is_assembly(component);
             let hint = if assembly { Some("it is an assembly: name one of its parts".to_owned()) } else { near };

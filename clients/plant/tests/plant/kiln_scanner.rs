@@ -4,12 +4,12 @@
 use onescan_plant::Plant;
 use onescan_plant::scanner::protocol::{ACK, NAK, STX, SYN, command};
 use onescan_plant::scanner::temperature_degc;
-use onescan_stream::connection::{Cuts, Link, Role};
-use onescan_stream::serial::Rate;
-use onescan_stream::{Form, Port};
 use onescan_server::client::Client;
 use onescan_server::signal::{ClientName, Port as Signal, SignalType};
 use onescan_server::time::VirtualTime;
+use onescan_stream::connection::{Cuts, Link, Role};
+use onescan_stream::serial::Rate;
+use onescan_stream::{Form, Port};
 
 /// A turn of plant and host, ns.
 const STEP_NS: u64 = 2_000_000;

@@ -1,8 +1,8 @@
 //! Projects with a CONFIGURATION (2nd ed. 2.7): the scheduler is part of it.
 
 use onescan_iec::input::kind::SourceKind;
-use onescan_iec_project::instrument::{Options, diff, instrument, remove};
 use onescan_iec::{Input, TaskPlan};
+use onescan_iec_project::instrument::{Options, diff, instrument, remove};
 use onescan_iec_run::{Application, SoftPlc};
 
 use super::driver::{Driver, scan};

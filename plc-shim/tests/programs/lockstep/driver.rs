@@ -1,8 +1,8 @@
 //! A gateway and a PLC: the gateway grants steps, the PLC goes through its cycles as it likes.
 
 use onescan_iec::input::kind::SourceKind;
-use onescan_iec_project::instrument::{Options, instrument};
 use onescan_iec::{Input, Task, TaskPlan, TimeSpan, VirtualTime};
+use onescan_iec_project::instrument::{Options, instrument};
 use onescan_iec_run::{Application, SoftPlc};
 
 use crate::rig::{MS, Rig, task};

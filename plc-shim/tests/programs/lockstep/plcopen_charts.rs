@@ -1,7 +1,7 @@
 //! Charts that are drawn, on virtual time: instrumented in place, taken back, and the same in lockstep.
 
-use onescan_iec_project::instrument::{Options, Target, diff, instrument};
 use onescan_iec::{Task, TaskPlan};
+use onescan_iec_project::instrument::{Options, Target, diff, instrument};
 use onescan_iec_run::{Application, SoftPlc};
 use proptest::prelude::*;
 

@@ -1,8 +1,8 @@
 //! Projects in PLCopen XML: instrumented in place, read back, taken back, and the same in lockstep.
 
 use onescan_iec::input::kind::SourceKind;
-use onescan_iec_project::instrument::{Options, Project, Target, diff, instrument, remove};
 use onescan_iec::{Input, TaskPlan};
+use onescan_iec_project::instrument::{Options, Project, Target, diff, instrument, remove};
 use onescan_iec_run::{Application, SoftPlc};
 
 use super::driver::{Driver, Tasks, own_plan, scan, state, write};

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use onescan_iec::input::kind::{FileKind, SourceKind};
-use onescan_iec_project::instrument::{File, Options, Project, Target, instrument, remove};
 use onescan_iec::{Dialect, Input, Severity, Task, TaskPlan};
+use onescan_iec_project::instrument::{File, Options, Project, Target, instrument, remove};
 use onescan_iec_run::{Application, SoftPlc};
 
 use super::corpus::{cases, input};

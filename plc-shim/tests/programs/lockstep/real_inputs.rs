@@ -1,8 +1,8 @@
 //! Inputs that the PLC's I/O image writes: the simulated value is seen while the PLC is simulated, the real one else.
 
+use onescan_iec::Input;
 use onescan_iec::input::kind::SourceKind;
 use onescan_iec_project::instrument::{Inputs, Options, Target, diff, instrument, remove};
-use onescan_iec::Input;
 use onescan_iec_run::Application;
 
 use super::driver::{Driver, Tasks, original, own_plan, scan, state, write};

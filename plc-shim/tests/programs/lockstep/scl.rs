@@ -1,8 +1,8 @@
 //! Target `scl`: external sources of TIA Portal.
 
 use onescan_iec::input::kind::SourceKind;
-use onescan_iec_project::instrument::{Options, Project, Target, diff, instrument};
 use onescan_iec::{Input, Task, TaskPlan};
+use onescan_iec_project::instrument::{Options, Project, Target, diff, instrument};
 use onescan_iec_run::{Application, SoftPlc};
 
 use super::corpus::input;

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use onescan_iec::input::kind::SourceKind;
-use onescan_iec_project::instrument::{InstrumentError, Options, Project, Target, instrument};
 use onescan_iec::{Input, Task, TaskPlan};
+use onescan_iec_project::instrument::{InstrumentError, Options, Project, Target, instrument};
 use onescan_iec_run::{Application, SoftPlc};
 
 use super::abreast::Abreast;

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use onescan_iec::input::kind::SourceKind;
-use onescan_iec_project::instrument::{Options, Target, diff, instrument, remove};
 use onescan_iec::{Input, Task, TaskPlan};
+use onescan_iec_project::instrument::{Options, Target, diff, instrument, remove};
 use onescan_iec_run::{Application, SoftPlc};
 
 use super::abreast::Abreast;

@@ -9,9 +9,9 @@
 mod interpret;
 pub(crate) mod program;
 
-use onescan_iec_run::FaultKind;
 use onescan_iec::syntax::printer::print_unit;
 use onescan_iec::syntax::{FileId, parse};
+use onescan_iec_run::FaultKind;
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
 

@@ -45,8 +45,7 @@ VAR go : BOOL; n : INT; END_VAR
 END_PROGRAM";
     let input = Input::from_text("test.st", SourceKind::Text, text);
     let application = Application::from_inputs_with_coverage([input]).expect("a sound program");
-    let mut plc =
-        SoftPlc::new(&application, &application.single_task(TimeSpan::millis::<10>())).expect("a plan");
+    let mut plc = SoftPlc::new(&application, &application.single_task(TimeSpan::millis::<10>())).expect("a plan");
     let mut report = String::new();
     for (scan, go) in [(1, 0), (2, 0), (3, 1)] {
         let variable = plc.variable("P.go").expect("a variable");

@@ -3,9 +3,9 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use onescan_regress::snapshot::{Snapshot, compare};
 use onescan_base::VirtualTime;
 use onescan_recording::{Choice, ExportFormat, Provenance, Recorder, Recording};
+use onescan_regress::snapshot::{Snapshot, compare};
 use onescan_scenario::Scenario;
 use onescan_scenario::compose::Member;
 use onescan_server::checkpoint::Checkpoint;

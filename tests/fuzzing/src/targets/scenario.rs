@@ -3,9 +3,9 @@
 use std::net::{IpAddr, Ipv4Addr};
 use std::path::{Path, PathBuf};
 
+use onescan_links::gateway::listing::Listing;
 use onescan_runner::access::certificate;
 use onescan_runner::access::folder::{CERTIFICATE, Folder, KEY, TOKENS};
-use onescan_links::gateway::listing::Listing;
 use onescan_scenario::Scenario;
 use onescan_scenario::case::catalogue::Catalogue;
 use onescan_scenario::expect::{Judge, TraceEnd};

@@ -6,10 +6,10 @@ use onescan::io_list::{Wanted, read};
 use onescan_base::VirtualTime;
 use onescan_iec::input::kind::SourceKind;
 use onescan_iec::input::project::{files as project_files, listing};
-use onescan_iec_project::instrument::{Options, Target, instrument, remove};
 use onescan_iec::syntax::printer::print_unit;
 use onescan_iec::syntax::{FileId, parse};
 use onescan_iec::{Input, Task, TaskPlan, inspect};
+use onescan_iec_project::instrument::{Options, Target, instrument, remove};
 use onescan_iec_run::{Application, SoftPlc};
 
 use super::{Prepared, files, root, seed};

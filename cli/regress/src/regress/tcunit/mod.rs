@@ -26,10 +26,10 @@ use onescan_server::time::TimeSpan;
 use super::config::WorkerConfig;
 use super::error::TestError;
 use super::ran::Ran;
-use onescan_runner::error::Usage;
 use judged::{Judge, Reason};
 use log::{Log, Message};
 use memory::View;
+use onescan_runner::error::Usage;
 use results::Results;
 use sources::Sources;
 

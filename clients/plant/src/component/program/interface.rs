@@ -5,10 +5,10 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use onescan_base::did_you_mean;
+use onescan_iec::Input;
 use onescan_iec::syntax::ast::{Declaration, Pou, PouKind, Qualifier, Section, SectionKind};
 use onescan_iec::syntax::remark::Remarks;
 use onescan_iec::syntax::{FileId, Span, parse_source};
-use onescan_iec::Input;
 use onescan_iec_run::SoftPlc;
 
 use super::socket::Socket;

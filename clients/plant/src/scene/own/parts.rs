@@ -6,7 +6,6 @@ use toml::Value;
 
 use super::assembly::FOREIGN;
 use super::{Kinds, Own, text_of};
-use onescan_base::array;
 use crate::coupling::Names;
 use crate::pose::{from_rpy_deg, to_rpy_deg, turned_tensor};
 use crate::scene::arrays::numbers;
@@ -15,6 +14,7 @@ use crate::scene::faults::Faults;
 use crate::scene::format::{ComponentTable, SceneFile, Triple};
 use crate::scene::placed::Placed;
 use crate::scene::text;
+use onescan_base::array;
 
 /// Names that are of the assembly, and those that a component was given from outside.
 struct Renaming<'o> {
