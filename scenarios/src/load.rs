@@ -384,21 +384,18 @@ impl Scenario {
         key: &str,
         (message, help): (&str, Option<&String>),
     ) -> Option<ScenarioError> {
-        match self.links.get(name) {
-            Some(link) => {
-                let root = DeTable::parse(&link.text).ok()?;
-                let place = place_of_mapping(root.get_ref(), name, key)?;
-                Some(wrong(&link.path, &link.text, message.to_owned(), Some(place), help.cloned()))
-            }
-            None => {
-                // The files were read before, so that they are TOML.
-                let root = match self.chain.tree() {
-                    Ok(root) => root,
-                    Err(error) => return Some(error),
-                };
-                let place = place_of_mapping(root.get_ref(), name, key)?;
-                Some(self.chain.texts().wrong(message.to_owned(), Some(place), help.cloned()))
-            }
+        if let Some(link) = self.links.get(name) {
+            let root = DeTable::parse(&link.text).ok()?;
+            let place = place_of_mapping(root.get_ref(), name, key)?;
+            Some(wrong(&link.path, &link.text, message.to_owned(), Some(place), help.cloned()))
+        } else {
+            // The files were read before, so that they are TOML.
+            let root = match self.chain.tree() {
+                Ok(root) => root,
+                Err(error) => return Some(error),
+            };
+            let place = place_of_mapping(root.get_ref(), name, key)?;
+            Some(self.chain.texts().wrong(message.to_owned(), Some(place), help.cloned()))
         }
     }
 

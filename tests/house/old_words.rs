@@ -89,7 +89,7 @@ fn old_words_become_fewer() {
         let count = count(&texts, &old);
         match BOUNDS.iter().find(|(word, _)| *word == old) {
             Some((_, most)) if count > *most => {
-                found += &format!("    `{old}` stands {count} times, {most} are allowed\n")
+                found += &format!("    `{old}` stands {count} times, {most} are allowed\n");
             }
             Some(_) => {}
             None => found += &format!("    `{old}` has no bound; it stands {count} times\n"),

@@ -15,7 +15,7 @@ use super::world::{World, local_frames};
 
 /// The joints as they were measured last, in the scene's order.
 #[derive(Clone, Copy)]
-pub struct Measured<'m> {
+pub(crate) struct Measured<'m> {
     pub(super) motions: &'m [Mark],
 }
 

@@ -7,7 +7,7 @@ use super::sample::{Certain, Judged, Sample};
 use super::truth::{Scale, Worth};
 
 /// What members of a window come to; joining is associative, in the order of time.
-pub trait Joined: Copy {
+pub(super) trait Joined: Copy {
     /// What no member comes to.
     const NOTHING: Self;
 

@@ -285,24 +285,24 @@ mod tests {
         let types = Types::default().receive::<Message>().send::<Ask>();
         let made = format!("{}{}{}", types.module(1), types.table("Message"), types.table("Ask"));
         for line in [
-            r#"import { json, list, matching, nullable, number, numbered, one_of, set, text, tuple, whole, type Field, type Json }"#,
-            r#"export const PROTOCOL = 1;"#,
+            "import { json, list, matching, nullable, number, numbered, one_of, set, text, tuple, whole, type Field, type Json }",
+            "export const PROTOCOL = 1;",
             r#"  | { readonly type: "status"; readonly state: State; readonly failed: ReadonlySet<string>; readonly past_ns: readonly [number, number] | null }"#,
             r#"        state: readState(field.at("state")),"#,
             r#"        failed: set(text)(field.at("failed", [])),"#,
             r#"export type State = "run" | "hold";"#,
             r#"  return one_of("run", "hold")(field);"#,
-            r#"readonly names: ReadonlyMap<number, string>"#,
+            "readonly names: ReadonlyMap<number, string>",
             r#"values: list(tuple(whole, nullable(text)))(field.at("values"))"#,
             r#"colour: matching(/^#[0-9a-f]{6}$/)(field.at("colour"))"#,
             r#"more: json(field.at("more"))"#,
             r#"span: tuple(whole, whole)(field.at("span", [1,1]))"#,
-            r#"check_shape(field, "#,
+            "check_shape(field, ",
             r#"      return field.unknown("type", type);"#,
             r#"  | { readonly type: "watch"; readonly variables: readonly number[]; readonly one?: number | null }"#,
             r#"  | ({ readonly type: "train" } & Turn)"#,
             r#"| `status` | `state: "run" \| "hold"`<br>`failed?: string[]`<br>`past_ns?: [number, number] \| null` | How it is. |"#,
-            r#"| `live` |  | Nothing. |"#,
+            "| `live` |  | Nothing. |",
         ] {
             assert!(made.contains(line), "{line}\n{made}");
         }

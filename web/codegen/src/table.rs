@@ -7,6 +7,9 @@ use super::{Definitions, Types, keys, members, name_of, tag};
 
 impl Types {
     /// The members of a union of these types: name, keys, meaning.
+    ///
+    /// # Panics
+    /// `union` is not a union of these types.
     pub fn table(&self, union: &str) -> String {
         let definitions = self.definitions();
         let members = members(&definitions[union]).unwrap_or_else(|| panic!("{union} is not a union"));

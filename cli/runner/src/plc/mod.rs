@@ -91,6 +91,9 @@ fn the_plc(scenario: &Scenario, wanted: Option<&ClientName>) -> Result<ClientNam
     }
 }
 
+/// The addresses of the servers, and the one over OPC UA as long as it runs.
+type Served = (Vec<String>, Option<Box<dyn ServedPlc>>);
+
 /// Opens the servers that are asked for.
 fn serve(
     config: &PlcConfig,
@@ -98,7 +101,7 @@ fn serve(
     name: &ClientName,
     program: &Instrumented,
     controller: &Arc<Controller>,
-) -> Result<(Vec<String>, Option<Box<dyn ServedPlc>>), PlcError> {
+) -> Result<Served, PlcError> {
     let (mut urls, mut served) = (Vec::new(), None);
     let unfit = |fault: MappingFault| PlcError::Scenario(scenario.wrong_client(name, fault.message, fault.help));
     let blocks = || -> Result<tcp::Blocks, PlcError> {

@@ -41,6 +41,9 @@ impl CoverageRequest {
     }
 
     /// Writes a report of this coverage.
+    ///
+    /// # Errors
+    /// The file cannot be written.
     pub fn write_report(&self, coverage: &Coverage) -> Result<(), RunError> {
         let text = match self.format {
             CoverageFormat::Lcov => coverage.to_lcov(),

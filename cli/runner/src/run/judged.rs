@@ -76,6 +76,9 @@ impl<'a> Judged<'a> {
     }
 
     /// Sets it up: the image of 0 is there.
+    ///
+    /// # Errors
+    /// A client cannot be set up.
     pub fn begin(&mut self) -> Result<(), RecordError> {
         self.lockstep.run_to(VirtualTime::ZERO)?;
         self.see();

@@ -347,6 +347,9 @@ fn wait_for_clients(
 }
 
 /// What operators did in a recording, or by a file of events.
+///
+/// # Errors
+/// The recording or the file cannot be read.
 pub fn operator_inputs(path: &std::path::Path) -> Result<Vec<OperatorInput>, RunError> {
     if path.is_dir() {
         return Ok(Recording::open(path)?.operator_inputs()?);

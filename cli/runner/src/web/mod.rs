@@ -303,6 +303,9 @@ impl Exit for WebError {
 }
 
 /// Without tokens, everybody who reaches the page operates the session, so nobody from elsewhere may.
+///
+/// # Errors
+/// The address is not of this machine, and there are no tokens.
 pub fn of_this_machine(address: SocketAddr, admission: &Admission) -> Result<(), Usage> {
     if address.ip().is_loopback() || matches!(admission, Admission::Holders(_)) {
         return Ok(());

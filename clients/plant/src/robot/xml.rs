@@ -45,7 +45,7 @@ impl std::fmt::Display for RobotFault {
 
 /// An attribute.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Attribute {
+pub(crate) struct Attribute {
     pub(super) key: String,
     pub(super) value: String,
     pub(super) place: Place,

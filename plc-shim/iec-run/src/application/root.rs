@@ -3,7 +3,7 @@
 
 use super::Application;
 use super::variable::{Piece, Spot, VariableAccess, spot};
-pub use onescan_iec::diagnostic::did_you_mean;
+use onescan_iec::diagnostic::did_you_mean;
 use onescan_iec::ir::{Program, Resource, Storage};
 
 /// Why a path begins nowhere: the nearest name, if one is near.

@@ -6,7 +6,7 @@ use thiserror::Error;
 use super::Application;
 use super::zero_terminated::ZeroTerminated;
 use onescan_iec::check::{Checked, Kept};
-pub use onescan_iec::diagnostic::did_you_mean;
+use onescan_iec::diagnostic::did_you_mean;
 use onescan_iec::ir::{self, ElementaryType, Location, Storage, Type, TypeId, TypeTable};
 use onescan_iec::syntax::ast::SectionKind;
 use onescan_iec::syntax::direct_address::DirectAddress;

@@ -5,7 +5,7 @@ use thiserror::Error;
 
 use super::SoftPlc;
 use super::scheduler::Shift;
-pub use onescan_iec::diagnostic::did_you_mean;
+use onescan_iec::diagnostic::did_you_mean;
 
 /// Why a task cannot be late.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]

@@ -3,11 +3,11 @@
 use std::collections::BTreeSet;
 
 use onescan_base::TimeSpan;
-pub use onescan_iec::task_plan::{Task, TaskPlan};
+use onescan_iec::task_plan::{Task, TaskPlan};
 use thiserror::Error;
 
 use crate::application::Application;
-pub use onescan_iec::diagnostic::did_you_mean;
+use onescan_iec::diagnostic::did_you_mean;
 use onescan_iec::ir::ElementaryType;
 
 impl Application {

@@ -79,7 +79,7 @@ fn tables() -> String {
     let mut text = "| construct | dialects | source |\n|---|---|---|\n".to_owned();
     for row in FEATURES {
         let having = Dialect::ALL.into_iter().filter(|dialect| dialect.has(row.feature));
-        let names: Vec<_> = having.map(|dialect| dialect.name()).collect();
+        let names: Vec<_> = having.map(Dialect::name).collect();
         writeln!(text, "| {} | {} | {} |", row.feature.about(), names.join(", "), row.source).expect("a string");
     }
     let subjects = [

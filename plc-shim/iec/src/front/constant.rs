@@ -83,6 +83,9 @@ pub struct Constants {
 
 impl Constants {
     /// Finds the declarations of constants in `units`, and adds each value to `sources` as a file of its own.
+    ///
+    /// # Errors
+    /// A path that names no constant, or a value that cannot be read.
     pub fn new(
         wanted: &[(String, String)],
         units: &[(FileId, CompilationUnit)],

@@ -51,6 +51,9 @@ impl Front {
     }
 
     /// Beside it the constants, which have other initial values: path and literal each.
+    ///
+    /// # Errors
+    /// See [`ConstantError`].
     pub fn with_constants(
         limit: MemoryLimit,
         inputs: impl IntoIterator<Item = Input>,

@@ -9,6 +9,9 @@ const STACK_BYTES: usize = 64 << 20;
 
 /// Does the work on a stack that has room for it, whatever stack the caller has; on the caller's if
 /// the machine has no thread to give.
+///
+/// # Panics
+/// With the panic of the work, if it has one.
 pub fn with_room<T: Send, W: FnOnce() -> T + Send>(work: W) -> T {
     let slot = Mutex::new(Some(work));
     let run = || {

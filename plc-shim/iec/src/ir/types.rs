@@ -133,6 +133,7 @@ const REFERENCE: ElementaryType = ElementaryType::Udint;
 
 impl TypeTable {
     /// The elementary types.
+    #[expect(clippy::new_without_default, reason = "a table without types of its own is nobody's default")]
     pub fn new() -> Self {
         let entry = |ty: ElementaryType| Entry {
             ty: Type::Elementary(ty),

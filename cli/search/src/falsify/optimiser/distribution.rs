@@ -164,7 +164,7 @@ impl Constants {
     fn new(dimensions: usize) -> Self {
         let size = dimensions as f64;
         let lambda = 4 + (3.0 * libm::log(size)) as usize;
-        let middle = libm::log((lambda as f64 + 1.0) / 2.0);
+        let middle = libm::log(0.5 * (lambda as f64 + 1.0));
         let mut weights: Vec<f64> = (1..=lambda).map(|rank| middle - libm::log(rank as f64)).collect();
         let (better, worse) = weights.split_at_mut(lambda / 2);
         let effective = |weights: &[f64]| sum(weights) * sum(weights) / square(weights);
@@ -220,7 +220,9 @@ fn add_square(to: &mut Rows, factor: f64, vector: &[f64]) {
 }
 
 fn decay(what: &mut [f64], factor: f64) {
-    what.iter_mut().for_each(|what| *what *= factor);
+    for what in what {
+        *what *= factor;
+    }
 }
 
 fn sum(of: &[f64]) -> f64 {
