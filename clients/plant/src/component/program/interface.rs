@@ -5,10 +5,10 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use onescan_base::did_you_mean;
+use onescan_iec::Input;
 use onescan_iec::syntax::ast::{Declaration, Pou, PouKind, Qualifier, Section, SectionKind};
 use onescan_iec::syntax::remark::Remarks;
 use onescan_iec::syntax::{FileId, Span, parse_source};
-use onescan_iec::Input;
 use onescan_iec_run::SoftPlc;
 
 use super::socket::Socket;
@@ -168,7 +168,7 @@ impl Interface {
 
     /// What values a variable takes, and its initial one.
     fn preset(&self, name: &str, plc: &SoftPlc) -> Result<(Values, Setting), ProgramError> {
-        let socket = Socket::find(plc.application(), self, name)?;
+        let socket = Socket::find(plc.application(), name, |cause, hint| self.wrong(name, cause, hint))?;
         let setting = socket.get(plc.memory()).and_then(Value::setting);
         let (values, setting) = socket.values().zip(setting).ok_or_else(|| {
             let cause = format!("`{name}` is {}, which no signal or parameter of a component is", socket.type_name());
