@@ -11,14 +11,14 @@ use onescan_server::client::ClientFault;
 use onescan_server::signal::{PortLayout, SignalName, Slot, SlotError};
 use rapier3d::prelude::*;
 
-use super::actuator::Motor;
 use super::command::{Command, NumberSlot};
-use super::coordinate::Measured;
 use super::effort::{Mark, Path};
-use super::scene::Scene;
-use super::scene::model::{self, Moved};
+use super::model::Mechanics;
+use super::model::{self, Moved};
 use super::setpoint::{Bounds, Setpoint};
 use super::world::World;
+use super::world::actuator::Motor;
+use super::world::coordinate::Measured;
 
 /// What an axis moves.
 enum Mover {
@@ -41,7 +41,7 @@ impl Axis {
     /// Binds an axis; the motor of a joint then holds it where it is.
     pub(super) fn build(
         axis: &model::Axis,
-        scene: &Scene,
+        scene: &Mechanics,
         world: &mut World,
         [reads, writes]: [&PortLayout; 2],
     ) -> Result<Self, SlotError> {
@@ -74,7 +74,7 @@ impl Axis {
     }
 
     /// Where the axis rests before the first turn.
-    pub(super) fn rest(&self, scene: &Scene) -> Setpoint {
+    pub(super) fn rest(&self, scene: &Mechanics) -> Setpoint {
         let position = match &self.mover {
             Mover::Joint(motor) => scene.joints[motor.joint()].initial,
             Mover::Belt { .. } => 0.0,

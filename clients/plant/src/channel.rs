@@ -12,8 +12,8 @@ use onescan_server::signal::{Port, SignalType};
 use serde::{Deserialize, Serialize};
 
 use super::lateness::late_ns;
+use super::model::Condition;
 use super::scene::Scene;
-use super::scene::model::Condition;
 use onescan_server::random::{Random, seed_for};
 
 /// Bytes of the longest value that a `[[signal]]` conditions.
@@ -288,7 +288,7 @@ fn write(ty: SignalType, bytes: &mut [u8], value: f64) -> bool {
 mod tests {
     use onescan_server::signal::SignalName;
 
-    use super::super::scene::model::Range;
+    use super::super::model::Range;
     use super::*;
 
     /// A signal to which nothing happens.

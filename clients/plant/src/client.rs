@@ -12,7 +12,9 @@ use onescan_server::time::{TimeSpan, VirtualTime};
 
 use super::failure::FailureRefused;
 use super::identity::Identity;
-use super::machine::{Machine, Misfit};
+use super::layout_mismatch::LayoutMismatch;
+use super::machine::Machine;
+use super::placement::{BodyPose, Placement};
 use super::scene::{ParameterRefused, Scene, SceneError};
 use super::state::{self, Restored};
 
@@ -263,16 +265,37 @@ impl Client for Plant {
 
     fn restore(&mut self, bytes: &[u8]) -> Result<(), StateError> {
         let Restored { physics, memory } = state::from_bytes(self.identity()?, bytes)?;
-        let misfit = |misfit: Misfit| StateError::Corrupt(misfit.to_string());
+        let mismatch = |mismatch: LayoutMismatch| StateError::Corrupt(mismatch.to_string());
         // A machine is its scene's handles and wiring, which never change, and its state, all of
         // which is replaced: one that has run is as good as a new one.
         if let Some(machine) = &mut self.machine {
-            return machine.restore(&self.scene, physics, memory).map_err(misfit);
+            return machine.restore(&self.scene, physics, memory).map_err(mismatch);
         }
         let mut machine = Machine::build(&self.scene, self.period, self.seed)
             .map_err(|error| StateError::Corrupt(error.to_string()))?;
-        machine.restore(&self.scene, physics, memory).map_err(misfit)?;
+        machine.restore(&self.scene, physics, memory).map_err(mismatch)?;
         self.machine = Some(machine);
         Ok(())
+    }
+}
+
+impl Plant {
+    /// Where the bodies are, in the scene's order; nothing before the set-up.
+    pub fn poses(&self) -> impl Iterator<Item = BodyPose<'_>> {
+        self.placements().zip(&self.scene().bodies).map(|(placement, body)| {
+            let Placement { position_m, rotation_xyzw } = placement;
+            BodyPose { name: &body.name, position_m, rotation_xyzw }
+        })
+    }
+
+    /// Where the bodies are, in the order of [`scene`](Self::scene)`().bodies`, in place of what
+    /// `into` held; nothing before the set-up. From the second call on it allocates nothing.
+    pub fn write_poses(&self, into: &mut Vec<Placement>) {
+        into.clear();
+        into.extend(self.placements());
+    }
+
+    fn placements(&self) -> impl Iterator<Item = Placement> {
+        self.machine().into_iter().flat_map(Machine::placements)
     }
 }

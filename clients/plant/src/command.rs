@@ -3,7 +3,7 @@
 use onescan_server::client::ClientFault;
 use onescan_server::signal::{PortLayout, SignalName, Slot, SlotError};
 
-use super::scene::model::{Drive, NumberType};
+use super::model::{Drive, NumberType};
 use super::setpoint::{Bounds, Setpoint};
 
 /// A REAL or an LREAL in a port.

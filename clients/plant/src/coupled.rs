@@ -1,8 +1,8 @@
 //! What couples the coordinate of a joint to those of others, as data of a checked scene with the
 //! coordinates counted from the scene's pose.
 
-use super::scene::Scene;
-use super::scene::model;
+use super::model;
+use super::model::Mechanics;
 
 /// A joint that others lead.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,7 +39,7 @@ struct Knot {
 impl Coupled {
     /// The couplings of a scene; behind them those of joints that follow others, which stand where these
     /// take them.
-    pub(crate) fn all(scene: &Scene) -> Vec<Self> {
+    pub(crate) fn all(scene: &Mechanics) -> Vec<Self> {
         let written = scene.couplings.iter().map(|coupling| Self::new(coupling, scene));
         let moved = scene.joints.iter().enumerate().filter(|(_, joint)| !joint.guided);
         let follows = moved.filter_map(|(joint, described)| {
@@ -55,7 +55,7 @@ impl Coupled {
         self.joint == joint || self.of.iter().any(|of| of.joint == joint)
     }
 
-    fn new(coupling: &model::Coupling, scene: &Scene) -> Self {
+    fn new(coupling: &model::Coupling, scene: &Mechanics) -> Self {
         let initial = |joint: usize| scene.joints[joint].initial;
         let of = coupling.of.iter().map(|share| {
             let law = match &share.law {

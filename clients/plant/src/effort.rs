@@ -97,6 +97,13 @@ impl Path {
     }
 }
 
+/// How many equal sub-steps of at most `longest_s` make `dt_s`, and how long each is.
+pub(crate) fn substeps(dt_s: f64, longest_s: f64) -> (u32, f64) {
+    // a whole number of sub-steps is not one more for a rounding
+    let count = (dt_s / longest_s - 1e-9).ceil().clamp(1.0, 1e6);
+    (count as u32, dt_s / count)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,6 +1,6 @@
 //! What is fitted to a joint beside its drive: stops, spring, damper, counterweight, friction, brake.
 
-use super::scene::Scene;
+use super::model::Mechanics;
 
 /// The fittings of a joint. Coordinates are counted from the scene's pose, as the engine counts them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,7 +28,7 @@ pub(crate) struct Fitting {
 
 impl Fitting {
     /// The fittings that a scene gives the joint of an index.
-    pub(crate) fn new(scene: &Scene, joint: usize) -> Self {
+    pub(crate) fn new(scene: &Mechanics, joint: usize) -> Self {
         let described = &scene.joints[joint];
         let initial = described.initial;
         let mut fitting = Self {

@@ -5,13 +5,13 @@
 
 use onescan_server::client::ClientFault;
 
-use super::actuator::Motor;
-use super::coordinate::Measured;
 use super::effort::{Mark, Path};
-use super::scene::Scene;
-use super::scene::model::Follows;
+use super::model::Follows;
+use super::model::Mechanics;
 use super::setpoint::Setpoint;
 use super::world::World;
+use super::world::actuator::Motor;
+use super::world::coordinate::Measured;
 
 /// A joint that follows another.
 pub(super) struct Follower {
@@ -21,7 +21,7 @@ pub(super) struct Follower {
 
 impl Follower {
     /// The joints of a scene that follow others; their motors hold them where they are.
-    pub(super) fn all(scene: &Scene, world: &mut World) -> Vec<Self> {
+    pub(super) fn all(scene: &Mechanics, world: &mut World) -> Vec<Self> {
         let follows =
             scene.joints.iter().enumerate().filter_map(|(joint, described)| Some((joint, described.follows?)));
         follows.map(|(joint, follows)| Self { motor: Motor::bind(joint, None, scene, world), follows }).collect()

@@ -4,8 +4,8 @@ use rapier3d::glamx::DVec3;
 use rapier3d::math::Pose;
 use rapier3d::parry::transformation::try_convex_hull;
 
+use super::model::{BodyKind, Mechanics, Shape};
 use super::pose::from_rpy_deg;
-use super::scene::model::{BodyKind, Scene, Shape};
 
 /// A form of a body. A body without one carries joints and sensors only.
 #[derive(Clone, Debug, PartialEq)]
@@ -119,7 +119,7 @@ impl Geometry {
     }
 }
 
-impl Scene {
+impl Mechanics {
     /// Where the bodies are in the scene's pose, in the scene's order.
     pub fn frames(&self) -> impl Iterator<Item = Frame> + '_ {
         self.bodies.iter().map(|body| Frame::of(from_rpy_deg(body.position_m, body.rpy_deg)))
@@ -155,6 +155,7 @@ impl Scene {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Scene;
 
     const SCENE: &str = r#"
 version = 1

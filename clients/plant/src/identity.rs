@@ -9,9 +9,9 @@ use onescan_server::time::TimeSpan;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
+use super::component::instance::{Component, Wire};
 use super::component::kind::Kind;
 use super::scene::Scene;
-use super::scene::model::{Component, Wire};
 
 /// What a plant's state depends on, beside its inputs, operations and failures.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -4,7 +4,7 @@
 //! µ is `delay_s` and σ is `delay_sigma_s`. A time from the lower tail that would be negative is 0: no
 //! value arrives before it was sent.
 
-use super::scene::model::Condition;
+use super::model::Condition;
 use onescan_server::random::Random;
 
 /// How much later than it was sent a value arrives, ns.

@@ -9,18 +9,13 @@
 //! | [`robot`] | robots described in URDF, xacro and MJCF |
 //! | [`scene`] | the scene file: read, checked, plain data |
 //! | `pose` | orientations and joint frames from angles and directions |
-//! | `solid` | the bodies of a scene and their shapes, as the engine has them |
+//! | `model` | bodies, joints, axes and sensors of a checked scene: what the world is built from |
 //! | `world` | the scene as a world of rigid bodies |
-//! | `reach` | which bodies are too far away to be looked at |
-//! | `coordinate` | where a joint stands, measured from the poses of its bodies |
 //! | `setpoint` | the motion a drive wants: ramps and trapezoids in closed form |
 //! | `command` | what the PLC commands of a drive |
 //! | `effort` | what a drive does to its joint, and what the joint tells the drive |
-//! | `actuator` | what drives a joint: along a path, or by a component's equations |
 //! | `coupled` | what couples the coordinate of a joint to those of others |
 //! | `fitting` | what is fitted to a joint beside its drive |
-//! | `mechanism` | bodies on joints, moved by the joints' coordinates |
-//! | `articulation` | mechanisms and the engine: who moves which bodies |
 //! | `follower` | a joint that follows another |
 //! | `form` | the forms of bodies as they are, for readers that draw by themselves |
 //! | `axis` | a driven axis: command, setpoint, what it moves, feedback |
@@ -31,6 +26,7 @@
 //! | [`coupling`] | what ties a component to the world of rigid bodies |
 //! | `part` | a component of the scene, bound to signals, other components and the world |
 //! | `machine` | all of these, one turn at a time |
+//! | `layout_mismatch` | why a saved state does not belong to this plant |
 //! | `lateness` | how late a value arrives: a constant, an even part, a normal part |
 //! | `channel` | what happens to signals between the plant and the PLC |
 //! | `failure` | why a failure or a repair of a running plant is refused |
@@ -50,14 +46,11 @@
 //! - Nothing sleeps: a body at rest costs time, but never wakes late.
 //! - A world that is no longer finite or leaves its extent is a fault that names the body.
 
-mod actuator;
-mod articulation;
 mod axis;
 mod channel;
 mod client;
 mod command;
 pub mod component;
-mod coordinate;
 mod coupled;
 pub mod coupling;
 mod effort;
@@ -68,20 +61,19 @@ mod follower;
 mod form;
 mod identity;
 mod lateness;
+mod layout_mismatch;
 mod machine;
-mod mechanism;
 pub mod mesh;
+mod model;
 mod outline;
 mod part;
 mod placement;
 mod pose;
-mod reach;
 pub mod robot;
 pub mod scanner;
 pub mod scene;
 mod sensor;
 mod setpoint;
-mod solid;
 mod state;
 mod temperature_field;
 mod world;

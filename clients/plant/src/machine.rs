@@ -5,15 +5,13 @@ use onescan_server::signal::{PortLayout, Slot, SlotError};
 use onescan_server::time::{TimeSpan, VirtualTime};
 use rapier3d::prelude::PhysicsWorld;
 use serde::{Deserialize, Serialize};
-use thiserror::Error;
 
-use super::articulation::ArticulationMemory;
 use super::axis::Axis;
 use super::channel::{Channels, ChannelsMemory, inner_ports};
 use super::component::declare::Value;
-use super::coordinate::Measured;
 use super::effort::{Drives, Effort, Mark, Motion};
 use super::follower::Follower;
+use super::layout_mismatch::LayoutMismatch;
 use super::part::{Moment, Part, PartMemory, Unbuilt};
 use super::placement::Placement;
 use super::scene::failures::FoundMode;
@@ -23,6 +21,8 @@ use super::sensor::Sensor;
 use super::setpoint::Setpoint;
 use super::temperature_field::TemperatureField;
 use super::world::World;
+use super::world::articulation::ArticulationMemory;
+use super::world::coordinate::Measured;
 
 /// What the plant remembers between two turns, beside the state of its world.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -38,11 +38,6 @@ pub(super) struct Memory {
     /// What is on its way to the plant, and from it.
     channels: Option<[ChannelsMemory; 2]>,
 }
-
-/// Why a state does not fit in a machine, in words that follow "it" or name a part.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("{0}")]
-pub(super) struct Misfit(pub(super) String);
 
 /// A plant in motion.
 pub(super) struct Machine {
@@ -178,7 +173,12 @@ impl Machine {
     ///
     /// # Errors
     /// A state of another machine, which changes nothing.
-    pub(super) fn restore(&mut self, scene: &Scene, physics: PhysicsWorld, memory: Memory) -> Result<(), Misfit> {
+    pub(super) fn restore(
+        &mut self,
+        scene: &Scene,
+        physics: PhysicsWorld,
+        memory: Memory,
+    ) -> Result<(), LayoutMismatch> {
         self.check(scene, &physics, &memory)?;
         self.world.physics = physics;
         self.world.restore_coordinates(memory.articulation)?;
@@ -198,7 +198,7 @@ impl Machine {
         Ok(())
     }
 
-    fn check(&self, scene: &Scene, physics: &PhysicsWorld, memory: &Memory) -> Result<(), Misfit> {
+    fn check(&self, scene: &Scene, physics: &PhysicsWorld, memory: &Memory) -> Result<(), LayoutMismatch> {
         let counts = [
             ("axes", self.setpoints.len(), memory.setpoints.len()),
             ("sensors", self.detected.len(), memory.detected.len()),
@@ -206,7 +206,7 @@ impl Machine {
             ("directions of signals", self.channels.iter().flatten().count(), memory.channels.iter().flatten().count()),
         ];
         if let Some((what, own, saved)) = counts.into_iter().find(|(_, own, saved)| own != saved) {
-            return Err(Misfit(format!("it has {saved} {what}, this plant has {own}")));
+            return Err(LayoutMismatch(format!("it has {saved} {what}, this plant has {own}")));
         }
         self.world.check(physics)?;
         for ((part, described), memory) in self.parts.iter().zip(&scene.components).zip(&memory.parts) {
@@ -216,7 +216,7 @@ impl Machine {
         if channels.all(|(one, memory)| one.fits(memory)) {
             return Ok(());
         }
-        Err(Misfit("its signals between plant and session are others".to_owned()))
+        Err(LayoutMismatch("its signals between plant and session are others".to_owned()))
     }
 
     /// The signals as they are at the set-up.

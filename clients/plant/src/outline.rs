@@ -3,8 +3,8 @@
 use rapier3d::glamx::DVec3;
 use rapier3d::math::Pose;
 
+use super::model::{BodyKind, Mechanics, Shape};
 use super::pose::from_rpy_deg;
-use super::scene::model::{BodyKind, Scene, Shape};
 
 /// Corners of a circle.
 const SEGMENTS: usize = 32;
@@ -36,7 +36,7 @@ pub enum Surface {
     Convex(Vec<[f64; 3]>),
 }
 
-impl Scene {
+impl Mechanics {
     /// The forms of all bodies and of what is attached to them, in the scene's order.
     pub fn outlines(&self) -> impl Iterator<Item = Outline<'_>> {
         let bodies =

@@ -12,14 +12,15 @@ use thiserror::Error;
 use super::command::NumberSlot;
 use super::component::behaviour::{Compiled, Running, Surroundings};
 use super::component::declare::{Failed, Value};
+use super::component::instance::{Between, Component, FailureSwitch, When, Wire};
 use super::component::kind::{Setting, Signal, Values};
 use super::component::origin::{Making, Unmade};
-use super::coordinate::Measured;
 use super::effort::{Effort, Motion};
-use super::machine::Misfit;
+use super::layout_mismatch::LayoutMismatch;
+use super::model;
 use super::scene::Scene;
-use super::scene::model::{self, When, Wire};
 use super::world::World;
+use super::world::coordinate::Measured;
 use onescan_base::SignalType;
 use onescan_base::byte_line::DEFAULT_WINDOW;
 use onescan_server::random::seed_for;
@@ -114,7 +115,7 @@ impl LinePlaces {
 /// When a mode of failure is on.
 enum Switch {
     Signal(Slot<bool>),
-    Between(model::Between),
+    Between(Between),
 }
 
 /// A component at work.
@@ -162,7 +163,7 @@ impl Part {
     /// # Errors
     /// None that a checked scene could cause.
     pub(super) fn build(
-        described: &model::Component,
+        described: &Component,
         scene: &Scene,
         (seed, period): (u64, TimeSpan),
         world: &mut World,
@@ -212,7 +213,7 @@ impl Part {
     /// An input that is not a finite number.
     pub(super) fn drive(
         &mut self,
-        described: &model::Component,
+        described: &Component,
         moment: &Moment<'_>,
         others: &[Vec<Value>],
         world: &mut World,
@@ -232,7 +233,7 @@ impl Part {
     /// An input that is not a finite number.
     pub(super) fn sense(
         &mut self,
-        described: &model::Component,
+        described: &Component,
         moment: &Moment<'_>,
         others: &[Vec<Value>],
         world: &World,
@@ -312,7 +313,7 @@ impl Part {
     }
 
     /// The settings with which it runs, one for each parameter.
-    pub(super) fn settings(&self, described: &model::Component) -> Vec<Setting> {
+    pub(super) fn settings(&self, described: &Component) -> Vec<Setting> {
         settings(described, &self.changed)
     }
 
@@ -322,7 +323,7 @@ impl Part {
     /// A component that is compiled with its parameters.
     pub(super) fn change(
         &mut self,
-        described: &model::Component,
+        described: &Component,
         parameter: usize,
         to: Option<Setting>,
     ) -> Result<(), Compiled> {
@@ -354,8 +355,8 @@ impl Part {
     ///
     /// # Errors
     /// A memory of another part.
-    pub(super) fn check(&self, memory: &PartMemory, described: &model::Component) -> Result<(), Misfit> {
-        let foreign = |why: &str| Misfit(format!("component `{}`: {why}", described.name));
+    pub(super) fn check(&self, memory: &PartMemory, described: &Component) -> Result<(), LayoutMismatch> {
+        let foreign = |why: &str| LayoutMismatch(format!("component `{}`: {why}", described.name));
         changed(described, memory).ok_or_else(|| others(described))?;
         if !self.given.iter().map(Value::values).eq(memory.given.iter().map(Value::values)) {
             return Err(foreign("its outputs are others"));
@@ -371,29 +372,24 @@ impl Part {
     ///
     /// # Errors
     /// A memory that [`check`](Self::check) refuses.
-    pub(super) fn restore(&mut self, memory: PartMemory, described: &model::Component) -> Result<(), Misfit> {
+    pub(super) fn restore(&mut self, memory: PartMemory, described: &Component) -> Result<(), LayoutMismatch> {
         let name = &described.name;
         let changed = changed(described, &memory).ok_or_else(|| others(described))?;
         if self.changed != changed {
             let tuned = self.running.tune(&settings(described, &changed));
-            tuned.map_err(|error| Misfit(format!("component `{name}`: {error}")))?;
+            tuned.map_err(|error| LayoutMismatch(format!("component `{name}`: {error}")))?;
             self.changed = changed;
         }
         let taken = self.running.restore(&memory.state);
-        taken.map_err(|error| Misfit(format!("component `{name}`: {error}")))?;
+        taken.map_err(|error| LayoutMismatch(format!("component `{name}`: {error}")))?;
         for (port, state) in self.ports.iter_mut().zip(memory.ports) {
-            port.restore(state).map_err(|error| Misfit(format!("component `{name}`: {error}")))?;
+            port.restore(state).map_err(|error| LayoutMismatch(format!("component `{name}`: {error}")))?;
         }
         (self.given, self.failed) = (memory.given, memory.failed);
         Ok(())
     }
 
-    fn take(
-        &mut self,
-        described: &model::Component,
-        moment: &Moment<'_>,
-        others: &[Vec<Value>],
-    ) -> Result<(), ClientFault> {
+    fn take(&mut self, described: &Component, moment: &Moment<'_>, others: &[Vec<Value>]) -> Result<(), ClientFault> {
         for (index, feed) in self.feeds.iter().enumerate() {
             let value = match feed {
                 Feed::Unchanging => continue,
@@ -431,13 +427,13 @@ impl Part {
 }
 
 /// The settings of a component with some parameters changed.
-fn settings(described: &model::Component, changed: &BTreeMap<usize, Setting>) -> Vec<Setting> {
+fn settings(described: &Component, changed: &BTreeMap<usize, Setting>) -> Vec<Setting> {
     let own = described.settings.iter().enumerate();
     own.map(|(place, setting)| *changed.get(&place).unwrap_or(setting)).collect()
 }
 
 /// The changed parameters of a memory; nothing if they are not those of such a component.
-fn changed(described: &model::Component, memory: &PartMemory) -> Option<BTreeMap<usize, Setting>> {
+fn changed(described: &Component, memory: &PartMemory) -> Option<BTreeMap<usize, Setting>> {
     let parameters = &described.kind.parameters;
     let setting = |(place, text): &(u32, String)| {
         let place = usize::try_from(*place).ok()?;
@@ -447,13 +443,13 @@ fn changed(described: &model::Component, memory: &PartMemory) -> Option<BTreeMap
 }
 
 /// Why a memory with these changed parameters is not one of such a component.
-fn others(described: &model::Component) -> Misfit {
-    Misfit(format!("component `{}`: its changed parameters are others", described.name))
+fn others(described: &Component) -> LayoutMismatch {
+    LayoutMismatch(format!("component `{}`: its changed parameters are others", described.name))
 }
 
 /// The ports of a component: the first of its inputs and outputs that are lines are the first port, and so on.
 fn ports(
-    described: &model::Component,
+    described: &Component,
     running: &dyn Running,
     seed: u64,
     [reads, writes]: [&PortLayout; 2],
@@ -488,8 +484,8 @@ fn ports(
 }
 
 /// The scene's own switches of failures, by the index of the mode.
-fn switches(described: &model::Component, reads: &PortLayout) -> Result<Vec<(usize, Switch)>, SlotError> {
-    let switch = |failure: &model::FailureSwitch| {
+fn switches(described: &Component, reads: &PortLayout) -> Result<Vec<(usize, Switch)>, SlotError> {
+    let switch = |failure: &FailureSwitch| {
         let switch = match &failure.when {
             When::Signal(name) => Switch::Signal(reads.slot(name.as_str())?),
             When::Between(between) => Switch::Between(*between),

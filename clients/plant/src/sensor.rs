@@ -5,7 +5,7 @@ use rapier3d::math::Vector;
 use rapier3d::prelude::{Ray, RigidBodyHandle};
 
 use super::effort::Mark;
-use super::scene::model;
+use super::model;
 use super::world::World;
 
 /// A sensor, bound to what it detects and to its signal.

@@ -19,7 +19,7 @@ use onescan_server::time::VirtualTime;
 use thiserror::Error;
 use tokio::sync::Notify;
 
-use super::instance::Item;
+use super::item::Item;
 use super::seat::{Answer, Holder, Refusal, Seat};
 
 /// Tells whether an OPC UA session is no more.
@@ -195,7 +195,7 @@ impl Board {
         let items: Vec<Item> = if self.lock().watched.is_empty() {
             Vec::new()
         } else {
-            super::instance::session_items().into_iter().chain(signals).collect()
+            super::item::session_items().into_iter().chain(signals).collect()
         };
         self.publish(&items, change);
     }
@@ -311,7 +311,7 @@ impl Board {
     /// The session is over; `text` says how.
     pub fn end(&self, text: &str) {
         let seats = self.lock().seats.len();
-        let mut items: Vec<Item> = super::instance::session_items();
+        let mut items: Vec<Item> = super::item::session_items();
         items.extend((0..seats).flat_map(Item::grant));
         self.publish(&items, |shared| {
             shared.end.get_or_insert_with(|| text.to_owned());

@@ -11,10 +11,13 @@ use opcua::types::{Array, StatusCode, Variant, VariantScalarTypeId};
 use tokio::sync::oneshot;
 
 use super::board::{Board, IsGone};
-use super::instance::number;
-use super::manager::{BOUNDARY_TIMEOUT, packed, status};
+use super::item::number;
 use super::seat::{Holder, Refusal, Seat};
+use super::status::{packed, status};
 use super::value;
+
+/// How long a method waits for the step boundary at which it takes effect.
+const BOUNDARY_TIMEOUT: Duration = Duration::from_secs(3);
 
 /// Longest wait that a client may ask for.
 const PATIENCE_MAX: Duration = Duration::from_mins(1);

@@ -1,13 +1,11 @@
 //! Requests of OPC UA clients: values read, outputs and answers written, methods called.
 //!
-//! What was done is told by the status of each value or call, see [`status`].
+//! The status of each value or call reports what was done, see [`status`].
 
 use std::collections::HashMap;
 use std::sync::{Arc, Weak};
-use std::time::Duration;
 
 use async_trait::async_trait;
-use onescan_server::signal::SignalType;
 use opcua::server::address_space::{AddressSpace, add_namespaces};
 use opcua::server::diagnostics::NamespaceMetadata;
 use opcua::server::node_manager::memory::InMemoryNodeManagerImpl;
@@ -19,12 +17,13 @@ use opcua::types::{AttributeId, DataValue, NodeId, StatusCode, TimestampsToRetur
 use super::address_space::Namespaces;
 use super::board::{Board, IsGone};
 use super::call;
-use super::instance::{self, Item, number};
+use super::instance;
+use super::item::{Item, number};
 use super::node::{SESSION_URI, TYPES_URI};
 use super::seat::{Holder, Refusal};
+use super::status::{packed, status};
 use super::types;
 use super::value::of_item;
-use crate::link::value;
 use crate::server::Channels;
 
 /// The nodes of a session and what is asked of them.
@@ -124,36 +123,6 @@ impl SessionNodes {
         };
         done.map_err(status)
     }
-}
-
-/// How a refusal is told in OPC UA (OPC 10000-4 7.38).
-pub fn status(refusal: Refusal) -> StatusCode {
-    match refusal {
-        Refusal::NotStarted | Refusal::NotGranted => StatusCode::BadInvalidState,
-        Refusal::Taken => StatusCode::BadUserAccessDenied,
-        Refusal::Doubled => StatusCode::BadEntryExists,
-        Refusal::Old => StatusCode::BadSequenceNumberInvalid,
-        Refusal::Unknown => StatusCode::BadSequenceNumberUnknown,
-        Refusal::Spoilt => StatusCode::BadDataEncodingInvalid,
-        Refusal::Count => StatusCode::BadInvalidArgument,
-        Refusal::Over => StatusCode::BadSessionClosed,
-    }
-}
-
-/// The bytes of `given` as a signal of type `ty`.
-pub(super) fn packed(ty: SignalType, given: &Variant) -> Result<Vec<u8>, StatusCode> {
-    let given = match given {
-        Variant::Variant(inner) => inner,
-        plain => plain,
-    };
-    let mut bytes = vec![0; ty.size()];
-    if !value::from_variant(ty, given, &mut bytes) {
-        let is_text =
-            matches!(given, Variant::String(_)) && matches!(ty, SignalType::String(_) | SignalType::Wstring(_));
-        return Err(if is_text { StatusCode::BadOutOfRange } else { StatusCode::BadTypeMismatch });
-    }
-    ty.canonicalise(&mut bytes).map_err(|_| StatusCode::BadOutOfRange)?;
-    Ok(bytes)
 }
 
 /// Values that change are sampled for those who subscribe to them.
@@ -290,6 +259,3 @@ impl InMemoryNodeManagerImpl for SessionNodes {
 
 /// Items are told when they change, not sampled: a grant that is told late holds all clients up.
 const EVERY_CHANGE_MS: f64 = 0.001;
-
-/// How long a method waits for the step boundary at which it takes effect.
-pub(super) const BOUNDARY_TIMEOUT: Duration = Duration::from_secs(3);

@@ -25,12 +25,14 @@ pub mod board;
 mod call;
 pub mod client;
 pub mod instance;
+pub mod item;
 pub mod manager;
 pub mod node;
 pub mod nodeset;
 pub mod observer;
 pub mod seat;
 pub mod service;
+pub mod status;
 pub mod types;
 mod value;
 

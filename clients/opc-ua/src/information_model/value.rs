@@ -7,7 +7,7 @@ use onescan_server::time::VirtualTime;
 use opcua::types::{UAString, Variant};
 
 use super::board::{Board, Shared};
-use super::instance::{Item, number};
+use super::item::{Item, number};
 use super::seat::Seat;
 use crate::link::value::to_variant;
 

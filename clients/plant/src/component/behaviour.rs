@@ -13,12 +13,12 @@ use thiserror::Error;
 use super::declare::{Failed, FailureSet, ParameterSet, SignalSet, Value};
 use super::dynamics::substeps;
 use super::kind::{Dependence, Frames, Kind, Parameter, Setting, Signal};
-use crate::coordinate::Measured;
 use crate::coupling::{Coupling, Tie, Unbound};
 use crate::effort::{Effort, Motion};
-use crate::scene::Scene;
-use crate::scene::model::Bound;
+use crate::model::Bound;
+use crate::model::Mechanics;
 use crate::world::World;
+use crate::world::coordinate::Measured;
 use onescan_stream::{Form, Port};
 
 /// A kind of component, by its equations.
@@ -237,7 +237,7 @@ pub(super) fn run<C: Component>(
     component: C,
     seed: u64,
     bound: &Bound,
-    scene: &Scene,
+    scene: &Mechanics,
     world: &mut World,
 ) -> Result<Box<dyn Running>, Unbound> {
     let tie = C::Tie::bind(bound, scene, world)?;

@@ -2,14 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::effort::Motion;
+pub(crate) use crate::effort::substeps;
 
-/// How many equal sub-steps of at most `longest_s` make `dt_s`, and how long each is.
-pub(crate) fn substeps(dt_s: f64, longest_s: f64) -> (u32, f64) {
-    // a whole number of sub-steps is not one more for a rounding
-    let count = (dt_s / longest_s - 1e-9).ceil().clamp(1.0, 1e6);
-    (count as u32, dt_s / count)
-}
+use crate::effort::Motion;
 
 /// A first-order lag, exact for an input that is constant over the period:
 /// `x(t + dt) = u + (x(t) - u) exp(-dt / τ)`.

@@ -22,6 +22,7 @@ pub(crate) mod behaviour;
 pub(crate) mod declare;
 pub(crate) mod dynamics;
 pub(crate) mod fluid;
+pub mod instance;
 pub mod kind;
 pub(crate) mod library;
 pub(crate) mod melt;
@@ -33,5 +34,5 @@ pub(crate) mod program;
 mod tests;
 pub(crate) mod three_phase;
 
+pub use instance::open_inputs;
 pub use library::kinds;
-pub use origin::open_inputs;

@@ -14,8 +14,8 @@ use super::kind::{Kind, Setting};
 use super::library::{ENTRIES, Entry, kinds};
 use super::program::{Program, ProgramError};
 use crate::coupling::Unbound;
-use crate::scene::Scene;
-use crate::scene::model::{self, Bound, Wire};
+use crate::model::Bound;
+use crate::model::Mechanics;
 use crate::world::World;
 
 /// A kind, which it dereferences to, and what makes components of it.
@@ -34,7 +34,7 @@ pub(crate) struct Making<'m> {
     pub(crate) seed: u64,
     /// What it is bound to.
     pub(crate) bound: &'m Bound,
-    pub(crate) scene: &'m Scene,
+    pub(crate) scene: &'m Mechanics,
     /// How long its turns are.
     pub(crate) period: TimeSpan,
 }
@@ -160,11 +160,4 @@ impl Serialize for Origin {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.serialize_str(&self.name)
     }
-}
-
-/// The inputs of a component that are of use and that nobody drives, each with what it is all the time.
-pub fn open_inputs(component: &model::Component) -> Vec<(&str, Setting)> {
-    let inputs = component.kind.inputs.iter().zip(&component.inputs).enumerate();
-    let open = inputs.filter(|(at, (_, wire))| **wire == Wire::Open && component.kind.uses(&component.settings, *at));
-    open.filter_map(|(_, (input, _))| Some((&*input.key, input.preset?))).collect()
 }

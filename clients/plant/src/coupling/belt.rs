@@ -5,10 +5,10 @@ use rapier3d::math::Vector;
 use rapier3d::prelude::RigidBodyHandle;
 
 use super::{BindingKey, Names, Tie, Unbound, needed, wanted};
-use crate::coordinate::Measured;
-use crate::scene::Scene;
-use crate::scene::model::{Bound, Driven};
+use crate::model::Mechanics;
+use crate::model::{Bound, Driven};
 use crate::world::World;
+use crate::world::coordinate::Measured;
 
 /// A kinematic body whose surface a component runs.
 pub(crate) struct Belt {
@@ -39,7 +39,7 @@ impl Tie for Belt {
     type Effect = Run;
     type Memory = ();
 
-    fn bind(bound: &Bound, _: &Scene, world: &mut World) -> Result<Self, Unbound> {
+    fn bind(bound: &Bound, _: &Mechanics, world: &mut World) -> Result<Self, Unbound> {
         let body = world.handle(Some(wanted(belt(bound), "belt")?));
         let direction = Vector::from_array(wanted(bound.direction, "direction")?);
         world.keep_in_place(body);
@@ -56,7 +56,7 @@ impl Tie for Belt {
 
     fn restore(&mut self, (): ()) {}
 
-    fn in_words(bound: &Bound, scene: &Scene) -> String {
+    fn in_words(bound: &Bound, scene: &Mechanics) -> String {
         belt(bound).map_or_else(String::new, |body| format!("belt {}", scene.bodies[body].name))
     }
 }

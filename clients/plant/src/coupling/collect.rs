@@ -4,9 +4,9 @@ use onescan_server::client::ClientFault;
 use rapier3d::prelude::RigidBodyHandle;
 
 use super::{BindingKey, Names, Targets, Tie, Unbound, Which, handles, needed, optional, target, wanted};
-use crate::coordinate::Measured;
-use crate::scene::Scene;
-use crate::scene::model::Bound;
+use crate::model::Bound;
+use crate::model::Mechanics;
+use crate::world::coordinate::Measured;
 use crate::world::{Surface, World};
 
 /// A body, and what it may take; what hangs on a joint is not seen, since somebody still holds it.
@@ -33,7 +33,7 @@ impl Tie for Collect {
     type Effect = Remove;
     type Memory = ();
 
-    fn bind(bound: &Bound, _: &Scene, world: &mut World) -> Result<Self, Unbound> {
+    fn bind(bound: &Bound, _: &Mechanics, world: &mut World) -> Result<Self, Unbound> {
         let body = world.handle(Some(wanted(bound.body, "body")?));
         Ok(Self { surface: world.surface(body, None), targets: handles(world, &bound.targets) })
     }
@@ -55,7 +55,7 @@ impl Tie for Collect {
 
     fn restore(&mut self, (): ()) {}
 
-    fn in_words(bound: &Bound, scene: &Scene) -> String {
+    fn in_words(bound: &Bound, scene: &Mechanics) -> String {
         let name = bound.body.map(|body| &scene.bodies[body].name);
         name.map_or_else(String::new, |name| format!("body {name} takes {} others", bound.targets.len()))
     }

@@ -4,11 +4,11 @@ use onescan_server::client::ClientFault;
 
 use super::touch::{Touched, in_words, keys};
 use super::{BindingKey, Targets, Tie, Unbound, Which, target, without_effect};
-use crate::coordinate::Measured;
+use crate::model::Bound;
+use crate::model::Mechanics;
 use crate::pose::to_rpy_deg;
-use crate::scene::Scene;
-use crate::scene::model::Bound;
 use crate::world::World;
+use crate::world::coordinate::Measured;
 
 /// A body, or one shape of it, that is a field and that others of any kind are in.
 pub(crate) struct Field(Touched);
@@ -30,7 +30,7 @@ impl Tie for Field {
     type Seen = InField;
     without_effect!();
 
-    fn bind(bound: &Bound, _: &Scene, world: &mut World) -> Result<Self, Unbound> {
+    fn bind(bound: &Bound, _: &Mechanics, world: &mut World) -> Result<Self, Unbound> {
         Touched::bind(bound, world).map(Self)
     }
 
@@ -44,7 +44,7 @@ impl Tie for Field {
         InField { targets, position_m: between.translation.to_array(), turned_deg }
     }
 
-    fn in_words(bound: &Bound, scene: &Scene) -> String {
+    fn in_words(bound: &Bound, scene: &Mechanics) -> String {
         in_words(bound, scene)
     }
 }

@@ -13,10 +13,10 @@ use serde::{Deserialize, Serialize};
 
 use super::touch::{Touched, in_words, keys};
 use super::{BindingKey, Names, Targets, Tie, Unbound, Which, optional, target};
-use crate::coordinate::Measured;
-use crate::scene::Scene;
-use crate::scene::model::Bound;
+use crate::model::Bound;
+use crate::model::Mechanics;
 use crate::world::World;
+use crate::world::coordinate::Measured;
 
 const TOUCHED: [BindingKey; 3] = keys(Which::Dynamic);
 
@@ -127,7 +127,7 @@ impl Tie for Holds {
     type Effect = Hold;
     type Memory = Option<Held>;
 
-    fn bind(bound: &Bound, _: &Scene, world: &mut World) -> Result<Self, Unbound> {
+    fn bind(bound: &Bound, _: &Mechanics, world: &mut World) -> Result<Self, Unbound> {
         let touched = Touched::bind(bound, world)?;
         let pose = world.body(touched.surface.body).position();
         let direction = bound.direction.map(|direction| pose.inverse_transform_vector(Vector::from_array(direction)));
@@ -176,7 +176,7 @@ impl Tie for Holds {
         self.held = held;
     }
 
-    fn in_words(bound: &Bound, scene: &Scene) -> String {
+    fn in_words(bound: &Bound, scene: &Mechanics) -> String {
         in_words(bound, scene)
     }
 }

@@ -3,13 +3,13 @@
 use onescan_server::client::ClientFault;
 
 use super::{BindingKey, DrivenJoint, Names, Tie, Unbound, needed, optional, wanted, without_effect};
-use crate::actuator::Motor;
-use crate::coordinate::Measured;
 use crate::effort::{Mark, Path};
-use crate::scene::Scene;
-use crate::scene::model::{Bound, Driven, JointKind};
+use crate::model::Mechanics;
+use crate::model::{Bound, Driven, JointKind};
 use crate::setpoint::Setpoint;
 use crate::world::World;
+use crate::world::actuator::Motor;
+use crate::world::coordinate::Measured;
 
 /// Coordinate of a joint and its velocity, in m or rad and per second.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -19,7 +19,7 @@ pub(crate) struct Coordinate {
 }
 
 impl Coordinate {
-    fn initial(joint: usize, scene: &Scene) -> Self {
+    fn initial(joint: usize, scene: &Mechanics) -> Self {
         Self { position: scene.joints[joint].initial, velocity: 0.0 }
     }
 
@@ -41,7 +41,7 @@ pub(crate) struct Follow {
 struct Moves(Option<(Motor, Coordinate)>);
 
 impl Moves {
-    fn bind(bound: &Bound, scene: &Scene, world: &mut World) -> Result<Self, Unbound> {
+    fn bind(bound: &Bound, scene: &Mechanics, world: &mut World) -> Result<Self, Unbound> {
         match bound.drives {
             None => Ok(Self(None)),
             Some(Driven::Joint(joint)) => {
@@ -53,7 +53,7 @@ impl Moves {
     }
 
     /// As [`bind`](Self::bind), for a component that drives by its own equations.
-    fn bind_law(bound: &Bound, scene: &Scene, world: &mut World) -> Result<Self, Unbound> {
+    fn bind_law(bound: &Bound, scene: &Mechanics, world: &mut World) -> Result<Self, Unbound> {
         let bound = Self::bind(bound, scene, world)?;
         if let Some((motor, _)) = &bound.0 {
             motor.obey(world);
@@ -74,7 +74,7 @@ impl Moves {
     }
 }
 
-fn drives_in_words(bound: &Bound, scene: &Scene) -> String {
+fn drives_in_words(bound: &Bound, scene: &Mechanics) -> String {
     match bound.drives {
         Some(Driven::Joint(joint)) => format!("drives joint {}", scene.joints[joint].name),
         Some(Driven::Belt(_)) | None => String::new(),
@@ -92,7 +92,7 @@ macro_rules! moves {
             type Seen = Option<Coordinate>;
             without_effect!();
 
-            fn bind(bound: &Bound, scene: &Scene, world: &mut World) -> Result<Self, Unbound> {
+            fn bind(bound: &Bound, scene: &Mechanics, world: &mut World) -> Result<Self, Unbound> {
                 Moves::bind_law(bound, scene, world).map(Self)
             }
 
@@ -108,7 +108,7 @@ macro_rules! moves {
                 self.0.driven()
             }
 
-            fn in_words(bound: &Bound, scene: &Scene) -> String {
+            fn in_words(bound: &Bound, scene: &Mechanics) -> String {
                 drives_in_words(bound, scene)
             }
         }
@@ -135,7 +135,7 @@ impl Tie for Indexes {
     type Effect = Follow;
     type Memory = ();
 
-    fn bind(bound: &Bound, scene: &Scene, world: &mut World) -> Result<Self, Unbound> {
+    fn bind(bound: &Bound, scene: &Mechanics, world: &mut World) -> Result<Self, Unbound> {
         Moves::bind(bound, scene, world).map(Self)
     }
 
@@ -159,7 +159,7 @@ impl Tie for Indexes {
 
     fn restore(&mut self, (): ()) {}
 
-    fn in_words(bound: &Bound, scene: &Scene) -> String {
+    fn in_words(bound: &Bound, scene: &Mechanics) -> String {
         drives_in_words(bound, scene)
     }
 }
@@ -177,7 +177,7 @@ impl Tie for Measures {
     type Seen = Coordinate;
     without_effect!();
 
-    fn bind(bound: &Bound, scene: &Scene, _: &mut World) -> Result<Self, Unbound> {
+    fn bind(bound: &Bound, scene: &Mechanics, _: &mut World) -> Result<Self, Unbound> {
         let joint = wanted(bound.measures, "joint")?;
         Ok(Self { joint, initial: Coordinate::initial(joint, scene) })
     }
@@ -190,7 +190,7 @@ impl Tie for Measures {
         Coordinate::measured(self.joint, measured)
     }
 
-    fn in_words(bound: &Bound, scene: &Scene) -> String {
+    fn in_words(bound: &Bound, scene: &Mechanics) -> String {
         bound.measures.map_or_else(String::new, |joint| format!("measures joint {}", scene.joints[joint].name))
     }
 }

@@ -4,10 +4,10 @@ use onescan_server::client::ClientFault;
 use rapier3d::prelude::RigidBodyHandle;
 
 use super::{BindingKey, Names, Tie, Unbound, Which, handles, optional, without_effect};
-use crate::coordinate::Measured;
-use crate::scene::Scene;
-use crate::scene::model::Bound;
+use crate::model::Bound;
+use crate::model::Mechanics;
 use crate::world::World;
+use crate::world::coordinate::Measured;
 
 /// Bodies that may meet each other; what is seen is how many pairs of them do.
 pub(crate) struct Meet {
@@ -25,7 +25,7 @@ impl Tie for Meet {
     type Seen = u32;
     without_effect!();
 
-    fn bind(bound: &Bound, _: &Scene, world: &mut World) -> Result<Self, Unbound> {
+    fn bind(bound: &Bound, _: &Mechanics, world: &mut World) -> Result<Self, Unbound> {
         let mut targets = handles(world, &bound.targets);
         targets.sort_unstable_by_key(|target| target.0);
         targets.dedup();
@@ -36,7 +36,7 @@ impl Tie for Meet {
         world.contacts_among(&self.targets)
     }
 
-    fn in_words(bound: &Bound, _: &Scene) -> String {
+    fn in_words(bound: &Bound, _: &Mechanics) -> String {
         let mut targets = bound.targets.clone();
         targets.sort_unstable();
         targets.dedup();

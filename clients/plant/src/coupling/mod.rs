@@ -29,10 +29,10 @@ use serde::de::DeserializeOwned;
 use serde::{Serialize, Serializer};
 use thiserror::Error;
 
-use super::coordinate::Measured;
-use super::scene::Scene;
-use super::scene::model::{Bound, JointKind};
+use super::model::Mechanics;
+use super::model::{Bound, JointKind};
 use super::world::World;
+use super::world::coordinate::Measured;
 
 mod belt;
 mod collect;
@@ -123,7 +123,7 @@ const fn optional(key: &'static str, names: Names, about: &'static str) -> Bindi
 pub struct Coupling {
     name: &'static str,
     keys: &'static [BindingKey],
-    in_words: fn(&Bound, &Scene) -> String,
+    in_words: fn(&Bound, &Mechanics) -> String,
 }
 
 impl Coupling {
@@ -133,7 +133,7 @@ impl Coupling {
     }
 
     /// What a component is bound to, for people; empty if it is bound to nothing.
-    pub fn in_words(&self, bound: &Bound, scene: &Scene) -> String {
+    pub fn in_words(&self, bound: &Bound, scene: &Mechanics) -> String {
         (self.in_words)(bound, scene)
     }
 
@@ -179,7 +179,7 @@ pub(crate) trait Tie: Sized + Send + 'static {
     ///
     /// # Errors
     /// A binding that lacks what the keys ask for, which no checked scene has.
-    fn bind(bound: &Bound, scene: &Scene, world: &mut World) -> Result<Self, Unbound>;
+    fn bind(bound: &Bound, scene: &Mechanics, world: &mut World) -> Result<Self, Unbound>;
 
     /// What a component sees before the first half turn.
     fn at_start(&self) -> Self::Seen {
@@ -213,7 +213,7 @@ pub(crate) trait Tie: Sized + Send + 'static {
     fn restore(&mut self, memory: Self::Memory);
 
     /// What a component is bound to, for people.
-    fn in_words(bound: &Bound, scene: &Scene) -> String;
+    fn in_words(bound: &Bound, scene: &Mechanics) -> String;
 }
 
 /// A joint, by its index in the scene, and the number of the drive that moves it.
@@ -259,13 +259,13 @@ impl Tie for Nothing {
     type Seen = ();
     without_effect!();
 
-    fn bind(_: &Bound, _: &Scene, _: &mut World) -> Result<Self, Unbound> {
+    fn bind(_: &Bound, _: &Mechanics, _: &mut World) -> Result<Self, Unbound> {
         Ok(Self)
     }
 
     fn see(&self, _: Measured<'_>, _: &World) {}
 
-    fn in_words(_: &Bound, _: &Scene) -> String {
+    fn in_words(_: &Bound, _: &Mechanics) -> String {
         String::new()
     }
 }

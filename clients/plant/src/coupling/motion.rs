@@ -7,11 +7,11 @@ use rapier3d::prelude::RigidBodyHandle;
 use serde::{Deserialize, Serialize};
 
 use super::{BindingKey, Names, Tie, Unbound, needed, optional, wanted};
-use crate::coordinate::Measured;
+use crate::model::Bound;
+use crate::model::Mechanics;
 use crate::pose::to_rpy_deg;
-use crate::scene::Scene;
-use crate::scene::model::Bound;
 use crate::world::World;
+use crate::world::coordinate::Measured;
 
 /// A point of a body.
 pub(crate) struct Motion {
@@ -72,7 +72,7 @@ impl Tie for Motion {
     type Effect = ();
     type Memory = Option<Before>;
 
-    fn bind(bound: &Bound, _: &Scene, world: &mut World) -> Result<Self, Unbound> {
+    fn bind(bound: &Bound, _: &Mechanics, world: &mut World) -> Result<Self, Unbound> {
         let body = world.handle(Some(wanted(bound.body, "body")?));
         let pose = world.body(body).position();
         let point = bound.point_m.map(|point| pose.inverse_transform_point(Vector::from_array(point)));
@@ -109,7 +109,7 @@ impl Tie for Motion {
         self.before = before;
     }
 
-    fn in_words(bound: &Bound, scene: &Scene) -> String {
+    fn in_words(bound: &Bound, scene: &Mechanics) -> String {
         bound.body.map_or_else(String::new, |body| format!("on body {}", scene.bodies[body].name))
     }
 }

@@ -4,9 +4,9 @@ use onescan_server::client::ClientFault;
 use rapier3d::prelude::RigidBodyHandle;
 
 use super::{BindingKey, Names, Targets, Tie, Unbound, Which, handles, needed, target, wanted};
-use crate::coordinate::Measured;
-use crate::scene::Scene;
-use crate::scene::model::Bound;
+use crate::model::Bound;
+use crate::model::Mechanics;
+use crate::world::coordinate::Measured;
 use crate::world::{Surface, World};
 
 /// A body, and what appears at its place. What is seen is how many wait out of the world; the first
@@ -38,7 +38,7 @@ impl Tie for Place {
     type Effect = Put;
     type Memory = ();
 
-    fn bind(bound: &Bound, _: &Scene, world: &mut World) -> Result<Self, Unbound> {
+    fn bind(bound: &Bound, _: &Mechanics, world: &mut World) -> Result<Self, Unbound> {
         let body = world.handle(Some(wanted(bound.body, "body")?));
         let targets = handles(world, &bound.targets);
         for target in &targets {
@@ -66,7 +66,7 @@ impl Tie for Place {
 
     fn restore(&mut self, (): ()) {}
 
-    fn in_words(bound: &Bound, scene: &Scene) -> String {
+    fn in_words(bound: &Bound, scene: &Mechanics) -> String {
         let name = bound.body.map(|body| &scene.bodies[body].name);
         name.map_or_else(String::new, |name| format!("{} bodies at {name}", bound.targets.len()))
     }

@@ -5,10 +5,10 @@ use rapier3d::math::Vector;
 use rapier3d::prelude::RigidBodyHandle;
 
 use super::{BindingKey, Names, Tie, Unbound, Which, handles, needed, optional, wanted, without_effect};
-use crate::coordinate::Measured;
-use crate::scene::Scene;
-use crate::scene::model::Bound;
+use crate::model::Bound;
+use crate::model::Mechanics;
 use crate::world::World;
+use crate::world::coordinate::Measured;
 
 /// A ray as its carrier sees it.
 pub(crate) struct Ray {
@@ -40,7 +40,7 @@ impl Tie for Ray {
     type Seen = Hit;
     without_effect!();
 
-    fn bind(bound: &Bound, _: &Scene, world: &mut World) -> Result<Self, Unbound> {
+    fn bind(bound: &Bound, _: &Mechanics, world: &mut World) -> Result<Self, Unbound> {
         let carrier = world.handle(bound.body);
         let (point, direction) = (wanted(bound.point_m, "point")?, wanted(bound.direction, "direction")?);
         let pose = world.body(carrier).position();
@@ -59,7 +59,7 @@ impl Tie for Ray {
         Hit { hit_m: hits.reduce(f64::min) }
     }
 
-    fn in_words(bound: &Bound, _: &Scene) -> String {
+    fn in_words(bound: &Bound, _: &Mechanics) -> String {
         format!("a ray at {} bodies", bound.targets.len())
     }
 }

@@ -3,11 +3,11 @@
 use onescan_server::client::ClientFault;
 
 use super::{BindingKey, Names, Tie, Unbound, needed, wanted, without_effect};
-use crate::coordinate::Measured;
-use crate::scene::Scene;
-use crate::scene::model::Bound;
+use crate::model::Bound;
+use crate::model::Mechanics;
 use crate::temperature_field::TemperatureField;
 use crate::world::World;
+use crate::world::coordinate::Measured;
 
 /// Gives the temperature of a body's surface.
 pub(crate) struct Heats {
@@ -19,7 +19,7 @@ pub(crate) struct SeesHeat {
     body: usize,
 }
 
-fn in_words(bound: &Bound, scene: &Scene) -> String {
+fn in_words(bound: &Bound, scene: &Mechanics) -> String {
     bound.body.map_or_else(String::new, |body| format!("surface of body {}", scene.bodies[body].name))
 }
 
@@ -31,7 +31,7 @@ impl Tie for Heats {
     type Effect = TemperatureField;
     type Memory = ();
 
-    fn bind(bound: &Bound, _: &Scene, _: &mut World) -> Result<Self, Unbound> {
+    fn bind(bound: &Bound, _: &Mechanics, _: &mut World) -> Result<Self, Unbound> {
         Ok(Self { body: wanted(bound.body, "body")? })
     }
 
@@ -52,7 +52,7 @@ impl Tie for Heats {
 
     fn restore(&mut self, (): ()) {}
 
-    fn in_words(bound: &Bound, scene: &Scene) -> String {
+    fn in_words(bound: &Bound, scene: &Mechanics) -> String {
         in_words(bound, scene)
     }
 }
@@ -63,7 +63,7 @@ impl Tie for SeesHeat {
     type Seen = TemperatureField;
     without_effect!();
 
-    fn bind(bound: &Bound, _: &Scene, _: &mut World) -> Result<Self, Unbound> {
+    fn bind(bound: &Bound, _: &Mechanics, _: &mut World) -> Result<Self, Unbound> {
         Ok(Self { body: wanted(bound.body, "body")? })
     }
 
@@ -71,7 +71,7 @@ impl Tie for SeesHeat {
         world.heat_of(self.body)
     }
 
-    fn in_words(bound: &Bound, scene: &Scene) -> String {
+    fn in_words(bound: &Bound, scene: &Mechanics) -> String {
         in_words(bound, scene)
     }
 }

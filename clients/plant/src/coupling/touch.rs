@@ -4,9 +4,9 @@ use onescan_server::client::ClientFault;
 use rapier3d::prelude::RigidBodyHandle;
 
 use super::{BindingKey, Names, Targets, Tie, Unbound, Which, handles, needed, optional, wanted, without_effect};
-use crate::coordinate::Measured;
-use crate::scene::Scene;
-use crate::scene::model::Bound;
+use crate::model::Bound;
+use crate::model::Mechanics;
+use crate::world::coordinate::Measured;
 use crate::world::{Surface, World};
 
 pub(super) const fn keys(named: Which) -> [BindingKey; 3] {
@@ -43,7 +43,7 @@ impl Touched {
     }
 }
 
-pub(super) fn in_words(bound: &Bound, scene: &Scene) -> String {
+pub(super) fn in_words(bound: &Bound, scene: &Mechanics) -> String {
     let body = bound.body.map(|body| &scene.bodies[body].name);
     let name = bound.shape.map(|shape| &scene.shapes[shape].name).or(body);
     name.map_or_else(String::new, |name| format!("{name} and {} others", bound.targets.len()))
@@ -60,7 +60,7 @@ macro_rules! senses {
             type Seen = Targets;
             without_effect!();
 
-            fn bind(bound: &Bound, _: &Scene, world: &mut World) -> Result<Self, Unbound> {
+            fn bind(bound: &Bound, _: &Mechanics, world: &mut World) -> Result<Self, Unbound> {
                 Touched::bind(bound, world).map(Self)
             }
 
@@ -68,7 +68,7 @@ macro_rules! senses {
                 self.0.see(world)
             }
 
-            fn in_words(bound: &Bound, scene: &Scene) -> String {
+            fn in_words(bound: &Bound, scene: &Mechanics) -> String {
                 in_words(bound, scene)
             }
         }

@@ -5,13 +5,14 @@ use onescan_server::signal::{SignalName, SignalType};
 
 use super::error::{SceneFaultKind, Thing};
 use super::faults::Faults;
-use super::format::{AxisTable, BodyKind, DriveKind, JointKind, NumberType, SceneFile};
+use super::format::{AxisTable, DriveKind, SceneFile};
 use super::joints::{kind_name, unit};
 use super::model::{Axis, Drive, Moved};
 use super::names::Names;
 use super::number::{Allowed, Entry, Unit};
 use super::signals::Signals;
 use super::text;
+use crate::model::{BodyKind, JointKind, NumberType};
 
 pub(super) fn check(
     file: &SceneFile,

@@ -3,16 +3,17 @@
 use super::placed::Placed;
 
 use super::bodies::GROUND;
-use super::components::Keys;
+use super::component_keys::Keys;
 use super::error::{SceneFaultKind, Thing};
 use super::faults::Faults;
-use super::format::{BodyKind, JointKind, SceneFile};
+use super::format::SceneFile;
 use super::joints::{kind_name, refuse_guided, unit};
 use super::model::{Axis, Bound, Driven, Moved};
 use super::names::Names;
 use super::own::Kinds;
 use super::text;
 use crate::coupling::{BindingKey, Coupling, Names as Named, Which};
+use crate::model::{BodyKind, JointKind};
 
 /// What of the scene has its place already.
 pub(super) struct Lookup<'s> {

@@ -4,23 +4,15 @@ use super::placed::Placed;
 
 use super::error::SceneFaultKind;
 use super::faults::Faults;
-use super::format::{BodyKind, BodyTable};
-use super::meshes::MeshKeys;
+use super::format::BodyTable;
 use super::model::{Body, Collisions, FrictionRule, GROUPS_MAX, Mass, Shape};
-use super::number::{Allowed, Entry};
-use super::shapes::Measures;
+use super::number::{Allowed, DENSITY_KG_M3, Entry, FRICTION, MASS_KG, RESTITUTION};
+use super::shapes::{Measures, MeshKeys};
 use super::text;
+use crate::model::BodyKind;
 
 /// What joints and sensors call the world itself.
 pub(super) const GROUND: &str = "ground";
-
-// What the engine computes with for certain: beyond, products of several such numbers leave the
-// range in which a double is precise, long before it overflows.
-pub(super) const LENGTH_M: Allowed = Allowed::Within(1e-4, 1e4);
-pub(super) const MASS_KG: Allowed = Allowed::Within(1e-6, 1e9);
-pub(super) const DENSITY_KG_M3: Allowed = Allowed::Within(1e-2, 1e5);
-pub(super) const FRICTION: f64 = 0.5;
-pub(super) const RESTITUTION: f64 = 0.0;
 
 pub(super) fn check(tables: &[Placed<BodyTable>], rule: FrictionRule, faults: &mut Faults<'_>) -> Vec<Body> {
     let mut groups = Vec::new();

@@ -2,7 +2,7 @@
 
 use super::error::{SceneFaultKind, Thing};
 use super::faults::Faults;
-use super::format::{CouplingTable, JointKind, SceneFile};
+use super::format::{CouplingTable, SceneFile};
 use super::joints::{kind_name, refuse_guided, unit};
 use super::model::{Coupling, CouplingLaw, Joint, Share};
 use super::names::Names;
@@ -10,6 +10,7 @@ use super::number::{Allowed, Entry, Unit};
 use super::placed::Placed;
 use super::text;
 use crate::coupled::on_cam;
+use crate::model::JointKind;
 
 /// The most joints that lead another: a differential has two.
 const LEADING_MAX: usize = 2;

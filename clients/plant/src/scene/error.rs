@@ -390,6 +390,6 @@ pub enum SceneFaultKind {
     #[error("the plant writes signal `{0}` itself and cannot also be commanded by it")]
     OwnSignal(String),
     /// More collision groups than there are bits.
-    #[error("group `{0}` is one too many: a scene has at most {max} groups", max = super::model::GROUPS_MAX)]
+    #[error("group `{0}` is one too many: a scene has at most {max} groups", max = crate::model::GROUPS_MAX)]
     Groups(String),
 }

@@ -10,7 +10,6 @@ use onescan_base::regular::Within;
 use onescan_server::client::SourcePlace;
 
 use super::error::{Inside, SceneError, SceneFault, SceneFaultKind, Thing};
-use super::overrides::index_of;
 use crate::file_place::{Place, Source};
 
 /// The faults found so far in one file.
@@ -210,4 +209,9 @@ fn reworded(message: &str) -> (String, Option<String>) {
         (Some(near), Some((short, _))) => (short.to_owned(), Some(format!("did you mean `{near}`?"))),
         _ => (told, None),
     }
+}
+
+/// The override that stands at a place; nothing for a place in the file.
+fn index_of(place: &Range<usize>, text: &str) -> Option<usize> {
+    place.start.checked_sub(text.len() + 1)
 }

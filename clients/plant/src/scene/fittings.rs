@@ -4,7 +4,7 @@ use onescan_server::signal::SignalType;
 
 use super::error::{SceneFaultKind, Thing};
 use super::faults::Faults;
-use super::format::{FittingTable, JointKind, SceneFile};
+use super::format::{FittingTable, SceneFile};
 use super::joints::{kind_name, refuse_guided, unit};
 use super::model::{Brake, Fitting};
 use super::names::Names;
@@ -12,6 +12,7 @@ use super::number::{Allowed, Entry, Unit};
 use super::placed::Placed;
 use super::signals::Signals;
 use super::text;
+use crate::model::JointKind;
 
 /// Where no velocity is given over which the friction at rest falls, m/s or rad/s.
 const STRIBECK: f64 = 0.01;

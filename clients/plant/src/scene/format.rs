@@ -5,8 +5,9 @@
 use std::collections::BTreeMap;
 
 use super::placed::Placed;
+use crate::model::{BodyKind, FrictionRule, JointKind, NumberType};
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 
 /// Three components, of which each has its place.
 pub(super) type Triple = Placed<[f64; 3]>;
@@ -81,41 +82,6 @@ pub(super) struct SignalTable {
     pub(super) noise_sigma: Option<Placed<f64>>,
     pub(super) lost_rate: Option<Placed<f64>>,
     pub(super) flip_rate: Option<Placed<f64>>,
-}
-
-/// How a body moves.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum BodyKind {
-    /// Never moves.
-    Fixed,
-    /// Moves under forces.
-    Dynamic,
-    /// Moves with a constant velocity that no force changes.
-    Kinematic,
-}
-
-/// How the coefficients of friction of two bodies become one. Of two rules the later one here holds.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum FrictionRule {
-    /// Their arithmetic mean.
-    #[default]
-    Mean,
-    /// The least: what is slippery is slippery with everything.
-    Least,
-    /// Their product.
-    Product,
-    /// The greatest: what grips grips everything.
-    Greatest,
-}
-
-impl FrictionRule {
-    /// Whether it is the one that holds where nothing is said.
-    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
-    pub(crate) fn is_preset(&self) -> bool {
-        *self == Self::Mean
-    }
 }
 
 /// The form of a body's only shape.
@@ -209,22 +175,6 @@ pub(super) struct UrdfTable {
     pub(super) arguments: Option<BTreeMap<String, Placed<toml::Value>>>,
 }
 
-/// What a joint leaves free.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum JointKind {
-    /// Translation along `axis`.
-    Prismatic,
-    /// Rotation about `axis`.
-    Revolute,
-    /// Nothing.
-    Fixed,
-    /// A pin of the child in a slot of the parent: rotation about `axis`, translation along `slide`.
-    Slot,
-    /// All rotations.
-    Ball,
-}
-
 /// `[[joint]]`
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -307,18 +257,6 @@ pub(super) enum DriveKind {
     Velocity,
     /// A number signal that commands the position.
     Position,
-}
-
-/// The IEC type of an axis's number signals.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-pub enum NumberType {
-    /// IEC 60559 binary32.
-    #[serde(rename = "REAL")]
-    Real,
-    /// IEC 60559 binary64.
-    #[default]
-    #[serde(rename = "LREAL")]
-    Lreal,
 }
 
 /// `[[axis]]`

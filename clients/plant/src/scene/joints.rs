@@ -7,11 +7,12 @@ use super::placed::Placed;
 use super::bodies::GROUND;
 use super::error::SceneFaultKind;
 use super::faults::Faults;
-use super::format::{BodyKind, BodyTable, JointKind, JointTable, Triple};
+use super::format::{BodyTable, JointTable, Triple};
 use super::model::{Follows, Joint};
 use super::names::Names;
 use super::number::{Allowed, Entry, Unit};
 use super::text;
+use crate::model::{BodyKind, JointKind};
 
 /// How far from a right angle `slide` may be, as a cosine.
 const OBLIQUE_MAX: f64 = 1e-6;

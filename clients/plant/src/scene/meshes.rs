@@ -10,7 +10,7 @@ use super::error::SceneFaultKind;
 use super::faults::Faults;
 use super::model::Shape;
 use super::number::{Allowed, Entry};
-use super::shapes::Measures;
+use super::shapes::{Measures, MeshKeys};
 use crate::mesh::Mesh;
 
 /// What a file's unit may be: from micrometres to kilometres.
@@ -20,16 +20,6 @@ const CORNER_M: f64 = 1e4;
 
 /// Part of the volume around it below which a hull is flat.
 const FLAT: f64 = 1e-9;
-
-/// The keys of a shape that is a mesh.
-#[derive(Clone, Copy)]
-pub(super) struct MeshKeys<'f> {
-    pub(super) mesh: Option<&'f Placed<String>>,
-    pub(super) unit_m: Option<&'f Placed<f64>>,
-    pub(super) hull: Option<&'f Placed<bool>>,
-    /// What 1 means along each axis, of a robot's mesh.
-    pub(super) stretch: Option<[f64; 3]>,
-}
 
 impl MeshKeys<'_> {
     /// The places of these keys, where they are written.

@@ -151,7 +151,7 @@ mod arrays;
 mod axes;
 mod bindings;
 mod bodies;
-mod component_model;
+mod component_keys;
 mod components;
 mod conditions;
 mod couplings;
@@ -187,6 +187,7 @@ pub use model::Scene;
 pub use overrides::Override;
 pub use parameters::ParameterRefused;
 
+use crate::model::Mechanics;
 use bindings::Lookup;
 use faults::Faults;
 use format::SceneFile;
@@ -270,19 +271,21 @@ fn check(written: &SceneFile, kinds: &Kinds, aliases: Aliases, faults: &mut Faul
     let conditions = conditions::check(&written.signal, &mut signals, faults);
     let (reads, writes) = signals.into_ports(faults);
     Scene {
-        gravity_m_s2: faults.triple("gravity_m_s2", written.gravity_m_s2.as_ref()).unwrap_or(GRAVITY_M_S2),
-        extent_m: faults.number(extent, Allowed::Positive).unwrap_or(EXTENT_M),
-        substeps: faults.count("substeps", written.substeps.as_ref(), SUBSTEPS_MAX).unwrap_or(1),
-        solver_iterations: faults
-            .count("solver_iterations", written.solver_iterations.as_ref(), SOLVER_ITERATIONS_MAX)
-            .unwrap_or(SOLVER_ITERATIONS),
-        bodies: scene_bodies,
-        shapes: scene_shapes,
-        joints: scene_joints,
-        fittings,
-        couplings,
-        axes,
-        sensors,
+        mechanics: Mechanics {
+            gravity_m_s2: faults.triple("gravity_m_s2", written.gravity_m_s2.as_ref()).unwrap_or(GRAVITY_M_S2),
+            extent_m: faults.number(extent, Allowed::Positive).unwrap_or(EXTENT_M),
+            substeps: faults.count("substeps", written.substeps.as_ref(), SUBSTEPS_MAX).unwrap_or(1),
+            solver_iterations: faults
+                .count("solver_iterations", written.solver_iterations.as_ref(), SOLVER_ITERATIONS_MAX)
+                .unwrap_or(SOLVER_ITERATIONS),
+            bodies: scene_bodies,
+            shapes: scene_shapes,
+            joints: scene_joints,
+            fittings,
+            couplings,
+            axes,
+            sensors,
+        },
         components,
         aliases,
         conditions,

@@ -39,11 +39,6 @@ fn span_of(index: usize, text: &str) -> Range<usize> {
     at..at + 1
 }
 
-/// The override that stands at a place; nothing for a place in the file.
-pub(super) fn index_of(place: &Range<usize>, text: &str) -> Option<usize> {
-    place.start.checked_sub(text.len() + 1)
-}
-
 /// Puts `overrides` into a document.
 pub(super) fn apply<'i>(root: &mut DeTable<'i>, overrides: &'i [Override], faults: &mut Faults<'_>) {
     for (index, Override { path, value }) in overrides.iter().enumerate() {

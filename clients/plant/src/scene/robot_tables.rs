@@ -5,10 +5,9 @@ use std::f64::consts::TAU;
 use rapier3d::glamx::{DQuat, DVec3};
 use rapier3d::math::Pose;
 
-use super::format::{
-    BodyKind, BodyTable, FollowTable, JointKind, JointTable, SceneFile, ShapeKind, ShapeTable, UrdfTable,
-};
+use super::format::{BodyTable, FollowTable, JointTable, SceneFile, ShapeKind, ShapeTable, UrdfTable};
 use super::placed::Placed;
+use crate::model::{BodyKind, JointKind};
 use crate::pose::{from_rpy_deg, to_rpy_deg, turned_tensor};
 use crate::robot::{Collision, Freedom, Geometry, Inertial, Joint, Origin, Robot, RobotFault, Weight};
 

@@ -2,15 +2,15 @@
 
 use super::placed::Placed;
 
-use super::bodies::{DENSITY_KG_M3, FRICTION, LENGTH_M, MASS_KG, RESTITUTION};
 use super::error::SceneFaultKind;
 use super::faults::Faults;
-use super::format::{BodyKind, BodyTable, ShapeKind, ShapeTable, Triple};
-use super::meshes::MeshKeys;
+use super::format::{BodyTable, ShapeKind, ShapeTable, Triple};
 use super::model::{Attached, FrictionRule, Shape};
 use super::names::Names;
 use super::number::{Allowed, Entry};
+use super::number::{DENSITY_KG_M3, FRICTION, LENGTH_M, MASS_KG, RESTITUTION};
 use super::text;
+use crate::model::BodyKind;
 
 pub(super) fn check(
     tables: &[Placed<ShapeTable>],
@@ -74,6 +74,16 @@ fn attached(
         body: body?,
         shape: shape?,
     })
+}
+
+/// The keys of a shape that is a mesh.
+#[derive(Clone, Copy)]
+pub(super) struct MeshKeys<'f> {
+    pub(super) mesh: Option<&'f Placed<String>>,
+    pub(super) unit_m: Option<&'f Placed<f64>>,
+    pub(super) hull: Option<&'f Placed<bool>>,
+    /// What 1 means along each axis, of a robot's mesh.
+    pub(super) stretch: Option<[f64; 3]>,
 }
 
 /// The measures of one shape, as they are written.

@@ -24,12 +24,12 @@ use super::behaviour::{self, Built, Component, Conflict, Running};
 use super::declare::{ParameterSet, SignalSet, Value};
 use super::kind::{Kind, Setting};
 use crate::coupling::Unbound;
-use crate::scene::Scene;
-use crate::scene::model::Bound;
+use crate::model::Bound;
+use crate::model::Mechanics;
 use crate::world::World;
 
 /// Makes a component of its settings, its seed and what it is bound to.
-type Starter = fn(&[Setting], u64, &Bound, &Scene, &mut World) -> Result<Box<dyn Running>, Unbound>;
+type Starter = fn(&[Setting], u64, &Bound, &Mechanics, &mut World) -> Result<Box<dyn Running>, Unbound>;
 
 /// A kind in the table.
 pub(crate) struct Entry {
@@ -68,7 +68,7 @@ fn start<C: Component>(
     settings: &[Setting],
     seed: u64,
     bound: &Bound,
-    scene: &Scene,
+    scene: &Mechanics,
     world: &mut World,
 ) -> Result<Box<dyn Running>, Unbound> {
     behaviour::run(C::new(C::Parameters::read(settings)), seed, bound, scene, world)

@@ -168,7 +168,7 @@ impl Interface {
 
     /// What values a variable takes, and its initial one.
     fn preset(&self, name: &str, plc: &SoftPlc) -> Result<(Values, Setting), ProgramError> {
-        let socket = Socket::find(plc.application(), self, name)?;
+        let socket = Socket::find(plc.application(), name, |cause, hint| self.wrong(name, cause, hint))?;
         let setting = socket.get(plc.memory()).and_then(Value::setting);
         let (values, setting) = socket.values().zip(setting).ok_or_else(|| {
             let cause = format!("`{name}` is {}, which no signal or parameter of a component is", socket.type_name());

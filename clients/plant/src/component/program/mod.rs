@@ -35,8 +35,7 @@ use super::declare::Value;
 use super::kind::{Kind, Setting};
 use crate::file_place::{Place, Source};
 use interface::Interface;
-use running::Block;
-use socket::Sockets;
+use running::{Block, Sockets};
 
 /// The program that holds the block, and what the block is called in it. A name that no user's program has by chance.
 const HOLDER: &str = "Onescan_Component";

@@ -1,15 +1,46 @@
 //! A function block at work: inputs in, one scan, outputs out.
 
 use onescan_iec::VirtualTime;
+use onescan_iec_run::Application;
 use onescan_iec_run::{FaultSite, PlcFault, SoftPlc};
 use onescan_server::client::{ClientFault, SourcePlace};
 
-use super::socket::Sockets;
+use super::ProgramError;
+use super::interface::Interface;
+use super::socket::Socket;
 use crate::component::behaviour::{Compiled, Running, StateError, Surroundings};
 use crate::component::declare::Value;
 use crate::component::kind::{Kind, Setting};
 use crate::effort::{Effort, Motion};
 use crate::world::World;
+
+/// All that is written before a block runs and read afterwards.
+pub(super) struct Sockets {
+    pub(super) inputs: Vec<Socket>,
+    pub(super) outputs: Vec<Socket>,
+    /// One for each failure mode.
+    pub(super) failures: Vec<Socket>,
+    /// The period of the plant.
+    pub(super) period: Option<Socket>,
+}
+
+impl Sockets {
+    /// Those of a block in its program.
+    ///
+    /// # Errors
+    /// None for an interface that was read out of the same file.
+    pub(super) fn find(application: &Application, interface: &Interface) -> Result<Self, ProgramError> {
+        let one = |name: &str| Socket::find(application, name, |cause, hint| interface.wrong(name, cause, hint));
+        let each = |names: Vec<&str>| names.into_iter().map(one).collect::<Result<Vec<_>, _>>();
+        let kind = &interface.kind;
+        Ok(Self {
+            inputs: each(kind.inputs.iter().map(|input| &*input.key).collect())?,
+            outputs: each(kind.outputs.iter().map(|output| &*output.key).collect())?,
+            failures: each(interface.failing.iter().map(String::as_str).collect())?,
+            period: interface.period.as_deref().map(one).transpose()?,
+        })
+    }
+}
 
 /// A block with its memory.
 pub(super) struct Block {

@@ -3,7 +3,6 @@
 use onescan_base::ElementaryType;
 use onescan_iec_run::Application;
 
-use super::interface::Interface;
 use super::{HOLDER, INSTANCE, ProgramError};
 use crate::component::declare::Value;
 use crate::component::kind::Values;
@@ -15,43 +14,19 @@ pub(super) struct Socket {
     ty: ElementaryType,
 }
 
-/// All that is written before a block runs and read afterwards.
-pub(super) struct Sockets {
-    pub(super) inputs: Vec<Socket>,
-    pub(super) outputs: Vec<Socket>,
-    /// One for each failure mode.
-    pub(super) failures: Vec<Socket>,
-    /// The period of the plant.
-    pub(super) period: Option<Socket>,
-}
-
-impl Sockets {
-    /// Those of a block in its program.
-    ///
-    /// # Errors
-    /// None for an interface that was read out of the same file.
-    pub(super) fn find(application: &Application, interface: &Interface) -> Result<Self, ProgramError> {
-        let one = |name: &str| Socket::find(application, interface, name);
-        let each = |names: Vec<&str>| names.into_iter().map(one).collect::<Result<Vec<_>, _>>();
-        let kind = &interface.kind;
-        Ok(Self {
-            inputs: each(kind.inputs.iter().map(|input| &*input.key).collect())?,
-            outputs: each(kind.outputs.iter().map(|output| &*output.key).collect())?,
-            failures: each(interface.failing.iter().map(String::as_str).collect())?,
-            period: interface.period.as_deref().map(one).transpose()?,
-        })
-    }
-}
-
 impl Socket {
-    /// The variable `name` of the block.
+    /// The variable `name` of the block; `wrong` gives a fault the place of its declaration.
     ///
     /// # Errors
     /// None for a variable that the block declares with an elementary type.
-    pub(super) fn find(application: &Application, interface: &Interface, name: &str) -> Result<Self, ProgramError> {
+    pub(super) fn find(
+        application: &Application,
+        name: &str,
+        wrong: impl Fn(String, Option<String>) -> ProgramError,
+    ) -> Result<Self, ProgramError> {
         let found = application.variable(&format!("{HOLDER}.{INSTANCE}.{name}"));
-        let found = found.map_err(|error| interface.wrong(name, error.to_string(), error.help))?;
-        let unusable = || interface.wrong(name, format!("`{name}` is {}, which no signal is", found.type_name), None);
+        let found = found.map_err(|error| wrong(error.to_string(), error.help))?;
+        let unusable = || wrong(format!("`{name}` is {}, which no signal is", found.type_name), None);
         let ty = found.ty.ok_or_else(unusable)?;
         Ok(Self { offset: found.offset as usize, ty })
     }

@@ -9,13 +9,13 @@ const MARGIN_M: f64 = 1e-3;
 
 /// The reaches of all bodies, by their place in the engine's set.
 #[derive(Debug)]
-pub(super) struct Reach {
+pub(crate) struct Reach {
     radii_m: Vec<f64>,
 }
 
 impl Reach {
     /// The reaches of the bodies of a world that has all of its shapes.
-    pub(super) fn of(physics: &PhysicsWorld) -> Self {
+    pub(crate) fn of(physics: &PhysicsWorld) -> Self {
         let mut radii_m = Vec::new();
         for (handle, body) in physics.bodies.iter() {
             let colliders = body.colliders().iter().filter_map(|collider| physics.colliders.get(*collider));
@@ -39,14 +39,14 @@ impl Reach {
 
     /// False only if a body whose origin is at a place cannot touch a ball.
     #[inline]
-    pub(super) fn meets_ball(&self, handle: RigidBodyHandle, origin: Vector, centre: Vector, radius_m: f64) -> bool {
+    pub(crate) fn meets_ball(&self, handle: RigidBodyHandle, origin: Vector, centre: Vector, radius_m: f64) -> bool {
         let reach_m = self.radius_m(handle) + radius_m;
         (origin - centre).length_squared() <= reach_m * reach_m
     }
 
     /// False only if a body whose origin is at a place cannot be met by a ray of unit length.
     #[inline]
-    pub(super) fn meets_ray(&self, handle: RigidBodyHandle, origin: Vector, ray: &Ray) -> bool {
+    pub(crate) fn meets_ray(&self, handle: RigidBodyHandle, origin: Vector, ray: &Ray) -> bool {
         let (away, reach_m) = (origin - ray.origin, self.radius_m(handle));
         let along = away.dot(ray.dir);
         along >= -reach_m && away.length_squared() - along * along <= reach_m * reach_m

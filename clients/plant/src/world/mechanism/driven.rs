@@ -10,17 +10,13 @@
 use super::dynamics::{normalise, rates};
 use super::rows::Row;
 use super::{Mechanism, Surroundings, matrix};
-use crate::actuator::{Acts, Actuator};
-use crate::component::dynamics::substeps;
 use crate::effort::Motion;
+use crate::effort::substeps;
 use crate::fitting::Fitting;
+use crate::world::actuator::{Acts, Actuator, CORRECTED_A_TURN};
 
 /// Longest part of a step with one mass matrix, s.
 const PART_S: f64 = 1e-3;
-/// Of a deviation from its path, a drive makes up this part in a turn. Below 1 the loop settles
-/// without overshoot; the smaller, the gentler after a blocked joint comes free.
-pub(crate) const CORRECTED_A_TURN: f64 = 0.25;
-
 /// Viscous friction that takes less than this part of a velocity in a sub-step is taken as a force.
 const EXPLICIT_MAX: f64 = 0.05;
 /// A stop is looked at from this near on, m or rad.

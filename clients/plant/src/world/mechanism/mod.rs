@@ -37,12 +37,11 @@ use rapier3d::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::actuator::Actuator;
-use super::coupled::Coupled;
-use super::effort::Drives;
-use super::fitting::Fitting;
-use super::scene::model::JointKind;
+use crate::coupled::Coupled;
+use crate::effort::Drives;
+use crate::fitting::Fitting;
+use crate::model::JointKind;
 use coupled::Bond;
-pub(crate) use driven::CORRECTED_A_TURN;
 use dynamics::Equations;
 pub(crate) use guided::{Guided, guided};
 use rows::Rows;

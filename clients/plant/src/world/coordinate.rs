@@ -9,14 +9,14 @@ use std::f64::consts::{PI, TAU};
 use rapier3d::math::Pose;
 use rapier3d::prelude::{RigidBodyHandle, RigidBodySet};
 
-use super::effort::Mark;
-use super::scene::model::{Joint, JointKind};
-use super::world::{World, local_frames};
+use super::{World, local_frames};
+use crate::effort::Mark;
+use crate::model::{Joint, JointKind};
 
 /// The joints as they were measured last, in the scene's order.
 #[derive(Clone, Copy)]
 pub(crate) struct Measured<'m> {
-    pub(super) motions: &'m [Mark],
+    pub(crate) motions: &'m [Mark],
 }
 
 /// How a joint is measured.
@@ -31,7 +31,7 @@ pub(crate) struct Gauge {
 
 impl Gauge {
     /// The gauge of a joint in a world that still stands in the scene's pose.
-    pub(super) fn new(world: &World, joint: &Joint) -> Self {
+    pub(crate) fn new(world: &World, joint: &Joint) -> Self {
         let (parent, child) = (world.handle(joint.parent), world.handle(Some(joint.child)));
         let [parent_frame, child_frame] = local_frames(&world.physics, joint, parent, child);
         Self { kind: joint.kind, parent, child, parent_frame, child_frame, initial: joint.initial }
@@ -39,7 +39,7 @@ impl Gauge {
 
     /// The joint's coordinate in m or rad; `last` is the one measured a period ago, which tells a
     /// turn from the next. Zero for a joint without a coordinate.
-    pub(super) fn position(&self, bodies: &RigidBodySet, last: f64) -> f64 {
+    pub(crate) fn position(&self, bodies: &RigidBodySet, last: f64) -> f64 {
         let parent = *bodies[self.parent].position() * self.parent_frame;
         let child = *bodies[self.child].position() * self.child_frame;
         let between = parent.inv_mul(&child);
@@ -55,7 +55,7 @@ impl Gauge {
     }
 
     /// The velocity of the joint's coordinate in m/s or rad/s.
-    pub(super) fn velocity(&self, bodies: &RigidBodySet) -> f64 {
+    pub(crate) fn velocity(&self, bodies: &RigidBodySet) -> f64 {
         let (parent, child) = (&bodies[self.parent], &bodies[self.child]);
         let frame = *parent.position() * self.parent_frame;
         let point = (*child.position() * self.child_frame).translation;
@@ -70,7 +70,7 @@ impl Gauge {
 }
 
 /// The angle that is `angle` but for whole turns and lies within half a turn of `last`.
-pub(super) fn nearest_turn(angle: f64, last: f64) -> f64 {
+pub(crate) fn nearest_turn(angle: f64, last: f64) -> f64 {
     let apart = angle - last;
     if apart.abs() <= PI { angle } else { angle - TAU * (apart / TAU).round() }
 }

@@ -6,10 +6,10 @@ use rapier3d::prelude::*;
 
 use super::dynamics::normalise;
 use super::{Link, Mechanism, tree};
-use crate::actuator::{Acts, Actuator};
 use crate::effort::Mark;
 use crate::fitting::Fitting;
-use crate::scene::model::Follows;
+use crate::model::Follows;
+use crate::world::actuator::{Acts, Actuator};
 
 /// A tree of bodies that is moved along the paths of its axes.
 pub(crate) struct Guided {

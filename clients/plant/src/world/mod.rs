@@ -1,23 +1,39 @@
 //! The scene as a world of rigid bodies, built in the order of the file.
+//!
+//! | module | subject |
+//! |---|---|
+//! | `solid` | the bodies of a scene and their shapes, as the engine has them |
+//! | `reach` | which bodies are too far away to be looked at |
+//! | `coordinate` | where a joint stands, measured from the poses of its bodies |
+//! | `actuator` | what drives a joint: along a path, or by a component's equations |
+//! | `mechanism` | bodies on joints, moved by the joints' coordinates |
+//! | `articulation` | mechanisms and the engine: who moves which bodies |
+
+pub(crate) mod actuator;
+pub(crate) mod articulation;
+pub(crate) mod coordinate;
+mod mechanism;
+mod reach;
+pub(crate) mod solid;
 
 use onescan_server::client::ClientFault;
 use onescan_server::time::TimeSpan;
 use rapier3d::parry::bounding_volume::{BoundingSphere, BoundingVolume};
 use rapier3d::prelude::*;
 
-use super::actuator::{Actuator, Friction, spring_beside};
-use super::articulation::Articulation;
-use super::effort::Drives;
-use super::machine::Misfit;
-use super::pose;
-use super::reach::Reach;
-use super::scene::model::{Joint, JointKind, Scene};
-use super::solid::{attach, insert_body, leave_alone};
-use super::temperature_field::TemperatureField;
+use self::actuator::{Actuator, Friction, spring_beside};
+use self::articulation::Articulation;
+use self::reach::Reach;
+use self::solid::{attach, insert_body, leave_alone};
+use crate::effort::Drives;
+use crate::layout_mismatch::LayoutMismatch;
+use crate::model::{Joint, JointKind, Mechanics};
+use crate::pose;
+use crate::temperature_field::TemperatureField;
 
 /// Sweeps over all joints and contacts in one solver iteration while the engine has joints: one between a
 /// light and a heavy body needs several to carry the load. Contacts alone need one, as the engine is made.
-pub(super) const SWEEPS_WITH_JOINTS: usize = 4;
+pub(crate) const SWEEPS_WITH_JOINTS: usize = 4;
 /// The spring by which a contact with a fixed body keeps bodies apart swings once in so many of the solver's
 /// iterations. The engine gives it a stiffness by the mass that presses, so that a light plate under a strong
 /// press would sink in; by iterations, it sinks in by a part of the way that the force would move it in one.
@@ -26,7 +42,7 @@ const FIRM_ITERATIONS: f64 = 0.6;
 /// A body, or one shape of it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Surface {
-    pub(super) body: RigidBodyHandle,
+    pub(crate) body: RigidBodyHandle,
     shape: Option<ColliderHandle>,
     /// A ball around it, as the body sees it; none for a body without a shape.
     ball: Option<BoundingSphere>,
@@ -35,18 +51,18 @@ pub(crate) struct Surface {
 /// The rigid bodies of a plant, and where each thing of the scene is in them.
 pub(crate) struct World {
     /// All of the state that the engine keeps.
-    pub(super) physics: PhysicsWorld,
+    pub(crate) physics: PhysicsWorld,
     ground: RigidBodyHandle,
     bodies: Vec<RigidBodyHandle>,
     shapes: Vec<ColliderHandle>,
-    pub(super) joints: Vec<ImpulseJointHandle>,
+    pub(crate) joints: Vec<ImpulseJointHandle>,
     /// Joints that brake joints of the scene, by their index, as dry friction does.
-    pub(super) frictions: Vec<(usize, Friction)>,
+    pub(crate) frictions: Vec<(usize, Friction)>,
     /// Joints that stand in for springs, dampers and counterweights of joints.
-    pub(super) springs: Vec<(usize, ImpulseJointHandle)>,
+    pub(crate) springs: Vec<(usize, ImpulseJointHandle)>,
     /// What drives joints.
-    pub(super) actuators: Vec<Actuator>,
-    pub(super) articulation: Articulation,
+    pub(crate) actuators: Vec<Actuator>,
+    pub(crate) articulation: Articulation,
     /// Belts, and where they stay while their surfaces run.
     belts: Vec<(RigidBodyHandle, Pose)>,
     /// Surfaces that are heated, by the index of their body. What heats them says so in every turn, before others look,
@@ -59,7 +75,7 @@ pub(crate) struct World {
 
 impl World {
     /// Builds the world of a scene for turns of one `period`.
-    pub(super) fn build(scene: &Scene, period: TimeSpan) -> Self {
+    pub(crate) fn build(scene: &Mechanics, period: TimeSpan) -> Self {
         let mut physics = PhysicsWorld::new();
         physics.gravity = Vector::from_array(scene.gravity_m_s2);
         physics.integration_parameters = integration(scene, period);
@@ -112,7 +128,7 @@ impl World {
     ///
     /// # Errors
     /// A body whose state is no longer finite or that has left the world.
-    pub(super) fn step(&mut self, scene: &Scene, drives: &mut dyn Drives) -> Result<(), ClientFault> {
+    pub(crate) fn step(&mut self, scene: &Mechanics, drives: &mut dyn Drives) -> Result<(), ClientFault> {
         if let Some(index) = self.uncoupled(scene) {
             let name = &scene.couplings[index].name;
             return Err(ClientFault::new(format!(
@@ -141,7 +157,7 @@ impl World {
 
     /// From now on a body keeps its place, whatever its velocity: a belt, which carries what lies on
     /// it and goes nowhere itself.
-    pub(super) fn keep_in_place(&mut self, body: RigidBodyHandle) {
+    pub(crate) fn keep_in_place(&mut self, body: RigidBodyHandle) {
         self.belts.push((body, *self.body(body).position()));
     }
 
@@ -153,19 +169,19 @@ impl World {
         Ok(())
     }
 
-    fn fault(&self, scene: &Scene, handle: RigidBodyHandle, what: &str) -> ClientFault {
+    fn fault(&self, scene: &Mechanics, handle: RigidBodyHandle, what: &str) -> ClientFault {
         let index = self.bodies.iter().position(|known| *known == handle);
         let name = index.and_then(|index| scene.bodies.get(index)).map_or("ground", |body| body.name.as_str());
         ClientFault::new(format!("body `{name}`: {what}"))
     }
 
     /// The body of an index in the scene, the ground for none.
-    pub(super) fn handle(&self, index: Option<usize>) -> RigidBodyHandle {
+    pub(crate) fn handle(&self, index: Option<usize>) -> RigidBodyHandle {
         index.map_or(self.ground, |index| self.bodies[index])
     }
 
     /// The surface of a body has these temperatures from now on.
-    pub(super) fn heat(&mut self, body: usize, field: &TemperatureField) {
+    pub(crate) fn heat(&mut self, body: usize, field: &TemperatureField) {
         match self.heated.iter_mut().find(|(heated, _)| *heated == body) {
             Some((_, before)) => *before = *field,
             None => self.heated.push((body, *field)),
@@ -173,7 +189,7 @@ impl World {
     }
 
     /// The temperatures of the surface of a body; those of a room where nothing heats it.
-    pub(super) fn heat_of(&self, body: usize) -> TemperatureField {
+    pub(crate) fn heat_of(&self, body: usize) -> TemperatureField {
         self.heated
             .iter()
             .find(|(heated, _)| *heated == body)
@@ -181,12 +197,12 @@ impl World {
     }
 
     /// Surfaces that are heated, each with the index of its body.
-    pub(super) fn heated(&self) -> impl Iterator<Item = (usize, &TemperatureField)> {
+    pub(crate) fn heated(&self) -> impl Iterator<Item = (usize, &TemperatureField)> {
         self.heated.iter().map(|(body, field)| (*body, field))
     }
 
     /// The bodies of the scene, in its order.
-    pub(super) fn bodies(&self) -> impl Iterator<Item = &RigidBody> {
+    pub(crate) fn bodies(&self) -> impl Iterator<Item = &RigidBody> {
         self.bodies.iter().map(|handle| self.body(*handle))
     }
 
@@ -197,7 +213,7 @@ impl World {
     ///
     /// # Errors
     /// A state of another world.
-    pub(super) fn check(&self, physics: &PhysicsWorld) -> Result<(), Misfit> {
+    pub(crate) fn check(&self, physics: &PhysicsWorld) -> Result<(), LayoutMismatch> {
         let bodies = self.bodies.iter().chain([&self.ground]).all(|handle| physics.bodies.contains(*handle));
         let shapes = self.shapes.iter().all(|handle| physics.colliders.contains(*handle));
         let joints = self
@@ -212,21 +228,21 @@ impl World {
         if bodies && shapes && joints && joined {
             return Ok(());
         }
-        Err(Misfit("it lacks a body, a shape or a joint of this plant".to_owned()))
+        Err(LayoutMismatch("it lacks a body, a shape or a joint of this plant".to_owned()))
     }
 
     /// A body by its handle.
-    pub(super) fn body(&self, handle: RigidBodyHandle) -> &RigidBody {
+    pub(crate) fn body(&self, handle: RigidBodyHandle) -> &RigidBody {
         &self.physics.bodies[handle]
     }
 
     /// The joint of an index in the scene.
-    pub(super) fn joint(&self, index: usize) -> ImpulseJointHandle {
+    pub(crate) fn joint(&self, index: usize) -> ImpulseJointHandle {
         self.joints[index]
     }
 
     /// The shape of an index in the scene's `[[shape]]`s.
-    pub(super) fn shape(&self, index: usize) -> ColliderHandle {
+    pub(crate) fn shape(&self, index: usize) -> ColliderHandle {
         self.shapes[index]
     }
 
@@ -241,13 +257,13 @@ impl World {
     }
 
     /// True if a ray meets the shape of a body within its range.
-    pub(super) fn ray_meets(&self, ray: &Ray, range_m: f64, handle: RigidBodyHandle) -> bool {
+    pub(crate) fn ray_meets(&self, ray: &Ray, range_m: f64, handle: RigidBodyHandle) -> bool {
         self.is_near_ray(ray, handle)
             && self.shapes(handle).any(|(pose, shape)| shape.intersects_ray(&pose, ray, range_m))
     }
 
     /// How far along a ray it meets the shape of a body.
-    pub(super) fn ray_distance(&self, ray: &Ray, handle: RigidBodyHandle) -> Option<f64> {
+    pub(crate) fn ray_distance(&self, ray: &Ray, handle: RigidBodyHandle) -> Option<f64> {
         if !self.is_near_ray(ray, handle) {
             return None;
         }
@@ -260,7 +276,7 @@ impl World {
     }
 
     /// A body, or one shape of it.
-    pub(super) fn surface(&self, body: RigidBodyHandle, shape: Option<ColliderHandle>) -> Surface {
+    pub(crate) fn surface(&self, body: RigidBodyHandle, shape: Option<ColliderHandle>) -> Surface {
         let own = self.body(body).colliders().iter().filter(|own| shape.is_none_or(|shape| shape == **own));
         let balls = own.filter_map(|own| self.physics.colliders.get(*own)).map(|collider| {
             let local = collider.position_wrt_parent().copied().unwrap_or(Pose::IDENTITY);
@@ -270,18 +286,18 @@ impl World {
     }
 
     /// A ball around a surface; none for one without a shape, and for one that is out of the world.
-    pub(super) fn ball_around(&self, one: Surface) -> Option<BoundingSphere> {
+    pub(crate) fn ball_around(&self, one: Surface) -> Option<BoundingSphere> {
         let body = self.body(one.body);
         one.ball.filter(|_| body.is_enabled()).map(|ball| ball.transform_by(body.position()))
     }
 
     /// False only if a body cannot touch anything in a ball.
-    pub(super) fn is_near_ball(&self, ball: &BoundingSphere, handle: RigidBodyHandle) -> bool {
+    pub(crate) fn is_near_ball(&self, ball: &BoundingSphere, handle: RigidBodyHandle) -> bool {
         self.reach.meets_ball(handle, self.body(handle).translation(), ball.center, ball.radius)
     }
 
     /// True if a surface touches a body or is in it, whether they collide or not.
-    pub(super) fn touch(&self, one: Surface, other: RigidBodyHandle) -> bool {
+    pub(crate) fn touch(&self, one: Surface, other: RigidBodyHandle) -> bool {
         if !self.body(other).is_enabled() {
             return false;
         }
@@ -310,7 +326,7 @@ impl World {
     }
 
     /// How many pairs of these bodies, which are in rising order, are in contact.
-    pub(super) fn contacts_among(&self, bodies: &[RigidBodyHandle]) -> u32 {
+    pub(crate) fn contacts_among(&self, bodies: &[RigidBodyHandle]) -> u32 {
         let known = |collider: ColliderHandle| {
             let parent = self.physics.colliders.get(collider).and_then(Collider::parent);
             parent.is_some_and(|parent| bodies.binary_search_by_key(&parent.0, |body| body.0).is_ok())
@@ -325,14 +341,14 @@ impl World {
     ///
     /// # Errors
     /// A body that there is not, as in all that follow.
-    pub(super) fn take_out(&mut self, handle: RigidBodyHandle) -> Result<(), ClientFault> {
+    pub(crate) fn take_out(&mut self, handle: RigidBodyHandle) -> Result<(), ClientFault> {
         self.body_mut(handle)?.set_enabled(false);
         self.find_mechanisms_of(handle);
         Ok(())
     }
 
     /// Puts a body into the world, at rest where another one is.
-    pub(super) fn put_in(&mut self, handle: RigidBodyHandle, place: RigidBodyHandle) -> Result<(), ClientFault> {
+    pub(crate) fn put_in(&mut self, handle: RigidBodyHandle, place: RigidBodyHandle) -> Result<(), ClientFault> {
         let pose = *self.body(place).position();
         let body = self.body_mut(handle)?;
         body.set_enabled(true);
@@ -344,7 +360,7 @@ impl World {
     }
 
     /// Gives a belt the velocity of its surface.
-    pub(super) fn run(&mut self, belt: RigidBodyHandle, velocity: Vector) -> Result<(), ClientFault> {
+    pub(crate) fn run(&mut self, belt: RigidBodyHandle, velocity: Vector) -> Result<(), ClientFault> {
         self.body_mut(belt)?.set_linvel(velocity, true);
         Ok(())
     }
@@ -361,7 +377,7 @@ impl World {
     }
 
     /// Gives a joint of the scene dry friction in the engine too, if it has none yet.
-    pub(super) fn add_friction(&mut self, joint: usize) {
+    pub(crate) fn add_friction(&mut self, joint: usize) {
         if self.frictions.iter().all(|(known, _)| *known != joint) {
             let along = self.articulation.along(joint);
             let friction = Friction::beside(self.joints[joint], along, &mut self.physics);
@@ -370,17 +386,17 @@ impl World {
     }
 
     /// Acceleration of free fall.
-    pub(super) fn gravity(&self) -> Vector {
+    pub(crate) fn gravity(&self) -> Vector {
         self.physics.gravity
     }
 
     /// True if a body hangs on a joint.
-    pub(super) fn hangs(&self, handle: RigidBodyHandle) -> bool {
+    pub(crate) fn hangs(&self, handle: RigidBodyHandle) -> bool {
         self.physics.impulse_joints.attached_joints(handle).next().is_some()
     }
 
     /// Holds a body fast where it is in relation to another, until the joint is removed.
-    pub(super) fn hold(&mut self, holder: RigidBodyHandle, held: RigidBodyHandle) -> ImpulseJointHandle {
+    pub(crate) fn hold(&mut self, holder: RigidBodyHandle, held: RigidBodyHandle) -> ImpulseJointHandle {
         let between = self.body(holder).position().inv_mul(self.body(held).position());
         let joint = FixedJointBuilder::new().local_frame1(between).contacts_enabled(false);
         let joint = self.physics.insert_impulse_joint(holder, held, joint);
@@ -392,14 +408,14 @@ impl World {
     ///
     /// # Errors
     /// A joint that there is not.
-    pub(super) fn let_go(&mut self, joint: ImpulseJointHandle) -> Result<(), ClientFault> {
+    pub(crate) fn let_go(&mut self, joint: ImpulseJointHandle) -> Result<(), ClientFault> {
         let removed = self.physics.remove_impulse_joint(joint);
         self.find_mechanisms();
         removed.map(|_| ()).ok_or_else(|| ClientFault::new("the joint that holds a body is not in the world"))
     }
 }
 
-fn integration(scene: &Scene, period: TimeSpan) -> IntegrationParameters {
+fn integration(scene: &Mechanics, period: TimeSpan) -> IntegrationParameters {
     let dt = period.as_secs_f64() / f64::from(scene.substeps);
     let frequency_hz = f64::from(scene.solver_iterations) / (FIRM_ITERATIONS * dt);
     let usual = SpringCoefficients::<f64>::contact_static_defaults();
@@ -431,7 +447,7 @@ fn axes(kind: JointKind) -> (JointAxesMask, JointAxis) {
 }
 
 /// The axis in a joint's frame that its coordinate is measured along.
-pub(super) fn measured_axis(kind: JointKind) -> JointAxis {
+pub(crate) fn measured_axis(kind: JointKind) -> JointAxis {
     axes(kind).1
 }
 
@@ -455,7 +471,7 @@ fn insert_joint(
 }
 
 /// The joint's frame as each of its bodies sees it in the pose of the scene.
-pub(super) fn local_frames(
+pub(crate) fn local_frames(
     physics: &PhysicsWorld,
     joint: &Joint,
     parent: RigidBodyHandle,

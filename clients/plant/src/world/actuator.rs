@@ -9,11 +9,14 @@
 use onescan_server::client::ClientFault;
 use rapier3d::prelude::*;
 
-use super::effort::{Drives, Effort, Motion, Path};
-use super::fitting::Fitting;
-use super::mechanism::CORRECTED_A_TURN;
-use super::scene::Scene;
-use super::world::{World, measured_axis};
+use super::{World, measured_axis};
+use crate::effort::{Drives, Effort, Motion, Path};
+use crate::fitting::Fitting;
+use crate::model::Mechanics;
+
+/// Of a deviation from its path, a drive makes up this part in a turn. Below 1 the loop settles
+/// without overshoot; the smaller, the gentler after a blocked joint comes free.
+pub(crate) const CORRECTED_A_TURN: f64 = 0.25;
 
 /// The gain of an engine's motor, so high that only its greatest force limits it.
 const RIGID_PER_S: f64 = 1e12;
@@ -34,30 +37,30 @@ pub(crate) enum Acts {
 /// The actuator of a prismatic or revolute joint.
 pub(crate) struct Actuator {
     /// Index of the joint in the scene.
-    pub(super) joint: usize,
-    pub(super) acts: Acts,
+    pub(crate) joint: usize,
+    pub(crate) acts: Acts,
     /// The greatest force of one that follows a path, N or N·m.
-    pub(super) most: f64,
+    pub(crate) most: f64,
     /// What it has exerted in the step so far, N·s or N·m·s.
-    pub(super) impulse: f64,
+    pub(crate) impulse: f64,
     /// What it exerted in the last sub-step, N or N·m.
-    pub(super) exerted: f64,
+    pub(crate) exerted: f64,
     /// What it exerted in the last step, in the mean.
-    pub(super) effort: f64,
+    pub(crate) effort: f64,
     handle: ImpulseJointHandle,
     along: JointAxis,
 }
 
 /// A joint of the engine's that leaves all free and brakes as dry friction does.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Friction {
-    pub(super) handle: ImpulseJointHandle,
+pub(crate) struct Friction {
+    pub(crate) handle: ImpulseJointHandle,
     along: JointAxis,
 }
 
 impl Friction {
     /// Puts one beside a joint of the scene.
-    pub(super) fn beside(joint: ImpulseJointHandle, along: JointAxis, physics: &mut PhysicsWorld) -> Option<Self> {
+    pub(crate) fn beside(joint: ImpulseJointHandle, along: JointAxis, physics: &mut PhysicsWorld) -> Option<Self> {
         let (mut brake, [one, other]) = free_beside(joint, physics)?;
         brake.set_motor_model(along, MotorModel::AccelerationBased);
         brake.set_motor_velocity(along, 0.0, RIGID_PER_S);
@@ -66,7 +69,7 @@ impl Friction {
     }
 
     /// How much it brakes in the step that begins.
-    pub(super) fn brake(&self, most: f64, joints: &mut ImpulseJointSet) {
+    pub(crate) fn brake(&self, most: f64, joints: &mut ImpulseJointSet) {
         if let Some(joint) = joints.get_mut(self.handle, false) {
             joint.data.set_motor_max_force(self.along, most.min(Real::MAX));
         }
@@ -74,7 +77,7 @@ impl Friction {
 }
 
 /// Puts spring, damper and counterweight beside a joint of the scene, for the engine.
-pub(super) fn spring_beside(
+pub(crate) fn spring_beside(
     joint: ImpulseJointHandle,
     along: JointAxis,
     fitting: &Fitting,
@@ -107,7 +110,7 @@ impl Actuator {
     /// Makes it a motor of the engine for a step, whose part of the turn this is, from where the joint is.
     ///
     /// What it gives back is its dry friction.
-    pub(super) fn arm(
+    pub(crate) fn arm(
         &self,
         motion: Motion,
         [from, to]: [f64; 2],
@@ -136,7 +139,7 @@ impl Actuator {
 
     /// What the engine's motor exerted in its last iteration, of which there are so many in a step; it counts
     /// its impulse on the parent.
-    pub(super) fn read(&mut self, joints: &ImpulseJointSet, dt_s: f64, iterations: usize) {
+    pub(crate) fn read(&mut self, joints: &ImpulseJointSet, dt_s: f64, iterations: usize) {
         let motor = joints.get(self.handle).and_then(|joint| joint.data.motor(self.along).copied());
         self.exerted = motor.map_or(0.0, |motor| -motor.impulse * iterations as f64 / dt_s);
         self.effort = self.exerted;
@@ -170,7 +173,7 @@ impl Line {
 }
 
 /// A handle on the actuator of a joint, as axes and components drive it.
-pub(super) struct Motor {
+pub(crate) struct Motor {
     joint: usize,
     actuator: usize,
 }
@@ -178,7 +181,7 @@ pub(super) struct Motor {
 impl Motor {
     /// Binds the joint of an index to what follows paths, which from now on holds it where it is, with an
     /// effort up to the greatest, N or N·m, or with as much as it takes.
-    pub(super) fn bind(joint: usize, effort_max: Option<f64>, scene: &Scene, world: &mut World) -> Self {
+    pub(crate) fn bind(joint: usize, effort_max: Option<f64>, scene: &Mechanics, world: &mut World) -> Self {
         let along = measured_axis(scene.joints[joint].kind);
         let actuator = Actuator {
             joint,
@@ -200,7 +203,7 @@ impl Motor {
     }
 
     /// From now on the joint is driven by the equations of a component.
-    pub(super) fn obey(&self, world: &mut World) {
+    pub(crate) fn obey(&self, world: &mut World) {
         let Actuator { acts, joint, .. } = &mut world.actuators[self.actuator];
         *acts = Acts::Law { drive: self.actuator };
         let joint = *joint;
@@ -208,22 +211,22 @@ impl Motor {
     }
 
     /// Index of the joint in the scene.
-    pub(super) fn joint(&self) -> usize {
+    pub(crate) fn joint(&self) -> usize {
         self.joint
     }
 
     /// Its number among the actuators, by which its drive is known.
-    pub(super) fn number(&self) -> usize {
+    pub(crate) fn number(&self) -> usize {
         self.actuator
     }
 
     /// What it exerted in the last step, N or N·m.
-    pub(super) fn effort(&self, world: &World) -> f64 {
+    pub(crate) fn effort(&self, world: &World) -> f64 {
         world.actuators[self.actuator].effort
     }
 
     /// Whether it exerted all that it can in the last sub-step, to within rounding.
-    pub(super) fn is_at_its_limit(&self, world: &World) -> bool {
+    pub(crate) fn is_at_its_limit(&self, world: &World) -> bool {
         let actuator = &world.actuators[self.actuator];
         actuator.exerted.abs() >= actuator.most * (1.0 - 1e-9)
     }
@@ -232,7 +235,7 @@ impl Motor {
     ///
     /// # Errors
     /// An actuator that the world does not have, which no checked scene causes.
-    pub(super) fn follow(&self, path: Path, effort_max: Option<f64>, world: &mut World) -> Result<(), ClientFault> {
+    pub(crate) fn follow(&self, path: Path, effort_max: Option<f64>, world: &mut World) -> Result<(), ClientFault> {
         let actuator = world.actuators.get_mut(self.actuator);
         let actuator = actuator.ok_or_else(|| ClientFault::new("a driven joint is not in the world"))?;
         actuator.acts = Acts::Along(path);

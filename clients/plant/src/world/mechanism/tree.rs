@@ -4,7 +4,7 @@ use rapier3d::glamx::{DMat3, DQuat};
 use rapier3d::prelude::*;
 
 use crate::coupled::Coupled;
-use crate::scene::model::JointKind;
+use crate::model::JointKind;
 
 /// A joint between two bodies: one of the scene, or one that holds a body fast.
 #[derive(Clone, Copy, Debug)]

@@ -5,13 +5,13 @@ use std::f64::consts::FRAC_1_SQRT_2;
 use rapier3d::glamx::{DMat3, DQuat};
 use rapier3d::prelude::*;
 
-use super::pose;
-use super::scene::model::{Attached, Body, BodyKind, Collisions, FrictionRule, Mass, Scene, Shape};
+use crate::model::{Attached, Body, BodyKind, Collisions, FrictionRule, Mass, Mechanics, Shape};
+use crate::pose;
 
 /// Bodies without a group are members of this one.
 const UNGROUPED: Group = Group::GROUP_32;
 
-pub(super) fn insert_body(physics: &mut PhysicsWorld, body: &Body) -> RigidBodyHandle {
+pub(crate) fn insert_body(physics: &mut PhysicsWorld, body: &Body) -> RigidBodyHandle {
     let builder = match body.kind {
         BodyKind::Fixed => RigidBodyBuilder::fixed(),
         BodyKind::Dynamic => RigidBodyBuilder::dynamic(),
@@ -41,10 +41,10 @@ fn stated(body: &Body) -> MassProperties {
 }
 
 /// Attaches a shape to its body, which still stands in the scene's pose.
-pub(super) fn attach(
+pub(crate) fn attach(
     physics: &mut PhysicsWorld,
     shape: &Attached,
-    scene: &Scene,
+    scene: &Mechanics,
     body: RigidBodyHandle,
 ) -> ColliderHandle {
     let place = pose::from_rpy_deg(shape.position_m, shape.rpy_deg);
@@ -67,7 +67,7 @@ pub(super) fn attach(
 
 /// Takes the shapes of a body that nothing collides with from the engine's search for contacts, in which
 /// each would be moved with its body and compared with what is near, and gives their masses to the body.
-pub(super) fn leave_alone(physics: &mut PhysicsWorld, body: &Body, handle: RigidBodyHandle) {
+pub(crate) fn leave_alone(physics: &mut PhysicsWorld, body: &Body, handle: RigidBodyHandle) {
     let mut mass = stated(body);
     let shapes: Vec<_> = physics.bodies[handle].colliders().to_vec();
     let alone = |shape: &Collider| shape.collision_groups().memberships == Group::NONE;

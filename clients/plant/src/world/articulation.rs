@@ -16,21 +16,21 @@ use rapier3d::prelude::*;
 
 use super::actuator::{Acts, Actuator};
 use super::coordinate::Gauge;
-use super::coupled::Coupled;
-use super::effort::{Drives, Mark, Motion};
-use super::fitting::Fitting;
-use super::machine::Misfit;
 use super::mechanism::{Coordinates, Guided, Link, Mechanism, Surroundings, guided, mechanisms};
-use super::scene::Scene;
-use super::scene::model::JointKind;
-use super::world::{SWEEPS_WITH_JOINTS, World, local_frames, measured_axis};
+use super::{SWEEPS_WITH_JOINTS, World, local_frames, measured_axis};
+use crate::coupled::Coupled;
+use crate::effort::{Drives, Mark, Motion};
+use crate::fitting::Fitting;
+use crate::layout_mismatch::LayoutMismatch;
+use crate::model::JointKind;
+use crate::model::Mechanics;
 
 /// Mechanisms, fittings of joints, and how joints were measured last.
-pub(super) struct Articulation {
+pub(crate) struct Articulation {
     mechanisms: Vec<Member>,
     /// Joints that are in no mechanism, which the engine moves always.
     others: Vec<usize>,
-    pub(super) fittings: Vec<Fitting>,
+    pub(crate) fittings: Vec<Fitting>,
     gauges: Vec<Gauge>,
     /// All joints of the scene, with their coordinates.
     motions: Vec<Mark>,
@@ -56,7 +56,7 @@ struct Member {
 }
 
 impl Articulation {
-    pub(super) fn empty() -> Self {
+    pub(crate) fn empty() -> Self {
         Self {
             mechanisms: Vec::new(),
             others: Vec::new(),
@@ -71,7 +71,7 @@ impl Articulation {
     }
 
     /// The mechanisms of a world that still stands in the scene's pose.
-    pub(super) fn build(scene: &Scene, world: &mut World) -> Self {
+    pub(crate) fn build(scene: &Mechanics, world: &mut World) -> Self {
         let bodies: Vec<_> = world.physics.bodies.iter().map(|(handle, _)| handle).collect();
         for handle in bodies {
             // the masses of shapes, which the engine else gathers in its first step
@@ -104,7 +104,7 @@ impl Articulation {
     }
 
     /// The engine's axis of a joint's coordinate.
-    pub(super) fn along(&self, joint: usize) -> JointAxis {
+    pub(crate) fn along(&self, joint: usize) -> JointAxis {
         measured_axis(self.links[joint].kind)
     }
 
@@ -151,7 +151,7 @@ impl Member {
 
 impl World {
     /// Finds the mechanisms of the joints that there are now.
-    pub(super) fn find_mechanisms(&mut self) {
+    pub(crate) fn find_mechanisms(&mut self) {
         let Self { physics, actuators, articulation, joints, frictions, springs, .. } = self;
         let beside = |handle: ImpulseJointHandle| {
             springs.iter().any(|(_, spring)| *spring == handle)
@@ -184,23 +184,23 @@ impl World {
 
     /// The first coupling of the scene whose joints are in no mechanism, which alone keeps couplings; its
     /// index.
-    pub(super) fn uncoupled(&self, scene: &Scene) -> Option<usize> {
+    pub(crate) fn uncoupled(&self, scene: &Mechanics) -> Option<usize> {
         scene.couplings.iter().position(|coupling| !self.keeps(coupling.joint))
     }
 
     /// Whether a mechanism keeps the joint to a coupling.
-    pub(super) fn keeps(&self, joint: usize) -> bool {
+    pub(crate) fn keeps(&self, joint: usize) -> bool {
         let mut mechanisms = self.articulation.mechanisms.iter();
         mechanisms.any(|member| member.mechanism.coupled().any(|own| own == joint))
     }
 
     /// The coordinate and velocity of a joint.
-    pub(super) fn motion(&self, joint: usize) -> Mark {
+    pub(crate) fn motion(&self, joint: usize) -> Mark {
         self.articulation.motions[joint]
     }
 
     /// Gives a joint stops, beside those that it has.
-    pub(super) fn restrict(&mut self, joint: usize, [lower, upper]: [f64; 2]) {
+    pub(crate) fn restrict(&mut self, joint: usize, [lower, upper]: [f64; 2]) {
         let fitting = &mut self.articulation.fittings[joint];
         fitting.lower = fitting.lower.max(lower - fitting.initial).min(0.0);
         fitting.upper = fitting.upper.min(upper - fitting.initial).max(0.0);
@@ -213,7 +213,7 @@ impl World {
     }
 
     /// One step of the engine and of all mechanisms, which is this part of the turn.
-    pub(super) fn substep(&mut self, part: [f64; 2], drives: &mut dyn Drives) {
+    pub(crate) fn substep(&mut self, part: [f64; 2], drives: &mut dyn Drives) {
         let dt_s = self.physics.integration_parameters.dt;
         self.arm(part, dt_s, drives);
         self.guide(part[1], dt_s);
@@ -319,7 +319,7 @@ impl World {
     }
 
     /// What the mechanisms remember.
-    pub(super) fn coordinates(&self) -> ArticulationMemory {
+    pub(crate) fn coordinates(&self) -> ArticulationMemory {
         ArticulationMemory {
             motions: self.articulation.motions.clone(),
             mechanisms: self.articulation.mechanisms.iter().map(|member| member.mechanism.memory()).collect(),
@@ -331,10 +331,10 @@ impl World {
     ///
     /// # Errors
     /// A memory of other mechanisms.
-    pub(super) fn restore_coordinates(&mut self, memory: ArticulationMemory) -> Result<(), Misfit> {
+    pub(crate) fn restore_coordinates(&mut self, memory: ArticulationMemory) -> Result<(), LayoutMismatch> {
         let counts = (memory.motions.len(), memory.exerted.len());
         if counts != (self.articulation.motions.len(), self.actuators.len()) {
-            return Err(Misfit("it has other joints and drives".to_owned()));
+            return Err(LayoutMismatch("it has other joints and drives".to_owned()));
         }
         self.articulation.motions = memory.motions;
         let Articulation { guided, motions, fittings, .. } = &mut self.articulation;
@@ -346,7 +346,7 @@ impl World {
         if members.len() != memory.mechanisms.len()
             || !members.iter().zip(&memory.mechanisms).all(|(member, memory)| member.mechanism.fits(memory))
         {
-            return Err(Misfit("its mechanisms are others".to_owned()));
+            return Err(LayoutMismatch("its mechanisms are others".to_owned()));
         }
         for (member, memory) in members.iter_mut().zip(memory.mechanisms) {
             member.mechanism.restore(memory);
@@ -381,7 +381,7 @@ fn attach(joints: &mut ImpulseJointSet, bodies: &RigidBodySet, handle: ImpulseJo
 
 /// What mechanisms and actuators remember between two turns.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-pub(super) struct ArticulationMemory {
+pub(crate) struct ArticulationMemory {
     motions: Vec<Mark>,
     mechanisms: Vec<Coordinates>,
     exerted: Vec<f64>,
@@ -389,7 +389,7 @@ pub(super) struct ArticulationMemory {
 
 /// Moves a drive's state by a step of constant velocity, in sub-steps as short as it wants them.
 fn advance(drives: &mut dyn Drives, drive: usize, motion: Motion, dt_s: f64) {
-    let (count, part_s) = super::component::dynamics::substeps(dt_s, drives.longest_s(drive));
+    let (count, part_s) = crate::effort::substeps(dt_s, drives.longest_s(drive));
     for index in 0..count {
         let position = motion.position + motion.velocity * part_s * f64::from(index);
         drives.advance(drive, Motion { position, ..motion }, part_s);
