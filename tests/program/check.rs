@@ -177,7 +177,7 @@ fn more_memory_is_a_setting() {
     assert!(said.code == Some(2) && said.out.contains("L0502"), "{said:?}");
     assert_eq!(checked(folder.path(), &["big.st", "--memory-limit", "96"]).out, "1 file, no findings\n");
     assert_eq!(checked(folder.path(), &["big.st", "--memory-limit", "95"]).code, Some(2));
-    for (limit, why) in [("0", "from 1 to 2047"), ("2048", "from 1 to 2047"), ("much", "no whole number")] {
+    for (limit, why) in [("0", "from 1 to 2047"), ("2048", "from 1 to 2047"), ("much", "not a whole number")] {
         let said = checked(folder.path(), &["big.st", "--memory-limit", limit]);
         assert!(said.code == Some(2) && said.err.contains(why), "{said:?}");
     }
