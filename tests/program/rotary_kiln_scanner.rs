@@ -72,8 +72,9 @@ fn package() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../clients/python/src")
 }
 
-/// The scenario with the scanner in another process.
-fn with_peer(file: &str, link: &str) -> tempfile::TempDir {
+/// The scenarios with the scanner in another process. `serial.toml` takes it from its base, `tcp.toml`.
+fn with_peer(link: &str) -> tempfile::TempDir {
+    let file = "tcp.toml";
     let folder = copied("rotary-kiln");
     let peer = Path::new(env!("CARGO_MANIFEST_DIR")).join("peers/scanner.py");
     fs::copy(peer, folder.path().join("scanner.py")).expect("a file");
@@ -107,7 +108,7 @@ fn a_scanner_of_another_make_in_a_process_of_its_own_gives_the_same_matrix_and_t
             let report: Value = serde_json::from_slice(&output.stdout).expect("a report");
             (fs::read_to_string(maps.join("plc.csv")).expect("a map"), digests(&[report]))
         };
-        let (own, peer) = (copied("rotary-kiln"), with_peer(file, link));
+        let (own, peer) = (copied("rotary-kiln"), with_peer(link));
         let (matrix, digest) = run(own.path());
         let (other_matrix, other_digest) = run(peer.path());
         assert!(matrix.lines().count() > 20, "{matrix}");
