@@ -227,6 +227,37 @@ impl ElementaryType {
             _ => low,
         }
     }
+
+    /// The elements of an array of this type as numbers; `bytes` holds them one behind the other, and a rest that is no
+    /// whole element is left out. Times and dates are nanoseconds.
+    ///
+    /// The type is looked at once and not for each element: pages show arrays of ten thousands of elements.
+    ///
+    /// ```
+    /// use onescan_base::ElementaryType;
+    ///
+    /// assert_eq!(ElementaryType::Int.numbers(&[0xfe, 0xff, 7, 0]), [-2.0, 7.0]);
+    /// ```
+    #[must_use]
+    pub fn numbers(self, bytes: &[u8]) -> Vec<f64> {
+        match (self.kind(), self.is_signed(), self.size()) {
+            (Kind::Bool, ..) => each(bytes, |[byte]| f64::from(u8::from(byte != 0))),
+            (Kind::Real, _, 4) => each(bytes, |real| f64::from(f32::from_le_bytes(real))),
+            (Kind::Real, ..) => each(bytes, f64::from_le_bytes),
+            (_, true, 1) => each(bytes, |whole| f64::from(i8::from_le_bytes(whole))),
+            (_, true, 2) => each(bytes, |whole| f64::from(i16::from_le_bytes(whole))),
+            (_, true, 4) => each(bytes, |whole| f64::from(i32::from_le_bytes(whole))),
+            (_, true, _) => each(bytes, |whole| i64::from_le_bytes(whole) as f64),
+            (_, false, 1) => each(bytes, |whole| f64::from(u8::from_le_bytes(whole))),
+            (_, false, 2) => each(bytes, |whole| f64::from(u16::from_le_bytes(whole))),
+            (_, false, 4) => each(bytes, |whole| f64::from(u32::from_le_bytes(whole))),
+            (_, false, _) => each(bytes, |whole| u64::from_le_bytes(whole) as f64),
+        }
+    }
+}
+
+fn each<const N: usize>(bytes: &[u8], number: impl Fn([u8; N]) -> f64) -> Vec<f64> {
+    bytes.as_chunks().0.iter().map(|element| number(*element)).collect()
 }
 
 impl fmt::Display for ElementaryType {
@@ -288,5 +319,25 @@ mod tests {
         assert_eq!(E::Usint.wrap(-1), 255);
         assert_eq!(E::Lint.wrap(1 << 63), -(1 << 63));
         assert_eq!(E::Ulint.wrap(-1), (1 << 64) - 1);
+    }
+
+    #[test]
+    fn numbers_of_an_array_are_those_of_its_elements() {
+        let bytes: Vec<u8> = (0..64_u8).map(|byte| byte.wrapping_mul(41) ^ 0x80).collect();
+        for &ty in E::ALL {
+            let one_by_one = bytes.chunks_exact(ty.size() as usize).map(|element| -> f64 {
+                let signal = crate::SignalType::Elementary(ty);
+                match (signal.integer(element), element) {
+                    (Some(whole), _) => whole as f64,
+                    (None, [a, b, c, d]) => f64::from(f32::from_le_bytes([*a, *b, *c, *d])),
+                    (None, element) => f64::from_le_bytes(element.try_into().expect("eight bytes")),
+                }
+            });
+            let (whole, single): (Vec<u64>, Vec<u64>) = (
+                ty.numbers(&bytes).into_iter().map(f64::to_bits).collect(),
+                one_by_one.map(f64::to_bits).collect(),
+            );
+            assert_eq!(whole, single, "{ty}");
+        }
     }
 }

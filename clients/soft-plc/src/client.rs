@@ -333,12 +333,7 @@ impl Table {
     fn of(&self, client: &ClientName, memory: &[u8]) -> ValueTable {
         let size = self.ty.size() as usize;
         let of_array = memory.get(self.offset..self.offset + size * self.elements).unwrap_or_default();
-        let number = |bytes: &[u8]| match (self.ty.is_real(), bytes) {
-            (true, [a, b, c, d]) => f64::from(f32::from_le_bytes([*a, *b, *c, *d])),
-            (true, bytes) => bytes.first_chunk().map_or(f64::NAN, |bytes| f64::from_le_bytes(*bytes)),
-            (false, bytes) => SignalType::Elementary(self.ty).integer(bytes).map_or(f64::NAN, |whole| whole as f64),
-        };
-        let values: Vec<f64> = of_array.chunks_exact(size).map(number).collect();
+        let values = self.ty.numbers(of_array);
         let rows = self.elements / self.columns;
         ValueTable {
             client: client.clone(),

@@ -3,7 +3,7 @@
 //! A session has a core of its own at best. Viewers that look when each of them likes wake this thread and ask the session
 //! as often as there are viewers; together they do so once.
 
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 use tokio::time::{Instant, Interval, MissedTickBehavior, interval_at};
@@ -11,17 +11,30 @@ use tokio::time::{Instant, Interval, MissedTickBehavior, interval_at};
 /// From one frame to the next.
 const FRAME: Duration = Duration::from_millis(16);
 
+/// How many frames the session is spared at most after a view. Whether it made the view all that time or waited for its
+/// pace cannot be seen from here.
+const SPARED_MAX: u64 = 30;
+
 /// The frames, counted from where the page begins.
 #[derive(Debug)]
 pub(super) struct Frames {
     began: Instant,
-    /// The last frame in which the session was asked for a view.
-    asked: AtomicU64,
+    request: Mutex<Request>,
+}
+
+/// The last request for a view.
+#[derive(Debug, Default)]
+struct Request {
+    /// The frame in which it was made, and the revision of the view that was there then.
+    made: u64,
+    revision: u64,
+    /// The first frame in which the next one may be made, once the view has come.
+    next: Option<u64>,
 }
 
 impl Frames {
     pub(super) fn begin() -> Self {
-        Self { began: Instant::now(), asked: AtomicU64::new(0) }
+        Self { began: Instant::now(), request: Mutex::default() }
     }
 
     /// One tick now, and then one per frame. A tick that is missed is left out, as all before now are.
@@ -31,22 +44,32 @@ impl Frames {
         ticks
     }
 
-    /// True for the first who asks in a frame.
-    pub(super) fn is_first(&self) -> bool {
-        self.is_first_in(self.number())
-    }
-
-    fn is_first_in(&self, number: u64) -> bool {
-        self.asked.swap(number, Ordering::Relaxed) != number
-    }
-
-    /// The number of the next frame, from 1.
-    fn number(&self) -> u64 {
-        next(self.began.elapsed())
+    /// True for the first who looks in a frame in which the session is to be asked for a view; the last one has
+    /// `revision`.
+    pub(super) fn is_due(&self, revision: u64) -> bool {
+        // A thread that panicked under the lock has left whole numbers.
+        self.request.lock().unwrap_or_else(PoisonError::into_inner).is_due(next(self.began.elapsed()), revision)
     }
 }
 
-/// The number of the next frame, so long after the page has begun.
+impl Request {
+    /// A view that takes longer than a frame would be made at every step. So the session works for as many frames as
+    /// it has spent on the view before it is asked again: what viewers want takes half of its time at most.
+    fn is_due(&mut self, frame: u64, revision: u64) -> bool {
+        if self.made != 0 && self.revision == revision {
+            return false;
+        }
+        let spent = frame.saturating_sub(self.made + 1).min(SPARED_MAX);
+        let due = *self.next.get_or_insert(if self.made == 0 { frame } else { frame + spent });
+        if frame < due || frame == self.made {
+            return false;
+        }
+        *self = Self { made: frame, revision, next: None };
+        true
+    }
+}
+
+/// The number of the next frame, so long after the page has begun, from 1.
 fn next(passed: Duration) -> u64 {
     u64::try_from(passed.as_nanos() / FRAME.as_nanos()).unwrap_or(u64::MAX).saturating_add(1)
 }
@@ -61,12 +84,26 @@ mod tests {
         assert_eq!(all, [1, 1, 1, 2, 2, 2, 3]);
     }
 
+    /// Which of the frames are due, for looks at (frame, revision of the last view).
+    fn due(looks: &[(u64, u64)]) -> Vec<u64> {
+        let mut request = Request::default();
+        looks.iter().filter(|(frame, revision)| request.is_due(*frame, *revision)).map(|(frame, _)| *frame).collect()
+    }
+
     #[test]
     fn one_asks_for_all() {
-        let frames = Frames { began: Instant::now(), asked: AtomicU64::new(0) };
-        assert_eq!(
-            [1, 1, 1, 2, 2, 5].map(|number| frames.is_first_in(number)),
-            [true, false, false, true, false, true]
-        );
+        assert_eq!(due(&[(1, 7), (1, 7), (1, 8), (2, 8), (2, 8), (3, 9), (5, 10)]), [1, 2, 3, 5]);
+    }
+
+    #[test]
+    fn a_view_that_takes_frames_leaves_the_session_as_many() {
+        let looks: Vec<(u64, u64)> = (1..=20).map(|frame| (frame, frame / 4)).collect();
+        // Asked in 1, there in 4 after two frames more than one: asked again in 6, and so on.
+        assert_eq!(due(&looks), [1, 6, 10, 14, 18]);
+    }
+
+    #[test]
+    fn a_session_that_is_held_is_asked_once() {
+        assert_eq!(due(&[(1, 3), (2, 3), (90, 3), (91, 4), (120, 4), (121, 4)]), [1, 121]);
     }
 }

@@ -144,7 +144,7 @@ async fn converse(socket: &mut WebSocket, session: &Session, who: (Viewer, Rank)
             moment = subscription.playhead.next() => turn(moment, socket, session, &mut subscription).await?,
             _ = frame.tick() => {
                 let view = session.published.latest();
-                if session.frames.is_first() {
+                if session.frames.is_due(view.revision) {
                     session.published.ask();
                 }
                 let is_time = subscription.turns.is_multiple_of(STATUS_EACH) || view.is_held || view.end.is_some();
