@@ -40,7 +40,7 @@ pub enum Sent {
 }
 
 impl<'v> ByteLine<'v> {
-    /// The value of a signal of type `ty`; nothing if that is no line, or the bytes are not as many as it has.
+    /// The value of a signal of type `ty`; nothing if that is not a line, or the bytes are not as many as it has.
     ///
     /// ```
     /// use onescan_base::SignalType;
@@ -112,7 +112,7 @@ impl<'v> ByteLine<'v> {
 }
 
 impl<'v> ByteLineMut<'v> {
-    /// The value of a signal of type `ty`; nothing if that is no line, or the bytes are not as many as it has.
+    /// The value of a signal of type `ty`; nothing if that is not a line, or the bytes are not as many as it has.
     #[must_use]
     pub fn of(ty: SignalType, value: &'v mut [u8]) -> Option<Self> {
         let SignalType::Bytes(window) = ty else { return None };

@@ -228,7 +228,7 @@ impl ElementaryType {
         }
     }
 
-    /// The elements of an array of this type as numbers; `bytes` holds them one behind the other, and a rest that is no
+    /// The elements of an array of this type as numbers; `bytes` holds them one behind the other, and a rest that is not a
     /// whole element is left out. Times and dates are nanoseconds.
     ///
     /// The type is looked at once and not for each element: pages show arrays of ten thousands of elements.
@@ -266,7 +266,7 @@ impl fmt::Display for ElementaryType {
     }
 }
 
-/// A text that is no keyword of an elementary type.
+/// A text that is not a keyword of an elementary type.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("`{0}` is not an elementary type of IEC 61131-3 (BOOL, INT, REAL, TIME, …)")]
 pub struct NoElementaryType(pub String);
@@ -333,10 +333,8 @@ mod tests {
                     (None, element) => f64::from_le_bytes(element.try_into().expect("eight bytes")),
                 }
             });
-            let (whole, single): (Vec<u64>, Vec<u64>) = (
-                ty.numbers(&bytes).into_iter().map(f64::to_bits).collect(),
-                one_by_one.map(f64::to_bits).collect(),
-            );
+            let (whole, single): (Vec<u64>, Vec<u64>) =
+                (ty.numbers(&bytes).into_iter().map(f64::to_bits).collect(), one_by_one.map(f64::to_bits).collect());
             assert_eq!(whole, single, "{ty}");
         }
     }

@@ -16,9 +16,7 @@ pub const DEPTH_MAX: u32 = 8;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Field<'t> {
-    /// Its name.
     pub name: &'t str,
-    /// Its type.
     pub ty: &'t str,
 }
 

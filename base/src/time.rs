@@ -25,7 +25,6 @@ use crate::duration::{DurationError, plain};
 pub struct VirtualTime(u64);
 
 impl VirtualTime {
-    /// The session's start.
     pub const ZERO: Self = Self(0);
     /// The last representable instant, some 584 years after the start.
     pub const MAX: Self = Self(u64::MAX);

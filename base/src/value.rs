@@ -15,7 +15,7 @@ pub const CANONICAL_NAN_F32: f32 = f32::from_bits(0x7fc0_0000);
 /// The one NaN that an image may hold as LREAL.
 pub const CANONICAL_NAN_F64: f64 = f64::from_bits(0x7ff8_0000_0000_0000);
 
-/// Bytes that are no value of their type.
+/// Bytes that are not value of their type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Error)]
 pub enum BadValue {
     /// A BOOL byte other than 0 and 1.
@@ -31,9 +31,9 @@ pub enum BadValue {
     },
 }
 
-/// A text that is no value of a type.
+/// A text that is not a value of a type.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("`{text}` is no {ty}: {wanted}")]
+#[error("`{text}` is not of type {ty}: {wanted}")]
 pub struct BadText {
     /// The text.
     pub text: String,
@@ -52,8 +52,8 @@ pub enum TextFault {
     /// More characters than the type has room for.
     #[error("it is too long")]
     Long,
-    /// The type is no string.
-    #[error("the type is no string")]
+    /// The type is not a string.
+    #[error("the type is not a string")]
     NoString,
 }
 
@@ -193,14 +193,14 @@ impl SignalType {
     /// dates as nanoseconds.
     ///
     /// # Errors
-    /// A text that is no value of the type, or out of its range.
+    /// A text that is not a value of the type, or out of its range.
     ///
     /// ```
     /// use onescan_base::SignalType;
     ///
     /// assert_eq!(SignalType::BOOL.parse_text("true"), Ok(vec![1]));
     /// let error = SignalType::SINT.parse_text("128").unwrap_err();
-    /// assert_eq!(error.to_string(), "`128` is no SINT: write a whole number from -128 to 127");
+    /// assert_eq!(error.to_string(), "`128` is not of type SINT: write a whole number from -128 to 127");
     /// ```
     pub fn parse_text(self, text: &str) -> Result<Vec<u8>, BadText> {
         let bad = |wanted| BadText { text: text.to_owned(), ty: self, wanted };
@@ -295,7 +295,7 @@ impl SignalType {
     /// The bytes of a text as a value of this string type.
     ///
     /// # Errors
-    /// The type is no string, the text is too long, or a STRING would have characters beyond U+00FF.
+    /// The type is not a string, the text is too long, or a STRING would have characters beyond U+00FF.
     ///
     /// ```
     /// use onescan_base::SignalType;

@@ -9,9 +9,7 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 #[error("{}: {source}", path.display())]
 pub struct FileError {
-    /// The file.
     pub path: PathBuf,
-    /// Why.
     pub source: std::io::Error,
 }
 

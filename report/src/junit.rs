@@ -6,7 +6,6 @@
 use std::fmt::{self, Write as _};
 use std::time::Duration;
 
-/// All tests.
 #[derive(Clone, Debug)]
 pub struct Tests {
     /// In the order of the report.
@@ -24,7 +23,6 @@ pub struct Suite {
     pub cases: Vec<Case>,
 }
 
-/// One test.
 #[derive(Clone, Debug)]
 pub struct Case {
     /// What it belongs to, if not to the suite as a whole.
@@ -35,7 +33,6 @@ pub struct Case {
     pub virtual_time_ns: u64,
     /// File and line that it leads to.
     pub place: Option<(String, u32)>,
-    /// How it ended.
     pub ended: Ended,
 }
 
@@ -52,10 +49,8 @@ pub enum Ended {
     Error(Trouble),
 }
 
-/// What went wrong.
 #[derive(Clone, Debug)]
 pub struct Trouble {
-    /// In a word.
     pub word: &'static str,
     /// What there is to say of it.
     pub lines: Vec<String>,

@@ -12,7 +12,6 @@ const SCHEMA: &str = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os
 /// Something that may be found.
 #[derive(Clone, Copy, Debug)]
 pub struct Rule<'a> {
-    /// Its stable name.
     pub id: &'a str,
     /// What it is about, in a sentence.
     pub about: &'a str,
@@ -34,7 +33,6 @@ pub struct Found<'a> {
     pub rule: usize,
     /// How grave it is.
     pub level: Severity,
-    /// What is wrong.
     pub text: String,
     /// The file, as it is found from where the program was started.
     pub file: &'a str,

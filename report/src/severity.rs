@@ -8,6 +8,5 @@ use serde::Serialize;
 pub enum Severity {
     /// Legal, and seldom meant.
     Warning,
-    /// Wrong.
     Error,
 }

@@ -17,7 +17,6 @@ pub type Paths = BTreeMap<SignalName, Vec<String>>;
 /// A soft PLC's sources, compiled, and what its `bind` says.
 #[derive(Debug)]
 pub struct Compiled {
-    /// The program.
     pub application: Application,
     /// What `bind` says, patterns written out.
     pub paths: Paths,

@@ -47,7 +47,6 @@ pub enum Member {
 
 /// The sources of a soft PLC, and how they are compiled.
 pub struct PlcSources<'a> {
-    /// The client.
     pub name: &'a ClientName,
     /// Files, relative to the scenario's folder.
     pub sources: &'a [String],
@@ -104,7 +103,7 @@ impl Scenario {
         let Some(ClientFile::SoftPlc { sources, dialect, tasks, bind, ports, .. }) =
             self.file().clients.get(name).map(toml::Spanned::get_ref)
         else {
-            return Err(self.wrong_client(name, format!("client `{name}` is no soft PLC"), None));
+            return Err(self.wrong_client(name, format!("client `{name}` is not a soft PLC"), None));
         };
         self.check_lines(name, ports)?;
         let compiled = self.compiled_once(name, || self.compiled(name, sources, *dialect, bind))?;
@@ -177,7 +176,7 @@ impl Scenario {
     /// The scene of plant `name` as the scenario wants it, and the case if there is one.
     ///
     /// # Errors
-    /// A file that cannot be read or is no scene; a value that the scene cannot have.
+    /// A file that cannot be read or is not a scene; a value that the scene cannot have.
     pub fn scene_of(&self, name: &ClientName, file: &str) -> Result<Scene, ScenarioError> {
         let path = self.folder().join(file);
         permission::granted().check(self.folder(), &path)?;
@@ -377,7 +376,7 @@ impl Scenario {
             return Ok(());
         };
         let message =
-            format!("task `{task}` has an interval of {span}, which is no multiple of the session's step {step}");
+            format!("task `{task}` has an interval of {span}, which is not a multiple of the session's step {step}");
         Err(self.wrong_client(name, message, Some("change the interval, or make the step a divisor of it".to_owned())))
     }
 }

@@ -17,11 +17,8 @@ pub enum ScenarioError {
     #[error("cannot read {}: {source}", path.display())]
     #[diagnostic(code(scenario::unreadable))]
     Unreadable {
-        /// The file.
         path: PathBuf,
-        /// Why.
         source: std::io::Error,
-        /// What to do.
         #[help]
         help: Option<String>,
     },
@@ -36,22 +33,17 @@ pub enum ScenarioError {
     Outside {
         /// The file, as it is named.
         path: PathBuf,
-        /// Where it is.
         real: PathBuf,
     },
     /// A place in `scenario.toml` that is wrong.
     #[error("{message}")]
     #[diagnostic(code(scenario::wrong))]
     Wrong {
-        /// What is wrong.
         message: String,
-        /// The file.
         #[source_code]
         file: NamedSource<String>,
-        /// The place.
         #[label("here")]
         place: Option<SourceSpan>,
-        /// What to do.
         #[help]
         help: Option<String>,
     },
@@ -59,11 +51,9 @@ pub enum ScenarioError {
     #[error("scenario `{scenario}` has no case `{case}`")]
     #[diagnostic(code(scenario::unknown_case))]
     UnknownCase {
-        /// The scenario.
         scenario: String,
         /// The case as it was asked for.
         case: String,
-        /// What to do.
         #[help]
         help: String,
     },
@@ -81,7 +71,6 @@ pub enum ScenarioError {
     Link {
         /// The client that speaks for it.
         client: ClientName,
-        /// Why.
         fault: LinkFault,
     },
 }
@@ -118,9 +107,7 @@ pub(crate) struct Wrong {
 #[derive(Debug, Error)]
 #[error("the sources of client `{client}` do not compile")]
 pub struct PlcReport {
-    /// The PLC.
     pub client: ClientName,
-    /// Errors and warnings.
     pub findings: Diagnostics,
 }
 
@@ -137,16 +124,12 @@ impl Diagnostic for PlcReport {
 pub struct SceneReport {
     /// The first fault, in words.
     pub message: String,
-    /// The scene file.
     #[source_code]
     pub file: NamedSource<Arc<str>>,
-    /// Its place.
     #[label("here")]
     pub place: Option<SourceSpan>,
-    /// What to do.
     #[help]
     pub help: Option<String>,
-    /// The other faults.
     #[related]
     pub others: Vec<SceneReport>,
 }

@@ -25,7 +25,6 @@ pub struct Varied {
 /// An input that is varied over time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VariedInput {
-    /// The signal.
     pub signal: SignalName,
     /// Its type: a BOOL, an integer, REAL or LREAL.
     pub ty: SignalType,
@@ -50,7 +49,6 @@ pub struct VariedParameter {
     pub path: String,
     /// Least and greatest value.
     pub range: [f64; 2],
-    /// Whole numbers only.
     pub is_whole: bool,
     /// Where it stands in `scenario.toml`.
     pub place: Range<usize>,

@@ -12,15 +12,12 @@ use crate::panel::check_colour;
 /// A body for the eye only.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
-    /// Its name.
     pub name: String,
-    /// What it is.
     pub form: FigureForm,
     /// Where it is, in the frame of what it is on.
     pub place: Frame,
     /// The figure or the body that it moves with.
     pub on: Option<String>,
-    /// Its colour.
     pub colour: Option<String>,
     /// How much one sees through it, 0 to 1.
     pub transparent: f64,
@@ -30,12 +27,19 @@ pub struct Figure {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[expect(missing_docs, reason = "as of a body")]
 pub enum FigureForm {
-    /// A box.
-    Box { size_m: [f64; 3] },
+    Box {
+        size_m: [f64; 3],
+    },
     /// A cylinder or, with another radius at its upper end, a cone; open at its ends if it is a tube.
-    Round { radius_m: f64, top_radius_m: f64, length_m: f64, is_open: bool },
-    /// A sphere.
-    Sphere { radius_m: f64 },
+    Round {
+        radius_m: f64,
+        top_radius_m: f64,
+        length_m: f64,
+        is_open: bool,
+    },
+    Sphere {
+        radius_m: f64,
+    },
 }
 
 fn at<T>(place: &Spanned<T>, message: String) -> Wrong {
@@ -130,7 +134,7 @@ fn written_out(file: &FigureFile) -> Result<Vec<Figure>, Wrong> {
 fn form(file: &FigureFile) -> Result<FigureForm, String> {
     let positive = |key: &str, length: Option<f64>| match length {
         Some(length) if length.is_finite() && length > 0.0 => Ok(length),
-        Some(length) => Err(format!("has `{key}` {length}, which is no length")),
+        Some(length) => Err(format!("has `{key}` {length}, which is not a length")),
         None => Err(format!("needs `{key}`")),
     };
     let unused = |keys: &[(&str, bool)]| match keys.iter().find(|(_, is_there)| *is_there) {
@@ -157,7 +161,7 @@ fn form(file: &FigureFile) -> Result<FigureForm, String> {
             let radius_m = positive("radius_m", file.radius_m)?;
             let top_radius_m = match file.top_radius_m {
                 Some(top) if top.is_finite() && top >= 0.0 => top,
-                Some(top) => return Err(format!("has `top_radius_m` {top}, which is no length")),
+                Some(top) => return Err(format!("has `top_radius_m` {top}, which is not a length")),
                 None => radius_m,
             };
             let (length_m, is_open) = (positive("length_m", file.length_m)?, file.shape == FigureShape::Tube);

@@ -32,7 +32,6 @@ use super::permission;
 
 /// What a real PLC of a scenario runs.
 pub struct Instrumented {
-    /// The instrumented program.
     pub application: Application,
     /// Its tasks: scheduler first, in every cycle.
     pub plan: TaskPlan,
@@ -40,7 +39,6 @@ pub struct Instrumented {
     pub bindings: Bindings,
     /// Signals and synchronisation words.
     pub exchange: Exchange,
-    /// Its link.
     pub settings: Settings,
 }
 
@@ -242,7 +240,7 @@ impl Scenario {
     ) -> Result<Agreement, ScenarioError> {
         let Some(ClientFile::SoftPlc { tasks, bind, .. }) = self.file().clients.get(name).map(toml::Spanned::get_ref)
         else {
-            return Err(self.wrong_client(name, format!("client `{name}` is no soft PLC"), None));
+            return Err(self.wrong_client(name, format!("client `{name}` is not a soft PLC"), None));
         };
         let bindings = self.bindings(name, application, &self.paths(name, bind)?)?;
         let plan = self.task_plan(name, application, tasks)?;
@@ -347,7 +345,7 @@ impl Scenario {
     /// itself.
     ///
     /// # Errors
-    /// The client is no soft PLC, or its sources or its link are wrong.
+    /// The client is not a soft PLC, or its sources or its link are wrong.
     pub fn instrumented(&self, name: &ClientName, mode: Mode) -> Result<Instrumented, ScenarioError> {
         self.instrumented_for(Target::default(), name, mode)
     }
@@ -366,7 +364,7 @@ impl Scenario {
             self.file().clients.get(name).map(toml::Spanned::get_ref)
         else {
             let help = Some("only the sources of a soft PLC can be run".to_owned());
-            return Err(self.wrong_client(name, format!("client `{name}` is no soft PLC"), help));
+            return Err(self.wrong_client(name, format!("client `{name}` is not a soft PLC"), help));
         };
         let inputs = self.inputs(name, sources, *dialect)?;
         let asked = plan_of(tasks);

@@ -248,7 +248,7 @@ scene = "plant.toml"
         assert!(look("bodies = [\"a\"]\nwhen = \"rose(Up)\"\ncolour = \"red\"").0.contains("one image"));
         assert!(look("colour = \"red\"").0.contains("of nothing"));
         assert!(look("bodies = [\"a\"]\nwhen = \"Up\"").0.contains("changes nothing"));
-        assert_eq!(look("bodies = [\"a\"]\ncolour = \"rot\""), ("`rot` is no colour".into(), "\"rot\"".into()));
+        assert_eq!(look("bodies = [\"a\"]\ncolour = \"rot\""), ("`rot` is not a colour".into(), "\"rot\"".into()));
         assert!(look("bodies = [\"a\"]\nmove_m = [0, 0, 1]").0.contains("nothing drives"));
         assert!(look("bodies = [\"a\"]\nfollows = \"Hot\"").0.contains("drives nothing"));
         assert!(look("bodies = [\"a\"]\nfollows = \"Hut\"\nmove_m = [0, 0, 1]").0.contains("not declared"));

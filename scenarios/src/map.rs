@@ -13,7 +13,8 @@ pub(crate) fn check(file: &ScenarioFile) -> Result<(), Wrong> {
         let name = map.name.get_ref();
         let is_plain = |letter: char| letter.is_ascii_alphanumeric() || matches!(letter, '-' | '_');
         if name.is_empty() || !name.chars().all(is_plain) {
-            let message = format!("`{name}` is no name of a map: letters, digits, `-` and `_`, which name its files");
+            let message =
+                format!("`{name}` is not a name of a map: letters, digits, `-` and `_`, which name its files");
             return Err(wrong(&map.name, message, None));
         }
         if file.map[..index].iter().any(|other| other.name.get_ref() == name) {

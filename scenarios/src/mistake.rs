@@ -6,7 +6,6 @@ use onescan_server::signal::ClientName;
 /// A mistake, and the source in which it is.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mistake {
-    /// The soft PLC.
     pub client: ClientName,
     /// Its source, as the scenario names it.
     pub source: String,

@@ -16,7 +16,6 @@ pub enum Mode {
 }
 
 impl Mode {
-    /// Every mode.
     const ALL: [Self; 4] = [Self::Lockstep, Self::Freewheel, Self::Halt, Self::Follow];
 
     /// The mode that is written so.

@@ -223,7 +223,7 @@ pub(crate) fn check_colour(colour: &str, place: Range<usize>) -> Result<(), Wron
         return Ok(());
     }
     let help = Some(format!("write `#rrggbb` or one of {}", COLOURS.join(", ")));
-    Err(Wrong { message: format!("`{colour}` is no colour"), place, help })
+    Err(Wrong { message: format!("`{colour}` is not a colour"), place, help })
 }
 
 #[cfg(test)]

@@ -16,9 +16,7 @@ const SIZE_MAX: u64 = 8 << 20;
 /// The picture behind a panel.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PanelPicture {
-    /// Its media type.
     pub media: &'static str,
-    /// The file.
     pub bytes: Vec<u8>,
 }
 
@@ -56,7 +54,7 @@ impl Scenario {
     /// The picture behind a panel; nothing if it has none.
     ///
     /// # Errors
-    /// A file that cannot be read, may not be read, is too large or is no picture.
+    /// A file that cannot be read, may not be read, is too large or is not a picture.
     pub fn picture_behind(&self, panel: &PanelFile) -> Result<Option<PanelPicture>, ScenarioError> {
         let Some((path, media)) = self.picture_file(panel)? else { return Ok(None) };
         let unreadable = |source| ScenarioError::Unreadable { path: path.clone(), source, help: None };
@@ -84,7 +82,7 @@ impl Scenario {
         }
         match media(&head) {
             Some(media) => Ok(Some((path, media))),
-            None => Err(wrong(format!("`{}` is no picture that a browser shows", file.get_ref()))),
+            None => Err(wrong(format!("`{}` is not a picture that a browser shows", file.get_ref()))),
         }
     }
 

@@ -177,7 +177,7 @@ fn serial_way(file: &SerialFile) -> Result<PlcWay, (String, String)> {
         None => TerminalKind::default(),
         Some(written) => TerminalKind::named(&written.to_ascii_uppercase()).ok_or_else(|| {
             let help = format!("write one of {}", TerminalKind::NAMES.join(", "));
-            (format!("`{written}` is no terminal that is known"), help)
+            (format!("`{written}` is not a terminal that is known"), help)
         })?,
     };
     Ok(PlcWay::Serial { rate, terminal, receive_buffer, input, output })
@@ -186,7 +186,7 @@ fn serial_way(file: &SerialFile) -> Result<PlcWay, (String, String)> {
 fn tcp_way(file: &TcpFile) -> Result<PlcWay, (String, String)> {
     let no_address = || {
         let help = "write host and number, as in `address = \"192.168.42.30:2727\"`".to_owned();
-        (format!("`{}` is no address", file.address), help)
+        (format!("`{}` is not an address", file.address), help)
     };
     let (host, number) = file.address.rsplit_once(':').ok_or_else(no_address)?;
     let is_host = |host: &str| {

@@ -99,7 +99,7 @@ pub struct CauseFile {
     /// A formula of the present; it is the cause while this holds.
     #[schemars(with = "String")]
     pub when: Spanned<String>,
-    /// True for what is meant to be, as a set-up or a break: it is no failure, and availability leaves it out.
+    /// True for what is meant to be, as a set-up or a break: it is not a failure, and availability leaves it out.
     #[serde(default)]
     pub planned: bool,
 }

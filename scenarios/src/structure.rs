@@ -2,7 +2,7 @@
 //! structure stands for one signal a member, as a PLC's data block has it.
 //!
 //! A member is written `Name: TYPE`, its type elementary or another structure. Members named `_` are room in a
-//! block that nobody uses: they are no signals.
+//! block that nobody uses: they are not signals.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -91,7 +91,7 @@ impl Expansion<'_> {
         }
         let Some(fields) = self.structures.get(structure) else {
             let help = did_you_mean(structure, self.structures.keys().map(String::as_str));
-            return Err(Wrong { help, ..wrong(format!("`{structure}` is no structure of `[structures]`")) });
+            return Err(Wrong { help, ..wrong(format!("`{structure}` is not a structure of `[structures]`")) });
         };
         for field in fields {
             let Some(Field { name: member, ty }) = Field::parse(field) else {
@@ -166,7 +166,7 @@ mod tests {
         .to_vec();
         insta::assert_snapshot!(wrong.join("\n"), @r#"
         signal `A` has no `type`; write `type = "BOOL"`, or a `structure` of `[structures]`
-        `Axes` is no structure of `[structures]`; did you mean `Axis`?
+        `Axes` is not a structure of `[structures]`; did you mean `Axis`?
         `Loop` lies in more than 8 structures; does it contain itself?
         member `x` of structure `Bad` is not `Name: TYPE`
         signal `A` has both `type` and `structure`

@@ -17,7 +17,6 @@ use crate::timing_file::{LateFile, TaskTimingFile};
 pub enum Leeway {
     /// What changes of these signals in a step arrives late: a signal alone, or a frame.
     Late {
-        /// The signals.
         signals: Vec<SignalName>,
         /// By so many steps at most.
         steps: u64,
@@ -25,34 +24,23 @@ pub enum Leeway {
         together: bool,
     },
     /// A change of the signal arrives a step after those of others in the same step.
-    Behind {
-        /// The signal.
-        signal: SignalName,
-        /// The others.
-        others: Vec<SignalName>,
-    },
+    Behind { signal: SignalName, others: Vec<SignalName> },
     /// One scan of a task comes late.
     Jitter {
-        /// The task.
         task: TimedTask,
         /// By so many steps at most.
         steps: u64,
     },
     /// All scans of a task come later.
     Phase {
-        /// The task.
         task: TimedTask,
         /// By so many steps at most.
         steps: u64,
     },
     /// A scan of a task takes two cycles.
-    TwoCycles {
-        /// The task.
-        task: TimedTask,
-    },
+    TwoCycles { task: TimedTask },
     /// A PLC is started late.
     Start {
-        /// The PLC.
         client: ClientName,
         /// By so many steps at most.
         steps: u64,
@@ -62,9 +50,7 @@ pub enum Leeway {
 /// A task whose times are known.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TimedTask {
-    /// The PLC.
     pub client: ClientName,
-    /// Its name.
     pub name: String,
     /// It is due each time that so much has passed.
     pub interval: TimeSpan,

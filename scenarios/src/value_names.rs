@@ -49,7 +49,7 @@ impl ValueNames {
             return Some((format!("values of {ty} have no names"), help.to_owned()));
         };
         let outside = self.0.keys().find(|value| !(least..=greatest).contains(&i128::from(**value)))?;
-        Some((format!("{outside} is no value of {ty}"), format!("{ty} goes from {least} to {greatest}")))
+        Some((format!("{outside} is not a value of {ty}"), format!("{ty} goes from {least} to {greatest}")))
     }
 }
 
@@ -78,7 +78,7 @@ mod tests {
         let wrong = names("names = { a = \"Stop\" }").expect_err("no number");
         assert!(wrong.message().contains("`a` is not a whole number"), "{wrong}");
         let read = names("names = { 300 = \"Stop\" }").expect("names");
-        assert!(read.misfit(SignalType::USINT).is_some_and(|(message, _)| message == "300 is no value of USINT"));
+        assert!(read.misfit(SignalType::USINT).is_some_and(|(message, _)| message == "300 is not a value of USINT"));
         assert!(read.misfit(SignalType::LREAL).is_some_and(|(message, _)| message == "values of LREAL have no names"));
     }
 }

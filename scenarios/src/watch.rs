@@ -22,8 +22,8 @@ pub enum WatchSyntax {
     /// There is no path in it.
     #[error("a variable's path is wanted, as `Main.axis[2].x`")]
     NoPath,
-    /// What stands behind `=` is no format.
-    #[error("`{0}` is no format: hex, dec or bin")]
+    /// What stands behind `=` is not a format.
+    #[error("`{0}` is not a format: hex, dec or bin")]
     Format(String),
 }
 

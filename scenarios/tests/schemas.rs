@@ -98,7 +98,7 @@ fn is_of(ty: &Value, value: &Value) -> bool {
         "boolean" => value.is_boolean(),
         "integer" => value.is_i64() || value.is_u64(),
         "number" => value.is_number(),
-        ty => panic!("`{ty}` is no type of TOML"),
+        ty => panic!("`{ty}` is not a type of TOML"),
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! [`Lockstep`](crate::lockstep::Lockstep) and [`Formation`](crate::formation::Formation) know clients
 //! only through these traits. A new way to reach clients, such as shared memory or TLS, is a new
-//! implementation of [`Carrier`] and [`Door`], and nothing else changes.
+//! implementation of [`Carrier`] and [`ClientListener`], and nothing else changes.
 
 use std::time::Duration;
 
@@ -18,7 +18,6 @@ pub struct Answer {
     pub sequence: StepCount,
     /// The grant's virtual time.
     pub t_v: VirtualTime,
-    /// The next turn.
     pub wake: Wake,
 }
 
@@ -88,20 +87,20 @@ pub trait Carrier: Send {
     fn end(&mut self, end: &SessionEnd);
 
     /// Lets the client go, once all have been told of the end.
-    fn farewell(&mut self);
+    fn close(&mut self);
 }
 
 /// Where clients from elsewhere come in.
-pub trait Door {
+pub trait ClientListener {
     /// The next one that wants to join, if one comes within `patience` (wall clock).
-    fn next_applicant(&self, patience: Duration) -> Option<Box<dyn Applicant>>;
+    fn next_pending(&self, patience: Duration) -> Option<Box<dyn PendingClient>>;
 
     /// Nobody is let in from here on: whoever still comes is told so and sent away.
     fn shut(&self);
 }
 
 /// A client that wants to join and waits for the answer.
-pub trait Applicant {
+pub trait PendingClient {
     /// What it wants.
     fn request(&self) -> &JoinRequest;
 
@@ -180,5 +179,5 @@ impl Carrier for InProcess {
 
     fn end(&mut self, _end: &SessionEnd) {}
 
-    fn farewell(&mut self) {}
+    fn close(&mut self) {}
 }

@@ -21,7 +21,7 @@ const CHECK_BYTES: usize = 32;
 /// What a session is made of beside its plan: said by whoever composes it, compared when a checkpoint
 /// is taken up.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Makeup {
+pub struct SessionSettings {
     /// What people call it, as the name of a case.
     pub name: String,
     /// Everything that was set otherwise than the scenario says, by path.
@@ -51,7 +51,7 @@ struct PlannedSignal {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Checkpoint {
     pub(crate) plan: PlanSummary,
-    pub(crate) makeup: Makeup,
+    pub(crate) settings: SessionSettings,
     pub(crate) session: SessionState,
     pub(crate) timeline: TimelineState,
     pub(crate) digest: TrajectoryDigest,
@@ -101,7 +101,6 @@ pub enum CheckpointError {
         theirs: String,
         /// What this session is called.
         ours: String,
-        /// What differs.
         setting: String,
         /// Its value in this session, or that it is not set.
         here: String,
@@ -118,17 +117,10 @@ pub enum CheckpointError {
         /// What happened in one of them only.
         source: TimelineError,
     },
-    /// Not now.
     #[error("a checkpoint can be taken only at a step boundary of a session that goes on")]
     NotNow,
-    /// A client cannot.
     #[error("client `{client}`: {source}")]
-    Client {
-        /// Who.
-        client: ClientName,
-        /// Why.
-        source: StateError,
-    },
+    Client { client: ClientName, source: StateError },
 }
 
 impl PlanSummary {
@@ -184,7 +176,7 @@ impl PlanSummary {
     }
 }
 
-impl Makeup {
+impl SessionSettings {
     /// The settings in which this is not `there`.
     pub fn differing<'a>(&'a self, there: &'a Self) -> impl Iterator<Item = &'a String> {
         let paths = self.settings.keys().chain(there.settings.keys());
@@ -192,7 +184,7 @@ impl Makeup {
     }
 
     /// The first setting in which this is not `there`, beside those that may differ, as the error of a session of this
-    /// makeup.
+    /// settings.
     pub(crate) fn difference(&self, there: &Self, may_differ: &BTreeSet<String>) -> Option<CheckpointError> {
         let setting = self.differing(there).filter(|path| !may_differ.contains(*path)).min()?;
         let value =
@@ -229,8 +221,8 @@ impl Checkpoint {
     }
 
     /// What the session was made of.
-    pub fn makeup(&self) -> &Makeup {
-        &self.makeup
+    pub fn settings(&self) -> &SessionSettings {
+        &self.settings
     }
 
     /// What the session will do from here on, as a hash.

@@ -128,21 +128,17 @@ pub trait Client: Send {
 pub enum ClientOperation {
     /// A component of a plant fails.
     Fail {
-        /// The component.
         component: String,
         /// How: one of the modes of failure of its kind.
         mode: String,
     },
-    /// A failure ends.
     Repair {
-        /// The component.
         component: String,
         /// The mode of failure.
         mode: String,
     },
     /// A parameter of a component of a plant takes another value.
     ChangeParameter {
-        /// The component.
         component: String,
         /// The parameter: one of those of its kind.
         parameter: String,
@@ -150,12 +146,7 @@ pub enum ClientOperation {
         value: String,
     },
     /// A parameter that was changed takes the value that the scene gives it.
-    RestoreParameter {
-        /// The component.
-        component: String,
-        /// The parameter.
-        parameter: String,
-    },
+    RestoreParameter { component: String, parameter: String },
     /// A variable of a PLC takes a value, until the program writes it.
     WriteVariable {
         /// Its path, as `Main.limit`.
@@ -165,22 +156,17 @@ pub enum ClientOperation {
     },
     /// A variable of a PLC is held at a value, whatever the program writes.
     ForceVariable {
-        /// Its path.
         variable: String,
         /// A literal of its type.
         value: String,
     },
     /// A forced variable follows the program again.
-    ReleaseVariable {
-        /// Its path.
-        variable: String,
-    },
+    ReleaseVariable { variable: String },
     /// A task of a PLC, or all of them, are due later than they would be, from the next time on.
     Postpone {
         /// Its name; all tasks if absent.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         task: Option<String>,
-        /// By how much.
         #[serde(rename = "by_ns")]
         by: TimeSpan,
     },
@@ -189,7 +175,6 @@ pub enum ClientOperation {
         /// Its name; all tasks if absent.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         task: Option<String>,
-        /// By how much.
         #[serde(rename = "by_ns")]
         by: TimeSpan,
     },
@@ -287,9 +272,7 @@ impl ClientView {
 /// A table of values, as of a surface, or an array of a program.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ValueTable {
-    /// Whose it is.
     pub client: ClientName,
-    /// What has it.
     pub name: std::sync::Arc<str>,
     /// Values of a row.
     pub columns: usize,
@@ -297,16 +280,13 @@ pub struct ValueTable {
     pub across: [f64; 2],
     /// Where the first row begins and the last one ends.
     pub down: [f64; 2],
-    /// Row after row.
     pub values: Vec<f64>,
 }
 
 /// What a PLC holds between two scans. Where its variables lie, whoever has compiled its program knows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Memory {
-    /// The PLC.
     pub client: ClientName,
-    /// Its memory.
     pub bytes: Vec<u8>,
     /// The paths of the variables that are forced.
     pub forced: Vec<String>,
@@ -317,11 +297,9 @@ pub struct Memory {
 /// Where a body is: its origin, m, and its orientation, a unit quaternion with the scalar last.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pose {
-    /// The body.
     pub body: std::sync::Arc<str>,
     /// Its origin in world coordinates, m.
     pub position_m: [f64; 3],
-    /// Its orientation.
     pub rotation_xyzw: [f64; 4],
 }
 

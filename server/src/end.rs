@@ -44,14 +44,12 @@ impl std::fmt::Display for SessionEnd {
 #[serde(deny_unknown_fields)]
 #[error("client `{client}` failed in state {state} at t_v = {t_v}: {cause}")]
 pub struct Failure {
-    /// Who.
     pub client: ClientName,
     /// In which state of its cycle.
     pub state: ClientState,
     /// At which virtual time.
     #[serde(rename = "t_v_ns")]
     pub t_v: VirtualTime,
-    /// Why.
     pub cause: FailureCause,
 }
 
@@ -119,17 +117,14 @@ pub enum Violation {
     /// Bytes of another number than its port has.
     #[error("its outputs are {got} bytes, not {expected}")]
     WrongSize {
-        /// Bytes given.
         got: usize,
         /// Bytes of its port.
         expected: usize,
     },
-    /// Bytes that are no value.
-    #[error("its output `{signal}` is no value: {reason}")]
+    /// Bytes that are not value.
+    #[error("its output `{signal}` is not a value: {reason}")]
     BadValue {
-        /// The signal.
         signal: SignalName,
-        /// What is wrong.
         #[serde(deserialize_with = "deserialize_line")]
         reason: String,
     },

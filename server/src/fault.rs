@@ -13,7 +13,6 @@ pub struct SourcePlace {
     /// The file, as the scenario names it.
     #[serde(deserialize_with = "deserialize_line")]
     pub file: String,
-    /// Line, from 1.
     pub line: u32,
     /// Column in characters, from 1.
     pub column: u32,

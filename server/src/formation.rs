@@ -4,11 +4,11 @@ use std::time::{Duration, Instant};
 
 use thiserror::Error;
 
-use crate::carrier::{Applicant, Carrier, Door, InProcess};
+use crate::carrier::{Carrier, ClientListener, InProcess, PendingClient};
 use crate::client::{Client, ClientId};
 use crate::end::{FailureCause, SessionEnd};
 use crate::join::JoinRefusal;
-use crate::lobby::{Seating, Verdict};
+use crate::lobby::{Registration, Verdict};
 use crate::lockstep::Lockstep;
 use crate::mailbox::{Mailbox, Request, Wish};
 use crate::operation::Control;
@@ -57,7 +57,7 @@ use crate::time::VirtualTime;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Formation {
-    seating: Seating,
+    registration: Registration,
     carriers: Joined,
     mailbox: Mailbox,
 }
@@ -71,7 +71,7 @@ impl Drop for Joined {
     fn drop(&mut self) {
         let end = SessionEnd::Stopped { t_v: VirtualTime::ZERO };
         self.0.iter_mut().flatten().for_each(|carrier| carrier.end(&end));
-        self.0.iter_mut().flatten().for_each(|carrier| carrier.farewell());
+        self.0.iter_mut().flatten().for_each(|carrier| carrier.close());
     }
 }
 
@@ -81,10 +81,8 @@ pub enum FormationError {
     /// A client of this process does not fit the plan.
     #[error(transparent)]
     Refused(#[from] JoinRefusal),
-    /// Nobody came.
     #[error("client {missing} did not join within {} s{}", patience.as_secs_f64(), sent_away(refused.as_ref()))]
     Missing {
-        /// The names.
         missing: String,
         /// How long the server waited.
         patience: Duration,
@@ -93,10 +91,7 @@ pub enum FormationError {
     },
     /// The wait was called off, here or by an operator.
     #[error("stopped while waiting for client {missing} to join")]
-    Interrupted {
-        /// The names.
-        missing: String,
-    },
+    Interrupted { missing: String },
     /// A signal that nobody writes.
     #[error("signal {0} has no writer: no client that joined writes it")]
     Unwritten(String),
@@ -112,9 +107,9 @@ pub type WhileWaiting<'a> = &'a mut dyn FnMut(&str) -> bool;
 impl Formation {
     /// Nobody has joined.
     pub fn new(plan: SessionPlan) -> Self {
-        let seating = Seating::new(plan);
-        let carriers = Joined(seating.session().clients().map(|_| None).collect());
-        Self { seating, carriers, mailbox: Mailbox::new() }
+        let registration = Registration::new(plan);
+        let carriers = Joined(registration.session().clients().map(|_| None).collect());
+        Self { registration, carriers, mailbox: Mailbox::new() }
     }
 
     /// Takes wishes of operators from `mailbox` while it waits: how the session is, and its end. All others wait for
@@ -128,19 +123,19 @@ impl Formation {
     /// # Errors
     /// The session's plan has no place for it.
     pub fn join(&mut self, client: Box<dyn Client>) -> Result<ClientId, JoinRefusal> {
-        let id = self.seating.apply(&client.join(), "this process")?;
+        let id = self.registration.apply(&client.join(), "this process")?;
         self.carriers.0[id.index()] = Some(Box::new(InProcess::new(client)));
         Ok(id)
     }
 
-    /// Lets clients in through `door` until nobody is missing. Applicants that do not fit are told why
+    /// Lets clients in through `client_listener` until nobody is missing. Applicants that do not fit are told why
     /// and sent away; the wait goes on.
     ///
     /// # Errors
     /// Somebody is still missing after `patience`.
     pub fn admit_from(
         &mut self,
-        door: &dyn Door,
+        client_listener: &dyn ClientListener,
         patience: Duration,
         reply_timeout: Duration,
         while_waiting: WhileWaiting<'_>,
@@ -150,28 +145,28 @@ impl Formation {
         let (begun, mut later) = (Instant::now(), Vec::new());
         loop {
             // A session does not begin with one who has gone meanwhile.
-            if self.seating.is_complete() && !self.let_go_who_left() {
+            if self.registration.is_complete() && !self.let_go_who_left() {
                 break;
             }
-            if !while_waiting(&self.seating.missing()) || self.is_called_off(&mut later) {
-                return Err(FormationError::Interrupted { missing: self.seating.missing() });
+            if !while_waiting(&self.registration.missing()) || self.is_called_off(&mut later) {
+                return Err(FormationError::Interrupted { missing: self.registration.missing() });
             }
-            match door.next_applicant(LOOK_UP) {
-                Some(applicant) => {
+            match client_listener.next_pending(LOOK_UP) {
+                Some(pending_client) => {
                     // Who comes back may be there before it is seen that it had gone.
-                    if self.seating.is_taken(applicant.request()) {
+                    if self.registration.is_taken(pending_client.request()) {
                         self.let_go_who_left();
                     }
-                    self.admit(applicant, reply_timeout);
+                    self.admit(pending_client, reply_timeout);
                 }
                 None => drop(self.let_go_who_left()),
             }
-            if let Verdict::TooLate { sent_away } = self.seating.verdict(begun.elapsed(), patience) {
-                let missing = self.seating.missing();
+            if let Verdict::TooLate { sent_away } = self.registration.verdict(begun.elapsed(), patience) {
+                let missing = self.registration.missing();
                 return Err(FormationError::Missing { missing, patience, refused: sent_away });
             }
         }
-        door.shut();
+        client_listener.shut();
         for request in later {
             self.mailbox.post(request);
         }
@@ -189,7 +184,7 @@ impl Formation {
                 }
                 Wish::Look(signals) => (false, &signals[..]),
             };
-            let status = self.seating.session().look(signals);
+            let status = self.registration.session().look(signals);
             if let Some(reply) = request.reply
                 && reply.send(status).is_err()
             {
@@ -207,7 +202,7 @@ impl Formation {
         let mut any = false;
         for (id, carrier) in (0..).map(ClientId::from_index).zip(&mut self.carriers.0) {
             let Some(cause) = carrier.as_mut().and_then(|carrier| carrier.find_lost()) else { continue };
-            if self.seating.left(id, &cause) {
+            if self.registration.left(id, &cause) {
                 tracing::warn!(client = id.index(), %cause, "has gone before the session began");
                 (any, *carrier) = (true, None);
             }
@@ -215,25 +210,25 @@ impl Formation {
         any
     }
 
-    /// Gives an applicant its seat, or sends it away.
-    fn admit(&mut self, applicant: Box<dyn Applicant>, reply_timeout: Duration) {
-        let (origin, name) = (applicant.origin(), applicant.request().name.clone());
-        match self.seating.apply(applicant.request(), &origin) {
+    /// Gives an pending_client its seat, or sends it away.
+    fn admit(&mut self, pending_client: Box<dyn PendingClient>, reply_timeout: Duration) {
+        let (origin, name) = (pending_client.origin(), pending_client.request().name.clone());
+        match self.registration.apply(pending_client.request(), &origin) {
             Ok(id) => {
                 tracing::info!(client = %name, %origin, "joined");
-                let inputs = PortLayout::new(applicant.request().reads.clone());
-                let outputs = PortLayout::new(applicant.request().writes.clone());
-                match applicant.admit(&inputs, &outputs, reply_timeout) {
+                let inputs = PortLayout::new(pending_client.request().reads.clone());
+                let outputs = PortLayout::new(pending_client.request().writes.clone());
+                match pending_client.admit(&inputs, &outputs, reply_timeout) {
                     Ok(carrier) => self.carriers.0[id.index()] = Some(carrier),
                     Err(error) => {
                         tracing::warn!(client = %name, %origin, %error, "has gone before it had its seat");
-                        self.seating.left(id, &FailureCause::Disconnected);
+                        self.registration.left(id, &FailureCause::Disconnected);
                     }
                 }
             }
             Err(refusal) => {
                 tracing::warn!(client = %name, %origin, %refusal, "refused");
-                applicant.refuse(&refusal.to_string());
+                pending_client.refuse(&refusal.to_string());
             }
         }
     }
@@ -243,11 +238,11 @@ impl Formation {
     /// # Errors
     /// Somebody is missing, or a signal has no writer.
     pub fn start(mut self) -> Result<Lockstep, FormationError> {
-        if !self.seating.is_complete() {
-            let missing = self.seating.missing();
+        if !self.registration.is_complete() {
+            let missing = self.registration.missing();
             return Err(FormationError::Missing { missing, patience: Duration::ZERO, refused: None });
         }
-        let session = self.seating.into_session();
+        let session = self.registration.into_session();
         let unwritten: Vec<String> = session.unwritten_signals().map(|name| format!("`{name}`")).collect();
         if !unwritten.is_empty() {
             return Err(FormationError::Unwritten(unwritten.join(", ")));

@@ -4,9 +4,9 @@
 
 use std::sync::Arc;
 
-use crate::interference::Interference;
 use crate::layout::ImageLayout;
 use crate::signal::{BadValue, PortLayout, SignalId, SignalType};
+use crate::signal_overlay::SignalOverlay;
 
 /// One run of bytes that is copied between a port and the image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,7 +58,7 @@ pub struct Image {
     committed: Vec<u8>,
     /// What the writers last wrote, whether or not anything lies over it.
     staged: Vec<u8>,
-    interference: Interference,
+    signal_overlay: SignalOverlay,
 }
 
 /// Which commit of its step a commit is. In sequential coupling a step has one for each client.
@@ -66,7 +66,6 @@ pub struct Image {
 pub enum Commit {
     /// Others follow in this step.
     Within,
-    /// The last one.
     EndsStep,
 }
 
@@ -74,7 +73,7 @@ impl Image {
     /// All zero.
     pub fn new(layout: Arc<ImageLayout>) -> Self {
         let size = layout.size();
-        Self { layout, committed: vec![0; size], staged: vec![0; size], interference: Interference::default() }
+        Self { layout, committed: vec![0; size], staged: vec![0; size], signal_overlay: SignalOverlay::default() }
     }
 
     /// The values that clients see.
@@ -120,34 +119,34 @@ impl Image {
     /// Makes all staged values visible at once.
     pub fn commit(&mut self, commit: Commit) {
         self.committed.copy_from_slice(&self.staged);
-        if !self.interference.is_empty() {
-            let Self { layout, committed, staged, interference } = self;
-            interference.apply(layout, staged, committed, commit == Commit::EndsStep);
+        if !self.signal_overlay.is_empty() {
+            let Self { layout, committed, staged, signal_overlay } = self;
+            signal_overlay.apply(layout, staged, committed, commit == Commit::EndsStep);
         }
     }
 
     /// What lies over the staged values from the next commit on.
-    pub(crate) fn interference(&self) -> &Interference {
-        &self.interference
+    pub(crate) fn signal_overlay(&self) -> &SignalOverlay {
+        &self.signal_overlay
     }
 
     /// The same, to be changed.
-    pub(crate) fn interference_mut(&mut self) -> &mut Interference {
-        &mut self.interference
+    pub(crate) fn signal_overlay_mut(&mut self) -> &mut SignalOverlay {
+        &mut self.signal_overlay
     }
 
     /// Back to all zero; nothing lies over it.
     pub fn clear(&mut self) {
-        self.interference = Interference::default();
+        self.signal_overlay = SignalOverlay::default();
         self.committed.fill(0);
         self.staged.fill(0);
     }
 
     /// Takes the values of a checkpoint, each of the image's size, and what lies over them.
-    pub(crate) fn load(&mut self, committed: &[u8], staged: &[u8], interference: Interference) {
+    pub(crate) fn load(&mut self, committed: &[u8], staged: &[u8], signal_overlay: SignalOverlay) {
         self.committed.copy_from_slice(committed);
         self.staged.copy_from_slice(staged);
-        self.interference = interference;
+        self.signal_overlay = signal_overlay;
     }
 }
 

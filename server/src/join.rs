@@ -31,7 +31,6 @@ pub enum JoinRefusal {
     /// The session does not wait for such a client.
     #[error("the session expects no client `{name}`{}", hint(nearest.as_deref()))]
     NotExpected {
-        /// Who wanted in.
         name: ClientName,
         /// Who may have been meant.
         nearest: Option<String>,
@@ -44,62 +43,26 @@ pub enum JoinRefusal {
     TooLate(ClientName),
     /// A turn would end between two steps.
     #[error("the period {period} of client `{client}` is not a multiple of the session's step {step}")]
-    Period {
-        /// Who wanted in.
-        client: ClientName,
-        /// Its period.
-        period: TimeSpan,
-        /// The session's step.
-        step: TimeSpan,
-    },
-    /// No such signal.
+    Period { client: ClientName, period: TimeSpan, step: TimeSpan },
     #[error("client `{client}` names a signal `{signal}` that the session has not{}", hint(nearest.as_deref()))]
     UnknownSignal {
-        /// Who wanted in.
         client: ClientName,
-        /// The name.
         signal: SignalName,
         /// What may have been meant.
         nearest: Option<String>,
     },
     /// Another type than declared.
     #[error("client `{client}` takes signal `{signal}` for {claimed}, but it is {declared}")]
-    WrongType {
-        /// Who wanted in.
-        client: ClientName,
-        /// The signal.
-        signal: SignalName,
-        /// The client's type.
-        claimed: SignalType,
-        /// The session's type.
-        declared: SignalType,
-    },
+    WrongType { client: ClientName, signal: SignalName, claimed: SignalType, declared: SignalType },
     /// A signal has exactly one writer.
     #[error("client `{client}` would be a second writer of signal `{signal}`, which `{writer}` writes")]
-    SecondWriter {
-        /// Who wanted in.
-        client: ClientName,
-        /// The signal.
-        signal: SignalName,
-        /// Who writes it.
-        writer: ClientName,
-    },
+    SecondWriter { client: ClientName, signal: SignalName, writer: ClientName },
     /// A signal that is the client's to write, and that it does not.
     #[error("client `{client}` does not write signal `{signal}`, which the session has no other writer for")]
-    Unwritten {
-        /// Who wanted in.
-        client: ClientName,
-        /// The signal.
-        signal: SignalName,
-    },
+    Unwritten { client: ClientName, signal: SignalName },
     /// The same signal twice in one port.
     #[error("client `{client}` names signal `{signal}` twice")]
-    Doubled {
-        /// Who wanted in.
-        client: ClientName,
-        /// The signal.
-        signal: SignalName,
-    },
+    Doubled { client: ClientName, signal: SignalName },
 }
 
 /// Holds `request` against the plan. `written_by` says who writes each signal by now.

@@ -13,7 +13,7 @@
 //! | [`operation`] | what is done to a session from outside, as data |
 //! | [`random`] | random numbers from seeds that operations and scenarios give |
 //! | [`layout`] | where each signal lies among all values |
-//! | `interference` | what lies over the writers' values: writes, forces, faults of signals |
+//! | `signal_overlay` | what lies over the writers' values: writes, forces, faults of signals |
 //! | [`image`] | all values; staged, then committed |
 //! | [`join`] | who may join, and why not |
 //! | [`state`] | the states of \[SDSP\], Figs. 8 and 9 |
@@ -48,7 +48,6 @@ pub mod end;
 pub mod fault;
 pub mod formation;
 pub mod image;
-mod interference;
 pub mod join;
 pub mod layout;
 pub mod lobby;
@@ -63,6 +62,7 @@ pub mod published;
 pub mod random;
 pub mod session;
 pub mod signal;
+mod signal_overlay;
 pub mod state;
 pub mod time;
 pub mod timeline;

@@ -34,7 +34,6 @@ impl From<Option<Operation>> for Wish {
 /// A wish, and who wants to hear how things are once it is taken.
 #[derive(Debug)]
 pub struct Request {
-    /// What is asked.
     pub wish: Wish,
     /// Where the status goes, or why what is asked cannot be done.
     pub reply: Option<oneshot::Sender<Result<Status, OperationError>>>,

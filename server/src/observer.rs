@@ -51,8 +51,6 @@ pub trait Observer {
 #[derive(Debug, Error)]
 #[error("cannot write {path}: {source}")]
 pub struct RecordError {
-    /// The file.
     pub path: String,
-    /// Why.
     pub source: std::io::Error,
 }

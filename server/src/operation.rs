@@ -22,7 +22,6 @@ use crate::time::{StepCount, TimeSpan, VirtualTime};
 pub enum Operation {
     /// Ends the session for all.
     Stop,
-    /// Holds virtual time.
     Pause,
     /// Lets virtual time run again.
     Resume,
@@ -32,58 +31,43 @@ pub enum Operation {
     Reset,
     /// Gives a signal a value until its writer writes it again.
     Write {
-        /// The signal.
         signal: SignalName,
-        /// Its value.
         value: String,
     },
     /// Holds a signal at a value, whatever its writer writes.
     Force {
-        /// The signal.
         signal: SignalName,
-        /// Its value.
         value: String,
     },
     /// Lets the writer of a forced signal write it again.
     Release {
-        /// The signal.
         signal: SignalName,
     },
     /// Puts a fault on the way of a signal from its writer to its readers.
     Disturb {
-        /// The signal.
         signal: SignalName,
-        /// The fault.
         fault: SignalFault,
     },
     /// Ends the fault on the way of a signal.
     Mend {
-        /// The signal.
         signal: SignalName,
     },
     /// A component of a plant fails.
     Fail {
-        /// The plant.
         client: ClientName,
-        /// The component.
         component: String,
         /// How: one of the modes of failure of its kind.
         mode: String,
     },
-    /// A failure ends.
     Repair {
-        /// The plant.
         client: ClientName,
-        /// The component.
         component: String,
         /// The mode of failure.
         mode: String,
     },
     /// A parameter of a component of a plant takes another value.
     ChangeParameter {
-        /// The plant.
         client: ClientName,
-        /// The component.
         component: String,
         /// The parameter: one of those of its kind.
         parameter: String,
@@ -92,16 +76,12 @@ pub enum Operation {
     },
     /// A parameter that was changed takes the value that the scene gives it.
     RestoreParameter {
-        /// The plant.
         client: ClientName,
-        /// The component.
         component: String,
-        /// The parameter.
         parameter: String,
     },
     /// A variable of a PLC takes a value, until the program writes it.
     WriteVariable {
-        /// The PLC.
         client: ClientName,
         /// The variable's path, as `Main.limit`.
         variable: String,
@@ -110,39 +90,31 @@ pub enum Operation {
     },
     /// A variable of a PLC is held at a value, whatever the program writes.
     ForceVariable {
-        /// The PLC.
         client: ClientName,
-        /// The variable's path.
         variable: String,
         /// A literal of its type.
         value: String,
     },
     /// A forced variable follows the program again.
     ReleaseVariable {
-        /// The PLC.
         client: ClientName,
-        /// The variable's path.
         variable: String,
     },
     /// A task of a PLC, or all of them, are due later than they would be, from the next time on.
     Postpone {
-        /// The PLC.
         client: ClientName,
         /// The task's name; all tasks if absent.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         task: Option<String>,
-        /// By how much.
         #[serde(rename = "by_ns")]
         by: TimeSpan,
     },
     /// A task that was postponed is due earlier by that again, at once if that has passed.
     CatchUp {
-        /// The PLC.
         client: ClientName,
         /// The task's name; all tasks if absent.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         task: Option<String>,
-        /// By how much.
         #[serde(rename = "by_ns")]
         by: TimeSpan,
     },
@@ -151,16 +123,13 @@ pub enum Operation {
 /// How long it is from one push of a frame to the next: normally distributed, held within bounds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct PushInterval {
-    /// Its mean.
     #[serde(rename = "mean_ns")]
     pub mean: TimeSpan,
     /// Its standard deviation; none if all intervals are equal.
     #[serde(rename = "sigma_ns")]
     pub sigma: Option<TimeSpan>,
-    /// Its least.
     #[serde(rename = "least_ns")]
     pub least: TimeSpan,
-    /// Its greatest.
     #[serde(rename = "most_ns")]
     pub most: TimeSpan,
 }
@@ -369,57 +338,32 @@ impl fmt::Display for SignalFault {
 /// Why an operation cannot be done.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum OperationError {
-    /// No such signal.
     #[error("the session has no signal `{signal}`{}", nearest.as_ref().map(|n| format!("; {n}")).unwrap_or_default())]
     Unknown {
-        /// The name.
         signal: SignalName,
         /// The one that may have been meant.
         nearest: Option<String>,
     },
-    /// No such client.
     #[error("the session has no client `{client}`{}", nearest.as_ref().map(|n| format!("; {n}")).unwrap_or_default())]
     UnknownClient {
-        /// The name.
         client: ClientName,
         /// The one that may have been meant.
         nearest: Option<String>,
     },
-    /// No such value.
     #[error("signal `{signal}`: {source}")]
-    Value {
-        /// The signal.
-        signal: SignalName,
-        /// Why.
-        source: BadText,
-    },
-    /// Nothing to release.
+    Value { signal: SignalName, source: BadText },
     #[error("signal `{0}` is not forced")]
     NotForced(SignalName),
     /// A write that a force would hide.
     #[error("signal `{0}` is forced; release it, or force it to another value")]
     Forced(SignalName),
-    /// Nothing to mend.
     #[error("signal `{0}` is not disturbed")]
     NotDisturbed(SignalName),
     /// A fault that this type of signal cannot have.
     #[error("signal `{signal}` is {ty}, which cannot be {fault}")]
-    FaultType {
-        /// The signal.
-        signal: SignalName,
-        /// Its type.
-        ty: SignalType,
-        /// The fault.
-        fault: SignalFault,
-    },
-    /// The client cannot.
+    FaultType { signal: SignalName, ty: SignalType, fault: SignalFault },
     #[error("client `{client}`: {source}")]
-    Client {
-        /// Who.
-        client: ClientName,
-        /// Why.
-        source: OperationRefused,
-    },
+    Client { client: ClientName, source: OperationRefused },
 }
 
 /// Who asked for an operation.
@@ -441,13 +385,11 @@ pub struct OperatorInput {
     pub resets: u64,
     /// The last step committed before it.
     pub step: StepCount,
-    /// Its virtual time.
     #[serde(rename = "t_v_ns")]
     pub t_v: VirtualTime,
     /// Who asked for it.
     #[serde(skip)]
     pub author: Author,
-    /// What was done.
     #[serde(flatten)]
     pub operation: Operation,
 }

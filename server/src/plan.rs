@@ -16,10 +16,7 @@ pub enum Coupling<C> {
     #[default]
     Parallel,
     /// They run in this order within a step; each sees what those before it wrote (OneScan of `[Sivtoft]`).
-    Sequential {
-        /// Every client once.
-        order: Vec<C>,
-    },
+    Sequential { order: Vec<C> },
 }
 
 /// The plan of a session, checked: names are unique and known, lists sorted by name.
@@ -47,16 +44,15 @@ pub enum PlanError {
     #[error("signals `{0}` and `{1}` differ only in case; a PLC takes them for one")]
     CaseTwins(SignalName, SignalName),
     /// A signal whose writer is not a client of the session.
-    #[error("signal `{signal}` is to be written by `{writer}`, which is no client of this session{}", hint(nearest.as_deref()))]
+    #[error("signal `{signal}` is to be written by `{writer}`, which is not a client of this session{}", hint(nearest.as_deref()))]
     UnknownWriter {
-        /// The signal.
         signal: SignalName,
         /// Its writer as declared.
         writer: ClientName,
         /// The client that may have been meant.
         nearest: Option<String>,
     },
-    /// A sequential order that is no permutation of the clients.
+    /// A sequential order that is not a permutation of the clients.
     #[error("the sequential order must list every client exactly once; `{0}` is missing, doubled or unknown")]
     Order(ClientName),
 }

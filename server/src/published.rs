@@ -21,11 +21,9 @@ use crate::time::{StepCount, VirtualTime};
 pub struct SessionView {
     /// Grows with every view of a session.
     pub revision: u64,
-    /// The server's state.
     pub state: ServerState,
     /// Virtual time of the last committed step.
     pub t_v: VirtualTime,
-    /// Steps committed.
     pub steps: StepCount,
     /// How often the session has restarted.
     pub resets: u64,

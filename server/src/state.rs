@@ -17,7 +17,6 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ServerState {
-    /// Clients join.
     Start,
     /// Clients initialise; virtual time is zero.
     InitialWrite,
@@ -25,7 +24,6 @@ pub enum ServerState {
     PreRead,
     /// Clients read; virtual time has advanced.
     Read,
-    /// Clients run.
     PreWrite,
     /// All outputs are committed.
     Write,
@@ -77,15 +75,10 @@ impl fmt::Display for ServerState {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ClientState {
-    /// Not yet started.
     Start,
-    /// Initialising.
     Setup,
-    /// About to read.
     Ready,
-    /// Reading the image.
     Read,
-    /// Running its turn.
     Run,
     /// Its outputs are in the image. A client whose delay has not run out sleeps here.
     Write,

@@ -18,7 +18,7 @@ const INTRODUCTION: &str = "\
 
 Search this page for a name to find the file that has it. You find the same tables at the head of each `lib.rs` and `mod.rs`, in
 the order in which data flows; [ARCHITECTURE.md](../ARCHITECTURE.md) describes the crates. The page is generated:
-`UPDATE_DOCS=1 cargo test --profile tests -p onescan-tests --test docs rooms` rewrites it.
+`UPDATE_DOCS=1 cargo test --profile tests --workspace --test docs rooms` rewrites it.
 ";
 
 /// All heads below `folder`. A folder's own head comes before those of the folders in it.

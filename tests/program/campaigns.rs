@@ -234,7 +234,7 @@ fn seeds_and_parameters_are_columns_each_with_a_run_without_faults() {
     assert_eq!(merged.out, text.out);
 }
 
-/// A run that comes to no end is no error of the campaign, and is tried again.
+/// A run that comes to no end is not an error of the campaign, and is tried again.
 #[test]
 fn what_takes_too_long_is_unfinished_until_it_is_done() {
     let folder = shear_with(&COLUMNS.replace("matrix = ", "# matrix = "));

@@ -72,7 +72,7 @@ fn a_task_of_the_scenario_names_instances() {
 
 #[test]
 fn an_interval_shorter_than_the_step_is_an_error() {
-    told(&said_of("", &CONFIGURATION.replace("T#10ms", "T#4ms")), "which is no multiple of the session's step");
+    told(&said_of("", &CONFIGURATION.replace("T#10ms", "T#4ms")), "which is not a multiple of the session's step");
 }
 
 #[test]

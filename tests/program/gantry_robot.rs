@@ -160,7 +160,7 @@ fn a_part_that_is_not_there_is_not_enlarged() {
     let plane: [&str; 2] = ["--xy", "X_Position,Z_Position"];
     for (words, wanted) in [
         (vec!["--enlarge", "2s..2s"], "the range `2s..2s` is empty"),
-        (vec!["--enlarge", "0..1,b..2"], "`b` is no number"),
+        (vec!["--enlarge", "0..1,b..2"], "`b` is not a number"),
         (vec!["--enlarge", "1s"], "write ranges, as in `2s..2.5s`"),
         (vec!["--enlarge", "2s..3s"], "--enlarge: 2.000 s is not before the end of the run at 1.000 s"),
         (vec!["--enlarge", "0..1,0..1"], "write a range of time"),

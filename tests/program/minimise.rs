@@ -132,7 +132,7 @@ fn what_operators_did_is_minimised() {
     assert!(violated.iter().any(|one| one["name"] == "no package is dropped" && one["verdict"] == "violated"));
 }
 
-/// A PLC that stops is no expectation, and is found all the same.
+/// A PLC that stops is not an expectation, and is found all the same.
 #[test]
 fn a_plc_that_stops_is_minimised() {
     let folder = copied_shear();

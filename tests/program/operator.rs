@@ -31,7 +31,7 @@ fn what_an_operator_did_is_repeated_to_the_same_digest() {
     let refused = typed(folder.path(), &["control", address, "force", "Senosr_1", "TRUE"]);
     assert!(refused.err.contains("no signal `Senosr_1`; did you mean"), "{refused:?}");
     let refused = typed(folder.path(), &["control", address, "write", "Strokes", "many"]);
-    assert!(refused.err.contains("`many` is no DINT"), "{refused:?}");
+    assert!(refused.err.contains("`many` is not of type DINT"), "{refused:?}");
     ask(&["stop"]);
     let output = server.wait_with_output().unwrap();
     let live: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();

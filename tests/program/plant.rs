@@ -120,7 +120,7 @@ fn values_with_names_stand_at_the_axis() {
     let line = "Actuator_1_Up = { type = \"BOOL\", writer = \"plc\"";
     edit(folder.path(), "scenario.toml", line, &format!("{line}, names = {{ 2 = \"Two\" }}"));
     let said = typed(folder.path(), &["run", "."]);
-    assert!(said.code == Some(2) && said.err.contains("2 is no value of BOOL"), "{said:?}");
+    assert!(said.code == Some(2) && said.err.contains("2 is not a value of BOOL"), "{said:?}");
 }
 
 #[test]

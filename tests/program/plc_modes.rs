@@ -32,7 +32,7 @@ fn a_run_in_lockstep_does_not_wait_for_a_plc_on_its_own_clock() {
     }
 }
 
-/// How a plant keeps its cycle is no mode of a PLC.
+/// How a plant keeps its cycle is not a mode of a PLC.
 #[test]
 fn a_plc_is_in_lockstep_or_on_its_own_clock() {
     for mode in ["halt", "follow"] {

@@ -265,7 +265,8 @@ pub(crate) fn record_of(said: &Said) -> Value {
 #[test]
 fn the_trainee_sees_nothing_of_the_trainer() {
     let folder = tempfile::tempdir().expect("a folder");
-    let lesson = Lesson::begin(&["three-malfunctions", "--starts", utf8(folder.path())]);
+    // At a pace: as fast as it can, the lesson may be over before both pages have been read.
+    let lesson = Lesson::begin(&["three-malfunctions", "--starts", utf8(folder.path()), "--pace", "20"]);
     let structures = [0, 1].map(|page| structure(&lesson.pages[page]));
     let panels = |structure: &Value| {
         let panels = structure["panels"].as_array().expect("panels").iter();

@@ -6,7 +6,7 @@ fn told(words: &[&str]) -> String {
     let mut all = vec!["run", "."];
     all.extend_from_slice(words);
     let said = typed(&scenario("shear"), &all);
-    // What a run takes of the wall's clock, and its digest, are no subject here.
+    // What a run takes of the wall's clock, and its digest, are not the subject here.
     let steady = said.out.lines().filter(|line| line.starts_with("  ") && !line.starts_with("  digest"));
     let steady = steady.fold(String::new(), |text, line| text + line + "\n");
     format!("onescan run . {}\n{steady}{}exit code {}\n", words.join(" "), said.err, said.code.unwrap_or(-1))

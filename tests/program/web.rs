@@ -276,7 +276,10 @@ fn what_is_no_picture_is_refused() {
     let text = std::fs::read_to_string(&file).expect("a scenario") + panel;
     std::fs::write(&file, &text).expect("writable");
     let said = typed(shear.path(), &["check", "."]);
-    assert!(said.code == Some(2) && said.err.contains("`plant.toml` is no picture that a browser shows"), "{said:?}");
+    assert!(
+        said.code == Some(2) && said.err.contains("`plant.toml` is not a picture that a browser shows"),
+        "{said:?}"
+    );
     assert!(said.err.contains("PNG, JPEG or SVG") && said.err.contains("picture = \"plant.toml\""), "{said:?}");
     std::fs::write(&file, text.replace("picture = \"plant.toml\"", "picture = \"desk.png\"")).expect("writable");
     let said = typed(shear.path(), &["check", "."]);

@@ -5,7 +5,7 @@
 //! after a turn, ready in any order, failing in any state. `network` puts endpoints and FIFO
 //! connections around it: messages in flight, faults, lost connections.
 //!
-//! A third, `shim`, holds what runs on a PLC that is no client itself: the scheduler POU and the execution
+//! A third, `shim`, holds what runs on a PLC that is not a client itself: the scheduler POU and the execution
 //! controllers that `onescan instrument` emits, against a gateway whose messages come as they like.
 //!
 //! A fourth, `nusmv`, is the text that `onescan model --nusmv` writes: it is read back, explored, and reaches the

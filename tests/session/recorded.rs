@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use onescan_recording::{Choice, Recorder, Recording, Rhythm};
+use onescan_recording::{Choice, FlushPolicy, Recorder, Recording};
 use onescan_server::lockstep::Lockstep;
 use onescan_server::plan::Coupling;
 use onescan_server::signal::SignalType;
@@ -14,12 +14,12 @@ use onescan_tests::{at_ms, plan, span_ms};
 const ALL: Choice = Choice { signals: Vec::new(), csv: true, mcap: true };
 
 /// A session of two clients with steps of 10 ms, recorded in all forms.
-fn session(folder: &Path, rhythm: Rhythm) -> Lockstep {
+fn session(folder: &Path, flush_policy: FlushPolicy) -> Lockstep {
     let step = span_ms(10);
     let signals = [("a.out", SignalType::ULINT, "a"), ("b.out", SignalType::ULINT, "b")];
     let plan = plan(step, &Coupling::Parallel, &signals, &["a", "b"]);
     let mut lockstep = in_process(plan, boxed([Mixer::new("a", step, &["b"]), Mixer::new("b", step, &["a"])]));
-    lockstep.observe(Box::new(Recorder::new(folder, provenance(), ALL).writing(rhythm)));
+    lockstep.observe(Box::new(Recorder::new(folder, provenance(), ALL).writing(flush_policy)));
     lockstep
 }
 
@@ -55,8 +55,8 @@ fn killed(folder: &Path) -> tempfile::TempDir {
 #[test]
 fn a_killed_recording_has_all_that_was_written() {
     let (folder, whole) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
-    session(whole.path(), Rhythm::Steps(u64::MAX)).run_to(at_ms(5_000)).unwrap();
-    let mut lockstep = session(folder.path(), Rhythm::Steps(7));
+    session(whole.path(), FlushPolicy::Steps(u64::MAX)).run_to(at_ms(5_000)).unwrap();
+    let mut lockstep = session(folder.path(), FlushPolicy::Steps(7));
     // Within the first part, at its end, behind it; within a later one.
     for (at, written) in [(0, 0), (60, 0), (70, 7), (90, 7), (620, 56), (630, 63), (640, 63), (700, 70), (4_130, 413)] {
         lockstep.run_to(at_ms(at)).unwrap();
@@ -75,10 +75,16 @@ fn a_killed_recording_has_all_that_was_written() {
 
 #[test]
 fn a_recording_is_the_same_in_every_rhythm() {
-    let rhythms = [Rhythm::Steps(u64::MAX), Rhythm::Steps(1), Rhythm::Steps(7), Rhythm::Steps(64), Rhythm::WallClock];
-    let recorded = rhythms.map(|rhythm| {
+    let flush_policies = [
+        FlushPolicy::Steps(u64::MAX),
+        FlushPolicy::Steps(1),
+        FlushPolicy::Steps(7),
+        FlushPolicy::Steps(64),
+        FlushPolicy::WallClock,
+    ];
+    let recorded = flush_policies.map(|flush_policy| {
         let folder = tempfile::tempdir().unwrap();
-        let mut lockstep = session(folder.path(), rhythm);
+        let mut lockstep = session(folder.path(), flush_policy);
         lockstep.set_until(Some(at_ms(3_010)));
         lockstep.run().unwrap();
         files(folder.path())
@@ -93,7 +99,7 @@ fn a_recording_is_the_same_in_every_rhythm() {
 #[test]
 fn what_a_part_has_taken_the_place_of_counts_no_more() {
     let folder = tempfile::tempdir().unwrap();
-    let mut lockstep = session(folder.path(), Rhythm::Steps(10));
+    let mut lockstep = session(folder.path(), FlushPolicy::Steps(10));
     lockstep.run_to(at_ms(500)).unwrap();
     let early = files(folder.path());
     lockstep.run_to(at_ms(700)).unwrap();

@@ -252,7 +252,7 @@ fn certificates_let_in_as_tokens_do() {
         (theirs.gives("anna", Some("operator"), 2090), "the other side does not trust this certificate"),
         (ours.gives("anna", Some("operator"), 2021), "this certificate has expired"),
         (ours.gives("anna", Some("king"), 2090), "the organisational unit (OU) of its subject must be"),
-        (ours.gives("a b", None, 2090), "the common name (CN) of its subject is no client's name"),
+        (ours.gives("a b", None, 2090), "the common name (CN) of its subject is not a client's name"),
         (ours.gives("wall", Some("viewer"), 2090), "certificate `wall` lets its holder look, and change nothing"),
         (ours.gives("alpha", None, 2090), "certificate `alpha` is good for `client:alpha`, not to be an operator"),
     ] {

@@ -17,7 +17,7 @@ export interface Cells {
 
 /** A map at one moment. */
 export interface Table extends Cells {
-  /** Row after row; what is no number is no value. */
+  /** Row after row; what is not a number is not a value. */
   readonly values: Float32Array;
 }
 

@@ -6,7 +6,7 @@ const SLOW_MS = 45;
 const FAST_MS = 22;
 /** So many pictures are looked at before anything is changed. */
 const PICTURES = 12;
-/** A longer rest is no slow picture, ms. */
+/** A longer rest is not a slow picture, ms. */
 const REST_MS = 400;
 const STEPS = [1, 0.75, 0.55] as const;
 

@@ -23,6 +23,6 @@ test("it gets sharp again once, and does not flicker", () => {
   assert.equal(pictures(sharpness, 16, 100, 30_000), 0.75);
 });
 
-test("a rest is no slow picture", () => {
+test("a rest is not a slow picture", () => {
   assert.equal(pictures(new Sharpness(), 1000, 100), 1);
 });

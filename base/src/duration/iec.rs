@@ -122,12 +122,11 @@ pub enum IecDurationError {
     #[error("unit is missing")]
     NoUnit,
     /// A unit that the standard does not have.
-    #[error("`{0}` is no unit of time")]
+    #[error("`{0}` is not a unit of time")]
     UnknownUnit(String),
     /// A unit behind a smaller one, or behind itself.
     #[error("unit `{0}` is out of order")]
     Order(String),
-    /// No text.
     #[error("duration is empty")]
     Empty,
     /// More than 64 bits of nanoseconds.
@@ -140,7 +139,7 @@ pub enum IecDurationError {
     #[error("number is missing")]
     NoNumber,
     /// Something else than digits.
-    #[error("`{0}` is no number")]
+    #[error("`{0}` is not a number")]
     Number(String),
     /// A leading, trailing or double underscore.
     #[error("an underscore stands between two digits only")]

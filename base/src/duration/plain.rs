@@ -26,7 +26,6 @@ pub enum DurationError {
     /// A unit that is none of ours.
     #[error("`{unit}` in `{text}` is not a unit of time: use ns, us, ms, s, min or h")]
     Unit {
-        /// The whole text.
         text: String,
         /// The unit as written.
         unit: String,

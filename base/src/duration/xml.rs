@@ -21,9 +21,9 @@ use super::plain;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct XmlDuration(u64);
 
-/// A text that is no duration of hours, minutes and seconds.
+/// A text that is not a duration of hours, minutes and seconds.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("`{0}` is no duration of XML Schema in hours, minutes and seconds, as in `PT0.02S`")]
+#[error("`{0}` is not a duration of XML Schema in hours, minutes and seconds, as in `PT0.02S`")]
 pub struct NotXmlDuration(pub String);
 
 impl XmlDuration {

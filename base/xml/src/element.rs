@@ -4,7 +4,6 @@ use std::borrow::Cow;
 use std::ops::Range;
 use std::slice;
 
-/// An element.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Element {
     /// Its name without a prefix.
@@ -13,13 +12,11 @@ pub struct Element {
     pub attributes: Vec<Attribute>,
     /// What is in it, in its order. Comments are left out.
     pub children: Vec<Node>,
-    /// Its opening tag.
     pub open: Range<u32>,
     /// Its closing tag; the opening one of an empty element.
     pub close: Range<u32>,
 }
 
-/// `name="value"`
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Attribute {
     /// Its name with its prefix.
@@ -35,7 +32,6 @@ pub struct Attribute {
 /// What an element holds.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Node {
-    /// Another element.
     Element(Box<Element>),
     /// Text that stands in the file as it is meant.
     Verbatim(Range<u32>),

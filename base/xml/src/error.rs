@@ -10,7 +10,6 @@ use thiserror::Error;
 pub struct XmlError {
     /// The byte at which it shows.
     pub at: u32,
-    /// Why.
     pub fault: XmlFault,
 }
 

@@ -3,7 +3,6 @@
 /// For whom the output is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Format {
-    /// People.
     #[default]
     Human,
     /// Machines: one JSON object a run and line.

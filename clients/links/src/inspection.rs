@@ -47,7 +47,6 @@ pub type Find = Box<dyn Fn(&str) -> Option<Variable> + Send + Sync>;
 
 /// A soft PLC of the session, and where its variables are.
 pub struct Inspected {
-    /// Its client.
     pub client: ClientName,
     /// Finds a variable by its path.
     pub find: Find,

@@ -40,7 +40,6 @@ pub fn serve(address: SocketAddr, controller: &Arc<Controller>, access: &Access)
     })
 }
 
-/// The variables' nodes.
 type Nodes = InMemoryNodeManager<Admitted<SimpleNodeManagerImpl>>;
 
 fn add_variables(manager: &Nodes, namespace: u16, controller: &Arc<Controller>) {

@@ -48,7 +48,6 @@ struct ChannelMemory {
     next_sample_ns: u64,
     /// What is on its way, and when it arrives.
     sent: VecDeque<(u64, f64)>,
-    /// What arrived last.
     arrived: f64,
 }
 

@@ -8,9 +8,7 @@ use super::setpoint::Setpoint;
 /// What a joint tells its drive as a sub-step begins.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Motion {
-    /// m or rad.
     pub(crate) position: f64,
-    /// m/s or rad/s.
     pub(crate) velocity: f64,
     /// What it would take to accelerate the joint, kg or kg·m²: of all that moves with it.
     pub(crate) mass: f64,
@@ -58,9 +56,7 @@ pub(crate) trait Drives {
 /// Where a joint was measured, and how fast.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Mark {
-    /// m or rad.
     pub(crate) position: f64,
-    /// m/s or rad/s.
     pub(crate) velocity: f64,
 }
 

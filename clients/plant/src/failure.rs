@@ -17,16 +17,8 @@ pub enum FailureRefused {
     /// A repair of what [`Plant::fail`](super::Plant::fail) has not made fail; the scene's own
     /// switches are the scene's to end.
     #[error("component `{component}` has not been made to fail by `{mode}`, so it cannot be repaired")]
-    NotFailed {
-        /// The component.
-        component: String,
-        /// The mode.
-        mode: String,
-    },
+    NotFailed { component: String, mode: String },
     /// A failure or a repair before the set-up, when there is nothing that could fail yet.
     #[error("component `{component}` cannot fail or be repaired before the set-up")]
-    BeforeSetUp {
-        /// The component.
-        component: String,
-    },
+    BeforeSetUp { component: String },
 }

@@ -17,7 +17,6 @@ pub struct Source {
 /// A place in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Place {
-    /// The file.
     pub source: Arc<Source>,
     /// Bytes of its text.
     pub span: Range<usize>,

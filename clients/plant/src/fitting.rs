@@ -7,7 +7,6 @@ use super::model::Mechanics;
 pub(crate) struct Fitting {
     /// The joint's coordinate in the scene's pose.
     pub(crate) initial: f64,
-    /// Hard stops.
     pub(crate) lower: f64,
     pub(crate) upper: f64,
     /// Viscous friction, N·s/m or N·m·s.

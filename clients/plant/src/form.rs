@@ -10,7 +10,6 @@ use super::pose::from_rpy_deg;
 /// A form of a body. A body without one carries joints and sensors only.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Form<'s> {
-    /// The body.
     pub body: &'s str,
     /// Its place in the scene.
     pub index: usize,
@@ -20,16 +19,13 @@ pub struct Form<'s> {
     pub kind: BodyKind,
     /// Where the form is in the frame of its body.
     pub within: Frame,
-    /// What it is.
     pub geometry: Geometry,
 }
 
 /// A position, m, and an orientation, a unit quaternion with the scalar last.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
-    /// The origin.
     pub position_m: [f64; 3],
-    /// The orientation.
     pub rotation_xyzw: [f64; 4],
 }
 
@@ -58,26 +54,18 @@ impl Frame {
 /// A form about its own origin.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Geometry {
-    /// No form.
     Nothing,
     /// Edges along the axes.
     Box {
-        /// Whole lengths.
         size_m: [f64; 3],
     },
-    /// A ball.
     Sphere {
-        /// Its radius.
         radius_m: f64,
     },
-    /// Along z.
     Cylinder {
-        /// Its radius.
         radius_m: f64,
-        /// Its whole length.
         length_m: f64,
     },
-    /// Along z.
     Capsule {
         /// Radius of the caps and between them.
         radius_m: f64,
@@ -86,7 +74,6 @@ pub enum Geometry {
     },
     /// Triangles, counter-clockwise from outside.
     Mesh {
-        /// The corners.
         corners_m: Vec<[f64; 3]>,
         /// Indices of three corners each.
         triangles: Vec<[u32; 3]>,

@@ -1,7 +1,7 @@
 //! Whose state it is: what a plant is made of, kept with each state that it saves, so that a refusal
 //! can name what differs.
 //!
-//! Failures are no part of it. A state of the healthy plant restores into the same plant with any
+//! Failures are not part of it. A state of the healthy plant restores into the same plant with any
 //! `[[failure]]`, and the reverse.
 
 use onescan_server::signal::ClientName;
@@ -193,7 +193,7 @@ fn value_difference<'v>(key: &'v str, saved: &'v Value, own: &'v Value) -> Optio
     }
     match (saved, own) {
         (Value::Object(before), Value::Object(now)) if before.keys().eq(now.keys()) => {
-            // the name of a variant, as of a shape's form, is no key of a scene
+            // the name of a variant, as of a shape's form, is not a key of a scene
             let inner = |inner: &'v str| if inner.starts_with(char::is_uppercase) { key } else { inner };
             now.iter().find_map(|(key, own)| value_difference(inner(key), before.get(key)?, own))
         }

@@ -27,7 +27,6 @@ use super::world::coordinate::Measured;
 /// What the plant remembers between two turns, beside the state of its world.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Memory {
-    /// Joints and mechanisms.
     articulation: ArticulationMemory,
     /// Setpoint of every axis.
     setpoints: Vec<Setpoint>,

@@ -14,11 +14,8 @@ const TRIANGLES_MAX: usize = 2000;
 /// A form of a body, in the scene's pose.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outline<'s> {
-    /// The body.
     pub body: &'s str,
-    /// How it moves.
     pub kind: BodyKind,
-    /// Its surface.
     pub surface: Surface,
 }
 
@@ -27,7 +24,6 @@ pub struct Outline<'s> {
 pub enum Surface {
     /// Plane faces, each with its corners in order, counter-clockwise from outside.
     Faces {
-        /// The faces.
         faces: Vec<Vec<[f64; 3]>>,
         /// Whether the borders between them are edges of the form. Those of a round form are not.
         edged: bool,

@@ -3,9 +3,7 @@
 /// Where a body is, with its name.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyPose<'p> {
-    /// The body.
     pub name: &'p str,
-    /// Its origin.
     pub position_m: [f64; 3],
     /// Its orientation, a unit quaternion with the scalar last.
     pub rotation_xyzw: [f64; 4],

@@ -28,9 +28,7 @@ impl Bounds {
 /// Where an ideal axis is and how fast.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Setpoint {
-    /// m or rad
     pub(crate) position: f64,
-    /// m/s or rad/s
     pub(crate) velocity: f64,
 }
 

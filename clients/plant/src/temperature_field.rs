@@ -31,7 +31,6 @@ pub(crate) struct Spot {
     pub(crate) at_rad: f64,
     /// Its standard deviation along the shell, m; more than 0 where it differs.
     pub(crate) along_m: f64,
-    /// And around it.
     pub(crate) around_m: f64,
 }
 

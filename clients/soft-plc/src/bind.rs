@@ -18,14 +18,12 @@ pub struct Bound {
     pub port: Port,
     /// Where it lies in memory; several for an input that several programs read.
     pub places: Vec<Place>,
-    /// Their paths.
     pub variables: Vec<String>,
 }
 
 /// Where a value lies in the PLC's memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Place {
-    /// Its first byte.
     pub offset: usize,
     /// The bit of that byte, for a BOOL at an address like `%QX0.1`.
     pub bit: Option<u8>,
@@ -68,9 +66,7 @@ impl Place {
 /// All signals of a PLC.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Bindings {
-    /// What it reads.
     pub inputs: Vec<Bound>,
-    /// What it writes.
     pub outputs: Vec<Bound>,
 }
 
@@ -78,11 +74,8 @@ pub struct Bindings {
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{message}")]
 pub struct BindError {
-    /// The signal.
     pub signal: SignalName,
-    /// What is wrong.
     pub message: String,
-    /// What to do.
     pub help: Option<String>,
 }
 

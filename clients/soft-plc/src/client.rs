@@ -78,21 +78,19 @@ struct Table {
     elements: usize,
 }
 
-/// Why an array is no table.
+/// Why an array is not a table.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NoTable {
     /// There is no such variable.
     #[error(transparent)]
     Unknown(#[from] UnknownVariable),
-    /// It is no array of elementary values.
-    #[error("`{0}` is no array of elementary values")]
+    /// It is not an array of elementary values.
+    #[error("`{0}` is not an array of elementary values")]
     NoArray(String),
-    /// Its elements are no whole rows.
-    #[error("`{path}` has {elements} elements, which are no rows of {row}")]
+    /// Its elements are not whole rows.
+    #[error("`{path}` has {elements} elements, which are not rows of {row}")]
     Rows {
-        /// The array.
         path: String,
-        /// Its elements.
         elements: usize,
         /// Elements of a row, as asked for.
         row: u32,
@@ -174,7 +172,7 @@ impl SoftPlcClient {
     /// Lets the variable at `path` begin with a value, given as a literal, in place of that of its declaration.
     ///
     /// # Errors
-    /// There is no such variable, it may not be written, or the text is no value of its type.
+    /// There is no such variable, it may not be written, or the text is not a value of its type.
     pub fn preset(&mut self, path: &str, value: &str) -> Result<(), WriteError> {
         self.plc.write(path, value)?;
         self.presets.push((path.to_owned(), value.to_owned()));
@@ -184,7 +182,7 @@ impl SoftPlcClient {
     /// Whether the variable at `path` could be written or forced to a value, given as a literal.
     ///
     /// # Errors
-    /// There is no such variable, it may not be written, or the text is no value of its type.
+    /// There is no such variable, it may not be written, or the text is not a value of its type.
     pub fn check_write(&self, path: &str, value: &str) -> Result<(), WriteError> {
         self.plc.check_write(path, value)
     }

@@ -30,9 +30,7 @@ pub enum FileError {
     /// One that is too long.
     #[error("file `{name}` has {bytes} bytes, and a PLC has room for {room}")]
     Long {
-        /// The file.
         name: String,
-        /// Its length.
         bytes: usize,
         /// What there is room for.
         room: usize,

@@ -24,9 +24,7 @@ pub enum Wanted {
 /// A scan of a PLC.
 #[derive(Clone, Debug)]
 pub struct Scan {
-    /// The PLC.
     pub client: ClientName,
-    /// The virtual time.
     pub t_v: VirtualTime,
     /// What was wanted of it.
     pub seen: Seen,
@@ -37,14 +35,12 @@ pub struct Scan {
 pub enum Seen {
     /// The digest of its memory.
     Digest([u8; 32]),
-    /// What was done.
     Acts(Vec<Act>),
 }
 
 /// What is wanted, and who takes it.
 #[derive(Clone, Debug)]
 pub struct Journalling {
-    /// What is wanted.
     pub wanted: Wanted,
     /// Who takes it. One that has gone is not waited for.
     pub scans: SyncSender<Scan>,

@@ -16,7 +16,6 @@ const WAYS_MAX: usize = 4_000_000;
 pub struct Written {
     /// The virtual time of the scan.
     pub t_v: VirtualTime,
-    /// The statement.
     pub site: WriteSite,
     /// The ways that decisions around it had gone, innermost first.
     pub within: Vec<Way>,

@@ -12,17 +12,12 @@ use super::SoftPlcClient;
 /// Why a variable was not written or forced.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum VariableError {
-    /// There is no such variable, it must not be written, or the text is no value of its type.
+    /// There is no such variable, it must not be written, or the text is not a value of its type.
     #[error(transparent)]
     Write(#[from] WriteError),
     /// A signal overwrites it before every scan.
     #[error("`{path}` takes the value of signal `{signal}` before each scan: force it, or write the signal")]
-    Input {
-        /// The variable.
-        path: String,
-        /// The signal.
-        signal: SignalName,
-    },
+    Input { path: String, signal: SignalName },
 }
 
 impl SoftPlcClient {
@@ -30,7 +25,7 @@ impl SoftPlcClient {
     /// value.
     ///
     /// # Errors
-    /// There is no such variable, it must not be written, a signal gives its value, or the text is no value of
+    /// There is no such variable, it must not be written, a signal gives its value, or the text is not a value of
     /// its type. Nothing has changed then.
     pub fn set_variable(&mut self, path: &str, literal: &str) -> Result<(), VariableError> {
         let variable = self.plc().variable(path).map_err(WriteError::from)?;
@@ -45,7 +40,7 @@ impl SoftPlcClient {
     /// earlier force of it ends.
     ///
     /// # Errors
-    /// There is no such variable, it must not be written, or the text is no value of its type. Nothing has
+    /// There is no such variable, it must not be written, or the text is not a value of its type. Nothing has
     /// changed then.
     pub fn force_variable(&mut self, path: &str, literal: &str) -> Result<(), VariableError> {
         Ok(self.plc_mut().force(path, literal)?)

@@ -24,7 +24,6 @@ pub enum Role {
 /// Where what is sent at once is cut: the rest goes on its way in the sender's next turn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Cuts {
-    /// Nowhere.
     #[default]
     Nowhere,
     /// Once, behind so many bytes.
@@ -41,7 +40,6 @@ pub enum Cuts {
 /// How a connection is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Link {
-    /// There is none.
     Closed,
     /// The other side has not answered yet.
     Connecting,

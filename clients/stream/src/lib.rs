@@ -34,7 +34,6 @@ pub const RECEIVE_BUFFER: usize = 65_536;
 /// How a port sends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
-    /// Byte by byte.
     Serial(Rate),
     /// In segments, while connected.
     Connection(Role, Cuts),
@@ -83,7 +82,7 @@ pub struct Losses {
     pub buffer: u64,
 }
 
-/// Bytes that are no state of a port.
+/// Bytes that are not state of a port.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("its line of bytes is of another form")]
 pub struct ForeignPort;

@@ -31,11 +31,8 @@ use onescan_iec::syntax::{parse_source, tokenize_in, walk};
 /// What is changed in a mutant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum MutantKind {
-    /// An operator.
     Operator,
-    /// A literal.
     Constant,
-    /// What decides.
     Condition,
     /// A statement is left out.
     Statement,
@@ -49,7 +46,6 @@ pub enum MutantKind {
 pub struct UnknownMutantKind;
 
 impl MutantKind {
-    /// All of them.
     pub const ALL: [Self; 5] = [Self::Operator, Self::Constant, Self::Condition, Self::Statement, Self::Timer];
 
     /// As it is written and shown.
@@ -81,13 +77,11 @@ impl FromStr for MutantKind {
 /// One small mistake in one file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Mutant {
-    /// What is changed.
     pub kind: MutantKind,
     /// Bytes of the program text that are replaced.
     pub range: Range<u32>,
     /// What comes in their place.
     pub replacement: String,
-    /// What was there.
     pub was: String,
     /// Where it stands, as its author sees the file.
     pub place: LineColumn,
@@ -201,12 +195,12 @@ impl Finder<'_> {
         let between = Span::new(left.file, left.end, right.start);
         let tokens = tokenize_in(self.file.dialect(), self.text(between));
         // Brackets around the operands stand between them, too; they are not operators.
-        let spelt = |start: u32, end: u32| {
+        let to_text = |start: u32, end: u32| {
             self.text(Span::new(left.file, left.end + start, left.end + end)).to_ascii_uppercase()
         };
         let names = |text: &str| text == operator.text() || operator == BinaryOp::And && text == "&";
         let is_blank = |kind| matches!(kind, TokenKind::Whitespace | TokenKind::BlockComment | TokenKind::LineComment);
-        let token = tokens.iter().find(|token| !is_blank(token.kind) && names(&spelt(token.start, token.end)));
+        let token = tokens.iter().find(|token| !is_blank(token.kind) && names(&to_text(token.start, token.end)));
         let Some(token) = token else { return };
         let span = Span::new(left.file, left.end + token.start, left.end + token.end);
         for other in others(operator) {

@@ -5,7 +5,6 @@ use onescan_base::TimeSpan;
 /// A task. A periodic one is due at one interval after the start, then after each interval.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Task {
-    /// Its name.
     pub name: String,
     /// Time between two executions; nothing if it is not periodic.
     pub interval: Option<TimeSpan>,
@@ -21,7 +20,6 @@ pub struct Task {
 /// What a PLC runs, and when.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TaskPlan {
-    /// The tasks.
     pub tasks: Vec<Task>,
     /// Programs without a task: each scan runs them at its end, in their order (2nd ed. 2.7.2).
     pub background: Vec<String>,

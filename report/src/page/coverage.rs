@@ -7,7 +7,6 @@ use super::LINE;
 /// What was executed of a file.
 #[derive(Clone, Debug)]
 pub struct CoveredFile {
-    /// Its name.
     pub file: String,
     /// How many of its lines, in words.
     pub lines: String,

@@ -23,13 +23,11 @@ const LINE: PreEscaped<&str> = PreEscaped("\n");
 /// What a page shows.
 #[derive(Clone, Debug, Default)]
 pub struct Page {
-    /// What was run.
     pub title: String,
     /// What came of it, in a line.
     pub totals: String,
     /// How long it all took; empty if that is not known.
     pub wall: String,
-    /// Tests or runs.
     pub sections: Vec<Section>,
     /// Files of the PLC's code; none where nothing was noted.
     pub coverage: Vec<CoveredFile>,
@@ -42,7 +40,6 @@ pub struct Page {
 pub struct ChartScript {
     /// The script, a module.
     pub script: &'static str,
-    /// Its style.
     pub style: &'static str,
 }
 

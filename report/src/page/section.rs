@@ -24,7 +24,6 @@ pub struct Section {
     pub steps: Option<u64>,
     /// Virtual time of the last of them, with its unit.
     pub virtual_time: String,
-    /// Names and values.
     pub facts: Vec<(&'static str, String)>,
     /// What there is to say of it.
     pub lines: Vec<String>,
@@ -78,7 +77,6 @@ pub enum Mood {
     /// As all should be.
     #[default]
     Good,
-    /// Not decided.
     Open,
     /// To be looked at.
     Bad,
@@ -107,7 +105,6 @@ impl From<Verdict> for Mood {
 /// What came of an expectation.
 #[derive(Clone, Debug)]
 pub struct Shown {
-    /// Its name.
     pub name: String,
     /// Whether it was met.
     pub verdict: Verdict,
@@ -121,12 +118,10 @@ pub struct Shown {
     pub unit: Option<String>,
 }
 
-/// Something that happened.
 #[derive(Clone, Debug)]
 pub struct Event {
     /// When, with the unit.
     pub at: String,
-    /// What.
     pub what: String,
 }
 

@@ -21,13 +21,11 @@ const FAINT_FILL: &str = COLOURS[6];
 /// Bars, one beneath the other.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bars {
-    /// What they show.
     pub title: String,
     /// From top to bottom.
     pub bars: Vec<Bar>,
 }
 
-/// One bar.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bar {
     /// What it stands for.

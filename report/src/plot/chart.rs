@@ -25,7 +25,7 @@ impl Plot {
     }
 }
 
-/// Times and values; a gap where a value is no number.
+/// Times and values; a gap where a value is not a number.
 fn data(samples: Vec<(u64, f64)>) -> Value {
     let (t_ns, values): (Vec<u64>, Vec<f64>) = samples.into_iter().unzip();
     json!({ "t_ns": t_ns, "values": values })

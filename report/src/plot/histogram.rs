@@ -19,7 +19,6 @@ const MARGIN_PX: i64 = 16;
 /// The room of the axis and its name below.
 const BELOW_PX: i64 = 48;
 const TICKS: (u32, u32) = (8, 5);
-/// Between two bars.
 const GAP_CPX: i64 = 100;
 
 /// Times in bins of equal width.

@@ -39,7 +39,6 @@ pub(super) enum Height {
     Analog,
     /// Room for two levels.
     Bool,
-    /// So many pixels.
     Plane(i64),
 }
 

@@ -25,7 +25,6 @@ pub(super) struct Marks {
     times: TimeRange,
     /// The number and the instant of each.
     numbered: Vec<(usize, u64)>,
-    /// When; each once.
     instants_ns: Vec<u64>,
     /// The instant above which a number stands, and the first and the last number there.
     numbers: Vec<(u64, usize, usize)>,

@@ -92,7 +92,6 @@ pub struct Trajectory {
 /// How a signal moves from one sample to the next.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shape {
-    /// Continuously: analog signals.
     Line,
     /// At once, holding its value until the next sample: BOOL and the integers.
     Step,
@@ -150,7 +149,7 @@ impl Plot {
             Part::Times { from_ns, until_ns } => Ok(figure::draw(self, Some(&part::Cut::of(self, from_ns, until_ns)?))),
             Part::Plane { across, up } => {
                 let [along, upwards, ..] = &self.panels[..] else {
-                    return Err(NothingThere { drawn: "there are not two signals".to_owned() });
+                    return Err(NothingThere { drawn: "there are no two signals".to_owned() });
                 };
                 let part = part::in_plane(along, upwards, [across, up])?;
                 Ok(plane::draw(self, along, upwards, Some(part)))
@@ -159,7 +158,7 @@ impl Plot {
     }
 
     /// The first signal against the second, across and up, as an SVG document: the paths of all
-    /// runs; nothing if there are not two signals. Marks have no place in it.
+    /// runs; nothing if there are no two signals. Marks have no place in it.
     pub fn to_plane_svg(&self) -> Option<String> {
         let [along, up, ..] = &self.panels[..] else { return None };
         Some(plane::draw(self, along, up, None))

@@ -20,7 +20,6 @@ pub const INK: &str = "#1f2328";
 pub const FAINT_INK: &str = "#59636e";
 /// Lines across a panel.
 pub(super) const GRID: &str = "#e4e7eb";
-/// What went wrong.
 pub const ALARM: &str = "#b3261e";
 /// The edges of a panel from which values and times are read.
 pub const AXIS: &str = "#a8b0b9";

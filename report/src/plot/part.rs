@@ -16,17 +16,11 @@ const FRAME_LEAST_CPX: i64 = 600;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Part {
     /// Of a picture over time, in nanoseconds of virtual time.
-    Times {
-        /// Its beginning.
-        from_ns: u64,
-        /// Its end.
-        until_ns: u64,
-    },
+    Times { from_ns: u64, until_ns: u64 },
     /// Of a picture in a plane, in the units of its signals.
     Plane {
         /// From left to right.
         across: [f64; 2],
-        /// From below.
         up: [f64; 2],
     },
 }

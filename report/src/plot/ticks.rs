@@ -18,9 +18,7 @@ const NAME_MAX_PX: i64 = 150;
 /// Which numbers may be ticks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Numbers {
-    /// All.
     Real,
-    /// Whole numbers only.
     Whole,
 }
 

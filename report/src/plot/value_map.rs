@@ -42,7 +42,6 @@ pub struct MapAxis {
 /// A table of values over two axes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ValueMap {
-    /// What it shows.
     pub title: String,
     /// The unit of its values.
     pub unit: String,
@@ -50,7 +49,7 @@ pub struct ValueMap {
     pub across: MapAxis,
     /// From top to bottom.
     pub down: MapAxis,
-    /// Row after row; what is not finite is no value.
+    /// Row after row; what is not finite is not a value.
     pub values: Vec<f64>,
     /// The values of the scale's ends; from the least to the greatest of the map if absent.
     pub scale: Option<[f64; 2]>,

@@ -30,7 +30,6 @@ pub struct Solid {
     pub kind: usize,
     /// Whether it is but the ground on which the others are: drawn behind them all, as far as the picture reaches.
     pub backdrop: bool,
-    /// Its surface.
     pub surface: Surface,
 }
 
@@ -39,7 +38,6 @@ pub struct Solid {
 pub enum Surface {
     /// Plane faces, each with its corners in order, counter-clockwise from outside.
     Faces {
-        /// The faces.
         faces: Vec<Vec<[f64; 3]>>,
         /// Whether the borders between them are drawn.
         edged: bool,
@@ -51,7 +49,6 @@ pub enum Surface {
 /// A ray of a sensor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ray {
-    /// The sensor.
     pub name: String,
     /// Where it begins, m.
     pub from_m: [f64; 3],
@@ -66,8 +63,6 @@ pub struct Stage {
     pub title: String,
     /// What the kinds of solids are called.
     pub kinds: Vec<String>,
-    /// All forms.
     pub solids: Vec<Solid>,
-    /// All rays.
     pub rays: Vec<Ray>,
 }

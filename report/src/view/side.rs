@@ -1,6 +1,5 @@
 //! From where one looks at a scene. Its z is up, its x goes to the right of one who looks from the front.
 
-/// A side.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Side {
     /// From above the corner between front and right.
@@ -8,9 +7,7 @@ pub enum Side {
     Corner,
     /// Along y: x to the right, z up.
     Front,
-    /// Against y.
     Back,
-    /// Along x.
     Left,
     /// Against x: y to the right, z up.
     Right,
@@ -19,7 +16,6 @@ pub enum Side {
 }
 
 impl Side {
-    /// All sides.
     pub const ALL: [Self; 6] = [Self::Corner, Self::Front, Self::Back, Self::Left, Self::Right, Self::Top];
 
     /// Its name.

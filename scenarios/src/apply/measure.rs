@@ -35,7 +35,7 @@ pub struct Injected {
     pub at: Option<VirtualTime>,
     /// What comes, if that waits for a condition.
     pub operations: Vec<Operation>,
-    /// The signals that it holds or disturbs: they are no effect of it.
+    /// The signals that it holds or disturbs: they are not an effect of it.
     pub signals: Vec<SignalName>,
     /// When it is over.
     pub over: Over,
@@ -46,7 +46,6 @@ pub struct Injected {
 pub enum Over {
     /// It lasts to the end of the run.
     Never,
-    /// At this time.
     At(VirtualTime),
     /// That depends on when a condition comes true.
     Unknown,

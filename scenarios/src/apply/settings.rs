@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use onescan_iec::{ConstantError, Diagnostics, Input};
 use onescan_iec_run::{Application, BuildError, Builder, WriteError};
 use onescan_plant::scene::{Override, UnknownFailure};
-use onescan_server::checkpoint::Makeup;
+use onescan_server::checkpoint::SessionSettings;
 use onescan_server::signal::ClientName;
 use onescan_soft_plc::SoftPlcClient;
 
@@ -252,7 +252,7 @@ impl Scenario {
     }
 
     /// What a session of this scenario is made of, for checkpoints.
-    pub fn makeup(&self) -> Makeup {
+    pub fn session_settings(&self) -> SessionSettings {
         let mut settings = BTreeMap::new();
         settings.insert("seed".to_owned(), self.seed().to_string());
         for setting in self.applied().into_iter().flat_map(|applied| &applied.case.settings) {
@@ -260,7 +260,7 @@ impl Scenario {
         }
         settings.extend(self.applied().into_iter().flat_map(Applied::code_settings));
         let case = self.case().map_or(DEFAULT, |case| case.name.as_str());
-        Makeup { name: format!("case `{case}`"), settings }
+        SessionSettings { name: format!("case `{case}`"), settings }
     }
 }
 

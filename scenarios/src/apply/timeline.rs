@@ -265,7 +265,7 @@ impl Scenario {
         match by.get_ref().parse::<TimeSpan>() {
             Ok(span) if span.is_multiple_of(step) => Ok((TaskAt { client, task, place: entry.span() }, span)),
             Ok(span) => {
-                let message = format!("{span} is no multiple of the session's step, {step}");
+                let message = format!("{span} is not a multiple of the session's step, {step}");
                 wrong(message, Some("tasks are late by whole steps"))
             }
             Err(error) => wrong(format!("`by` is not a time: {error}"), Some("as in `by = \"20ms\"`")),

@@ -20,7 +20,6 @@ const ACCEPTED: [CampaignVerdict; 4] =
 /// A campaign, its rows and columns checked.
 #[derive(Clone, Debug)]
 pub struct Campaign {
-    /// Its name.
     pub name: String,
     /// What it is about.
     pub about: Option<String>,
@@ -44,20 +43,16 @@ pub struct Campaign {
 /// A program of a campaign.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CampaignProgram {
-    /// Its name.
     pub name: String,
-    /// What it is.
     pub about: Option<String>,
 }
 
 /// A fault of a campaign.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CampaignFault {
-    /// Its name.
     pub name: String,
     /// Where it is brought in.
     pub kind: FaultKind,
-    /// What it is.
     pub about: Option<String>,
 }
 
@@ -176,7 +171,7 @@ fn names<'a>(all: impl Iterator<Item = &'a Spanned<String>>, what: &str) -> Resu
     let mut seen = BTreeSet::new();
     for name in all {
         if !is_name(name.get_ref()) {
-            let message = format!("`{}` is no name of one of the {what}", name.get_ref());
+            let message = format!("`{}` is not a name of one of the {what}", name.get_ref());
             return Err(wrong(message, name.span(), "letters, digits, `-`, `_` and `.`"));
         }
         if !seen.insert(name.get_ref().to_lowercase()) {

@@ -124,7 +124,7 @@ impl Catalogue {
             let name = &entry.name;
             if !campaign::is_name(name.get_ref()) {
                 let help = "letters, digits, `-`, `_` and `.`".to_owned();
-                let message = format!("`{}` is no name of a campaign", name.get_ref());
+                let message = format!("`{}` is not a name of a campaign", name.get_ref());
                 return Err(this.wrong(message, Some(name.span()), Some(help)));
             }
             if campaigns.iter().any(|other| other.name.eq_ignore_ascii_case(name.get_ref())) {
@@ -220,7 +220,7 @@ impl Catalogue {
         let name = file.name.get_ref();
         if !campaign::is_name(name) {
             let help = "letters, digits, `-`, `_` and `.`: its snapshot is a file of that name".to_owned();
-            return Err(self.wrong(format!("`{name}` is no name of a case"), Some(file.name.span()), Some(help)));
+            return Err(self.wrong(format!("`{name}` is not a name of a case"), Some(file.name.span()), Some(help)));
         }
         let axes = self.axes(places.leaves("case", index, "matrix"))?;
         let Some(combinations) = combinations(&axes) else {
@@ -273,7 +273,7 @@ impl Catalogue {
                 if let Some(values) = range(&text) {
                     Ok(Axis { path, values, place })
                 } else {
-                    let message = format!("`{text}` is no range of at most {COMBINATIONS_MAX} seeds");
+                    let message = format!("`{text}` is not a range of at most {COMBINATIONS_MAX} seeds");
                     Err(self.wrong(message, Some(place), Some("as in `seed = \"1..20\"`, with both ends".to_owned())))
                 }
             }
@@ -483,7 +483,7 @@ mod tests {
     fn wrong_cases_are_told() {
         let two = "[[case]]\nname = \"a\"\n[[case]]\nname = \"A\"\n";
         assert_eq!(parsed(two).unwrap_err(), "two cases are called `A`");
-        assert_eq!(parsed("[[case]]\nname = \"a/b\"\n").unwrap_err(), "`a/b` is no name of a case");
+        assert_eq!(parsed("[[case]]\nname = \"a/b\"\n").unwrap_err(), "`a/b` is not a name of a case");
         let matrix = "[[case]]\nname = \"a\"\nmatrix.seed = 3\n";
         assert_eq!(parsed(matrix).unwrap_err(), "`seed` of a matrix is a list of values");
         assert_eq!(parsed("[[case]]\nname = \"a\"\nset.x = 3\n").unwrap_err(), "`x` names nothing that can be set");

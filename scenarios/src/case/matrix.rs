@@ -14,7 +14,6 @@ pub const COMBINATIONS_MAX: usize = 10_000;
 pub struct Axis {
     /// The path that is set.
     pub path: String,
-    /// The values.
     pub values: Vec<Value>,
     /// Where it stands in the file.
     pub place: Range<usize>,

@@ -85,7 +85,6 @@ fn own_cases(file: &Path) -> impl Iterator<Item = PathBuf> {
 pub struct Setting {
     /// The client, then what the client calls it: `plant.actuator_1.speed_m_s`, `plc.Shear.Strokes`.
     pub path: String,
-    /// The value.
     pub value: toml::Value,
     /// Where it stands in `cases.toml`.
     pub place: Range<usize>,
@@ -117,7 +116,6 @@ pub struct Case {
 /// What a case does to a scenario once it is bound to its signals.
 #[derive(Clone, Debug, Default)]
 pub struct Applied {
-    /// The case.
     pub case: Case,
     /// What it does while the session runs.
     pub timeline: Vec<Scheduled>,
@@ -140,11 +138,8 @@ pub struct Applied {
 /// A component's failure in a case.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FailureAt {
-    /// The plant.
     pub client: ClientName,
-    /// The component.
     pub component: String,
-    /// How it fails.
     pub mode: String,
     /// Where it stands in `cases.toml`.
     pub place: Range<usize>,
@@ -153,11 +148,8 @@ pub struct FailureAt {
 /// A parameter's value in a case.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParameterAt {
-    /// The plant.
     pub client: ClientName,
-    /// The component.
     pub component: String,
-    /// The parameter.
     pub parameter: String,
     /// Its value, as text.
     pub value: String,
@@ -168,9 +160,7 @@ pub struct ParameterAt {
 /// A variable's value in a case.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VariableAt {
-    /// The PLC.
     pub client: ClientName,
-    /// The variable's path.
     pub variable: String,
     /// Its value, as a literal.
     pub value: String,
@@ -181,7 +171,6 @@ pub struct VariableAt {
 /// Another program in a PLC.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CodeAt {
-    /// The PLC.
     pub client: ClientName,
     /// Its source, as the scenario names it.
     pub source: String,
@@ -196,11 +185,9 @@ pub struct CodeAt {
 pub enum CodeChange {
     /// All of it: this file comes in its place.
     File(String),
-    /// A text.
     Text {
         /// Where it begins, as the author of the source sees it.
         at: LineColumn,
-        /// What stands there.
         was: String,
         /// What comes in its place.
         is: String,
@@ -219,7 +206,6 @@ impl fmt::Display for CodeChange {
 /// A task that runs late in a case.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TaskAt {
-    /// The PLC.
     pub client: ClientName,
     /// The task's name; all tasks if absent.
     pub task: Option<String>,

@@ -61,7 +61,7 @@ pub fn literal_of(value: &Value) -> Option<String> {
         Value::Integer(whole) => Some(whole.to_string()),
         Value::Float(number) => {
             let text = format!("{number:?}");
-            // `1e-7` is no real literal of the standard, `1.0e-7` is.
+            // `1e-7` is not a real literal of the standard, `1.0e-7` is.
             Some(match text.split_once('e') {
                 Some((mantissa, exponent)) if !mantissa.contains('.') => format!("{mantissa}.0E{exponent}"),
                 _ => text,

@@ -14,9 +14,7 @@ type Bound<T> = Result<T, FormulaError>;
 /// A signal that formulas may name.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KnownSignal {
-    /// Its name.
     pub name: String,
-    /// Its type.
     pub ty: SignalType,
     /// The unit of its values.
     pub unit: Option<String>,
@@ -35,7 +33,7 @@ impl Expectation {
     /// columns of the [`super::Trace`] it will be judged by; signals that have none get one.
     ///
     /// # Errors
-    /// The text is no formula, or names what is not known.
+    /// The text is not a formula, or names what is not known.
     pub fn parse(text: &str, known: &[KnownSignal], columns: &mut Vec<String>) -> Result<Self, FormulaError> {
         let mut binder = Binder { known, columns, signals: Vec::new(), compared: Vec::new() };
         let formula = binder.formula(parse(text)?)?;

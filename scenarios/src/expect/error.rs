@@ -8,11 +8,9 @@ use thiserror::Error;
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{kind}")]
 pub struct FormulaError {
-    /// What is wrong.
     pub kind: FormulaErrorKind,
     /// Where in the formula.
     pub place: Range<usize>,
-    /// What to do.
     pub help: Option<String>,
 }
 
@@ -26,7 +24,7 @@ pub enum FormulaErrorKind {
     #[error("the quoted name has no end")]
     Quote,
     /// A number that is none.
-    #[error("`{0}` is no number")]
+    #[error("`{0}` is not a number")]
     Number(String),
     /// A time that is none.
     #[error("{0}")]
@@ -36,7 +34,6 @@ pub enum FormulaErrorKind {
     Expected {
         /// What would go on from here.
         expected: &'static str,
-        /// What stands here.
         found: String,
     },
     /// Formulas within formulas without end.
@@ -45,7 +42,6 @@ pub enum FormulaErrorKind {
     /// A window that ends before it begins.
     #[error("the window ends before it begins")]
     EmptyWindow,
-    /// No such signal.
     #[error("the scenario has no signal `{0}`")]
     UnknownSignal(String),
     /// A BOOL where a number is needed.
@@ -54,7 +50,6 @@ pub enum FormulaErrorKind {
     /// A number where a BOOL is needed.
     #[error("`{0}` is a number; compare it to be true or false")]
     NotABool(String),
-    /// A text.
     #[error("`{0}` is a {1}; expectations are on BOOLs, numbers and times")]
     Text(String, String),
     /// More than comparisons with values is needed to judge it.
@@ -67,16 +62,11 @@ pub enum FormulaErrorKind {
     #[error("this is judged on one image at a time: no windows, no edges, no `rate`")]
     NotPresent,
     /// A unit that is unknown.
-    #[error("`{0}` is no unit that is known here")]
+    #[error("`{0}` is not a unit that is known here")]
     UnknownUnit(String),
     /// Units of different quantities.
     #[error("`{left}` and `{right}` do not measure the same")]
-    Incommensurable {
-        /// One unit.
-        left: String,
-        /// The other.
-        right: String,
-    },
+    Incommensurable { left: String, right: String },
 }
 
 impl FormulaError {

@@ -6,7 +6,6 @@ use std::ops::Range;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Formula<S> {
     Constant(bool),
-    /// A BOOL signal.
     Signal(S),
     Compare(Comparison, Box<Term<S>>, Box<Term<S>>),
     Not(Box<Self>),
@@ -61,7 +60,6 @@ pub(super) enum Edge {
     Changed,
 }
 
-/// Relations of numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Comparison {
     Less,
@@ -111,7 +109,6 @@ pub(super) enum TermKind<S> {
     Scaled(Box<Term<S>>, f64, f64),
 }
 
-/// Operators on numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Arithmetic {
     Add,

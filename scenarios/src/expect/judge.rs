@@ -21,7 +21,6 @@ pub struct Judge {
     expectations: Vec<(Expectation, Monitor)>,
     /// Judged, and may still be told of.
     kept: VecDeque<Block>,
-    /// Not judged yet.
     open: Block,
     /// Emptied, to be filled again.
     free: Vec<Block>,

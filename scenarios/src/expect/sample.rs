@@ -63,7 +63,6 @@ impl Judged {
 /// Which samples of a block an operand is asked for.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Look {
-    /// All of them.
     Every,
     /// Of samples with the same values, those that a window with these ends can tell apart: the first and the last ones, and
     /// those at the ends of the window.
@@ -74,7 +73,6 @@ pub(super) enum Look {
 #[derive(Clone, Copy, Debug)]
 struct Run {
     first: Sample,
-    /// At least 1.
     count: u64,
     step_ns: u64,
 }

@@ -17,7 +17,6 @@ pub(super) trait Joined: Copy {
     fn certain(&self) -> Option<Certain>;
 }
 
-/// All hold.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct All {
     pub(super) worth: Worth,
@@ -43,7 +42,6 @@ impl Joined for All {
     }
 }
 
-/// One holds.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Any {
     pub(super) worth: Worth,

@@ -66,9 +66,7 @@ impl Scale for Truth {
 /// would come after the end of the run. In the units of its comparisons; infinite for BOOLs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Margin {
-    /// At least this.
     pub least: f64,
-    /// At most this.
     pub greatest: f64,
 }
 
@@ -107,7 +105,6 @@ impl Scale for Margin {
     }
 }
 
-/// Both at once.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Worth {
     pub(super) truth: Truth,

@@ -15,10 +15,8 @@ use crate::expect::{Expectation, FormulaError, Judge, KnownSignal, Present};
 use crate::file::ScenarioFile;
 use crate::panel_file::PageFile;
 
-/// A lesson, checked.
 #[derive(Clone, Debug)]
 pub struct Lesson {
-    /// Its name.
     pub name: String,
     /// What the trainee is told.
     pub about: Option<String>,
@@ -30,9 +28,7 @@ pub struct Lesson {
     pub lasts: TimeSpan,
     /// It is over as soon as this holds on these signals.
     pub done: Option<(Present, Vec<SignalName>)>,
-    /// What goes wrong.
     pub malfunctions: Vec<Malfunction>,
-    /// What it costs.
     pub costs: Vec<Cost>,
     /// The file or recording of what an expert did, relative to the scenario's folder.
     pub expert: Option<PathBuf>,
@@ -41,13 +37,11 @@ pub struct Lesson {
 /// Something that goes wrong, and how it is seen that the trainee knows it and has done what is to be done.
 #[derive(Clone, Debug)]
 pub struct Malfunction {
-    /// Its name.
     pub name: String,
     /// The operation with which it begins.
     pub begin: Operation,
     /// It comes by the trainer's hand.
     pub by_trainer: bool,
-    /// The trainee knows.
     pub identify: Option<Sought>,
     /// How long that may take.
     pub identify_within: Option<TimeSpan>,
@@ -95,7 +89,6 @@ impl Sought {
 /// What a lesson costs.
 #[derive(Clone, Debug)]
 pub struct Cost {
-    /// Its name.
     pub name: String,
     /// The signals, which are added.
     pub signals: Vec<SignalName>,
@@ -231,7 +224,7 @@ fn cost(sheet: &Sheet, scenario: &ScenarioFile, file: &CostFile) -> Result<Cost,
             };
             let ty = declared.get_ref().ty;
             if ty.as_f64(&vec![0; ty.size()]).is_none() {
-                return Err(sheet.wrong(format!("`{name}` is {ty}, which is no number"), place, None));
+                return Err(sheet.wrong(format!("`{name}` is {ty}, which is not a number"), place, None));
             }
             units.push(declared.get_ref().unit.clone());
             signals.push(name);

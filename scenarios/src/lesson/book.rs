@@ -38,7 +38,7 @@ impl Book {
             let name = &file.get_ref().name;
             if !is_name(name.get_ref()) {
                 let help = "letters, digits, `-`, `_` and `.`".to_owned();
-                let message = format!("`{}` is no name of a lesson", name.get_ref());
+                let message = format!("`{}` is not a name of a lesson", name.get_ref());
                 return Err(sheet.wrong(message, name.span(), Some(help)));
             }
             if lessons.iter().any(|other| other.name == *name.get_ref()) {

@@ -26,7 +26,7 @@ impl Sheet {
     /// of their names.
     ///
     /// # Errors
-    /// There is none; one cannot be read or is no file of lessons.
+    /// There is none; one cannot be read or is not a file of lessons.
     pub(super) fn all(folder: &Path) -> Result<Vec<Self>, ScenarioError> {
         let (alone, beside) = (folder.join(FILE_NAME), folder.join(FOLDER_NAME));
         let mut paths = if alone.exists() { vec![alone.clone()] } else { Vec::new() };

@@ -8,12 +8,9 @@ use crate::case::Catalogue;
 use crate::error::ScenarioError;
 use crate::load::Scenario;
 
-/// A prepared state.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Start {
-    /// Its name.
     pub name: String,
-    /// What it is.
     pub about: Option<String>,
     /// When it is, in the run that makes it.
     pub at: VirtualTime,

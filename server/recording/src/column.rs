@@ -7,13 +7,9 @@ use onescan_server::signal::{ClientName, SignalName, SignalType};
 /// A signal that is recorded.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Column {
-    /// Its name.
     pub name: SignalName,
-    /// Its type.
     pub ty: SignalType,
-    /// Its unit.
     pub unit: Option<String>,
-    /// Who writes it.
     pub writer: Option<ClientName>,
     /// Its first byte in the image.
     pub offset: usize,

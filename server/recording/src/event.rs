@@ -17,15 +17,12 @@ use onescan_server::time::{StepCount, VirtualTime};
 pub struct Event {
     /// The last step committed before it.
     pub step: StepCount,
-    /// Its virtual time.
     #[serde(rename = "t_v_ns")]
     pub t_v: VirtualTime,
-    /// What happened.
     #[serde(flatten)]
     pub what: EventKind,
 }
 
-/// What can happen.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "event", rename_all = "kebab-case")]
 pub enum EventKind {
@@ -33,13 +30,11 @@ pub enum EventKind {
     Began,
     /// An operator did something.
     Operator {
-        /// What.
         #[serde(flatten)]
         operation: Operation,
     },
     /// The session's own timeline did something: a case's force or failure.
     Timeline {
-        /// What.
         #[serde(flatten)]
         operation: Operation,
     },
@@ -54,10 +49,7 @@ pub enum EventKind {
         status: String,
     },
     /// The run went against an expectation of its scenario.
-    Violated {
-        /// The expectation.
-        expectation: String,
-    },
+    Violated { expectation: String },
 }
 
 /// The events as they are written.
@@ -114,7 +106,7 @@ pub fn append(path: &Path, events: &[Event]) -> Result<(), RecordError> {
 /// All whole events of a file; a last line that was cut off is left out.
 ///
 /// # Errors
-/// The file cannot be read, or a line before the last is no event.
+/// The file cannot be read, or a line before the last is not an event.
 pub fn read(path: &Path) -> std::io::Result<Vec<Event>> {
     let mut events = Vec::new();
     let mut reader = BufReader::new(regular::open(path)?);

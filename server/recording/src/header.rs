@@ -15,9 +15,7 @@ pub const FORMAT: u32 = 1;
 /// What the session does not know of itself.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Provenance {
-    /// The program's version.
     pub onescan: String,
-    /// The scenario's name.
     pub scenario: String,
     /// The scenario's folder within `scenario/`, empty if it is that itself.
     pub folder: String,
@@ -30,14 +28,12 @@ pub struct Provenance {
     /// The clients in whose place people operated.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub operated: Vec<ClientName>,
-    /// `lockstep` or `freewheel`.
     pub mode: String,
     /// When the run was to be complete.
     #[serde(rename = "until_ns")]
     pub until: VirtualTime,
     /// What noise, jitter and other chance began with.
     pub seed: u64,
-    /// The scenario's files.
     pub files: Vec<SourceFile>,
 }
 
@@ -60,15 +56,11 @@ impl SourceFile {
 /// A signal of a recorded session.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct HeaderSignal {
-    /// Its name.
     pub name: SignalName,
-    /// Its type.
     #[serde(rename = "type")]
     pub ty: SignalType,
-    /// Its unit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<String>,
-    /// Who writes it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub writer: Option<ClientName>,
     /// False if the digests hold it and the trajectory does not.
@@ -80,7 +72,6 @@ pub struct HeaderSignal {
 pub struct Header {
     /// Version of the layout.
     pub recording: u32,
-    /// What was run.
     #[serde(flatten)]
     pub provenance: Provenance,
     /// The step of virtual time.

@@ -7,7 +7,7 @@
 //! | [`event`] | what happened beside the steps |
 //! | `column`, `block` | the signals recorded; runs of steps |
 //! | `sink` | the thread that encodes |
-//! | [`rhythm`], `early` | when steps reach the disk before their part is full |
+//! | [`flush_policy`], `early` | when steps reach the disk before their part is full |
 //! | [`parquet`], [`csv`], [`mcap`] | the forms of a trajectory |
 //! | [`reader`] | a recording read back |
 //!
@@ -19,17 +19,17 @@ pub(crate) mod column;
 pub mod csv;
 mod early;
 pub mod event;
+pub mod flush_policy;
 pub mod header;
 pub mod mcap;
 pub mod parquet;
 pub mod reader;
 pub mod recorder;
-pub mod rhythm;
 pub(crate) mod sink;
 
 pub use column::Column;
 pub use event::{Event, EventKind};
+pub use flush_policy::FlushPolicy;
 pub use header::{Header, Provenance, SourceFile};
 pub use reader::{ExportFormat, Recording, RecordingError, Row, Rows};
 pub use recorder::{Choice, Recorder};
-pub use rhythm::Rhythm;

@@ -30,28 +30,13 @@ use crate::{csv, mcap};
 pub enum RecordingError {
     /// Nothing says that it is one.
     #[error("{} is not a recording: it has no `{HEADER}`{}", path.display(), several(runs))]
-    Foreign {
-        /// The folder.
-        path: PathBuf,
-        /// Recordings in it.
-        runs: Vec<String>,
-    },
+    Foreign { path: PathBuf, runs: Vec<String> },
     /// A layout that this version does not know.
     #[error("{}: version {version} of the layout of recordings is not known; this program knows {FORMAT}", path.display())]
-    Version {
-        /// The folder.
-        path: PathBuf,
-        /// Its version.
-        version: u32,
-    },
+    Version { path: PathBuf, version: u32 },
     /// A file that cannot be read, or is not what its name says.
     #[error("cannot read {}: {source}", path.display())]
-    Damaged {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: io::Error,
-    },
+    Damaged { path: PathBuf, source: io::Error },
     /// A pattern of no signal.
     #[error(transparent)]
     Unmatched(#[from] Unmatched),
@@ -70,11 +55,8 @@ fn several(runs: &[String]) -> String {
 /// A form of trajectory that a recording can be written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExportFormat {
-    /// Comma-separated values.
     Csv,
-    /// One Parquet file.
     Parquet,
-    /// MCAP.
     Mcap,
 }
 
@@ -105,12 +87,9 @@ pub struct Rows {
     pub rows: Vec<Row>,
 }
 
-/// A step.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Row {
-    /// Its number.
     pub step: StepCount,
-    /// Its virtual time.
     pub t_v: VirtualTime,
     /// The digest of all steps up to it.
     pub digest: Digest,

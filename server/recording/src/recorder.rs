@@ -27,10 +27,10 @@ use super::block::{Block, Schedule};
 use super::column::{Column, columns};
 use super::csv::CsvSink;
 use super::event::{Event, EventKind, EventLog};
+use super::flush_policy::FlushPolicy;
 use super::header::{Header, Provenance};
 use super::mcap::McapSink;
 use super::parquet::ParquetSink;
-use super::rhythm::Rhythm;
 use super::sink::{Encoder, Shape, Sink, failed};
 
 /// Name of the header's file.
@@ -43,13 +43,10 @@ pub const EVENTS: &str = "events.jsonl";
 pub struct Choice {
     /// The signals; all without patterns.
     pub signals: Vec<SignalPattern>,
-    /// CSV too.
     pub csv: bool,
-    /// MCAP too.
     pub mcap: bool,
 }
 
-/// Records a session.
 #[derive(Debug)]
 pub struct Recorder {
     folder: PathBuf,
@@ -59,7 +56,7 @@ pub struct Recorder {
     events: Option<EventLog>,
     /// The block that grows.
     block: Arc<Mutex<Block>>,
-    rhythm: Rhythm,
+    flush_policy: FlushPolicy,
     schedule: Schedule,
     /// The last step that was seen.
     last: (StepCount, VirtualTime),
@@ -75,16 +72,16 @@ impl Recorder {
             encoder: None,
             events: None,
             block: Arc::default(),
-            rhythm: Rhythm::default(),
+            flush_policy: FlushPolicy::default(),
             schedule: Schedule::new(1, 1),
             last: (StepCount::default(), VirtualTime::ZERO),
         }
     }
 
-    /// The same, with another rhythm in which steps reach the disk.
+    /// The same, with another flush_policy in which steps reach the disk.
     #[must_use]
-    pub fn writing(mut self, rhythm: Rhythm) -> Self {
-        self.rhythm = rhythm;
+    pub fn writing(mut self, flush_policy: FlushPolicy) -> Self {
+        self.flush_policy = flush_policy;
         self
     }
 
@@ -106,7 +103,7 @@ impl Recorder {
         block.reserve(rows, session.image().len());
         self.block = Arc::new(Mutex::new(block));
         let first = (session.cycle().steps().0, digest.clone());
-        self.encoder = Some(Encoder::start(self.sinks(columns)?, first, Arc::clone(&self.block), self.rhythm)?);
+        self.encoder = Some(Encoder::start(self.sinks(columns)?, first, Arc::clone(&self.block), self.flush_policy)?);
         Ok(())
     }
 
@@ -137,7 +134,7 @@ impl Recorder {
             Some(full) => encoder.exchange(full).map(|empty| *self.block() = empty),
             None => Some(()),
         };
-        if let Rhythm::Steps(steps) = self.rhythm
+        if let FlushPolicy::Steps(steps) = self.flush_policy
             && self.last.0.0.is_multiple_of(steps.max(1))
         {
             done = done.and_then(|()| encoder.write());

@@ -15,7 +15,7 @@ use onescan_server::observer::RecordError;
 use super::block::Block;
 use super::column::Column;
 use super::early::Early;
-use super::rhythm::{Beat, Rhythm};
+use super::flush_policy::{FlushPolicy, FlushTimer};
 
 /// One that fills, one that waits, one that is encoded.
 const BLOCKS: usize = 3;
@@ -43,7 +43,6 @@ pub(super) struct Shape {
 /// What goes to the thread.
 #[derive(Debug)]
 enum Message {
-    /// A full block.
     Block(Block),
     /// Write what the growing block has, and say when that is done.
     Write,
@@ -65,7 +64,7 @@ impl Encoder {
         sinks: Vec<Box<dyn Sink>>,
         (first_step, digest): (u64, TrajectoryDigest),
         growing: Arc<Mutex<Block>>,
-        rhythm: Rhythm,
+        flush_policy: FlushPolicy,
     ) -> io::Result<Self> {
         let (to_encode, messages) = sync_channel(BLOCKS);
         let (back, emptied) = sync_channel::<Block>(BLOCKS);
@@ -74,16 +73,16 @@ impl Encoder {
             // The channel has room for all of them, and its receiver is here.
             back.send(Block::default()).map_err(io::Error::other)?;
         }
-        let (early, beat) = (Early::default(), Beat::new(rhythm));
-        let mut encoding = Encoding { sinks, digest, known: 1, next_step: first_step, growing, early, beat };
+        let (early, flush_timer) = (Early::default(), FlushTimer::new(flush_policy));
+        let mut encoding = Encoding { sinks, digest, known: 1, next_step: first_step, growing, early, flush_timer };
         let encode = move || {
-            while let Ok(message) = encoding.beat.next(&messages) {
+            while let Ok(message) = encoding.flush_timer.next(&messages) {
                 match message {
                     Some(Message::Block(block)) => {
                         let empty = encoding.full(block)?;
                         // A session that ends does not want it back; what it sent before is still encoded.
                         let _wanted = back.send(empty);
-                        if encoding.beat.is_due() {
+                        if encoding.flush_timer.is_due() {
                             encoding.write()?;
                         }
                     }
@@ -134,7 +133,7 @@ struct Encoding {
     next_step: u64,
     growing: Arc<Mutex<Block>>,
     early: Early,
-    beat: Beat,
+    flush_timer: FlushTimer,
 }
 
 impl Encoding {
@@ -145,7 +144,7 @@ impl Encoding {
         self.early.full(&block);
         self.next_step = block.first_step + block.rows() as u64;
         if block.ends_part {
-            self.beat.written();
+            self.flush_timer.written();
         }
         block.clear();
         Ok(block)
@@ -153,7 +152,7 @@ impl Encoding {
 
     /// Writes what has come of a block that is not full yet.
     fn write(&mut self) -> io::Result<()> {
-        self.beat.written();
+        self.flush_timer.written();
         let growing = {
             let growing = self.growing.lock().unwrap_or_else(PoisonError::into_inner);
             // One that comes after blocks which are still on their way here would be written before them.

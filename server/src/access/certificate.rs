@@ -21,9 +21,7 @@ const OBJECT: u8 = 0x06;
 const VERSION: u8 = 0xa0;
 /// `UTF8String`, `PrintableString` and `IA5String`: of what names are made, and what is UTF-8 as it is.
 const TEXTS: [u8; 3] = [0x0c, 0x13, 0x16];
-/// `id-at-commonName`, 2.5.4.3.
 const COMMON_NAME: [u8; 3] = [0x55, 4, 3];
-/// `id-at-organizationalUnitName`, 2.5.4.11.
 const UNIT: [u8; 3] = [0x55, 4, 11];
 
 /// Why a certificate is nobody's.
@@ -36,7 +34,7 @@ pub enum BadSubject {
     #[error("its subject must have one common name (CN), the client's name")]
     NoName,
     /// Not the name of a client.
-    #[error("the common name (CN) of its subject is no client's name: {0}")]
+    #[error("the common name (CN) of its subject is not a client's name: {0}")]
     Name(String),
     /// A role that is none.
     #[error("the organisational unit (OU) of its subject must be `client`, `operator` or `viewer`, or absent")]
@@ -66,7 +64,7 @@ impl Holder {
     }
 }
 
-/// The parts of the subject that are text, each with its kind; nothing if this is no certificate.
+/// The parts of the subject that are text, each with its kind; nothing if this is not a certificate.
 fn subject(der: &[u8]) -> Option<Vec<(&[u8], &str)>> {
     let mut certificate = inside(&mut { der }, SEQUENCE)?;
     let mut signed = inside(&mut certificate, SEQUENCE)?;

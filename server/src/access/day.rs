@@ -15,7 +15,7 @@ const ERA_DAYS: i64 = 146_097;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Day(u32);
 
-/// A text that is no day.
+/// A text that is not a day.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("`{0}` is not a day from 1970 to 9999: write it as in `2027-03-31`")]
 pub struct BadDay(String);

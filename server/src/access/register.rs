@@ -24,14 +24,12 @@ pub struct Pass {
     pub role: Role,
     /// The last day on which it is good.
     pub expires: Option<Day>,
-    /// Its hash.
     pub hash: TokenHash,
 }
 
 /// With what somebody has shown who he is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Proof {
-    /// A token.
     Token,
     /// A certificate that an authority of the session has signed.
     Certificate,
@@ -53,7 +51,6 @@ pub struct Holder {
     pub name: String,
     /// What it is good for.
     pub role: Role,
-    /// Which of them.
     pub proof: Proof,
 }
 
@@ -89,7 +86,6 @@ pub enum RegisterError {
     /// A name that cannot be told from others.
     #[error("`{}` cannot be the name of a token: use letters, digits, `_`, `.`, `-` and `@`, 64 at most", one_line(.0))]
     BadName(String),
-    /// Too many.
     #[error("there are {PASSES_MAX} tokens, and there may not be more: revoke some")]
     TooMany,
 }
@@ -97,7 +93,6 @@ pub enum RegisterError {
 /// Why somebody is not let in.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum TokenRefusal {
-    /// None was shown.
     #[error(
         "this session lets nobody in without a token: give one in `token` of `hello` (`--token-file`, ONESCAN_TOKEN)"
     )]
@@ -105,46 +100,28 @@ pub enum TokenRefusal {
     /// Not one of this session's.
     #[error("the token is not one of this session's: it may have been revoked, or be another session's")]
     Unknown,
-    /// Too old.
     #[error("token `{name}` expired: its last day was {last}")]
-    Expired {
-        /// Its name.
-        name: String,
-        /// Its last day.
-        last: Day,
-    },
-    /// For something else.
+    Expired { name: String, last: Day },
     #[error("{proof} `{name}` is good for `{role}`, not to be {wanted}")]
     OtherRole {
-        /// What was shown.
         proof: Proof,
-        /// Its name.
         name: String,
         /// What it is good for.
         role: Role,
         /// What its holder wants to be.
         wanted: &'static str,
     },
-    /// For another client.
     #[error("{proof} `{name}` is good for `{role}`, not for client `{wanted}`")]
     OtherClient {
-        /// What was shown.
         proof: Proof,
-        /// Its name.
         name: String,
         /// What it is good for.
         role: Role,
         /// Who its holder wants to be.
         wanted: ClientName,
     },
-    /// To look only.
     #[error("{proof} `{name}` lets its holder look, and change nothing")]
-    LooksOnly {
-        /// What was shown.
-        proof: Proof,
-        /// Its name.
-        name: String,
-    },
+    LooksOnly { proof: Proof, name: String },
 }
 
 impl Register {

@@ -21,7 +21,7 @@ pub enum Role {
     Viewer,
 }
 
-/// A text that is no role.
+/// A text that is not a role.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("a role is `operator`, `trainer`, `viewer` or `client:NAME`, as in `client:plant`")]
 pub struct BadRole;

@@ -22,16 +22,14 @@ pub struct Token(String);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct TokenHash([u8; BYTES]);
 
-/// A text that is no token, or no hash of one.
+/// A text that is not a token, or no hash of one.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum BadToken {
     /// Not a token. The text is not repeated: it may be another secret.
     #[error("not a token: a token is `onescan_` and 64 digits of base 16, as `onescan token new` prints it")]
     Token,
-    /// Not a hash.
     #[error("not the hash of a token: it is `b3:` and 64 digits of base 16")]
     Hash,
-    /// No random numbers.
     #[error("the operating system gives no random numbers: {0}")]
     NoRandomness(String),
 }

@@ -62,7 +62,6 @@ pub enum DigestTextError {
         /// What stands before the colon; `d1` for the first version, which had no prefix.
         found: String,
     },
-    /// Something else.
     #[error("`{0}` is not a digest: `{VERSION}:` and 64 hexadecimal digits are expected")]
     Form(String),
 }

@@ -2,19 +2,19 @@
 //!
 //! | module | subject |
 //! |---|---|
-//! | [`reception`] | connections, from the first byte until they take part, ask as operators, or are sent away |
-//! | `visitor` | one connection in the reception |
+//! | [`acceptor`] | connections, from the first byte until they take part, ask as operators, or are sent away |
+//! | `visitor` | one connection in the acceptor |
 //! | `places` | how many operators are in, by address |
-//! | [`seating`] | the seats of a session that forms: who has one, who is missing, how long that may take |
+//! | [`registration`] | the seats of a session that forms: who has one, who is missing, how long that may take |
 //!
 //! What happens comes in as calls with the time at which it happened; what is to be done comes out as [`Action`]s.
 //! [`transport::tcp`](crate::transport::tcp) and [`formation`](crate::formation) do it with sockets and a clock; the proofs
 //! (`tests/proofs/lobby`) move the same machines through every order of what clients, operators and strangers may do.
 
+pub mod acceptor;
 mod places;
-pub mod reception;
-pub mod seating;
+pub mod registration;
 mod visitor;
 
-pub use reception::{Action, Now, Reception, Terms, Visitor};
-pub use seating::{Seating, Verdict};
+pub use acceptor::{Acceptor, Action, Now, Terms, Visitor};
+pub use registration::{Registration, Verdict};

@@ -1,4 +1,4 @@
-//! One connection in the reception.
+//! One connection in the acceptor.
 
 use std::net::IpAddr;
 use std::time::Duration;
@@ -12,7 +12,6 @@ use crate::wire::{ClientMessage, Frame, FrameCodec, FrameError, HANDSHAKE_FRAME_
 /// How far a connection has come.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Stage {
-    /// `hello` is due.
     Greeting,
     /// A client whose `join` is due.
     Applying,
@@ -26,9 +25,8 @@ pub(super) enum Stage {
     Leaving,
 }
 
-/// One connection.
 #[derive(Clone, Debug)]
-pub(super) struct Guest {
+pub(super) struct Connection {
     pub(super) address: IpAddr,
     pub(super) stage: Stage,
     /// When the stage ends whatever happens; it does not in those in which the session is to act.
@@ -42,7 +40,6 @@ pub(super) struct Guest {
 /// What the bytes of a connection are.
 #[derive(Debug)]
 pub(super) enum Said {
-    /// A message.
     Message(ClientMessage),
     /// Not yet a whole one.
     Nothing,
@@ -50,7 +47,7 @@ pub(super) enum Said {
     Nonsense(String),
 }
 
-impl Guest {
+impl Connection {
     pub(super) fn new(address: IpAddr, until: Duration) -> Self {
         let (limit, incoming) = (HANDSHAKE_FRAME_BYTES_MAX, BytesMut::new());
         Self { address, stage: Stage::Greeting, until: Some(until), holder: None, limit, incoming }

@@ -20,7 +20,7 @@ use std::collections::{BTreeSet, VecDeque};
 use std::time::Duration;
 
 use crate::carrier::{Answer, Carrier, Grant};
-use crate::checkpoint::Makeup;
+use crate::checkpoint::SessionSettings;
 use crate::client::{ClientId, ClientOperation};
 use crate::digest::{Digest, TrajectoryDigest};
 use crate::end::{FailureCause, SessionEnd, Violation};
@@ -40,7 +40,7 @@ use show::Shown;
 const HOLD: Duration = Duration::from_millis(100);
 
 /// One client as its driver sees it: the way to it, and the bytes that go to and fro.
-struct Berth {
+struct ClientSlot {
     id: ClientId,
     carrier: Box<dyn Carrier>,
     inputs: Vec<u8>,
@@ -50,8 +50,8 @@ struct Berth {
 /// A session that runs.
 pub struct Lockstep {
     session: Session,
-    berths: Vec<Berth>,
-    /// The berths in the order in which orders are given: those elsewhere first, so that they run
+    slots: Vec<ClientSlot>,
+    /// The slots in the order in which orders are given: those elsewhere first, so that they run
     /// beside those of this process.
     order: Vec<usize>,
     digest: Option<TrajectoryDigest>,
@@ -66,7 +66,7 @@ pub struct Lockstep {
     /// Inputs of operators that are yet to be replayed.
     replayed: VecDeque<OperatorInput>,
     timeline: Timeline,
-    makeup: Makeup,
+    settings: SessionSettings,
     /// Settings in which a checkpoint that is taken up may be another.
     may_differ: BTreeSet<String>,
     /// What the timeline did to the initial values, until observers can be told.
@@ -77,9 +77,7 @@ pub struct Lockstep {
 /// What came of a session.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Outcome {
-    /// How it ended.
     pub end: SessionEnd,
-    /// Steps committed.
     pub steps: StepCount,
     /// Virtual time of the last committed step.
     pub t_v: VirtualTime,
@@ -98,14 +96,15 @@ pub enum Reached {
 
 /// What else than its time ends a run.
 #[derive(Clone, Copy, Debug)]
-enum Heed {
-    /// Nothing.
+enum Handling {
     TimeOnly,
     /// The first reset after so many.
-    Resets { before: u64 },
+    Resets {
+        before: u64,
+    },
 }
 
-impl Heed {
+impl Handling {
     fn is_reset(self, resets: u64) -> bool {
         matches!(self, Self::Resets { before } if resets != before)
     }
@@ -114,19 +113,19 @@ impl Heed {
 impl Lockstep {
     /// A session whose clients have all joined, in the order of their ids.
     pub(crate) fn new(session: Session, carriers: Vec<Box<dyn Carrier>>) -> Self {
-        let berth = |(id, carrier)| {
+        let slot = |(id, carrier)| {
             let member = session.member(id);
             let (inputs, outputs) = member.map_or((0, 0), |member| (member.inputs.size(), member.outputs.size()));
-            Berth { id, carrier, inputs: vec![0; inputs], outputs: vec![0; outputs] }
+            ClientSlot { id, carrier, inputs: vec![0; inputs], outputs: vec![0; outputs] }
         };
-        let berths: Vec<Berth> = session.clients().zip(carriers).map(berth).collect();
-        let mut order: Vec<usize> = (0..berths.len()).collect();
+        let slots: Vec<ClientSlot> = session.clients().zip(carriers).map(slot).collect();
+        let mut order: Vec<usize> = (0..slots.len()).collect();
         // A stable sort: among themselves clients stay in the order of their names.
-        order.sort_by_key(|index| !berths[*index].carrier.runs_elsewhere());
+        order.sort_by_key(|index| !slots[*index].carrier.runs_elsewhere());
         let shown = Shown::new(session.image().len());
         Self {
             session,
-            berths,
+            slots,
             order,
             digest: None,
             observers: Vec::new(),
@@ -137,7 +136,7 @@ impl Lockstep {
             resets: 0,
             replayed: VecDeque::new(),
             timeline: Timeline::default(),
-            makeup: Makeup::default(),
+            settings: SessionSettings::default(),
             may_differ: BTreeSet::new(),
             at_start: Vec::new(),
             shown,
@@ -227,7 +226,7 @@ impl Lockstep {
     /// # Errors
     /// A recording cannot be written; the session is closed for all then.
     pub fn run_to(&mut self, t_v: VirtualTime) -> Result<Reached, RecordError> {
-        self.run_until(t_v, Heed::TimeOnly)
+        self.run_until(t_v, Handling::TimeOnly)
     }
 
     /// Runs as [`run_to`](Self::run_to) does, or to the first boundary after a reset.
@@ -235,11 +234,11 @@ impl Lockstep {
     /// # Errors
     /// A recording cannot be written; the session is closed for all then.
     pub fn run_to_or_reset(&mut self, t_v: VirtualTime) -> Result<Reached, RecordError> {
-        self.run_until(t_v, Heed::Resets { before: self.resets })
+        self.run_until(t_v, Handling::Resets { before: self.resets })
     }
 
-    fn run_until(&mut self, t_v: VirtualTime, heed: Heed) -> Result<Reached, RecordError> {
-        let reached = self.cycle_until(t_v, heed);
+    fn run_until(&mut self, t_v: VirtualTime, handling: Handling) -> Result<Reached, RecordError> {
+        let reached = self.cycle_until(t_v, handling);
         match &reached {
             Ok(Reached::Boundary) => return reached,
             Ok(Reached::End) => {}
@@ -249,13 +248,13 @@ impl Lockstep {
     }
 
     /// The loop of a session. Everything that can happen between two states is decided here.
-    fn cycle_until(&mut self, t_v: VirtualTime, heed: Heed) -> Result<Reached, RecordError> {
+    fn cycle_until(&mut self, t_v: VirtualTime, handling: Handling) -> Result<Reached, RecordError> {
         if std::mem::take(&mut self.begin_observers) {
-            self.tell_beginning()?;
+            self.notify_beginning()?;
         }
         loop {
             if self.session.cycle().is_at_boundary() {
-                if self.digest.is_some() && (self.session.t_v() >= t_v || heed.is_reset(self.resets)) {
+                if self.digest.is_some() && (self.session.t_v() >= t_v || handling.is_reset(self.resets)) {
                     return Ok(Reached::Boundary);
                 }
                 self.take_wishes()?;
@@ -309,8 +308,8 @@ impl Lockstep {
 
     /// Nothing to do for a client in `ready` or `write`: it is ready at once.
     fn acknowledge(&mut self) {
-        for berth in &self.berths {
-            if self.session.cycle().is_awaited(berth.id) && self.session.ready(berth.id).is_err() {
+        for slot in &self.slots {
+            if self.session.cycle().is_awaited(slot.id) && self.session.ready(slot.id).is_err() {
                 // The violation has ended the session; the next advance reports it.
                 return;
             }
@@ -318,8 +317,8 @@ impl Lockstep {
     }
 
     fn read(&mut self) {
-        for berth in &mut self.berths {
-            if self.session.cycle().is_due(berth.id) && self.session.read(berth.id, &mut berth.inputs).is_err() {
+        for slot in &mut self.slots {
+            if self.session.cycle().is_due(slot.id) && self.session.read(slot.id, &mut slot.inputs).is_err() {
                 // As in `acknowledge`.
                 return;
             }
@@ -330,20 +329,20 @@ impl Lockstep {
     fn set_up(&mut self, operations: &[(ClientId, ClientOperation)]) {
         self.pacer.rebase();
         for index in &self.order {
-            let berth = &mut self.berths[*index];
-            let own: Vec<_> = operations.iter().filter(|(id, _)| *id == berth.id).map(|(_, own)| own.clone()).collect();
-            berth.carrier.set_up(&own, &mut berth.outputs);
+            let slot = &mut self.slots[*index];
+            let own: Vec<_> = operations.iter().filter(|(id, _)| *id == slot.id).map(|(_, own)| own.clone()).collect();
+            slot.carrier.set_up(&own, &mut slot.outputs);
         }
-        for berth in &mut self.berths {
-            let answered = berth.carrier.collect(&mut berth.outputs);
+        for slot in &mut self.slots {
+            let answered = slot.carrier.collect(&mut slot.outputs);
             match answered {
                 // A violation has ended the session, which is looked at below.
-                Ok(Answer { sequence: StepCount(0), .. }) => drop(self.session.initialise(berth.id, &berth.outputs)),
+                Ok(Answer { sequence: StepCount(0), .. }) => drop(self.session.initialise(slot.id, &slot.outputs)),
                 Ok(Answer { sequence: got, .. }) => {
                     let violation = Violation::WrongStep { got, expected: StepCount(0) };
-                    self.session.fail(berth.id, FailureCause::Violation(violation));
+                    self.session.fail(slot.id, FailureCause::Violation(violation));
                 }
-                Err(cause) => self.session.fail(berth.id, cause),
+                Err(cause) => self.session.fail(slot.id, cause),
             }
             if self.session.end().is_some() {
                 return;
@@ -356,24 +355,24 @@ impl Lockstep {
     fn take_turns(&mut self) {
         let (sequence, t_v) = (self.session.cycle().steps(), self.session.t_v());
         for index in &self.order {
-            let berth = &mut self.berths[*index];
-            if self.session.cycle().is_due(berth.id) {
-                berth.carrier.grant(Grant { sequence, t_v, inputs: &berth.inputs }, &mut berth.outputs);
+            let slot = &mut self.slots[*index];
+            if self.session.cycle().is_due(slot.id) {
+                slot.carrier.grant(Grant { sequence, t_v, inputs: &slot.inputs }, &mut slot.outputs);
             }
         }
-        for berth in &mut self.berths {
-            if !self.session.cycle().is_due(berth.id) {
+        for slot in &mut self.slots {
+            if !self.session.cycle().is_due(slot.id) {
                 continue;
             }
-            match berth.carrier.collect(&mut berth.outputs) {
+            match slot.carrier.collect(&mut slot.outputs) {
                 Ok(Answer { sequence, t_v, wake }) => {
-                    let turn = Turn { sequence, t_v, wake, outputs: &berth.outputs };
-                    if self.session.submit(berth.id, &turn).is_err() {
+                    let turn = Turn { sequence, t_v, wake, outputs: &slot.outputs };
+                    if self.session.submit(slot.id, &turn).is_err() {
                         // As in `acknowledge`.
                         return;
                     }
                 }
-                Err(cause) => return self.session.fail(berth.id, cause),
+                Err(cause) => return self.session.fail(slot.id, cause),
             }
         }
     }
@@ -382,7 +381,7 @@ impl Lockstep {
         if let Some(digest) = &mut self.digest {
             digest.step(self.session.image());
         }
-        self.tell_step()
+        self.notify_step()
     }
 
     /// Virtual time is held: waits for a wish, and for a client that leaves meanwhile.
@@ -390,9 +389,9 @@ impl Lockstep {
         self.publish();
         self.mailbox.wait(HOLD);
         self.pacer.rebase();
-        for berth in &mut self.berths {
-            if let Some(cause) = berth.carrier.find_lost() {
-                return self.session.fail(berth.id, cause);
+        for slot in &mut self.slots {
+            if let Some(cause) = slot.carrier.find_lost() {
+                return self.session.fail(slot.id, cause);
             }
         }
     }
@@ -402,8 +401,8 @@ impl Lockstep {
         self.closed = true;
         let end = self.session.end().cloned().unwrap_or(SessionEnd::Stopped { t_v: self.session.t_v() });
         // All are told before anybody is waited for.
-        self.berths.iter_mut().for_each(|berth| berth.carrier.end(&end));
-        self.berths.iter_mut().for_each(|berth| berth.carrier.farewell());
+        self.slots.iter_mut().for_each(|slot| slot.carrier.end(&end));
+        self.slots.iter_mut().for_each(|slot| slot.carrier.close());
         end
     }
 

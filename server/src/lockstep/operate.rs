@@ -90,12 +90,12 @@ impl Lockstep {
             None => self.session.operate(&operation),
         };
         if done.is_ok() {
-            self.tell_operated(operation, author)?;
+            self.notify_operated(operation, author)?;
         }
         Ok(done)
     }
 
-    pub(super) fn tell_operated(&mut self, operation: Operation, author: Author) -> Result<(), RecordError> {
+    pub(super) fn notify_operated(&mut self, operation: Operation, author: Author) -> Result<(), RecordError> {
         let (step, t_v) = self.committed();
         let input = OperatorInput { resets: self.resets, step, t_v, author, operation };
         self.observers.iter_mut().try_for_each(|observer| observer.operated(&input))
@@ -104,7 +104,7 @@ impl Lockstep {
     fn operate_client(&mut self, name: &ClientName, asked: &ClientOperation) -> Result<(), OperationError> {
         let id = self.client_id(name)?;
         let refused = |source| OperationError::Client { client: name.clone(), source };
-        self.berths[id.index()].carrier.operate(asked).map_err(refused)?;
+        self.slots[id.index()].carrier.operate(asked).map_err(refused)?;
         if asked.moves_turns() {
             self.session.wake_next(id);
         }

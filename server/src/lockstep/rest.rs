@@ -26,7 +26,7 @@ impl Lockstep {
         if let Some(digest) = &mut self.digest {
             digest.steps(self.session.image(), passed);
         }
-        self.tell_step()?;
+        self.notify_step()?;
         Ok(passed > 0)
     }
 

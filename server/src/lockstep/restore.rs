@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::{Lockstep, Reached};
-use crate::checkpoint::{Checkpoint, CheckpointError, Makeup, PlanSummary};
+use crate::checkpoint::{Checkpoint, CheckpointError, PlanSummary, SessionSettings};
 use crate::client::StateError;
 use crate::end::FailureCause;
 use crate::observer::RecordError;
@@ -12,8 +12,8 @@ use crate::timeline::When;
 
 impl Lockstep {
     /// Says what the session is made of, for checkpoints that are taken of it and by it.
-    pub fn set_makeup(&mut self, makeup: Makeup) {
-        self.makeup = makeup;
+    pub fn set_settings(&mut self, settings: SessionSettings) {
+        self.settings = settings;
     }
 
     /// Lets a checkpoint be taken up in which these settings are others: whoever says so knows that they leave the shape of
@@ -32,25 +32,25 @@ impl Lockstep {
         let digest = self.digest.clone().ok_or(CheckpointError::NotNow)?;
         let names = self.session.plan().clients().to_vec();
         let mut clients = Vec::with_capacity(names.len());
-        for (berth, client) in self.berths.iter_mut().zip(names) {
-            match berth.carrier.save() {
+        for (slot, client) in self.slots.iter_mut().zip(names) {
+            match slot.carrier.save() {
                 Ok(state) => clients.push((client, state)),
                 Err(source) => {
                     if let StateError::Lost(cause) = &source {
-                        self.session.fail(berth.id, cause.clone());
+                        self.session.fail(slot.id, cause.clone());
                     }
                     return Err(CheckpointError::Client { client, source });
                 }
             }
         }
         let plan = PlanSummary::of(self.session.plan());
-        let (makeup, timeline) = (self.makeup.clone(), self.timeline.save());
+        let (settings, timeline) = (self.settings.clone(), self.timeline.save());
         self.observers.iter_mut().for_each(|observer| observer.saved(&self.session));
-        Ok(Checkpoint { plan, makeup, session, timeline, digest, clients })
+        Ok(Checkpoint { plan, settings, session, timeline, digest, clients })
     }
 
     /// Goes on to the first boundary at or after `t_v`, or to the next one from which a session can fork whose operations
-    /// wait for one of the timeline's lookouts: the last boundary before that comes true. At least one step is done, but
+    /// wait for one of the timeline's condition_monitors: the last boundary before that comes true. At least one step is done, but
     /// for a session that has yet to begin, which begins.
     ///
     /// # Errors
@@ -68,7 +68,7 @@ impl Lockstep {
         }
     }
 
-    /// The lookouts of the timeline that come true in the step that begins here.
+    /// The condition_monitors of the timeline that come true in the step that begins here.
     pub fn coming(&self) -> impl Iterator<Item = &When> {
         self.timeline.coming(&self.session, self.session.t_v())
     }
@@ -86,10 +86,10 @@ impl Lockstep {
         if let Some(difference) = checkpoint.plan.difference(&plan) {
             return Err(CheckpointError::OtherSession(difference));
         }
-        if let Some(difference) = self.makeup.difference(&checkpoint.makeup, &self.may_differ) {
+        if let Some(difference) = self.settings.difference(&checkpoint.settings, &self.may_differ) {
             return Err(difference);
         }
-        let (theirs, ours) = (checkpoint.makeup.name.clone(), self.makeup.name.clone());
+        let (theirs, ours) = (checkpoint.settings.name.clone(), self.settings.name.clone());
         let other = |source| CheckpointError::OtherTimeline { theirs, ours, source };
         self.timeline.restore(&checkpoint.timeline, checkpoint.t_v()).map_err(other)?;
         let same_clients = checkpoint.clients.iter().map(|(name, _)| name).eq(self.session.plan().clients());
@@ -97,17 +97,17 @@ impl Lockstep {
             return Err(CheckpointError::OtherSession("its state does not fit its own plan".to_owned()));
         }
         let (steps, t_v) = (self.session.cycle().steps(), self.session.t_v());
-        for (berth, (client, state)) in self.berths.iter_mut().zip(&checkpoint.clients) {
-            let restored = berth.carrier.restore(steps, t_v, state);
+        for (slot, (client, state)) in self.slots.iter_mut().zip(&checkpoint.clients) {
+            let restored = slot.carrier.restore(steps, t_v, state);
             if let Err(source) = restored {
                 let cause = match &source {
                     StateError::Lost(cause) => cause.clone(),
                     refused => FailureCause::State(refused.to_string()),
                 };
-                self.session.fail(berth.id, cause);
+                self.session.fail(slot.id, cause);
                 return Err(CheckpointError::Client { client: client.clone(), source });
             }
-            self.session.read_back(berth.id, &mut berth.outputs);
+            self.session.read_back(slot.id, &mut slot.outputs);
         }
         self.digest = Some(checkpoint.digest.clone());
         self.begin_observers = true;

@@ -55,19 +55,19 @@ impl Lockstep {
             self.resets += 1;
         }
         self.digest = Some(TrajectoryDigest::begin(&self.session));
-        self.tell_beginning()?;
-        at_start.into_iter().try_for_each(|operation| self.tell_operated(operation, Author::Timeline))
+        self.notify_beginning()?;
+        at_start.into_iter().try_for_each(|operation| self.notify_operated(operation, Author::Timeline))
     }
 
     /// Shows observers the image with which the session begins or goes on.
-    pub(super) fn tell_beginning(&mut self) -> Result<(), RecordError> {
+    pub(super) fn notify_beginning(&mut self) -> Result<(), RecordError> {
         self.publish();
         let Some(digest) = &self.digest else { return Ok(()) };
         self.observers.iter_mut().try_for_each(|observer| observer.begin(&self.session, digest))
     }
 
     /// Shows observers the image that was just committed.
-    pub(super) fn tell_step(&mut self) -> Result<(), RecordError> {
+    pub(super) fn notify_step(&mut self) -> Result<(), RecordError> {
         self.publish();
         let Some(digest) = &self.digest else { return Ok(()) };
         self.observers.iter_mut().try_for_each(|observer| observer.step(&self.session, digest))
@@ -108,8 +108,8 @@ impl Lockstep {
         // The last view is looked at by those who come when all is over, too.
         let parts = if end.is_some() { Parts::ALL } else { self.shown.published.parts() };
         view.clients.clear(parts);
-        for berth in &self.berths {
-            berth.carrier.show(parts, &mut view.clients);
+        for slot in &self.slots {
+            slot.carrier.show(parts, &mut view.clients);
         }
         self.shown.spare = Some(self.shown.published.publish(shared));
     }

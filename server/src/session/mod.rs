@@ -54,7 +54,6 @@ enum Mode {
     OneStep,
 }
 
-/// What [`Session::advance`] found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Progress {
     /// A state was entered; its awaited clients have something to do.
@@ -63,7 +62,6 @@ pub enum Progress {
     Waiting,
     /// At a step boundary, by request.
     Held,
-    /// Over; see [`Session::end`].
     Ended,
 }
 
@@ -163,7 +161,7 @@ impl Session {
         self.plan.clients().iter().zip(&self.members).filter(|(_, member)| member.is_none()).map(|(name, _)| name)
     }
 
-    /// Signals that nobody who joined writes; a session with such a signal is no session.
+    /// Signals that nobody who joined writes; a session with such a signal is not a session.
     pub fn unwritten_signals(&self) -> impl Iterator<Item = &SignalName> {
         self.plan.signals().iter().zip(self.writers.iter()).filter(|(_, writer)| writer.is_none()).map(|(s, _)| &s.name)
     }
@@ -193,7 +191,7 @@ impl Session {
     /// over the writers' values that may change them without a turn.
     pub fn idle_steps(&self) -> u64 {
         let asked = self.stop || self.reset || self.mode != Mode::Running || self.end.is_some();
-        if asked || !self.image.interference().is_empty() {
+        if asked || !self.image.signal_overlay().is_empty() {
             return 0;
         }
         let until = self.until.unwrap_or(VirtualTime::MAX);
@@ -299,7 +297,7 @@ mod tests {
         let mut session = formed();
         session.advance();
         let violation = session.initialise(ClientId(0), &[2]).unwrap_err();
-        assert_eq!(violation.to_string(), "its output `x` is no value: a BOOL must be 0 or 1, not 2");
+        assert_eq!(violation.to_string(), "its output `x` is not a value: a BOOL must be 0 or 1, not 2");
         assert_eq!(session.advance(), Progress::Ended);
         assert_eq!(session.image(), [0], "nothing of it was committed");
         assert_eq!(session.initialise(ClientId(0), &[1]), Err(Violation::SessionOver));

@@ -4,14 +4,14 @@ use onescan_base::did_you_mean;
 
 use super::{Mode, Session};
 use crate::client::OperationRefused;
-use crate::interference::Onset;
 use crate::operation::{Control, Operation, OperationError, SignalFault};
 use crate::signal::{SignalId, SignalName};
+use crate::signal_overlay::Onset;
 
 impl Session {
     /// The signals that are forced.
     pub fn forced(&self) -> impl Iterator<Item = SignalId> + '_ {
-        self.image.interference().forced()
+        self.image.signal_overlay().forced()
     }
 
     /// Asks for a stop, pause, single step or reset at the next step boundary.
@@ -39,25 +39,25 @@ impl Session {
         match operation {
             Operation::Write { signal, value } => {
                 let (id, bytes) = self.valued(signal, value)?;
-                if self.image.interference().is_forced(id) {
+                if self.image.signal_overlay().is_forced(id) {
                     return Err(OperationError::Forced(signal.clone()));
                 }
-                self.image.interference_mut().write(id, bytes);
+                self.image.signal_overlay_mut().write(id, bytes);
             }
             Operation::Force { signal, value } => {
                 let (id, bytes) = self.valued(signal, value)?;
-                self.image.interference_mut().force(id, bytes);
+                self.image.signal_overlay_mut().force(id, bytes);
             }
             Operation::Release { signal } => {
                 let id = self.known(signal)?;
-                if !self.image.interference_mut().release(id) {
+                if !self.image.signal_overlay_mut().release(id) {
                     return Err(OperationError::NotForced(signal.clone()));
                 }
             }
             Operation::Disturb { signal, fault } => self.disturb(signal, fault)?,
             Operation::Mend { signal } => {
                 let id = self.known(signal)?;
-                if !self.image.interference_mut().mend(id) {
+                if !self.image.signal_overlay_mut().clear(id) {
                     return Err(OperationError::NotDisturbed(signal.clone()));
                 }
             }
@@ -77,7 +77,7 @@ impl Session {
         let (ty, step) = (self.layout.ty(id), self.plan.step());
         let committed = self.layout.bytes(id, self.image.committed()).to_vec();
         let onset = Onset { ty, committed: &committed, step, steps: self.cycle.steps() };
-        if self.image.interference_mut().disturb(id, fault, &onset) {
+        if self.image.signal_overlay_mut().disturb(id, fault, &onset) {
             return Ok(());
         }
         Err(OperationError::FaultType { signal: signal.clone(), ty, fault: fault.clone() })

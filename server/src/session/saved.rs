@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::Session;
-use crate::interference::Interference;
+use crate::signal_overlay::SignalOverlay;
 use crate::state::ServerState;
 use crate::time::{StepCount, VirtualTime};
 
@@ -16,7 +16,7 @@ pub struct SessionState {
     image: Vec<u8>,
     /// What the writers last wrote, which a force or a fault may hide in `image`.
     staged: Vec<u8>,
-    interference: Interference,
+    signal_overlay: SignalOverlay,
 }
 
 impl SessionState {
@@ -40,7 +40,7 @@ impl Session {
             wakes: self.clients().map(|client| self.cycle.wake(client)).collect(),
             image: self.image.committed().to_vec(),
             staged: self.image.staged().to_vec(),
-            interference: self.image.interference().clone(),
+            signal_overlay: self.image.signal_overlay().clone(),
         })
     }
 
@@ -50,14 +50,14 @@ impl Session {
         let fits = state.wakes.len() == self.members.len()
             && state.image.len() == self.layout.size()
             && state.staged.len() == self.layout.size()
-            && state.interference.fits(&self.layout)
+            && state.signal_overlay.fits(&self.layout)
             && state.t_v.is_multiple_of(self.plan.step())
             && state.wakes.iter().all(|wake| wake.is_multiple_of(self.plan.step()) && *wake > state.t_v)
             && self.cycle.server() == ServerState::Start
             && self.members.iter().all(Option::is_some);
         if fits {
             self.cycle.resume_at(state.steps, state.t_v, &state.wakes);
-            self.image.load(&state.image, &state.staged, state.interference.clone());
+            self.image.load(&state.image, &state.staged, state.signal_overlay.clone());
         }
         fits
     }

@@ -16,7 +16,6 @@ pub struct Turn<'a> {
     pub t_v: VirtualTime,
     /// When it wants the next turn.
     pub wake: Wake,
-    /// Its outputs.
     pub outputs: &'a [u8],
 }
 

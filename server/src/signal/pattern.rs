@@ -22,7 +22,6 @@ pub struct EmptyPattern;
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("no signal is called `{pattern}`{}", nearest.as_ref().map(|n| format!("; {n}")).unwrap_or_default())]
 pub struct Unmatched {
-    /// The pattern.
     pub pattern: SignalPattern,
     /// The name that may have been meant.
     pub nearest: Option<String>,

@@ -13,18 +13,14 @@ use crate::time::VirtualTime;
 pub enum Condition {
     /// A signal compared with a value.
     Compare {
-        /// The signal.
         signal: SignalName,
-        /// How.
         relation: Relation,
         /// The value, in the text of the signal's type.
         value: String,
     },
-    /// All of these.
     All(Vec<Condition>),
     /// At least one of these.
     Any(Vec<Condition>),
-    /// Not this.
     Not(Box<Condition>),
     /// Different from the image before, in this way; false on the first image.
     Edge(Edge, Box<Condition>),
@@ -39,11 +35,8 @@ pub enum Condition {
 /// How a condition differs from what it was on the image before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Edge {
-    /// It came true.
     Rose,
-    /// It became false.
     Fell,
-    /// Either.
     Changed,
 }
 
@@ -51,7 +44,6 @@ pub enum Edge {
 /// is nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Back {
-    /// Its near end.
     pub from_ns: u64,
     /// Its far end; the start if absent.
     pub to_ns: Option<u64>,
@@ -72,17 +64,11 @@ impl Condition {
 /// How a signal compares with a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Relation {
-    /// `=`
     Equal,
-    /// `<>`
     Unequal,
-    /// `<`
     Less,
-    /// `<=`
     AtMost,
-    /// `>`
     Greater,
-    /// `>=`
     AtLeast,
 }
 

@@ -9,14 +9,14 @@
 //! |---|---|
 //! | this file | operations, when they happen, and how far they have come |
 //! | [`condition`] | conditions as data |
-//! | `lookout` | conditions that are judged for sessions that fork |
+//! | `condition_monitor` | conditions that are judged for sessions that fork |
 //! | [`past`] | conditions judged image by image, with what they remember |
 //!
 //! The timeline is part of the session's state. A checkpoint can be taken up by a session with another
 //! timeline if both agree on what has happened so far.
 
 pub mod condition;
-mod lookout;
+mod condition_monitor;
 pub mod past;
 
 use std::cmp::Ordering;
@@ -32,15 +32,13 @@ use crate::signal::{SignalId, SignalType};
 use crate::time::{TimeSpan, VirtualTime};
 
 pub use condition::{Back, Condition, Edge, Relation};
-use lookout::{Lookout, LookoutState};
+use condition_monitor::{ConditionMonitor, ConditionMonitorState};
 use past::{Judged, Memories};
 
 /// An operation and when it happens.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Scheduled {
-    /// When.
     pub when: When,
-    /// What.
     pub operation: Operation,
 }
 
@@ -51,7 +49,6 @@ pub enum When {
     At(VirtualTime),
     /// After a condition has come true.
     Once {
-        /// The condition.
         condition: Condition,
         /// Images before this time do not count, though they are part of the past that the condition may look at.
         from: VirtualTime,
@@ -87,7 +84,6 @@ pub(crate) enum Stage {
     Waiting,
     /// It happens in the step that ends at this time.
     Due(VirtualTime),
-    /// It has happened.
     Done,
 }
 
@@ -138,7 +134,7 @@ pub struct TimelineState {
     items: Vec<ItemState>,
     /// Conditions that no item of this timeline waits for, but one of a session that forks from here may.
     #[serde(with = "as_json")]
-    lookouts: Vec<LookoutState>,
+    condition_monitors: Vec<ConditionMonitorState>,
 }
 
 /// Operations are told apart by a key, as in recordings. The binary form of checkpoints has no keys,
@@ -164,7 +160,7 @@ impl TimelineState {
     /// What is yet to come: the part that decides how a session goes on.
     pub(crate) fn pending(&self) -> Self {
         let items = self.items.iter().filter(|(_, stage, _)| *stage != Stage::Done).cloned().collect();
-        Self { items, lookouts: Vec::new() }
+        Self { items, condition_monitors: Vec::new() }
     }
 }
 
@@ -174,7 +170,6 @@ pub enum TimelineError {
     /// This session does something before the checkpoint that the other did not.
     #[error("here {operation} {when}, before the checkpoint at {t_v}; there it did not happen", operation = scheduled.operation, when = scheduled.when)]
     New {
-        /// What, and when.
         scheduled: Box<Scheduled>,
         /// When the checkpoint was taken.
         t_v: VirtualTime,
@@ -182,17 +177,13 @@ pub enum TimelineError {
     /// The other session did something before the checkpoint that this one does not.
     #[error("there {operation} {when}, before the checkpoint at {t_v}; here it does not happen", operation = scheduled.operation, when = scheduled.when)]
     Gone {
-        /// What, and when.
         scheduled: Box<Scheduled>,
         /// When the checkpoint was taken.
         t_v: VirtualTime,
     },
     /// What a condition remembers is not of that condition.
     #[error("what the checkpoint remembers of {operation} {when} is not of that condition", operation = scheduled.operation, when = scheduled.when)]
-    Memories {
-        /// What, and when.
-        scheduled: Box<Scheduled>,
-    },
+    Memories { scheduled: Box<Scheduled> },
 }
 
 /// Operations yet to come, and those that have happened.
@@ -204,7 +195,7 @@ pub struct Timeline {
     /// An item waits for its condition.
     waits: bool,
     /// Conditions that are judged for others.
-    lookouts: Vec<Lookout>,
+    condition_monitors: Vec<ConditionMonitor>,
 }
 
 impl Timeline {
@@ -229,22 +220,28 @@ impl Timeline {
     ///
     /// # Errors
     /// A condition on a signal that the session does not have, or with a value that it cannot have.
-    pub fn with_lookouts(mut self, lookouts: Vec<When>, session: &Session) -> Result<Self, OperationError> {
-        let all: Vec<_> = lookouts.into_iter().map(|when| Lookout::new(when, session)).collect::<Result<_, _>>()?;
-        self.lookouts = all.into_iter().flatten().collect();
+    pub fn with_lookouts(mut self, condition_monitors: Vec<When>, session: &Session) -> Result<Self, OperationError> {
+        let all: Vec<_> = condition_monitors
+            .into_iter()
+            .map(|when| ConditionMonitor::new(when, session))
+            .collect::<Result<_, _>>()?;
+        self.condition_monitors = all.into_iter().flatten().collect();
         self.rewind();
         Ok(self)
     }
 
-    /// The lookouts that come true with the image committed at `t_v`, which the next step will judge.
+    /// The condition_monitors that come true with the image committed at `t_v`, which the next step will judge.
     pub(crate) fn coming<'a>(&'a self, session: &'a Session, t_v: VirtualTime) -> impl Iterator<Item = &'a When> {
-        self.lookouts.iter().filter(move |lookout| lookout.is_coming(session, t_v)).map(Lookout::when)
+        self.condition_monitors
+            .iter()
+            .filter(move |condition_monitor| condition_monitor.is_coming(session, t_v))
+            .map(ConditionMonitor::when)
     }
 
     /// Nothing has happened: the session starts, or restarts.
     pub(crate) fn rewind(&mut self) {
         self.items.iter_mut().for_each(Item::begin);
-        self.lookouts.iter_mut().for_each(Lookout::begin);
+        self.condition_monitors.iter_mut().for_each(ConditionMonitor::begin);
         self.look_ahead();
     }
 
@@ -260,14 +257,14 @@ impl Timeline {
         if self.waits {
             self.judge(session, t_v, end);
         }
-        self.lookouts.iter_mut().for_each(|lookout| lookout.judge(session, t_v));
+        self.condition_monitors.iter_mut().for_each(|condition_monitor| condition_monitor.judge(session, t_v));
         self.take_until(end)
     }
 
     /// Until when nothing of it happens while the image stays as it is: the first step that ends then or later is one
     /// to ask for. `None` if a condition is being judged, which may look at the past.
     pub(crate) fn rests_until(&self) -> Option<VirtualTime> {
-        let judging = self.waits || !self.lookouts.is_empty();
+        let judging = self.waits || !self.condition_monitors.is_empty();
         (!judging).then(|| self.next.unwrap_or(VirtualTime::MAX))
     }
 
@@ -316,7 +313,10 @@ impl Timeline {
     /// What a checkpoint keeps.
     pub(crate) fn save(&self) -> TimelineState {
         let items = self.items.iter().map(Item::state).collect();
-        TimelineState { items, lookouts: self.lookouts.iter().filter_map(Lookout::save).collect() }
+        TimelineState {
+            items,
+            condition_monitors: self.condition_monitors.iter().filter_map(ConditionMonitor::save).collect(),
+        }
     }
 
     /// Goes on from a checkpoint taken at `t_v`.
@@ -327,10 +327,11 @@ impl Timeline {
         let mut theirs: Vec<Option<&ItemState>> = state.items.iter().map(Some).collect();
         let mut stages = Vec::with_capacity(self.items.len());
         for item in &self.items {
-            let looked_out = state.lookouts.iter().find(|lookout| lookout.when == item.scheduled.when);
+            let monitored =
+                state.condition_monitors.iter().find(|condition_monitor| condition_monitor.when == item.scheduled.when);
             let same = theirs.iter_mut().find(|their| their.is_some_and(|(their, ..)| *their == item.scheduled));
             let known = same.and_then(Option::take).map(|(_, stage, seen)| (*stage, seen));
-            let known = known.or(looked_out.map(|lookout| (Stage::Waiting, &lookout.seen)));
+            let known = known.or(monitored.map(|condition_monitor| (Stage::Waiting, &condition_monitor.seen)));
             stages.push(match (known, &item.scheduled.when) {
                 (Some((stage, seen)), _) => {
                     if item.condition.as_ref().is_some_and(|condition| !condition.fits(&seen.memories)) {
@@ -355,7 +356,9 @@ impl Timeline {
         for (item, (stage, seen)) in self.items.iter_mut().zip(stages) {
             (item.stage, item.seen) = (stage, seen);
         }
-        self.lookouts.iter_mut().for_each(|lookout| lookout.restore(&state.lookouts));
+        self.condition_monitors
+            .iter_mut()
+            .for_each(|condition_monitor| condition_monitor.restore(&state.condition_monitors));
         self.look_ahead();
         Ok(())
     }

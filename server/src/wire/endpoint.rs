@@ -25,7 +25,6 @@ pub enum Duty {
         sequence: StepCount,
         /// Virtual time at the end of the turn; to be given back.
         t_v: VirtualTime,
-        /// Packed inputs.
         inputs: bytes::Bytes,
     },
     /// Answer with the state.
@@ -43,33 +42,24 @@ pub enum Duty {
 pub enum EndpointError {
     /// A message that has no place in this state.
     #[error("the server sent {what} while this client is in state {state}")]
-    OutOfPlace {
-        /// What came.
-        what: &'static str,
-        /// The client's state.
-        state: ClientState,
-    },
+    OutOfPlace { what: &'static str, state: ClientState },
     /// A grant that is not later than the one before.
     #[error("grant {sequence} for t_v = {t_v} is not later than grant {last} for t_v = {last_t_v}")]
     NotLater {
-        /// The grant's number.
         sequence: StepCount,
         /// The grant's virtual time.
         t_v: VirtualTime,
-        /// The grant before.
         last: StepCount,
-        /// Its virtual time.
         last_t_v: VirtualTime,
     },
     /// Inputs of another size than agreed.
     #[error("a grant carries {got} input bytes, not {expected}")]
     InputSize {
-        /// Bytes that came.
         got: usize,
         /// Bytes agreed at joining.
         expected: usize,
     },
-    /// JSON that is no message of the protocol.
+    /// JSON that is not a message of the protocol.
     #[error("not a message of this protocol: {0}")]
     Message(String),
 }

@@ -27,13 +27,10 @@ const TURN_HEADER_BYTES: usize = 24;
 pub enum Frame {
     /// A JSON message, as text.
     Json(Bytes),
-    /// Run one turn.
     Grant {
-        /// The step's number.
         sequence: StepCount,
         /// Virtual time at the end of the turn.
         t_v: VirtualTime,
-        /// Packed inputs.
         inputs: Bytes,
     },
     /// A turn is done.
@@ -42,12 +39,9 @@ pub enum Frame {
         sequence: StepCount,
         /// The grant's virtual time.
         t_v: VirtualTime,
-        /// The next turn.
         wake: Wake,
-        /// Packed outputs.
         outputs: Bytes,
     },
-    /// A client's state.
     State(Bytes),
 }
 
@@ -56,37 +50,28 @@ pub enum Frame {
 pub enum FrameRef<'a> {
     /// A JSON message, as text.
     Json(&'a [u8]),
-    /// See [`Frame::Grant`].
     Grant {
-        /// The step's number.
         sequence: StepCount,
         /// Virtual time at the end of the turn.
         t_v: VirtualTime,
-        /// Packed inputs.
         inputs: &'a [u8],
     },
-    /// See [`Frame::Turn`].
     Turn {
         /// The grant it answers.
         sequence: StepCount,
         /// The grant's virtual time.
         t_v: VirtualTime,
-        /// The next turn.
         wake: Wake,
-        /// Packed outputs.
         outputs: &'a [u8],
     },
-    /// A client's state.
     State(&'a [u8]),
 }
 
-/// Why bytes are no frame.
+/// Why bytes are not frame.
 #[derive(Debug, Error)]
 pub enum FrameError {
-    /// Longer than allowed.
     #[error("a frame of {length} bytes is over the limit of {limit}")]
     TooLong {
-        /// Its length field.
         length: usize,
         /// The limit in force.
         limit: usize,
@@ -96,16 +81,10 @@ pub enum FrameError {
     UnknownType(u8),
     /// Too short for what its type says.
     #[error("a frame of type `{}` cannot be {length} bytes long", char::from(*kind))]
-    TooShort {
-        /// Its type byte.
-        kind: u8,
-        /// Its length field.
-        length: usize,
-    },
+    TooShort { kind: u8, length: usize },
     /// The connection ended in the middle of a frame.
     #[error("the connection ended in the middle of a frame")]
     Cut,
-    /// The transport failed.
     #[error("{0}")]
     Io(#[from] std::io::Error),
 }

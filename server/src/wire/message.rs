@@ -29,9 +29,7 @@ pub enum Role {
 pub enum ClientMessage {
     /// First message of a connection.
     Hello {
-        /// Versions spoken.
         protocol: VersionRange,
-        /// Client or operator.
         role: Role,
         /// Program and version, for logs.
         #[serde(deserialize_with = "deserialize_line")]
@@ -52,7 +50,6 @@ pub enum ClientMessage {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         refused: Option<OperationRefused>,
     },
-    /// An operator's wish.
     Control(Control),
     /// An operator writes, forces or releases a signal, or wishes as with `control`.
     Operate(Operation),
@@ -68,7 +65,6 @@ pub enum ClientMessage {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum ServerMessage {
-    /// Answer to `hello`.
     Welcome {
         /// The version spoken from here on.
         protocol: u32,
@@ -83,7 +79,6 @@ pub enum ServerMessage {
         /// All signals of the session.
         signals: Vec<SignalDecl>,
     },
-    /// Answer to `join`.
     Joined {
         /// Bytes of the inputs in every grant.
         input_bytes: u32,
@@ -128,14 +123,10 @@ pub enum ServerMessage {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PlacedSignal {
-    /// The signal.
     pub name: SignalName,
-    /// Its type.
     #[serde(rename = "type")]
     pub ty: SignalType,
-    /// First byte.
     pub offset: u32,
-    /// Bytes.
     pub size: u32,
 }
 
@@ -156,12 +147,9 @@ pub fn placed(layout: &PortLayout) -> Vec<PlacedSignal> {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Status {
-    /// The server's state.
     pub state: ServerState,
-    /// Virtual time.
     #[serde(rename = "t_v_ns")]
     pub t_v: VirtualTime,
-    /// Steps done.
     pub steps: StepCount,
     /// True while virtual time is held.
     pub held: bool,

@@ -29,9 +29,7 @@ pub const FRAME_BYTES_MAX: usize = 64 * 1024 * 1024;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct VersionRange {
-    /// Lowest version spoken.
     pub min: u32,
-    /// Highest version spoken.
     pub max: u32,
 }
 

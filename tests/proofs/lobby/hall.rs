@@ -1,4 +1,4 @@
-//! Reception and seats with connections around them, moved as the TCP lobby and the formation move them, and what must
+//! Acceptor and seats with connections around them, moved as the TCP lobby and the formation move them, and what must
 //! never be.
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
@@ -9,7 +9,7 @@ use std::time::Duration;
 use onescan_server::access::{Day, Pass, Register, Role, Token};
 use onescan_server::client::{ClientId, JoinRequest};
 use onescan_server::end::FailureCause;
-use onescan_server::lobby::{Action, Now, Reception, Seating, Terms, Visitor};
+use onescan_server::lobby::{Acceptor, Action, Now, Seating, Terms, Visitor};
 use onescan_server::plan::{Coupling, SessionPlan};
 use onescan_server::signal::SignalType;
 use onescan_server::wire::{ServerMessage, VERSIONS};
@@ -38,7 +38,7 @@ impl Line {
 /// Everything that the lobby is, without its sockets, its clock and its threads.
 #[derive(Clone, Debug)]
 pub(super) struct Hall {
-    pub(super) reception: Reception,
+    pub(super) acceptor: Acceptor,
     pub(super) seating: Seating,
     pub(super) now: Duration,
     pub(super) lines: BTreeMap<Visitor, Line>,
@@ -116,7 +116,7 @@ impl Hall {
         };
         let terms = Terms { welcome: Arc::new(welcome), welcome_bytes: 1 << 10, register: register.cloned() };
         Self {
-            reception: Reception::new(terms),
+            acceptor: Acceptor::new(terms),
             seating: Seating::new(plan),
             now: Duration::ZERO,
             lines: BTreeMap::new(),
@@ -138,12 +138,12 @@ impl Hall {
         if is_let_in {
             self.let_in.insert(visitor);
         }
-        let actions = self.reception.opened(visitor, address, self.moment());
+        let actions = self.acceptor.opened(visitor, address, self.moment());
         self.act(actions);
     }
 
     pub(super) fn bytes(&mut self, visitor: Visitor, bytes: &[u8]) {
-        let actions = self.reception.received(visitor, bytes, self.moment());
+        let actions = self.acceptor.received(visitor, bytes, self.moment());
         self.act(actions);
     }
 
@@ -153,15 +153,15 @@ impl Hall {
             line.hung_up = true;
         }
         // One that waits for an answer may still hear it; if it is a seat, it is found out that it has gone.
-        self.reception.hung_up(visitor);
+        self.acceptor.hung_up(visitor);
     }
 
-    /// Time passes, to the next deadline of the reception at most.
+    /// Time passes, to the next deadline of the acceptor at most.
     pub(super) fn pass(&mut self, to: Duration) {
         self.now = to;
-        let actions = self.reception.clock(self.moment());
+        let actions = self.acceptor.clock(self.moment());
         self.act(actions);
-        if self.reception.next_deadline().is_some_and(|deadline| deadline <= self.now) {
+        if self.acceptor.next_deadline().is_some_and(|deadline| deadline <= self.now) {
             self.broken = Some("a deadline has passed and nothing came of it");
         }
     }
@@ -174,10 +174,10 @@ impl Hall {
         }
         match self.seating.apply(&request, "somewhere") {
             Err(refusal) => {
-                let actions = self.reception.refused(visitor, &refusal.to_string(), self.moment());
+                let actions = self.acceptor.refused(visitor, &refusal.to_string(), self.moment());
                 self.act(actions);
             }
-            Ok(id) if self.reception.seated(visitor) => {
+            Ok(id) if self.acceptor.seated(visitor) => {
                 self.seats.insert(id.index(), visitor);
                 self.hear(visitor, 'j');
             }
@@ -203,7 +203,7 @@ impl Hall {
     pub(super) fn answer(&mut self) {
         let status = self.seating.session().status();
         while let Some(visitor) = self.wishes.pop_front() {
-            let actions = self.reception.answered(visitor, Some(Ok(status.clone())), self.moment());
+            let actions = self.acceptor.answered(visitor, Some(Ok(status.clone())), self.moment());
             self.act(actions);
         }
     }
@@ -212,19 +212,19 @@ impl Hall {
     pub(super) fn begin(&mut self) {
         self.is_begun = true;
         while let Some((visitor, _)) = self.applications.pop_front() {
-            let actions = self.reception.refused(visitor, "the session has begun", self.moment());
+            let actions = self.acceptor.refused(visitor, "the session has begun", self.moment());
             self.act(actions);
         }
-        let actions = self.reception.shut(self.moment());
+        let actions = self.acceptor.shut(self.moment());
         self.act(actions);
     }
 
     /// The session is over.
     pub(super) fn close(&mut self) {
-        let actions = self.reception.closing(self.moment());
+        let actions = self.acceptor.closing(self.moment());
         self.act(actions);
         while let Some(visitor) = self.wishes.pop_front() {
-            let actions = self.reception.answered(visitor, None, self.moment());
+            let actions = self.acceptor.answered(visitor, None, self.moment());
             self.act(actions);
         }
     }
@@ -238,7 +238,7 @@ impl Hall {
                 Action::Part(visitor) => {
                     self.line(visitor).parted = true;
                     if self.line(visitor).hung_up {
-                        self.reception.gone(visitor);
+                        self.acceptor.gone(visitor);
                     }
                 }
                 Action::Close(visitor) => self.line(visitor).closed = true,
@@ -271,7 +271,7 @@ impl Hall {
             }
         }
         let known =
-            |visitor: &Visitor| self.reception.knows(*visitor) || self.seats.values().any(|seat| seat == visitor);
+            |visitor: &Visitor| self.acceptor.knows(*visitor) || self.seats.values().any(|seat| seat == visitor);
         let forgotten = |(visitor, line): &(&Visitor, &Line)| !known(visitor) && !line.closed && !line.hung_up;
         if self.lines.iter().any(|each| forgotten(&each)) {
             self.broken = Some("a connection is forgotten: neither answered nor closed");

@@ -58,7 +58,7 @@ impl LobbyState {
         let waiting: Vec<(Visitor, &str)> =
             hall.applications.iter().map(|(visitor, request)| (*visitor, request.name.as_str())).collect();
         let members = (&hall.seats, hall.is_begun, hall.broken, hall.now);
-        (&hall.reception, &hall.lines, waiting, &hall.wishes, members, &self.ways, self.alarms)
+        (&hall.acceptor, &hall.lines, waiting, &hall.wishes, members, &self.ways, self.alarms)
     }
 }
 
@@ -175,7 +175,7 @@ impl Model for Lobby {
         if state.hall.seating.is_complete() && !has_gone && !state.hall.is_begun {
             events.push(Event::Begins);
         }
-        if state.alarms < self.alarms && state.hall.reception.next_deadline().is_some() {
+        if state.alarms < self.alarms && state.hall.acceptor.next_deadline().is_some() {
             events.push(Event::Alarm);
         }
     }
@@ -200,7 +200,7 @@ impl Model for Lobby {
             Event::Begins => state.hall.begin(),
             Event::Alarm => {
                 state.alarms += 1;
-                let due = state.hall.reception.next_deadline()?;
+                let due = state.hall.acceptor.next_deadline()?;
                 state.hall.pass(due.max(state.hall.now + Duration::from_nanos(1)));
             }
         }

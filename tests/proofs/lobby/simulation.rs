@@ -297,7 +297,7 @@ impl<'t> History<'t> {
     /// Runs to the end; what was wrong.
     fn run(mut self) -> Result<u64, String> {
         while let Some(Reverse((at, _, event))) = self.events.pop() {
-            while let Some(deadline) = self.hall.reception.next_deadline().filter(|deadline| *deadline <= at) {
+            while let Some(deadline) = self.hall.acceptor.next_deadline().filter(|deadline| *deadline <= at) {
                 self.hall.pass(deadline.max(self.hall.now));
             }
             self.hall.now = at;
@@ -335,7 +335,7 @@ impl<'t> History<'t> {
         }
         self.hall.close();
         self.hall.pass(self.hall.now + Duration::from_secs(1));
-        match (self.hall.broken, self.hall.reception.guests()) {
+        match (self.hall.broken, self.hall.acceptor.guests()) {
             (Some(broken), _) => Err(broken.to_owned()),
             (None, 0) => Ok(self.visitors),
             (None, left) => Err(format!("{left} connections are left when all is over")),

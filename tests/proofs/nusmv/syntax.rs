@@ -57,7 +57,7 @@ pub(super) enum Expression {
     ExistsUntil(Box<Expression>, Box<Expression>),
 }
 
-/// What is no model.
+/// What is not a model.
 #[derive(Debug)]
 pub(super) struct SyntaxError {
     line: usize,

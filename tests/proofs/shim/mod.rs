@@ -28,7 +28,7 @@
 //!   PLC does meanwhile it may as well do after, when no fewer messages are in flight: the same states are
 //!   reached. A reading that tells nothing is none.
 //! - How often the PLC was started is not counted, so starts are not limited; sessions are.
-//! - What every cycle writes before it reads it is no part of the PLC's state; each cycle is run a second time
+//! - What every cycle writes before it reads it is not part of the PLC's state; each cycle is run a second time
 //!   with other values there, to prove that.
 //! - What a cycle makes of a memory is computed once, and a memory is known by its number.
 

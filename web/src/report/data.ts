@@ -15,7 +15,7 @@ export interface ChartPanel {
   readonly runs: readonly { readonly t_ns: readonly number[]; readonly values: readonly (number | null)[] }[];
 }
 
-/** Times of all runs, and the values of each run there: nothing between its samples, which is no gap. */
+/** Times of all runs, and the values of each run there: nothing between its samples, which is not a gap. */
 export function aligned(panel: ChartPanel): [number[], ...(number | null | undefined)[][]] {
   const all_ns = [...new Set(panel.runs.flatMap((run) => run.t_ns))].sort((a, b) => a - b);
   const rows = panel.runs.map((run) => {

@@ -33,11 +33,9 @@ impl Splice {
 /// A table of one of the three ways in which TOML writes it.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Held<'d> {
-    /// Below a header.
     Header(&'d Table),
     /// By keys with dots, as in `bind.Feed = "P.Feed"`: the table, and the keys in front.
     Dotted(&'d Table, &'d str),
-    /// In braces.
     Inline(&'d InlineTable),
 }
 

@@ -10,7 +10,7 @@
 //! | `wire` | connections in `scenario.toml` |
 //! | `construct` | the tables of a scene |
 //! | `apply` | what a change makes of the files |
-//! | [`desk`] | the files as they are worked on: changed, taken back, done again |
+//! | [`workspace`] | the files as they are worked on: changed, taken back, done again |
 //! | `files` | the files on the disk |
 //! | [`ends`] | where connections can begin and end |
 //! | [`join`] | which changes connect two ends |
@@ -18,13 +18,12 @@
 //! | `state` | all that the page shows |
 //! | `server` | the page, served to browsers of this machine |
 //!
-//! Up to `desk` nothing reads or writes a file. What is written is checked by the code of every other command; nothing here
+//! Up to `workspace` nothing reads or writes a file. What is written is checked by the code of every other command; nothing here
 //! knows what a correct scenario is. The protocol is in `web/PROTOCOL.md`.
 
 mod apply;
 pub mod change;
 mod construct;
-pub mod desk;
 mod document;
 pub mod ends;
 pub mod error;
@@ -36,6 +35,7 @@ mod reference;
 mod server;
 mod state;
 mod wire;
+pub mod workspace;
 
 use std::net::SocketAddr;
 use std::path::PathBuf;

@@ -15,7 +15,6 @@ pub(super) struct Mention {
     pub(super) by: String,
     /// The text, with its quotes.
     pub(super) span: Range<usize>,
-    /// The text.
     pub(super) text: String,
 }
 

@@ -13,11 +13,11 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::change::Edit;
-use super::desk::Desk;
 use super::error::{EditError, EditorError, Reference};
 use super::files::{Files, Unwritten};
 use super::join::{self, Tip};
 use super::state::{self, State};
+use super::workspace::Workspace;
 use onescan_runner::error::ListenError;
 use onescan_runner::web::{asset, guarded_here};
 
@@ -25,9 +25,9 @@ use onescan_runner::web::{asset, guarded_here};
 const REQUEST_MAX: usize = 64 * 1024;
 
 /// The files, and what is known of them.
-struct Bench {
+struct EditSession {
     files: Files,
-    desk: Desk,
+    workspace: Workspace,
     state: State,
 }
 
@@ -98,72 +98,72 @@ impl From<Unwritten> for Refused {
     }
 }
 
-impl Bench {
+impl EditSession {
     fn open(files: Files) -> Result<Self, EditorError> {
-        let desk = Desk::new(files.read()?, 0);
-        let state = state::of(&files, &desk);
-        Ok(Self { files, desk, state })
+        let workspace = Workspace::new(files.read()?, 0);
+        let state = state::of(&files, &workspace);
+        Ok(Self { files, workspace, state })
     }
 
     /// Does what is wanted, or nothing.
     fn heed(&mut self, want: Want) -> Result<(), Refused> {
-        let mut desk = self.desk.clone();
+        let mut workspace = self.workspace.clone();
         match want {
             Want::Reload => {
                 let texts = self.files.read().map_err(|error| plain(StatusCode::CONFLICT, error.to_string()))?;
-                if texts != *desk.texts() {
-                    desk = Desk::new(texts, desk.revision() + 1);
+                if texts != *workspace.texts() {
+                    workspace = Workspace::new(texts, workspace.revision() + 1);
                 }
-                self.take(desk);
+                self.take(workspace);
                 return Ok(());
             }
             Want::Change { revision, edits } => {
                 self.seen(revision)?;
-                desk.change(&edits).map_err(|error| refused(&error))?;
+                workspace.change(&edits).map_err(|error| refused(&error))?;
             }
             Want::Join { revision, one, other } => {
                 self.seen(revision)?;
                 let edits = join::join(&self.state.ends, &self.state.lines, &one, &other);
-                edits.and_then(|edits| desk.change(&edits)).map_err(|error| refused(&error))?;
+                edits.and_then(|edits| workspace.change(&edits)).map_err(|error| refused(&error))?;
             }
             Want::Part { revision, tip } => {
                 self.seen(revision)?;
                 let edits = join::part(&self.state.ends, &self.state.lines, &tip);
-                edits.and_then(|edits| desk.change(&edits)).map_err(|error| refused(&error))?;
+                edits.and_then(|edits| workspace.change(&edits)).map_err(|error| refused(&error))?;
             }
             Want::Undo { revision } => {
                 self.seen(revision)?;
-                if !desk.undo() {
+                if !workspace.undo() {
                     return Err(plain(StatusCode::UNPROCESSABLE_ENTITY, "there is nothing to take back"));
                 }
             }
             Want::Redo { revision } => {
                 self.seen(revision)?;
-                if !desk.redo() {
+                if !workspace.redo() {
                     return Err(plain(StatusCode::UNPROCESSABLE_ENTITY, "there is nothing to do again"));
                 }
             }
         }
-        self.files.write(self.desk.texts(), desk.texts())?;
-        self.take(desk);
+        self.files.write(self.workspace.texts(), workspace.texts())?;
+        self.take(workspace);
         Ok(())
     }
 
-    fn take(&mut self, desk: Desk) {
-        self.desk = desk;
-        self.state = state::of(&self.files, &self.desk);
+    fn take(&mut self, workspace: Workspace) {
+        self.workspace = workspace;
+        self.state = state::of(&self.files, &self.workspace);
     }
 
     /// Somebody who has not seen the last change does not change anything.
     fn seen(&self, revision: u64) -> Result<(), Refused> {
-        if revision == self.desk.revision() {
+        if revision == self.workspace.revision() {
             return Ok(());
         }
         Err(plain(StatusCode::CONFLICT, "another page has changed the files: this page shows them now; try again"))
     }
 }
 
-type Held = Arc<Mutex<Bench>>;
+type Held = Arc<Mutex<EditSession>>;
 
 /// A listener and what it serves; [`Editor::serve`] does so until the program ends.
 pub(super) struct Editor {
@@ -176,7 +176,7 @@ impl Editor {
     /// Opens the files and the address.
     pub(super) fn open(files: Files, address: SocketAddr) -> Result<Self, EditorError> {
         let listen = ListenError::on(address);
-        let held: Held = Arc::new(Mutex::new(Bench::open(files)?));
+        let held: Held = Arc::new(Mutex::new(EditSession::open(files)?));
         let listener = TcpListener::bind(address).map_err(&listen)?;
         listener.set_nonblocking(true).map_err(&listen)?;
         let address = listener.local_addr().map_err(&listen)?;
@@ -215,11 +215,11 @@ fn answer(status: StatusCode, body: &impl Serialize) -> Response {
 }
 
 async fn look(Shared(held): Shared<Held>) -> Response {
-    let mut bench = held.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut edit_session = held.lock().unwrap_or_else(PoisonError::into_inner);
     // files, scenes and programs may have changed since
-    let desk = bench.desk.clone();
-    bench.take(desk);
-    answer(StatusCode::OK, &bench.state)
+    let workspace = edit_session.workspace.clone();
+    edit_session.take(workspace);
+    answer(StatusCode::OK, &edit_session.state)
 }
 
 async fn heed(Shared(held): Shared<Held>, body: String) -> Response {
@@ -230,13 +230,13 @@ async fn heed(Shared(held): Shared<Held>, body: String) -> Response {
             return answer(status, &Answer { error: Some(refusal), state: None });
         }
     };
-    let mut bench = held.lock().unwrap_or_else(PoisonError::into_inner);
-    match bench.heed(want) {
-        Ok(()) => answer(StatusCode::OK, &Answer { error: None, state: Some(&bench.state) }),
+    let mut edit_session = held.lock().unwrap_or_else(PoisonError::into_inner);
+    match edit_session.heed(want) {
+        Ok(()) => answer(StatusCode::OK, &Answer { error: None, state: Some(&edit_session.state) }),
         Err((status, refusal)) => {
-            let changed = bench.files.changed(bench.desk.texts());
-            bench.state.changed = changed;
-            answer(status, &Answer { error: Some(refusal), state: Some(&bench.state) })
+            let changed = edit_session.files.changed(edit_session.workspace.texts());
+            edit_session.state.changed = changed;
+            answer(status, &Answer { error: Some(refusal), state: Some(&edit_session.state) })
         }
     }
 }

@@ -11,13 +11,13 @@ use serde_json::{Map as Object, Value as Json};
 use toml_edit::{Item, Value};
 
 use super::change::{Sort, Texts};
-use super::desk::Desk;
 use super::document::Document;
 use super::ends::{self, End};
 use super::field::{self, Field};
 use super::files::{Files, scenes_of};
 use super::finding::{self, Finding};
 use super::join::Line;
+use super::workspace::Workspace;
 use crate::wiring::Map;
 use onescan_runner::web::machine::{self, Body};
 
@@ -76,15 +76,15 @@ struct Table {
     keys: Object<String, Json>,
 }
 
-/// Checks the files, which are on the disk as they are on the desk.
-pub(super) fn of(files: &Files, desk: &Desk) -> State {
-    let texts = desk.texts();
+/// Checks the files, which are on the disk as they are on the workspace.
+pub(super) fn of(files: &Files, workspace: &Workspace) -> State {
+    let texts = workspace.texts();
     let mut state = State {
         protocol: PROTOCOL,
         scenario: name_of(files),
-        revision: desk.revision(),
-        undo: desk.steps().0.map(str::to_owned),
-        redo: desk.steps().1.map(str::to_owned),
+        revision: workspace.revision(),
+        undo: workspace.steps().0.map(str::to_owned),
+        redo: workspace.steps().1.map(str::to_owned),
         changed: files.changed(texts),
         findings: Vec::new(),
         clients: clients(&texts.scenario),

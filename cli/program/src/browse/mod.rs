@@ -28,7 +28,6 @@ use onescan_runner::format::Format;
 /// What is asked for.
 #[derive(Clone, Debug)]
 pub struct BrowseConfig {
-    /// The PLC.
     pub url: String,
     /// The scenario whose signals are mapped, and the client that speaks for the PLC.
     pub scenario: Option<(PathBuf, ClientName)>,

@@ -361,7 +361,7 @@ fn config(args: RunArgs) -> Result<RunConfig, CommandError> {
 /// How fast virtual time may run.
 ///
 /// # Errors
-/// Why it is no pace.
+/// Why it is not a pace.
 pub(super) fn pace(text: &str) -> Result<Pace, String> {
     if text == "max" {
         return Ok(Pace::Max);

@@ -247,7 +247,7 @@ fn plc_task(text: &str) -> Result<Task, String> {
     Ok(Task {
         name: name.to_owned(),
         interval: Some(interval),
-        priority: priority.parse().map_err(|_| format!("`{priority}` is no priority: 0 comes first"))?,
+        priority: priority.parse().map_err(|_| format!("`{priority}` is not a priority: 0 comes first"))?,
         programs: programs.split(',').map(|program| program.trim().to_owned()).collect(),
         ..Task::default()
     })

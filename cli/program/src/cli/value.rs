@@ -29,7 +29,7 @@ impl From<FormatArg> for Format {
 /// A signal, as in `axis.x`.
 ///
 /// # Errors
-/// Why it is no name.
+/// Why it is not a name.
 pub fn signal_name(text: &str) -> Result<SignalName, String> {
     SignalName::new(text).map_err(|error| error.to_string())
 }
@@ -37,7 +37,7 @@ pub fn signal_name(text: &str) -> Result<SignalName, String> {
 /// A client of a session.
 ///
 /// # Errors
-/// Why it is no name.
+/// Why it is not a name.
 pub fn client_name(text: &str) -> Result<ClientName, String> {
     ClientName::new(text).map_err(|error| error.to_string())
 }
@@ -62,7 +62,7 @@ pub fn part(text: &str) -> Result<Part, String> {
     };
     let value = |end: &str| match end.parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value),
-        _ => Err(format!("`{end}` is no number")),
+        _ => Err(format!("`{end}` is not a number")),
     };
     let (left, right) = ends(across, value)?;
     let (low, high) = ends(up, value)?;

@@ -16,9 +16,7 @@ use onescan_runner::error::Usage;
 /// What is exported, and where to.
 #[derive(Clone, Debug)]
 pub struct ExportConfig {
-    /// The recording.
     pub recording: PathBuf,
-    /// The form.
     pub format: ExportFormat,
     /// The file; it appears whole or not at all.
     pub output: PathBuf,

@@ -68,9 +68,7 @@ pub struct InstrumentConfig {
 /// Whether the shim is put on or taken off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
-    /// On.
     Attach,
-    /// Off.
     Remove,
 }
 
@@ -90,14 +88,13 @@ pub enum Destination {
 pub enum Diff {
     /// As a unified diff.
     Shown,
-    /// Not at all.
     Hidden,
 }
 
 /// Instruments a project, or takes the shim off; writes what was done to `out` and findings to `err`.
 ///
 /// # Errors
-/// A file cannot be read or written, or the tasks are wrong. What is wrong with the sources is no error
+/// A file cannot be read or written, or the tasks are wrong. What is wrong with the sources is not an error
 /// here but an exit code.
 pub fn instrument(
     config: &InstrumentConfig,

@@ -13,7 +13,7 @@ use super::{IoList, ListKind};
 /// Reads the mapped variables.
 ///
 /// # Errors
-/// It is no mapping.
+/// It is not a mapping.
 pub fn read(path: &Path, bytes: &[u8]) -> Result<IoList, ListError> {
     let text = text(path, bytes)?;
     let delimiter = if text.lines().take(3).any(|line| line.contains(';')) { b';' } else { b',' };

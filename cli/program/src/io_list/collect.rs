@@ -14,7 +14,6 @@ pub const POINTS_MAX: usize = 1 << 17;
 /// A variable as a list has it.
 #[derive(Clone, Copy, Debug)]
 pub struct Entry<'a> {
-    /// Its name.
     pub name: &'a str,
     /// Its type, as written.
     pub ty: &'a str,

@@ -27,57 +27,32 @@ pub enum ListError {
     Server(#[from] SettingsFault),
     /// It is too large.
     #[error("{file} is larger than {mib} MiB, which no I/O list is")]
-    TooLarge {
-        /// The file.
-        file: String,
-        /// The limit.
-        mib: u64,
-    },
+    TooLarge { file: String, mib: u64 },
     /// It has too many points.
     #[error("{file} has more than {limit} inputs and outputs")]
     #[diagnostic(help("export a part of it, such as one tag table or one device"))]
-    TooMany {
-        /// The file.
-        file: String,
-        /// The limit.
-        limit: usize,
-    },
-    /// It is no text.
+    TooMany { file: String, limit: usize },
+    /// It is not text.
     #[error("{file}: {source}")]
-    NotText {
-        /// The file.
-        file: String,
-        /// Why.
-        source: EncodingError,
-    },
+    NotText { file: String, source: EncodingError },
     /// It is no XML, or ends within an element.
     #[error("{file}:{line}: {cause}")]
-    #[diagnostic(help("this is no complete XML file: export it again"))]
+    #[diagnostic(help("this is not a complete XML file: export it again"))]
     NotXml {
-        /// The file.
         file: String,
-        /// The line.
         line: u32,
         /// What the reader says.
         cause: String,
     },
-    /// It is no workbook.
+    /// It is not a workbook.
     #[error("{file}: {cause}")]
     #[diagnostic(help("in TIA Portal, export the PLC tags of a tag table as `.xlsx`"))]
-    NotWorkbook {
-        /// The file.
-        file: String,
-        /// What is wrong.
-        cause: String,
-    },
+    NotWorkbook { file: String, cause: String },
     /// It is well-formed, and no list of this kind.
     #[error("{file}: {what}")]
     Other {
-        /// The file.
         file: String,
-        /// What is missing.
         what: String,
-        /// What to do.
         #[help]
         help: Option<String>,
     },
@@ -85,7 +60,6 @@ pub enum ListError {
     #[error("{file}: there are no inputs and outputs in this {title}{}", left(*.left_out))]
     #[diagnostic(help("inputs and outputs are what is linked or has an address in %I or %Q"))]
     Empty {
-        /// The file.
         file: String,
         /// What it was read as.
         title: &'static str,

@@ -59,7 +59,7 @@ fn take_apart(
     }
     if let Some((bounds, element)) = array(ty) {
         let Some(bounds) = bounds else {
-            parts.push((path, Err(format!("the bounds of `{ty}` are no numbers"))));
+            parts.push((path, Err(format!("the bounds of `{ty}` are not numbers"))));
             return Ok(());
         };
         let count = bounds.iter().try_fold(1_u64, |count, (low, high)| count.checked_mul((high - low + 1) as u64));
@@ -93,7 +93,7 @@ fn take_apart(
 /// The least and the greatest index of each dimension.
 type Bounds = Vec<(i64, i64)>;
 
-/// Bounds and elements of `ARRAY [0..3, 1..2] OF BYTE`; no bounds if they are no numbers.
+/// Bounds and elements of `ARRAY [0..3, 1..2] OF BYTE`; no bounds if they are not numbers.
 fn array(ty: &str) -> Option<(Option<Bounds>, &str)> {
     let ty = ty.trim();
     let rest = ty.get(..5).filter(|head| head.eq_ignore_ascii_case("array")).and(ty.get(5..))?.trim_start();

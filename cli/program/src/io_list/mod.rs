@@ -52,7 +52,6 @@ pub const BYTES_MAX: u64 = 64 << 20;
 pub enum ListKind {
     /// A TwinCAT project (`.tsproj`), a part of one (`.xti`), or the description of a compiled PLC (`.tmc`).
     TwinCat,
-    /// EtherCAT Network Information.
     Eni,
     /// A tag table of TIA Portal as a workbook.
     TiaXlsx,
@@ -62,7 +61,6 @@ pub enum ListKind {
     TiaText,
     /// The I/O mapping of CODESYS as CSV.
     Codesys,
-    /// PLC sources.
     Sources,
     /// A PLC that says itself what it has, over OPC UA or ADS.
     Server,
@@ -101,7 +99,6 @@ pub enum ListLink {
 /// A list as it was read.
 #[derive(Clone, Debug)]
 pub struct IoList {
-    /// What wrote it.
     pub kind: ListKind,
     /// Where it was found, for people.
     pub from: String,

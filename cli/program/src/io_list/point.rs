@@ -19,7 +19,6 @@ pub enum Direction {
 /// A place in a list.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Place {
-    /// The file.
     pub file: Arc<str>,
     /// The line, or the row of a sheet, from 1; nothing where there are none.
     pub line: Option<u32>,
@@ -39,7 +38,6 @@ impl fmt::Display for Place {
 pub struct IoPoint {
     /// Its name as the list spells it, as in `MAIN.Axis[3].Position`.
     pub name: String,
-    /// Its type.
     pub ty: SignalType,
     /// Which way it goes.
     pub direction: Direction,
@@ -53,7 +51,7 @@ pub struct IoPoint {
     pub at: Place,
 }
 
-/// Something of the list that is no signal.
+/// Something of the list that is not a signal.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LeftOut {
     /// What it is called.

@@ -19,7 +19,6 @@ use onescan_regress::check::collect::{Reading, programs};
 /// The sources that a list was read from: they run in the scenario.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Sources {
-    /// The files.
     pub files: Vec<PathBuf>,
     /// The programs, if nothing in the files says when they run.
     pub programs: Vec<String>,
@@ -96,7 +95,7 @@ impl Taken {
         Ok(())
     }
 
-    /// What programs take in and give out. An input that another program of the PLC feeds is no input of the PLC.
+    /// What programs take in and give out. An input that another program of the PLC feeds is not an input of the PLC.
     fn of_programs(&mut self, application: &Application) -> Result<(), ListError> {
         let programs: Vec<_> = application.programs().filter(|program| !program.is_called).collect();
         let short = |variable: &Variable| variable.path.rsplit('.').next().unwrap_or_default().to_ascii_uppercase();

@@ -130,7 +130,7 @@ fn sources_are_read() {
 #[test]
 fn a_list_that_is_cut_is_an_error_or_a_shorter_list() {
     for (name, kind, bytes) in CASES {
-        // The line break at the end is no part of it.
+        // The line break at the end is not part of it.
         for end in 0..bytes.trim_ascii_end().len() {
             if let Ok(list) = read_bytes(name, *kind, &bytes[..end]) {
                 assert!(

@@ -8,7 +8,6 @@ use super::point::Direction;
 /// A tag as a table has it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Tag<'a> {
-    /// Its name.
     pub name: &'a str,
     /// Its type in Siemens' spelling.
     pub ty: &'a str,

@@ -45,7 +45,7 @@ pub(super) fn records(path: &Path, text: &str, delimiter: u8) -> Result<Vec<(u32
         let record = record.map_err(|error| ListError::Other {
             file: path.display().to_string(),
             what: error.to_string(),
-            help: Some("this is no text with separated fields".to_owned()),
+            help: Some("this is not text with separated fields".to_owned()),
         })?;
         Ok((record.position().map_or(1, |position| position.line() as u32), record))
     });

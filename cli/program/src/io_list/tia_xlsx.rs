@@ -44,7 +44,7 @@ impl Columns {
 /// Reads the tags.
 ///
 /// # Errors
-/// It is no workbook with such a sheet.
+/// It is not a workbook with such a sheet.
 pub fn read(path: &Path, bytes: Vec<u8>) -> Result<IoList, ListError> {
     let wrong = |cause: String| ListError::NotWorkbook { file: path.display().to_string(), cause };
     bounded(&bytes).map_err(wrong)?;

@@ -12,7 +12,7 @@ use super::{IoList, ListKind};
 /// Reads the tags.
 ///
 /// # Errors
-/// It is no tag table.
+/// It is not a tag table.
 pub fn read(path: &Path, bytes: &[u8]) -> Result<IoList, ListError> {
     let text = text(path, bytes)?;
     let document = document(path, &text)?;

@@ -156,7 +156,7 @@ fn vars(group: Element) -> impl Iterator<Item = Var> {
     let direction = match group.attribute("VarGrpType") {
         Some("1") => Some(Direction::Input),
         Some("2") => Some(Direction::Output),
-        // Retained and monitored data are no inputs and outputs.
+        // Retained and monitored data are not inputs and outputs.
         _ => None,
     };
     direction.into_iter().flat_map(move |direction| {

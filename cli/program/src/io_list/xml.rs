@@ -40,7 +40,6 @@ pub(super) fn document<'t>(path: &Path, text: &'t str) -> Result<Document<'t>, L
     }
 }
 
-/// An element.
 #[derive(Clone, Copy)]
 pub(super) struct Element<'d> {
     element: &'d onescan_xml::Element,

@@ -9,7 +9,6 @@ use onescan_links::gateway::listing::{Listing, Row};
 use onescan_scenario::gateway::Agreement;
 use onescan_server::signal::ClientName;
 
-/// A mapping.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fragment {
     /// The client that speaks for the PLC.

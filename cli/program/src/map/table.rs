@@ -5,7 +5,6 @@ use std::io::{self, Write};
 use onescan_links::gateway::listing::{Listing, Part, Row};
 use serde::Serialize;
 
-/// A mapping.
 pub(super) struct Table<'a> {
     pub(super) client: &'a str,
     pub(super) url: &'a str,

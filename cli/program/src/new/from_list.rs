@@ -17,7 +17,6 @@ use onescan_runner::format::Format;
 pub struct FromListConfig {
     /// The folder to make.
     pub folder: PathBuf,
-    /// The list.
     pub list: Wanted,
     /// For whom the report is.
     pub format: Format,
@@ -26,7 +25,6 @@ pub struct FromListConfig {
 /// A signal of the scenario.
 #[derive(Clone, Debug)]
 pub struct Signal {
-    /// Its name.
     pub name: String,
     /// What it is in the list.
     pub point: IoPoint,

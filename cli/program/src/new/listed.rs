@@ -14,13 +14,9 @@ use onescan_runner::format::Format;
 /// How many lines of a kind people are shown.
 const SHOWN: usize = 20;
 
-/// What was made.
 pub struct Listed<'a> {
-    /// The scenario.
     pub folder: &'a Path,
-    /// What was written.
     pub files: &'a [String],
-    /// The list.
     pub list: &'a IoList,
     /// The signals made of it.
     pub signals: &'a [Signal],

@@ -42,7 +42,7 @@ impl Taken {
         let mut text = String::new();
         for c in signal.chars() {
             let c = if c.is_ascii_alphanumeric() { c } else { '_' };
-            // Two underlines in a row are no part of a name in the standard.
+            // Two underlines in a row are not part of a name in the standard.
             if c != '_' || !text.ends_with('_') {
                 text.push(c);
             }

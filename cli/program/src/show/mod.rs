@@ -12,10 +12,8 @@ pub use error::ShowError;
 
 use onescan_runner::format::Format;
 
-/// What to show.
 #[derive(Clone, Debug)]
 pub struct ShowConfig {
-    /// The scenario.
     pub scenario: PathBuf,
     /// For whom: TOML for people, JSON for machines.
     pub format: Format,

@@ -28,7 +28,6 @@ use onescan_runner::interrupt::Interrupt;
 use onescan_runner::run::config::RecordRequest;
 use onescan_runner::run::{RunConfig, execute};
 
-/// What is searched.
 #[derive(Clone, Debug)]
 pub struct BisectConfig {
     /// The scenario's folder, in a working tree of git.

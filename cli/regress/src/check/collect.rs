@@ -21,7 +21,6 @@ use onescan_runner::error::{Unreadable, Usage};
 
 /// Files that are checked together.
 pub struct Program {
-    /// The files.
     pub inputs: Vec<Input>,
     /// The client of a scenario that it is the program of.
     pub client: Option<ClientName>,
@@ -33,7 +32,6 @@ pub struct Program {
 
 /// What was typed, as programs.
 pub struct Collected {
-    /// The programs.
     pub programs: Vec<Program>,
     /// What is in the folders beside their sources.
     pub passed_over: PassedOver,
@@ -122,7 +120,6 @@ fn scenario(
     Ok(programs)
 }
 
-/// Files, each once.
 #[derive(Default)]
 struct Files {
     /// The dialect of all of them, if not the one that each file's name says.
@@ -161,7 +158,6 @@ enum Entry {
 /// Whose files are being read.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 enum Part {
-    /// The program's own.
     #[default]
     Own,
     /// A library's, with the namespace that its project gives it.

@@ -1,4 +1,4 @@
-//! Why sources cannot be checked. What is wrong in them is no error but a finding.
+//! Why sources cannot be checked. What is wrong in them is not an error but a finding.
 
 use onescan_report::OutputError;
 use onescan_scenario::ScenarioError;
@@ -6,7 +6,7 @@ use onescan_scenario::ScenarioError;
 use onescan_runner::error::{Unreadable, Usage, sum_of_errors};
 
 sum_of_errors! {
-    /// Why sources cannot be checked. What is wrong in them is no error but a finding.
+    /// Why sources cannot be checked. What is wrong in them is not an error but a finding.
     pub enum CheckError {
         /// The scenario is wrong.
         #[diagnostic(transparent)]

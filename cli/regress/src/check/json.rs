@@ -26,7 +26,6 @@ pub struct Line<'a> {
     pub end_line: u32,
     /// The column behind its last character.
     pub end_column: u32,
-    /// What is wrong.
     pub message: &'a str,
     /// What to do about it, or `null`.
     pub help: Option<&'a str>,

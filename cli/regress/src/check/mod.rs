@@ -36,7 +36,6 @@ use report::Report;
 /// For whom the findings are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum CheckFormat {
-    /// People.
     #[default]
     Human,
     /// Machines: one JSON object a finding and line.
@@ -84,7 +83,7 @@ pub enum Warnings {
 /// Checks the sources and writes what is found to `out`.
 ///
 /// # Errors
-/// A file cannot be read, or the report not be written. What is wrong with the sources is no error
+/// A file cannot be read, or the report not be written. What is wrong with the sources is not an error
 /// here but an exit code.
 pub fn check(config: &CheckConfig, out: &mut dyn Write) -> Result<ExitCode, CheckError> {
     let Collected { programs, passed_over } = collect::collect(&config.paths, config.reading())?;

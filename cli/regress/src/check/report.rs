@@ -17,7 +17,6 @@ pub fn severity(severity: Severity) -> onescan_report::Severity {
     }
 }
 
-/// What was found.
 #[derive(Debug)]
 pub struct Report {
     /// How many files were read.

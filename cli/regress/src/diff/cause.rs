@@ -22,9 +22,7 @@ use onescan_runner::run::rerun::{Rerun, rerun};
 /// Who wrote one signal.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Cause {
-    /// The signal.
     pub signal: SignalName,
-    /// Its writer.
     pub client: Option<ClientName>,
     /// The statement that wrote it last, in each run; nothing where none did, or where the writer is
     /// no soft PLC.

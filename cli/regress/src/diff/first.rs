@@ -36,20 +36,15 @@ pub enum Basis {
 /// A signal that differs, as text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Difference {
-    /// The signal.
     pub signal: SignalName,
-    /// Its type.
     pub ty: SignalType,
-    /// Who writes it.
     pub writer: Option<ClientName>,
     /// What it is in the first and in the second.
     pub values: [String; 2],
 }
 
-/// Where they part.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Divergence {
-    /// The virtual time.
     pub at: VirtualTime,
     /// The step in each.
     pub steps: [u64; 2],
@@ -64,7 +59,6 @@ pub struct Divergence {
 /// Chosen signals around the first difference: a row a time.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Around {
-    /// The signals.
     pub signals: Vec<SignalName>,
     /// Times with the values of each signal in both; absent where a recording has none.
     pub rows: Vec<(VirtualTime, Vec<[Option<String>; 2]>)>,

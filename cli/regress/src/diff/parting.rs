@@ -13,9 +13,7 @@ use onescan_soft_plc::Ways;
 /// Where two runs of a PLC's program first go different ways.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Parting {
-    /// The PLC.
     pub client: ClientName,
-    /// The scan.
     pub at: VirtualTime,
     /// The decision and its way in each; nothing where a scan has no decision any more.
     pub ways: [Option<Way>; 2],

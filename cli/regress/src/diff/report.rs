@@ -28,7 +28,6 @@ pub(super) const NAMES: [&str; 2] = ["A", "B"];
 /// All that was found.
 #[derive(Debug)]
 pub struct Report {
-    /// What was compared.
     pub recordings: [Recording; 2],
     /// Where they part; nothing if they are equal.
     pub divergence: Option<Divergence>,
@@ -36,7 +35,6 @@ pub struct Report {
     pub failure: Option<Failure>,
     /// Who wrote what differs.
     pub causes: Causes,
-    /// The trajectory there.
     pub around: Around,
     /// The files of the scenarios that differ.
     pub files: Vec<FileDifference>,
@@ -102,7 +100,7 @@ impl Report {
         if cause.written.iter().all(Option::is_none) {
             return writeln!(
                 out,
-                "  by no statement up to there: it has its initial value, or `{client}` is no soft PLC"
+                "  by no statement up to there: it has its initial value, or `{client}` is not a soft PLC"
             );
         }
         for (name, written) in NAMES.iter().zip(&cause.written) {

@@ -36,7 +36,7 @@ impl TrajectoryReport {
     /// Compares the snapshots in two files, without tolerances.
     ///
     /// # Errors
-    /// A file is no snapshot; a pattern of no signal.
+    /// A file is not a snapshot; a pattern of no signal.
     pub fn of(paths: [&Path; 2], since: VirtualTime, patterns: &[SignalPattern]) -> Result<Self, DiffError> {
         let one = |path: &Path| -> Result<Snapshot, DiffError> {
             let none = || Usage::new(format!("{} is not there", path.display()), None);

@@ -52,11 +52,8 @@ pub struct TestConfig {
     pub libraries: Vec<PathBuf>,
     /// A report in the format of `JUnit`.
     pub junit: Option<PathBuf>,
-    /// A SARIF log.
     pub sarif: Option<PathBuf>,
-    /// A page.
     pub html: Option<PathBuf>,
-    /// A coverage report.
     pub coverage: Option<CoverageRequest>,
     /// True where a progress bar would be seen.
     pub progress: bool,
@@ -78,11 +75,9 @@ pub struct WorkerConfig {
     pub case: Option<String>,
     /// Sources with test programs.
     pub sources: Vec<PathBuf>,
-    /// Their cycle.
     pub scan: Option<TimeSpan>,
     /// When a test program that is not done has failed.
     pub until: VirtualTime,
-    /// Their dialect.
     pub dialect: Option<Dialect>,
     /// How much memory their variables may take.
     pub memory_limit: Option<MemoryLimit>,

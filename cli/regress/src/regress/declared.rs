@@ -55,7 +55,7 @@ impl Test {
 }
 
 /// The tests that a file declares: units whose names begin so or that have the attribute. Suites of `TcUnit`, and what
-/// runs them, are no tests by themselves.
+/// runs them, are not tests by themselves.
 pub(super) fn tests(input: &Input, sources: &Sources) -> Vec<Test> {
     let file = input.file();
     let unit = parse_in(file.dialect(), FileId(0), file.text()).unit;

@@ -1,4 +1,4 @@
-//! Why nothing was tested. What is wrong with a test is no error but an outcome.
+//! Why nothing was tested. What is wrong with a test is not an error but an outcome.
 
 use onescan_iec::Diagnostics;
 use onescan_report::{FileError, OutputError};
@@ -12,7 +12,7 @@ use onescan_runner::error::{Exit, ExitCode, SpawnError, Unreadable, Usage, sum_o
 use onescan_runner::run::RunError;
 
 sum_of_errors! {
-    /// Why nothing was tested. What is wrong with a test is no error but an outcome.
+    /// Why nothing was tested. What is wrong with a test is not an error but an outcome.
     pub enum TestError {
         /// The scenario is wrong.
         #[diagnostic(transparent)]
@@ -50,7 +50,6 @@ sum_of_errors! {
 #[derive(Debug, Error)]
 #[error("the sources do not compile")]
 pub struct SourcesReport {
-    /// Errors and warnings.
     pub findings: Diagnostics,
 }
 

@@ -81,12 +81,12 @@ pub fn deny_stubs(paths: &[PathBuf], reading: Reading) -> Result<(), TestError> 
 /// Runs all tests that `config` asks for, and writes what came of them to `out`.
 ///
 /// # Errors
-/// There is nothing to test, or a report cannot be written. What is wrong with a test is no error here
+/// There is nothing to test, or a report cannot be written. What is wrong with a test is not an error here
 /// but an outcome.
 pub fn test(config: &TestConfig, out: &mut dyn Write) -> Result<ExitCode, TestError> {
     let started = std::time::Instant::now();
     let units = plan::units(config)?;
-    plan::tell_programs(&units);
+    plan::warn_of_programs(&units);
     let worked = pool::work(config, &units)?;
     let mut outcomes: Vec<Outcome> = Vec::new();
     for (unit, worked) in units.iter().zip(&worked) {

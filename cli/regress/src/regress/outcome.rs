@@ -86,12 +86,10 @@ pub struct Outcome {
     /// The suite of `TcUnit` that it is in.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub class: Option<String>,
-    /// How it ended.
     pub status: Status,
     /// The digest over all steps.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub digest: Option<String>,
-    /// Steps or scans.
     pub steps: u64,
     /// Virtual time of the last of them.
     pub virtual_time_ns: u64,
@@ -121,7 +119,6 @@ pub struct Outcome {
     pub place: Option<SourcePlace>,
     /// The step or cycle.
     pub step_ns: u64,
-    /// For the page.
     #[serde(skip)]
     pub shown: Picture,
 }
@@ -135,7 +132,6 @@ pub struct Picture {
     pub chart: Option<String>,
     /// The trajectory over the reviewed one where the two differ, as SVG.
     pub against: Option<String>,
-    /// The trajectory itself.
     pub snapshot: Option<Snapshot>,
     /// What happened from outside.
     pub events: Vec<Event>,
@@ -144,7 +140,6 @@ pub struct Picture {
 /// What came of all tests.
 #[derive(Clone, Debug)]
 pub struct Report {
-    /// Each of them.
     pub outcomes: Vec<Outcome>,
     /// Snapshots that belong to no case.
     pub orphans: Vec<PathBuf>,

@@ -23,12 +23,7 @@ pub enum Unit {
     /// One case of a scenario.
     Case(CaseUnit),
     /// A scenario that cannot be read, with why.
-    Unreadable {
-        /// Its folder.
-        scenario: PathBuf,
-        /// The error, drawn.
-        error: String,
-    },
+    Unreadable { scenario: PathBuf, error: String },
     /// All test programs of these sources.
     Sources(Vec<PathBuf>),
 }
@@ -117,7 +112,7 @@ pub fn units(config: &TestConfig) -> Result<Vec<Unit>, TestError> {
 }
 
 /// Says which programs scenarios will start, as `run` does; each once, however many cases there are.
-pub fn tell_programs(units: &[Unit]) {
+pub fn warn_of_programs(units: &[Unit]) {
     if granted().no_commands {
         return;
     }

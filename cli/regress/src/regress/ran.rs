@@ -13,7 +13,6 @@ use onescan_runner::run::{RunReport, RunStatus};
 /// All that came of a unit.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Worked {
-    /// Its tests.
     pub tests: Vec<Ran>,
     /// What its PLCs executed.
     pub coverage: Vec<Covered>,
@@ -24,7 +23,6 @@ pub struct Worked {
 /// One test that was run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Ran {
-    /// Its name.
     pub name: String,
     /// The tags of a test program.
     #[serde(default)]
@@ -35,17 +33,14 @@ pub struct Ran {
     /// True for a test that is switched off.
     #[serde(default)]
     pub skipped: bool,
-    /// How it ended.
     pub status: RunStatus,
     /// The digest over all steps.
     pub digest: Option<String>,
-    /// Steps or scans.
     pub steps: u64,
     /// Virtual time of the last of them.
     pub virtual_time_ns: u64,
     /// The step or cycle.
     pub step_ns: u64,
-    /// Why it failed.
     pub error: Option<String>,
     /// Where in the PLC's sources.
     pub place: Option<SourcePlace>,
@@ -71,7 +66,6 @@ pub struct Ran {
 /// What came of an expectation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Shown {
-    /// Its name.
     pub name: String,
     /// Whether it was met.
     pub verdict: Verdict,
@@ -96,12 +90,10 @@ impl Shown {
 /// An assert that did not hold.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FailedAssert {
-    /// What was asserted.
     pub text: String,
     /// The type of what it compares, where that is known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub kind: Option<String>,
-    /// Where it stands.
     pub place: SourcePlace,
     /// When it first did not hold.
     pub at_ns: u64,

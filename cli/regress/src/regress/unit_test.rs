@@ -64,7 +64,6 @@ pub fn run(config: &WorkerConfig) -> Result<Worked, TestError> {
 enum End {
     /// It runs for one scan.
     OneScan,
-    /// By its output.
     Done(Variable),
     /// By one of several outputs, once it is started.
     Started(Box<Started>),

@@ -4,15 +4,15 @@
 //! |---|---|
 //! | [`canvas`] | curves in braille dots |
 //! | [`chart`] | a signal on a terminal: old, new, difference |
-//! | `desk` | the review itself: what is shown, what was decided |
+//! | `queue` | the review itself: what is shown, what was decided |
 //! | [`view`] | a pending snapshot on a terminal |
 //! | [`page`] | all of them as a page |
 
 pub mod canvas;
 pub mod chart;
-mod desk;
 mod error;
 pub mod page;
+mod queue;
 pub mod view;
 
 use std::io::{IsTerminal, Write};
@@ -32,8 +32,8 @@ use crate::snapshot::store::{Place, pending};
 use crate::snapshot::take;
 use crate::snapshot::{Difference, Snapshot, compare};
 
-use desk::{Desk, Go};
 use onescan_runner::error::ExitCode;
+use queue::{Go, ReviewQueue};
 
 /// Columns of a terminal that does not say how wide it is.
 const WIDTH: usize = 80;
@@ -44,9 +44,7 @@ pub enum Choice {
     /// The user says so, one by one.
     #[default]
     Ask,
-    /// All are accepted.
     AcceptAll,
-    /// All are rejected.
     RejectAll,
     /// None is; they are named.
     List,
@@ -66,11 +64,9 @@ pub struct ReviewConfig {
 /// A snapshot that waits for a review.
 #[derive(Clone, Debug)]
 pub struct Waiting {
-    /// Whose it is.
     pub place: Place,
     /// The reviewed one, if there is one.
     pub old: Option<Snapshot>,
-    /// The pending one.
     pub new: Snapshot,
     /// Where the two differ.
     pub differences: Vec<Difference>,
@@ -156,17 +152,17 @@ fn tell(config: &ReviewConfig, one: &Waiting, what: Decision, out: &mut dyn Writ
 /// Lets the user look at all of them, and gives what was decided; nothing if the review was given up.
 fn ask(waiting: &[Waiting], colours: bool) -> std::io::Result<Option<Vec<Decision>>> {
     let term = Term::stdout();
-    let mut desk = Desk::new(waiting);
+    let mut queue = ReviewQueue::new(waiting);
     loop {
         let (rows, width) = term.size();
-        let screen = desk.screen(usize::from(width), usize::from(rows), colours);
+        let screen = queue.screen(usize::from(width), usize::from(rows), colours);
         term.clear_screen()?;
         term.write_str(&screen.join("\n"))?;
-        match desk.press(&term.read_key()?) {
+        match queue.press(&term.read_key()?) {
             Go::On => {}
             Go::Over => {
                 term.clear_screen()?;
-                return Ok(Some(desk.decisions().to_vec()));
+                return Ok(Some(queue.decisions().to_vec()));
             }
             Go::Away => {
                 term.clear_screen()?;

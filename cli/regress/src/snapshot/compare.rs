@@ -18,37 +18,26 @@ pub enum Difference {
     Frame {
         /// What it is of: `step`, `end`, or a signal.
         of: String,
-        /// As reviewed.
         expected: String,
         /// As it was now.
         found: String,
     },
     /// A signal that the snapshot has and the run has not been asked for.
-    Gone {
-        /// The signal.
-        signal: String,
-    },
+    Gone { signal: String },
     /// A signal that the snapshot has not.
-    Added {
-        /// The signal.
-        signal: String,
-    },
+    Added { signal: String },
     /// A signal that has other values.
     Values {
-        /// The signal.
         signal: String,
-        /// Its unit.
         #[serde(skip_serializing_if = "Option::is_none")]
         unit: Option<String>,
         /// When it first differs.
         at_ns: u64,
         /// What it should be then.
         expected: String,
-        /// What it is.
         found: String,
         /// How many of the instants that are held differ,
         differing: usize,
-        /// of how many.
         instants: usize,
         /// Of a number, when it is furthest off and by how much.
         #[serde(skip_serializing_if = "Option::is_none")]
@@ -56,7 +45,6 @@ pub enum Difference {
     },
     /// A signal all of whose samples are the same, but not what is between them.
     Between {
-        /// The signal.
         signal: String,
         /// How far apart samples are.
         every_ns: u64,
@@ -66,7 +54,6 @@ pub enum Difference {
 /// Where a number is furthest from what it should be.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Furthest {
-    /// When.
     pub at_ns: u64,
     /// By how much, in the signal's unit.
     pub by: f64,

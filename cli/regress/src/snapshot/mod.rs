@@ -53,32 +53,24 @@ pub use read::SnapshotError;
 
 /// The version of the format.
 const VERSION: u32 = 1;
-/// The last line.
 const DONE: &str = "done";
 
 /// Chosen signals of one run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Snapshot {
-    /// The scenario's name.
     pub scenario: String,
-    /// The case's name.
     pub case: String,
-    /// The session's step.
     pub step: TimeSpan,
     /// Virtual time of the last step.
     pub end: VirtualTime,
-    /// The signals.
     pub signals: Vec<Track>,
 }
 
 /// One signal over a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Track {
-    /// Its name.
     pub name: String,
-    /// Its type.
     pub ty: SignalType,
-    /// Its unit.
     pub unit: Option<String>,
     /// How far apart samples are, and the digest of all steps; nothing where every change is held.
     pub sampled: Option<Sampled>,

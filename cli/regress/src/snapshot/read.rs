@@ -11,7 +11,7 @@ use super::value::read;
 use super::write::{decimals, instant};
 use super::{DONE, Sampled, Snapshot, Track, VERSION};
 
-/// A text that is no snapshot.
+/// A text that is not a snapshot.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("line {line}: {message}")]
 pub struct SnapshotError {
@@ -104,7 +104,7 @@ impl<'t> Reader<'t> {
             };
             let t_v = self.instant(t_v, digits)?;
             let Some(bytes) = read(track.ty, text) else {
-                return self.wrong(format!("`{text}` is no value of {}", track.ty));
+                return self.wrong(format!("`{text}` is not a value of {}", track.ty));
             };
             let grid = track.sampled.map_or(step, |sampled| sampled.every);
             let in_order = match track.changes.last() {
@@ -164,7 +164,7 @@ impl<'t> Reader<'t> {
         let found = format!("{text}s").parse::<VirtualTime>().ok();
         match found.filter(|t_v| instant(*t_v, decimals) == text) {
             Some(t_v) => Ok(t_v),
-            None => self.wrong(format!("`{text}` is no instant in seconds")),
+            None => self.wrong(format!("`{text}` is not an instant in seconds")),
         }
     }
 }
@@ -238,7 +238,7 @@ mod tests {
         let text = snapshot(10_000, &[vec![(1, 2)]]).to_text();
         let wrong = |from: &str, to: &str| Snapshot::parse(&text.replace(from, to)).unwrap_err().to_string();
         assert_eq!(wrong("trajectory 1", "trajectory 2"), "line 1: this program reads version 1");
-        assert_eq!(wrong("0.01  2", "0.01  x"), "line 9: `x` is no value of DINT");
+        assert_eq!(wrong("0.01  2", "0.01  x"), "line 9: `x` is not a value of DINT");
         assert_eq!(
             wrong("0.01  2", "0.01  0"),
             "line 9: only changes are written, each later than the one before, the first at 0"

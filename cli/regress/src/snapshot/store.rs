@@ -19,7 +19,6 @@ const PENDING: &str = ".traj.new";
 pub struct Place {
     /// The scenario's folder; its file, if that is not called as usual.
     pub scenario: PathBuf,
-    /// The case.
     pub case: String,
 }
 
@@ -121,7 +120,7 @@ pub fn read(path: &Path) -> Result<Option<Snapshot>, StoreError> {
     };
     let help = || Some("take it back from version control, or delete it and run `onescan test` again".to_owned());
     let Ok(text) = String::from_utf8(bytes) else {
-        return Err(Usage::new(format!("{} is no snapshot: it is not text", path.display()), help()).into());
+        return Err(Usage::new(format!("{} is not a snapshot: it is not text", path.display()), help()).into());
     };
     match Snapshot::parse(&text) {
         Ok(snapshot) => Ok(Some(snapshot)),

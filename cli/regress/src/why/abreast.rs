@@ -19,7 +19,6 @@ const AHEAD: usize = 64;
 /// A run to be held against another.
 #[derive(Debug)]
 pub struct Side<'s> {
-    /// What is run.
     pub scenario: &'s Scenario,
     /// What the operator does.
     pub inputs: Vec<OperatorInput>,

@@ -163,7 +163,7 @@ impl Walk<'_> {
         if same {
             let read = self.both(children, progress.read.or(progress.around));
             let is_value = [0, 1].iter().all(|&side| !Node::has_chosen(&nodes[side].items[..progress.at[side]]));
-            // What a function has read is read by the statement that calls it; a branch is no part of a value.
+            // What a function has read is read by the statement that calls it; a branch is not part of a value.
             if is_value && nodes.iter().any(|node| node.statement.is_some()) {
                 progress.read = progress.read.or(read);
             }

@@ -140,7 +140,6 @@ pub(super) fn names(text: &str) -> impl Iterator<Item = String> + Clone + '_ {
 /// A variable that both programs have.
 #[derive(Debug, Clone)]
 pub(super) struct Leaf {
-    /// Its path.
     pub(super) path: String,
     /// Where it lies in each.
     pub(super) variables: [Variable; 2],

@@ -9,13 +9,11 @@ use super::pairs::own_text;
 /// A statement of one run, as it stands in the sources.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Place {
-    /// Its file.
     pub file: String,
     /// Its line, from 1.
     pub line: u32,
     /// The instance that ran, as in `P1.axis[2] (Axis)`; the unit where it is not known.
     pub unit: String,
-    /// Its text.
     pub text: String,
 }
 
@@ -51,16 +49,10 @@ fn first_other(rows: &[String], others: &[String]) -> usize {
     same.min(rows.len().saturating_sub(1))
 }
 
-/// What differs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum What {
     /// A variable, and its value in each run.
-    Value {
-        /// Its path.
-        path: String,
-        /// As literals.
-        values: [String; 2],
-    },
+    Value { path: String, values: [String; 2] },
     /// The way of a decision.
     Way([String; 2]),
     /// A statement runs in one of them only.
@@ -80,22 +72,18 @@ pub enum Origin {
     Here,
     /// From the values that variables begin with.
     Initial,
-    /// From an input.
     Input,
     /// From an input, which is another since an output was.
     Feedback(usize),
 }
 
-/// A difference.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Record {
-    /// The PLC.
     pub client: ClientName,
     /// The scan in which it arose.
     pub t_v: VirtualTime,
     /// The statement in each run; nothing where there is none.
     pub at: [Option<Place>; 2],
-    /// What differs.
     pub what: What,
     /// Where it comes from.
     pub origin: Origin,

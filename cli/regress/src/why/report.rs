@@ -12,7 +12,6 @@ const SHOWN: usize = 5;
 /// What the two runs are called.
 #[derive(Clone, Debug)]
 pub struct Runs {
-    /// Their names.
     pub names: [String; 2],
     /// The same as part of a sentence: a value is so `in A`, `at HEAD`, `now`.
     pub there: [String; 2],

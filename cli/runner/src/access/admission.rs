@@ -24,7 +24,7 @@ pub enum Admission {
 
 /// What a session lets in, and what its own programs are given to get in.
 #[derive(Debug, Default)]
-pub struct Doorstep {
+pub struct GuardedListener {
     house: House,
     authority: Option<PathBuf>,
 }
@@ -37,7 +37,7 @@ pub const TOKEN_VARIABLE: &str = "ONESCAN_TOKEN";
 /// The variable of the file with the trusted authority.
 pub const AUTHORITY_VARIABLE: &str = "ONESCAN_TLS_CA";
 
-impl Doorstep {
+impl GuardedListener {
     /// What `admission` means for a session that listens at `address`.
     ///
     /// # Errors
@@ -108,17 +108,17 @@ mod tests {
     #[test]
     fn beyond_this_machine_a_certificate_and_tokens_are_needed() {
         let (here, there) = ("127.0.0.1:0".parse().unwrap(), "0.0.0.0:4850".parse().unwrap());
-        assert!(Doorstep::open(&Admission::ThisMachine, here).is_ok());
-        let error = Doorstep::open(&Admission::ThisMachine, there).unwrap_err().to_string();
+        assert!(GuardedListener::open(&Admission::ThisMachine, here).is_ok());
+        let error = GuardedListener::open(&Admission::ThisMachine, there).unwrap_err().to_string();
         assert!(error.contains("nobody has to show a token"), "{error}");
-        assert!(Doorstep::open(&Admission::Anybody, there).is_ok());
+        assert!(GuardedListener::open(&Admission::Anybody, there).is_ok());
         let folder = tempfile::tempdir().unwrap();
         let holders = Admission::Holders(folder.path().to_owned());
-        let error = Doorstep::open(&holders, there).unwrap_err().to_string();
+        let error = GuardedListener::open(&holders, there).unwrap_err().to_string();
         assert!(error.contains("there is no certificate"), "{error}");
         super::super::certificate::new(Folder(folder.path()), &[], "2026-01-01".parse().unwrap(), 30).unwrap();
-        let mut doorstep = Doorstep::open(&holders, there).unwrap();
-        let shown = doorstep.shown_by(&ClientName::new("plant").unwrap()).unwrap();
+        let mut listener = GuardedListener::open(&holders, there).unwrap();
+        let shown = listener.shown_by(&ClientName::new("plant").unwrap()).unwrap();
         let names: Vec<_> = shown.iter().map(|(name, _)| *name).collect();
         assert_eq!(names, [TOKEN_VARIABLE, AUTHORITY_VARIABLE]);
     }

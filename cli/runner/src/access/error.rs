@@ -26,35 +26,19 @@ pub enum AccessError {
     /// The file of tokens is none.
     #[error("{}: {}", path.display(), one_line(why))]
     #[diagnostic(help("make it with `onescan token new`"))]
-    Malformed {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong.
-        why: String,
-    },
+    Malformed { path: PathBuf, why: String },
     /// Tokens do not go together.
     #[error(transparent)]
     Register(#[from] RegisterError),
-    /// No token.
     #[error(transparent)]
     Token(#[from] BadToken),
     /// There is no such token.
     #[error("{} has no token `{}`", path.display(), one_line(name))]
     #[diagnostic(help("`onescan token list` shows all"))]
-    NoSuchToken {
-        /// The file.
-        path: PathBuf,
-        /// The name.
-        name: String,
-    },
+    NoSuchToken { path: PathBuf, name: String },
     /// A certificate cannot be used.
     #[error("{}: {source}", path.display())]
-    Certificate {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: CertificateFault,
-    },
+    Certificate { path: PathBuf, source: CertificateFault },
     /// A certificate cannot be made.
     #[error("cannot make a certificate: {0}")]
     Making(rcgen::Error),
@@ -72,12 +56,7 @@ pub enum AccessError {
         "make a certificate (`onescan certificate new`) and tokens (`onescan token new`), and name their folder with \
          `--access DIR`; in a network where nobody else is, `--listen-insecure` does without (docs/security.md)"
     ))]
-    OpenToAll {
-        /// Where.
-        address: SocketAddr,
-        /// What is missing.
-        missing: &'static str,
-    },
+    OpenToAll { address: SocketAddr, missing: &'static str },
 }
 
 impl Exit for AccessError {

@@ -28,7 +28,6 @@ pub const CLIENTS: &str = "clients-ca.pem";
 #[derive(Clone, Copy, Debug)]
 pub struct Folder<'f>(pub &'f Path);
 
-/// `tokens.toml`.
 #[derive(Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct TokensFile {
@@ -36,7 +35,6 @@ struct TokensFile {
     tokens: Vec<TokenEntry>,
 }
 
-/// One `[[token]]`.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct TokenEntry {

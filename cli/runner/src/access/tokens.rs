@@ -16,7 +16,6 @@ use crate::format::Format;
 pub enum Lifetime {
     /// After so many days.
     Days(u32),
-    /// After this day.
     Until(Day),
     /// When it is revoked.
     Unlimited,

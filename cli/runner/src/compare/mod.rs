@@ -64,9 +64,7 @@ pub struct CompareConfig {
 /// A way of bringing plant and PLC together, over all of its runs. Its JSON form is a contract.
 #[derive(Clone, Debug, Serialize)]
 pub struct Row {
-    /// The way.
     pub mode: Mode,
-    /// Its runs.
     pub runs: usize,
     /// Different digests among them.
     pub digests: usize,
@@ -79,7 +77,6 @@ pub struct Row {
     pub offset_ms: f64,
     /// Edges of lockstep that are missing, on average of the runs.
     pub lost_edges: f64,
-    /// Edges of lockstep.
     pub edges: usize,
     /// How often the signal that is counted came true, on average of the runs.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -15,7 +15,6 @@ use super::{ListenError, SpawnError, Unreadable, Usage};
 /// The exit code of the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExitCode {
-    /// All is well.
     Ok = 0,
     /// A run failed its expectations: those of its scenario, or runs that must be equal are not.
     Unmet = 1,
@@ -56,7 +55,7 @@ impl Exit for SpawnError {
 }
 
 impl Exit for OutputError {
-    /// A reader that has left (`onescan explain --list | head -2`) has what he wanted: that is no failure, and
+    /// A reader that has left (`onescan explain --list | head -2`) has what he wanted: that is not a failure, and
     /// a shell with `pipefail` must not take it for one.
     fn exit_code(&self) -> ExitCode {
         if self.is_closed_pipe() { ExitCode::Ok } else { ExitCode::Fault }

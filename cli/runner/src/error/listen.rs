@@ -9,9 +9,7 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 #[error("cannot listen on {address}: {source}")]
 pub struct ListenError {
-    /// Where.
     pub address: SocketAddr,
-    /// Why.
     pub source: io::Error,
 }
 

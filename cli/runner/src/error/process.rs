@@ -8,10 +8,7 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 #[error("cannot start `{command}` for client `{client}`: {source}")]
 pub struct SpawnError {
-    /// For whom.
     pub client: String,
-    /// The program.
     pub command: String,
-    /// Why.
     pub source: io::Error,
 }

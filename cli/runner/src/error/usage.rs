@@ -7,9 +7,7 @@ use thiserror::Error;
 #[derive(Clone, Debug, PartialEq, Eq, Error, Diagnostic)]
 #[error("{message}")]
 pub struct Usage {
-    /// What is wrong.
     pub message: String,
-    /// What to do.
     #[help]
     pub help: Option<String>,
 }

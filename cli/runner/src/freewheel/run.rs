@@ -26,7 +26,6 @@ pub use super::wheel::Clock;
 
 /// A client and the clock it keeps.
 pub struct Freewheeler {
-    /// The client.
     pub client: Box<dyn Client>,
     /// How it keeps its cycle.
     pub clock: Clock,

@@ -14,9 +14,7 @@
 pub struct Synchronizer {
     /// How much of the error is corrected, %.
     gain_pct: u8,
-    /// `pre.PLC.time`.
     seen_ns: u64,
-    /// `pre.PLC.time + PLC.time.step`.
     expected_ns: u64,
 }
 

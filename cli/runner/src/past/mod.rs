@@ -16,13 +16,12 @@ use std::fmt;
 use std::str::FromStr;
 
 pub(crate) use keep::Keeper;
-pub(crate) use rewind::{Form, Gazer, Moment, Rewinder};
+pub(crate) use rewind::{Form, Moment, PastReader, Rewinder};
 pub(crate) use store::Kept;
 
 /// How much memory the past of a session may take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Budget {
-    /// Bytes.
     pub bytes: usize,
 }
 
@@ -46,7 +45,7 @@ impl FromStr for Budget {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let wrong = || format!("`{text}` is no amount of memory: write it as in `256MiB`, `4GiB` or `0`");
+        let wrong = || format!("`{text}` is not an amount of memory: write it as in `256MiB`, `4GiB` or `0`");
         let end = text.find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len());
         let (number, unit) = text.split_at(end);
         let factor = match unit.trim() {

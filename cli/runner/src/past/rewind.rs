@@ -25,16 +25,13 @@ const STRETCH_STEPS: u64 = 64;
 /// What somebody who looks at the past sees.
 #[derive(Clone, Debug, Default)]
 pub(crate) enum Moment {
-    /// Nothing yet.
     #[default]
     None,
     /// The session at that time.
     Seen(Arc<SessionView>),
-    /// Why not.
     Lost(String),
 }
 
-/// What is wanted.
 enum Wanted {
     /// To see a moment.
     Show(VirtualTime, watch::Sender<Moment>),
@@ -54,12 +51,12 @@ struct Queue {
 }
 
 #[derive(Default)]
-struct Desk {
+struct RequestQueue {
     queue: Mutex<Queue>,
     arrived: Condvar,
 }
 
-impl Desk {
+impl RequestQueue {
     /// A thread that panicked under the lock has left whole values.
     fn lock(&self) -> MutexGuard<'_, Queue> {
         self.queue.lock().unwrap_or_else(PoisonError::into_inner)
@@ -96,14 +93,14 @@ impl Desk {
 
 /// Shows moments of the past. It ends when it is dropped.
 pub(crate) struct Rewinder {
-    desk: Arc<Desk>,
+    queue: Arc<RequestQueue>,
     kept: Kept,
     thread: Option<JoinHandle<()>>,
 }
 
 /// Somebody who looks at the past.
-pub(crate) struct Gazer {
-    desk: Arc<Desk>,
+pub(crate) struct PastReader {
+    queue: Arc<RequestQueue>,
     who: u64,
     sees: watch::Sender<Moment>,
     seen: watch::Receiver<Moment>,
@@ -115,11 +112,11 @@ impl Rewinder {
     /// # Errors
     /// There is no thread for it.
     pub(crate) fn new(kept: Kept, form: Form) -> std::io::Result<Self> {
-        let desk = Arc::new(Desk::default());
-        let (asked, past) = (Arc::clone(&desk), kept.clone());
-        let work = move || Worker { desk: asked, kept: past, form, runs: BTreeMap::new() }.work();
+        let queue = Arc::new(RequestQueue::default());
+        let (asked, past) = (Arc::clone(&queue), kept.clone());
+        let work = move || Worker { queue: asked, kept: past, form, runs: BTreeMap::new() }.work();
         let thread = std::thread::Builder::new().name("rewind".to_owned()).spawn(work)?;
-        Ok(Self { desk, kept, thread: Some(thread) })
+        Ok(Self { queue, kept, thread: Some(thread) })
     }
 
     /// Where the past begins; nothing if there is none.
@@ -128,21 +125,21 @@ impl Rewinder {
     }
 
     /// Somebody comes to look.
-    pub(crate) fn enter(&self) -> Gazer {
+    pub(crate) fn enter(&self) -> PastReader {
         let who = {
-            let mut queue = self.desk.lock();
+            let mut queue = self.queue.lock();
             queue.last += 1;
             queue.last
         };
         let (sees, seen) = watch::channel(Moment::None);
-        Gazer { desk: Arc::clone(&self.desk), who, sees, seen }
+        PastReader { queue: Arc::clone(&self.queue), who, sees, seen }
     }
 }
 
 impl Drop for Rewinder {
     fn drop(&mut self) {
-        self.desk.lock().closed = true;
-        self.desk.arrived.notify_all();
+        self.queue.lock().closed = true;
+        self.queue.arrived.notify_all();
         if let Some(thread) = self.thread.take()
             && thread.join().is_err()
         {
@@ -151,15 +148,15 @@ impl Drop for Rewinder {
     }
 }
 
-impl Gazer {
+impl PastReader {
     /// Asks for a moment; what was asked for before counts no more.
     pub(crate) fn show(&self, t_v: VirtualTime) {
-        self.desk.want(self.who, Wanted::Show(t_v, self.sees.clone()));
+        self.queue.want(self.who, Wanted::Show(t_v, self.sees.clone()));
     }
 
     /// Looks no more.
     pub(crate) fn leave(&mut self) {
-        self.desk.want(self.who, Wanted::Leave);
+        self.queue.want(self.who, Wanted::Leave);
         self.seen.mark_unchanged();
     }
 
@@ -167,11 +164,11 @@ impl Gazer {
     pub(crate) fn save(&self, t_v: VirtualTime) -> oneshot::Receiver<Result<Vec<u8>, String>> {
         let (reply, answer) = oneshot::channel();
         let who = {
-            let mut queue = self.desk.lock();
+            let mut queue = self.queue.lock();
             queue.last += 1;
             queue.last
         };
-        self.desk.want(who, Wanted::Save(t_v, reply));
+        self.queue.want(who, Wanted::Save(t_v, reply));
         answer
     }
 
@@ -185,9 +182,9 @@ impl Gazer {
     }
 }
 
-impl Drop for Gazer {
+impl Drop for PastReader {
     fn drop(&mut self) {
-        self.desk.want(self.who, Wanted::Leave);
+        self.queue.want(self.who, Wanted::Leave);
     }
 }
 
@@ -199,7 +196,7 @@ struct Run {
 }
 
 struct Worker {
-    desk: Arc<Desk>,
+    queue: Arc<RequestQueue>,
     kept: Kept,
     form: Form,
     /// By who looks: where the last re-run has come to.
@@ -208,7 +205,7 @@ struct Worker {
 
 impl Worker {
     fn work(mut self) {
-        while let Some((who, wanted)) = self.desk.next() {
+        while let Some((who, wanted)) = self.queue.next() {
             match wanted {
                 Wanted::Show(t_v, sees) => {
                     let moment = match self.view(who, t_v) {
@@ -232,12 +229,12 @@ impl Worker {
 
     /// The session at `t_v`; nothing if something else is wanted meanwhile.
     fn view(&mut self, who: u64, t_v: VirtualTime) -> Result<Option<Arc<SessionView>>, String> {
-        let (desk, run) = (Arc::clone(&self.desk), self.near(who, t_v)?);
+        let (queue, run) = (Arc::clone(&self.queue), self.near(who, t_v)?);
         let published = run.lockstep.published();
         let step = run.lockstep.session().step();
         // the checkpoint may be of this very moment
         published.ask();
-        if !run.go_to(t_v.saturating_sub(step), || desk.is_outdated(who))? {
+        if !run.go_to(t_v.saturating_sub(step), || queue.is_outdated(who))? {
             return Ok(None);
         }
         if run.lockstep.session().t_v() < t_v {
@@ -248,9 +245,9 @@ impl Worker {
     }
 
     fn checkpoint(&mut self, who: u64, t_v: VirtualTime) -> Result<Vec<u8>, String> {
-        let desk = Arc::clone(&self.desk);
+        let queue = Arc::clone(&self.queue);
         let run = self.near(who, t_v)?;
-        if !run.go_to(t_v, || desk.lock().closed)? {
+        if !run.go_to(t_v, || queue.lock().closed)? {
             return Err("the session is over".to_owned());
         }
         run.lockstep.checkpoint().and_then(|checkpoint| checkpoint.to_bytes()).map_err(|error| error.to_string())

@@ -26,7 +26,6 @@ use crate::web::charts;
 /// What is reported, and for whom.
 #[derive(Clone, Debug)]
 pub struct ReportConfig {
-    /// The recordings.
     pub recordings: Vec<PathBuf>,
     /// The scenario that says what is reported; each recording's own if absent.
     pub scenario: Option<PathBuf>,
@@ -41,7 +40,6 @@ pub struct ReportConfig {
 struct Recorded {
     /// The folder, as it was typed.
     recording: String,
-    /// The scenario's name.
     scenario: String,
     /// The case of it.
     #[serde(skip_serializing_if = "Option::is_none")]

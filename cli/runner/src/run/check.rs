@@ -66,7 +66,7 @@ impl RunConfig {
                 (format!("--enlarge: {from} is not before the end of the run at {end}"), None)
             }
             (Some(Part::Times { .. }), Some([x, y])) => (
-                "--enlarge: a range of time is no part of a plane".to_owned(),
+                "--enlarge: a range of time is not part of a plane".to_owned(),
                 Some(format!("write a range of {x} and one of {y}, as in `0.9..1.2,0.3..0.5`")),
             ),
             (Some(Part::Plane { .. }), None) => (

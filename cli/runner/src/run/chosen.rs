@@ -32,7 +32,7 @@ impl Chosen {
         self.bytes_in(session.layout(), session.image())
     }
 
-    /// What they are now, in their order; texts are no numbers.
+    /// What they are now, in their order; texts are not numbers.
     pub fn numbers(&self, session: &Session) -> impl Iterator<Item = f64> {
         self.numbers_in(session.layout(), session.image())
     }

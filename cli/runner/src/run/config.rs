@@ -25,11 +25,9 @@ use crate::past::Budget;
 /// All options of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RunConfig {
-    /// What is run.
     pub subject: Subject,
     /// In lockstep or not.
     pub mode: Mode,
-    /// How many runs.
     pub runs: u32,
     /// How the scenario's clients are reached.
     pub reach: Reach,
@@ -37,7 +35,6 @@ pub struct RunConfig {
     pub doors: Doors,
     /// Where it begins, what is repeated, what is kept of it.
     pub course: Course,
-    /// What is drawn.
     pub picture: Picture,
     /// What is looked at inside of soft PLCs.
     pub watch: Watch,
@@ -45,7 +42,6 @@ pub struct RunConfig {
     pub reports: Reports,
 }
 
-/// What is run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Subject {
     /// The scenario's folder or file.
@@ -154,7 +150,6 @@ impl ForkRequest {
 pub struct SaveRequest {
     /// When: the first step boundary at or after this.
     pub at: VirtualTime,
-    /// Where to.
     pub path: PathBuf,
 }
 
@@ -186,7 +181,6 @@ pub enum RunsDrawn {
 /// Whether there is a plot, and where it goes.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Drawing {
-    /// There is none.
     #[default]
     Nothing,
     /// It is handed to the caller.
@@ -198,7 +192,6 @@ pub enum Drawing {
 /// What is looked at inside of soft PLCs.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Watch {
-    /// The variables.
     pub variables: Vec<WatchRequest>,
     /// When they are reported.
     pub on: WatchOn,
@@ -210,7 +203,6 @@ pub enum WatchOn {
     /// What they are last.
     #[default]
     End,
-    /// All their changes.
     Change,
 }
 
@@ -221,7 +213,6 @@ pub struct Reports {
     pub format: Format,
     /// True where a progress bar would be seen.
     pub progress: bool,
-    /// What is recorded.
     pub record: Option<RecordRequest>,
     /// A coverage report to write.
     pub coverage: Option<CoverageRequest>,
@@ -240,7 +231,6 @@ pub struct RecordRequest {
     pub folder: PathBuf,
     /// Whether an earlier recording there may be replaced.
     pub overwrite: bool,
-    /// Signals and forms.
     pub choice: Choice,
 }
 

@@ -11,18 +11,14 @@ use super::error::RunError;
 /// How coverage is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CoverageFormat {
-    /// An lcov tracefile.
     Lcov,
-    /// A Cobertura report.
     Cobertura,
 }
 
 /// A coverage report to write.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CoverageRequest {
-    /// Where to.
     pub path: PathBuf,
-    /// How.
     pub format: CoverageFormat,
 }
 

@@ -45,7 +45,6 @@ const PRESETS: [&str; 37] = [
     "ONESCAN_LOG",
 ];
 
-/// Families of them.
 const PRESET_PREFIXES: [&str; 1] = ["LC_"];
 
 /// Lets `command` see no more of this process's environment than programs need, and what is in `named`.

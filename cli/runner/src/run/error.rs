@@ -32,12 +32,7 @@ pub enum RunError {
     Formation(#[from] FormationError),
     /// A client's process left before it joined.
     #[error("the process of client `{client}` ended before it joined ({status})")]
-    ClientProcess {
-        /// Who.
-        client: String,
-        /// How it ended.
-        status: String,
-    },
+    ClientProcess { client: String, status: String },
     /// A client's process cannot be started.
     #[error(transparent)]
     Spawn(#[from] SpawnError),
@@ -58,7 +53,6 @@ pub enum RunError {
     /// A recording could not be written to its end.
     #[error("{source}; {kept}")]
     RecordCut {
-        /// Why.
         source: RecordError,
         /// What there is of it.
         kept: String,
@@ -83,12 +77,7 @@ pub enum RunError {
     SaveTooLate(VirtualTime),
     /// A checkpoint cannot be taken up.
     #[error("cannot resume from {}: {source}", path.display())]
-    Resume {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: CheckpointError,
-    },
+    Resume { path: PathBuf, source: CheckpointError },
     /// What the case does to the session cannot be done.
     #[error("the case cannot be put on this session: {0}")]
     Timeline(onescan_server::operation::OperationError),

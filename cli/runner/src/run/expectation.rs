@@ -18,12 +18,11 @@ use serde::Serialize;
 
 use super::chosen::Chosen;
 use crate::error::Usage;
-use crate::web::Bench;
+use crate::web::VerdictBoard;
 
 /// What came of one expectation. Its JSON form is a contract: fields are added, never changed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ExpectationReport {
-    /// Its name.
     pub name: String,
     /// Whether it was met.
     pub verdict: Verdict,
@@ -44,9 +43,7 @@ pub struct ExpectationReport {
 /// A signal's value as a number; BOOLs are 0 or 1.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SignalValue {
-    /// Its name.
     pub signal: String,
-    /// What it was.
     pub value: f64,
 }
 
@@ -122,16 +119,16 @@ pub(crate) fn judge(scenario: &Scenario) -> Judge {
 /// Leaves copies of the judge of a run for those who watch it, behind the [`Witness`] that shows the run to it.
 pub(super) struct Copyist {
     judge: Rc<RefCell<Judge>>,
-    bench: Bench,
+    verdict_board: VerdictBoard,
 }
 
 impl Copyist {
-    pub(super) fn new(judge: Rc<RefCell<Judge>>, bench: Bench) -> Self {
-        Self { judge, bench }
+    pub(super) fn new(judge: Rc<RefCell<Judge>>, verdict_board: VerdictBoard) -> Self {
+        Self { judge, verdict_board }
     }
 
     fn leave(&self, session: &Session, end: TraceEnd) {
-        self.bench.leave(session.t_v(), self.judge.borrow().clone(), end);
+        self.verdict_board.leave(session.t_v(), self.judge.borrow().clone(), end);
     }
 }
 
@@ -142,7 +139,7 @@ impl Observer for Copyist {
     }
 
     fn step(&mut self, session: &Session, _digest: &TrajectoryDigest) -> Result<(), RecordError> {
-        if self.bench.is_wanted() {
+        if self.verdict_board.is_wanted() {
             self.leave(session, TraceEnd::Cut);
         }
         Ok(())

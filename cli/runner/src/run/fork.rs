@@ -24,7 +24,6 @@ pub struct Fork {
 
 /// Where a session came together with another.
 pub struct Joined {
-    /// The boundary.
     pub t_v: VirtualTime,
     /// The digest up to there, as it grows.
     pub digest: TrajectoryDigest,

@@ -40,7 +40,6 @@ impl Group {
     }
 }
 
-/// The server's side.
 #[derive(Debug)]
 pub(super) struct Guard {
     process: Child,

@@ -69,7 +69,7 @@ impl<'a> Judged<'a> {
         elsewhere: impl Fn(&ClientName, &Member) -> Usage,
     ) -> Result<Self, RunError> {
         let mut lockstep = in_process(scenario, until, more, elsewhere)?;
-        lockstep.set_makeup(scenario.makeup());
+        lockstep.set_settings(scenario.session_settings());
         let mut columns = Chosen::new(&scenario.expectations().signals);
         columns.find(lockstep.session());
         Ok(Self { scenario, lockstep, until, judge: expectation::judge(scenario), columns, seen: SeenHash::default() })

@@ -24,16 +24,16 @@ use onescan_server::transport::tcp::Lobby;
 use super::config::{Reach, RunConfig, SaveRequest, Transport};
 use super::error::RunError;
 use super::fork::{self, Joined, Taken};
+use super::forked::{self, ForkSettings};
 use super::processes::{Passed, Processes};
 use super::progress::Progress;
-use super::rewound::{self, Onward};
-use super::seats::{Desk, Seats};
+use super::seats::{OpcUaSeats, Seats};
 use super::session_log::SessionLog;
-use crate::access::admission::{Doorstep, Shown, from_here};
+use crate::access::admission::{GuardedListener, Shown, from_here};
 use crate::error::{ListenError, Unreadable, Usage};
 use crate::interrupt::Interrupt;
 use crate::past::{Keeper, Kept, Rewinder};
-use crate::web::{self, Bench, Page, WebError};
+use crate::web::{self, Page, VerdictBoard, WebError};
 
 /// What is said here is for the user, also without `--verbose`.
 pub const NOTICE: &str = "onescan::notice";
@@ -65,20 +65,20 @@ pub(super) fn run(
     scenario: &Scenario,
     number: u32,
     interrupt: &Interrupt,
-    (log, bench): (&SessionLog, &Bench),
+    (log, verdict_board): (&SessionLog, &VerdictBoard),
     watch: impl FnOnce(&mut Lockstep),
 ) -> Result<Driven, RunError> {
     let mut processes = Processes::default();
-    let Formed { mut lockstep, lobby: _lobby, desk } = form(config, scenario, interrupt, log, &mut processes)?;
+    let Formed { mut lockstep, lobby: _lobby, opcua_seats } = form(config, scenario, interrupt, log, &mut processes)?;
     lockstep.set_until(Some(config.subject.end(scenario)));
     lockstep.set_pace(config.course.pace);
     lockstep.set_mailbox(interrupt.mailbox());
-    lockstep.set_makeup(scenario.makeup());
+    lockstep.set_settings(scenario.session_settings());
     lockstep.set_timeline(timeline(config, scenario, &lockstep)?);
     watch(&mut lockstep);
-    if let Some(desk) = &desk {
-        lockstep.set_published(desk.published());
-        lockstep.observe(desk.observer());
+    if let Some(opcua_seats) = &opcua_seats {
+        lockstep.set_published(opcua_seats.published());
+        lockstep.observe(opcua_seats.observer());
     }
     // Read before the page is there: whoever reads its address may remove the file.
     let checkpoint = config.course.resume.as_deref().map(|path| Ok::<_, RunError>((path, read(path)?))).transpose()?;
@@ -86,7 +86,7 @@ pub(super) fn run(
     let page = match config.doors.web {
         Some(address) => {
             let past = past_of(config, scenario, &mut lockstep, &mut keeper)?;
-            Some(serve_page(address, config, scenario, &mut lockstep, interrupt, (past, bench.clone()))?)
+            Some(serve_page(address, config, scenario, &mut lockstep, interrupt, (past, verdict_board.clone()))?)
         }
         None => None,
     };
@@ -157,12 +157,12 @@ fn past_of(
     if config.doors.past.bytes == 0 {
         return Ok(Err("`--past-memory 0` keeps none".to_owned()));
     }
-    if let Some(why) = rewound::hindrance(scenario, Some(config)) {
+    if let Some(why) = forked::fork_blocker(scenario, Some(config)) {
         return Ok(Err(why));
     }
     let kept = Kept::within(config.doors.past.bytes);
     let started = Keeper::new(kept.clone())
-        .and_then(|keeper| Ok((keeper, Rewinder::new(kept, rewound::former(scenario))?)))
+        .and_then(|keeper| Ok((keeper, Rewinder::new(kept, forked::former(scenario))?)))
         .map_err(WebError::Thread)?;
     lockstep.observe(started.0.observer());
     *keeper = Some(started.0);
@@ -196,7 +196,7 @@ fn serve_page(
     scenario: &Scenario,
     lockstep: &mut Lockstep,
     interrupt: &Interrupt,
-    (past, bench): (Result<Rewinder, String>, Bench),
+    (past, verdict_board): (Result<Rewinder, String>, VerdictBoard),
 ) -> Result<Page, RunError> {
     let pace = match config.course.pace {
         Pace::Max => "max".to_owned(),
@@ -205,12 +205,14 @@ fn serve_page(
     let failing = web::Failing::default();
     lockstep.observe(failing.observer());
     let (published, mailbox) = (lockstep.published(), interrupt.mailbox());
-    let launch = rewound::launcher(Onward::of(config));
-    let source = web::Source { failing, past, launch, bench, ..web::Source::new(scenario, published, mailbox, pace) };
+    let launch = forked::launcher(ForkSettings::of(config));
+    let source =
+        web::Source { failing, past, launch, verdict_board, ..web::Source::new(scenario, published, mailbox, pace) };
     let page = Page::serve(address, &config.doors.admission, source)?;
-    match Page::is_absent() {
-        None => tracing::info!(target: NOTICE, "{}{}", rewound::PAGE_AT, page.url()),
-        Some(how) => tracing::warn!(target: NOTICE, "no page at {}: {how}", page.url()),
+    // Sessions that go on from this one wait for this line, whether the program has its page or not.
+    tracing::info!(target: NOTICE, "{}{}", forked::PAGE_AT, page.url());
+    if let Some(how) = Page::is_absent() {
+        tracing::warn!(target: NOTICE, "there is no page there: {how}");
     }
     Ok(page)
 }
@@ -219,7 +221,7 @@ fn serve_page(
 struct Formed {
     lockstep: Lockstep,
     lobby: Option<Lobby>,
-    desk: Option<Desk>,
+    opcua_seats: Option<OpcUaSeats>,
 }
 
 /// Brings all clients together.
@@ -252,20 +254,20 @@ fn form(
         }
     }
     interrupt.heed();
-    let desk = seats.open(&config.doors, scenario.plan(), interrupt)?;
-    if let Some(desk) = &desk {
-        for client in desk.clients(config.reach.reply_timeout) {
+    let opcua_seats = seats.open(&config.doors, scenario.plan(), interrupt)?;
+    if let Some(opcua_seats) = &opcua_seats {
+        for client in opcua_seats.clients(config.reach.reply_timeout) {
             let request = client.join();
             let client = if config.reach.is_watched() { log.watch(client) } else { client };
             formation.join(client).map_err(|refusal| scenario.refused(&request, &refusal))?;
         }
-        desk.start(scenario.folder(), &scenario.file().pass_env, processes)?;
+        opcua_seats.start(scenario.folder(), &scenario.file().pass_env, processes)?;
     }
     let lobby = admit_remote(config, scenario, &mut formation, &remote, interrupt, processes)?;
-    if let Some(desk) = &desk {
-        desk.wait(config.reach.join_timeout, interrupt, processes)?;
+    if let Some(opcua_seats) = &opcua_seats {
+        opcua_seats.wait(config.reach.join_timeout, interrupt, processes)?;
     }
-    Ok(Formed { lockstep: formation.start()?, lobby, desk })
+    Ok(Formed { lockstep: formation.start()?, lobby, opcua_seats })
 }
 
 /// The command of a client, if scenarios may start programs. Whoever runs it is told that it does.
@@ -298,14 +300,14 @@ fn admit_remote(
         return Ok(None);
     }
     let address = config.doors.listen.unwrap_or(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)));
-    let mut doorstep = Doorstep::open(&config.doors.admission, address)?;
+    let mut listener = GuardedListener::open(&config.doors.admission, address)?;
     let mut shown = Vec::new();
     for (name, command) in remote {
         // Nobody waits for a program that somebody else starts with a token of his own.
         let is_ours = command.as_ref().is_none_or(|words| !words.is_empty());
-        shown.push(if is_ours { doorstep.shown_by(name)? } else { Shown::new() });
+        shown.push(if is_ours { listener.shown_by(name)? } else { Shown::new() });
     }
-    let lobby = Lobby::open_house(address, scenario.plan(), interrupt.mailbox(), doorstep.into_house())
+    let lobby = Lobby::open_house(address, scenario.plan(), interrupt.mailbox(), listener.into_house())
         .map_err(ListenError::on(address))?;
     let server = from_here(lobby.address());
     for ((name, command), shown) in remote.iter().zip(shown) {
@@ -374,7 +376,7 @@ fn resume(
     let checkpoint = Checkpoint::from_bytes(&bytes).map_err(wrong)?;
     // Programs and constants are code; what else a case sets is a state of the past, which it cannot change.
     let mut code = BTreeSet::new();
-    for path in scenario.makeup().differing(checkpoint.makeup()) {
+    for path in scenario.session_settings().differing(checkpoint.settings()) {
         let is_program = scenario.is_program(path) && (accepts_code || scenario.has_code_of_case());
         if is_program || (accepts_code && scenario.is_constant(path)?) {
             code.insert(path.clone());

@@ -22,7 +22,7 @@
 //! | `judged` | the same, judged step by step |
 //! | `search` | why a search through many runs came to nothing |
 //! | [`rerun`] | a recorded run once more |
-//! | [`rewound`] | the past of a run, for its page |
+//! | [`forked`] | the past of a run, for its page |
 //! | [`expectation`] | what a run had to show |
 //! | [`production`] | what a run produced, by its scenario's `[report]` |
 //! | [`watch`] | what watched variables were |
@@ -39,6 +39,7 @@ mod environment;
 mod error;
 pub mod expectation;
 pub mod fork;
+pub(crate) mod forked;
 mod freewheel;
 pub mod guard;
 pub(crate) mod in_process;
@@ -53,7 +54,6 @@ mod progress;
 pub mod recorded;
 pub mod report;
 pub mod rerun;
-pub(crate) mod rewound;
 pub mod sampler;
 mod search;
 mod seats;
@@ -88,7 +88,7 @@ pub use search::SearchError;
 
 use crate::interrupt::Interrupt;
 use crate::scene_drawing;
-use crate::web::Bench;
+use crate::web::VerdictBoard;
 use expectation::{Copyist, Witness};
 use page::{Drawings, Event};
 use production::Metered;
@@ -100,7 +100,7 @@ use watch::WatchReport;
 /// Runs a scenario as `config` asks, and writes a report of each run to `out`.
 ///
 /// # Errors
-/// See [`RunError`]. A failed client is no error here but a verdict: what there is of the run is
+/// See [`RunError`]. A failed client is not an error here but a verdict: what there is of the run is
 /// recorded, plotted and reported.
 pub fn execute(config: &RunConfig, interrupt: &Interrupt, out: &mut dyn Write) -> Result<Verdict, RunError> {
     let mut scenario = Scenario::load_case(&config.subject.scenario, config.subject.case.as_deref())?;
@@ -236,7 +236,7 @@ pub fn one_run(
     });
     let (recorded, recorder) = recorded.transpose()?.unzip();
     let published = RefCell::new(None);
-    let bench = Bench::default();
+    let verdict_board = VerdictBoard::default();
     let watch = |lockstep: &mut Lockstep| {
         published.replace(Some(lockstep.published()));
         for observer in observers {
@@ -249,7 +249,7 @@ pub fn one_run(
         if !expected.named.is_empty() {
             lockstep.observe(Box::new(Witness::new(Rc::clone(&judge), &expected.signals)));
             if config.doors.web.is_some() {
-                lockstep.observe(Box::new(Copyist::new(Rc::clone(&judge), bench.clone())));
+                lockstep.observe(Box::new(Copyist::new(Rc::clone(&judge), verdict_board.clone())));
             }
         }
         if let Some(metering) = metered.observer(measures) {
@@ -261,7 +261,7 @@ pub fn one_run(
     };
     let log = SessionLog::default();
     let outcome = match config.mode {
-        Mode::Lockstep => lockstep::run(config, scenario, number, interrupt, (&log, &bench), watch),
+        Mode::Lockstep => lockstep::run(config, scenario, number, interrupt, (&log, &verdict_board), watch),
         Mode::Freewheel | Mode::Halt | Mode::Follow => {
             freewheel::run(config, scenario, number, interrupt, watch).map(Driven::from)
         }

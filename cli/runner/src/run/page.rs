@@ -18,9 +18,7 @@ use crate::web::charts;
 /// Something that happened to a run from outside.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Event {
-    /// When.
     pub at_ns: u64,
-    /// What.
     pub text: String,
 }
 

@@ -30,7 +30,7 @@ pub(super) fn write(scenario: &Scenario, memories: &[Memory], folder: &Path) -> 
             let is_plain = name.chars().any(|letter| letter != '.') && !name.chars().any(char::is_control);
             if !is_plain || !written.insert(name.to_lowercase()) {
                 let message =
-                    format!("--files: `{}` has a file `{path}`, and `{name}` is no name for it, or taken", plc.name);
+                    format!("--files: `{}` has a file `{path}`, and `{name}` is not a name for it, or taken", plc.name);
                 return Err(Usage::new(message, None).into());
             }
             file::write_whole(&target.join(name), &bytes)?;

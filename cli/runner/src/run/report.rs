@@ -22,7 +22,6 @@ use crate::format::Format;
 /// What came of one run. Its JSON form is a contract: fields are added, never changed.
 #[derive(Clone, Debug, Serialize)]
 pub struct RunReport {
-    /// The scenario's name.
     pub scenario: String,
     /// The case of it, if one was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -33,11 +32,9 @@ pub struct RunReport {
     pub mode: Mode,
     /// How clients were reached.
     pub transport: Transport,
-    /// How it ended.
     pub status: RunStatus,
     /// The digest over all steps; absent if there was none.
     pub digest: Option<Digest>,
-    /// Steps committed.
     pub steps: StepCount,
     /// Virtual time of the last of them.
     #[serde(rename = "virtual_time_ns")]
@@ -75,7 +72,6 @@ pub struct RunReport {
 pub enum RunStatus {
     /// It came to its end.
     Completed,
-    /// Somebody stopped it.
     Stopped,
     /// A client or a link ended it.
     Failed,
@@ -194,7 +190,6 @@ pub enum Verdict {
     Unequal,
     /// A run did not show what the scenario expects.
     Unmet,
-    /// A client failed.
     Failed,
 }
 

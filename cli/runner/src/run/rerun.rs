@@ -14,7 +14,6 @@ use crate::error::Usage;
 /// How far it came.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rerun {
-    /// The last step.
     pub steps: StepCount,
     /// The digest up to it.
     pub digest: Option<Digest>,

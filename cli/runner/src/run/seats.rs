@@ -33,7 +33,7 @@ pub(super) struct Seats {
 }
 
 /// The session over OPC UA.
-pub(super) struct Desk {
+pub(super) struct OpcUaSeats {
     served: Box<dyn ServedSession>,
     /// Where certificates are kept.
     pki: Option<PathBuf>,
@@ -52,7 +52,7 @@ impl Seats {
         doors: &Doors,
         plan: &SessionPlan,
         interrupt: &Interrupt,
-    ) -> Result<Option<Desk>, RunError> {
+    ) -> Result<Option<OpcUaSeats>, RunError> {
         if self.expected.is_empty() && doors.opcua.is_none() {
             return Ok(None);
         }
@@ -67,11 +67,11 @@ impl Seats {
             tracing::info!(target: NOTICE, "serving the session at {}", served.url());
         }
         let pki = doors.access.pki.clone();
-        Ok(Some(Desk { served, pki, expected: self.expected }))
+        Ok(Some(OpcUaSeats { served, pki, expected: self.expected }))
     }
 }
 
-impl Desk {
+impl OpcUaSeats {
     /// The clients as the session sees them.
     pub(super) fn clients(&self, patience: Duration) -> impl Iterator<Item = Box<dyn Client>> {
         let client = move |(seat, expected): (usize, &Expected)| -> Box<dyn Client> {

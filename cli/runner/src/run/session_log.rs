@@ -46,7 +46,6 @@ pub struct SlowTurn {
 /// What a report says of one client's turns.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ClientLatency {
-    /// The client.
     pub client: String,
     /// Turns that it took.
     pub turns: u64,
@@ -54,7 +53,6 @@ pub struct ClientLatency {
     pub p50_us: f64,
     /// All but one of a hundred took no longer.
     pub p99_us: f64,
-    /// The longest.
     pub max_us: f64,
     /// Its part of all the time that the session waited for clients, 0 to 1.
     pub share: f64,

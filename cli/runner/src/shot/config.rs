@@ -25,18 +25,14 @@ pub struct ShotConfig {
     pub view: Option<String>,
     /// The picture, a PNG.
     pub out: PathBuf,
-    /// Its size.
     pub size: Size,
-    /// Its colours.
     pub theme: Theme,
 }
 
 /// A size in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Size {
-    /// Across.
     pub width: u32,
-    /// Down.
     pub height: u32,
 }
 
@@ -58,7 +54,6 @@ impl FromStr for Size {
 /// The colours of the ground.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Theme {
-    /// As paper.
     #[default]
     Light,
     /// As a control room at night.

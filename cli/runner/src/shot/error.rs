@@ -23,7 +23,6 @@ pub enum ShotError {
     Ended {
         /// The time that was asked for.
         at: VirtualTime,
-        /// What ended it.
         why: String,
     },
     /// There is nothing that draws.
@@ -34,26 +33,13 @@ pub enum ShotError {
     #[diagnostic(help(
         "install it (Debian: `apt install chromium`; Fedora: `dnf install chromium`), or name a Chrome or an Edge in the variable `CHROMIUM`"
     ))]
-    NoBrowser {
-        /// What `CHROMIUM` says.
-        named: Option<String>,
-    },
+    NoBrowser { named: Option<String> },
     /// The browser cannot be started.
     #[error("`{program}` cannot draw: {source}")]
-    Browser {
-        /// The browser.
-        program: String,
-        /// Why.
-        source: io::Error,
-    },
+    Browser { program: String, source: io::Error },
     /// The browser went before it had drawn.
     #[error("`{program}` ended without a picture: {status}")]
-    Gone {
-        /// The browser.
-        program: String,
-        /// Its last word.
-        status: ExitStatus,
-    },
+    Gone { program: String, status: ExitStatus },
     /// The browser takes too long.
     #[error("there is no picture after {} s", .0.as_secs())]
     Late(Duration),

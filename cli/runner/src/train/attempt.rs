@@ -38,7 +38,6 @@ pub(super) fn elsewhere(name: &ClientName, member: &Member) -> Usage {
 pub(super) struct Stage {
     /// Where wishes are left.
     pub(super) mailbox: Mailbox,
-    /// Where views go.
     pub(super) published: Published,
     /// What has failed, as pages show it.
     pub(super) failing: Failing,
@@ -51,7 +50,6 @@ pub(super) struct Stage {
 pub(super) struct Course<'a> {
     /// The scenario as the lesson wants it from its start on.
     pub(super) scenario: &'a Scenario,
-    /// Where it begins.
     pub(super) from: Moment,
     /// What it begins with is called so.
     pub(super) start: &'a str,
@@ -78,7 +76,7 @@ pub(super) struct Ended {
 pub(super) fn drive(course: Course<'_>, stage: &Stage, moments: &mut Moments) -> Result<Ended, TrainError> {
     let Course { scenario, from, start, inputs, hold_at, record } = course;
     let mut lockstep = in_process(scenario, scenario.until(), [], elsewhere)?;
-    lockstep.set_makeup(scenario.makeup());
+    lockstep.set_settings(scenario.session_settings());
     lockstep.set_published(stage.published.clone());
     lockstep.set_mailbox(stage.mailbox.clone());
     let examination = Rc::new(RefCell::new(from.examination.clone()));

@@ -14,7 +14,6 @@ pub struct TrainConfig {
     pub scenario: PathBuf,
     /// The lesson; all are listed if absent.
     pub lesson: Option<String>,
-    /// Who takes it.
     pub trainee: String,
     /// Where it is served as pages, and how fast.
     pub served: Option<Served>,

@@ -18,20 +18,10 @@ use crate::web::WebError;
 pub enum StartError {
     /// The run that makes a prepared state ends before it.
     #[error("there is no start `{name}`: the run that makes it ended at t_v = {ended}")]
-    Ended {
-        /// The start.
-        name: String,
-        /// When.
-        ended: onescan_server::time::VirtualTime,
-    },
+    Ended { name: String, ended: onescan_server::time::VirtualTime },
     /// A client cannot be saved, or not be taken up.
     #[error("start `{name}`: {source}")]
-    Checkpoint {
-        /// The start.
-        name: String,
-        /// Why.
-        source: CheckpointError,
-    },
+    Checkpoint { name: String, source: CheckpointError },
 }
 
 impl Exit for StartError {
@@ -47,9 +37,7 @@ impl Exit for StartError {
 #[derive(Debug, Error, Diagnostic)]
 #[error("{} is not the record of a session: {source}", path.display())]
 pub struct NoRecord {
-    /// The file.
     pub path: PathBuf,
-    /// Why.
     pub source: serde_json::Error,
 }
 

@@ -220,7 +220,6 @@ impl Examination {
 /// Shows an attempt to its examination, and keeps what operators do.
 pub(super) struct Examiner {
     pub(super) examination: Rc<RefCell<Examination>>,
-    /// Inputs of operators.
     pub(super) inputs: Rc<RefCell<Vec<OperatorInput>>>,
 }
 

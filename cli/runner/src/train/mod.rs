@@ -44,7 +44,7 @@ use course::Classroom;
 /// Lets somebody take a lesson, and reports to `out` what came of it.
 ///
 /// # Errors
-/// See [`TrainError`]. A lesson that is not passed is no error.
+/// See [`TrainError`]. A lesson that is not passed is not an error.
 pub fn run(config: &TrainConfig, interrupt: &Interrupt, out: &mut dyn Write) -> Result<ExitCode, TrainError> {
     let scenario = Scenario::load(&config.scenario)?;
     let book = Book::load(&scenario)?;

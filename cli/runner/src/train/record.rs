@@ -23,11 +23,8 @@ const VERSION: u32 = 1;
 pub struct SessionRecord {
     /// Version of the format: 1.
     pub version: u32,
-    /// The scenario.
     pub scenario: String,
-    /// The lesson.
     pub lesson: String,
-    /// Who took it.
     pub trainee: String,
     /// Whether the last attempt passed.
     pub passed: bool,
@@ -38,7 +35,6 @@ pub struct SessionRecord {
     pub expert: Option<AttemptRecord>,
 }
 
-/// One attempt.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AttemptRecord {
     /// From 1, also that of its recording.
@@ -59,7 +55,6 @@ pub struct AttemptRecord {
     pub steps: u64,
     /// The digest at its end.
     pub digest: String,
-    /// What was measured.
     pub score: Score,
 }
 
@@ -147,6 +142,6 @@ pub(super) fn begin(folder: &Path, overwrite: bool) -> Result<(), TrainError> {
 }
 
 /// A time for people.
-pub(super) fn spelt(t_ns: u64) -> String {
+pub(super) fn to_text(t_ns: u64) -> String {
     VirtualTime::from_nanos(t_ns).to_string()
 }

@@ -7,7 +7,7 @@ use onescan_report::number::short;
 use onescan_report::page::{Event, Mood, Page, Section, Shown};
 use onescan_scenario::lesson::Lesson;
 
-use super::record::{AttemptRecord, SessionRecord, spelt};
+use super::record::{AttemptRecord, SessionRecord, to_text};
 use super::score::{Handled, Response, Score, Spent};
 
 /// Nothing to be said.
@@ -16,9 +16,9 @@ const NOTHING: &str = "–";
 /// A response as `+3.200 s`, with what it should have been where it was not.
 fn after(response: Option<&Response>) -> String {
     let Some(response) = response else { return NOTHING.to_owned() };
-    let after = response.after_ns.map_or_else(|| "never".to_owned(), |after_ns| format!("+{}", spelt(after_ns)));
+    let after = response.after_ns.map_or_else(|| "never".to_owned(), |after_ns| format!("+{}", to_text(after_ns)));
     match response.within_ns {
-        Some(within_ns) if !response.is_timely() => format!("{after} (within {})", spelt(within_ns)),
+        Some(within_ns) if !response.is_timely() => format!("{after} (within {})", to_text(within_ns)),
         _ => after,
     }
 }
@@ -38,7 +38,7 @@ fn malfunctions(score: &Score, expert: Option<&Score>) -> Table {
         let theirs = beside(expert, &handled.name);
         vec![
             handled.name.clone(),
-            handled.begun_ns.map_or_else(|| "did not come".to_owned(), spelt),
+            handled.begun_ns.map_or_else(|| "did not come".to_owned(), to_text),
             after(handled.identified.as_ref()),
             after(theirs.and_then(|theirs| theirs.identified.as_ref())),
             after(handled.acted.as_ref()),
@@ -62,8 +62,8 @@ fn costs(score: &Score, expert: Option<&Score>) -> Table {
         .iter()
         .map(|cost| vec![cost.name.clone(), spent(cost), theirs(&cost.name).map_or(NOTHING.to_owned(), spent)])
         .collect();
-    let lasted = expert.map_or(NOTHING.to_owned(), |expert| spelt(expert.lasted_ns()));
-    rows.push(vec!["time".to_owned(), spelt(score.lasted_ns()), lasted]);
+    let lasted = expert.map_or(NOTHING.to_owned(), |expert| to_text(expert.lasted_ns()));
+    rows.push(vec!["time".to_owned(), to_text(score.lasted_ns()), lasted]);
     let head = ["trainee", "expert"].into_iter().map(Into::into).collect();
     Table { title: "cost", head, rows, remarks: Vec::new(), is_folded: false }
 }
@@ -72,7 +72,7 @@ fn costs(score: &Score, expert: Option<&Score>) -> Table {
 fn origin(attempt: &AttemptRecord) -> String {
     match attempt.fork {
         None => format!("from `{}`", attempt.start),
-        Some(fork) => format!("back to {} of attempt {}", spelt(fork.t_v_ns), fork.attempt),
+        Some(fork) => format!("back to {} of attempt {}", to_text(fork.t_v_ns), fork.attempt),
     }
 }
 
@@ -107,7 +107,7 @@ pub(super) fn write(record: &SessionRecord, unequal: &[String], out: &mut dyn Wr
             malfunctions(score, expert).write(out)?;
         }
         for expected in &score.expectations {
-            let at = expected.at_ns.map(|at_ns| format!(" at {}", spelt(at_ns))).unwrap_or_default();
+            let at = expected.at_ns.map(|at_ns| format!(" at {}", to_text(at_ns))).unwrap_or_default();
             let unit = expected.unit.as_ref().map(|unit| format!(" {unit}")).unwrap_or_default();
             let margin = expected.margin.map(|margin| format!(" (margin {}{unit})", short(margin))).unwrap_or_default();
             writeln!(out, "  expectation `{}` {}{at}{margin}", expected.name, expected.verdict.word())?;
@@ -135,7 +135,7 @@ fn section(attempt: &AttemptRecord, expert: Option<&Score>) -> Section {
     let shown = |expected: &super::score::Expected| Shown {
         name: expected.name.clone(),
         verdict: expected.verdict,
-        at: expected.at_ns.map(spelt).unwrap_or_default(),
+        at: expected.at_ns.map(to_text).unwrap_or_default(),
         values: Vec::new(),
         margin: expected.margin,
         unit: expected.unit.clone(),
@@ -145,9 +145,9 @@ fn section(attempt: &AttemptRecord, expert: Option<&Score>) -> Section {
         status: format!("{}, {}", attempt.end, verdict(passed)),
         mood: if passed { Mood::Good } else { Mood::Bad },
         steps: Some(attempt.steps),
-        virtual_time: spelt(score.end_ns),
+        virtual_time: to_text(score.end_ns),
         facts: vec![
-            ("begun at", spelt(score.begin_ns)),
+            ("begun at", to_text(score.begin_ns)),
             ("digest at the start", attempt.begin_digest.clone()),
             ("digest", attempt.digest.clone()),
         ],
@@ -173,5 +173,5 @@ fn events(score: &Score) -> Vec<Event> {
         all.extend(expected.at_ns.map(|at_ns| (at_ns, format!("expectation `{}` violated", expected.name))));
     }
     all.sort();
-    all.into_iter().map(|(at_ns, what)| Event { at: spelt(at_ns), what }).collect()
+    all.into_iter().map(|(at_ns, what)| Event { at: to_text(at_ns), what }).collect()
 }

@@ -8,23 +8,19 @@ use serde::{Deserialize, Serialize};
 pub struct Score {
     /// The image with which it began.
     pub begin_ns: u64,
-    /// Its last image.
     pub end_ns: u64,
     /// Whether the lesson's `done` held at its end; nothing if it has none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub done: Option<bool>,
     /// What went wrong, in the order of the lesson.
     pub malfunctions: Vec<Handled>,
-    /// What was expected.
     pub expectations: Vec<Expected>,
-    /// What it cost.
     pub costs: Vec<Spent>,
 }
 
 /// A malfunction, and what the trainee made of it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Handled {
-    /// Its name.
     pub name: String,
     /// The first image that had it; nothing if it did not come.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -54,7 +50,6 @@ pub struct Response {
 /// What came of an expectation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Expected {
-    /// Its name.
     pub name: String,
     /// Whether it was met.
     pub verdict: Verdict,
@@ -69,12 +64,9 @@ pub struct Expected {
     pub unit: Option<String>,
 }
 
-/// A cost.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Spent {
-    /// Its name.
     pub name: String,
-    /// How much.
     pub value: f64,
     /// What it is measured in.
     #[serde(default, skip_serializing_if = "Option::is_none")]

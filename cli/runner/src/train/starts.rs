@@ -85,7 +85,7 @@ fn kept(path: &Path) -> Option<Checkpoint> {
 fn make(scenario: &Scenario, start: &Start) -> Result<Checkpoint, TrainError> {
     let until = start.at + scenario.plan().step();
     let mut lockstep = in_process(scenario, until, [], elsewhere)?;
-    lockstep.set_makeup(scenario.makeup());
+    lockstep.set_settings(scenario.session_settings());
     if lockstep.run_to(start.at)? == Reached::End {
         return Err(StartError::Ended { name: start.name.clone(), ended: lockstep.session().t_v() }.into());
     }

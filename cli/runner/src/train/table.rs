@@ -7,7 +7,7 @@ use onescan_report::{OutputError, Table};
 use serde_json::json;
 
 use super::error::TrainError;
-use super::record::{FILE_NAME, SessionRecord, spelt};
+use super::record::{FILE_NAME, SessionRecord, to_text};
 use super::score::{Handled, Response, Score};
 use crate::error::{Unreadable, Usage};
 use crate::format::Format;
@@ -75,7 +75,7 @@ impl<'r> Row<'r> {
     }
 
     fn cells(&self) -> Vec<String> {
-        let time = |time: Option<u64>| time.map_or_else(|| "–".to_owned(), spelt);
+        let time = |time: Option<u64>| time.map_or_else(|| "–".to_owned(), to_text);
         let cost = |(name, value, unit): &(String, f64, String)| {
             format!("{name} {} {unit}", onescan_report::number::short(*value)).trim_end().to_owned()
         };

@@ -13,8 +13,8 @@ use super::recorded::Recorded;
 use crate::error::Usage;
 use crate::past::{Keeper, Kept};
 use crate::run::chosen::Chosen;
-use crate::run::{expectation, rewound};
-use crate::web::{Bench, WebError};
+use crate::run::{expectation, forked};
+use crate::web::{VerdictBoard, WebError};
 
 /// Steps that are read of the recording at once.
 const BLOCK_STEPS: u64 = 4_096;
@@ -64,10 +64,10 @@ impl fmt::Display for Checked {
 pub(super) fn check(
     recorded: &Recorded,
     kept: &Kept,
-    bench: &Bench,
+    verdict_board: &VerdictBoard,
     enough: &AtomicBool,
 ) -> Result<Checked, ViewError> {
-    let mut lockstep = rewound::former(&recorded.scenario)().map_err(|why| Usage::new(why, None))?;
+    let mut lockstep = forked::former(&recorded.scenario)().map_err(|why| Usage::new(why, None))?;
     lockstep.replay(recorded.inputs.clone());
     let mut keeper = Keeper::new(kept.clone()).map_err(WebError::Thread)?;
     let none = || Usage::new("the recording has no step", None);
@@ -91,14 +91,14 @@ pub(super) fn check(
                 return Ok(Checked::Differs { step: row.step, t_v: row.t_v });
             }
             judge.push(row.t_v.as_nanos(), columns.numbers(lockstep.session()));
-            if bench.is_wanted() {
-                bench.leave(row.t_v, judge.clone(), TraceEnd::Cut);
+            if verdict_board.is_wanted() {
+                verdict_board.leave(row.t_v, judge.clone(), TraceEnd::Cut);
             }
             last = Some((row.step, row.t_v, row.digest));
         }
     }
     let (steps, t_v, digest) = last.ok_or_else(none)?;
     let is_complete = t_v >= recorded.recording.header().provenance.until;
-    bench.leave(t_v, judge, if is_complete { TraceEnd::Complete } else { TraceEnd::Cut });
+    verdict_board.leave(t_v, judge, if is_complete { TraceEnd::Complete } else { TraceEnd::Cut });
     Ok(Checked::Same { steps, t_v, digest })
 }

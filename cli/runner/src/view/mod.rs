@@ -28,8 +28,8 @@ use crate::error::ExitCode;
 use crate::interrupt::Interrupt;
 use crate::past::{Budget, Kept, Rewinder};
 use crate::run::NOTICE;
-use crate::run::rewound::{self, Onward};
-use crate::web::{self, Bench, News, Page, WebError};
+use crate::run::forked::{self, ForkSettings};
+use crate::web::{self, News, Page, VerdictBoard, WebError};
 use check::Checked;
 use recorded::Recorded;
 
@@ -39,7 +39,6 @@ const LOOK: Duration = Duration::from_millis(50);
 /// What is shown, and where.
 #[derive(Clone, Debug)]
 pub struct ViewConfig {
-    /// The recording.
     pub recording: PathBuf,
     /// Where the page is served.
     pub web: SocketAddr,
@@ -52,22 +51,22 @@ pub struct ViewConfig {
 /// Serves the recording as a page until Ctrl-C, or a viewer ends it. Says in `out` whether the re-run is what was recorded.
 ///
 /// # Errors
-/// See [`ViewError`]. A re-run that differs is no error but the exit code.
+/// See [`ViewError`]. A re-run that differs is not an error but the exit code.
 pub fn view(config: &ViewConfig, interrupt: &Interrupt, out: &mut dyn Write) -> Result<ExitCode, ViewError> {
     let recorded = Recorded::open(&config.recording)?;
     interrupt.heed();
     let kept = Kept::within(config.past.bytes);
     recorded.leave_inputs(&kept);
-    let bench = Bench::default();
-    let page = serve(config, &recorded, kept.clone(), bench.clone())?;
+    let verdict_board = VerdictBoard::default();
+    let page = serve(config, &recorded, kept.clone(), verdict_board.clone())?;
     match Page::is_absent() {
         None => tracing::info!(target: NOTICE, "the recording is at {}", page.url()),
         Some(how) => tracing::warn!(target: NOTICE, "no page at {}: {how}", page.url()),
     }
     let enough = AtomicBool::new(false);
-    let bench = &bench;
+    let verdict_board = &verdict_board;
     std::thread::scope(|scope| {
-        let mut checking = Some(scope.spawn(|| check::check(&recorded, &kept, bench, &enough)));
+        let mut checking = Some(scope.spawn(|| check::check(&recorded, &kept, verdict_board, &enough)));
         let mut code = ExitCode::Ok;
         loop {
             let is_over = interrupt.is_raised() || page.is_left();
@@ -88,16 +87,16 @@ pub fn view(config: &ViewConfig, interrupt: &Interrupt, out: &mut dyn Write) -> 
     })
 }
 
-fn serve(config: &ViewConfig, recorded: &Recorded, kept: Kept, bench: Bench) -> Result<Page, ViewError> {
+fn serve(config: &ViewConfig, recorded: &Recorded, kept: Kept, verdict_board: VerdictBoard) -> Result<Page, ViewError> {
     let scenario = &recorded.scenario;
-    let rewinder = Rewinder::new(kept, rewound::former(scenario)).map_err(WebError::Thread)?;
-    let onward = Onward::at(recorded.words(), Some(config.web), &config.admission);
+    let rewinder = Rewinder::new(kept, forked::former(scenario)).map_err(WebError::Thread)?;
+    let fork_settings = ForkSettings::at(recorded.words(), Some(config.web), &config.admission);
     // Nothing is published: a recording has no live edge.
     let unpublished = Published::new(0);
     let source = web::Source {
         past: Ok(rewinder),
-        launch: rewound::launcher(onward),
-        bench,
+        launch: forked::launcher(fork_settings),
+        verdict_board,
         recorded_to: Some(recorded.end),
         ..web::Source::new(scenario, unpublished, Mailbox::new(), String::new())
     };

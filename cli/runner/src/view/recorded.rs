@@ -13,7 +13,7 @@ use onescan_server::time::VirtualTime;
 use super::ViewError;
 use crate::error::Usage;
 use crate::past::{Kept, store::Mark};
-use crate::run::rewound;
+use crate::run::forked;
 
 /// A recording that can be run again.
 pub(super) struct Recorded {
@@ -21,7 +21,6 @@ pub(super) struct Recorded {
     pub(super) scenario: Scenario,
     /// What operators did since the session began, or was last reset.
     pub(super) inputs: Vec<OperatorInput>,
-    /// Its last step.
     pub(super) end: VirtualTime,
     /// Where the recorded scenario is.
     path: PathBuf,
@@ -41,7 +40,7 @@ impl Recorded {
         }
         if header.first_step.0 != 0 {
             return Err(
-                refuse("the run went on from a checkpoint, which is no part of the recording".to_owned()).into()
+                refuse("the run went on from a checkpoint, which is not part of the recording".to_owned()).into()
             );
         }
         let steps = recording.steps().ok_or_else(|| refuse("it has no step".to_owned()))?;
@@ -51,7 +50,7 @@ impl Recorded {
         for client in &header.provenance.operated {
             scenario.operate(client)?;
         }
-        if let Some(why) = rewound::hindrance(&scenario, None) {
+        if let Some(why) = forked::fork_blocker(&scenario, None) {
             return Err(refuse(why).into());
         }
         let mut end = VirtualTime::ZERO;

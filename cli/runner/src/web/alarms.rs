@@ -22,9 +22,7 @@ pub(super) struct ReportedAlarms(BTreeSet<usize>);
 /// An alarm that has come or gone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Change<'b> {
-    /// `alarm` or `gone`.
     pub(super) kind: &'static str,
-    /// Which one.
     pub(super) name: &'b str,
 }
 

@@ -93,7 +93,7 @@ struct Instance {
 #[derive(Debug, Default)]
 pub(super) struct States(Vec<Vec<Places>>);
 
-/// Where the values of an instance's states lie in the memory of its PLC; nothing for what is no variable.
+/// Where the values of an instance's states lie in the memory of its PLC; nothing for what is not a variable.
 #[derive(Debug)]
 struct Places {
     client: ClientName,

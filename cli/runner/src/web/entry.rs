@@ -19,7 +19,6 @@ const KNOWN_MAX: usize = 1_024;
 /// What somebody may do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Rank {
-    /// Look.
     Looks,
     /// Operate, from the seats of operators.
     Operates,
@@ -29,7 +28,7 @@ pub(super) enum Rank {
 
 /// Why somebody is not let in.
 #[derive(Debug, Error)]
-pub(super) enum Barred {
+pub(super) enum AuthError {
     #[error("{0}")]
     Token(#[from] TokenRefusal),
     #[error("token `{0}` is for a client of a session: the page is for operators, trainers and viewers")]
@@ -41,10 +40,14 @@ pub(super) enum Barred {
 /// The door of a page.
 #[derive(Debug)]
 pub(super) enum Entry {
-    /// Whoever reaches it.
     Open,
     /// Whoever shows a token.
-    Tokens { register: Register, known: Mutex<VecDeque<(TokenHash, Rank)>>, cookie: String, is_tls: bool },
+    Tokens {
+        register: Register,
+        known: Mutex<VecDeque<(TokenHash, Rank)>>,
+        cookie: String,
+        is_tls: bool,
+    },
 }
 
 impl Entry {
@@ -59,7 +62,7 @@ impl Entry {
     }
 
     /// What whoever asks with these headers may do.
-    pub(super) fn admit(&self, headers: &HeaderMap) -> Result<Rank, Barred> {
+    pub(super) fn admit(&self, headers: &HeaderMap) -> Result<Rank, AuthError> {
         let Self::Tokens { register, known, cookie, .. } = self else { return Ok(Rank::Trains) };
         let bearer = headers.get(AUTHORIZATION).and_then(|value| value.to_str().ok()?.strip_prefix("Bearer "));
         if let Some(token) = bearer {
@@ -80,7 +83,7 @@ impl Entry {
     }
 
     /// Takes a token that somebody has typed; gives the cookie for the browser.
-    pub(super) fn log_in(&self, token: &str) -> Result<String, Barred> {
+    pub(super) fn log_in(&self, token: &str) -> Result<String, AuthError> {
         let Self::Tokens { register, known, cookie, is_tls } = self else { return Ok(String::new()) };
         let rank = rank(register.holder(Some(token.trim()), today())?)?;
         let secret = Token::generate()?;
@@ -94,12 +97,12 @@ impl Entry {
     }
 }
 
-fn rank(holder: Holder) -> Result<Rank, Barred> {
+fn rank(holder: Holder) -> Result<Rank, AuthError> {
     match holder.role {
         Role::Viewer => Ok(Rank::Looks),
         Role::Operator => Ok(Rank::Operates),
         Role::Trainer => Ok(Rank::Trains),
-        Role::Client(_) => Err(Barred::Client(holder.name)),
+        Role::Client(_) => Err(AuthError::Client(holder.name)),
     }
 }
 
@@ -155,9 +158,9 @@ mod tests {
         assert_eq!(admit(&tokens[0]).unwrap(), Rank::Looks);
         assert_eq!(admit(&tokens[1]).unwrap(), Rank::Operates);
         assert_eq!(admit(&tokens[2]).unwrap(), Rank::Trains);
-        assert!(matches!(admit(&tokens[3]), Err(Barred::Client(name)) if name == "cell"));
-        assert!(matches!(admit(&Token::generate().unwrap()), Err(Barred::Token(TokenRefusal::Unknown))));
-        assert!(matches!(door.admit(&HeaderMap::new()), Err(Barred::Token(TokenRefusal::Missing))));
+        assert!(matches!(admit(&tokens[3]), Err(AuthError::Client(name)) if name == "cell"));
+        assert!(matches!(admit(&Token::generate().unwrap()), Err(AuthError::Token(TokenRefusal::Unknown))));
+        assert!(matches!(door.admit(&HeaderMap::new()), Err(AuthError::Token(TokenRefusal::Missing))));
         assert_eq!(Entry::new(None, 1, false).admit(&HeaderMap::new()).unwrap(), Rank::Trains);
     }
 

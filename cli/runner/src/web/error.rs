@@ -23,7 +23,7 @@ pub(super) enum Refused {
     NoDisturbance(usize),
     #[error("that is the trainer's business")]
     Trainee,
-    #[error("this session is no lesson")]
+    #[error("this session is not a lesson")]
     NoLesson,
     #[error("there is no start `{0}`")]
     NoStart(String),
@@ -39,7 +39,7 @@ pub(super) enum Refused {
     NoTrainer,
     #[error("the past of this session cannot be shown: {0}")]
     Past(String),
-    #[error("{t_ns} ns is no moment of the past, which ends at {end}")]
+    #[error("{t_ns} ns is not a moment of the past, which ends at {end}")]
     NoMoment { t_ns: String, end: VirtualTime },
     #[error("a recording is looked at: nobody operates it; `Go on from here` makes a session of it")]
     Recorded,

@@ -12,7 +12,7 @@
 //! | [`signals`] | signals |
 //! | [`sources`] | programs as text |
 //! | [`known`] | what the server knows beside it |
-//! | [`online`] | variables of PLCs that are no signals |
+//! | [`online`] | variables of PLCs that are not signals |
 //! | [`panel`] | what operators see and write with |
 //! | [`drawings`] | ladders, function blocks and charts as they are laid out, with their states |
 //! | [`alarms`] | alarms as they come and go |
@@ -84,7 +84,7 @@ use thiserror::Error;
 use tokio::sync::Notify;
 
 use crate::access::AccessError;
-use crate::access::admission::{Admission, Doorstep};
+use crate::access::admission::{Admission, GuardedListener};
 use crate::error::{Exit, ExitCode, ListenError, Usage};
 use crate::past::Rewinder;
 use attendance::Attendance;
@@ -99,22 +99,19 @@ pub use routes::{asset, guarded_here};
 use seats::Seats;
 use tls::TlsDoor;
 pub(crate) use training::{AtWork, Failing, Role, Training, Turn, TurnQueue};
-pub(crate) use verdicts::Bench;
+pub(crate) use verdicts::VerdictBoard;
 
 /// How long viewers have to take the end, at most.
 const FAREWELL: Duration = Duration::from_millis(500);
 
 /// What a session's page needs of it.
 pub(crate) struct Source<'s> {
-    /// The scenario.
     pub(crate) scenario: &'s Scenario,
     /// Where the session publishes its steps.
     pub(crate) published: Published,
-    /// Where wishes go.
     pub(crate) mailbox: Mailbox,
     /// How fast virtual time may run, in words.
     pub(crate) pace: String,
-    /// What has failed.
     pub(crate) failing: Failing,
     /// The lesson, if it is one.
     pub(crate) training: Option<Training>,
@@ -125,13 +122,13 @@ pub(crate) struct Source<'s> {
     /// Who lets sessions go on from there.
     pub(crate) launch: Launch,
     /// Where it is seen what becomes of expectations.
-    pub(crate) bench: Bench,
+    pub(crate) verdict_board: VerdictBoard,
     /// Where a recording ends; nothing for a session that runs.
     pub(crate) recorded_to: Option<VirtualTime>,
 }
 
 impl<'s> Source<'s> {
-    /// A session that is no lesson, keeps no past, and of which no picture is to be drawn.
+    /// A session that is not a lesson, keeps no past, and of which no picture is to be drawn.
     pub(crate) fn new(scenario: &'s Scenario, published: Published, mailbox: Mailbox, pace: String) -> Self {
         Self {
             scenario,
@@ -143,7 +140,7 @@ impl<'s> Source<'s> {
             pictures: None,
             past: Err("it keeps none".to_owned()),
             launch: Arc::new(|_| Err("it keeps no past".to_owned())),
-            bench: Bench::default(),
+            verdict_board: VerdictBoard::default(),
             recorded_to: None,
         }
     }
@@ -173,11 +170,10 @@ struct Session {
     called: Arc<Called>,
     pictures: Option<Sender<Drawn>>,
     entry: Entry,
-    /// `http` or `https`.
     scheme: &'static str,
     past: Result<Rewinder, String>,
     launch: Launch,
-    bench: Bench,
+    verdict_board: VerdictBoard,
     /// The names of the expectations.
     expected: Vec<String>,
     recorded_to: Option<VirtualTime>,
@@ -192,11 +188,9 @@ struct Session {
 /// Something that happened beside the steps.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct News {
-    /// When.
     pub(crate) t_v: VirtualTime,
     /// What kind of thing.
     pub(crate) kind: &'static str,
-    /// In words.
     pub(crate) text: String,
 }
 
@@ -233,7 +227,7 @@ impl Session {
             pictures: source.pictures,
             past: source.past,
             launch: source.launch,
-            bench: source.bench,
+            verdict_board: source.verdict_board,
             expected: source.scenario.expectations().named.iter().map(|(name, _)| name.clone()).collect(),
             recorded_to: source.recorded_to,
             over: AtomicBool::new(false),
@@ -357,7 +351,7 @@ impl Page {
     ) -> Result<Self, WebError> {
         of_this_machine(address, admission)?;
         let House { register, identity } = match admission {
-            Admission::Holders(_) => Doorstep::open(admission, address)?.into_house(),
+            Admission::Holders(_) => GuardedListener::open(admission, address)?.into_house(),
             Admission::ThisMachine | Admission::Anybody => House::default(),
         };
         let listen = ListenError::on(address);

@@ -1,4 +1,4 @@
-//! The PLCs online: variables that are no signals, what is forced, which lines have been executed.
+//! The PLCs online: variables that are not signals, what is forced, which lines have been executed.
 //!
 //! A PLC shows its memory as it lies; where a variable lies in it, the program knows that was compiled. So looking costs the
 //! session one copy, whatever is looked at.

@@ -7,11 +7,11 @@ use onescan_server::time::VirtualTime;
 
 use super::Session;
 use super::error::Refused;
-use crate::past::{Gazer, Moment};
+use crate::past::{Moment, PastReader};
 
 /// Where one viewer looks.
 pub(super) struct Playhead {
-    gazer: Option<Gazer>,
+    past_reader: Option<PastReader>,
     /// Whether it is shown the past, or is about to be.
     is_past: bool,
     seen: Option<Arc<SessionView>>,
@@ -20,18 +20,18 @@ pub(super) struct Playhead {
 impl Playhead {
     /// At the live edge; a recording has none, and is looked at from its beginning.
     pub(super) fn new(session: &Session) -> Self {
-        let gazer = session.past.as_ref().ok().map(crate::past::Rewinder::enter);
+        let past_reader = session.past.as_ref().ok().map(crate::past::Rewinder::enter);
         let is_past = session.recorded_to.is_some();
-        if let Some(gazer) = gazer.as_ref().filter(|_| is_past) {
-            gazer.show(VirtualTime::ZERO);
+        if let Some(past_reader) = past_reader.as_ref().filter(|_| is_past) {
+            past_reader.show(VirtualTime::ZERO);
         }
-        Self { gazer, is_past, seen: None }
+        Self { past_reader, is_past, seen: None }
     }
 
     /// Asks for a moment of the past.
     pub(super) fn show(&mut self, t_ns: f64, session: &Session) -> Result<(), Refused> {
         let t_v = moment(t_ns, session)?;
-        self.gazer(session)?.show(t_v);
+        self.past_reader(session)?.show(t_v);
         self.is_past = true;
         Ok(())
     }
@@ -41,17 +41,17 @@ impl Playhead {
         if session.recorded_to.is_some() || !self.is_past {
             return false;
         }
-        if let Some(gazer) = &mut self.gazer {
-            gazer.leave();
+        if let Some(past_reader) = &mut self.past_reader {
+            past_reader.leave();
         }
         (self.is_past, self.seen) = (false, None);
         true
     }
 
     /// Who shows the past.
-    pub(super) fn gazer(&self, session: &Session) -> Result<&Gazer, Refused> {
-        match (&self.gazer, &session.past) {
-            (Some(gazer), _) => Ok(gazer),
+    pub(super) fn past_reader(&self, session: &Session) -> Result<&PastReader, Refused> {
+        match (&self.past_reader, &session.past) {
+            (Some(past_reader), _) => Ok(past_reader),
             (None, Err(why)) => Err(Refused::Past(why.clone())),
             (None, Ok(_)) => Err(Refused::Past("nobody shows it".to_owned())),
         }
@@ -59,8 +59,8 @@ impl Playhead {
 
     /// The next moment that was asked for.
     pub(super) async fn next(&mut self) -> Moment {
-        match &mut self.gazer {
-            Some(gazer) => gazer.next().await,
+        match &mut self.past_reader {
+            Some(past_reader) => past_reader.next().await,
             None => std::future::pending().await,
         }
     }

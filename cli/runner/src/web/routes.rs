@@ -10,7 +10,7 @@ use axum::response::{Html, IntoResponse, Response};
 use axum::routing::{get, post};
 use axum::{Extension, Router};
 
-use super::entry::{Barred, Rank};
+use super::entry::{AuthError, Rank};
 use super::{Session, bundle, entry, guard, viewer};
 
 /// What a page may load and do: what comes from here, and nothing from outside.
@@ -47,7 +47,9 @@ async fn guarded(State(session): State<Arc<Session>>, mut request: Request, next
             next.run(request).await
         }
         Ok(Err(_)) if is_login => next.run(request).await,
-        Ok(Err(Barred::Client(name))) => (StatusCode::FORBIDDEN, format!("{}\n", Barred::Client(name))).into_response(),
+        Ok(Err(AuthError::Client(name))) => {
+            (StatusCode::FORBIDDEN, format!("{}\n", AuthError::Client(name))).into_response()
+        }
         Ok(Err(_)) if request.uri().path() == "/" => {
             (StatusCode::UNAUTHORIZED, Html(entry::form(None))).into_response()
         }

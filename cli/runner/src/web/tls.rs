@@ -20,27 +20,27 @@ const HANDSHAKES_MAX: usize = 64;
 const PAUSE: Duration = Duration::from_millis(100);
 
 /// Somebody who has come, under TLS.
-type Guest = (TlsStream<TcpStream>, SocketAddr);
+type Connection = (TlsStream<TcpStream>, SocketAddr);
 
 /// A listener of which connections come under TLS.
 pub(super) struct TlsDoor {
     address: SocketAddr,
-    guests: mpsc::Receiver<Guest>,
+    connections: mpsc::Receiver<Connection>,
 }
 
 impl TlsDoor {
     /// Takes the connections of `listener`, on the runtime of whoever calls.
     pub(super) fn new(listener: TcpListener, identity: &Identity) -> io::Result<Self> {
         let address = listener.local_addr()?;
-        let (send, guests) = mpsc::channel(1);
+        let (send, connections) = mpsc::channel(1);
         tokio::spawn(take(listener, TlsAcceptor::from(identity.server_config()), send));
-        Ok(Self { address, guests })
+        Ok(Self { address, connections })
     }
 }
 
-async fn take(listener: TcpListener, acceptor: TlsAcceptor, guests: mpsc::Sender<Guest>) {
+async fn take(listener: TcpListener, acceptor: TlsAcceptor, connections: mpsc::Sender<Connection>) {
     let places = Arc::new(Semaphore::new(HANDSHAKES_MAX));
-    while !guests.is_closed() {
+    while !connections.is_closed() {
         let Ok(place) = Arc::clone(&places).acquire_owned().await else { return };
         let (stream, from) = match listener.accept().await {
             Ok(came) => came,
@@ -50,12 +50,12 @@ async fn take(listener: TcpListener, acceptor: TlsAcceptor, guests: mpsc::Sender
                 continue;
             }
         };
-        let (acceptor, guests) = (acceptor.clone(), guests.clone());
+        let (acceptor, connections) = (acceptor.clone(), connections.clone());
         tokio::spawn(async move {
             let _place = place;
             match tokio::time::timeout(HANDSHAKE, acceptor.accept(stream)).await {
                 // the page may be over
-                Ok(Ok(stream)) => drop(guests.send((stream, from)).await),
+                Ok(Ok(stream)) => drop(connections.send((stream, from)).await),
                 Ok(Err(error)) => tracing::debug!(%error, %from, "no TLS came of a connection to the page"),
                 Err(_) => tracing::debug!(%from, "a connection to the page did not speak"),
             }
@@ -68,8 +68,8 @@ impl Listener for TlsDoor {
     type Addr = SocketAddr;
 
     async fn accept(&mut self) -> (Self::Io, Self::Addr) {
-        match self.guests.recv().await {
-            Some(guest) => guest,
+        match self.connections.recv().await {
+            Some(connection) => connection,
             // whoever takes connections lives as long as this
             None => std::future::pending().await,
         }

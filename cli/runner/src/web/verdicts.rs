@@ -37,12 +37,12 @@ const EACH: Duration = Duration::from_millis(500);
 
 /// Where judges are left; clones share it.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Bench {
+pub(crate) struct VerdictBoard {
     wanted: Arc<AtomicBool>,
     latest: Arc<Mutex<Latest>>,
 }
 
-impl Bench {
+impl VerdictBoard {
     /// A thread that panicked under the lock has left whole values.
     fn lock(&self) -> MutexGuard<'_, Latest> {
         self.latest.lock().unwrap_or_else(PoisonError::into_inner)
@@ -114,11 +114,11 @@ mod tests {
 
     #[test]
     fn a_judge_is_asked_for_once() {
-        let bench = Bench::default();
-        assert!(!bench.is_wanted());
-        assert_eq!(bench.standings(&[]), []);
-        assert!(bench.is_wanted() && !bench.is_wanted());
-        assert_eq!(bench.standings(&[]), []);
-        assert!(!bench.is_wanted(), "another viewer has just asked");
+        let verdict_board = VerdictBoard::default();
+        assert!(!verdict_board.is_wanted());
+        assert_eq!(verdict_board.standings(&[]), []);
+        assert!(verdict_board.is_wanted() && !verdict_board.is_wanted());
+        assert_eq!(verdict_board.standings(&[]), []);
+        assert!(!verdict_board.is_wanted(), "another viewer has just asked");
     }
 }

@@ -237,7 +237,7 @@ async fn notify_verdicts(
     session: &Session,
     subscription: &mut Subscription,
 ) -> Result<(), Gone> {
-    for standing in subscription.judged.news(session.bench.standings(&session.expected)) {
+    for standing in subscription.judged.news(session.verdict_board.standings(&session.expected)) {
         notify(socket, &Response::Verdict { standing }).await?;
     }
     Ok(())
@@ -338,7 +338,6 @@ async fn notify_drawn(
 
 /// What is left to do once a message has been handled.
 enum Next {
-    /// Nothing.
     Nothing,
     /// The next picture, at once.
     Picture,
@@ -450,7 +449,7 @@ fn fork(
     outcomes: &mpsc::UnboundedSender<Response>,
 ) -> Result<(), Refused> {
     let t_v = playhead::moment(t_ns, session)?;
-    let saved = playhead.gazer(session)?.save(t_v);
+    let saved = playhead.past_reader(session)?.save(t_v);
     let (outcomes, launch) = (outcomes.clone(), Arc::clone(&session.launch));
     tokio::spawn(async move {
         let saved: Result<Vec<u8>, String> = saved.await.unwrap_or_else(|_| Err("the session is over".to_owned()));

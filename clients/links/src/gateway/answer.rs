@@ -6,7 +6,6 @@ pub enum Answer {
     /// 0: it has nothing to do.
     #[default]
     Ready,
-    /// 1: programs run.
     Running,
     /// 2: a grant that was run before.
     OldGrant,

@@ -1,4 +1,4 @@
-//! The first contact with a PLC: as patient as any later one. A PLC that is still starting is no reason to end.
+//! The first contact with a PLC: as patient as any later one. A PLC that is still starting is not a reason to end.
 
 use std::time::{Duration, Instant};
 

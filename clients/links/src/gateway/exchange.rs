@@ -71,7 +71,7 @@ impl Point {
     }
 
     /// What a PLC with symbols calls it: the path of its variable, or else the signal's name. A direct address like
-    /// `%QX0.1` is no symbol.
+    /// `%QX0.1` is not a symbol.
     pub fn symbol(&self) -> &str {
         self.variable.as_deref().filter(|path| !path.starts_with('%')).unwrap_or(&self.name)
     }

@@ -19,7 +19,6 @@ pub struct Partial {
 /// Why a link cannot do what it is to do.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum LinkFault {
-    /// Nobody answers there.
     #[error("unreachable: {url}: {reason}")]
     Unreachable {
         /// Where the PLC should be.
@@ -46,7 +45,6 @@ pub enum LinkFault {
     /// The PLC does not let this user, certificate or security policy in.
     #[error("authentication refused by {url}: {reason}")]
     Refused {
-        /// Where.
         url: String,
         /// What the PLC says.
         reason: String,
@@ -100,9 +98,7 @@ impl LinkFault {
 pub struct MappingFault {
     /// The signal, or the synchronisation word.
     pub point: String,
-    /// What is wrong.
     pub message: String,
-    /// What to do.
     pub help: Option<String>,
 }
 
@@ -121,7 +117,6 @@ impl MappingFault {
 /// Why a PLC cannot go on in lockstep.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum GatewayFault {
-    /// The link.
     #[error(transparent)]
     Link(#[from] LinkFault),
     /// The connection broke and did not come back in time.
@@ -167,7 +162,6 @@ pub enum GatewayFault {
         what: String,
         /// How long was waited, wall clock.
         after: Duration,
-        /// What has come.
         partial: Partial,
     },
     /// A PLC whose blocks are counted has sent none.

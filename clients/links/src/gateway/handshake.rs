@@ -24,13 +24,9 @@ use super::fault::GatewayFault;
 /// What the gateway writes: all of it at every write, the grant last.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Order {
-    /// `SDSP_Session`.
     pub session: u32,
-    /// `SDSP_Limit`.
     pub limit: u32,
-    /// `SDSP_TV`, ns.
     pub t_v: VirtualTime,
-    /// `SDSP_Grant`.
     pub grant: u32,
     /// `PLC_Start`: a cold start is wanted when it is one more than the boot counter.
     pub start: u32,
@@ -39,11 +35,8 @@ pub struct Order {
 /// What the gateway reads.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Report {
-    /// `SDSP_Joined`.
     pub joined: u32,
-    /// `SDSP_Done`.
     pub done: u32,
-    /// `SDSP_Answer`.
     pub answer: Answer,
     /// `SDSP_Layout`: of which mapping the program was made, 0 for none.
     pub layout: u32,

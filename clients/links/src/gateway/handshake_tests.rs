@@ -74,7 +74,6 @@ impl Plc {
 /// What happens to a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Luck {
-    /// It arrives.
     Good,
     /// The connection breaks before it.
     Before,

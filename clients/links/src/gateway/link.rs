@@ -27,7 +27,7 @@ pub trait Link: Send {
     /// `patience`; false if there was none.
     ///
     /// # Errors
-    /// The connection is gone, or what came is no value.
+    /// The connection is gone, or what came is not a value.
     fn read(&mut self, patience: Duration, from_plc: &mut [u8]) -> Result<bool, LinkFault>;
 
     /// The block that has begun to come and does not go on, for a link that cuts blocks from a stream.

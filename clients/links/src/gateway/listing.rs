@@ -11,7 +11,6 @@ use super::tcp::Layouts;
 pub struct Listing {
     /// What the gateway writes.
     pub to_plc: Part,
-    /// What it reads.
     pub from_plc: Part,
 }
 
@@ -27,7 +26,6 @@ pub struct Part {
 /// A point with its place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Row {
-    /// The point.
     pub point: Point,
     /// Its address, as a map writes it.
     pub address: String,

@@ -47,7 +47,7 @@ impl Variables {
 /// The points of a PLC that reads `inputs` and writes `outputs`, at the addresses of `map`.
 ///
 /// # Errors
-/// A key that is no signal or word; a variable without an address, or with that of another one.
+/// A key that is not a signal or word; a variable without an address, or with that of another one.
 pub fn exchange(
     inputs: &[Variables],
     outputs: &[Variables],
@@ -91,7 +91,7 @@ pub fn malformed(map: &BTreeMap<String, Addresses>) -> Option<MappingFault> {
 
 fn no_address(name: &str, what: &str) -> MappingFault {
     let help = "write an address, a list of addresses, or a table of addresses by variable, all as text";
-    MappingFault::new(name, format!("`{name}` is mapped to {what}, which is no address"))
+    MappingFault::new(name, format!("`{name}` is mapped to {what}, which is not an address"))
         .with_help(Some(help.to_owned()))
 }
 

@@ -9,10 +9,10 @@ pub(super) const REQUEST_TIMEOUT: Duration = Duration::from_secs(3);
 /// The host and the port of `address`, `usual` where it has none.
 ///
 /// # Errors
-/// What stands behind the colon is no port.
+/// What stands behind the colon is not a port.
 pub(super) fn host_and_port(address: &str, usual: u16) -> Result<(&str, u16), String> {
     match address.rsplit_once(':') {
-        Some((host, port)) => Ok((host, port.parse().map_err(|_| format!("`{port}` is no port"))?)),
+        Some((host, port)) => Ok((host, port.parse().map_err(|_| format!("`{port}` is not a port"))?)),
         None => Ok((address, usual)),
     }
 }
@@ -52,6 +52,6 @@ mod tests {
     fn an_address_may_have_a_port() {
         assert_eq!(host_and_port("plc", 102), Ok(("plc", 102)));
         assert_eq!(host_and_port("192.168.0.1:1102", 102), Ok(("192.168.0.1", 1102)));
-        assert_eq!(host_and_port("plc:x", 102), Err("`x` is no port".to_owned()));
+        assert_eq!(host_and_port("plc:x", 102), Err("`x` is not a port".to_owned()));
     }
 }

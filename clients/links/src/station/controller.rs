@@ -15,7 +15,6 @@ use onescan_soft_plc::bind::Place;
 /// How a PLC is.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Status {
-    /// True in RUN.
     pub running: bool,
     /// Cold starts since it is there, on demand or by its operator.
     pub boots: u32,
@@ -47,7 +46,7 @@ struct State {
 pub struct Controller {
     state: Mutex<State>,
     changed: Condvar,
-    /// Servers at the door: the clock lets them in between two cycles.
+    /// Servers at the plc_listener: the clock lets them in between two cycles.
     waiting: AtomicUsize,
     wires: Wires,
     /// What is written into memory at every start.

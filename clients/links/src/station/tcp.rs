@@ -23,7 +23,6 @@ const CONNECT_TIMEOUT: Duration = Duration::from_secs(3);
 /// What is sent and taken, and when.
 #[derive(Clone, Debug)]
 pub struct Blocks {
-    /// What lies where.
     pub layouts: Layouts,
     /// The interval at which the PLC sends its block, wall clock; when there is reason to if absent.
     pub push: Option<Duration>,

@@ -12,11 +12,8 @@ use onescan_soft_plc::bind::{Bindings, Bound, Place};
 pub(super) enum Source {
     /// In the PLC's memory; a signal that is one point may have several places.
     Memory(Vec<Place>),
-    /// `PLC_Start`.
     Start,
-    /// `PLC_Boots`.
     Boots,
-    /// `PLC_Running`.
     Running,
 }
 

@@ -12,15 +12,11 @@ use super::node::{Argument, Id, Kind, Node, Relation, Rule, Space, Value};
 /// What the namespaces of the model are in this server.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Namespaces {
-    /// Index of [`super::node::TYPES_URI`].
     pub types: u16,
-    /// Index of [`super::node::SESSION_URI`].
     pub session: u16,
 }
 
-/// Modelling rule `Mandatory`.
 const MANDATORY: u32 = 78;
-/// Modelling rule `OptionalPlaceholder`.
 const OPTIONAL_PLACEHOLDER: u32 = 11508;
 /// A value without dimensions, and one with one (OPC 10000-3 5.6.2).
 const SCALAR: i32 = -1;

@@ -39,13 +39,11 @@ pub struct Shared {
     pub is_held: bool,
     /// How the session ended, in words.
     pub end: Option<String>,
-    /// The clients' places.
     pub seats: Vec<Seat>,
     /// Whether the holder of each is no more.
     gone: Vec<Option<IsGone>>,
     /// Operators, and whether they are no more.
     operators: BTreeMap<Holder, IsGone>,
-    /// Items with subscribers.
     watched: BTreeSet<Item>,
 }
 
@@ -68,19 +66,13 @@ pub struct Board {
 /// Why a client gives no answer.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum SeatFault {
-    /// It said so.
     #[error("{0}")]
     Told(String),
     /// Its connection was closed or lost, or its OPC UA session has run out.
     #[error("its OPC UA connection or session has ended while grant {grant} waits for `Done`")]
-    Gone {
-        /// The grant.
-        grant: u64,
-    },
-    /// Nothing came.
+    Gone { grant: u64 },
     #[error("grant {grant} is not done within {} s: its OPC UA client is dead, hangs or does not write `Done`", patience.as_secs_f64())]
     Late {
-        /// The grant.
         grant: u64,
         /// How long it was waited for, wall clock.
         patience: Duration,
@@ -321,7 +313,7 @@ impl Board {
     }
 
     /// Waits until all who took part or operated have seen the end and closed their sessions, `patience` at most.
-    pub fn farewell(&self, patience: Duration) {
+    pub fn close(&self, patience: Duration) {
         let deadline = Instant::now() + patience;
         let mut shared = self.lock();
         loop {

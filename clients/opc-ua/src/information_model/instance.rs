@@ -14,7 +14,6 @@ use crate::link::value;
 
 /// A node, and what it stands for if its value lives.
 pub struct Instance {
-    /// The node.
     pub node: Node,
     /// What it stands for.
     pub item: Option<Item>,

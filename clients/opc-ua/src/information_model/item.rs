@@ -29,55 +29,33 @@ impl Item {
 pub mod number {
     /// `State` of a session.
     pub const SESSION_STATE: u32 = 2001;
-    /// `VirtualTime`.
     pub const VIRTUAL_TIME: u32 = 2002;
-    /// `TimeStep`.
     pub const TIME_STEP: u32 = 2003;
-    /// `StepCount`.
     pub const STEP_COUNT: u32 = 2004;
-    /// `Held`.
     pub const HELD: u32 = 2005;
-    /// `Digest`.
     pub const DIGEST: u32 = 2006;
-    /// `End`.
     pub const END: u32 = 2007;
     /// `Start` of a session.
     pub const START: u32 = 4001;
-    /// `Stop`.
     pub const STOP: u32 = 4004;
-    /// `Pause`.
     pub const PAUSE: u32 = 4007;
-    /// `Step`.
     pub const STEP: u32 = 4010;
-    /// `Reset`.
     pub const RESET: u32 = 4013;
-    /// `Write`.
     pub const WRITE: u32 = 4016;
-    /// `Force`.
     pub const FORCE: u32 = 4019;
-    /// `Release`.
     pub const RELEASE: u32 = 4022;
     /// `State` of a client.
     pub const CLIENT_STATE: u32 = 2101;
-    /// `Period`.
     pub const PERIOD: u32 = 2102;
     /// `Start` of a client.
     pub const CLIENT_START: u32 = 2103;
-    /// `Grant`.
     pub const GRANT: u32 = 2104;
-    /// `GrantTime`.
     pub const GRANT_TIME: u32 = 2105;
-    /// `Wake`.
     pub const WAKE: u32 = 2106;
-    /// `Done`.
     pub const DONE: u32 = 2107;
-    /// `Fault`.
     pub const FAULT: u32 = 2108;
-    /// `InputOrder`.
     pub const INPUT_ORDER: u32 = 2109;
-    /// `OutputOrder`.
     pub const OUTPUT_ORDER: u32 = 2110;
-    /// `Turn`.
     pub const TURN: u32 = 4101;
 }
 

@@ -62,7 +62,7 @@ impl SessionNodes {
         };
         let namespaces = [TYPES_URI, SESSION_URI].into_iter().zip(&indexes).map(namespace).collect();
         let nodes: Vec<(Item, NodeId)> = items.iter().map(|(id, item)| (*item, id.clone())).collect();
-        tell_subscribers(&board, nodes, Arc::clone(&context.subscriptions));
+        notify_subscribers(&board, nodes, Arc::clone(&context.subscriptions));
         Self { board, namespaces, items, channels }
     }
 
@@ -126,7 +126,7 @@ impl SessionNodes {
 }
 
 /// Values that change are sampled for those who subscribe to them.
-fn tell_subscribers(board: &Arc<Board>, nodes: Vec<(Item, NodeId)>, subscriptions: Arc<SubscriptionCache>) {
+fn notify_subscribers(board: &Arc<Board>, nodes: Vec<(Item, NodeId)>, subscriptions: Arc<SubscriptionCache>) {
     let ids: std::collections::BTreeMap<Item, NodeId> = nodes.into_iter().collect();
     let from = Arc::downgrade(board);
     board.set_notifier(Box::new(move |items| {

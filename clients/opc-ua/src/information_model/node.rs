@@ -7,33 +7,19 @@ pub const SESSION_URI: &str = "urn:onescan:session";
 
 /// Nodes of OPC UA itself that are referred to (OPC 10000-6 annex A).
 pub mod core {
-    /// Data type Boolean.
     pub const BOOLEAN: u32 = 1;
-    /// Data type `UInt32`.
     pub const UINT32: u32 = 7;
-    /// Data type Int64.
     pub const INT64: u32 = 8;
-    /// Data type `UInt64`.
     pub const UINT64: u32 = 9;
-    /// Data type String.
     pub const STRING: u32 = 12;
-    /// Data type `LocalizedText`.
     pub const LOCALIZED_TEXT: u32 = 21;
-    /// Any data type.
     pub const BASE_DATA_TYPE: u32 = 24;
-    /// Data type Enumeration.
     pub const ENUMERATION: u32 = 29;
-    /// Object type `BaseObjectType`.
     pub const BASE_OBJECT_TYPE: u32 = 58;
-    /// Object type `FolderType`.
     pub const FOLDER_TYPE: u32 = 61;
-    /// Variable type `BaseDataVariableType`.
     pub const BASE_DATA_VARIABLE_TYPE: u32 = 63;
-    /// Variable type `PropertyType`.
     pub const PROPERTY_TYPE: u32 = 68;
-    /// The folder `Objects`.
     pub const OBJECTS: u32 = 85;
-    /// Data type `Argument`.
     pub const ARGUMENT: u32 = 296;
 }
 
@@ -42,7 +28,6 @@ pub mod core {
 pub enum Id {
     /// Of OPC UA itself.
     Core(u32),
-    /// Of [`TYPES_URI`].
     Type(u32),
     /// Of [`SESSION_URI`]: a path, as in `Clients/plant/Grant`.
     Instance(String),
@@ -51,11 +36,8 @@ pub enum Id {
 /// The namespace of a browse name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Space {
-    /// OPC UA itself.
     Core,
-    /// [`TYPES_URI`].
     Types,
-    /// [`SESSION_URI`].
     Session,
 }
 
@@ -75,7 +57,6 @@ pub enum Relation {
 /// What a member of a type says of its instances (OPC 10000-3 6.4.4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rule {
-    /// Each has it.
     Mandatory,
     /// Each has any number of such.
     OptionalPlaceholder,
@@ -84,13 +65,11 @@ pub enum Rule {
 /// One argument of a method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Argument {
-    /// Its name.
     pub name: &'static str,
     /// Its data type, of OPC UA itself.
     pub data_type: u32,
     /// True for a list.
     pub is_array: bool,
-    /// What it means.
     pub about: &'static str,
 }
 
@@ -112,12 +91,9 @@ pub enum Kind {
     ObjectType,
     /// An enumeration from 0.
     Enumeration(&'static [&'static str]),
-    /// An object.
     Object {
-        /// Its type.
         of: Id,
     },
-    /// A variable.
     Variable {
         /// Its type: a data variable or a property.
         of: u32,
@@ -127,10 +103,8 @@ pub enum Kind {
         is_array: bool,
         /// True if a client may write it.
         is_writable: bool,
-        /// What it holds.
         value: Value,
     },
-    /// A method.
     Method,
 }
 
@@ -147,9 +121,7 @@ pub struct Node {
     pub about: String,
     /// On which node it hangs.
     pub parent: Id,
-    /// How.
     pub relation: Relation,
-    /// What it is.
     pub kind: Kind,
     /// What it says of instances, for a member of a type.
     pub rule: Option<Rule>,

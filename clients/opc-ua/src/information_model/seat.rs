@@ -31,13 +31,11 @@ pub enum Refusal {
     /// Somebody else is in.
     #[error("another OPC UA session takes part as this client")]
     Taken,
-    /// Nothing is granted.
     #[error("no grant is under way")]
     NotGranted,
     /// This grant has been answered.
     #[error("this grant has been answered already")]
     Doubled,
-    /// An older grant.
     #[error("an answer to an old grant")]
     Old,
     /// A grant that was never given.
@@ -49,7 +47,6 @@ pub enum Refusal {
     /// Outputs of another number.
     #[error("not as many outputs as the client has")]
     Count,
-    /// All is over.
     #[error("the session is over")]
     Over,
 }
@@ -57,22 +54,17 @@ pub enum Refusal {
 /// An answer to a grant.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Answer {
-    /// The outputs, packed.
     pub outputs: Vec<u8>,
     /// The next turn wanted, in ns; 0 for one period later.
     pub wake_ns: i64,
 }
 
-/// A client's place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Seat {
-    /// The client.
     pub name: ClientName,
     /// Virtual time of one turn.
     pub period: TimeSpan,
-    /// What it reads.
     pub inputs: PortLayout,
-    /// What it writes.
     pub outputs: PortLayout,
     holder: Option<Holder>,
     state: ClientState,
@@ -229,7 +221,7 @@ impl Seat {
         Ok(())
     }
 
-    /// Output `index` was written with something that is no value of it: the grant cannot be answered before it is
+    /// Output `index` was written with something that is not a value of it: the grant cannot be answered before it is
     /// written again.
     ///
     /// # Errors

@@ -14,7 +14,7 @@ use crate::server::{self, Admitted, Channels, Running};
 use onescan_links::opcua::{Access, Refusals, ServeError};
 
 /// How long clients may take to notice that the session is over, wall clock.
-const FAREWELL_TIMEOUT: Duration = Duration::from_secs(1);
+const CLOSE_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// A server that runs until this is dropped; then clients that take part are let to hear of the end.
 pub struct Service {
@@ -44,7 +44,7 @@ impl Drop for Service {
     fn drop(&mut self) {
         // A session that came to no end of its own is over for its clients all the same.
         self.board.end("stopped");
-        self.board.farewell(FAREWELL_TIMEOUT);
+        self.board.close(CLOSE_TIMEOUT);
     }
 }
 

@@ -11,9 +11,7 @@ use super::node::{Argument, Id, Kind, Node, Relation, Rule, Space, Value};
 /// A variable of an object type.
 #[derive(Clone, Copy, Debug)]
 pub struct VariableType {
-    /// Its number.
     pub number: u32,
-    /// Its name.
     pub name: &'static str,
     /// The type of its value.
     pub data: Data,
@@ -21,7 +19,6 @@ pub struct VariableType {
     pub is_array: bool,
     /// True if a client may write it.
     pub is_writable: bool,
-    /// What it means.
     pub about: &'static str,
 }
 
@@ -47,43 +44,30 @@ impl Data {
 /// A method of an object type. Its arguments have the two numbers behind its own.
 #[derive(Clone, Copy, Debug)]
 pub struct MethodType {
-    /// Its number.
     pub number: u32,
-    /// Its name.
     pub name: &'static str,
-    /// What it takes.
     pub inputs: &'static [Argument],
-    /// What it gives.
     pub outputs: &'static [Argument],
-    /// What it does.
     pub about: &'static str,
 }
 
 /// A folder of an object type.
 #[derive(Clone, Copy, Debug)]
 pub struct FolderOf {
-    /// Its number.
     pub number: u32,
-    /// Its name.
     pub name: &'static str,
     /// What lies in it.
     pub about: &'static str,
 }
 
-/// An object type.
 #[derive(Clone, Copy, Debug)]
 pub struct ObjectType {
-    /// Its number.
     pub number: u32,
-    /// Its name.
     pub name: &'static str,
     /// What its objects are.
     pub about: &'static str,
-    /// Its variables.
     pub variables: &'static [VariableType],
-    /// Its methods.
     pub methods: &'static [MethodType],
-    /// Its folders.
     pub folders: &'static [FolderOf],
 }
 

@@ -73,7 +73,7 @@ async fn references(session: &Session, nodes: &[NodeId]) -> Result<Vec<Reference
     Ok(all)
 }
 
-/// Types and access of what was found; what is no scalar of IEC 61131-3 has no type.
+/// Types and access of what was found; what is not a scalar of IEC 61131-3 has no type.
 async fn described(session: &Session, found: Vec<(NodeId, String)>) -> Result<Vec<Found>, LinkFault> {
     let mut all = Vec::new();
     for found in found.chunks(AT_ONCE) {

@@ -17,7 +17,6 @@ use onescan_links::opcua::Options;
 
 /// A session, and the task that carries its messages.
 pub struct Connection {
-    /// The session.
     pub session: Arc<Session>,
     /// The namespaces of the server, by index.
     pub namespaces: Vec<String>,

@@ -21,13 +21,13 @@ pub(super) fn security(options: &Options) -> Result<(SecurityPolicy, MessageSecu
         "Aes256-Sha256-RsaPss" => SecurityPolicy::Aes256Sha256RsaPss,
         other => {
             let known = "None, Basic256Sha256, Aes128-Sha256-RsaOaep and Aes256-Sha256-RsaPss";
-            return Err(LinkFault::Setting(format!("`{other}` is no security policy; known are {known}")));
+            return Err(LinkFault::Setting(format!("`{other}` is not a security policy; known are {known}")));
         }
     };
     match options.mode.as_str() {
         "Sign" => Ok((policy, MessageSecurityMode::Sign)),
         "SignAndEncrypt" => Ok((policy, MessageSecurityMode::SignAndEncrypt)),
-        other => Err(LinkFault::Setting(format!("`{other}` is no mode; write `Sign` or `SignAndEncrypt`"))),
+        other => Err(LinkFault::Setting(format!("`{other}` is not a mode; write `Sign` or `SignAndEncrypt`"))),
     }
 }
 
@@ -74,7 +74,7 @@ mod tests {
         // A variable that every process has.
         let user = Some("operator".to_owned());
         let options = Options { user, password_env: "PATH".to_owned(), plain_password: true, ..Options::default() };
-        let refused = identity(&options).map(|_| ()).expect_err("it is no password");
+        let refused = identity(&options).map(|_| ()).expect_err("it is not a password");
         assert!(refused.to_string().contains("begins with `ONESCAN_OPCUA_`"), "{refused}");
     }
 }

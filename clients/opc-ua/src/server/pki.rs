@@ -27,7 +27,6 @@ fn sweep(place: &Path) {
 /// A folder that is kept, or one for this connection only.
 #[derive(Debug)]
 pub enum Pki {
-    /// The user's.
     Kept(PathBuf),
     /// Gone when it is no more needed.
     Passing(TempDir),

@@ -27,7 +27,6 @@ pub(crate) trait Component: Sized + Send + 'static {
     const NAME: &'static str;
     /// What it is, in one line.
     const SUMMARY: &'static str;
-    /// Its equations.
     const FORMULA: &'static [&'static str];
     /// Where they come from.
     const SOURCE: &'static str;
@@ -41,11 +40,8 @@ pub(crate) trait Component: Sized + Send + 'static {
     const ONLY_SENSES: bool = false;
     /// What describes one of its kind.
     type Parameters: ParameterSet;
-    /// What it takes.
     type Inputs: SignalSet + Send;
-    /// What it gives.
     type Outputs: SignalSet;
-    /// How it fails.
     type Failure: FailureSet;
     /// What ties it to the world.
     type Tie: Tie;
@@ -138,7 +134,6 @@ pub(crate) struct Turn<Seen = ()> {
     pub(crate) dt_s: f64,
     /// What it sees of the world.
     pub(crate) seen: Seen,
-    /// What has failed.
     pub(crate) failed: Failed,
 }
 
@@ -208,7 +203,7 @@ pub(crate) struct Built {
     pub(crate) ports: Vec<Form>,
 }
 
-/// Why bytes are no state of a component.
+/// Why bytes are not state of a component.
 #[derive(Debug, Error)]
 pub(crate) enum StateError {
     #[error(transparent)]

@@ -152,7 +152,7 @@ impl Value {
         }
     }
 
-    /// What a scene says with the same meaning; a word is no value of a signal.
+    /// What a scene says with the same meaning; a word is not a value of a signal.
     pub(crate) const fn of(setting: Setting) -> Option<Self> {
         match setting {
             Setting::Flag(flag) => Some(Self::Bool(flag)),

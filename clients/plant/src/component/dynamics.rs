@@ -36,7 +36,7 @@ impl OnDelay {
     /// True if `condition` has held for `delay_s` by the end of this period.
     pub(crate) fn holds(&mut self, condition: bool, delay_s: f64, dt_s: f64) -> bool {
         self.lasted_s = if condition { self.lasted_s + dt_s } else { 0.0 };
-        // a rounding less than the delay is no reason to wait for another period
+        // a rounding less than the delay is not a reason to wait for another period
         condition && self.lasted_s >= delay_s * (1.0 - 1e-12)
     }
 }
@@ -44,9 +44,7 @@ impl OnDelay {
 /// A mass on a line, or about an axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Travel {
-    /// m or rad
     pub(crate) position: f64,
-    /// m/s or rad/s
     pub(crate) velocity: f64,
 }
 

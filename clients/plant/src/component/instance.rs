@@ -7,10 +7,8 @@ use super::kind::Setting;
 use super::origin::Origin;
 use crate::model::{Bound, NumberType};
 
-/// One component.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Component {
-    /// Its name.
     pub name: String,
     /// Its kind, one of the library's or of the user's own.
     pub kind: Origin,
@@ -44,12 +42,7 @@ pub enum Wire {
     /// A signal of the session.
     Signal(SignalName),
     /// An output of a component, both by index.
-    Output {
-        /// The component.
-        component: usize,
-        /// Its output.
-        output: usize,
-    },
+    Output { component: usize, output: usize },
 }
 
 /// When a component fails in one way.
@@ -57,11 +50,9 @@ pub enum Wire {
 pub struct FailureSwitch {
     /// Index of the mode among those of its kind.
     pub mode: usize,
-    /// When.
     pub when: When,
 }
 
-/// When something fails.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub enum When {
     /// While a BOOL signal is true.

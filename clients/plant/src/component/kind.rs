@@ -92,7 +92,6 @@ pub struct Dependence {
 pub struct Parameter {
     /// Its key in a scene, with its unit.
     pub key: Text,
-    /// What it means.
     pub about: String,
     /// What it may be.
     pub form: Form,
@@ -109,19 +108,14 @@ pub struct Parameter {
 pub enum Form {
     /// A number, bounds included.
     Number {
-        /// Its least value.
         least: f64,
-        /// Its greatest value.
         most: f64,
     },
     /// A whole number, bounds included.
     Count {
-        /// Its least value.
         least: i64,
-        /// Its greatest value.
         most: i64,
     },
-    /// `true` or `false`.
     Flag,
     /// One word of these.
     Choice(&'static [&'static str]),
@@ -183,11 +177,8 @@ impl Form {
 pub enum Setting {
     /// A number, in the unit of its key.
     Number(f64),
-    /// A whole number.
     Count(i64),
-    /// Yes or no.
     Flag(bool),
-    /// A word.
     Choice(&'static str),
 }
 
@@ -217,7 +208,6 @@ impl std::fmt::Display for Setting {
 pub struct Signal {
     /// Its name among the signals of its component, with its unit if it has one.
     pub key: Text,
-    /// What it means.
     pub about: String,
     /// What values it takes.
     pub values: Values,
@@ -243,11 +233,9 @@ impl Signal {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Values {
-    /// BOOL.
     Bool,
     /// LREAL, or REAL if the component's `signal_type` says so.
     Number,
-    /// DINT.
     Whole,
     /// One direction of a line of bytes.
     Bytes,
@@ -281,7 +269,6 @@ impl std::fmt::Display for Values {
 pub struct Failure {
     /// What a scene calls it.
     pub mode: Text,
-    /// What happens then.
     pub about: String,
 }
 

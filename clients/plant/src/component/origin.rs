@@ -155,7 +155,6 @@ impl PartialEq for Origin {
     }
 }
 
-/// By its name.
 impl Serialize for Origin {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.serialize_str(&self.name)

@@ -8,15 +8,12 @@ use serde::{Deserialize, Serialize};
 /// Limits of a motion, all above 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Limits {
-    /// m/s
     pub(crate) speed: f64,
-    /// m/s²
     pub(crate) acceleration: f64,
     /// m/s³, none for a trapezoid
     pub(crate) jerk: Option<f64>,
 }
 
-/// A planned motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Profile {
     /// Way, with its sign.

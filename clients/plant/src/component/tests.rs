@@ -21,7 +21,6 @@ pub(crate) fn grasped(count: u32, force_n: f64) -> Grasp {
     Grasp { targets: touched(count), load: Load { force_n, pull_n: None, beside_m: 0.0 } }
 }
 
-/// A component alone.
 pub(crate) struct Rig<C: Component> {
     pub(crate) component: C,
     pub(crate) state: C::State,

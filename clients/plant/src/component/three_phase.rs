@@ -17,7 +17,6 @@ const BALANCED: f64 = 1e-13;
 pub(crate) struct Branch {
     /// Voltage of the arc, in phase with the current, V.
     pub(crate) arc_v: f64,
-    /// Resistance, Ω.
     pub(crate) resistance_ohm: f64,
     /// Reactance, Ω, greater than 0.
     pub(crate) reactance_ohm: f64,

@@ -16,7 +16,6 @@ pub(crate) struct Field(Touched);
 /// What is in a field.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct InField {
-    /// The bodies.
     pub(crate) targets: Targets,
     /// Where the origin of the first of them is, along the axes of the field's body.
     pub(crate) position_m: [f64; 3],

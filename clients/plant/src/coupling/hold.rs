@@ -41,7 +41,6 @@ pub(crate) struct Grasp {
 /// The force that holding a body takes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Load {
-    /// All of it.
     pub(crate) force_n: f64,
     /// Of it, what pulls the body away along the holder's direction, negative if it presses; none
     /// without a direction.

@@ -31,11 +31,9 @@ pub(crate) struct Before {
 /// How a point of a body moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Moving {
-    /// In the world.
     pub(crate) position_m: [f64; 3],
     /// Roll, pitch and yaw of the body.
     pub(crate) rpy_deg: [f64; 3],
-    /// In the world.
     pub(crate) velocity_m_s: [f64; 3],
     /// About the body's own axes.
     pub(crate) turning_rad_s: [f64; 3],

@@ -134,7 +134,7 @@ impl<'d> File<'d> {
     fn faces(&mut self, faces: &Element, kind: &str, place: Place) -> Result<(), MeshError> {
         let inputs = || faces.elements().filter(|inner| inner.name == "input");
         let offset = |input: &Element| value(input, "offset").and_then(|text| text.parse::<usize>().ok());
-        // An input without an offset has the first place. The greatest number that a file can give is no count.
+        // An input without an offset has the first place. The greatest number that a file can give is not a count.
         let stride = inputs().filter_map(offset).max().unwrap_or(0).saturating_add(1);
         let vertex = inputs().find(|input| value(input, "semantic") == Some("VERTEX"));
         let Some(vertex) = vertex.filter(|_| stride < 64) else { return Err(self.wrong(faces, "it has no corners")) };

@@ -162,7 +162,7 @@ fn contents(buffer: &Buffer, binary: Option<&[u8]>, (path, within): (&Path, &Wit
     };
     if let Some(data) = uri.strip_prefix("data:") {
         let encoded = data.split_once(";base64,").map(|(_, encoded)| encoded);
-        return encoded.and_then(base64).ok_or_else(|| wrong("has a buffer that is no base64"));
+        return encoded.and_then(base64).ok_or_else(|| wrong("has a buffer that is not base64"));
     }
     let file = path.parent().unwrap_or_else(|| Path::new("")).join(uri);
     within.read(&file, Limit::DATA).map_err(|error| wrong(format!("needs `{uri}`, which cannot be read: {error}")))
@@ -331,7 +331,7 @@ mod tests {
         let nodes = format!("\"nodes\":[{}0]", "0,".repeat(TRIANGLES_MAX));
         assert_eq!(told("\"nodes\":[0]", &nodes), "has nodes that are nested too deep, or too many");
         assert_eq!(told("\"nodes\":[0]", "\"nodes\":[1]"), "has no node 1");
-        assert_eq!(told("base64,AAAA", "base64,AA!A"), "has a buffer that is no base64");
+        assert_eq!(told("base64,AAAA", "base64,AA!A"), "has a buffer that is not base64");
         assert_eq!(
             told("\"mesh\":0", "\"mesh\":0,\"children\":[0]"),
             "has nodes that are nested too deep, or too many"

@@ -21,7 +21,7 @@ const STL_HEAD: usize = 84;
 /// Bytes of a triangle: a normal, three corners, two bytes without meaning.
 const STL_TRIANGLE: usize = 50;
 
-/// Why a file is no mesh.
+/// Why a file is not a mesh.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum MeshError {
     /// The file cannot be read.

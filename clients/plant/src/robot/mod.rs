@@ -41,20 +41,15 @@ pub struct Robot {
 /// A place and an orientation: roll about x, then pitch about y, then yaw about z.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Origin {
-    /// Where.
     pub xyz_m: [f64; 3],
-    /// How turned.
     pub rpy_rad: [f64; 3],
 }
 
-/// A rigid part.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Link {
-    /// Its name.
     pub name: String,
     /// Its mass, none for a mere frame.
     pub inertial: Option<Inertial>,
-    /// Its shapes.
     pub collisions: Vec<Collision>,
     /// What a picture shows of it: only of use for a mass where nothing else says it.
     pub visuals: Vec<Collision>,
@@ -78,7 +73,6 @@ pub struct Inertial {
 pub struct Collision {
     /// Where it is on its link.
     pub origin: Origin,
-    /// Its form.
     pub geometry: Geometry,
     /// Whether it collides, or only sensors see it.
     pub collides: bool,
@@ -109,9 +103,7 @@ impl Weight {
 /// A form, centred on its origin.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Geometry {
-    /// Whole edges.
     Box([f64; 3]),
-    /// A radius.
     Sphere(f64),
     /// Radius and whole length, along z.
     Cylinder(f64, f64),
@@ -124,22 +116,18 @@ pub enum Geometry {
 /// What a joint leaves free.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Freedom {
-    /// Nothing.
     Fixed,
     /// Rotation about its axis.
     Turns,
     /// Translation along its axis.
     Slides,
-    /// All rotations.
     Rolls,
-    /// Everything: it is no joint.
+    /// Everything: it is not a joint.
     Floats,
 }
 
-/// A joint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Joint {
-    /// Its name.
     pub name: String,
     /// What it leaves free.
     pub freedom: Freedom,
@@ -166,9 +154,7 @@ pub struct Joint {
 pub struct Mimic {
     /// The other joint's name.
     pub joint: String,
-    /// Of its coordinate.
     pub factor: f64,
-    /// Added to it.
     pub offset: f64,
 }
 
@@ -177,7 +163,6 @@ pub struct Mimic {
 pub struct Reading<'r> {
     /// What the file is called in faults.
     pub file: &'r str,
-    /// Where packages are.
     pub packages: &'r Packages,
     /// Arguments of a xacro, by name.
     pub arguments: &'r [(String, String)],

@@ -81,7 +81,7 @@ fn link(element: &Element, remarks: &mut Vec<String>, faults: &mut Vec<RobotFaul
     for written in element.all("collision") {
         kept(collision(written).map(|collision| link.collisions.push(collision)));
     }
-    // a picture that is wrong is no fault of a machine
+    // a picture that is wrong is not a fault of a machine
     link.visuals = element.all("visual").filter_map(|written| collision(written).ok()).collect();
     kept(name.map(|_| ()));
     Some(link).filter(|link| !link.name.is_empty())
@@ -208,7 +208,7 @@ fn refuse_lost_leaders(root: &Element, joints: &[Joint], faults: &mut Vec<RobotF
             Some(_) => format!("follows `{}`, which has no coordinate", mimic.joint),
             // a joint that is at fault has been reported
             None if root.all("joint").any(|element| element.get("name") == Some(&mimic.joint)) => continue,
-            None => format!("follows `{}`, which is no joint of this robot", mimic.joint),
+            None => format!("follows `{}`, which is not a joint of this robot", mimic.joint),
         };
         faults.push(joint.place.wrong(format!("joint `{}` {told}", joint.name)));
     }

@@ -21,9 +21,7 @@ impl Place {
 /// What is wrong with a robot's file, and where.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RobotFault {
-    /// Where.
     pub place: Place,
-    /// What is wrong.
     pub cause: String,
     /// What could be done.
     pub hint: Option<String>,
@@ -43,7 +41,6 @@ impl std::fmt::Display for RobotFault {
     }
 }
 
-/// An attribute.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Attribute {
     pub(super) key: String,
@@ -51,7 +48,6 @@ pub(crate) struct Attribute {
     pub(super) place: Place,
 }
 
-/// An element.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Element {
     /// Its name, without a namespace.

@@ -19,7 +19,6 @@ pub const SOH: u8 = 0x01;
 pub const STX: u8 = 0x02;
 /// End of a command; the check byte follows.
 pub const EOT: u8 = 0x04;
-/// Done.
 pub const ACK: u8 = 0x06;
 /// Not understood, and nothing changed.
 pub const NAK: u8 = 0x15;
@@ -27,7 +26,6 @@ pub const NAK: u8 = 0x15;
 pub const SYN: u8 = 0x16;
 /// An internal test has failed.
 pub const ETB: u8 = 0x17;
-/// Ends a burst.
 pub const ESC: u8 = 0x1b;
 
 /// Bytes of a command between SOH and EOT, at most; none that there is has more than eight.
@@ -51,7 +49,6 @@ pub fn command(text: &[u8]) -> Vec<u8> {
 /// What a device says to what it has heard.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Answer {
-    /// These bytes.
     Bytes(Vec<u8>),
     /// A line, as the settings want it.
     Line,
@@ -60,12 +57,10 @@ pub enum Answer {
 /// Where a device is in what it hears.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 enum Hearing {
-    /// Between messages.
     #[default]
     Nothing,
     /// Within a command, behind SOH.
     Command(Vec<u8>),
-    /// Behind its EOT.
     Check(Vec<u8>),
 }
 

@@ -15,7 +15,6 @@ pub enum Mode {
 /// The settings of a scanner. Those that are stored survive a restart.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Settings {
-    /// `RMH`, `RMB`
     pub mode: Mode,
     /// `PMd`: points of a line are 64·2^(d−1), d from 1 to 5.
     pub point_mode: u8,

@@ -17,7 +17,6 @@ use super::text;
 /// Longest delay: what is on its way is part of the plant's state.
 const TIME_S: Allowed = Allowed::Within(0.0, 60.0);
 
-/// A probability.
 const RATE: Allowed = Allowed::Within(0.0, 1.0);
 
 pub(super) fn check(tables: &[Placed<SignalTable>], signals: &mut Signals, faults: &mut Faults<'_>) -> Vec<Condition> {

@@ -43,7 +43,6 @@ fn lines(faults: &[SceneFault]) -> String {
 /// One thing that is wrong in a scene file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneFault {
-    /// What is wrong.
     pub kind: SceneFaultKind,
     /// Where it is wrong.
     pub place: SourcePlace,
@@ -63,7 +62,6 @@ pub struct SceneFault {
 pub struct Inside {
     /// What is wrong, for a reader who sees the place.
     pub told: String,
-    /// Where.
     pub place: Place,
 }
 
@@ -82,21 +80,14 @@ impl std::error::Error for SceneFault {}
 /// The things of a scene that have names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Thing {
-    /// `[[body]]`
     Body,
-    /// `[[shape]]`
     Shape,
-    /// `[[joint]]`
     Joint,
     /// `[[fitting]]`, by its joint
     Fitting,
-    /// `[[coupling]]`
     Coupling,
-    /// `[[axis]]`
     Axis,
-    /// `[[sensor]]`
     Sensor,
-    /// `[[component]]`
     Component,
     /// A signal that the plant writes.
     Signal,
@@ -126,14 +117,7 @@ pub enum SceneFaultKind {
     Nothing(String),
     /// An override that may mean two things.
     #[error("`{name}` may be a {one} or a {other} of the scene")]
-    Ambiguous {
-        /// The name.
-        name: String,
-        /// One section.
-        one: &'static str,
-        /// The other.
-        other: &'static str,
-    },
+    Ambiguous { name: String, one: &'static str, other: &'static str },
     /// Not TOML, an unknown key, a missing key or a value of the wrong type.
     #[error("{0}")]
     Form(String),
@@ -143,9 +127,7 @@ pub enum SceneFaultKind {
     /// A name that was given before.
     #[error("{thing} `{name}` is named twice; first at {first}")]
     Doubled {
-        /// What is named.
         thing: Thing,
-        /// The name.
         name: String,
         /// Where it was named first.
         first: SourcePlace,
@@ -167,7 +149,6 @@ pub enum SceneFaultKind {
     /// A mesh that cannot be used.
     #[error("mesh `{file}` {cause}")]
     Mesh {
-        /// Its file.
         file: String,
         /// What is wrong with it.
         cause: String,
@@ -175,7 +156,6 @@ pub enum SceneFaultKind {
     /// A robot that cannot be used.
     #[error("robot `{file}` {cause}")]
     Urdf {
-        /// Its file.
         file: String,
         /// What is wrong with it.
         cause: String,
@@ -185,39 +165,26 @@ pub enum SceneFaultKind {
     OpenSurface(String),
     /// A shape of another body.
     #[error("shape `{shape}` is none of body `{body}`")]
-    ForeignShape {
-        /// The shape.
-        shape: String,
-        /// The body.
-        body: String,
-    },
+    ForeignShape { shape: String, body: String },
     /// A text that cannot name a signal.
     #[error(transparent)]
     SignalName(#[from] BadName),
     /// A number outside of what the key allows.
     #[error("`{key}` must be {wanted}, not {value}")]
     Number {
-        /// The key.
         key: Text,
-        /// What it allows.
         wanted: String,
         /// The value in the file.
         value: String,
     },
     /// A key that is needed here.
     #[error("{whose} needs `{key}`")]
-    Missing {
-        /// What needs it.
-        whose: String,
-        /// The key.
-        key: &'static str,
-    },
+    Missing { whose: String, key: &'static str },
     /// A key that means nothing here.
     #[error("{whose} has no `{key}`")]
     Misplaced {
         /// What does not have it.
         whose: String,
-        /// The key.
         key: &'static str,
     },
     /// A dynamic body with no or two statements of its mass.
@@ -248,32 +215,16 @@ pub enum SceneFaultKind {
     FullTurn(String),
     /// An axis on a joint that cannot be driven.
     #[error("`{joint}` is a {kind} joint and cannot be driven")]
-    Undrivable {
-        /// The joint.
-        joint: String,
-        /// Its kind.
-        kind: &'static str,
-    },
+    Undrivable { joint: String, kind: &'static str },
     /// An end-position sensor on a joint without a coordinate.
     #[error("`{joint}` is a {kind} joint and has no position")]
-    Unmeasurable {
-        /// The joint.
-        joint: String,
-        /// Its kind.
-        kind: &'static str,
-    },
+    Unmeasurable { joint: String, kind: &'static str },
     /// A joint with two fittings.
     #[error("joint `{name}` has fitting `{first}` already")]
-    FittedTwice {
-        /// The joint.
-        name: String,
-        /// Its first fitting.
-        first: String,
-    },
+    FittedTwice { name: String, first: String },
     /// A joint or a belt that two axes drive.
     #[error("{thing} `{name}` is driven twice; first by {first}")]
     DrivenTwice {
-        /// What is driven.
         thing: Thing,
         /// The joint, or the belt's body.
         name: String,
@@ -281,12 +232,11 @@ pub enum SceneFaultKind {
         first: String,
     },
     /// A component of a kind that is neither in the library nor in the scene's own.
-    #[error("`{0}` is no kind of component")]
+    #[error("`{0}` is not a kind of component")]
     ComponentKind(String),
     /// A kind of the user's own that cannot be used.
     #[error("kind `{kind}`: {cause}")]
     OwnKind {
-        /// The kind.
         kind: String,
         /// What is wrong with it, or with its file.
         cause: String,
@@ -294,23 +244,16 @@ pub enum SceneFaultKind {
     /// A folder of kinds that cannot be used.
     #[error("the folder of kinds `{folder}` {cause}")]
     Kinds {
-        /// The folder.
         folder: String,
         /// What is wrong with it.
         cause: String,
     },
     /// A key that this kind of component has not.
     #[error("{whose} has no `{key}`")]
-    ComponentKey {
-        /// The component.
-        whose: String,
-        /// The key.
-        key: String,
-    },
+    ComponentKey { whose: String, key: String },
     /// A key that must name something.
     #[error("`{key}` must be {wanted}")]
     Text {
-        /// The key.
         key: String,
         /// What it must be.
         wanted: &'static str,
@@ -318,19 +261,15 @@ pub enum SceneFaultKind {
     /// Something that a component has not: an output, a failure mode.
     #[error("component `{component}` has no {what} `{name}`")]
     ComponentPart {
-        /// The component.
         component: String,
         /// What was looked for.
         what: &'static str,
-        /// Its name.
         name: String,
     },
     /// An input that is wired to an output of other values.
     #[error("`{output}` is {is}, but `{key}` takes {wanted}")]
     WireType {
-        /// The output.
         output: String,
-        /// Its values.
         is: String,
         /// The key of the input.
         key: String,
@@ -339,16 +278,10 @@ pub enum SceneFaultKind {
     },
     /// An input with two sources.
     #[error("{whose} has two sources for `{input}`")]
-    WiredTwice {
-        /// The component.
-        whose: String,
-        /// The input.
-        input: String,
-    },
+    WiredTwice { whose: String, input: String },
     /// An input that is driven and of which nothing comes.
     #[error("nothing comes of `{key}`: nobody drives `{on}` of {whose}")]
     Idle {
-        /// The component.
         whose: String,
         /// The key that drives the input.
         key: String,
@@ -369,14 +302,7 @@ pub enum SceneFaultKind {
     ForeignSignal(String),
     /// A key of a `[[signal]]` that a signal of this type cannot have.
     #[error("signal `{name}` is {ty} and has no `{key}`")]
-    SignalKey {
-        /// The signal.
-        name: String,
-        /// Its type.
-        ty: String,
-        /// The key.
-        key: &'static str,
-    },
+    SignalKey { name: String, ty: String, key: &'static str },
     /// An axis that drives nothing, or two things at once.
     #[error("axis `{0}` needs either a `joint` or a `belt`")]
     Undriven(String),

@@ -28,7 +28,6 @@ pub enum UnknownFailure {
     /// The component does not fail in this way.
     #[error("component `{component}` has no failure mode `{mode}` ({hint})")]
     Mode {
-        /// The component.
         component: String,
         /// The mode that was looked for.
         mode: String,

@@ -12,11 +12,8 @@ const GREATEST: f64 = 1e9;
 /// What a number may be.
 #[derive(Clone, Copy)]
 pub(super) enum Allowed {
-    /// Of either sign.
     Finite,
-    /// Above zero.
     Positive,
-    /// Zero or above.
     NotNegative,
     /// Between two bounds, which are allowed too.
     Within(f64, f64),

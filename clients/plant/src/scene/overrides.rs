@@ -69,7 +69,7 @@ pub(super) fn apply<'i>(root: &mut DeTable<'i>, overrides: &'i [Override], fault
 }
 
 /// Adds the `[[signal]]` of `signal.NAME` if there is none yet: what a signal is conditioned with can be set whether or
-/// not the scene's own conditions name it. A name that is no signal's is found with the other conditions'.
+/// not the scene's own conditions name it. A name that is not a signal's is found with the other conditions'.
 fn condition_signal<'i>(root: &mut DeTable<'i>, owner: &'i str, span: &Range<usize>) {
     let Some(signal) = owner.strip_prefix("signal.") else { return };
     if names(root).any(|(section, _, name)| section == "signal" && name == signal) {

@@ -49,7 +49,6 @@ pub enum ParameterRefused {
         component: String,
         /// The parameter, by its key with its unit.
         parameter: String,
-        /// What it decides.
         why: String,
     },
     /// The scene's own value is asked for, and the component has it.

@@ -100,7 +100,7 @@ fn packages(table: &UrdfTable, faults: &mut Faults<'_>) -> Packages {
     for (name, folder) in table.packages.iter().flatten() {
         let path = faults.beside(folder.get_ref());
         if !path.is_dir() {
-            let cause = format!("is to find package `{name}` in `{}`, which is no folder", folder.get_ref());
+            let cause = format!("is to find package `{name}` in `{}`, which is not a folder", folder.get_ref());
             faults.add(folder.span(), SceneFaultKind::Urdf { file: table.file.get_ref().clone(), cause });
         }
         named.push((name.clone(), path));

@@ -34,7 +34,6 @@ pub(crate) struct Articulation {
     gauges: Vec<Gauge>,
     /// All joints of the scene, with their coordinates.
     motions: Vec<Mark>,
-    /// The scene's joints.
     links: Vec<Link>,
     couplings: Vec<Coupled>,
     /// Robots without dynamics, whose joints are not among those of mechanisms and of the engine.

@@ -60,13 +60,12 @@ pub(crate) struct World {
     pub(crate) frictions: Vec<(usize, Friction)>,
     /// Joints that stand in for springs, dampers and counterweights of joints.
     pub(crate) springs: Vec<(usize, ImpulseJointHandle)>,
-    /// What drives joints.
     pub(crate) actuators: Vec<Actuator>,
     pub(crate) articulation: Articulation,
     /// Belts, and where they stay while their surfaces run.
     belts: Vec<(RigidBodyHandle, Pose)>,
     /// Surfaces that are heated, by the index of their body. What heats them says so in every turn, before others look,
-    /// so this is no state of its own.
+    /// so this is not a state of its own.
     heated: Vec<(usize, TemperatureField)>,
     reach: Reach,
     substeps: u32,

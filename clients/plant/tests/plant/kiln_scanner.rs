@@ -86,7 +86,7 @@ impl Rig {
         plant.setup(&mut outputs).expect("whole");
         let window = |signals: &[Signal], name: &str| {
             let ty = signals.iter().find(|signal| signal.name.as_str() == name).expect("whole").ty;
-            let SignalType::Bytes(window) = ty else { panic!("{name} is no line") };
+            let SignalType::Bytes(window) = ty else { panic!("{name} is not a line") };
             window
         };
         let host = Port::new(form, [window(&request.writes, "From"), window(&request.reads, "To")], 1);

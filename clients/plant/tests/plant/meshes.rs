@@ -89,7 +89,7 @@ fn what_is_wrong_with_a_mesh_is_told_with_its_line() {
         (
             "mesh = \"cube.obj\"",
             "mesh = \"cube.step\"",
-            ":15:8: mesh `cube.step` is no mesh that this program reads: `.stl`, `.obj`, `.dae`, `.gltf` or `.glb`",
+            ":15:8: mesh `cube.step` is not a mesh that this program reads: `.stl`, `.obj`, `.dae`, `.gltf` or `.glb`",
         ),
         ("mesh = \"cube.obj\"", "mesh = \"flat.obj\"", ":15:8: mesh `flat.obj` is flat, and no body"),
         ("mesh = \"cube.obj\"\n", "", ":14:9: mesh `part` needs `mesh`"),

@@ -65,7 +65,7 @@ fn off(plant: &Plant) -> f64 {
 fn a_pendulum_swings_with_the_period_of_its_tensor() {
     let mut plant = plant(SCENE, PENDULUM).expect("a scene");
     let names: Vec<_> = plant.scene().bodies.iter().map(|body| body.name.as_str()).collect();
-    assert_eq!(names, ["clock.base", "clock.rod"], "a frame is no body");
+    assert_eq!(names, ["clock.base", "clock.rod"], "a frame is not a body");
     let shapes: Vec<_> = plant.scene().shapes.iter().map(|shape| (shape.name.as_str(), shape.body)).collect();
     assert_eq!(shapes, [("clock.rod.shape[0]", 1), ("clock.tip.shape[0]", 1)]);
     plant.setup(&mut []).expect("a set-up");
@@ -203,7 +203,7 @@ const DAE: &str = r##"<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASche
 fn a_robot_as_it_is_published_holds_its_pose_and_its_fingers_follow() {
     let mut plant = hand(HAND, PUBLISHED, PARTS).expect("a scene");
     let names: Vec<_> = plant.scene().bodies.iter().map(|body| body.name.as_str()).collect();
-    assert_eq!(names, ["arm.world", "arm.upper", "arm.left", "arm.right"], "frames are no bodies");
+    assert_eq!(names, ["arm.world", "arm.upper", "arm.left", "arm.right"], "frames are not bodies");
     assert_eq!(
         plant.scene().remarks,
         [

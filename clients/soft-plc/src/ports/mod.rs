@@ -30,7 +30,6 @@ pub use terminal::TerminalKind;
 /// A port as a scenario gives it to a PLC.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PlcPort {
-    /// Its name.
     pub name: String,
     /// The line that it reads, with its window.
     pub receive: (SignalName, u16),
@@ -47,7 +46,6 @@ pub enum PlcWay {
     Serial {
         /// How fast bytes follow each other.
         rate: Rate,
-        /// The terminal.
         terminal: TerminalKind,
         /// Bytes that it keeps until the program takes them, in place of what the terminal has.
         receive_buffer: Option<usize>,
@@ -82,43 +80,23 @@ pub enum PortError {
     /// A path that leads to no variable.
     #[error("port `{port}`: the PLC has no variable `{path}`")]
     Unknown {
-        /// The port.
         port: String,
-        /// The path.
         path: String,
         /// What may have been meant.
         help: Option<String>,
     },
-    /// A variable that is no process image.
+    /// A variable that is not a process image.
     #[error("port `{port}`: `{path}` is {is}, of {bytes} bytes, and a process image of 22 bytes has 24 with its word")]
-    NoImage {
-        /// The port.
-        port: String,
-        /// The path.
-        path: String,
-        /// Its type.
-        is: String,
-        /// Its size.
-        bytes: u32,
-    },
+    NoImage { port: String, path: String, is: String, bytes: u32 },
     /// No block that could use it is in the program.
     #[error("port `{port}` is of TCP, and the program has no block that connects")]
-    NoBlock {
-        /// The port.
-        port: String,
-    },
+    NoBlock { port: String },
     /// No block that could use it is in the program.
     #[error("port `{port}` is a module's, and the program has no block that sends or receives there")]
-    NoModuleBlock {
-        /// The port.
-        port: String,
-    },
+    NoModuleBlock { port: String },
     /// More than there is room for.
     #[error("port `{port}` is one too many: a PLC has at most {} of TCP and of modules", socket::COUNT)]
-    Many {
-        /// The port.
-        port: String,
-    },
+    Many { port: String },
 }
 
 /// All ports of a PLC.

@@ -32,7 +32,6 @@ pub(super) fn controlled_by(action: &str) -> String {
 /// What in a chart reads its parts: `a.T` of steps, `Fill.Q` of actions.
 #[derive(Default)]
 pub(super) struct Reads {
-    /// Keys of steps.
     steps: BTreeSet<String>,
     /// Keys of actions with statements.
     actions: BTreeSet<String>,

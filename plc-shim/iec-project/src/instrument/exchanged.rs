@@ -14,7 +14,6 @@ pub enum Way {
 /// A variable that the gateway writes or reads. A signal that several variables read has one of these for each.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Exchanged {
-    /// The signal.
     pub signal: String,
     /// The variable's path in the project, as in `Shear.Sensor_1`, or a global variable's name.
     pub variable: String,

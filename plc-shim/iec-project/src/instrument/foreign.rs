@@ -7,9 +7,7 @@ use self::Kind::{Block, Function};
 /// What a source of time is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
-    /// A function block.
     Block,
-    /// A function.
     Function,
 }
 

@@ -14,7 +14,6 @@ pub struct Located {
     pub variable: String,
     /// The variable of the file that has the address.
     pub carrier: String,
-    /// The address.
     pub address: Address,
     /// Which way it goes.
     pub way: Way,

@@ -182,11 +182,9 @@ pub(super) struct DamagedMarks {
 /// What a file was before it was instrumented.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Original {
-    /// As it is.
     Same,
     /// This text, and where its lines are now.
     Text(Edited),
-    /// There was none.
     Nothing,
 }
 

@@ -414,7 +414,6 @@ fn within(entry: &str, path: &str) -> Option<String> {
 
 /// How an exchanged variable comes to its address.
 struct Found {
-    /// What carries it.
     name: String,
     carrier: Carrier,
     declaration: Option<String>,

@@ -136,12 +136,7 @@ pub enum InstrumentError {
     OnlyOwn(String),
     /// Two changes want the same part of a file.
     #[error("{file}: {conflict}")]
-    Conflict {
-        /// The file.
-        file: String,
-        /// Where.
-        conflict: Conflict,
-    },
+    Conflict { file: String, conflict: Conflict },
 }
 
 /// A project that has been instrumented, or whose shim has been taken off.

@@ -41,7 +41,6 @@ const KEEPING: [&str; 12] = ["CAL", "CALC", "CALCN", "ST", "STN", "S", "R", "RET
 /// Joins conditions with the execution signal.
 pub(super) struct Gate<'g> {
     plan: &'g Plan<'g>,
-    /// `(..)`
     open: &'g str,
     named: Vec<&'g Element>,
     /// What has been joined, by where it begins, and if it is negated where it is used.

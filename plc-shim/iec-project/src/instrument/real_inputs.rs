@@ -43,7 +43,6 @@ pub enum Inputs {
 pub(super) struct RealInputs<'a> {
     /// Global variables, with the namespace they are in.
     globals: Vec<(Option<String>, &'a Variable)>,
-    /// Variables of units.
     units: Vec<(&'a Pou, Vec<&'a Variable>)>,
     /// Addresses in statements, by what they are called.
     direct: BTreeMap<String, Direct<'a>>,

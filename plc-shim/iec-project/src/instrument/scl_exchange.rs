@@ -85,7 +85,6 @@ pub(super) fn refused(exchanged: &[Exchanged]) -> Option<Diagnostic> {
 #[derive(Clone, Copy)]
 struct Form {
     size: usize,
-    /// Its type there.
     written: &'static str,
     /// A TIME counts milliseconds in SCL, and nanoseconds on a link.
     is_time: bool,

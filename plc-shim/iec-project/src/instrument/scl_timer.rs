@@ -36,7 +36,6 @@ pub(super) struct TimerCalls {
 struct TimerCall {
     /// The variable; nothing if it is a part of another.
     place: Option<Place>,
-    /// `.TON`
     span: Span,
 }
 

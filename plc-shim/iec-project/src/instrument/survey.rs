@@ -23,7 +23,6 @@ use onescan_iec::syntax::constant::{self, Constants};
 use onescan_iec::syntax::walk::{self, Visitor};
 use onescan_iec::syntax::{FileId, Span, parse};
 
-/// What was found.
 #[derive(Debug, Default)]
 pub(super) struct Survey<'a> {
     /// For whom the project is instrumented.
@@ -34,7 +33,6 @@ pub(super) struct Survey<'a> {
     pub(super) programs: Vec<&'a Pou>,
     /// The first configuration; all its parts, of which each of TwinCAT's task files is one.
     pub(super) configurations: Vec<&'a Configuration>,
-    /// Global constants.
     pub(super) constants: Constants<'a>,
     /// Programs that others call.
     pub(super) called: BTreeSet<String>,

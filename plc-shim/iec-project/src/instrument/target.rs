@@ -14,7 +14,6 @@ pub enum Target {
     Scl,
     /// OpenPLC v3: one file for MatIEC, with addresses that its Modbus server serves.
     OpenPlc,
-    /// Beremiz: the same.
     Beremiz,
 }
 

@@ -34,7 +34,6 @@ pub(super) enum Line {
     /// By the name of its own that `iec/shim/line.st` declares.
     #[default]
     Named,
-    /// In its place.
     InPlace,
 }
 
@@ -46,7 +45,6 @@ pub(super) struct Entry<'a> {
     pub(super) pou: &'a Pou,
 }
 
-/// One task.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Row {
     pub(super) interval: Option<TimeSpan>,

@@ -183,13 +183,11 @@ pub(super) fn chart_controller(number: Number, line: &str) -> ChartController {
 
 /// The parts of an execution controller of a chart.
 pub(super) struct ChartController {
-    /// Its variables.
     pub(super) declarations: String,
     /// Before each condition, `AND` at its end.
     pub(super) gate: String,
     /// Before what the action of every step does.
     pub(super) header: String,
-    /// Directly behind it.
     pub(super) close: String,
     /// What ends a scan.
     pub(super) footer: String,
@@ -204,9 +202,7 @@ impl ChartController {
 
 /// The parts of an execution controller.
 pub(super) struct Controller {
-    /// Its variables.
     pub(super) declarations: String,
-    /// Before the body.
     pub(super) header: String,
     /// What ends a program's turn: behind the body and before each RETURN.
     pub(super) footer: String,

@@ -20,7 +20,6 @@ use onescan_iec::syntax::Span;
 /// What has no form in the file to be written.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Refused {
-    /// Where it stands.
     pub(crate) span: Span,
     /// What it is, and what it has no form in.
     pub(crate) message: String,

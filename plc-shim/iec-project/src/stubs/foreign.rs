@@ -11,7 +11,6 @@ pub(super) struct Signature {
     pub(super) positional: Vec<Argument>,
     /// `a := x`, in the order in which they were found first.
     pub(super) named: Vec<Named>,
-    /// `b => y`
     pub(super) outputs: Vec<(String, Slot)>,
     /// The result is used.
     pub(super) is_used: bool,

@@ -14,7 +14,6 @@ pub(super) enum Ty {
     Wide(ElementaryType),
     /// A real number without a type of its own.
     Real,
-    /// A standard type.
     Elementary(ElementaryType),
     /// A string, or one of wide characters.
     Text(bool),

@@ -23,7 +23,6 @@ use onescan_iec::ir::MemoryLimit;
 #[must_use]
 pub struct Builder {
     pub(super) inputs: Vec<Input>,
-    /// Path and literal.
     pub(super) constants: Vec<(String, String)>,
     pub(super) purpose: Purpose,
     pub(super) memory_limit: MemoryLimit,

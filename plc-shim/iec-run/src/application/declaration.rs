@@ -8,9 +8,7 @@ use onescan_iec::ir;
 pub struct Declaration {
     /// Its unit; empty for a global one.
     pub unit: String,
-    /// Its name.
     pub name: String,
-    /// Its file.
     pub file: String,
     /// Its line, from 1.
     pub line: u32,

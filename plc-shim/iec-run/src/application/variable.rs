@@ -57,15 +57,11 @@ pub enum VariableAccess {
 /// A program and its variables.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Program {
-    /// Its name.
     pub name: String,
     /// True if another unit calls it: then it runs with that.
     pub is_called: bool,
-    /// `VAR_INPUT`
     pub inputs: Vec<Variable>,
-    /// `VAR_OUTPUT`
     pub outputs: Vec<Variable>,
-    /// `VAR`
     pub locals: Vec<Variable>,
 }
 
@@ -75,7 +71,6 @@ pub struct Program {
 pub struct UnknownVariable {
     /// The path as it was given.
     pub path: String,
-    /// The nearest name.
     pub help: Option<String>,
 }
 

@@ -90,7 +90,6 @@ pub(crate) enum MarkKind {
     Statement,
     /// The fault if this very instruction traps.
     Fault(FaultKind),
-    /// It calls.
     Call(Callee),
     /// It is a branch that is taken as a rule.
     Likely,
@@ -99,7 +98,6 @@ pub(crate) enum MarkKind {
 /// What is called, for the path to where a fault is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Callee {
-    /// A function.
     Function,
     /// An instance inside of the running one; the mark's span is its name.
     Inner,

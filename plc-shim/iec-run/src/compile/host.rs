@@ -15,7 +15,6 @@ pub(crate) enum Function {
     DoublePair(fn(f64, f64) -> f64),
 }
 
-/// An import.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Import {
     pub(crate) name: &'static str,

@@ -2,12 +2,9 @@
 
 use super::Coverage;
 
-/// One count.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Row {
-    /// The file.
     pub file: String,
-    /// Line, from 1.
     pub line: u32,
     /// What is counted there.
     pub of: Counted,
@@ -26,7 +23,6 @@ pub enum Counted {
     Outcome {
         /// The column, from 1.
         column: u32,
-        /// Which outcome.
         outcome: u32,
     },
 }

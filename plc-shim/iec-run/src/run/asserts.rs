@@ -22,9 +22,7 @@ pub struct Asserts {
 /// An assert that did not hold.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FailedAssert {
-    /// What was asserted.
     pub text: String,
-    /// The file.
     pub file: String,
     /// Line and column of the call.
     pub at: LineColumn,

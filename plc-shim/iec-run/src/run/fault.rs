@@ -14,7 +14,6 @@ use onescan_iec::syntax::Span;
 /// The PLC stopped because of an error in its program.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PlcFault {
-    /// What happened.
     pub kind: FaultKind,
     /// The unit in which it happened, and where.
     pub at: FaultSite,
@@ -27,7 +26,6 @@ pub struct PlcFault {
 /// A place in a unit that was active.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct FaultSite {
-    /// The unit.
     pub pou: String,
     /// The instance that ran, as in `P1.axis[i].ramp` with indices as they are written; the unit's
     /// name for a function.
@@ -36,7 +34,6 @@ pub struct FaultSite {
     pub part: String,
     /// The file; empty if it is not known.
     pub file: String,
-    /// Line, from 1.
     pub line: u32,
     /// Column in characters, from 1.
     pub column: u32,

@@ -20,7 +20,6 @@ pub struct StatementId(u32);
 pub enum Act {
     /// A unit that a task runs begins: no statement is around what follows.
     Unit,
-    /// A statement begins.
     Begin(StatementId),
     /// A statement ends. One that is left early has no end.
     End(StatementId),
@@ -28,7 +27,6 @@ pub enum Act {
     Read(Range<u32>),
     /// A statement goes a way.
     Choice(StatementId, WayId),
-    /// Memory has changed.
     Wrote(Wrote),
 }
 
@@ -48,9 +46,7 @@ pub struct Wrote {
 pub struct Statement {
     /// Its number in the application.
     pub id: StatementId,
-    /// Its unit.
     pub unit: String,
-    /// Its file.
     pub file: String,
     /// Its line, from 1.
     pub line: u32,

@@ -10,10 +10,8 @@ use onescan_iec::diagnostic::did_you_mean;
 /// Why a task cannot be late.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum LateError {
-    /// No such task.
     #[error("it has no task `{task}`{}", help.as_ref().map(|help| format!(" ({help})")).unwrap_or_default())]
     Unknown {
-        /// The name.
         task: String,
         /// The one that may have been meant.
         help: Option<String>,

@@ -39,7 +39,6 @@ pub(super) struct Machine {
 pub(super) enum Occasion {
     /// Before the first scan.
     Start,
-    /// Before another start.
     End,
 }
 

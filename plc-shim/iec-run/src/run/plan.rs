@@ -34,25 +34,17 @@ pub enum RunError {
     /// A program that the application lacks.
     #[error("task `{task}` runs program `{program}`, which is not declared{}", suffix(.help.as_ref()))]
     UnknownProgram {
-        /// The task.
         task: String,
         /// The program's name as given.
         program: String,
-        /// The nearest name.
         help: Option<String>,
     },
     /// A program has one instance, which belongs to one task.
     #[error("program `{program}` runs in two tasks, `{task}` is the second")]
-    ProgramTwice {
-        /// The program.
-        program: String,
-        /// The second task.
-        task: String,
-    },
+    ProgramTwice { program: String, task: String },
     /// A task's trigger is not a variable.
     #[error("task `{task}` is triggered by `{path}`: {reason}")]
     Trigger {
-        /// The task.
         task: String,
         /// The path as given.
         path: String,

@@ -18,7 +18,6 @@ pub struct WayId(pub(super) u32);
 pub struct Way {
     /// The unit of the statement.
     pub unit: String,
-    /// Its file.
     pub file: String,
     /// Its line, from 1.
     pub line: u32,

@@ -3,7 +3,6 @@
 use crate::ir::{Argument, ElementaryType, Expr, ExprKind, Value, Variable};
 use crate::syntax::{FileId, Span};
 
-/// The input's name.
 const SITE: &str = "SITE";
 
 /// True for the input of an assert that says where its call stands.

@@ -42,7 +42,6 @@ pub use self::declare::{
 pub use self::standard::vendor::{is_qualified_only, of_pointer_width};
 pub use self::standard::{exists as is_standard_function, is_known as knows_function};
 
-/// The checked program.
 #[derive(Debug)]
 pub struct Checked {
     pub types: TypeTable,

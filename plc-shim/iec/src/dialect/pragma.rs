@@ -7,9 +7,7 @@ use super::{Dialect, UnknownDialect};
 /// What the pragma says.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Chosen {
-    /// There is none.
     Nothing,
-    /// A dialect.
     Dialect(Dialect),
     /// A name that no dialect has, and its place.
     Unknown(UnknownDialect, Range<u32>),

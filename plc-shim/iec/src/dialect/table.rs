@@ -9,7 +9,6 @@ use super::{
 /// Who has a construct, and where that is written.
 #[derive(Debug, Clone, Copy)]
 pub struct FeatureRow {
-    /// The construct.
     pub feature: Feature,
     /// The dialects that have it.
     pub dialects: &'static [Dialect],
@@ -169,9 +168,7 @@ pub const FEATURES: &[FeatureRow] = &[
 /// How a dialect behaves, and where that is written.
 #[derive(Debug, Clone, Copy)]
 pub struct BehaviourRow {
-    /// The dialect.
     pub dialect: Dialect,
-    /// What it does.
     pub behaviour: Behaviour,
     /// Where each of it is written, in the order of the fields.
     pub sources: [&'static str; 12],

@@ -20,7 +20,6 @@ pub enum ConstantError {
     Unknown {
         /// The path as given.
         path: String,
-        /// The nearest name.
         help: Option<String>,
     },
     /// It is a variable.
@@ -36,7 +35,6 @@ pub enum ConstantError {
         path: String,
         /// A constant that it may mean.
         first: String,
-        /// Another one.
         second: String,
     },
     /// It is set twice.
@@ -64,7 +62,6 @@ fn first_message(findings: &Diagnostics) -> &str {
 /// A constant with its value.
 #[derive(Debug, Clone)]
 pub struct Setting {
-    /// As declared.
     pub path: String,
     pub literal: String,
     /// The file that the literal alone is.

@@ -20,7 +20,6 @@ pub struct Encoding {
 /// How characters are written in bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Charset {
-    /// UTF-8
     Utf8,
     /// UTF-16, low byte first.
     Utf16Le,

@@ -42,7 +42,6 @@ pub enum Kind {
 /// Where a path along the links comes to.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum End {
-    /// A step.
     Step(NodeId),
     /// What jumps to a step.
     Jump(NodeId),

@@ -207,12 +207,21 @@ fn trim(file: &str, leaves: &mut Vec<Leaf>, blanks: &[char], prefix: &str) {
 
 /// When a transition is cleared, as the file has it.
 pub(super) enum Condition<'c> {
-    /// A variable's name.
-    Variable { name: &'c Attribute, negated: bool },
+    Variable {
+        name: &'c Attribute,
+        negated: bool,
+    },
     /// Text, perhaps that of a transition which the unit defines by name.
-    Body { name: Option<String>, body: &'c Element, negated: bool },
+    Body {
+        name: Option<String>,
+        body: &'c Element,
+        negated: bool,
+    },
     /// Elements of the chart that it stands in lead to `holder`.
-    Wired { chart: &'c Element, holder: &'c Element },
+    Wired {
+        chart: &'c Element,
+        holder: &'c Element,
+    },
     /// It has been told that there is none.
     Missing,
 }
@@ -246,7 +255,6 @@ impl Condition<'_> {
 
 /// What the text of a condition is: tools differ.
 pub enum Form {
-    /// `a AND b`
     Expression,
     /// `:= a AND b;`
     Assigned,

@@ -20,7 +20,6 @@ pub enum ProjectError {
     Xml {
         /// The line, from 1.
         line: usize,
-        /// What is wrong.
         message: String,
     },
 }

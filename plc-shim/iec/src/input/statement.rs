@@ -35,7 +35,6 @@ impl Text {
         Self { pieces, ..Self::default() }
     }
 
-    /// One word.
     pub(in crate::input) fn word(word: impl Into<String>, place: &Range<u32>) -> Self {
         Self { pieces: vec![Piece::Word(word.into(), place.clone())], atomic: true, depth: 0 }
     }
@@ -89,7 +88,6 @@ impl Text {
         self.push(")", place);
     }
 
-    /// `NOT text`
     pub(in crate::input) fn negated(self, place: &Range<u32>) -> Self {
         let mut text = Self::word("NOT ", place).that_is_atomic(false);
         text.operand(self, place);
@@ -126,7 +124,6 @@ impl Text {
     }
 }
 
-/// A statement.
 #[derive(Debug)]
 pub(in crate::input) enum Line {
     /// Gives a wire its value.

@@ -78,7 +78,6 @@ pub struct Target {
     pub path: String,
     /// `Absolute(0)` or a direct address.
     pub storage: Storage,
-    /// Bytes from there.
     pub inside: u32,
     pub ty: TypeId,
     /// The declaration that the last name on the way leads to; nothing for a program.

@@ -40,7 +40,6 @@ pub enum ExprKind {
     Intrinsic(Intrinsic, Vec<Expr>),
     /// The operand, which must lie between the two numbers.
     Limited(i128, i128, Box<Expr>),
-    /// On character strings.
     Text(Box<TextCall>),
     Call(Box<FunctionCall>),
     /// Runs the statements, then yields the value; none for what has no result.
@@ -188,7 +187,6 @@ pub struct FunctionCall {
 /// The instance that a method is called on.
 #[derive(Debug, Clone)]
 pub struct Receiver {
-    /// Yields its address.
     pub instance: Expr,
     /// Holds the address while arguments are evaluated.
     pub pointer: LocalId,
@@ -200,7 +198,6 @@ pub struct Receiver {
 /// How the code of a call is found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Dispatch {
-    /// It is known.
     Direct,
     /// By the number that the instance begins with, in this row of the table.
     Row(usize),
@@ -238,7 +235,6 @@ pub enum Storage {
     Instance(u32),
     /// The address stands at an offset in the running instance (`VAR_IN_OUT`).
     InstancePointer(u32),
-    /// In a register.
     Register(LocalId),
     /// The address stands in a register.
     RegisterPointer(LocalId),

@@ -11,7 +11,6 @@ use std::sync::Arc;
 use crate::source::Span;
 use crate::syntax::ast::{Edge, Qualifier, SectionKind};
 
-/// Identifies a unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct PouId(pub u32);
 
@@ -39,7 +38,6 @@ impl Retention {
     }
 }
 
-/// A declared variable.
 #[derive(Debug, Clone)]
 pub struct Variable {
     pub name: String,
@@ -54,7 +52,6 @@ pub struct Variable {
     /// The direct address it is located at, as written.
     pub address: Option<String>,
     pub span: Span,
-    /// Initial bytes.
     pub image: Arc<[u8]>,
     /// Who sees it from outside of its unit.
     pub visibility: Visibility,
@@ -72,16 +69,13 @@ pub enum Visibility {
     Public,
     /// The unit and what is derived from it.
     Protected,
-    /// The unit alone.
     Private,
-    /// The namespace.
     Internal,
 }
 
 /// What keeps a unit's fixed memory whole if it is called while it runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Guard {
-    /// It cannot be.
     None,
     /// It has no fixed memory: only the depth of calls is limited.
     Depth,
@@ -109,7 +103,6 @@ pub struct Pou {
     pub registers: Vec<ElementaryType>,
     /// How many of the registers are parameters.
     pub parameters: u32,
-    /// A function's result.
     pub result: Option<Place>,
     pub guard: Guard,
     pub body: Vec<Statement>,

@@ -13,7 +13,6 @@ pub struct Statement {
 
 #[derive(Debug, Clone)]
 pub enum StatementKind {
-    /// Elementary types.
     Assign(Place, Expr),
     /// Aggregates: the expression yields the source's address.
     Copy(Place, Expr),

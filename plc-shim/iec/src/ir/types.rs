@@ -21,7 +21,6 @@ impl From<ElementaryType> for TypeId {
     }
 }
 
-/// A data type.
 #[derive(Debug, Clone)]
 pub enum Type {
     Elementary(ElementaryType),

@@ -3,13 +3,10 @@
 /// A value; which variants occur follows from the type beside it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Value {
-    /// `BOOL`
     Bool(bool),
     /// Integers, bit strings, durations in nanoseconds, numbers of enumeration values.
     Int(i128),
-    /// `REAL`
     Real(f32),
-    /// `LREAL`
     Lreal(f64),
 }
 

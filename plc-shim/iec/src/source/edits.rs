@@ -4,7 +4,6 @@ use std::ops::Range;
 
 use thiserror::Error;
 
-/// One change.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct Edit {
     at: Range<u32>,
@@ -95,10 +94,8 @@ impl Edits {
     }
 }
 
-/// A changed text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Edited {
-    /// The whole text.
     pub text: String,
     /// Where its lines come from.
     pub lines: LineMap,

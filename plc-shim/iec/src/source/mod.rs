@@ -21,7 +21,6 @@ pub struct FileId(pub u32);
 /// A range of bytes in a file; `start..end`, half open.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Span {
-    /// The file.
     pub file: FileId,
     /// Offset of the first byte.
     pub start: u32,
@@ -154,7 +153,6 @@ fn line_starts(text: &str) -> Vec<u32> {
 /// A place as an editor shows it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct LineColumn {
-    /// Line, from 1.
     pub line: u32,
     /// Column in characters, from 1.
     pub column: u32,

@@ -36,7 +36,6 @@ use crate::source::Span;
 pub struct Ident {
     /// Its text; names are compared without regard to case (2nd ed. 2.1.2).
     pub text: String,
-    /// Where it stands.
     pub span: Span,
 }
 
@@ -63,7 +62,6 @@ impl Ident {
 pub struct CompilationUnit {
     /// The dialect it is written in.
     pub dialect: Dialect,
-    /// The declarations.
     pub declarations: Vec<Declaration>,
     /// Where generic blocks are named with their constants.
     pub templates: Vec<TemplateUse>,
@@ -74,7 +72,6 @@ pub struct CompilationUnit {
 pub struct TemplateUse {
     /// The name of the generic block.
     pub template: Ident,
-    /// Its constants.
     pub arguments: Vec<Expr>,
     /// Where all of it stands.
     pub span: Span,

@@ -6,11 +6,8 @@ pub const DAY_NS: i64 = 86_400_000_000_000;
 /// What a literal stands for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CalendarKind {
-    /// `D#1994-06-15`
     Date,
-    /// `TOD#15:36:55.36`
     TimeOfDay,
-    /// `DT#1994-06-15-15:36:55.36`
     DateAndTime,
     /// `DTL#1994-06-15-15:36:55.36` of Siemens, a structure
     Parts,

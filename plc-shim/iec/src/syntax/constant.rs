@@ -10,7 +10,6 @@ use crate::syntax::ast::{
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Constant {
     Integer(i128),
-    /// ns
     Duration(i128),
 }
 

@@ -10,16 +10,12 @@ pub const AREA_LIMIT: u32 = 1 << 20;
 /// A part of memory that is reached by direct addresses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Area {
-    /// `%I`
     Input,
-    /// `%Q`
     Output,
-    /// `%M`
     Memory,
 }
 
 impl Area {
-    /// Every area.
     pub const ALL: [Self; 3] = [Self::Input, Self::Output, Self::Memory];
 
     /// Its letter.
@@ -37,13 +33,9 @@ impl Area {
 pub enum Width {
     /// `X` or no letter
     Bit,
-    /// `B`
     Byte,
-    /// `W`
     Word,
-    /// `D`
     Dword,
-    /// `L`
     Lword,
 }
 
@@ -88,14 +80,10 @@ pub enum Position {
     Bit(u32, u8),
 }
 
-/// A direct address.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct DirectAddress {
-    /// Where.
     pub area: Area,
-    /// How much.
     pub width: Width,
-    /// At which place.
     pub position: Position,
 }
 
@@ -114,13 +102,11 @@ pub enum AddressError {
     /// More numbers than a place in one area has.
     #[error("an address has one number, a bit's address a byte and a bit")]
     Levels,
-    /// Greater than 7.
     #[error("a byte has the bits 0 to 7")]
     Bit,
     /// The letter of an area, or an open place, where a member stands.
     #[error("a member's address counts from the beginning of its structure, as in %B4 or %X4.0")]
     Relative,
-    /// Beyond [`AREA_LIMIT`].
     #[error("an area ends at byte {}", AREA_LIMIT - 1)]
     TooLarge,
 }
@@ -179,9 +165,7 @@ impl DirectAddress {
 /// Where a member lies in its structure: `%B4`, `%X3.0` (3rd ed. 6.4.4.6, Table 11).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RelativeAddress {
-    /// How much.
     pub width: Width,
-    /// First byte.
     pub byte: u32,
     /// Of a bit, its number in that byte.
     pub bit: Option<u8>,

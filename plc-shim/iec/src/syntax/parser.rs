@@ -42,7 +42,6 @@ const RUBBISH: usize = 3;
 pub struct Parsed {
     /// Every token of the file.
     pub tokens: Vec<Token>,
-    /// The tree.
     pub unit: CompilationUnit,
     /// What is wrong with the text.
     pub diagnostics: Vec<Diagnostic>,

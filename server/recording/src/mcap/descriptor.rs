@@ -29,7 +29,6 @@ mod number {
     pub(super) const FIELD_JSON_NAME: u32 = 10;
 }
 
-/// `LABEL_OPTIONAL`.
 const OPTIONAL: u64 = 1;
 
 /// How a signal's value is written.

@@ -33,7 +33,6 @@ struct Topic {
     columns: Vec<usize>,
 }
 
-/// Writes MCAP.
 pub(crate) struct McapSink<W: Write + Seek> {
     file: Writer<W>,
     topics: Vec<Topic>,

@@ -137,7 +137,6 @@ impl<W: Write + Send> Sink for ParquetFile<W> {
     }
 }
 
-/// Writes parts.
 pub(super) struct ParquetSink {
     folder: PathBuf,
     signals: Arc<[Column]>,

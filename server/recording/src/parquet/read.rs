@@ -177,7 +177,7 @@ fn each<D: DataType>(reader: ColumnReaderImpl<D>, rows: usize, mut put: impl FnM
 /// A text as it lies in an image, cut to what fits.
 fn text_bytes(ty: T, text: &str) -> Vec<u8> {
     if let T::Bytes(_) = ty {
-        // a text of others that is no line is an empty one
+        // a text of others that is not a line is an empty one
         return ty.parse_text(text).unwrap_or_else(|_| vec![0; ty.size()]);
     }
     let mut bytes = vec![0, 0];

@@ -1,4 +1,4 @@
-//! One connection of the lobby: its bytes go to the reception, and what that decides is done.
+//! One connection of the lobby: its bytes go to the acceptor, and what that decides is done.
 
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -18,7 +18,7 @@ use tokio_util::either::Either;
 use super::host::Host;
 use super::order::{Application, Order};
 use super::socket::Socket;
-use super::{FAREWELL_TIMEOUT, HANDSHAKE_TIMEOUT};
+use super::{CLOSE_TIMEOUT, HANDSHAKE_TIMEOUT};
 use crate::access::Holder;
 use crate::lobby::Visitor;
 use crate::mailbox::{Request, Wish};
@@ -57,7 +57,7 @@ impl Connection {
 
     /// False if the connection is of no use any more.
     async fn say_no_more(&mut self) -> bool {
-        matches!(timeout(FAREWELL_TIMEOUT, self.0.shutdown()).await, Ok(Ok(())))
+        matches!(timeout(CLOSE_TIMEOUT, self.0.shutdown()).await, Ok(Ok(())))
     }
 
     async fn send(&mut self, message: &ServerMessage) -> std::io::Result<()> {
@@ -79,12 +79,12 @@ pub(super) async fn newcomer(
     orders: UnboundedReceiver<Order>,
     host: Arc<Host>,
 ) {
-    let connection = match &host.acceptor {
+    let connection = match &host.tls_acceptor {
         None => Connection(Either::Left(stream)),
-        Some(acceptor) => match timeout(HANDSHAKE_TIMEOUT, secure(stream, acceptor)).await {
+        Some(tls_acceptor) => match timeout(HANDSHAKE_TIMEOUT, secure(stream, tls_acceptor)).await {
             Ok(Ok(Either::Left(stream))) => {
                 let why = "this session speaks TLS only: say whom you trust with `--tls-ca`";
-                host.act(|reception, now| reception.refused(visitor, why, now));
+                host.act(|acceptor, now| acceptor.refused(visitor, why, now));
                 Connection(Either::Left(stream))
             }
             Ok(Ok(Either::Right(secured))) => {
@@ -104,18 +104,18 @@ pub(super) async fn newcomer(
     attend(connection, peer, visitor, orders, host).await;
 }
 
-/// Passes on to the reception whose certificate was shown, if one was.
+/// Passes on to the acceptor whose certificate was shown, if one was.
 fn introduce(secured: &TlsStream<TcpStream>, visitor: Visitor, host: &Host) {
     let shown = secured.get_ref().1.peer_certificates().and_then(<[_]>::first);
     match shown.map(|certificate| Holder::of_certificate(certificate)) {
         None => {}
-        Some(Ok(holder)) => host.act(|reception, _| {
-            reception.certified(visitor, holder);
+        Some(Ok(holder)) => host.act(|acceptor, _| {
+            acceptor.certified(visitor, holder);
             Vec::new()
         }),
         Some(Err(why)) => {
-            host.act(|reception, now| {
-                reception.refused(visitor, &format!("this certificate lets nobody in: {why}"), now)
+            host.act(|acceptor, now| {
+                acceptor.refused(visitor, &format!("this certificate lets nobody in: {why}"), now)
             });
         }
     }
@@ -124,14 +124,14 @@ fn introduce(secured: &TlsStream<TcpStream>, visitor: Visitor, host: &Host) {
 /// TLS over the connection, if that is what the other side begins with.
 async fn secure(
     stream: TcpStream,
-    acceptor: &TlsAcceptor,
+    tls_acceptor: &TlsAcceptor,
 ) -> std::io::Result<Either<TcpStream, Box<TlsStream<TcpStream>>>> {
     let mut first = [0; 3];
     let count = stream.peek(&mut first).await?;
     match first[..count] {
-        // A frame may begin with that byte, too; then its third is no version of TLS.
+        // A frame may begin with that byte, too; then its third is not a version of TLS.
         [TLS_HANDSHAKE] | [TLS_HANDSHAKE, 3] | [TLS_HANDSHAKE, 3, 1..=4] => {
-            match acceptor.accept(stream).into_fallible().await {
+            match tls_acceptor.accept(stream).into_fallible().await {
                 Ok(secured) => Ok(Either::Right(Box::new(secured))),
                 Err((error, stream)) => {
                     linger(stream).await;
@@ -151,13 +151,13 @@ async fn linger(mut stream: TcpStream) {
         let _ = stream.shutdown().await;
         while matches!(stream.read(&mut rest).await, Ok(1..)) {}
     };
-    let _ = timeout(FAREWELL_TIMEOUT, read_out).await;
+    let _ = timeout(CLOSE_TIMEOUT, read_out).await;
 }
 
 /// The connection is gone.
 fn go(visitor: Visitor, host: &Host) {
-    host.act(|reception, _| {
-        reception.gone(visitor);
+    host.act(|acceptor, _| {
+        acceptor.gone(visitor);
         Vec::new()
     });
     host.leave(visitor);
@@ -195,14 +195,14 @@ pub(super) async fn attend(
             answered = come_in(&mut answer) => {
                 answer = None;
                 let answered = answered.map(|result| result.map_err(|error| error.to_string()));
-                host.act(|reception, now| reception.answered(visitor, answered, now));
+                host.act(|acceptor, now| acceptor.answered(visitor, answered, now));
             }
             read = connection.0.read(&mut buffer), if is_open => match read {
                 Ok(0) if host.hung_up(visitor) => is_open = false,
-                Ok(count) if count > 0 => host.act(|reception, now| reception.received(visitor, &buffer[..count], now)),
+                Ok(count) if count > 0 => host.act(|acceptor, now| acceptor.received(visitor, &buffer[..count], now)),
                 _ => return go(visitor, &host),
             },
-            () = sleep_until(deadline) => host.act(crate::lobby::Reception::clock),
+            () = sleep_until(deadline) => host.act(crate::lobby::Acceptor::clock),
         }
     }
 }

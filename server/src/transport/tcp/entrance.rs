@@ -17,7 +17,6 @@ use crate::wire::FRAME_BYTES_MAX;
 /// nothing.
 #[derive(Clone, Debug)]
 pub struct Entrance {
-    /// The server's address.
     pub address: SocketAddr,
     /// The token to show.
     pub token: Option<Token>,

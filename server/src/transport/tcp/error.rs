@@ -12,22 +12,11 @@ use crate::wire::EndpointError;
 /// Why a client did not stay to the end.
 #[derive(Debug, Error)]
 pub enum ParticipantError {
-    /// Nobody there.
     #[error("cannot connect to the server at {address}: {source}")]
-    Connect {
-        /// Where.
-        address: SocketAddr,
-        /// Why.
-        source: std::io::Error,
-    },
+    Connect { address: SocketAddr, source: std::io::Error },
     /// TLS does not come about.
     #[error("cannot speak TLS with the server at {address}: {why}")]
-    Tls {
-        /// Where.
-        address: SocketAddr,
-        /// Why.
-        why: String,
-    },
+    Tls { address: SocketAddr, why: String },
     /// The server does not want it.
     #[error("the server refused: {0}")]
     Refused(String),
@@ -39,7 +28,6 @@ pub enum ParticipantError {
     Lost {
         /// Virtual time of the last grant.
         t_v: VirtualTime,
-        /// Why.
         source: ReceiveError,
     },
     /// The server broke the protocol.
@@ -50,7 +38,6 @@ pub enum ParticipantError {
     Fault {
         /// Virtual time of the turn.
         t_v: VirtualTime,
-        /// What happened.
         fault: ClientFault,
     },
 }

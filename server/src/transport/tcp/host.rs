@@ -1,4 +1,4 @@
-//! What the connections of the lobby share: the reception, and where the orders for each of them go.
+//! What the connections of the lobby share: the acceptor, and where the orders for each of them go.
 
 use std::collections::BTreeMap;
 use std::sync::mpsc::{SendError, Sender, channel};
@@ -12,31 +12,31 @@ use tokio_rustls::TlsAcceptor;
 use super::order::{Application, Order};
 use super::socket::Socket;
 use crate::access::Day;
-use crate::lobby::reception::BEGUN;
-use crate::lobby::{Action, Now, Reception, Terms, Visitor};
+use crate::lobby::acceptor::BEGUN;
+use crate::lobby::{Acceptor, Action, Now, Terms, Visitor};
 use crate::mailbox::Mailbox;
 
 /// What the tasks of all connections share.
 pub(super) struct Host {
-    reception: Mutex<Reception>,
+    acceptor: Mutex<Acceptor>,
     /// Where the orders for each connection go.
     lines: Mutex<BTreeMap<Visitor, UnboundedSender<Order>>>,
     opened: Instant,
-    applicants: Sender<Application>,
+    pending_clients: Sender<Application>,
     pub(super) mailbox: Mailbox,
-    pub(super) acceptor: Option<TlsAcceptor>,
+    pub(super) tls_acceptor: Option<TlsAcceptor>,
 }
 
 impl Host {
-    /// Nobody is there; clients that want a seat go to `applicants`.
+    /// Nobody is there; clients that want a seat go to `pending_clients`.
     pub(super) fn new(
         terms: Terms,
-        applicants: Sender<Application>,
+        pending_clients: Sender<Application>,
         mailbox: Mailbox,
-        acceptor: Option<TlsAcceptor>,
+        tls_acceptor: Option<TlsAcceptor>,
     ) -> Self {
-        let (reception, lines) = (Mutex::new(Reception::new(terms)), Mutex::default());
-        Self { reception, lines, opened: Instant::now(), applicants, mailbox, acceptor }
+        let (acceptor, lines) = (Mutex::new(Acceptor::new(terms)), Mutex::default());
+        Self { acceptor, lines, opened: Instant::now(), pending_clients, mailbox, tls_acceptor }
     }
 
     /// Where the orders for a connection go from here on.
@@ -52,18 +52,18 @@ impl Host {
         Now { at: self.opened.elapsed(), today: Day::of(since_epoch) }
     }
 
-    fn reception(&self) -> MutexGuard<'_, Reception> {
-        self.reception.lock().unwrap_or_else(PoisonError::into_inner)
+    fn acceptor(&self) -> MutexGuard<'_, Acceptor> {
+        self.acceptor.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn lines(&self) -> MutexGuard<'_, BTreeMap<Visitor, UnboundedSender<Order>>> {
         self.lines.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Tells the reception what has happened, and passes on what is to be done.
-    pub(super) fn act(&self, happened: impl FnOnce(&mut Reception, Now) -> Vec<Action>) {
-        let mut reception = self.reception();
-        let actions = happened(&mut reception, self.now());
+    /// Tells the acceptor what has happened, and passes on what is to be done.
+    pub(super) fn act(&self, happened: impl FnOnce(&mut Acceptor, Now) -> Vec<Action>) {
+        let mut acceptor = self.acceptor();
+        let actions = happened(&mut acceptor, self.now());
         let lines = self.lines();
         for action in actions {
             let (visitor, order) = Order::of(action);
@@ -76,12 +76,12 @@ impl Host {
 
     /// When the stage of a connection ends.
     pub(super) fn deadline_of(&self, visitor: Visitor) -> Option<Instant> {
-        self.reception().deadline_of(visitor).map(|deadline| self.opened + deadline)
+        self.acceptor().deadline_of(visitor).map(|deadline| self.opened + deadline)
     }
 
     /// The other side says no more; true if it still waits for an answer.
     pub(super) fn hung_up(&self, visitor: Visitor) -> bool {
-        self.reception().hung_up(visitor)
+        self.acceptor().hung_up(visitor)
     }
 
     /// The connection is no longer attended to.
@@ -91,8 +91,8 @@ impl Host {
 
     /// A client waits for the session's thread to decide.
     pub(super) fn wait_for_seat(&self, application: Application) {
-        if let Err(SendError(Application { visitor, .. })) = self.applicants.send(application) {
-            self.act(|reception, now| reception.refused(visitor, BEGUN, now));
+        if let Err(SendError(Application { visitor, .. })) = self.pending_clients.send(application) {
+            self.act(|acceptor, now| acceptor.refused(visitor, BEGUN, now));
         }
     }
 
@@ -100,8 +100,8 @@ impl Host {
     pub(super) fn hand_over(&self, visitor: Visitor) -> Option<Socket> {
         let (sender, receiver) = channel();
         {
-            let mut reception = self.reception();
-            if !reception.seated(visitor) {
+            let mut acceptor = self.acceptor();
+            if !acceptor.seated(visitor) {
                 return None;
             }
             self.lines().get(&visitor)?.send(Order::HandOver(sender)).ok()?;

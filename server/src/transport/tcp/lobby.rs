@@ -1,4 +1,4 @@
-//! The lobby: a listener whose connections are moved by the [`Reception`]. What it decides is done here, with sockets and
+//! The lobby: a listener whose connections are moved by the [`Acceptor`]. What it decides is done here, with sockets and
 //! a clock; nothing is decided here.
 
 use std::net::SocketAddr;
@@ -11,14 +11,14 @@ use tokio::sync::Notify;
 use tokio_rustls::TlsAcceptor;
 use tokio_util::task::TaskTracker;
 
-use super::guest::Guest;
 use super::host::Host;
 use super::order::Application;
+use super::pending::TcpPendingClient;
 use super::{AGENT, attend};
 use crate::access::Register;
-use crate::carrier::{Applicant, Door};
-use crate::lobby::reception::FAREWELL_TIMEOUT;
-use crate::lobby::{Reception, Terms, Visitor};
+use crate::carrier::{ClientListener, PendingClient};
+use crate::lobby::acceptor::CLOSE_TIMEOUT;
+use crate::lobby::{Acceptor, Terms, Visitor};
 use crate::mailbox::Mailbox;
 use crate::plan::SessionPlan;
 use crate::transport::tls::Identity;
@@ -36,8 +36,8 @@ pub struct House {
 /// A listener with a thread of its own; closed when dropped.
 pub struct Lobby {
     address: SocketAddr,
-    /// Nothing once the door is shut.
-    applicants: Mutex<Option<Receiver<Application>>>,
+    /// Nothing once the client_listener is shut.
+    pending_clients: Mutex<Option<Receiver<Application>>>,
     host: Arc<Host>,
     close: Arc<Notify>,
     thread: Option<std::thread::JoinHandle<()>>,
@@ -66,16 +66,16 @@ impl Lobby {
         let listener = std::net::TcpListener::bind(address)?;
         listener.set_nonblocking(true)?;
         let address = listener.local_addr()?;
-        let (applicants, receiver) = channel();
+        let (pending_clients, receiver) = channel();
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
-        let acceptor = house.identity.map(|identity| TlsAcceptor::from(identity.0));
-        let host = Arc::new(Host::new(terms(plan, house.register)?, applicants, mailbox, acceptor));
+        let tls_acceptor = house.identity.map(|identity| TlsAcceptor::from(identity.0));
+        let host = Arc::new(Host::new(terms(plan, house.register)?, pending_clients, mailbox, tls_acceptor));
         let close = Arc::new(Notify::new());
         let (hosting, closing) = (Arc::clone(&host), Arc::clone(&close));
         let thread = std::thread::Builder::new()
             .name("lobby".to_owned())
             .spawn(move || runtime.block_on(receive_guests(listener, hosting, closing)))?;
-        Ok(Self { address, applicants: Mutex::new(Some(receiver)), host, close, thread: Some(thread) })
+        Ok(Self { address, pending_clients: Mutex::new(Some(receiver)), host, close, thread: Some(thread) })
     }
 
     /// Where it listens; tells the port where none was asked for.
@@ -96,18 +96,18 @@ fn terms(plan: &SessionPlan, register: Option<Register>) -> std::io::Result<Term
     Ok(Terms { welcome: Arc::new(welcome), welcome_bytes, register: register.map(Arc::new) })
 }
 
-impl Door for Lobby {
-    fn next_applicant(&self, patience: Duration) -> Option<Box<dyn Applicant>> {
-        let waiting = self.applicants.lock().unwrap_or_else(PoisonError::into_inner);
+impl ClientListener for Lobby {
+    fn next_pending(&self, patience: Duration) -> Option<Box<dyn PendingClient>> {
+        let waiting = self.pending_clients.lock().unwrap_or_else(PoisonError::into_inner);
         let application = waiting.as_ref()?.recv_timeout(patience).ok()?;
-        Some(Box::new(Guest { application, host: Arc::clone(&self.host) }))
+        Some(Box::new(TcpPendingClient { application, host: Arc::clone(&self.host) }))
     }
 
     fn shut(&self) {
-        let waiting = self.applicants.lock().unwrap_or_else(PoisonError::into_inner).take();
-        // Who is waiting is told by the reception, like whoever comes later.
+        let waiting = self.pending_clients.lock().unwrap_or_else(PoisonError::into_inner).take();
+        // Who is waiting is told by the acceptor, like whoever comes later.
         drop(waiting);
-        self.host.act(Reception::shut);
+        self.host.act(Acceptor::shut);
     }
 }
 
@@ -148,7 +148,7 @@ fn come(visitor: Visitor, stream: TcpStream, peer: SocketAddr, host: &Arc<Host>,
     // It only costs time where it cannot be set.
     let _ = stream.set_nodelay(true);
     let orders = host.open_line(visitor);
-    host.act(|reception, now| reception.opened(visitor, peer.ip(), now));
+    host.act(|acceptor, now| acceptor.opened(visitor, peer.ip(), now));
     let task = attend::newcomer(stream, peer, visitor, orders, Arc::clone(host));
     tasks.spawn(task);
 }
@@ -156,10 +156,10 @@ fn come(visitor: Visitor, stream: TcpStream, peer: SocketAddr, host: &Arc<Host>,
 /// One who asked for the session's end still hears that it came: what has been taken from the mailbox is answered
 /// before the connections close.
 async fn part_from_all(host: &Host, tasks: &TaskTracker) {
-    host.act(Reception::closing);
+    host.act(Acceptor::closing);
     // Nobody takes these any more.
     while host.mailbox.take().is_some() {}
     tasks.close();
     // One who does not read is left.
-    let _ = tokio::time::timeout(FAREWELL_TIMEOUT, tasks.wait()).await;
+    let _ = tokio::time::timeout(CLOSE_TIMEOUT, tasks.wait()).await;
 }

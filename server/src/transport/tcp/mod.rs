@@ -5,7 +5,7 @@
 //! | [`lobby`] | the listener; a thread of its own, asynchronous |
 //! | `order`, `host` | what is to be done with its connections; what they share |
 //! | `attend` | one of them |
-//! | `guest` | a client that waits for a seat, seen from the session's thread |
+//! | `pending` | a client that waits for a seat, seen from the session's thread |
 //! | `error` | why nobody could take part |
 //! | [`entrance`] | where a session is, and what it takes to be let in |
 //! | `socket` | a blocking socket, in plain text or under TLS |
@@ -21,12 +21,12 @@
 mod attend;
 pub mod entrance;
 mod error;
-mod guest;
 mod host;
 pub mod lobby;
 pub mod operator;
 mod order;
 pub mod participant;
+mod pending;
 mod remote;
 mod socket;
 mod stream;
@@ -41,7 +41,7 @@ pub use lobby::{House, Lobby};
 
 use crate::wire::FrameError;
 
-pub use crate::lobby::reception::{FAREWELL_TIMEOUT, HANDSHAKE_TIMEOUT};
+pub use crate::lobby::acceptor::{CLOSE_TIMEOUT, HANDSHAKE_TIMEOUT};
 
 /// What this program calls itself to the other side.
 const AGENT: &str = concat!("onescan ", env!("CARGO_PKG_VERSION"));
@@ -55,13 +55,13 @@ pub enum ReceiveError {
     /// The other side is silent.
     #[error("no answer within {} ms", .0.as_millis())]
     TimedOut(Duration),
-    /// Bytes that are no frame, or a broken transport.
+    /// Bytes that are not frame, or a broken transport.
     #[error(transparent)]
     Frame(#[from] FrameError),
     /// A frame of a kind that has no place here.
     #[error("a binary frame where a JSON message is due")]
     NotJson,
-    /// JSON that is no message of the protocol.
+    /// JSON that is not a message of the protocol.
     #[error("not a message of this protocol: {}", one_line(&.0.to_string()))]
     Message(#[from] serde_json::Error),
 }

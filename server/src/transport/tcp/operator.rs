@@ -51,7 +51,7 @@ impl OperatorConnection {
         match self.connection.receive_message(patience).map_err(ParticipantError::Handshake)? {
             ServerMessage::Status(status) => Ok(status),
             ServerMessage::Refused { message } => Err(ParticipantError::Refused(message)),
-            _ => Err(ParticipantError::Refused("its answer is no status".to_owned())),
+            _ => Err(ParticipantError::Refused("its answer is not a status".to_owned())),
         }
     }
 }

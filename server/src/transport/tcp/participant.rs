@@ -72,7 +72,7 @@ fn serve(mut connection: FrameStream, client: &mut dyn Client) -> Result<Session
             Ok(Err(fault)) => {
                 // If the server is gone too, the fault is still what matters here.
                 let _ = connection.send_message(&ClientMessage::Fault(fault.clone()));
-                connection.farewell();
+                connection.close();
                 return Err(ParticipantError::Fault { t_v, fault });
             }
             Err(error) => return Err(ParticipantError::Lost { t_v, source: error.into() }),

@@ -118,9 +118,9 @@ impl Carrier for Remote {
         self.send_message(&ServerMessage::End(end.clone()));
     }
 
-    /// A client that is gone, or does not read, is not waited for longer than a farewell takes.
-    fn farewell(&mut self) {
-        self.connection.farewell();
+    /// A client that is gone, or does not read, is not waited for longer than a close takes.
+    fn close(&mut self) {
+        self.connection.close();
     }
 }
 
@@ -136,7 +136,7 @@ fn cause_of(error: &ReceiveError) -> FailureCause {
     }
 }
 
-/// The cause when `frame` came and it is no answer to a grant.
+/// The cause when `frame` came and it is not an answer to a grant.
 fn broken_promise(frame: &Frame, broken: Option<FailureCause>) -> FailureCause {
     if let Frame::Json(text) = frame {
         return match serde_json::from_slice(text) {

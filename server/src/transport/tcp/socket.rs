@@ -8,7 +8,6 @@ use rustls::{ClientConnection, ServerConnection, StreamOwned};
 
 /// A socket, and what lies over it.
 pub(super) enum Socket {
-    /// Nothing.
     Plain(TcpStream),
     /// TLS, on the side of the session.
     Serving(Box<StreamOwned<ServerConnection, TcpStream>>),

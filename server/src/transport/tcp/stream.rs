@@ -12,7 +12,7 @@ use serde::de::DeserializeOwned;
 use tokio_util::codec::{Decoder, Encoder};
 
 use super::socket::Socket;
-use super::{FAREWELL_TIMEOUT, ReceiveError};
+use super::{CLOSE_TIMEOUT, ReceiveError};
 use crate::transport::tls::reason;
 use crate::wire::{Frame, FrameCodec, FrameError, FrameRef};
 
@@ -103,12 +103,12 @@ impl FrameStream {
 
     /// Says no more, but lets the other side go on until it has closed or time is up: closing with
     /// unread bytes would make the operating system take the last message back.
-    pub(super) fn farewell(&mut self) {
+    pub(super) fn close(&mut self) {
         let begun = Instant::now();
         if self.stream.shut_down().is_err() {
             return;
         }
-        while let Some(rest) = FAREWELL_TIMEOUT.checked_sub(begun.elapsed()).filter(|rest| !rest.is_zero()) {
+        while let Some(rest) = CLOSE_TIMEOUT.checked_sub(begun.elapsed()).filter(|rest| !rest.is_zero()) {
             let waited = self.stream.set_read_timeout(Some(rest));
             match waited.and_then(|()| self.stream.read(&mut self.buffer)) {
                 Ok(0) | Err(_) => return,

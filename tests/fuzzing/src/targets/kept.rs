@@ -34,7 +34,7 @@ fn lockstep(scenario: &Scenario) -> Lockstep {
         formation.join(client(scenario, name)).expect("the shear");
     }
     let mut lockstep = formation.start().expect("the shear");
-    lockstep.set_makeup(scenario.makeup());
+    lockstep.set_settings(scenario.settings());
     let timeline = Timeline::new(scenario.timeline().to_vec(), lockstep.session()).expect("the shear");
     lockstep.set_timeline(timeline);
     lockstep
@@ -48,7 +48,7 @@ pub(super) fn checkpoint(scratch: &Path) -> Prepared {
     let seed = session.checkpoint().expect("the shear").to_bytes().expect("the shear");
     let mut prepared = Prepared::new(vec![seed], move |input| {
         let Ok(checkpoint) = Checkpoint::from_bytes(input) else { return false };
-        let _ = (checkpoint.digest(), checkpoint.makeup().name.len(), checkpoint.state_hash());
+        let _ = (checkpoint.digest(), checkpoint.settings().name.len(), checkpoint.state_hash());
         let until = VirtualTime::from_nanos(checkpoint.t_v().as_nanos().saturating_add(20_000_000));
         let mut session = lockstep(&scenario);
         if session.resume(&checkpoint).is_err() {

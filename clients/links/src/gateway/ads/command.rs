@@ -1,6 +1,5 @@
 //! Numbers of ADS (Beckhoff: TC3 ADS introduction, ADS commands, index groups, return codes).
 
-/// Commands of frames.
 pub const READ_DEVICE_INFO: u16 = 1;
 /// Reads a length at a group and an offset.
 pub const READ: u16 = 2;
@@ -8,7 +7,6 @@ pub const READ: u16 = 2;
 pub const WRITE: u16 = 3;
 /// The state of the device.
 pub const READ_STATE: u16 = 4;
-/// Sets it.
 pub const WRITE_CONTROL: u16 = 5;
 /// Writes, then reads: a call of the service that the group is.
 pub const READ_WRITE: u16 = 9;
@@ -51,7 +49,7 @@ pub const BAD_OFFSET: u32 = 0x703;
 pub const NO_ACCESS: u32 = 0x704;
 /// Return code: not as many bytes as the symbol has.
 pub const BAD_SIZE: u32 = 0x705;
-/// Return code: bytes that are no request.
+/// Return code: bytes that are not request.
 pub const BAD_DATA: u32 = 0x706;
 /// Return code: there is no such symbol.
 pub const NO_SYMBOL: u32 = 0x710;

@@ -18,7 +18,6 @@ const TCP_PORT: u16 = 48_898;
 pub(super) enum Refusal {
     /// The device or a router says no, with this return code.
     Code(u32),
-    /// The connection.
     Link(LinkFault),
 }
 
@@ -50,7 +49,6 @@ pub(super) struct Connection {
     target: AmsAddress,
     source: AmsAddress,
     invoke_id: u32,
-    /// For an answer.
     timeout: Duration,
 }
 

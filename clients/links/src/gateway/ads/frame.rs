@@ -15,7 +15,6 @@ const AMS_HEADER: usize = 32;
 const HEADERS: usize = 6 + AMS_HEADER;
 /// State flags: an ADS command, over TCP.
 const REQUEST: u16 = 0x0004;
-/// The same, answered.
 const RESPONSE: u16 = 0x0005;
 
 /// The name of a device among AMS routers: six numbers, of which the first four are often an IP address.
@@ -59,7 +58,6 @@ impl TryFrom<String> for NetId {
 /// A device and a port in it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct AmsAddress {
-    /// The device.
     pub net_id: NetId,
     /// What listens in it; 851 is the first PLC of TwinCAT 3.
     pub port: u16,
@@ -85,24 +83,19 @@ impl std::fmt::Display for AmsAddress {
 /// Whether a frame asks or answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// From the client.
     Request,
-    /// From the device.
     Response,
 }
 
-/// A frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Frame {
-    /// Who is meant.
     pub target: AmsAddress,
-    /// Who speaks.
     pub source: AmsAddress,
     /// A number of [`super::command`].
     pub command: u16,
     /// Whether it asks or answers.
     pub kind: Kind,
-    /// What the router says; 0 is no error.
+    /// What the router says; 0 is not an error.
     pub error: u32,
     /// The response has that of its request.
     pub invoke_id: u32,
@@ -110,7 +103,7 @@ pub struct Frame {
     pub data: Vec<u8>,
 }
 
-/// Bytes that are no frame.
+/// Bytes that are not frame.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum BadFrame {
     /// Its length is not that of a frame that anybody here would send.

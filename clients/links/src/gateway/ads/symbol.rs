@@ -4,7 +4,6 @@ use onescan_server::signal::SignalType as T;
 
 use super::frame::Bytes;
 
-/// A symbol.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Symbol {
     /// Where its value is: index group and index offset.
@@ -15,7 +14,6 @@ pub struct Symbol {
     pub base: u32,
     /// Flags; 0x20 is read only.
     pub flags: u32,
-    /// Its path.
     pub name: String,
     /// Its type, as declared.
     pub ty: String,
@@ -122,7 +120,7 @@ impl Form {
         out.resize(end, 0);
     }
 
-    /// The other way; false if the bytes are no value.
+    /// The other way; false if the bytes are not value.
     pub fn take(self, bytes: &[u8], packed: &mut [u8]) -> bool {
         let width = match self.ty {
             T::String(_) => 1,

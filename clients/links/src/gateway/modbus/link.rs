@@ -34,7 +34,6 @@ pub struct ModbusLink {
 enum Failed {
     /// The connection, or time.
     Lost(String),
-    /// The PLC refuses.
     Refused(ExceptionCode),
     /// The answer is none.
     Nonsense(String),

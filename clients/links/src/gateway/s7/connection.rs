@@ -20,7 +20,6 @@ pub(super) enum Refusal {
     Request(u16),
     /// The PLC says no to a value.
     Value(u8),
-    /// The connection.
     Link(LinkFault),
 }
 
@@ -37,7 +36,6 @@ pub(super) struct Connection {
     incoming: Incoming,
     number: u16,
     pdu: u16,
-    /// For an answer.
     timeout: Duration,
 }
 
@@ -127,7 +125,9 @@ impl Connection {
                 Some((_, Some(Answer::Refused(code)))) => return Err(Refusal::Request(code)),
                 Some((_, Some(Answer::NotRead(code)))) => return Err(Refusal::Value(code)),
                 Some((_, Some(answer))) => return Ok(answer),
-                Some((_, None)) | None => return Err(nonsense(format!("{} bytes that are no answer", message.len()))),
+                Some((_, None)) | None => {
+                    return Err(nonsense(format!("{} bytes that are not an answer", message.len())));
+                }
             }
         }
     }

@@ -7,7 +7,6 @@
 
 use thiserror::Error;
 
-/// Where ISO-on-TCP listens.
 pub const PORT: u16 = 102;
 
 /// The first byte of every TPKT.
@@ -35,7 +34,6 @@ const CALLED_TSAP: u8 = 0xC2;
 pub enum Message {
     /// A client wants a connection; its reference.
     ConnectRequest(u16),
-    /// It has one.
     ConnectConfirm,
     /// It has none any more, or none at all.
     Disconnect,
@@ -43,7 +41,7 @@ pub enum Message {
     Data(Vec<u8>),
 }
 
-/// Bytes that are no message.
+/// Bytes that are not message.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum BadTelegram {
     /// It does not begin as a TPKT.
@@ -60,7 +58,7 @@ pub enum BadTelegram {
     Endless,
 }
 
-/// What has come and is no whole message yet.
+/// What has come and is not a whole message yet.
 #[derive(Debug, Default)]
 pub struct Incoming {
     bytes: Vec<u8>,

@@ -64,9 +64,7 @@ pub const NOT_AVAILABLE: u16 = 0x8104;
 pub struct Item {
     /// Number of the block.
     pub db: u16,
-    /// The first byte.
     pub at: u32,
-    /// How many.
     pub len: u16,
 }
 
@@ -80,7 +78,6 @@ pub fn write_max(pdu: u16) -> usize {
     usize::from(pdu).saturating_sub(REQUEST_HEAD + COUNTED + ITEM + VALUE_HEAD)
 }
 
-/// A request.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Request {
     /// Messages may have so many bytes.
@@ -211,7 +208,7 @@ pub enum Answer {
     NotRead(u8),
 }
 
-/// The number of the request that a message answers, and what it says; nothing if it is no answer.
+/// The number of the request that a message answers, and what it says; nothing if it is not an answer.
 pub fn answer(message: &[u8]) -> Option<(u16, Option<Answer>)> {
     let Parts { kind, number, error, parameters, data } = parts(message)?;
     if !matches!(kind, ACKNOWLEDGEMENT | ANSWER) {
@@ -232,7 +229,7 @@ pub fn answer(message: &[u8]) -> Option<(u16, Option<Answer>)> {
     Some((number, answer))
 }
 
-/// The number of a request, and what it asks for; nothing if the message is no request.
+/// The number of a request, and what it asks for; nothing if the message is not a request.
 pub fn asked(message: &[u8]) -> Option<(u16, Request)> {
     let Parts { kind, number, parameters, data, .. } = parts(message)?;
     if kind != REQUEST {

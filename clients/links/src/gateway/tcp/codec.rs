@@ -20,7 +20,6 @@ pub enum StreamFault {
     Stray {
         /// Which block since the connection came about, from 1.
         number: u64,
-        /// What is there.
         stray: Stray,
     },
 }

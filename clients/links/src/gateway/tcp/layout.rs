@@ -243,7 +243,7 @@ fn place_of(point: &Point, places: &BTreeMap<String, Place>, size: usize, block:
         }
         (None, None) => {
             let help = did_you_mean(address, places.keys().map(String::as_str));
-            let message = format!("`{}` is mapped to `{address}`, which is no field of `{block}`", point.label());
+            let message = format!("`{}` is mapped to `{address}`, which is not a field of `{block}`", point.label());
             return Err(MappingFault::new(&point.name, message).with_help(help));
         }
     };
@@ -267,7 +267,7 @@ struct Ruler<'d> {
 impl Ruler<'_> {
     fn field(&mut self, prefix: &str, field: &str, depth: u32) -> Result<(), MappingFault> {
         let Some(Field { name, ty }) = Field::parse(field) else {
-            let message = format!("`{field}` is no field: write `Name: TYPE`");
+            let message = format!("`{field}` is not a field: write `Name: TYPE`");
             return Err(MappingFault::new(field, message));
         };
         let path = if prefix.is_empty() { name.to_owned() } else { format!("{prefix}.{name}") };

@@ -118,7 +118,7 @@ fn a_variable_is_the_field_of_its_path() {
     assert_eq!(places("\"Q: In\", \"P: In\"").unwrap(), ["2.0", "0.0"]);
     assert_eq!(
         places("\"go: BOOL\"").unwrap_err().to_string(),
-        "`go` at `P.go` is mapped to `P.go`, which is no field of `to_plc`"
+        "`go` at `P.go` is mapped to `P.go`, which is not a field of `to_plc`"
     );
 }
 

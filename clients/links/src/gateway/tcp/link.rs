@@ -5,8 +5,8 @@ use std::net::{SocketAddr, TcpStream};
 use std::time::Duration;
 
 use super::codec::{BlockCodec, StreamFault};
-use super::door::Door;
 use super::layout::Layouts;
+use super::plc_listener::PlcListener;
 use crate::gateway::fault::{LinkFault, Partial};
 use crate::gateway::link::Link;
 use crate::gateway::socket;
@@ -21,7 +21,7 @@ enum Way {
     /// The gateway connects to the PLC at this host and port.
     ToPlc(String),
     /// The PLC connects to the gateway, which listens here; from the first attempt on it does.
-    FromPlc(SocketAddr, Option<Door>),
+    FromPlc(SocketAddr, Option<PlcListener>),
 }
 
 /// Data blocks over TCP.
@@ -152,26 +152,26 @@ fn told(fault: StreamFault) -> LinkFault {
 
 impl Way {
     fn connect(&mut self, timeout: Duration) -> Result<TcpStream, LinkFault> {
-        let (address, door) = match self {
+        let (address, plc_listener) = match self {
             Self::ToPlc(address) => {
                 let url = || format!("tcp://{address}");
                 let connected = socket::connect(&address[..], timeout);
                 return connected.map_err(|reason| LinkFault::Unreachable { url: url(), reason });
             }
-            Self::FromPlc(address, door) => (*address, door),
+            Self::FromPlc(address, plc_listener) => (*address, plc_listener),
         };
-        let door = match door {
-            Some(door) => {
-                door.leave();
-                door
+        let plc_listener = match plc_listener {
+            Some(plc_listener) => {
+                plc_listener.leave();
+                plc_listener
             }
-            None => door.insert(Door::open(address).map_err(|error| LinkFault::Listen {
+            None => plc_listener.insert(PlcListener::open(address).map_err(|error| LinkFault::Listen {
                 url: format!("tcp-listen://{address}"),
                 reason: error.to_string(),
             })?),
         };
-        let url = || format!("tcp-listen://{}", door.address());
-        let stream = door.enter(KNOCK).ok_or_else(|| LinkFault::NobodyCame { url: url(), within: KNOCK })?;
+        let url = || format!("tcp-listen://{}", plc_listener.address());
+        let stream = plc_listener.enter(KNOCK).ok_or_else(|| LinkFault::NobodyCame { url: url(), within: KNOCK })?;
         socket::prepare(&stream, timeout).map_err(|error| lost(&error))?;
         Ok(stream)
     }
@@ -234,8 +234,8 @@ mod tests {
         let layouts = Layouts::new(&Declaration::default(), &exchange).unwrap();
         let mut link = TcpLink::listening(SocketAddr::from(([127, 0, 0, 1], 0)), layouts, LATER);
         assert!(matches!(link.connect(), Err(LinkFault::NobodyCame { .. })));
-        let Way::FromPlc(_, Some(door)) = &link.way else { panic!("it listens") };
-        let plc = TcpStream::connect(door.address()).unwrap();
+        let Way::FromPlc(_, Some(plc_listener)) = &link.way else { panic!("it listens") };
+        let plc = TcpStream::connect(plc_listener.address()).unwrap();
         plc.set_nodelay(true).unwrap();
         while link.connect().is_err() {}
         (link, plc)

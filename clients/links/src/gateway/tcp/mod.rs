@@ -9,14 +9,14 @@
 //! | `place` | a bit, a number, a number in parts |
 //! | [`layout`] | what lies where in a block |
 //! | [`codec`] | blocks in a stream of bytes |
-//! | [`door`] | where a PLC connects that is the TCP client |
+//! | [`plc_listener`] | where a PLC connects that is the TCP client |
 //! | [`link`] | the gateway's side |
 
 pub mod codec;
-pub mod door;
 pub mod layout;
 pub mod link;
 mod place;
+pub mod plc_listener;
 
 pub use codec::{BlockCodec, StreamFault};
 pub use layout::{Declaration, Layout, Layouts};

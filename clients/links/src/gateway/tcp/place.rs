@@ -60,7 +60,7 @@ impl Place {
     }
 
     /// The place of a value of type `ty` at an offset: `12`; for a BOOL `0.3`; for a number in parts `1+11.0-3+21.4-7`.
-    /// Nothing for what is no offset.
+    /// Nothing for what is not an offset.
     ///
     /// # Errors
     /// The type has no such place in a block of `size` bytes: why not.
@@ -77,10 +77,10 @@ impl Place {
                 }
                 Self { ty, at: At::Parts(parts) }
             }
-            _ => return Some(Err(format!("`{address}` is no place for {ty}"))),
+            _ => return Some(Err(format!("`{address}` is not a place for {ty}"))),
         };
         if place.ranges().any(|range| range.end > size) {
-            return Some(Err(format!("`{address}` is no place for {ty} in a block of {size} bytes")));
+            return Some(Err(format!("`{address}` is not a place for {ty} in a block of {size} bytes")));
         }
         Some(Ok(place))
     }
@@ -220,10 +220,10 @@ mod tests {
         assert_eq!(said("0.2-7+10.2-7+20.4-7", SignalType::INT), "0.2-7+10.2-7+20.4-7");
         assert_eq!(said("0.2-7+10.2-7+20.4+1", SignalType::INT), "`0.2-7+10.2-7+20.4+1` has 21 of the 16 bits of INT");
         assert_eq!(said("1+11", SignalType::UDINT), "`1+11` has 16 of the 32 bits of UDINT");
-        assert_eq!(said("38", SignalType::REAL), "`38` is no place for REAL in a block of 40 bytes");
-        assert_eq!(said("1+40", SignalType::INT), "`1+40` is no place for INT in a block of 40 bytes");
-        assert_eq!(said("12", SignalType::BOOL), "`12` is no place for BOOL");
-        assert_eq!(said("0.3", SignalType::INT), "`0.3` is no place for INT");
+        assert_eq!(said("38", SignalType::REAL), "`38` is not a place for REAL in a block of 40 bytes");
+        assert_eq!(said("1+40", SignalType::INT), "`1+40` is not a place for INT in a block of 40 bytes");
+        assert_eq!(said("12", SignalType::BOOL), "`12` is not a place for BOOL");
+        assert_eq!(said("0.3", SignalType::INT), "`0.3` is not a place for INT");
         for no in ["", "+", "x", "1+x", "0.8", "0.7-2", "-1", "65536", "99999999999999999999", "1.2-", "1.-2"] {
             assert_eq!(said(no, SignalType::UDINT), "no offset", "{no}");
         }

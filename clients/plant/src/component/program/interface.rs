@@ -27,7 +27,6 @@ const FAILURES_MAX: usize = 32;
 /// Keys that every component has.
 const RESERVED: [&str; 3] = ["name", "kind", "signal_type"];
 
-/// A block's interface.
 #[derive(Clone)]
 pub(super) struct Interface {
     /// The block as it is declared.

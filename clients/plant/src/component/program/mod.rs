@@ -51,7 +51,7 @@ pub(crate) struct Program {
     application: Application,
 }
 
-/// Why a function block is no kind, or no component can be made of it.
+/// Why a function block is not a kind, or no component can be made of it.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub(crate) enum ProgramError {
     #[error("{}", first(.0))]

@@ -72,7 +72,7 @@ impl Block {
         }
         match sockets.period {
             Some(socket) if !socket.set(memory, Value::Number(around.dt_s)) => {
-                Err(ClientFault::new("its `dt_s` is no number"))
+                Err(ClientFault::new("its `dt_s` is not a number"))
             }
             _ => Ok(()),
         }

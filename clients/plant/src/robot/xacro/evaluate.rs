@@ -99,7 +99,7 @@ fn name(name: &str, names: &mut dyn Names) -> Evaluated {
 }
 
 fn numeric(value: &Value) -> Result<f64, String> {
-    value.number().ok_or_else(|| format!("{} is no number", quoted(value)))
+    value.number().ok_or_else(|| format!("{} is not a number", quoted(value)))
 }
 
 fn quoted(value: &Value) -> String {
@@ -218,7 +218,7 @@ fn call(callee: &Expression, plain: &[Expression], named: &[(String, Expression)
             Expression::Name(space) if matches!(space.as_str(), "xacro" | "math" | "python" | "numpy" | "np") => name,
             of => return method(&evaluate(of, names)?, name, &values),
         },
-        _ => return Err("what is called is no function".to_owned()),
+        _ => return Err("what is called is not a function".to_owned()),
     };
     match (function, &values[..]) {
         ("load_yaml", [Value::Text(file)]) => names.yaml(file),
@@ -375,8 +375,8 @@ mod tests {
             ("1 / 0", "division by 0"),
             ("name * 2", "`*` does not go with the text 'ur5e' and a number"),
             ("limits['loer']", "the dictionary has no 'loer'; did you mean 'lower'?"),
-            ("import os", "`import os` is no expression that is understood here"),
-            ("system('ls')", "the text 'ls' is no number"),
+            ("import os", "`import os` is not an expression that is understood here"),
+            ("system('ls')", "the text 'ls' is not a number"),
             ("1 ; 2", "`;` means nothing in an expression"),
             ("xacro.load_yaml('none.yaml')", "none.yaml cannot be read"),
         ];

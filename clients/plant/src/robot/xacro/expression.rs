@@ -8,7 +8,6 @@ use super::value::Value;
 const TOKENS_MAX: usize = 500;
 const DEPTH_MAX: usize = 64;
 
-/// A parsed expression.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Expression {
     Constant(Value),
@@ -25,7 +24,6 @@ pub(super) enum Expression {
     Compare(Box<Self>, Vec<(&'static str, Self)>),
     And(Box<Self>, Box<Self>),
     Or(Box<Self>, Box<Self>),
-    /// Condition, then, otherwise.
     Choice(Box<Self>, Box<Self>, Box<Self>),
 }
 
@@ -57,7 +55,7 @@ fn tokens(text: &str) -> Result<Vec<Token>, String> {
             let length = number_length(rest);
             let number = Value::literal(&rest[..length]);
             if number.number().is_none() {
-                return Err(format!("`{}` is no number", &rest[..length]));
+                return Err(format!("`{}` is not a number", &rest[..length]));
             }
             tokens.push(Token::Constant(number));
             length
@@ -100,13 +98,13 @@ struct Parser {
 
 impl Expression {
     /// # Errors
-    /// A text that is no expression of those that are known here.
+    /// A text that is not an expression of those that are known here.
     pub(super) fn parse(text: &str) -> Result<Self, String> {
         let mut parser = Parser { tokens: tokens(text)?, at: 0, depth: 0 };
         let expression = parser.choice()?;
         match parser.tokens.get(parser.at) {
             None => Ok(expression),
-            Some(_) => Err(format!("`{}` is no expression that is understood here", text.trim())),
+            Some(_) => Err(format!("`{}` is not an expression that is understood here", text.trim())),
         }
     }
 }

@@ -40,7 +40,6 @@ const DEPTH_MAX: usize = 48;
 /// Deepest nesting of elements, those of all open macros and files together.
 const LEVELS_MAX: usize = 256;
 
-/// A macro.
 #[derive(Debug)]
 struct Macro {
     parameters: Vec<Parameter>,
@@ -133,7 +132,8 @@ impl Expander<'_> {
             "if" | "unless" => {
                 let value = self.needed(element, "value")?;
                 let holds = value.condition();
-                let wrong = || element.wrong_at("value", format!("`{value}` is no condition: true or false, 1 or 0"));
+                let wrong =
+                    || element.wrong_at("value", format!("`{value}` is not a condition: true or false, 1 or 0"));
                 let holds = holds.ok_or_else(wrong)?;
                 if holds == (element.name == "if") { self.all(&element.children) } else { Ok(Vec::new()) }
             }

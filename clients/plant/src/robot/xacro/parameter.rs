@@ -1,6 +1,5 @@
 //! The parameters of a macro, as in `name prefix:='' scale:=${2*unit} limits:=^|{} *origin **rest`.
 
-/// A parameter.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Parameter {
     pub(super) name: String,
@@ -18,7 +17,7 @@ pub(super) struct Preset {
 }
 
 /// # Errors
-/// What is no parameter.
+/// What is not a parameter.
 pub(super) fn parse(text: &str) -> Result<Vec<Parameter>, String> {
     words(text).iter().map(|word| parameter(word)).collect()
 }
@@ -31,7 +30,7 @@ fn parameter(word: &str) -> Result<Parameter, String> {
     let is_name = !name.is_empty() && name.chars().all(|letter| letter.is_alphanumeric() || letter == '_');
     let preset = rest.strip_prefix(":=").or_else(|| rest.strip_prefix('='));
     if !is_name || stars > 2 || (preset.is_none() && !rest.is_empty()) || (stars > 0 && preset.is_some()) {
-        return Err(format!("`{word}` is no parameter"));
+        return Err(format!("`{word}` is not a parameter"));
     }
     let preset = preset.map(|text| match text.strip_prefix('^') {
         Some(rest) => Preset { forwarded: true, text: rest.strip_prefix('|').map(unquoted) },
@@ -83,7 +82,7 @@ mod tests {
         assert_eq!([preset(2), preset(3)], [Some((false, some("${1 + 2}"))), Some((true, None))]);
         assert_eq!([preset(4), preset(7)], [Some((true, some("0.5"))), Some((false, some("1")))]);
         assert_eq!([read[0].block, read[5].block, read[6].block], [None, Some(false), Some(true)]);
-        assert_eq!(parse("a:b"), Err("`a:b` is no parameter".to_owned()));
-        assert_eq!(parse("*a:=1"), Err("`*a:=1` is no parameter".to_owned()));
+        assert_eq!(parse("a:b"), Err("`a:b` is not a parameter".to_owned()));
+        assert_eq!(parse("*a:=1"), Err("`*a:=1` is not a parameter".to_owned()));
     }
 }

@@ -22,7 +22,6 @@ pub(super) enum Property {
     Value(Value),
     /// A text that nobody has asked for yet.
     Text(String),
-    /// Elements to insert.
     Block(Arc<Vec<Element>>),
 }
 

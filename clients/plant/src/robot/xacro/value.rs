@@ -2,7 +2,6 @@
 
 use std::fmt;
 
-/// A value.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Value {
     None,
@@ -54,7 +53,7 @@ impl Value {
         }
     }
 
-    /// Whether a condition of xacro holds; none for what is no condition.
+    /// Whether a condition of xacro holds; none for what is not a condition.
     pub(super) fn condition(&self) -> Option<bool> {
         match self {
             Self::Text(text) => match Self::literal(text) {

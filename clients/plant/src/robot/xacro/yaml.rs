@@ -183,7 +183,7 @@ impl Map {
 fn scalar(text: &str, style: ScalarStyle, tag: Option<&Tag>) -> Result<Value, String> {
     let value = if style == ScalarStyle::Plain { plain(text) } else { Value::Text(text.to_owned()) };
     let Some(tag) = tag else { return Ok(value) };
-    let angle = || value.number().ok_or_else(|| format!("`{text}` is no angle"));
+    let angle = || value.number().ok_or_else(|| format!("`{text}` is not an angle"));
     match (&*tag.handle, &*tag.suffix) {
         ("!", "degrees") => Ok(Value::Number(angle()?.to_radians())),
         ("!", "radians") => Ok(Value::Number(angle()?)),
@@ -242,7 +242,7 @@ mod tests {
         let cases = [
             ("a: 1\nb: *x\n", "line 2: while parsing node, found unknown anchor"),
             ("a: 1\nb: !x y\n", "line 2: `!x` is not understood here"),
-            ("a: 1\nb: !degrees y\n", "line 2: `y` is no angle"),
+            ("a: 1\nb: !degrees y\n", "line 2: `y` is not an angle"),
             ("a: [1, 2\n", "line 1: while parsing a flow sequence, expected ',' or ']'"),
             ("a: 1\n  b: 2\n", "line 2: mapping values are not allowed in this context"),
             ("a:\n\tb: 2\n", "line 2: tabs disallowed within this context (block indentation)"),

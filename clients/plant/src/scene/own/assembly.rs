@@ -21,7 +21,7 @@ use crate::scene::format::{ComponentTable, SceneFile};
 use crate::scene::placed::Placed;
 use crate::scene::text;
 
-/// What stands in front of a text that was given from outside, so that it is no name of a part.
+/// What stands in front of a text that was given from outside, so that it is not a name of a part.
 pub(super) const FOREIGN: char = '\u{1}';
 
 /// Keys of a component that is an assembly, beside what the assembly says.
@@ -327,7 +327,7 @@ impl Header {
                 let is_word = name.starts_with(|c: char| c.is_ascii_alphabetic())
                     && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
                 if !is_word {
-                    wrong(key, format!("`{name}` is no word of letters, digits and `_`"));
+                    wrong(key, format!("`{name}` is not a word of letters, digits and `_`"));
                 } else if seen.contains(&name) {
                     wrong(key, format!("`{name}` is there twice, or is a key that every component has"));
                 }

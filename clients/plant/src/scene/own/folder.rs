@@ -30,7 +30,6 @@ pub(super) struct KindFile {
 pub(super) enum Form {
     /// Parts of a scene, in TOML.
     Assembly,
-    /// A function block.
     Program(SourceKind),
 }
 

@@ -37,7 +37,7 @@ enum Number {
 /// The value of a formula, without its `=`; `known` gives the values of names.
 ///
 /// # Errors
-/// It is no formula, names nothing that is known, or has no finite value.
+/// It is not a formula, names nothing that is known, or has no finite value.
 pub(super) fn value(formula: &str, known: &[(&str, Value)]) -> Result<Value, FormulaError> {
     let alone = formula.trim();
     if let Some((_, value)) = known.iter().find(|(name, _)| *name == alone) {
@@ -62,7 +62,7 @@ struct Reader<'f> {
 }
 
 impl Reader<'_> {
-    /// The next character that is no blank.
+    /// The next character that is not a blank.
     fn next(&mut self) -> Option<char> {
         self.rest = self.rest.trim_start();
         self.rest.chars().next()
@@ -140,7 +140,7 @@ impl Reader<'_> {
         let text = self.take(length.unwrap_or(self.rest.len()));
         let whole = text.parse().map(Number::Whole);
         let number = whole.or_else(|_| text.parse().map(Number::Real));
-        number.map_err(|_| FormulaError::new(format!("`{text}` is no number")))
+        number.map_err(|_| FormulaError::new(format!("`{text}` is not a number")))
     }
 
     fn name(&mut self) -> Result<Number, FormulaError> {
@@ -150,7 +150,7 @@ impl Reader<'_> {
         match known.iter().find(|(known, _)| *known == name).map(|(_, value)| value) {
             Some(Value::Integer(whole)) => Ok(Number::Whole(*whole)),
             Some(Value::Float(real)) => Ok(Number::Real(*real)),
-            Some(_) => Err(FormulaError::new(format!("`{name}` is no number, so nothing can be computed with it"))),
+            Some(_) => Err(FormulaError::new(format!("`{name}` is not a number, so nothing can be computed with it"))),
             None => {
                 let hint = did_you_mean(name, known.iter().map(|(name, _)| *name));
                 Err(FormulaError { cause: format!("there is no parameter or binding `{name}`"), hint })

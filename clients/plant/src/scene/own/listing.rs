@@ -30,7 +30,6 @@ pub struct Listing {
 #[derive(Debug, Serialize)]
 #[serde(untagged)]
 pub enum OwnKind {
-    /// A function block.
     Program(Kind),
     /// Parts of a scene.
     Assembly(AssemblyKind),

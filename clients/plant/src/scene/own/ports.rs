@@ -18,7 +18,6 @@ use crate::scene::text;
 pub(crate) struct Aliases {
     /// Components that are assemblies, and what those are called.
     assemblies: Vec<(String, String)>,
-    /// `clamp.closed` is `clamp.cylinder.extended`.
     outputs: BTreeMap<String, String>,
     /// The mode of a component, as the mode of a part.
     modes: BTreeMap<String, String>,

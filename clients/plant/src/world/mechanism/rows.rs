@@ -19,7 +19,6 @@ const REGULAR: f64 = 1e-11;
 /// Sweeps where the active set goes round in circles.
 const SWEEPS: usize = 200;
 
-/// One row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Row {
     /// The coordinate that it acts on.
@@ -30,7 +29,6 @@ pub(super) struct Row {
     pub(super) softness: f64,
     pub(super) least: f64,
     pub(super) most: f64,
-    /// Impulse, the solution.
     pub(super) impulse: f64,
     /// The actuator whose row it is.
     pub(super) actuator: Option<usize>,

@@ -11,10 +11,8 @@ use crate::model::JointKind;
 pub(crate) struct Link {
     /// Its index in the scene.
     pub(crate) joint: Option<usize>,
-    /// The engine's joint.
     pub(crate) handle: ImpulseJointHandle,
     pub(crate) kind: JointKind,
-    /// Parent and child.
     pub(crate) bodies: [RigidBodyHandle; 2],
     /// The joint's frame as each of them sees it.
     pub(crate) frames: [Pose; 2],
@@ -28,7 +26,6 @@ pub(super) enum Freedom {
     Slide(Vector),
     /// About this axis of the joint's frame.
     Turn(Vector),
-    /// Any rotation.
     Ball,
 }
 
@@ -79,7 +76,6 @@ pub(super) struct Jointed {
     pub(super) reversed: bool,
     /// Its first position and velocity. A slot's first is its slide, whichever way it is passed.
     pub(super) first: [usize; 2],
-    /// A slot's angle.
     pub(super) second: usize,
 }
 
@@ -154,7 +150,7 @@ impl Tree {
 /// What joints make of the bodies.
 pub(super) struct Forest {
     pub(super) trees: Vec<Tree>,
-    /// The joints, by their index in the scene, of what is no tree: it closes a loop, or it stands on
+    /// The joints, by their index in the scene, of what is not a tree: it closes a loop, or it stands on
     /// nothing or on what moves by itself.
     pub(super) others: Vec<usize>,
 }

@@ -17,7 +17,6 @@ pub(crate) struct Cycle {
     pub(crate) programs: Vec<(String, String)>,
 }
 
-/// A global variable.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Global {
     pub(crate) name: String,

@@ -22,7 +22,6 @@ const RESOURCE: &str = "Application";
 pub(crate) struct Cycle {
     pub(crate) name: String,
     pub(crate) interval: TimeSpan,
-    /// 0 comes first.
     pub(crate) priority: u32,
     pub(crate) programs: Vec<String>,
 }

@@ -66,7 +66,6 @@ impl Shape<'_> {
     }
 }
 
-/// A global variable.
 #[derive(Clone, Copy)]
 pub(in crate::output) struct Global<'a> {
     pub(in crate::output) name: &'a Ident,
@@ -288,7 +287,6 @@ pub(in crate::output) fn is_left(key: &str) -> bool {
     key.starts_with("MC_") || key == "AXIS_REF"
 }
 
-/// `"name"`
 pub(in crate::output) fn quoted(name: &str) -> String {
     format!("\"{name}\"")
 }

@@ -38,7 +38,6 @@ pub(super) struct Member {
 pub(super) struct Shape {
     /// The type's name; of an enumeration with its values, of an array with its bounds.
     pub(super) name: String,
-    /// In bytes.
     pub(super) size: u32,
     pub(super) parts: Parts,
 }

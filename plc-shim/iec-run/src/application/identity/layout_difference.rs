@@ -11,20 +11,13 @@ use super::layout::{Layout, Member, Parts, Shape};
 pub enum VariableDifference {
     /// The program has it, the state does not.
     #[error("the saved state has no variable `{path}`")]
-    Missing {
-        /// Its path.
-        path: String,
-    },
+    Missing { path: String },
     /// The state has it, the program does not.
     #[error("the saved state has a variable `{path}`, which the program does not have")]
-    Unknown {
-        /// Its path.
-        path: String,
-    },
+    Unknown { path: String },
     /// Both have it, but not of the same type.
     #[error("the saved state has another type of `{path}`: {saved}, not {wanted}")]
     Type {
-        /// Its path.
         path: String,
         /// The type in the state.
         saved: String,
@@ -33,10 +26,7 @@ pub enum VariableDifference {
     },
     /// It lies elsewhere, although all variables are the same: they are declared in another order.
     #[error("the saved state has `{path}` at another place in memory")]
-    Place {
-        /// Its path.
-        path: String,
-    },
+    Place { path: String },
 }
 
 impl Layout {

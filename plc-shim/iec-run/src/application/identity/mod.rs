@@ -17,7 +17,6 @@ mod layout_difference;
 pub use code::CodeDifference;
 pub use layout_difference::VariableDifference;
 
-/// A BLAKE3 hash.
 pub(crate) type Digest = [u8; 32];
 
 pub(crate) fn digest(bytes: &[u8]) -> Digest {

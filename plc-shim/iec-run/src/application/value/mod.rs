@@ -26,18 +26,11 @@ pub enum WriteError {
     Unknown(#[from] UnknownVariable),
     /// It may not be written.
     #[error("`{path}` is {}", match .access { VariableAccess::Constant => "a constant", _ => "READ_ONLY" })]
-    Protected {
-        /// The variable.
-        path: String,
-        /// Why.
-        access: VariableAccess,
-    },
+    Protected { path: String, access: VariableAccess },
     /// The text is not a value of its type.
     #[error("`{text}` is not a value of `{path}`, which is {type_name}: {reason}")]
     Value {
-        /// The variable.
         path: String,
-        /// Its type.
         type_name: String,
         /// The text as given.
         text: String,

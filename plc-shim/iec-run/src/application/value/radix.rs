@@ -11,11 +11,9 @@ pub enum Radix {
     /// As literals of their types: bit strings hexadecimal, all others decimal.
     #[default]
     Own,
-    /// `42`
     Decimal,
     /// `16#2A`, as many digits as the type has; negative numbers as two's complement.
     Hexadecimal,
-    /// `2#00101010`, likewise.
     Binary,
 }
 

@@ -15,7 +15,6 @@ const MAX_ACCESSES: usize = 512;
 pub(crate) struct Effects {
     /// Loads of elementary places at known addresses, and how many of each.
     loads: Vec<(Address, ElementaryType, u32)>,
-    /// Stores likewise.
     stores: BTreeMap<(Address, ElementaryType), u32>,
     /// All other changes of memory.
     changes: BTreeSet<Extent>,

@@ -11,7 +11,6 @@ use onescan_iec::ir::{
 /// What a call runs on.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum RunsOn {
-    /// No instance.
     Nothing,
     /// The instance in these bytes.
     Instance(Extent),

@@ -12,20 +12,13 @@ use onescan_iec::task_plan::{Task, TaskPlan};
 pub enum PlanDifference {
     /// The plan has a task that the state does not have.
     #[error("the saved state has no task `{task}`")]
-    Missing {
-        /// The task.
-        task: String,
-    },
+    Missing { task: String },
     /// The state has a task that the plan does not have.
     #[error("the saved state has a task `{task}`, which the plan does not have")]
-    Unknown {
-        /// The task.
-        task: String,
-    },
+    Unknown { task: String },
     /// A task's interval, priority, trigger or programs are others.
     #[error("in the saved state, task `{task}` has {saved}, not {wanted}")]
     Task {
-        /// The task.
         task: String,
         /// What it has in the state, as in "an interval of 20ms".
         saved: String,

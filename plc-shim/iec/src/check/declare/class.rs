@@ -38,7 +38,6 @@ impl From<MemberKind> for Role {
 pub(in crate::check) enum Occasion {
     /// Before the first scan after a start.
     Start,
-    /// Before another start.
     End,
 }
 

@@ -51,7 +51,6 @@ pub(in crate::check) struct PouEntry<'a> {
     /// Set for methods, properties and actions.
     pub(super) membership: Option<Membership>,
     pub(super) progress: Progress,
-    /// Set by `declare`.
     pub(super) scope: Option<Arc<Scope>>,
     pub(super) align: u32,
     pub(super) image: Arc<[u8]>,

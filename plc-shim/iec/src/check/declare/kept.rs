@@ -10,7 +10,6 @@ use crate::syntax::ast::SectionKind;
 /// What one method keeps in the instances of its unit.
 #[derive(Debug)]
 pub struct Kept {
-    /// The method's name.
     pub method: String,
     pub variables: Vec<Variable>,
 }

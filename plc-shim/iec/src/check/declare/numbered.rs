@@ -12,7 +12,6 @@ use crate::syntax::ast::SectionKind;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::check) struct Numbered<'t> {
     direction: &'t str,
-    /// From 1.
     number: usize,
     count: usize,
 }

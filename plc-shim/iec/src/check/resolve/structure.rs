@@ -17,7 +17,6 @@ use crate::syntax::direct_address::{DirectAddress, RelativeAddress, Width};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Sharing {
     Refused,
-    /// `OVERLAP`
     Allowed,
 }
 

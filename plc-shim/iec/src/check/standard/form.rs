@@ -22,7 +22,6 @@ pub(in crate::check) enum Form {
     Not,
     /// Joins two or more from the left.
     Operator(BinaryOp),
-    /// Joins exactly two.
     Pair(BinaryOp),
     /// Holds between each two neighbours.
     Comparison(Binary),

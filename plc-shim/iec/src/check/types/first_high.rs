@@ -19,7 +19,6 @@ pub(in crate::check) enum Cell {
     Byte(u32),
     /// BOOLs at these offsets, the lowest bit first.
     Bits([Option<u32>; 8]),
-    /// Nothing lies there.
     Gap,
 }
 

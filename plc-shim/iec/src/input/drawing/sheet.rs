@@ -33,7 +33,6 @@ pub(super) enum Edge {
 /// What comes along a line.
 #[derive(Debug, Clone)]
 pub(super) enum Signal {
-    /// The power rail.
     On,
     Value(Text),
 }

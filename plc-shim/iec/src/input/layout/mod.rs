@@ -24,18 +24,14 @@ pub struct Sheet {
     pub language: Language,
     /// What is on it, in the order of the file.
     pub elements: Vec<Element>,
-    /// What connects them.
     pub wires: Vec<Wire>,
 }
 
 /// A graphical language (IEC 61131-3, 3rd ed., 6.7 and 8).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Language {
-    /// Ladder Diagram.
     Ladder,
-    /// Function Block Diagram.
     Blocks,
-    /// Sequential Function Chart.
     Chart,
 }
 
@@ -64,7 +60,6 @@ pub struct Element {
     pub line: u32,
 }
 
-/// A connection point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pin {
     /// Its name at a block.
@@ -75,7 +70,6 @@ pub struct Pin {
     pub marks: Vec<&'static str>,
     /// The path of the variable that it gives, within the unit: of a block's instance.
     pub state: Option<String>,
-    /// Where it is.
     pub at: [f64; 2],
 }
 
@@ -84,7 +78,6 @@ pub struct Pin {
 pub struct Wire {
     /// Where its value comes from.
     pub from: [usize; 2],
-    /// Where it goes.
     pub to: [usize; 2],
     /// Its corners, from its source on; both ends alone if the file has none.
     pub points: Vec<[f64; 2]>,

@@ -104,7 +104,6 @@ pub(super) struct Link<'e> {
     pub(super) pin: &'e str,
 }
 
-/// Where connections end.
 #[derive(Debug)]
 pub(super) struct Input<'e> {
     /// Its name at a block.
@@ -112,7 +111,6 @@ pub(super) struct Input<'e> {
     pub(super) element: &'e Element,
     pub(super) modifiers: Modifiers,
     pub(super) links: Vec<Link<'e>>,
-    /// True for `VAR_IN_OUT`.
     pub(super) in_out: bool,
 }
 

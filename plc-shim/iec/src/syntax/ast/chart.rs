@@ -27,13 +27,10 @@ impl Chart {
 /// `STEP a: Fill(N); END_STEP`
 #[derive(Debug, Clone)]
 pub struct ChartStep {
-    /// `INITIAL_STEP`
     pub is_initial: bool,
-    /// Its name.
     pub name: Ident,
     /// The actions that it controls.
     pub associations: Vec<Association>,
-    /// Where it stands.
     pub span: Span,
 }
 
@@ -48,7 +45,6 @@ pub struct Association {
     pub time: Option<Expr>,
     /// Boolean variables by which the action tells of itself.
     pub indicators: Vec<Expr>,
-    /// Where it stands.
     pub span: Span,
 }
 
@@ -62,32 +58,22 @@ impl Association {
 /// How a step controls an action (2nd ed. Table 45, 3rd ed. Table 57).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ActionQualifier {
-    /// Not stored.
     N,
-    /// Overriding reset.
     R,
-    /// Set, stored.
     S,
-    /// Limited in time.
     L,
-    /// Delayed in time.
     D,
-    /// Pulse.
     P,
     /// Pulse at the falling edge.
     P0,
     /// Pulse at the rising edge.
     P1,
-    /// Stored and delayed.
     SD,
-    /// Delayed and stored.
     DS,
-    /// Stored and limited.
     SL,
 }
 
 impl ActionQualifier {
-    /// Every qualifier.
     pub const ALL: [Self; 11] =
         [Self::N, Self::R, Self::S, Self::L, Self::D, Self::P, Self::P0, Self::P1, Self::SD, Self::DS, Self::SL];
 
@@ -122,7 +108,6 @@ impl ActionQualifier {
 /// `TRANSITION t (PRIORITY := 1) FROM a TO (b, c) := x; END_TRANSITION`
 #[derive(Debug, Clone)]
 pub struct Transition {
-    /// Its name.
     pub name: Option<Ident>,
     /// Its rank among those that leave the same step, 1 the first (2nd ed. Table 46, feature 2b).
     pub priority: Option<Priority>,
@@ -132,16 +117,12 @@ pub struct Transition {
     pub to: Vec<Ident>,
     /// When it is cleared.
     pub condition: TransitionCondition,
-    /// Where it stands.
     pub span: Span,
 }
 
-/// A transition's rank.
 #[derive(Debug, Clone, Copy)]
 pub struct Priority {
-    /// Its number.
     pub rank: u32,
-    /// Where it stands.
     pub span: Span,
 }
 

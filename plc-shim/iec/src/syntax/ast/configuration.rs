@@ -5,17 +5,12 @@ use super::{Expr, Ident, Initialiser, Qualifier, Section, Span, TypeSpec};
 /// `CONFIGURATION .. END_CONFIGURATION` (2nd ed. 2.7.1, Table 49).
 #[derive(Debug, Clone)]
 pub struct Configuration {
-    /// Its name.
     pub name: Ident,
-    /// Its `VAR_GLOBAL` sections.
     pub sections: Vec<Section>,
     /// Its resources; one without a name if tasks and programs stand in the configuration itself.
     pub resources: Vec<Resource>,
-    /// Its `VAR_ACCESS` sections.
     pub access: Vec<AccessPath>,
-    /// Its `VAR_CONFIG` sections.
     pub instances: Vec<InstanceValue>,
-    /// Where it stands.
     pub span: Span,
 }
 
@@ -47,18 +42,14 @@ impl Configuration {
 pub struct Resource {
     /// Its name, and the kind of processor it stands on.
     pub name: Option<(Ident, Ident)>,
-    /// Its `VAR_GLOBAL` sections.
     pub sections: Vec<Section>,
-    /// Its tasks.
     pub tasks: Vec<TaskDeclaration>,
-    /// Its programs.
     pub programs: Vec<ProgramDeclaration>,
 }
 
 /// `TASK t (INTERVAL := T#10ms, PRIORITY := 1);` (2nd ed. 2.7.2, Table 50)
 #[derive(Debug, Clone)]
 pub struct TaskDeclaration {
-    /// Its name.
     pub name: Ident,
     /// Its inputs: `SINGLE`, `INTERVAL` and `PRIORITY`.
     pub inputs: Vec<(Ident, Expr)>,
@@ -67,28 +58,20 @@ pub struct TaskDeclaration {
 /// `PROGRAM RETAIN p WITH t : Pump (level := x, valve => y, fb WITH u);`
 #[derive(Debug, Clone)]
 pub struct ProgramDeclaration {
-    /// `RETAIN` or `NON_RETAIN`
     pub qualifier: Option<Qualifier>,
-    /// The instance's name.
     pub name: Ident,
-    /// Its task.
     pub task: Option<Ident>,
-    /// The program.
     pub program: Ident,
     /// What its variables are connected to.
     pub connections: Vec<Connection>,
-    /// Where it stands.
     pub span: Span,
 }
 
 /// One element in the parentheses of a program's declaration.
 #[derive(Debug, Clone)]
 pub enum Connection {
-    /// `level := x`
     Input(Expr, Expr),
-    /// `valve => y`
     Output(Expr, Expr),
-    /// `fb WITH u`
     Task(Expr, Ident),
 }
 
@@ -97,11 +80,8 @@ pub enum Connection {
 pub struct InstanceValue {
     /// The variable of an instance.
     pub path: Expr,
-    /// Its direct address.
     pub address: Option<Ident>,
-    /// Its type.
     pub spec: TypeSpec,
-    /// Its initial value.
     pub initial: Option<Initialiser>,
 }
 
@@ -110,9 +90,7 @@ pub struct InstanceValue {
 pub struct AccessPath {
     /// The name for those outside.
     pub name: Ident,
-    /// The variable.
     pub path: Expr,
-    /// Its type.
     pub spec: TypeSpec,
     /// What may be done with it.
     pub direction: AccessDirection,
@@ -123,6 +101,5 @@ pub struct AccessPath {
 pub enum AccessDirection {
     /// `READ_ONLY`, also if nothing is said.
     ReadOnly,
-    /// `READ_WRITE`
     ReadWrite,
 }

@@ -9,24 +9,19 @@ pub enum Declaration {
     Pou(Pou),
     /// One type of a `TYPE` block.
     Type(TypeDeclaration),
-    /// A `VAR_GLOBAL` block.
     Globals(Section),
     /// A namespace and what it declares.
     Namespace(Namespace),
     /// `USING a.b;`, for the rest of the file.
     Using(Vec<Ident>),
-    /// A configuration.
     Configuration(Configuration),
 }
 
 /// The kinds of program organisation unit (2nd ed. 2.5).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PouKind {
-    /// `PROGRAM`
     Program,
-    /// `FUNCTION_BLOCK`
     FunctionBlock,
-    /// `FUNCTION`
     Function,
     /// `CLASS` (3rd ed. 6.6.5)
     Class,
@@ -53,15 +48,11 @@ impl PouKind {
 /// A program organisation unit.
 #[derive(Debug, Clone)]
 pub struct Pou {
-    /// What it is.
     pub kind: PouKind,
-    /// Its name.
     pub name: Ident,
     /// The type of a function's result.
     pub result: Option<TypeSpec>,
-    /// Its variables.
     pub sections: Vec<Section>,
-    /// Its statements.
     pub body: Vec<Statement>,
     /// Its steps and transitions.
     pub chart: Chart,
@@ -69,45 +60,33 @@ pub struct Pou {
     pub object: Object,
     /// True behind `{external}`: declared here, and done elsewhere.
     pub external: bool,
-    /// Where it stands.
     pub span: Span,
 }
 
 /// The kinds of variable section (2nd ed. Table 16).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SectionKind {
-    /// `VAR`
     Local,
-    /// `VAR_INPUT`
     Input,
-    /// `VAR_OUTPUT`
     Output,
-    /// `VAR_IN_OUT`
     InOut,
-    /// `VAR_TEMP`
     Temp,
     /// `VAR_STAT`: one variable for all instances and calls (vendors).
     Static,
     /// `VAR_INST` of a method: kept in its instance (vendors).
     Instance,
-    /// `VAR_GLOBAL`
     Global,
-    /// `VAR_EXTERNAL`
     External,
 }
 
 /// What may stand behind a section's keyword.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Qualifier {
-    /// `CONSTANT`
     Constant,
-    /// `RETAIN`
     Retain,
-    /// `NON_RETAIN`
     NonRetain,
     /// `PUBLIC`, `PROTECTED`, `PRIVATE` or `INTERNAL` (3rd ed. 6.6.5.10).
     Access(Modifier),
-    /// `PERSISTENT`, of vendors.
     Persistent,
     /// `VAR_GENERIC`, of vendors: whoever declares an instance gives the values.
     Generic,
@@ -116,13 +95,10 @@ pub enum Qualifier {
 /// `VAR .. END_VAR` of any kind.
 #[derive(Debug, Clone)]
 pub struct Section {
-    /// What it is.
     pub kind: SectionKind,
     /// What stands behind its keyword.
     pub qualifiers: Vec<Qualifier>,
-    /// Its variables.
     pub variables: Vec<Variable>,
-    /// Where it stands.
     pub span: Span,
 }
 
@@ -140,11 +116,9 @@ pub struct Variable {
     pub names: Vec<Ident>,
     /// The direct address, as written; or, in SCL, the name of the variable whose memory it looks at.
     pub address: Option<Ident>,
-    /// The type.
     pub spec: TypeSpec,
     /// `R_EDGE` or `F_EDGE` behind the type.
     pub edge: Option<Edge>,
-    /// The initial value.
     pub initial: Option<Initialiser>,
 }
 
@@ -158,18 +132,14 @@ impl Variable {
 /// What of an input its unit sees (2nd ed. 2.5.2.2, Table 33).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Edge {
-    /// `R_EDGE`
     Rising,
-    /// `F_EDGE`
     Falling,
 }
 
 /// A type as written.
 #[derive(Debug, Clone)]
 pub struct TypeSpec {
-    /// What it is.
     pub kind: TypeSpecKind,
-    /// Where it stands.
     pub span: Span,
 }
 
@@ -180,7 +150,6 @@ pub enum TypeSpecKind {
     Name(Ident),
     /// `STRING[80]`, of which only the name and length are kept.
     String(Ident, Option<Box<Expr>>),
-    /// `INT (0..10)`
     Subrange(Ident, Box<Subrange>),
     /// `ARRAY [0..9, 1..2] OF INT`
     Array(Vec<Dimension>, Box<TypeSpec>),
@@ -250,38 +219,30 @@ impl ReferenceKind {
 /// Bounds of a subrange type.
 #[derive(Debug, Clone)]
 pub struct Subrange {
-    /// The smallest value.
     pub low: Expr,
-    /// The greatest value.
     pub high: Expr,
 }
 
 /// Bounds of one dimension of an array.
 #[derive(Debug, Clone)]
 pub struct Dimension {
-    /// The smallest index.
     pub low: Expr,
-    /// The greatest index.
     pub high: Expr,
 }
 
 /// A member of a structure.
 #[derive(Debug, Clone)]
 pub struct Field {
-    /// Its name.
     pub name: Ident,
     /// Where it lies in its structure, as written: `%B4`, `%X3.0`.
     pub address: Option<Ident>,
-    /// Its type.
     pub spec: TypeSpec,
-    /// Its initial value.
     pub initial: Option<Initialiser>,
 }
 
 /// A value of an enumeration.
 #[derive(Debug, Clone)]
 pub struct EnumValue {
-    /// Its name.
     pub name: Ident,
     /// Its number (3rd ed. Table 11).
     pub value: Option<Expr>,
@@ -290,7 +251,6 @@ pub struct EnumValue {
 /// One type of a `TYPE` block.
 #[derive(Debug, Clone)]
 pub struct TypeDeclaration {
-    /// Its name.
     pub name: Ident,
     /// The structure that it adds members to, as vendors have it.
     pub extends: Option<Ident>,
@@ -298,27 +258,21 @@ pub struct TypeDeclaration {
     pub external: bool,
     /// True behind `{attribute 'qualified_only'}`: the values of an enumeration are known behind its name.
     pub qualified_only: bool,
-    /// What it is.
     pub spec: TypeSpec,
     /// The initial value of its variables.
     pub initial: Option<Initialiser>,
-    /// Where it stands.
     pub span: Span,
 }
 
-/// An initial value.
 #[derive(Debug, Clone)]
 pub struct Initialiser {
-    /// What it is.
     pub kind: InitialiserKind,
-    /// Where it stands.
     pub span: Span,
 }
 
 /// The forms of an initial value.
 #[derive(Debug, Clone)]
 pub enum InitialiserKind {
-    /// `5 + 3`
     Value(Expr),
     /// `[1, 2, 3(0)]`
     Array(Vec<Initialiser>),
@@ -333,17 +287,13 @@ pub enum InitialiserKind {
 /// One element of an array's start values.
 #[derive(Debug, Clone)]
 pub struct ElementInit {
-    /// Its indices.
     pub indices: Vec<Expr>,
-    /// Its value.
     pub value: Initialiser,
 }
 
 /// One member of a structure's initial value.
 #[derive(Debug, Clone)]
 pub struct StructureInit {
-    /// The member's name.
     pub name: Ident,
-    /// Its value.
     pub value: Initialiser,
 }

@@ -13,9 +13,7 @@ pub const CHAIN_HEIGHT: u16 = 16;
 /// An expression and its place.
 #[derive(Debug, Clone)]
 pub struct Expr {
-    /// What it is.
     pub kind: ExprKind,
-    /// Where it stands.
     pub span: Span,
     /// Nodes on the longest way down, this one counted; at most [`MAX_HEIGHT`].
     pub height: u16,
@@ -31,29 +29,21 @@ impl Expr {
 /// The forms of an expression.
 #[derive(Debug, Clone)]
 pub enum ExprKind {
-    /// A constant.
     Literal(Literal),
-    /// A name alone.
     Name(Ident),
     /// `%IX1.0`, as written.
     DirectAddress(String),
-    /// `a.b`
     Member(Box<Expr>, Ident),
     /// `a.%X3`, `a.%B1`, `a.3`: the part as written (3rd ed. Table 17)
     Part(Box<Expr>, Ident),
-    /// `a^`
     Dereference(Box<Expr>),
-    /// `a[i, j]`
     Index(Box<Expr>, Vec<Expr>),
     /// `f(x, y)`, `f(IN := x, Q => y)`
     Call(Call),
-    /// `-a`, `NOT a`
     Unary(UnaryOp, Box<Expr>),
-    /// `a + b`
     Binary(BinaryOp, Box<Expr>, Box<Expr>),
     /// `a + b + c - d ..`, from the left to the right: what would be too high a tree of [`Self::Binary`].
     Chain(Box<Expr>, Vec<Link>),
-    /// `(a)`
     Paren(Box<Expr>),
     /// `a := b` as a value, in a condition or between parentheses (vendors).
     Assign(Box<Expr>, Box<Expr>),
@@ -68,14 +58,12 @@ pub enum ExprKind {
 pub struct Link {
     /// What is done with all that is before it.
     pub operator: BinaryOp,
-    /// The right operand.
     pub operand: Expr,
 }
 
 /// A call of a function or an instance.
 #[derive(Debug, Clone)]
 pub struct Call {
-    /// What is called.
     pub callee: Box<Expr>,
     /// The arguments in their order.
     pub arguments: Vec<Argument>,
@@ -84,13 +72,10 @@ pub struct Call {
 /// One argument of a call.
 #[derive(Debug, Clone)]
 pub enum Argument {
-    /// `x`
     Positional(Expr),
-    /// `IN := x`
     Input(Ident, Expr),
     /// `Q => x`, `NOT Q => x`
     Output {
-        /// The output's name.
         name: Ident,
         /// True for `NOT Q => x` (2nd ed. 3.2.3).
         negated: bool,
@@ -102,11 +87,8 @@ pub enum Argument {
 /// A constant as written.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Literal {
-    /// `TRUE`, `FALSE`
     Bool(bool),
-    /// `12`, `16#FF`
     Integer(i128),
-    /// `1.5`
     Real(f64),
     /// `INT#5`, `BOOL#TRUE`, `Colour#Red`
     Typed {
@@ -132,7 +114,6 @@ pub enum Literal {
         long: bool,
         /// Nanoseconds since 1970-01-01 or midnight.
         ns: i64,
-        /// As written.
         text: String,
     },
     /// `'...'` or `"..."`, quotes and escapes as written.
@@ -144,9 +125,7 @@ pub enum Literal {
 pub enum TypedValue {
     /// `5`, `16#FF`, `-5`
     Integer(i128),
-    /// `1.5`
     Real(f64),
-    /// `TRUE`, `Red`
     Name(String),
     /// `'...'` or `"..."`, quotes and escapes as written.
     Text(String),
@@ -155,46 +134,29 @@ pub enum TypedValue {
 /// Operators with one operand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum UnaryOp {
-    /// `-`
     Negate,
     /// `+`, which 2nd ed. Annex B lacks and every vendor allows
     Plus,
-    /// `NOT`
     Not,
 }
 
 /// Operators with two operands (2nd ed. Table 52).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BinaryOp {
-    /// `**`
     Power,
-    /// `*`
     Multiply,
-    /// `/`
     Divide,
-    /// `MOD`
     Modulo,
-    /// `+`
     Add,
-    /// `-`
     Subtract,
-    /// `<`
     Less,
-    /// `>`
     Greater,
-    /// `<=`
     LessEqual,
-    /// `>=`
     GreaterEqual,
-    /// `=`
     Equal,
-    /// `<>`
     NotEqual,
-    /// `AND`, `&`
     And,
-    /// `XOR`
     Xor,
-    /// `OR`
     Or,
     /// `AND_THEN`: the right operand is evaluated only if the left one is TRUE (vendors).
     AndThen,

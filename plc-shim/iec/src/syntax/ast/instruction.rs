@@ -7,7 +7,6 @@ use super::{BinaryOp, Call, Expr, Ident, Statement};
 /// When an instruction with the modifier `C` is carried out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum When {
-    /// No modifier.
     Always,
     /// `C`: the current result is TRUE.
     True,
@@ -26,19 +25,16 @@ impl When {
     }
 }
 
-/// An instruction.
 #[derive(Debug, Clone)]
 pub enum Instruction {
     /// `LD x`, `LDN x`
     Load {
-        /// `N`
         negated: bool,
         /// What becomes the current result.
         value: Expr,
     },
     /// `ST x`, `STN x`
     Store {
-        /// `N`
         negated: bool,
         /// Where the current result goes.
         target: Expr,
@@ -49,27 +45,20 @@ pub enum Instruction {
     Reset(Expr),
     /// `ADD x`, `ANDN x`, `GT x`; vendors have several operands.
     Operate {
-        /// The operator.
         operator: BinaryOp,
-        /// `N`
         negated: bool,
         /// The right operands in their order.
         operands: Vec<Expr>,
     },
     /// `AND( .. )`: the operator waits for the result of the instructions between.
     Deferred {
-        /// The operator.
         operator: BinaryOp,
-        /// `N`
         negated: bool,
         /// The instructions; an operand behind the parenthesis is the first `LD`.
         list: Vec<Statement>,
     },
-    /// `NOT`
     Not,
-    /// `JMP label`
     Jump(When, Ident),
-    /// `RET`
     Return(When),
     /// `CAL instance`, with arguments or without
     Call(When, ListCall),

@@ -22,7 +22,6 @@ pub enum Modifier {
 }
 
 impl Modifier {
-    /// Every modifier.
     pub const ALL: [Self; 7] =
         [Self::Public, Self::Protected, Self::Private, Self::Internal, Self::Abstract, Self::Final, Self::Override];
 
@@ -52,7 +51,6 @@ pub struct Object {
     pub modifiers: Vec<Modifier>,
     /// `EXTENDS`: one unit, or any number of interfaces.
     pub extends: Vec<Ident>,
-    /// `IMPLEMENTS`
     pub implements: Vec<Ident>,
     /// `USING` of this unit alone.
     pub using: Vec<Ident>,
@@ -76,7 +74,6 @@ pub enum MemberKind {
 /// A method, one half of a property, or an action.
 #[derive(Debug, Clone)]
 pub struct Member {
-    /// What it is.
     pub kind: MemberKind,
     /// Its name, variables and statements.
     pub pou: Pou,
@@ -85,7 +82,6 @@ pub struct Member {
 /// Who sees the names of a namespace without its own name before them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NamespaceKind {
-    /// `NAMESPACE`
     Plain,
     /// `NAMESPACE INTERNAL` (3rd ed. 6.9.3)
     Internal,
@@ -102,7 +98,6 @@ pub struct Namespace {
     pub name: Ident,
     /// `USING` inside of it.
     pub using: Vec<Ident>,
-    /// What it declares.
     pub declarations: Vec<Declaration>,
     /// True behind `{external}`: the name of a library, whose declarations may stand outside of it.
     pub external: bool,

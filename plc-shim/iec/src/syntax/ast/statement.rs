@@ -5,18 +5,14 @@ use super::{Call, Expr, Ident, Instruction, Span};
 /// A statement and its place, the semicolon not included.
 #[derive(Debug, Clone)]
 pub struct Statement {
-    /// What it is.
     pub kind: StatementKind,
-    /// Where it stands.
     pub span: Span,
 }
 
 /// The forms of a statement.
 #[derive(Debug, Clone)]
 pub enum StatementKind {
-    /// `;`
     Empty,
-    /// `a := b`
     Assign(Expr, Expr),
     /// `a := b := c`: the targets in their order, at least two, and the value (vendors).
     Chain(Vec<Expr>, Expr),
@@ -32,27 +28,18 @@ pub enum StatementKind {
     Call(Call),
     /// `a.b`: a value that goes nowhere (vendors).
     Value(Expr),
-    /// `__TRY` (vendors)
     Try(Box<TryStatement>),
-    /// `IF`
     If(IfStatement),
-    /// `CASE`
     Case(CaseStatement),
-    /// `FOR`
     For(Box<ForStatement>),
-    /// `WHILE`
     While(WhileStatement),
-    /// `REPEAT`
     Repeat(RepeatStatement),
-    /// `EXIT`
     Exit,
     /// `CONTINUE` (3rd ed. 7.3.3.4)
     Continue,
-    /// `RETURN`
     Return,
     /// `name:`, where jumps lead to (2nd ed. 4.1.4; vendors have it in ST).
     Label(Ident),
-    /// `JMP name`
     Jump(Ident),
     /// One of a list of instructions.
     Instruction(Box<Instruction>),
@@ -63,7 +50,6 @@ pub enum StatementKind {
 /// `__TRY … __CATCH(code) … __FINALLY … __ENDTRY` of vendors.
 #[derive(Debug, Clone)]
 pub struct TryStatement {
-    /// What may fail.
     pub body: Vec<Statement>,
     /// The variable that gets the failure's code.
     pub code: Option<Expr>,
@@ -76,13 +62,9 @@ pub struct TryStatement {
 /// Assignments that depend on what is there already.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum UpdateOp {
-    /// `+=`
     Add,
-    /// `-=`
     Subtract,
-    /// `*=`
     Multiply,
-    /// `/=`
     Divide,
     /// `S=`: TRUE if the value is, else as it was.
     Set,
@@ -109,14 +91,12 @@ impl UpdateOp {
 pub struct IfStatement {
     /// `IF` and every `ELSIF`.
     pub branches: Vec<IfBranch>,
-    /// `ELSE`
     pub otherwise: Vec<Statement>,
 }
 
 /// One condition and what it guards.
 #[derive(Debug, Clone)]
 pub struct IfBranch {
-    /// The condition.
     pub condition: Expr,
     /// What runs if it holds.
     pub body: Vec<Statement>,
@@ -125,24 +105,20 @@ pub struct IfBranch {
 /// `CASE x OF 1, 3..5: .. ELSE .. END_CASE`
 #[derive(Debug, Clone)]
 pub struct CaseStatement {
-    /// What selects.
     pub selector: Expr,
     /// The branches in their order.
     pub branches: Vec<CaseBranch>,
-    /// `ELSE`
     pub otherwise: Vec<Statement>,
 }
 
 /// Labels and what they guard.
 #[derive(Debug, Clone)]
 pub struct CaseBranch {
-    /// The labels.
     pub labels: Vec<CaseLabel>,
     /// What runs if one of them is selected.
     pub body: Vec<Statement>,
 }
 
-/// `1` or `1..5`
 #[derive(Debug, Clone)]
 pub struct CaseLabel {
     /// The only value or the first of the range.
@@ -156,13 +132,10 @@ pub struct CaseLabel {
 pub struct ForStatement {
     /// The control variable; with vendors also a part of one.
     pub variable: Expr,
-    /// Its first value.
     pub from: Expr,
-    /// Its last value.
     pub to: Expr,
     /// The step; 1 if absent.
     pub by: Option<Expr>,
-    /// What is repeated.
     pub body: Vec<Statement>,
 }
 
@@ -171,14 +144,12 @@ pub struct ForStatement {
 pub struct WhileStatement {
     /// Tested before each turn.
     pub condition: Expr,
-    /// What is repeated.
     pub body: Vec<Statement>,
 }
 
 /// `REPEAT .. UNTIL a END_REPEAT`
 #[derive(Debug, Clone)]
 pub struct RepeatStatement {
-    /// What is repeated.
     pub body: Vec<Statement>,
     /// Tested after each turn; ends the loop if it holds.
     pub until: Expr,

@@ -85,7 +85,7 @@ impl Component for WorkpieceSource {
     fn drive(&self, state: &mut State, inputs: &Inputs, turn: &Turn<Targets>) {
         let before = std::mem::replace(&mut state.released, inputs.release);
         let asked = inputs.release && !before;
-        // time runs while it is enabled; a rounding less than the interval is no reason to wait
+        // time runs while it is enabled; a rounding less than the interval is not a reason to wait
         let since_s = state.since_s.map(|since_s| since_s + turn.dt_s);
         let half = turn.failed.has(Failure::Doubled);
         let interval_s = if half { 0.5 * self.p.interval_s } else { self.p.interval_s };

@@ -128,7 +128,7 @@ impl Component for Camera {
     }
 
     fn sense(&self, state: &mut State, inputs: &Inputs, turn: &Turn<InField>) -> Outputs {
-        // a rounding less than the time is no reason to wait for another period
+        // a rounding less than the time is not a reason to wait for another period
         let over = |since_s: f64, time_s: f64| since_s >= time_s * (1.0 - 1e-12);
         state.since_s = state.since_s.map(|since_s| since_s + turn.dt_s);
         let frame_over = state.since_s.is_none_or(|since_s| over(since_s, self.p.frame_s));

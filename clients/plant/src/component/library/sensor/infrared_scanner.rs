@@ -64,7 +64,7 @@ parameters! {
         baud: u32 = 9600 => 300.0, 1_000_000.0;
         /// Ethernet: what it sends at once is cut once behind so many bytes; 0 is nowhere
         cut_behind: u32 = 0 => 0.0, 65_535.0;
-        /// Ethernet: segments have so many bytes at most; 0 is no limit
+        /// Ethernet: segments have so many bytes at most; 0 is not a limit
         segment: u32 = 0 => 0.0, 65_535.0;
         /// Ethernet: each message is cut once, a byte further on than the one before; goes before the two above
         cut_onwards: bool = false;

@@ -100,7 +100,7 @@ impl Component for LineScanner {
             (state.exposed, state.pending_s, state.answer) = (Some(count), 0.0, None);
             state.pictures = state.pictures.saturating_add(1);
         }
-        // a rounding less than the latency is no reason to wait for another period
+        // a rounding less than the latency is not a reason to wait for another period
         let due = state.pending_s >= self.p.latency_s * (1.0 - 1e-12) && !turn.failed.has(Failure::Hung);
         if let Some(count) = state.exposed.filter(|_| due) {
             let drawn = state.random.as_mut().map_or(1.0, Random::uniform);

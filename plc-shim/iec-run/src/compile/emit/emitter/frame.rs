@@ -51,7 +51,6 @@ pub(super) struct Frame {
     loops: Vec<LoopLabels>,
     /// Where jumps lead, the innermost labels last.
     jumps: Vec<Targets>,
-    /// Where RETURN leads.
     end: Option<Label>,
     /// What is known wherever RETURN stands.
     returned: Option<Known>,

@@ -20,15 +20,12 @@ pub(in crate::check) struct Action {
 /// What an action does.
 #[derive(Clone)]
 pub(super) enum Runs {
-    /// Statements.
     Statements(PouId),
     /// It sets a Boolean variable.
     Variable(Place),
 }
 
-/// One association.
 pub(super) struct Use {
-    /// The step's number.
     pub(in crate::check::body) step: usize,
     pub(in crate::check::body) qualifier: ActionQualifier,
     pub(in crate::check::body) time: Option<Expr>,

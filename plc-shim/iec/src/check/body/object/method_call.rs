@@ -33,7 +33,6 @@ pub(in crate::check::body) enum Known {
 /// The instance that a method is called on.
 #[derive(Debug, Clone)]
 pub(in crate::check) struct Object {
-    /// Yields its address.
     pub(in crate::check::body) address: Expr,
     pub(in crate::check::body) class: PouId,
     pub(in crate::check::body) known: Known,

@@ -26,7 +26,6 @@ use crate::syntax::direct_address::Area;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::check) enum Access {
     ReadWrite,
-    /// It is `CONSTANT`.
     Constant,
     /// It is an input of the unit itself.
     OwnInput,

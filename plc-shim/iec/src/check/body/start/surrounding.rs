@@ -9,7 +9,6 @@ use crate::syntax::ast::Ident;
 /// The structure in one of whose initial values an expression stands.
 #[derive(Debug, Clone)]
 pub(in crate::check) struct Surrounding {
-    /// Where it lies.
     pub(in crate::check) place: Place,
     /// The members that there are so far while it is being declared; its type has them when something is done at a start.
     pub(in crate::check) declared: Vec<Field>,

@@ -21,7 +21,6 @@ struct Indexed {
     text: Place,
     /// Holds the position, from 0.
     position: Place,
-    /// Computes it.
     before: Statement,
 }
 

@@ -40,7 +40,7 @@ const FREE_PRESSURE: f64 = 0.1;
 /// Part of the speed that a burst hose leaves.
 const BURST_SPEED: f64 = 0.2;
 
-/// A value of a frame, or what stands for it where that is no number above 0.
+/// A value of a frame, or what stands for it where that is not a number above 0.
 fn or(value: f64, preset: f64) -> f64 {
     if value.is_finite() && value > 0.0 { value } else { preset }
 }

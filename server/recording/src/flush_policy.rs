@@ -9,23 +9,22 @@ const PERIOD: Duration = Duration::from_secs(1);
 
 /// When steps that have come are written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Rhythm {
-    /// Every second.
+pub enum FlushPolicy {
     #[default]
     WallClock,
     /// After so many steps each, and before the session goes on: for those who want to know what is there.
     Steps(u64),
 }
 
-/// A rhythm as it goes on the encoder's thread.
-pub(super) struct Beat {
+/// A flush_policy as it goes on the encoder's thread.
+pub(super) struct FlushTimer {
     /// The last time that all was written; nothing where no clock counts.
     last: Option<Instant>,
 }
 
-impl Beat {
-    pub(super) fn new(rhythm: Rhythm) -> Self {
-        Self { last: (rhythm == Rhythm::WallClock).then(Instant::now) }
+impl FlushTimer {
+    pub(super) fn new(flush_policy: FlushPolicy) -> Self {
+        Self { last: (flush_policy == FlushPolicy::WallClock).then(Instant::now) }
     }
 
     /// The next message; nothing if it is time before one has come.

@@ -1,4 +1,4 @@
-//! The reception: connections, from the first byte until they take part, ask as operators, or are sent away.
+//! The acceptor: connections, from the first byte until they take part, ask as operators, or are sent away.
 
 use std::collections::BTreeMap;
 use std::hash::{Hash, Hasher};
@@ -9,7 +9,7 @@ use std::time::Duration;
 use onescan_base::foreign::one_line;
 
 use super::places::Places;
-use super::visitor::{Guest, Said, Stage};
+use super::visitor::{Connection, Said, Stage};
 use crate::access::{Day, Holder, Register, Role as Right, TokenRefusal};
 use crate::client::JoinRequest;
 use crate::mailbox::Wish;
@@ -24,7 +24,7 @@ pub const LEAVING_MAX: usize = 128;
 /// How long a connection may take for a message of the handshake.
 pub const HANDSHAKE_TIMEOUT: Duration = Duration::from_secs(5);
 /// How long it may take to close after a last message.
-pub const FAREWELL_TIMEOUT: Duration = Duration::from_secs(1);
+pub const CLOSE_TIMEOUT: Duration = Duration::from_secs(1);
 /// How long an operator may be silent.
 const OPERATOR_PATIENCE: Duration = Duration::from_hours(24);
 
@@ -35,7 +35,6 @@ pub const BEGUN: &str = "the session has begun: nobody can join any more";
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Visitor(pub u64);
 
-/// When something happens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Now {
     /// How long the lobby has been open.
@@ -58,23 +57,21 @@ pub struct Terms {
 /// What is to be done, in this order.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Action {
-    /// Send this message.
     Send(Visitor, Arc<ServerMessage>),
-    /// Give this client a seat or refuse it; then say so with [`Reception::seated`] or [`Reception::refused`].
+    /// Give this client a seat or refuse it; then say so with [`Acceptor::seated`] or [`Acceptor::refused`].
     Apply(Visitor, JoinRequest),
-    /// Ask the session for this, or only how it is; then say so with [`Reception::answered`].
+    /// Ask the session for this, or only how it is; then say so with [`Acceptor::answered`].
     Ask(Visitor, Wish),
     /// Send no more, and read until the other side closes.
     Part(Visitor),
-    /// Close at once.
     Close(Visitor),
 }
 
 /// All connections that do not take part.
 #[derive(Clone, Debug)]
-pub struct Reception {
+pub struct Acceptor {
     terms: Terms,
-    guests: BTreeMap<Visitor, Guest>,
+    connections: BTreeMap<Visitor, Connection>,
     places: Places,
     /// The session has begun.
     is_shut: bool,
@@ -82,35 +79,35 @@ pub struct Reception {
     is_closing: bool,
 }
 
-impl Hash for Reception {
+impl Hash for Acceptor {
     fn hash<H: Hasher>(&self, hasher: &mut H) {
-        for (visitor, guest) in &self.guests {
-            (visitor, guest.key()).hash(hasher);
+        for (visitor, connection) in &self.connections {
+            (visitor, connection.key()).hash(hasher);
         }
         (&self.places, self.is_shut, self.is_closing).hash(hasher);
     }
 }
 
-impl PartialEq for Reception {
+impl PartialEq for Acceptor {
     /// Of two receptions with the same terms.
     fn eq(&self, other: &Self) -> bool {
-        let guests = self.guests.iter().map(|(visitor, guest)| (visitor, guest.key()));
-        guests.eq(other.guests.iter().map(|(visitor, guest)| (visitor, guest.key())))
+        let connections = self.connections.iter().map(|(visitor, connection)| (visitor, connection.key()));
+        connections.eq(other.connections.iter().map(|(visitor, connection)| (visitor, connection.key())))
             && (&self.places, self.is_shut, self.is_closing) == (&other.places, other.is_shut, other.is_closing)
     }
 }
 
-impl Eq for Reception {}
+impl Eq for Acceptor {}
 
-impl Reception {
+impl Acceptor {
     /// Nobody is there.
     pub fn new(terms: Terms) -> Self {
-        Self { terms, guests: BTreeMap::new(), places: Places::default(), is_shut: false, is_closing: false }
+        Self { terms, connections: BTreeMap::new(), places: Places::default(), is_shut: false, is_closing: false }
     }
 
     /// How many connections there are.
-    pub fn guests(&self) -> usize {
-        self.guests.len()
+    pub fn connections(&self) -> usize {
+        self.connections.len()
     }
 
     /// How many operators are in.
@@ -120,25 +117,26 @@ impl Reception {
 
     /// True if the connection is known here.
     pub fn knows(&self, visitor: Visitor) -> bool {
-        self.guests.contains_key(&visitor)
+        self.connections.contains_key(&visitor)
     }
 
     /// When the connection's stage ends whatever happens.
     pub fn deadline_of(&self, visitor: Visitor) -> Option<Duration> {
-        self.guests.get(&visitor)?.until
+        self.connections.get(&visitor)?.until
     }
 
     /// When [`clock`](Self::clock) has something to do, if nothing else happens.
     pub fn next_deadline(&self) -> Option<Duration> {
-        self.guests.values().filter_map(|guest| guest.until).min()
+        self.connections.values().filter_map(|connection| connection.until).min()
     }
 
     /// A connection was opened.
     pub fn opened(&mut self, visitor: Visitor, address: IpAddr, now: Now) -> Vec<Action> {
         let mut actions = Vec::new();
-        self.guests.insert(visitor, Guest::new(address, now.at + HANDSHAKE_TIMEOUT));
-        let before_session = |guest: &&Guest| matches!(guest.stage, Stage::Greeting | Stage::Applying | Stage::Waiting);
-        if self.guests.values().filter(before_session).count() > GUESTS_MAX {
+        self.connections.insert(visitor, Connection::new(address, now.at + HANDSHAKE_TIMEOUT));
+        let before_session =
+            |connection: &&Connection| matches!(connection.stage, Stage::Greeting | Stage::Applying | Stage::Waiting);
+        if self.connections.values().filter(before_session).count() > GUESTS_MAX {
             let slowest = self.slowest();
             self.refuse(slowest, "too many connections are waiting in the lobby", now, &mut actions);
         }
@@ -147,8 +145,10 @@ impl Reception {
 
     /// A connection has shown a certificate that is good.
     pub fn certified(&mut self, visitor: Visitor, holder: Holder) {
-        if let Some(guest) = self.guests.get_mut(&visitor).filter(|guest| guest.stage == Stage::Greeting) {
-            guest.holder = Some(holder);
+        if let Some(connection) =
+            self.connections.get_mut(&visitor).filter(|connection| connection.stage == Stage::Greeting)
+        {
+            connection.holder = Some(holder);
         }
     }
 
@@ -156,8 +156,8 @@ impl Reception {
     /// not. The one who came last if all others have done their part.
     fn slowest(&self) -> Visitor {
         let silent = |stage: &Stage| matches!(stage, Stage::Greeting | Stage::Applying);
-        let waits = self.guests.iter().filter(|(_, guest)| silent(&guest.stage));
-        let slowest = waits.min_by_key(|(visitor, guest)| (guest.until, **visitor));
+        let waits = self.connections.iter().filter(|(_, connection)| silent(&connection.stage));
+        let slowest = waits.min_by_key(|(visitor, connection)| (connection.until, **visitor));
         // There is one at least: who has just come.
         slowest.map_or(Visitor(0), |(visitor, _)| *visitor)
     }
@@ -165,18 +165,18 @@ impl Reception {
     /// Bytes came.
     pub fn received(&mut self, visitor: Visitor, bytes: &[u8], now: Now) -> Vec<Action> {
         let mut actions = Vec::new();
-        let Some(guest) = self.guests.get_mut(&visitor) else { return actions };
-        if guest.stage != Stage::Leaving {
-            guest.take_in(bytes);
+        let Some(connection) = self.connections.get_mut(&visitor) else { return actions };
+        if connection.stage != Stage::Leaving {
+            connection.take_in(bytes);
         }
-        match guest.stage {
-            Stage::Greeting if guest.speaks_tls() => {
+        match connection.stage {
+            Stage::Greeting if connection.speaks_tls() => {
                 self.refuse(visitor, "it speaks TLS, and this session has no certificate", now, &mut actions);
             }
             Stage::Waiting => {
                 self.refuse(visitor, "a client must wait for the answer to `join`", now, &mut actions);
             }
-            Stage::Asking if guest.says_too_much() => {
+            Stage::Asking if connection.says_too_much() => {
                 self.refuse(visitor, "an operator must wait for the answer to what it asked", now, &mut actions);
             }
             _ => self.read(visitor, now, &mut actions),
@@ -186,16 +186,16 @@ impl Reception {
 
     /// Looks at what a connection has said, as far as it is its turn to speak.
     fn read(&mut self, visitor: Visitor, now: Now, actions: &mut Vec<Action>) {
-        while let Some(guest) = self.guests.get_mut(&visitor) {
-            if !matches!(guest.stage, Stage::Greeting | Stage::Applying | Stage::Operating) {
+        while let Some(connection) = self.connections.get_mut(&visitor) {
+            if !matches!(connection.stage, Stage::Greeting | Stage::Applying | Stage::Operating) {
                 return;
             }
-            let message = match guest.next() {
+            let message = match connection.next() {
                 Said::Nothing => return,
                 Said::Nonsense(why) => return self.refuse(visitor, &why, now, actions),
                 Said::Message(message) => message,
             };
-            match guest.stage {
+            match connection.stage {
                 Stage::Greeting => self.greet(visitor, message, now, actions),
                 Stage::Applying => self.apply(visitor, message, now, actions),
                 Stage::Operating => self.ask(visitor, message, now, actions),
@@ -212,9 +212,9 @@ impl Reception {
         if let Err(why) = self.let_in(visitor, protocol, role, &agent, token.as_deref(), now) {
             return self.refuse(visitor, &why, now, actions);
         }
-        let Some(guest) = self.guests.get_mut(&visitor) else { return };
-        guest.set_limit((HANDSHAKE_FRAME_BYTES_MAX + 2 * self.terms.welcome_bytes).min(FRAME_BYTES_MAX));
-        (guest.stage, guest.until) = match role {
+        let Some(connection) = self.connections.get_mut(&visitor) else { return };
+        connection.set_limit((HANDSHAKE_FRAME_BYTES_MAX + 2 * self.terms.welcome_bytes).min(FRAME_BYTES_MAX));
+        (connection.stage, connection.until) = match role {
             Role::Client => (Stage::Applying, Some(now.at + HANDSHAKE_TIMEOUT)),
             Role::Operator => (Stage::Operating, Some(now.at + OPERATOR_PATIENCE)),
         };
@@ -236,15 +236,15 @@ impl Reception {
                 "no common protocol version: this server speaks {VERSIONS}, {agent} speaks {protocol}"
             ));
         }
-        let Some(guest) = self.guests.get_mut(&visitor) else { return Ok(()) };
+        let Some(connection) = self.connections.get_mut(&visitor) else { return Ok(()) };
         // Who has shown a certificate needs no token.
-        let holder = match (guest.holder.take(), &self.terms.register) {
+        let holder = match (connection.holder.take(), &self.terms.register) {
             (Some(certified), _) => Some(certified.admitted(role)),
             (None, Some(register)) => Some(register.admit(token, role, now.today)),
             (None, None) => None,
         };
-        guest.holder = holder.transpose().map_err(|refusal| refusal.to_string())?;
-        if role == Role::Operator && !self.places.take(guest.address) {
+        connection.holder = holder.transpose().map_err(|refusal| refusal.to_string())?;
+        if role == Role::Operator && !self.places.take(connection.address) {
             return Err("too many operators are connected".to_owned());
         }
         Ok(())
@@ -254,11 +254,11 @@ impl Reception {
         let ClientMessage::Join(request) = message else {
             return self.refuse(visitor, "the second message of a client must be `join`", now, actions);
         };
-        let Some(guest) = self.guests.get_mut(&visitor) else { return };
-        if guest.has_more() {
+        let Some(connection) = self.connections.get_mut(&visitor) else { return };
+        if connection.has_more() {
             return self.refuse(visitor, "a client must wait for the answer to `join`", now, actions);
         }
-        if let Some(holder) = &guest.holder
+        if let Some(holder) = &connection.holder
             && holder.role != Right::Client(request.name.clone())
         {
             let Holder { name, role, proof } = holder.clone();
@@ -268,7 +268,7 @@ impl Reception {
         if self.is_shut {
             return self.refuse(visitor, BEGUN, now, actions);
         }
-        (guest.stage, guest.until) = (Stage::Waiting, None);
+        (connection.stage, connection.until) = (Stage::Waiting, None);
         actions.push(Action::Apply(visitor, request));
     }
 
@@ -279,23 +279,23 @@ impl Reception {
             ClientMessage::Status { signals } => Wish::Look(signals),
             _ => return self.refuse(visitor, "an operator may send `control`, `operate` and `status`", now, actions),
         };
-        let Some(guest) = self.guests.get_mut(&visitor) else { return };
-        if let Some(holder) = &guest.holder
+        let Some(connection) = self.connections.get_mut(&visitor) else { return };
+        if let Some(holder) = &connection.holder
             && matches!(wish, Wish::Do(_))
             && !holder.role.operates()
         {
             let refusal = TokenRefusal::LooksOnly { proof: holder.proof, name: holder.name.clone() };
             return self.refuse(visitor, &refusal.to_string(), now, actions);
         }
-        (guest.stage, guest.until) = (Stage::Asking, None);
+        (connection.stage, connection.until) = (Stage::Asking, None);
         actions.push(Action::Ask(visitor, wish));
     }
 
     /// A client gets its seat, and its connection goes over to the session; false if it waits for none any more.
     pub fn seated(&mut self, visitor: Visitor) -> bool {
-        let waits = self.guests.get(&visitor).is_some_and(|guest| guest.stage == Stage::Waiting);
+        let waits = self.connections.get(&visitor).is_some_and(|connection| connection.stage == Stage::Waiting);
         if waits {
-            self.guests.remove(&visitor);
+            self.connections.remove(&visitor);
         }
         waits
     }
@@ -312,12 +312,14 @@ impl Reception {
     /// The session has answered an operator: how it is, or why it does not do what was asked; nothing if it is over.
     pub fn answered(&mut self, visitor: Visitor, answer: Option<Result<Status, String>>, now: Now) -> Vec<Action> {
         let mut actions = Vec::new();
-        let Some(guest) = self.guests.get_mut(&visitor).filter(|guest| guest.stage == Stage::Asking) else {
+        let Some(connection) =
+            self.connections.get_mut(&visitor).filter(|connection| connection.stage == Stage::Asking)
+        else {
             return actions;
         };
         match answer {
             Some(Ok(status)) => {
-                (guest.stage, guest.until) = (Stage::Operating, Some(now.at + OPERATOR_PATIENCE));
+                (connection.stage, connection.until) = (Stage::Operating, Some(now.at + OPERATOR_PATIENCE));
                 actions.push(Action::Send(visitor, Arc::new(ServerMessage::Status(status))));
                 if self.is_closing {
                     self.part(visitor, now, &mut actions);
@@ -333,8 +335,8 @@ impl Reception {
 
     /// The other side says no more. One that waits for an answer may still read it; false if nobody is there any more.
     pub fn hung_up(&mut self, visitor: Visitor) -> bool {
-        let waits = |guest: &Guest| matches!(guest.stage, Stage::Waiting | Stage::Asking);
-        let stays = self.guests.get(&visitor).is_some_and(waits);
+        let waits = |connection: &Connection| matches!(connection.stage, Stage::Waiting | Stage::Asking);
+        let stays = self.connections.get(&visitor).is_some_and(waits);
         if !stays {
             self.gone(visitor);
         }
@@ -343,17 +345,21 @@ impl Reception {
 
     /// The other side has closed, or the connection has broken.
     pub fn gone(&mut self, visitor: Visitor) {
-        if let Some(guest) = self.guests.remove(&visitor) {
-            self.free_place(&guest);
+        if let Some(connection) = self.connections.remove(&visitor) {
+            self.free_place(&connection);
         }
     }
 
     /// Time has passed: who has had time enough is sent away.
     pub fn clock(&mut self, now: Now) -> Vec<Action> {
         let mut actions = Vec::new();
-        let late = |guest: &Guest| guest.until.is_some_and(|until| until <= now.at);
-        let late: Vec<_> =
-            self.guests.iter().filter(|(_, guest)| late(guest)).map(|(v, g)| (*v, g.stage.clone())).collect();
+        let late = |connection: &Connection| connection.until.is_some_and(|until| until <= now.at);
+        let late: Vec<_> = self
+            .connections
+            .iter()
+            .filter(|(_, connection)| late(connection))
+            .map(|(v, g)| (*v, g.stage.clone()))
+            .collect();
         for (visitor, stage) in late {
             match stage {
                 Stage::Greeting | Stage::Applying => {
@@ -387,7 +393,11 @@ impl Reception {
     }
 
     fn all_in(&self, stages: &[Stage]) -> Vec<Visitor> {
-        self.guests.iter().filter(|(_, guest)| stages.contains(&guest.stage)).map(|(visitor, _)| *visitor).collect()
+        self.connections
+            .iter()
+            .filter(|(_, connection)| stages.contains(&connection.stage))
+            .map(|(visitor, _)| *visitor)
+            .collect()
     }
 
     /// Says why, then parts.
@@ -400,13 +410,13 @@ impl Reception {
 
     /// The other side gets the time to read the last message; not where too many do.
     fn part(&mut self, visitor: Visitor, now: Now, actions: &mut Vec<Action>) {
-        if self.guests.values().filter(|guest| guest.stage == Stage::Leaving).count() >= LEAVING_MAX {
+        if self.connections.values().filter(|connection| connection.stage == Stage::Leaving).count() >= LEAVING_MAX {
             return self.close(visitor, actions);
         }
-        let Some(guest) = self.guests.get_mut(&visitor) else { return };
-        guest.turn_deaf();
-        let had_place = matches!(guest.stage, Stage::Operating | Stage::Asking).then_some(guest.address);
-        (guest.stage, guest.until) = (Stage::Leaving, Some(now.at + FAREWELL_TIMEOUT));
+        let Some(connection) = self.connections.get_mut(&visitor) else { return };
+        connection.turn_deaf();
+        let had_place = matches!(connection.stage, Stage::Operating | Stage::Asking).then_some(connection.address);
+        (connection.stage, connection.until) = (Stage::Leaving, Some(now.at + CLOSE_TIMEOUT));
         if let Some(address) = had_place {
             self.places.give_back(address);
         }
@@ -418,9 +428,9 @@ impl Reception {
         actions.push(Action::Close(visitor));
     }
 
-    fn free_place(&mut self, guest: &Guest) {
-        if matches!(guest.stage, Stage::Operating | Stage::Asking) {
-            self.places.give_back(guest.address);
+    fn free_place(&mut self, connection: &Connection) {
+        if matches!(connection.stage, Stage::Operating | Stage::Asking) {
+            self.places.give_back(connection.address);
         }
     }
 }

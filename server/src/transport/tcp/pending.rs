@@ -9,19 +9,19 @@ use super::host::Host;
 use super::order::Application;
 use super::remote::Remote;
 use super::stream::FrameStream;
-use crate::carrier::{Applicant, Carrier};
+use crate::carrier::{Carrier, PendingClient};
 use crate::client::JoinRequest;
 use crate::signal::PortLayout;
 use crate::wire::message::placed;
 use crate::wire::{FRAME_BYTES_MAX, ServerMessage};
 
 /// A client that wants to join and waits for the answer.
-pub(super) struct Guest {
+pub(super) struct TcpPendingClient {
     pub(super) application: Application,
     pub(super) host: Arc<Host>,
 }
 
-impl Applicant for Guest {
+impl PendingClient for TcpPendingClient {
     fn request(&self) -> &JoinRequest {
         &self.application.request
     }
@@ -52,6 +52,6 @@ impl Applicant for Guest {
     }
 
     fn refuse(self: Box<Self>, why: &str) {
-        self.host.act(|reception, now| reception.refused(self.application.visitor, why, now));
+        self.host.act(|acceptor, now| acceptor.refused(self.application.visitor, why, now));
     }
 }

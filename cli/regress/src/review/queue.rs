@@ -36,7 +36,7 @@ pub(super) enum Go {
 
 /// The state of a review.
 #[derive(Debug)]
-pub(super) struct Desk<'w> {
+pub(super) struct ReviewQueue<'w> {
     waiting: &'w [Waiting],
     decisions: Vec<Decision>,
     at: usize,
@@ -46,7 +46,7 @@ pub(super) struct Desk<'w> {
     helps: bool,
 }
 
-impl<'w> Desk<'w> {
+impl<'w> ReviewQueue<'w> {
     /// A review in which nothing is decided.
     pub(super) fn new(waiting: &'w [Waiting]) -> Self {
         let window = Window::whole(waiting.first().map_or(VirtualTime::ZERO, end));
@@ -228,68 +228,68 @@ mod tests {
         cases.iter().map(one).collect()
     }
 
-    fn typed(desk: &mut Desk<'_>, keys: &str) -> Go {
-        keys.chars().map(|key| desk.press(&Key::Char(key))).last().unwrap_or(Go::On)
+    fn typed(queue: &mut ReviewQueue<'_>, keys: &str) -> Go {
+        keys.chars().map(|key| queue.press(&Key::Char(key))).last().unwrap_or(Go::On)
     }
 
     #[test]
     fn one_goes_back_and_decides_otherwise() {
         let all = waiting(&["a", "b", "c"]);
-        let mut desk = Desk::new(&all);
-        assert_eq!(typed(&mut desk, "arb"), Go::On);
-        assert_eq!(typed(&mut desk, "ba"), Go::On);
-        assert_eq!(desk.decisions(), [Decision::Accept, Decision::Reject, Decision::Skip]);
-        assert_eq!(typed(&mut desk, "r"), Go::Over);
-        assert_eq!(desk.decisions(), [Decision::Accept, Decision::Reject, Decision::Reject]);
-        assert_eq!(Desk::new(&all).press(&Key::Escape), Go::Away);
+        let mut queue = ReviewQueue::new(&all);
+        assert_eq!(typed(&mut queue, "arb"), Go::On);
+        assert_eq!(typed(&mut queue, "ba"), Go::On);
+        assert_eq!(queue.decisions(), [Decision::Accept, Decision::Reject, Decision::Skip]);
+        assert_eq!(typed(&mut queue, "r"), Go::Over);
+        assert_eq!(queue.decisions(), [Decision::Accept, Decision::Reject, Decision::Reject]);
+        assert_eq!(ReviewQueue::new(&all).press(&Key::Escape), Go::Away);
     }
 
     #[test]
     fn signals_come_in_pages_that_fit() {
         let all = waiting(&["a"]);
-        let mut desk = Desk::new(&all);
+        let mut queue = ReviewQueue::new(&all);
         let mut pages = Vec::new();
         loop {
-            let screen = desk.screen(80, 24, false);
+            let screen = queue.screen(80, 24, false);
             assert!(screen.len() <= 24 && screen.iter().all(|line| line.chars().count() <= 80), "{screen:#?}");
-            let shown = desk.signals;
+            let shown = queue.signals;
             if pages.last() == Some(&shown) {
                 break;
             }
             pages.push(shown);
-            desk.press(&Key::PageDown);
+            queue.press(&Key::PageDown);
         }
         assert!(pages.len() > 2 && pages.last().is_some_and(|(_, last)| *last == 9), "{pages:?}");
-        desk.press(&Key::PageUp);
-        assert!(desk.screen(80, 24, false).len() <= 24);
+        queue.press(&Key::PageUp);
+        assert!(queue.screen(80, 24, false).len() <= 24);
     }
 
     #[test]
     fn zooming_in_stays_at_the_first_difference() {
         let all = waiting(&["a"]);
-        let mut desk = Desk::new(&all);
+        let mut queue = ReviewQueue::new(&all);
         for _ in 0..12 {
-            desk.press(&Key::Char('+'));
+            queue.press(&Key::Char('+'));
         }
-        let (from, to) = (desk.window.from.as_nanos(), desk.window.to.as_nanos());
+        let (from, to) = (queue.window.from.as_nanos(), queue.window.to.as_nanos());
         assert!((from..=to).contains(&700_000_000) && to - from == 10_000_000, "{from} to {to}");
         for key in [Key::ArrowRight, Key::ArrowRight, Key::ArrowLeft] {
-            desk.press(&key);
+            queue.press(&key);
         }
         for _ in 0..12 {
-            desk.press(&Key::Char('-'));
+            queue.press(&Key::Char('-'));
         }
-        assert_eq!(desk.window, Window::whole(all[0].new.end));
-        insta::assert_snapshot!(desk.screen(80, 40, false).join("\n"));
+        assert_eq!(queue.window, Window::whole(all[0].new.end));
+        insta::assert_snapshot!(queue.screen(80, 40, false).join("\n"));
     }
 
     #[test]
     fn help_goes_with_any_key() {
         let all = waiting(&["a"]);
-        let mut desk = Desk::new(&all);
-        typed(&mut desk, "?");
-        assert!(desk.screen(80, 24, false).join("\n").contains("zoom in"));
-        assert_eq!(typed(&mut desk, "a"), Go::On);
-        assert_eq!(desk.decisions(), [Decision::Skip]);
+        let mut queue = ReviewQueue::new(&all);
+        typed(&mut queue, "?");
+        assert!(queue.screen(80, 24, false).join("\n").contains("zoom in"));
+        assert_eq!(typed(&mut queue, "a"), Go::On);
+        assert_eq!(queue.decisions(), [Decision::Skip]);
     }
 }

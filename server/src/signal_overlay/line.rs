@@ -32,7 +32,6 @@ enum Kind {
     LostSteps(Draws, bool),
     /// A bit of a byte is inverted or not.
     Flipped(Draws),
-    /// Nothing comes through.
     Silent,
     /// Nothing comes through, and a connection is no more.
     Cut,
@@ -78,7 +77,7 @@ impl LineFault {
     /// What arrives of a value.
     pub(super) fn pass(&mut self, ty: SignalType, bytes: &mut [u8], ends_step: bool) {
         let Some(mut line) = ByteLineMut::of(ty, bytes) else {
-            debug_assert!(false, "{ty} is no line, and `begin` refuses it");
+            debug_assert!(false, "{ty} is not a line, and `begin` refuses it");
             return;
         };
         let (oldest, count) = (line.line().oldest(), line.line().count());

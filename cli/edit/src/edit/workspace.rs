@@ -18,14 +18,14 @@ struct Step {
 
 /// The files, and the way that led to them.
 #[derive(Clone, Debug, Default)]
-pub struct Desk {
+pub struct Workspace {
     texts: Texts,
     done: Vec<Step>,
     undone: Vec<Step>,
     revision: u64,
 }
 
-impl Desk {
+impl Workspace {
     /// Files as they are found, after those of this revision.
     pub fn new(texts: Texts, revision: u64) -> Self {
         Self { texts, revision, ..Self::default() }

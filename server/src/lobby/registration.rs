@@ -12,7 +12,7 @@ use crate::session::Session;
 
 /// A session in state `start`, and who tried last to get in and has not.
 #[derive(Clone, Debug)]
-pub struct Seating {
+pub struct Registration {
     session: Session,
     sent_away: Option<String>,
 }
@@ -31,7 +31,7 @@ pub enum Verdict {
     },
 }
 
-impl Seating {
+impl Registration {
     /// Nobody has a seat.
     pub fn new(plan: SessionPlan) -> Self {
         Self { session: Session::new(plan), sent_away: None }

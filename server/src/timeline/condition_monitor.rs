@@ -1,7 +1,7 @@
 //! Lookouts: conditions that a session judges without acting on them, for the sake of sessions that fork from it.
 //!
 //! A case that waits for a condition can fork from a run without that case only where the condition has not come true
-//! yet, and only if somebody has seen what the condition remembers. A lookout sees it. It is no part of what the
+//! yet, and only if somebody has seen what the condition remembers. A condition_monitor sees it. It is not part of what the
 //! session does: the digest and the state hash do not know of it.
 
 use serde::{Deserialize, Serialize};
@@ -13,7 +13,7 @@ use crate::time::VirtualTime;
 
 /// A condition that is judged, and what has been seen of it.
 #[derive(Clone, Debug)]
-pub(super) struct Lookout {
+pub(super) struct ConditionMonitor {
     when: When,
     condition: Judged<Comparison>,
     seen: Seen,
@@ -21,15 +21,15 @@ pub(super) struct Lookout {
     passed: bool,
 }
 
-/// What a checkpoint keeps of a lookout that has yet to come true.
+/// What a checkpoint keeps of a condition_monitor that has yet to come true.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) struct LookoutState {
+pub(super) struct ConditionMonitorState {
     pub(super) when: When,
     pub(super) seen: Seen,
 }
 
-impl Lookout {
-    /// A lookout for `when`; nothing for a time, which comes without being looked out for.
+impl ConditionMonitor {
+    /// A condition_monitor for `when`; nothing for a time, which comes without being looked out for.
     ///
     /// # Errors
     /// A condition on a signal that the session does not have, or with a value that it cannot have.
@@ -60,12 +60,12 @@ impl Lookout {
     }
 
     /// What a checkpoint keeps; nothing once it has come true.
-    pub(super) fn save(&self) -> Option<LookoutState> {
-        (!self.passed).then(|| LookoutState { when: self.when.clone(), seen: self.seen.clone() })
+    pub(super) fn save(&self) -> Option<ConditionMonitorState> {
+        (!self.passed).then(|| ConditionMonitorState { when: self.when.clone(), seen: self.seen.clone() })
     }
 
     /// Goes on from what a checkpoint kept. Without it the past is not known.
-    pub(super) fn restore(&mut self, all: &[LookoutState]) {
+    pub(super) fn restore(&mut self, all: &[ConditionMonitorState]) {
         let kept = all.iter().find(|kept| kept.when == self.when && self.condition.fits(&kept.seen.memories));
         self.passed = kept.is_none();
         if let Some(kept) = kept {

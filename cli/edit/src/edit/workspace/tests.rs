@@ -8,13 +8,13 @@ use crate::edit::change::{Given, Sort};
 const SCENARIO: &str = include_str!("../../../../../scenarios/templates/cell/scenario.toml");
 const SCENE: &str = include_str!("../../../../../scenarios/templates/cell/plant.toml");
 
-fn desk() -> Desk {
+fn workspace() -> Workspace {
     texts(SCENARIO, SCENE)
 }
 
-fn texts(scenario: &str, scene: &str) -> Desk {
+fn texts(scenario: &str, scene: &str) -> Workspace {
     let scenes = [("plant.toml".to_owned(), scene.to_owned())].into();
-    Desk::new(Texts { scenario: scenario.to_owned(), scenes }, 0)
+    Workspace::new(Texts { scenario: scenario.to_owned(), scenes }, 0)
 }
 
 /// The lines that a change took away and those that it brought, in one file.
@@ -25,17 +25,17 @@ fn diff(before: &str, after: &str) -> String {
 }
 
 fn in_scenario(edit: &Edit) -> String {
-    let mut desk = desk();
-    match desk.change(std::slice::from_ref(edit)) {
-        Ok(()) => diff(SCENARIO, &desk.texts().scenario),
+    let mut workspace = workspace();
+    match workspace.change(std::slice::from_ref(edit)) {
+        Ok(()) => diff(SCENARIO, &workspace.texts().scenario),
         Err(error) => format!("refused: {error}"),
     }
 }
 
 fn in_scene(edit: &Edit) -> String {
-    let mut desk = desk();
-    match desk.change(std::slice::from_ref(edit)) {
-        Ok(()) => diff(SCENE, &desk.texts().scenes["plant.toml"]),
+    let mut workspace = workspace();
+    match workspace.change(std::slice::from_ref(edit)) {
+        Ok(()) => diff(SCENE, &workspace.texts().scenes["plant.toml"]),
         Err(error) => format!("refused: {error}"),
     }
 }
@@ -59,16 +59,19 @@ fn remove(sort: Sort, name: &str) -> Edit {
 #[test]
 fn a_connection_is_the_one_line_that_a_person_would_have_written() {
     assert_eq!(in_scenario(&connect("Box_There", "Main.Box_Seen")), "+bind = { Box_There = \"Main.Box_Seen\" }\n");
-    let mut desk = desk();
-    desk.change(&[connect("Box_There", "Main.Box_Seen")]).expect("a client");
-    let one = desk.texts().scenario.clone();
-    desk.change(&[connect("Push", "Main.Valve")]).expect("a client");
+    let mut workspace = workspace();
+    workspace.change(&[connect("Box_There", "Main.Box_Seen")]).expect("a client");
+    let one = workspace.texts().scenario.clone();
+    workspace.change(&[connect("Push", "Main.Valve")]).expect("a client");
     let both = "bind = { Box_There = \"Main.Box_Seen\", Push = \"Main.Valve\" }\n";
-    assert_eq!(diff(&one, &desk.texts().scenario), format!("-bind = {{ Box_There = \"Main.Box_Seen\" }}\n+{both}"));
-    desk.change(&[Edit::Disconnect { client: "plc".into(), signal: "Push".into() }]).expect("bound");
-    assert_eq!(desk.texts().scenario, one);
-    desk.change(&[Edit::Disconnect { client: "plc".into(), signal: "Box_There".into() }]).expect("bound");
-    assert_eq!(desk.texts().scenario, SCENARIO, "nothing of it is left");
+    assert_eq!(
+        diff(&one, &workspace.texts().scenario),
+        format!("-bind = {{ Box_There = \"Main.Box_Seen\" }}\n+{both}")
+    );
+    workspace.change(&[Edit::Disconnect { client: "plc".into(), signal: "Push".into() }]).expect("bound");
+    assert_eq!(workspace.texts().scenario, one);
+    workspace.change(&[Edit::Disconnect { client: "plc".into(), signal: "Box_There".into() }]).expect("bound");
+    assert_eq!(workspace.texts().scenario, SCENARIO, "nothing of it is left");
 }
 
 #[test]
@@ -80,11 +83,11 @@ fn a_table_of_bindings_gets_a_line_and_a_dotted_one_too() {
         ("bind.A = \"P.a\"\nsources = []\n", "+bind.\"B[1]\" = \"P.x\"\n"),
     ] {
         let before = with(bind);
-        let mut desk = texts(&before, SCENE);
-        desk.change(&[to("B[1]")]).expect("a client");
-        assert_eq!(diff(&before, &desk.texts().scenario), line);
-        desk.change(&[to("A")]).expect("a client");
-        assert!(desk.texts().scenario.contains("A = \"P.x\""), "{}", desk.texts().scenario);
+        let mut workspace = texts(&before, SCENE);
+        workspace.change(&[to("B[1]")]).expect("a client");
+        assert_eq!(diff(&before, &workspace.texts().scenario), line);
+        workspace.change(&[to("A")]).expect("a client");
+        assert!(workspace.texts().scenario.contains("A = \"P.x\""), "{}", workspace.texts().scenario);
     }
 }
 
@@ -107,15 +110,15 @@ fn a_signal_is_declared_behind_the_others() {
         "refused: there is no client `plcs` in scenario.toml (did you mean `plc`?)"
     );
     let bare = "version = 1\n\n# The clients.\n[clients.plc]\nkind = \"soft-plc\"\n";
-    let mut desk = texts(bare, SCENE);
-    desk.change(&[declare("Lamp", "plc")]).expect("a client");
+    let mut workspace = texts(bare, SCENE);
+    workspace.change(&[declare("Lamp", "plc")]).expect("a client");
     let line = "Lamp = { type = \"BOOL\", writer = \"plc\", about = 'a \"lamp\"' }";
     assert_eq!(
-        desk.texts().scenario,
+        workspace.texts().scenario,
         format!("version = 1\n\n[signals]\n{line}\n\n# The clients.\n[clients.plc]\nkind = \"soft-plc\"\n")
     );
-    desk.change(&[Edit::Withdraw { signal: "Lamp".into() }]).expect("nobody uses it");
-    assert!(!desk.texts().scenario.contains("Lamp"));
+    workspace.change(&[Edit::Withdraw { signal: "Lamp".into() }]).expect("nobody uses it");
+    assert!(!workspace.texts().scenario.contains("Lamp"));
 }
 
 #[test]
@@ -192,10 +195,10 @@ fn a_new_name_goes_to_all_who_refer_to_it() {
     );
     let set = format!("{SCENARIO}\n[clients.plant.set]\ncylinder.stroke_m = 0.3\n");
     let scene = format!("{SCENE}\n[[failure]]\ncomponent = \"cylinder\"\nmode = \"leaking\"\n");
-    let mut desk = texts(&set, &scene);
-    desk.change(&[rename(Sort::Component, "cylinder", "ram")]).expect("there");
-    assert_eq!(diff(&set, &desk.texts().scenario), "-cylinder.stroke_m = 0.3\n+ram.stroke_m = 0.3\n");
-    let after = diff(&scene, &desk.texts().scenes["plant.toml"]);
+    let mut workspace = texts(&set, &scene);
+    workspace.change(&[rename(Sort::Component, "cylinder", "ram")]).expect("there");
+    assert_eq!(diff(&set, &workspace.texts().scenario), "-cylinder.stroke_m = 0.3\n+ram.stroke_m = 0.3\n");
+    let after = diff(&scene, &workspace.texts().scenes["plant.toml"]);
     assert_eq!(after, "-name = \"cylinder\"\n+name = \"ram\"\n-component = \"cylinder\"\n+component = \"ram\"\n");
 }
 
@@ -206,15 +209,15 @@ fn a_thing_comes_behind_the_last_one_of_its_sort() {
     let keys: Vec<_> = keys.into_iter().chain([size]).collect();
     let add = Edit::Add { scene: "plant.toml".into(), sort: Sort::Body, name: "table".into(), keys };
     let table = "[[body]]\nname = \"table\"\nkind = \"fixed\"\nshape = \"box\"\nsize_m = [1.0, 0.5, 0.25]\n";
-    let mut desk = texts(SCENARIO, "version = 1");
-    desk.change(std::slice::from_ref(&add)).expect("a body");
-    assert_eq!(desk.texts().scenes["plant.toml"], format!("version = 1\n\n{}", table.trim_end()));
-    let mut desk = self::desk();
-    desk.change(std::slice::from_ref(&add)).expect("a body");
-    let text = &desk.texts().scenes["plant.toml"];
+    let mut workspace = texts(SCENARIO, "version = 1");
+    workspace.change(std::slice::from_ref(&add)).expect("a body");
+    assert_eq!(workspace.texts().scenes["plant.toml"], format!("version = 1\n\n{}", table.trim_end()));
+    let mut workspace = self::workspace();
+    workspace.change(std::slice::from_ref(&add)).expect("a body");
+    let text = &workspace.texts().scenes["plant.toml"];
     assert_eq!(*text, SCENE.replace("\n# ---- components", &format!("\n{table}\n# ---- components")));
-    desk.change(&[remove(Sort::Body, "table")]).expect("nobody needs it");
-    assert_eq!(desk.texts().scenes["plant.toml"], SCENE);
+    workspace.change(&[remove(Sort::Body, "table")]).expect("nobody needs it");
+    assert_eq!(workspace.texts().scenes["plant.toml"], SCENE);
 }
 
 fn a_name() -> impl Strategy<Value = String> {
@@ -316,31 +319,31 @@ proptest! {
     fn any_changes_leave_files_that_parse_keep_comments_and_can_be_taken_back(
         edits in prop::collection::vec(an_edit(), 1..25),
     ) {
-        let mut desk = desk();
-        let mut made = vec![desk.texts().clone()];
+        let mut workspace = workspace();
+        let mut made = vec![workspace.texts().clone()];
         let (top, far) = (far_comments(SCENARIO), far_comments(SCENE));
         for edit in &edits {
-            let before = desk.texts().clone();
-            if desk.change(std::slice::from_ref(edit)).is_err() {
-                prop_assert_eq!(&before, desk.texts(), "what is refused changes nothing");
+            let before = workspace.texts().clone();
+            if workspace.change(std::slice::from_ref(edit)).is_err() {
+                prop_assert_eq!(&before, workspace.texts(), "what is refused changes nothing");
                 continue;
             }
-            let scene = &desk.texts().scenes["plant.toml"];
-            for text in [&desk.texts().scenario, scene] {
+            let scene = &workspace.texts().scenes["plant.toml"];
+            for text in [&workspace.texts().scenario, scene] {
                 prop_assert!(text.parse::<toml_edit::DocumentMut>().is_ok(), "{edit:?}\n{text}");
             }
-            prop_assert!(is_within(&top, &desk.texts().scenario) && is_within(&far, scene), "{edit:?}\n{scene}");
-            if *desk.texts() != before {
-                made.push(desk.texts().clone());
+            prop_assert!(is_within(&top, &workspace.texts().scenario) && is_within(&far, scene), "{edit:?}\n{scene}");
+            if *workspace.texts() != before {
+                made.push(workspace.texts().clone());
             }
         }
-        let last = desk.texts().clone();
+        let last = workspace.texts().clone();
         for texts in made.iter().rev().skip(1) {
-            prop_assert!(desk.undo());
-            prop_assert_eq!(texts, desk.texts());
+            prop_assert!(workspace.undo());
+            prop_assert_eq!(texts, workspace.texts());
         }
-        prop_assert!(!desk.undo());
-        while desk.redo() {}
-        prop_assert_eq!(&last, desk.texts());
+        prop_assert!(!workspace.undo());
+        while workspace.redo() {}
+        prop_assert_eq!(&last, workspace.texts());
     }
 }

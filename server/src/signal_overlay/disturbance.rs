@@ -20,11 +20,8 @@ const LATE_STEPS_MAX: usize = 1_000_000;
 
 /// What a fault begins with.
 pub(crate) struct Onset<'a> {
-    /// The signal's type.
     pub(crate) ty: SignalType,
-    /// Its value.
     pub(crate) committed: &'a [u8],
-    /// The session's step.
     pub(crate) step: TimeSpan,
     /// Steps committed so far: a fault that comes again draws other numbers.
     pub(crate) steps: StepCount,
@@ -86,7 +83,7 @@ impl Draws {
         Self { random, number: number.to_bits() }
     }
 
-    /// A stream with a rate from 0 to 1; nothing for what is no rate.
+    /// A stream with a rate from 0 to 1; nothing for what is not a rate.
     pub(super) fn at_rate(rate: &str, seed: u64, onset: &Onset<'_>) -> Option<Self> {
         let rate: f64 = rate.parse().ok()?;
         (0.0..=1.0).contains(&rate).then(|| Self::new(rate, seed, onset))

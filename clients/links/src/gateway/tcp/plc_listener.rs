@@ -15,7 +15,7 @@ const GLANCE: Duration = Duration::from_millis(10);
 const STRANGERS_MAX: usize = 16;
 
 /// A listener, and the connection of the PLC.
-pub struct Door {
+pub struct PlcListener {
     address: SocketAddr,
     shared: Arc<Shared>,
 }
@@ -30,7 +30,6 @@ struct Shared {
 struct State {
     /// Has connected and is not served yet.
     waiting: Option<TcpStream>,
-    /// Whose connection stands.
     inside: Option<SocketAddr>,
     strangers: BTreeSet<IpAddr>,
     is_closed: bool,
@@ -43,7 +42,7 @@ impl Shared {
     }
 }
 
-impl Door {
+impl PlcListener {
     /// Listens at `address`.
     ///
     /// # Errors
@@ -62,14 +61,14 @@ impl Door {
         self.address
     }
 
-    /// The connection of the PLC, waited for as long as `patience`. Until [`Door::leave`] nobody else is let in.
+    /// The connection of the PLC, waited for as long as `patience`. Until [`PlcListener::leave`] nobody else is let in.
     pub fn enter(&self, patience: Duration) -> Option<TcpStream> {
         let state = self.shared.lock();
         let waited = self.shared.came.wait_timeout_while(state, patience, |state| state.waiting.is_none());
         waited.unwrap_or_else(PoisonError::into_inner).0.waiting.take()
     }
 
-    /// The connection that [`Door::enter`] gave is over: the next one is let in.
+    /// The connection that [`PlcListener::enter`] gave is over: the next one is let in.
     pub fn leave(&self) {
         let mut state = self.shared.lock();
         // One that has connected since is not the one that is over.
@@ -79,7 +78,7 @@ impl Door {
     }
 }
 
-impl Drop for Door {
+impl Drop for PlcListener {
     fn drop(&mut self) {
         self.shared.lock().is_closed = true;
     }
@@ -121,21 +120,27 @@ mod tests {
 
     #[test]
     fn one_at_a_time_is_let_in() {
-        let door = Door::open(SocketAddr::from(([127, 0, 0, 1], 0))).unwrap();
-        assert!(door.enter(Duration::ZERO).is_none());
-        let plc = TcpStream::connect(door.address()).unwrap();
-        let inside = door.enter(Duration::from_mins(1)).unwrap();
+        let plc_listener = PlcListener::open(SocketAddr::from(([127, 0, 0, 1], 0))).unwrap();
+        assert!(plc_listener.enter(Duration::ZERO).is_none());
+        let plc = TcpStream::connect(plc_listener.address()).unwrap();
+        let inside = plc_listener.enter(Duration::from_mins(1)).unwrap();
         assert_eq!(inside.peer_addr().unwrap(), plc.local_addr().unwrap());
-        let mut second = TcpStream::connect(door.address()).unwrap();
+        let mut second = TcpStream::connect(plc_listener.address()).unwrap();
         assert_eq!(second.read(&mut [0]).unwrap_or(0), 0, "it is closed");
-        door.leave();
-        let back = TcpStream::connect(door.address()).unwrap();
-        assert_eq!(door.enter(Duration::from_mins(1)).unwrap().peer_addr().unwrap(), back.local_addr().unwrap());
+        plc_listener.leave();
+        let back = TcpStream::connect(plc_listener.address()).unwrap();
+        assert_eq!(
+            plc_listener.enter(Duration::from_mins(1)).unwrap().peer_addr().unwrap(),
+            back.local_addr().unwrap()
+        );
     }
 
     #[test]
     fn an_address_in_use_is_no_door() {
-        let door = Door::open(SocketAddr::from(([127, 0, 0, 1], 0))).unwrap();
-        assert_eq!(Door::open(door.address()).err().map(|error| error.kind()), Some(std::io::ErrorKind::AddrInUse));
+        let plc_listener = PlcListener::open(SocketAddr::from(([127, 0, 0, 1], 0))).unwrap();
+        assert_eq!(
+            PlcListener::open(plc_listener.address()).err().map(|error| error.kind()),
+            Some(std::io::ErrorKind::AddrInUse)
+        );
     }
 }

@@ -25,7 +25,7 @@ use crate::web::Launch;
 pub(crate) const PAGE_AT: &str = "the session is at ";
 
 /// Why the past of a run of `scenario` cannot be shown: a client of it that cannot be saved and run again.
-pub(crate) fn hindrance(scenario: &Scenario, config: Option<&RunConfig>) -> Option<String> {
+pub(crate) fn fork_blocker(scenario: &Scenario, config: Option<&RunConfig>) -> Option<String> {
     const REAL: &str = "a real PLC";
     const PROGRAM: &str = "a program of its own";
     scenario.file().clients.iter().find_map(|(name, client)| {
@@ -55,19 +55,19 @@ pub(crate) fn former(scenario: &Scenario) -> Form {
         let elsewhere = |name: &_, _: &_| Usage::new(format!("client `{name}` is not in this process"), None);
         let mut lockstep = in_process(&scenario, VirtualTime::MAX, [], elsewhere).map_err(|error| error.to_string())?;
         lockstep.set_until(None);
-        lockstep.set_makeup(scenario.makeup());
+        lockstep.set_settings(scenario.session_settings());
         Ok(lockstep)
     })
 }
 
 /// What a session is given that goes on from another.
 #[derive(Clone, Debug)]
-pub(crate) struct Onward {
+pub(crate) struct ForkSettings {
     /// The scenario, its case, when the session is complete, who is operated, what the page is: as they are typed.
     pub(crate) words: Vec<OsString>,
 }
 
-impl Onward {
+impl ForkSettings {
     /// What is typed beside where the page is, and who is let in there: at the same address, at a port of its own.
     pub(crate) fn at(mut words: Vec<OsString>, web: Option<SocketAddr>, admission: &Admission) -> Self {
         let web = web.map_or(IpAddr::V4(Ipv4Addr::LOCALHOST), |address| address.ip());
@@ -105,22 +105,22 @@ impl Onward {
 
 /// Sessions that went on from this one, each in a process of its own. They end with it.
 #[derive(Debug, Default)]
-struct Offspring {
+struct ChildSessions {
     children: Vec<Child>,
     guard: Option<Guard>,
 }
 
-/// Lets sessions go on from checkpoints, as `onward` says.
-pub(crate) fn launcher(onward: Onward) -> Launch {
-    let offspring = Mutex::new(Offspring::default());
+/// Lets sessions go on from checkpoints, as `fork_settings` says.
+pub(crate) fn launcher(fork_settings: ForkSettings) -> Launch {
+    let child_sessions = Mutex::new(ChildSessions::default());
     Arc::new(move |checkpoint| {
         // a thread that panicked under the lock has left whole values
-        let mut offspring = offspring.lock().unwrap_or_else(PoisonError::into_inner);
-        offspring.begin(checkpoint, &onward.words).map_err(|error| error.to_string())
+        let mut child_sessions = child_sessions.lock().unwrap_or_else(PoisonError::into_inner);
+        child_sessions.begin(checkpoint, &fork_settings.words).map_err(|error| error.to_string())
     })
 }
 
-impl Offspring {
+impl ChildSessions {
     /// Begins a session of a process of its own, and waits until it says where its page is.
     fn begin(&mut self, checkpoint: &[u8], words: &[OsString]) -> std::io::Result<String> {
         let mut file = tempfile::Builder::new().prefix("onescan-fork-").suffix(".checkpoint").tempfile()?;
@@ -166,7 +166,7 @@ fn address(mut said: BufReader<std::process::ChildStderr>) -> std::io::Result<St
     Err(std::io::Error::other(before.trim().to_owned()))
 }
 
-impl Drop for Offspring {
+impl Drop for ChildSessions {
     fn drop(&mut self) {
         for child in &mut self.children {
             Group::led_by(child).kill();

@@ -32,14 +32,14 @@ pub(crate) use disturbance::Onset;
 
 /// Everything that lies over the writers' values, by signal.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-pub(crate) struct Interference {
+pub(crate) struct SignalOverlay {
     faults: BTreeMap<SignalId, Disturbance>,
     /// Values for the step under way; its last commit gives them to the writer's own values.
     writes: BTreeMap<SignalId, Vec<u8>>,
     forces: BTreeMap<SignalId, Vec<u8>>,
 }
 
-impl Interference {
+impl SignalOverlay {
     /// True while nothing lies over anything: a commit is a copy then.
     pub(crate) fn is_empty(&self) -> bool {
         self.faults.is_empty() && self.writes.is_empty() && self.forces.is_empty()
@@ -85,7 +85,7 @@ impl Interference {
     }
 
     /// Ends a fault; false if there was none.
-    pub(crate) fn mend(&mut self, signal: SignalId) -> bool {
+    pub(crate) fn clear(&mut self, signal: SignalId) -> bool {
         if let Some(Disturbance::Line(fault)) = self.faults.get_mut(&signal) {
             // what it has done to bytes that are still in the window stays
             return fault.end();
