@@ -13,7 +13,7 @@ use onescan_server::client::{
     Client, ClientFault, ClientOperation, ClientView, JoinRequest, Memory, OperationRefused, Parts, SourcePlace,
     StateError, ValueTable, Wake,
 };
-use onescan_server::signal::{ClientName, Port, SignalName, SignalType};
+use onescan_server::signal::{ClientName, Port, SignalName};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
 use onescan_stream::Losses;

@@ -9,7 +9,7 @@ use std::time::Duration;
 use onescan_server::access::{Day, Pass, Register, Role, Token};
 use onescan_server::client::{ClientId, JoinRequest};
 use onescan_server::end::FailureCause;
-use onescan_server::lobby::{Acceptor, Action, Now, Seating, Terms, Visitor};
+use onescan_server::lobby::{Acceptor, Action, Now, Registration, Terms, Visitor};
 use onescan_server::plan::{Coupling, SessionPlan};
 use onescan_server::signal::SignalType;
 use onescan_server::wire::{ServerMessage, VERSIONS};
@@ -39,7 +39,7 @@ impl Line {
 #[derive(Clone, Debug)]
 pub(super) struct Hall {
     pub(super) acceptor: Acceptor,
-    pub(super) seating: Seating,
+    pub(super) registration: Registration,
     pub(super) now: Duration,
     pub(super) lines: BTreeMap<Visitor, Line>,
     /// Connections behind which are those who may get in.
@@ -117,7 +117,7 @@ impl Hall {
         let terms = Terms { welcome: Arc::new(welcome), welcome_bytes: 1 << 10, register: register.cloned() };
         Self {
             acceptor: Acceptor::new(terms),
-            seating: Seating::new(plan),
+            registration: Registration::new(plan),
             now: Duration::ZERO,
             lines: BTreeMap::new(),
             let_in: BTreeSet::new(),
@@ -169,10 +169,10 @@ impl Hall {
     /// The session's thread looks at the next application.
     pub(super) fn decide(&mut self) {
         let Some((visitor, request)) = self.applications.pop_front() else { return };
-        if self.seating.is_taken(&request) {
+        if self.registration.is_taken(&request) {
             self.notice_gone();
         }
-        match self.seating.apply(&request, "somewhere") {
+        match self.registration.apply(&request, "somewhere") {
             Err(refusal) => {
                 let actions = self.acceptor.refused(visitor, &refusal.to_string(), self.moment());
                 self.act(actions);
@@ -182,7 +182,7 @@ impl Hall {
                 self.hear(visitor, 'j');
             }
             Ok(id) => {
-                self.seating.left(id, &FailureCause::Disconnected);
+                self.registration.left(id, &FailureCause::Disconnected);
             }
         }
     }
@@ -193,7 +193,7 @@ impl Hall {
         let left: Vec<usize> = self.seats.iter().filter(|(_, visitor)| gone(visitor)).map(|(seat, _)| *seat).collect();
         for seat in left {
             self.seats.remove(&seat);
-            if !self.seating.left(ClientId::from_index(seat), &FailureCause::Disconnected) {
+            if !self.registration.left(ClientId::from_index(seat), &FailureCause::Disconnected) {
                 self.broken = Some("a seat is not free again");
             }
         }
@@ -201,7 +201,7 @@ impl Hall {
 
     /// The session answers what operators have asked.
     pub(super) fn answer(&mut self) {
-        let status = self.seating.session().status();
+        let status = self.registration.session().status();
         while let Some(visitor) = self.wishes.pop_front() {
             let actions = self.acceptor.answered(visitor, Some(Ok(status.clone())), self.moment());
             self.act(actions);
@@ -264,7 +264,7 @@ impl Hall {
 
     /// What must hold at any time.
     pub(super) fn check(&mut self) {
-        let session = self.seating.session();
+        let session = self.registration.session();
         for seat in 0..session.plan().clients().len() {
             if session.member(ClientId::from_index(seat)).is_some() != self.seats.contains_key(&seat) {
                 self.broken = Some("a seat is lost, or taken by nobody");

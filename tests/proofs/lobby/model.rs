@@ -172,7 +172,7 @@ impl Model for Lobby {
         if has_gone && !state.hall.is_begun {
             events.push(Event::Notices);
         }
-        if state.hall.seating.is_complete() && !has_gone && !state.hall.is_begun {
+        if state.hall.registration.is_complete() && !has_gone && !state.hall.is_begun {
             events.push(Event::Begins);
         }
         if state.alarms < self.alarms && state.hall.acceptor.next_deadline().is_some() {

@@ -275,7 +275,7 @@ impl<'t> History<'t> {
         self.hall.notice_gone();
         self.hall.answer();
         self.hall.decide();
-        let verdict = self.hall.seating.verdict(self.hall.now, PATIENCE);
+        let verdict = self.hall.registration.verdict(self.hall.now, PATIENCE);
         match verdict {
             Verdict::Waiting => {
                 let soon =
@@ -284,7 +284,7 @@ impl<'t> History<'t> {
             }
             verdict => {
                 self.hall.notice_gone();
-                if verdict == Verdict::Complete && !self.hall.seating.is_complete() {
+                if verdict == Verdict::Complete && !self.hall.registration.is_complete() {
                     let soon = self.hall.now + LOOK_UP;
                     return self.at(soon, Event::LookUp);
                 }
@@ -335,7 +335,7 @@ impl<'t> History<'t> {
         }
         self.hall.close();
         self.hall.pass(self.hall.now + Duration::from_secs(1));
-        match (self.hall.broken, self.hall.acceptor.guests()) {
+        match (self.hall.broken, self.hall.acceptor.connections()) {
             (Some(broken), _) => Err(broken.to_owned()),
             (None, 0) => Ok(self.visitors),
             (None, left) => Err(format!("{left} connections are left when all is over")),

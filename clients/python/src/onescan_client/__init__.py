@@ -11,4 +11,4 @@ __all__ = [
     "Output", "Participant", "ProtocolError", "Refused", "SerialPort", "SessionEnded", "SessionFailed", "Signal",
     "Signals", "Simulation", "Table", "Value", "campaign",
 ]
-__version__ = "0.1.0"
+__version__ = "0.2.0"

@@ -147,7 +147,7 @@ class LockstepClient:
             raise ProtocolError(f"`{kind}` in place of `{expected}`")
         return fields
 
-    def connect(self, agent: str = "onescan-client 0.1.0") -> Fields:
+    def connect(self, agent: str = "onescan-client 0.2.0") -> Fields:
         """Connect, say `hello` and give the fields of `welcome` (section 3.1)."""
         try:
             self._sock.close()

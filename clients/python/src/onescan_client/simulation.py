@@ -130,7 +130,7 @@ class Simulation(Participant):
         `tls_own` are those of `LockstepClient`."""
         host, port = address(server)
         with LockstepClient(host, port, token, tls_ca, tls_own) as client:
-            welcome = client.connect(f"onescan-client 0.1.0 ({type(self).__name__})")
+            welcome = client.connect(f"onescan-client 0.2.0 ({type(self).__name__})")
             period_ns = self._period_ns or welcome["step_ns"]
             self.dt_s = period_ns / 1e9
             listed = [[(s.name, s.type_name) for s in self.signals(kind)] for kind in (Input, Output)]

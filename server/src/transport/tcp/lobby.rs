@@ -74,7 +74,7 @@ impl Lobby {
         let (hosting, closing) = (Arc::clone(&host), Arc::clone(&close));
         let thread = std::thread::Builder::new()
             .name("lobby".to_owned())
-            .spawn(move || runtime.block_on(receive_guests(listener, hosting, closing)))?;
+            .spawn(move || runtime.block_on(receive_connections(listener, hosting, closing)))?;
         Ok(Self { address, pending_clients: Mutex::new(Some(receiver)), host, close, thread: Some(thread) })
     }
 
@@ -121,7 +121,7 @@ impl Drop for Lobby {
     }
 }
 
-async fn receive_guests(listener: std::net::TcpListener, host: Arc<Host>, closing: Arc<Notify>) {
+async fn receive_connections(listener: std::net::TcpListener, host: Arc<Host>, closing: Arc<Notify>) {
     let listener = match TcpListener::from_std(listener) {
         Ok(listener) => listener,
         Err(error) => return tracing::error!(%error, "the lobby cannot listen"),

@@ -34,7 +34,7 @@ fn lockstep(scenario: &Scenario) -> Lockstep {
         formation.join(client(scenario, name)).expect("the shear");
     }
     let mut lockstep = formation.start().expect("the shear");
-    lockstep.set_settings(scenario.settings());
+    lockstep.set_settings(scenario.session_settings());
     let timeline = Timeline::new(scenario.timeline().to_vec(), lockstep.session()).expect("the shear");
     lockstep.set_timeline(timeline);
     lockstep
