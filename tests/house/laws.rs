@@ -151,7 +151,7 @@ const DEPENDS_ON: &[(&str, &[&str])] = &[
 const CLOCKS: &[(&str, &str)] = &[
     ("server/src/pacing.rs", "virtual time beside wall time, if it is asked for"),
     ("server/src/formation.rs", "how long clients are waited for"),
-    ("server/recording/src/rhythm.rs", "when steps reach the disk, never what they are"),
+    ("server/recording/src/flush_policy.rs", "when steps reach the disk, never what they are"),
     ("server/src/transport", "how long an answer is waited for"),
     ("clients/links/src/gateway", "how long a PLC is waited for"),
     ("clients/links/src/station", "a PLC on a clock of its own"),
@@ -186,7 +186,7 @@ const PROCESSES: &[(&str, &str)] = &[
     ("cli/regress/src/repository.rs", "git, for the sources of another revision"),
     ("cli/runner/src/run/guard.rs", "the guard, which ends the clients of a server that was killed"),
     ("cli/runner/src/run/processes.rs", "one process per client"),
-    ("cli/runner/src/run/rewound.rs", "a session that continues from a past state"),
+    ("cli/runner/src/run/forked.rs", "a session that continues from a past state"),
     ("cli/runner/src/shot/browser.rs", "the browser that takes a picture"),
     ("tests/fuzzing/src/main.rs", "inputs run where a crash can be survived"),
     ("tests/xtask/src", "the tools of a release and the scripts of the tests"),

@@ -40,11 +40,6 @@ const fn known(folder: &'static str, known: &'static [(&'static [&'static str], 
 }
 
 const EXCEPTIONS: &[Exception] = &[
-    known("cli/program/src/new", &[(&["from_list", "listed", "text"], "being cut")]),
-    known("cli/regress/src/check", &[(&["collect", "stubs"], "being cut")]),
-    known("cli/regress/src/regress", &[(&["cause", "outcome"], "being cut"), (&["declared", "tcunit"], "being cut")]),
-    known("cli/regress/src/why", &[(&["pairs", "record"], "being cut")]),
-    known("cli/runner/src/run", &[(&["lockstep", "rewound"], "being cut")]),
     known("cli/search/src/minimise", &[(&["target", "trial"], "being cut")]),
     known(
         "plc-shim/iec/src/ir",
@@ -60,7 +55,6 @@ const EXCEPTIONS: &[Exception] = &[
             "a recursive tree: declarations hold statements, statements expressions, expressions types",
         )],
     ),
-    known("server/src/interference", &[(&["disturbance", "line", "push"], "being cut")]),
     Exception { folder: "plc-shim/iec-run/src/compile", closed: true, records: None, known: &[] },
     Exception {
         folder: "plc-shim/iec/src/check",

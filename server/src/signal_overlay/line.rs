@@ -6,7 +6,7 @@
 use onescan_base::byte_line::{ByteLine, ByteLineMut, Sent};
 use serde::{Deserialize, Serialize};
 
-use super::disturbance::{Draws, Onset};
+use super::draws::{Draws, Onset};
 use crate::operation::SignalFault;
 use crate::signal::SignalType;
 

@@ -1,20 +1,21 @@
 //! What lies over the values that writers stage: writes and forces from outside, and faults on the way
 //! of a signal.
 //!
-//! A writer's own values stay as staged, so that a released or mended signal shows at once what its
+//! A writer's own values stay as staged, so that a released or cleared signal shows at once what its
 //! writer last wrote, however long that client sleeps. Only what a commit makes visible is changed:
 //! first by the fault, then by a write, then by a force, each hiding what is below it.
-
 //!
 //! | module | subject |
 //! |---|---|
 //! | this file | the order of what lies over each other |
 //! | `disturbance` | faults on the way of a signal, at work |
+//! | `draws` | what a fault draws, and what it begins with |
 //! | `line` | faults on a line of bytes |
 //! | `push` | frames that a side pushes by its own clock |
 //! | `number` | numbers shifted, and bits flipped, within their type |
 
 mod disturbance;
+mod draws;
 mod line;
 mod number;
 mod push;
@@ -28,7 +29,7 @@ use crate::operation::SignalFault;
 use crate::signal::SignalId;
 
 use disturbance::Disturbance;
-pub(crate) use disturbance::Onset;
+pub(crate) use draws::Onset;
 
 /// Everything that lies over the writers' values, by signal.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]

@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::disturbance::Onset;
+use super::draws::Onset;
 use crate::operation::PushInterval;
 use crate::random::{Random, seed_for};
 use crate::time::TimeSpan;

@@ -7,8 +7,9 @@ use onescan_report::file::{Write as Output, write_all_whole};
 
 use super::listed::{Listed, report};
 use super::names::Taken;
+use super::signal::{Plc, Signal};
 use super::{NewError, name_of, text};
-use crate::io_list::{self, IoList, IoPoint, Wanted};
+use crate::io_list::{self, IoList, Wanted};
 use onescan_runner::error::Unreadable;
 use onescan_runner::format::Format;
 
@@ -20,33 +21,6 @@ pub struct FromListConfig {
     pub list: Wanted,
     /// For whom the report is.
     pub format: Format,
-}
-
-/// A signal of the scenario.
-#[derive(Clone, Debug)]
-pub struct Signal {
-    pub name: String,
-    /// What it is in the list.
-    pub point: IoPoint,
-}
-
-/// Who runs as the PLC. `bind` has the variables of signals that are called otherwise.
-#[derive(Clone, Debug)]
-pub enum Plc {
-    /// A program with inputs and outputs and nothing in it.
-    StandIn {
-        /// Signals and their variables.
-        bind: Vec<(String, String)>,
-    },
-    /// The sources that the list was read from.
-    Sources {
-        /// Their places, seen from the scenario's folder.
-        files: Vec<String>,
-        /// The programs, if the sources do not say when they run.
-        programs: Vec<String>,
-        /// Signals and their variables.
-        bind: Vec<(String, String)>,
-    },
 }
 
 /// Makes the scenario, and reports to `out`.

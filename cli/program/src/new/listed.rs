@@ -7,7 +7,7 @@ use std::path::Path;
 use onescan_report::OutputError;
 use serde::Serialize;
 
-use super::from_list::Signal;
+use super::signal::Signal;
 use crate::io_list::{Direction, IoList, ListKind};
 use onescan_runner::format::Format;
 

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`from_list`] | a scenario made of an I/O list |
 //! | `names` | names that signals and variables can have |
+//! | [`signal`] | what a list becomes: signals, and who runs as the PLC |
 //! | `text` | the files of such a scenario |
 //! | [`listed`] | what was taken over and what was not |
 
@@ -11,6 +12,7 @@ mod error;
 pub mod from_list;
 pub mod listed;
 mod names;
+pub mod signal;
 mod text;
 
 use std::io::Write;

@@ -5,8 +5,8 @@ use std::fmt::Write;
 use onescan_server::time::TimeSpan;
 use serde_json::Value;
 
-use super::from_list::{Plc, Signal};
 use super::listed::allowance;
+use super::signal::{Plc, Signal};
 use crate::io_list::{Direction, IoList, ListLink};
 use crate::map::Fragment;
 use crate::map::fragment::{Entry, Place};

@@ -16,8 +16,10 @@ use onescan_server::signal::ClientName;
 
 use super::error::CheckError;
 use super::passed_over::PassedOver;
-use super::stubs::FOLDER as LIBRARIES;
 use onescan_runner::error::{Unreadable, Usage};
+
+/// The folder of a project in which stubs of libraries stand.
+pub const LIBRARIES: &str = "libraries";
 
 /// Files that are checked together.
 pub struct Program {

@@ -8,12 +8,10 @@ use onescan_iec::{Code, Dialect, Finding, Input, inspect};
 use onescan_iec_project::stubs::{self, MARK};
 use onescan_report::OutputError;
 
-use super::collect::{self, Reading};
+use super::collect::{self, LIBRARIES, Reading};
 use super::error::CheckError;
 use onescan_runner::error::{ExitCode, Unreadable, Usage};
 
-/// The folder of a project in which stubs of libraries stand.
-pub const FOLDER: &str = "libraries";
 /// The file in it that is written here.
 const FILE: &str = "stubs.st";
 
@@ -75,7 +73,7 @@ fn present(path: &Path) -> Result<Option<String>, CheckError> {
         return Ok(Some(text));
     }
     let message = format!("{} was not written by `--write-stubs`, and is left as it is", path.display());
-    let help = format!("rename it, or name another folder: --write-stubs={FOLDER}/generated");
+    let help = format!("rename it, or name another folder: --write-stubs={LIBRARIES}/generated");
     Err(Usage::new(message, Some(help)).into())
 }
 
@@ -83,7 +81,7 @@ fn present(path: &Path) -> Result<Option<String>, CheckError> {
 fn beside(paths: &[PathBuf]) -> PathBuf {
     let first = paths.first().map_or(Path::new("."), PathBuf::as_path);
     let folder = if first.is_dir() { first } else { first.parent().unwrap_or(Path::new("")) };
-    folder.join(FOLDER)
+    folder.join(LIBRARIES)
 }
 
 /// True for a finding about the call of a stub.

@@ -6,11 +6,10 @@ use onescan_scenario::Scenario;
 use onescan_server::client::SourcePlace;
 use onescan_server::signal::SignalName;
 use onescan_server::time::VirtualTime;
-use serde::Serialize;
 
 use super::TestError;
 use super::config::TestConfig;
-use super::outcome::{Outcome, Status};
+use super::outcome::{Cause, Outcome, Status};
 use super::plan::{CaseUnit, Unit, shown};
 use super::ran::within;
 use super::reference::{Reference, References};
@@ -22,20 +21,6 @@ use crate::why::{self, Origin, Place, Record, Side, Why};
 const EXPLAINED: usize = 4;
 /// Steps of the way back that a test shows.
 const STEPS: usize = 6;
-
-/// Why a test is not what was reviewed. Its JSON form is a contract: fields are added, never changed.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Cause {
-    /// The commit of the reviewed program.
-    pub commit: String,
-    /// The statement in which the runs part, as it is now; as it was where it is gone.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub place: Option<SourcePlace>,
-    /// The way back, a line each.
-    pub lines: Vec<String>,
-    /// The way back, as `onescan diff --format json` has it.
-    pub why: serde_json::Value,
-}
 
 /// Explains the tests that are not what was reviewed, as far as the reviewed program is known.
 ///

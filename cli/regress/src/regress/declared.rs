@@ -10,6 +10,7 @@ use onescan_iec::syntax::{FileId, parse_in, tokenize_in};
 use onescan_server::client::SourcePlace;
 
 use super::attributes::Attributes;
+use super::place::place;
 use super::tcunit::sources::Sources;
 
 /// What the names of tests begin with.
@@ -70,12 +71,6 @@ pub(super) fn tests(input: &Input, sources: &Sources) -> Vec<Test> {
     };
     let tokens = tokenize_in(file.dialect(), file.text());
     pous.filter(is_own).filter_map(|pou| test(input, &tokens, pou)).collect()
-}
-
-/// Where a byte of a source stands.
-pub(super) fn place(input: &Input, offset: u32) -> SourcePlace {
-    let at = input.file().line_column(offset);
-    SourcePlace { file: input.file().name().to_owned(), line: at.line, column: at.column }
 }
 
 fn test(input: &Input, tokens: &[Token], pou: &Pou) -> Option<Test> {

@@ -35,6 +35,7 @@ pub mod limited;
 mod memory_text;
 pub mod outcome;
 pub mod page;
+mod place;
 pub mod plan;
 pub mod pool;
 pub mod ran;

@@ -6,7 +6,6 @@ use std::time::Duration;
 use onescan_server::client::SourcePlace;
 use serde::Serialize;
 
-use super::cause::Cause;
 use super::config::{Policy, TestConfig};
 use super::error::TestError;
 use super::plan::{CaseUnit, Unit, shown};
@@ -16,6 +15,20 @@ use crate::snapshot::{Difference, Snapshot, compare};
 use onescan_runner::error::ExitCode;
 use onescan_runner::run::RunStatus;
 use onescan_runner::run::page::Event;
+
+/// Why a test is not what was reviewed. Its JSON form is a contract: fields are added, never changed.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Cause {
+    /// The commit of the reviewed program.
+    pub commit: String,
+    /// The statement in which the runs part, as it is now; as it was where it is gone.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub place: Option<SourcePlace>,
+    /// The way back, a line each.
+    pub lines: Vec<String>,
+    /// The way back, as `onescan diff --format json` has it.
+    pub why: serde_json::Value,
+}
 
 /// How a test ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]

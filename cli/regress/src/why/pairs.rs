@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use super::record::Place;
+use super::record::{Place, own_text};
 use onescan_iec_run::{Application, Declaration, Statement, StatementId, Variable, Way, WayId};
 use onescan_soft_plc::journal::Part;
 use similar::{Algorithm, DiffOp, capture_diff_slices};
@@ -68,12 +68,7 @@ impl Statements {
     }
 }
 
-/// All that a statement says itself, wherever its lines are broken.
-pub(super) fn own_text(statement: &Statement) -> String {
-    statement.rows.iter().map(|(_, row)| row.as_str()).collect::<Vec<_>>().join(" ")
-}
-
-/// The statements of each unit in the order of the text; names do not heed case.
+/// The statements of each unit in the order of the text; the case of names does not matter.
 fn by_unit(list: &Vec<Statement>) -> BTreeMap<String, Vec<&Statement>> {
     let mut units: BTreeMap<String, Vec<&Statement>> = BTreeMap::new();
     for statement in list {

@@ -4,8 +4,6 @@ use onescan_iec_run::{Declaration, Statement};
 use onescan_server::signal::ClientName;
 use onescan_server::time::VirtualTime;
 
-use super::pairs::own_text;
-
 /// A statement of one run, as it stands in the sources.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Place {
@@ -87,4 +85,9 @@ pub struct Record {
     pub what: What,
     /// Where it comes from.
     pub origin: Origin,
+}
+
+/// All that a statement says itself, wherever its lines are broken.
+pub(super) fn own_text(statement: &Statement) -> String {
+    statement.rows.iter().map(|(_, row)| row.as_str()).collect::<Vec<_>>().join(" ")
 }

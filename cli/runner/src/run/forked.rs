@@ -15,14 +15,11 @@ use onescan_server::time::VirtualTime;
 use super::config::RunConfig;
 use super::guard::{Group, Guard};
 use super::in_process::in_process;
-use super::lockstep::NOTICE;
+use super::notice::{NOTICE, PAGE_AT};
 use crate::access::admission::Admission;
 use crate::error::Usage;
 use crate::past::Form;
 use crate::web::Launch;
-
-/// The line with which a session says where its page is, up to the address.
-pub(crate) const PAGE_AT: &str = "the session is at ";
 
 /// Why the past of a run of `scenario` cannot be shown: a client of it that cannot be saved and run again.
 pub(crate) fn fork_blocker(scenario: &Scenario, config: Option<&RunConfig>) -> Option<String> {

@@ -25,6 +25,7 @@ use super::config::{Reach, RunConfig, SaveRequest, Transport};
 use super::error::RunError;
 use super::fork::{self, Joined, Taken};
 use super::forked::{self, ForkSettings};
+use super::notice::{NOTICE, PAGE_AT};
 use super::processes::{Passed, Processes};
 use super::progress::Progress;
 use super::seats::{OpcUaSeats, Seats};
@@ -34,9 +35,6 @@ use crate::error::{ListenError, Unreadable, Usage};
 use crate::interrupt::Interrupt;
 use crate::past::{Keeper, Kept, Rewinder};
 use crate::web::{self, Page, VerdictBoard, WebError};
-
-/// What is said here is for the user, also without `--verbose`.
-pub const NOTICE: &str = "onescan::notice";
 
 /// What came of a session that was driven to its end.
 pub(super) struct Driven {
@@ -210,7 +208,7 @@ fn serve_page(
         web::Source { failing, past, launch, verdict_board, ..web::Source::new(scenario, published, mailbox, pace) };
     let page = Page::serve(address, &config.doors.admission, source)?;
     // Sessions that go on from this one wait for this line, whether the program has its page or not.
-    tracing::info!(target: NOTICE, "{}{}", forked::PAGE_AT, page.url());
+    tracing::info!(target: NOTICE, "{}{}", PAGE_AT, page.url());
     if let Some(how) = Page::is_absent() {
         tracing::warn!(target: NOTICE, "there is no page there: {how}");
     }

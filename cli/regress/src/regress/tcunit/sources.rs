@@ -9,7 +9,7 @@ use onescan_iec::syntax::{FileId, parse_in, tokenize_in};
 use onescan_server::client::SourcePlace;
 
 use super::super::attributes::Attributes;
-use super::super::declared::place;
+use super::super::place::place;
 
 /// The block that all suites extend.
 const SUITE: &str = "FB_TESTSUITE";
