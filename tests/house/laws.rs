@@ -223,7 +223,7 @@ const LARGEST: &[(&str, &str)] = &[
 ];
 
 /// The sources of all crates, by their paths from the root.
-fn sources() -> impl Iterator<Item = (String, String)> {
+pub fn sources() -> impl Iterator<Item = (String, String)> {
     let files = workspace::crates().into_iter().flat_map(|member| rust_files(&root().join(member).join("src")));
     files.map(|path| (name(&path), std::fs::read_to_string(&path).expect("a source that can be read")))
 }

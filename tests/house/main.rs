@@ -6,6 +6,7 @@
 
 #![expect(clippy::format_push_string, clippy::format_collect, reason = "the text of a failed test, written once")]
 
+mod documented;
 mod graph;
 mod laws;
 mod old_words;

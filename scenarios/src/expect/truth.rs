@@ -66,7 +66,9 @@ impl Scale for Truth {
 /// would come after the end of the run. In the units of its comparisons; infinite for BOOLs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Margin {
+    /// In the units of the comparisons.
     pub least: f64,
+    /// In the units of the comparisons.
     pub greatest: f64,
 }
 

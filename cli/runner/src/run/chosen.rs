@@ -12,6 +12,7 @@ pub struct Chosen {
 }
 
 impl Chosen {
+    /// Signals by name; their numbers are looked up when the session begins.
     pub fn new(names: &[SignalName]) -> Self {
         Self { names: names.to_vec(), signals: Vec::new() }
     }

@@ -44,6 +44,7 @@ pub struct ExpectationReport {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SignalValue {
     pub signal: String,
+    /// In the signal's unit.
     pub value: f64,
 }
 

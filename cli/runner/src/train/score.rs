@@ -67,6 +67,7 @@ pub struct Expected {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Spent {
     pub name: String,
+    /// In `unit`.
     pub value: f64,
     /// What it is measured in.
     #[serde(default, skip_serializing_if = "Option::is_none")]

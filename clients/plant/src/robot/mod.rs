@@ -154,7 +154,9 @@ pub struct Joint {
 pub struct Mimic {
     /// The other joint's name.
     pub joint: String,
+    /// Coordinate of this joint per coordinate of the other.
     pub factor: f64,
+    /// m or rad, by the kind of this joint.
     pub offset: f64,
 }
 

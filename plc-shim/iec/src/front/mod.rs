@@ -41,6 +41,7 @@ pub struct Front {
 }
 
 impl Front {
+    /// Reads and checks files with the usual memory for variables.
     pub fn new(inputs: impl IntoIterator<Item = Input>) -> Self {
         Self::within(MemoryLimit::default(), inputs)
     }
@@ -69,6 +70,7 @@ impl Front {
         is_declared(&Parsed::new(inputs).units, path)
     }
 
+    /// True if a finding is an error, so that there is no program to compile.
     pub fn has_errors(&self) -> bool {
         self.findings.iter().any(|found| found.severity == Severity::Error)
     }
@@ -83,6 +85,7 @@ pub struct Parsed {
 }
 
 impl Parsed {
+    /// Parses files; each keeps its tree, also where its text is wrong.
     pub fn new(inputs: impl IntoIterator<Item = Input>) -> Self {
         let mut sources = SourceMap::default();
         let mut findings = Vec::new();

@@ -74,6 +74,7 @@ pub fn connections(element: &Element) -> impl Iterator<Item = &Element> {
     inputs.flat_map(Element::elements).filter(|inner| inner.name == "connection")
 }
 
+/// A coordinate or identifier of PLCopen XML, rounded towards zero.
 pub fn number(value: &str) -> Option<i64> {
     // Some tools write coordinates as reals.
     value.trim().parse().ok().or_else(|| value.trim().parse::<f64>().ok().map(|real| real as i64))
@@ -132,6 +133,7 @@ impl<'e> Graph<'e> {
         own
     }
 
+    /// The nodes of one kind, in the order of the file.
     pub fn of(&self, wanted: Kind) -> impl Iterator<Item = (NodeId, &Node<'e>)> {
         self.nodes.iter().enumerate().filter(move |(_, node)| node.kind == wanted)
     }

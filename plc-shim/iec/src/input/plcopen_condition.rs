@@ -263,6 +263,7 @@ pub enum Form {
 }
 
 impl Form {
+    /// How the text of a condition is written: as an assignment, an expression or statements.
     pub fn of(text: &str) -> Self {
         let text = text.trim();
         if text.starts_with(":=") {

@@ -109,6 +109,7 @@ pub enum Binary {
 }
 
 impl Binary {
+    /// True for the operators whose result is a BOOL, whatever their operands are.
     pub fn is_comparison(self) -> bool {
         use Binary as B;
         matches!(self, B::Equal | B::NotEqual | B::Less | B::LessEqual | B::Greater | B::GreaterEqual)
@@ -270,6 +271,7 @@ impl Part {
 }
 
 impl Place {
+    /// The place of a whole variable; of a variable located at a bit, that bit.
     pub fn whole(storage: Storage, ty: TypeId, span: Span) -> Self {
         let part = match storage {
             Storage::Located(Location { bit, .. }) => bit.map(Part::bit),

@@ -86,6 +86,7 @@ pub struct Dimension {
 }
 
 impl Dimension {
+    /// How many elements the dimension has; none if its bounds are the wrong way round.
     pub fn count(self) -> u64 {
         (self.high - self.low + 1).max(0) as u64
     }
@@ -185,14 +186,17 @@ impl TypeTable {
         &self.entries[id.0 as usize]
     }
 
+    /// What a type is.
     pub fn get(&self, id: TypeId) -> &Type {
         &self.entry(id).ty
     }
 
+    /// The size of a value, in bytes; 0 until a structure or block is complete.
     pub fn size(&self, id: TypeId) -> u32 {
         self.entry(id).size
     }
 
+    /// The alignment of a value, in bytes.
     pub fn align(&self, id: TypeId) -> u32 {
         self.entry(id).align
     }
@@ -289,6 +293,7 @@ impl TypeTable {
         self.add(Type::Struct { name, fields: Vec::new() }, 0, 1, Arc::from([]))
     }
 
+    /// Gives a structure that was only named its members and its initial image.
     pub fn complete_structure(&mut self, id: TypeId, members: Vec<Field>, image: Arc<[u8]>) {
         let align = members.iter().map(|field| self.align(field.ty)).max().unwrap_or(1);
         if let Some(entry) = self.entries.get_mut(id.0 as usize) {
@@ -329,6 +334,7 @@ impl TypeTable {
         self.blocks.get(&pou).copied()
     }
 
+    /// Gives a block that was only named its alignment and its initial image.
     pub fn complete_block(&mut self, id: TypeId, align: u32, image: Arc<[u8]>) {
         if let Some(entry) = self.entries.get_mut(id.0 as usize) {
             entry.size = image.len() as u32;

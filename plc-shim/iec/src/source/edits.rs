@@ -109,6 +109,7 @@ pub struct LineMap {
 }
 
 impl LineMap {
+    /// From the line of the original for each line of the text, `None` for lines that were added.
     pub fn of(origins: Vec<Option<u32>>) -> Self {
         Self { origins }
     }

@@ -24,6 +24,7 @@ pub trait Visitor {
     fn expression(&mut self, _expr: &Expr) {}
 }
 
+/// Shows a visitor each statement, before its parts.
 pub fn statements(list: &[Statement], visitor: &mut impl Visitor) {
     for each in list {
         visitor.statement(each);
@@ -180,6 +181,7 @@ fn indices(place: &Expr, visitor: &mut impl Visitor) {
     }
 }
 
+/// Shows a visitor an expression, then its parts.
 pub fn expression(expr: &Expr, visitor: &mut impl Visitor) {
     visitor.expression(expr);
     match &expr.kind {

@@ -25,6 +25,7 @@ use super::chosen::Chosen;
 pub struct Metered(Option<Rc<RefCell<Meter>>>);
 
 impl Metered {
+    /// Meters what a scenario counts; without measures nothing is metered.
     pub fn new(measures: Option<&Measures>) -> Self {
         Self(measures.map(|measures| Rc::new(RefCell::new(Meter::new(measures)))))
     }

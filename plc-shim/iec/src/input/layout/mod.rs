@@ -51,6 +51,7 @@ pub struct Element {
     /// `negated`, `rising`, `falling`, `set`, `reset`, `initial`.
     pub marks: Vec<&'static str>,
     /// Its upper left corner.
+    /// Right and down from the upper left corner, in units of the file.
     pub at: [f64; 2],
     /// Its width and height.
     pub size: [f64; 2],
@@ -70,6 +71,7 @@ pub struct Pin {
     pub marks: Vec<&'static str>,
     /// The path of the variable that it gives, within the unit: of a block's instance.
     pub state: Option<String>,
+    /// Right and down from the upper left corner, in units of the file.
     pub at: [f64; 2],
 }
 
