@@ -336,3 +336,38 @@ fn nothing_depends_on_the_order_of_a_hash_or_on_chance() {
     let found = against(&places_of(UNORDERED), HARMLESS);
     assert!(found.is_empty(), "\n{found}");
 }
+
+/// Calls whose result says what went wrong.
+const FALLIBLE: &[&str] = &[
+    ".ok()",
+    "canonicalize()",
+    "from_slice(",
+    "from_str(",
+    "from_utf8(",
+    "parse()",
+    "parse::<",
+    "read_to_string(",
+    "to_string_pretty(",
+    "try_from(",
+    "try_into()",
+];
+
+/// A default in place of an error hides what is wrong. In place of a `None` it is a value like any other, so the law
+/// looks for calls that can fail in the same chain.
+#[test]
+fn no_error_becomes_a_default() {
+    let is_such = |line: &str| {
+        line.split_once(".unwrap_or_default()").is_some_and(|(chain, _)| {
+            let chain = chain.rsplit(['=', ';', '{']).next().unwrap_or(chain);
+            FALLIBLE.iter().any(|call| chain.contains(call)) && !chain.contains(".and_then(") && !chain.contains('|')
+        })
+    };
+    let found = sources().flat_map(|(file, text)| {
+        let such = text.lines().enumerate().filter(|(_, line)| is_such(line));
+        such.map(|(at, line)| format!("    {file}:{}: {}\n", at + 1, line.trim())).collect::<Vec<_>>()
+    });
+    let found: String = found.collect();
+    assert!(found.is_empty(), "\n{found}");
+    assert!(is_such("let a = text.parse::<u8>().unwrap_or_default();"));
+    assert!(!is_such("let a = list.first().copied().unwrap_or_default();"));
+}

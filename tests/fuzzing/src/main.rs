@@ -259,10 +259,11 @@ struct Sums {
 
 impl Sums {
     fn add(&mut self, progress: &Path) {
-        let text = std::fs::read_to_string(progress).unwrap_or_default();
-        let told: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
-        let count = |key: &str| told[key].as_u64().unwrap_or_default();
-        let number = |key: &str| told[key].as_f64().unwrap_or_default();
+        // A worker that ended at its first input has written nothing; one that is stopped may leave half a line.
+        let text = std::fs::read_to_string(progress).ok();
+        let report = text.and_then(|text| serde_json::from_str::<serde_json::Value>(&text).ok());
+        let count = |key: &str| report.as_ref().and_then(|report| report[key].as_u64()).unwrap_or(0);
+        let number = |key: &str| report.as_ref().and_then(|report| report[key].as_f64()).unwrap_or(0.0);
         self.inputs += count("inputs").max(1);
         self.accepted += count("accepted");
         self.seconds += number("seconds");
