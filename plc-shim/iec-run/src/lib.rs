@@ -28,3 +28,8 @@ pub use run::{
     Act, CodePolicy, FaultSite, LateError, PlanDifference, PlcFault, RestoreError, RunError, SoftPlc, Statement,
     StatementId, Way, WayId, WriteSite, Wrote,
 };
+
+/// The code of the README is compiled and run as a test of documents.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+struct Readme;
