@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn a_byte_that_is_put_anew_is_not_lost() {
+    fn a_byte_that_is_put_again_is_not_lost() {
         let mut value = vec![0; TY.size()];
         let mut line = ByteLineMut::of(TY, &mut value).expect("a line");
         (0..11).for_each(|byte| line.put(byte));

@@ -277,7 +277,7 @@ name = "desk"
     }
 
     #[test]
-    fn each_fault_is_told_at_its_place() {
+    fn each_fault_is_reported_at_its_place() {
         let wrong = |kind: &str, more: &str| told(&element(kind, more)).expect_err("wrong");
         let (message, place) = wrong("button", "signal = \"Strat\"\nat = [0, 0]");
         assert_eq!((&*message, &*place), ("the panel has a signal `Strat` that is not declared", "\"Strat\""));

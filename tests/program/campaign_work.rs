@@ -71,7 +71,7 @@ fn so_it_is_for_a_plant_with_bodies_and_failures() {
 }
 
 #[test]
-fn a_state_that_is_the_healthy_one_again_is_told() {
+fn a_state_that_is_the_healthy_one_again_is_reported() {
     let said = campaign(shear().path(), &["--format", "json"]);
     let rows = lines(&said.out);
     let rejoined = |case: &str| {

@@ -78,7 +78,7 @@ fn the_filling_machine_has_a_verdict_for_each_fault() {
 }
 
 #[test]
-fn what_is_wrong_with_a_campaign_is_told_before_anything_runs() {
+fn what_is_wrong_with_a_campaign_is_reported_before_anything_runs() {
     let told = |from: &str, to: &str| {
         assert!(CAMPAIGN.contains(from), "{from}");
         let folder = shear_with(&CAMPAIGN.replacen(from, to, 1));

@@ -125,7 +125,7 @@ fn an_operator_presses_a_button_at_its_instant() {
 }
 
 #[test]
-fn what_is_wrong_with_a_case_is_told_with_its_place() {
+fn what_is_wrong_with_a_case_is_reported_with_its_place() {
     let told = |case: &str| {
         let folder = shear_with(&format!("[[case]]\nname = \"a\"\n{case}\n"));
         let said = typed(folder.path(), &["run", ".", "--case", "a"]);
@@ -155,7 +155,7 @@ fn what_is_wrong_with_a_case_is_told_with_its_place() {
 }
 
 #[test]
-fn an_unknown_case_is_told_with_the_nearest() {
+fn an_unknown_case_is_reported_with_the_nearest() {
     let folder = shear_with(CASES);
     let said = typed(folder.path(), &["run", ".", "--case", "slwo"]);
     assert_eq!(said.code, Some(2), "{said:?}");

@@ -65,7 +65,7 @@ fn figures_are_behind_the_bodies() {
 
 /// A look that is wrong is told at its line, before anything runs.
 #[test]
-fn a_look_that_is_wrong_is_told_with_its_place() {
+fn a_look_that_is_wrong_is_reported_with_its_place() {
     let folder = copied_shear();
     let file = std::fs::read_to_string(folder.path().join("scenario.toml")).expect("a scenario");
     let wrong = format!("{file}\n[[look]]\nbodies = [\"blade\"]\nwhen = \"Positon > 1\"\ncolour = \"red\"\n");

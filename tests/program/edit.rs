@@ -118,7 +118,7 @@ fn a_connection_that_is_drawn_is_one_line_and_what_the_command_line_says() {
 }
 
 #[test]
-fn what_is_wrong_is_told_with_its_place() {
+fn what_is_wrong_is_reported_with_its_place() {
     let editor = Editor::begin("cell");
     let scene = editor.text("plant.toml");
     let set = |revision: u64, key: &str, value: Value| {

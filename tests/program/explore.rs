@@ -110,7 +110,7 @@ fn equal_states_find_the_same_on_the_shear_and_the_filling_machine() {
 }
 
 #[test]
-fn what_cannot_be_explored_is_told() {
+fn what_cannot_be_explored_is_reported() {
     let told = |from: &str, to: &str| {
         let folder = copied_shear();
         edit(folder.path(), "race.toml", from, to);

@@ -133,7 +133,7 @@ fn a_parameter_is_varied_too() {
 }
 
 #[test]
-fn what_holds_is_told_with_how_near_it_came() {
+fn what_holds_is_reported_with_how_near_it_came() {
     let folder = benchmark("automatic-transmission");
     let said = typed(folder.path(), &["falsify", ".", "--expect", "AT6a", "--runs", "5"]);
     assert_eq!((said.code, said.err.as_str()), (Some(0), ""));
@@ -141,7 +141,7 @@ fn what_holds_is_told_with_how_near_it_came() {
 }
 
 #[test]
-fn what_cannot_be_falsified_is_told() {
+fn what_cannot_be_falsified_is_reported() {
     let told = |from: &str, to: &str| {
         let folder = benchmark("automatic-transmission");
         edit(folder.path(), "scenario.toml", from, to);

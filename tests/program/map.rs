@@ -100,7 +100,7 @@ fn every_program_has_its_own_inputs() {
 
 /// Before anything has begun: the signal, the variable, the line of the mapping, and what mends it.
 #[test]
-fn a_variable_that_is_left_out_is_told_at_its_line() {
+fn a_variable_that_is_left_out_is_reported_at_its_line() {
     let wrong = [
         "Sensor_1 = \"hr:300\"",
         "Strokes = \"hr:1200\"\nSensor_1 = [\"hr:300\"]",
@@ -135,7 +135,7 @@ fn a_program_that_was_made_for_another_mapping_is_refused() {
 }
 
 #[test]
-fn what_cannot_be_mapped_is_told() {
+fn what_cannot_be_mapped_is_reported() {
     let gantry = typed(&scenario("gantry-robot"), &["map", "."]);
     let unknown = typed(&scenario("shear"), &["map", ".", "--client", "plx"]);
     let all = [gantry, unknown];

@@ -152,7 +152,7 @@ fn a_plc_that_stops_is_minimised() {
 }
 
 #[test]
-fn what_cannot_be_minimised_is_told() {
+fn what_cannot_be_minimised_is_reported() {
     let folder = copied_shear();
     std::fs::write(folder.path().join("cases.toml"), "version = 1\n[[case]]\nname = \"calm\"\nuntil = \"1s\"\n")
         .unwrap();

@@ -50,7 +50,7 @@ fn what_is_there_stays_as_it_is() {
 
 /// The commented-out failure of the cell is one that the library has, and it shows.
 #[test]
-fn what_the_readme_tells_to_try_can_be_tried() {
+fn what_the_readme_says_to_try_can_be_tried() {
     let folder = tempfile::tempdir().unwrap();
     typed(folder.path(), &["new", "my-cell"]);
     let file = folder.path().join("my-cell/plant.toml");

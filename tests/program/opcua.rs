@@ -129,7 +129,7 @@ fn what_is_wrong_is_refused_and_changes_nothing() {
 
 /// A client that is killed, that leaves, that says it cannot go on, or that does not come.
 #[test]
-fn a_client_that_fails_is_told_by_name() {
+fn a_client_that_fails_is_reported_by_name() {
     for (how, patience, told) in [
         ("dies", "60s", "its OPC UA connection or session has ended while grant "),
         ("hangs", "3s", "is not done within 3 s: its OPC UA client is dead, hangs or does not write `Done`"),
@@ -281,7 +281,7 @@ fn tokens_are_good_for_what_they_say() {
 }
 
 #[test]
-fn options_that_contradict_each_other_are_told() {
+fn options_that_contradict_each_other_are_reported() {
     let told = |words: &[&str]| {
         let said = typed(&scenario("shear"), &[&["run", "."], words].concat());
         assert_eq!(said.code, Some(2), "{said:?}");

@@ -79,7 +79,7 @@ fn a_campaign_changes_parameters() {
 }
 
 #[test]
-fn what_cannot_change_is_told_before_anything_runs() {
+fn what_cannot_change_is_reported_before_anything_runs() {
     let told = [
         r#"component = "conveyer", parameter = "speed_m_s", value = 1.0"#,
         r#"component = "conveyor", parameter = "speed", value = 1.0"#,

@@ -39,7 +39,7 @@ fn the_birch_of_the_thesis_gives_its_veneer() {
 
 /// 3.2: a position of 50000 that is kept in INT and converted as it is.
 #[test]
-fn a_conversion_without_the_way_over_uint_is_told() {
+fn a_conversion_without_the_way_over_uint_is_reported() {
     let folder = copied("peeling-line");
     edit(
         folder.path(),
@@ -76,7 +76,7 @@ fn every_fault_of_the_line_has_a_verdict() {
 
 /// Sec. 2.3: the campaign finds that an unseen block is pushed where the loader is not; the mended program tells it.
 #[test]
-fn the_mended_program_tells_what_the_first_one_missed() {
+fn the_mended_program_reports_what_the_first_one_missed() {
     // those of the first one are in the snapshot of its campaign: no effect, and three collisions
     let said = typed(&scenario("peeling-line"), &["campaign", "mended.toml", "line", "--format", "json"]);
     let lines = said.out.lines().map(|line| serde_json::from_str::<serde_json::Value>(line).expect("JSON lines"));

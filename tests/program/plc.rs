@@ -103,7 +103,7 @@ fn the_switch_and_starts_are_obeyed() {
 
 /// What the PLC's operator does in mid-session, by name.
 #[test]
-fn a_plc_in_stop_and_a_restarted_one_are_told_apart() {
+fn a_plc_in_stop_and_a_restarted_one_are_distinguished() {
     let folder = crate::typed::copied_shear();
     edit(folder.path(), "scenario.toml", "system_words = true", "system_words = true\ngrant_timeout = \"2s\"");
     for (command, name) in [("stop", "the PLC is in STOP: grant "), ("cold", "the PLC was restarted in mid-session")] {

@@ -68,7 +68,7 @@ fn run_against(url: &str, settings: &str) -> Said {
 }
 
 #[test]
-fn what_does_not_fit_is_told_at_connect() {
+fn what_does_not_fit_is_reported_at_connect() {
     let plc = Plc::start(&scenario("shear"), &["--ads", "127.0.0.1:0"]);
     let wrong = [
         "map = { Strokes = \"Shear.Strokse\" }",
@@ -100,7 +100,7 @@ fn device(answer: Vec<u8>) -> String {
 }
 
 #[test]
-fn devices_that_are_none_are_told_apart() {
+fn devices_that_are_none_are_distinguished() {
     let frame = |length: u32, rest: &[u8]| [&[0, 0][..], &length.to_le_bytes(), rest].concat();
     let answers = [
         ("closed without an answer", Vec::new(), "has the PLC a route to 127.0.0.1.1.1?"),

@@ -85,7 +85,7 @@ fn a_case_with_another_program_goes_on_from_where_the_scenario_was() {
 }
 
 #[test]
-fn what_is_wrong_with_a_program_is_told() {
+fn what_is_wrong_with_a_program_is_reported() {
     let told = [
         "{ source = \"plc/shear.st\" }",
         "{ source = \"plc/shear.st\", by = \"plc/next.st\", was = \"T#100ms\", is = \"T#1s\" }",

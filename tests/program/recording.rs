@@ -163,7 +163,7 @@ fn chosen_signals_are_recorded_and_the_digest_is_that_of_all() {
 }
 
 #[test]
-fn what_cannot_be_is_told() {
+fn what_cannot_be_is_reported() {
     let folder = copied_shear();
     let mut text = String::new();
     let mut say = |words: &[&str]| {

@@ -97,7 +97,7 @@ fn a_page_shows_all_in_one_file() {
 }
 
 #[test]
-fn a_garbled_pending_snapshot_is_told() {
+fn a_garbled_pending_snapshot_is_reported() {
     let folder = changed_shear();
     std::fs::write(folder.path().join("snapshots/on-the-limit.traj.new"), "onescan trajectory 1\n").expect("a file");
     let said = typed(folder.path(), &["review", "."]);

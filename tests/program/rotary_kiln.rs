@@ -120,7 +120,7 @@ fn the_check_byte_of_the_thesis_is_refused() {
 }
 
 #[test]
-fn a_loop_that_waits_within_a_scan_is_told() {
+fn a_loop_that_waits_within_a_scan_is_reported() {
     let said = scanned("thesis-serial.toml", "200s", &[]);
     assert_eq!(said.code, Some(3), "{said:?}");
     let told = format!("{}{}", said.out, said.err);

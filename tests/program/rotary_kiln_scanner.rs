@@ -35,7 +35,7 @@ fn without_its_guard_the_program_stops_at_the_first_edge_of_the_shell() {
 
 /// The program of the thesis waits within a scan, whether the scanner is silent or not; the mended one gives the line up.
 #[test]
-fn a_silent_scanner_is_told_and_never_a_hang() {
+fn a_silent_scanner_is_reported_and_never_a_hang() {
     let folder = copied("rotary-kiln");
     let case = "version = 1\n[[case]]\nname = \"silent\"\n[[case.disturbance]]\nsignal = \"From_scanner\"\nkind = \"silent\"\n\
                 from = \"1s\"\n";

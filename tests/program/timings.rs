@@ -230,7 +230,7 @@ fn random_schedules_are_those_of_their_seed() {
 }
 
 #[test]
-fn what_tasks_and_orders_cannot_do_is_told() {
+fn what_tasks_and_orders_cannot_do_is_reported() {
     let told = [
         "order = [{ signals = [\"A\"] }]",
         "together = [{ signals = [\"A\", \"C\"], by = \"10ms\" }]",

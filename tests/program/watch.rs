@@ -13,7 +13,7 @@ fn told(words: &[&str]) -> String {
 }
 
 #[test]
-fn watching_changes_no_bit_and_tells_the_last_values() {
+fn watching_changes_no_bit_and_prints_the_last_values() {
     let (plain, said) = run_shear(&["--until", "2s"]);
     assert_eq!(said.code, Some(0), "{said:?}");
     let watch = ["--until", "2s", "--runs", "2", "--watch", "Shear.Strokes", "--watch", "Shear.ixUp"];
@@ -28,7 +28,7 @@ fn watching_changes_no_bit_and_tells_the_last_values() {
 }
 
 #[test]
-fn values_and_changes_are_told_by_path() {
+fn values_and_changes_are_printed_by_path() {
     let end = told(&["--until", "1s", "--watch", "Shear.Strokes=hex", "--watch", "Shear.Strokes.1"]);
     let change =
         told(&["--until", "1s", "--watch", "Shear.Strokes=bin", "--watch", "Shear.ixUp", "--watch-on", "change"]);
@@ -36,7 +36,7 @@ fn values_and_changes_are_told_by_path() {
 }
 
 #[test]
-fn what_cannot_be_watched_is_told() {
+fn what_cannot_be_watched_is_reported() {
     let cases = [
         told(&["--watch", "Shear.Stroke"]),
         told(&["--watch", "nobody:Shear.Strokes"]),

@@ -218,7 +218,7 @@ fn a_recording_is_a_page_of_the_past() {
 }
 
 #[test]
-fn a_recording_that_is_not_what_its_files_do_is_told() {
+fn a_recording_that_is_not_what_its_files_do_is_reported() {
     let folder = tempfile::tempdir().expect("a folder");
     let record = recorded(folder.path());
     let scene = Path::new(&record).join("scenario/plant.toml");

@@ -116,7 +116,7 @@ impl Network {
             }
         }
         if state.session.end().is_some() {
-            tell_the_end(state);
+            notify_of_the_end(state);
         }
     }
 
@@ -181,7 +181,7 @@ fn client_receives(state: &mut NetworkState, i: usize, delay: u64) {
     pipe.endpoint.answered();
 }
 
-fn tell_the_end(state: &mut NetworkState) {
+fn notify_of_the_end(state: &mut NetworkState) {
     let end = state.session.end().cloned().expect("it is over");
     let message = json(&ServerMessage::End(end));
     for pipe in &mut state.pipes {

@@ -437,7 +437,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_go_on_is_told_with_its_place() {
+    fn what_does_not_go_on_is_reported_with_its_place() {
         let wrong = |text: &str| {
             let error = parse(text).unwrap_err();
             format!("{}..{} {error}", error.place.start, error.place.end)

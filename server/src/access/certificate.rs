@@ -151,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn who_is_nobody_is_told_why() {
+    fn who_is_nobody_learns_why() {
         assert_eq!(whose(&[]), Err(BadSubject::NoName));
         assert_eq!(whose(&[(COMMON_NAME, 0x0c, "a"), (COMMON_NAME, 0x0c, "b")]), Err(BadSubject::NoName));
         assert!(matches!(whose(&[(COMMON_NAME, 0x0c, "a b")]), Err(BadSubject::Name(_))));

@@ -243,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn names_are_told_apart() {
+    fn names_are_distinguished() {
         let (mut register, _) = register();
         let pass = Pass { name: "anna".into(), role: Role::Viewer, expires: None, hash: TokenHash::of("x") };
         assert_eq!(register.add(pass.clone()), Err(RegisterError::Doubled("anna".into())));

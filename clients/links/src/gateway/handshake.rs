@@ -106,7 +106,7 @@ pub struct Handshake {
     /// The number of the scenario's mapping, if it has one.
     layout: Option<u32>,
     /// It has been said that the PLC shows no number.
-    is_layout_told: bool,
+    is_layout_reported: bool,
 }
 
 impl Default for Handshake {
@@ -128,7 +128,7 @@ impl Handshake {
             notice: None,
             is_lost: false,
             layout: None,
-            is_layout_told: false,
+            is_layout_reported: false,
         }
     }
 
@@ -308,7 +308,8 @@ impl Handshake {
         match (report.joined, report.answer) {
             (joined, _) if joined == session && report.done == session => {
                 self.compare_layout(report)?;
-                if self.layout.is_some() && report.layout == 0 && !std::mem::replace(&mut self.is_layout_told, true) {
+                if self.layout.is_some() && report.layout == 0 && !std::mem::replace(&mut self.is_layout_reported, true)
+                {
                     self.notice = Some(Notice::NoLayout);
                 }
                 self.boots = report.boots;

@@ -284,7 +284,7 @@ fn a_program_that_was_made_for_another_mapping_is_found_before_the_first_step() 
 }
 
 #[test]
-fn a_program_without_a_number_is_told_once() {
+fn a_program_without_a_number_is_reported_once() {
     let mut world = World::new(Vec::new());
     world.is_counting = true;
     world.handshake = Handshake::new().expecting(Some(7));

@@ -289,7 +289,7 @@ mod tests {
     }
 
     #[test]
-    fn a_variable_that_is_not_reached_is_told() {
+    fn a_variable_that_is_not_reached_is_reported() {
         let all = [
             "go = \"hr:0\"",
             "go = [\"hr:0\"]",

@@ -249,16 +249,16 @@ mod tests {
         }
 
         #[test]
-        fn a_frame_that_is_cut_is_told(frame in frames(), at in any::<prop::sample::Index>()) {
+        fn a_frame_that_is_cut_is_reported(frame in frames(), at in any::<prop::sample::Index>()) {
             let bytes = frame.encoded();
             let cut = at.index(bytes.len());
             let read = Frame::read(&mut &bytes[..cut]);
-            let is_told = if cut == 0 { matches!(read, Ok(None)) } else { read.is_err() };
-            prop_assert!(is_told);
+            let is_reported = if cut == 0 { matches!(read, Ok(None)) } else { read.is_err() };
+            prop_assert!(is_reported);
         }
 
         #[test]
-        fn any_bytes_are_a_frame_or_told(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
+        fn any_bytes_are_a_frame_or_reported(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
             let _ = Frame::read(&mut &bytes[..]);
         }
     }

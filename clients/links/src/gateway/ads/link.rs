@@ -182,8 +182,8 @@ fn all_well(codes: &mut Bytes<'_>, points: &[Point], what: &str) -> Result<(), L
 impl Link for AdsLink {
     fn connect(&mut self) -> Result<(), LinkFault> {
         let state = self.open()?;
-        let tells_itself = self.exchange.from_plc().iter().any(|point| point.name == RUNNING.0);
-        if state != command::RUN && !tells_itself {
+        let reports_itself = self.exchange.from_plc().iter().any(|point| point.name == RUNNING.0);
+        if state != command::RUN && !reports_itself {
             let reason = format!("the PLC is in {}; set it to RUN", state_name(state));
             return Err(LinkFault::Unreachable { url: format!("ads://{}", self.address), reason });
         }

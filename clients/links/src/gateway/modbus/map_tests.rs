@@ -28,7 +28,7 @@ fn exchange(ports: &[(&str, SignalType)], addresses: &[(&str, &str)]) -> Exchang
 }
 
 #[test]
-fn what_is_wrong_with_a_map_is_told() {
+fn what_is_wrong_with_a_map_is_reported() {
     use SignalType as T;
     let told = |ty, address: &str| {
         let exchange = exchange(&[("a", ty), ("b", ty)], &[("a", address), ("b", "hr:50")]);

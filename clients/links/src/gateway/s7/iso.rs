@@ -207,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_telegram_is_told() {
+    fn what_is_not_a_telegram_is_reported() {
         let told = |bytes: &[u8]| read(&[bytes]).unwrap_err();
         assert_eq!(told(b"HTTP/1.1"), BadTelegram::Version(b'H'));
         assert_eq!(told(&[3, 0, 0, 5, 0]), BadTelegram::Length(5));

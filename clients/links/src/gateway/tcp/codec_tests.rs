@@ -141,7 +141,7 @@ fn blocks_come_one_by_one_or_the_newest() {
 }
 
 #[test]
-fn what_is_set_in_the_reserve_is_told() {
+fn what_is_set_in_the_reserve_is_reported() {
     let mut codec = BlockCodec::new(&axes(1).0.from_plc);
     let good = bytes("1100 45c4e000 45fa0000 466a6000 466a6000 00000000 00000000 00000000");
     codec.take(&good);
@@ -203,7 +203,7 @@ proptest! {
     /// A stream from which bytes are missing is told by the third block after them, wherever it is cut: a speed that is
     /// not 0 comes to lie where the layout has nothing.
     #[test]
-    fn a_stream_that_is_cut_wrongly_is_told(values in commands(), missing in 1..360_usize) {
+    fn a_stream_that_is_cut_wrongly_is_reported(values in commands(), missing in 1..360_usize) {
         let layout = axes(12).0.from_plc;
         let mut block = vec![0; 360];
         layout.encode(&values, &mut block);
@@ -217,7 +217,7 @@ proptest! {
 
     /// Whatever comes: it is told, or it is taken and not a bit of it is left out.
     #[test]
-    fn a_frame_is_taken_whole_or_told(
+    fn a_frame_is_taken_whole_or_reported(
         values in commands(), changes in prop::collection::vec((0..360_usize, any::<u8>()), 0..4)
     ) {
         let (layouts, exchange) = axes(12);

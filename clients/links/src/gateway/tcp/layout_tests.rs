@@ -59,7 +59,7 @@ fn an_axis_is_thirty_bytes_and_its_feedback_ten() {
 }
 
 #[test]
-fn what_is_wrong_with_a_layout_is_told() {
+fn what_is_wrong_with_a_layout_is_reported() {
     let told = |from: &str, to: &str| {
         let text = AXIS.replacen(from, to, 1);
         let fault = Layouts::new(&declaration(&text), &axis_exchange()).unwrap_err();
