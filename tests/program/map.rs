@@ -15,12 +15,12 @@ const LINKS: [&str; 5] = [
 
 /// The mappings of a scenario of the project, over every link.
 fn mapped(name: &str) -> String {
-    let told = LINKS.map(|url| {
+    let reported = LINKS.map(|url| {
         let said = typed(&scenario(name), &["map", ".", "--gateway", &format!("plc={url}")]);
         assert_eq!((said.code, said.err.as_str()), (Some(0), ""), "{url}");
         said.out
     });
-    told.join("\n")
+    reported.join("\n")
 }
 
 #[test]
@@ -111,13 +111,13 @@ fn a_variable_that_is_left_out_is_reported_at_its_line() {
         "Sensor_1 = 300",
         "Strokes = \"4x100\"",
     ];
-    let told = wrong.map(|map| {
+    let reported = wrong.map(|map| {
         // Nothing listens there: the mapping is looked at first.
         let said = run_with(with_map(map).path(), "plc=modbus://127.0.0.1:1");
         assert_eq!((said.code, said.out.as_str()), (Some(2), ""), "{map}: {said:?}");
         said.err
     });
-    insta::assert_snapshot!(told.join("----\n"));
+    insta::assert_snapshot!(reported.join("----\n"));
 }
 
 /// Two signals of one type that have changed places would run to the end, with another digest.

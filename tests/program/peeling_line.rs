@@ -49,8 +49,8 @@ fn a_conversion_without_the_way_over_uint_is_reported() {
     );
     let said = typed(folder.path(), &["run", ".", "--until", "10s"]);
     assert_eq!(said.code, Some(1), "{said:?}");
-    let told = said.out.lines().find(|line| line.contains("`positions are converted as UINT` violated"));
-    insta::assert_snapshot!("peeling_line_conversion", told.unwrap_or_default());
+    let reported = said.out.lines().find(|line| line.contains("`positions are converted as UINT` violated"));
+    insta::assert_snapshot!("peeling_line_conversion", reported.unwrap_or_default());
 }
 
 /// 3.1.1: Execute is held for 500 ms because a shorter one may not be seen. In lockstep one scan is enough.

@@ -132,8 +132,8 @@ fn a_plc_that_is_not_there_is_unreachable() {
     assert!(said.err.contains("unreachable: tcp://127.0.0.1:1"), "{said:?}");
     assert_eq!(said.err.matches("; trying again for 1s").count(), 1, "told once: {said:?}");
     assert!(said.err.contains(" times in 1s"), "{said:?}");
-    let told = |gateway: &str| typed(&scenario("shear"), &["run", ".", "--gateway", gateway]);
-    let all = [told("plc=tpc://127.0.0.1:1"), told("plc=127.0.0.1"), told("plant"), told("plx")];
+    let reported = |gateway: &str| typed(&scenario("shear"), &["run", ".", "--gateway", gateway]);
+    let all = [reported("plc=tpc://127.0.0.1:1"), reported("plc=127.0.0.1"), reported("plant"), reported("plx")];
     assert!(all.iter().all(|said| said.code == Some(2)), "{all:?}");
     let text: Vec<String> = all.into_iter().map(|said| said.err).collect();
     insta::assert_snapshot!(text.join("----\n"));

@@ -23,8 +23,8 @@ fn the_ads_crate_sees_a_device() {
     assert_eq!(device.get_info().unwrap().name, "onescan plc");
     assert_eq!(device.get_state().unwrap().0, AdsState::Run);
     let (symbols, types) = symbol::get_symbol_info(device).unwrap();
-    let told = |symbol: &symbol::Symbol| format!("{}: {}, {} bytes", symbol.name, symbol.typ, symbol.size);
-    insta::assert_snapshot!(symbols.iter().map(told).collect::<Vec<_>>().join("\n"));
+    let reported = |symbol: &symbol::Symbol| format!("{}: {}, {} bytes", symbol.name, symbol.typ, symbol.size);
+    insta::assert_snapshot!(symbols.iter().map(reported).collect::<Vec<_>>().join("\n"));
     assert!(types.is_empty(), "all of them are elementary");
 
     let position = Handle::new(device, "Shear.Position_1").unwrap();
@@ -77,12 +77,12 @@ fn what_does_not_fit_is_reported_at_connect() {
         "ads = { words = \"GVL\" }",
         "ads = { net_id = \"1.2.3\" }",
     ];
-    let told = wrong.map(|settings| {
+    let reported = wrong.map(|settings| {
         let said = run_against(&plc.gateway("ads://"), settings);
         assert_eq!(said.code, Some(2), "{settings}: {said:?}");
         said.err
     });
-    insta::assert_snapshot!(told.join("----\n"));
+    insta::assert_snapshot!(reported.join("----\n"));
 }
 
 /// A device that answers each connection's first request with `answer`, and then closes.

@@ -2,7 +2,7 @@
 
 use crate::typed::{digests, run_shear, scenario, typed};
 
-fn told(words: &[&str]) -> String {
+fn reported(words: &[&str]) -> String {
     let mut all = vec!["run", "."];
     all.extend_from_slice(words);
     let said = typed(&scenario("shear"), &all);
@@ -29,19 +29,19 @@ fn watching_changes_no_bit_and_prints_the_last_values() {
 
 #[test]
 fn values_and_changes_are_printed_by_path() {
-    let end = told(&["--until", "1s", "--watch", "Shear.Strokes=hex", "--watch", "Shear.Strokes.1"]);
+    let end = reported(&["--until", "1s", "--watch", "Shear.Strokes=hex", "--watch", "Shear.Strokes.1"]);
     let change =
-        told(&["--until", "1s", "--watch", "Shear.Strokes=bin", "--watch", "Shear.ixUp", "--watch-on", "change"]);
+        reported(&["--until", "1s", "--watch", "Shear.Strokes=bin", "--watch", "Shear.ixUp", "--watch-on", "change"]);
     insta::assert_snapshot!(format!("{end}\n{change}"));
 }
 
 #[test]
 fn what_cannot_be_watched_is_reported() {
     let cases = [
-        told(&["--watch", "Shear.Stroke"]),
-        told(&["--watch", "nobody:Shear.Strokes"]),
-        told(&["--watch", "Shear.Strokes=octal"]),
-        told(&["--watch", "Shear.Strokes", "--transport", "tcp"]),
+        reported(&["--watch", "Shear.Stroke"]),
+        reported(&["--watch", "nobody:Shear.Strokes"]),
+        reported(&["--watch", "Shear.Strokes=octal"]),
+        reported(&["--watch", "Shear.Strokes", "--transport", "tcp"]),
     ];
     insta::assert_snapshot!(cases.join("\n"));
 }

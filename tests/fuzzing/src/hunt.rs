@@ -75,7 +75,7 @@ impl Hunt<'_> {
         let mut tally = Tally::default();
         let mut current = OpenOptions::new().create(true).truncate(false).write(true).open(self.scratch.join(CURRENT));
         let start = Instant::now();
-        let mut told = Instant::now();
+        let mut reported = Instant::now();
         let mut waiting: Vec<Vec<u8>> = corpus.clone();
         loop {
             let input = waiting.pop().unwrap_or_else(|| {
@@ -112,8 +112,8 @@ impl Hunt<'_> {
                 Span::Inputs(most) => tally.inputs >= most,
                 Span::Time(most) => start.elapsed() >= most,
             };
-            if is_over || told.elapsed() > Duration::from_secs(1) {
-                told = Instant::now();
+            if is_over || reported.elapsed() > Duration::from_secs(1) {
+                reported = Instant::now();
                 self.tell(&tally, corpus.len(), seen.branches(), start.elapsed());
             }
             if is_over {

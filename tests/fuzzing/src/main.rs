@@ -260,9 +260,9 @@ struct Sums {
 impl Sums {
     fn add(&mut self, progress: &Path) {
         let text = std::fs::read_to_string(progress).unwrap_or_default();
-        let told: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
-        let count = |key: &str| told[key].as_u64().unwrap_or_default();
-        let number = |key: &str| told[key].as_f64().unwrap_or_default();
+        let reported: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
+        let count = |key: &str| reported[key].as_u64().unwrap_or_default();
+        let number = |key: &str| reported[key].as_f64().unwrap_or_default();
         self.inputs += count("inputs").max(1);
         self.accepted += count("accepted");
         self.seconds += number("seconds");

@@ -77,11 +77,11 @@ impl LinkFault {
     /// The same, with how often it was tried and for how long.
     pub(super) fn tried(self, times: u32, within: Duration) -> Self {
         let times = if times == 1 { "once".to_owned() } else { format!("{times} times") };
-        let told = |reason: String| format!("{reason}; tried {times} in {within:?}");
+        let described = |reason: String| format!("{reason}; tried {times} in {within:?}");
         match self {
-            Self::Unreachable { url, reason } => Self::Unreachable { url, reason: told(reason) },
+            Self::Unreachable { url, reason } => Self::Unreachable { url, reason: described(reason) },
             Self::NobodyCame { url, .. } => Self::NobodyCame { url, within },
-            Self::Lost(reason) => Self::Lost(told(reason)),
+            Self::Lost(reason) => Self::Lost(described(reason)),
             other => other,
         }
     }

@@ -5,7 +5,7 @@ use std::time::Duration;
 use onescan_base::did_you_mean;
 
 use super::command::{self, SUM_MAX, state_name};
-use super::connection::{Connection, Refusal, numbers, told};
+use super::connection::{Connection, Refusal, described, numbers};
 use super::frame::Bytes;
 use super::options::Options;
 use super::symbol::{Form, READ_ONLY, Symbol, elementary};
@@ -97,7 +97,7 @@ impl AdsLink {
                     source.net_id
                 ),
             },
-            Refusal::Code(code) => LinkFault::Refused { url, reason: told(code) },
+            Refusal::Code(code) => LinkFault::Refused { url, reason: described(code) },
             Refusal::Link(fault) => fault,
         })?;
         self.connection = Some(connection);
@@ -170,7 +170,7 @@ fn all_well(codes: &mut Bytes<'_>, points: &[Point], what: &str) -> Result<(), L
         match codes.u32() {
             Some(0) => {}
             Some(code) => {
-                let text = format!("`{}` cannot be {what}: {}", point.label(), told(code));
+                let text = format!("`{}` cannot be {what}: {}", point.label(), described(code));
                 return Err(MappingFault::new(&point.name, text).into());
             }
             None => return Err(LinkFault::Nonsense("a sum that is cut short".to_owned())),

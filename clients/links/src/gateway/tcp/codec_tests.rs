@@ -210,9 +210,9 @@ proptest! {
         let mut codec = BlockCodec::new(&layout);
         codec.take(&block[missing..]);
         codec.take(&block.repeat(2));
-        let told = (0..2).find_map(|_| codec.next_block().err());
+        let reported = (0..2).find_map(|_| codec.next_block().err());
         // By whole axes it is cut between two of them: what is wrong is which axis, and bits cannot show that.
-        prop_assert_eq!(told.is_some(), missing % 30 != 0, "{} bytes are missing", missing);
+        prop_assert_eq!(reported.is_some(), missing % 30 != 0, "{} bytes are missing", missing);
     }
 
     /// Whatever comes: it is told, or it is taken and not a bit of it is left out.
