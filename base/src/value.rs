@@ -389,7 +389,7 @@ mod tests {
             assert!(ty.parse_text(text).is_err(), "{ty} {text}");
         }
         let error = T::String(3).parse_text("日本").unwrap_err().to_string();
-        assert_eq!(error, "`日本` is no STRING[3]: it has characters of more than 8 bits");
+        assert_eq!(error, "`日本` is not of type STRING[3]: it has characters of more than 8 bits");
     }
 
     #[test]

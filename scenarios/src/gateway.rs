@@ -99,12 +99,12 @@ impl Scenario {
     /// Lets a real PLC stand in for the soft PLC `name`, at `url` if that is not where the scenario says.
     ///
     /// # Errors
-    /// No such client, or one that is no PLC.
+    /// No such client, or one that is not a PLC.
     pub fn commission(&mut self, name: &ClientName, url: Option<String>) -> Result<(), ScenarioError> {
         let help = || did_you_mean(name.as_str(), self.file().clients.keys().map(ClientName::as_str));
         match self.file().clients.get(name).map(toml::Spanned::get_ref) {
             Some(client) if client.is_plc() => {}
-            Some(_) => return Err(self.wrong_client(name, format!("client `{name}` is no PLC"), None)),
+            Some(_) => return Err(self.wrong_client(name, format!("client `{name}` is not a PLC"), None)),
             None => return Err(self.wrong_client(name, format!("the scenario has no client `{name}`"), help())),
         }
         match url {
@@ -337,7 +337,7 @@ impl Scenario {
                     writes: signals.iter().filter(is_own).map(|signal| port(&signal.name, signal.ty)).collect(),
                 })
             }
-            _ => Err(self.wrong_client(name, format!("client `{name}` is no PLC"), None)),
+            _ => Err(self.wrong_client(name, format!("client `{name}` is not a PLC"), None)),
         }
     }
 

@@ -295,7 +295,7 @@ name = "desk"
         assert!(wrong("alarms", "signal = \"Speed\"\nat = [0, 0]").0.contains("is BOOL"));
         assert!(wrong("alarms", "signal = \"Seen\"\nat = [0, 0]").0.contains("is written by the plant"));
         assert!(wrong("bar", "signal = \"Speed\"\nat = [0, 0]\nmin = 1.0\nmax = 1.0").0.contains("not below"));
-        assert!(wrong("lamp", "signal = \"Start\"\nat = [0, 0]\ncolour = \"url(x)\"").0.contains("is no colour"));
+        assert!(wrong("lamp", "signal = \"Start\"\nat = [0, 0]\ncolour = \"url(x)\"").0.contains("is not a colour"));
         assert!(wrong("switch", "signal = \"Start\"\nat = [0, 0]\nlatching = true").0.contains("only a button"));
         assert!(
             wrong("slider", "failure = \"wall.leak\"\nat = [0, 0]").0.contains("only a switch, a button and a lamp")

@@ -155,7 +155,7 @@ fn as_written(schema: &mut Schema) {
     transform_subschemas(&mut as_written, schema);
 }
 
-/// True for a default that tells a reader something. Emptiness does not, nor does a value in another form than that in
+/// True for a default that informs a reader. Emptiness does not, nor does a value in another form than that in
 /// which it is written, as the nanoseconds of a time.
 fn is_informative(default: &Value, ty: Option<&Value>) -> bool {
     match (default, ty.and_then(Value::as_str)) {

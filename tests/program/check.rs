@@ -151,7 +151,7 @@ fn a_file_that_is_quite_wrong_does_not_hide_the_others() {
         said.out.lines().filter(|line| line.contains("more") || line.contains("in 2 files")).collect();
     assert_eq!(lines, ["... and 16 more errors in a.st", "42 errors, 1 warning in 2 files"]);
     let json = checked(folder.path(), &[".", "--format", "json"]);
-    assert_eq!(json.out.lines().count(), 43, "machines are told all");
+    assert_eq!(json.out.lines().count(), 43, "machines receive all");
 }
 
 #[test]

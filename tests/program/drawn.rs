@@ -63,7 +63,7 @@ fn figures_are_behind_the_bodies() {
     served.report();
 }
 
-/// A look that is wrong is told at its line, before anything runs.
+/// A look that is wrong is reported at its line, before anything runs.
 #[test]
 fn a_look_that_is_wrong_is_reported_with_its_place() {
     let folder = copied_shear();

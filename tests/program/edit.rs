@@ -160,7 +160,7 @@ fn what_somebody_else_has_changed_is_not_written_over() {
     assert_eq!((status, &answer["state"]["changed"]), (409, &json!(["plant.toml"])), "{answer}");
     assert_eq!(editor.text("plant.toml"), theirs);
     assert_eq!(editor.want(&json!({"want": "reload"})).0, 200);
-    // a page that has not seen that is told
+    // a page that has not seen that is notified
     assert_eq!(editor.want(&faster(0)).0, 409);
     assert_eq!(editor.want(&faster(1)).0, 200);
     assert_eq!(diff(&theirs, &editor.text("plant.toml")), "-speed_m_s = 0.25\n+speed_m_s = 0.5\n");

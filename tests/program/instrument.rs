@@ -221,7 +221,7 @@ fn a_mapping_of_symbols_goes_with_the_shim() {
     }
 }
 
-/// What SCL has not is told, and nothing is written.
+/// What SCL does not have is reported, and nothing is written.
 #[test]
 fn what_has_no_form_in_scl_is_reported() {
     let folder = tempfile::tempdir().unwrap();

@@ -168,7 +168,7 @@ fn what_cannot_be_minimised_is_reported() {
     std::fs::write(folder.path().join("cases.toml"), forty(1)).unwrap();
     let name = said(&["--case", "forty", "--name", "a/b"]);
     insta::assert_snapshot!(unnamed(&[calm, unknown, expectation, neither, name].join("\n"), folder.path()));
-    // A limit that is too low is told of.
+    // A limit that is too low is reported.
     let limited = typed(folder.path(), &["minimise", ".", "--case", "forty", "--runs", "1", "--format", "json"]);
     let limited: Value = serde_json::from_str(limited.out.trim()).expect("JSON");
     assert_eq!((&limited["minimal"], &limited["trials"]), (&false.into(), &1.into()));

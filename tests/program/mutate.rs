@@ -1,4 +1,4 @@
-//! `onescan mutate`: small mistakes in a program, told by what the cases come to.
+//! `onescan mutate`: small mistakes in a program, detected by what the cases come to.
 
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -63,7 +63,7 @@ fn what_the_readme_says_to_try_can_be_tried() {
     assert!(said.code == Some(1) && said.out.contains("`boxes are pushed off` violated"), "{said:?}");
 }
 
-/// A sensor more, as the cell's README tells: the error names the line to write, and with it the run is green.
+/// A sensor more, as the cell's README describes: the error names the line to write, and with it the run is green.
 #[test]
 fn a_sensor_is_added_by_what_the_program_says() {
     let folder = tempfile::tempdir().unwrap();

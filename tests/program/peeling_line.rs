@@ -74,7 +74,7 @@ fn every_fault_of_the_line_has_a_verdict() {
     insta::assert_snapshot!("peeling_line_campaign", said.out);
 }
 
-/// Sec. 2.3: the campaign finds that an unseen block is pushed where the loader is not; the mended program tells it.
+/// Sec. 2.3: the campaign finds that an unseen block is pushed where the loader is not; the mended program reports it.
 #[test]
 fn the_mended_program_reports_what_the_first_one_missed() {
     // those of the first one are in the snapshot of its campaign: no effect, and three collisions

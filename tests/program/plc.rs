@@ -130,7 +130,7 @@ fn a_plc_that_is_not_there_is_unreachable() {
     let said = typed(folder.path(), &["run", ".", "--gateway", "plc=tcp://127.0.0.1:1"]);
     assert_eq!(said.code, Some(3), "{said:?}");
     assert!(said.err.contains("unreachable: tcp://127.0.0.1:1"), "{said:?}");
-    assert_eq!(said.err.matches("; trying again for 1s").count(), 1, "told once: {said:?}");
+    assert_eq!(said.err.matches("; trying again for 1s").count(), 1, "reported once: {said:?}");
     assert!(said.err.contains(" times in 1s"), "{said:?}");
     let reported = |gateway: &str| typed(&scenario("shear"), &["run", ".", "--gateway", gateway]);
     let all = [reported("plc=tpc://127.0.0.1:1"), reported("plc=127.0.0.1"), reported("plant"), reported("plx")];

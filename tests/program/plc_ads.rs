@@ -106,7 +106,7 @@ fn devices_that_are_none_are_distinguished() {
         ("closed without an answer", Vec::new(), "has the PLC a route to 127.0.0.1.1.1?"),
         ("4 GiB announced", frame(u32::MAX, &[]), "a frame of 4294967295 bytes"),
         ("a short frame", frame(8, &[0; 8]), "a frame of 8 bytes"),
-        ("no ADS command", vec![1, 16, 0, 0, 0, 0], "no ADS command"),
+        ("no ADS command", vec![1, 16, 0, 0, 0, 0], "not an ADS command"),
         ("lengths that contradict", frame(32, &[255; 32]), "state flags"),
     ];
     for (what, answer, text) in answers {

@@ -382,7 +382,7 @@ fn a_plc_may_connect_again() {
     assert!(said.err.contains("connection back"), "{said:?}");
 }
 
-/// Bytes are missing in mid-stream: it is told, and nothing of it reaches the plant.
+/// Bytes are missing in mid-stream: it is reported, and nothing of it reaches the plant.
 #[test]
 fn a_stream_that_is_cut_wrongly_is_reported() {
     let expected = in_process("500ms");

@@ -75,7 +75,7 @@ fn keys_decide_one_by_one() {
         .expect("Python is on the machine");
     let said = named(&folder, &String::from_utf8_lossy(&output.stdout));
     assert_eq!(output.status.code(), Some(0), "{said}");
-    // The screen is cleared before what came of it is told.
+    // The screen is cleared before what came of it is printed.
     let reported = said.rsplit("\u{1b}[H").next().into_iter().flat_map(str::lines);
     let reported: Vec<&str> =
         reported.filter(|line| line.starts_with("accepted ") || line.starts_with("rejected ")).collect();

@@ -22,7 +22,7 @@ fn transport_and_checkpoints_do_not_matter() {
     is_the_same_over_tcp_and_resumed("rotary-kiln", ".", "100s", "70.3s");
 }
 
-/// Scenarios in one folder are told apart by their files, and so are their recordings.
+/// Scenarios in one folder are distinguished by their files, and so are their recordings.
 #[test]
 fn a_comparison_names_the_flip_flop_of_the_thesis() {
     let folder = tempfile::tempdir().expect("a folder");

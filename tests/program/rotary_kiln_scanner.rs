@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use crate::typed::{copied, digests, edit, is_the_same_over_tcp_and_resumed, onescan, scenario, typed};
 
-/// Lines of what is said that tell of the PLC's end.
+/// Lines of what is said that report the PLC's end.
 fn fault(folder: &Path, words: &[&str]) -> String {
     let said = typed(folder, words);
     assert_eq!(said.code, Some(3), "{said:?}");

@@ -100,7 +100,8 @@ order = [{ signals = ["A", "B"] }]
 task = [{ client = "reader", task = "look", late = "10ms", phase = "20ms", two_cycles = true }]
 start = [{ client = "reader", by = "20ms" }, { client = "source", by = "10ms" }]"#;
     let folder = machine(30, (3, 6), TOGETHER, "always (apart = 0 and n <= 0)", timing);
-    // What is wrong already is not a finding of a deviation, so that each way is told only if something is expected of it.
+    // What is wrong already is not a finding of a deviation, so that each way is reported only if something is expected
+    // of it.
     edit(
         folder.path(),
         "machine.toml",

@@ -75,7 +75,7 @@ fn an_experts_lesson_is_repeated_to_its_digest_and_its_score() {
     assert!(table.code == Some(0) && table.out.contains("ann") && table.out.contains("3 of 3"), "{table:?}");
 }
 
-/// Who does nothing is told so, with what the expert made of it.
+/// Who does nothing is notified, with what the expert made of it.
 #[test]
 fn who_does_nothing_does_not_pass() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -87,7 +87,7 @@ fn who_does_nothing_does_not_pass() {
     assert!(said.out.contains("not passed") && said.out.contains("never"), "{said:?}");
 }
 
-/// Lessons and starts are listed; what is wrong is told at its place.
+/// Lessons and starts are listed; what is wrong is reported at its place.
 #[test]
 fn lessons_are_listed_and_checked() {
     let listed = typed(&scenario("arc-furnace"), &["train", "."]);

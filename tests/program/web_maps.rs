@@ -51,7 +51,10 @@ fn the_last_map_on_the_page_is_that_of_the_run() {
             }
             Message::Binary(bytes) => {
                 if let Some((map, columns, rows, values)) = map_of(&bytes) {
-                    assert!(cells[map]["across"]["edges"].is_array(), "where cells lie is told before their values");
+                    assert!(
+                        cells[map]["across"]["edges"].is_array(),
+                        "where cells lie is reported before their values"
+                    );
                     shown[map] = Some((columns, rows, values));
                 }
             }

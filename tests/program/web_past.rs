@@ -184,7 +184,7 @@ fn viewed(record: &str, look: impl FnOnce(&Served, &mut WebSocket<TcpStream>)) -
     let served = Served::of(begun(&scenario("shear"), &["view", record]));
     let mut viewer = served.view();
     look(&served, &mut viewer);
-    // also those who come later are told
+    // those who come later are notified, too
     let text = received(&mut served.view(), "event")["text"].as_str().expect("a text").to_owned();
     ask(&mut viewer, &json!({"type": "operate", "operation": "stop"}));
     let output = served.program.wait_with_output().expect("it ends");

@@ -58,7 +58,7 @@ fn an_external_client_is_not_known_before_it_joins() {
     assert!(said.out.contains("plc -> nobody that is known"), "{}", said.out);
 }
 
-/// What `bind` says wrongly is told with its client.
+/// What `bind` says wrongly is reported with its client.
 #[test]
 fn a_wrong_bind_is_reported() {
     let shear = copied_shear();

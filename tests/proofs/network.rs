@@ -33,7 +33,7 @@ struct Pipe {
     to_server: VecDeque<Vec<u8>>,
     /// The client closed it; what it sent before still arrives.
     closed: bool,
-    /// The server has told this client that the session is over.
+    /// The server has notified this client that the session is over.
     notified: bool,
     /// What the server has read for this client's next grant.
     inputs: Vec<u8>,
@@ -69,7 +69,7 @@ impl PartialEq for NetworkState {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum Event {
-    /// The server goes on, and tells its clients.
+    /// The server goes on, and notifies its clients.
     Advance,
     /// The server takes a message.
     ServerReceives(usize),

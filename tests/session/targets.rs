@@ -123,7 +123,7 @@ fn every_target_carries_a_scenario_or_says_why_not() {
     insta::assert_snapshot!(outcomes.join("\n"));
 }
 
-/// What is told of languages and vendors does not hide that it is the same machine.
+/// What is reported of languages and vendors does not hide that it is the same machine.
 #[test]
 fn the_shear_in_scl_is_the_shear() {
     let folder = tempfile::tempdir().expect("a folder");

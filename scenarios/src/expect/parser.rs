@@ -255,8 +255,8 @@ impl Parser {
         })
     }
 
-    /// `(a and b)` is a formula, `(a + b) < c` begins with a term: what stands behind the closing
-    /// parenthesis, and between the two, tells.
+    /// `(a and b)` is a formula, `(a + b) < c` begins with a term: what follows the closing
+    /// parenthesis, and what stands within, decides.
     fn is_parenthesised_formula(&self) -> bool {
         if !matches!(self.peek().kind, TokenKind::Sign("(")) {
             return false;

@@ -153,7 +153,7 @@ fn as_child(target: &Target, scratch: &Path, options: &Options) -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// Hunts on one target in a process of its own, which is started anew if it ends; gives how much was found.
+/// Hunts on one target in a process of its own, which is restarted if it ends; gives how much was found.
 fn in_child(target: &Target, options: &Options) -> usize {
     let begun = Instant::now();
     let before = kept(&options.keep, target.name);

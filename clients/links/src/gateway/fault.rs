@@ -1,4 +1,4 @@
-//! What can be wrong with a link to a PLC, told apart by name.
+//! What can be wrong with a link to a PLC, distinguished by name.
 
 use std::time::Duration;
 
@@ -135,7 +135,7 @@ pub enum GatewayFault {
         /// The grant or the start under way.
         what: String,
     },
-    /// The PLC was started anew while a session was under way.
+    /// The PLC was restarted while a session was under way.
     #[error("the PLC was restarted in mid-session, during {what}{}; the session cannot go on", boots.map(|(was, is)| format!(" (boot counter {was}, now {is})")).unwrap_or_default())]
     Restarted {
         /// The grant under way.

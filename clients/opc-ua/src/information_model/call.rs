@@ -107,7 +107,7 @@ fn answer(
     let given: Vec<Vec<u8>> =
         types.iter().zip(outputs).map(|(ty, given)| packed(*ty, given)).collect::<Result<_, _>>()?;
     let taken = board.attempt(seat, |seat| {
-        // Told apart before anything is written: an old answer must not leave its outputs behind.
+        // Distinguished before anything is written: an old answer must not leave its outputs behind.
         seat.check_done(who, done)?;
         for (index, bytes) in given.iter().enumerate() {
             seat.write(who, index, bytes)?;

@@ -110,7 +110,7 @@ struct Bound {
     port: Port,
     /// As it is at the set-up.
     fresh: Port,
-    /// Whether it has been told that bytes were lost.
+    /// Whether the loss of bytes has been reported.
     is_reported: bool,
     end: End,
     /// Where its lines lie in the PLC's inputs and outputs.

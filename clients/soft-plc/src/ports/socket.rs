@@ -29,7 +29,8 @@ pub(super) enum Reached<'h> {
 }
 
 impl Reached<'_> {
-    /// What the program is told: members of an element of `OnescanPorts`, and literals. A module's line is always there.
+    /// What the program receives: members of an element of `OnescanPorts`, and literals. A module's line is always
+    /// there.
     fn parameters(&self) -> Vec<(&'static str, String)> {
         let yes = || "TRUE".to_owned();
         match self {
@@ -47,7 +48,7 @@ impl Reached<'_> {
 
 /// Where the members of an element of `OnescanPorts` lie in the PLC's memory.
 pub(super) struct Socket {
-    /// Paths of what the program is told at the set-up, with literals.
+    /// Paths of what the program receives at the set-up, with literals.
     parameters: Vec<(String, String)>,
     attempt: usize,
     served: usize,
@@ -94,7 +95,7 @@ impl Socket {
         })
     }
 
-    /// Tells the program that there is such a port.
+    /// Notifies the program that there is such a port.
     pub(super) fn begin(&self, plc: &mut SoftPlc) -> Result<(), WriteError> {
         self.parameters.iter().try_for_each(|(path, literal)| plc.write(path, literal))
     }
@@ -128,7 +129,7 @@ impl Socket {
             }
             return;
         }
-        // a program that connects anew has given up what it had not sent
+        // a program that connects again has given up what it had not sent
         if !is_wanted {
             self.send(port, memory);
         }

@@ -83,7 +83,7 @@ impl AdsLink {
         self.connection.as_mut().ok_or_else(LinkFault::not_connected)
     }
 
-    /// Connects and asks for the state, which a PLC without a route to this gateway does not tell.
+    /// Connects and asks for the state, which a PLC without a route to this gateway does not report.
     fn open(&mut self) -> Result<u16, LinkFault> {
         // The old connection goes first: a router has room for one.
         self.connection = None;

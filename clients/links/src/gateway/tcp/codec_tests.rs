@@ -200,8 +200,8 @@ proptest! {
         prop_assert_eq!(codec.end(), Ok(()));
     }
 
-    /// A stream from which bytes are missing is told by the third block after them, wherever it is cut: a speed that is
-    /// not 0 comes to lie where the layout has nothing.
+    /// A stream from which bytes are missing is detected by the third block after them, wherever it is cut: a speed
+    /// that is not 0 comes to lie where the layout has nothing.
     #[test]
     fn a_stream_that_is_cut_wrongly_is_reported(values in commands(), missing in 1..360_usize) {
         let layout = axes(12).0.from_plc;
@@ -215,7 +215,7 @@ proptest! {
         prop_assert_eq!(reported.is_some(), missing % 30 != 0, "{} bytes are missing", missing);
     }
 
-    /// Whatever comes: it is told, or it is taken and not a bit of it is left out.
+    /// Whatever comes: it is reported, or it is taken and not a bit of it is left out.
     #[test]
     fn a_frame_is_taken_whole_or_reported(
         values in commands(), changes in prop::collection::vec((0..360_usize, any::<u8>()), 0..4)
