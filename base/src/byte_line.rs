@@ -255,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_line_is_refused() {
+    fn what_is_not_a_line_is_refused() {
         assert_eq!(ByteLine::of(SignalType::BOOL, &[0]), None);
         assert_eq!(ByteLine::of(TY, &[0; 4]), None);
         for wrong in ["", "1 2 3 4", "1 2 3 4 00", "x 0 0 0 0011223344556677889900", "0 0 0 0 001122334455667788990g"] {

@@ -154,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_file_is_refused() {
+    fn what_is_not_a_file_is_refused() {
         assert_eq!(refused(env!("CARGO_MANIFEST_DIR")), "it is a folder, not a file");
         assert!(read_text(&Path::new(env!("CARGO_MANIFEST_DIR")).join("Cargo.toml")).unwrap().contains("onescan-base"));
     }

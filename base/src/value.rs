@@ -382,7 +382,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_value_is_refused() {
+    fn what_is_not_a_value_is_refused() {
         let bad =
             [(T::BOOL, "2"), (T::SINT, "128"), (T::UINT, "-1"), (T::LREAL, ""), (T::String(2), "abc"), (T::CHAR, "ab")];
         for (ty, text) in bad {

@@ -79,7 +79,7 @@ fn an_interval_shorter_than_the_step_is_an_error() {
 }
 
 #[test]
-fn a_trigger_that_is_no_bool_is_an_error() {
+fn a_trigger_that_is_not_a_bool_is_an_error() {
     let tasks = "tasks = [{ name = \"event\", single = \"S.Strokes\", programs = [\"S\", \"A\"] }]";
     assert_reported(&said_of(tasks, CONFIGURATION), "is triggered by `S.Strokes`: it is DINT, not BOOL");
 }

@@ -191,7 +191,7 @@ fn a_list_for_machines_is_one_object() {
 }
 
 #[test]
-fn what_is_no_list_is_named_and_nothing_is_written() {
+fn what_is_not_a_list_is_named_and_nothing_is_written() {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
     write("cut.tsproj", "<TcSmProject><Project>");

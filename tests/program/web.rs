@@ -269,7 +269,7 @@ fn a_picture_lies_behind_a_panel() {
 }
 
 #[test]
-fn what_is_no_picture_is_refused() {
+fn what_is_not_a_picture_is_refused() {
     let shear = crate::typed::copied_shear();
     let panel = "\n[[panel]]\nname = \"desk\"\npicture = \"plant.toml\"\nelement = []\n";
     let file = shear.path().join("scenario.toml");
