@@ -72,7 +72,7 @@ pub fn names(text: &str) -> Result<Vec<String>, ArrayError> {
         }
         let mut longer = Vec::with_capacity(done.len() * found.count());
         for name in &done {
-            // every name has its range where the first has it, but for the digits before it
+            // every name has its range where the first has it, except for the digits before it
             let Some(found) = find(name) else { continue };
             longer.extend((found.first..=found.last).map(|index| indexed(name, &found.bytes, index)));
         }

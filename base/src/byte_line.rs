@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn a_byte_that_is_put_anew_is_not_lost() {
+    fn a_byte_that_is_put_again_is_not_lost() {
         let mut value = vec![0; TY.size()];
         let mut line = ByteLineMut::of(TY, &mut value).expect("a line");
         (0..11).for_each(|byte| line.put(byte));
@@ -255,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_line_is_refused() {
+    fn what_is_not_a_line_is_refused() {
         assert_eq!(ByteLine::of(SignalType::BOOL, &[0]), None);
         assert_eq!(ByteLine::of(TY, &[0; 4]), None);
         for wrong in ["", "1 2 3 4", "1 2 3 4 00", "x 0 0 0 0011223344556677889900", "0 0 0 0 001122334455667788990g"] {

@@ -14,7 +14,7 @@
 //! | [`regular`] | files that are read: regular ones, up to a limit |
 //! | [`foreign`] | text from outside, made fit to be shown |
 //!
-//! Invariants: plain data and pure functions, but for [`regular`], which reads files. No clock, no random number,
+//! Invariants: plain data and pure functions, except in [`regular`], which reads files. No clock, no random number,
 //! no iteration in hash order, and no dependency except serde, thiserror and strsim.
 
 pub mod array;

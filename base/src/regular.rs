@@ -69,7 +69,7 @@ pub fn read(path: &Path, limit: Limit) -> Result<Vec<u8>> {
 /// All that is in a file of text.
 ///
 /// # Errors
-/// As [`read`] with [`Limit::TEXT`], or it is no UTF-8.
+/// As [`read`] with [`Limit::TEXT`], or it is not UTF-8.
 pub fn read_text(path: &Path) -> Result<String> {
     String::from_utf8(read(path, Limit::TEXT)?)
         .map_err(|_| Error::new(ErrorKind::InvalidData, "stream did not contain valid UTF-8"))
@@ -154,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_file_is_refused() {
+    fn what_is_not_a_file_is_refused() {
         assert_eq!(refused(env!("CARGO_MANIFEST_DIR")), "it is a folder, not a file");
         assert!(read_text(&Path::new(env!("CARGO_MANIFEST_DIR")).join("Cargo.toml")).unwrap().contains("onescan-base"));
     }

@@ -382,14 +382,14 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_value_is_refused() {
+    fn what_is_not_a_value_is_refused() {
         let bad =
             [(T::BOOL, "2"), (T::SINT, "128"), (T::UINT, "-1"), (T::LREAL, ""), (T::String(2), "abc"), (T::CHAR, "ab")];
         for (ty, text) in bad {
             assert!(ty.parse_text(text).is_err(), "{ty} {text}");
         }
         let error = T::String(3).parse_text("日本").unwrap_err().to_string();
-        assert_eq!(error, "`日本` is no STRING[3]: it has characters of more than 8 bits");
+        assert_eq!(error, "`日本` is not of type STRING[3]: it has characters of more than 8 bits");
     }
 
     #[test]

@@ -60,7 +60,7 @@ impl Tests {
     /// The report as XML.
     pub fn to_xml(&self) -> String {
         let mut text = String::new();
-        // A String takes everything, so that there is nothing to tell.
+        // A String takes everything, so that there is nothing to report.
         let written = self.write(&mut text);
         debug_assert!(written.is_ok());
         text

@@ -99,12 +99,12 @@ impl Scenario {
     /// Lets a real PLC stand in for the soft PLC `name`, at `url` if that is not where the scenario says.
     ///
     /// # Errors
-    /// No such client, or one that is no PLC.
+    /// No such client, or one that is not a PLC.
     pub fn commission(&mut self, name: &ClientName, url: Option<String>) -> Result<(), ScenarioError> {
         let help = || did_you_mean(name.as_str(), self.file().clients.keys().map(ClientName::as_str));
         match self.file().clients.get(name).map(toml::Spanned::get_ref) {
             Some(client) if client.is_plc() => {}
-            Some(_) => return Err(self.wrong_client(name, format!("client `{name}` is no PLC"), None)),
+            Some(_) => return Err(self.wrong_client(name, format!("client `{name}` is not a PLC"), None)),
             None => return Err(self.wrong_client(name, format!("the scenario has no client `{name}`"), help())),
         }
         match url {
@@ -337,7 +337,7 @@ impl Scenario {
                     writes: signals.iter().filter(is_own).map(|signal| port(&signal.name, signal.ty)).collect(),
                 })
             }
-            _ => Err(self.wrong_client(name, format!("client `{name}` is no PLC"), None)),
+            _ => Err(self.wrong_client(name, format!("client `{name}` is not a PLC"), None)),
         }
     }
 
@@ -368,7 +368,7 @@ impl Scenario {
         };
         let inputs = self.inputs(name, sources, *dialect)?;
         let asked = plan_of(tasks);
-        let own = self.built_anew(name, inputs.clone())?;
+        let own = self.rebuilt(name, inputs.clone())?;
         let agreed = self.agreement_on(name, self.declared(name), &own)?;
         let options = Options {
             target,
@@ -381,7 +381,7 @@ impl Scenario {
             InstrumentError::Text(findings) => Box::new(PlcReport { client: name.clone(), findings }).into(),
             other => self.wrong_client(name, other.to_string(), None),
         })?;
-        let application = self.built_anew(name, project.program().filter_map(input).collect())?;
+        let application = self.rebuilt(name, project.program().filter_map(input).collect())?;
         let paths = self.paths(name, bind)?;
         let own = self.bindings(name, &own, &paths)?;
         let bindings = if project.tasks.is_some() {
@@ -404,7 +404,7 @@ impl Scenario {
     }
 
     /// The instrumented sources of PLC `name`, compiled.
-    fn built_anew(&self, name: &ClientName, inputs: Vec<Input>) -> Result<Application, ScenarioError> {
+    fn rebuilt(&self, name: &ClientName, inputs: Vec<Input>) -> Result<Application, ScenarioError> {
         let builder = Application::builder().memory_limit(self.memory_limit(name)).inputs(inputs);
         builder.build().map_err(|error| match error {
             BuildError::Sources(findings) => Box::new(PlcReport { client: name.clone(), findings }).into(),

@@ -68,7 +68,7 @@ pub struct Scenario {
     applied: Option<Arc<Applied>>,
     /// Where soft PLCs give what they executed, if that is asked for.
     coverage: Option<CoverageSink>,
-    /// Where soft PLCs tell which statements wrote these signals, if that is asked for.
+    /// Where soft PLCs report which statements wrote these signals, if that is asked for.
     writers: Option<(BTreeSet<SignalName>, TraceSink)>,
     /// What soft PLCs hand over of their scans, if that is asked for.
     journalling: Option<Journalling>,
@@ -267,7 +267,7 @@ impl Scenario {
         self.coverage.get_or_insert_default();
     }
 
-    /// Lets soft PLCs tell which statements write `signals`; gives where they do.
+    /// Lets soft PLCs report which statements write `signals`; returns where they do.
     pub fn trace(&mut self, signals: BTreeSet<SignalName>) -> TraceSink {
         let sink = TraceSink::default();
         self.writers = Some((signals, sink.clone()));
@@ -291,7 +291,7 @@ impl Scenario {
         Ok(())
     }
 
-    /// The signals whose writers are asked for, and where they are told.
+    /// The signals whose writers are asked for, and where they are reported.
     pub fn writers(&self) -> Option<&(BTreeSet<SignalName>, TraceSink)> {
         self.writers.as_ref()
     }
@@ -301,7 +301,7 @@ impl Scenario {
         self.journalling.as_ref()
     }
 
-    /// True if statements tell what they do.
+    /// True if statements report what they do.
     pub(crate) fn is_traced(&self) -> bool {
         self.writers.is_some() || self.journalling.as_ref().is_some_and(|each| matches!(each.wanted, Wanted::Acts(_)))
     }

@@ -240,7 +240,7 @@ scene = "plant.toml"
     }
 
     #[test]
-    fn each_fault_is_told_at_its_place() {
+    fn each_fault_is_reported_at_its_place() {
         let look = |more: &str| bound(&format!("[[look]]\n{more}\n")).expect_err("wrong");
         let (message, place) = look("bodies = [\"a\"]\nwhen = \"Hto > 80\"\ncolour = \"red\"");
         assert!(message.contains("Hto"), "{message}");

@@ -249,7 +249,7 @@ name = "desk"
 "#;
 
     /// What is said of a panel with these elements, and where.
-    fn told(elements: &str) -> Result<(), (String, String)> {
+    fn reported(elements: &str) -> Result<(), (String, String)> {
         let text = format!("{HEAD}{elements}");
         let mut file: ScenarioFile = toml::from_str(&text).expect("a scenario");
         crate::structure::expand(&mut file).expect("signals");
@@ -273,12 +273,12 @@ name = "desk"
             element("alarms", "at = [0, 2]\nspan = [6, 3]"),
             element("alarms", "signal = \"Start\"\nat = [0, 5]"),
         ];
-        assert_eq!(told(&elements.concat()), Ok(()));
+        assert_eq!(reported(&elements.concat()), Ok(()));
     }
 
     #[test]
-    fn each_fault_is_told_at_its_place() {
-        let wrong = |kind: &str, more: &str| told(&element(kind, more)).expect_err("wrong");
+    fn each_fault_is_reported_at_its_place() {
+        let wrong = |kind: &str, more: &str| reported(&element(kind, more)).expect_err("wrong");
         let (message, place) = wrong("button", "signal = \"Strat\"\nat = [0, 0]");
         assert_eq!((&*message, &*place), ("the panel has a signal `Strat` that is not declared", "\"Strat\""));
         assert_eq!(
@@ -295,7 +295,7 @@ name = "desk"
         assert!(wrong("alarms", "signal = \"Speed\"\nat = [0, 0]").0.contains("is BOOL"));
         assert!(wrong("alarms", "signal = \"Seen\"\nat = [0, 0]").0.contains("is written by the plant"));
         assert!(wrong("bar", "signal = \"Speed\"\nat = [0, 0]\nmin = 1.0\nmax = 1.0").0.contains("not below"));
-        assert!(wrong("lamp", "signal = \"Start\"\nat = [0, 0]\ncolour = \"url(x)\"").0.contains("is no colour"));
+        assert!(wrong("lamp", "signal = \"Start\"\nat = [0, 0]\ncolour = \"url(x)\"").0.contains("is not a colour"));
         assert!(wrong("switch", "signal = \"Start\"\nat = [0, 0]\nlatching = true").0.contains("only a button"));
         assert!(
             wrong("slider", "failure = \"wall.leak\"\nat = [0, 0]").0.contains("only a switch, a button and a lamp")
@@ -311,7 +311,7 @@ name = "desk"
         let timed = "disturbance = { signal = \"Speed\", kind = \"stuck\", for = \"1s\" }\nat = [0, 0]";
         assert!(wrong("switch", timed).0.contains("by somebody's hand"));
         let two = element("lamp", "signal = \"Start\"\nat = [0, 0]\nspan = [2, 2]");
-        let over = told(&(two + &element("lamp", "signal = \"Start\"\nat = [1, 1]"))).expect_err("wrong");
+        let over = reported(&(two + &element("lamp", "signal = \"Start\"\nat = [1, 1]"))).expect_err("wrong");
         assert!(over.0.contains("lies on the one at column 0, row 0"), "{over:?}");
         for (page, said) in [
             ("{ signal = \"Mode\", value = 1 }", None),
@@ -320,11 +320,14 @@ name = "desk"
             ("{ signal = \"Seen\", value = 1 }", Some("`Seen` is BOOL, which is never 1")),
             ("{ signal = \"Mood\", value = 1 }", Some("the panel has a signal `Mood` that is not declared")),
         ] {
-            let found = told(&format!("page = {page}\nelement = []")).err().map(|(message, _)| message);
+            let found = reported(&format!("page = {page}\nelement = []")).err().map(|(message, _)| message);
             assert_eq!(found.as_deref(), said, "{page}");
         }
         assert!(
-            told("element = []\n[[panel]]\nname = \"desk\"\nelement = []").expect_err("wrong").0.contains("two panels")
+            reported("element = []\n[[panel]]\nname = \"desk\"\nelement = []")
+                .expect_err("wrong")
+                .0
+                .contains("two panels")
         );
     }
 }

@@ -90,7 +90,7 @@ mod tests {
         let nothing = Permission::default();
         assert!(nothing.check(&own, &own.join("a.st")).is_ok());
         assert!(nothing.check(&place.path().join("way"), &own.join("../own/a.st")).is_ok());
-        assert!(nothing.check(&own, &own.join("missing.st")).is_ok(), "told by whoever reads it");
+        assert!(nothing.check(&own, &own.join("missing.st")).is_ok(), "reported by whoever reads it");
         for path in [own.join("../other/a.st"), own.join("link.st"), other.join("a.st")] {
             let error = nothing.check(&own, &path).unwrap_err().to_string();
             assert!(error.contains("outside of the scenario's folder"), "{error}");

@@ -142,7 +142,7 @@ fn as_written(schema: &mut Schema) {
     }
     // The width of a number says nothing beside its bounds.
     schema.remove("format");
-    if schema.get("default").is_some_and(|default| !is_told(default, schema.get("type"))) {
+    if schema.get("default").is_some_and(|default| !is_informative(default, schema.get("type"))) {
         schema.remove("default");
     }
     // An editor shows at `kind` what the table is.
@@ -155,9 +155,9 @@ fn as_written(schema: &mut Schema) {
     transform_subschemas(&mut as_written, schema);
 }
 
-/// True for a default that tells a reader something. Emptiness does not, nor does a value in another form than that in
+/// True for a default that informs a reader. Emptiness does not, nor does a value in another form than that in
 /// which it is written, as the nanoseconds of a time.
-fn is_told(default: &Value, ty: Option<&Value>) -> bool {
+fn is_informative(default: &Value, ty: Option<&Value>) -> bool {
     match (default, ty.and_then(Value::as_str)) {
         (Value::Bool(_), Some("boolean")) | (Value::Number(_), Some("integer" | "number")) => true,
         (Value::String(text), Some("string")) => !text.is_empty(),

@@ -18,7 +18,7 @@ use toml::Spanned;
 /// Writes each declared signal out: arrays as their elements, structures as their members.
 ///
 /// # Errors
-/// A name that is declared twice, an unknown structure, a member that is no `Name: TYPE`, a signal with both a type
+/// A name that is declared twice, an unknown structure, a member that is not a `Name: TYPE`, a signal with both a type
 /// and a structure or neither.
 pub(crate) fn expand(file: &mut ScenarioFile) -> Result<(), Wrong> {
     let mut all = BTreeMap::new();

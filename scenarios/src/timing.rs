@@ -64,7 +64,7 @@ pub(crate) struct TaskLeeway {
     pub(crate) place: Range<usize>,
 }
 
-/// `[timing]`, but for what is known only of PLCs that are made.
+/// `[timing]`, except what is known only of PLCs that are made.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Timing {
     pub(crate) signals: Vec<Leeway>,

@@ -74,7 +74,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_fit_is_told() {
+    fn what_does_not_fit_is_reported() {
         let wrong = names("names = { a = \"Stop\" }").expect_err("no number");
         assert!(wrong.message().contains("`a` is not a whole number"), "{wrong}");
         let read = names("names = { 300 = \"Stop\" }").expect("names");

@@ -16,7 +16,7 @@ pub struct WatchRequest {
     pub watch: Watch,
 }
 
-/// Why a text is no [`WatchRequest`].
+/// Why a text is not a [`WatchRequest`].
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum WatchSyntax {
     /// There is no path in it.

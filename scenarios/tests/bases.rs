@@ -26,14 +26,14 @@ fn every_variant_is_what_it_was() {
     let mut found = Vec::new();
     variants(folder, &mut found);
     found.sort();
-    let told = found.iter().map(|path| {
+    let reported = found.iter().map(|path| {
         let scenario = Scenario::load(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
         assert!(scenario.bases().count() > 0, "{}", path.display());
         let whole = scenario.to_json().expect("it was read").to_string();
         let name = path.strip_prefix(folder).expect("below it").iter().map(|part| part.to_string_lossy());
         format!("{} {}\n", blake3::hash(whole.as_bytes()).to_hex(), name.collect::<Vec<_>>().join("/"))
     });
-    insta::assert_snapshot!(told.collect::<String>());
+    insta::assert_snapshot!(reported.collect::<String>());
 }
 
 /// Each of them, written out as one file, is the same scenario.

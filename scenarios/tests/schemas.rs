@@ -6,7 +6,7 @@ use onescan_scenario::schema;
 use regex::Regex;
 use serde_json::{Map, Value};
 
-/// Keywords that tell a reader something and refuse nothing.
+/// Keywords that inform a reader and refuse nothing.
 const ANNOTATIONS: &[&str] = &["$schema", "title", "description", "default"];
 
 /// What of `value` does not keep to `schema`. It knows the keywords that our schemas use, and no others.

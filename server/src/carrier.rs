@@ -83,10 +83,10 @@ pub trait Carrier: Send {
     /// Why the client is gone, if it is, while nothing is asked of it.
     fn find_lost(&mut self) -> Option<FailureCause>;
 
-    /// Tells the client that the session is over.
+    /// Notifies the client that the session is over.
     fn end(&mut self, end: &SessionEnd);
 
-    /// Lets the client go, once all have been told of the end.
+    /// Lets the client go, once all have been notified of the end.
     fn close(&mut self);
 }
 
@@ -95,7 +95,7 @@ pub trait ClientListener {
     /// The next one that wants to join, if one comes within `patience` (wall clock).
     fn next_pending(&self, patience: Duration) -> Option<Box<dyn PendingClient>>;
 
-    /// Nobody is let in from here on: whoever still comes is told so and sent away.
+    /// Nobody is let in from here on: whoever still comes is notified and sent away.
     fn shut(&self);
 }
 
@@ -107,7 +107,7 @@ pub trait PendingClient {
     /// Where it comes from, for the log.
     fn origin(&self) -> String;
 
-    /// Lets it in: tells it where its signals lie. A client that leaves an order unanswered for
+    /// Lets it in: reports to it where its signals lie. A client that leaves an order unanswered for
     /// `reply_timeout` (wall clock) has failed.
     ///
     /// # Errors

@@ -231,7 +231,7 @@ pub enum OperationRefused {
 pub struct Parts {
     /// Where the bodies of plants are.
     pub poses: bool,
-    /// Tables of values: every value is computed anew.
+    /// Tables of values: every value is computed again.
     pub tables: bool,
     /// The memories of PLCs: each is copied whole.
     pub memories: bool,
@@ -253,7 +253,7 @@ pub struct ClientView {
     pub parts: Parts,
     /// Where the bodies of plants are.
     pub poses: Vec<Pose>,
-    /// Tables of values that clients have and no signal tells.
+    /// Tables of values that clients have and no signal carries.
     pub tables: Vec<ValueTable>,
     /// What PLCs hold in their memories.
     pub memories: Vec<Memory>,

@@ -9,7 +9,7 @@ use crate::signal::{BadValue, ClientName, SignalName};
 use crate::state::ClientState;
 use crate::time::{StepCount, VirtualTime};
 
-/// Why a session is over, told to every client.
+/// Why a session is over, reported to every client.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(tag = "status", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum SessionEnd {

@@ -303,7 +303,7 @@ impl fmt::Display for Operation {
             Self::Resume => f.write_str("resume"),
             Self::Step => f.write_str("step"),
             Self::Reset => f.write_str("reset"),
-            // Told above.
+            // Described above.
             Self::Fail { .. }
             | Self::Repair { .. }
             | Self::ChangeParameter { .. }

@@ -32,7 +32,7 @@ impl Pacer {
         self.pace == Pace::Max
     }
 
-    /// Counts anew from the next step on: after a pause, a reset, a restore.
+    /// Counts again from the next step on: after a pause, a reset, a restore.
     pub(crate) fn rebase(&mut self) {
         self.origin = None;
     }

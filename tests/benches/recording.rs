@@ -99,7 +99,7 @@ fn session(groups: &[Group]) -> Lockstep {
 struct Cost {
     /// By the clock, up to the last byte of the recording if there is one.
     wall: Duration,
-    /// Time of processors of the session's thread, where the system tells it.
+    /// Time of processors of the session's thread, where the system reports it.
     session: Option<Duration>,
     /// The same of all threads.
     all: Option<Duration>,
@@ -131,7 +131,7 @@ fn timed(groups: &[Group], steps: u64, record: Option<Choice>) -> Cost {
     Cost { wall, session: between((before.0, after.0)), all: between((before.1, after.1)) }
 }
 
-/// Resident memory in MiB, where the system tells it.
+/// Resident memory in MiB, where the system reports it.
 fn resident_mib() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with("VmRSS:"))?;
@@ -143,7 +143,7 @@ fn median(mut times: Vec<f64>) -> f64 {
     times[times.len() / 2]
 }
 
-#[expect(clippy::print_stdout, reason = "a bench tells its figures")]
+#[expect(clippy::print_stdout, reason = "a bench prints its figures")]
 fn compare(name: &str, groups: &[Group], steps: u64, parquet_only: bool) {
     let mut forms = vec![
         ("Parquet", Choice::default()),
@@ -178,7 +178,7 @@ fn compare(name: &str, groups: &[Group], steps: u64, parquet_only: bool) {
     }
 }
 
-#[expect(clippy::print_stdout, reason = "a bench tells its figures")]
+#[expect(clippy::print_stdout, reason = "a bench prints its figures")]
 fn memory(steps: u64) {
     let done = std::sync::atomic::AtomicBool::new(false);
     std::thread::scope(|scope| {

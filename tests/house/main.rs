@@ -101,7 +101,7 @@ fn exception(folder: &str) -> Option<&'static Exception> {
     EXCEPTIONS.iter().find(|exception| exception.folder == folder)
 }
 
-/// The rooms of a folder in the table; a folder that is no floor any more must leave it.
+/// The rooms of a folder in the table; a folder that is not a floor any more must leave it.
 fn rooms(exception: &Exception) -> Rooms {
     let sources = Sources::read(&root().join(exception.folder));
     Rooms::new(&sources.unwrap_or_else(|| panic!("{} is not a folder of modules", exception.folder)))

@@ -159,7 +159,7 @@ impl Scanner {
 }
 
 #[test]
-fn comments_and_literals_are_no_tokens() {
+fn comments_and_literals_are_not_tokens() {
     let text = "a::b /* x /* y */ z */ \"crate::c\" r#\"crate::\"d\"# 'e' '\\'' &'f g // h\ni";
     let words: Vec<_> = tokens(text).into_iter().filter(|(token, _)| matches!(token, Token::Word(_))).collect();
     let word = |text: &str, line| (Token::Word(text.to_owned()), line);

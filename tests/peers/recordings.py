@@ -1,4 +1,4 @@
-"""Opens recordings as their users do, and tells what is in them: a JSON object a folder."""
+"""Opens recordings as their users do, and prints what is in them: one JSON object per folder."""
 
 import csv
 import json
@@ -48,7 +48,7 @@ def mcap(path):
                     counts[channel.topic] = counts.get(channel.topic, 0) + 1
                     last[channel.topic] = (channel, record)
         except (EndOfFile, struct.error):
-            # The library tells a record that is cut in its middle by either.
+            # The library reports a record that is cut in its middle by either.
             whole = False
     values = {}
     for topic, (channel, record) in last.items():

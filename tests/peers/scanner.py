@@ -3,7 +3,7 @@ its component and of the kiln's heat. `--link tcp` for Ethernet.
 
 | it hears | it says |
 |---|---|
-| SOH, command, EOT, check byte | ACK, or NAK if it is no command; the check byte is the sum of all before it, its highest bit set |
+| SOH, command, EOT, check byte | ACK, or NAK if it is not a command; the check byte is the sum of all before it, its highest bit set |
 | STX | SYN, a byte for each point, its internal temperature |
 """
 from __future__ import annotations

@@ -157,10 +157,10 @@ fn a_scenarios_program_sees_no_secrets() {
 fn programs_can_be_forbidden() {
     let shear = copied_shear();
     with_program(shear.path(), "");
-    let told = typed(shear.path(), &["test", "."]);
+    let reported = typed(shear.path(), &["test", "."]);
     assert!(
-        flat(&told.err).contains("tests of . start a program for client `plant`: sh -c env > seen.txt"),
-        "{told:?}"
+        flat(&reported.err).contains("tests of . start a program for client `plant`: sh -c env > seen.txt"),
+        "{reported:?}"
     );
     assert!(shear.path().join("seen.txt").exists(), "it was started");
     std::fs::remove_file(shear.path().join("seen.txt")).unwrap();

@@ -71,7 +71,7 @@ fn so_it_is_for_a_plant_with_bodies_and_failures() {
 }
 
 #[test]
-fn a_state_that_is_the_healthy_one_again_is_told() {
+fn a_state_that_is_the_healthy_one_again_is_reported() {
     let said = campaign(shear().path(), &["--format", "json"]);
     let rows = lines(&said.out);
     let rejoined = |case: &str| {
@@ -202,15 +202,15 @@ fn work_of_something_else_is_refused() {
         assert_eq!((said.code, said.out.as_str()), (Some(2), ""), "{said:?}");
         said.err
     };
-    let mut told = vec![refused(&["--partition", "1/2"]), refused(&["--keep", "keep", "--partition", "3/2"])];
+    let mut reported = vec![refused(&["--partition", "1/2"]), refused(&["--keep", "keep", "--partition", "3/2"])];
     let program = folder.path().join("plc/shear.st");
     let text = std::fs::read_to_string(&program).expect("a file");
     std::fs::write(&program, text + "\n// another program\n").expect("a file");
-    told.push(refused(&keep));
+    reported.push(refused(&keep));
     let journal = folder.path().join("keep/feedback/journal.jsonl");
     std::fs::write(&journal, "{\"done\": 3}\n").expect("a file");
-    told.push(refused(&keep));
+    reported.push(refused(&keep));
     std::fs::write(&journal, [0xff, 0xfe, 0, b'\n']).expect("a file");
-    told.push(refused(&keep));
-    insta::assert_snapshot!(told.join("\n"));
+    reported.push(refused(&keep));
+    insta::assert_snapshot!(reported.join("\n"));
 }

@@ -78,8 +78,8 @@ fn the_filling_machine_has_a_verdict_for_each_fault() {
 }
 
 #[test]
-fn what_is_wrong_with_a_campaign_is_told_before_anything_runs() {
-    let told = |from: &str, to: &str| {
+fn what_is_wrong_with_a_campaign_is_reported_before_anything_runs() {
+    let reported = |from: &str, to: &str| {
         assert!(CAMPAIGN.contains(from), "{from}");
         let folder = shear_with(&CAMPAIGN.replacen(from, to, 1));
         let said = typed(folder.path(), &["campaign", ".", "feedback"]);
@@ -107,7 +107,7 @@ fn what_is_wrong_with_a_campaign_is_told_before_anything_runs() {
         ("kind = \"stuck\"", "kind = \"inverted\""),
         ("name = \"feedback\"", "name = \"feed-back\""),
     ];
-    let all: Vec<String> = wrong.map(|(from, to)| told(from, to)).into();
+    let all: Vec<String> = wrong.map(|(from, to)| reported(from, to)).into();
     insta::assert_snapshot!(all.join("\n"));
 }
 

@@ -125,8 +125,8 @@ fn an_operator_presses_a_button_at_its_instant() {
 }
 
 #[test]
-fn what_is_wrong_with_a_case_is_told_with_its_place() {
-    let told = |case: &str| {
+fn what_is_wrong_with_a_case_is_reported_with_its_place() {
+    let reported = |case: &str| {
         let folder = shear_with(&format!("[[case]]\nname = \"a\"\n{case}\n"));
         let said = typed(folder.path(), &["run", ".", "--case", "a"]);
         assert_eq!((said.code, said.out.as_str()), (Some(2), ""), "{said:?}");
@@ -150,12 +150,12 @@ fn what_is_wrong_with_a_case_is_told_with_its_place() {
         "matrix.seed = []",
         "tag = [\"x\"]",
     ];
-    let all: Vec<String> = wrong.iter().map(|case| format!("{case}\n{}", told(case))).collect();
+    let all: Vec<String> = wrong.iter().map(|case| format!("{case}\n{}", reported(case))).collect();
     insta::assert_snapshot!(all.join("\n"));
 }
 
 #[test]
-fn an_unknown_case_is_told_with_the_nearest() {
+fn an_unknown_case_is_reported_with_the_nearest() {
     let folder = shear_with(CASES);
     let said = typed(folder.path(), &["run", ".", "--case", "slwo"]);
     assert_eq!(said.code, Some(2), "{said:?}");

@@ -57,7 +57,7 @@ fn all_is_well() {
 }
 
 #[test]
-fn a_dialect_is_told_by_name_flag_and_scenario() {
+fn a_dialect_is_reported_by_name_flag_and_scenario() {
     let latch: &[u8] = b"PROGRAM Main VAR_OUTPUT o : BOOL; END_VAR VAR_INPUT i : BOOL; END_VAR o S= i; END_PROGRAM\n";
     let folder = folder(&[("latch.st", latch), ("latch.exp", latch)]);
     assert_eq!(checked(folder.path(), &["latch.exp"]).code, Some(0));
@@ -133,7 +133,7 @@ fn a_project_says_which_files_are_meant() {
 }
 
 #[test]
-fn a_missing_file_of_a_project_is_told_and_the_others_are_checked() {
+fn a_missing_file_of_a_project_is_reported_and_the_others_are_checked() {
     let project = b"<Project><ItemGroup>\n  <Compile Include=\"POUs\\FB_Ramp.TcPOU\"/>\n  <Compile Include=\"Old.TcDUT\"/>\n</ItemGroup></Project>";
     let folder = folder(&[("plc.plcproj", project), ("POUs/FB_Ramp.TcPOU", POU)]);
     let said = checked(folder.path(), &["."]);
@@ -151,7 +151,7 @@ fn a_file_that_is_quite_wrong_does_not_hide_the_others() {
         said.out.lines().filter(|line| line.contains("more") || line.contains("in 2 files")).collect();
     assert_eq!(lines, ["... and 16 more errors in a.st", "42 errors, 1 warning in 2 files"]);
     let json = checked(folder.path(), &[".", "--format", "json"]);
-    assert_eq!(json.out.lines().count(), 43, "machines are told all");
+    assert_eq!(json.out.lines().count(), 43, "machines receive all");
 }
 
 #[test]
@@ -233,7 +233,7 @@ fn warnings_fail_only_where_they_are_denied() {
 }
 
 #[test]
-fn files_that_are_no_sources_are_told() {
+fn files_that_are_not_sources_are_reported() {
     let folder = folder(&[("notes.txt", b"x"), ("empty/readme.md", b"")]);
     let cases = [
         (&["missing.st"][..], "missing.st: "),

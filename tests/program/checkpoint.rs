@@ -108,22 +108,22 @@ fn other_code_of_equal_layout_goes_on_where_it_is_asked_for() {
     assert_ne!(digests(&reports(&rest)), digests(&reports(&whole)), "it rests for a shorter time from there on");
     let again = run(&[&accept[..], &["--case", "rest"]].concat());
     assert_eq!(digests(&reports(&rest)), digests(&reports(&again)));
-    let told = |words: &[&str]| {
+    let reported = |words: &[&str]| {
         let said = run(words);
         assert_eq!((said.code, said.out.as_str()), (Some(2), ""), "{words:?}: {said:?}");
         said.err
     };
     let mut all = vec![
-        told(&[&resume[..], &["--case", "rest"]].concat()),
-        told(&[&accept[..], &["--case", "strokes"]].concat()),
-        told(&[&accept[..], &["--case", "speed"]].concat()),
-        told(&[&accept[..], &["--transport", "tcp"]].concat()),
+        reported(&[&resume[..], &["--case", "rest"]].concat()),
+        reported(&[&accept[..], &["--case", "strokes"]].concat()),
+        reported(&[&accept[..], &["--case", "speed"]].concat()),
+        reported(&[&accept[..], &["--transport", "tcp"]].concat()),
     ];
     edit(folder.path(), "plc/shear.st", "Rest : TIME := T#100ms;", "Rest : TIME := T#90ms;");
-    all.push(told(&resume));
+    all.push(reported(&resume));
     let edited = run(&accept);
     assert_eq!(edited.code, Some(0), "{edited:?}");
     edit(folder.path(), "plc/shear.st", "VAR CONSTANT", "VAR more : INT; END_VAR\nVAR CONSTANT");
-    all.push(told(&accept));
+    all.push(reported(&accept));
     insta::assert_snapshot!(all.join("\n"));
 }

@@ -55,28 +55,31 @@ fn said_of(tasks: &str, configuration: &str) -> String {
 }
 
 /// Asserts what an error says, wherever its lines are broken.
-fn told(said: &str, wanted: &str) {
+fn assert_reported(said: &str, wanted: &str) {
     let words: Vec<&str> = said.split_whitespace().filter(|word| *word != "│").collect();
     assert!(words.join(" ").contains(wanted), "{said}");
 }
 
 #[test]
 fn without_tasks_anywhere_the_plc_does_not_run() {
-    told(&said_of("", ""), "nothing says when the programs of `plc` run");
+    assert_reported(&said_of("", ""), "nothing says when the programs of `plc` run");
 }
 
 #[test]
 fn a_task_of_the_scenario_names_instances() {
-    told(&said_of(TASKS, CONFIGURATION), "runs program `Shear`, which is not declared");
+    assert_reported(&said_of(TASKS, CONFIGURATION), "runs program `Shear`, which is not declared");
 }
 
 #[test]
 fn an_interval_shorter_than_the_step_is_an_error() {
-    told(&said_of("", &CONFIGURATION.replace("T#10ms", "T#4ms")), "which is not a multiple of the session's step");
+    assert_reported(
+        &said_of("", &CONFIGURATION.replace("T#10ms", "T#4ms")),
+        "which is not a multiple of the session's step",
+    );
 }
 
 #[test]
-fn a_trigger_that_is_no_bool_is_an_error() {
+fn a_trigger_that_is_not_a_bool_is_an_error() {
     let tasks = "tasks = [{ name = \"event\", single = \"S.Strokes\", programs = [\"S\", \"A\"] }]";
-    told(&said_of(tasks, CONFIGURATION), "is triggered by `S.Strokes`: it is DINT, not BOOL");
+    assert_reported(&said_of(tasks, CONFIGURATION), "is triggered by `S.Strokes`: it is DINT, not BOOL");
 }

@@ -80,7 +80,7 @@ fn a_session_is_paused_stepped_reset_and_released_without_a_trace() {
         status["values"]["Strokes"].as_str().unwrap().to_owned()
     };
     assert_eq!(strokes(&first), "0");
-    assert!(rest.iter().any(|line| strokes(line) == "1"), "a change is told: {rest:?}");
+    assert!(rest.iter().any(|line| strokes(line) == "1"), "a change is reported: {rest:?}");
     assert!(plant.wait().unwrap().success());
     let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     let (undisturbed, _) = run_shear(&["--until", "2s"]);

@@ -49,9 +49,9 @@ fn a_cluster_that_loses_a_worker_comes_to_the_table_of_one_process() {
     command.arg("-B").arg(repository().join("tests/peers/dask_campaign.py"));
     command.arg(env!("CARGO_BIN_EXE_onescan-under-test")).arg(shear.path());
     let output = command.env("PYTHONPATH", repository().join("clients/python/src")).output().expect("Python starts");
-    let (said, told) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
-    let line = said.lines().last().unwrap_or_else(|| panic!("it said nothing: {told}"));
-    let done: Value = serde_json::from_str(line).unwrap_or_else(|_| panic!("{said} {told}"));
+    let (said, errors) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    let line = said.lines().last().unwrap_or_else(|| panic!("it said nothing: {errors}"));
+    let done: Value = serde_json::from_str(line).unwrap_or_else(|_| panic!("{said} {errors}"));
     assert_eq!(done["same"], true, "{done}");
-    assert_eq!((&done["runs"], &done["killed"], &done["lost"]), (&18.into(), &1.into(), &1.into()), "{told}");
+    assert_eq!((&done["runs"], &done["killed"], &done["lost"]), (&18.into(), &1.into(), &1.into()), "{errors}");
 }

@@ -121,7 +121,7 @@ fn a_decision_that_is_new_does_not_count() {
 }
 
 #[test]
-fn a_change_that_alters_nothing_is_no_difference() {
+fn a_change_that_alters_nothing_is_not_a_difference() {
     let folder = recorded(["3s", "3s"], |folder| edit(folder, "plc/shear.st", BEFORE, AFTER));
     let said = typed(folder.path(), &["diff", "a", "b"]);
     assert_eq!((said.code, said.out.lines().last()), (Some(0), Some("no difference")), "{said:?}");

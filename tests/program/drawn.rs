@@ -5,7 +5,7 @@ use std::process::Command;
 use serde_json::{Value, json};
 
 use crate::typed::{copied_shear, edit, onescan, scenario, typed};
-use crate::web::{Served, ask, told};
+use crate::web::{Served, ask, received};
 
 fn session(served: &Served) -> Value {
     serde_json::from_str(&served.get("/api/session", &[]).1).expect("JSON")
@@ -27,19 +27,19 @@ fn looks_are_on_while_their_condition_holds() {
     let holding = looks.iter().position(|look| look["when"] == "SW_ARM[0].OUT_HOLD_CONTAINER").expect("a look");
     assert_eq!((&looks[holding]["bodies"], &looks[holding]["colour"]), (&json!([arm]), &json!("green")));
     let mut viewer = served.view();
-    let active = told(&mut viewer, "looks");
+    let active = received(&mut viewer, "looks");
     assert!(active["active"].as_array().is_some_and(|active| active.iter().all(|one| one.as_u64().is_some())));
     // Where there is a trainer's panel, who sits there calls views.
     ask(&mut viewer, &json!({"type": "view", "view": "above"}));
     assert!(
-        told(&mut viewer, "error")["message"].as_str().is_some_and(|message| message.contains("seat of a trainer"))
+        received(&mut viewer, "error")["message"].as_str().is_some_and(|message| message.contains("seat of a trainer"))
     );
     ask(&mut viewer, &json!({"type": "seat", "panel": "monitor", "take": true}));
-    while told(&mut viewer, "status")["seat"]["monitor"] != "mine" {}
+    while received(&mut viewer, "status")["seat"]["monitor"] != "mine" {}
     ask(&mut viewer, &json!({"type": "view", "view": "above"}));
-    assert_eq!(told(&mut viewer, "view")["view"], "above");
+    assert_eq!(received(&mut viewer, "view")["view"], "above");
     ask(&mut viewer, &json!({"type": "view", "view": "nowhere"}));
-    assert!(told(&mut viewer, "error")["message"].as_str().is_some_and(|message| message.contains("no view")));
+    assert!(received(&mut viewer, "error")["message"].as_str().is_some_and(|message| message.contains("no view")));
     ask(&mut viewer, &json!({"type": "operate", "operation": "stop"}));
     let report = served.report();
     let until = format!("{}ns", report["virtual_time_ns"]);
@@ -63,9 +63,9 @@ fn figures_are_behind_the_bodies() {
     served.report();
 }
 
-/// A look that is wrong is told at its line, before anything runs.
+/// A look that is wrong is reported at its line, before anything runs.
 #[test]
-fn a_look_that_is_wrong_is_told_with_its_place() {
+fn a_look_that_is_wrong_is_reported_with_its_place() {
     let folder = copied_shear();
     let file = std::fs::read_to_string(folder.path().join("scenario.toml")).expect("a scenario");
     let wrong = format!("{file}\n[[look]]\nbodies = [\"blade\"]\nwhen = \"Positon > 1\"\ncolour = \"red\"\n");
@@ -96,7 +96,7 @@ fn a_ladder_is_drawn_with_the_values_of_its_variables() {
     let up = paths.iter().position(|path| path == "ixUp").expect("a state");
     // the first view may be older than the question, and know no values
     let states = loop {
-        let states = told(&mut viewer, "states");
+        let states = received(&mut viewer, "states");
         assert_eq!(states["values"].as_array().map(Vec::len), Some(paths.len()));
         if !states["values"][up].is_null() {
             break states;
@@ -104,7 +104,7 @@ fn a_ladder_is_drawn_with_the_values_of_its_variables() {
     };
     assert!(states["values"][up] == 0.0 || states["values"][up] == 1.0, "{states}");
     ask(&mut viewer, &json!({"type": "draw", "drawing": 99, "instance": 0}));
-    assert!(told(&mut viewer, "error")["message"].as_str().is_some_and(|message| message.contains("no drawing")));
+    assert!(received(&mut viewer, "error")["message"].as_str().is_some_and(|message| message.contains("no drawing")));
     ask(&mut viewer, &json!({"type": "operate", "operation": "stop"}));
     served.report();
 }

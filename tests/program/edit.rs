@@ -118,7 +118,7 @@ fn a_connection_that_is_drawn_is_one_line_and_what_the_command_line_says() {
 }
 
 #[test]
-fn what_is_wrong_is_told_with_its_place() {
+fn what_is_wrong_is_reported_with_its_place() {
     let editor = Editor::begin("cell");
     let scene = editor.text("plant.toml");
     let set = |revision: u64, key: &str, value: Value| {
@@ -160,7 +160,7 @@ fn what_somebody_else_has_changed_is_not_written_over() {
     assert_eq!((status, &answer["state"]["changed"]), (409, &json!(["plant.toml"])), "{answer}");
     assert_eq!(editor.text("plant.toml"), theirs);
     assert_eq!(editor.want(&json!({"want": "reload"})).0, 200);
-    // a page that has not seen that is told
+    // a page that has not seen that is notified
     assert_eq!(editor.want(&faster(0)).0, 409);
     assert_eq!(editor.want(&faster(1)).0, 200);
     assert_eq!(diff(&theirs, &editor.text("plant.toml")), "-speed_m_s = 0.25\n+speed_m_s = 0.5\n");

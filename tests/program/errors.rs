@@ -86,7 +86,7 @@ fn a_file_cut_in_half_is_an_error_and_never_a_panic() {
 }
 
 #[test]
-fn options_that_are_wrong_are_told() {
+fn options_that_are_wrong_are_reported() {
     let folder = copied_shear();
     let cases = [
         (&["run", ".", "--until", "5"][..], "is not a time"),

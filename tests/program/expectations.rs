@@ -174,7 +174,7 @@ fn an_expectation_changes_no_digest() {
 }
 
 #[test]
-fn a_wrong_formula_is_told_with_its_place() {
+fn a_wrong_formula_is_reported_with_its_place() {
     let wrong = |formula: &str| {
         let folder = shear_that_expects("wrong", formula);
         let said = typed(folder.path(), &["run", "."]);

@@ -110,8 +110,8 @@ fn equal_states_find_the_same_on_the_shear_and_the_filling_machine() {
 }
 
 #[test]
-fn what_cannot_be_explored_is_told() {
-    let told = |from: &str, to: &str| {
+fn what_cannot_be_explored_is_reported() {
+    let reported = |from: &str, to: &str| {
         let folder = copied_shear();
         edit(folder.path(), "race.toml", from, to);
         let said = typed(folder.path(), &["explore", "race.toml"]);
@@ -120,12 +120,15 @@ fn what_cannot_be_explored_is_told() {
     };
     let late = "late = [{ signals = [\"Sensor_1\", \"Sensor_2\"], by = \"20ms\" }]";
     let all = [
-        told(late, ""),
-        told("\"Sensor_1\", \"Sensor_2\"], by", "\"Sensor_1\", \"Sensor_3\"], by"),
-        told("\"Sensor_1\", \"Sensor_2\"], by", "\"Sensor_1\", \"Sensor_1\"], by"),
-        told("by = \"20ms\"", "by = \"5ms\""),
-        told("by = \"20ms\"", "by = \"soon\""),
-        told("[[expect]]\nname = \"the blade is seen to be aligned\"\nformula = \"always ((a or b) implies c)\"\n", ""),
+        reported(late, ""),
+        reported("\"Sensor_1\", \"Sensor_2\"], by", "\"Sensor_1\", \"Sensor_3\"], by"),
+        reported("\"Sensor_1\", \"Sensor_2\"], by", "\"Sensor_1\", \"Sensor_1\"], by"),
+        reported("by = \"20ms\"", "by = \"5ms\""),
+        reported("by = \"20ms\"", "by = \"soon\""),
+        reported(
+            "[[expect]]\nname = \"the blade is seen to be aligned\"\nformula = \"always ((a or b) implies c)\"\n",
+            "",
+        ),
     ];
     insta::assert_snapshot!(all.join("\n"));
 }

@@ -75,19 +75,19 @@ fn runs_that_fork_have_the_digests_of_those_from_the_start() {
     let folder = benchmark("chasing-cars");
     let mut points = vec![vec![0.5_f64; 40]; 4];
     (points[1][19], points[2][12], points[3][39]) = (1.0, 0.1, 0.0);
-    let all = told(folder.path(), &points);
+    let all = reported(folder.path(), &points);
     let forked: Vec<Option<u64>> = all.iter().map(|one| one["forked_ns"].as_u64()).collect();
     assert_eq!(forked, [None, Some(94_900_000_000), Some(59_900_000_000), Some(94_900_000_000)]);
     for (point, forked) in points.iter().zip(&all) {
         // Alone, there is nothing to fork from.
-        let alone = &told(folder.path(), std::slice::from_ref(point))[0];
+        let alone = &reported(folder.path(), std::slice::from_ref(point))[0];
         assert_eq!(alone["forked_ns"], Value::Null);
         assert_eq!((&alone["digest"], &alone["robustness"]), (&forked["digest"], &forked["robustness"]));
     }
 }
 
 /// What `--points` says of these.
-fn told(folder: &Path, points: &[Vec<f64>]) -> Vec<Value> {
+fn reported(folder: &Path, points: &[Vec<f64>]) -> Vec<Value> {
     let words = ["falsify", ".", "--expect", "CC4", "--points"];
     let mut child =
         onescan(folder).args(words).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().expect("it starts");
@@ -133,7 +133,7 @@ fn a_parameter_is_varied_too() {
 }
 
 #[test]
-fn what_holds_is_told_with_how_near_it_came() {
+fn what_holds_is_reported_with_how_near_it_came() {
     let folder = benchmark("automatic-transmission");
     let said = typed(folder.path(), &["falsify", ".", "--expect", "AT6a", "--runs", "5"]);
     assert_eq!((said.code, said.err.as_str()), (Some(0), ""));
@@ -141,8 +141,8 @@ fn what_holds_is_told_with_how_near_it_came() {
 }
 
 #[test]
-fn what_cannot_be_falsified_is_told() {
-    let told = |from: &str, to: &str| {
+fn what_cannot_be_falsified_is_reported() {
+    let reported = |from: &str, to: &str| {
         let folder = benchmark("automatic-transmission");
         edit(folder.path(), "scenario.toml", from, to);
         let said = typed(folder.path(), &["falsify", ".", "--runs", "1"]);
@@ -151,16 +151,16 @@ fn what_cannot_be_falsified_is_told() {
     };
     let throttle = "{ signal = \"Throttle\", range = [0, 100], points = 7 }";
     let all = [
-        told("\"Throttle\", range", "\"Throtle\", range"),
-        told(throttle, "{ signal = \"Throttle\", points = 7 }"),
-        told("range = [0, 100]", "range = [100, 0]"),
-        told("range = [0, 100], points = 7", "range = [0, 100], points = 0"),
-        told("range = [0, 100], points = 7", "range = [0, 100], points = 1, shape = \"linear\""),
-        told("range = [0, 100], points = 7", "range = [0, 100], points = 7, from = \"50s\""),
-        told("range = [0, 100], points = 7", "range = [0, 100], points = 7, every = \"10ms\""),
-        told("\"Brake\", range", "\"Throttle\", range"),
-        told("[falsify]\n", "[falsify]\nparameter = [{ path = \"plnt.car.drag\", range = [0, 1] }]\n"),
-        told("[falsify]\n", "[falsify]\nparameter = [{ path = \"plant.car.drga\", range = [0, 1] }]\n"),
+        reported("\"Throttle\", range", "\"Throtle\", range"),
+        reported(throttle, "{ signal = \"Throttle\", points = 7 }"),
+        reported("range = [0, 100]", "range = [100, 0]"),
+        reported("range = [0, 100], points = 7", "range = [0, 100], points = 0"),
+        reported("range = [0, 100], points = 7", "range = [0, 100], points = 1, shape = \"linear\""),
+        reported("range = [0, 100], points = 7", "range = [0, 100], points = 7, from = \"50s\""),
+        reported("range = [0, 100], points = 7", "range = [0, 100], points = 7, every = \"10ms\""),
+        reported("\"Brake\", range", "\"Throttle\", range"),
+        reported("[falsify]\n", "[falsify]\nparameter = [{ path = \"plnt.car.drag\", range = [0, 1] }]\n"),
+        reported("[falsify]\n", "[falsify]\nparameter = [{ path = \"plant.car.drga\", range = [0, 1] }]\n"),
     ];
     insta::assert_snapshot!(all.join("\n"));
     let shear = scenario("shear");

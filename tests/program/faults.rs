@@ -95,7 +95,7 @@ fn wait_for(address: &str, t_v_s: f64) {
 }
 
 #[test]
-fn a_client_process_that_cannot_begin_is_told() {
+fn a_client_process_that_cannot_begin_is_reported() {
     let folder = copied_shear();
     let external = "kind = \"external\"\ncommand = [\"python3\", \"-c\", \"raise SystemExit(7)\"]";
     edit(folder.path(), "scenario.toml", "kind = \"plant\"\nscene = \"plant.toml\"", external);

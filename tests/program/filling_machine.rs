@@ -143,7 +143,7 @@ fn a_long_shift_loses_no_package_and_goes_on_from_a_checkpoint() {
     assert_eq!(digests(&resumed), digests(&whole), "{said:?}");
 }
 
-/// Ten times half a minute of distortion: the scenario's expectations tell each package that could not be
+/// Ten times half a minute of distortion: the scenario's expectations report each package that could not be
 /// handed over, and that it left by the emergency drop, and no other.
 #[test]
 fn in_a_long_shift_with_distortion_none_collides() {
@@ -153,6 +153,6 @@ fn in_a_long_shift_with_distortion_none_collides() {
     words.extend(["--record-signals", "Packages_*", "--record-signals", "Collisions"]);
     let (reports, said) = run(&scenario("filling-machine"), "distortion.toml", &words);
     assert_eq!((reports.len(), said.code), (1, Some(0)), "{said:?}");
-    // 20 in half a minute, but for those on whose hand-over it ends
+    // 20 in half a minute, except those on whose hand-over it ends
     assert_eq!(last(&record, &COUNTS), [402, 200, 195, 0, 0]);
 }

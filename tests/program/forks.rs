@@ -67,8 +67,8 @@ fn every_case_goes_on_from_the_checkpoint_of_the_scenario_as_it_is() {
                 // Another parameter has been there from the start: the error names it.
                 assert_eq!(said.code, Some(2), "{said:?}");
                 let words: Vec<&str> = said.err.split_whitespace().filter(|word| *word != "│").collect();
-                let told = words.join(" ");
-                assert!(told.contains(&format!("case `{}` has another `", case.name)), "{told}");
+                let reported = words.join(" ");
+                assert!(reported.contains(&format!("case `{}` has another `", case.name)), "{reported}");
                 refused += 1;
             }
         }
@@ -90,8 +90,8 @@ fn what_happened_before_the_checkpoint_must_have_happened_in_both() {
     let (whole, _) = run(&shear, &["--case", "sensor-lost"]);
     assert_eq!(digests(&own), digests(&whole), "{said:?}");
     assert_eq!((late.code, other.code), (Some(2), Some(2)));
-    let told = |said: &Said| said.err.replace(file, "FILE");
-    insta::assert_snapshot!(format!("{}\n{}", told(&late), told(&other)));
+    let reported = |said: &Said| said.err.replace(file, "FILE");
+    insta::assert_snapshot!(format!("{}\n{}", reported(&late), reported(&other)));
 }
 
 #[test]

@@ -221,9 +221,9 @@ fn a_mapping_of_symbols_goes_with_the_shim() {
     }
 }
 
-/// What SCL has not is told, and nothing is written.
+/// What SCL does not have is reported, and nothing is written.
 #[test]
-fn what_has_no_form_in_scl_is_told() {
+fn what_has_no_form_in_scl_is_reported() {
     let folder = tempfile::tempdir().unwrap();
     let text =
         "PROGRAM P\nVAR\n    t : TIME := T#500us;\n    r : REF_TO TIME;\nEND_VAR\n    r := REF(t);\nEND_PROGRAM\n";
@@ -235,7 +235,7 @@ fn what_has_no_form_in_scl_is_told() {
 }
 
 #[test]
-fn what_is_wrong_is_told() {
+fn what_is_wrong_is_reported() {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
     write("clock.st", "PROGRAM P VAR m : MC_Phasing; END_VAR m(); END_PROGRAM\n");

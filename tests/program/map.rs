@@ -15,12 +15,12 @@ const LINKS: [&str; 5] = [
 
 /// The mappings of a scenario of the project, over every link.
 fn mapped(name: &str) -> String {
-    let told = LINKS.map(|url| {
+    let reported = LINKS.map(|url| {
         let said = typed(&scenario(name), &["map", ".", "--gateway", &format!("plc={url}")]);
         assert_eq!((said.code, said.err.as_str()), (Some(0), ""), "{url}");
         said.out
     });
-    told.join("\n")
+    reported.join("\n")
 }
 
 #[test]
@@ -100,7 +100,7 @@ fn every_program_has_its_own_inputs() {
 
 /// Before anything has begun: the signal, the variable, the line of the mapping, and what mends it.
 #[test]
-fn a_variable_that_is_left_out_is_told_at_its_line() {
+fn a_variable_that_is_left_out_is_reported_at_its_line() {
     let wrong = [
         "Sensor_1 = \"hr:300\"",
         "Strokes = \"hr:1200\"\nSensor_1 = [\"hr:300\"]",
@@ -111,13 +111,13 @@ fn a_variable_that_is_left_out_is_told_at_its_line() {
         "Sensor_1 = 300",
         "Strokes = \"4x100\"",
     ];
-    let told = wrong.map(|map| {
+    let reported = wrong.map(|map| {
         // Nothing listens there: the mapping is looked at first.
         let said = run_with(with_map(map).path(), "plc=modbus://127.0.0.1:1");
         assert_eq!((said.code, said.out.as_str()), (Some(2), ""), "{map}: {said:?}");
         said.err
     });
-    insta::assert_snapshot!(told.join("----\n"));
+    insta::assert_snapshot!(reported.join("----\n"));
 }
 
 /// Two signals of one type that have changed places would run to the end, with another digest.
@@ -135,7 +135,7 @@ fn a_program_that_was_made_for_another_mapping_is_refused() {
 }
 
 #[test]
-fn what_cannot_be_mapped_is_told() {
+fn what_cannot_be_mapped_is_reported() {
     let gantry = typed(&scenario("gantry-robot"), &["map", "."]);
     let unknown = typed(&scenario("shear"), &["map", ".", "--client", "plx"]);
     let all = [gantry, unknown];

@@ -8,7 +8,7 @@ use serde_json::Value;
 use crate::typed::{copied, copied_shear, digests, edit, typed};
 
 /// What a command says of one thing, as JSON.
-fn told(folder: &Path, words: &[&str]) -> Value {
+fn reported(folder: &Path, words: &[&str]) -> Value {
     let said = typed(folder, words);
     serde_json::from_str(said.out.trim()).unwrap_or_else(|_| panic!("{words:?}: {said:?}"))
 }
@@ -48,7 +48,7 @@ fn forty_random_deviations_come_down_to_one_in_ten_runs() {
     for seed in 1..=12 {
         std::fs::write(folder.path().join("cases.toml"), forty(seed)).expect("a file");
         let words = ["minimise", ".", "--case", "forty", "--cases", "least.toml", "--format", "json"];
-        let found = told(folder.path(), &words);
+        let found = reported(folder.path(), &words);
         assert_eq!((&found["left"], &found["minimal"]), (&1.into(), &true.into()), "seed {seed}: {found}");
         // The run of the case as it is comes first.
         let runs = found["trials_to_fewest"].as_u64().expect("a number") + 1;
@@ -56,7 +56,7 @@ fn forty_random_deviations_come_down_to_one_in_ten_runs() {
         // The case repeats it to the digest; without its one entry all is well.
         std::fs::rename(folder.path().join("least.toml"), folder.path().join("cases.toml")).expect("a file");
         let run = ["run", ".", "--case", "minimised", "--format", "json"];
-        let least = told(folder.path(), &run);
+        let least = reported(folder.path(), &run);
         assert_eq!(digests(&[least]), [found["digest"].as_str().expect("a digest")], "seed {seed}");
         let until = format!("{}ms", found["at_ns"].as_u64().expect("a time") / 1_000_000);
         assert_eq!(typed(folder.path(), &["run", ".", "--until", &until]).code, Some(0), "seed {seed}");
@@ -120,13 +120,13 @@ fn what_operators_did_is_minimised() {
     std::fs::write(folder.path().join("events.jsonl"), events).expect("a file");
     let operated = ["--operator", "panel", "--until", "40s", "--format", "json"];
     let words = ["minimise", ".", "--replay-operator", "events.jsonl", "--cases", "cases.toml"];
-    let found = told(folder.path(), &[&words[..], &operated].concat());
+    let found = reported(folder.path(), &[&words[..], &operated].concat());
     assert_eq!((&found["entries"], &found["left"]), (&20.into(), &2.into()), "{found}");
     assert_eq!(found["violated"], "no package is dropped");
     let least = found["minimised"].as_str().expect("a case");
     assert!(least.contains("SwitchOutput[0]") && least.contains("Distortion"), "{least}");
     let words = ["run", ".", "--case", "minimised", "--operator", "panel", "--format", "json"];
-    let run = told(folder.path(), &words);
+    let run = reported(folder.path(), &words);
     assert_eq!(digests(std::slice::from_ref(&run)), [found["digest"].as_str().expect("a digest")]);
     let violated: Vec<&Value> = run["expectations"].as_array().expect("a list").iter().collect();
     assert!(violated.iter().any(|one| one["name"] == "no package is dropped" && one["verdict"] == "violated"));
@@ -146,13 +146,13 @@ fn a_plc_that_stops_is_minimised() {
     let case =
         forty(3).replacen("until = \"6s\"", "until = \"6s\"\nwaive = [\"both sides at once\", \"strokes go on\"]", 1);
     std::fs::write(folder.path().join("cases.toml"), case).expect("a file");
-    let found = told(folder.path(), &["minimise", ".", "--case", "forty", "--format", "json"]);
+    let found = reported(folder.path(), &["minimise", ".", "--case", "forty", "--format", "json"]);
     assert_eq!((&found["left"], &found["violated"]), (&1.into(), &Value::Null), "{found}");
     insta::assert_snapshot!(found["failure"].as_str().expect("a failure"));
 }
 
 #[test]
-fn what_cannot_be_minimised_is_told() {
+fn what_cannot_be_minimised_is_reported() {
     let folder = copied_shear();
     std::fs::write(folder.path().join("cases.toml"), "version = 1\n[[case]]\nname = \"calm\"\nuntil = \"1s\"\n")
         .unwrap();
@@ -168,7 +168,7 @@ fn what_cannot_be_minimised_is_told() {
     std::fs::write(folder.path().join("cases.toml"), forty(1)).unwrap();
     let name = said(&["--case", "forty", "--name", "a/b"]);
     insta::assert_snapshot!(unnamed(&[calm, unknown, expectation, neither, name].join("\n"), folder.path()));
-    // A limit that is too low is told of.
+    // A limit that is too low is reported.
     let limited = typed(folder.path(), &["minimise", ".", "--case", "forty", "--runs", "1", "--format", "json"]);
     let limited: Value = serde_json::from_str(limited.out.trim()).expect("JSON");
     assert_eq!((&limited["minimal"], &limited["trials"]), (&false.into(), &1.into()));

@@ -1,4 +1,4 @@
-//! `onescan mutate`: small mistakes in a program, told by what the cases come to.
+//! `onescan mutate`: small mistakes in a program, detected by what the cases come to.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -8,7 +8,7 @@ use serde_json::Value;
 use crate::typed::{copied_shear, edit, scenario, typed};
 
 /// The mutants and the statement behind them.
-fn told(folder: &Path, words: &[&str]) -> (Vec<Value>, Value) {
+fn reported(folder: &Path, words: &[&str]) -> (Vec<Value>, Value) {
     let said = typed(folder, &[&["mutate", ".", "--format", "json"], words].concat());
     let mut lines: Vec<Value> = said.out.lines().map(|line| serde_json::from_str(line).expect("JSON lines")).collect();
     let statement = lines.pop().unwrap_or_else(|| panic!("{words:?}: {said:?}"));
@@ -35,7 +35,7 @@ fn the_cases_of_the_machines_notice_the_mistakes_in_their_programs() {
     let mut mutants = 0;
     for (name, client) in [("shear", "plc"), ("gantry-robot", "plc"), ("filling-machine", "plc")] {
         let words = ["--client", client, "--at-least", "95"];
-        let (_, statement) = told(&scenario(name), &words);
+        let (_, statement) = reported(&scenario(name), &words);
         assert!(statement["score_pct"].as_f64().expect("a number") >= 95.0, "{name}: {statement}");
         mutants += statement["mutants"].as_u64().expect("a number");
     }
@@ -46,7 +46,7 @@ fn the_cases_of_the_machines_notice_the_mistakes_in_their_programs() {
 #[test]
 fn a_mutant_does_what_the_program_with_the_mistake_does() {
     let folder = copied_shear();
-    let (mutants, statement) = told(folder.path(), &[]);
+    let (mutants, statement) = reported(folder.path(), &[]);
     assert_eq!(statement["mutants"].as_u64(), Some(mutants.len() as u64), "none was refused");
     let mut seen: BTreeMap<&str, usize> = BTreeMap::new();
     for mutant in mutants.iter().step_by(4) {
@@ -90,7 +90,7 @@ fn each_verdict_is_given_for_its_reason() {
     let of_alignment = |mutants: Vec<Value>| -> Vec<Value> {
         mutants.into_iter().filter(|mutant| mutant["file"] == "plc/alignment.st").collect()
     };
-    let (mutants, _) = told(folder.path(), &["--case", "sensor-lost"]);
+    let (mutants, _) = reported(folder.path(), &["--case", "sensor-lost"]);
     let mutants = of_alignment(mutants);
     let verdict = |was: &str, is: &str| {
         let found = mutants.iter().find(|mutant| mutant["was"] == was && mutant["is"] == is);
@@ -103,7 +103,7 @@ fn each_verdict_is_given_for_its_reason() {
     let more = "[[expect]]\nname = \"the blade is seen to be level\"\nformula = \"always ((rose(Sensor_1) and \
                 rose(Sensor_2)) implies eventually[0,20ms] Aligned)\"\n\n[[expect]]\nname = \"strokes go on\"";
     edit(folder.path(), "scenario.toml", "[[expect]]\nname = \"strokes go on\"", more);
-    let (with, _) = told(folder.path(), &["--case", "sensor-lost"]);
+    let (with, _) = reported(folder.path(), &["--case", "sensor-lost"]);
     let with = of_alignment(with);
     let noticed = with.iter().find(|mutant| mutant["was"] == "Aligned := c.Q").expect("a mutant");
     assert_eq!(noticed["by"], "the blade is seen to be level");
@@ -121,7 +121,7 @@ fn a_loop_without_end_is_noticed() {
         "END_PROGRAM",
         "    WHILE i < 3 DO i := i + 1; END_WHILE;\n    i := 0;\nEND_PROGRAM",
     );
-    let (mutants, _) = told(folder.path(), &["--kind", "statement", "--case", "default"]);
+    let (mutants, _) = reported(folder.path(), &["--kind", "statement", "--case", "default"]);
     let endless = mutants.iter().find(|mutant| mutant["was"] == "i := i + 1").expect("a mutant");
     assert_eq!(endless["verdict"], "killed");
     insta::assert_snapshot!(endless["by"].as_str().expect("a failure"));

@@ -50,7 +50,7 @@ fn what_is_there_stays_as_it_is() {
 
 /// The commented-out failure of the cell is one that the library has, and it shows.
 #[test]
-fn what_the_readme_tells_to_try_can_be_tried() {
+fn what_the_readme_says_to_try_can_be_tried() {
     let folder = tempfile::tempdir().unwrap();
     typed(folder.path(), &["new", "my-cell"]);
     let file = folder.path().join("my-cell/plant.toml");
@@ -63,7 +63,7 @@ fn what_the_readme_tells_to_try_can_be_tried() {
     assert!(said.code == Some(1) && said.out.contains("`boxes are pushed off` violated"), "{said:?}");
 }
 
-/// A sensor more, as the cell's README tells: the error names the line to write, and with it the run is green.
+/// A sensor more, as the cell's README describes: the error names the line to write, and with it the run is green.
 #[test]
 fn a_sensor_is_added_by_what_the_program_says() {
     let folder = tempfile::tempdir().unwrap();
@@ -191,7 +191,7 @@ fn a_list_for_machines_is_one_object() {
 }
 
 #[test]
-fn what_is_no_list_is_named_and_nothing_is_written() {
+fn what_is_not_a_list_is_named_and_nothing_is_written() {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
     write("cut.tsproj", "<TcSmProject><Project>");

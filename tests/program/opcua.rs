@@ -129,8 +129,8 @@ fn what_is_wrong_is_refused_and_changes_nothing() {
 
 /// A client that is killed, that leaves, that says it cannot go on, or that does not come.
 #[test]
-fn a_client_that_fails_is_told_by_name() {
-    for (how, patience, told) in [
+fn a_client_that_fails_is_reported_by_name() {
+    for (how, patience, reported) in [
         ("dies", "60s", "its OPC UA connection or session has ended while grant "),
         ("hangs", "3s", "is not done within 3 s: its OPC UA client is dead, hangs or does not write `Done`"),
         ("leaves", "60s", "its OPC UA connection or session has ended while grant "),
@@ -142,7 +142,7 @@ fn a_client_that_fails_is_told_by_name() {
         let said = server.end();
         assert_eq!(said.code, Some(3), "{how} {said:?}");
         let error = report(&said)["error"].as_str().unwrap_or_default().to_owned();
-        assert!(error.starts_with("client `plc` failed in state run at t_v = ") && error.contains(told), "{error}");
+        assert!(error.starts_with("client `plc` failed in state run at t_v = ") && error.contains(reported), "{error}");
         // It has been ended, or ends by itself.
         drop(peer.wait_with_output());
     }
@@ -228,9 +228,9 @@ fn who_was_refused_is_named_when_nobody_has_joined() {
     let mut rest = String::new();
     said.read_to_string(&mut rest).expect("text");
     // A long message is broken into lines.
-    let told = rest.replace('│', " ").split_whitespace().collect::<Vec<_>>().join(" ");
+    let reported = rest.replace('│', " ").split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(
-        told.contains("did not join within 20 s; somebody tried and was refused: user `panel` over OPC UA"),
+        reported.contains("did not join within 20 s; somebody tried and was refused: user `panel` over OPC UA"),
         "{rest}"
     );
     assert!(!rest.contains("ERROR"), "{rest}");
@@ -239,7 +239,7 @@ fn who_was_refused_is_named_when_nobody_has_joined() {
 /// A certificate that was made for another application lets nobody take part, unless that is asked for.
 #[test]
 fn a_certificate_for_another_application_is_refused() {
-    for (more, uri, told) in [
+    for (more, uri, reported) in [
         (&[][..], "urn:a:panel", "Good"),
         (&[], "urn:another", "BadCertificateUriInvalid"),
         (&["--opcua-foreign-uri"], "urn:another", "Good"),
@@ -249,13 +249,17 @@ fn a_certificate_for_another_application_is_refused() {
         let (pki, own) = (text(folder.path().join("pki")), text(folder.path().to_owned()));
         let words = ["--opcua-client", "plc", "--join-timeout", "20s", "--opcua-pki", &pki, "--opcua-trust"];
         let mut server = Server::start(&scenario("shear"), &[&words[..], more].concat());
-        assert_eq!(ended(begun("stranger.py", &[&server.url, "session", &own, uri])).trim(), told, "{more:?} {uri}");
+        assert_eq!(
+            ended(begun("stranger.py", &[&server.url, "session", &own, uri])).trim(),
+            reported,
+            "{more:?} {uri}"
+        );
         server.stop();
         let folder = tempfile::tempdir().expect("a folder");
         let (pki, own) = (text(folder.path().join("pki")), text(folder.path().to_owned()));
         let plc = crate::plc::Plc::start(&scenario("shear"), &[&["--opcua-pki", &pki, "--opcua-trust"], more].concat());
         let url = plc.gateway("opc.tcp://").rsplit('=').next().expect("a URL").to_owned();
-        assert_eq!(ended(begun("stranger.py", &[&url, "plc", &own, uri])).trim(), told, "{more:?} {uri}");
+        assert_eq!(ended(begun("stranger.py", &[&url, "plc", &own, uri])).trim(), reported, "{more:?} {uri}");
     }
 }
 
@@ -281,17 +285,17 @@ fn tokens_are_good_for_what_they_say() {
 }
 
 #[test]
-fn options_that_contradict_each_other_are_told() {
-    let told = |words: &[&str]| {
+fn options_that_contradict_each_other_are_reported() {
+    let reported = |words: &[&str]| {
         let said = typed(&scenario("shear"), &[&["run", "."], words].concat());
         assert_eq!(said.code, Some(2), "{said:?}");
         said.err
     };
     let all = [
-        told(&["--opcua-client", "plnat"]),
-        told(&["--opcua-client", "plc", "--gateway", "plc"]),
-        told(&["--opcua-client", "plc", "--mode", "freewheel"]),
-        told(&["--opcua", "127.0.0.1:0", "--mode", "freewheel"]),
+        reported(&["--opcua-client", "plnat"]),
+        reported(&["--opcua-client", "plc", "--gateway", "plc"]),
+        reported(&["--opcua-client", "plc", "--mode", "freewheel"]),
+        reported(&["--opcua", "127.0.0.1:0", "--mode", "freewheel"]),
     ];
     insta::assert_snapshot!(all.join("----\n"));
 }

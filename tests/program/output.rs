@@ -9,7 +9,7 @@ use std::process::Stdio;
 use crate::typed::{Said, copied_shear, onescan, scenario};
 
 #[test]
-fn a_reader_that_has_left_is_no_failure() {
+fn a_reader_that_has_left_is_not_a_failure() {
     for words in [&["explain", "--list"][..], &["run", ".", "--until", "100ms"], &["run", ".", "--format", "json"]] {
         let (reader, writer) = pipe().expect("a pipe");
         drop(reader);

@@ -66,7 +66,7 @@ fn kinds_of_a_folder_are_listed() {
 }
 
 #[test]
-fn what_is_wrong_in_a_folder_of_kinds_is_told() {
+fn what_is_wrong_in_a_folder_of_kinds_is_reported() {
     let folder = from_the_manual();
     edit(folder.path(), "components/oven.st", "flow_w : LREAL", "flow_w : LRAEL");
     let wrong = typed(folder.path(), &["components", "--library", "components"]);

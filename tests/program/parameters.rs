@@ -79,8 +79,8 @@ fn a_campaign_changes_parameters() {
 }
 
 #[test]
-fn what_cannot_change_is_told_before_anything_runs() {
-    let told = [
+fn what_cannot_change_is_reported_before_anything_runs() {
+    let reported = [
         r#"component = "conveyer", parameter = "speed_m_s", value = 1.0"#,
         r#"component = "conveyor", parameter = "speed", value = 1.0"#,
         r#"component = "conveyor", parameter = "speed_m_s", value = "fast""#,
@@ -96,5 +96,5 @@ fn what_cannot_change_is_told_before_anything_runs() {
         assert_eq!((said.code, said.out.as_str()), (Some(2), ""), "{keys}: {said:?}");
         said.err.replace(&folder.path().display().to_string(), ".")
     });
-    insta::assert_snapshot!(told.join("\n"));
+    insta::assert_snapshot!(reported.join("\n"));
 }

@@ -39,7 +39,7 @@ fn the_birch_of_the_thesis_gives_its_veneer() {
 
 /// 3.2: a position of 50000 that is kept in INT and converted as it is.
 #[test]
-fn a_conversion_without_the_way_over_uint_is_told() {
+fn a_conversion_without_the_way_over_uint_is_reported() {
     let folder = copied("peeling-line");
     edit(
         folder.path(),
@@ -49,8 +49,8 @@ fn a_conversion_without_the_way_over_uint_is_told() {
     );
     let said = typed(folder.path(), &["run", ".", "--until", "10s"]);
     assert_eq!(said.code, Some(1), "{said:?}");
-    let told = said.out.lines().find(|line| line.contains("`positions are converted as UINT` violated"));
-    insta::assert_snapshot!("peeling_line_conversion", told.unwrap_or_default());
+    let reported = said.out.lines().find(|line| line.contains("`positions are converted as UINT` violated"));
+    insta::assert_snapshot!("peeling_line_conversion", reported.unwrap_or_default());
 }
 
 /// 3.1.1: Execute is held for 500 ms because a shorter one may not be seen. In lockstep one scan is enough.
@@ -74,9 +74,9 @@ fn every_fault_of_the_line_has_a_verdict() {
     insta::assert_snapshot!("peeling_line_campaign", said.out);
 }
 
-/// Sec. 2.3: the campaign finds that an unseen block is pushed where the loader is not; the mended program tells it.
+/// Sec. 2.3: the campaign finds that an unseen block is pushed where the loader is not; the mended program reports it.
 #[test]
-fn the_mended_program_tells_what_the_first_one_missed() {
+fn the_mended_program_reports_what_the_first_one_missed() {
     // those of the first one are in the snapshot of its campaign: no effect, and three collisions
     let said = typed(&scenario("peeling-line"), &["campaign", "mended.toml", "line", "--format", "json"]);
     let lines = said.out.lines().map(|line| serde_json::from_str::<serde_json::Value>(line).expect("JSON lines"));

@@ -47,7 +47,7 @@ fn the_library_is_listed() {
 }
 
 #[test]
-fn one_kind_is_told_in_full() {
+fn one_kind_is_described_in_full() {
     let said = typed(&scenario("shear"), &["components", "lamp"]);
     assert_eq!((said.code, said.err.as_str()), (Some(0), ""));
     insta::assert_snapshot!(said.out);
@@ -67,7 +67,7 @@ fn a_kind_that_is_not_there_has_a_nearest_name() {
 }
 
 #[test]
-fn a_scene_is_told_as_a_tree() {
+fn a_scene_is_described_as_a_tree() {
     let said = typed(&scenario("shear"), &["describe", "plant.toml"]);
     assert_eq!((said.code, said.err.as_str()), (Some(0), ""));
     insta::assert_snapshot!("shear_described", said.out);

@@ -103,7 +103,7 @@ fn the_switch_and_starts_are_obeyed() {
 
 /// What the PLC's operator does in mid-session, by name.
 #[test]
-fn a_plc_in_stop_and_a_restarted_one_are_told_apart() {
+fn a_plc_in_stop_and_a_restarted_one_are_distinguished() {
     let folder = crate::typed::copied_shear();
     edit(folder.path(), "scenario.toml", "system_words = true", "system_words = true\ngrant_timeout = \"2s\"");
     for (command, name) in [("stop", "the PLC is in STOP: grant "), ("cold", "the PLC was restarted in mid-session")] {
@@ -130,10 +130,10 @@ fn a_plc_that_is_not_there_is_unreachable() {
     let said = typed(folder.path(), &["run", ".", "--gateway", "plc=tcp://127.0.0.1:1"]);
     assert_eq!(said.code, Some(3), "{said:?}");
     assert!(said.err.contains("unreachable: tcp://127.0.0.1:1"), "{said:?}");
-    assert_eq!(said.err.matches("; trying again for 1s").count(), 1, "told once: {said:?}");
+    assert_eq!(said.err.matches("; trying again for 1s").count(), 1, "reported once: {said:?}");
     assert!(said.err.contains(" times in 1s"), "{said:?}");
-    let told = |gateway: &str| typed(&scenario("shear"), &["run", ".", "--gateway", gateway]);
-    let all = [told("plc=tpc://127.0.0.1:1"), told("plc=127.0.0.1"), told("plant"), told("plx")];
+    let reported = |gateway: &str| typed(&scenario("shear"), &["run", ".", "--gateway", gateway]);
+    let all = [reported("plc=tpc://127.0.0.1:1"), reported("plc=127.0.0.1"), reported("plant"), reported("plx")];
     assert!(all.iter().all(|said| said.code == Some(2)), "{all:?}");
     let text: Vec<String> = all.into_iter().map(|said| said.err).collect();
     insta::assert_snapshot!(text.join("----\n"));

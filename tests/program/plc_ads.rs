@@ -23,8 +23,8 @@ fn the_ads_crate_sees_a_device() {
     assert_eq!(device.get_info().unwrap().name, "onescan plc");
     assert_eq!(device.get_state().unwrap().0, AdsState::Run);
     let (symbols, types) = symbol::get_symbol_info(device).unwrap();
-    let told = |symbol: &symbol::Symbol| format!("{}: {}, {} bytes", symbol.name, symbol.typ, symbol.size);
-    insta::assert_snapshot!(symbols.iter().map(told).collect::<Vec<_>>().join("\n"));
+    let reported = |symbol: &symbol::Symbol| format!("{}: {}, {} bytes", symbol.name, symbol.typ, symbol.size);
+    insta::assert_snapshot!(symbols.iter().map(reported).collect::<Vec<_>>().join("\n"));
     assert!(types.is_empty(), "all of them are elementary");
 
     let position = Handle::new(device, "Shear.Position_1").unwrap();
@@ -68,7 +68,7 @@ fn run_against(url: &str, settings: &str) -> Said {
 }
 
 #[test]
-fn what_does_not_fit_is_told_at_connect() {
+fn what_does_not_fit_is_reported_at_connect() {
     let plc = Plc::start(&scenario("shear"), &["--ads", "127.0.0.1:0"]);
     let wrong = [
         "map = { Strokes = \"Shear.Strokse\" }",
@@ -77,12 +77,12 @@ fn what_does_not_fit_is_told_at_connect() {
         "ads = { words = \"GVL\" }",
         "ads = { net_id = \"1.2.3\" }",
     ];
-    let told = wrong.map(|settings| {
+    let reported = wrong.map(|settings| {
         let said = run_against(&plc.gateway("ads://"), settings);
         assert_eq!(said.code, Some(2), "{settings}: {said:?}");
         said.err
     });
-    insta::assert_snapshot!(told.join("----\n"));
+    insta::assert_snapshot!(reported.join("----\n"));
 }
 
 /// A device that answers each connection's first request with `answer`, and then closes.
@@ -100,13 +100,13 @@ fn device(answer: Vec<u8>) -> String {
 }
 
 #[test]
-fn devices_that_are_none_are_told_apart() {
+fn devices_that_are_none_are_distinguished() {
     let frame = |length: u32, rest: &[u8]| [&[0, 0][..], &length.to_le_bytes(), rest].concat();
     let answers = [
         ("closed without an answer", Vec::new(), "has the PLC a route to 127.0.0.1.1.1?"),
         ("4 GiB announced", frame(u32::MAX, &[]), "a frame of 4294967295 bytes"),
         ("a short frame", frame(8, &[0; 8]), "a frame of 8 bytes"),
-        ("no ADS command", vec![1, 16, 0, 0, 0, 0], "no ADS command"),
+        ("no ADS command", vec![1, 16, 0, 0, 0, 0], "not an ADS command"),
         ("lengths that contradict", frame(32, &[255; 32]), "state flags"),
     ];
     for (what, answer, text) in answers {

@@ -382,9 +382,9 @@ fn a_plc_may_connect_again() {
     assert!(said.err.contains("connection back"), "{said:?}");
 }
 
-/// Bytes are missing in mid-stream: it is told, and nothing of it reaches the plant.
+/// Bytes are missing in mid-stream: it is reported, and nothing of it reaches the plant.
 #[test]
-fn a_stream_that_is_cut_wrongly_is_told() {
+fn a_stream_that_is_cut_wrongly_is_reported() {
     let expected = in_process("500ms");
     let (digest, said, _) = run_line("500ms", &[], Trouble::LeftOut(390 * 20 + 5, 7));
     assert_eq!(digest, expected, "{said:?}");
@@ -484,7 +484,7 @@ fn bytes(hex: &str) -> Vec<u8> {
 }
 
 #[test]
-fn what_cannot_be_is_told() {
+fn what_cannot_be_is_reported() {
     let taken = TcpListener::bind("127.0.0.1:0").unwrap();
     let [here, beyond] = [format!("tcp-listen://{}", taken.local_addr().unwrap()), "tcp-listen://0.0.0.0:0".to_owned()];
     let run = |urls: [&str; 2], handshake: &str, words: &[&str]| {

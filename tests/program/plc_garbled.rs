@@ -1,4 +1,4 @@
-//! One answer that is garbled on its way does not end a run, whatever the link: the connection is made anew, the step
+//! One answer that is garbled on its way does not end a run, whatever the link: the connection is made again, the step
 //! resumed, and the digest that of an undisturbed run. A PLC that never says anything else does.
 
 use std::io::{Read, Write};
@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use crate::plc::Plc;
 use crate::typed::{digests, run_shear, scenario, typed};
 
-/// Lets connections to `server` through, but for the answers with the numbers that `is_garbled` names: their first
+/// Lets connections to `server` through, except the answers with the numbers that `is_garbled` names: their first
 /// bytes are others. Gives its own address.
 fn garbling(server: &str, is_garbled: fn(usize) -> bool) -> String {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();

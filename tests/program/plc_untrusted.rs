@@ -35,7 +35,7 @@ fn a_plc_that_answers_nonsense_ends_the_session() {
 
 /// Blocks of another length, and a PLC that closes in the middle of one: the layouts do not agree.
 #[test]
-fn a_plc_with_another_layout_is_told() {
+fn a_plc_with_another_layout_is_reported() {
     let folder = copied_shear();
     let short = "system_words = true\nreconnect_timeout = \"300ms\"";
     edit(folder.path(), "scenario.toml", "system_words = true", short);

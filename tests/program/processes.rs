@@ -73,7 +73,7 @@ fn a_program_that_compiles_is_interrupted_at_once() {
 }
 
 #[test]
-fn what_is_no_file_is_refused_at_once() {
+fn what_is_not_a_file_is_refused_at_once() {
     let folder = copied_shear();
     let path = folder.path().join("plc/alignment.st");
     std::fs::remove_file(&path).unwrap();

@@ -85,8 +85,8 @@ fn a_case_with_another_program_goes_on_from_where_the_scenario_was() {
 }
 
 #[test]
-fn what_is_wrong_with_a_program_is_told() {
-    let told = [
+fn what_is_wrong_with_a_program_is_reported() {
+    let reported = [
         "{ source = \"plc/shear.st\" }",
         "{ source = \"plc/shear.st\", by = \"plc/next.st\", was = \"T#100ms\", is = \"T#1s\" }",
         "{ source = \"plc/shaer.st\", by = \"plc/next.st\" }",
@@ -105,7 +105,7 @@ fn what_is_wrong_with_a_program_is_told() {
         assert_eq!((said.code, said.out.as_str()), (Some(2), ""), "{code}: {said:?}");
         said.err.replace(&folder.path().display().to_string(), ".")
     });
-    insta::assert_snapshot!(told.join("\n"));
+    insta::assert_snapshot!(reported.join("\n"));
 }
 
 const CAMPAIGN: &str = r#"

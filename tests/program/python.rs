@@ -105,7 +105,7 @@ fn a_plant_in_python_is_as_good_as_its_recording() {
     assert!(csv.lines().count() == 302 && csv.contains(",1,"), "the blade has moved");
 }
 
-/// A shear in Python that cannot save its state, and that tells in a file how the session ended.
+/// A shear in Python that cannot save its state, and that writes to a file how the session ended.
 const FORGETFUL: &str = "\
 import sys
 import shear

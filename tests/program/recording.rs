@@ -95,7 +95,7 @@ fn killed_at_any_moment_a_recording_opens() {
     let mut seed = 20_u64;
     let mut runs = Vec::new();
     for number in 0..20 {
-        // Knuth's MMIX generator: the moments are the same in every test run, as far as bytes tell them.
+        // Knuth's MMIX generator: the moments are the same in every test run, as far as bytes show them.
         seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         let bytes = (seed >> 33) % 400_000;
         let record = folder.path().join(format!("killed-{number}"));
@@ -163,7 +163,7 @@ fn chosen_signals_are_recorded_and_the_digest_is_that_of_all() {
 }
 
 #[test]
-fn what_cannot_be_is_told() {
+fn what_cannot_be_is_reported() {
     let folder = copied_shear();
     let mut text = String::new();
     let mut say = |words: &[&str]| {

@@ -155,7 +155,7 @@ fn what_goes_wrong_has_its_exit_code() {
 }
 
 #[test]
-fn a_garbled_snapshot_is_told_with_its_line() {
+fn a_garbled_snapshot_is_reported_with_its_line() {
     let folder = copied_shear();
     let path = folder.path().join("snapshots/default.traj");
     let text = std::fs::read_to_string(&path).expect("a snapshot");

@@ -44,8 +44,8 @@ for suite in xml:
         for result in case.result:
             print(case.name, type(result).__name__, result.type, result.message)
 ";
-    let told = asked(folder.path(), program);
-    insta::assert_snapshot!(told);
+    let reported = asked(folder.path(), program);
+    insta::assert_snapshot!(reported);
 }
 
 #[test]
@@ -58,8 +58,8 @@ report = Cobertura('coverage.xml', filesystem=filesystem_factory('.'))
 for name in sorted(report.files()):
     print(name, report.total_statements(name), report.total_misses(name))
 ";
-    let told = asked(folder.path(), program);
-    insta::assert_snapshot!(told);
+    let reported = asked(folder.path(), program);
+    insta::assert_snapshot!(reported);
 }
 
 /// All but the line that says how long it took.

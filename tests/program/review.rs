@@ -75,11 +75,12 @@ fn keys_decide_one_by_one() {
         .expect("Python is on the machine");
     let said = named(&folder, &String::from_utf8_lossy(&output.stdout));
     assert_eq!(output.status.code(), Some(0), "{said}");
-    // The screen is cleared before what came of it is told.
-    let told = said.rsplit("\u{1b}[H").next().into_iter().flat_map(str::lines);
-    let told: Vec<&str> = told.filter(|line| line.starts_with("accepted ") || line.starts_with("rejected ")).collect();
+    // The screen is cleared before what came of it is printed.
+    let reported = said.rsplit("\u{1b}[H").next().into_iter().flat_map(str::lines);
+    let reported: Vec<&str> =
+        reported.filter(|line| line.starts_with("accepted ") || line.starts_with("rejected ")).collect();
     let [accepted, rejected] = [0, 1].map(|index| waiting[index].clone());
-    assert_eq!(told, [format!("accepted shear: {accepted}"), format!("rejected shear: {rejected}")], "{said}");
+    assert_eq!(reported, [format!("accepted shear: {accepted}"), format!("rejected shear: {rejected}")], "{said}");
     assert!(said.contains("[1/11] signals 1-") && said.contains("[4/11]") && !said.contains("[5/11]"), "{said}");
     assert_eq!(files(".traj.new"), waiting[2..], "what was skipped, and what was not asked for, waits");
     let changed: Vec<bool> = waiting.iter().zip(&before).map(|(case, before)| text(case) != *before).collect();
@@ -97,7 +98,7 @@ fn a_page_shows_all_in_one_file() {
 }
 
 #[test]
-fn a_garbled_pending_snapshot_is_told() {
+fn a_garbled_pending_snapshot_is_reported() {
     let folder = changed_shear();
     std::fs::write(folder.path().join("snapshots/on-the-limit.traj.new"), "onescan trajectory 1\n").expect("a file");
     let said = typed(folder.path(), &["review", "."]);

@@ -5,13 +5,13 @@ use crate::typed::{digests, is_the_same_over_tcp_and_resumed, scenario, typed};
 /// The slip of the mended program is `1 + δ/D`; that of the thesis is short by cams and scans, as derived.
 #[test]
 fn the_slip_is_right_once_the_clocks_are_mended() {
-    let told = |file: &str, code: i32| {
+    let reported = |file: &str, code: i32| {
         let said = typed(&scenario("rotary-kiln"), &["run", file]);
         assert_eq!(said.code, Some(code), "{said:?}");
         said.out
     };
-    assert!(told(".", 0).contains("`the slip is the lag of the shell` met"));
-    let thesis = told("thesis.toml", 1);
+    assert!(reported(".", 0).contains("`the slip is the lag of the shell` met"));
+    let thesis = reported("thesis.toml", 1);
     assert!(thesis.contains("Ring_time = 58990"), "{thesis}");
     assert!(thesis.contains("Slip = 1.0125"), "{thesis}");
 }
@@ -22,7 +22,7 @@ fn transport_and_checkpoints_do_not_matter() {
     is_the_same_over_tcp_and_resumed("rotary-kiln", ".", "100s", "70.3s");
 }
 
-/// Scenarios in one folder are told apart by their files, and so are their recordings.
+/// Scenarios in one folder are distinguished by their files, and so are their recordings.
 #[test]
 fn a_comparison_names_the_flip_flop_of_the_thesis() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -120,9 +120,9 @@ fn the_check_byte_of_the_thesis_is_refused() {
 }
 
 #[test]
-fn a_loop_that_waits_within_a_scan_is_told() {
+fn a_loop_that_waits_within_a_scan_is_reported() {
     let said = scanned("thesis-serial.toml", "200s", &[]);
     assert_eq!(said.code, Some(3), "{said:?}");
-    let told = format!("{}{}", said.out, said.err);
-    assert!(told.contains("endless loop in PRG_Measure_serial at thesis/measure_serial.st:16:13"), "{told}");
+    let reported = format!("{}{}", said.out, said.err);
+    assert!(reported.contains("endless loop in PRG_Measure_serial at thesis/measure_serial.st:16:13"), "{reported}");
 }

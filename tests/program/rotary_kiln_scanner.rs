@@ -7,13 +7,13 @@ use serde_json::Value;
 
 use crate::typed::{copied, digests, edit, is_the_same_over_tcp_and_resumed, onescan, scenario, typed};
 
-/// Lines of what is said that tell of the PLC's end.
+/// Lines of what is said that report the PLC's end.
 fn fault(folder: &Path, words: &[&str]) -> String {
     let said = typed(folder, words);
     assert_eq!(said.code, Some(3), "{said:?}");
     let all = format!("{}\n{}", said.out, said.err);
-    let told: Vec<&str> = all.lines().map(str::trim).filter(|line| line.contains("PLC fault")).collect();
-    told.first().copied().unwrap_or_else(|| panic!("{all}")).to_owned()
+    let reported: Vec<&str> = all.lines().map(str::trim).filter(|line| line.contains("PLC fault")).collect();
+    reported.first().copied().unwrap_or_else(|| panic!("{all}")).to_owned()
 }
 
 /// What is watched, at the end of a run that meets what is expected.
@@ -27,15 +27,15 @@ fn watched(file: &str, case: &str, variable: &str) -> String {
 
 #[test]
 fn without_its_guard_the_program_stops_at_the_first_edge_of_the_shell() {
-    let told = fault(&scenario("rotary-kiln"), &["run", "unguarded.toml"]);
-    insta::assert_snapshot!(told);
+    let reported = fault(&scenario("rotary-kiln"), &["run", "unguarded.toml"]);
+    insta::assert_snapshot!(reported);
     let guarded = typed(&scenario("rotary-kiln"), &["run", ".", "--until", "30s"]);
     assert_eq!(guarded.code, Some(0), "{guarded:?}");
 }
 
 /// The program of the thesis waits within a scan, whether the scanner is silent or not; the mended one gives the line up.
 #[test]
-fn a_silent_scanner_is_told_and_never_a_hang() {
+fn a_silent_scanner_is_reported_and_never_a_hang() {
     let folder = copied("rotary-kiln");
     let case = "version = 1\n[[case]]\nname = \"silent\"\n[[case.disturbance]]\nsignal = \"From_scanner\"\nkind = \"silent\"\n\
                 from = \"1s\"\n";
@@ -56,8 +56,8 @@ fn the_rule_of_the_thesis_leaves_lines_over() {
         ("rates.toml", "default", "514"),
         ("rates.toml", "quick,GV_Samples_per_rev=100", "100"),
     ] {
-        let told = watched(file, case, "GV_Orders_before");
-        assert_eq!(told, orders, "{file} {case}");
+        let reported = watched(file, case, "GV_Orders_before");
+        assert_eq!(reported, orders, "{file} {case}");
     }
 }
 

@@ -133,8 +133,8 @@ fn variables_of_a_session_are_read_by_a_client_that_others_have_made() {
         .expect("it runs");
     let lines = std::io::BufRead::lines(std::io::BufReader::new(child.stderr.take().expect("piped")));
     let mut lines = lines.map_while(Result::ok);
-    let told = lines.find_map(|line| line.split_once("ads://").map(|(_, address)| address.trim().to_owned()));
-    let address: SocketAddr = told.expect("it says where it serves").parse().expect("an address");
+    let reported = lines.find_map(|line| line.split_once("ads://").map(|(_, address)| address.trim().to_owned()));
+    let address: SocketAddr = reported.expect("it says where it serves").parse().expect("an address");
     let client = client(address);
     let plc = plc(&client);
     assert_eq!(plc.get_info().expect("a device").name, "onescan");

@@ -165,12 +165,12 @@ fn what_is_wrong_is_said_with_its_place() {
         ("from = \"Actuator_1_Down\"", "from = \"rose(Actuator_1_Down)\""),
         ("name = \"levelled\"", "name = \"strokes\""),
     ];
-    let told = wrong.map(|(from, to)| {
+    let reported = wrong.map(|(from, to)| {
         let folder = copied_shear();
         edit(folder.path(), "scenario.toml", from, to);
         refused(folder.path())
     });
-    insta::assert_snapshot!(told.join("\n"));
+    insta::assert_snapshot!(reported.join("\n"));
 }
 
 #[test]

@@ -53,8 +53,8 @@ fn a_recording_of_a_variant_holds_its_base() {
     let digest = run(shear.path(), &["--record", "recorded"]);
     let recorded = shear.path().join("recorded/run-1");
     let header = std::fs::read_to_string(recorded.join("recording.json")).expect("a header");
-    for told in ["\"file\": \"race.toml\"", "\"path\": \"race.toml\"", "\"path\": \"scenario.toml\""] {
-        assert!(header.contains(told), "{told}: {header}");
+    for reported in ["\"file\": \"race.toml\"", "\"path\": \"race.toml\"", "\"path\": \"scenario.toml\""] {
+        assert!(header.contains(reported), "{reported}: {header}");
     }
     assert_eq!(run(&recorded.join("scenario"), &[]), digest);
 }
@@ -68,13 +68,13 @@ fn what_is_wrong_in_a_base_is_shown_there() {
     let without = typed(shear.path(), &["show", "race.toml"]);
     edit(shear.path(), "race.toml", "scenario.toml\"", "scenari.toml\"");
     let missing = typed(shear.path(), &["show", "race.toml"]);
-    for (said, told) in [
+    for (said, reported) in [
         (base, "scenario.toml:"),
         (without, "the base has no `clients.plc.gatewy`"),
         (missing, "cannot read the base `scenari.toml`"),
     ] {
         assert_eq!((said.code, said.out.as_str()), (Some(2), ""), "{said:?}");
-        assert!(said.err.contains(told), "{told} in {}", said.err);
+        assert!(said.err.contains(reported), "{reported} in {}", said.err);
     }
 }
 

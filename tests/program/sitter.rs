@@ -56,7 +56,7 @@ impl Sitter {
             is_over: false,
         };
         this.ask(&json!({"type": "seat", "panel": panel, "take": true}));
-        while this.told("status")["seat"][panel] != "mine" {}
+        while this.received("status")["seat"][panel] != "mine" {}
         let places: Vec<usize> = signals.iter().map(|name| this.places[*name]).collect();
         this.ask(&json!({"type": "subscribe", "signals": places}));
         this.until(|this| signals.iter().all(|name| !this.value(name).is_nan()));
@@ -94,12 +94,12 @@ impl Sitter {
         match self.viewer.read() {
             Ok(Message::Binary(bytes)) => self.see(&bytes),
             Ok(Message::Text(text)) => {
-                let told: Value = serde_json::from_str(&text).expect("JSON");
-                self.is_over |= told["type"] == "event" && told["kind"] == "end";
-                if told["type"] == "status" {
-                    self.status.clone_from(&told);
+                let received: Value = serde_json::from_str(&text).expect("JSON");
+                self.is_over |= received["type"] == "event" && received["kind"] == "end";
+                if received["type"] == "status" {
+                    self.status.clone_from(&received);
                 }
-                self.texts.push(told);
+                self.texts.push(received);
             }
             Ok(_) => {}
             Err(_) => self.is_over = true,
@@ -118,7 +118,7 @@ impl Sitter {
     /// Looks until something is so. Nothing may be refused on the way.
     pub(crate) fn until(&mut self, is_so: impl Fn(&Self) -> bool) {
         while !is_so(self) {
-            let refused = self.texts.iter().find(|told| told["type"] == "error");
+            let refused = self.texts.iter().find(|received| received["type"] == "error");
             assert!(refused.is_none(), "{refused:?}");
             assert!(!self.is_over, "the session is over at {} ns; {:?}", self.t_ns, self.texts.last());
             self.hear();
@@ -126,9 +126,9 @@ impl Sitter {
     }
 
     /// The first text that says this and that nobody has looked at yet.
-    pub(crate) fn told(&mut self, kind: &str) -> Value {
+    pub(crate) fn received(&mut self, kind: &str) -> Value {
         loop {
-            if let Some(place) = self.texts.iter().position(|told| told["type"] == kind) {
+            if let Some(place) = self.texts.iter().position(|received| received["type"] == kind) {
                 return self.texts.remove(place);
             }
             assert!(!self.is_over, "nothing says `{kind}`");

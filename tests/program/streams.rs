@@ -135,14 +135,14 @@ fn what_is_wrong_with_a_port_is_said_at_its_client() {
         ("serial = { input = \"comIn\", output = \"comOut\" }", "tcp = { address = \"10.0.0.1:2727\" }"),
         ("serial = { input = \"comIn\", output = \"comOut\" }", ""),
     ];
-    let told = wrong.map(|(from, to)| {
+    let reported = wrong.map(|(from, to)| {
         let folder = scenario();
         std::fs::write(folder.path().join("scenario.toml"), SCENARIO.replacen(from, to, 1)).expect("a file");
         let said = typed(folder.path(), &["run", "."]);
         assert_eq!(said.code, Some(2), "{to}: {}", said.err);
         said.err
     });
-    insta::assert_snapshot!(told.join("\n"));
+    insta::assert_snapshot!(reported.join("\n"));
 }
 
 #[test]

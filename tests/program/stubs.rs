@@ -23,7 +23,7 @@ fn said(folder: &Path, words: &[&str]) -> Said {
 }
 
 #[test]
-fn stubs_are_written_once_and_told_when_they_are_called() {
+fn stubs_are_written_once_and_reported_when_they_are_called() {
     let folder = project(MAIN);
     assert_eq!(said(folder.path(), &["check", "."]).code, Some(2));
     let written = said(folder.path(), &["check", "--write-stubs", "."]);

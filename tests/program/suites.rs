@@ -99,7 +99,7 @@ fn a_library_may_lie_elsewhere() {
 }
 
 #[test]
-fn an_assert_that_does_not_hold_is_told_with_its_test() {
+fn an_assert_that_does_not_hold_is_reported_with_its_test() {
     let main = main_of("sums : Test_Sums; products : Products;");
     let folder = project(&[("sums.st", SUMS), ("products.st", WRONG), ("main.st", &main)]);
     let said = tested(folder.path(), &["plc.plcproj", "--junit", "junit.xml"]);
@@ -135,7 +135,7 @@ fn a_suite_that_never_finishes_is_an_error_with_its_name() {
 }
 
 #[test]
-fn a_fault_is_told_with_the_test_that_ran() {
+fn a_fault_is_reported_with_the_test_that_ran() {
     let text = "FUNCTION_BLOCK Broken EXTENDS TcUnit.FB_TestSuite\nVAR zero, n : INT; END_VAR\nTEST('Divides');\n\
                 n := 1 / zero;\nFinish();\nEND_FUNCTION_BLOCK";
     let folder = project(&[("broken.st", text), ("main.st", &main_of("broken : Broken;"))]);
@@ -145,7 +145,7 @@ fn a_fault_is_told_with_the_test_that_ran() {
 }
 
 #[test]
-fn what_there_is_no_room_for_is_told() {
+fn what_there_is_no_room_for_is_reported() {
     let calls: Vec<String> = (1..=5).map(|n| format!("TEST('Number {n}'); Finish();\n")).collect();
     let calls = calls.concat();
     let text = format!("FUNCTION_BLOCK Many EXTENDS TcUnit.FB_TestSuite\n{calls}END_FUNCTION_BLOCK");
@@ -165,7 +165,7 @@ fn equal_runs_give_equal_reports() {
 }
 
 #[test]
-fn suites_that_nothing_runs_are_told() {
+fn suites_that_nothing_runs_are_reported() {
     let main = "PROGRAM Main\nVAR sums : Test_Sums; END_VAR\nsums();\nEND_PROGRAM\n";
     let folder = project(&[("sums.st", SUMS), ("main.st", main)]);
     let said = tested(folder.path(), &["plc.plcproj"]);

@@ -100,7 +100,8 @@ order = [{ signals = ["A", "B"] }]
 task = [{ client = "reader", task = "look", late = "10ms", phase = "20ms", two_cycles = true }]
 start = [{ client = "reader", by = "20ms" }, { client = "source", by = "10ms" }]"#;
     let folder = machine(30, (3, 6), TOGETHER, "always (apart = 0 and n <= 0)", timing);
-    // What is wrong already is not a finding of a deviation, so that each way is told only if something is expected of it.
+    // What is wrong already is not a finding of a deviation, so that each way is reported only if something is expected
+    // of it.
     edit(
         folder.path(),
         "machine.toml",
@@ -146,7 +147,7 @@ fn what_travels_together_is_late_together() {
 fn tasks_are_late_once_or_for_good() {
     // What the reader has counted in the end is that of the run without deviations.
     let program = "IF A THEN n := n + 1; END_IF; IF B THEN apart := apart + 1; END_IF;";
-    let mut told = Vec::new();
+    let mut reported = Vec::new();
     for timing in [
         "task = [{ client = \"reader\", late = \"20ms\" }]",
         "task = [{ client = \"reader\", phase = \"20ms\" }]",
@@ -164,13 +165,13 @@ fn tasks_are_late_once_or_for_good() {
         });
         let wanted = format!("always[280ms,290ms] (n = {})", counted.expect("a count"));
         edit(folder.path(), "machine.toml", "always (n < 100)", &wanted);
-        told.push(typed(folder.path(), &["explore", "machine.toml"]).out);
+        reported.push(typed(folder.path(), &["explore", "machine.toml"]).out);
         let (findings, _) = explored(folder.path(), &["--all"]);
         repeats(folder.path(), &findings);
         let unmerged = explored(folder.path(), &["--all", "--no-merge"]).0;
         assert_eq!(findings, unmerged);
     }
-    insta::assert_snapshot!(told.join("\n"));
+    insta::assert_snapshot!(reported.join("\n"));
 }
 
 proptest! {
@@ -230,8 +231,8 @@ fn random_schedules_are_those_of_their_seed() {
 }
 
 #[test]
-fn what_tasks_and_orders_cannot_do_is_told() {
-    let told = [
+fn what_tasks_and_orders_cannot_do_is_reported() {
+    let reported = [
         "order = [{ signals = [\"A\"] }]",
         "together = [{ signals = [\"A\", \"C\"], by = \"10ms\" }]",
         "task = [{ late = \"10ms\" }]",
@@ -262,7 +263,7 @@ fn what_tasks_and_orders_cannot_do_is_told() {
         assert_eq!((said.code, said.out.as_str()), (Some(2), ""), "{task}: {said:?}");
         said.err
     });
-    insta::assert_snapshot!(told.into_iter().chain(cases).collect::<Vec<_>>().join("\n"));
+    insta::assert_snapshot!(reported.into_iter().chain(cases).collect::<Vec<_>>().join("\n"));
 }
 
 /// A late task is part of the state: resumed and in other processes it is late alike.

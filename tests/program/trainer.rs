@@ -44,13 +44,15 @@ fn a_link_is_lost_and_found_by_hand() {
     let mut trainee = Sitter::at(&lesson.pages[0], "pulpit", &seen);
     let mut trainer = Sitter::at(&lesson.pages[1], "malfunctions", &["Page", "Power_release"]);
     trainee.ask(&json!({"type": "disturb", "disturbance": 0, "active": true}));
-    assert!(trainee.told("error")["message"].as_str().is_some_and(|message| message.contains("trainer's business")));
+    assert!(
+        trainee.received("error")["message"].as_str().is_some_and(|message| message.contains("trainer's business"))
+    );
     trainer.ask(&json!({"type": "disturb", "disturbance": 99, "active": true}));
-    assert_eq!(trainer.told("error")["message"], "there is no disturbance 99");
+    assert_eq!(trainer.received("error")["message"], "there is no disturbance 99");
 
     let link = trainer.disturb("Link of the PLCs lost", true);
     let at_work = |status: &Value| status["disturbed"].as_array().is_some_and(|all| all.contains(&json!(link)));
-    while !at_work(&trainer.told("status")) {}
+    while !at_work(&trainer.received("status")) {}
     trainee.write("Automatic", 0.0);
     trainee.until(|trainee| trainee.value("Automatic") == 0.0);
     assert!(trainee.value("Breaker_closed") == 1.0, "nobody takes the power off");
@@ -65,7 +67,7 @@ fn a_link_is_lost_and_found_by_hand() {
         |trainee: &Sitter| ["Current[1]", "Current[2]", "Current[3]"].iter().all(|one| trainee.value(one) < 1e3);
     trainee.until(|trainee| trainee.value("Electrode_automatic") == 0.0 && is_out(trainee));
     trainer.disturb("Link of the PLCs lost", false);
-    while at_work(&trainer.told("status")) {}
+    while at_work(&trainer.received("status")) {}
     trainer.until(|trainer| trainer.value("Power_release") == 0.0);
     trainee.until(|trainee| trainee.value("Breaker_closed") == 0.0);
     trainer.ask(&json!({"type": "operate", "operation": "stop"}));
@@ -112,13 +114,21 @@ fn a_view_is_for_the_eye_alone() {
     let mut trainee = Sitter::at(&lesson.pages[0], "pulpit", &["Page"]);
     let mut trainer = Sitter::at(&lesson.pages[1], "malfunctions", &["Page"]);
     // the lesson begins with a view of its own
-    assert_eq!((&trainee.told("view")["view"], &trainer.told("view")["view"]), (&json!("bath"), &json!("bath")));
+    assert_eq!(
+        (&trainee.received("view")["view"], &trainer.received("view")["view"]),
+        (&json!("bath"), &json!("bath"))
+    );
     trainee.ask(&json!({"type": "view", "view": "front"}));
-    assert!(trainee.told("error")["message"].as_str().is_some_and(|message| message.contains("trainer's business")));
+    assert!(
+        trainee.received("error")["message"].as_str().is_some_and(|message| message.contains("trainer's business"))
+    );
     trainer.ask(&json!({"type": "view", "view": "nowhere"}));
-    assert_eq!(trainer.told("error")["message"], "there is no view `nowhere`");
+    assert_eq!(trainer.received("error")["message"], "there is no view `nowhere`");
     trainer.ask(&json!({"type": "view", "view": "front"}));
-    assert_eq!((&trainee.told("view")["view"], &trainer.told("view")["view"]), (&json!("front"), &json!("front")));
+    assert_eq!(
+        (&trainee.received("view")["view"], &trainer.received("view")["view"]),
+        (&json!("front"), &json!("front"))
+    );
     trainer.until(|trainer| trainer.t_ns > 790 * SECOND_NS);
     let held = {
         // to the end of the lesson
@@ -140,16 +150,16 @@ fn what_was_at_work_is_at_work_again() {
     let mut trainer = Sitter::at(&lesson.pages[1], "malfunctions", &["Page"]);
     let stuck = trainer.disturb("Wall pressure stuck", true);
     let at_work = |status: &Value| status["disturbed"].as_array().is_some_and(|all| all.contains(&json!(stuck)));
-    while !at_work(&trainer.told("status")) {}
+    while !at_work(&trainer.received("status")) {}
     let begun_ns = trainer.t_ns;
     trainer.until(|trainer| trainer.t_ns > begun_ns + 10 * SECOND_NS);
     trainer.disturb("Wall pressure stuck", false);
-    while at_work(&trainer.told("status")) {}
+    while at_work(&trainer.received("status")) {}
     trainer.ask(&json!({"type": "train", "turn": "back", "t_ns": (begun_ns + 5 * SECOND_NS) as f64}));
-    while !at_work(&trainer.told("status")) {}
+    while !at_work(&trainer.received("status")) {}
     trainer.ask(&json!({"type": "operate", "operation": "go"}));
     trainer.disturb("Wall pressure stuck", false);
-    while at_work(&trainer.told("status")) {}
+    while at_work(&trainer.received("status")) {}
     trainer.ask(&json!({"type": "operate", "operation": "stop"}));
     assert_eq!(lesson.record()["attempts"].as_array().map(Vec::len), Some(2));
 }

@@ -75,7 +75,7 @@ fn an_experts_lesson_is_repeated_to_its_digest_and_its_score() {
     assert!(table.code == Some(0) && table.out.contains("ann") && table.out.contains("3 of 3"), "{table:?}");
 }
 
-/// Who does nothing is told so, with what the expert made of it.
+/// Who does nothing is notified, with what the expert made of it.
 #[test]
 fn who_does_nothing_does_not_pass() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -87,7 +87,7 @@ fn who_does_nothing_does_not_pass() {
     assert!(said.out.contains("not passed") && said.out.contains("never"), "{said:?}");
 }
 
-/// Lessons and starts are listed; what is wrong is told at its place.
+/// Lessons and starts are listed; what is wrong is reported at its place.
 #[test]
 fn lessons_are_listed_and_checked() {
     let listed = typed(&scenario("arc-furnace"), &["train", "."]);
@@ -98,7 +98,7 @@ fn lessons_are_listed_and_checked() {
     );
     let unknown = typed(&scenario("arc-furnace"), &["train", ".", "three-malfunction"]);
     assert!(unknown.code == Some(2) && unknown.err.contains("did you mean"), "{unknown:?}");
-    for (from, to, told) in [
+    for (from, to, reported) in [
         ("start = \"melting\"\nlasts = \"6min\"", "start = \"meltin\"\nlasts = \"6min\"", "there is no start `meltin`"),
         ("act = \"not Automatic\"", "act = \"not Automatc\"", "Automatc"),
         ("mode = \"suction_lost\", from", "mode = \"suction_lst\", from", "has no failure mode `suction_lst`"),
@@ -109,10 +109,13 @@ fn lessons_are_listed_and_checked() {
         edit(folder.path(), "lessons.toml", from, to);
         let words = ["train", ".", "three-malfunctions", "--starts", "starts", "--replay-operator", EXPERT];
         let said = typed(folder.path(), &words);
-        if told.is_empty() {
+        if reported.is_empty() {
             assert_eq!(said.code, Some(0), "a fault of another lesson without a time begins with it: {said:?}");
         } else {
-            assert!(said.code == Some(2) && said.err.contains(told) && said.err.contains("lessons.toml"), "{said:?}");
+            assert!(
+                said.code == Some(2) && said.err.contains(reported) && said.err.contains("lessons.toml"),
+                "{said:?}"
+            );
         }
     }
     let alone = typed(&scenario("arc-furnace"), &["train", ".", "tap"]);
@@ -162,12 +165,12 @@ fn ask(viewer: &mut WebSocket<TcpStream>, what: &Value) {
     viewer.send(Message::text(what.to_string())).expect("sent");
 }
 
-fn told(viewer: &mut WebSocket<TcpStream>, kind: &str) -> Value {
+fn received(viewer: &mut WebSocket<TcpStream>, kind: &str) -> Value {
     loop {
         if let Message::Text(text) = viewer.read().expect("a message") {
-            let told: Value = serde_json::from_str(&text).expect("JSON");
-            if told["type"] == kind {
-                return told;
+            let received: Value = serde_json::from_str(&text).expect("JSON");
+            if received["type"] == kind {
+                return received;
             }
         }
     }
@@ -215,7 +218,7 @@ fn a_trainer_repeats_jumps_and_goes_back() {
         json!({"type": "variable", "variable": 0, "action": "force", "value": "1"}),
     ] {
         ask(&mut trainee, &refused);
-        let error = told(&mut trainee, "error");
+        let error = received(&mut trainee, "error");
         assert!(error["message"].as_str().is_some_and(|message| message.contains("trainer's business")), "{error}");
     }
     let start_ns = 780 * SECOND_NS;
@@ -234,7 +237,7 @@ fn a_trainer_repeats_jumps_and_goes_back() {
     ask(&mut trainer, &json!({"type": "fail", "component": "bath", "failure": "cave_in", "active": true}));
     until(&mut trainer, |t_ns| t_ns > start_ns + 30 * SECOND_NS);
     ask(&mut trainer, &json!({"type": "train", "turn": "back", "t_ns": (start_ns + 10 * SECOND_NS) as f64}));
-    while told(&mut trainer, "status")["state"] != "hold" {}
+    while received(&mut trainer, "status")["state"] != "hold" {}
     ask(&mut trainer, &json!({"type": "operate", "operation": "go"}));
     until(&mut trainer, |t_ns| t_ns > start_ns + 12 * SECOND_NS && t_ns < start_ns + 100 * SECOND_NS);
     ask(&mut trainer, &json!({"type": "operate", "operation": "stop"}));

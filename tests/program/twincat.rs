@@ -16,7 +16,7 @@ fn blark_reads_what_is_attached() {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("peers/twincat.py");
     let read = Command::new(python("twincat-1", &["blark==0.8.3"])).arg(script).arg(folder.path()).output().unwrap();
     assert!(read.status.success(), "{}", String::from_utf8_lossy(&read.stderr));
-    let told = String::from_utf8_lossy(&read.stdout).into_owned();
-    let count: Option<u32> = told.trim().parse().ok();
-    assert!(count.is_some_and(|count| count > 50), "{told}");
+    let reported = String::from_utf8_lossy(&read.stdout).into_owned();
+    let count: Option<u32> = reported.trim().parse().ok();
+    assert!(count.is_some_and(|count| count > 50), "{reported}");
 }

@@ -87,7 +87,7 @@ fn tests_that_hold_are_green() {
 }
 
 #[test]
-fn what_does_not_hold_is_told_with_its_place() {
+fn what_does_not_hold_is_reported_with_its_place() {
     let folder = sources(&[("failing.st", FAILING)]);
     let said = tested(folder.path(), &["failing.st", "--until", "1s", "--sarif", "log.sarif"]);
     assert_eq!(said.code, Some(1), "{said:?}");
@@ -101,7 +101,7 @@ fn what_does_not_hold_is_told_with_its_place() {
 }
 
 #[test]
-fn each_test_begins_anew() {
+fn each_test_begins_again() {
     let text = "VAR_GLOBAL shared : INT; END_VAR
         PROGRAM TEST_One shared := shared + 1; ASSERT(shared = 1, 'one'); END_PROGRAM
         PROGRAM TEST_Two shared := shared + 1; ASSERT(shared = 1, 'two'); END_PROGRAM";
@@ -144,7 +144,7 @@ fn tests_are_chosen_by_name_and_tag() {
 }
 
 #[test]
-fn sources_that_do_not_compile_or_have_no_test_are_told() {
+fn sources_that_do_not_compile_or_have_no_test_are_reported() {
     let folder = sources(&[("wrong.st", "PROGRAM TEST_A ASSERT(2.5, 'one'); END_PROGRAM"), ("units.st", UNITS)]);
     let said = tested(folder.path(), &["wrong.st"]);
     assert_eq!(said.code, Some(2), "{said:?}");

@@ -2,7 +2,7 @@
 
 use crate::typed::{digests, run_shear, scenario, typed};
 
-fn told(words: &[&str]) -> String {
+fn reported(words: &[&str]) -> String {
     let mut all = vec!["run", "."];
     all.extend_from_slice(words);
     let said = typed(&scenario("shear"), &all);
@@ -13,7 +13,7 @@ fn told(words: &[&str]) -> String {
 }
 
 #[test]
-fn watching_changes_no_bit_and_tells_the_last_values() {
+fn watching_changes_no_bit_and_prints_the_last_values() {
     let (plain, said) = run_shear(&["--until", "2s"]);
     assert_eq!(said.code, Some(0), "{said:?}");
     let watch = ["--until", "2s", "--runs", "2", "--watch", "Shear.Strokes", "--watch", "Shear.ixUp"];
@@ -28,20 +28,20 @@ fn watching_changes_no_bit_and_tells_the_last_values() {
 }
 
 #[test]
-fn values_and_changes_are_told_by_path() {
-    let end = told(&["--until", "1s", "--watch", "Shear.Strokes=hex", "--watch", "Shear.Strokes.1"]);
+fn values_and_changes_are_printed_by_path() {
+    let end = reported(&["--until", "1s", "--watch", "Shear.Strokes=hex", "--watch", "Shear.Strokes.1"]);
     let change =
-        told(&["--until", "1s", "--watch", "Shear.Strokes=bin", "--watch", "Shear.ixUp", "--watch-on", "change"]);
+        reported(&["--until", "1s", "--watch", "Shear.Strokes=bin", "--watch", "Shear.ixUp", "--watch-on", "change"]);
     insta::assert_snapshot!(format!("{end}\n{change}"));
 }
 
 #[test]
-fn what_cannot_be_watched_is_told() {
+fn what_cannot_be_watched_is_reported() {
     let cases = [
-        told(&["--watch", "Shear.Stroke"]),
-        told(&["--watch", "nobody:Shear.Strokes"]),
-        told(&["--watch", "Shear.Strokes=octal"]),
-        told(&["--watch", "Shear.Strokes", "--transport", "tcp"]),
+        reported(&["--watch", "Shear.Stroke"]),
+        reported(&["--watch", "nobody:Shear.Strokes"]),
+        reported(&["--watch", "Shear.Strokes=octal"]),
+        reported(&["--watch", "Shear.Strokes", "--transport", "tcp"]),
     ];
     insta::assert_snapshot!(cases.join("\n"));
 }

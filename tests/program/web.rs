@@ -89,12 +89,12 @@ pub(crate) fn ask(viewer: &mut WebSocket<TcpStream>, what: &Value) {
 }
 
 /// The next text that says this.
-pub(crate) fn told(viewer: &mut WebSocket<TcpStream>, kind: &str) -> Value {
+pub(crate) fn received(viewer: &mut WebSocket<TcpStream>, kind: &str) -> Value {
     loop {
         if let Message::Text(text) = viewer.read().expect("a message") {
-            let told: Value = serde_json::from_str(&text).expect("JSON");
-            if told["type"] == kind {
-                return told;
+            let received: Value = serde_json::from_str(&text).expect("JSON");
+            if received["type"] == kind {
+                return received;
             }
         }
     }
@@ -172,17 +172,17 @@ fn viewers_leave_no_trace() {
     ];
     for what in &garbage {
         ask(&mut viewers[0], what);
-        let error = told(&mut viewers[0], "error");
+        let error = received(&mut viewers[0], "error");
         assert!(error["message"].as_str().is_some_and(|message| message.len() > 10), "{what}: {error}");
     }
     viewers[0].send(Message::binary(vec![0; 1000])).expect("sent");
-    told(&mut viewers[0], "error");
+    received(&mut viewers[0], "error");
     ask(&mut viewers[1], &json!({"type": "subscribe", "signals": [0, 1, 2]}));
     // a message that is too long ends the viewer, and nobody else
     let too_long = Message::text(" ".repeat(200_000));
     let _refused = viewers[2].send(too_long);
     let end = loop {
-        let status = told(&mut viewers[1], "status");
+        let status = received(&mut viewers[1], "status");
         if status["state"] == "end" {
             break status;
         }
@@ -207,12 +207,12 @@ fn what_a_page_writes_is_repeated_to_the_same_digest() {
     let (mut one, mut other) = (served.view(), served.view());
     let write = json!({"type": "write", "signal": speed, "value": 200.0});
     ask(&mut one, &write);
-    assert!(told(&mut one, "error")["message"].as_str().is_some_and(|message| message.contains("seat")));
+    assert!(received(&mut one, "error")["message"].as_str().is_some_and(|message| message.contains("seat")));
     let seat = json!({"type": "seat", "panel": "operator", "take": true});
     ask(&mut one, &seat);
-    while told(&mut one, "status")["seat"]["operator"] != "mine" {}
+    while received(&mut one, "status")["seat"]["operator"] != "mine" {}
     ask(&mut other, &seat);
-    assert!(told(&mut other, "error")["message"].as_str().is_some_and(|message| message.contains("somebody else")));
+    assert!(received(&mut other, "error")["message"].as_str().is_some_and(|message| message.contains("somebody else")));
     ask(&mut one, &json!({"type": "subscribe", "signals": [speed]}));
     assert_eq!(shown(&mut one).1, 60.0);
     ask(&mut one, &write);
@@ -220,7 +220,7 @@ fn what_a_page_writes_is_repeated_to_the_same_digest() {
     assert!(value == 200.0 && t_ns > 0, "{t_ns} {value}");
     ask(&mut one, &json!({"type": "fail", "component": "kiln", "failure": "sliding", "active": true}));
     ask(&mut one, &json!({"type": "operate", "operation": "hold"}));
-    while told(&mut one, "status")["state"] != "hold" {}
+    while received(&mut one, "status")["state"] != "hold" {}
     ask(&mut one, &json!({"type": "operate", "operation": "step"}));
     ask(&mut one, &json!({"type": "operate", "operation": "stop"}));
     let report = served.report();
@@ -269,7 +269,7 @@ fn a_picture_lies_behind_a_panel() {
 }
 
 #[test]
-fn what_is_no_picture_is_refused() {
+fn what_is_not_a_picture_is_refused() {
     let shear = crate::typed::copied_shear();
     let panel = "\n[[panel]]\nname = \"desk\"\npicture = \"plant.toml\"\nelement = []\n";
     let file = shear.path().join("scenario.toml");

@@ -8,7 +8,7 @@ use tungstenite::WebSocket;
 use tungstenite::client::IntoClientRequest;
 
 use crate::typed::{scenario, typed};
-use crate::web::{LIVE, Served, ask, told};
+use crate::web::{LIVE, Served, ask, received};
 
 /// A folder with a token of each role; gives the tokens.
 fn tokens(folder: &Path, roles: &[&str]) -> Vec<String> {
@@ -80,7 +80,7 @@ fn every_endpoint_asks_who_comes() {
     insta::assert_snapshot!("web_access", table);
     for token in &bearer[..3] {
         let mut viewer = view_with(&served, ("authorization", token));
-        told(&mut viewer, "status");
+        received(&mut viewer, "status");
     }
     let mut operator = view_with(&served, ("authorization", &bearer[1]));
     ask(&mut operator, &json!({"type": "operate", "operation": "stop"}));
@@ -120,7 +120,7 @@ fn a_token_is_typed_once_and_a_viewer_changes_nothing() {
     ];
     for what in &refused {
         ask(&mut viewer, what);
-        let message = told(&mut viewer, "error")["message"].as_str().expect("a text").to_owned();
+        let message = received(&mut viewer, "error")["message"].as_str().expect("a text").to_owned();
         assert!(message.contains("lets its holder look"), "{what}: {message}");
     }
     ask(&mut viewer, &json!({"type": "subscribe", "signals": [0]}));

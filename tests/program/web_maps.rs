@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use tungstenite::Message;
 
 use crate::typed::{scenario, typed, utf8};
-use crate::web::{Served, ask, told};
+use crate::web::{Served, ask, received};
 
 const UNTIL: &str = "70s";
 
@@ -37,21 +37,24 @@ fn the_last_map_on_the_page_is_that_of_the_run() {
     assert_eq!((&session["maps"][0]["name"], &session["maps"][1]["unit"]), (&json!("plc"), &json!("°C")));
     let mut viewer = served.view();
     ask(&mut viewer, &json!({"type": "maps", "maps": [2]}));
-    assert_eq!(told(&mut viewer, "error")["message"], "there is no map 2");
+    assert_eq!(received(&mut viewer, "error")["message"], "there is no map 2");
     ask(&mut viewer, &json!({"type": "maps", "maps": [0, 1]}));
     let (mut cells, mut shown) = ([Value::Null, Value::Null], [None, None]);
     while let Ok(message) = viewer.read() {
         match message {
             Message::Text(text) => {
-                let told: Value = serde_json::from_str(&text).expect("JSON");
-                if told["type"] == "map" {
-                    let map = usize::try_from(told["map"].as_u64().expect("a number")).expect("a map");
-                    cells[map] = told;
+                let received: Value = serde_json::from_str(&text).expect("JSON");
+                if received["type"] == "map" {
+                    let map = usize::try_from(received["map"].as_u64().expect("a number")).expect("a map");
+                    cells[map] = received;
                 }
             }
             Message::Binary(bytes) => {
                 if let Some((map, columns, rows, values)) = map_of(&bytes) {
-                    assert!(cells[map]["across"]["edges"].is_array(), "where cells lie is told before their values");
+                    assert!(
+                        cells[map]["across"]["edges"].is_array(),
+                        "where cells lie is reported before their values"
+                    );
                     shown[map] = Some((columns, rows, values));
                 }
             }

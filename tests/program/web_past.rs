@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use tungstenite::{Message, WebSocket};
 
 use crate::typed::{begun, scenario, typed};
-use crate::web::{Served, ask, told, view};
+use crate::web::{Served, ask, received, view};
 
 /// A picture: whether it is of the past, its time, and its values by signal.
 struct Picture {
@@ -94,7 +94,9 @@ fn a_moment_of_the_past_is_shown_exactly_and_leaves_no_trace() {
     }
     ask(&mut one, &json!({"type": "show", "t_ns": 3.6e12}));
     assert!(
-        told(&mut one, "error")["message"].as_str().is_some_and(|message| message.contains("no moment of the past"))
+        received(&mut one, "error")["message"]
+            .as_str()
+            .is_some_and(|message| message.contains("no moment of the past"))
     );
     // the other one has seen nothing of it
     let live = picture(&mut other, |_| true);
@@ -115,7 +117,7 @@ fn a_session_goes_on_from_a_moment_of_the_past() {
     (0..240).for_each(|_| ask(&mut viewer, &json!({"type": "operate", "operation": "step"})));
     picture(&mut viewer, |picture| picture.t_ns > MOMENT_NS);
     ask(&mut viewer, &json!({"type": "fork", "t_ns": MOMENT_NS}));
-    let forked = told(&mut viewer, "forked");
+    let forked = received(&mut viewer, "forked");
     assert_eq!(forked["t_ns"], MOMENT_NS);
     let url = forked["url"].as_str().expect("a link");
     let address = url.trim_start_matches("http://").trim_end_matches('/');
@@ -123,7 +125,7 @@ fn a_session_goes_on_from_a_moment_of_the_past() {
     let first = picture(&mut fork, |picture| picture.t_ns > 0);
     assert!(first.t_ns >= MOMENT_NS);
     let end = loop {
-        let status = told(&mut fork, "status");
+        let status = received(&mut fork, "status");
         if status["state"] == "end" {
             break status;
         }
@@ -141,7 +143,7 @@ fn what_operators_did_is_shown_again() {
     let mut viewer = served.view();
     ask(&mut viewer, &json!({"type": "subscribe", "signals": [speed]}));
     ask(&mut viewer, &json!({"type": "seat", "panel": "operator", "take": true}));
-    while told(&mut viewer, "status")["seat"]["operator"] != "mine" {}
+    while received(&mut viewer, "status")["seat"]["operator"] != "mine" {}
     ask(&mut viewer, &json!({"type": "write", "signal": speed, "value": 200.0}));
     let written = picture(&mut viewer, |picture| picture.values.contains(&(speed, 200.0)));
     picture(&mut viewer, |picture| picture.t_ns > written.t_ns + 1_000_000_000);
@@ -160,7 +162,9 @@ fn why_there_is_no_past_is_said() {
     let served = Served::begin("shear", &["--until", "1h", "--past-memory", "0"]);
     let mut viewer = served.view();
     ask(&mut viewer, &json!({"type": "show", "t_ns": 0}));
-    assert!(told(&mut viewer, "error")["message"].as_str().is_some_and(|message| message.contains("--past-memory 0")));
+    assert!(
+        received(&mut viewer, "error")["message"].as_str().is_some_and(|message| message.contains("--past-memory 0"))
+    );
     ask(&mut viewer, &json!({"type": "operate", "operation": "stop"}));
     assert_eq!(served.report()["status"], "stopped");
     let wrong = typed(&scenario("shear"), &["run", ".", "--web", "--past-memory", "256MB"]);
@@ -180,8 +184,8 @@ fn viewed(record: &str, look: impl FnOnce(&Served, &mut WebSocket<TcpStream>)) -
     let served = Served::of(begun(&scenario("shear"), &["view", record]));
     let mut viewer = served.view();
     look(&served, &mut viewer);
-    // also those who come later are told
-    let text = told(&mut served.view(), "event")["text"].as_str().expect("a text").to_owned();
+    // those who come later are notified, too
+    let text = received(&mut served.view(), "event")["text"].as_str().expect("a text").to_owned();
     ask(&mut viewer, &json!({"type": "operate", "operation": "stop"}));
     let output = served.program.wait_with_output().expect("it ends");
     assert!(String::from_utf8_lossy(&output.stdout).contains(&text));
@@ -207,18 +211,18 @@ fn a_recording_is_a_page_of_the_past() {
         {
             ask(viewer, &asked);
             assert!(
-                told(viewer, "error")["message"].as_str().is_some_and(|why| why.contains("recording is looked at"))
+                received(viewer, "error")["message"].as_str().is_some_and(|why| why.contains("recording is looked at"))
             );
         }
         ask(viewer, &json!({"type": "show", "t_ns": 6_010_000_000_u64}));
-        assert!(told(viewer, "error")["message"].as_str().is_some_and(|why| why.contains("no moment of the past")));
+        assert!(received(viewer, "error")["message"].as_str().is_some_and(|why| why.contains("no moment of the past")));
     });
     assert_eq!(code, Some(0));
     assert!(said.contains("all steps up to 600 are as recorded"), "{said}");
 }
 
 #[test]
-fn a_recording_that_is_not_what_its_files_do_is_told() {
+fn a_recording_that_is_not_what_its_files_do_is_reported() {
     let folder = tempfile::tempdir().expect("a folder");
     let record = recorded(folder.path());
     let scene = Path::new(&record).join("scenario/plant.toml");

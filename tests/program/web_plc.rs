@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use crate::typed::{scenario, typed};
-use crate::web::{Served, ask, told};
+use crate::web::{Served, ask, received};
 
 /// The number of a variable on the page.
 fn variable(session: &Value, path: &str) -> usize {
@@ -25,14 +25,14 @@ fn variables_are_watched_and_forced_and_what_was_done_is_repeated() {
     assert!(beside.iter().any(|line| line["inner"].as_array().is_some_and(|inner| inner.contains(&json!(strokes)))));
     let mut viewer = served.view();
     ask(&mut viewer, &json!({"type": "watch", "variables": [strokes]}));
-    let seen = told(&mut viewer, "variables");
+    let seen = received(&mut viewer, "variables");
     assert_eq!((&seen["values"][0][0], &seen["forced"]), (&json!(strokes), &json!([])));
     assert!(seen["executed"].as_array().is_some_and(|lines| !lines.is_empty()), "coverage is noted: {seen}");
     let force =
         |action: &str, value: &str| json!({"type": "variable", "variable": strokes, "action": action, "value": value});
     ask(&mut viewer, &force("force", "77"));
     loop {
-        let seen = told(&mut viewer, "variables");
+        let seen = received(&mut viewer, "variables");
         if seen["forced"] == json!([strokes])
             && seen["values"].as_array().is_some_and(|all| all.contains(&json!([strokes, "77"])))
         {
@@ -40,14 +40,14 @@ fn variables_are_watched_and_forced_and_what_was_done_is_repeated() {
         }
     }
     ask(&mut viewer, &force("force", "apple"));
-    assert!(told(&mut viewer, "error")["message"].as_str().is_some_and(|message| message.contains("apple")));
+    assert!(received(&mut viewer, "error")["message"].as_str().is_some_and(|message| message.contains("apple")));
     ask(&mut viewer, &force("release", ""));
-    while told(&mut viewer, "variables")["forced"] != json!([]) {}
+    while received(&mut viewer, "variables")["forced"] != json!([]) {}
     for wrong in
         [json!({"type": "watch", "variables": [1_000_000]}), json!({"type": "force", "signal": 99_999, "value": null})]
     {
         ask(&mut viewer, &wrong);
-        told(&mut viewer, "error");
+        received(&mut viewer, "error");
     }
     let eye = session["signals"].as_array().expect("a list").iter().position(|one| one["name"] == "Sensor_1");
     ask(&mut viewer, &json!({"type": "force", "signal": eye, "value": "TRUE"}));
@@ -64,13 +64,13 @@ fn variables_are_watched_and_forced_and_what_was_done_is_repeated() {
 fn verdicts_come_while_the_session_runs() {
     let served = Served::begin("shear", &["--until", "1h", "--pace", "5"]);
     let mut viewer = served.view();
-    assert_eq!(told(&mut viewer, "verdict")["verdict"], "open");
+    assert_eq!(received(&mut viewer, "verdict")["verdict"], "open");
     let session: Value = serde_json::from_str(&served.get("/api/session", &[]).1).expect("JSON");
     let eye = session["signals"].as_array().expect("a list").iter().position(|one| one["name"] == "Sensor_1");
     ask(&mut viewer, &json!({"type": "force", "signal": eye, "value": "FALSE"}));
     let mut failed = Value::Null;
     while failed["verdict"] != "fail" {
-        failed = told(&mut viewer, "verdict");
+        failed = received(&mut viewer, "verdict");
     }
     assert!(failed["t_ns"].as_u64().is_some_and(|t_ns| t_ns > 0) && failed["name"].is_string(), "{failed}");
     ask(&mut viewer, &json!({"type": "operate", "operation": "stop"}));

@@ -24,8 +24,8 @@ fn a_desk_comes_over_tls() {
     let desk = Path::new(env!("CARGO_MANIFEST_DIR")).join("peers/desk.py");
     let ca = folder.path().join("ca.pem");
     let output = Command::new("python3").arg(desk).args([host, port]).arg(ca).arg(&made[0]).output().expect("Python");
-    let told = String::from_utf8_lossy(&output.stdout);
-    let lines: Vec<&str> = told.lines().collect();
+    let reported = String::from_utf8_lossy(&output.stdout);
+    let lines: Vec<&str> = reported.lines().collect();
     let wrong = String::from_utf8_lossy(&output.stderr);
     assert_eq!(
         lines.get(1..),
@@ -37,9 +37,9 @@ fn a_desk_comes_over_tls() {
                 "the session has closed the line"
             ][..]
         ),
-        "{told}{wrong}"
+        "{reported}{wrong}"
     );
-    assert!(lines[0].starts_with("without the CA: "), "{told}");
+    assert!(lines[0].starts_with("without the CA: "), "{reported}");
     let mut rest = String::new();
     said.read_to_string(&mut rest).expect("text");
     let output = program.wait_with_output().expect("it ends");

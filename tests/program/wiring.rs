@@ -5,7 +5,7 @@ use serde_json::Value;
 use crate::typed::{copied_shear, edit, scenario, typed};
 
 #[test]
-fn every_signal_is_told_from_end_to_end() {
+fn every_signal_is_described_from_end_to_end() {
     let said = typed(&scenario("filling-machine"), &["wiring", "."]);
     assert_eq!((said.code, said.err.as_str()), (Some(0), ""));
     insta::assert_snapshot!("filling_machine_wired", said.out);
@@ -27,7 +27,7 @@ fn the_map_is_drawn_and_written_for_machines() {
 
 /// One of each: nobody writes it, two write it, its ends differ, nothing declares it.
 #[test]
-fn all_that_is_wrong_is_told_at_once() {
+fn all_that_is_wrong_is_reported_at_once() {
     let shear = copied_shear();
     let file = "scenario.toml";
     edit(
@@ -58,9 +58,9 @@ fn an_external_client_is_not_known_before_it_joins() {
     assert!(said.out.contains("plc -> nobody that is known"), "{}", said.out);
 }
 
-/// What `bind` says wrongly is told with its client.
+/// What `bind` says wrongly is reported with its client.
 #[test]
-fn a_wrong_bind_is_told() {
+fn a_wrong_bind_is_reported() {
     let shear = copied_shear();
     edit(
         shear.path(),

@@ -140,7 +140,7 @@ impl Barrier {
             }
         };
         if done.is_err() {
-            state.broken = Some("a client that keeps the rules is told that it broke one");
+            state.broken = Some("a client that keeps the rules is blamed for breaking one");
         }
     }
 
@@ -212,8 +212,9 @@ impl Model for Barrier {
             Property::always("only those whose delay has run out take part", |model: &Self, state: &BarrierState| {
                 !matches!(model.coupling, Coupling::Parallel) || due_is_delay_run_out(state)
             }),
-            Property::always("a failure ends the session and is told by name", |_, state: &BarrierState| {
-                match state.session.end() {
+            Property::always(
+                "a failure ends the session and is reported by name",
+                |_, state: &BarrierState| match state.session.end() {
                     None => true,
                     Some(SessionEnd::Failed(failure)) => {
                         state.session.clients().any(|id| {
@@ -223,8 +224,8 @@ impl Model for Barrier {
                         }) && state.session.clone().advance() == Progress::Ended
                     }
                     Some(_) => false,
-                }
-            }),
+                },
+            ),
         ]
     }
 }
@@ -307,7 +308,7 @@ fn a_broken_rule_would_be_found() {
     model.act(&mut state, Act::Advance);
     model.act(&mut state, Act::Client(0, 0));
     model.act(&mut state, Act::Client(0, 0));
-    assert_eq!(state.broken, Some("a client that keeps the rules is told that it broke one"));
+    assert_eq!(state.broken, Some("a client that keeps the rules is blamed for breaking one"));
     let mut state = model.init_states().remove(0);
     state.turned[1] = VirtualTime::from_nanos(7);
     state.committed[1] = VirtualTime::from_nanos(7);

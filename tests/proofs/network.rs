@@ -33,8 +33,8 @@ struct Pipe {
     to_server: VecDeque<Vec<u8>>,
     /// The client closed it; what it sent before still arrives.
     closed: bool,
-    /// The server has told this client that the session is over.
-    told: bool,
+    /// The server has notified this client that the session is over.
+    notified: bool,
     /// What the server has read for this client's next grant.
     inputs: Vec<u8>,
 }
@@ -69,7 +69,7 @@ impl PartialEq for NetworkState {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum Event {
-    /// The server goes on, and tells its clients.
+    /// The server goes on, and notifies its clients.
     Advance,
     /// The server takes a message.
     ServerReceives(usize),
@@ -116,7 +116,7 @@ impl Network {
             }
         }
         if state.session.end().is_some() {
-            tell_the_end(state);
+            notify_of_the_end(state);
         }
     }
 
@@ -174,18 +174,18 @@ fn client_receives(state: &mut NetworkState, i: usize, delay: u64) {
             let wake = Wake::At(VirtualTime::from_nanos(t_v.as_nanos() + 1 + delay));
             pipe.to_server.push_back(answer(sequence, t_v, wake, &stamp_bytes(t_v)));
         }
-        Ok(Duty::Leave(_)) => pipe.told = true,
+        Ok(Duty::Leave(_)) => pipe.notified = true,
         Ok(_) => state.broken = Some("a client is asked what nobody asked"),
         Err(_) => state.broken = Some("a client acts in a wrong step"),
     }
     pipe.endpoint.answered();
 }
 
-fn tell_the_end(state: &mut NetworkState) {
+fn notify_of_the_end(state: &mut NetworkState) {
     let end = state.session.end().cloned().expect("it is over");
     let message = json(&ServerMessage::End(end));
     for pipe in &mut state.pipes {
-        if !pipe.told && pipe.to_client.back() != Some(&message) {
+        if !pipe.notified && pipe.to_client.back() != Some(&message) {
             pipe.to_client.push_back(message.clone());
         }
     }
@@ -201,7 +201,7 @@ impl Model for Network {
             to_client: VecDeque::new(),
             to_server: VecDeque::new(),
             closed: false,
-            told: false,
+            notified: false,
             inputs: vec![0; 16 * self.clients],
         };
         let session = formed(self.clients, &Coupling::Parallel);
@@ -229,7 +229,7 @@ impl Model for Network {
             {
                 events.push(Event::ServerLoses(i));
             }
-            if !pipe.closed && !pipe.told {
+            if !pipe.closed && !pipe.notified {
                 events.extend([Event::ClientFaults(i), Event::ClientVanishes(i)]);
             }
         }
@@ -264,7 +264,7 @@ impl Model for Network {
                 state.session.t_v().as_nanos() == model.horizon
             }),
             Property::sometimes("a failure reaches the others", |_, state: &NetworkState| {
-                state.pipes.iter().any(|pipe| pipe.closed) && state.pipes.iter().any(|pipe| pipe.told)
+                state.pipes.iter().any(|pipe| pipe.closed) && state.pipes.iter().any(|pipe| pipe.notified)
                     || state.pipes.len() == 1
             }),
         ]

@@ -116,7 +116,7 @@ fn whoever_stops_a_session_hears_that_it_is_stopped() {
 }
 
 #[test]
-fn an_operator_with_nobody_to_ask_is_told() {
+fn an_operator_with_nobody_to_ask_is_notified() {
     let address = {
         let lobby = Lobby::open(loopback(), &ring_plan(&Coupling::Parallel), Mailbox::new()).expect("a free port");
         lobby.address()

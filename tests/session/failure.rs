@@ -17,7 +17,7 @@ fn expected(ms: u64) -> SessionEnd {
         client: client("beta"),
         state: ClientState::Run,
         t_v: at_ms(ms),
-        cause: FailureCause::Fault(ClientFault::new("told to fail")),
+        cause: FailureCause::Fault(ClientFault::new("asked to fail")),
     })
 }
 
@@ -46,7 +46,7 @@ fn a_fault_ends_the_session_in_every_client_over_both_transports() {
 #[test]
 fn a_failure_reads_as_one_line() {
     let message = expected(40).to_string();
-    assert_eq!(message, "client `beta` failed in state run at t_v = 0.040 s: told to fail");
+    assert_eq!(message, "client `beta` failed in state run at t_v = 0.040 s: asked to fail");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Who may not join is told why.
+//! Who may not join receives the reason.
 
 use onescan_server::client::JoinRequest;
 use onescan_server::formation::{Formation, FormationError};

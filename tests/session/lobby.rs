@@ -77,7 +77,7 @@ fn completes(formation: Formation, threads: Vec<std::thread::JoinHandle<()>>) {
 }
 
 #[test]
-fn one_who_comes_when_the_session_has_begun_is_told_so() {
+fn one_who_comes_when_the_session_has_begun_is_refused() {
     let (lobby, mut formation, _) = open();
     let address = lobby.address();
     let threads = ring_takes_part(address);

@@ -1,4 +1,5 @@
-//! Steps in which nobody is due are gone over at once, and nobody can tell: not by the digest, not by what operations do.
+//! Steps in which nobody is due are gone over at once, and nobody can notice: not by the digest, not by what
+//! operations do.
 
 use std::cell::RefCell;
 use std::num::NonZeroU32;

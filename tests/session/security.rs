@@ -174,7 +174,7 @@ fn an_old_version_of_tls_is_refused_by_name() {
 }
 
 #[test]
-fn tls_where_there_is_none_is_told_so() {
+fn tls_where_there_is_none_is_refused() {
     let plan = ring_plan(&Coupling::Parallel);
     let lobby = Lobby::open(loopback(), &plan, Mailbox::new()).expect("a free port");
     let entrance = Entrance { address: lobby.address(), token: None, trust: Some(certified().1) };

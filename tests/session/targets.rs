@@ -113,8 +113,8 @@ fn every_target_carries_a_scenario_or_says_why_not() {
                 Ok(project) => {
                     let [plain, emitted] = digests(given, target, if target == Target::Scl { "SDSP." } else { "" });
                     assert_eq!(emitted, plain, "{name}, {target:?}");
-                    let told = project.warnings.iter().count();
-                    format!("{} files, {told} findings, the digest of the original", project.files.len())
+                    let reported = project.warnings.iter().count();
+                    format!("{} files, {reported} findings, the digest of the original", project.files.len())
                 }
             };
             outcomes.push(format!("{name}, {target:?}: {outcome}"));
@@ -123,7 +123,7 @@ fn every_target_carries_a_scenario_or_says_why_not() {
     insta::assert_snapshot!(outcomes.join("\n"));
 }
 
-/// What is told of languages and vendors does not hide that it is the same machine.
+/// What is reported of languages and vendors does not hide that it is the same machine.
 #[test]
 fn the_shear_in_scl_is_the_shear() {
     let folder = tempfile::tempdir().expect("a folder");

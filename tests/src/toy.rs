@@ -47,7 +47,7 @@ impl Client for Mixer {
 
     fn turn(&mut self, t_v: VirtualTime, inputs: &[u8], outputs: &mut [u8]) -> Result<Wake, ClientFault> {
         if self.fails_at.is_some_and(|at| t_v >= at) {
-            return Err(ClientFault::new("told to fail"));
+            return Err(ClientFault::new("asked to fail"));
         }
         let seen = self.inputs.iter().map(|slot| slot.get(inputs));
         self.state = seen.fold(mix(self.state, t_v.as_nanos()), mix);

@@ -257,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_xml_has_its_place() {
+    fn what_is_not_xml_has_its_place() {
         let cases = [
             ("", 0, "there is no element"),
             ("x", 0, "there is no element"),

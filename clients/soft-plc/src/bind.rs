@@ -260,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_bound_is_told() {
+    fn what_cannot_be_bound_is_reported() {
         let error = bound(&[("Lmap", SignalType::BOOL, "plc")], &[]).unwrap_err();
         assert!(error.message.ends_with("no program has a VAR_OUTPUT of that name"));
         assert!(error.help.unwrap().starts_with("did you mean `Lamp`?"));

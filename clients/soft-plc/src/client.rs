@@ -220,7 +220,7 @@ impl SoftPlcClient {
         self.coverage = Some(sink);
     }
 
-    /// Tells `sink` which statements write those of `signals` that are its outputs, and which ways
+    /// Reports to `sink` which statements write those of `signals` that are its outputs, and which ways
     /// decisions go. The application must have been compiled for it.
     pub fn trace(&mut self, signals: &BTreeSet<SignalName>, sink: TraceSink) {
         // An output has one place.
@@ -309,7 +309,7 @@ impl SoftPlcClient {
             shares_bytes && (own.is_none() || bit.is_none() || own == bit)
         };
         let found = self.inputs.iter().find(reaches)?;
-        // Ports lie behind one another, so that a place in them tells the signal.
+        // Ports lie behind one another, so that a place in them identifies the signal.
         let mut end = 0;
         let mut signals = self.request.reads.iter();
         let holds = |port: &&Port| {

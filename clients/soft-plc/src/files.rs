@@ -13,7 +13,7 @@ const COUNT: usize = 8;
 #[derive(Clone, Debug)]
 pub(super) struct PlcFile {
     /// Paths of what is said of it, with literals.
-    told: Vec<(String, String)>,
+    parameters: Vec<(String, String)>,
     at: usize,
     bytes: Vec<u8>,
 }
@@ -84,18 +84,18 @@ impl PlcFile {
             if !name.chars().all(|each| each.is_ascii_alphanumeric() || " ._-/\\:".contains(each)) {
                 return Err(FileError::Name(name));
             }
-            let told = [
+            let parameters = [
                 (path("used"), "TRUE".to_owned()),
                 (path("name"), format!("'{name}'")),
                 (path("size"), bytes.len().to_string()),
             ];
-            Ok(Self { told: told.to_vec(), at: room.offset as usize, bytes })
+            Ok(Self { parameters: parameters.to_vec(), at: room.offset as usize, bytes })
         };
         files.into_iter().enumerate().map(place).collect()
     }
 
     pub(super) fn put(&self, plc: &mut SoftPlc) -> Result<(), WriteError> {
-        self.told.iter().try_for_each(|(path, literal)| plc.write(path, literal))?;
+        self.parameters.iter().try_for_each(|(path, literal)| plc.write(path, literal))?;
         if let Some(place) = plc.memory_mut().get_mut(self.at..self.at + self.bytes.len()) {
             place.copy_from_slice(&self.bytes);
         }

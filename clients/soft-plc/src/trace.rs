@@ -98,7 +98,7 @@ impl Tracing {
         Self { client: client.clone(), watched, known, sink }
     }
 
-    /// The session begins, or begins anew after a reset.
+    /// The session begins, or restarts after a reset.
     pub(super) fn begin(&self) {
         // Whoever panicked while it held the lock left whole entries; so below.
         let mut sink = self.sink.lock().unwrap_or_else(PoisonError::into_inner);

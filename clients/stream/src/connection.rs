@@ -145,7 +145,7 @@ impl Connection {
                 let most = u64::from(most.max(1));
                 (1..message.div_ceil(most)).for_each(|segment| stop(segment * most));
             }
-            // bytes sent so far tell how many messages that were
+            // the bytes sent so far give the number of messages
             Cuts::Onwards => {
                 let messages = first.checked_div(message).unwrap_or(0);
                 stop(messages.checked_rem(message).unwrap_or(0));

@@ -28,7 +28,7 @@ use thiserror::Error;
 use connection::{Connection, Cuts, Link, Role};
 use serial::{Rate, Serial};
 
-/// Bytes that a port keeps for its client unless it is told otherwise.
+/// Bytes that a port keeps for its client if nothing else is set.
 pub const RECEIVE_BUFFER: usize = 65_536;
 
 /// How a port sends.
@@ -152,7 +152,7 @@ impl Port {
 
     fn read(&mut self, line: &ByteLine<'_>) {
         let PortState { read, received, losses, way, .. } = &mut self.state;
-        // a line that begins anew, as after a write from outside
+        // a line that restarts, as after a write from outside
         *read = (*read).min(line.count());
         let oldest = line.oldest();
         losses.window += oldest.saturating_sub(*read);

@@ -69,7 +69,7 @@ fn a_line_lasts_as_long_as_its_bits() {
 }
 
 #[test]
-fn a_reader_that_sleeps_for_longer_than_the_window_is_told_what_it_missed() {
+fn a_reader_that_sleeps_for_longer_than_the_window_learns_what_it_missed() {
     let mut pair = Pair::new(serial(9600), 16, [1, 100]);
     let mut got = 0;
     for _ in 0..400 {

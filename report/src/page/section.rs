@@ -135,7 +135,7 @@ impl Section {
                     @for (name, value) in &self.facts { tr { th { (name) } td class="value" { (value) } } (LINE) }
                 } (LINE)
                 @if !self.expectations.is_empty() { (expectations(&self.expectations)) (LINE) }
-                @for table in &self.tables { (told(table)) (LINE) }
+                @for table in &self.tables { (table_markup(table)) (LINE) }
                 // The picture is a document of this program, whose own text is escaped.
                 @if !self.pictures.is_empty() {
                     div class="pictures" { (LINE)
@@ -171,7 +171,7 @@ fn expectations(all: &[Shown]) -> Markup {
     }
 }
 
-fn told(table: &Table) -> Markup {
+fn table_markup(table: &Table) -> Markup {
     let cells = html! {
         table {
             thead { tr { th { (table.title) } @for head in &table.head { th { (&**head) } } } } (LINE)

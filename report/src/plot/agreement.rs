@@ -1,4 +1,4 @@
-//! Which of the runs are the same: what the eye cannot tell from lines on top of each other.
+//! Which of the runs are the same: what the eye cannot see from lines on top of each other.
 
 use super::{Panel, Trajectory};
 

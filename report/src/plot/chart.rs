@@ -94,12 +94,12 @@ mod tests {
 
     #[test]
     fn a_plot_is_data() {
-        let told = plot(Shape::Step, vec![0.0, 0.0, 1.0, 1.0, f64::NAN, 1.0]).to_chart();
-        let told: Value = serde_json::from_str(&told).unwrap();
+        let chart = plot(Shape::Step, vec![0.0, 0.0, 1.0, 1.0, f64::NAN, 1.0]).to_chart();
+        let chart: Value = serde_json::from_str(&chart).unwrap();
         let run = json!({ "t_ns": [0, 2_000_000, 4_000_000, 5_000_000], "values": [0.0, 1.0, null, 1.0] });
         let panel = json!({ "signal": "belt", "unit": "m", "steps": true, "names": [[0, "off"]], "runs": [run] });
         let marks = json!([{ "t_ns": 5, "label": "a < b" }]);
-        assert_eq!(told, json!({ "runs": ["run 1"], "panels": [panel], "marks": marks }));
+        assert_eq!(chart, json!({ "runs": ["run 1"], "panels": [panel], "marks": marks }));
         let line = plot(Shape::Line, vec![0.0, 0.0, 0.0, 1.0, 1.0]).to_chart();
         assert!(line.contains("\"t_ns\":[0,2000000,3000000,4000000]"), "{line}");
     }

@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn close_marks_share_a_place_and_are_all_told() {
+    fn close_marks_share_a_place_and_are_all_described() {
         let marks = marks(&[500, 10, 510, 500, 2000]);
         assert_eq!(marks.numbers, [(10, 1, 1), (500, 2, 4)]);
         assert_eq!(marks.instants_ns, [10, 500, 510]);

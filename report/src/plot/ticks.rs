@@ -7,7 +7,7 @@
 use super::lettering::{TICK_PX, shortened};
 use super::range::ValueRange;
 
-/// Beyond this many steps from zero, a double no longer tells ticks apart.
+/// Beyond this many steps from zero, a double no longer distinguishes ticks.
 const STEPS_FROM_ZERO_MAX: f64 = 1e14;
 
 /// So many names have room beside each other on an axis.
@@ -40,7 +40,7 @@ pub(super) struct Ticks {
 impl Ticks {
     /// About `count` ticks, at most one more, whose distance is 1, 2 or 5 times a power of ten.
     ///
-    /// A range in which no such numbers can be told apart has none.
+    /// A range in which no such numbers can be distinguished has none.
     pub(super) fn within(range: ValueRange, count: u32, numbers: Numbers) -> Self {
         Self::round(range, count, numbers).unwrap_or_default()
     }

@@ -298,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_map_is_a_picture_of_nothing() {
+    fn what_is_not_a_map_is_a_picture_of_nothing() {
         let empty = ValueMap { values: Vec::new(), ..map() };
         assert!(empty.to_svg().contains("nothing"));
         let none = MapAxis { name: String::new(), edges: Vec::new() };

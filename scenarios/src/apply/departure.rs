@@ -67,7 +67,7 @@ mod tests {
     }
 
     #[test]
-    fn what_stands_in_both_is_no_difference() {
+    fn what_stands_in_both_is_not_a_difference() {
         let (one, other) = ([stop_at(1), stop_at(2), stop_at(2)], [stop_at(2), stop_at(3)]);
         let times: Vec<_> = only_in_one(&one, &other).into_iter().cloned().collect();
         assert_eq!(times, [stop_at(1), stop_at(2), stop_at(3)]);

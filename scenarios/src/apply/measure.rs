@@ -20,7 +20,7 @@ pub struct CampaignMeasures {
     pub readouts: Vec<SignalName>,
     /// The columns of the formulas.
     pub columns: Vec<SignalName>,
-    /// The control tells of the fault.
+    /// The control reports the fault.
     pub told: Option<Reaction>,
     /// The machine is safe.
     pub safe: Option<Expectation>,
@@ -74,7 +74,7 @@ impl Scenario {
         let (told, safe, collision) = (bound(&file.told)?, bound(&file.safe)?, bound(&file.collision)?);
         let told = match (told, &file.told) {
             (Some(told), Some(written)) => Some(Reaction::new(&told).ok_or_else(|| {
-                let message = "how long it takes to tell cannot be seen by this formula".to_owned();
+                let message = "this formula cannot show how long the report takes".to_owned();
                 let help = "write `eventually[0,2s] f` or `within 2s f`".to_owned();
                 catalogue.wrong(message, Some(written.span()), Some(help))
             })?),

@@ -91,7 +91,7 @@ impl Scenario {
         Ok(self)
     }
 
-    /// Tells what a campaign's fault adds to the run that is healthy.
+    /// Describes what a campaign's fault adds to the run that is healthy.
     fn inject(&self, catalogue: &Catalogue, injection: &Injection, applied: &mut Applied) -> Result<(), ScenarioError> {
         let until = applied.case.until.unwrap_or(self.file().until);
         if let Some((at, place)) = injection.at.clone().filter(|(at, _)| *at >= until) {

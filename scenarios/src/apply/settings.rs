@@ -195,7 +195,7 @@ impl Scenario {
         let Some(applied) = self.applied() else { return Ok(()) };
         for failure in applied.failures.iter().filter(|failure| failure.client == *name) {
             if let Err(unknown) = scene.check_failure(&failure.component, &failure.mode) {
-                let (message, help) = told(unknown);
+                let (message, help) = unknown_failure(unknown);
                 return Err(wrong_case(applied, message, failure.place.clone(), help));
             }
         }
@@ -213,7 +213,7 @@ impl Scenario {
             match scene.check_failure(component, mode) {
                 Err(UnknownFailure::Component { .. }) if !is_only => {}
                 Err(unknown) => {
-                    let (message, help) = told(unknown);
+                    let (message, help) = unknown_failure(unknown);
                     return Err(self.wrong_at(Wrong { message, place: failure.span(), help }));
                 }
                 Ok(()) => {}
@@ -265,7 +265,7 @@ impl Scenario {
 }
 
 /// What is wrong with a failure, and what to do.
-fn told(unknown: UnknownFailure) -> (String, Option<String>) {
+fn unknown_failure(unknown: UnknownFailure) -> (String, Option<String>) {
     match unknown {
         UnknownFailure::Component { component, hint } => (format!("no component `{component}` in this scene"), hint),
         UnknownFailure::Mode { component, mode, hint } => {

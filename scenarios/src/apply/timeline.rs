@@ -281,7 +281,7 @@ impl Scenario {
     /// condition has no time before the run.
     pub fn case_events(&self) -> Vec<(u64, String)> {
         let event = |Scheduled { when, operation }: &Scheduled| match when {
-            When::At(at) => Some((at.as_nanos(), told(operation))),
+            When::At(at) => Some((at.as_nanos(), described(operation))),
             When::Once { .. } => None,
         };
         let mut events: Vec<_> = self.timeline().iter().filter_map(event).collect();
@@ -300,7 +300,7 @@ fn period_of<Entry: Timed>(
 }
 
 /// An operation as the mark of a plot: short, without marks of code.
-fn told(operation: &Operation) -> String {
+fn described(operation: &Operation) -> String {
     match operation {
         Operation::Force { signal, value } => format!("{signal} held at {value}"),
         Operation::Release { signal } => format!("{signal} let go"),
@@ -360,7 +360,7 @@ mod tests {
         let mut timeline = Vec::new();
         resolve(&mut timeline, &SignalName::new("x").unwrap(), &held);
         let ns = |when: &When| if let When::At(at) = when { at.as_nanos() } else { 0 };
-        timeline.iter().map(|one| format!("{} {}", ns(&one.when), told(&one.operation))).collect()
+        timeline.iter().map(|one| format!("{} {}", ns(&one.when), described(&one.operation))).collect()
     }
 
     #[test]

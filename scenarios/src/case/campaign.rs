@@ -96,7 +96,7 @@ pub(super) fn expanded(
     for (row, fault) in file.faults.iter().enumerate() {
         for (column, activation) in file.activations.iter().enumerate() {
             let (fault, activation) = (fault.get_ref(), activation.get_ref());
-            // What is wrong is told now; the entry itself is made when its case is asked for.
+            // What is wrong is reported now; the entry itself is made when its case is asked for.
             let at = put(&mut CaseFile::empty(&file.name), fault, activation)?;
             let path = [&file.name, &fault.name, &activation.name].map(|name| name.get_ref().as_str());
             cases.extend(variants.iter().map(|(suffix, healthy)| Case {

@@ -52,7 +52,7 @@ pub struct CampaignFile {
     #[serde(default)]
     #[schemars(with = "Vec<Name>")]
     pub readouts: Vec<Spanned<SignalName>>,
-    /// The control has told of the fault: `eventually` with a window, or `within`, from the activation on.
+    /// The control has reported the fault: `eventually` with a window, or `within`, from the activation on.
     #[schemars(with = "Option<String>")]
     pub told: Option<Spanned<String>>,
     /// The machine is safe: a formula, from the activation on.
@@ -193,9 +193,9 @@ pub enum CampaignVerdict {
     NoEffect,
     /// Something came to harm.
     Collision,
-    /// The control told of it.
+    /// The control reported it.
     Told,
-    /// The control did not tell of it, but the machine was safe.
+    /// The control did not report it, but the machine was safe.
     Safe,
     /// None of these.
     Missed,

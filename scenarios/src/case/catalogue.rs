@@ -480,7 +480,7 @@ mod tests {
     }
 
     #[test]
-    fn wrong_cases_are_told() {
+    fn wrong_cases_are_reported() {
         let two = "[[case]]\nname = \"a\"\n[[case]]\nname = \"A\"\n";
         assert_eq!(parsed(two).unwrap_err(), "two cases are called `A`");
         assert_eq!(parsed("[[case]]\nname = \"a/b\"\n").unwrap_err(), "`a/b` is not a name of a case");

@@ -73,7 +73,7 @@ impl<J: Foresight> Ahead<J> {
     }
 
     /// When the window of the one sample that is asked for begins and ends; `next` is the sample that comes next. Equal samples may then be left
-    /// out, but for the first and the last ones and those at these ends: joining is idempotent, what breaks first comes first,
+    /// out, except the first and the last ones and those at these ends: joining is idempotent, what breaks first comes first,
     /// and what is last is last.
     pub(super) fn ends(&self, next: Option<Sample>) -> Option<[u64; 2]> {
         let first = if self.newest.is_none() { next } else { self.waiting.front().copied() };
@@ -156,7 +156,7 @@ impl<J: Foresight> Ahead<J> {
         }
     }
 
-    /// The number of the first sample that it keeps, and what else it may tell of.
+    /// The number of the first sample that it keeps, and which others it may report.
     pub(super) fn keeps(&self, others: &mut Vec<u64>) -> u64 {
         match self.demand {
             Demand::First => {

@@ -19,7 +19,7 @@ const BLOCK_SAMPLES: u64 = 8192;
 #[derive(Clone, Debug)]
 pub struct Judge {
     expectations: Vec<(Expectation, Monitor)>,
-    /// Judged, and may still be told of.
+    /// Judged, and may still be reported.
     kept: VecDeque<Block>,
     open: Block,
     /// Emptied, to be filled again.
@@ -45,7 +45,7 @@ impl Judge {
         }
     }
 
-    /// Forgets all samples: the run begins anew.
+    /// Forgets all samples: the run restarts.
     pub fn begin(&mut self) {
         let expectations = std::mem::take(&mut self.expectations);
         *self = Self::new(expectations.into_iter().map(|(expectation, _)| expectation), self.columns);
@@ -276,7 +276,7 @@ mod tests {
         assert_eq!(truth(text, &[(0, 0.0)]), Some(true));
     }
 
-    /// Samples that are equal are not all looked at where a window cannot tell them apart, and cost nothing then.
+    /// Samples that are equal are not all looked at where a window cannot distinguish them, and cost nothing then.
     #[test]
     fn a_month_of_equal_samples_is_judged_at_once() {
         let texts =

@@ -132,7 +132,8 @@ impl Monitor {
         self.end_if_done();
     }
 
-    /// Which samples its operands are asked for: of equal ones only those that its window tells apart, where that is enough.
+    /// Which samples its operands are asked for: of equal ones only those that its window distinguishes, where that is
+    /// enough.
     fn look_of_operands(&self, look: Look, next: Option<Sample>) -> Look {
         let around = |ends: Option<[u64; 2]>| ends.map_or(Look::Every, Look::Around);
         match &self.part {
@@ -226,7 +227,7 @@ impl Monitor {
         }
     }
 
-    /// The number of the first sample that it may still tell of; single ones before that go to `others`.
+    /// The number of the first sample that it may still report; single ones before that go to `others`.
     pub(super) fn keeps(&self, others: &mut Vec<u64>) -> u64 {
         let own = match &self.part {
             Part::Constant(_) | Part::Signal(_) | Part::Compare(..) => u64::MAX,
@@ -290,7 +291,7 @@ fn or(left: &Judged, right: &Judged) -> Judged {
     Judged { sample: left.sample, worth: left.worth.or(right.worth), certain: left.certain.max(right.certain) }
 }
 
-/// What follows from an implication is told at the time of its cause.
+/// What follows from an implication is reported at the time of its cause.
 fn implies(left: &Judged, right: &Judged) -> Judged {
     Judged::here(left.sample, left.worth.not().or(right.worth))
 }

@@ -255,8 +255,8 @@ impl Parser {
         })
     }
 
-    /// `(a and b)` is a formula, `(a + b) < c` begins with a term: what stands behind the closing
-    /// parenthesis, and between the two, tells.
+    /// `(a and b)` is a formula, `(a + b) < c` begins with a term: what follows the closing
+    /// parenthesis, and what stands within, decides.
     fn is_parenthesised_formula(&self) -> bool {
         if !matches!(self.peek().kind, TokenKind::Sign("(")) {
             return false;
@@ -437,7 +437,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_go_on_is_told_with_its_place() {
+    fn what_does_not_go_on_is_reported_with_its_place() {
         let wrong = |text: &str| {
             let error = parse(text).unwrap_err();
             format!("{}..{} {error}", error.place.start, error.place.end)

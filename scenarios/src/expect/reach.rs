@@ -30,7 +30,7 @@ impl Reach {
 /// How long a run may matter to what is open of a formula; nothing if all of it may.
 pub(super) fn memory_ns(formula: &Formula<usize>, step_ns: u64) -> Option<u64> {
     match formula {
-        // Once the part within is settled at a time, that time matters no more but for what is settled of the whole.
+        // Once the part within is settled at a time, that time matters only for what is settled of the whole.
         Formula::Always(_, inner) | Formula::Eventually(_, inner) => Some(reach(inner, step_ns)?.whole_ns()),
         // What is open of several that must always hold is open of each.
         Formula::And(one, other) if is_always(one) && is_always(other) => {

@@ -64,8 +64,8 @@ impl Judged {
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Look {
     Every,
-    /// Of samples with the same values, those that a window with these ends can tell apart: the first and the last ones, and
-    /// those at the ends of the window.
+    /// Of samples with the same values, those that a window with these ends distinguishes: the first and the last ones,
+    /// and those at the ends of the window.
     Around([u64; 2]),
 }
 

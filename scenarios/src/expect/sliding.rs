@@ -13,7 +13,7 @@ pub(super) trait Joined: Copy {
 
     fn then(self, later: Self) -> Self;
 
-    /// What may be told of a violation.
+    /// What may be reported of a violation.
     fn certain(&self) -> Option<Certain>;
 }
 

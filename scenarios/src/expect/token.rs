@@ -190,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_word_is_refused_at_its_place() {
+    fn what_is_not_a_word_is_refused_at_its_place() {
         assert_eq!(tokens("a ? b").unwrap_err().place, 2..3);
         assert_eq!(tokens("a < 5parsec").unwrap_err().place, 4..11);
         assert_eq!(tokens("`a").unwrap_err().place, 0..2);

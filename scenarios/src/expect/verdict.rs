@@ -9,7 +9,7 @@ use super::truth::Margin;
 pub struct Outcome {
     /// Whether it was met.
     pub verdict: Verdict,
-    /// By how much, as far as the run tells.
+    /// By how much, as far as the run shows.
     pub margin: Margin,
 }
 

@@ -18,7 +18,7 @@ use crate::panel_file::PageFile;
 #[derive(Clone, Debug)]
 pub struct Lesson {
     pub name: String,
-    /// What the trainee is told.
+    /// What the trainee reads.
     pub about: Option<String>,
     /// The prepared state with which it begins.
     pub start: String,

@@ -56,7 +56,7 @@ pub struct LessonFile {
     /// Its name: letters, digits, `-`, `_` and `.`; unique.
     #[schemars(with = "CaseName")]
     pub name: Spanned<String>,
-    /// What the trainee is told.
+    /// What the trainee reads.
     pub about: Option<String>,
     /// The `[[start]]` with which it begins.
     #[schemars(with = "String")]

@@ -9,7 +9,7 @@ use onescan_server::time::TimeSpan;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-/// So many different lengths are told apart.
+/// So many different lengths are distinguished.
 const LENGTHS_MAX: usize = 4096;
 /// About so many bins in a histogram.
 const BINS: u64 = 24;

@@ -404,7 +404,7 @@ fn what_is_wrong_has_its_place_and_a_hint() {
         cause("stop") + &cause("stop"),
         cause("unknown cause"),
     ];
-    let told: Vec<String> = wrong
+    let reported: Vec<String> = wrong
         .iter()
         .map(|report| match measures(report) {
             Ok(_) => format!("accepted: {report}"),
@@ -413,5 +413,5 @@ fn what_is_wrong_has_its_place_and_a_hint() {
             }
         })
         .collect();
-    insta::assert_snapshot!(told.join("\n"));
+    insta::assert_snapshot!(reported.join("\n"));
 }

@@ -10,7 +10,7 @@ use std::ops::RangeInclusive;
 use onescan_server::digest::TrajectoryDigest;
 use onescan_server::session::Session;
 
-/// Bytes of images in a block at most, but for a single image that is larger.
+/// Bytes of images in a block at most, except for a single image that is larger.
 const BLOCK_BYTES: usize = 8 << 20;
 /// Steps of a block at most.
 const BLOCK_ROWS: u64 = 8_192;

@@ -151,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn who_is_nobody_is_told_why() {
+    fn who_is_nobody_learns_why() {
         assert_eq!(whose(&[]), Err(BadSubject::NoName));
         assert_eq!(whose(&[(COMMON_NAME, 0x0c, "a"), (COMMON_NAME, 0x0c, "b")]), Err(BadSubject::NoName));
         assert!(matches!(whose(&[(COMMON_NAME, 0x0c, "a b")]), Err(BadSubject::Name(_))));
@@ -160,7 +160,7 @@ mod tests {
 
     /// Whatever is cut or changed, nothing is read beyond the end.
     #[test]
-    fn what_is_no_certificate_is_nobodys() {
+    fn what_is_not_a_certificate_is_nobodys() {
         let good = certificate(&[(COMMON_NAME, 0x0c, "plant"), (UNIT, 0x0c, "viewer")]);
         for end in 0..good.len() {
             assert_eq!(Holder::of_certificate(&good[..end]), Err(BadSubject::Unreadable), "{end}");

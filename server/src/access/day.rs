@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_day_is_refused() {
+    fn what_is_not_a_day_is_refused() {
         for text in
             ["2023-02-29", "1969-12-31", "2024-13-01", "2024-00-10", "2024-1-1", "24-01-01", "", "x", "2024-01-01-"]
         {

@@ -83,7 +83,7 @@ pub enum RegisterError {
     /// Two of one name.
     #[error("there is a token `{}` already: revoke it, or choose another name", one_line(.0))]
     Doubled(String),
-    /// A name that cannot be told from others.
+    /// A name that cannot be distinguished from others.
     #[error("`{}` cannot be the name of a token: use letters, digits, `_`, `.`, `-` and `@`, 64 at most", one_line(.0))]
     BadName(String),
     #[error("there are {PASSES_MAX} tokens, and there may not be more: revoke some")]
@@ -243,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn names_are_told_apart() {
+    fn names_are_distinguished() {
         let (mut register, _) = register();
         let pass = Pass { name: "anna".into(), role: Role::Viewer, expires: None, hash: TokenHash::of("x") };
         assert_eq!(register.add(pass.clone()), Err(RegisterError::Doubled("anna".into())));

@@ -81,7 +81,7 @@ impl Registration {
         self.session.missing_clients().next().is_none()
     }
 
-    /// The missing clients, as they are told.
+    /// The missing clients, as they are reported.
     pub fn missing(&self) -> String {
         let names: Vec<String> = self.session.missing_clients().map(|name| format!("`{name}`")).collect();
         names.join(", ")

@@ -53,7 +53,7 @@ impl Connection {
         Self { address, stage: Stage::Greeting, until: Some(until), holder: None, limit, incoming }
     }
 
-    /// What tells this connection from others that are as far.
+    /// What distinguishes this connection from others that are as far.
     pub(super) fn key(&self) -> impl std::hash::Hash + Eq + use<'_> {
         (self.address, &self.stage, self.until, &self.holder, self.limit, &self.incoming)
     }

@@ -8,7 +8,7 @@
 //! | `restore` | checkpoints taken and taken up |
 //! | `show` | observers and published views |
 //!
-//! All control flow of a running session is here; clients, image and carriers only do as told. A step
+//! All control flow of a running session is here; clients, image and carriers only carry it out. A step
 //! of clients in this process is plain function calls, without a channel or an allocation.
 
 mod operate;
@@ -69,7 +69,7 @@ pub struct Lockstep {
     settings: SessionSettings,
     /// Settings in which a checkpoint that is taken up may be another.
     may_differ: BTreeSet<String>,
-    /// What the timeline did to the initial values, until observers can be told.
+    /// What the timeline did to the initial values, until observers can be notified.
     at_start: Vec<Operation>,
     shown: Shown,
 }
@@ -396,17 +396,17 @@ impl Lockstep {
         }
     }
 
-    /// Tells every client that the session is over, and how.
+    /// Notifies every client that the session is over, and how it ended.
     fn part(&mut self) -> SessionEnd {
         self.closed = true;
         let end = self.session.end().cloned().unwrap_or(SessionEnd::Stopped { t_v: self.session.t_v() });
-        // All are told before anybody is waited for.
+        // All are notified before anybody is waited for.
         self.slots.iter_mut().for_each(|slot| slot.carrier.end(&end));
         self.slots.iter_mut().for_each(|slot| slot.carrier.close());
         end
     }
 
-    /// Tells everybody that the session is over, and ends the recordings, whatever came before.
+    /// Notifies everybody that the session is over, and ends the recordings, whatever came before.
     fn close(&mut self, reached: Result<Reached, RecordError>) -> Result<Reached, RecordError> {
         if self.closed {
             return reached;

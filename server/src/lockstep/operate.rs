@@ -83,7 +83,7 @@ impl Lockstep {
         for_clients
     }
 
-    /// Does an operation, and tells observers if it could be done.
+    /// Does an operation, and notifies observers if it could be done.
     fn operate(&mut self, operation: Operation, author: Author) -> Result<Result<(), OperationError>, RecordError> {
         let done = match operation.for_client() {
             Some((name, asked)) => self.operate_client(name, &asked),

@@ -293,7 +293,7 @@ mod tests {
     }
 
     #[test]
-    fn an_output_that_is_no_value_ends_the_session() {
+    fn an_output_that_is_not_a_value_ends_the_session() {
         let mut session = formed();
         session.advance();
         let violation = session.initialise(ClientId(0), &[2]).unwrap_err();

@@ -89,12 +89,12 @@ impl Session {
         Ok(())
     }
 
-    /// Gives a client that sleeps a turn in the next step that has not begun, so that it says anew when it wants one.
+    /// Gives a client that sleeps a turn in the next step that has not begun, so that it says again when it wants one.
     pub(crate) fn wake_next(&mut self, client: ClientId) {
         self.cycle.wake_next(client);
     }
 
-    /// A client cannot go on: the session ends for all, now. The first failure is the one told.
+    /// A client cannot go on: the session ends for all, now. The first failure is the one reported.
     pub fn fail(&mut self, client: ClientId, cause: FailureCause) {
         if self.end.is_some() {
             return;

@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn what_matches_nothing_is_told() {
+    fn what_matches_nothing_is_reported() {
         let names = ["Position_1", "Position_2", "Drive"].map(|name| SignalName::new(name).unwrap());
         let pattern = |text: &str| text.parse::<SignalPattern>().unwrap();
         assert_eq!(choose(&[pattern("P*")], names.iter()), Ok(vec![0, 1]));

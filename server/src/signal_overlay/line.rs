@@ -81,7 +81,7 @@ impl LineFault {
             return;
         };
         let (oldest, count) = (line.line().oldest(), line.line().count());
-        // A line that begins anew, as after a write from outside, has no bytes that are known.
+        // A line that restarts, as after a write from outside, has no bytes that are known.
         if count < self.next {
             self.next = oldest;
         }

@@ -137,7 +137,7 @@ pub struct TimelineState {
     condition_monitors: Vec<ConditionMonitorState>,
 }
 
-/// Operations are told apart by a key, as in recordings. The binary form of checkpoints has no keys,
+/// Operations are distinguished by a key, as in recordings. The binary form of checkpoints has no keys,
 /// so they are JSON there.
 mod as_json {
     use serde::de::DeserializeOwned;

@@ -248,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn bad_frames_are_told_apart() {
+    fn bad_frames_are_distinguished() {
         let decode = |bytes: &[u8]| FrameCodec::new(100).decode(&mut BytesMut::from(bytes));
         assert!(matches!(decode(b"\x65\0\0\0"), Err(FrameError::TooLong { length: 101, limit: 100 })));
         assert!(matches!(decode(b"\xff\xff\xff\xff"), Err(FrameError::TooLong { .. })));

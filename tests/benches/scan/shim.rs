@@ -103,7 +103,7 @@ impl Bench {
         let time = started.elapsed().as_nanos() as f64 / scans as f64;
         let memory = self.plc.memory();
         if let Some(done) = self.done {
-            // The next cycle would tell that the last is done.
+            // The next cycle would report that the last is done.
             assert_eq!(memory[done..done + 4], (SESSION + scans as u32 - 1).to_le_bytes(), "every grant was done");
         }
         (time, u64::from_le_bytes(*memory[self.sum..].first_chunk().expect("a checksum is an ULINT")))

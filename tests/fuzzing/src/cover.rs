@@ -40,7 +40,7 @@ impl Seen {
         let mut is_new = false;
         let mut first = 0;
         for (start, length) in regions() {
-            // SAFETY: the region is a static array of the program's own, which the pass has told of. Other threads may
+            // SAFETY: the region is a static array of the program's own, which the pass has reported. Other threads may
             // count meanwhile; a count more or less does no harm.
             let counts = unsafe { std::slice::from_raw_parts_mut(start as *mut u8, length) };
             for (chunk, orders) in counts.chunks_mut(64).zip(self.orders[first..first + length].chunks_mut(64)) {

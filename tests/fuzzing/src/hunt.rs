@@ -18,7 +18,7 @@ use crate::targets::{Prepared, Target};
 const PATIENCE: Duration = Duration::from_secs(40);
 /// Most bytes of all inputs that are kept.
 const CORPUS_BYTES_MAX: usize = 64 << 20;
-/// Most inputs that are kept where nothing tells which are new.
+/// Most inputs that are kept where nothing shows which are new.
 const BLIND_MAX: usize = 400;
 
 /// How long it goes on.
@@ -75,7 +75,7 @@ impl Hunt<'_> {
         let mut tally = Tally::default();
         let mut current = OpenOptions::new().create(true).truncate(false).write(true).open(self.scratch.join(CURRENT));
         let start = Instant::now();
-        let mut told = Instant::now();
+        let mut reported = Instant::now();
         let mut waiting: Vec<Vec<u8>> = corpus.clone();
         loop {
             let input = waiting.pop().unwrap_or_else(|| {
@@ -112,9 +112,9 @@ impl Hunt<'_> {
                 Span::Inputs(most) => tally.inputs >= most,
                 Span::Time(most) => start.elapsed() >= most,
             };
-            if is_over || told.elapsed() > Duration::from_secs(1) {
-                told = Instant::now();
-                self.tell(&tally, corpus.len(), seen.branches(), start.elapsed());
+            if is_over || reported.elapsed() > Duration::from_secs(1) {
+                reported = Instant::now();
+                self.report(&tally, corpus.len(), seen.branches(), start.elapsed());
             }
             if is_over {
                 return;
@@ -135,7 +135,7 @@ impl Hunt<'_> {
         keep(self.keep, self.target.name, &short, &said);
     }
 
-    fn tell(&self, tally: &Tally, corpus: usize, branches: usize, elapsed: Duration) {
+    fn report(&self, tally: &Tally, corpus: usize, branches: usize, elapsed: Duration) {
         let progress = json!({
             "inputs": tally.inputs, "accepted": tally.accepted, "worst_s": tally.worst_s, "worst_mib": tally.worst_mib,
             "corpus": corpus, "branches": branches, "counters": counters(), "seconds": elapsed.as_secs_f64(),

@@ -121,7 +121,7 @@ fn once(target: &mut Prepared, input: &[u8], limits: Limits) -> Verdict {
     Verdict { wrong, is_accepted, seconds, mib }
 }
 
-/// Time of this thread on a processor where the system tells it, of the clock on the wall elsewhere.
+/// Time of this thread on a processor where the system reports it, of the clock on the wall elsewhere.
 enum Processor {
     Nanoseconds(u64),
     Wall(Instant),

@@ -54,7 +54,7 @@ unsafe impl GlobalAlloc for Counted {
     }
 }
 
-/// From now on the most is counted anew; gives what is held.
+/// From now on the most is counted again; gives what is held.
 pub fn begin() -> usize {
     let held = HELD.load(Ordering::Relaxed);
     MOST.store(held, Ordering::Relaxed);

@@ -108,7 +108,7 @@ def real(digits):
 
 
 def verdict(path, kind, ours, theirs):
-    """How two values compare: equal, but for the sign of zero, rounded or different."""
+    """How two values compare: equal, except for the sign of zero, rounded or different."""
     if ours == theirs:
         return "equal"
     if kind in ("REAL", "LREAL"):
@@ -116,7 +116,7 @@ def verdict(path, kind, ours, theirs):
         if math.isnan(a) and math.isnan(b):
             return "equal"
         if a == b:  # ABS(-0.0) is 0.0 here and -0.0 there
-            return "equal but for the sign of zero"
+            return "equal except for the sign of zero"
         if path.startswith("~") and math.isclose(a, b, rel_tol=0, abs_tol=math.ulp(max(abs(a), abs(b)))):
             return "rounded otherwise"
     return "different"

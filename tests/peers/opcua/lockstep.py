@@ -1,4 +1,4 @@
-"""A client of a onescan session with nothing but an OPC UA client (docs/opcua.md), written anew on `asyncua`.
+"""A client of a onescan session with nothing but an OPC UA client (docs/opcua.md), written from scratch on `asyncua`.
 
 Who takes part has `setup()` and `turn(t_v_ns, inputs)`, which give outputs by name.
 """
@@ -57,7 +57,7 @@ def answer(who, t_v_ns, inputs):
 
 
 async def by_variables(place, who, subscribed=False):
-    """Reads, runs, writes outputs and Done in one Write. New grants are seen by polling or told by a subscription."""
+    """Reads, runs, writes outputs and Done in one Write. New grants are seen by polling or reported by a subscription."""
     changed = asyncio.Event()
 
     class Handler:

@@ -12,7 +12,7 @@ TYPES = "urn:onescan:lockstep"
 ROOTS = (1001, 1002, 3001, 3003)
 
 
-async def told(node, uris):
+async def described(node, uris):
     """What a node says of itself and of its references, with namespaces by name."""
     def named(id):
         return f"{uris[id.NamespaceIndex]} {id.Identifier}"
@@ -49,7 +49,7 @@ async def of_types(connection):
             # What instances say of their types is not the types' business.
             if uris[r.NodeId.NamespaceIndex] != "urn:onescan:session"
         )
-        found[node.nodeid.Identifier] = (await told(node, uris), links)
+        found[node.nodeid.Identifier] = (await described(node, uris), links)
         for reference in references:
             if reference.IsForward and reference.NodeId.NamespaceIndex == index:
                 waiting.append(connection.get_node(reference.NodeId))

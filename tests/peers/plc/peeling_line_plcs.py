@@ -4,7 +4,7 @@ Two TCP clients with bare frames: 360 bytes from the charger and 134 to it, 390 
 every few milliseconds whether or not anything has changed, and reads what has come. They drive the whole line: blocks
 from the step feeder over loader, centring spindles and transfer arms to the lathe, which peels them.
 
-A PLC of the thesis holds Execute for 500 ms; here that is time of the simulation, which the charger is told.
+A PLC of the thesis holds Execute for 500 ms; here that is time of the simulation, which the charger receives.
 """
 
 import argparse

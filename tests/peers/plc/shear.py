@@ -1,4 +1,4 @@
-"""The shear's PLC and the shim's scheduler, written anew from their descriptions (docs/gateway.md).
+"""The shear's PLC and the shim's scheduler, written from scratch from their descriptions (docs/gateway.md).
 
 Nothing here knows a protocol: `Plc.cycle` takes the words and inputs as a dictionary and gives words and outputs.
 """

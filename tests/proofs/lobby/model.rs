@@ -155,7 +155,7 @@ impl Model for Lobby {
             if may_speak(state, index, 4) {
                 events.push(Event::Says(index));
             }
-            // Whoever is told to leave does; before that, only the first time.
+            // Whoever is asked to leave does; before that, only the first time.
             let leaves = line.is_some_and(|line| !line.closed && !line.hung_up && (line.parted || way.tries < TRIES));
             if leaves && !state.hall.is_begun {
                 events.push(Event::HangsUp(index));

@@ -114,7 +114,7 @@ fn another_rule_would_be_found() {
 }
 
 #[test]
-fn what_is_no_model_is_refused_with_its_line() {
+fn what_is_not_a_model_is_refused_with_its_line() {
     for (wrong, why) in [
         ("MODULE main\nVAR\n  x : boolean\n", "line 4: `;` expected"),
         (

@@ -44,7 +44,7 @@ impl Progress {
         Self { session: self.session + 1, waiting: 0 }
     }
 
-    /// Where it is when a reading has told that.
+    /// Where it is when a reading has shown that.
     pub(crate) fn after(self, verdict: Verdict) -> Self {
         match verdict {
             Verdict::Done => Self { waiting: self.waiting + 1, ..self },
@@ -53,12 +53,12 @@ impl Progress {
     }
 }
 
-/// What a reading tells.
+/// What a reading shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Verdict {
     /// The grant is done, and these are its outputs.
     Done,
-    /// The PLC was started anew; the session is over.
+    /// The PLC was restarted; the session is over.
     Over,
 }
 
@@ -91,7 +91,7 @@ impl Gateway {
         } else if !(is_joined && seen.done == done - 1) {
             Some(Verdict::Over)
         } else if at.waiting == 1 && seen.answer == TIME_STANDS_STILL && self.looks_at_time {
-            // It was started anew, and this grant was what it joined with.
+            // It was restarted, and this grant was what it joined with.
             Some(Verdict::Over)
         } else {
             None

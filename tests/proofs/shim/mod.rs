@@ -2,7 +2,7 @@
 //! execution controllers as they are emitted, run by the soft PLC, in every order of cycles and messages.
 //!
 //! Every message of the gateway may arrive late, twice, never, in any order. The PLC's tasks run in any
-//! order. The PLC is started anew at any point, however often. The gateway gives up a session at any point
+//! order. The PLC is restarted at any point, however often. The gateway gives up a session at any point
 //! and begins the next. The state of the PLC is its memory.
 //!
 //! Two programs write down what they run for: `Fast` in every step, `Slow`, of higher priority, in every
@@ -26,7 +26,7 @@
 //!   how far each session had come.
 //! - A reading is judged when it is taken. The gateway does nothing else while one is on its way, and what the
 //!   PLC does meanwhile it may as well do after, when no fewer messages are in flight: the same states are
-//!   reached. A reading that tells nothing is none.
+//!   reached. A reading that shows nothing is none.
 //! - How often the PLC was started is not counted, so starts are not limited; sessions are.
 //! - What every cycle writes before it reads it is not part of the PLC's state; each cycle is run a second time
 //!   with other values there, to prove that.
@@ -107,7 +107,7 @@ pub(crate) enum ShimAct {
     Read(View, Verdict),
     /// The gateway gives its session up.
     Leave,
-    /// The PLC is started anew.
+    /// The PLC is restarted.
     Start,
 }
 
@@ -275,7 +275,7 @@ fn check(name: &str, project: &Project, sizes: &[(usize, u32)]) {
         let checker = model.checker().threads(2).spawn_bfs().join();
         checker.assert_properties();
         report(format_args!(
-            "{name}, {sessions} sessions of {grants} grants, the PLC started anew any number of times: {} states, {} of \
+            "{name}, {sessions} sessions of {grants} grants, the PLC restarted any number of times: {} states, {} of \
              the PLC",
             checker.unique_state_count(),
             checker.model().plc.lock().expect("no panic").states()

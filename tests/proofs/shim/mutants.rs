@@ -110,7 +110,7 @@ fn the_scheduler_needs_to_count() {
     assert!(stuck(&model) > 0);
 }
 
-/// A PLC that is started anew before its first grant joins with that grant, and never runs it.
+/// A PLC that is restarted before its first grant joins with that grant, and never runs it.
 #[test]
 fn the_gateway_needs_the_answer_that_time_stands_still() {
     assert!(stuck(&Shim::new(Gateway { looks_at_time: false, ..right() }, &[])) > 0);
@@ -122,7 +122,7 @@ fn the_gateway_needs_the_number_of_its_grant() {
     assert!(is_broken(Gateway { looks_at_done: false, ..right() }, &[]));
 }
 
-/// Sessions and grants are numbered in one row. Where they are not, `SDSP_Joined` still tells them apart; and
+/// Sessions and grants are numbered in one row. Where they are not, `SDSP_Joined` still distinguishes them; and
 /// where they are, `SDSP_Done` alone does: two ropes, and only without both does one fall.
 #[test]
 fn the_gateway_needs_sessions_numbered_on_or_the_session_that_was_joined() {

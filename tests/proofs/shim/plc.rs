@@ -15,7 +15,7 @@ pub(crate) type TaskIndex = usize;
 /// A state of the PLC: its memory, by number.
 pub(crate) type MemoryId = usize;
 
-/// What is written before it is read in whatever runs: it tells nothing of what comes.
+/// What is written before it is read in whatever runs: it shows nothing of what comes.
 const DEAD: [&str; 2] = ["Fast.SDSP_Granted", "Slow.SDSP_Granted"];
 
 /// What a project for the model has.

@@ -43,7 +43,7 @@ impl Model for Undisturbed<'_> {
 }
 
 /// States in which the PLC takes part in the gateway's session, or may still, but some grant is never done and
-/// the gateway is not told that it is over.
+/// the gateway is not notified that it is over.
 pub(super) fn stuck(model: &Shim) -> usize {
     let from = explore(model).states;
     let graph = explore(&Undisturbed { model, from });

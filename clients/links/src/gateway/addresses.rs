@@ -70,7 +70,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_address_a_list_and_a_table_are_told_apart() {
+    fn an_address_a_list_and_a_table_are_distinguished() {
         let text = "a = \"hr:1\"\nb = [\"x\", \"y\"]\nc = { P = \"z\" }\nd = 3\ne = [\"x\", 1]\nf = { P = true }\n";
         let read: BTreeMap<String, Addresses> = toml::from_str(text).unwrap();
         let table = Addresses::Table([("P".to_owned(), "z".to_owned())].into());

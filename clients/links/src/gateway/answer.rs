@@ -66,7 +66,7 @@ impl Answer {
             Self::Missing => "the PLC answers that a grant before it is missing".to_owned(),
             Self::Held => "the PLC answers that it is held by SDSP_Limit".to_owned(),
             Self::TimeStandsStill => "the PLC answers that its virtual time is not later than the last".to_owned(),
-            Self::MustBeStarted => "the PLC answers that it must be started anew".to_owned(),
+            Self::MustBeStarted => "the PLC answers that it must be restarted".to_owned(),
             Self::NotSimulated => "the PLC answers that it does not simulate".to_owned(),
             Self::Other(word) => format!("SDSP_Answer is {word}, which no scheduler writes"),
         }

@@ -115,11 +115,11 @@ impl Gateway {
                 }
                 Ask::Read => self.read(&mut wait)?,
             };
-            self.tell();
+            self.notify();
             match result {
                 Ok(()) => {}
                 Err(fault) if fault.is_transient() => self.be_lost(&fault, &mut wait)?,
-                // Where a garbled answer ends is not known, so the connection is made anew.
+                // Where a garbled answer ends is not known, so the client connects again.
                 Err(fault) if fault.is_garbled() && wait.garbled + 1 < GARBLED_MAX => {
                     wait.garbled += 1;
                     self.be_lost(&fault, &mut wait)?;
@@ -176,7 +176,7 @@ impl Gateway {
         Ok(())
     }
 
-    fn tell(&mut self) {
+    fn notify(&mut self) {
         match self.handshake.take_notice() {
             Some(Notice::StartPlc) => {
                 tracing::info!(target: NOTICE, "client `{}`: start the PLC cold, for the session to begin", self.request.name);

@@ -74,7 +74,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_tried_is_told() {
+    fn what_was_tried_is_reported() {
         let fault = connect(&mut Late(u32::MAX, unreachable()), "plc", Duration::ZERO).unwrap_err();
         assert_eq!(fault.to_string(), "unreachable: tcp://plc:1: Connection refused; tried once in 0ns");
         let fault = unreachable().tried(48, Duration::from_secs(10));

@@ -378,8 +378,8 @@ mod tests {
             set("SDSP_Layout", &11_u32.to_le_bytes());
             set("PLC_Boots", &8_u32.to_le_bytes());
             set("PLC_Running", &[1]);
-            let is_told = words == Words::WithSystem;
-            let (boots, running) = (is_told.then_some(8), is_told.then_some(true));
+            let is_reported = words == Words::WithSystem;
+            let (boots, running) = (is_reported.then_some(8), is_reported.then_some(true));
             let report = Report { joined: 5, done: 6, answer: Answer::Other(-2), layout: 11, boots, running };
             assert_eq!(exchange.report(&from_plc), report);
             assert_eq!(exchange.outputs().len(), 2);

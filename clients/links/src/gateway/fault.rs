@@ -1,4 +1,4 @@
-//! What can be wrong with a link to a PLC, told apart by name.
+//! What can be wrong with a link to a PLC, distinguished by name.
 
 use std::time::Duration;
 
@@ -77,11 +77,11 @@ impl LinkFault {
     /// The same, with how often it was tried and for how long.
     pub(super) fn tried(self, times: u32, within: Duration) -> Self {
         let times = if times == 1 { "once".to_owned() } else { format!("{times} times") };
-        let told = |reason: String| format!("{reason}; tried {times} in {within:?}");
+        let described = |reason: String| format!("{reason}; tried {times} in {within:?}");
         match self {
-            Self::Unreachable { url, reason } => Self::Unreachable { url, reason: told(reason) },
+            Self::Unreachable { url, reason } => Self::Unreachable { url, reason: described(reason) },
             Self::NobodyCame { url, .. } => Self::NobodyCame { url, within },
-            Self::Lost(reason) => Self::Lost(told(reason)),
+            Self::Lost(reason) => Self::Lost(described(reason)),
             other => other,
         }
     }
@@ -135,7 +135,7 @@ pub enum GatewayFault {
         /// The grant or the start under way.
         what: String,
     },
-    /// The PLC was started anew while a session was under way.
+    /// The PLC was restarted while a session was under way.
     #[error("the PLC was restarted in mid-session, during {what}{}; the session cannot go on", boots.map(|(was, is)| format!(" (boot counter {was}, now {is})")).unwrap_or_default())]
     Restarted {
         /// The grant under way.

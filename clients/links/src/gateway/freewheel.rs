@@ -13,7 +13,7 @@ use super::fault::GatewayFault;
 use super::handshake::Report;
 use super::link::Link;
 
-/// How long a link that is told of changes is listened to in a turn.
+/// How long a turn waits for changes on a link that is notified of them.
 const GLANCE: Duration = Duration::from_millis(1);
 /// How long a PLC may take for its first cycle, in which its scheduler says whether it is simulated.
 const FIRST_CYCLE: Duration = Duration::from_secs(1);

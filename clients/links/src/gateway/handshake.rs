@@ -42,7 +42,7 @@ pub struct Report {
     pub layout: u32,
     /// `PLC_Boots`, if the PLC counts its starts.
     pub boots: Option<u32>,
-    /// `PLC_Running`, if the PLC tells RUN from STOP.
+    /// `PLC_Running`, if the PLC distinguishes RUN from STOP.
     pub running: Option<bool>,
 }
 
@@ -106,7 +106,7 @@ pub struct Handshake {
     /// The number of the scenario's mapping, if it has one.
     layout: Option<u32>,
     /// It has been said that the PLC shows no number.
-    is_layout_told: bool,
+    is_layout_reported: bool,
 }
 
 impl Default for Handshake {
@@ -128,7 +128,7 @@ impl Handshake {
             notice: None,
             is_lost: false,
             layout: None,
-            is_layout_told: false,
+            is_layout_reported: false,
         }
     }
 
@@ -245,7 +245,7 @@ impl Handshake {
         }
     }
 
-    /// A PLC that has joined nothing is told the new session; another one must be started before.
+    /// A PLC that has joined nothing is notified of the new session; another one must be restarted before.
     fn begin(&mut self, t_v: VirtualTime, report: Report) -> Result<(), GatewayFault> {
         if report.answer == Answer::NotSimulated {
             return Err(GatewayFault::NotSimulated);
@@ -308,7 +308,8 @@ impl Handshake {
         match (report.joined, report.answer) {
             (joined, _) if joined == session && report.done == session => {
                 self.compare_layout(report)?;
-                if self.layout.is_some() && report.layout == 0 && !std::mem::replace(&mut self.is_layout_told, true) {
+                if self.layout.is_some() && report.layout == 0 && !std::mem::replace(&mut self.is_layout_reported, true)
+                {
                     self.notice = Some(Notice::NoLayout);
                 }
                 self.boots = report.boots;
@@ -347,7 +348,7 @@ impl Handshake {
             _ if report.done > grant => {
                 Err(GatewayFault::OtherGrant { what: self.what(), done: report.done - session })
             }
-            // It has joined this session anew, from a late order, and knows nothing of the grants before.
+            // It has joined this session again, from a late order, and knows nothing of the grants before.
             _ if report.done + 1 < grant => Err(restarted),
             (_, Answer::TimeStandsStill) if self.phase == Phase::Awaiting && grant == session + 1 => Err(restarted),
             _ if self.phase == Phase::Surveying => {

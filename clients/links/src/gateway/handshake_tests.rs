@@ -237,7 +237,7 @@ fn the_next_session_begins_with_a_cold_start() {
 /// A report that cannot be in the middle of a session, and the name of what is wrong.
 #[test]
 fn what_a_plc_may_say_has_a_name() {
-    let told = |change: &dyn Fn(&mut Report)| {
+    let reported = |change: &dyn Fn(&mut Report)| {
         let mut world = World::new(Vec::new());
         world.handshake.join(VirtualTime::ZERO);
         world.drive(0).unwrap();
@@ -250,17 +250,17 @@ fn what_a_plc_may_say_has_a_name() {
         fault.to_string()
     };
     let all = [
-        told(&|report| report.running = Some(false)),
-        told(&|report| report.joined = 0),
-        told(&|report| (report.joined, report.answer) = (0, Answer::NotSimulated)),
-        told(&|report| report.joined = 9),
-        told(&|report| report.done = 40),
-        told(&|report| report.done = 0),
-        told(&|_| {}),
-        told(&|report| report.answer = Answer::Running),
-        told(&|report| report.answer = Answer::OldGrant),
-        told(&|report| report.answer = Answer::Held),
-        told(&|report| report.answer = Answer::Other(77)),
+        reported(&|report| report.running = Some(false)),
+        reported(&|report| report.joined = 0),
+        reported(&|report| (report.joined, report.answer) = (0, Answer::NotSimulated)),
+        reported(&|report| report.joined = 9),
+        reported(&|report| report.done = 40),
+        reported(&|report| report.done = 0),
+        reported(&|_| {}),
+        reported(&|report| report.answer = Answer::Running),
+        reported(&|report| report.answer = Answer::OldGrant),
+        reported(&|report| report.answer = Answer::Held),
+        reported(&|report| report.answer = Answer::Other(77)),
     ];
     insta::assert_snapshot!(all.join("\n"));
 }
@@ -284,7 +284,7 @@ fn a_program_that_was_made_for_another_mapping_is_found_before_the_first_step() 
 }
 
 #[test]
-fn a_program_without_a_number_is_told_once() {
+fn a_program_without_a_number_is_reported_once() {
     let mut world = World::new(Vec::new());
     world.is_counting = true;
     world.handshake = Handshake::new().expecting(Some(7));

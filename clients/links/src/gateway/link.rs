@@ -8,7 +8,7 @@ use super::fault::{LinkFault, Partial};
 
 /// A way to write and read the points of an [`super::Exchange`], whatever the protocol.
 ///
-/// A link is told its points when it is made. It carries their packed bytes; what they mean is not its business.
+/// A link receives its points when it is made. It carries their packed bytes; what they mean is not its business.
 pub trait Link: Send {
     /// Connects, in place of any connection before, and holds every point against the PLC: that it is there,
     /// its type, whether it may be written.
@@ -23,7 +23,7 @@ pub trait Link: Send {
     /// The connection is gone, or the PLC refuses.
     fn write(&mut self, to_plc: &[u8]) -> Result<(), LinkFault>;
 
-    /// Reads all points from the PLC, in their order. A link that is told of changes waits for one as long as
+    /// Reads all points from the PLC, in their order. A link that is notified of changes waits for one as long as
     /// `patience`; false if there was none.
     ///
     /// # Errors

@@ -132,7 +132,7 @@ fn feed(signal: &Variables, addresses: Option<&Addresses>) -> Result<Feed, Mappi
 /// One address cannot be that of several variables, unless the PLC has one for them all.
 fn one_for_many(port: &Port, paths: &[String], address: &str) -> MappingFault {
     let (name, count) = (&port.name, paths.len());
-    let all = told(paths);
+    let all = comma_separated(paths);
     let message = format!("`{name}` goes to {count} variables, {all}, and is mapped to one address: {address}");
     MappingFault::new(name.as_str(), message).with_help(Some(suggestion(port, paths, Some(address))))
 }
@@ -141,7 +141,7 @@ fn listed(port: &Port, paths: &[String], list: &[String]) -> Result<Vec<Target>,
     let name = &port.name;
     if list.len() != paths.len() {
         let (given, count) = (list.len(), paths.len());
-        let all = told(paths);
+        let all = comma_separated(paths);
         let what = match paths.get(given) {
             Some(left_out) => format!("`{left_out}` is left out"),
             None => format!("there is no variable for `{}`", list[count]),
@@ -173,7 +173,7 @@ fn tabled(port: &Port, paths: &[String], table: &BTreeMap<String, String>) -> Re
     let unknown = |path: &&String| !paths.iter().any(|known| known.eq_ignore_ascii_case(path));
     if let Some(unknown) = table.keys().find(unknown) {
         let near = did_you_mean(unknown, paths.iter().map(String::as_str));
-        let message = format!("`{name}` is not `{unknown}` in the PLC; it goes to {}", told(paths));
+        let message = format!("`{name}` is not `{unknown}` in the PLC; it goes to {}", comma_separated(paths));
         return Err(MappingFault::new(name, message).with_help(near.or_else(|| Some(suggestion(port, paths, None)))));
     }
     let target = |path: &String| {
@@ -228,7 +228,7 @@ fn suggestion(port: &Port, paths: &[String], address: Option<&str>) -> String {
 }
 
 /// Paths in words.
-fn told(paths: &[String]) -> String {
+fn comma_separated(paths: &[String]) -> String {
     let quoted: Vec<String> = paths.iter().map(|path| format!("`{path}`")).collect();
     match &quoted[..] {
         [] => "no variable that is known".to_owned(),
@@ -260,11 +260,11 @@ mod tests {
     /// The points of the signals with their addresses.
     fn points(map: &str) -> Vec<String> {
         let exchange = mapped(map).unwrap();
-        let told = |point: &Point| {
+        let listed = |point: &Point| {
             let address = point.address.as_deref().unwrap_or("-");
             format!("{} {} {address}", point.key(), point.variable.as_deref().unwrap_or("-"))
         };
-        exchange.to_plc().iter().filter(|point| !point.is_word()).map(told).collect()
+        exchange.to_plc().iter().filter(|point| !point.is_word()).map(listed).collect()
     }
 
     #[test]
@@ -289,7 +289,7 @@ mod tests {
     }
 
     #[test]
-    fn a_variable_that_is_not_reached_is_told() {
+    fn a_variable_that_is_not_reached_is_reported() {
         let all = [
             "go = \"hr:0\"",
             "go = [\"hr:0\"]",
@@ -307,7 +307,7 @@ mod tests {
             "SDSP_Grant = [\"hr:0\"]",
             "og = \"hr:0\"",
         ];
-        let told = all.map(|map| {
+        let reported = all.map(|map| {
             let fault = mapped(map).unwrap_err();
             format!(
                 "{map}\n  {}: {fault}\n  {}",
@@ -315,6 +315,6 @@ mod tests {
                 fault.help.clone().unwrap_or_default().replace('\n', "\n  ")
             )
         });
-        insta::assert_snapshot!(told.join("\n"));
+        insta::assert_snapshot!(reported.join("\n"));
     }
 }

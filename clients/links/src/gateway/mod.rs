@@ -4,7 +4,7 @@
 //! |---|---|
 //! | [`handshake`] | what is to be written and read next, and what the PLC's words mean: sans-IO |
 //! | [`answer`] | what its scheduler says of a grant |
-//! | [`fault`] | what can be wrong with a link, told apart by name |
+//! | [`fault`] | what can be wrong with a link, distinguished by name |
 //! | [`byte_order`] | which byte of a number comes first |
 //! | [`exchange`] | the signals and synchronisation words in their order, as packed bytes |
 //! | [`addresses`] | the addresses of a signal as a scenario writes them |

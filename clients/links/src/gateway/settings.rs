@@ -105,7 +105,7 @@ impl JsonSchema for Text<TimeSpan> {
         "Time".into()
     }
 
-    /// A number and a unit. What the pattern cannot tell, as fractions of a nanosecond, the reader refuses.
+    /// A number and a unit. What the pattern cannot exclude, such as fractions of a nanosecond, the reader refuses.
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         json_schema!({ "type": "string", "pattern": r"^ *[0-9][0-9_]*(\.[0-9_]+)? *(ns|us|ms|s|min|h) *$" })
     }
@@ -113,7 +113,7 @@ impl JsonSchema for Text<TimeSpan> {
 
 /// A URL that names no link.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("`{url}` is no PLC's address: {reason}")]
+#[error("`{url}` is not the address of a PLC: {reason}")]
 pub struct BadUrl {
     /// What was written.
     pub url: String,

@@ -173,7 +173,7 @@ impl Controller {
         state.version += 1;
     }
 
-    /// In STOP no cycle would tell that something was written.
+    /// In STOP no cycle would show that something was written.
     fn note(&self, state: &mut State) {
         if !state.is_running {
             state.version += 1;

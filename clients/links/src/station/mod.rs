@@ -16,7 +16,7 @@
 //! - The PLC never waits for its clients: it runs a cycle when its clock says so.
 //! - What one block, one Modbus request or one ADS command writes is in place between two cycles. An OPC UA server takes values one
 //!   by one, in their order.
-//! - A server listens where it is told to and nowhere else; of two gateways the newer one has the PLC.
+//! - A server listens at the address that it is given and nowhere else; of two gateways the newer one has the PLC.
 
 pub mod ads;
 pub mod controller;

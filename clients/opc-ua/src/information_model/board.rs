@@ -22,10 +22,10 @@ use tokio::sync::Notify;
 use super::item::Item;
 use super::seat::{Answer, Holder, Refusal, Seat};
 
-/// Tells whether an OPC UA session is no more.
+/// Reports whether an OPC UA session has ended.
 pub type IsGone = Arc<dyn Fn() -> bool + Send + Sync>;
 
-/// Tells subscribers that these items may have changed.
+/// Notifies subscribers that these items may have changed.
 type Notifier = Box<dyn Fn(&[Item]) + Send + Sync>;
 
 /// How often somebody who waits looks whether the other is still there.
@@ -67,7 +67,7 @@ pub struct Board {
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum SeatFault {
     #[error("{0}")]
-    Told(String),
+    Reported(String),
     /// Its connection was closed or lost, or its OPC UA session has run out.
     #[error("its OPC UA connection or session has ended while grant {grant} waits for `Done`")]
     Gone { grant: u64 },
@@ -140,7 +140,7 @@ impl Board {
         self.shared.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Who is told of items that change; set once, by the server.
+    /// Who is notified of items that change; set once, by the server.
     pub(super) fn set_notifier(&self, notifier: Notifier) {
         // A second server of one session there is not.
         let _ = self.notifier.set(notifier);
@@ -151,7 +151,7 @@ impl Board {
         self.lock().watched.insert(item);
     }
 
-    /// Changes something and tells subscribers of those `items` that they watch.
+    /// Changes something and notifies subscribers of those `items` that they watch.
     fn publish(&self, items: &[Item], change: impl FnOnce(&mut Shared)) {
         let watched: Vec<Item> = {
             let mut shared = self.lock();
@@ -162,16 +162,16 @@ impl Board {
                 items.iter().copied().filter(|item| shared.watched.contains(item)).collect()
             }
         };
-        self.tell(&watched);
+        self.notify(&watched);
     }
 
-    fn tell(&self, items: &[Item]) {
+    fn notify(&self, items: &[Item]) {
         if let (Some(notify), false) = (self.notifier.get(), items.is_empty()) {
             notify(items);
         }
     }
 
-    /// A step is committed and its view published: tells subscribers.
+    /// A step is committed and its view published: notifies subscribers.
     pub fn step(&self) {
         self.announce(|shared| shared.phase = None);
     }
@@ -181,7 +181,7 @@ impl Board {
         self.announce(|shared| shared.is_held = is_held);
     }
 
-    /// Changes something and tells subscribers of the session and of its signals.
+    /// Changes something and notifies subscribers of the session and of its signals.
     fn announce(&self, change: impl FnOnce(&mut Shared)) {
         let signals = self.layout.signals().map(|signal| Item::Signal(signal.index()));
         let items: Vec<Item> = if self.lock().watched.is_empty() {
@@ -234,7 +234,7 @@ impl Board {
         Ok(())
     }
 
-    /// Somebody operates the session: it is told of the end, too.
+    /// Somebody operates the session: it is notified of the end, too.
     pub(super) fn operated_by(&self, who: Holder, is_gone: IsGone) {
         self.lock().operators.insert(who, is_gone);
     }
@@ -265,7 +265,7 @@ impl Board {
             }
             let grant = shared.seats[seat].grant_number();
             if let Some(why) = shared.seats[seat].fault() {
-                return Err(SeatFault::Told(why.to_owned()));
+                return Err(SeatFault::Reported(why.to_owned()));
             }
             let gone = shared.gone[seat].clone();
             if gone.is_some_and(|is_gone| is_gone()) {

@@ -88,7 +88,7 @@ pub(super) async fn turn(
     }
     let patience = Duration::from_millis(u64::from(*patience_ms)).min(PATIENCE_MAX);
     board.wait_for_grant(seat, patience).await;
-    Ok(told(&board.lock().seats[seat]))
+    Ok(described(&board.lock().seats[seat]))
 }
 
 /// Answers a grant as a whole: nothing of it counts if a value is none.
@@ -107,7 +107,7 @@ fn answer(
     let given: Vec<Vec<u8>> =
         types.iter().zip(outputs).map(|(ty, given)| packed(*ty, given)).collect::<Result<_, _>>()?;
     let taken = board.attempt(seat, |seat| {
-        // Told apart before anything is written: an old answer must not leave its outputs behind.
+        // Distinguished before anything is written: an old answer must not leave its outputs behind.
         seat.check_done(who, done)?;
         for (index, bytes) in given.iter().enumerate() {
             seat.write(who, index, bytes)?;
@@ -128,7 +128,7 @@ fn list(given: &Variant) -> Result<&[Variant], StatusCode> {
 }
 
 /// What a client has to know for its turn.
-fn told(seat: &Seat) -> Vec<Variant> {
+fn described(seat: &Seat) -> Vec<Variant> {
     let wrapped: Vec<Variant> =
         value::all(&seat.inputs, seat.given()).into_iter().map(|value| Variant::Variant(Box::new(value))).collect();
     let inputs = Array { value_type: VariantScalarTypeId::Variant, values: wrapped, dimensions: None };

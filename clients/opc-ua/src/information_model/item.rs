@@ -18,7 +18,7 @@ pub enum Item {
 }
 
 impl Item {
-    /// What changes with a grant of a seat, but for its inputs: who is granted reads them.
+    /// What changes with a grant of a seat, except its inputs: who is granted reads them.
     pub(super) fn grant(seat: usize) -> [Self; 3] {
         use number::{CLIENT_STATE, GRANT, GRANT_TIME};
         [Self::Seat(seat, CLIENT_STATE), Self::Seat(seat, GRANT_TIME), Self::Seat(seat, GRANT)]

@@ -257,5 +257,5 @@ impl InMemoryNodeManagerImpl for SessionNodes {
     }
 }
 
-/// Items are told when they change, not sampled: a grant that is told late holds all clients up.
+/// Items are reported when they change, not sampled: a grant that is reported late holds all clients up.
 const EVERY_CHANGE_MS: f64 = 0.001;

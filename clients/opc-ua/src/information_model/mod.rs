@@ -8,7 +8,7 @@
 //! | [`instance`] | the objects of one session: its signals, its clients |
 //! | [`nodeset`] | nodes as a `NodeSet2` file (OPC 10000-6 annex F) |
 //! | [`address_space`] | nodes in a server |
-//! | [`seat`] | a client's place in the session, sans-IO: grants and answers, and what is told apart |
+//! | [`seat`] | a client's place in the session, sans-IO: grants and answers, and which of them are distinguished |
 //! | [`board`] | the session as all see it: written by its driver, read and answered over OPC UA |
 //! | [`client`] | a seat as a client of the session |
 //! | [`observer`] | the session's steps on the board |

@@ -1,4 +1,4 @@
-//! A node of an address space as data (OPC 10000-3): served and published by different rooms, told once.
+//! A node of an address space as data (OPC 10000-3): served and published by different rooms, described once.
 
 /// The namespace of the types: the same in every server.
 pub const TYPES_URI: &str = "urn:onescan:lockstep";

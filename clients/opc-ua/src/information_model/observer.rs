@@ -1,4 +1,4 @@
-//! Tells OPC UA subscribers of the session's steps.
+//! Notifies OPC UA subscribers of the session's steps.
 
 use std::sync::Arc;
 

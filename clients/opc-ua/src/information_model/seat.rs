@@ -1,4 +1,4 @@
-//! A client's place in the session, sans-IO: grants and answers, and what is told apart.
+//! A client's place in the session, sans-IO: grants and answers, and which of them are distinguished.
 //!
 //! | from | what happens | to |
 //! |---|---|---|

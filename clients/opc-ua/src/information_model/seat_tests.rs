@@ -44,7 +44,7 @@ fn outputs_count_with_the_answer_all_at_once() {
 }
 
 #[test]
-fn answers_are_told_apart_by_their_number() {
+fn answers_are_distinguished_by_their_number() {
     let mut seat = running();
     assert_eq!(seat.done(ME, 1), Err(Refusal::Doubled), "the last one answered, while the next is under way");
     assert_eq!(seat.done(ME, 0), Err(Refusal::Old));

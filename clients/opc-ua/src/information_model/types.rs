@@ -121,7 +121,7 @@ pub const SESSION: ObjectType = ObjectType {
         command(4004, "Stop", "Ends the session for all clients"),
         command(4007, "Pause", "Holds virtual time at the next step"),
         command(4010, "Step", "Runs exactly one step, then holds"),
-        command(4013, "Reset", "Begins anew at t_v = 0; every client initialises again"),
+        command(4013, "Reset", "Restarts at t_v = 0; every client initialises again"),
         MethodType {
             number: 4016,
             name: "Write",

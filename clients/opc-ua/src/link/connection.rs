@@ -106,7 +106,7 @@ fn client(options: &Options, pki: &Pki, timeout: Duration) -> Result<Client, Lin
         .create_sample_keypair(options.is_secured())
         .pki_dir(pki.path())
         .request_timeout(timeout)
-        // A connection that is lost is made anew by the gateway, which knows what was under way.
+        // A connection that is lost is made again by the gateway, which knows what was under way.
         .session_retry_limit(0)
         .max_message_size(16 * 1024 * 1024);
     builder.client().map_err(|errors| LinkFault::Setting(errors.join("; ")))

@@ -55,7 +55,7 @@ impl OpcUaLink {
         for point in points {
             let address = point.address.as_deref().unwrap_or_else(|| point.symbol());
             let node = connection.node(address, &self.options);
-            nodes.push(node.ok_or_else(|| self.unknown(point, "is no node of the server"))?);
+            nodes.push(node.ok_or_else(|| self.unknown(point, "is not a node of the server"))?);
         }
         let ask = |node: &NodeId| {
             [AttributeId::Value, AttributeId::UserAccessLevel]

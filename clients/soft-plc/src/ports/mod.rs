@@ -110,8 +110,8 @@ struct Bound {
     port: Port,
     /// As it is at the set-up.
     fresh: Port,
-    /// Whether it has been told that bytes were lost.
-    is_told: bool,
+    /// Whether the loss of bytes has been reported.
+    is_reported: bool,
     end: End,
     /// Where its lines lie in the PLC's inputs and outputs.
     reads: Range<usize>,
@@ -168,7 +168,7 @@ impl Ports {
                 name: each.name.clone(),
                 fresh: port.clone(),
                 port,
-                is_told: false,
+                is_reported: false,
                 end,
                 reads: reads..reads + read,
                 writes: writes..writes + written,
@@ -203,11 +203,11 @@ impl Ports {
 
     /// Before a scan.
     pub(super) fn arrive(&mut self, now_ns: u64, inputs: &[u8], memory: &mut [u8]) {
-        for Bound { name, port, end, reads, is_told, .. } in &mut self.ports {
+        for Bound { name, port, end, reads, is_reported, .. } in &mut self.ports {
             port.arrive(now_ns, inputs.get(reads.clone()).unwrap_or_default());
             let Losses { window, buffer, .. } = port.losses();
-            if !*is_told && window + buffer > 0 {
-                *is_told = true;
+            if !*is_reported && window + buffer > 0 {
+                *is_reported = true;
                 tracing::warn!(port = %name, now_ns, window, buffer, "bytes were lost before the PLC took them");
             }
             match end {

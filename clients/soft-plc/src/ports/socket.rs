@@ -29,8 +29,9 @@ pub(super) enum Reached<'h> {
 }
 
 impl Reached<'_> {
-    /// What the program is told: members of an element of `OnescanPorts`, and literals. A module's line is always there.
-    fn told(&self) -> Vec<(&'static str, String)> {
+    /// What the program receives: members of an element of `OnescanPorts`, and literals. A module's line is always
+    /// there.
+    fn parameters(&self) -> Vec<(&'static str, String)> {
         let yes = || "TRUE".to_owned();
         match self {
             Self::Host(host, number) => {
@@ -47,8 +48,8 @@ impl Reached<'_> {
 
 /// Where the members of an element of `OnescanPorts` lie in the PLC's memory.
 pub(super) struct Socket {
-    /// Paths of what the program is told at the set-up, with literals.
-    told: Vec<(String, String)>,
+    /// Paths of what the program receives at the set-up, with literals.
+    parameters: Vec<(String, String)>,
     attempt: usize,
     served: usize,
     wanted: usize,
@@ -78,9 +79,11 @@ impl Socket {
         }
         let found = |member: &str| variable(application, port, &format!("OnescanPorts[{index}].{member}"));
         let place = |member: &str| found(member).map(|variable| variable.offset as usize);
-        let told = reached.told().into_iter();
+        let parameters = reached.parameters().into_iter();
         Ok(Self {
-            told: told.map(|(member, literal)| (format!("OnescanPorts[{index}].{member}"), literal)).collect(),
+            parameters: parameters
+                .map(|(member, literal)| (format!("OnescanPorts[{index}].{member}"), literal))
+                .collect(),
             attempt: place("attempt")?,
             served: place("served")?,
             wanted: place("wanted")?,
@@ -92,9 +95,9 @@ impl Socket {
         })
     }
 
-    /// Tells the program that there is such a port.
+    /// Notifies the program that there is such a port.
     pub(super) fn begin(&self, plc: &mut SoftPlc) -> Result<(), WriteError> {
-        self.told.iter().try_for_each(|(path, literal)| plc.write(path, literal))
+        self.parameters.iter().try_for_each(|(path, literal)| plc.write(path, literal))
     }
 
     /// Before a scan: how the connection is, and what has arrived.
@@ -126,7 +129,7 @@ impl Socket {
             }
             return;
         }
-        // a program that connects anew has given up what it had not sent
+        // a program that connects again has given up what it had not sent
         if !is_wanted {
             self.send(port, memory);
         }

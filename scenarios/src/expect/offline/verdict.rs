@@ -54,8 +54,8 @@ impl Certain {
     }
 }
 
-/// When it became certain that a formula is false at `sample`, which it is. What follows from an implication is told
-/// at the time of its cause.
+/// When it became certain that a formula is false at `sample`, which it is. What follows from an implication is
+/// reported at the time of its cause.
 fn certain(formula: &Formula<usize>, trace: &Trace, sample: usize) -> Certain {
     let truths = |formula: &Formula<usize>| evaluate::<Truth>(formula, trace);
     let seen = |window: Window| window.ahead(trace).get(sample).map_or(0..0, |span| span.first..span.end);

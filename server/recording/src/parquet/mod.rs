@@ -147,7 +147,7 @@ pub(super) struct ParquetSink {
 }
 
 impl ParquetSink {
-    /// Empties the folder of parts and begins anew.
+    /// Empties the folder of parts and restarts.
     pub(super) fn create(shape: &Shape) -> io::Result<Self> {
         let folder = shape.folder.join(TRAJECTORY);
         std::fs::create_dir_all(&folder)?;

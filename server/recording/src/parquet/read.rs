@@ -127,7 +127,7 @@ fn fill(block: &mut Block, group: &dyn RowGroupReader, rows: usize, columns: &[(
                 block.digests.push(digest);
             }
         }
-        _ => return Err(wrong("column `digest` is no FIXED_LEN_BYTE_ARRAY")),
+        _ => return Err(wrong("column `digest` is not a FIXED_LEN_BYTE_ARRAY")),
     }
     for (place, column) in columns {
         let mut put = put(block, column);

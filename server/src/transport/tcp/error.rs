@@ -33,7 +33,7 @@ pub enum ParticipantError {
     /// The server broke the protocol.
     #[error(transparent)]
     Server(#[from] EndpointError),
-    /// The client itself could not go on; the server has been told.
+    /// The client itself could not go on; the server has been notified.
     #[error("at t_v = {t_v}: {fault}")]
     Fault {
         /// Virtual time of the turn.

@@ -60,7 +60,7 @@ impl Host {
         self.lines.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Tells the acceptor what has happened, and passes on what is to be done.
+    /// Reports to the acceptor what has happened, and passes on what is to be done.
     pub(super) fn act(&self, happened: impl FnOnce(&mut Acceptor, Now) -> Vec<Action>) {
         let mut acceptor = self.acceptor();
         let actions = happened(&mut acceptor, self.now());

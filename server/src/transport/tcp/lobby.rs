@@ -78,7 +78,7 @@ impl Lobby {
         Ok(Self { address, pending_clients: Mutex::new(Some(receiver)), host, close, thread: Some(thread) })
     }
 
-    /// Where it listens; tells the port where none was asked for.
+    /// Where it listens; gives the port where none was asked for.
     pub fn address(&self) -> SocketAddr {
         self.address
     }
@@ -105,7 +105,7 @@ impl ClientListener for Lobby {
 
     fn shut(&self) {
         let waiting = self.pending_clients.lock().unwrap_or_else(PoisonError::into_inner).take();
-        // Who is waiting is told by the acceptor, like whoever comes later.
+        // Whoever is waiting is notified by the acceptor, like whoever comes later.
         drop(waiting);
         self.host.act(Acceptor::shut);
     }

@@ -51,7 +51,7 @@ impl Carrier for Remote {
     }
 
     fn collect(&mut self, outputs: &mut Vec<u8>) -> Result<Answer, FailureCause> {
-        // What a client said before it broke the connection tells more than the broken connection.
+        // What a client said before it broke the connection says more than the broken connection.
         let broken = self.broken.take();
         let patience = if broken.is_some() { Duration::from_millis(100) } else { self.reply_timeout };
         match (self.connection.receive(Some(patience)), broken) {

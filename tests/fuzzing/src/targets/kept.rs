@@ -54,7 +54,7 @@ pub(super) fn checkpoint(scratch: &Path) -> Prepared {
         if session.resume(&checkpoint).is_err() {
             return false;
         }
-        // How it ends is told; that it does is what is tried.
+        // How it ends is reported; that it ends is what is tried.
         let _ = session.run_to(until);
         true
     });

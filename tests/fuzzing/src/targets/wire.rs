@@ -102,8 +102,8 @@ fn whole_frames(input: &mut Vec<u8>) {
     }
 }
 
-/// Data blocks of three axes with the words in the reserve: the first byte says how TCP cuts the stream. Each block is told
-/// to be wrong, or taken without leaving out a bit of it.
+/// Data blocks of three axes with the words in the reserve: the first byte says how TCP cuts the stream. Each block is
+/// reported to be wrong, or taken without leaving out a bit of it.
 pub(super) fn blocks(_: &Path) -> Prepared {
     let port = |name: String, ty| Feed::whole(&Port { name: SignalName::new(name).expect("a name"), ty }, None);
     let bits = ["Execute", "Tracking", "TorqueControl", "SpeedControl", "Enable"];

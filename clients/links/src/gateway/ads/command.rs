@@ -78,7 +78,7 @@ pub fn meaning(code: u32) -> &'static str {
         0x707 => "the device is not ready",
         0x708 => "the device is busy",
         NO_SYMBOL => "no such symbol",
-        0x711 => "the symbol's version has changed: the program was downloaded anew",
+        0x711 => "the symbol's version has changed: the program was downloaded again",
         0x712 => "the device is in a state in which it cannot",
         0x745 => "its time is up",
         _ => "see Beckhoff, ADS return codes",

@@ -31,14 +31,14 @@ impl Refusal {
     /// As a fault of the link, if nobody knows better.
     pub(super) fn into_fault(self) -> LinkFault {
         match self {
-            Self::Code(code) => LinkFault::Lost(told(code)),
+            Self::Code(code) => LinkFault::Lost(described(code)),
             Self::Link(fault) => fault,
         }
     }
 }
 
 /// A return code for people.
-pub(super) fn told(code: u32) -> String {
+pub(super) fn described(code: u32) -> String {
     format!("{} (ADS {code:#x})", meaning(code))
 }
 

@@ -43,7 +43,7 @@ impl FromStr for NetId {
     fn from_str(text: &str) -> Result<Self, String> {
         let numbers: Option<Vec<u8>> = text.split('.').map(|number| number.parse().ok()).collect();
         let numbers = numbers.and_then(|numbers| numbers.try_into().ok());
-        numbers.map(Self).ok_or_else(|| format!("`{text}` is no AMS NetId: write six numbers, as `5.32.116.5.1.1`"))
+        numbers.map(Self).ok_or_else(|| format!("`{text}` is not an AMS NetId: write six numbers, as `5.32.116.5.1.1`"))
     }
 }
 
@@ -110,7 +110,7 @@ pub enum BadFrame {
     #[error("a frame of {0} bytes")]
     Length(u32),
     /// It begins otherwise than a frame with a command.
-    #[error("a frame of kind {0:#06x}, which is no ADS command")]
+    #[error("a frame of kind {0:#06x}, which is not an ADS command")]
     NoCommand(u16),
     /// The two headers contradict each other.
     #[error("a frame of {frame} bytes with {data} bytes of data")]
@@ -249,16 +249,16 @@ mod tests {
         }
 
         #[test]
-        fn a_frame_that_is_cut_is_told(frame in frames(), at in any::<prop::sample::Index>()) {
+        fn a_frame_that_is_cut_is_reported(frame in frames(), at in any::<prop::sample::Index>()) {
             let bytes = frame.encoded();
             let cut = at.index(bytes.len());
             let read = Frame::read(&mut &bytes[..cut]);
-            let is_told = if cut == 0 { matches!(read, Ok(None)) } else { read.is_err() };
-            prop_assert!(is_told);
+            let is_reported = if cut == 0 { matches!(read, Ok(None)) } else { read.is_err() };
+            prop_assert!(is_reported);
         }
 
         #[test]
-        fn any_bytes_are_a_frame_or_told(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
+        fn any_bytes_are_a_frame_or_reported(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
             let _ = Frame::read(&mut &bytes[..]);
         }
     }

@@ -5,7 +5,7 @@ use std::time::Duration;
 use onescan_base::did_you_mean;
 
 use super::command::{self, SUM_MAX, state_name};
-use super::connection::{Connection, Refusal, numbers, told};
+use super::connection::{Connection, Refusal, described, numbers};
 use super::frame::Bytes;
 use super::options::Options;
 use super::symbol::{Form, READ_ONLY, Symbol, elementary};
@@ -83,7 +83,7 @@ impl AdsLink {
         self.connection.as_mut().ok_or_else(LinkFault::not_connected)
     }
 
-    /// Connects and asks for the state, which a PLC without a route to this gateway does not tell.
+    /// Connects and asks for the state, which a PLC without a route to this gateway does not report.
     fn open(&mut self) -> Result<u16, LinkFault> {
         // The old connection goes first: a router has room for one.
         self.connection = None;
@@ -97,7 +97,7 @@ impl AdsLink {
                     source.net_id
                 ),
             },
-            Refusal::Code(code) => LinkFault::Refused { url, reason: told(code) },
+            Refusal::Code(code) => LinkFault::Refused { url, reason: described(code) },
             Refusal::Link(fault) => fault,
         })?;
         self.connection = Some(connection);
@@ -170,7 +170,7 @@ fn all_well(codes: &mut Bytes<'_>, points: &[Point], what: &str) -> Result<(), L
         match codes.u32() {
             Some(0) => {}
             Some(code) => {
-                let text = format!("`{}` cannot be {what}: {}", point.label(), told(code));
+                let text = format!("`{}` cannot be {what}: {}", point.label(), described(code));
                 return Err(MappingFault::new(&point.name, text).into());
             }
             None => return Err(LinkFault::Nonsense("a sum that is cut short".to_owned())),
@@ -182,8 +182,8 @@ fn all_well(codes: &mut Bytes<'_>, points: &[Point], what: &str) -> Result<(), L
 impl Link for AdsLink {
     fn connect(&mut self) -> Result<(), LinkFault> {
         let state = self.open()?;
-        let tells_itself = self.exchange.from_plc().iter().any(|point| point.name == RUNNING.0);
-        if state != command::RUN && !tells_itself {
+        let reports_itself = self.exchange.from_plc().iter().any(|point| point.name == RUNNING.0);
+        if state != command::RUN && !reports_itself {
             let reason = format!("the PLC is in {}; set it to RUN", state_name(state));
             return Err(LinkFault::Unreachable { url: format!("ads://{}", self.address), reason });
         }

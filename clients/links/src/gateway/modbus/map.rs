@@ -194,7 +194,7 @@ fn entry(point: &Point, direction: Direction, next: u16) -> Result<Entry, Mappin
         None => Address { table: Table::HoldingRegister, at: next, bit: None },
         Some(text) => {
             let Some(address) = parse(text) else {
-                let message = format!("`{name}` is mapped to `{text}`, which is no Modbus address");
+                let message = format!("`{name}` is mapped to `{text}`, which is not a Modbus address");
                 return fault(message, "write `hr:100`, `ir:100`, `hr:100.3`, `coil:3` or `di:3`");
             };
             address

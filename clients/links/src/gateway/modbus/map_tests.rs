@@ -28,23 +28,23 @@ fn exchange(ports: &[(&str, SignalType)], addresses: &[(&str, &str)]) -> Exchang
 }
 
 #[test]
-fn what_is_wrong_with_a_map_is_told() {
+fn what_is_wrong_with_a_map_is_reported() {
     use SignalType as T;
-    let told = |ty, address: &str| {
+    let reported = |ty, address: &str| {
         let exchange = exchange(&[("a", ty), ("b", ty)], &[("a", address), ("b", "hr:50")]);
         RegisterMap::new(&Options::default(), &exchange).map_or_else(|f| f.to_string(), |_| "fine".to_owned())
     };
     let all = [
-        told(T::REAL, "hr:100"),
-        told(T::REAL, "hr:49"),
-        told(T::REAL, "coil:1"),
-        told(T::REAL, "hr:1.3"),
-        told(T::REAL, "ir:1"),
-        told(T::REAL, "hr:65535"),
-        told(T::REAL, "4x100"),
-        told(T::BOOL, "hr:8.3"),
-        told(T::BOOL, "hr:8.16"),
-        told(T::String(4), "hr:20"),
+        reported(T::REAL, "hr:100"),
+        reported(T::REAL, "hr:49"),
+        reported(T::REAL, "coil:1"),
+        reported(T::REAL, "hr:1.3"),
+        reported(T::REAL, "ir:1"),
+        reported(T::REAL, "hr:65535"),
+        reported(T::REAL, "4x100"),
+        reported(T::BOOL, "hr:8.3"),
+        reported(T::BOOL, "hr:8.16"),
+        reported(T::String(4), "hr:20"),
     ];
     insta::assert_snapshot!(all.join("\n"));
 }

@@ -207,14 +207,14 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_telegram_is_told() {
-        let told = |bytes: &[u8]| read(&[bytes]).unwrap_err();
-        assert_eq!(told(b"HTTP/1.1"), BadTelegram::Version(b'H'));
-        assert_eq!(told(&[3, 0, 0, 5, 0]), BadTelegram::Length(5));
-        assert_eq!(told(&[3, 0, 0, 7, 9, DATA, LAST]), BadTelegram::Length(7));
-        assert_eq!(told(&[3, 0, 0, 7, 2, 0x20, LAST]), BadTelegram::Kind(0x20));
+    fn what_is_not_a_telegram_is_reported() {
+        let reported = |bytes: &[u8]| read(&[bytes]).unwrap_err();
+        assert_eq!(reported(b"HTTP/1.1"), BadTelegram::Version(b'H'));
+        assert_eq!(reported(&[3, 0, 0, 5, 0]), BadTelegram::Length(5));
+        assert_eq!(reported(&[3, 0, 0, 7, 9, DATA, LAST]), BadTelegram::Length(7));
+        assert_eq!(reported(&[3, 0, 0, 7, 2, 0x20, LAST]), BadTelegram::Kind(0x20));
         let part = telegram(&[DATA, 0], &vec![0; 40_000]);
-        assert_eq!(told(&[part.clone(), part].concat()), BadTelegram::Endless);
+        assert_eq!(reported(&[part.clone(), part].concat()), BadTelegram::Endless);
     }
 
     proptest! {

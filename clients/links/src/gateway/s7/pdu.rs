@@ -309,14 +309,14 @@ mod tests {
     /// As every description of the protocol has it.
     #[test]
     fn a_request_is_the_bytes_that_an_s7_takes() {
-        let told = [0x32, 1, 0, 0, 0, 7, 0, 14, 0, 0, 4, 1, 0x12, 10, 0x10, 2, 0, 3, 0, 1, 0x84, 0, 0, 16];
-        assert_eq!(read(7, A), told);
-        let told = [0x32, 1, 0, 0, 0, 7, 0, 8, 0, 0, 0xF0, 0, 0, 1, 0, 1, 3, 0xC0];
-        assert_eq!(setup(7, 960), told);
-        let told = [
+        let expected = [0x32, 1, 0, 0, 0, 7, 0, 14, 0, 0, 4, 1, 0x12, 10, 0x10, 2, 0, 3, 0, 1, 0x84, 0, 0, 16];
+        assert_eq!(read(7, A), expected);
+        let expected = [0x32, 1, 0, 0, 0, 7, 0, 8, 0, 0, 0xF0, 0, 0, 1, 0, 1, 3, 0xC0];
+        assert_eq!(setup(7, 960), expected);
+        let expected = [
             0x32, 1, 0, 0, 0, 9, 0, 14, 0, 7, 5, 1, 0x12, 10, 0x10, 2, 0, 3, 0, 1, 0x84, 0, 0, 16, 0, 4, 0, 24, 1, 2, 3,
         ];
-        assert_eq!(write(9, A, &[1, 2, 3]), told);
+        assert_eq!(write(9, A, &[1, 2, 3]), expected);
     }
 
     #[test]

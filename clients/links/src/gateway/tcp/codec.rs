@@ -1,4 +1,4 @@
-//! Blocks in a stream of bytes: nothing but their length tells them apart.
+//! Blocks in a stream of bytes: only their length separates them.
 //!
 //! There is no header and no check sum. Only what the layout calls reserve can show that a stream is cut in the wrong
 //! place, so with `reserve_zero` every block is held against it, also those that newer ones replace.

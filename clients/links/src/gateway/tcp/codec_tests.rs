@@ -141,7 +141,7 @@ fn blocks_come_one_by_one_or_the_newest() {
 }
 
 #[test]
-fn what_is_set_in_the_reserve_is_told() {
+fn what_is_set_in_the_reserve_is_reported() {
     let mut codec = BlockCodec::new(&axes(1).0.from_plc);
     let good = bytes("1100 45c4e000 45fa0000 466a6000 466a6000 00000000 00000000 00000000");
     codec.take(&good);
@@ -200,24 +200,24 @@ proptest! {
         prop_assert_eq!(codec.end(), Ok(()));
     }
 
-    /// A stream from which bytes are missing is told by the third block after them, wherever it is cut: a speed that is
-    /// not 0 comes to lie where the layout has nothing.
+    /// A stream from which bytes are missing is detected by the third block after them, wherever it is cut: a speed
+    /// that is not 0 comes to lie where the layout has nothing.
     #[test]
-    fn a_stream_that_is_cut_wrongly_is_told(values in commands(), missing in 1..360_usize) {
+    fn a_stream_that_is_cut_wrongly_is_reported(values in commands(), missing in 1..360_usize) {
         let layout = axes(12).0.from_plc;
         let mut block = vec![0; 360];
         layout.encode(&values, &mut block);
         let mut codec = BlockCodec::new(&layout);
         codec.take(&block[missing..]);
         codec.take(&block.repeat(2));
-        let told = (0..2).find_map(|_| codec.next_block().err());
+        let reported = (0..2).find_map(|_| codec.next_block().err());
         // By whole axes it is cut between two of them: what is wrong is which axis, and bits cannot show that.
-        prop_assert_eq!(told.is_some(), missing % 30 != 0, "{} bytes are missing", missing);
+        prop_assert_eq!(reported.is_some(), missing % 30 != 0, "{} bytes are missing", missing);
     }
 
-    /// Whatever comes: it is told, or it is taken and not a bit of it is left out.
+    /// Whatever comes: it is reported, or it is taken and not a bit of it is left out.
     #[test]
-    fn a_frame_is_taken_whole_or_told(
+    fn a_frame_is_taken_whole_or_reported(
         values in commands(), changes in prop::collection::vec((0..360_usize, any::<u8>()), 0..4)
     ) {
         let (layouts, exchange) = axes(12);

@@ -59,20 +59,20 @@ fn an_axis_is_thirty_bytes_and_its_feedback_ten() {
 }
 
 #[test]
-fn what_is_wrong_with_a_layout_is_told() {
-    let told = |from: &str, to: &str| {
+fn what_is_wrong_with_a_layout_is_reported() {
+    let reported = |from: &str, to: &str| {
         let text = AXIS.replacen(from, to, 1);
         let fault = Layouts::new(&declaration(&text), &axis_exchange()).unwrap_err();
         format!("{fault} {}", fault.help.as_deref().unwrap_or_default())
     };
     let all = [
-        told("InPosition: BOOL", "InPositoin: BOOL"),
-        told("InPosition: BOOL", "InPosition: INT"),
-        told("Sync: ToPlc", "Sync: ToPcl"),
-        told("Sync: ToPlc", "Sync"),
-        told("Sync: ToPlc", "Sync: ToPlc\", \"Sync: ToPlc"),
-        told("ToPlc = [", "ToPlc = [\"Again: ToPlc\", "),
-        told("InPosition: BOOL", "InPosition: STRING[8]"),
+        reported("InPosition: BOOL", "InPositoin: BOOL"),
+        reported("InPosition: BOOL", "InPosition: INT"),
+        reported("Sync: ToPlc", "Sync: ToPcl"),
+        reported("Sync: ToPlc", "Sync"),
+        reported("Sync: ToPlc", "Sync: ToPlc\", \"Sync: ToPlc"),
+        reported("ToPlc = [", "ToPlc = [\"Again: ToPlc\", "),
+        reported("InPosition: BOOL", "InPosition: STRING[8]"),
     ];
     insta::assert_snapshot!(all.join("\n"));
 }
@@ -95,13 +95,13 @@ fn two_points_share_no_place() {
         let port = Port { name: SignalName::new(name).unwrap(), ty: SignalType::BOOL };
         Feed::whole(&port, Some(address.to_owned()))
     };
-    let told = |a: &str, b: &str| {
+    let reported = |a: &str, b: &str| {
         let exchange = Exchange::new(&[feed("a", a), feed("b", b)], &[], Words::Handshake, &BTreeMap::new());
         Layouts::new(&Declaration::default(), &exchange).map_or_else(|fault| fault.to_string(), |_| "fine".to_owned())
     };
-    assert_eq!(told("0.1", "0.0"), "fine");
-    assert_eq!(told("0.1", "0.1"), "`a` and `b` are both mapped to 0.1 of `to_plc`");
-    assert_eq!(told("0.1", "2.0"), "`b` and `SDSP_Session` are both mapped to 2 of `to_plc`");
+    assert_eq!(reported("0.1", "0.0"), "fine");
+    assert_eq!(reported("0.1", "0.1"), "`a` and `b` are both mapped to 0.1 of `to_plc`");
+    assert_eq!(reported("0.1", "2.0"), "`b` and `SDSP_Session` are both mapped to 2 of `to_plc`");
 }
 
 #[test]

@@ -70,7 +70,7 @@ impl TcpLink {
     /// As [`Link::read`].
     pub fn next_block(&mut self, patience: Duration, from_plc: &mut [u8]) -> Result<bool, LinkFault> {
         loop {
-            if let Some(block) = self.codec.next_block().map_err(told)? {
+            if let Some(block) = self.codec.next_block().map_err(link_fault)? {
                 self.layouts.from_plc.decode(&block, from_plc);
                 return Ok(true);
             }
@@ -96,7 +96,7 @@ impl TcpLink {
                     Ok(false) => break Ok(count),
                     Err(fault) => break Err(fault),
                 },
-                Err(fault) => break Err(told(fault)),
+                Err(fault) => break Err(link_fault(fault)),
             }
         };
         let stream = self.stream.as_ref().ok_or_else(LinkFault::not_connected)?;
@@ -119,7 +119,7 @@ impl TcpLink {
         loop {
             match stream.read(&mut self.buffer) {
                 Ok(0) => {
-                    self.codec.end().map_err(told)?;
+                    self.codec.end().map_err(link_fault)?;
                     return Err(LinkFault::Lost("closed by the PLC".to_owned()));
                 }
                 Ok(count) => {
@@ -143,7 +143,7 @@ fn lost(error: &std::io::Error) -> LinkFault {
 }
 
 /// A connection that ends in mid-block may come back; one that is cut wrongly is not the PLC's word.
-fn told(fault: StreamFault) -> LinkFault {
+fn link_fault(fault: StreamFault) -> LinkFault {
     match fault {
         StreamFault::Cut(_) => LinkFault::Lost(fault.to_string()),
         StreamFault::Stray { .. } => LinkFault::Nonsense(fault.to_string()),
@@ -199,7 +199,7 @@ impl Link for TcpLink {
 
     fn read(&mut self, patience: Duration, from_plc: &mut [u8]) -> Result<bool, LinkFault> {
         loop {
-            if let Some(block) = self.codec.newest().map_err(told)? {
+            if let Some(block) = self.codec.newest().map_err(link_fault)? {
                 self.layouts.from_plc.decode(&block, from_plc);
                 return Ok(true);
             }

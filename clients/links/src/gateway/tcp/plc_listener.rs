@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn an_address_in_use_is_no_door() {
+    fn an_address_in_use_is_refused() {
         let plc_listener = PlcListener::open(SocketAddr::from(([127, 0, 0, 1], 0))).unwrap();
         assert_eq!(
             PlcListener::open(plc_listener.address()).err().map(|error| error.kind()),
