@@ -15,7 +15,7 @@ use crate::timed::{Timed, Times};
 
 /// The verdicts with which a campaign is passed unless it says otherwise.
 const ACCEPTED: [CampaignVerdict; 4] =
-    [CampaignVerdict::Told, CampaignVerdict::Safe, CampaignVerdict::NoEffect, CampaignVerdict::NotActivated];
+    [CampaignVerdict::Detected, CampaignVerdict::Safe, CampaignVerdict::NoEffect, CampaignVerdict::NotActivated];
 
 /// A campaign, its rows and columns checked.
 #[derive(Clone, Debug)]
@@ -101,7 +101,7 @@ pub(super) fn expanded(
     for (row, fault) in file.faults.iter().enumerate() {
         for (column, activation) in file.activations.iter().enumerate() {
             let (fault, activation) = (fault.get_ref(), activation.get_ref());
-            // What is wrong is told now; the entry itself is made when its case is asked for.
+            // What is wrong is reported now; the entry itself is made when its case is asked for.
             let at = put(&mut CaseFile::empty(&file.name), fault, activation)?;
             let path = [&file.name, &fault.name, &activation.name].map(|name| name.get_ref().as_str());
             cases.extend(variants.iter().map(|(suffix, healthy)| Case {

@@ -64,7 +64,7 @@ fn run(table: &Table, fault: &CampaignFault, row: &Row) -> Section {
     let facts = [
         ("kind", Some(fault.kind.word().to_owned())),
         ("activated at", row.activated_ns.map(time)),
-        ("told after", row.told_after_ns.map(time)),
+        ("detected after", row.detected_after_ns.map(time)),
         ("safe", row.safe.map(yes)),
         ("collision", row.collision.map(yes)),
         ("effect on", (!row.effects.is_empty()).then(|| effects(row))),
@@ -80,13 +80,13 @@ fn run(table: &Table, fault: &CampaignFault, row: &Row) -> Section {
         mood: if table.is_accepted(row) { Mood::Good } else { Mood::Bad },
         virtual_time: time(row.virtual_time_ns),
         facts: facts.into_iter().filter_map(|(name, value)| Some((name, value?))).collect(),
-        lines: fault.about.iter().cloned().chain(told(row)).collect(),
+        lines: fault.about.iter().cloned().chain(failures(row)).collect(),
         ..Section::default()
     }
 }
 
 /// What ended its run before its time.
-fn told(row: &Row) -> impl Iterator<Item = String> {
+fn failures(row: &Row) -> impl Iterator<Item = String> {
     row.failure.iter().map(|failure| failure.text.clone()).chain(row.unfinished.iter().cloned())
 }
 
@@ -115,7 +115,7 @@ pub(super) fn junit(tables: &[Table]) -> String {
             Ended::Failure(Trouble {
                 word: row.verdict.word(),
                 lines: std::iter::once(row.verdict.word().to_owned())
-                    .chain(told(row))
+                    .chain(failures(row))
                     .chain([repeat(table, row)])
                     .collect(),
             })

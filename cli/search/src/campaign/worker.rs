@@ -222,7 +222,7 @@ impl<'a> Probing<'a> {
         let mut reading = Reading {
             digest: report.digest.map(|digest| digest.to_string()),
             virtual_time_ns: report.virtual_time.as_nanos(),
-            failure: report.failure.as_ref().map(|failure| told(self.scenario, failure)),
+            failure: report.failure.as_ref().map(|failure| failure_of(self.scenario, failure)),
             state: ran.state.map(|state| state.to_string()),
             ..Reading::default()
         };
@@ -251,7 +251,7 @@ fn came(report: &Report) -> BTreeMap<String, u64> {
     totals.filter(|alarm| alarm.count > 0).map(|alarm| (alarm.name.clone(), alarm.count)).collect()
 }
 
-fn told(scenario: &Scenario, failure: &EndedBy) -> Failure {
+fn failure_of(scenario: &Scenario, failure: &EndedBy) -> Failure {
     let client = scenario.file().clients.get(&failure.client).map(toml::Spanned::get_ref);
     let place = if let FailureCause::Fault(fault) = &failure.cause { fault.place.clone() } else { None };
     Failure { text: failure.to_string(), of_plc: matches!(client, Some(ClientFile::SoftPlc { .. })), place }
