@@ -45,7 +45,6 @@ const EXCEPTIONS: &[Exception] = &[
     known("cli/regress/src/regress", &[(&["cause", "outcome"], "being cut"), (&["declared", "tcunit"], "being cut")]),
     known("cli/regress/src/why", &[(&["pairs", "record"], "being cut")]),
     known("cli/runner/src/run", &[(&["lockstep", "rewound"], "being cut")]),
-    known("cli/search/src/minimise", &[(&["target", "trial"], "being cut")]),
     known(
         "plc-shim/iec/src/ir",
         &[(

@@ -33,7 +33,6 @@ pub mod worker;
 
 use std::collections::BTreeMap;
 use std::io::Write;
-use std::num::NonZeroUsize;
 use std::process::Command;
 
 use onescan_report::{OutputError, file};
@@ -45,19 +44,15 @@ use serde::de::DeserializeOwned;
 pub use config::CampaignConfig;
 pub use error::CampaignError;
 
+use crate::forest;
 use config::{Begun, Chosen, MergeConfig, Reports};
 use error::Ended;
 use journal::{Done, Subject, Work};
-use onescan_regress::regress::pool::{answer, bar, spread, this_program};
+use onescan_regress::regress::pool::{answer, this_program};
 use onescan_runner::error::{ExitCode, Usage};
 use onescan_runner::format::Format;
 use reading::{Reading, Trunk, Way};
 use table::{Row, Table};
-
-/// So many runs in a process at most: what is lost if it is killed is little, and so is what it begins with.
-const BATCH_MAX: usize = 32;
-/// So many processes for each of those that run at a time, at least, where there are enough runs.
-const BATCHES_PER_JOB: usize = 4;
 
 /// Runs the campaigns that `config` asks for, and writes what came of them to `out`.
 ///
@@ -169,19 +164,12 @@ fn tried(config: &CampaignConfig, scenario: &Scenario, campaign: &Campaign) -> R
         .filter(|(number, (name, way))| is_ours(*number) && *way != Way::Never && !done.readings.contains_key(*name))
         .map(|(_, one)| one)
         .collect();
-    let batches: Vec<&[(&str, Way)]> = todo.chunks(batch_size(todo.len(), config.jobs)).collect();
-    let bar = bar(config.progress, batches.len(), "batches of runs");
-    let read = spread(config.jobs, batches.len(), &bar, |index| batch(config, campaign, &work, batches[index]));
-    let read: Vec<Vec<Reading>> = read.into_iter().collect::<Result<_, _>>()?;
+    let batches = forest::batches(config.jobs, &todo);
+    let shown = (config.progress, "batches of runs");
+    let read = forest::each(config.jobs, &batches, shown, |cases| batch(config, campaign, &work, cases))?;
     done.readings.extend(todo.iter().map(|(name, _)| (*name).to_owned()).zip(read.into_iter().flatten()));
     done.healthy = Some(trunk);
     Ok(done)
-}
-
-/// How many runs a process does: more than one, because each has to read and compile the scenario first, but so few that
-/// all workers have something to do to the end.
-fn batch_size(runs: usize, jobs: NonZeroUsize) -> usize {
-    (runs / (jobs.get() * BATCHES_PER_JOB)).clamp(1, BATCH_MAX)
 }
 
 /// Some runs with faults. If their process comes to nothing each is done by itself, so that one that crashes takes no

@@ -4,18 +4,16 @@ use std::collections::VecDeque;
 use std::rc::Rc;
 
 use onescan_scenario::Scenario;
-use onescan_scenario::compose::Member;
 use onescan_scenario::expect::TraceEnd;
 use onescan_scenario::timing::Leeway;
 use onescan_server::checkpoint::StateHash;
 use onescan_server::digest::Digest;
-use onescan_server::signal::ClientName;
 use onescan_server::time::{TimeSpan, VirtualTime};
 
 use super::deviation::{Deviation, What};
 use super::known::{Key, Known, Mark, Past, looks};
 use super::place::{self, Watched};
-use onescan_runner::error::Usage;
+use crate::forest::{SearchKind, form, run_until, start};
 use onescan_runner::run::expectation::ExpectationReport;
 use onescan_runner::run::judged::{Judged, Moment};
 use onescan_runner::run::{RunError, SearchError};
@@ -88,37 +86,19 @@ impl<'a> Ground<'a> {
         deviations: &[Deviation],
         wanted: Wanted<'_>,
     ) -> Result<Path, SearchError> {
-        let mut judged = self.form(deviations)?;
-        let moment = from.and_then(|fork| fork.moment.as_ref());
-        match moment {
-            Some(moment) => judged.resume(moment).map_err(RunError::Fork)?,
-            None => judged.begin()?,
-        }
+        let deviating = deviations.iter().flat_map(Deviation::operations);
+        let mut judged = form(SearchKind::Explore, self.scenario, self.until, deviating)?;
+        let moment = from.and_then(|fork| fork.moment.as_deref());
+        start::<SearchError>(&mut judged, moment)?;
         let mut watched = Watched::new(self.leeways);
         watched.begin(judged.session());
         let mut forks = if wanted.forks && moment.is_none() { self.at_start() } else { Vec::new() };
         let mut joining = Joining::new(self, deviations);
-        loop {
-            if let Some((more, known)) = wanted.known
-                && let Some(schedules) = joining.look(&mut judged, more, known)?
-            {
-                let marks = joining.marks;
-                return Ok(Path {
-                    digest: None,
-                    violated: Vec::new(),
-                    failure: None,
-                    forks,
-                    joined: Some(schedules),
-                    marks,
-                });
-            }
-            // Before the step, because what it brings is to be late.
-            let before = if wanted.forks { judged.moment()?.map(Rc::new) } else { None };
-            if !judged.step()? {
-                break;
-            }
-            watched.look(judged.session());
-            if let Some(moment) = before {
+        // The boundary before the last step, because what that step brought is to be late.
+        let mut before: Option<Rc<Moment>> = None;
+        let joined = run_until(&mut judged, |judged| -> Result<Option<u64>, SearchError> {
+            if let Some(moment) = before.take() {
+                watched.look(judged.session());
                 let t_v = judged.session().t_v();
                 for (number, leeway) in self.leeways.iter().enumerate() {
                     let what = place::in_step(self.scenario, leeway, &watched, (t_v, deviations));
@@ -126,26 +106,27 @@ impl<'a> Ground<'a> {
                     forks.extend(what.map(|what| Fork { leeway: number, what, edge: t_v, moment }));
                 }
             }
+            if let Some((more, known)) = wanted.known
+                && let Some(schedules) = joining.look(judged, more, known)?
+            {
+                return Ok(Some(schedules));
+            }
+            before = if wanted.forks { judged.moment()?.map(Rc::new) } else { None };
+            Ok(None)
+        })?;
+        let marks = joining.marks;
+        if joined.is_some() {
+            return Ok(Path { digest: None, violated: Vec::new(), failure: None, forks, joined, marks });
         }
         let judgement = judged.finish(TraceEnd::Complete)?;
         let failure = judgement.failure.map(|failure| failure.to_string());
-        let (digest, violated, marks) = (judgement.digest, judgement.violated, joining.marks);
-        Ok(Path { digest, violated, failure, forks, joined: None, marks })
+        Ok(Path { digest: judgement.digest, violated: judgement.violated, failure, forks, joined, marks })
     }
 
     fn at_start(&self) -> Vec<Fork> {
         let leeways = self.leeways.iter().enumerate();
         let fork = |(leeway, what)| Fork { leeway, what, edge: VirtualTime::ZERO, moment: None };
         leeways.filter_map(|(number, leeway)| Some((number, place::at_start(leeway)?))).map(fork).collect()
-    }
-
-    fn form(&self, deviations: &[Deviation]) -> Result<Judged<'a>, RunError> {
-        let elsewhere = |name: &ClientName, _: &Member| {
-            let message = format!("client `{name}` is not in this process, where it could be saved and forked");
-            Usage::new(message, Some("explore with a soft PLC in its place".to_owned()))
-        };
-        let deviating = deviations.iter().flat_map(Deviation::operations);
-        Judged::form(self.scenario, self.until, deviating, elsewhere)
     }
 }
 

@@ -44,7 +44,7 @@ impl Told<'_> {
             )?;
         }
         let statement = json!({ "scenario": scenario.name(), "holds": found.findings.is_empty(),
-            "schedules": found.schedules, "joined": found.joined, "runs": found.runs,
+            "schedules": found.schedules, "joined": found.joined, "runs": found.runs.done(),
             "edges": found.places.values().sum::<u64>(), "bound": config.bound, "exhausted": found.exhausted,
             "samples": found.sampled, "seed": config.seed, "version": env!("CARGO_PKG_VERSION") });
         writeln!(out, "{statement}")
@@ -89,7 +89,7 @@ impl Told<'_> {
                 );
                 format!(
                     "{schedules} hold{joined}; {known}, because {} were done, which is the limit (see `--runs`)",
-                    counted(found.runs, "run")
+                    counted(found.runs.done(), "run")
                 )
             }
             (findings, _) if config.all => {

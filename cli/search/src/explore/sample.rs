@@ -35,7 +35,7 @@ impl Search<'_> {
             let mut random = Random::new(seed_for(self.config.seed, "schedule", &number.to_string()));
             let Some((from, deviations)) = self.drawn(&trunk, &mut random)? else { continue };
             self.found.sampled += 1;
-            self.found.runs += 1;
+            self.found.runs.spend();
             let path = self.ground.go(Some(&from), &deviations, TO_THE_END)?;
             let Some(finding) = Finding::of(path, &deviations) else { continue };
             let finding = self.fewest(finding)?;
@@ -60,7 +60,7 @@ impl Search<'_> {
                 let own = match &last {
                     None => None,
                     Some(fork) => {
-                        self.found.runs += 1;
+                        self.found.runs.spend();
                         Some(self.ground.go(Some(fork), &deviations, Wanted { forks: true, known: None })?)
                     }
                 };
@@ -121,7 +121,7 @@ impl Search<'_> {
     }
 
     fn fails(&mut self, deviations: &[Deviation]) -> Result<Option<Finding>, SearchError> {
-        self.found.runs += 1;
+        self.found.runs.spend();
         Ok(Finding::of(self.ground.go(None, deviations, TO_THE_END)?, deviations))
     }
 }

@@ -11,6 +11,7 @@ use super::deviation::Deviation;
 use super::known::{Known, Mark};
 use super::path::{Fork, Ground, Path, Wanted};
 use super::place;
+use crate::forest::Budget;
 use onescan_runner::run::SearchError;
 use onescan_runner::run::expectation::ExpectationReport;
 
@@ -25,7 +26,7 @@ pub(super) struct Found {
     /// Those of them that came to a state from which all was known to hold.
     pub(super) joined: u64,
     /// Runs that took, each from its fork.
-    pub(super) runs: u64,
+    pub(super) runs: Budget,
     /// What may happen later in the run without deviations, by the number of what allows it.
     pub(super) places: BTreeMap<usize, u64>,
     /// So many deviations at a time were tried, all of them; none if not even the run without could be judged.
@@ -94,7 +95,7 @@ pub(super) fn search(
         findings: Vec::new(),
         schedules: 0,
         joined: 0,
-        runs: 0,
+        runs: Budget::new(config.runs_max),
         places: BTreeMap::new(),
         exhausted: None,
         sampled: 0,
@@ -115,10 +116,10 @@ pub(super) fn search(
 impl Search<'_> {
     /// Goes all ways with `more` deviations beyond these.
     fn below(&mut self, from: Option<&Fork>, deviations: &mut Vec<Deviation>, more: u32) -> Result<Going, SearchError> {
-        if self.found.runs >= self.config.runs_max.get() {
+        if self.found.runs.is_spent() {
             return Ok(Going::Enough);
         }
-        self.found.runs += 1;
+        self.found.runs.spend();
         let known = (!self.config.no_merge).then_some((more, &self.known));
         let path = self.ground.go(from, deviations, Wanted { forks: more > 0, known })?;
         if deviations.is_empty() && more > 0 {

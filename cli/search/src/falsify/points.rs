@@ -5,8 +5,8 @@ use std::io::{BufRead, Write};
 use onescan_report::OutputError;
 use serde_json::json;
 
+use super::evaluator::{Evaluator, Forks, Wanted};
 use super::space::{Point, Space};
-use super::trial::{Bench, Forks, Wanted};
 use onescan_runner::error::Usage;
 use onescan_runner::run::SearchError;
 
@@ -20,7 +20,7 @@ pub(super) fn serve(
     points: impl BufRead,
     out: &mut dyn Write,
 ) -> Result<(), SearchError> {
-    let mut bench = Bench::new(space, expect, Wanted::Margins, Forks::Everywhere);
+    let mut evaluator = Evaluator::new(space, expect, Wanted::Margins, Forks::Everywhere);
     for (number, line) in points.lines().enumerate() {
         let wrong = |what: String| {
             let help = format!("a point has {} numbers from 0 to 1, as a JSON array on a line", space.dimensions());
@@ -34,7 +34,7 @@ pub(super) fn serve(
         if let Some(outside) = point.iter().find(|x| !(0.0..=1.0).contains(*x)) {
             return Err(wrong(format!("{outside} is not from 0 to 1")).into());
         }
-        let sample = bench.simulate(&point)?;
+        let sample = evaluator.simulate(&point)?;
         let told = json!({ "robustness": sample.robustness, "violated": sample.violated, "failure": sample.failure,
             "digest": sample.digest.map(|digest| digest.to_string()), "forked_ns": sample.forked });
         writeln!(out, "{told}").and_then(|()| out.flush()).map_err(OutputError)?;
