@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use onescan_scenario::Scenario;
 use onescan_scenario::expect::TraceEnd;
-use onescan_scenario::timing::Leeway;
+use onescan_scenario::timing::TimingTolerance;
 use onescan_server::checkpoint::StateHash;
 use onescan_server::digest::Digest;
 use onescan_server::time::{TimeSpan, VirtualTime};
@@ -22,7 +22,7 @@ use onescan_runner::run::{RunError, SearchError};
 #[derive(Clone)]
 pub(super) struct Fork {
     /// Number of what allows it.
-    pub(super) leeway: usize,
+    pub(super) tolerance: usize,
     pub(super) what: What,
     /// When it happens.
     pub(super) edge: VirtualTime,
@@ -49,7 +49,7 @@ pub(super) struct Path {
 pub(super) struct Ground<'a> {
     pub(super) scenario: &'a Scenario,
     pub(super) until: VirtualTime,
-    pub(super) leeways: &'a [Leeway],
+    pub(super) tolerances: &'a [TimingTolerance],
     /// How long expectations remember; nothing if all of a run may matter.
     memory: Option<TimeSpan>,
     /// Whether expectations remember anything.
@@ -66,14 +66,14 @@ pub(super) struct Wanted<'k> {
 }
 
 impl<'a> Ground<'a> {
-    pub(super) fn new(scenario: &'a Scenario, until: VirtualTime, leeways: &'a [Leeway]) -> Self {
+    pub(super) fn new(scenario: &'a Scenario, until: VirtualTime, tolerances: &'a [TimingTolerance]) -> Self {
         let step = scenario.plan().step();
         let named = &scenario.expectations().named;
         let memories: Option<Vec<u64>> =
             named.iter().map(|(_, expectation)| expectation.memory_ns(step.as_nanos())).collect();
         let longest_ns = memories.map(|all| all.into_iter().max().unwrap_or(0));
         let memory = longest_ns.and_then(TimeSpan::from_nanos);
-        Self { scenario, until, leeways, memory, forgets: longest_ns == Some(0) }
+        Self { scenario, until, tolerances, memory, forgets: longest_ns == Some(0) }
     }
 
     /// Goes the way with these deviations, from the fork of the last of them if it has one.
@@ -90,7 +90,7 @@ impl<'a> Ground<'a> {
         let mut judged = form(SearchKind::Explore, self.scenario, self.until, deviating)?;
         let moment = from.and_then(|fork| fork.moment.as_deref());
         start::<SearchError>(&mut judged, moment)?;
-        let mut watched = Watched::new(self.leeways);
+        let mut watched = Watched::new(self.tolerances);
         watched.begin(judged.session());
         let mut forks = if wanted.forks && moment.is_none() { self.at_start() } else { Vec::new() };
         let mut joining = Joining::new(self, deviations);
@@ -100,10 +100,10 @@ impl<'a> Ground<'a> {
             if let Some(moment) = before.take() {
                 watched.look(judged.session());
                 let t_v = judged.session().t_v();
-                for (number, leeway) in self.leeways.iter().enumerate() {
-                    let what = place::in_step(self.scenario, leeway, &watched, (t_v, deviations));
+                for (number, tolerance) in self.tolerances.iter().enumerate() {
+                    let what = place::in_step(self.scenario, tolerance, &watched, (t_v, deviations));
                     let moment = Some(Rc::clone(&moment));
-                    forks.extend(what.map(|what| Fork { leeway: number, what, edge: t_v, moment }));
+                    forks.extend(what.map(|what| Fork { tolerance: number, what, edge: t_v, moment }));
                 }
             }
             if let Some((more, known)) = wanted.known
@@ -124,9 +124,9 @@ impl<'a> Ground<'a> {
     }
 
     fn at_start(&self) -> Vec<Fork> {
-        let leeways = self.leeways.iter().enumerate();
-        let fork = |(leeway, what)| Fork { leeway, what, edge: VirtualTime::ZERO, moment: None };
-        leeways.filter_map(|(number, leeway)| Some((number, place::at_start(leeway)?))).map(fork).collect()
+        let tolerances = self.tolerances.iter().enumerate();
+        let fork = |(tolerance, what)| Fork { tolerance, what, edge: VirtualTime::ZERO, moment: None };
+        tolerances.filter_map(|(number, tolerance)| Some((number, place::at_start(tolerance)?))).map(fork).collect()
     }
 }
 

@@ -73,9 +73,9 @@ impl Search<'_> {
                 let place = (0..left).map(|_| random.bits() % next.len() as u64).min().unwrap_or(0);
                 let Some(fork) = usize::try_from(place).ok().and_then(|place| next.get(place)) else { break };
                 let step = self.ground.scenario.plan().step();
-                let late = place::sizes(&self.ground.leeways[fork.leeway], step);
+                let late = place::sizes(&self.ground.tolerances[fork.tolerance], step);
                 let late_steps = late.start() + random.bits() % (late.end() - late.start() + 1);
-                let what = (fork.leeway, fork.what.clone());
+                let what = (fork.tolerance, fork.what.clone());
                 let Some(deviation) = Deviation::new(what, fork.edge, late_steps, step) else { break };
                 deviations.push(deviation);
                 last = Some((*fork).clone());
@@ -104,8 +104,8 @@ impl Search<'_> {
             }
         }
         for number in 0..finding.deviations.len() {
-            let leeway = &self.ground.leeways[finding.deviations[number].leeway];
-            let sizes = place::sizes(leeway, self.ground.scenario.plan().step());
+            let tolerance = &self.ground.tolerances[finding.deviations[number].tolerance];
+            let sizes = place::sizes(tolerance, self.ground.scenario.plan().step());
             let late = finding.deviations[number].late_steps;
             for late_steps in sizes.take_while(|steps| *steps < late) {
                 let mut less = finding.deviations.clone();

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use onescan_scenario::Scenario;
-use onescan_scenario::timing::Leeway;
+use onescan_scenario::timing::TimingTolerance;
 use onescan_server::time::VirtualTime;
 
 use super::config::ExploreConfig;
@@ -87,7 +87,7 @@ pub(super) struct Search<'a> {
 pub(super) fn search(
     config: &ExploreConfig,
     scenario: &Scenario,
-    leeways: &[Leeway],
+    tolerances: &[TimingTolerance],
     until: VirtualTime,
 ) -> Result<Found, SearchError> {
     let found = Found {
@@ -100,7 +100,7 @@ pub(super) fn search(
         exhausted: None,
         sampled: 0,
     };
-    let ground = Ground::new(scenario, until, leeways);
+    let ground = Ground::new(scenario, until, tolerances);
     let mut search = Search { config, ground, found, known: Known::default() };
     // Each level goes the ways of those below it again: to keep their forks instead would take memory for the whole tree.
     for level in 0..=config.bound {
@@ -124,7 +124,7 @@ impl Search<'_> {
         let path = self.ground.go(from, deviations, Wanted { forks: more > 0, known })?;
         if deviations.is_empty() && more > 0 {
             self.found.places.clear();
-            path.forks.iter().for_each(|fork| *self.found.places.entry(fork.leeway).or_default() += 1);
+            path.forks.iter().for_each(|fork| *self.found.places.entry(fork.tolerance).or_default() += 1);
         }
         let joined = path.joined.unwrap_or(0);
         self.found.schedules += joined;
@@ -136,12 +136,12 @@ impl Search<'_> {
         let step = self.ground.scenario.plan().step();
         let forks: Vec<&Fork> = path.forks.iter().filter(|fork| is_next(fork, deviations)).collect();
         // The smallest lateness of all edges first: that is what a finding is to show.
-        let sizes = |fork: &Fork| place::sizes(&self.ground.leeways[fork.leeway], step);
+        let sizes = |fork: &Fork| place::sizes(&self.ground.tolerances[fork.tolerance], step);
         let mut all: Vec<(u64, &Fork)> =
             forks.iter().flat_map(|fork| sizes(fork).map(move |size| (size, *fork))).collect();
         all.sort_by_key(|(size, _)| *size);
         for (late_steps, fork) in all {
-            let what = (fork.leeway, fork.what.clone());
+            let what = (fork.tolerance, fork.what.clone());
             let Some(deviation) = Deviation::new(what, fork.edge, late_steps, step) else { continue };
             deviations.push(deviation);
             let going = self.below(Some(fork), deviations, more - 1)?;
@@ -188,7 +188,7 @@ impl Search<'_> {
 /// True if it comes after all that is late already, so that no two are tried in both orders, and is not what arrives, or
 /// is held or moved, by one of them.
 pub(super) fn is_next(fork: &Fork, deviations: &[Deviation]) -> bool {
-    let is_after = deviations.last().is_none_or(|last| (fork.edge, fork.leeway) > (last.edge, last.leeway));
+    let is_after = deviations.last().is_none_or(|last| (fork.edge, fork.tolerance) > (last.edge, last.tolerance));
     let arrives = deviations.iter().any(|one| one.what.meets(&fork.what) && fork.edge <= one.arrives);
     is_after && !arrives
 }
