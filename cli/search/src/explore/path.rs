@@ -46,7 +46,7 @@ pub(super) struct Path {
 }
 
 /// What all ways of an exploration have in common.
-pub(super) struct Ground<'a> {
+pub(super) struct SearchContext<'a> {
     pub(super) scenario: &'a Scenario,
     pub(super) until: VirtualTime,
     pub(super) tolerances: &'a [TimingTolerance],
@@ -65,7 +65,7 @@ pub(super) struct Wanted<'k> {
     pub(super) known: Option<(u32, &'k Known)>,
 }
 
-impl<'a> Ground<'a> {
+impl<'a> SearchContext<'a> {
     pub(super) fn new(scenario: &'a Scenario, until: VirtualTime, tolerances: &'a [TimingTolerance]) -> Self {
         let step = scenario.plan().step();
         let named = &scenario.expectations().named;
@@ -132,7 +132,7 @@ impl<'a> Ground<'a> {
 
 /// A way that looks whether its state is known.
 struct Joining<'a> {
-    ground: &'a Ground<'a>,
+    context: &'a SearchContext<'a>,
     /// When its last deviation was over.
     over: VirtualTime,
     /// The way without deviations is that which most others join, so it is known at each boundary.
@@ -143,15 +143,15 @@ struct Joining<'a> {
 }
 
 impl<'a> Joining<'a> {
-    fn new(ground: &'a Ground<'a>, deviations: &[Deviation]) -> Self {
+    fn new(context: &'a SearchContext<'a>, deviations: &[Deviation]) -> Self {
         let over = deviations.iter().map(|deviation| deviation.arrives).max().unwrap_or(VirtualTime::ZERO);
-        Self { ground, over, always: deviations.is_empty(), waiting: VecDeque::new(), marks: Vec::new() }
+        Self { context, over, always: deviations.is_empty(), waiting: VecDeque::new(), marks: Vec::new() }
     }
 
     /// How many schedules follow from the boundary at which it is, if that is known.
     fn look(&mut self, judged: &mut Judged<'_>, more: u32, known: &Known) -> Result<Option<u64>, RunError> {
         let (t_v, step) = (judged.session().t_v(), judged.session().step());
-        if t_v < self.over || t_v >= self.ground.until {
+        if t_v < self.over || t_v >= self.context.until {
             return Ok(None);
         }
         let steps = (t_v.as_nanos() - self.over.as_nanos()) / step.as_nanos();
@@ -162,14 +162,14 @@ impl<'a> Joining<'a> {
             if let Some(schedules) = self.is_known(key, t_v, known) {
                 return Ok(Some(schedules));
             }
-            if self.ground.forgets || self.ground.memory.is_some() {
+            if self.context.forgets || self.context.memory.is_some() {
                 self.waiting.push_back((t_v, state));
             }
         }
         // The same for all that wait, and asked for only if one of them has waited long enough.
         let mut settled: Option<Vec<Option<bool>>> = None;
         while let Some((at, state)) = self.waiting.front().copied() {
-            let alike_until = self.ground.memory.map_or(at, |memory| at + memory);
+            let alike_until = self.context.memory.map_or(at, |memory| at + memory);
             if alike_until > t_v {
                 break;
             }

@@ -9,7 +9,7 @@ use onescan_server::time::VirtualTime;
 use super::config::ExploreConfig;
 use super::deviation::Deviation;
 use super::known::{Known, Mark};
-use super::path::{Fork, Ground, Path, Wanted};
+use super::path::{Fork, Path, SearchContext, Wanted};
 use super::place;
 use crate::forest::Budget;
 use onescan_runner::run::SearchError;
@@ -75,7 +75,7 @@ type Tried = (VirtualTime, u64, bool);
 
 pub(super) struct Search<'a> {
     pub(super) config: &'a ExploreConfig,
-    pub(super) ground: Ground<'a>,
+    pub(super) context: SearchContext<'a>,
     pub(super) found: Found,
     known: Known,
 }
@@ -100,8 +100,8 @@ pub(super) fn search(
         exhausted: None,
         sampled: 0,
     };
-    let ground = Ground::new(scenario, until, tolerances);
-    let mut search = Search { config, ground, found, known: Known::default() };
+    let context = SearchContext::new(scenario, until, tolerances);
+    let mut search = Search { config, context, found, known: Known::default() };
     // Each level goes the ways of those below it again: to keep their forks instead would take memory for the whole tree.
     for level in 0..=config.bound {
         if let Going::Enough = search.below(None, &mut Vec::new(), level)? {
@@ -121,7 +121,7 @@ impl Search<'_> {
         }
         self.found.runs.spend();
         let known = (!self.config.no_merge).then_some((more, &self.known));
-        let path = self.ground.go(from, deviations, Wanted { forks: more > 0, known })?;
+        let path = self.context.go(from, deviations, Wanted { forks: more > 0, known })?;
         if deviations.is_empty() && more > 0 {
             self.found.places.clear();
             path.forks.iter().for_each(|fork| *self.found.places.entry(fork.tolerance).or_default() += 1);
@@ -133,10 +133,10 @@ impl Search<'_> {
             return Ok(self.judged(path, deviations));
         }
         let mut tried: Vec<Tried> = Vec::new();
-        let step = self.ground.scenario.plan().step();
+        let step = self.context.scenario.plan().step();
         let forks: Vec<&Fork> = path.forks.iter().filter(|fork| is_next(fork, deviations)).collect();
         // The smallest lateness of all edges first: that is what a finding is to show.
-        let sizes = |fork: &Fork| place::sizes(&self.ground.tolerances[fork.tolerance], step);
+        let sizes = |fork: &Fork| place::sizes(&self.context.tolerances[fork.tolerance], step);
         let mut all: Vec<(u64, &Fork)> =
             forks.iter().flat_map(|fork| sizes(fork).map(move |size| (size, *fork))).collect();
         all.sort_by_key(|(size, _)| *size);
