@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 use tempfile::TempDir;
 
 use super::CampaignError;
-use super::reading::{Reading, Trunk, Way};
+use super::reading::{BaseRuns, Reading, Way};
 use crate::forest::{self, Journal, JournalError};
 use onescan_runner::error::{Unreadable, Usage};
 use onescan_runner::run::ForkRequest;
@@ -40,7 +40,7 @@ pub(super) struct Subject {
 #[serde(rename_all = "kebab-case")]
 enum Line {
     Subject(Subject),
-    Healthy(Trunk),
+    Healthy(BaseRuns),
     Done { case: String, reading: Reading },
 }
 
@@ -48,7 +48,7 @@ enum Line {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Done {
     /// The run without faults.
-    pub(super) healthy: Option<Trunk>,
+    pub(super) healthy: Option<BaseRuns>,
     /// What was read out of runs with faults, by their case.
     pub(super) readings: BTreeMap<String, Reading>,
 }
@@ -161,7 +161,7 @@ impl Work {
     ///
     /// # Errors
     /// The journal cannot be written.
-    pub(super) fn healthy(&self, healthy: &Trunk) -> Result<(), JournalError> {
+    pub(super) fn healthy(&self, healthy: &BaseRuns) -> Result<(), JournalError> {
         self.journal.append(&Line::Healthy(healthy.clone()))
     }
 
@@ -191,7 +191,7 @@ fn done_of(lines: Vec<Line>, subject: &Subject, path: &Path) -> Result<Done, Usa
     for line in lines {
         match line {
             Line::Subject(_) => {}
-            Line::Healthy(trunk) => done.healthy = Some(trunk),
+            Line::Healthy(base_runs) => done.healthy = Some(base_runs),
             Line::Done { case, reading } => drop(done.readings.insert(case, reading)),
         }
     }

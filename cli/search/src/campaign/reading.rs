@@ -40,7 +40,7 @@ pub struct Reading {
 
 /// What the process of the runs without faults says: what was read out of each, and where the cases fork from it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Trunk {
+pub struct BaseRuns {
     /// What was read out of the run of each variant.
     pub readings: Vec<Reading>,
     /// Where the run of each case begins, in the order of the campaign's cases.

@@ -23,7 +23,7 @@ use super::CampaignError;
 use super::config::{Begun, Part, WorkerConfig};
 use super::journal;
 use super::probe::{Probe, Track, Watch};
-use super::reading::{Failure, Reading, Trunk, Way};
+use super::reading::{BaseRuns, Failure, Reading, Way};
 use super::rejoin::{self, Ahead, Images};
 use onescan_regress::regress::limited::end_with_parent;
 use onescan_runner::error::{Unreadable, Usage};
@@ -46,14 +46,14 @@ pub fn work(config: &WorkerConfig, out: &mut dyn Write) -> Result<(), CampaignEr
     let measures = scenario.campaign_measures(&catalogue, campaign)?;
     let written = match &config.part {
         Part::Healthy => {
-            let mut trunk = Trunk { readings: Vec::new(), ways: vec![Way::Start; campaign.cases.len()] };
+            let mut base_runs = BaseRuns { readings: Vec::new(), ways: vec![Way::Start; campaign.cases.len()] };
             for variant in 0..campaign.variants.len() {
                 let (reading, ways) = healthy(config, (&scenario, &catalogue, campaign), &measures, variant)?;
-                trunk.readings.push(reading);
-                let own = trunk.ways.iter_mut().skip(variant).step_by(campaign.variants.len());
+                base_runs.readings.push(reading);
+                let own = base_runs.ways.iter_mut().skip(variant).step_by(campaign.variants.len());
                 own.zip(ways).for_each(|(way, found)| *way = found);
             }
-            serde_json::to_writer(&mut *out, &trunk)
+            serde_json::to_writer(&mut *out, &base_runs)
         }
         Part::Cases { cases, journal } => {
             let mut readings = Vec::with_capacity(cases.len());

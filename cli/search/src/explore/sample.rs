@@ -29,11 +29,11 @@ impl Search<'_> {
         if self.config.samples == 0 {
             return Ok(());
         }
-        let trunk = self.context.go(None, &[], Wanted { forks: true, known: None })?;
+        let base_run = self.context.go(None, &[], Wanted { forks: true, known: None })?;
         for number in 0..self.config.samples {
             // Each has numbers of its own, so that more of them does not change those before.
             let mut random = Random::new(seed_for(self.config.seed, "schedule", &number.to_string()));
-            let Some((from, deviations)) = self.drawn(&trunk, &mut random)? else { continue };
+            let Some((from, deviations)) = self.drawn(&base_run, &mut random)? else { continue };
             self.found.sampled += 1;
             self.found.runs.spend();
             let path = self.context.go(Some(&from), &deviations, TO_THE_END)?;
@@ -49,7 +49,7 @@ impl Search<'_> {
     }
 
     /// A random schedule with more deviations than the bound; nothing if too little may happen later.
-    fn drawn(&mut self, trunk: &Path, random: &mut Random) -> Result<Option<(Fork, Vec<Deviation>)>, SearchError> {
+    fn drawn(&mut self, base_run: &Path, random: &mut Random) -> Result<Option<(Fork, Vec<Deviation>)>, SearchError> {
         let sizes = self.sizes();
         for _ in 0..DRAWS_MAX {
             let span = u64::from(sizes.end() - sizes.start()) + 1;
@@ -64,7 +64,7 @@ impl Search<'_> {
                         Some(self.context.go(Some(fork), &deviations, Wanted { forks: true, known: None })?)
                     }
                 };
-                let forks = &own.as_ref().unwrap_or(trunk).forks;
+                let forks = &own.as_ref().unwrap_or(base_run).forks;
                 let next: Vec<&Fork> = forks.iter().filter(|fork| is_next(fork, &deviations)).collect();
                 if next.is_empty() {
                     break;
