@@ -171,7 +171,7 @@ impl Written {
         let mut text = format!("[[case]]\nname = {}\n", Value::from(name));
         let about = self.about.as_ref().map(|about| ("about", Value::from(about.as_str())));
         let seed = self.seed.and_then(|seed| i64::try_from(seed).ok()).map(|seed| ("seed", Value::from(seed)));
-        let until = self.until.map(|until| ("until", Value::from(spelt(until))));
+        let until = self.until.map(|until| ("until", Value::from(to_text(until))));
         for (key, value) in [about, seed, until].into_iter().flatten() {
             line(&mut text, key, &value);
         }
@@ -202,7 +202,7 @@ impl Written {
 }
 
 /// A time as files have it, exactly.
-pub fn spelt(t_v: VirtualTime) -> String {
+pub fn to_text(t_v: VirtualTime) -> String {
     let ns = t_v.as_nanos();
     if ns.is_multiple_of(1_000_000) { format!("{}ms", ns / 1_000_000) } else { format!("{ns}ns") }
 }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use onescan_scenario::case::written::{Entry, List, spelt};
+use onescan_scenario::case::written::{Entry, List, to_text};
 use onescan_server::operation::{Operation, SignalFault};
 use onescan_server::signal::{ClientName, SignalName};
 use onescan_server::time::{TimeSpan, VirtualTime};
@@ -183,7 +183,7 @@ impl Deviation {
     /// The same as entries of a case.
     pub(super) fn entries(&self) -> Vec<Entry> {
         let word = |text: &str| Value::from(text);
-        let time = |at: VirtualTime| Value::from(spelt(at));
+        let time = |at: VirtualTime| Value::from(to_text(at));
         let mut all = Vec::new();
         let held: Option<(List, Vec<(&str, Value)>)> = match &self.what {
             What::Edge { signal, rises } => {

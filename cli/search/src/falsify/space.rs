@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use onescan_scenario::Scenario;
-use onescan_scenario::case::written::{Entry, List, Written, spelt};
+use onescan_scenario::case::written::{Entry, List, Written, to_text};
 use onescan_scenario::falsify::{Shape, Varied, VariedInput};
 use onescan_server::random::Random;
 use onescan_server::signal::SignalType;
@@ -101,7 +101,7 @@ impl<'a> Space<'a> {
                 // A case says what changes.
                 if before.as_ref() != Some(&value) {
                     let signal = Value::from(input.signal.as_str());
-                    let keys = [("at", Value::from(spelt(at))), ("signal", signal), ("value", value.clone())];
+                    let keys = [("at", Value::from(to_text(at))), ("signal", signal), ("value", value.clone())];
                     entries.push(Entry { list: List::Input, keys: table(keys) });
                 }
                 before = Some(value);

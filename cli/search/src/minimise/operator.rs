@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use onescan_scenario::Scenario;
-use onescan_scenario::case::written::{Entry, List, spelt};
+use onescan_scenario::case::written::{Entry, List, to_text};
 use onescan_scenario::file::ClientFile;
 use onescan_server::operation::{Operation, OperatorInput, SignalFault};
 use onescan_server::signal::{SignalName, SignalType};
@@ -44,11 +44,11 @@ impl Script<'_> {
             Operation::Write { signal, value } => {
                 let mut keys = self.valued(signal, value)?;
                 if self.is_operated(signal) {
-                    keys.insert("at".to_owned(), word(&spelt(at)));
+                    keys.insert("at".to_owned(), word(&to_text(at)));
                     self.entries.push(Entry { list: List::Input, keys });
                 } else {
                     // Its writer writes it again in the step after.
-                    keys.insert("for".to_owned(), word(&spelt(VirtualTime::ZERO + self.scenario.plan().step())));
+                    keys.insert("for".to_owned(), word(&to_text(VirtualTime::ZERO + self.scenario.plan().step())));
                     self.entries.push(begun(List::Force, keys, at));
                 }
             }
@@ -82,7 +82,7 @@ impl Script<'_> {
             }
             Operation::WriteVariable { client, variable, value } => {
                 let mut keys = variable_keys(client.as_str(), variable, value);
-                keys.insert("at".to_owned(), word(&spelt(at)));
+                keys.insert("at".to_owned(), word(&to_text(at)));
                 self.entries.push(Entry { list: List::Variable, keys });
             }
             Operation::ForceVariable { client, variable, value } => {
@@ -92,7 +92,7 @@ impl Script<'_> {
             Operation::ReleaseVariable { client, variable } => self.end(&format!("variable {client} {variable}"), at),
             Operation::Postpone { client, task, by } => {
                 let task_key = task.as_ref().map(|task| ("task".to_owned(), word(task)));
-                let by_key = ("by".to_owned(), word(&spelt(VirtualTime::ZERO + *by)));
+                let by_key = ("by".to_owned(), word(&to_text(VirtualTime::ZERO + *by)));
                 let client_key = ("client".to_owned(), word(client.as_str()));
                 let keys = [client_key, by_key].into_iter().chain(task_key).collect();
                 let about = format!("task {client} {task:?} {by}");
@@ -112,7 +112,7 @@ impl Script<'_> {
     /// Ends what began before; nothing if the session had refused to begin it.
     fn end(&mut self, about: &str, at: VirtualTime) {
         if let Some(entry) = self.open.remove(about).and_then(|index| self.entries.get_mut(index)) {
-            entry.keys.insert("until".to_owned(), Value::from(spelt(at)));
+            entry.keys.insert("until".to_owned(), Value::from(to_text(at)));
         }
     }
 
@@ -141,7 +141,7 @@ impl Script<'_> {
 }
 
 fn begun(list: List, mut keys: Table, at: VirtualTime) -> Entry {
-    keys.insert("from".to_owned(), Value::from(spelt(at)));
+    keys.insert("from".to_owned(), Value::from(to_text(at)));
     Entry { list, keys }
 }
 

@@ -4,7 +4,7 @@
 //! tried and holds. A smaller one beyond that which fails again is not looked for. What fails later than the smallest so far
 //! is no better than that, and counts as holding.
 
-use onescan_scenario::case::written::{Entry, List, spelt};
+use onescan_scenario::case::written::{Entry, List, to_text};
 use onescan_server::time::{TimeSpan, VirtualTime};
 use toml::Value;
 
@@ -149,7 +149,7 @@ impl Size {
     fn with(self, entry: &Entry, steps: u64, step: TimeSpan) -> Option<Entry> {
         let span = VirtualTime::from_nanos(step.as_nanos().checked_mul(steps)?);
         let mut changed = entry.clone();
-        let mut put = |key: &str, time: VirtualTime| changed.keys.insert(key.to_owned(), Value::from(spelt(time)));
+        let mut put = |key: &str, time: VirtualTime| changed.keys.insert(key.to_owned(), Value::from(to_text(time)));
         match self {
             Self::Length if entry.keys.contains_key("when") || entry.keys.contains_key("for") => {
                 put("for", span);
