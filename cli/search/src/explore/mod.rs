@@ -30,7 +30,7 @@ use onescan_scenario::Scenario;
 
 pub use config::ExploreConfig;
 
-use report::Told;
+use report::ExploreReport;
 
 use onescan_runner::error::{ExitCode, Usage};
 use onescan_runner::run::SearchError;
@@ -53,10 +53,11 @@ pub fn run(config: &ExploreConfig, out: &mut dyn Write) -> Result<ExitCode, Sear
     }
     let until = config.until.unwrap_or(scenario.until());
     let found = search::search(config, &scenario, &tolerances, until)?;
-    let told = Told { config, scenario: &scenario, tolerances: &tolerances, found: &found, written: &written };
-    told.write(out).map_err(OutputError)?;
+    let report =
+        ExploreReport { config, scenario: &scenario, tolerances: &tolerances, found: &found, written: &written };
+    report.write(out).map_err(OutputError)?;
     if let Some(path) = &config.cases {
-        file::write_whole(path, told.cases().as_bytes())?;
+        file::write_whole(path, report.cases().as_bytes())?;
     }
     Ok(if found.findings.is_empty() { ExitCode::Ok } else { ExitCode::Unmet })
 }

@@ -14,7 +14,7 @@ use super::search::{Finding, Found};
 use onescan_runner::format::Format;
 
 /// All that is reported of an exploration.
-pub(super) struct Told<'a> {
+pub(super) struct ExploreReport<'a> {
     pub(super) config: &'a ExploreConfig,
     pub(super) scenario: &'a Scenario,
     pub(super) tolerances: &'a [TimingTolerance],
@@ -23,7 +23,7 @@ pub(super) struct Told<'a> {
     pub(super) written: &'a Written,
 }
 
-impl Told<'_> {
+impl ExploreReport<'_> {
     /// Writes what came of it.
     pub(super) fn write(&self, out: &mut dyn Write) -> io::Result<()> {
         match self.config.format {
@@ -141,9 +141,9 @@ impl Told<'_> {
             (count(|one| matches!(one, TimingTolerance::Phase { .. })), "phase"),
             (count(|one| matches!(one, TimingTolerance::Start { .. })), "start"),
         ];
-        let told: Vec<String> =
+        let counts: Vec<String> =
             all.into_iter().filter(|(count, _)| *count > 0).map(|(count, noun)| counted(count, noun)).collect();
-        if told.is_empty() { "0 edges".to_owned() } else { told.join(", ") }
+        if counts.is_empty() { "0 edges".to_owned() } else { counts.join(", ") }
     }
 
     /// All findings as a file of cases.

@@ -6,7 +6,7 @@
 //! | `space` | what is varied: a point of a cube is a case |
 //! | `optimiser` | which points are simulated next |
 //! | `evaluator` | what a point is worth, simulated by a run that forks from others |
-//! | `search` | points asked for, simulated, and told what they are worth |
+//! | `search` | points that the optimiser asks for, simulated, and their worth |
 //! | `points` | points that another program chooses |
 //! | `picture` | the finding from its start |
 //! | `report` | what was found |

@@ -35,9 +35,9 @@ pub(super) fn serve(
             return Err(wrong(format!("{outside} is not from 0 to 1")).into());
         }
         let sample = evaluator.simulate(&point)?;
-        let told = json!({ "robustness": sample.robustness, "violated": sample.violated, "failure": sample.failure,
+        let line = json!({ "robustness": sample.robustness, "violated": sample.violated, "failure": sample.failure,
             "digest": sample.digest.map(|digest| digest.to_string()), "forked_ns": sample.forked });
-        writeln!(out, "{told}").and_then(|()| out.flush()).map_err(OutputError)?;
+        writeln!(out, "{line}").and_then(|()| out.flush()).map_err(OutputError)?;
     }
     Ok(())
 }

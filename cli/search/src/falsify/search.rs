@@ -1,4 +1,4 @@
-//! The search: points asked for, simulated, and told what they are worth.
+//! The search: points that the optimiser asks for, simulated, and their worth.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -58,7 +58,7 @@ pub fn run(config: &MinimiseConfig, out: &mut dyn Write) -> Result<ExitCode, Sea
     entries.retain(|entry| entry.begin() <= first.at);
     let all = written.entries.len();
     let mut trials = Trials::new(&scenario, written, &first, (until, forest), config.runs_max);
-    // A name that no case can have is told of before the search.
+    // A name that no case can have is reported before the search.
     trials.applied(&trials.text(&config.name, &[], None, None))?;
     let fewest = fewest::fewest(&mut trials, &entries)?;
     let trials_to_fewest = trials.done();
