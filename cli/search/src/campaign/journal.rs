@@ -102,7 +102,7 @@ impl Subject {
                 let help = "keep the work of this campaign in another folder, or remove that one".to_owned();
                 Err(Usage::new(format!("{} was made of {what}", path.display()), Some(help)))
             }
-            None => Err(Usage::new(format!("{} is no journal of a campaign", path.display()), None)),
+            None => Err(Usage::new(format!("{} is not a journal of a campaign", path.display()), None)),
         }
     }
 }

@@ -29,7 +29,7 @@ pub(super) fn page(tables: &[Table]) -> Page {
     }
 }
 
-/// Virtual time of all runs: what the machine took is no part of a report, which is the same wherever it is made.
+/// Virtual time of all runs: what the machine took is not a part of a report, which is the same wherever it is made.
 fn virtual_time(tables: &[Table]) -> Duration {
     Duration::from_nanos(tables.iter().flat_map(|table| &table.rows).map(|row| row.virtual_time_ns).sum())
 }
@@ -102,7 +102,7 @@ fn effects(row: &Row) -> String {
     }
 }
 
-/// The report for CI servers: a suite a campaign, a case a run.
+/// The report for CI servers: one suite per campaign, one case per run.
 pub(super) fn junit(tables: &[Table]) -> String {
     let case = |table: &Table, row: &Row| Case {
         class: None,

@@ -15,7 +15,7 @@ use onescan_runner::format::Format;
 /// So many cases that are not accepted are named.
 const NAMED_MAX: usize = 10;
 
-/// Writes each campaign as a matrix: a row a fault, a column an activation.
+/// Writes each campaign as a matrix: one row per fault, one column per activation.
 ///
 /// # Errors
 /// Those of `out`.

@@ -202,7 +202,7 @@ fn verdict(reading: &Reading, has_effect: bool) -> CampaignVerdict {
         Reading { unfinished: Some(_), .. } => CampaignVerdict::Unfinished,
         Reading { activated_ns: None, .. } => CampaignVerdict::NotActivated,
         _ if of_plc == Some(true) => CampaignVerdict::PlcFault,
-        // A client that is no PLC stopped the run: that is harm, whatever else was seen of it.
+        // A client that is not a PLC stopped the run: that is harm, whatever else was seen of it.
         _ if of_plc == Some(false) => CampaignVerdict::Collision,
         _ if !has_effect => CampaignVerdict::NoEffect,
         Reading { collision: Some(true), .. } => CampaignVerdict::Collision,

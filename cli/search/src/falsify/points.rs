@@ -13,7 +13,7 @@ use onescan_runner::run::SearchError;
 /// Simulates the point of each line of `points`, and writes what it is worth to `out` before it reads the next.
 ///
 /// # Errors
-/// A line is no point, or a session cannot be formed or go on.
+/// A line is not a point, or a session cannot be formed or go on.
 pub(super) fn serve(
     space: &Space<'_>,
     expect: Option<usize>,

@@ -100,8 +100,8 @@ fn whole_lines<L: DeserializeOwned>(path: &Path, search: &str) -> Result<(Vec<L>
     for (index, line) in bytes[..whole].split_inclusive(|byte| *byte == b'\n').enumerate() {
         let wrong = |error| {
             tracing::debug!(%error, "not a line of a journal");
-            let message = format!("{}:{}: no line of a {search}'s journal", path.display(), index + 1);
-            Usage::new(message, Some("remove the folder to begin anew".to_owned()))
+            let message = format!("{}:{}: not a line of a {search}'s journal", path.display(), index + 1);
+            Usage::new(message, Some("remove the folder to begin again".to_owned()))
         };
         lines.push(serde_json::from_slice(line).map_err(wrong)?);
     }

@@ -66,7 +66,7 @@ fn human(scenario: &Scenario, judged: &[Judged], tally: &Tally, out: &mut dyn Wr
     rows.push(row("all", &all));
     table::write(&rows, out)?;
     if all.refused > 0 {
-        writeln!(out, "  {} would be no program", counted(all.refused as u64, "other"))?;
+        writeln!(out, "  {} would not be a program", counted(all.refused as u64, "other"))?;
     }
     for (title, is_meant) in [
         ("survived: a signal was another one, and no expectation said so", is_survivor as fn(&Verdict) -> bool),

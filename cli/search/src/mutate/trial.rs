@@ -28,7 +28,7 @@ pub(super) enum Verdict {
     Unreached,
     /// No signal was another one in any step of any case.
     Equivalent,
-    /// It is no program, or one whose signals do not fit.
+    /// It is not a program, or one whose signals do not fit.
     Refused { why: String },
 }
 
@@ -121,7 +121,7 @@ impl<'a> Trial<'a> {
         Ok(differs.map_or(Verdict::Equivalent, |case| Verdict::Survived { case }))
     }
 
-    /// False if it is known that no case executes the line of the statement. Declarations are no statements.
+    /// False if it is known that no case executes the line of the statement. Declarations are not statements.
     fn is_reached(&self, mistake: &Mistake) -> bool {
         let lines = self.reached.get(&mistake.source);
         lines.and_then(|lines| lines.get(&mistake.mutant.line)).copied().unwrap_or(true)
