@@ -31,7 +31,7 @@
 //! | `mistaken` | the scenario with it |
 //! | `mutants` | its cases, with the mutants that campaigns try |
 //! | `compilations` | soft PLCs compiled once for all cases |
-//! | [`timing`], `leeway` | its `[timing]`, bound to its signals; all that it allows, tasks included |
+//! | [`timing`], `timing_tolerance` | its `[timing]`, bound to its signals; all that it allows, tasks included |
 //! | [`falsify`] | its `[falsify]`, bound to its signals and clients |
 //! | [`ports_file`], `ports` | the ports and files of soft PLCs, as they are written and made |
 //! | [`gateway`] | its real PLCs |
@@ -65,7 +65,6 @@ mod files;
 mod form;
 pub mod gateway;
 mod keys;
-mod leeway;
 pub mod lesson;
 pub mod load;
 pub mod look;
@@ -93,6 +92,7 @@ mod texts;
 mod timed;
 pub mod timing;
 pub mod timing_file;
+mod timing_tolerance;
 pub mod value_names;
 pub mod visible;
 pub mod watch;

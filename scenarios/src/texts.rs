@@ -54,6 +54,16 @@ impl Texts {
         self.parts.iter().map(|part| part.path.as_path())
     }
 
+    /// A place as `FILE:LINE:COLUMN`, in the file where it is; counted from 1, columns in characters.
+    pub(crate) fn line_and_column(&self, place: usize) -> String {
+        let holds = |part: &&Part| (part.place.start..=part.place.end).contains(&place);
+        let Some(part) = self.parts.iter().find(holds) else { return String::new() };
+        let before = &self.all[part.place.start..place];
+        let line = before.matches('\n').count() + 1;
+        let column = before.rsplit('\n').next().unwrap_or("").chars().count() + 1;
+        format!("{}:{line}:{column}", part.path.display())
+    }
+
     /// An error at a place, in the file where it is; without a place, in the first.
     pub(crate) fn wrong(&self, message: String, place: Option<Range<usize>>, help: Option<String>) -> ScenarioError {
         let start = place.as_ref().map_or(0, |place| place.start);

@@ -14,7 +14,7 @@ use crate::timing_file::{LateFile, TaskTimingFile};
 
 /// One thing that may happen otherwise in time.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Leeway {
+pub enum TimingTolerance {
     /// What changes of these signals in a step arrives late: a signal alone, or a frame.
     Late {
         signals: Vec<SignalName>,
@@ -58,17 +58,17 @@ pub struct TimedTask {
 
 /// What a task may do, its PLC known.
 #[derive(Clone, Debug)]
-pub(crate) struct TaskLeeway {
+pub(crate) struct TaskTolerance {
     pub(crate) client: ClientName,
     pub(crate) written: TaskTimingFile,
     pub(crate) place: Range<usize>,
 }
 
-/// `[timing]`, except what is known only of PLCs that are made.
+/// `[timing]`, except for what is known only of PLCs that are made.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Timing {
-    pub(crate) signals: Vec<Leeway>,
-    pub(crate) tasks: Vec<TaskLeeway>,
+    pub(crate) signals: Vec<TimingTolerance>,
+    pub(crate) tasks: Vec<TaskTolerance>,
     pub(crate) starts: Vec<(ClientName, u64, Range<usize>)>,
 }
 
@@ -86,9 +86,9 @@ pub(crate) fn bind(file: &ScenarioFile) -> Result<Timing, Wrong> {
             }
             let signals = signals.into_iter().map(|(signal, _)| signal);
             if together {
-                timing.signals.push(Leeway::Late { signals: signals.collect(), steps, together });
+                timing.signals.push(TimingTolerance::Late { signals: signals.collect(), steps, together });
             } else {
-                timing.signals.extend(signals.map(|one| Leeway::Late { signals: vec![one], steps, together }));
+                timing.signals.extend(signals.map(|one| TimingTolerance::Late { signals: vec![one], steps, together }));
             }
         }
     }
@@ -100,12 +100,12 @@ pub(crate) fn bind(file: &ScenarioFile) -> Result<Timing, Wrong> {
         }
         for signal in &signals {
             let others = signals.iter().filter(|other| *other != signal).cloned().collect();
-            timing.signals.push(Leeway::Behind { signal: signal.clone(), others });
+            timing.signals.push(TimingTolerance::Behind { signal: signal.clone(), others });
         }
     }
     for task in &file.timing.task {
         let client = plc(file, task.get_ref().client.as_ref(), task.span())?;
-        timing.tasks.push(TaskLeeway { client, written: task.get_ref().clone(), place: task.span() });
+        timing.tasks.push(TaskTolerance { client, written: task.get_ref().clone(), place: task.span() });
     }
     for start in &file.timing.start {
         let client = plc(file, start.get_ref().client.as_ref(), start.span())?;

@@ -41,7 +41,6 @@ const fn known(folder: &'static str, known: &'static [(&'static [&'static str], 
 }
 
 const EXCEPTIONS: &[Exception] = &[
-    known("cli/search/src/minimise", &[(&["target", "trial"], "being cut")]),
     known(
         "plc-shim/iec/src/ir",
         &[(

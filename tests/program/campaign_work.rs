@@ -14,7 +14,7 @@ version = 1
 [[campaign]]
 name = "feedback"
 until = "3s"
-told = "eventually[0,400ms] Strokes >= 3"
+detected = "eventually[0,400ms] Strokes >= 3"
 
 fault = [
     { name = "sensor-off", kind = "hardware", force = { signal = "Sensor_1", value = false } },

@@ -12,7 +12,7 @@ version = 1
 [[campaign]]
 name = "feedback"
 until = "3s"
-told = "eventually[0,400ms] Strokes >= 3"
+detected = "eventually[0,400ms] Strokes >= 3"
 safe = "eventually[0,100ms] not (Actuator_1_Up or Actuator_1_Down)"
 collision = "eventually abs(Position_1 - Position_2) > 150 mm"
 
@@ -99,7 +99,7 @@ fn what_is_wrong_with_a_campaign_is_reported_before_anything_runs() {
         ("at = \"0s\"", "at = \"0s\", nth = 2"),
         ("nth = 2", "nth = 0"),
         ("rose(Actuator_1_Down)", "eventually Actuator_1_Down"),
-        ("told = \"eventually[0,400ms] Strokes >= 3\"", "told = \"Strokes >= 3\""),
+        ("detected = \"eventually[0,400ms] Strokes >= 3\"", "detected = \"Strokes >= 3\""),
         ("until = \"3s\"", "until = \"3s\"\ncase = \"plane\""),
         ("until = \"3s\"", "until = \"3s\"\nreadouts = [\"Position_3\"]"),
         ("force = { signal = \"Sensor_1\", value = false }", ""),

@@ -18,7 +18,7 @@ const CAMPAIGN: &str = r#"version = 1
 [[campaign]]
 name = "feedback"
 until = "3s"
-told = "eventually[0,400ms] Strokes >= 3"
+detected = "eventually[0,400ms] Strokes >= 3"
 fault = [
     { name = "sensor-off", kind = "hardware", force = { signal = "Sensor_1", value = false } },
     { name = "frame-lost", kind = "hardware", disturbance = { client = "plant", kind = "lost", rate = 0.4 } },

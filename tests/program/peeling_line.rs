@@ -82,7 +82,7 @@ fn the_mended_program_reports_what_the_first_one_missed() {
     let lines = said.out.lines().map(|line| serde_json::from_str::<serde_json::Value>(line).expect("JSON lines"));
     let unseen = lines.filter(|line| line["fault"] == "block-unseen");
     let verdicts: Vec<_> = unseen.map(|line| line["verdict"].as_str().expect("a verdict").to_owned()).collect();
-    assert_eq!(verdicts, ["no-effect", "told", "told", "told"]);
+    assert_eq!(verdicts, ["no-effect", "detected", "detected", "detected"]);
     let healthy = |file: &str| {
         let said = typed(&scenario("peeling-line"), &["run", file, "--format", "json"]);
         digests(&[serde_json::from_str(said.out.trim()).expect("a report")])

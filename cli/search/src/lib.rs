@@ -7,9 +7,11 @@
 //! | [`falsify`] | inputs and parameters that break what is expected, searched |
 //! | [`minimise`] | the least of a case with which it still fails |
 //! | [`mutate`] | small mistakes in the PLC's program, and whether the cases notice them |
+//! | `forest` | runs that fork from each other, their budget, workers and journal |
 
 pub mod campaign;
 pub mod explore;
 pub mod falsify;
+mod forest;
 pub mod minimise;
 pub mod mutate;

@@ -20,8 +20,8 @@ pub struct CampaignMeasures {
     pub readouts: Vec<SignalName>,
     /// The columns of the formulas.
     pub columns: Vec<SignalName>,
-    /// The control reports the fault.
-    pub told: Option<Reaction>,
+    /// The control detects the fault.
+    pub detected: Option<Reaction>,
     /// The machine is safe.
     pub safe: Option<Expectation>,
     /// Something comes to harm.
@@ -71,17 +71,17 @@ impl Scenario {
             })
         };
         let file = &campaign.file;
-        let (told, safe, collision) = (bound(&file.told)?, bound(&file.safe)?, bound(&file.collision)?);
-        let told = match (told, &file.told) {
-            (Some(told), Some(written)) => Some(Reaction::new(&told).ok_or_else(|| {
-                let message = "this formula cannot show how long the report takes".to_owned();
+        let (detected, safe, collision) = (bound(&file.detected)?, bound(&file.safe)?, bound(&file.collision)?);
+        let detected = match (detected, &file.detected) {
+            (Some(detected), Some(written)) => Some(Reaction::new(&detected).ok_or_else(|| {
+                let message = "this formula does not show how long detection takes".to_owned();
                 let help = "write `eventually[0,2s] f` or `within 2s f`".to_owned();
                 catalogue.wrong(message, Some(written.span()), Some(help))
             })?),
             _ => None,
         };
         let columns = columns.iter().filter_map(|column| SignalName::new(column.as_str()).ok()).collect();
-        Ok(CampaignMeasures { readouts: self.readouts(catalogue, campaign)?, columns, told, safe, collision })
+        Ok(CampaignMeasures { readouts: self.readouts(catalogue, campaign)?, columns, detected, safe, collision })
     }
 
     /// Refuses a campaign that names what the scenario does not have, before anything runs.

@@ -15,7 +15,7 @@ use crate::timed::{Timed, Times};
 
 /// The verdicts with which a campaign is passed unless it says otherwise.
 const ACCEPTED: [CampaignVerdict; 4] =
-    [CampaignVerdict::Told, CampaignVerdict::Safe, CampaignVerdict::NoEffect, CampaignVerdict::NotActivated];
+    [CampaignVerdict::Detected, CampaignVerdict::Safe, CampaignVerdict::NoEffect, CampaignVerdict::NotActivated];
 
 /// A campaign, its rows and columns checked.
 #[derive(Clone, Debug)]

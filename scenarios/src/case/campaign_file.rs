@@ -1,6 +1,7 @@
 //! `[[campaign]]` of `cases.toml` as it is written.
 
 use std::num::NonZeroU32;
+use std::ops::Range;
 
 use onescan_iec_project::mutate::MutantKind;
 use onescan_links::gateway::settings::Text;
@@ -9,6 +10,7 @@ use onescan_server::time::{TimeSpan, VirtualTime};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
+use toml::de::DeTable;
 
 use super::file::{CodeFile, DisturbanceFile, FaultFile, ForceFile, ParameterFile, VariableFile};
 use crate::form::{CaseName, Matrix, MutantWord, Name, Ordinal, Time, from_optional_text};
@@ -52,16 +54,17 @@ pub struct CampaignFile {
     #[serde(default)]
     #[schemars(with = "Vec<Name>")]
     pub readouts: Vec<Spanned<SignalName>>,
-    /// The control has reported the fault: `eventually` with a window, or `within`, from the activation on.
+    /// The control has detected the fault: `eventually` with a window, or `within`, from the activation on.
+    #[serde(alias = "told")]
     #[schemars(with = "Option<String>")]
-    pub told: Option<Spanned<String>>,
+    pub detected: Option<Spanned<String>>,
     /// The machine is safe: a formula, from the activation on.
     #[schemars(with = "Option<String>")]
     pub safe: Option<Spanned<String>>,
     /// Something has come to harm: a formula, from the activation on.
     #[schemars(with = "Option<String>")]
     pub collision: Option<Spanned<String>>,
-    /// The verdicts with which the campaign is passed; `told`, `safe`, `no-effect` and `not-activated` if absent.
+    /// The verdicts with which the campaign is passed; `detected`, `safe`, `no-effect` and `not-activated` if absent.
     pub accept: Option<Vec<CampaignVerdict>>,
 }
 
@@ -193,9 +196,10 @@ pub enum CampaignVerdict {
     NoEffect,
     /// Something came to harm.
     Collision,
-    /// The control reported it.
-    Told,
-    /// The control did not report it, but the machine was safe.
+    /// The control detected it.
+    #[serde(alias = "told")]
+    Detected,
+    /// The control did not detect it, but the machine was safe.
     Safe,
     /// None of these.
     Missed,
@@ -209,7 +213,7 @@ impl CampaignVerdict {
         Self::PlcFault,
         Self::NoEffect,
         Self::Collision,
-        Self::Told,
+        Self::Detected,
         Self::Safe,
         Self::Missed,
     ];
@@ -222,9 +226,55 @@ impl CampaignVerdict {
             Self::PlcFault => "plc fault",
             Self::NoEffect => "no effect",
             Self::Collision => "collision",
-            Self::Told => "told",
+            Self::Detected => "detected",
             Self::Safe => "safe",
             Self::Missed => "missed",
         }
+    }
+}
+
+/// Where campaigns still have `told`, which is `detected` now: as a key, or as a verdict of `accept`. The version after
+/// this one no longer reads it.
+pub(super) fn old_words(root: &DeTable<'_>) -> Vec<Range<usize>> {
+    const OLD: &str = "told";
+    let campaigns = root.get("campaign").and_then(|list| list.get_ref().as_array());
+    let tables = campaigns.into_iter().flat_map(|list| list.iter()).filter_map(|entry| entry.get_ref().as_table());
+    let mut places = Vec::new();
+    for table in tables {
+        places.extend(table.keys().filter(|key| key.get_ref() == OLD).map(Spanned::span));
+        let accepted = table.get("accept").and_then(|list| list.get_ref().as_array());
+        let verdicts = accepted.into_iter().flat_map(|list| list.iter());
+        places.extend(verdicts.filter(|verdict| verdict.get_ref().as_str() == Some(OLD)).map(Spanned::span));
+    }
+    places
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::{Campaign, Catalogue};
+    use crate::texts::Texts;
+
+    #[test]
+    fn an_old_word_is_read_and_has_a_place() {
+        let campaign = |word: &str| {
+            format!(
+                "version = 1\n\n[[campaign]]\nname = \"a\"\n{word} = \"within 2s x\"\naccept = [\"safe\", \"{word}\"]\n\
+                 fault = [{{ name = \"f\", kind = \"model\", force = {{ signal = \"x\", value = true }} }}]\n\
+                 activation = [{{ name = \"at\", at = \"1s\" }}]\n"
+            )
+        };
+        let places = |text: &str| {
+            let texts = Texts::of("cases.toml".into(), text.to_owned());
+            let places = old_words(DeTable::parse(text).unwrap().get_ref());
+            places.into_iter().map(|place| texts.line_and_column(place.start)).collect::<Vec<_>>()
+        };
+        assert_eq!(places(&campaign("told")), ["cases.toml:5:1", "cases.toml:6:19"]);
+        assert!(places(&campaign("detected")).is_empty());
+        let read = |word| Catalogue::parse("cases.toml".into(), campaign(word)).unwrap().campaigns()[0].clone();
+        let (old, new) = (read("told"), read("detected"));
+        assert_eq!(old.accepted, new.accepted);
+        let formula = |campaign: &Campaign| campaign.file.detected.as_ref().map(|formula| formula.get_ref().clone());
+        assert_eq!((formula(&old), formula(&new)), (Some("within 2s x".to_owned()), Some("within 2s x".to_owned())));
     }
 }

@@ -12,7 +12,7 @@ use toml::de::{DeTable, DeValue, Deserializer};
 use toml::{Spanned, Table, Value};
 
 use super::campaign::{self, Campaign};
-use super::campaign_file::{CampaignFile, MutantsFile, ProgramFile};
+use super::campaign_file::{self, CampaignFile, MutantsFile, ProgramFile};
 use super::cases_file::{CasesFile, SnapshotFile, VERSION};
 use super::file::CaseFile;
 use super::matrix::{Axis, COMBINATIONS_MAX, combinations};
@@ -98,6 +98,10 @@ impl Catalogue {
         if file.version != VERSION {
             let message = format!("version {} of the format of cases is not known", file.version);
             return Err(this.wrong(message, None, Some(format!("write `version = {VERSION}`"))));
+        }
+        for place in campaign_file::old_words(root.get_ref()) {
+            let place = this.texts.line_and_column(place.start);
+            tracing::warn!("{place}: `told` is called `detected` now; write that, later versions read nothing else");
         }
         let tables = Tables {
             cases: this.tables_of(root.get_ref(), "case", |key| !matches!(key, "seed" | "set" | "matrix"))?,

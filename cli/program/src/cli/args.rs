@@ -79,8 +79,8 @@ pub enum Command {
     Compare(CompareArgs),
     /// Run all scenarios and cases, and hold them against their reviewed snapshots; run test programs in ST
     Test(Box<TestArgs>),
-    /// Try every fault of a campaign with every activation, and report a verdict for each: told by the control,
-    /// safe, missed, collision, without effect
+    /// Try every fault of a campaign with every activation, and report a verdict for each: detected by the
+    /// control, safe, missed, collision, without effect
     Campaign(CampaignArgs),
     /// Try every timing that a scenario's `[timing]` allows: edges that are late, one at a time, then two, and show the
     /// fewest with which it does not do what is expected

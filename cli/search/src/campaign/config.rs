@@ -69,7 +69,7 @@ pub struct Partition {
     of: NonZeroUsize,
 }
 
-/// A text that is no part: not of the form `K/N`, or not with 1 ≤ K ≤ N.
+/// A text that is not a part: not of the form `K/N`, or not with 1 ≤ K ≤ N.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("a part is `K/N`, as 3/8 for the third of eight")]
 pub struct NoPartition;

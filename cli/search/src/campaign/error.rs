@@ -5,6 +5,7 @@ use onescan_report::{FileError, OutputError};
 use onescan_scenario::ScenarioError;
 use thiserror::Error;
 
+use crate::forest::JournalError;
 use onescan_runner::error::{Exit, ExitCode, SpawnError, Unreadable, Usage, sum_of_errors};
 use onescan_runner::run::RunError;
 
@@ -25,6 +26,9 @@ sum_of_errors! {
         Ended(Ended),
         /// A process cannot be started.
         Spawn(SpawnError),
+        /// The journal of the work cannot be used.
+        #[diagnostic(transparent)]
+        Journal(JournalError),
         /// A file of the work, or of the scenario, cannot be read.
         Unreadable(Unreadable),
         /// A report, or a file of the work, cannot be written.

@@ -2,11 +2,9 @@
 //! and put together from parts that were done elsewhere.
 //!
 //! `journal.jsonl` has a line for what the campaign is, one for the run without faults, and one for each run that is
-//! done. A line counts once its end is written: a process that is killed leaves half of one at most.
+//! done.
 
 use std::collections::BTreeMap;
-use std::fs::{File, OpenOptions};
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use onescan_base::regular::{self, Limit};
@@ -18,10 +16,13 @@ use serde::{Deserialize, Serialize};
 use tempfile::TempDir;
 
 use super::CampaignError;
-use super::reading::{Reading, Trunk, Way};
+use super::reading::{BaseRuns, Reading, Way};
+use crate::forest::{self, Journal, JournalError};
 use onescan_runner::error::{Unreadable, Usage};
 use onescan_runner::run::ForkRequest;
 
+/// Whose journal it is, in messages.
+const SEARCH: &str = "campaign";
 const JOURNAL: &str = "journal.jsonl";
 const FORKS: &str = "forks";
 
@@ -39,7 +40,7 @@ pub(super) struct Subject {
 #[serde(rename_all = "kebab-case")]
 enum Line {
     Subject(Subject),
-    Healthy(Trunk),
+    Healthy(BaseRuns),
     Done { case: String, reading: Reading },
 }
 
@@ -47,7 +48,7 @@ enum Line {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Done {
     /// The run without faults.
-    pub(super) healthy: Option<Trunk>,
+    pub(super) healthy: Option<BaseRuns>,
     /// What was read out of runs with faults, by their case.
     pub(super) readings: BTreeMap<String, Reading>,
 }
@@ -56,7 +57,7 @@ pub(super) struct Done {
 pub(super) struct Work {
     folder: PathBuf,
     /// Locked as long as somebody works here.
-    journal: File,
+    journal: Journal,
     /// The folder is removed with it.
     _temporary: Option<TempDir>,
 }
@@ -101,7 +102,7 @@ impl Subject {
                 let help = "keep the work of this campaign in another folder, or remove that one".to_owned();
                 Err(Usage::new(format!("{} was made of {what}", path.display()), Some(help)))
             }
-            None => Err(Usage::new(format!("{} is no journal of a campaign", path.display()), None)),
+            None => Err(Usage::new(format!("{} is not a journal of a campaign", path.display()), None)),
         }
     }
 }
@@ -115,30 +116,23 @@ impl Work {
         let (folder, temporary) = if let Some(keep) = keep {
             (keep.join(&subject.campaign), None)
         } else {
-            let temporary = TempDir::new().map_err(unusable(&std::env::temp_dir()))?;
+            let in_vain = |source| FileError { path: std::env::temp_dir(), source };
+            let temporary = TempDir::new().map_err(in_vain)?;
             (temporary.path().to_owned(), Some(temporary))
         };
         file::create_folder(&folder)?;
         let path = folder.join(JOURNAL);
-        let options = OpenOptions::new().create(true).append(true).read(true).open(&path);
-        let journal = options.map_err(unusable(&path))?;
-        if let Err(error) = journal.try_lock() {
-            let message = format!("{}: another process works on it ({error})", path.display());
-            return Err(Usage::new(message, Some("wait for it, or use another folder".to_owned())).into());
-        }
-        let (lines, whole_bytes) = lines_of(&path)?;
-        // Half a line is what a process left that was killed while it wrote.
-        journal.set_len(whole_bytes).map_err(unusable(&path))?;
+        let (journal, lines) = Journal::open(path.clone(), SEARCH)?;
         let work = Self { folder, journal, _temporary: temporary };
         if lines.is_empty() {
-            work.note(&Line::Subject(subject.clone()))?;
+            work.journal.append(&Line::Subject(subject.clone()))?;
             return Ok((work, Done::default()));
         }
         let mut done = done_of(lines, subject, &path)?;
         // Checkpoints that somebody removed are taken again, by the same run.
-        done.healthy = done.healthy.filter(|trunk| {
-            let variants = trunk.readings.len().max(1);
-            trunk.ways.iter().enumerate().all(|(case, way)| work.has_fork(case % variants, *way))
+        done.healthy = done.healthy.filter(|healthy| {
+            let variants = healthy.readings.len().max(1);
+            healthy.ways.iter().enumerate().all(|(case, way)| work.has_fork(case % variants, *way))
         });
         Ok((work, done))
     }
@@ -149,8 +143,7 @@ impl Work {
     /// There is no journal, or it is of another campaign.
     pub(super) fn read(keep: &Path, subject: &Subject) -> Result<Done, CampaignError> {
         let path = keep.join(&subject.campaign).join(JOURNAL);
-        let (lines, _) = lines_of(&path)?;
-        done_of(lines, subject, &path)
+        Ok(done_of(forest::read(&path, SEARCH)?, subject, &path)?)
     }
 
     /// Where the checkpoints are.
@@ -168,17 +161,13 @@ impl Work {
     ///
     /// # Errors
     /// The journal cannot be written.
-    pub(super) fn healthy(&self, trunk: &Trunk) -> Result<(), CampaignError> {
-        self.note(&Line::Healthy(trunk.clone()))
+    pub(super) fn healthy(&self, healthy: &BaseRuns) -> Result<(), JournalError> {
+        self.journal.append(&Line::Healthy(healthy.clone()))
     }
 
     /// The journal, in which processes note what they have done.
-    pub(super) fn journal(&self) -> PathBuf {
-        self.folder.join(JOURNAL)
-    }
-
-    fn note(&self, line: &Line) -> Result<(), CampaignError> {
-        write_line(&self.journal, &self.journal(), line)
+    pub(super) fn journal(&self) -> &Path {
+        self.journal.path()
     }
 }
 
@@ -191,47 +180,18 @@ pub(super) fn of_variant(forks: &Path, variant: usize) -> PathBuf {
 ///
 /// # Errors
 /// The journal cannot be written.
-pub(super) fn note_done(path: &Path, case: &str, reading: &Reading) -> Result<(), CampaignError> {
-    let journal = OpenOptions::new().append(true).open(path).map_err(unusable(path))?;
-    write_line(&journal, path, &Line::Done { case: case.to_owned(), reading: reading.clone() })
+pub(super) fn note_done(path: &Path, case: &str, reading: &Reading) -> Result<(), JournalError> {
+    forest::append(path, &Line::Done { case: case.to_owned(), reading: reading.clone() })
 }
 
-/// Several processes write at a time: each line is one call at the end of the file, so that none is torn.
-fn write_line(mut journal: &File, path: &Path, line: &Line) -> Result<(), CampaignError> {
-    let mut text = serde_json::to_vec(line).map_err(|error| unusable(path)(error.into()))?;
-    text.push(b'\n');
-    Ok(journal.write_all(&text).map_err(unusable(path))?)
-}
-
-fn unusable(path: &Path) -> impl FnOnce(std::io::Error) -> FileError + use<> {
-    let path = path.to_owned();
-    move |source| FileError { path, source }
-}
-
-/// The whole lines of a journal, and how many bytes they are.
-fn lines_of(path: &Path) -> Result<(Vec<Line>, u64), CampaignError> {
-    let bytes = regular::read(path, Limit::DATA).map_err(Unreadable::at(path))?;
-    let whole = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |last| last + 1);
-    let mut lines = Vec::new();
-    for (index, line) in bytes[..whole].split_inclusive(|byte| *byte == b'\n').enumerate() {
-        let wrong = |error| {
-            tracing::debug!(%error, "not a line of a journal");
-            let message = format!("{}:{}: no line of a campaign's journal", path.display(), index + 1);
-            Usage::new(message, Some("remove the folder to begin anew".to_owned()))
-        };
-        lines.push(serde_json::from_slice(line).map_err(wrong)?);
-    }
-    Ok((lines, whole as u64))
-}
-
-fn done_of(lines: Vec<Line>, subject: &Subject, path: &Path) -> Result<Done, CampaignError> {
+fn done_of(lines: Vec<Line>, subject: &Subject, path: &Path) -> Result<Done, Usage> {
     let first = if let Some(Line::Subject(found)) = lines.first() { Some(found) } else { None };
     subject.check(first, path)?;
     let mut done = Done::default();
     for line in lines {
         match line {
             Line::Subject(_) => {}
-            Line::Healthy(trunk) => done.healthy = Some(trunk),
+            Line::Healthy(base_runs) => done.healthy = Some(base_runs),
             Line::Done { case, reading } => drop(done.readings.insert(case, reading)),
         }
     }

@@ -33,7 +33,6 @@ pub mod worker;
 
 use std::collections::BTreeMap;
 use std::io::Write;
-use std::num::NonZeroUsize;
 use std::process::Command;
 
 use onescan_report::{OutputError, file};
@@ -45,19 +44,15 @@ use serde::de::DeserializeOwned;
 pub use config::CampaignConfig;
 pub use error::CampaignError;
 
+use crate::forest;
 use config::{Begun, Chosen, MergeConfig, Reports};
 use error::Ended;
 use journal::{Done, Subject, Work};
-use onescan_regress::regress::pool::{answer, bar, spread, this_program};
+use onescan_regress::regress::pool::{answer, this_program};
 use onescan_runner::error::{ExitCode, Usage};
 use onescan_runner::format::Format;
-use reading::{Reading, Trunk, Way};
+use reading::{BaseRuns, Reading, Way};
 use table::{Row, Table};
-
-/// So many runs in a process at most: what is lost if it is killed is little, and so is what it begins with.
-const BATCH_MAX: usize = 32;
-/// So many processes for each of those that run at a time, at least, where there are enough runs.
-const BATCHES_PER_JOB: usize = 4;
 
 /// Runs the campaigns that `config` asks for, and writes what came of them to `out`.
 ///
@@ -146,14 +141,14 @@ fn chosen<'c>(wanted: &Chosen, catalogue: &'c Catalogue) -> Result<Vec<&'c Campa
 fn tried(config: &CampaignConfig, scenario: &Scenario, campaign: &Campaign) -> Result<Done, CampaignError> {
     let subject = Subject::of(scenario, campaign)?;
     let (work, mut done) = Work::open(config.keep.as_deref(), &subject)?;
-    let trunk = if let Some(trunk) = done.healthy.take() {
-        trunk
+    let base_runs = if let Some(base_runs) = done.healthy.take() {
+        base_runs
     } else {
-        let trunk: Trunk = asked(&mut worker(&config.chosen, campaign, &work)?, config.timeout, &campaign.name)?;
-        work.healthy(&trunk)?;
-        trunk
+        let base_runs: BaseRuns = asked(&mut worker(&config.chosen, campaign, &work)?, config.timeout, &campaign.name)?;
+        work.healthy(&base_runs)?;
+        base_runs
     };
-    for (number, (reading, (variant, _))) in trunk.readings.iter().zip(&campaign.variants).enumerate() {
+    for (number, (reading, (variant, _))) in base_runs.readings.iter().zip(&campaign.variants).enumerate() {
         // That another program fails is a finding; that the scenario's own does leaves nothing to compare with.
         let is_own = campaign.own_program_of(number) == number;
         if let Some(failure) = reading.failure.as_ref().filter(|_| is_own) {
@@ -164,24 +159,17 @@ fn tried(config: &CampaignConfig, scenario: &Scenario, campaign: &Campaign) -> R
         }
     }
     let is_ours = |number: usize| config.partition.is_none_or(|part| part.has(number));
-    let todo: Vec<(&str, Way)> = ways(campaign, &trunk)
+    let todo: Vec<(&str, Way)> = ways(campaign, &base_runs)
         .enumerate()
         .filter(|(number, (name, way))| is_ours(*number) && *way != Way::Never && !done.readings.contains_key(*name))
         .map(|(_, one)| one)
         .collect();
-    let batches: Vec<&[(&str, Way)]> = todo.chunks(batch_size(todo.len(), config.jobs)).collect();
-    let bar = bar(config.progress, batches.len(), "batches of runs");
-    let read = spread(config.jobs, batches.len(), &bar, |index| batch(config, campaign, &work, batches[index]));
-    let read: Vec<Vec<Reading>> = read.into_iter().collect::<Result<_, _>>()?;
+    let batches = forest::batches(config.jobs, &todo);
+    let shown = (config.progress, "batches of runs");
+    let read = forest::each(config.jobs, &batches, shown, |cases| batch(config, campaign, &work, cases))?;
     done.readings.extend(todo.iter().map(|(name, _)| (*name).to_owned()).zip(read.into_iter().flatten()));
-    done.healthy = Some(trunk);
+    done.healthy = Some(base_runs);
     Ok(done)
-}
-
-/// How many runs a process does: more than one, because each has to read and compile the scenario first, but so few that
-/// all workers have something to do to the end.
-fn batch_size(runs: usize, jobs: NonZeroUsize) -> usize {
-    (runs / (jobs.get() * BATCHES_PER_JOB)).clamp(1, BATCH_MAX)
 }
 
 /// Some runs with faults. If their process comes to nothing each is done by itself, so that one that crashes takes no
@@ -236,8 +224,8 @@ fn finished(name: &str, done: Result<Vec<Reading>, CampaignError>) -> Result<Rea
 }
 
 /// Where the run of each case begins.
-fn ways<'a>(campaign: &'a Campaign, trunk: &'a Trunk) -> impl Iterator<Item = (&'a str, Way)> {
-    campaign.cases.iter().map(|case| case.name.as_str()).zip(trunk.ways.iter().copied())
+fn ways<'a>(campaign: &'a Campaign, base_runs: &'a BaseRuns) -> impl Iterator<Item = (&'a str, Way)> {
+    campaign.cases.iter().map(|case| case.name.as_str()).zip(base_runs.ways.iter().copied())
 }
 
 /// The verdicts of a campaign of which all is done.
@@ -252,8 +240,8 @@ fn table_of(
         let help = "do the part that has it, and name its folder, too".to_owned();
         Usage::new(format!("campaign `{}` is not complete: {what} missing", campaign.name), Some(help))
     };
-    let trunk = healthy.ok_or_else(|| missing("the run without faults is".to_owned()))?;
-    let ways: BTreeMap<&str, Way> = ways(campaign, &trunk).collect();
+    let base_runs = healthy.ok_or_else(|| missing("the run without faults is".to_owned()))?;
+    let ways: BTreeMap<&str, Way> = ways(campaign, &base_runs).collect();
     let is_done = |name: &str| readings.contains_key(name) || ways.get(name) == Some(&Way::Never);
     let open: Vec<&str> = campaign.cases.iter().map(|case| case.name.as_str()).filter(|name| !is_done(name)).collect();
     if let Some(first) = open.first() {
@@ -264,7 +252,7 @@ fn table_of(
     let measures = scenario.campaign_measures(catalogue, campaign)?;
     let mut rows = Vec::with_capacity(campaign.cases.len());
     for (number, case) in campaign.cases.iter().enumerate() {
-        let Some(healthy) = trunk.readings.get(campaign.variant_of(number)) else {
+        let Some(healthy) = base_runs.readings.get(campaign.variant_of(number)) else {
             return Err(missing("a run without faults is".to_owned()).into());
         };
         let Some(injected) = scenario.clone().with_case(catalogue, case)?.injected() else {
@@ -275,7 +263,7 @@ fn table_of(
         let row = table::row(case, reading, healthy, &measures.readouts, &injected.signals);
         rows.push(Row { program: campaign.program_of(campaign.variant_of(number)).map(str::to_owned), ..row });
     }
-    Ok(Table::new(&chosen.scenario, campaign, trunk.readings, rows))
+    Ok(Table::new(&chosen.scenario, campaign, base_runs.readings, rows))
 }
 
 /// A process for runs.

@@ -40,7 +40,7 @@ pub(super) struct Seen {
     /// The fault comes with the step that is under way.
     coming: bool,
     activated_ns: Option<u64>,
-    told: Option<Reaction>,
+    detected: Option<Reaction>,
     judge: Judge,
     tracks: Vec<Track>,
     /// Virtual time of each checkpoint that was taken, and the trajectories up to there.
@@ -79,7 +79,7 @@ impl Seen {
         Self {
             coming: false,
             activated_ns: None,
-            told: measures.told.clone(),
+            detected: measures.detected.clone(),
             judge: Judge::new(formulas, measures.columns.len()),
             tracks: measures.readouts.iter().map(|_| Track::default()).collect(),
             kept: Vec::new(),
@@ -92,7 +92,7 @@ impl Seen {
         let mut held = judged.into_iter().map(|outcome| outcome.verdict == Verdict::Met);
         Reading {
             activated_ns: self.activated_ns,
-            told_after_ns: self.told.and_then(|told| told.finish(end)),
+            detected_after_ns: self.detected.and_then(|detected| detected.finish(end)),
             safe: measures.safe.as_ref().and_then(|_| held.next()),
             collision: measures.collision.as_ref().and_then(|_| held.next()),
             readouts: self.tracks.iter().map(Track::hash).collect(),
@@ -168,8 +168,8 @@ impl Probe {
             if let Some(metering) = &mut self.metering {
                 metering.look(t_ns, layout, image);
             }
-            if let Some(told) = &mut seen.told {
-                told.push(t_ns, self.columns.numbers_in(layout, image));
+            if let Some(detected) = &mut seen.detected {
+                detected.push(t_ns, self.columns.numbers_in(layout, image));
             }
             seen.judge.push(t_ns, self.columns.numbers_in(layout, image));
         }

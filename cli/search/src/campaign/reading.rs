@@ -16,8 +16,9 @@ pub struct Reading {
     pub failure: Option<Failure>,
     /// The first image with the fault.
     pub activated_ns: Option<u64>,
-    /// After how long the control told of it.
-    pub told_after_ns: Option<u64>,
+    /// After how long the control detected it.
+    #[serde(alias = "told_after_ns")]
+    pub detected_after_ns: Option<u64>,
     /// Whether the machine was safe; absent if the campaign does not say what that means.
     pub safe: Option<bool>,
     /// Whether something came to harm; absent if the campaign does not say what that means.
@@ -39,7 +40,7 @@ pub struct Reading {
 
 /// What the process of the runs without faults says: what was read out of each, and where the cases fork from it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Trunk {
+pub struct BaseRuns {
     /// What was read out of the run of each variant.
     pub readings: Vec<Reading>,
     /// Where the run of each case begins, in the order of the campaign's cases.
@@ -61,7 +62,7 @@ pub enum Way {
 /// A failure that ended a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Failure {
-    /// What happened, as people are told, without its place.
+    /// What happened, as it is reported, without its place.
     pub text: String,
     /// True if it is of a PLC.
     pub of_plc: bool,

@@ -29,7 +29,7 @@ pub(super) fn page(tables: &[Table]) -> Page {
     }
 }
 
-/// Virtual time of all runs: what the machine took is no part of a report, which is the same wherever it is made.
+/// Virtual time of all runs: what the machine took is not a part of a report, which is the same wherever it is made.
 fn virtual_time(tables: &[Table]) -> Duration {
     Duration::from_nanos(tables.iter().flat_map(|table| &table.rows).map(|row| row.virtual_time_ns).sum())
 }
@@ -64,7 +64,7 @@ fn run(table: &Table, fault: &CampaignFault, row: &Row) -> Section {
     let facts = [
         ("kind", Some(fault.kind.word().to_owned())),
         ("activated at", row.activated_ns.map(time)),
-        ("told after", row.told_after_ns.map(time)),
+        ("detected after", row.detected_after_ns.map(time)),
         ("safe", row.safe.map(yes)),
         ("collision", row.collision.map(yes)),
         ("effect on", (!row.effects.is_empty()).then(|| effects(row))),
@@ -80,13 +80,13 @@ fn run(table: &Table, fault: &CampaignFault, row: &Row) -> Section {
         mood: if table.is_accepted(row) { Mood::Good } else { Mood::Bad },
         virtual_time: time(row.virtual_time_ns),
         facts: facts.into_iter().filter_map(|(name, value)| Some((name, value?))).collect(),
-        lines: fault.about.iter().cloned().chain(told(row)).collect(),
+        lines: fault.about.iter().cloned().chain(failures(row)).collect(),
         ..Section::default()
     }
 }
 
 /// What ended its run before its time.
-fn told(row: &Row) -> impl Iterator<Item = String> {
+fn failures(row: &Row) -> impl Iterator<Item = String> {
     row.failure.iter().map(|failure| failure.text.clone()).chain(row.unfinished.iter().cloned())
 }
 
@@ -102,7 +102,7 @@ fn effects(row: &Row) -> String {
     }
 }
 
-/// The report for CI servers: a suite a campaign, a case a run.
+/// The report for CI servers: one suite per campaign, one case per run.
 pub(super) fn junit(tables: &[Table]) -> String {
     let case = |table: &Table, row: &Row| Case {
         class: None,
@@ -115,7 +115,7 @@ pub(super) fn junit(tables: &[Table]) -> String {
             Ended::Failure(Trouble {
                 word: row.verdict.word(),
                 lines: std::iter::once(row.verdict.word().to_owned())
-                    .chain(told(row))
+                    .chain(failures(row))
                     .chain([repeat(table, row)])
                     .collect(),
             })

@@ -15,7 +15,7 @@ use onescan_runner::format::Format;
 /// So many cases that are not accepted are named.
 const NAMED_MAX: usize = 10;
 
-/// Writes each campaign as a matrix: a row a fault, a column an activation.
+/// Writes each campaign as a matrix: one row per fault, one column per activation.
 ///
 /// # Errors
 /// Those of `out`.
@@ -77,15 +77,15 @@ pub(super) fn matrix(table: &Table) -> Vec<Vec<String>> {
 
 /// What the programs make of the same faults, with a head.
 pub(super) fn programs(table: &Table) -> Vec<Vec<String>> {
-    let is_told = table.programs.iter().any(|program| program.about.is_some());
-    let what = is_told.then_some("what it is");
+    let is_described = table.programs.iter().any(|program| program.about.is_some());
+    let what = is_described.then_some("what it is");
     let head =
         ["program", "runs", "other verdicts", "first of them"].into_iter().chain(what).map(str::to_owned).collect();
     let row = |program: &Program| {
         let fails = program.failure.as_ref().map(|failure| format!("without any fault: {}", failure.text));
         let first = fails.or_else(|| program.others.first().cloned()).unwrap_or_else(|| "none".to_owned());
         // A program that says nothing about itself leaves its cell empty.
-        let about = is_told.then(|| program.about.clone().unwrap_or_default());
+        let about = is_described.then(|| program.about.clone().unwrap_or_default());
         let cells = [program.name.clone(), program.runs.to_string(), program.others.len().to_string(), first];
         cells.into_iter().chain(about).collect()
     };
@@ -94,8 +94,8 @@ pub(super) fn programs(table: &Table) -> Vec<Vec<String>> {
 
 /// A verdict, and how long it took if that is known.
 pub(super) fn cell(row: &Row) -> String {
-    match (row.verdict, row.told_after_ns) {
-        (CampaignVerdict::Told, Some(after_ns)) => format!("told after {}", VirtualTime::from_nanos(after_ns)),
+    match (row.verdict, row.detected_after_ns) {
+        (CampaignVerdict::Detected, Some(after_ns)) => format!("detected after {}", VirtualTime::from_nanos(after_ns)),
         (verdict, _) => verdict.word().to_owned(),
     }
 }

@@ -66,9 +66,9 @@ pub struct Row {
     /// The end of the step in which the fault came.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub activated_ns: Option<u64>,
-    /// How much later the control told of it.
+    /// How much later the control detected it.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub told_after_ns: Option<u64>,
+    pub detected_after_ns: Option<u64>,
     /// Whether the machine was safe, if the campaign says what that means.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub safe: Option<bool>,
@@ -181,7 +181,7 @@ pub(super) fn row(
         program: None,
         verdict: verdict(&reading, !effects.is_empty()),
         activated_ns: reading.activated_ns,
-        told_after_ns: reading.told_after_ns,
+        detected_after_ns: reading.detected_after_ns,
         safe: reading.safe,
         collision: reading.collision,
         effects,
@@ -202,11 +202,11 @@ fn verdict(reading: &Reading, has_effect: bool) -> CampaignVerdict {
         Reading { unfinished: Some(_), .. } => CampaignVerdict::Unfinished,
         Reading { activated_ns: None, .. } => CampaignVerdict::NotActivated,
         _ if of_plc == Some(true) => CampaignVerdict::PlcFault,
-        // A client that is no PLC stopped the run: that is harm, whatever else was seen of it.
+        // A client that is not a PLC stopped the run: that is harm, whatever else was seen of it.
         _ if of_plc == Some(false) => CampaignVerdict::Collision,
         _ if !has_effect => CampaignVerdict::NoEffect,
         Reading { collision: Some(true), .. } => CampaignVerdict::Collision,
-        Reading { told_after_ns: Some(_), .. } => CampaignVerdict::Told,
+        Reading { detected_after_ns: Some(_), .. } => CampaignVerdict::Detected,
         Reading { safe: Some(true), .. } => CampaignVerdict::Safe,
         _ => CampaignVerdict::Missed,
     }
@@ -219,7 +219,7 @@ mod tests {
     #[test]
     fn of_several_verdicts_the_first_counts() {
         let mut reading =
-            Reading { told_after_ns: Some(0), safe: Some(true), collision: Some(true), ..Reading::default() };
+            Reading { detected_after_ns: Some(0), safe: Some(true), collision: Some(true), ..Reading::default() };
         let failure = Failure { text: String::new(), of_plc: true, place: None };
         reading.failure = Some(failure);
         reading.unfinished = Some(String::new());
@@ -233,7 +233,7 @@ mod tests {
         verdicts.push(verdict(&reading, true));
         reading.collision = Some(false);
         verdicts.push(verdict(&reading, true));
-        reading.told_after_ns = None;
+        reading.detected_after_ns = None;
         verdicts.push(verdict(&reading, true));
         reading.safe = None;
         verdicts.push(verdict(&reading, true));

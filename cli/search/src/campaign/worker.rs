@@ -23,7 +23,7 @@ use super::CampaignError;
 use super::config::{Begun, Part, WorkerConfig};
 use super::journal;
 use super::probe::{Probe, Track, Watch};
-use super::reading::{Failure, Reading, Trunk, Way};
+use super::reading::{BaseRuns, Failure, Reading, Way};
 use super::rejoin::{self, Ahead, Images};
 use onescan_regress::regress::limited::end_with_parent;
 use onescan_runner::error::{Unreadable, Usage};
@@ -46,14 +46,14 @@ pub fn work(config: &WorkerConfig, out: &mut dyn Write) -> Result<(), CampaignEr
     let measures = scenario.campaign_measures(&catalogue, campaign)?;
     let written = match &config.part {
         Part::Healthy => {
-            let mut trunk = Trunk { readings: Vec::new(), ways: vec![Way::Start; campaign.cases.len()] };
+            let mut base_runs = BaseRuns { readings: Vec::new(), ways: vec![Way::Start; campaign.cases.len()] };
             for variant in 0..campaign.variants.len() {
                 let (reading, ways) = healthy(config, (&scenario, &catalogue, campaign), &measures, variant)?;
-                trunk.readings.push(reading);
-                let own = trunk.ways.iter_mut().skip(variant).step_by(campaign.variants.len());
+                base_runs.readings.push(reading);
+                let own = base_runs.ways.iter_mut().skip(variant).step_by(campaign.variants.len());
                 own.zip(ways).for_each(|(way, found)| *way = found);
             }
-            serde_json::to_writer(&mut *out, &trunk)
+            serde_json::to_writer(&mut *out, &base_runs)
         }
         Part::Cases { cases, journal } => {
             let mut readings = Vec::with_capacity(cases.len());
@@ -222,7 +222,7 @@ impl<'a> Probing<'a> {
         let mut reading = Reading {
             digest: report.digest.map(|digest| digest.to_string()),
             virtual_time_ns: report.virtual_time.as_nanos(),
-            failure: report.failure.as_ref().map(|failure| told(self.scenario, failure)),
+            failure: report.failure.as_ref().map(|failure| failure_of(self.scenario, failure)),
             state: ran.state.map(|state| state.to_string()),
             ..Reading::default()
         };
@@ -251,7 +251,7 @@ fn came(report: &Report) -> BTreeMap<String, u64> {
     totals.filter(|alarm| alarm.count > 0).map(|alarm| (alarm.name.clone(), alarm.count)).collect()
 }
 
-fn told(scenario: &Scenario, failure: &EndedBy) -> Failure {
+fn failure_of(scenario: &Scenario, failure: &EndedBy) -> Failure {
     let client = scenario.file().clients.get(&failure.client).map(toml::Spanned::get_ref);
     let place = if let FailureCause::Fault(fault) = &failure.cause { fault.place.clone() } else { None };
     Failure { text: failure.to_string(), of_plc: matches!(client, Some(ClientFile::SoftPlc { .. })), place }

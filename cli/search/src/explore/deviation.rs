@@ -83,9 +83,9 @@ pub struct Deviation {
     pub arrives: VirtualTime,
     /// By how many steps it is late.
     pub late_steps: u64,
-    /// Number of its leeway among those of the scenario.
+    /// Number of its tolerance among those of the scenario.
     #[serde(skip)]
-    pub(super) leeway: usize,
+    pub(super) tolerance: usize,
     #[serde(skip)]
     step: TimeSpan,
 }
@@ -128,7 +128,7 @@ impl What {
 impl Deviation {
     /// What would happen at `edge`, so many steps late. Nothing beyond the end of virtual time.
     pub(super) fn new(
-        (leeway, what): (usize, What),
+        (tolerance, what): (usize, What),
         edge: VirtualTime,
         late_steps: u64,
         step: TimeSpan,
@@ -136,12 +136,12 @@ impl Deviation {
         let late = edge.checked_add(step.times(late_steps)?)?;
         // What moves a task for good is over as soon as it has begun.
         let arrives = if matches!(what, What::Phase { .. } | What::Start { .. }) { edge } else { late };
-        Some(Self { what, edge, arrives, late_steps, leeway, step })
+        Some(Self { what, edge, arrives, late_steps, tolerance, step })
     }
 
     /// The same with another lateness.
     pub(super) fn with_steps(&self, late_steps: u64) -> Option<Self> {
-        Self::new((self.leeway, self.what.clone()), self.edge, late_steps, self.step)
+        Self::new((self.tolerance, self.what.clone()), self.edge, late_steps, self.step)
     }
 
     fn by(&self) -> TimeSpan {

@@ -30,7 +30,7 @@ use onescan_scenario::Scenario;
 
 pub use config::ExploreConfig;
 
-use report::Told;
+use report::ExploreReport;
 
 use onescan_runner::error::{ExitCode, Usage};
 use onescan_runner::run::SearchError;
@@ -42,8 +42,8 @@ use onescan_runner::run::SearchError;
 pub fn run(config: &ExploreConfig, out: &mut dyn Write) -> Result<ExitCode, SearchError> {
     let scenario = Scenario::load(&config.scenario)?;
     let (scenario, written) = scenario.case_in_pieces(config.case.as_deref())?;
-    let leeways = scenario.leeways()?;
-    if leeways.is_empty() {
+    let tolerances = scenario.timing_tolerances()?;
+    if tolerances.is_empty() {
         let help = "say in `[timing]` which signals may be late, and by how much (docs/explore.md)".to_owned();
         return Err(Usage::new("the scenario does not say what its links may do", Some(help)).into());
     }
@@ -52,11 +52,12 @@ pub fn run(config: &ExploreConfig, out: &mut dyn Write) -> Result<ExitCode, Sear
         return Err(Usage::new("the scenario expects nothing", Some(help)).into());
     }
     let until = config.until.unwrap_or(scenario.until());
-    let found = search::search(config, &scenario, &leeways, until)?;
-    let told = Told { config, scenario: &scenario, leeways: &leeways, found: &found, written: &written };
-    told.write(out).map_err(OutputError)?;
+    let found = search::search(config, &scenario, &tolerances, until)?;
+    let report =
+        ExploreReport { config, scenario: &scenario, tolerances: &tolerances, found: &found, written: &written };
+    report.write(out).map_err(OutputError)?;
     if let Some(path) = &config.cases {
-        file::write_whole(path, told.cases().as_bytes())?;
+        file::write_whole(path, report.cases().as_bytes())?;
     }
     Ok(if found.findings.is_empty() { ExitCode::Ok } else { ExitCode::Unmet })
 }

@@ -4,18 +4,16 @@ use std::collections::VecDeque;
 use std::rc::Rc;
 
 use onescan_scenario::Scenario;
-use onescan_scenario::compose::Member;
 use onescan_scenario::expect::TraceEnd;
-use onescan_scenario::timing::Leeway;
+use onescan_scenario::timing::TimingTolerance;
 use onescan_server::checkpoint::StateHash;
 use onescan_server::digest::Digest;
-use onescan_server::signal::ClientName;
 use onescan_server::time::{TimeSpan, VirtualTime};
 
 use super::deviation::{Deviation, What};
 use super::known::{Key, Known, Mark, Past, looks};
 use super::place::{self, Watched};
-use onescan_runner::error::Usage;
+use crate::forest::{SearchKind, form, run_until, start};
 use onescan_runner::run::expectation::ExpectationReport;
 use onescan_runner::run::judged::{Judged, Moment};
 use onescan_runner::run::{RunError, SearchError};
@@ -24,7 +22,7 @@ use onescan_runner::run::{RunError, SearchError};
 #[derive(Clone)]
 pub(super) struct Fork {
     /// Number of what allows it.
-    pub(super) leeway: usize,
+    pub(super) tolerance: usize,
     pub(super) what: What,
     /// When it happens.
     pub(super) edge: VirtualTime,
@@ -48,10 +46,10 @@ pub(super) struct Path {
 }
 
 /// What all ways of an exploration have in common.
-pub(super) struct Ground<'a> {
+pub(super) struct SearchContext<'a> {
     pub(super) scenario: &'a Scenario,
     pub(super) until: VirtualTime,
-    pub(super) leeways: &'a [Leeway],
+    pub(super) tolerances: &'a [TimingTolerance],
     /// How long expectations remember; nothing if all of a run may matter.
     memory: Option<TimeSpan>,
     /// Whether expectations remember anything.
@@ -67,15 +65,15 @@ pub(super) struct Wanted<'k> {
     pub(super) known: Option<(u32, &'k Known)>,
 }
 
-impl<'a> Ground<'a> {
-    pub(super) fn new(scenario: &'a Scenario, until: VirtualTime, leeways: &'a [Leeway]) -> Self {
+impl<'a> SearchContext<'a> {
+    pub(super) fn new(scenario: &'a Scenario, until: VirtualTime, tolerances: &'a [TimingTolerance]) -> Self {
         let step = scenario.plan().step();
         let named = &scenario.expectations().named;
         let memories: Option<Vec<u64>> =
             named.iter().map(|(_, expectation)| expectation.memory_ns(step.as_nanos())).collect();
         let longest_ns = memories.map(|all| all.into_iter().max().unwrap_or(0));
         let memory = longest_ns.and_then(TimeSpan::from_nanos);
-        Self { scenario, until, leeways, memory, forgets: longest_ns == Some(0) }
+        Self { scenario, until, tolerances, memory, forgets: longest_ns == Some(0) }
     }
 
     /// Goes the way with these deviations, from the fork of the last of them if it has one.
@@ -88,70 +86,53 @@ impl<'a> Ground<'a> {
         deviations: &[Deviation],
         wanted: Wanted<'_>,
     ) -> Result<Path, SearchError> {
-        let mut judged = self.form(deviations)?;
-        let moment = from.and_then(|fork| fork.moment.as_ref());
-        match moment {
-            Some(moment) => judged.resume(moment).map_err(RunError::Fork)?,
-            None => judged.begin()?,
-        }
-        let mut watched = Watched::new(self.leeways);
+        let deviating = deviations.iter().flat_map(Deviation::operations);
+        let mut judged = form(SearchKind::Explore, self.scenario, self.until, deviating)?;
+        let moment = from.and_then(|fork| fork.moment.as_deref());
+        start::<SearchError>(&mut judged, moment)?;
+        let mut watched = Watched::new(self.tolerances);
         watched.begin(judged.session());
         let mut forks = if wanted.forks && moment.is_none() { self.at_start() } else { Vec::new() };
         let mut joining = Joining::new(self, deviations);
-        loop {
-            if let Some((more, known)) = wanted.known
-                && let Some(schedules) = joining.look(&mut judged, more, known)?
-            {
-                let marks = joining.marks;
-                return Ok(Path {
-                    digest: None,
-                    violated: Vec::new(),
-                    failure: None,
-                    forks,
-                    joined: Some(schedules),
-                    marks,
-                });
-            }
-            // Before the step, because what it brings is to be late.
-            let before = if wanted.forks { judged.moment()?.map(Rc::new) } else { None };
-            if !judged.step()? {
-                break;
-            }
-            watched.look(judged.session());
-            if let Some(moment) = before {
+        // The boundary before the last step, because what that step brought is to be late.
+        let mut before: Option<Rc<Moment>> = None;
+        let joined = run_until(&mut judged, |judged| -> Result<Option<u64>, SearchError> {
+            if let Some(moment) = before.take() {
+                watched.look(judged.session());
                 let t_v = judged.session().t_v();
-                for (number, leeway) in self.leeways.iter().enumerate() {
-                    let what = place::in_step(self.scenario, leeway, &watched, (t_v, deviations));
+                for (number, tolerance) in self.tolerances.iter().enumerate() {
+                    let what = place::in_step(self.scenario, tolerance, &watched, (t_v, deviations));
                     let moment = Some(Rc::clone(&moment));
-                    forks.extend(what.map(|what| Fork { leeway: number, what, edge: t_v, moment }));
+                    forks.extend(what.map(|what| Fork { tolerance: number, what, edge: t_v, moment }));
                 }
             }
+            if let Some((more, known)) = wanted.known
+                && let Some(schedules) = joining.look(judged, more, known)?
+            {
+                return Ok(Some(schedules));
+            }
+            before = if wanted.forks { judged.moment()?.map(Rc::new) } else { None };
+            Ok(None)
+        })?;
+        let marks = joining.marks;
+        if joined.is_some() {
+            return Ok(Path { digest: None, violated: Vec::new(), failure: None, forks, joined, marks });
         }
         let judgement = judged.finish(TraceEnd::Complete)?;
         let failure = judgement.failure.map(|failure| failure.to_string());
-        let (digest, violated, marks) = (judgement.digest, judgement.violated, joining.marks);
-        Ok(Path { digest, violated, failure, forks, joined: None, marks })
+        Ok(Path { digest: judgement.digest, violated: judgement.violated, failure, forks, joined, marks })
     }
 
     fn at_start(&self) -> Vec<Fork> {
-        let leeways = self.leeways.iter().enumerate();
-        let fork = |(leeway, what)| Fork { leeway, what, edge: VirtualTime::ZERO, moment: None };
-        leeways.filter_map(|(number, leeway)| Some((number, place::at_start(leeway)?))).map(fork).collect()
-    }
-
-    fn form(&self, deviations: &[Deviation]) -> Result<Judged<'a>, RunError> {
-        let elsewhere = |name: &ClientName, _: &Member| {
-            let message = format!("client `{name}` is not in this process, where it could be saved and forked");
-            Usage::new(message, Some("explore with a soft PLC in its place".to_owned()))
-        };
-        let deviating = deviations.iter().flat_map(Deviation::operations);
-        Judged::form(self.scenario, self.until, deviating, elsewhere)
+        let tolerances = self.tolerances.iter().enumerate();
+        let fork = |(tolerance, what)| Fork { tolerance, what, edge: VirtualTime::ZERO, moment: None };
+        tolerances.filter_map(|(number, tolerance)| Some((number, place::at_start(tolerance)?))).map(fork).collect()
     }
 }
 
 /// A way that looks whether its state is known.
 struct Joining<'a> {
-    ground: &'a Ground<'a>,
+    context: &'a SearchContext<'a>,
     /// When its last deviation was over.
     over: VirtualTime,
     /// The way without deviations is that which most others join, so it is known at each boundary.
@@ -162,15 +143,15 @@ struct Joining<'a> {
 }
 
 impl<'a> Joining<'a> {
-    fn new(ground: &'a Ground<'a>, deviations: &[Deviation]) -> Self {
+    fn new(context: &'a SearchContext<'a>, deviations: &[Deviation]) -> Self {
         let over = deviations.iter().map(|deviation| deviation.arrives).max().unwrap_or(VirtualTime::ZERO);
-        Self { ground, over, always: deviations.is_empty(), waiting: VecDeque::new(), marks: Vec::new() }
+        Self { context, over, always: deviations.is_empty(), waiting: VecDeque::new(), marks: Vec::new() }
     }
 
     /// How many schedules follow from the boundary at which it is, if that is known.
     fn look(&mut self, judged: &mut Judged<'_>, more: u32, known: &Known) -> Result<Option<u64>, RunError> {
         let (t_v, step) = (judged.session().t_v(), judged.session().step());
-        if t_v < self.over || t_v >= self.ground.until {
+        if t_v < self.over || t_v >= self.context.until {
             return Ok(None);
         }
         let steps = (t_v.as_nanos() - self.over.as_nanos()) / step.as_nanos();
@@ -181,14 +162,14 @@ impl<'a> Joining<'a> {
             if let Some(schedules) = self.is_known(key, t_v, known) {
                 return Ok(Some(schedules));
             }
-            if self.ground.forgets || self.ground.memory.is_some() {
+            if self.context.forgets || self.context.memory.is_some() {
                 self.waiting.push_back((t_v, state));
             }
         }
         // The same for all that wait, and asked for only if one of them has waited long enough.
         let mut settled: Option<Vec<Option<bool>>> = None;
         while let Some((at, state)) = self.waiting.front().copied() {
-            let alike_until = self.ground.memory.map_or(at, |memory| at + memory);
+            let alike_until = self.context.memory.map_or(at, |memory| at + memory);
             if alike_until > t_v {
                 break;
             }

@@ -1,7 +1,7 @@
 //! Where something may happen later: what changes in a step, and which tasks are due in it.
 
 use onescan_scenario::Scenario;
-use onescan_scenario::timing::{Leeway, TimedTask};
+use onescan_scenario::timing::{TimedTask, TimingTolerance};
 use onescan_server::session::Session;
 use onescan_server::signal::{SignalName, SignalType};
 use onescan_server::time::{TimeSpan, VirtualTime};
@@ -19,17 +19,20 @@ pub(super) struct Watched {
 }
 
 impl Watched {
-    /// The signals of these leeways.
-    pub(super) fn new(leeways: &[Leeway]) -> Self {
+    /// The signals of these tolerances.
+    pub(super) fn new(tolerances: &[TimingTolerance]) -> Self {
         let mut names: Vec<SignalName> = Vec::new();
-        for leeway in leeways {
-            match leeway {
-                Leeway::Late { signals, .. } => names.extend(signals.iter().cloned()),
-                Leeway::Behind { signal, others } => {
+        for tolerance in tolerances {
+            match tolerance {
+                TimingTolerance::Late { signals, .. } => names.extend(signals.iter().cloned()),
+                TimingTolerance::Behind { signal, others } => {
                     names.push(signal.clone());
                     names.extend(others.iter().cloned());
                 }
-                Leeway::Jitter { .. } | Leeway::Phase { .. } | Leeway::TwoCycles { .. } | Leeway::Start { .. } => {}
+                TimingTolerance::Jitter { .. }
+                | TimingTolerance::Phase { .. }
+                | TimingTolerance::TwoCycles { .. }
+                | TimingTolerance::Start { .. } => {}
             }
         }
         names.sort();
@@ -70,28 +73,31 @@ impl Watched {
 }
 
 /// What may happen later in the set-up.
-pub(super) fn at_start(leeway: &Leeway) -> Option<What> {
-    match leeway {
-        Leeway::Phase { task: TimedTask { client, name, .. }, .. } => {
+pub(super) fn at_start(tolerance: &TimingTolerance) -> Option<What> {
+    match tolerance {
+        TimingTolerance::Phase { task: TimedTask { client, name, .. }, .. } => {
             Some(What::Phase { client: client.clone(), task: name.clone() })
         }
-        Leeway::Start { client, .. } => Some(What::Start { client: client.clone() }),
-        Leeway::Late { .. } | Leeway::Behind { .. } | Leeway::Jitter { .. } | Leeway::TwoCycles { .. } => None,
+        TimingTolerance::Start { client, .. } => Some(What::Start { client: client.clone() }),
+        TimingTolerance::Late { .. }
+        | TimingTolerance::Behind { .. }
+        | TimingTolerance::Jitter { .. }
+        | TimingTolerance::TwoCycles { .. } => None,
     }
 }
 
 /// What may happen later of what happened in the step that ended at `t_v`, on the way with these deviations.
 pub(super) fn in_step(
     scenario: &Scenario,
-    leeway: &Leeway,
+    tolerance: &TimingTolerance,
     watched: &Watched,
     (t_v, deviations): (VirtualTime, &[Deviation]),
 ) -> Option<What> {
-    match leeway {
-        Leeway::Late { signals, together: true, .. } => {
+    match tolerance {
+        TimingTolerance::Late { signals, together: true, .. } => {
             signals.iter().any(|signal| watched.has_changed(signal)).then(|| What::Frame { signals: signals.clone() })
         }
-        Leeway::Late { signals, together: false, .. } => {
+        TimingTolerance::Late { signals, together: false, .. } => {
             let signal = signals.first().filter(|signal| watched.has_changed(signal))?.clone();
             let declared = scenario.file().signals.get(&signal)?;
             Some(if declared.get_ref().ty == SignalType::BOOL {
@@ -100,15 +106,15 @@ pub(super) fn in_step(
                 What::Change { signal }
             })
         }
-        Leeway::Behind { signal, others } => {
+        TimingTolerance::Behind { signal, others } => {
             let others: Vec<SignalName> = others.iter().filter(|other| watched.has_changed(other)).cloned().collect();
             (watched.has_changed(signal) && !others.is_empty()).then(|| What::Behind { signal: signal.clone(), others })
         }
-        Leeway::Jitter { task, .. } => {
+        TimingTolerance::Jitter { task, .. } => {
             let what = What::Scan { client: task.client.clone(), task: task.name.clone() };
             is_due(scenario, task, t_v, deviations).then_some(what)
         }
-        Leeway::TwoCycles { task } => is_due(scenario, task, t_v, deviations).then(|| {
+        TimingTolerance::TwoCycles { task } => is_due(scenario, task, t_v, deviations).then(|| {
             let written = scenario.file().signals.iter();
             let outputs = written.filter(|(_, signal)| signal.get_ref().writer == task.client);
             What::TwoCycles {
@@ -117,19 +123,19 @@ pub(super) fn in_step(
                 outputs: outputs.map(|(name, _)| name.clone()).collect(),
             }
         }),
-        Leeway::Phase { .. } | Leeway::Start { .. } => None,
+        TimingTolerance::Phase { .. } | TimingTolerance::Start { .. } => None,
     }
 }
 
 /// By how many steps it may be late.
-pub(super) fn sizes(leeway: &Leeway, step: TimeSpan) -> std::ops::RangeInclusive<u64> {
-    match leeway {
-        Leeway::Late { steps, .. }
-        | Leeway::Jitter { steps, .. }
-        | Leeway::Phase { steps, .. }
-        | Leeway::Start { steps, .. } => 1..=*steps,
-        Leeway::Behind { .. } => 1..=1,
-        Leeway::TwoCycles { task } => {
+pub(super) fn sizes(tolerance: &TimingTolerance, step: TimeSpan) -> std::ops::RangeInclusive<u64> {
+    match tolerance {
+        TimingTolerance::Late { steps, .. }
+        | TimingTolerance::Jitter { steps, .. }
+        | TimingTolerance::Phase { steps, .. }
+        | TimingTolerance::Start { steps, .. } => 1..=*steps,
+        TimingTolerance::Behind { .. } => 1..=1,
+        TimingTolerance::TwoCycles { task } => {
             let interval = task.interval.as_nanos() / step.as_nanos().max(1);
             interval..=interval
         }

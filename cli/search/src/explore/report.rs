@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use onescan_report::number::counted;
 use onescan_scenario::Scenario;
 use onescan_scenario::case::written::{Entry, Written};
-use onescan_scenario::timing::Leeway;
+use onescan_scenario::timing::TimingTolerance;
 use serde_json::json;
 
 use super::config::ExploreConfig;
@@ -14,16 +14,16 @@ use super::search::{Finding, Found};
 use onescan_runner::format::Format;
 
 /// All that is reported of an exploration.
-pub(super) struct Told<'a> {
+pub(super) struct ExploreReport<'a> {
     pub(super) config: &'a ExploreConfig,
     pub(super) scenario: &'a Scenario,
-    pub(super) leeways: &'a [Leeway],
+    pub(super) tolerances: &'a [TimingTolerance],
     pub(super) found: &'a Found,
     /// The case to which deviations came.
     pub(super) written: &'a Written,
 }
 
-impl Told<'_> {
+impl ExploreReport<'_> {
     /// Writes what came of it.
     pub(super) fn write(&self, out: &mut dyn Write) -> io::Result<()> {
         match self.config.format {
@@ -44,7 +44,7 @@ impl Told<'_> {
             )?;
         }
         let statement = json!({ "scenario": scenario.name(), "holds": found.findings.is_empty(),
-            "schedules": found.schedules, "joined": found.joined, "runs": found.runs,
+            "schedules": found.schedules, "joined": found.joined, "runs": found.runs.done(),
             "edges": found.places.values().sum::<u64>(), "bound": config.bound, "exhausted": found.exhausted,
             "samples": found.sampled, "seed": config.seed, "version": env!("CARGO_PKG_VERSION") });
         writeln!(out, "{statement}")
@@ -89,7 +89,7 @@ impl Told<'_> {
                 );
                 format!(
                     "{schedules} hold{joined}; {known}, because {} were done, which is the limit (see `--runs`)",
-                    counted(found.runs, "run")
+                    counted(found.runs.done(), "run")
                 )
             }
             (findings, _) if config.all => {
@@ -113,9 +113,11 @@ impl Told<'_> {
 
     /// How many of what may be late are.
     fn late(&self, bound: u32) -> String {
-        let latest = |leeway: &Leeway| if let Leeway::Late { steps, .. } = leeway { Some(*steps) } else { None };
+        let latest = |tolerance: &TimingTolerance| {
+            if let TimingTolerance::Late { steps, .. } = tolerance { Some(*steps) } else { None }
+        };
         // Where nothing but signals may be late it is said by how much.
-        let latest: Option<Vec<u64>> = self.leeways.iter().map(latest).collect();
+        let latest: Option<Vec<u64>> = self.tolerances.iter().map(latest).collect();
         let by = latest.and_then(|all| all.into_iter().max()).map(|latest| match latest {
             1 => " late by 1 step".to_owned(),
             latest => format!(" late by 1 to {latest} steps"),
@@ -125,22 +127,23 @@ impl Told<'_> {
 
     /// What may happen later in the run without deviations.
     fn places(&self) -> String {
-        let count = |is: fn(&Leeway) -> bool| -> u64 {
-            let of = |(number, count): (&usize, &u64)| self.leeways.get(*number).filter(|one| is(one)).map(|_| *count);
+        let count = |is: fn(&TimingTolerance) -> bool| -> u64 {
+            let of =
+                |(number, count): (&usize, &u64)| self.tolerances.get(*number).filter(|one| is(one)).map(|_| *count);
             self.found.places.iter().filter_map(of).sum()
         };
         let all = [
-            (count(|one| matches!(one, Leeway::Late { together: false, .. })), "edge"),
-            (count(|one| matches!(one, Leeway::Late { together: true, .. })), "frame"),
-            (count(|one| matches!(one, Leeway::Behind { .. })), "order"),
-            (count(|one| matches!(one, Leeway::Jitter { .. })), "scan"),
-            (count(|one| matches!(one, Leeway::TwoCycles { .. })), "double cycle"),
-            (count(|one| matches!(one, Leeway::Phase { .. })), "phase"),
-            (count(|one| matches!(one, Leeway::Start { .. })), "start"),
+            (count(|one| matches!(one, TimingTolerance::Late { together: false, .. })), "edge"),
+            (count(|one| matches!(one, TimingTolerance::Late { together: true, .. })), "frame"),
+            (count(|one| matches!(one, TimingTolerance::Behind { .. })), "order"),
+            (count(|one| matches!(one, TimingTolerance::Jitter { .. })), "scan"),
+            (count(|one| matches!(one, TimingTolerance::TwoCycles { .. })), "double cycle"),
+            (count(|one| matches!(one, TimingTolerance::Phase { .. })), "phase"),
+            (count(|one| matches!(one, TimingTolerance::Start { .. })), "start"),
         ];
-        let told: Vec<String> =
+        let counts: Vec<String> =
             all.into_iter().filter(|(count, _)| *count > 0).map(|(count, noun)| counted(count, noun)).collect();
-        if told.is_empty() { "0 edges".to_owned() } else { told.join(", ") }
+        if counts.is_empty() { "0 edges".to_owned() } else { counts.join(", ") }
     }
 
     /// All findings as a file of cases.

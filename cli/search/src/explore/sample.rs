@@ -29,14 +29,14 @@ impl Search<'_> {
         if self.config.samples == 0 {
             return Ok(());
         }
-        let trunk = self.ground.go(None, &[], Wanted { forks: true, known: None })?;
+        let base_run = self.context.go(None, &[], Wanted { forks: true, known: None })?;
         for number in 0..self.config.samples {
             // Each has numbers of its own, so that more of them does not change those before.
             let mut random = Random::new(seed_for(self.config.seed, "schedule", &number.to_string()));
-            let Some((from, deviations)) = self.drawn(&trunk, &mut random)? else { continue };
+            let Some((from, deviations)) = self.drawn(&base_run, &mut random)? else { continue };
             self.found.sampled += 1;
-            self.found.runs += 1;
-            let path = self.ground.go(Some(&from), &deviations, TO_THE_END)?;
+            self.found.runs.spend();
+            let path = self.context.go(Some(&from), &deviations, TO_THE_END)?;
             let Some(finding) = Finding::of(path, &deviations) else { continue };
             let finding = self.fewest(finding)?;
             let is_new = self.found.findings.iter().all(|known| known.deviations != finding.deviations);
@@ -49,7 +49,7 @@ impl Search<'_> {
     }
 
     /// A random schedule with more deviations than the bound; nothing if too little may happen later.
-    fn drawn(&mut self, trunk: &Path, random: &mut Random) -> Result<Option<(Fork, Vec<Deviation>)>, SearchError> {
+    fn drawn(&mut self, base_run: &Path, random: &mut Random) -> Result<Option<(Fork, Vec<Deviation>)>, SearchError> {
         let sizes = self.sizes();
         for _ in 0..DRAWS_MAX {
             let span = u64::from(sizes.end() - sizes.start()) + 1;
@@ -60,11 +60,11 @@ impl Search<'_> {
                 let own = match &last {
                     None => None,
                     Some(fork) => {
-                        self.found.runs += 1;
-                        Some(self.ground.go(Some(fork), &deviations, Wanted { forks: true, known: None })?)
+                        self.found.runs.spend();
+                        Some(self.context.go(Some(fork), &deviations, Wanted { forks: true, known: None })?)
                     }
                 };
-                let forks = &own.as_ref().unwrap_or(trunk).forks;
+                let forks = &own.as_ref().unwrap_or(base_run).forks;
                 let next: Vec<&Fork> = forks.iter().filter(|fork| is_next(fork, &deviations)).collect();
                 if next.is_empty() {
                     break;
@@ -72,10 +72,10 @@ impl Search<'_> {
                 // The first of as many places as are still wanted, so that they lie all over the run.
                 let place = (0..left).map(|_| random.bits() % next.len() as u64).min().unwrap_or(0);
                 let Some(fork) = usize::try_from(place).ok().and_then(|place| next.get(place)) else { break };
-                let step = self.ground.scenario.plan().step();
-                let late = place::sizes(&self.ground.leeways[fork.leeway], step);
+                let step = self.context.scenario.plan().step();
+                let late = place::sizes(&self.context.tolerances[fork.tolerance], step);
                 let late_steps = late.start() + random.bits() % (late.end() - late.start() + 1);
-                let what = (fork.leeway, fork.what.clone());
+                let what = (fork.tolerance, fork.what.clone());
                 let Some(deviation) = Deviation::new(what, fork.edge, late_steps, step) else { break };
                 deviations.push(deviation);
                 last = Some((*fork).clone());
@@ -104,8 +104,8 @@ impl Search<'_> {
             }
         }
         for number in 0..finding.deviations.len() {
-            let leeway = &self.ground.leeways[finding.deviations[number].leeway];
-            let sizes = place::sizes(leeway, self.ground.scenario.plan().step());
+            let tolerance = &self.context.tolerances[finding.deviations[number].tolerance];
+            let sizes = place::sizes(tolerance, self.context.scenario.plan().step());
             let late = finding.deviations[number].late_steps;
             for late_steps in sizes.take_while(|steps| *steps < late) {
                 let mut less = finding.deviations.clone();
@@ -121,7 +121,7 @@ impl Search<'_> {
     }
 
     fn fails(&mut self, deviations: &[Deviation]) -> Result<Option<Finding>, SearchError> {
-        self.found.runs += 1;
-        Ok(Finding::of(self.ground.go(None, deviations, TO_THE_END)?, deviations))
+        self.found.runs.spend();
+        Ok(Finding::of(self.context.go(None, deviations, TO_THE_END)?, deviations))
     }
 }

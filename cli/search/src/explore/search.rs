@@ -3,14 +3,15 @@
 use std::collections::BTreeMap;
 
 use onescan_scenario::Scenario;
-use onescan_scenario::timing::Leeway;
+use onescan_scenario::timing::TimingTolerance;
 use onescan_server::time::VirtualTime;
 
 use super::config::ExploreConfig;
 use super::deviation::Deviation;
 use super::known::{Known, Mark};
-use super::path::{Fork, Ground, Path, Wanted};
+use super::path::{Fork, Path, SearchContext, Wanted};
 use super::place;
+use crate::forest::Budget;
 use onescan_runner::run::SearchError;
 use onescan_runner::run::expectation::ExpectationReport;
 
@@ -25,7 +26,7 @@ pub(super) struct Found {
     /// Those of them that came to a state from which all was known to hold.
     pub(super) joined: u64,
     /// Runs that took, each from its fork.
-    pub(super) runs: u64,
+    pub(super) runs: Budget,
     /// What may happen later in the run without deviations, by the number of what allows it.
     pub(super) places: BTreeMap<usize, u64>,
     /// So many deviations at a time were tried, all of them; none if not even the run without could be judged.
@@ -74,7 +75,7 @@ type Tried = (VirtualTime, u64, bool);
 
 pub(super) struct Search<'a> {
     pub(super) config: &'a ExploreConfig,
-    pub(super) ground: Ground<'a>,
+    pub(super) context: SearchContext<'a>,
     pub(super) found: Found,
     known: Known,
 }
@@ -86,7 +87,7 @@ pub(super) struct Search<'a> {
 pub(super) fn search(
     config: &ExploreConfig,
     scenario: &Scenario,
-    leeways: &[Leeway],
+    tolerances: &[TimingTolerance],
     until: VirtualTime,
 ) -> Result<Found, SearchError> {
     let found = Found {
@@ -94,13 +95,13 @@ pub(super) fn search(
         findings: Vec::new(),
         schedules: 0,
         joined: 0,
-        runs: 0,
+        runs: Budget::new(config.runs_max),
         places: BTreeMap::new(),
         exhausted: None,
         sampled: 0,
     };
-    let ground = Ground::new(scenario, until, leeways);
-    let mut search = Search { config, ground, found, known: Known::default() };
+    let context = SearchContext::new(scenario, until, tolerances);
+    let mut search = Search { config, context, found, known: Known::default() };
     // Each level goes the ways of those below it again: to keep their forks instead would take memory for the whole tree.
     for level in 0..=config.bound {
         if let Going::Enough = search.below(None, &mut Vec::new(), level)? {
@@ -115,15 +116,15 @@ pub(super) fn search(
 impl Search<'_> {
     /// Goes all ways with `more` deviations beyond these.
     fn below(&mut self, from: Option<&Fork>, deviations: &mut Vec<Deviation>, more: u32) -> Result<Going, SearchError> {
-        if self.found.runs >= self.config.runs_max.get() {
+        if self.found.runs.is_spent() {
             return Ok(Going::Enough);
         }
-        self.found.runs += 1;
+        self.found.runs.spend();
         let known = (!self.config.no_merge).then_some((more, &self.known));
-        let path = self.ground.go(from, deviations, Wanted { forks: more > 0, known })?;
+        let path = self.context.go(from, deviations, Wanted { forks: more > 0, known })?;
         if deviations.is_empty() && more > 0 {
             self.found.places.clear();
-            path.forks.iter().for_each(|fork| *self.found.places.entry(fork.leeway).or_default() += 1);
+            path.forks.iter().for_each(|fork| *self.found.places.entry(fork.tolerance).or_default() += 1);
         }
         let joined = path.joined.unwrap_or(0);
         self.found.schedules += joined;
@@ -132,15 +133,15 @@ impl Search<'_> {
             return Ok(self.judged(path, deviations));
         }
         let mut tried: Vec<Tried> = Vec::new();
-        let step = self.ground.scenario.plan().step();
+        let step = self.context.scenario.plan().step();
         let forks: Vec<&Fork> = path.forks.iter().filter(|fork| is_next(fork, deviations)).collect();
         // The smallest lateness of all edges first: that is what a finding is to show.
-        let sizes = |fork: &Fork| place::sizes(&self.ground.leeways[fork.leeway], step);
+        let sizes = |fork: &Fork| place::sizes(&self.context.tolerances[fork.tolerance], step);
         let mut all: Vec<(u64, &Fork)> =
             forks.iter().flat_map(|fork| sizes(fork).map(move |size| (size, *fork))).collect();
         all.sort_by_key(|(size, _)| *size);
         for (late_steps, fork) in all {
-            let what = (fork.leeway, fork.what.clone());
+            let what = (fork.tolerance, fork.what.clone());
             let Some(deviation) = Deviation::new(what, fork.edge, late_steps, step) else { continue };
             deviations.push(deviation);
             let going = self.below(Some(fork), deviations, more - 1)?;
@@ -187,7 +188,7 @@ impl Search<'_> {
 /// True if it comes after all that is late already, so that no two are tried in both orders, and is not what arrives, or
 /// is held or moved, by one of them.
 pub(super) fn is_next(fork: &Fork, deviations: &[Deviation]) -> bool {
-    let is_after = deviations.last().is_none_or(|last| (fork.edge, fork.leeway) > (last.edge, last.leeway));
+    let is_after = deviations.last().is_none_or(|last| (fork.edge, fork.tolerance) > (last.edge, last.tolerance));
     let arrives = deviations.iter().any(|one| one.what.meets(&fork.what) && fork.edge <= one.arrives);
     is_after && !arrives
 }

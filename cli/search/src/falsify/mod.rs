@@ -5,9 +5,8 @@
 //! | [`config`] | what is asked for |
 //! | `space` | what is varied: a point of a cube is a case |
 //! | `optimiser` | which points are simulated next |
-//! | `trial` | a point simulated, forked from trials before it |
-//! | `crew` | several at a time |
-//! | `search` | points asked for, simulated, and told what they are worth |
+//! | `evaluator` | what a point is worth, simulated by a run that forks from others |
+//! | `search` | points that the optimiser asks for, simulated, and their worth |
 //! | `points` | points that another program chooses |
 //! | `picture` | the finding from its start |
 //! | `report` | what was found |
@@ -16,14 +15,13 @@
 //! is found has the digest of its case run from the start.
 
 pub mod config;
-mod crew;
+mod evaluator;
 mod optimiser;
 mod picture;
 mod points;
 mod report;
 mod search;
 mod space;
-mod trial;
 
 use std::io::{BufRead, Write};
 

@@ -1,5 +1,7 @@
 //! The finding, run once more from its start: its digest, and what its signals are over time.
 
+use std::convert::Infallible;
+
 use onescan_report::plot::{Mark, Plot};
 use onescan_scenario::Scenario;
 use onescan_scenario::expect::{Outcome, Verdict};
@@ -7,7 +9,7 @@ use onescan_server::digest::Digest;
 use onescan_server::signal::SignalName;
 use onescan_server::time::VirtualTime;
 
-use super::space::form;
+use crate::forest::{SearchKind, form, run_until};
 use onescan_runner::run::SearchError;
 use onescan_runner::run::chosen::Chosen;
 use onescan_runner::run::judged::Judged;
@@ -27,13 +29,13 @@ pub(super) fn whole(scenario: &Scenario, until: VirtualTime) -> Result<Whole, Se
     let names = plotted(scenario);
     let mut chosen = Chosen::new(&names);
     let mut samples = Samples { values: vec![Vec::new(); names.len()], names, t_ns: Vec::new() };
-    let mut judged = form(scenario, until)?;
+    let mut judged = form(SearchKind::Falsify, scenario, until, [])?;
     judged.begin()?;
     chosen.find(judged.session());
-    take(&mut samples, &chosen, &judged);
-    while judged.step()? {
-        take(&mut samples, &chosen, &judged);
-    }
+    run_until(&mut judged, |judged| {
+        take(&mut samples, &chosen, judged);
+        Ok::<_, SearchError>(None::<Infallible>)
+    })?;
     let measured = judged.measure()?;
     let panels = samples.names.iter().map(|name| panel(scenario, name, std::iter::once(&samples)));
     let plot = Plot {

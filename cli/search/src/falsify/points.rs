@@ -5,22 +5,22 @@ use std::io::{BufRead, Write};
 use onescan_report::OutputError;
 use serde_json::json;
 
+use super::evaluator::{Evaluator, Forks, Wanted};
 use super::space::{Point, Space};
-use super::trial::{Bench, Forks, Wanted};
 use onescan_runner::error::Usage;
 use onescan_runner::run::SearchError;
 
 /// Simulates the point of each line of `points`, and writes what it is worth to `out` before it reads the next.
 ///
 /// # Errors
-/// A line is no point, or a session cannot be formed or go on.
+/// A line is not a point, or a session cannot be formed or go on.
 pub(super) fn serve(
     space: &Space<'_>,
     expect: Option<usize>,
     points: impl BufRead,
     out: &mut dyn Write,
 ) -> Result<(), SearchError> {
-    let mut bench = Bench::new(space, expect, Wanted::Margins, Forks::Everywhere);
+    let mut evaluator = Evaluator::new(space, expect, Wanted::Margins, Forks::Everywhere);
     for (number, line) in points.lines().enumerate() {
         let wrong = |what: String| {
             let help = format!("a point has {} numbers from 0 to 1, as a JSON array on a line", space.dimensions());
@@ -34,10 +34,10 @@ pub(super) fn serve(
         if let Some(outside) = point.iter().find(|x| !(0.0..=1.0).contains(*x)) {
             return Err(wrong(format!("{outside} is not from 0 to 1")).into());
         }
-        let sample = bench.simulate(&point)?;
-        let told = json!({ "robustness": sample.robustness, "violated": sample.violated, "failure": sample.failure,
+        let sample = evaluator.simulate(&point)?;
+        let line = json!({ "robustness": sample.robustness, "violated": sample.violated, "failure": sample.failure,
             "digest": sample.digest.map(|digest| digest.to_string()), "forked_ns": sample.forked });
-        writeln!(out, "{told}").and_then(|()| out.flush()).map_err(OutputError)?;
+        writeln!(out, "{line}").and_then(|()| out.flush()).map_err(OutputError)?;
     }
     Ok(())
 }

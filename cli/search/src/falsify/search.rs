@@ -1,4 +1,4 @@
-//! The search: points asked for, simulated, and told what they are worth.
+//! The search: points that the optimiser asks for, simulated, and their worth.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -6,10 +6,10 @@ use onescan_scenario::Scenario;
 use onescan_server::signal::did_you_mean;
 
 use super::config::{FalsifyConfig, Objective};
-use super::crew::Crew;
+use super::evaluator::{Branch, Evaluator, Forks, Sample, Wanted};
 use super::optimiser;
-use super::space::Space;
-use super::trial::{Bench, Branch, Forks, Sample, Wanted};
+use super::space::{Point, Space};
+use crate::forest::{Budget, Workers};
 use onescan_runner::error::Usage;
 use onescan_runner::run::SearchError;
 
@@ -49,19 +49,20 @@ pub(super) fn expectation(scenario: &Scenario, wanted: Option<&str>) -> Result<O
 /// A session cannot be formed or go on.
 pub(super) fn search(config: &FalsifyConfig, space: &Space<'_>, expect: Option<usize>) -> Result<Found, SearchError> {
     let wanted = if config.objective == Objective::Robustness { Wanted::Margins } else { Wanted::Branches };
-    let mut crew = Crew::new(config.jobs, || Bench::new(space, expect, wanted, Forks::First));
+    let mut workers = Workers::new(config.jobs, || Evaluator::new(space, expect, wanted, Forks::First));
     let mut optimiser =
         optimiser::new(config.optimiser, space.dimensions(), config.seed, |random| space.corners(random));
     let mut atlas = Atlas { objective: config.objective, taken: BTreeMap::new(), all: 0 };
-    let (mut simulations, mut forked) = (0, 0);
+    let (mut budget, mut forked) = (Budget::new(config.runs_max), 0);
     let mut best: Option<Sample> = None;
     loop {
         let mut points = optimiser.ask();
-        points.truncate(usize::try_from(config.runs_max.get() - simulations).unwrap_or(usize::MAX));
-        let samples = crew.simulate(&points)?;
+        points.truncate(usize::try_from(budget.left()).unwrap_or(usize::MAX));
+        let simulate = |evaluator: &mut Evaluator<'_>, point: &Point| evaluator.simulate(point);
+        let samples = workers.run(&points, simulate, Sample::is_finding)?;
         let mut values = Vec::new();
         for sample in samples {
-            simulations += 1;
+            budget.spend();
             forked += u64::from(sample.forked.is_some());
             values.push(atlas.worth(&sample));
             if sample.is_finding() || best.as_ref().is_none_or(|best| sample.robustness < best.robustness) {
@@ -69,9 +70,9 @@ pub(super) fn search(config: &FalsifyConfig, space: &Space<'_>, expect: Option<u
             }
         }
         match best.take() {
-            Some(best) if best.is_finding() || simulations >= config.runs_max.get() => {
+            Some(best) if best.is_finding() || budget.is_spent() => {
                 let branches = (wanted == Wanted::Branches).then_some((atlas.taken.len(), atlas.all));
-                return Ok(Found { best, simulations, forked, branches });
+                return Ok(Found { best, simulations: budget.done(), forked, branches });
             }
             going_on => best = going_on,
         }

@@ -4,16 +4,14 @@ use std::collections::BTreeSet;
 
 use onescan_scenario::Scenario;
 use onescan_scenario::case::written::{Entry, List, Written, to_text};
-use onescan_scenario::compose::Member;
 use onescan_scenario::falsify::{Shape, Varied, VariedInput};
 use onescan_server::random::Random;
-use onescan_server::signal::{ClientName, SignalType};
+use onescan_server::signal::SignalType;
 use onescan_server::time::{TimeSpan, VirtualTime};
 use toml::{Table, Value};
 
-use onescan_runner::error::Usage;
-use onescan_runner::run::judged::Judged;
-use onescan_runner::run::{RunError, SearchError};
+use crate::forest::{SearchKind, form};
+use onescan_runner::run::SearchError;
 
 /// A point of the cube.
 pub(super) type Point = Vec<f64>;
@@ -162,13 +160,14 @@ impl<'a> Space<'a> {
     /// All of these.
     pub(super) fn check(&self) -> Result<(), SearchError> {
         let (written, bare) = (&self.written, self.applied(&self.written.to_toml(NAME, &self.written.entries))?);
-        form(&bare, self.until)?;
+        form(SearchKind::Falsify, &bare, self.until, [])?;
         for parameter in &self.varied().parameters {
             for end in parameter.range {
                 let mut entries = written.entries.clone();
                 entries.push(set(&parameter.path, end, parameter.is_whole));
                 let applied = self.applied(&written.to_toml(NAME, &entries));
-                let formed = applied.and_then(|applied| Ok(form(&applied, self.until).map(drop)?));
+                let form = |applied: &Scenario| form(SearchKind::Falsify, applied, self.until, []).map(drop);
+                let formed = applied.and_then(|applied| Ok(form(&applied)?));
                 if let Err(error) = formed {
                     return Err(self.scenario.wrong_parameter(parameter, error.to_string(), None).into());
                 }
@@ -176,15 +175,6 @@ impl<'a> Space<'a> {
         }
         Ok(())
     }
-}
-
-/// A session of `scenario`, all of it in this process.
-pub(super) fn form(scenario: &Scenario, until: VirtualTime) -> Result<Judged<'_>, RunError> {
-    let elsewhere = |name: &ClientName, _: &Member| {
-        let message = format!("client `{name}` is not in this process, where it could be run again and again");
-        Usage::new(message, Some("falsify with a soft PLC in its place".to_owned()))
-    };
-    Judged::form(scenario, until, [], elsewhere)
 }
 
 fn on_grid(ns: u64, step: TimeSpan) -> VirtualTime {

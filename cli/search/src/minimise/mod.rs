@@ -50,15 +50,15 @@ pub fn run(config: &MinimiseConfig, out: &mut dyn Write) -> Result<ExitCode, Sea
         whole = scenario.with_last_of(&written.to_toml("operated", &written.entries))?;
     }
     let until = config.until.unwrap_or(whole.until());
-    let spots = trial::spots(&written.entries, scenario.plan().step());
-    let (first, trunk) = target::first(whole, until, config.expect.as_deref(), &spots)?;
+    let mut forest = trial::forest(&written.entries, scenario.plan().step());
+    let first = target::first(whole, until, config.expect.as_deref(), &mut forest)?;
     let mut entries = written.entries.clone();
     // In the order in which they make a difference; what begins after the failure makes none.
     entries.sort_by_key(Entry::begin);
     entries.retain(|entry| entry.begin() <= first.at);
     let all = written.entries.len();
-    let mut trials = Trials::new(&scenario, written, &first, (until, trunk), config.runs_max);
-    // A name that no case can have is told of before the search.
+    let mut trials = Trials::new(&scenario, written, &first, (until, forest), config.runs_max);
+    // A name that no case can have is reported before the search.
     trials.applied(&trials.text(&config.name, &[], None, None))?;
     let fewest = fewest::fewest(&mut trials, &entries)?;
     let trials_to_fewest = trials.done();

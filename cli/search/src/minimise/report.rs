@@ -5,13 +5,13 @@ use std::io::{self, Write};
 use onescan_report::number::counted;
 use onescan_scenario::Scenario;
 use onescan_scenario::case::written::Entry;
-use onescan_scenario::expect::TraceEnd;
 use onescan_server::time::VirtualTime;
 use serde_json::json;
 
 use super::config::MinimiseConfig;
-use super::target::{self, Target};
+use super::target::Target;
 use super::trial::Trials;
+use crate::forest::{SearchKind, form, whole};
 use onescan_runner::format::Format;
 use onescan_runner::run::SearchError;
 
@@ -51,10 +51,7 @@ impl Minimised {
         let run = |until: VirtualTime| -> Result<(Case, bool), SearchError> {
             let text = trials.text(&config.name, &self.left, Some(until), Some(&about));
             let applied = trials.applied(&text)?;
-            let mut judged = target::form(&applied, until)?;
-            judged.begin()?;
-            while judged.step()? {}
-            let judgement = judged.finish(TraceEnd::Complete)?;
+            let judgement = whole(form(SearchKind::Minimise, &applied, until, [])?)?;
             let fails = self.target.met(&judgement).is_some();
             Ok((Case { text, digest: judgement.digest.map(|digest| digest.to_string()) }, fails))
         };

@@ -1,18 +1,17 @@
 //! What fails.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::convert::Infallible;
 use std::fmt;
 
 use onescan_scenario::Scenario;
-use onescan_scenario::compose::Member;
 use onescan_scenario::expect::TraceEnd;
 use onescan_server::signal::{ClientName, did_you_mean};
 use onescan_server::time::VirtualTime;
 
-use super::trial::Trunk;
+use crate::forest::{BaseRun, Forest, SearchKind, TrialRun, form};
 use onescan_runner::error::Usage;
-use onescan_runner::run::judged::{Judged, Judgement};
-use onescan_runner::run::{RunError, SearchError};
+use onescan_runner::run::SearchError;
+use onescan_runner::run::judged::Judgement;
 
 /// What fails, so that another failure is not taken for it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -65,16 +64,7 @@ impl Target {
     }
 }
 
-/// A session of `scenario`, all of it in this process.
-pub(super) fn form(scenario: &Scenario, until: VirtualTime) -> Result<Judged<'_>, RunError> {
-    let elsewhere = |name: &ClientName, _: &Member| {
-        let message = format!("client `{name}` is not in this process, where it could be saved and forked");
-        Usage::new(message, Some("minimise with a soft PLC in its place".to_owned()))
-    };
-    Judged::form(scenario, until, [], elsewhere)
-}
-
-/// Runs the case as it is; of several failures the first counts, unless one is `wanted`.
+/// Runs the case as it is, for trials to fork from; of several failures the first counts, unless one is `wanted`.
 ///
 /// # Errors
 /// It does not fail.
@@ -82,27 +72,15 @@ pub(super) fn first(
     whole: Scenario,
     until: VirtualTime,
     wanted: Option<&str>,
-    spots: &BTreeSet<VirtualTime>,
-) -> Result<(First, Trunk), SearchError> {
+    forest: &mut Forest,
+) -> Result<First, SearchError> {
     let names = || whole.expectations().named.iter().map(|(name, _)| name.as_str());
     if let Some(wanted) = wanted.filter(|wanted| names().all(|name| name != *wanted)) {
         let help = did_you_mean(wanted, names());
         return Err(Usage::new(format!("the scenario has no expectation `{wanted}`"), help).into());
     }
-    let mut judged = form(&whole, until)?;
-    let mut moments = BTreeMap::new();
-    judged.begin()?;
-    loop {
-        let t_v = judged.session().t_v();
-        if spots.contains(&t_v)
-            && let Some(moment) = judged.moment()?
-        {
-            moments.insert(t_v, moment);
-        }
-        if !judged.step()? {
-            break;
-        }
-    }
+    let mut judged = form(SearchKind::Minimise, &whole, until, [])?;
+    let TrialRun { checkpoints, .. } = forest.run(&mut judged, &whole, |_| None::<Infallible>)?;
     let judgement = judged.finish(TraceEnd::Complete)?;
     let violated = judgement.violated.iter().filter(|one| wanted.is_none_or(|wanted| wanted == one.name));
     let violations = violated.filter_map(|one| Some((one.at?, Target::Expectation(one.name.clone()))));
@@ -114,7 +92,8 @@ pub(super) fn first(
     // The earliest; of those at one time, the first in the file, and what a client says last.
     let first = violations.chain(failure).min_by_key(|(at, _)| *at);
     if let Some((at, target)) = first {
-        return Ok((First { target, at }, Trunk { scenario: whole, moments }));
+        forest.keep(BaseRun { scenario: whole, checkpoints });
+        return Ok(First { target, at });
     }
     let what = wanted.map_or_else(|| "it does what is expected".to_owned(), |name| format!("`{name}` holds"));
     let help = "minimise a case that fails, as those that `onescan explore --cases` writes (docs/minimise.md)";

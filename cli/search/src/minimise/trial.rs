@@ -1,6 +1,6 @@
 //! Sets of entries, tried: each run forks from the one before it with which it has most in common.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::num::NonZeroU64;
 
 use onescan_scenario::Scenario;
@@ -8,16 +8,13 @@ use onescan_scenario::case::written::{Entry, Written};
 use onescan_scenario::expect::TraceEnd;
 use onescan_server::time::{TimeSpan, VirtualTime};
 
-use super::target::{self, First, Target};
+use super::target::{First, Target};
+use crate::forest::{BaseRun, Budget, Forest, ForkPoints, SearchKind, TrialRun, form};
 use onescan_runner::run::SearchError;
-use onescan_runner::run::judged::{Judged, Judgement, Moment};
+use onescan_runner::run::judged::{Judged, Judgement};
 
-/// Moments that are kept of a run.
-const MOMENTS_MAX: usize = 64;
-/// Runs of which moments are kept: those that were of use last.
-const TRUNKS_MAX: usize = 24;
-/// Steps between two looks at whether it is decided.
-const LOOK_STRIDE: u64 = 64;
+/// Runs of which checkpoints are kept.
+const BASE_RUNS_MAX: usize = 24;
 
 /// What has been tried so far.
 pub(super) struct Trials<'a> {
@@ -28,29 +25,23 @@ pub(super) struct Trials<'a> {
     by: VirtualTime,
     /// Whether nothing comes after that in a run of the case.
     end: TraceEnd,
-    /// Boundaries from which others may fork.
-    spots: BTreeSet<VirtualTime>,
     known: BTreeMap<String, Option<VirtualTime>>,
-    trunks: Vec<Trunk>,
-    done: u64,
-    runs_max: NonZeroU64,
+    forest: Forest,
+    budget: Budget,
+}
+
+/// A forest of runs that others fork from before one of these entries begins.
+pub(super) fn forest(entries: &[Entry], step: TimeSpan) -> Forest {
+    Forest::new(before(entries, step), BASE_RUNS_MAX)
 }
 
 /// The boundaries before these entries begin, or some of them if there are many.
-pub(super) fn spots(entries: &[Entry], step: TimeSpan) -> BTreeSet<VirtualTime> {
+fn before(entries: &[Entry], step: TimeSpan) -> ForkPoints {
     let before = |entry: &Entry| {
         let grid = entry.begin().as_nanos().div_ceil(step.as_nanos()).saturating_mul(step.as_nanos());
         VirtualTime::from_nanos(grid).saturating_sub(step)
     };
-    let all: BTreeSet<VirtualTime> = entries.iter().map(before).collect();
-    let stride = all.len().div_ceil(MOMENTS_MAX).max(1);
-    all.into_iter().step_by(stride).collect()
-}
-
-/// A run from which others fork.
-pub(super) struct Trunk {
-    pub(super) scenario: Scenario,
-    pub(super) moments: BTreeMap<VirtualTime, Moment>,
+    ForkPoints::among(entries.iter().map(before).collect())
 }
 
 impl<'a> Trials<'a> {
@@ -58,7 +49,7 @@ impl<'a> Trials<'a> {
         scenario: &'a Scenario,
         written: Written,
         first: &First,
-        (until, trunk): (VirtualTime, Trunk),
+        (until, forest): (VirtualTime, Forest),
         runs_max: NonZeroU64,
     ) -> Self {
         let end = if first.at < until { TraceEnd::Cut } else { TraceEnd::Complete };
@@ -68,22 +59,20 @@ impl<'a> Trials<'a> {
             target: first.target.clone(),
             by: first.at,
             end,
-            spots: trunk.moments.keys().copied().collect(),
             known: BTreeMap::new(),
-            trunks: vec![trunk],
-            done: 0,
-            runs_max,
+            forest,
+            budget: Budget::new(runs_max),
         }
     }
 
     /// Trials so far.
     pub(super) fn done(&self) -> u64 {
-        self.done
+        self.budget.done()
     }
 
     /// True if no more are allowed, so that what was not tried is taken to hold.
     pub(super) fn is_spent(&self) -> bool {
-        self.done >= self.runs_max.get()
+        self.budget.is_spent()
     }
 
     /// The time until which a trial is to fail.
@@ -122,9 +111,9 @@ impl<'a> Trials<'a> {
         Ok(self.scenario.with_last_of(text)?)
     }
 
-    /// Lets runs keep the boundaries before these entries begin.
+    /// Lets runs keep checkpoints before these entries begin.
     pub(super) fn fork_before(&mut self, entries: &[Entry]) {
-        self.spots = spots(entries, self.step());
+        self.forest.fork_at(before(entries, self.step()));
     }
 
     /// When a run with these entries alone fails, if it does.
@@ -139,68 +128,18 @@ impl<'a> Trials<'a> {
         if self.is_spent() {
             return Ok(None);
         }
-        self.done += 1;
+        self.budget.spend();
         let scenario = self.applied(&text)?;
-        let (at, moments) = self.run(&scenario)?;
-        self.trunks.push(Trunk { scenario, moments });
-        if self.trunks.len() > TRUNKS_MAX {
-            self.trunks.remove(0);
-        }
+        let mut judged = form(SearchKind::Minimise, &scenario, self.by, [])?;
+        let expectation = self.target.expectation();
+        let is_met = |judged: &Judged<'_>| judged.violated().any(|known| expectation == Some(known)).then_some(());
+        let TrialRun { decided, checkpoints, .. } = self.forest.run(&mut judged, &scenario, is_met)?;
+        let at = self.target.met(&match decided {
+            Some(()) => Judgement { digest: None, violated: judged.abandon(), failure: None },
+            None => judged.finish(self.end)?,
+        });
+        self.forest.keep(BaseRun { scenario, checkpoints });
         self.known.insert(text, at);
         Ok(at)
-    }
-
-    fn run(
-        &mut self,
-        scenario: &Scenario,
-    ) -> Result<(Option<VirtualTime>, BTreeMap<VirtualTime, Moment>), SearchError> {
-        let mut judged = target::form(scenario, self.by)?;
-        if !self.resume(&mut judged, scenario) {
-            judged.begin()?;
-        }
-        let mut moments = BTreeMap::new();
-        let mut steps: u64 = 0;
-        loop {
-            let t_v = judged.session().t_v();
-            if self.spots.contains(&t_v)
-                && let Some(moment) = judged.moment()?
-            {
-                moments.insert(t_v, moment);
-            }
-            let is_decided =
-                || self.target.expectation().is_some_and(|name| judged.violated().any(|known| known == name));
-            if steps.is_multiple_of(LOOK_STRIDE) && is_decided() {
-                let judgement = Judgement { digest: None, violated: judged.abandon(), failure: None };
-                return Ok((self.target.met(&judgement), moments));
-            }
-            if !judged.step()? {
-                let at = self.target.met(&judged.finish(self.end)?);
-                return Ok((at, moments));
-            }
-            steps += 1;
-        }
-    }
-
-    /// Goes on from the latest moment of a run before it that did the same up to there.
-    fn resume(&mut self, judged: &mut Judged<'_>, scenario: &Scenario) -> bool {
-        let mut found: Vec<(VirtualTime, usize)> = Vec::new();
-        for (index, trunk) in self.trunks.iter().enumerate() {
-            let departure = scenario.departs_from(&trunk.scenario);
-            if departure.from_start || !departure.conditions.is_empty() {
-                continue;
-            }
-            let latest = trunk.moments.range(..=departure.at.unwrap_or(VirtualTime::MAX)).next_back();
-            found.extend(latest.map(|(t_v, _)| (*t_v, index)));
-        }
-        found.sort_unstable();
-        // A run that was set otherwise says so itself.
-        let taken = found.into_iter().rev().find(|(t_v, index)| {
-            self.trunks[*index].moments.get(t_v).is_some_and(|moment| judged.resume(moment).is_ok())
-        });
-        if let Some((_, index)) = taken {
-            let of_use = self.trunks.remove(index);
-            self.trunks.push(of_use);
-        }
-        taken.is_some()
     }
 }

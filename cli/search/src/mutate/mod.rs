@@ -30,7 +30,7 @@ pub use config::MutateConfig;
 use tally::Tally;
 use trial::{Trial, Verdict};
 
-use onescan_regress::regress::pool::{bar, spread};
+use crate::forest::each;
 use onescan_runner::error::{ExitCode, Usage};
 use onescan_runner::run::SearchError;
 
@@ -54,9 +54,7 @@ pub fn run(config: &MutateConfig, out: &mut dyn Write) -> Result<ExitCode, Searc
         return Err(nothing(&scenario, config.client.as_ref()).into());
     }
     let trial = Trial::new(&scenario, &catalogue, cases)?;
-    let bar = bar(config.progress, mistakes.len(), "mutants");
-    let verdicts = spread(config.jobs, mistakes.len(), &bar, |index| trial.verdict(&mistakes[index]));
-    let verdicts: Vec<Verdict> = verdicts.into_iter().collect::<Result<_, _>>()?;
+    let verdicts = each(config.jobs, &mistakes, (config.progress, "mutants"), |mistake| trial.verdict(mistake))?;
     let judged: Vec<Judged> =
         mistakes.into_iter().zip(verdicts).map(|(mistake, verdict)| Judged { mistake, verdict }).collect();
     let tally = Tally::of(&judged);

@@ -56,7 +56,7 @@ fn human(scenario: &Scenario, judged: &[Judged], tally: &Tally, out: &mut dyn Wr
     let mutants = counted(all.mutants() as u64, "mutant");
     writeln!(
         out,
-        "{}: {mutants}, {:.1} % of those that can be told apart were noticed",
+        "{}: {mutants}, {:.1} % of those that can be distinguished were noticed",
         scenario.name(),
         all.score_pct()
     )?;
@@ -66,7 +66,7 @@ fn human(scenario: &Scenario, judged: &[Judged], tally: &Tally, out: &mut dyn Wr
     rows.push(row("all", &all));
     table::write(&rows, out)?;
     if all.refused > 0 {
-        writeln!(out, "  {} would be no program", counted(all.refused as u64, "other"))?;
+        writeln!(out, "  {} would not be a program", counted(all.refused as u64, "other"))?;
     }
     for (title, is_meant) in [
         ("survived: a signal was another one, and no expectation said so", is_survivor as fn(&Verdict) -> bool),
@@ -78,7 +78,7 @@ fn human(scenario: &Scenario, judged: &[Judged], tally: &Tally, out: &mut dyn Wr
         }
         writeln!(out, "\n{title}")?;
         for one in meant {
-            writeln!(out, "  {}", told(scenario, one))?;
+            writeln!(out, "  {}", description(scenario, one))?;
         }
     }
     Ok(())
@@ -94,7 +94,7 @@ fn row(name: &str, counts: &Counts) -> Vec<String> {
 }
 
 /// A mistake with its place, and the case in which it shows.
-fn told(scenario: &Scenario, Judged { mistake, verdict }: &Judged) -> String {
+fn description(scenario: &Scenario, Judged { mistake, verdict }: &Judged) -> String {
     let Mistake { client, source, mutant } = mistake;
     let plcs = scenario.file().clients.values().filter(|each| each.get_ref().is_plc()).count();
     let whose = if plcs > 1 { format!("{client}: ") } else { String::new() };

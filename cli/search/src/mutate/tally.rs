@@ -35,7 +35,7 @@ impl Counts {
         self.killed + self.survived + self.unreached + self.equivalent
     }
 
-    /// How many of those that can be told from the program were noticed, %.
+    /// How many of those that can be distinguished from the program were noticed, %.
     pub(super) fn score_pct(&self) -> f64 {
         let distinct = self.killed + self.survived + self.unreached;
         if distinct == 0 { 100.0 } else { 100.0 * self.killed as f64 / distinct as f64 }
@@ -77,7 +77,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_cannot_be_told_apart_does_not_count() {
+    fn what_cannot_be_distinguished_does_not_count() {
         let counts = Counts { killed: 19, survived: 1, unreached: 0, equivalent: 7, refused: 3 };
         assert_eq!((counts.mutants(), counts.score_pct()), (27, 95.0));
         assert_eq!(Counts { unreached: 1, ..counts }.score_pct().round(), 90.0);

@@ -4,18 +4,14 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use onescan_iec_run::coverage::Counted;
 use onescan_scenario::case::{Case, Catalogue};
-use onescan_scenario::compose::Member;
 use onescan_scenario::expect::TraceEnd;
 use onescan_scenario::mistake::Mistake;
 use onescan_scenario::{Scenario, ScenarioError};
-use onescan_server::signal::ClientName;
 
+use crate::forest::{SearchKind, form, now_and_then, run_until, whole};
 use onescan_runner::error::Usage;
 use onescan_runner::run::judged::Judged;
 use onescan_runner::run::{RunError, SearchError};
-
-/// Steps between two looks at whether it is noticed.
-const LOOK_STRIDE: u64 = 64;
 
 /// What came of a mistake.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -32,7 +28,7 @@ pub(super) enum Verdict {
     Unreached,
     /// No signal was another one in any step of any case.
     Equivalent,
-    /// It is no program, or one whose signals do not fit.
+    /// It is not a program, or one whose signals do not fit.
     Refused { why: String },
 }
 
@@ -67,10 +63,7 @@ impl<'a> Trial<'a> {
         let mut sound = Vec::new();
         for case in cases {
             let applied = covered.clone().with_case(catalogue, case)?;
-            let mut judged = form(&applied)?;
-            judged.begin()?;
-            while judged.step()? {}
-            let judgement = judged.finish(TraceEnd::Complete)?;
+            let judgement = whole(form(SearchKind::Mutate, &applied, applied.until(), [])?)?;
             if let Some(failure) = judgement.failure {
                 let message = format!("case `{}` fails without any mistake: {failure}", case.name);
                 return Err(Usage::new(message, Some("choose others with `--case`".to_owned())).into());
@@ -100,24 +93,16 @@ impl<'a> Trial<'a> {
         let mut differs = None;
         for sound in &self.sound {
             let applied = mistaken.clone().with_case(self.catalogue, sound.case)?;
-            let mut judged = match form(&applied) {
+            let mut judged = match form(SearchKind::Mutate, &applied, applied.until(), []) {
                 Ok(judged) => judged,
                 Err(RunError::Scenario(error)) => return Ok(Verdict::Refused { why: first_line(&error) }),
                 Err(error) => return Err(error.into()),
             };
             judged.begin()?;
-            let mut steps: u64 = 0;
-            let early = loop {
-                if steps.is_multiple_of(LOOK_STRIDE)
-                    && let Some(name) = judged.violated().find(|name| !sound.violated.contains(*name))
-                {
-                    break Some(name.to_owned());
-                }
-                if !judged.step()? {
-                    break None;
-                }
-                steps += 1;
-            };
+            let is_new =
+                |judged: &Judged<'_>| judged.violated().find(|name| !sound.violated.contains(*name)).map(str::to_owned);
+            let mut is_new = now_and_then(is_new);
+            let early = run_until(&mut judged, |judged| Ok::<_, SearchError>(is_new(judged)))?;
             let killed = |by: String| Verdict::Killed { case: sound.case.name.clone(), by };
             if let Some(by) = early {
                 return Ok(killed(by));
@@ -136,19 +121,11 @@ impl<'a> Trial<'a> {
         Ok(differs.map_or(Verdict::Equivalent, |case| Verdict::Survived { case }))
     }
 
-    /// False if it is known that no case executes the line of the statement. Declarations are no statements.
+    /// False if it is known that no case executes the line of the statement. Declarations are not statements.
     fn is_reached(&self, mistake: &Mistake) -> bool {
         let lines = self.reached.get(&mistake.source);
         lines.and_then(|lines| lines.get(&mistake.mutant.line)).copied().unwrap_or(true)
     }
-}
-
-fn form(scenario: &Scenario) -> Result<Judged<'_>, RunError> {
-    let elsewhere = |name: &ClientName, _: &Member| {
-        let message = format!("client `{name}` is not in this process");
-        Usage::new(message, Some("mutate with a soft PLC in its place".to_owned()))
-    };
-    Judged::form(scenario, scenario.until(), [], elsewhere)
 }
 
 fn first_line(error: &ScenarioError) -> String {

@@ -23,8 +23,8 @@ mod random;
 use onescan_server::random::{Random, seed_for};
 
 use super::config::OptimiserKind;
+use super::evaluator::FAR;
 use super::space::Point;
-use super::trial::FAR;
 use opening::Opening;
 
 /// What chooses points.

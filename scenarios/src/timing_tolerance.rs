@@ -4,29 +4,29 @@ use onescan_server::time::TimeSpan;
 
 use crate::error::ScenarioError;
 use crate::load::Scenario;
-use crate::timing::{Leeway, TaskLeeway, TimedTask};
+use crate::timing::{TaskTolerance, TimedTask, TimingTolerance};
 
 impl Scenario {
     /// All that `[timing]` allows. PLCs are compiled if it names tasks.
     ///
     /// # Errors
     /// A task is not there or cannot be late, or a PLC does not compile.
-    pub fn leeways(&self) -> Result<Vec<Leeway>, ScenarioError> {
+    pub fn timing_tolerances(&self) -> Result<Vec<TimingTolerance>, ScenarioError> {
         let mut all = self.timing().signals.clone();
-        for leeway in &self.timing().tasks {
-            self.task_leeways(leeway, &mut all)?;
+        for tolerance in &self.timing().tasks {
+            self.task_tolerances(tolerance, &mut all)?;
         }
         for (client, steps, place) in &self.timing().starts {
             let plc = self.plc(client)?;
             let late = plc.plc().check_late(None);
             late.map_err(|error| self.wrong_timing(format!("`{client}`: {error}"), place, None))?;
-            all.push(Leeway::Start { client: client.clone(), steps: *steps });
+            all.push(TimingTolerance::Start { client: client.clone(), steps: *steps });
         }
         Ok(all)
     }
 
-    fn task_leeways(&self, leeway: &TaskLeeway, all: &mut Vec<Leeway>) -> Result<(), ScenarioError> {
-        let TaskLeeway { client, written, place } = leeway;
+    fn task_tolerances(&self, tolerance: &TaskTolerance, all: &mut Vec<TimingTolerance>) -> Result<(), ScenarioError> {
+        let TaskTolerance { client, written, place } = tolerance;
         let plc = self.plc(client)?;
         let tasks = &plc.plc().plan().tasks;
         let named = match (&written.task, &tasks[..]) {
@@ -67,9 +67,9 @@ impl Scenario {
         }
         let jitter = written.late.map(&steps).transpose()?;
         let phase = written.phase.map(&steps).transpose()?;
-        all.extend(jitter.map(|steps| Leeway::Jitter { task: task.clone(), steps }));
-        all.extend(phase.map(|steps| Leeway::Phase { task: task.clone(), steps }));
-        all.extend(written.two_cycles.then(|| Leeway::TwoCycles { task: task.clone() }));
+        all.extend(jitter.map(|steps| TimingTolerance::Jitter { task: task.clone(), steps }));
+        all.extend(phase.map(|steps| TimingTolerance::Phase { task: task.clone(), steps }));
+        all.extend(written.two_cycles.then(|| TimingTolerance::TwoCycles { task: task.clone() }));
         Ok(())
     }
 }

@@ -1,6 +1,7 @@
 //! Points, simulated: each run forks from the one before it with which it has most in common.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
+use std::convert::Infallible;
 
 use onescan_iec_run::coverage::Counted;
 use onescan_scenario::Scenario;
@@ -8,14 +9,12 @@ use onescan_scenario::expect::{Margin, Outcome, Verdict};
 use onescan_server::digest::Digest;
 use onescan_server::time::VirtualTime;
 
-use super::space::{Point, Space, form};
+use super::space::{Point, Space};
+use crate::forest::{BaseRun, Forest, ForkPoints, SearchKind, TrialRun, form};
 use onescan_runner::run::SearchError;
-use onescan_runner::run::judged::{Judged, Moment};
 
-/// Moments that are kept of a run.
-const MOMENTS_MAX: usize = 64;
-/// Runs of which moments are kept: those that were of use last.
-const TRUNKS_MAX: usize = 8;
+/// Runs of which checkpoints are kept.
+const BASE_RUNS_MAX: usize = 8;
 /// What an infinite margin is to who looks for a small one.
 pub(super) const FAR: f64 = 1e12;
 
@@ -63,33 +62,25 @@ impl Sample {
     }
 }
 
-/// A run from which others fork.
-struct Trunk {
-    scenario: Scenario,
-    moments: BTreeMap<VirtualTime, Moment>,
-}
-
 /// Where points are simulated, one after the other.
-pub(super) struct Bench<'a> {
+pub(super) struct Evaluator<'a> {
     space: &'a Space<'a>,
     /// The expectation that is to be broken; all of them if absent.
     expect: Option<usize>,
     wanted: Wanted,
-    spots: BTreeSet<VirtualTime>,
-    trunks: Vec<Trunk>,
+    forest: Forest,
 }
 
-impl<'a> Bench<'a> {
+impl<'a> Evaluator<'a> {
     pub(super) fn new(space: &'a Space<'a>, expect: Option<usize>, wanted: Wanted, forks: Forks) -> Self {
         let step = space.step();
         let before: BTreeSet<VirtualTime> = space.instants().into_iter().map(|at| at.saturating_sub(step)).collect();
-        let stride = before.len().div_ceil(MOMENTS_MAX).max(1);
-        let spots = match (wanted, forks) {
-            (Wanted::Branches, _) => BTreeSet::new(),
-            (Wanted::Margins, Forks::First) => before.into_iter().take(1).collect(),
-            (Wanted::Margins, Forks::Everywhere) => before.into_iter().step_by(stride).collect(),
+        let fork_points = match (wanted, forks) {
+            (Wanted::Branches, _) => ForkPoints::default(),
+            (Wanted::Margins, Forks::First) => ForkPoints::first_of(before),
+            (Wanted::Margins, Forks::Everywhere) => ForkPoints::among(before),
         };
-        Self { space, expect, wanted, spots, trunks: Vec::new() }
+        Self { space, expect, wanted, forest: Forest::new(fork_points, BASE_RUNS_MAX) }
     }
 
     /// Simulates a point.
@@ -101,24 +92,8 @@ impl<'a> Bench<'a> {
         if self.wanted == Wanted::Branches {
             scenario.cover();
         }
-        let mut judged = form(&scenario, self.space.until)?;
-        let forked = self.resume(&mut judged, &scenario);
-        if forked.is_none() {
-            judged.begin()?;
-        }
-        let mut moments = BTreeMap::new();
-        loop {
-            let t_v = judged.session().t_v();
-            if self.spots.contains(&t_v)
-                && forked != Some(t_v)
-                && let Some(moment) = judged.moment()?
-            {
-                moments.insert(t_v, moment);
-            }
-            if !judged.step()? {
-                break;
-            }
-        }
+        let mut judged = form(SearchKind::Falsify, &scenario, self.space.until, [])?;
+        let TrialRun { forked, checkpoints, .. } = self.forest.run(&mut judged, &scenario, |_| None::<Infallible>)?;
         let measured = judged.measure()?;
         let names = &scenario.expectations().named;
         let looked_at = |number: usize| self.expect.is_none_or(|wanted| wanted == number);
@@ -136,34 +111,8 @@ impl<'a> Bench<'a> {
             forked,
             branches: branches(&scenario),
         };
-        if !moments.is_empty() {
-            self.trunks.push(Trunk { scenario, moments });
-            if self.trunks.len() > TRUNKS_MAX {
-                self.trunks.remove(0);
-            }
-        }
+        self.forest.keep(BaseRun { scenario, checkpoints });
         Ok(sample)
-    }
-
-    /// Goes on from the latest moment of a run before it that did the same up to there.
-    fn resume(&mut self, judged: &mut Judged<'_>, scenario: &Scenario) -> Option<VirtualTime> {
-        let mut found: Vec<(VirtualTime, usize)> = Vec::new();
-        for (index, trunk) in self.trunks.iter().enumerate() {
-            let departure = scenario.departs_from(&trunk.scenario);
-            if departure.from_start || !departure.conditions.is_empty() {
-                continue;
-            }
-            let latest = trunk.moments.range(..=departure.at.unwrap_or(VirtualTime::MAX)).next_back();
-            found.extend(latest.map(|(t_v, _)| (*t_v, index)));
-        }
-        found.sort_unstable();
-        // A run that was set otherwise says so itself.
-        let (t_v, index) = found.into_iter().rev().find(|(t_v, index)| {
-            self.trunks[*index].moments.get(t_v).is_some_and(|moment| judged.resume(moment).is_ok())
-        })?;
-        let of_use = self.trunks.remove(index);
-        self.trunks.push(of_use);
-        Some(t_v)
     }
 }
 

@@ -1,0 +1,115 @@
+//! Several trials at a time. What comes of them does not depend on how many there are.
+
+use std::num::NonZeroUsize;
+
+use onescan_regress::regress::pool::{bar, spread};
+
+/// So many runs in a process at most: what is lost if it is killed is little, and so is what it begins with.
+const BATCH_MAX: usize = 32;
+/// So many processes for each of those that run at a time, at least, where there are enough runs.
+const BATCHES_PER_JOB: usize = 4;
+
+/// Does each of `tasks` by itself, so many at a time, with a bar that names them if it is shown. What comes of them is in
+/// their order.
+///
+/// # Errors
+/// The first of `one`, in the order of tasks.
+pub(crate) fn each<T: Sync, O: Send, E: Send>(
+    jobs: NonZeroUsize,
+    tasks: &[T],
+    (is_shown, noun): (bool, &str),
+    one: impl Fn(&T) -> Result<O, E> + Sync,
+) -> Result<Vec<O>, E> {
+    let bar = bar(is_shown, tasks.len(), noun);
+    spread(jobs, tasks.len(), &bar, |index| one(&tasks[index])).into_iter().collect()
+}
+
+/// Runs for a process each: more than one, because each process has to read and compile the scenario first, but so few
+/// that all workers have something to do to the end.
+pub(crate) fn batches<T>(jobs: NonZeroUsize, runs: &[T]) -> Vec<&[T]> {
+    let size = (runs.len() / (jobs.get() * BATCHES_PER_JOB)).clamp(1, BATCH_MAX);
+    runs.chunks(size).collect()
+}
+
+/// Workers with a state of their own, one per thread.
+pub(crate) struct Workers<W> {
+    workers: Vec<W>,
+}
+
+impl<W: Send> Workers<W> {
+    pub(crate) fn new(jobs: NonZeroUsize, worker: impl Fn() -> W) -> Self {
+        Self { workers: (0..jobs.get()).map(|_| worker()).collect() }
+    }
+
+    /// Does tasks in their order, up to the first whose outcome `is_last`.
+    ///
+    /// # Errors
+    /// The first of `work`.
+    pub(crate) fn run<T: Sync, O: Send, E: Send>(
+        &mut self,
+        tasks: &[T],
+        work: impl Fn(&mut W, &T) -> Result<O, E> + Sync,
+        is_last: impl Fn(&O) -> bool,
+    ) -> Result<Vec<O>, E> {
+        let mut outcomes = Vec::new();
+        for some in tasks.chunks(self.workers.len()) {
+            for outcome in self.at_once(some, &work) {
+                let outcome = outcome?;
+                let ends = is_last(&outcome);
+                outcomes.push(outcome);
+                // What was done beyond it counts for nothing: one worker would not have done it.
+                if ends {
+                    return Ok(outcomes);
+                }
+            }
+        }
+        Ok(outcomes)
+    }
+
+    fn at_once<T: Sync, O: Send, E: Send>(
+        &mut self,
+        tasks: &[T],
+        work: &(impl Fn(&mut W, &T) -> Result<O, E> + Sync),
+    ) -> Vec<Result<O, E>> {
+        if let ([task], [worker, ..]) = (tasks, &mut self.workers[..]) {
+            return vec![work(worker, task)];
+        }
+        std::thread::scope(|scope| {
+            let pairs = self.workers.iter_mut().zip(tasks);
+            let threads: Vec<_> = pairs.map(|(worker, task)| scope.spawn(move || work(worker, task))).collect();
+            let ended = threads.into_iter().map(std::thread::ScopedJoinHandle::join);
+            ended.map(|ended| ended.unwrap_or_else(|panic| std::panic::resume_unwind(panic))).collect()
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn outcomes_do_not_depend_on_the_number_of_workers() {
+        let tasks: Vec<u32> = (0..10).collect();
+        for jobs in (1..=4).map(|jobs| NonZeroUsize::new(jobs).unwrap()) {
+            let mut workers = Workers::new(jobs, || ());
+            let work = |wrong: u32| move |task: &u32| if *task == wrong { Err(*task) } else { Ok(2 * task) };
+            let mut run =
+                |wrong: u32| workers.run(&tasks, |(): &mut (), task| work(wrong)(task), |outcome| *outcome == 8);
+            assert_eq!((run(7), run(3)), (Ok(vec![0, 2, 4, 6, 8]), Err(3)), "{jobs} jobs");
+            let all = |wrong: u32| each(jobs, &tasks, (false, "tasks"), work(wrong));
+            assert_eq!((all(10), all(3)), (Ok((0..10).map(|task| 2 * task).collect()), Err(3)), "{jobs} jobs");
+        }
+    }
+
+    #[test]
+    fn batches_are_small_enough_for_all_workers() {
+        let sizes = |jobs: usize, runs: usize| {
+            let runs: Vec<usize> = (0..runs).collect();
+            batches(NonZeroUsize::new(jobs).unwrap(), &runs).into_iter().map(<[usize]>::len).collect::<Vec<_>>()
+        };
+        assert_eq!(sizes(2, 3), [1, 1, 1]);
+        assert_eq!(sizes(1, 9), [2, 2, 2, 2, 1]);
+        assert_eq!(sizes(1, 200), [32, 32, 32, 32, 32, 32, 8]);
+        assert!(sizes(2, 0).is_empty());
+    }
+}
