@@ -45,12 +45,12 @@ const BOUNDS: &[(&str, usize)] = &[
     ("hindrance", 3),
     ("Desk", 34),
     ("Bench", 33),
-    ("Trunk", 20),
+    ("Trunk", 0),
     ("spots", 41),
-    ("Ground", 7),
-    ("Leeway", 59),
-    ("Crew", 4),
-    ("spelt", 32),
+    ("Ground", 0),
+    ("Leeway", 0),
+    ("Crew", 0),
+    ("spelt", 17),
     ("anew", 40),
 ];
 
