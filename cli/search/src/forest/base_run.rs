@@ -59,7 +59,7 @@ impl Forest {
         let mut checkpoints = Checkpoints::new();
         let mut decided = now_and_then(decided);
         let decided = run_until(judged, |judged| -> Result<_, SearchError> {
-            // The base run has the checkpoint from which it forked, and is the last that makes room for others.
+            // Where it forked the base run has the checkpoint: a second one would only take memory.
             if forked != Some(judged.session().t_v()) {
                 self.fork_points.keep(judged, &mut checkpoints)?;
             }

@@ -34,7 +34,7 @@ impl SearchKind {
         }
     }
 
-    /// What the search needs clients of this process for.
+    /// Why the search needs all clients in this process.
     fn need(self) -> &'static str {
         match self {
             Self::Explore | Self::Minimise => ", where it could be saved and forked",

@@ -4,13 +4,13 @@ use std::num::NonZeroUsize;
 
 use onescan_regress::regress::pool::{bar, spread};
 
-/// So many runs in a process at most: what is lost if it is killed is little, and so is what it begins with.
+/// So many runs in a process at most, so that little is lost if it is killed.
 const BATCH_MAX: usize = 32;
-/// So many processes for each of those that run at a time, at least, where there are enough runs.
+/// At least so many batches per worker, where there are enough runs, so that no worker waits long for the last one.
 const BATCHES_PER_JOB: usize = 4;
 
-/// Does each of `tasks` by itself, so many at a time, with a bar that names them if it is shown. What comes of them is in
-/// their order.
+/// Does `tasks` independently of each other, `jobs` at a time, with a bar that calls them `noun` if it is shown. The
+/// results are in the order of the tasks.
 ///
 /// # Errors
 /// The first of `one`, in the order of tasks.
@@ -24,8 +24,8 @@ pub(crate) fn each<T: Sync, O: Send, E: Send>(
     spread(jobs, tasks.len(), &bar, |index| one(&tasks[index])).into_iter().collect()
 }
 
-/// Runs for a process each: more than one, because each process has to read and compile the scenario first, but so few
-/// that all workers have something to do to the end.
+/// Runs in batches, one per process: more than one run, because each process has to read and compile the scenario first,
+/// but so few that all workers have something to do to the end.
 pub(crate) fn batches<T>(jobs: NonZeroUsize, runs: &[T]) -> Vec<&[T]> {
     let size = (runs.len() / (jobs.get() * BATCHES_PER_JOB)).clamp(1, BATCH_MAX);
     runs.chunks(size).collect()
