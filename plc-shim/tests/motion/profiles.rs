@@ -136,7 +136,7 @@ fn jerk_limited_moves_are_their_closed_forms() {
 }
 
 #[test]
-fn acceleration_and_deceleration_are_told_apart() {
+fn acceleration_and_deceleration_are_distinguished() {
     let mut bench = Bench::new();
     let values = [("Position", 100.0), ("Velocity", 20.0), ("Acceleration", 10.0), ("Deceleration", 40.0)];
     bench.start("Absolute", &values);

@@ -43,7 +43,7 @@ impl Group {
 #[derive(Debug)]
 pub(super) struct Guard {
     process: Child,
-    told: ChildStdin,
+    orders: ChildStdin,
 }
 
 impl Guard {
@@ -56,24 +56,24 @@ impl Guard {
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
         let mut process = command.spawn()?;
         match process.stdin.take() {
-            Some(told) => Ok(Self { process, told }),
+            Some(orders) => Ok(Self { process, orders }),
             None => Err(std::io::Error::other("the guard has no input")),
         }
     }
 
     /// From now on this group ends with the server. A guard that was killed guards nothing; the session goes on.
     pub(super) fn watch(&mut self, group: Group) {
-        if let Err(error) = writeln!(self.told, "{}", group.0) {
+        if let Err(error) = writeln!(self.orders, "{}", group.0) {
             tracing::warn!(%error, "processes of clients may outlive this one");
         }
     }
 
     /// Everybody has left.
     pub(super) fn dismiss(self) {
-        let Self { mut process, mut told } = self;
+        let Self { mut process, mut orders } = self;
         // If it is gone already, it need not be told.
-        let _ = writeln!(told, "{DISMISSED}");
-        drop(told);
+        let _ = writeln!(orders, "{DISMISSED}");
+        drop(orders);
         // Its status says nothing that anybody could act on: the processes that it guarded have ended.
         let _ = process.wait();
     }

@@ -292,7 +292,7 @@ mod tests {
     }
 
     #[test]
-    fn marks_that_do_not_fit_together_are_told() {
+    fn marks_that_do_not_fit_together_are_reported() {
         for (text, message) in [
             ("(*@sdsp begin*) x", "what begins here has no end"),
             ("x (*@sdsp end*)", "this mark ends what has not begun"),

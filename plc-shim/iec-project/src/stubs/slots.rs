@@ -173,12 +173,12 @@ impl Slots {
         }
         let built = |ty: &&Ty| matches!(ty, Ty::Array(..) | Ty::Pointer(..));
         // One that a declaration tells goes before one that is only indexed or followed.
-        let told = |ty: &&Ty| match ty {
+        let reported = |ty: &&Ty| match ty {
             Ty::Array(bounds, _) => bounds.iter().any(|each| each != ANY_BOUNDS),
             Ty::Pointer(_, inner) => !matches!(**inner, Ty::Slot(_)),
             _ => false,
         };
-        if let Some(found) = in_order().find(told).or_else(|| in_order().find(built)) {
+        if let Some(found) = in_order().find(reported).or_else(|| in_order().find(built)) {
             return Some(found.clone());
         }
         if let Some(Ty::Text(_)) = in_order().find(|ty| matches!(ty, Ty::Text(_))) {

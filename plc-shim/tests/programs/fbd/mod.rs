@@ -145,7 +145,7 @@ fn jumps_divide_a_body() {
 }
 
 #[test]
-fn bad_networks_are_told() {
+fn bad_networks_are_reported() {
     let body = [
         input(1, (0, 0), "a"),
         input(2, (0, 20), "b"),

@@ -191,7 +191,7 @@ fn several_instances_of_a_program_are_numbered() {
 }
 
 #[test]
-fn what_is_not_instrumented_is_told() {
+fn what_is_not_instrumented_is_reported() {
     let beside = Input::from_text("a.st", SourceKind::Text, "PROGRAM A END_PROGRAM");
     let error = instrument(&[read(&line()), beside], &Options::default()).expect_err("two files");
     assert!(error.to_string().contains("is one file"), "{error}");

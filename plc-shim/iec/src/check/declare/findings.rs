@@ -63,8 +63,8 @@ impl Declarations<'_> {
         let slot = (unit, found.code, name.text.to_ascii_uppercase());
         if let Some((index, span)) = self.findings.unknown.get(&slot) {
             // One that was taken back tells nothing.
-            let told = self.findings.diagnostics.get(*index);
-            if told.is_some_and(|told| told.span == *span && told.code == found.code) {
+            let reported = self.findings.diagnostics.get(*index);
+            if reported.is_some_and(|reported| reported.span == *span && reported.code == found.code) {
                 return;
             }
         }

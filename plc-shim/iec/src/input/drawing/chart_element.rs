@@ -69,9 +69,9 @@ pub(super) struct Step {
 /// Tells of what an element has that is not read.
 fn report_rest(sheet: &mut Sheet<'_>, element: Object<'_>, attributes: &Attributes, what: &str) {
     let place = element.place();
-    for (id, told) in [(LEAST_TIME, "a least time"), (GREATEST_TIME, "a greatest time"), (PRIORITY, "a priority")] {
+    for (id, reported) in [(LEAST_TIME, "a least time"), (GREATEST_TIME, "a greatest time"), (PRIORITY, "a priority")] {
         if attributes.value(id).is_some_and(|value| value.plain.trim() != "0") {
-            sheet.unsupported(&place, &format!("{told} of {what}"));
+            sheet.unsupported(&place, &format!("{reported} of {what}"));
         }
     }
     if attributes.is_set(EXCLUDED) {
