@@ -13,7 +13,7 @@ fn linked() -> Bench {
     bench
 }
 
-/// The drive of this scan: it is where it was told to be.
+/// The drive of this scan: it is where it was ordered to be.
 fn follow(bench: &mut Bench) {
     let (position, velocity) = (bench.position(), bench.velocity());
     bench.set_real("X.ActualPosition", position);

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 
 use crate::bench::Bench;
 
-/// What of a move can be told beforehand: duration and position over time, from rest to rest.
+/// What of a move can be predicted: duration and position over time, from rest to rest.
 ///
 /// Seven parts (B. Siciliano et al., Robotics, 2009, 4.2; L. Biagiotti, C. Melchiorri, Trajectory Planning, 2008,
 /// 3.4): jerk, acceleration, jerk back, velocity, and the same back to rest with equal acceleration and deceleration.

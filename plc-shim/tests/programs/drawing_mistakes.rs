@@ -1,4 +1,4 @@
-//! What is told of drawings that cannot be read: the element, and never another program instead.
+//! What is reported of drawings that cannot be read: the element, and never another program instead.
 
 use onescan_iec::input::kind::SourceKind;
 use onescan_iec::{Input, inspect};

@@ -1,4 +1,4 @@
-//! Mistakes that people make, and what the findings tell them to write.
+//! Mistakes that people make, and what the findings advise them to write.
 
 use std::fmt::Write;
 

@@ -1,4 +1,4 @@
-//! Slips that people make: each is told once, and what follows it is read as if it were not there.
+//! Slips that people make: each is reported once, and what follows it is read as if it were not there.
 
 use crate::rig::findings;
 

@@ -1,6 +1,6 @@
 //! Who ends the processes of a session if the server cannot: killed, or out of memory.
 //!
-//! The guard is this program once more, with a pipe to the server as its input. It is told the groups of processes that
+//! The guard is this program once more, with a pipe to the server as its input. It receives the groups of processes that
 //! are to end with the server. When the pipe closes before the guard was dismissed, the server is dead, and the guard
 //! kills them. Only a process that leaves its group on purpose escapes. Outside of Unix there are no groups, and
 //! the guard knows the clients' own processes only through the server's connection, which closes.
@@ -71,7 +71,7 @@ impl Guard {
     /// Everybody has left.
     pub(super) fn dismiss(self) {
         let Self { mut process, mut orders } = self;
-        // If it is gone already, it need not be told.
+        // If it is gone already, it need not be notified.
         let _ = writeln!(orders, "{DISMISSED}");
         drop(orders);
         // Its status says nothing that anybody could act on: the processes that it guarded have ended.
@@ -79,7 +79,7 @@ impl Guard {
     }
 }
 
-/// The guard's side: reads what it is told from `input`, and when that ends too early kills all groups.
+/// The guard's side: reads what it receives from `input`, and when that ends too early kills all groups.
 pub fn stand(input: impl BufRead) {
     let mut groups = Vec::new();
     for line in input.lines() {

@@ -118,7 +118,7 @@ impl Mesh {
     }
 
     fn stl(bytes: &[u8]) -> Result<Self, MeshError> {
-        // a binary file may begin with "solid", too: its length tells
+        // a binary file may begin with "solid", too: its length decides
         let count = bytes.get(80..STL_HEAD).and_then(|count| count.try_into().ok()).map(u32::from_le_bytes);
         let fits = |count: u32| (count as usize).checked_mul(STL_TRIANGLE).and_then(|size| size.checked_add(STL_HEAD));
         if let Some(count) = count

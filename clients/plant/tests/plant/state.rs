@@ -125,7 +125,7 @@ fn a_restored_heap_goes_on_to_the_bit() {
 }
 
 /// The bits of a run are the same on every machine and in every build; a change of them is a change
-/// of the plant, to be told in the change log.
+/// of the plant, to be described in the change log.
 #[test]
 fn a_run_is_the_same_everywhere() {
     let digest = |scene: &str| {

@@ -1,5 +1,5 @@
 //! What reads the clock (`[SDSP]` sec. V-C), as a table: what replaces it, or what
-//! is told of it.
+//! is reported.
 
 use super::foreign::Kind;
 use super::target::Target;

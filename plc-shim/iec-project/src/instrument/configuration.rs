@@ -125,7 +125,7 @@ pub(super) fn attach(
     single::attach(configuration, file, edits);
 }
 
-/// Tells each of several instances of a program its number.
+/// Gives each of several instances of a program its number.
 fn number(configuration: &Configuration, tasks: &TaskTable<'_>, file: &SourceFile, edits: &mut Edits) {
     for resource in &configuration.resources {
         for program in &resource.programs {

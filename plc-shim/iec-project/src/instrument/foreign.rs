@@ -1,6 +1,6 @@
-//! Vendors' sources of time that the shim does not replace, with who has them: each use is told with its place.
+//! Vendors' sources of time that the shim does not replace, with who has them: each use is reported with its place.
 //!
-//! `docs/clocks.md` shows the table. A name that is in no table, and whose source is not in the project, is told as well.
+//! `docs/clocks.md` shows the table. A name that is in no table, and whose source is not in the project, is reported as well.
 
 use self::Kind::{Block, Function};
 
@@ -13,7 +13,7 @@ pub(super) enum Kind {
 
 /// What a vendor's library has of the kind.
 pub(super) struct Library {
-    /// Vendor and library; it is told with the name.
+    /// Vendor and library; it is reported with the name.
     pub(super) name: &'static str,
     pub(super) names: &'static [(&'static str, Kind)],
 }

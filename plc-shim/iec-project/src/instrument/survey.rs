@@ -200,7 +200,7 @@ impl<'a> Surveyor<'_, 'a> {
         self.unit.clear();
     }
 
-    /// What a function block is derived from. How a derived one is used tells nothing of a motion block's inputs.
+    /// What a function block is derived from. How a derived one is used says nothing of a motion block's inputs.
     fn base(&mut self, name: &Ident) {
         self.type_name(name);
         if let Some((_, role)) = self.survey.motion.last_mut().filter(|(met, _)| met.span == name.span) {

@@ -1,4 +1,4 @@
-//! Calls: of what is declared, whose parameters tell what their arguments are; of what is not, which they tell.
+//! Calls: of what is declared, whose parameters show what their arguments are; of what is not, whose parameters they show.
 
 use super::class::Found;
 use super::collect::{Collector, Scope, elementary};

@@ -1,4 +1,4 @@
-//! What classes of the project tell of bases and interfaces that nobody declares: the members that they override, and
+//! What classes of the project show of bases and interfaces that nobody declares: the members that they override, and
 //! the interfaces that they are given for.
 
 use super::class::Found;
@@ -79,7 +79,7 @@ impl<'a> Collector<'a> {
         if is_declared { Ty::Declared(key.to_owned()) } else { Ty::Foreign(key.to_owned()) }
     }
 
-    /// True if what is declared tells that a class implements an interface.
+    /// True if what is declared shows that a class implements an interface.
     fn is_a(&mut self, class: &str, interface: &str) -> bool {
         let mut open = vec![class.to_owned()];
         let mut seen = std::collections::BTreeSet::new();

@@ -1,4 +1,4 @@
-//! What a name says of a type, where its use says nothing. The rule is told in `docs/library-stubs.md`.
+//! What a name says of a type, where its use says nothing. The rule is described in `docs/library-stubs.md`.
 
 use super::ty::Ty;
 use onescan_iec::ElementaryType as E;
@@ -39,11 +39,11 @@ pub(super) fn of_name(name: &str) -> Ty {
 }
 
 /// True for a name that hints at a type.
-pub(super) fn tells(name: &str) -> bool {
+pub(super) fn shows_type(name: &str) -> bool {
     reported(name).is_some()
 }
 
-/// Beginnings that tell whether something is given or taken, in front of the one that tells the type.
+/// Beginnings that show whether something is given or taken, in front of the one that shows the type.
 const DIRECTIONS: [&str; 4] = ["i_", "q_", "iq_", "io_"];
 
 fn reported(name: &str) -> Option<Ty> {

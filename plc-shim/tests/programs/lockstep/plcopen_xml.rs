@@ -134,7 +134,7 @@ fn tasks_of_the_project_get_a_scheduler() {
     assert!(application.programs().count() >= 4);
 }
 
-/// CODESYS keeps declarations as text beside their elements if it is told to, and reads that text.
+/// CODESYS keeps declarations as text beside their elements if it is set to, and reads that text.
 #[test]
 fn declarations_as_plain_text_are_taken_out_and_come_back() {
     let plain = "<addData><data name=\"http://www.3s-software.com/plcopenxml/interfaceasplaintext\" \

@@ -44,7 +44,7 @@ fn date_and_time() {
     );
 }
 
-/// A partner that is not a port of the scenario does not answer; wrong lengths and numbers are told at once.
+/// A partner that is not a port of the scenario does not answer; wrong lengths and numbers are reported at once.
 #[test]
 fn open_communication_reports_what_is_wrong() {
     let mut rig = Rig::in_dialect(

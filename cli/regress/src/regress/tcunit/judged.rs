@@ -126,7 +126,7 @@ impl Judge<'_> {
         !case.is_finished && name.is_some_and(|name| name == case.name)
     }
 
-    /// The asserts of a test that did not hold, as messages tell of them; else what is stored of the first.
+    /// The asserts of a test that did not hold, as messages report them; else what is stored of the first.
     fn asserts(&self, case: &Case, place: Option<&SourcePlace>) -> Vec<FailedAssert> {
         let nowhere = || SourcePlace { file: case.class.clone(), line: 0, column: 0 };
         let failed = |text: String, at_ns: u64| FailedAssert {
@@ -176,7 +176,7 @@ fn reported(test: &str) -> String {
     format!("FAILED TEST '{test}'")
 }
 
-/// What a message tells of an assert of this test.
+/// What a message reports of an assert of this test.
 fn reported_of<'m>(case: &Case, message: &'m str) -> Option<&'m str> {
     let rest = message.strip_prefix(&reported(&format!("{}@{}", case.class, case.name)))?;
     Some(rest.strip_prefix(", ").unwrap_or(rest))

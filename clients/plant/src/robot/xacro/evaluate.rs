@@ -227,7 +227,7 @@ fn call(callee: &Expression, plain: &[Expression], named: &[(String, Expression)
             let entries = named.iter().map(|(key, inner)| Ok((key.clone(), evaluate(inner, names)?)));
             entries.collect::<Result<_, String>>().map(Value::Map)
         }
-        // what a robot's author tells of is for who runs xacro
+        // what a robot's author reports is for who runs xacro
         ("warning" | "message" | "print_location", _) => Ok(Value::Text(String::new())),
         ("error" | "fatal", [reported]) => Err(reported.to_string()),
         ("len", [Value::Text(text)]) => Ok(Value::Whole(text.chars().count() as i64)),

@@ -5,7 +5,7 @@
 //! | `<o n="Name" t="Type">` | an object |
 //! | `<v n="Name">"text"</v>` | a value: text between quotes, or a number, which may end in `L` |
 //! | `<n n="Name" />` | nothing |
-//! | `<l2 n="Name" cet="Type">`, `<a ..>` | a list; `cet` is the type of each element that tells none |
+//! | `<l2 n="Name" cet="Type">`, `<a ..>` | a list; `cet` is the type of each element that names none |
 
 use std::ops::Range;
 
@@ -13,7 +13,7 @@ use onescan_xml::{Element, Node};
 
 use crate::input::statement::{Piece, Text};
 
-/// An object and the type that it or its list tells.
+/// An object and the type that it or its list names.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Object<'e> {
     element: &'e Element,

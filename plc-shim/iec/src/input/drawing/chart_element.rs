@@ -1,4 +1,4 @@
-//! Steps and transitions of a chart: what the archive tells of them, and the text that they become.
+//! Steps and transitions of a chart: what the archive says of them, and the text that they become.
 //!
 //! | in the chart | in the text |
 //! |---|---|
@@ -66,7 +66,7 @@ pub(super) struct Step {
     exit: Option<String>,
 }
 
-/// Tells of what an element has that is not read.
+/// Reports what an element has that is not read.
 fn report_rest(sheet: &mut Sheet<'_>, element: Object<'_>, attributes: &Attributes, what: &str) {
     let place = element.place();
     for (id, reported) in [(LEAST_TIME, "a least time"), (GREATEST_TIME, "a greatest time"), (PRIORITY, "a priority")] {

@@ -1,4 +1,4 @@
-//! What other languages write, and what is a slip of the hand: each is told once, with what mends it.
+//! What other languages write, and what is a slip of the hand: each is reported once, with what mends it.
 
 use super::cursor::Cursor;
 use crate::diagnostic::{Code, Diagnostic};

@@ -1,7 +1,7 @@
 //! A camera above a field: whether something is in it, how many, and where the first of them lies.
 //!
 //! # Equations
-//! - every `frame_s` it takes a picture, of which the outputs tell `latency_s` later;
+//! - every `frame_s` it takes a picture, which the outputs report `latency_s` later;
 //! - a coordinate is `q round((x + N(0, σ))/q)`, along the axes of the field's body; the angle is about its z.
 //!
 //! # Source
@@ -133,20 +133,20 @@ impl Component for Camera {
         state.since_s = state.since_s.map(|since_s| since_s + turn.dt_s);
         let frame_over = state.since_s.is_none_or(|since_s| over(since_s, self.p.frame_s));
         let hung = turn.failed.has(Failure::Hung);
-        let tell = |state: &mut State| {
+        let show = |state: &mut State| {
             if let Some(picture) = state.taken.take() {
                 (state.reported, state.pictures) = (picture, state.pictures.saturating_add(1));
             }
         };
         if frame_over || state.since_s.is_some_and(|since_s| over(since_s, self.p.latency_s)) {
-            tell(state);
+            show(state);
         }
         if frame_over && inputs.enable && !hung {
             let dark = turn.failed.has(Failure::Dark);
             let seen = if dark { InField::default() } else { turn.seen };
             (state.since_s, state.taken) = (Some(0.0), Some(self.picture(seen, &mut state.random)));
             if self.p.latency_s <= 0.0 {
-                tell(state);
+                show(state);
             }
         }
         let Picture { count, x_m, y_m, angle_deg } = state.reported;

@@ -45,7 +45,7 @@ impl Body<'_, '_> {
     }
 }
 
-/// Assigns, then tells whether there is anything now.
+/// Assigns, then reports whether there is anything now.
 fn reported(assigned: Statement, target: Place, span: Span) -> Expr {
     let address = ElementaryType::Udint.into();
     let found = Expr { kind: ExprKind::Load(Place { ty: address, ..target }), ty: address, span };
