@@ -1,6 +1,6 @@
 //! Who ends the processes of a session if the server cannot: killed, or out of memory.
 //!
-//! The guard is this program once more, with a pipe to the server as its input. It receives the groups of processes that
+//! The guard is this program once more, with a pipe to the server as its input. It gets the groups of processes that
 //! are to end with the server. When the pipe closes before the guard was dismissed, the server is dead, and the guard
 //! kills them. Only a process that leaves its group on purpose escapes. Outside of Unix there are no groups, and
 //! the guard knows the clients' own processes only through the server's connection, which closes.

@@ -69,7 +69,7 @@ impl Gauge {
     }
 }
 
-/// The angle that is `angle` but for whole turns and lies within half a turn of `last`.
+/// The angle that is `angle` except for whole turns and lies within half a turn of `last`.
 pub(crate) fn nearest_turn(angle: f64, last: f64) -> f64 {
     let apart = angle - last;
     if apart.abs() <= PI { angle } else { angle - TAU * (apart / TAU).round() }

@@ -1,4 +1,4 @@
-//! Calls: of what is declared, whose parameters show what their arguments are; of what is not, whose parameters they show.
+//! Calls: of what is declared, whose parameters show the arguments; of what is not, which show the parameters.
 
 use super::class::Found;
 use super::collect::{Collector, Scope, elementary};
