@@ -412,8 +412,8 @@ pub fn report(error: &SceneError, file: &str, text: &str) -> SceneReport {
             help: fault.hint.clone(),
             others: Vec::new(),
         },
-        Some(Inside { told, place }) => SceneReport {
-            message: format!("{told} (named at {})", fault.place),
+        Some(Inside { reported, place }) => SceneReport {
+            message: format!("{reported} (named at {})", fault.place),
             file: NamedSource::new(&place.source.file, Arc::clone(&place.source.text)),
             place: Some(SourceSpan::from(place.span.clone())),
             help: fault.hint.clone(),

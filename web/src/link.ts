@@ -64,7 +64,7 @@ export class Link {
 
   /** Asks for these maps from now on, and again after a loss. */
   map(maps: readonly number[]): void {
-    // A session shows all of a map anew to whoever asks.
+    // A session shows all of a map again to whoever asks.
     if (String(maps) === String(this.maps)) return;
     this.maps = maps;
     this.ask({ type: "maps", maps });

@@ -1,4 +1,4 @@
-//! Tells what a change of PLC code or plant broke: sources checked, cases run against snapshots, differences explained.
+//! What a change of PLC code or plant broke: sources checked, cases run against snapshots, differences explained.
 //!
 //! | module | subject |
 //! |---|---|

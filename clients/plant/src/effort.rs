@@ -1,11 +1,11 @@
-//! What a drive does to its joint, and what the joint tells the drive: the one way between the equations
+//! What a drive does to its joint, and what the joint reports to the drive: the one way between the equations
 //! of a component and those of the mechanism that it moves.
 
 use serde::{Deserialize, Serialize};
 
 use super::setpoint::Setpoint;
 
-/// What a joint tells its drive as a sub-step begins.
+/// What a joint reports to its drive as a sub-step begins.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Motion {
     pub(crate) position: f64,
@@ -19,7 +19,7 @@ pub(crate) struct Motion {
 /// What a drive does to its joint in a sub-step. Forces are in N or N·m, along the coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Effort {
-    /// Its force at the velocity that it was told.
+    /// Its force at the velocity that it received.
     pub(crate) force: f64,
     /// By how much the force falls as the velocity grows, not below 0.
     pub(crate) slope: f64,

@@ -83,7 +83,7 @@ mod tests {
         assert!(found < bound(), "{found} of {}", bound());
     }
 
-    /// The test tells distributions apart that have the same mean and deviation.
+    /// The test distinguishes distributions that have the same mean and deviation.
     #[test]
     fn an_even_delay_of_the_same_moments_is_not_taken_for_a_normal_one() {
         let width_ns = (SIGMA_NS as f64 * 12_f64.sqrt()) as u64;

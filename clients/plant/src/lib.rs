@@ -13,7 +13,7 @@
 //! | `world` | the scene as a world of rigid bodies |
 //! | `setpoint` | the motion a drive wants: ramps and trapezoids in closed form |
 //! | `command` | what the PLC commands of a drive |
-//! | `effort` | what a drive does to its joint, and what the joint tells the drive |
+//! | `effort` | what a drive does to its joint, and what the joint reports to the drive |
 //! | `coupled` | what couples the coordinate of a joint to those of others |
 //! | `fitting` | what is fitted to a joint beside its drive |
 //! | `follower` | a joint that follows another |

@@ -403,8 +403,8 @@ impl Part {
                     Wire::Signal(name) => name.as_str(),
                     Wire::Open | Wire::Constant(_) | Wire::Output { .. } => "a wire",
                 };
-                let told = format!("component `{}` gets {number} from {name}, which is not finite", described.name);
-                return Err(ClientFault::new(told));
+                let reported = format!("component `{}` gets {number} from {name}, which is not finite", described.name);
+                return Err(ClientFault::new(reported));
             }
             self.taken[index] = value;
         }

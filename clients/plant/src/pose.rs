@@ -77,7 +77,7 @@ mod tests {
     }
 
     #[test]
-    fn a_frame_has_its_axes_where_it_was_told() {
+    fn a_frame_has_its_axes_where_it_was_given() {
         let frame = frame([0.0; 3], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]);
         assert!(close(frame * Vector::X, Vector::Z));
         assert!(close(frame * Vector::Y, Vector::Y));

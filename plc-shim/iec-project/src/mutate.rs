@@ -328,11 +328,11 @@ END_PROGRAM
     fn each_small_mistake_is_found_with_its_place() {
         let input = Input::from_text("main.st", SourceKind::Text, PROGRAM);
         let all = mutants(input.file());
-        let told = |mutant: &Mutant| {
+        let reported = |mutant: &Mutant| {
             let LineColumn { line, column } = mutant.place;
             format!("{line}:{column} {} (line {}): {mutant}\n", mutant.kind.word(), mutant.line)
         };
-        insta::assert_snapshot!(all.iter().map(told).collect::<String>());
+        insta::assert_snapshot!(all.iter().map(reported).collect::<String>());
     }
 
     /// A mutant parses, and is the text with one part replaced.

@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn slips_are_told() {
+    fn slips_are_reported() {
         for (text, why) in [
             ("PROGRAM P", "no `(* TRACE`"),
             ("(* TRACE a = 1", "no end"),

@@ -264,7 +264,7 @@ fn run(case: &Case, three: &mut Three) -> Result<(), String> {
     Ok(())
 }
 
-/// What SCL does in its own way, as README.md tells: neither a division by zero nor a value outside of its subrange is
+/// What SCL does in its own way, see README.md: neither a division by zero nor a value outside of its subrange is
 /// a fault.
 const OTHERWISE_IN_SCL: [&str; 2] = ["iec2_annex_e_division_by_zero", "iec2_annex_e_value_out_of_subrange"];
 

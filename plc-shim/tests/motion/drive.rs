@@ -13,7 +13,7 @@ fn linked() -> Bench {
     bench
 }
 
-/// The drive of this scan: it is where it was told to be.
+/// The drive of this scan: it is where it was ordered to be.
 fn follow(bench: &mut Bench) {
     let (position, velocity) = (bench.position(), bench.velocity());
     bench.set_real("X.ActualPosition", position);
@@ -123,7 +123,7 @@ fn a_position_can_be_set_while_it_moves() {
 }
 
 #[test]
-fn a_modulo_axis_goes_the_way_round_that_it_is_told() {
+fn a_modulo_axis_goes_the_way_round_that_it_is_given() {
     // Positive, shortest, negative, current: from 350 to 10 and from 10 to 350 of 360.
     for (direction, there, back) in [(0.0, 370.0, 710.0), (1.0, 370.0, 350.0), (2.0, 10.0, -10.0)] {
         let mut bench = Bench::new();

@@ -118,7 +118,7 @@ fn a_buffered_command_waits() {
 }
 
 #[test]
-fn the_same_block_again_starts_anew() {
+fn the_same_block_again_restarts() {
     insta::assert_snapshot!("again", diagram(&mut set_up(), &[("Absolute", ".##.###...........")]));
 }
 

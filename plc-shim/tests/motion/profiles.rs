@@ -4,7 +4,7 @@ use proptest::prelude::*;
 
 use crate::bench::Bench;
 
-/// What of a move can be told beforehand: duration and position over time, from rest to rest.
+/// What of a move can be predicted: duration and position over time, from rest to rest.
 ///
 /// Seven parts (B. Siciliano et al., Robotics, 2009, 4.2; L. Biagiotti, C. Melchiorri, Trajectory Planning, 2008,
 /// 3.4): jerk, acceleration, jerk back, velocity, and the same back to rest with equal acceleration and deceleration.
@@ -136,7 +136,7 @@ fn jerk_limited_moves_are_their_closed_forms() {
 }
 
 #[test]
-fn acceleration_and_deceleration_are_told_apart() {
+fn acceleration_and_deceleration_are_distinguished() {
     let mut bench = Bench::new();
     let values = [("Position", 100.0), ("Velocity", 20.0), ("Acceleration", 10.0), ("Deceleration", 40.0)];
     bench.start("Absolute", &values);

@@ -46,7 +46,7 @@ impl Tally {
     }
 }
 
-/// Runs `work`, which says what it is at. A hang never ends the test: where it is, is told.
+/// Runs `work`, which says what it is at. A hang never ends the test: where it is, is reported.
 #[expect(clippy::print_stderr, reason = "a test that hangs has no other way to say where")]
 fn watched(work: impl FnOnce(&AtomicU64)) {
     let (at, (ended, end)) = (&AtomicU64::new(u64::MAX), channel::<()>());

@@ -69,8 +69,8 @@ fn units_read_and_write_through_the_address() {
 }
 
 #[test]
-fn wrong_generic_inputs_are_told() {
-    let told = |statement: &str| {
+fn wrong_generic_inputs_are_reported() {
+    let reported = |statement: &str| {
         let text = format!(
             "{UNITS}PROGRAM P VAR b : BOOL; n : UDINT; r : LREAL; t : STRING; z : Zero; END_VAR\n{statement}\nEND_PROGRAM"
         );
@@ -98,7 +98,7 @@ fn wrong_generic_inputs_are_told() {
         "FUNCTION F VAR_INPUT v : ARRAY [0..1] OF ANY_INT; END_VAR END_FUNCTION",
     ];
     let units = units.map(|unit| format!("{unit}\n    {}", findings_in(Dialect::Codesys, unit)));
-    let statements = statements.map(|statement| format!("{statement}\n    {}", told(statement)));
+    let statements = statements.map(|statement| format!("{statement}\n    {}", reported(statement)));
     insta::assert_snapshot!([&statements[..], &units[..]].concat().join("\n"));
 }
 

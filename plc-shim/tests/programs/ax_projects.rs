@@ -19,8 +19,8 @@ fn assertions_are_stubs_that_take_any_value() {
           END_CLASS
         END_NAMESPACE";
     let findings = findings_in(Iec3, text);
-    let told: Vec<_> = findings.iter().map(|found| (found.severity, found.code)).collect();
-    assert_eq!(told, [(Severity::Warning, Code::StubUsed); 3], "{findings}");
+    let reported: Vec<_> = findings.iter().map(|found| (found.severity, found.code)).collect();
+    assert_eq!(reported, [(Severity::Warning, Code::StubUsed); 3], "{findings}");
     let wrong = text.replace("left := x", "left := missing");
     assert!(findings_in(Iec3, &wrong).iter().any(|found| found.code == Code::UnknownName));
 }

@@ -7,14 +7,14 @@ use onescan_iec::{Input, inspect};
 use crate::rig::findings_in;
 
 /// Everything in the text that is right, if the unknown were there, is silent.
-fn told(text: &str) -> Vec<String> {
+fn reported(text: &str) -> Vec<String> {
     let found = findings_in(Dialect::Codesys, text);
     found.iter().map(|each| format!("{} {}", each.code, each.message)).collect()
 }
 
 #[test]
 fn an_unknown_base_is_one_finding() {
-    let found = told(
+    let found = reported(
         "FUNCTION_BLOCK D EXTENDS Missing IMPLEMENTS K
 VAR own : INT; END_VAR
 METHOD PUBLIC OVERRIDE A : BOOL
@@ -61,7 +61,7 @@ END_PROGRAM",
 
 #[test]
 fn an_unknown_interface_is_one_finding() {
-    let found = told(
+    let found = reported(
         "INTERFACE J EXTENDS Missing
 METHOD jm : BOOL END_METHOD
 END_INTERFACE
@@ -80,8 +80,8 @@ END_PROGRAM",
 }
 
 #[test]
-fn what_a_unit_without_unknown_bases_lacks_is_told() {
-    let found = told(
+fn what_a_unit_without_unknown_bases_lacks_is_reported() {
+    let found = reported(
         "FUNCTION_BLOCK A END_FUNCTION_BLOCK
 FUNCTION_BLOCK B EXTENDS A
 METHOD m : BOOL m := SUPER^.m(); missing := 1; END_METHOD
@@ -95,7 +95,7 @@ PROGRAM Main VAR b : B; END_VAR b.y := 1; b(z := 1); END_PROGRAM",
 
 #[test]
 fn an_unknown_type_is_one_finding() {
-    let found = told(
+    let found = reported(
         "TYPE S : STRUCT a : Unknown1; b : INT; c : POINTER TO S; END_STRUCT END_TYPE
 TYPE X : STRUCT EXTENDS Unknown2 c : INT; END_STRUCT END_TYPE
 TYPE N : STRUCT next : POINTER TO M; END_STRUCT END_TYPE
@@ -163,16 +163,16 @@ END_PROGRAM",
 }
 
 #[test]
-fn a_name_that_is_not_declared_is_told_once_for_each_unit() {
+fn a_name_that_is_not_declared_is_reported_once_for_each_unit() {
     let text = "PROGRAM P VAR a : INT; END_VAR a := misspelt; a := misspelt + misspelt; f(1); f(2); END_PROGRAM
 PROGRAM Q VAR a : INT; END_VAR a := misspelt; END_PROGRAM";
     let name = "N0101 `misspelt` is not declared";
-    assert_eq!(told(text), [name, "N0105 there is no function or instance `f`", name]);
+    assert_eq!(reported(text), [name, "N0105 there is no function or instance `f`", name]);
 }
 
 #[test]
 fn too_much_memory_is_one_finding() {
-    let found = told(
+    let found = reported(
         "TYPE Big : STRUCT a : ARRAY[0..30000000] OF LREAL; b : INT; END_STRUCT END_TYPE
 FUNCTION F : INT VAR_INPUT p : POINTER TO Big; END_VAR F := p^.b; p^.b := 3; p^.a[3] := 2; END_FUNCTION
 VAR_GLOBAL g : ARRAY[0..40000000] OF BYTE; h : ARRAY[0..40000000] OF BYTE; k : INT; END_VAR
@@ -202,7 +202,7 @@ fn what_is_no_program_is_one_finding() {
 
 #[test]
 fn a_keyword_for_a_name_is_one_finding() {
-    let found = told(
+    let found = reported(
         "FUNCTION F : INT
 VAR_INPUT at, to : INT; END_VAR
   F := at MOD to;

@@ -119,7 +119,7 @@ fn rows_of_constants_are_constants() {
 }
 
 #[test]
-fn what_is_wrong_in_a_row_is_told_once_and_warnings_are_found() {
+fn what_is_wrong_in_a_row_is_reported_once_and_warnings_are_found() {
     let sum = format!("{} + missing + {} + b", row("a", "+"), row("a", "+"));
     let text = format!("PROGRAM P VAR a : DINT; b : BOOL; END_VAR a := {sum}; END_PROGRAM");
     let found = on_a_thread(move || Application::from_sources([("t.st", text)]).expect_err("wrong"));

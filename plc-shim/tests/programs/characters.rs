@@ -63,16 +63,16 @@ fn a_position_outside_of_the_string_stops_the_plc() {
         let character = if dialect == Dialect::Iec3 { "c : CHAR;" } else { "b : BYTE;" };
         let text =
             format!("PROGRAM P VAR s : STRING[3] := 'abc'; i : INT; {character} END_VAR\n{statement}\nEND_PROGRAM");
-        let told = Rig::in_dialect(dialect, &text).scan().map_err(|fault| fault.to_string());
-        assert_eq!(told.is_err(), fails, "{statement} in {dialect}: {told:?}");
-        if let Err(told) = told {
-            assert!(told.starts_with("array index out of range at test.st:2:"), "{told}");
+        let reported = Rig::in_dialect(dialect, &text).scan().map_err(|fault| fault.to_string());
+        assert_eq!(reported.is_err(), fails, "{statement} in {dialect}: {reported:?}");
+        if let Err(reported) = reported {
+            assert!(reported.starts_with("array index out of range at test.st:2:"), "{reported}");
         }
     }
 }
 
 #[test]
-fn wrong_characters_are_told() {
+fn wrong_characters_are_reported() {
     let iec = |statement: &str| {
         findings(&format!("PROGRAM P VAR s : STRING[3]; c : CHAR; b : BYTE; END_VAR\n{statement}\nEND_PROGRAM"))
     };

@@ -82,7 +82,7 @@ fn what_cannot_be_set_is_said() {
 }
 
 #[test]
-fn constants_are_told_from_variables() {
+fn constants_are_distinguished_from_variables() {
     let is_constant = ["Main.a", "axis.home.BACK", "rest", "Main.v", "Main.axis.x", "none", ""];
     assert_eq!(
         is_constant.map(|path| builder(TEXT).has_constant(path)),

@@ -60,12 +60,12 @@ fn covered(scans: u64) -> (Coverage, Vec<u8>) {
 }
 
 #[test]
-fn lcov_tells_units_lines_and_outcomes() {
+fn lcov_reports_units_lines_and_outcomes() {
     insta::assert_snapshot!(covered(2).0.to_lcov());
 }
 
 #[test]
-fn cobertura_tells_the_same() {
+fn cobertura_reports_the_same() {
     let (coverage, _) = covered(2);
     insta::assert_snapshot!(coverage.to_cobertura().expect("memory takes it"));
 }

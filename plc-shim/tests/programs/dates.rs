@@ -132,7 +132,7 @@ fn a_user_s_own_function_goes_before_one_of_table_36() {
 }
 
 #[test]
-fn wrong_dates_are_told() {
+fn wrong_dates_are_reported() {
     insta::assert_snapshot!(findings(
         "PROGRAM P
 VAR d : DATE; t : TOD; dt : DT; c : CHAR; x : DINT; END_VAR

@@ -198,7 +198,7 @@ fn every_construct_is_for_its_dialects_alone() {
 }
 
 /// Constructs whose absence is not a syntax of its own: another error says it.
-const TOLD_OTHERWISE: [Feature; 45] = [
+const REPORTED_OTHERWISE: [Feature; 45] = [
     Feature::LoneOutputs,
     Feature::IntegerParts,
     Feature::ProgramInOuts,
@@ -247,13 +247,13 @@ const TOLD_OTHERWISE: [Feature; 45] = [
 ];
 
 #[test]
-fn a_construct_of_others_is_told_once_with_its_dialects() {
-    for feature in Feature::ALL.iter().filter(|feature| !TOLD_OTHERWISE.contains(feature)) {
+fn a_construct_of_others_is_reported_once_with_its_dialects() {
+    for feature in Feature::ALL.iter().filter(|feature| !REPORTED_OTHERWISE.contains(feature)) {
         for dialect in Dialect::ALL.into_iter().filter(|dialect| !dialect.has(*feature)) {
             let findings = findings_in(dialect, use_of(*feature));
-            let told: Vec<_> = findings.iter().filter(|found| found.code == Code::WrongDialect).collect();
-            assert_eq!(told.len(), 1, "{feature:?} in {dialect}: {findings}");
-            let help = told[0].help.as_deref().unwrap_or("");
+            let reported: Vec<_> = findings.iter().filter(|found| found.code == Code::WrongDialect).collect();
+            assert_eq!(reported.len(), 1, "{feature:?} in {dialect}: {findings}");
+            let help = reported[0].help.as_deref().unwrap_or("");
             assert!(help.contains(&feature.homes()), "{help}");
         }
     }

@@ -3,7 +3,7 @@
 use crate::rig::{Rig, application, findings};
 
 /// The first line of what is said about a program with these declarations and statements.
-fn told(declarations: &str, statements: &str) -> String {
+fn reported(declarations: &str, statements: &str) -> String {
     let text = format!("PROGRAM P VAR {declarations} END_VAR {statements} END_PROGRAM");
     findings(&text).lines().next().unwrap_or_default().to_owned()
 }
@@ -98,7 +98,7 @@ fn an_address_that_the_program_does_not_use_is_unknown() {
 }
 
 #[test]
-fn wrong_addresses_are_told() {
+fn wrong_addresses_are_reported() {
     let statements = [
         ("%IX1.8 := TRUE;", "test.st:1:24: error[R0901]: `%IX1.8` is not a direct address: a byte has the bits 0 to 7"),
         (
@@ -117,7 +117,7 @@ fn wrong_addresses_are_told() {
         ),
     ];
     for (statement, expected) in statements {
-        assert_eq!(told("", statement), expected, "{statement}");
+        assert_eq!(reported("", statement), expected, "{statement}");
     }
     let declarations = [
         ("a AT %QX0.1 : INT;", "(INT takes 16 bits: write %QW behind the area)"),
@@ -129,7 +129,7 @@ fn wrong_addresses_are_told() {
         ("a AT %MX7.9 : BOOL;", "a byte has the bits 0 to 7"),
     ];
     for (declaration, expected) in declarations {
-        let found = told(declaration, "");
+        let found = reported(declaration, "");
         assert!(found.ends_with(expected), "{found}");
     }
     for unit in [

@@ -89,6 +89,6 @@ fn side_by_side_the_left_one_comes_first() {
 #[test]
 fn a_loop_leaves_the_order_open() {
     let items = [element("Box", "ABS", 1, (0, 0)), element("Box", "ABS", 3, (9, 0)), line(2, 3), line(4, 1)];
-    let told = findings(&chart(&items, false));
-    assert!(told.contains("L0501") && told.contains("a loop or a jump"), "{told}");
+    let reported = findings(&chart(&items, false));
+    assert!(reported.contains("L0501") && reported.contains("a loop or a jump"), "{reported}");
 }

@@ -1,4 +1,4 @@
-//! What is told of drawings that cannot be read: the element, and never another program instead.
+//! What is reported of drawings that cannot be read: the element, and never another program instead.
 
 use onescan_iec::input::kind::SourceKind;
 use onescan_iec::{Input, inspect};
@@ -6,7 +6,7 @@ use onescan_iec::{Input, inspect};
 use crate::drawings::{LEVEL, RUNGS, VESSEL, changed, findings, with_a_condition_at_en};
 
 /// The findings with one place of a drawing changed.
-fn told(text: &str, from: &str, to: &str) -> String {
+fn reported(text: &str, from: &str, to: &str) -> String {
     findings(&changed(text, from, to))
 }
 
@@ -17,12 +17,12 @@ fn sound_drawings_have_no_findings() {
 
 #[test]
 fn elements_of_a_chart_that_cannot_be_read() {
-    insta::assert_snapshot!(told(LEVEL, "CFCCommentElement", "CFCFancyElement"), @"Drawing.TcPOU:212:19: error[L0501]: element 47 of a chart (`CFCFancyElement`) is not supported yet");
-    insta::assert_snapshot!(told(LEVEL, "<v n=\"EnEno\">false", "<v n=\"EnEno\">true"), @"Drawing.TcPOU:45:19: error[L0501]: EN and ENO of `ADD` (element 25) in a chart is not supported yet");
-    insta::assert_snapshot!(told(LEVEL, "\"SetReset\">Set<", "\"SetReset\">Toggle<"), @"Drawing.TcPOU:464:21: error[L0501]: what a pin does with its value (element 96) is not supported yet");
-    insta::assert_snapshot!(told(LEVEL, "t=\"SetResetRef\">None", "t=\"SetResetRef\">Ref"), @"Drawing.TcPOU:20:21: error[L0501]: an assignment of a reference at a pin (element 13) is not supported yet");
-    insta::assert_snapshot!(told(LEVEL, "\"times + 1\"", "\"times +\""), @"Drawing.TcPOU:586:36: error[S0101]: `times +` is not an expression");
-    insta::assert_snapshot!(told(LEVEL, "\"times + 1\"", "\"LEN(\"x\")\""), @r#"Drawing.TcPOU:586:36: error[L0501]: `"` in an expression of a drawing is not supported yet"#);
+    insta::assert_snapshot!(reported(LEVEL, "CFCCommentElement", "CFCFancyElement"), @"Drawing.TcPOU:212:19: error[L0501]: element 47 of a chart (`CFCFancyElement`) is not supported yet");
+    insta::assert_snapshot!(reported(LEVEL, "<v n=\"EnEno\">false", "<v n=\"EnEno\">true"), @"Drawing.TcPOU:45:19: error[L0501]: EN and ENO of `ADD` (element 25) in a chart is not supported yet");
+    insta::assert_snapshot!(reported(LEVEL, "\"SetReset\">Set<", "\"SetReset\">Toggle<"), @"Drawing.TcPOU:464:21: error[L0501]: what a pin does with its value (element 96) is not supported yet");
+    insta::assert_snapshot!(reported(LEVEL, "t=\"SetResetRef\">None", "t=\"SetResetRef\">Ref"), @"Drawing.TcPOU:20:21: error[L0501]: an assignment of a reference at a pin (element 13) is not supported yet");
+    insta::assert_snapshot!(reported(LEVEL, "\"times + 1\"", "\"times +\""), @"Drawing.TcPOU:586:36: error[S0101]: `times +` is not an expression");
+    insta::assert_snapshot!(reported(LEVEL, "\"times + 1\"", "\"LEN(\"x\")\""), @r#"Drawing.TcPOU:586:36: error[L0501]: `"` in an expression of a drawing is not supported yet"#);
 }
 
 #[test]
@@ -31,7 +31,7 @@ fn lines_of_a_chart_that_lead_nowhere() {
     insta::assert_snapshot!(findings(&without_a_line).lines().next().unwrap_or(""), @"Drawing.TcPOU:48:25: error[G1102]: the connection to pin 17 has no source");
     let cut = |id: u32| {
         let from = format!("<v n=\"DestPinId\">{id}L</v>");
-        told(LEVEL, &from, "<v n=\"DestPinId\">9999L</v>")
+        reported(LEVEL, &from, "<v n=\"DestPinId\">9999L</v>")
     };
     let first = LEVEL.split("<v n=\"DestPinId\">").nth(1).and_then(|rest| rest.split('L').next());
     insta::assert_snapshot!(cut(first.and_then(|id| id.parse().ok()).expect("a pin")), @"Drawing.TcPOU:48:25: error[G1106]: nothing is connected to input 1 of `ADD` (id 25)");
@@ -53,7 +53,7 @@ fn a_value_that_is_wanted_before_it_is_there() {
 fn a_chart_whose_order_is_not_stored() {
     let properties = "<ObjectProperties><XmlArchive><Data><o xml:space=\"preserve\" t=\"CFCProperty\">\
                       <v n=\"UseExplicitExecutionOrder\">false</v></o></Data></XmlArchive></ObjectProperties></POU>";
-    insta::assert_snapshot!(told(LEVEL, "</POU>", properties), @"Drawing.TcPOU:1024:39: error[L0501]: a chart with a loop or a jump that TwinCAT orders by the flow of its data (set `Explicit Execution Order` in its properties, which stores the order) is not supported yet");
+    insta::assert_snapshot!(reported(LEVEL, "</POU>", properties), @"Drawing.TcPOU:1024:39: error[L0501]: a chart with a loop or a jump that TwinCAT orders by the flow of its data (set `Explicit Execution Order` in its properties, which stores the order) is not supported yet");
 }
 
 #[test]
@@ -67,14 +67,14 @@ fn a_block_with_other_pins_than_the_drawing() {
 
 #[test]
 fn elements_of_networks_that_cannot_be_read() {
-    insta::assert_snapshot!(told(RUNGS, "t=\"BoxTreeTerminator\"", "t=\"BoxTreeFancy\""), @"Drawing.TcPOU:478:27: error[L0501]: element 59 of a network (`BoxTreeFancy`) is not supported yet");
-    insta::assert_snapshot!(told(RUNGS, "<v n=\"Flags\">16", "<v n=\"Flags\">17"), @"Drawing.TcPOU:253:27: error[L0501]: a value with the flags 17 is not supported yet");
-    insta::assert_snapshot!(told(RUNGS, "<v n=\"Flags\">3", "<v n=\"Flags\">34"), @"Drawing.TcPOU:178:27: error[L0501]: a target (id 30) with the flags 34 is not supported yet");
-    insta::assert_snapshot!(told(RUNGS, "\"ILActive\">false", "\"ILActive\">true"), @"Drawing.TcPOU:18:17: error[L0501]: Instruction List in network 1 is not supported yet");
-    insta::assert_snapshot!(told(RUNGS, "\"Behind\"", "\"Nowhere\""), @"Drawing.TcPOU:689:27: error[G1101]: there is no label `Nowhere` that this jump could lead to");
-    insta::assert_snapshot!(told(RUNGS, "\"stop\"", "\"???\""), @"Drawing.TcPOU:110:27: error[G1106]: nothing is connected to input 2 of `AND` (id 20)");
-    insta::assert_snapshot!(told(RUNGS, "<v n=\"Operand\">\"timer\"", "<v n=\"Operand\">\"\""), @"Drawing.TcPOU:328:23: error[G1106]: the box of `TON` (id 55) has no instance");
-    insta::assert_snapshot!(told(RUNGS, "NWLImplementationObject", "OtherObject"), @"Drawing.TcPOU:12:7: error[F0602]: `<NWL>` has no archive of a `NWLImplementationObject`");
+    insta::assert_snapshot!(reported(RUNGS, "t=\"BoxTreeTerminator\"", "t=\"BoxTreeFancy\""), @"Drawing.TcPOU:478:27: error[L0501]: element 59 of a network (`BoxTreeFancy`) is not supported yet");
+    insta::assert_snapshot!(reported(RUNGS, "<v n=\"Flags\">16", "<v n=\"Flags\">17"), @"Drawing.TcPOU:253:27: error[L0501]: a value with the flags 17 is not supported yet");
+    insta::assert_snapshot!(reported(RUNGS, "<v n=\"Flags\">3", "<v n=\"Flags\">34"), @"Drawing.TcPOU:178:27: error[L0501]: a target (id 30) with the flags 34 is not supported yet");
+    insta::assert_snapshot!(reported(RUNGS, "\"ILActive\">false", "\"ILActive\">true"), @"Drawing.TcPOU:18:17: error[L0501]: Instruction List in network 1 is not supported yet");
+    insta::assert_snapshot!(reported(RUNGS, "\"Behind\"", "\"Nowhere\""), @"Drawing.TcPOU:689:27: error[G1101]: there is no label `Nowhere` that this jump could lead to");
+    insta::assert_snapshot!(reported(RUNGS, "\"stop\"", "\"???\""), @"Drawing.TcPOU:110:27: error[G1106]: nothing is connected to input 2 of `AND` (id 20)");
+    insta::assert_snapshot!(reported(RUNGS, "<v n=\"Operand\">\"timer\"", "<v n=\"Operand\">\"\""), @"Drawing.TcPOU:328:23: error[G1106]: the box of `TON` (id 55) has no instance");
+    insta::assert_snapshot!(reported(RUNGS, "NWLImplementationObject", "OtherObject"), @"Drawing.TcPOU:12:7: error[F0602]: `<NWL>` has no archive of a `NWLImplementationObject`");
 }
 
 #[test]
@@ -96,31 +96,31 @@ fn an_edge_in_a_function() {
 
 #[test]
 fn elements_of_a_sequential_chart_that_cannot_be_read() {
-    insta::assert_snapshot!(told(VESSEL, "\"Fill\"", "\"\""), @r"
+    insta::assert_snapshot!(reported(VESSEL, "\"Fill\"", "\"\""), @r"
     Drawing.TcPOU:103:33: error[F0602]: `` is not the name of a step (element 28)
     Drawing.TcPOU:364:21: error[F0602]: there is no step before this transition
     Drawing.TcPOU:379:21: error[Q1208]: step `Check` can never be active
     ");
-    insta::assert_snapshot!(told(VESSEL, "t=\"SFCJump\"", "t=\"SFCMacro\""), @r"
+    insta::assert_snapshot!(reported(VESSEL, "t=\"SFCJump\"", "t=\"SFCMacro\""), @r"
     Drawing.TcPOU:691:21: error[L0501]: element 92 of a chart (`SFCMacro`) is not supported yet
     Drawing.TcPOU:676:21: error[F0602]: this transition leads to no step
     Drawing.TcPOU:611:21: warning[Q1212]: no transition leads on from `Drain`
     ");
-    insta::assert_snapshot!(told(VESSEL, "\"Idle\"", "\"Idol\""), @"Drawing.TcPOU:676:21: error[Q1204]: there is no step `Idle`");
-    insta::assert_snapshot!(told(VESSEL, "<v n=\"Value\">\"TRUE\"", "<v n=\"Value\">\"FALSE\""), @"Drawing.TcPOU:17:21: error[Q1203]: no step is the initial one (write `INITIAL_STEP Idle:`)");
-    insta::assert_snapshot!(told(VESSEL, "go, bad", "go, SFCPause, bad"), @"Drawing.TcPOU:4:5: error[L0501]: the variable `SFCPause`, which governs a chart, is not supported yet");
-    insta::assert_snapshot!(told(VESSEL, "turns >= 2;", "Stirred := turns >= 2;"), @r"
+    insta::assert_snapshot!(reported(VESSEL, "\"Idle\"", "\"Idol\""), @"Drawing.TcPOU:676:21: error[Q1204]: there is no step `Idle`");
+    insta::assert_snapshot!(reported(VESSEL, "<v n=\"Value\">\"TRUE\"", "<v n=\"Value\">\"FALSE\""), @"Drawing.TcPOU:17:21: error[Q1203]: no step is the initial one (write `INITIAL_STEP Idle:`)");
+    insta::assert_snapshot!(reported(VESSEL, "go, bad", "go, SFCPause, bad"), @"Drawing.TcPOU:4:5: error[L0501]: the variable `SFCPause`, which governs a chart, is not supported yet");
+    insta::assert_snapshot!(reported(VESSEL, "turns >= 2;", "Stirred := turns >= 2;"), @r"
     Drawing.TcPOU:744:9: error[L0501]: the transition `Stirred` that is not a single expression is not supported yet
     Drawing.TcPOU:264:33: error[Q1208]: step `Rest` can never be active
     ");
-    insta::assert_snapshot!(told(VESSEL, "\"quit\"", "\"quit AND\""), @r"
+    insta::assert_snapshot!(reported(VESSEL, "\"quit\"", "\"quit AND\""), @r"
     Drawing.TcPOU:537:55: error[S0101]: `quit AND` is not an expression
     Drawing.TcPOU:465:33: warning[Q1212]: no transition leads on from `Alarm`
     ");
 }
 
 #[test]
-fn drawings_that_are_cut_off_are_told() {
+fn drawings_that_are_cut_off_are_reported() {
     for text in [LEVEL, RUNGS, VESSEL] {
         for end in (0..text.len()).step_by(97) {
             let input = Input::from_text("Drawing.TcPOU", SourceKind::TwinCat, &text[..end]);

@@ -51,17 +51,17 @@ END_ORGANIZATION_BLOCK
 }
 
 #[test]
-fn wrong_uses_of_dtl_are_told() {
-    let told = |declarations: &str, statement: &str| {
+fn wrong_uses_of_dtl_are_reported() {
+    let reported = |declarations: &str, statement: &str| {
         let text = format!("PROGRAM P VAR {declarations} END_VAR\n{statement}\nEND_PROGRAM");
         findings_in(Dialect::SiemensScl, &text).to_string()
     };
     let all = [
-        told("a : DTL;", "a := DTL#1969-12-31-00:00:00;"),
-        told("a : DTL;", "a := DTL#2024-02-30-00:00:00;"),
-        told("a : DTL;", "a := LDT#2024-02-03-00:00:00;"),
-        told("a : DTL; b : LDT;", "b := a;"),
-        told("a : INT := DTL#2024-02-03-00:00:00;", "a := a + 1;"),
+        reported("a : DTL;", "a := DTL#1969-12-31-00:00:00;"),
+        reported("a : DTL;", "a := DTL#2024-02-30-00:00:00;"),
+        reported("a : DTL;", "a := LDT#2024-02-03-00:00:00;"),
+        reported("a : DTL; b : LDT;", "b := a;"),
+        reported("a : INT := DTL#2024-02-03-00:00:00;", "a := a + 1;"),
     ];
     insta::assert_snapshot!(all.join("\n"));
 }

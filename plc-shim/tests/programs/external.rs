@@ -35,7 +35,7 @@ END_PROGRAM"
 }
 
 #[test]
-fn the_calls_of_a_stub_are_told_once() {
+fn the_calls_of_a_stub_are_reported_once() {
     insta::assert_snapshot!(findings(&format!(
         "{STUBS}FUNCTION_BLOCK Bright EXTENDS Lamp METHOD Twice : INT Twice := SUPER^.Blink(THIS^.count); END_METHOD END_FUNCTION_BLOCK
 PROGRAM P

@@ -106,12 +106,12 @@ fn iec2_annex_e_every_form_of_a_fault_names_its_place() {
     for (kind, declarations, statement) in divisions.chain(CASES.iter().copied()).chain(deep) {
         let found = fault(declarations, statement);
         assert_eq!(found.kind, kind, "{statement}: {found}");
-        let told = found.to_string();
+        let reported = found.to_string();
         let inside = format!("{kind} at test.st:2:");
-        let direct =
-            told.starts_with(&inside) && told.contains(" in P.u (Unit), called by P at test.st:5, t_v = 0.010 s");
-        let below = told.contains("called by P.u (Unit) at test.st:2, called by P at test.st:5, t_v = 0.010 s");
-        assert!(direct || below, "{statement}: {told}");
+        let direct = reported.starts_with(&inside)
+            && reported.contains(" in P.u (Unit), called by P at test.st:5, t_v = 0.010 s");
+        let below = reported.contains("called by P.u (Unit) at test.st:2, called by P at test.st:5, t_v = 0.010 s");
+        assert!(direct || below, "{statement}: {reported}");
         kinds.insert(kind);
     }
     // An internal error has no program.

@@ -44,7 +44,7 @@ fn faults_name_file_line_unit_and_time() {
 }
 
 #[test]
-fn a_fault_tells_who_called() {
+fn a_fault_reports_who_called() {
     insta::assert_snapshot!(fault(
         "FUNCTION Ratio : INT VAR_INPUT a, b : INT; END_VAR\n  Ratio := a / b;\nEND_FUNCTION
 FUNCTION_BLOCK Axis VAR r : INT; END_VAR\n  r := Ratio(1, r);\nEND_FUNCTION_BLOCK
@@ -53,7 +53,7 @@ PROGRAM P VAR axis : Axis; END_VAR\n  axis();\nEND_PROGRAM"
 }
 
 #[test]
-fn a_fault_tells_the_instances_on_the_way() {
+fn a_fault_reports_the_instances_on_the_way() {
     let text = "VAR_GLOBAL shared : Inner; END_VAR
 FUNCTION Ratio : INT VAR_INPUT a, b : INT; END_VAR
   Ratio := a / b;

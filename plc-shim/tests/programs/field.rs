@@ -88,7 +88,7 @@ fn time_since_the_last_call() {
 }
 
 #[test]
-fn what_no_vendor_s_runtime_has_here_is_told() {
+fn what_no_vendor_s_runtime_has_here_is_reported() {
     let text = "PROGRAM P VAR a : INT; p, exc : UDINT; END_VAR
         __TRY
             a := a + 1;

@@ -94,7 +94,7 @@ fn literals_are_written_by_their_type() {
 }
 
 #[test]
-fn what_is_no_value_of_the_type_is_told() {
+fn what_is_no_value_of_the_type_is_reported() {
     let mut rig = rig();
     let before = rig.plc.save();
     let mut refused = String::new();

@@ -111,15 +111,15 @@ fn c_code_that_only_reports_is_passed_over_with_a_warning() {
     for dialect in [Iec3, Matiec] {
         assert_eq!(values(dialect, &text("LogMessage"), 2, ["a"]), [2], "{dialect}");
         let findings = findings_in(dialect, &text("LogMessage"));
-        let told: Vec<_> = findings.iter().map(|found| (found.code.text(), found.severity)).collect();
-        assert_eq!(told, [("L0513", Severity::Warning)], "{findings}");
+        let reported: Vec<_> = findings.iter().map(|found| (found.code.text(), found.severity)).collect();
+        assert_eq!(reported, [("L0513", Severity::Warning)], "{findings}");
     }
-    let told = |dialect| {
+    let reported = |dialect| {
         let findings = findings_in(dialect, &text("SetFbVar"));
         findings.iter().map(|found| (found.code.text(), found.severity)).collect::<Vec<_>>()
     };
-    assert_eq!(told(Iec3), [("L0513", Severity::Error)]);
-    assert_eq!(told(Matiec), [("W0710", Severity::Warning)], "the variables that it sets keep their values");
+    assert_eq!(reported(Iec3), [("L0513", Severity::Error)]);
+    assert_eq!(reported(Matiec), [("W0710", Severity::Warning)], "the variables that it sets keep their values");
 }
 
 #[test]
@@ -231,7 +231,7 @@ fn units_may_be_called_as_parts_of_charts_are() {
 }
 
 #[test]
-fn a_shifted_number_without_a_width_is_told() {
+fn a_shifted_number_without_a_width_is_reported() {
     let text = "PROGRAM P VAR w : WORD; n : INT := 9; END_VAR w := SHL(1, n); END_PROGRAM";
     for dialect in VENDORS {
         let findings = findings_in(dialect, text);

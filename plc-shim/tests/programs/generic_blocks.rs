@@ -129,7 +129,7 @@ fn a_text_of_generic_blocks_is_printed_as_it_was_read() {
 }
 
 #[test]
-fn wrong_constants_of_generic_blocks_are_told() {
+fn wrong_constants_of_generic_blocks_are_reported() {
     let block = "FUNCTION_BLOCK F
 VAR_GENERIC CONSTANT n : USINT := 1; END_VAR
 VAR a : ARRAY [0..n] OF BYTE; END_VAR

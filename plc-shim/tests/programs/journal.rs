@@ -51,7 +51,7 @@ fn journal(plc: &SoftPlc) -> Vec<String> {
 }
 
 #[test]
-fn a_scan_is_told_in_its_order() {
+fn a_scan_is_reported_in_its_order() {
     let input = Input::from_text("test.st", SourceKind::Text, TEXT);
     let application = Application::builder().input(input).traced().build().expect("it compiles");
     let plan = application.single_task(TimeSpan::millis::<10>());

@@ -121,7 +121,7 @@ fn programs_of_one_task_take_turns() {
 }
 
 #[test]
-fn conversions_of_vendors_that_may_lose_are_told() {
+fn conversions_of_vendors_that_may_lose_are_reported() {
     let text = "PROGRAM P
 VAR i : INT; u : UINT; w : WORD; d : DINT; l : LREAL; r : REAL; b : BOOL; END_VAR
   u := i; i := u; d := u; i := w; w := u;

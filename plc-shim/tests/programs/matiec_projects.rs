@@ -70,8 +70,8 @@ fn c_code_is_a_stub() {
         PROGRAM P VAR f1 : F; a : INT; END_VAR f1();
           {if (Ready()) __SET_VAR(data__->,a, 2)} {{ SetFbVar(a, 1); }} a := a + 1; END_PROGRAM";
     let findings = findings_in(Matiec, text);
-    let told: Vec<_> = findings.iter().map(|found| (found.severity, found.code)).collect();
-    assert_eq!(told, [(Severity::Warning, Code::StubUsed); 3], "{findings}");
+    let reported: Vec<_> = findings.iter().map(|found| (found.severity, found.code)).collect();
+    assert_eq!(reported, [(Severity::Warning, Code::StubUsed); 3], "{findings}");
     assert_eq!(after_a_scan(text).int("P.a"), 1);
     assert!(findings_in(Iec3, text).iter().any(|found| found.code == Code::VendorRuntime));
 }
@@ -126,8 +126,8 @@ const COPY: &str = "<inVariable localId=\"1\"><connectionPointOut/><expression>a
 #[test]
 fn an_output_that_nothing_leads_to_is_left_out() {
     let text = program("local a : INT = 5, b : INT, c : INT = 9", "FBD", COPY);
-    let told = codes(&of_beremiz(&text));
-    assert!(told.contains(&(Severity::Warning, Code::Unconnected)), "{told:?}");
+    let reported = codes(&of_beremiz(&text));
+    assert!(reported.contains(&(Severity::Warning, Code::Unconnected)), "{reported:?}");
     let mut rig = drawn(&of_beremiz(&text));
     rig.scan().expect("no fault");
     assert_eq!((rig.int("P.b"), rig.int("P.c")), (5, 9));
@@ -194,8 +194,8 @@ fn a_file_is_of_beremiz_by_its_header_and_by_its_c_code() {
     let body = "<xhtml:p xmlns:xhtml=\"http://www.w3.org/1999/xhtml\">l(TRIG := TRUE);</xhtml:p>";
     let text = program("local l : LOGGER", "ST", body);
     let header = "<fileHeader companyName=\"\" productName=\"PLC\" contentDescription=\"made with Beremiz\"/><types>";
-    let told = codes(&text.replace("<types>", header));
-    assert_eq!(told, [(Severity::Warning, Code::StubUsed)]);
+    let reported = codes(&text.replace("<types>", header));
+    assert_eq!(reported, [(Severity::Warning, Code::StubUsed)]);
     let with_c = text.replace("l(TRIG := TRUE);", "{__SET_VAR(data__->,l.TRIG,,1)} l(TRIG := TRUE);");
     assert_eq!(codes(&with_c), [(Severity::Warning, Code::StubUsed); 2]);
     assert!(codes(&text).iter().any(|(severity, _)| *severity == Severity::Error), "another tool has no LOGGER");

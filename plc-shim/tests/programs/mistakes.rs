@@ -1,4 +1,4 @@
-//! Mistakes that people make, and what the findings tell them to write.
+//! Mistakes that people make, and what the findings advise them to write.
 
 use std::fmt::Write;
 
@@ -9,7 +9,7 @@ use crate::rig::findings_in;
 const HEAD: &str = "PROGRAM P VAR a, b, n : INT; x, q : BOOL; t : TON; d : TIME; END_VAR\n";
 
 /// Each body with all that is said about it; the body is line 2.
-fn told(dialect: Dialect, bodies: &[&str]) -> String {
+fn reported(dialect: Dialect, bodies: &[&str]) -> String {
     let mut list = String::new();
     for body in bodies {
         let found = findings_in(dialect, &format!("{HEAD}{body}\nEND_PROGRAM")).to_string();
@@ -40,17 +40,20 @@ fn habits_of_other_languages() {
         "IF x THEN a := 1; ELSEIF q THEN a := 2; END_IF;",
         "RETURN a;",
     ];
-    insta::assert_snapshot!(told(Dialect::Iec3, &bodies));
+    insta::assert_snapshot!(reported(Dialect::Iec3, &bodies));
 }
 
 #[test]
 fn continue_is_younger_than_the_2nd_edition() {
-    insta::assert_snapshot!(told(Dialect::Iec2, &["WHILE x DO IF q THEN continue; END_IF; a := 1; END_WHILE;"]));
+    insta::assert_snapshot!(reported(Dialect::Iec2, &["WHILE x DO IF q THEN continue; END_IF; a := 1; END_WHILE;"]));
 }
 
 #[test]
 fn durations_without_units() {
-    insta::assert_snapshot!(told(Dialect::Iec3, &["d := T#500;", "d := T#1.5;", "d := T#1m30;", "d := LTIME#2h15;"]));
+    insta::assert_snapshot!(reported(
+        Dialect::Iec3,
+        &["d := T#500;", "d := T#1.5;", "d := T#1m30;", "d := LTIME#2h15;"]
+    ));
 }
 
 #[test]
@@ -65,7 +68,7 @@ fn loops_that_nothing_leaves() {
         "WHILE x DO a := a + 1; END_WHILE;",
         "REPEAT a := 1; UNTIL TRUE END_REPEAT;",
     ];
-    insta::assert_snapshot!(told(Dialect::Iec3, &bodies));
+    insta::assert_snapshot!(reported(Dialect::Iec3, &bodies));
 }
 
 #[test]

@@ -192,7 +192,7 @@ ACTION Note: b := b + v.n; END_ACTION");
 }
 
 #[test]
-fn queries_of_vendors_tell_what_an_instance_is() {
+fn queries_of_vendors_report_what_an_instance_is() {
     let text = "INTERFACE IRun EXTENDS __SYSTEM.IQueryInterface METHOD Run : INT END_METHOD END_INTERFACE
         INTERFACE IStop EXTENDS __SYSTEM.IQueryInterface METHOD Stop : INT END_METHOD END_INTERFACE
         FUNCTION_BLOCK Motor IMPLEMENTS IRun, IStop VAR_OUTPUT n : INT; END_VAR
@@ -480,7 +480,7 @@ END_PROGRAM");
 }
 
 #[test]
-fn members_that_are_not_there_are_told_with_the_nearest() {
+fn members_that_are_not_there_are_reported_with_the_nearest() {
     insta::assert_snapshot!(crate::rig::findings(
         "INTERFACE IValve METHOD Open : BOOL END_METHOD PROPERTY Level : INT GET END_GET END_PROPERTY END_INTERFACE
 TYPE Pose : STRUCT x : INT; END_STRUCT END_TYPE
@@ -506,6 +506,6 @@ fn actions_of_vendors_take_the_inputs_of_their_unit() {
     let mut rig = Rig::in_dialect(Dialect::TwinCat, text);
     rig.scan().expect("no fault");
     assert_eq!((rig.int("P.x"), rig.int("P.y")), (7, 13));
-    let told = findings_in(Dialect::TwinCat, &text.replace("b := 10", "c := 10")).to_string();
-    assert!(told.contains("`Add` has no such parameter `c`"), "{told}");
+    let reported = findings_in(Dialect::TwinCat, &text.replace("b := 10", "c := 10")).to_string();
+    assert!(reported.contains("`Add` has no such parameter `c`"), "{reported}");
 }

@@ -42,10 +42,10 @@ fn iec3_6_5_3_an_index_out_of_the_bounds_that_came_stops_the_plc() {
 PROGRAM P VAR a : ARRAY [1..4] OF INT; x : INT; END_VAR x := Get(a, {index}); END_PROGRAM"
         );
         let mut rig = Rig::new(&text);
-        let told = rig.scan().map_err(|fault| fault.to_string());
-        assert_eq!(told.is_err(), failing, "{index}");
-        if let Err(told) = told {
-            assert!(told.starts_with("array index out of range at test.st:2:10 in Get"), "{told}");
+        let reported = rig.scan().map_err(|fault| fault.to_string());
+        assert_eq!(reported.is_err(), failing, "{index}");
+        if let Err(reported) = reported {
+            assert!(reported.starts_with("array index out of range at test.st:2:10 in Get"), "{reported}");
         }
     }
 }
@@ -80,8 +80,8 @@ fn iec3_6_5_3_functions_and_methods_write_to_the_arrays_of_their_outputs() {
 }
 
 #[test]
-fn wrong_arrays_are_told() {
-    let told = |statement: &str| {
+fn wrong_arrays_are_reported() {
+    let reported = |statement: &str| {
         let declarations =
             "a : ARRAY [1..4] OF INT; d : ARRAY [1..4] OF DINT; m : ARRAY [1..2, 1..2] OF INT; x : DINT; i : INT;";
         let text = format!("{SUM}PROGRAM P VAR {declarations} END_VAR\n{statement}\nEND_PROGRAM")
@@ -101,7 +101,7 @@ fn wrong_arrays_are_told() {
         ("Make(n := 1, NOT a => a);", "test.st:6:23: error[T0201]: BOOL is wanted, this is ARRAY [*] OF INT"),
         ("x := UPPER_BOUND(a, x);", "test.st:6:21: error[T0204]: a constant is wanted here"),
     ] {
-        assert_eq!(told(statement), expected, "{statement}");
+        assert_eq!(reported(statement), expected, "{statement}");
     }
     for (unit, expected) in [
         ("PROGRAM P VAR a : ARRAY [*] OF INT; END_VAR END_PROGRAM", "error[R0907]"),

@@ -49,8 +49,8 @@ fn iec3_6_5_3_parts_of_members_elements_outputs_and_addresses() {
 }
 
 #[test]
-fn wrong_parts_are_told() {
-    let told = |statement: &str| {
+fn wrong_parts_are_reported() {
+    let reported = |statement: &str| {
         let declarations = "w : WORD; b : BYTE; l : LWORD; i : INT; x : BOOL; r : REAL; n : INT;";
         let text = format!("PROGRAM P VAR {declarations} END_VAR\n{statement}\nEND_PROGRAM");
         findings(&text).lines().next().unwrap_or_default().to_owned()
@@ -72,6 +72,6 @@ fn wrong_parts_are_told() {
         ("x := i.n;", "test.st:2:6: error[T0208]: INT has no members"),
         ("w.%B0 := 256;", "test.st:2:10: error[T0202]: 256 does not fit BYTE (0 to 255)"),
     ] {
-        assert_eq!(told(statement), expected, "{statement}");
+        assert_eq!(reported(statement), expected, "{statement}");
     }
 }

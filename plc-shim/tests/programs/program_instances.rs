@@ -73,7 +73,7 @@ fn the_instance_is_the_one_of_the_configuration() {
 }
 
 #[test]
-fn what_is_wrong_with_a_program_as_an_instance_is_told() {
+fn what_is_wrong_with_a_program_as_an_instance_is_reported() {
     let wrong = "PROGRAM MAIN VAR x : INT; END_VAR Cell(k := 1); Cell.n := 2; Cell.o := 3; x := Cell.m; Cell.i := 4; END_PROGRAM
         PROGRAM Cell VAR_INPUT i : INT; END_VAR VAR_OUTPUT o : INT; END_VAR VAR n : INT; END_VAR o := n + i; MAIN(); END_PROGRAM";
     insta::assert_snapshot!(findings_in(Dialect::Codesys, wrong));

@@ -1,4 +1,4 @@
-//! Slips that people make: each is told once, and what follows it is read as if it were not there.
+//! Slips that people make: each is reported once, and what follows it is read as if it were not there.
 
 use crate::rig::findings;
 
@@ -44,21 +44,21 @@ const DECLARATIONS: [&str; 10] = [
     "PROGRAM VAR b : INT; END_VAR b := 1; END_PROGRAM PROGRAM Q VAR b : INT; END_VAR b := 1; END_PROGRAM",
 ];
 
-fn told(text: &str, shown: &str) -> String {
+fn reported(text: &str, shown: &str) -> String {
     let found = findings(text);
     format!("{shown}\n    {}\n", found.replace('\n', "\n    "))
 }
 
 #[test]
-fn a_slip_in_a_statement_is_told_once() {
-    let told = SLIPS.map(|slip| {
+fn a_slip_in_a_statement_is_reported_once() {
+    let reported = SLIPS.map(|slip| {
         let text = format!("PROGRAM P VAR a : INT; b : BOOL; t : TON; END_VAR\n{slip} a := 1; END_PROGRAM");
-        told(&text, slip)
+        reported(&text, slip)
     });
-    insta::assert_snapshot!(told.concat());
+    insta::assert_snapshot!(reported.concat());
 }
 
 #[test]
-fn a_slip_in_a_declaration_is_told_once() {
-    insta::assert_snapshot!(DECLARATIONS.map(|text| told(text, text)).concat());
+fn a_slip_in_a_declaration_is_reported_once() {
+    insta::assert_snapshot!(DECLARATIONS.map(|text| reported(text, text)).concat());
 }

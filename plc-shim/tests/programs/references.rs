@@ -176,8 +176,8 @@ fn a_variable_whose_address_is_taken_is_used_and_written() {
 }
 
 #[test]
-fn wrong_references_are_told() {
-    let told = |statement: &str| {
+fn wrong_references_are_reported() {
+    let reported = |statement: &str| {
         let declarations = "r : REF_TO INT; d : REF_TO DINT; p : POINTER TO INT; q : POINTER TO REAL; v : REFERENCE TO INT; x : INT; w : WORD; b : BOOL; t : TON;
 END_VAR VAR_TEMP tmp : INT; END_VAR VAR CONSTANT k : INT := 1;";
         let text = format!("PROGRAM P VAR {declarations} END_VAR\n{statement}\nEND_PROGRAM");
@@ -222,7 +222,7 @@ END_VAR VAR_TEMP tmp : INT; END_VAR VAR CONSTANT k : INT := 1;";
         ),
         ("NULL := r;", "test.st:3:1: error[N0106]: `NULL` is not a variable"),
     ] {
-        assert_eq!(told(statement), expected, "{statement}");
+        assert_eq!(reported(statement), expected, "{statement}");
     }
     let unknown = findings("PROGRAM P VAR r : REF_TO Nothing; END_VAR r^ := 1; END_PROGRAM");
     assert_eq!(unknown, "test.st:1:26: error[N0103]: type `Nothing` is not declared");

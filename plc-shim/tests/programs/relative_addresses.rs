@@ -94,8 +94,8 @@ fn addresses_count_what_the_dialect_counts() {
 }
 
 #[test]
-fn wrong_addresses_of_members_are_told() {
-    let told = |members: &str| findings(&format!("TYPE S : STRUCT\n{members} END_STRUCT END_TYPE"));
+fn wrong_addresses_of_members_are_reported() {
+    let reported = |members: &str| findings(&format!("TYPE S : STRUCT\n{members} END_STRUCT END_TYPE"));
     let all = [
         "a AT %B0 : INT; b AT %B1 : INT;",
         "a, b AT %B0 : INT;",
@@ -108,5 +108,5 @@ fn wrong_addresses_of_members_are_told() {
         "a AT %X0.8 : BOOL;",
         "b AT %B4 : INT; a : INT; c AT %B6 : INT;",
     ];
-    insta::assert_snapshot!(all.map(|members| format!("{members}\n    {}", told(members))).join("\n"));
+    insta::assert_snapshot!(all.map(|members| format!("{members}\n    {}", reported(members))).join("\n"));
 }

@@ -144,7 +144,7 @@ fn a_good_source_has_no_findings() {
 }
 
 #[test]
-fn what_is_of_s7_alone_is_told() {
+fn what_is_of_s7_alone_is_reported() {
     let text = r#"ORGANIZATION_BLOCK OB100
 BEGIN
 END_ORGANIZATION_BLOCK

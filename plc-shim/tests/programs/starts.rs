@@ -189,7 +189,7 @@ PROGRAM P VAR x : INT := Twice(1); y : INT; text : STRING := CONCAT('x', 'y'); E
 }
 
 #[test]
-fn instances_of_a_call_begin_anew_with_fb_init() {
+fn instances_of_a_call_restart_with_fb_init() {
     let mut rig = rig(&format!(
         "{NOTE}FUNCTION Make : LINT
 VAR_INPUT n : LINT; END_VAR
@@ -279,7 +279,7 @@ END_PROGRAM";
 }
 
 #[test]
-fn what_is_wrong_with_starts_is_told() {
+fn what_is_wrong_with_starts_is_reported() {
     let cases = [
         ("PROGRAM P VAR f : Base; END_VAR END_PROGRAM"),
         ("PROGRAM P VAR f : Base(m := 1); END_VAR END_PROGRAM"),
@@ -303,8 +303,9 @@ END_METHOD END_FUNCTION_BLOCK PROGRAM P VAR f : B; END_VAR END_PROGRAM"),
         ("TYPE Pair : STRUCT left : Base(k := 7); END_STRUCT END_TYPE
 PROGRAM P VAR a, b : Pair; END_VAR END_PROGRAM"),
     ];
-    let told: String = cases.iter().map(|case| format!("{case}\n{}\n", findings(&format!("{NOTE}{case}")))).collect();
-    insta::assert_snapshot!(told);
+    let reported: String =
+        cases.iter().map(|case| format!("{case}\n{}\n", findings(&format!("{NOTE}{case}")))).collect();
+    insta::assert_snapshot!(reported);
 }
 
 #[test]

@@ -176,7 +176,7 @@ fn iec2_2_5_1_strings_go_in_and_out_of_units() {
 }
 
 #[test]
-fn wrong_strings_are_told() {
+fn wrong_strings_are_reported() {
     insta::assert_snapshot!(findings(
         "PROGRAM P
 VAR s : STRING[5]; w : WSTRING; n : INT; a : STRING[0]; c : STRING := w; d : STRING[3] := 'abcd'; END_VAR

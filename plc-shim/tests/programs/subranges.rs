@@ -60,7 +60,7 @@ fn iec2_2_3_3_1_table_12_enumerations_have_values_and_a_base() {
 }
 
 #[test]
-fn wrong_subranges_and_enumerations_are_told() {
+fn wrong_subranges_and_enumerations_are_reported() {
     insta::assert_snapshot!(findings(
         "TYPE A : INT (5..1); B : SINT (0..200); C : REAL (0..1); D : (X := 300) USINT; E : (Y) STRUCTURE; F : INT (0..9) := 10; END_TYPE
 PROGRAM P VAR a : INT (0..100); b : INT (0..5) := 6; d : DINT; r : REAL; END_VAR

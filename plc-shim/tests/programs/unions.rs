@@ -22,7 +22,7 @@ fn members_of_a_union_share_their_bytes() {
 }
 
 #[test]
-fn wrong_unions_are_told() {
+fn wrong_unions_are_reported() {
     for (text, expected) in [
         ("TYPE U : UNION a : INT; a : DINT; END_UNION END_TYPE", "error[N0102]"),
         ("TYPE U : UNION a : INT; b : U; END_UNION END_TYPE", "error[D0404]"),

@@ -123,7 +123,7 @@ fn name_of(schema: &Value) -> &str {
     reference.rsplit('/').next().expect("split gives one part")
 }
 
-/// The key and its value by which the members of a union are told apart, and the other keys of a member.
+/// The key and its value by which the members of a union are distinguished, and the other keys of a member.
 fn tag(member: &Value) -> Option<(&str, &str)> {
     let properties = member["properties"].as_object()?;
     let mut tags = properties.iter().filter_map(|(key, schema)| Some((key.as_str(), schema["const"].as_str()?)));

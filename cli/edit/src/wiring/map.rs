@@ -210,7 +210,7 @@ impl Map {
     fn check_undeclared(&mut self, scenario: &Scenario, found: &[(ClientName, Option<Ends>)]) {
         let declared = &scenario.file().signals;
         for (client, ends) in found.iter().filter_map(|(client, ends)| Some((client, ends.as_ref()?))) {
-            let told = |end: &End, does: &str| {
+            let reported = |end: &End, does: &str| {
                 let near = nearest(end.signal.as_str(), declared.keys().map(SignalName::as_str));
                 let help = near.map(|near| format!(" (did you mean `{near}`?)")).unwrap_or_default();
                 format!("`{client}` {does} it, but it is not declared under [signals]{help}")
@@ -218,7 +218,7 @@ impl Map {
             let reads = ends.reads.iter().map(|end| (end, "reads"));
             for (end, does) in reads.chain(ends.writes.iter().map(|end| (end, "writes"))) {
                 if !declared.contains_key(&end.signal) {
-                    self.trouble(TroubleKind::Unconnected, &end.signal, told(end, does));
+                    self.trouble(TroubleKind::Unconnected, &end.signal, reported(end, does));
                 }
             }
         }

@@ -19,8 +19,8 @@ pub(super) fn write(map: &Map, out: &mut dyn Write) -> io::Result<()> {
         let width = |column: usize| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or_default();
         let (name, ty) = (width(0), width(1));
         for line in &lines {
-            let told = format!("  {:name$}  {:ty$}  {}", line[0], line[1], line[2]);
-            writeln!(out, "{}", told.trim_end())?;
+            let reported = format!("  {:name$}  {:ty$}  {}", line[0], line[1], line[2]);
+            writeln!(out, "{}", reported.trim_end())?;
         }
     }
     for kind in [TroubleKind::Unconnected, TroubleKind::WrittenTwice, TroubleKind::UnequalType] {

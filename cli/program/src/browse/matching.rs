@@ -140,11 +140,11 @@ mod tests {
     }
 
     #[test]
-    fn every_variable_is_found_by_its_path_and_doubt_is_told() {
+    fn every_variable_is_found_by_its_path_and_doubt_is_reported() {
         let codesys = |path: &str| format!("ns=4;s=|var|CODESYS Control.Application.{path}");
         let all = [codesys("P.go"), codesys("Q.go"), codesys("P.Done")];
         let all: Vec<&str> = all.iter().map(String::as_str).collect();
-        let told = [
+        let reported = [
             mapped_to(&all),
             mapped_to(&["P.GO", "Q.go", "P.done", "PLC_Start", "PLC_Boots", "PLC_Running"]),
             mapped_to(&["ns=3;s=\"P\".\"go\"", "ns=3;s=\"Q\".\"go\"", "ns=3;s=\"R\".\"Done\""]),
@@ -152,6 +152,6 @@ mod tests {
             mapped_to(&["A.P.go", "B.P.go", "A.Q.go", "Don"]),
             mapped_to(&["P.go", "PLC_Boots"]),
         ];
-        insta::assert_snapshot!(told.join("\n----\n"));
+        insta::assert_snapshot!(reported.join("\n----\n"));
     }
 }

@@ -68,7 +68,7 @@ pub fn run(config: &BrowseConfig, out: &mut dyn Write) -> Result<(), BrowseError
     let Some(path) = &config.map else { return Ok(()) };
     let fragment = match &scenario {
         Some((scenario, name)) => {
-            // What is mapped already is not asked for: the mapping is to be made anew.
+            // What is mapped already is not asked for: the mapping is to be made again.
             let unmapped = Settings { map: BTreeMap::new(), ..settings };
             let agreed = scenario.agreement_over(name, unmapped)?;
             Fragment { client: name.to_string(), url: config.url.clone(), ..matching::mapped(&agreed.exchange, &found) }

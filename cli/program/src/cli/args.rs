@@ -79,8 +79,8 @@ pub enum Command {
     Compare(CompareArgs),
     /// Run all scenarios and cases, and hold them against their reviewed snapshots; run test programs in ST
     Test(Box<TestArgs>),
-    /// Try every fault of a campaign with every activation, and report a verdict for each: detected by the
-    /// control, safe, missed, collision, without effect
+    /// Try every fault of a campaign with every activation, and report a verdict for each: detected by the control,
+    /// safe, missed, collision, without effect
     Campaign(CampaignArgs),
     /// Try every timing that a scenario's `[timing]` allows: edges that are late, one at a time, then two, and show the
     /// fewest with which it does not do what is expected
@@ -137,13 +137,13 @@ pub enum Command {
     Plc(PlcArgs),
     /// List what a real PLC has, and write a mapping to start from
     Browse(BrowseArgs),
-    /// Tell where every signal and word lies in a real PLC: direction, address, signal, variable, type, layout number
+    /// Print where every signal and word lies in a real PLC: direction, address, signal, variable, type, layout number
     Map(MapArgs),
     /// List the library of components and kinds of your own, or describe one kind in full
     Components(ComponentsArgs),
-    /// Tell what a scene is made of: bodies, joints, components, signals
+    /// Print what a scene is made of: bodies, joints, components, signals
     Describe(DescribeArgs),
-    /// Tell and draw how the signals of a scenario connect its clients, and what is unconnected, doubly written
+    /// Print and draw how the signals of a scenario connect its clients, and what is unconnected, doubly written
     /// or of unequal type
     Wiring(WiringArgs),
     /// Print a scenario with everything that it takes in from its `base`, as one file that loads to the same session

@@ -28,7 +28,7 @@ pub struct CompareArgs {
     /// Runs of each way
     #[arg(long, default_value_t = 3, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000))]
     pub runs: u32,
-    /// Count how often this signal comes true in each way, as one that tells that the PLC's checks fail
+    /// Count how often this signal comes true in each way, as one that reports that the PLC's checks fail
     #[arg(long, value_name = "SIGNAL", value_parser = signal_name)]
     pub count: Option<SignalName>,
     /// Draw the signals of the scenario's plot, a run of each way over each other, into this SVG file

@@ -66,7 +66,7 @@ pub struct FalsifyArgs {
     /// How many at a time [default: as many as there are processors]
     #[arg(short, long, value_name = "N")]
     pub jobs: Option<NonZeroUsize>,
-    /// Do not search: tell what the points of standard input are worth, a JSON array of numbers from 0 to 1 a line
+    /// Do not search: print what the points of standard input are worth, a JSON array of numbers from 0 to 1 a line
     #[arg(long, conflicts_with_all = ["cases", "plot", "runs", "jobs", "seed", "optimiser", "objective"])]
     pub points: bool,
     /// Write what is found as a case into this file

@@ -27,7 +27,7 @@ pub struct MutateArgs {
     /// What is changed: `operator`, `constant`, `condition`, `statement`, `timer`; may be given several times [default: all]
     #[arg(long = "kind", value_name = "KIND")]
     pub kinds: Vec<MutantKind>,
-    /// Fail unless so many percent are noticed of those that can be told from the program
+    /// Fail unless so many percent are noticed of those that can be distinguished from the program
     #[arg(long, value_name = "PERCENT", value_parser = clap::value_parser!(u8).range(0..=100))]
     pub at_least: Option<u8>,
     /// Write those that survived as cases into this file, each on top of the case in which it shows

@@ -90,7 +90,7 @@ impl From<ViewArg> for Side {
     }
 }
 
-/// Tells what a scene is made of.
+/// Prints what a scene is made of.
 ///
 /// # Errors
 /// See [`CommandError`].
@@ -118,7 +118,7 @@ pub struct WiringArgs {
     pub svg: Option<PathBuf>,
 }
 
-/// Tells how signals connect clients.
+/// Prints how signals connect clients.
 ///
 /// # Errors
 /// See [`CommandError`].

@@ -83,7 +83,7 @@ impl From<PlcModeArg> for Mode {
 
 const PLC_COMMANDS: &str = "Commands on standard input:
   run, stop    the switch: RUN or STOP
-  cold, warm   start it anew: all variables with their initial values, or RETAIN kept
+  cold, warm   restart it: all variables with their initial values, or RETAIN kept
   status       how it is
   quit         end it";
 
@@ -164,7 +164,7 @@ pub struct MapArgs {
     pub output: Option<PathBuf>,
 }
 
-/// Tells where everything lies.
+/// Prints where everything lies.
 ///
 /// # Errors
 /// See [`CommandError`].

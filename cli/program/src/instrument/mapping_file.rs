@@ -12,7 +12,7 @@ use onescan_runner::error::{Unreadable, Usage};
 
 /// The name of the file.
 const FILE: &str = "gateway.toml";
-/// Its first line: who finds it may write the file anew, and delete it.
+/// Its first line: who finds it may write the file again, and delete it.
 const MARK: &str = "# Written by `onescan instrument`, which deletes it with --remove.\n";
 
 /// The file with its mapping.

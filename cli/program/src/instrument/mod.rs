@@ -158,7 +158,7 @@ pub fn instrument(
     let client = program.client.as_ref().map_or("plc", ClientName::as_str);
     let mapped = mapped.as_ref().map(|(path, _)| report::Mapped { path, client });
     report::write(config, &project, mapped, out)?;
-    tell(&project.warnings, program.inputs.len(), config, err)?;
+    print_warnings(&project.warnings, program.inputs.len(), config, err)?;
     Ok(ExitCode::Ok)
 }
 
@@ -196,7 +196,7 @@ fn tasks(config: &InstrumentConfig, plan: Option<TaskPlan>) -> Option<Vec<Task>>
 }
 
 /// Findings for people go where they do not mix with the result; for machines they are in it.
-fn tell(
+fn print_warnings(
     warnings: &Diagnostics,
     files: usize,
     config: &InstrumentConfig,

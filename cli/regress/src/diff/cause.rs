@@ -1,6 +1,6 @@
 //! Who wrote what differs.
 //!
-//! The recorded scenarios are run again up to the first difference, with statements that tell what
+//! The recorded scenarios are run again up to the first difference, with statements that report what
 //! they write and which way they go. A re-run whose digest is not that of the recording says nothing, and is not believed.
 
 use std::collections::BTreeSet;

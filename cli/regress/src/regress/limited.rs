@@ -16,7 +16,7 @@ pub(super) struct Limited {
 }
 
 impl Limited {
-    /// Starts it. Its input stays open for as long as this process lives, so that it can tell.
+    /// Starts it. Its input stays open for as long as this process lives, so that it can notice its end.
     pub(super) fn start(command: &mut Command) -> io::Result<Self> {
         let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn()?;
         let (out, err) = (taken(child.stdout.take()), taken(child.stderr.take()));

@@ -123,7 +123,7 @@ pub fn review(config: &ReviewConfig, out: &mut dyn Write) -> Result<ExitCode, Re
             Decision::Reject => one.place.reject()?,
             Decision::Skip => {}
         }
-        tell(config, one, what, out).map_err(OutputError)?;
+        print_decision(config, one, what, out).map_err(OutputError)?;
     }
     if config.choice == Choice::Ask && !asks {
         let how = "on a terminal, or with --accept-all or --reject-all";
@@ -140,7 +140,7 @@ enum Decision {
     Skip,
 }
 
-fn tell(config: &ReviewConfig, one: &Waiting, what: Decision, out: &mut dyn Write) -> std::io::Result<()> {
+fn print_decision(config: &ReviewConfig, one: &Waiting, what: Decision, out: &mut dyn Write) -> std::io::Result<()> {
     match (config.choice, what) {
         (Choice::List, _) => writeln!(out, "{} {}", one.status(), one.name()),
         (_, Decision::Accept) => writeln!(out, "accepted {}", one.name()),

@@ -191,32 +191,32 @@ mod tests {
         Snapshot { scenario: "s".to_owned(), case: "c".to_owned(), step, end: at(9), signals: vec![track] }
     }
 
-    fn told(one: &Snapshot, other: &Snapshot, tolerance: Option<f64>) -> Vec<String> {
+    fn reported(one: &Snapshot, other: &Snapshot, tolerance: Option<f64>) -> Vec<String> {
         let tolerances = tolerance.map(|tolerance| ("x".to_owned(), tolerance)).into_iter().collect();
         compare(one, other, &tolerances).iter().map(ToString::to_string).collect()
     }
 
     #[test]
-    fn the_first_and_the_furthest_difference_are_told() {
+    fn the_first_and_the_furthest_difference_are_reported() {
         let (one, other) = (snapshot(&[0.0, 1.0, 2.0, 3.0], 1), snapshot(&[0.0, 1.5, 2.0, 5.0], 2));
-        assert_eq!(told(&one, &one, None), [""; 0]);
+        assert_eq!(reported(&one, &one, None), [""; 0]);
         let all = "x (m) at 0.010 s: expected 1.0, found 1.5; 2 of 4 instants differ, most at 0.030 s, by 2";
-        assert_eq!(told(&one, &other, None), [all]);
+        assert_eq!(reported(&one, &other, None), [all]);
         let some = "x (m) at 0.030 s: expected 3.0, found 5.0";
-        assert_eq!(told(&one, &other, Some(0.5)), [some]);
-        assert_eq!(told(&one, &other, Some(2.0)), [""; 0]);
+        assert_eq!(reported(&one, &other, Some(0.5)), [some]);
+        assert_eq!(reported(&one, &other, Some(2.0)), [""; 0]);
     }
 
     #[test]
     fn what_lies_between_samples_counts() {
         let (one, other) = (snapshot(&[0.0, 1.0], 1), snapshot(&[0.0, 1.0], 2));
-        assert_eq!(told(&one, &other, None), ["x: equal at its samples every 10 ms, but not between them"]);
-        assert_eq!(told(&one, &other, Some(0.0)), [""; 0]);
+        assert_eq!(reported(&one, &other, None), ["x: equal at its samples every 10 ms, but not between them"]);
+        assert_eq!(reported(&one, &other, Some(0.0)), [""; 0]);
     }
 
     #[test]
     fn a_nan_is_never_near() {
         let (one, other) = (snapshot(&[0.0, 1.0], 1), snapshot(&[0.0, f64::NAN], 1));
-        assert_eq!(told(&one, &other, Some(9.0)), ["x (m) at 0.010 s: expected 1.0, found NaN"]);
+        assert_eq!(reported(&one, &other, Some(9.0)), ["x (m) at 0.010 s: expected 1.0, found NaN"]);
     }
 }

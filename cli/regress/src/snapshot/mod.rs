@@ -31,7 +31,7 @@
 //! A line is an instant in seconds and the value from then on: only changes are written. REAL and LREAL, which
 //! change at every step, are looked at `every` so often; the number after `of` is a digest of
 //! all their steps, so that a run that differs between two samples differs all the same. Numbers have as
-//! many digits as give the same bits back. The last line tells a file that was cut off.
+//! many digits as give the same bits back. The last line shows whether a file was cut off.
 //!
 //! **Invariants.** What is written reads back to the bit. No text makes reading panic.
 

@@ -212,7 +212,7 @@ mod tests {
         }
 
         #[test]
-        fn a_cut_text_is_told(runs in runs(), at in 0.0_f64..1.0) {
+        fn a_cut_text_is_reported(runs in runs(), at in 0.0_f64..1.0) {
             let text = snapshot(10_000, &runs).to_text();
             // Without its last line break a text is still whole.
             let cut = ((text.len() - 1) as f64 * at) as usize;

@@ -94,7 +94,7 @@ fn folder_of(scenario: &Path) -> &Path {
     if is_file(scenario) { scenario.parent().unwrap_or(Path::new("")) } else { scenario }
 }
 
-/// Whether a scenario is named by its file: several of a folder are told apart so.
+/// Whether a scenario is named by its file: several of a folder are distinguished by it.
 fn is_file(scenario: &Path) -> bool {
     scenario.extension().is_some_and(|ending| ending == "toml") && !scenario.is_dir()
 }

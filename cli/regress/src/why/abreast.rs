@@ -24,7 +24,7 @@ pub struct Side<'s> {
     pub inputs: Vec<OperatorInput>,
 }
 
-/// The scenario with PLCs that tell what they do, to nobody.
+/// The scenario with PLCs that report what they do, to nobody.
 pub(super) fn traced(scenario: &Scenario) -> Scenario {
     let mut traced = scenario.clone();
     let (scans, _) = sync_channel(0);

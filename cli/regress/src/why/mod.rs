@@ -110,7 +110,7 @@ pub fn explain(
     Ok(Some(Why { signal, links: way_back(&records, record) }))
 }
 
-/// The soft PLCs that both scenarios have, compiled so that their statements tell what they do.
+/// The soft PLCs that both scenarios have, compiled so that their statements report what they do.
 fn plcs(sides: [&Side<'_>; 2]) -> Result<BTreeMap<ClientName, Both>, ScenarioError> {
     let [a, b] = sides;
     let (mut ours, mut found) = (compiled(a.scenario)?, BTreeMap::new());

@@ -4,7 +4,7 @@ use onescan_server::layout::ImageLayout;
 use onescan_server::session::Session;
 use onescan_server::signal::{SignalId, SignalName};
 
-/// Signals chosen by name, found anew in each session.
+/// Signals chosen by name, found again in each session.
 #[derive(Clone)]
 pub struct Chosen {
     names: Vec<SignalName>,

@@ -55,7 +55,7 @@ pub(super) fn confine(command: &mut Command, named: &[String]) {
 }
 
 fn passes(name: Option<&str>, named: &[String]) -> bool {
-    // Windows does not tell upper case from lower.
+    // Windows does not distinguish upper case from lower.
     let is = |known: &str, name: &str| if cfg!(windows) { known.eq_ignore_ascii_case(name) } else { known == name };
     name.is_some_and(|name| {
         PRESETS.iter().any(|known| is(known, name))

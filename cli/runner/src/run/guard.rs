@@ -1,6 +1,6 @@
 //! Who ends the processes of a session if the server cannot: killed, or out of memory.
 //!
-//! The guard is this program once more, with a pipe to the server as its input. It is told the groups of processes that
+//! The guard is this program once more, with a pipe to the server as its input. It gets the groups of processes that
 //! are to end with the server. When the pipe closes before the guard was dismissed, the server is dead, and the guard
 //! kills them. Only a process that leaves its group on purpose escapes. Outside of Unix there are no groups, and
 //! the guard knows the clients' own processes only through the server's connection, which closes.
@@ -43,7 +43,7 @@ impl Group {
 #[derive(Debug)]
 pub(super) struct Guard {
     process: Child,
-    told: ChildStdin,
+    orders: ChildStdin,
 }
 
 impl Guard {
@@ -56,30 +56,30 @@ impl Guard {
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
         let mut process = command.spawn()?;
         match process.stdin.take() {
-            Some(told) => Ok(Self { process, told }),
+            Some(orders) => Ok(Self { process, orders }),
             None => Err(std::io::Error::other("the guard has no input")),
         }
     }
 
     /// From now on this group ends with the server. A guard that was killed guards nothing; the session goes on.
     pub(super) fn watch(&mut self, group: Group) {
-        if let Err(error) = writeln!(self.told, "{}", group.0) {
+        if let Err(error) = writeln!(self.orders, "{}", group.0) {
             tracing::warn!(%error, "processes of clients may outlive this one");
         }
     }
 
     /// Everybody has left.
     pub(super) fn dismiss(self) {
-        let Self { mut process, mut told } = self;
-        // If it is gone already, it need not be told.
-        let _ = writeln!(told, "{DISMISSED}");
-        drop(told);
+        let Self { mut process, mut orders } = self;
+        // If it is gone already, it need not be notified.
+        let _ = writeln!(orders, "{DISMISSED}");
+        drop(orders);
         // Its status says nothing that anybody could act on: the processes that it guarded have ended.
         let _ = process.wait();
     }
 }
 
-/// The guard's side: reads what it is told from `input`, and when that ends too early kills all groups.
+/// The guard's side: reads what it receives from `input`, and when that ends too early kills all groups.
 pub fn stand(input: impl BufRead) {
     let mut groups = Vec::new();
     for line in input.lines() {

@@ -268,7 +268,7 @@ fn form(
     Ok(Formed { lockstep: formation.start()?, lobby, opcua_seats })
 }
 
-/// The command of a client, if scenarios may start programs. Whoever runs it is told that it does.
+/// The command of a client, if scenarios may start programs. Whoever runs it is notified that it does.
 fn permitted(name: &ClientName, command: Vec<String>) -> Result<Vec<String>, RunError> {
     if command.is_empty() {
         return Ok(command);

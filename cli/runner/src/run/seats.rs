@@ -108,13 +108,13 @@ impl OpcUaSeats {
         }
         let rejected = self.pki.as_ref()?.join("rejected");
         let is_any = std::fs::read_dir(&rejected).is_ok_and(|mut entries| entries.next().is_some());
-        let told = || {
+        let reported = || {
             let rejected = rejected.display();
             format!(
                 "an OPC UA client whose certificate is not trusted; move it from {rejected} to the folder `trusted`"
             )
         };
-        is_any.then(told)
+        is_any.then(reported)
     }
 
     /// Waits until all have started.

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | [`config`] | what is asked for |
 //! | [`error`] | why there is no picture |
-//! | [`browser`] | the Chromium that draws, and what it is told |
+//! | [`browser`] | the Chromium that draws, and what it is asked |
 //!
 //! The session runs to the time, and its page is served to a Chromium without a window. The page draws the machine alone and
 //! sends the picture back, so nothing has to be guessed of when it is drawn.
@@ -38,7 +38,7 @@ pub use error::ShotError;
 /// How long a browser may take to start and to draw.
 const PATIENCE: Duration = Duration::from_mins(2);
 
-/// Draws the picture, and tells where it is.
+/// Draws the picture, and reports where it is.
 ///
 /// # Errors
 /// See [`ShotError`].

@@ -342,7 +342,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_key_tells_its_unit() {
+    fn a_key_shows_its_unit() {
         assert_eq!(unit("stroke_m"), ("stroke", Some("m")));
         assert_eq!(unit("speed_m_s"), ("speed", Some("m/s")));
         assert_eq!(unit("teeth"), ("teeth", None));

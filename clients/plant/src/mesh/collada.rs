@@ -249,14 +249,14 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_go_together_is_told() {
-        let told = |from: &str, to: &str| read(SQUARE.replacen(from, to, 1).as_bytes()).unwrap_err().to_string();
-        assert_eq!(told("0 0 1 0 2 0 3 0", "0 0 1 0 2 0 9 0"), "line 8: it names a corner that is not there");
-        assert_eq!(told("<vcount>4", "<vcount>5"), "line 8: it has fewer corners than it says");
-        assert_eq!(told("offset=\"1\"", "offset=\"18446744073709551615\""), "line 7: it has no corners");
-        assert_eq!(told("0 0 5", "0 0"), "line 11: it has another count of numbers than it should");
-        assert_eq!(told("url=\"#g\"", "url=\"#h\""), "line 11: it names a geometry that is not there");
-        assert_eq!(told("<source id=\"s\">", "<source id=\"t\">"), "line 7: its corners are not there");
+    fn what_does_not_go_together_is_reported() {
+        let reported = |from: &str, to: &str| read(SQUARE.replacen(from, to, 1).as_bytes()).unwrap_err().to_string();
+        assert_eq!(reported("0 0 1 0 2 0 3 0", "0 0 1 0 2 0 9 0"), "line 8: it names a corner that is not there");
+        assert_eq!(reported("<vcount>4", "<vcount>5"), "line 8: it has fewer corners than it says");
+        assert_eq!(reported("offset=\"1\"", "offset=\"18446744073709551615\""), "line 7: it has no corners");
+        assert_eq!(reported("0 0 5", "0 0"), "line 11: it has another count of numbers than it should");
+        assert_eq!(reported("url=\"#g\"", "url=\"#h\""), "line 11: it names a geometry that is not there");
+        assert_eq!(reported("<source id=\"s\">", "<source id=\"t\">"), "line 7: its corners are not there");
         let nested = SQUARE.replace("<instance_geometry url=\"#g\"/>", "<instance_node url=\"#scene\"/>");
         assert!(read(nested.as_bytes()).unwrap_err().to_string().contains("nested too deep"));
     }

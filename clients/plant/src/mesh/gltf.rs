@@ -323,19 +323,19 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_go_together_is_told() {
-        let told = |from: &str, to: &str| mesh_of(triangle("").replacen(from, to, 1).as_bytes()).unwrap_err();
-        assert_eq!(told("\"count\":3", "\"count\":4"), "has numbers that are not there");
-        let count = told("\"count\":3}", "\"count\":9000000000}");
+    fn what_does_not_go_together_is_reported() {
+        let reported = |from: &str, to: &str| mesh_of(triangle("").replacen(from, to, 1).as_bytes()).unwrap_err();
+        assert_eq!(reported("\"count\":3", "\"count\":4"), "has numbers that are not there");
+        let count = reported("\"count\":3}", "\"count\":9000000000}");
         assert_eq!(count, "has 9000000000 numbers, which is too many");
         let nodes = format!("\"nodes\":[{}0]", "0,".repeat(TRIANGLES_MAX));
-        assert_eq!(told("\"nodes\":[0]", &nodes), "has nodes that are nested too deep, or too many");
-        assert_eq!(told("\"nodes\":[0]", "\"nodes\":[1]"), "has no node 1");
-        assert_eq!(told("base64,AAAA", "base64,AA!A"), "has a buffer that is not base64");
+        assert_eq!(reported("\"nodes\":[0]", &nodes), "has nodes that are nested too deep, or too many");
+        assert_eq!(reported("\"nodes\":[0]", "\"nodes\":[1]"), "has no node 1");
+        assert_eq!(reported("base64,AAAA", "base64,AA!A"), "has a buffer that is not base64");
         assert_eq!(
-            told("\"mesh\":0", "\"mesh\":0,\"children\":[0]"),
+            reported("\"mesh\":0", "\"mesh\":0,\"children\":[0]"),
             "has nodes that are nested too deep, or too many"
         );
-        assert!(told("{", "{,").starts_with("line 1: "));
+        assert!(reported("{", "{,").starts_with("line 1: "));
     }
 }

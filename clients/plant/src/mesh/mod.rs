@@ -118,7 +118,7 @@ impl Mesh {
     }
 
     fn stl(bytes: &[u8]) -> Result<Self, MeshError> {
-        // a binary file may begin with "solid", too: its length tells
+        // a binary file may begin with "solid", too: its length decides
         let count = bytes.get(80..STL_HEAD).and_then(|count| count.try_into().ok()).map(u32::from_le_bytes);
         let fits = |count: u32| (count as usize).checked_mul(STL_TRIANGLE).and_then(|size| size.checked_add(STL_HEAD));
         if let Some(count) = count
@@ -251,17 +251,17 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_mesh_is_told() {
-        let told = |text: &str, read: fn(&[u8]) -> Result<Mesh, MeshError>| {
+    fn what_is_no_mesh_is_reported() {
+        let reported = |text: &str, read: fn(&[u8]) -> Result<Mesh, MeshError>| {
             read(text.as_bytes()).and_then(Mesh::checked).unwrap_err().to_string()
         };
-        assert_eq!(told("v 0 0\n", Mesh::obj), "line 1: a corner has three numbers");
-        assert_eq!(told("v 0 0 0\nf 1 1 2\n", Mesh::obj), "line 2: there is no corner `2`");
-        assert_eq!(told("v 0 0 0\nf 1 1\n", Mesh::obj), "line 2: a face of 2 corners");
-        assert_eq!(told("v 0 0 nan\nf 1 1 1\n", Mesh::obj), "has a corner that is not finite");
-        assert_eq!(told("", Mesh::obj), "has 0 triangles; from 1 to 200000 are of use");
-        assert_eq!(told("solid\nfacet\nvertex 0 0 0\nendfacet\n", Mesh::stl), "line 4: a facet of 1 corners");
-        assert!(told("rubbish", Mesh::stl).contains("which do not go together"));
+        assert_eq!(reported("v 0 0\n", Mesh::obj), "line 1: a corner has three numbers");
+        assert_eq!(reported("v 0 0 0\nf 1 1 2\n", Mesh::obj), "line 2: there is no corner `2`");
+        assert_eq!(reported("v 0 0 0\nf 1 1\n", Mesh::obj), "line 2: a face of 2 corners");
+        assert_eq!(reported("v 0 0 nan\nf 1 1 1\n", Mesh::obj), "has a corner that is not finite");
+        assert_eq!(reported("", Mesh::obj), "has 0 triangles; from 1 to 200000 are of use");
+        assert_eq!(reported("solid\nfacet\nvertex 0 0 0\nendfacet\n", Mesh::stl), "line 4: a facet of 1 corners");
+        assert!(reported("rubbish", Mesh::stl).contains("which do not go together"));
         assert_eq!(Mesh::read(Path::new("part.step")), Err(MeshError::Kind));
     }
 }

@@ -210,8 +210,9 @@ impl<'e> Reader<'e> {
                 self.one_joint(&joint, base)?
             }
             [_, second, ..] => {
-                let told = format!("body `{}` has {} joints: give each a body of its own", base.name, written.len());
-                return Err(second.wrong(told));
+                let reported =
+                    format!("body `{}` has {} joints: give each a body of its own", base.name, written.len());
+                return Err(second.wrong(reported));
             }
         };
         if self.joints.iter().any(|known| known.name == joint.name) {
@@ -454,14 +455,14 @@ mod tests {
     }
 
     #[test]
-    fn all_faults_are_told_with_their_lines() {
+    fn all_faults_are_reported_with_their_lines() {
         let wrong = ARM
             .replace("mesh=\"tip\"", "mesh=\"tap\"")
             .replace("type=\"slide\"", "type=\"slyde\"")
             .replace("size=\"0.1 0.2 0.3\"", "size=\"0.1\"");
-        let told: Vec<_> = read(&wrong).unwrap_err().iter().map(ToString::to_string).collect();
+        let reported: Vec<_> = read(&wrong).unwrap_err().iter().map(ToString::to_string).collect();
         assert_eq!(
-            told,
+            reported,
             [
                 "line 14: there is no mesh `tap`",
                 "line 16: a joint of type `slyde` is not known",

@@ -202,7 +202,7 @@ fn mimic(element: &Element) -> Result<Option<Mimic>, RobotFault> {
 fn refuse_lost_leaders(root: &Element, joints: &[Joint], faults: &mut Vec<RobotFault>) {
     for (joint, mimic) in joints.iter().filter_map(|joint| Some((joint, joint.mimic.as_ref()?))) {
         let leader = joints.iter().find(|known| known.name == mimic.joint);
-        let told = match leader {
+        let reported = match leader {
             _ if mimic.joint == joint.name => "follows itself".to_owned(),
             Some(leader) if matches!(leader.freedom, Freedom::Turns | Freedom::Slides) => continue,
             Some(_) => format!("follows `{}`, which has no coordinate", mimic.joint),
@@ -210,7 +210,7 @@ fn refuse_lost_leaders(root: &Element, joints: &[Joint], faults: &mut Vec<RobotF
             None if root.all("joint").any(|element| element.get("name") == Some(&mimic.joint)) => continue,
             None => format!("follows `{}`, which is not a joint of this robot", mimic.joint),
         };
-        faults.push(joint.place.wrong(format!("joint `{}` {told}", joint.name)));
+        faults.push(joint.place.wrong(format!("joint `{}` {reported}", joint.name)));
     }
 }
 
@@ -243,7 +243,7 @@ mod tests {
         Robot::read(Path::new("arm.urdf"), text.to_owned(), &reading)
     }
 
-    fn told(text: &str) -> Vec<String> {
+    fn reported(text: &str) -> Vec<String> {
         parsed(text).unwrap_err().iter().map(ToString::to_string).collect()
     }
 
@@ -301,14 +301,14 @@ mod tests {
         ];
         for (right, wrong, said) in cases {
             assert!(ARM.contains(right), "{right}");
-            let told = told(&ARM.replacen(right, wrong, 1));
-            assert!(told[0].starts_with(said), "{said}\n{told:?}");
+            let reported = reported(&ARM.replacen(right, wrong, 1));
+            assert!(reported[0].starts_with(said), "{said}\n{reported:?}");
         }
     }
 
     #[test]
-    fn all_faults_are_told_at_once() {
+    fn all_faults_are_reported_at_once() {
         let wrong = ARM.replace("<cylinder ", "<cilinder ").replace("value=\"2\"", "value=\"two\"");
-        assert_eq!(told(&wrong.replace("type=\"revolute\"", "type=\"planar\"")).len(), 3);
+        assert_eq!(reported(&wrong.replace("type=\"revolute\"", "type=\"planar\"")).len(), 3);
     }
 }

@@ -230,7 +230,7 @@ mod tests {
         parse(&Arc::new(Source { file: "r.xacro".to_owned(), text: text.into() }))
     }
 
-    fn told(text: &str) -> String {
+    fn reported(text: &str) -> String {
         read(text).expect_err(text).to_string()
     }
 
@@ -244,8 +244,10 @@ mod tests {
         assert_eq!(names, "acd");
         let keys: Vec<_> = root.children[1].attributes.iter().map(|attribute| &*attribute.key).collect();
         assert_eq!((keys, root.attributes.len()), (vec!["lang", "b"], 0));
-        assert!(told("<robot>\n<x:a/></robot>").starts_with("line 2: the prefix `x:` has no namespace (declare it"));
-        assert!(told("<robot>\n<a\n x:b='1'/></robot>").starts_with("line 3: the prefix `x:` has no namespace"));
+        assert!(
+            reported("<robot>\n<x:a/></robot>").starts_with("line 2: the prefix `x:` has no namespace (declare it")
+        );
+        assert!(reported("<robot>\n<a\n x:b='1'/></robot>").starts_with("line 3: the prefix `x:` has no namespace"));
     }
 
     #[test]
@@ -259,9 +261,9 @@ mod tests {
             ("", "line 1: the file ends within an element"),
         ];
         for (text, said) in cases {
-            assert_eq!(told(text), said, "{text}");
+            assert_eq!(reported(text), said, "{text}");
         }
-        assert!(told(&"<a>".repeat(100_000)).contains("nested deeper than 128 levels"));
+        assert!(reported(&"<a>".repeat(100_000)).contains("nested deeper than 128 levels"));
     }
 
     #[test]

@@ -3,7 +3,7 @@
 //!
 //! | module | subject |
 //! |---|---|
-//! | [`settings`] | what commands set and queries tell |
+//! | [`settings`] | what commands set and queries return |
 //! | [`protocol`] | commands and answers, a byte at a time |
 //! | [`optics`] | where the points of a line lie, and a temperature as a byte |
 //!

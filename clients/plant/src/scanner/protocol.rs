@@ -155,7 +155,7 @@ impl Device {
                 self.stored = self.settings.clone();
                 Some(vec![ACK])
             }
-            [b'G', first, second] => self.tell([*first, *second]),
+            [b'G', first, second] => self.answer_query([*first, *second]),
             [first, second, parameter @ ..] => self.settings.with([*first, *second], parameter).map(|new| {
                 self.bursting &= new.mode == Mode::Burst;
                 self.settings = new;
@@ -166,8 +166,8 @@ impl Device {
         Answer::Bytes(answer.unwrap_or_else(|| vec![NAK]))
     }
 
-    fn tell(&self, opcode: [u8; 2]) -> Option<Vec<u8>> {
-        let value = self.settings.tell(opcode)?;
+    fn answer_query(&self, opcode: [u8; 2]) -> Option<Vec<u8>> {
+        let value = self.settings.value_of(opcode)?;
         let text: Vec<u8> = opcode.into_iter().chain(value.into_bytes()).collect();
         Some([vec![ACK], command(&text)].concat())
     }

@@ -1,4 +1,4 @@
-//! What commands set in a scanner, and queries tell of it.
+//! What commands set in a scanner, and queries return.
 
 use serde::{Deserialize, Serialize};
 
@@ -93,7 +93,7 @@ impl Settings {
     }
 
     /// What a query of two letters is answered with.
-    pub(super) fn tell(&self, opcode: [u8; 2]) -> Option<String> {
+    pub(super) fn value_of(&self, opcode: [u8; 2]) -> Option<String> {
         Some(match &opcode {
             b"RM" => String::from(if self.mode == Mode::Host { "H" } else { "B" }),
             b"PM" => format!("{}", self.point_mode),

@@ -104,7 +104,7 @@ fn refuse_unknown_keys(one: &Known<'_>, faults: &mut Faults<'_>) {
     }
 }
 
-/// The key that was meant: the same but for its unit, or the nearest.
+/// The key that was meant: the same except for its unit, or the nearest.
 fn hint(wrong: &str, kind: &Kind, right: &[String]) -> Option<String> {
     let stem = |key: &str| match unit(key) {
         (stem, Some(_)) => stem.to_owned(),

@@ -61,7 +61,7 @@ pub struct SceneFault {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Inside {
     /// What is wrong, for a reader who sees the place.
-    pub told: String,
+    pub reported: String,
     pub place: Place,
 }
 

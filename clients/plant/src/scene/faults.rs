@@ -104,16 +104,16 @@ impl<'t> Faults<'t> {
                     // another component of the same kind
                     return;
                 }
-                let told = match kind {
+                let reported = match kind {
                     SceneFaultKind::OwnKind { cause, .. } => cause,
                     kind => kind.to_string(),
                 };
-                let cause = format!("{} line {}: {told}", source.file, place.start().line);
+                let cause = format!("{} line {}: {reported}", source.file, place.start().line);
                 let (kind, named_at) = (SceneFaultKind::OwnKind { kind: name.clone(), cause }, named_at.clone());
                 // an assembly within another is named in that one's file
                 self.add_hinted(named_at, kind, hint);
                 if let Some(fault) = self.found.last_mut() {
-                    fault.inside = Some(Inside { told, place });
+                    fault.inside = Some(Inside { reported, place });
                 }
             }
         }
@@ -196,7 +196,7 @@ impl<'t> Faults<'t> {
 /// A message of the TOML reader in the words of a scene file, with a hint: the nearest right key
 /// out of a message like "unknown field `masskg`, expected one of `name`, `mass_kg`".
 fn reworded(message: &str) -> (String, Option<String>) {
-    let told = message
+    let reported = message
         .replacen("unknown field", "unknown key", 1)
         .replacen("unknown variant", "unknown value", 1)
         .replacen("missing field", "missing key", 1)
@@ -205,9 +205,9 @@ fn reworded(message: &str) -> (String, Option<String>) {
     let mut quoted = message.split('`').skip(1).step_by(2);
     let wrong = quoted.next().filter(|_| message.starts_with("unknown"));
     let near = wrong.and_then(|wrong| nearest(wrong, quoted));
-    match (near, told.split_once(", expected")) {
+    match (near, reported.split_once(", expected")) {
         (Some(near), Some((short, _))) => (short.to_owned(), Some(format!("did you mean `{near}`?"))),
-        _ => (told, None),
+        _ => (reported, None),
     }
 }
 

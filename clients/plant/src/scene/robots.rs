@@ -24,7 +24,9 @@ pub(super) fn expand(written: &mut SceneFile, faults: &mut Faults<'_>) -> Vec<St
     for table in std::mem::take(&mut written.urdf) {
         let table = table.get_ref();
         match one(table, written, faults) {
-            Some(told) => remarks.extend(told.into_iter().map(|told| format!("{}: {told}", table.name.get_ref()))),
+            Some(reported) => {
+                remarks.extend(reported.into_iter().map(|reported| format!("{}: {reported}", table.name.get_ref())))
+            }
             None => faults.lose(format!("{}.", table.name.get_ref())),
         }
     }
@@ -67,7 +69,7 @@ fn one(table: &UrdfTable, written: &mut SceneFile, faults: &mut Faults<'_>) -> O
     let find = |mesh: &str| packages.file(mesh, &path).map(|found| named_from(&found, &scene_folder));
     let tables = Tables { table, robot: &robot, density_kg_m3, coordinates: &coordinates, find: &find };
     match tables.add_to(written) {
-        Ok(told) => robot.remarks.extend(told),
+        Ok(reported) => robot.remarks.extend(reported),
         Err(mut found) => {
             // a macro that is called twice
             found.dedup();
@@ -87,7 +89,7 @@ fn refuse(table: &UrdfTable, fault: RobotFault, faults: &mut Faults<'_>) {
     let inner = if start.file == file { String::new() } else { format!("in {} ", start.file) };
     let cause = format!("{inner}line {}: {}", start.line, fault.cause);
     let kind = SceneFaultKind::Urdf { file, cause };
-    faults.add_inside(table.file.span(), kind, fault.hint, Inside { told: fault.cause, place: fault.place });
+    faults.add_inside(table.file.span(), kind, fault.hint, Inside { reported: fault.cause, place: fault.place });
 }
 
 /// A path as the scene would name it.

@@ -50,7 +50,7 @@ struct Member {
     actuators: Vec<usize>,
     /// All of the engine's joints between its bodies.
     handles: Vec<ImpulseJointHandle>,
-    /// Whether the engine has these joints now; not known of a mechanism that was found anew.
+    /// Whether the engine has these joints now; not known of a mechanism that was found again.
     attached: Option<bool>,
 }
 
@@ -107,7 +107,7 @@ impl Articulation {
         measured_axis(self.links[joint].kind)
     }
 
-    /// Finds the mechanisms anew: a body is held or let go, taken out or put in.
+    /// Finds the mechanisms again: a body is held or let go, taken out or put in.
     fn find(
         &mut self,
         holds: &[Link],

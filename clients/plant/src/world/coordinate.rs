@@ -37,7 +37,7 @@ impl Gauge {
         Self { kind: joint.kind, parent, child, parent_frame, child_frame, initial: joint.initial }
     }
 
-    /// The joint's coordinate in m or rad; `last` is the one measured a period ago, which tells a
+    /// The joint's coordinate in m or rad; `last` is the one measured a period ago, which distinguishes a
     /// turn from the next. Zero for a joint without a coordinate.
     pub(crate) fn position(&self, bodies: &RigidBodySet, last: f64) -> f64 {
         let parent = *bodies[self.parent].position() * self.parent_frame;
@@ -69,7 +69,7 @@ impl Gauge {
     }
 }
 
-/// The angle that is `angle` but for whole turns and lies within half a turn of `last`.
+/// The angle that is `angle` except for whole turns and lies within half a turn of `last`.
 pub(crate) fn nearest_turn(angle: f64, last: f64) -> f64 {
     let apart = angle - last;
     if apart.abs() <= PI { angle } else { angle - TAU * (apart / TAU).round() }

@@ -309,7 +309,7 @@ impl World {
         }
     }
 
-    /// True if a shape touches a body. Of a body with several shapes most are far away: spheres tell so.
+    /// True if a shape touches a body. Of a body with several shapes most are far away: spheres show it.
     fn meets(&self, pose: &Pose, shape: &dyn rapier3d::parry::shape::Shape, other: RigidBodyHandle) -> bool {
         use rapier3d::parry::query::intersection_test;
         // the engine's shapes all know how to meet each other

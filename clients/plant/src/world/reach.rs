@@ -1,4 +1,4 @@
-//! How far a body reaches around its origin: most bodies are far from most sensors, and a distance tells so
+//! How far a body reaches around its origin: most bodies are far from most sensors, and a distance shows it
 //! at once. What it leaves over is looked at exactly, so that it decides nothing.
 
 use rapier3d::math::{Pose, Vector};

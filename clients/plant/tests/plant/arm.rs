@@ -134,7 +134,7 @@ fn position_drives_follow_their_path_under_load() {
 }
 
 #[test]
-fn a_drive_tells_the_weight_that_it_holds() {
+fn a_drive_reports_the_weight_that_it_holds() {
     for period_us in [100, 1_000, 10_000] {
         let mut bench = Bench::at_us(&arm(true, true), period_us);
         let centre = |k: usize| LINKS[k].1 + 0.5 * LINKS[k].3;

@@ -119,7 +119,7 @@ fn bodies_that_meet_are_counted_once_a_contact() {
 }
 
 #[test]
-fn what_is_wrong_with_an_array_or_a_shape_is_told() {
+fn what_is_wrong_with_an_array_or_a_shape_is_reported() {
     let faults = [
         (
             "name = \"box[2..4]\"",
@@ -162,9 +162,9 @@ fn what_is_wrong_with_an_array_or_a_shape_is_told() {
             "plant.toml:34:1: unknown key `turn_about` (did you mean `turn_about_m`?)",
         ),
     ];
-    for (right, wrong, told) in faults {
+    for (right, wrong, reported) in faults {
         assert!(YARD.contains(right), "{right}");
         let said = refusal(&YARD.replacen(right, wrong, 1));
-        assert!(said.lines().any(|line| line == told), "{told}\n{said}");
+        assert!(said.lines().any(|line| line == reported), "{reported}\n{said}");
     }
 }

@@ -208,12 +208,12 @@ fn mistakes_have_their_place_and_a_hint() {
             "[[axis]]\nname = \"a\"\njoint = \"slide\"\ndrive = \"velocity\"\ncommand_signal = \"c\"\nspeed_m_s = 1\nacceleration_m_s2 = 1\n[[component]]\nname = \"clamp\"",
         ),
     ];
-    let mut told = String::new();
+    let mut reported = String::new();
     for (from, to) in cases {
         assert!(CLAMP.contains(from), "{from}");
         let refused = refusal(&CLAMP.replacen(from, to, 1));
         let written = to.lines().next_back().unwrap_or_default();
-        writeln!(told, "{written}\n  {}", refused.replace('\n', "\n  ")).expect("a string grows");
+        writeln!(reported, "{written}\n  {}", refused.replace('\n', "\n  ")).expect("a string grows");
     }
-    insta::assert_snapshot!(told);
+    insta::assert_snapshot!(reported);
 }

@@ -44,8 +44,8 @@ fn a_state_of_another_constant_is_refused_by_its_key() {
 }
 
 #[test]
-fn what_cannot_act_is_told_with_its_place() {
-    let told: Vec<_> = [
+fn what_cannot_act_is_reported_with_its_place() {
+    let reported: Vec<_> = [
         "fraction_signal = \"Part\"\n",
         "fraction = 0.5\n",
         "on = 1\n",
@@ -56,7 +56,7 @@ fn what_cannot_act_is_told_with_its_place() {
     .into_iter()
     .map(|keys| refusal(&heater(keys)))
     .collect();
-    insta::assert_snapshot!(told.join("\n"));
+    insta::assert_snapshot!(reported.join("\n"));
 }
 
 #[test]

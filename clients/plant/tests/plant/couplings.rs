@@ -156,7 +156,7 @@ fn a_coupling_that_is_wrong_is_refused() {
         let scene = format!("{WHEELS}[[coupling]]\nname = \"c\"\njoint = \"slide\"\n{keys}\n");
         Scene::parse(&scene, "plant.toml").expect_err("a fault").to_string()
     };
-    for (keys, told) in [
+    for (keys, reported) in [
         ("of = [\"one\"]\nratio = [1.0, 2.0]", "1 numbers other than 0"),
         ("of = [\"slide\"]\nratio = [1.0]", "one or two other joints"),
         ("of = [\"nobody\"]\nratio = [1.0]", "nobody"),
@@ -164,6 +164,6 @@ fn a_coupling_that_is_wrong_is_refused() {
         ("of = [\"one\"]\ncam = [[0.0, 0.5], [1.0, 1.0]]", "a curve with 0 at 0"),
         ("of = [\"one\"]\nratio = [1.0]\nbacklash_rad = 0.1", "write `backlash_m`"),
     ] {
-        assert!(refusal(keys).contains(told), "{keys}: {}", refusal(keys));
+        assert!(refusal(keys).contains(reported), "{keys}: {}", refusal(keys));
     }
 }

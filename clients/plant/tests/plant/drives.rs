@@ -154,7 +154,7 @@ fn a_hydraulic_lift_feels_its_load() {
 }
 
 #[test]
-fn a_servo_axis_tells_what_it_lifts() {
+fn a_servo_axis_reports_what_it_lifts() {
     let component = "kind = \"servo_axis\"\nenable_signal = \"On\"\nexecute_signal = \"Go\"\ntarget_m_signal = \"To\"\n\
                      needs_homing = false\nfriction_n = 5.0\nforce_n_signal = \"Force\"\nposition_m_signal = \"Way\"\n\
                      following_m_signal = \"Lag\"\nbusy_signal = \"Busy\"";
@@ -245,7 +245,7 @@ fn a_cylinder_with_a_joint_moves_as_one_without() {
 }
 
 #[test]
-fn what_lies_on_a_lift_is_lifted_and_told() {
+fn what_lies_on_a_lift_is_lifted_and_reported() {
     // 10 kg on the slide, 5 kg lying on it: in contact all the time
     let scene = r#"
         version = 1

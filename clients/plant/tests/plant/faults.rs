@@ -122,13 +122,13 @@ fn the_right_scene_is_accepted() {
 
 #[test]
 fn every_fault_has_its_place_and_a_hint_where_one_helps() {
-    let mut told = String::new();
+    let mut reported = String::new();
     for (title, from, to) in CASES {
         assert!(RIGHT.contains(from), "{title}");
         let refused = refusal(&RIGHT.replacen(from, to, 1));
-        writeln!(told, "{title}\n  {}", refused.replace('\n', "\n  ")).expect("a string grows");
+        writeln!(reported, "{title}\n  {}", refused.replace('\n', "\n  ")).expect("a string grows");
     }
-    insta::assert_snapshot!(told);
+    insta::assert_snapshot!(reported);
 }
 
 #[test]
@@ -169,7 +169,7 @@ acceleration_rad_s2 = 100.0
 }
 
 #[test]
-fn all_faults_of_a_scene_are_told_at_once() {
+fn all_faults_of_a_scene_are_reported_at_once() {
     let scene =
         RIGHT.replace("12.0", "-1.0").replace("0.5", "0.0").replace("targets = [\"cart\"]", "targets = [\"cat\"]");
     insta::assert_snapshot!(refusal(&scene), @r"

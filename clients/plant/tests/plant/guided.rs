@@ -149,11 +149,11 @@ fn its_state_goes_on_to_the_bit() {
 
 #[test]
 fn no_force_acts_on_a_kinematic_robot() {
-    let told = |more: &str| loaded(&format!("{SCENE}{more}"), 10_000).err().unwrap_or_default();
+    let reported = |more: &str| loaded(&format!("{SCENE}{more}"), 10_000).err().unwrap_or_default();
     let guided = "is one of a kinematic robot, on which no force acts";
-    let fitting = told("[[fitting]]\nname = \"f\"\njoint = \"arm.shoulder\"\nfriction_nm = 1.0\n");
+    let fitting = reported("[[fitting]]\nname = \"f\"\njoint = \"arm.shoulder\"\nfriction_nm = 1.0\n");
     assert!(fitting.contains(guided), "{fitting}");
-    let motor = told("[[component]]\nname = \"m\"\nkind = \"asynchronous_motor\"\njoint = \"arm.wrist\"\n");
+    let motor = reported("[[component]]\nname = \"m\"\nkind = \"asynchronous_motor\"\njoint = \"arm.wrist\"\n");
     assert!(motor.contains(guided), "{motor}");
     let weak = loaded(&SCENE.replace("speed_rad_s", "torque_max_nm = 5.0\nspeed_rad_s"), 10_000);
     let weak = weak.err().unwrap_or_default();

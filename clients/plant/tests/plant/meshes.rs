@@ -83,7 +83,7 @@ fn a_hull_is_a_body_like_any_other() {
 }
 
 #[test]
-fn what_is_wrong_with_a_mesh_is_told_with_its_line() {
+fn what_is_wrong_with_a_mesh_is_reported_with_its_line() {
     let cases = [
         ("mesh = \"cube.obj\"", "mesh = \"none.stl\"", ":15:8: mesh `none.stl` cannot be read: "),
         (
@@ -111,9 +111,9 @@ fn what_is_wrong_with_a_mesh_is_told_with_its_line() {
             ":9:8: sphere `trough` has no `hull`",
         ),
     ];
-    for (right, wrong, told) in cases {
+    for (right, wrong, reported) in cases {
         assert!(SCENE.contains(right), "{right}");
         let said = plant(&SCENE.replacen(right, wrong, 1)).err().map(|error| error.to_string()).unwrap_or_default();
-        assert!(said.contains(told), "{told}\n{said}");
+        assert!(said.contains(reported), "{reported}\n{said}");
     }
 }

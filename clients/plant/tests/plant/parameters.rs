@@ -159,11 +159,11 @@ fn what_cannot_change_is_refused_by_name_and_changes_nothing() {
         ("bolt", "stroke_m", "0.1"),
         ("gate", "inputs", "2"),
     ];
-    let told: Vec<String> = wrong
+    let reported: Vec<String> = wrong
         .iter()
         .map(|(component, parameter, value)| refused(&mut bench.plant, component, parameter, value))
         .collect();
-    insta::assert_snapshot!(told.join("\n"));
+    insta::assert_snapshot!(reported.join("\n"));
     assert!(bench.plant.save() == Ok(before));
     // without a joint nobody else has stops
     bench.plant.change_parameter("door", "stroke_m", "0.1").expect("a number");

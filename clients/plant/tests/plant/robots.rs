@@ -89,21 +89,22 @@ fn a_pendulum_swings_with_the_period_of_its_tensor() {
 }
 
 #[test]
-fn what_is_wrong_with_a_robot_is_told_with_both_lines() {
-    let told = |scene: &str, urdf: &str| plant(scene, urdf).err().map(|error| error.to_string()).unwrap_or_default();
+fn what_is_wrong_with_a_robot_is_reported_with_both_lines() {
+    let reported =
+        |scene: &str, urdf: &str| plant(scene, urdf).err().map(|error| error.to_string()).unwrap_or_default();
     let broken = PENDULUM.replace("<mass value=\"2\"/>", "<mass value=\"x\"/>");
-    let said = told(SCENE, &broken);
+    let said = reported(SCENE, &broken);
     assert!(
         said.contains(":6:8: robot `robots/urdf/pendulum.urdf` line 6: `value` must be a number, not \"x\""),
         "{said}"
     );
-    let said = told(SCENE, &PENDULUM.replace("tip.obj", "tap.obj"));
+    let said = reported(SCENE, &PENDULUM.replace("tip.obj", "tap.obj"));
     assert!(said.contains("of which no folder around it has `meshes/tap.obj`"), "{said}");
-    let said = told(SCENE, &PENDULUM.replace("type=\"fixed\"", "type=\"floating\""));
+    let said = reported(SCENE, &PENDULUM.replace("type=\"fixed\"", "type=\"floating\""));
     assert!(said.contains("link `tip` moves and has no mass (`density_kg_m3 = 2700` in the table"), "{said}");
-    let said = told(&SCENE.replace("pendulum.urdf", "none.urdf"), PENDULUM);
+    let said = reported(&SCENE.replace("pendulum.urdf", "none.urdf"), PENDULUM);
     assert!(said.contains(":6:8: robot `robots/urdf/none.urdf` cannot be read: "), "{said}");
-    let said = told(&SCENE.replace("clock.swing", "clock.swign"), PENDULUM);
+    let said = reported(&SCENE.replace("clock.swing", "clock.swign"), PENDULUM);
     assert!(said.contains("no joint `clock.swign` in this scene (did you mean `clock.swing`?)"), "{said}");
 }
 
@@ -236,36 +237,40 @@ fn a_robot_as_it_is_published_holds_its_pose_and_its_fingers_follow() {
 }
 
 #[test]
-fn all_that_is_wrong_with_a_robot_is_told_at_once_in_its_own_file() {
-    let told = |scene: &str, arm: &str, parts: &str| {
+fn all_that_is_wrong_with_a_robot_is_reported_at_once_in_its_own_file() {
+    let reported = |scene: &str, arm: &str, parts: &str| {
         let error = hand(scene, arm, parts).err().expect("refused");
         let one = |fault: &onescan_plant::SceneFault| {
             let place = fault.inside.as_ref().map(|inside| inside.place.start().to_string()).unwrap_or_default();
             let place = place.rsplit('/').next().unwrap_or_default().to_owned();
             let hint = fault.hint.as_ref().map(|hint| format!(" ({hint})")).unwrap_or_default();
-            let said = fault.inside.as_ref().map_or_else(|| fault.kind.to_string(), |inside| inside.told.clone());
+            let said = fault.inside.as_ref().map_or_else(|| fault.kind.to_string(), |inside| inside.reported.clone());
             format!("{place}: {said}{hint}")
         };
         error.faults().iter().map(one).collect::<Vec<_>>().join("\n")
     };
     let mut all = vec![
-        told(&HAND.replace("density_kg_m3 = 2700\n", ""), PUBLISHED, PARTS),
-        told(&HAND.replace("left = 0.02", "left = 0.05, right = 0.01, lefd = 0.01, shoulder = 0.1"), PUBLISHED, PARTS),
-        told(&HAND.replace("\"arm.left\"", "\"arm.right\""), PUBLISHED, PARTS),
-        told(HAND, &PUBLISHED.replace("<xacro:rod ", "<xacro:rot "), PARTS),
-        told(HAND, &PUBLISHED.replace(" reach=\"$(arg reach)\"", ""), PARTS),
-        told(HAND, &PUBLISHED.replace("$(arg reach)", "$(arg raech)"), PARTS),
-        told(HAND, &PUBLISHED.replace("parts.xacro", "$(find elsewhere)/parts.xacro"), PARTS),
-        told(HAND, PUBLISHED, &PARTS.replace("${width / 2}", "${widht / 2}")),
-        told(HAND, PUBLISHED, &PARTS.replace("value=\"0.05\"", "value=\"${width * 2}\"")),
-        told(HAND, PUBLISHED, &PARTS.replace("side == 'right'", "side + 'right'")),
-        told(HAND, PUBLISHED, &PARTS.replace("tip.dae", "tap.dae")),
-        told(
+        reported(&HAND.replace("density_kg_m3 = 2700\n", ""), PUBLISHED, PARTS),
+        reported(
+            &HAND.replace("left = 0.02", "left = 0.05, right = 0.01, lefd = 0.01, shoulder = 0.1"),
+            PUBLISHED,
+            PARTS,
+        ),
+        reported(&HAND.replace("\"arm.left\"", "\"arm.right\""), PUBLISHED, PARTS),
+        reported(HAND, &PUBLISHED.replace("<xacro:rod ", "<xacro:rot "), PARTS),
+        reported(HAND, &PUBLISHED.replace(" reach=\"$(arg reach)\"", ""), PARTS),
+        reported(HAND, &PUBLISHED.replace("$(arg reach)", "$(arg raech)"), PARTS),
+        reported(HAND, &PUBLISHED.replace("parts.xacro", "$(find elsewhere)/parts.xacro"), PARTS),
+        reported(HAND, PUBLISHED, &PARTS.replace("${width / 2}", "${widht / 2}")),
+        reported(HAND, PUBLISHED, &PARTS.replace("value=\"0.05\"", "value=\"${width * 2}\"")),
+        reported(HAND, PUBLISHED, &PARTS.replace("side == 'right'", "side + 'right'")),
+        reported(HAND, PUBLISHED, &PARTS.replace("tip.dae", "tap.dae")),
+        reported(
             HAND,
             PUBLISHED,
             &PARTS.replace("multiplier=\"0.5\"", "multiplier=\"half\"").replace("upper=\"0.04\"", "upper=\"-1\""),
         ),
-        told(HAND, PUBLISHED, &PARTS.replace("params=\"side sign\"", "params=\"side *:=1\"")),
+        reported(HAND, PUBLISHED, &PARTS.replace("params=\"side sign\"", "params=\"side *:=1\"")),
     ];
     all.retain(|said| !said.is_empty());
     insta::assert_snapshot!(all.join("\n---\n"));

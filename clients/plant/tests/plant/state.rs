@@ -125,7 +125,7 @@ fn a_restored_heap_goes_on_to_the_bit() {
 }
 
 /// The bits of a run are the same on every machine and in every build; a change of them is a change
-/// of the plant, to be told in the change log.
+/// of the plant, to be described in the change log.
 #[test]
 fn a_run_is_the_same_everywhere() {
     let digest = |scene: &str| {
@@ -210,14 +210,15 @@ fn a_refusal_says_what_differs() {
         ("range_m = 2.0", "range_m = 2.5\ntargets = [\"a\"]"),
         ("[[sensor]]", "[[component]]\nname = \"line\"\nkind = \"asynchronous_motor\"\n[[sensor]]"),
     ];
-    let mut told = String::new();
+    let mut reported = String::new();
     let state = Bench::new(HEAP).plant.save().expect("a state");
     for (from, to) in cases {
         assert!(HEAP.contains(from), "{from}");
         let other = HEAP
             .replacen(from, to, 1)
             .replace("joint = \"hinge\"", if to.contains("pivot") { "joint = \"pivot\"" } else { "joint = \"hinge\"" });
-        writeln!(told, "{}", Bench::new(&other).plant.restore(&state).expect_err("refused")).expect("a string grows");
+        writeln!(reported, "{}", Bench::new(&other).plant.restore(&state).expect_err("refused"))
+            .expect("a string grows");
     }
     let cylinder = |settings: &str| {
         let scene = "version = 1\n[[component]]\nname = \"clamp\"\nkind = \"pneumatic_cylinder\"\nstroke_m = 0.3\n";
@@ -226,16 +227,16 @@ fn a_refusal_says_what_differs() {
     let clamp = cylinder("extend_signal = \"Go\"\n").plant.save().expect("a state");
     for settings in ["moving_kg = 2\nextend_signal = \"Go\"\n", "extend_signal = \"Gone\"\n"] {
         let refused = cylinder(settings).plant.restore(&clamp).expect_err("refused");
-        writeln!(told, "{refused}").expect("a string grows");
+        writeln!(reported, "{refused}").expect("a string grows");
     }
     let named = |name: &str| ClientName::new(name).expect("a name");
     let span = |ms| TimeSpan::from_millis(ms).expect("not zero");
     let plant = |name: &str, ms| Plant::parse(HEAP, "scene.toml", named(name), span(ms)).expect("a scene");
     for (name, ms, seed) in [("other", 10, 0), ("plant", 20, 0), ("plant", 10, 7)] {
         let mut other = plant(name, ms).seeded(seed);
-        writeln!(told, "{}", other.restore(&state).expect_err("refused")).expect("a string grows");
+        writeln!(reported, "{}", other.restore(&state).expect_err("refused")).expect("a string grows");
     }
-    insta::assert_snapshot!(told);
+    insta::assert_snapshot!(reported);
 }
 
 #[test]

@@ -1,5 +1,5 @@
 //! What reads the clock (`[SDSP]` sec. V-C), as a table: what replaces it, or what
-//! is told of it.
+//! is reported.
 
 use super::foreign::Kind;
 use super::target::Target;
@@ -11,7 +11,7 @@ pub(super) enum Fate {
     /// A source of the shim takes its place; see [`Form`].
     Replaced(&'static Form),
     /// It cannot be replaced.
-    Told,
+    Reported,
     /// A block or type of PLCopen's motion control.
     Motion(motion::Role),
 }
@@ -69,7 +69,7 @@ pub(super) fn fate(key: &str, kind: Kind) -> Option<Fate> {
         return Some(Fate::Replaced(form));
     }
     if foreign::find(key, kind).is_some() {
-        return Some(Fate::Told);
+        return Some(Fate::Reported);
     }
     if kind == Kind::Block { motion::role(key).map(Fate::Motion) } else { None }
 }
@@ -145,7 +145,7 @@ mod tests {
         assert!(FORMS.iter().all(|form| foreign::find(form.name, form.kind).is_none()));
         assert_eq!(fate("MC_HOME", Kind::Block), Some(Fate::Motion(motion::Role::Block)));
         assert_eq!(fate("CTU", Kind::Block), None);
-        assert_eq!(fate("TIME_TCK", Kind::Function), Some(Fate::Told));
+        assert_eq!(fate("TIME_TCK", Kind::Function), Some(Fate::Reported));
     }
 
     /// The page shows what the tables say.
@@ -156,13 +156,13 @@ mod tests {
             let scl = if form.scl.is_some() { "yes" } else { "reported" };
             format!("| `{}` | {} | `{}` | {scl} |", form.name, kind(form.kind), form.new_name())
         });
-        let told = foreign::TOLD.iter().flat_map(|library| {
+        let reported = foreign::REPORTED.iter().flat_map(|library| {
             let row = move |(name, of): &(&str, Kind)| format!("| `{name}` | {} | {} |", kind(*of), library.name);
             library.names.iter().map(row)
         });
         let page = include_str!("../../../docs/clocks.md");
         let shown: Vec<_> = page.lines().filter(|line| line.starts_with("| `")).collect();
-        let wanted: Vec<_> = replaced.chain(told).collect();
+        let wanted: Vec<_> = replaced.chain(reported).collect();
         assert_eq!(shown, wanted, "docs/clocks.md should say\n{}", wanted.join("\n"));
     }
 

@@ -15,11 +15,11 @@ use onescan_iec::task_plan::Task;
 /// The whole project with its shim, from its text with the shim attached.
 pub(super) fn port(plain: &Plain, attached: &Attached) -> Result<Source, InstrumentError> {
     let refused = |found: Vec<Refused>| {
-        let told = |each: Refused| {
+        let reported = |each: Refused| {
             let help = "write it in another way, or choose another target";
             Diagnostic::error(Code::UnsupportedFeature, each.span, each.message).with_help(help)
         };
-        InstrumentError::Text(Diagnostics::new(found.into_iter().map(told).collect(), &plain.sources))
+        InstrumentError::Text(Diagnostics::new(found.into_iter().map(reported).collect(), &plain.sources))
     };
     // What has no form is found in the project as it is, where it has a place that its author knows.
     let before: Vec<_> = plain.sources.iter().map(|(id, file)| (file, parse_source(id, file).unit)).collect();

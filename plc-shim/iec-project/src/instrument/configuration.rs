@@ -110,8 +110,8 @@ pub(super) fn attach(
     let Some(program) = resource.programs.first() else { return };
     let interval = tasks::literal(tasks.shortest);
     let cycle = format!("    TASK SDSP_Cycle (INTERVAL := {interval}, PRIORITY := 0);");
-    let told = single::connections(configuration, resource, file);
-    let run = format!("    PROGRAM SDSP WITH SDSP_Cycle : SDSP_Scheduler{told};");
+    let reported = single::connections(configuration, resource, file);
+    let run = format!("    PROGRAM SDSP WITH SDSP_Cycle : SDSP_Scheduler{reported};");
     let before_program = marks::line_start(text, program.span.start);
     match resource.tasks.first() {
         Some(task) => {
@@ -125,7 +125,7 @@ pub(super) fn attach(
     single::attach(configuration, file, edits);
 }
 
-/// Tells each of several instances of a program its number.
+/// Gives each of several instances of a program its number.
 fn number(configuration: &Configuration, tasks: &TaskTable<'_>, file: &SourceFile, edits: &mut Edits) {
     for resource in &configuration.resources {
         for program in &resource.programs {
@@ -133,12 +133,12 @@ fn number(configuration: &Configuration, tasks: &TaskTable<'_>, file: &SourceFil
             let Some(number) = tasks.number_of_instance(&name) else { continue };
             let behind = program.program.span.end;
             let open = token_behind(file, behind).filter(|next| file.text().get(next.clone()) == Some("("));
-            let (at, told) = match (open, program.connections.is_empty()) {
+            let (at, reported) = match (open, program.connections.is_empty()) {
                 (None, _) => (behind, format!("(SDSP_Number := {number})")),
                 (Some(open), true) => (open.end as u32, format!("SDSP_Number := {number}")),
                 (Some(open), false) => (open.end as u32, format!("SDSP_Number := {number},")),
             };
-            edits.insert(at, marks::inline(&told));
+            edits.insert(at, marks::inline(&reported));
         }
     }
 }

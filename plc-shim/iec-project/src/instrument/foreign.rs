@@ -1,6 +1,6 @@
-//! Vendors' sources of time that the shim does not replace, with who has them: each use is told with its place.
+//! Vendors' sources of time that the shim does not replace, with who has them: each use is reported with its place.
 //!
-//! `docs/clocks.md` shows the table. A name that is in no table, and whose source is not in the project, is told as well.
+//! `docs/clocks.md` shows the table. A name that is in no table, and whose source is not in the project, is reported as well.
 
 use self::Kind::{Block, Function};
 
@@ -13,12 +13,12 @@ pub(super) enum Kind {
 
 /// What a vendor's library has of the kind.
 pub(super) struct Library {
-    /// Vendor and library; it is told with the name.
+    /// Vendor and library; it is reported with the name.
     pub(super) name: &'static str,
     pub(super) names: &'static [(&'static str, Kind)],
 }
 
-pub(super) const TOLD: [Library; 12] = [
+pub(super) const REPORTED: [Library; 12] = [
     Library {
         name: "CODESYS, SysTime",
         names: &[
@@ -123,7 +123,7 @@ pub(super) const TOLD: [Library; 12] = [
 
 /// The library that has a source of time of this name.
 pub(super) fn find(key: &str, kind: Kind) -> Option<&'static Library> {
-    TOLD.iter().find(|library| library.names.contains(&(key, kind)))
+    REPORTED.iter().find(|library| library.names.contains(&(key, kind)))
 }
 
 #[cfg(test)]
@@ -132,7 +132,7 @@ mod tests {
 
     #[test]
     fn every_name_stands_there_once_in_capitals() {
-        let mut all: Vec<_> = TOLD.iter().flat_map(|library| library.names).map(|(name, _)| *name).collect();
+        let mut all: Vec<_> = REPORTED.iter().flat_map(|library| library.names).map(|(name, _)| *name).collect();
         assert!(all.iter().all(|name| *name == name.to_ascii_uppercase()));
         let count = all.len();
         all.sort_unstable();

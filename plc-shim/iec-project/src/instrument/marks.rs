@@ -214,7 +214,7 @@ pub(super) fn original(text: &str) -> Result<Original, DamagedMarks> {
             (says, None) if mark.is_xml && says.starts_with("was ") => {
                 let old = says.strip_prefix("was ").unwrap_or("");
                 let before = text.get(..mark.at.start).unwrap_or("");
-                let at = renamed_in_tag(before, old).ok_or_else(|| damaged("the name that this tells of is gone"))?;
+                let at = renamed_in_tag(before, old).ok_or_else(|| damaged("the name that this describes is gone"))?;
                 edits.replace(at, old);
                 edits.replace(mark.at.start as u32..mark.at.end as u32, "");
             }
@@ -292,7 +292,7 @@ mod tests {
     }
 
     #[test]
-    fn marks_that_do_not_fit_together_are_told() {
+    fn marks_that_do_not_fit_together_are_reported() {
         for (text, message) in [
             ("(*@sdsp begin*) x", "what begins here has no end"),
             ("x (*@sdsp end*)", "this mark ends what has not begun"),

@@ -3,11 +3,11 @@
 //!
 //! | module | subject |
 //! |---|---|
-//! | [`marks`] | comments that tell what was changed, and the way back |
+//! | [`marks`] | comments that record what was changed, and the way back |
 //! | [`diff`] | a changed file as a unified diff |
 //! | [`template`] | the shim's sources in `iec/shim` |
 //! | [`clock`] | what reads the clock, and what replaces it |
-//! | [`foreign`] | what reads the clock and is told |
+//! | [`foreign`] | what reads the clock and is reported |
 //! | [`motion`], [`motion_use`] | motion control, and what of it a project uses |
 //! | [`survey`] | programs and sources of time in a project |
 //! | [`tasks`] | the task table |
@@ -29,7 +29,7 @@
 //! | [`target`], [`sources`], [`twincat`] | the shim's sources as a vendor's tool takes them |
 //!
 //! Invariants: text goes in and comes out, no file is touched; what is not marked stays byte for byte;
-//! instrumenting twice is instrumenting once; what cannot be replaced is told.
+//! instrumenting twice is instrumenting once; what cannot be replaced is reported.
 
 mod address;
 mod chart;

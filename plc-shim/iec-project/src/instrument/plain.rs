@@ -304,7 +304,7 @@ impl Plain {
         });
     }
 
-    /// Tells TwinCAT projects of the shim's own files.
+    /// Adds to TwinCAT projects the shim's own files.
     pub(super) fn list_own(&self, files: &mut Vec<File>) -> Result<(), InstrumentError> {
         let is_own = |file: &&File| file.text.is_some() && !self.given.iter().any(|given| given.name == file.name);
         let own: Vec<String> = files.iter().filter(is_own).map(|file| file.name.clone()).collect();

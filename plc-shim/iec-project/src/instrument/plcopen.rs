@@ -233,7 +233,7 @@ pub(super) fn attach(
     Ok(())
 }
 
-/// Tells each of several instances of a program its number, by an initial value of its own (2nd ed. 2.7.1): the schema
+/// Gives each of several instances of a program its number, by an initial value of its own (2nd ed. 2.7.1): the schema
 /// has no connections of a program's variables.
 fn number(configuration: &Element, text: &str, tasks: &TaskTable<'_>, edits: &mut Edits) {
     let mut values = String::new();

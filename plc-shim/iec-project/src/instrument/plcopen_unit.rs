@@ -47,7 +47,7 @@ fn pou(declaration: &Declaration) -> Option<&Pou> {
     }
 }
 
-/// `<configVariable>` that tells an instance of a program its number.
+/// `<configVariable>` that gives an instance of a program its number.
 pub(super) fn instance_number(path: &str, number: usize) -> String {
     let value = format!("<initialValue><simpleValue value=\"{number}\"/></initialValue>");
     let path = markup::escaped(path);

@@ -9,7 +9,7 @@ use super::{InstrumentError, Options, Project, attach, codesys, matiec, scl_port
 use onescan_iec::dialect::Dialect;
 use onescan_iec::input::Input;
 
-/// The project's text as the tool reads it that takes its port: what is not of its dialect is told.
+/// The project's text as the tool reads it that takes its port: what is not of its dialect is reported.
 pub(super) fn read_by(target: Target, inputs: &[Input]) -> Vec<Input> {
     let read = |input: &Input| {
         let is_text = input.file().origin().is_none() && input.file().dialect() != Dialect::SiemensScl;

@@ -123,7 +123,7 @@ impl<'a> RealInputs<'a> {
                 }
                 for given in &configuration.instances {
                     if let Some(address) = given.address.as_ref().filter(|address| is_input(&address.text)) {
-                        self.told(address.span, "an address that VAR_CONFIG gives stays with its variable");
+                        self.report(address.span, "an address that VAR_CONFIG gives stays with its variable");
                     }
                 }
             }
@@ -147,7 +147,7 @@ impl<'a> RealInputs<'a> {
         match variables.first() {
             Some(first) if !has_place => {
                 let place = first.address.as_ref().map_or(pou.name.span, |address| address.span);
-                self.told(place, "there is no place for an assignment at the head of this unit: its inputs stay");
+                self.report(place, "there is no place for an assignment at the head of this unit: its inputs stay");
             }
             Some(_) => self.units.push((pou, variables)),
             None => {}
@@ -172,7 +172,7 @@ impl<'a> RealInputs<'a> {
             let written = file.text().get(span.start as usize..span.end as usize).unwrap_or("");
             let has_place = matches!(pou.kind, PouKind::Program | PouKind::FunctionBlock) && !pou.body.is_empty();
             if !has_place || !pou.chart.is_empty() {
-                self.told(span, "this unit cannot declare what would stand for the address: it stays");
+                self.report(span, "this unit cannot declare what would stand for the address: it stays");
                 continue;
             }
             let letters: String = written.to_ascii_uppercase().chars().skip(2).collect();
@@ -184,7 +184,7 @@ impl<'a> RealInputs<'a> {
         }
     }
 
-    fn told(&mut self, span: Span, message: &str) {
+    fn report(&mut self, span: Span, message: &str) {
         let found = Diagnostic::warning(Code::UnsupportedFeature, span, message);
         self.findings.push(found.with_help("give it a global variable of its own, or take its address off by hand"));
     }

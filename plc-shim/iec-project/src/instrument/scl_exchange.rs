@@ -228,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_place_is_told() {
+    fn what_has_no_place_is_reported() {
         let string = SignalType::string(20).unwrap();
         let all = [exchanged("Name", "Main.Name", string, Way::ToPlc)];
         assert_eq!(text(&all), None);

@@ -72,7 +72,7 @@ fn in_scl(name: &str, text: &str) -> Input {
     Input::from_text(name, SourceKind::Text, text).in_dialect(Dialect::SiemensScl)
 }
 
-/// The tasks and their programs as the project names them, and what of the project is told.
+/// The tasks and their programs as the project names them, and what of the project is reported.
 fn asked(
     plain: &Plain,
     options: &Options,

@@ -163,13 +163,13 @@ pub(super) fn attach(configuration: &Configuration, file: &SourceFile, edits: &m
     }
     let mut number = 0;
     for resource in &configuration.resources {
-        let told = connections(configuration, resource, file);
+        let reported = connections(configuration, resource, file);
         let tasks = resource.tasks.iter().filter(|task| runs(resource, task));
         let mut homes: Vec<String> = tasks.map(|task| format!(" WITH {}", task.name.text)).collect();
         homes.extend(resource.programs.iter().any(|program| program.task.is_none()).then(String::new));
         let followers = homes.iter().map(|home| {
             number += 1;
-            format!("    PROGRAM SDSP_Follow_{number}{home} : SDSP_Follow{told};\n")
+            format!("    PROGRAM SDSP_Follow_{number}{home} : SDSP_Follow{reported};\n")
         });
         let followers: String = followers.collect();
         if let Some(last) = resource.programs.last().filter(|_| !followers.is_empty()) {
@@ -181,12 +181,12 @@ pub(super) fn attach(configuration: &Configuration, file: &SourceFile, edits: &m
 
 /// What connects a program of the shim in `viewer` to all SINGLE inputs; nothing if there are none.
 pub(super) fn connections(configuration: &Configuration, viewer: &Resource, file: &SourceFile) -> String {
-    let told = running(configuration).map(|(number, owner, value)| {
+    let reported = running(configuration).map(|(number, owner, value)| {
         let seen = seen_from(viewer, owner, value, written(file, value));
         format!("{} := {seen}", input(number))
     });
-    let told: Vec<String> = told.collect();
-    if told.is_empty() { String::new() } else { format!("({})", told.join(", ")) }
+    let reported: Vec<String> = reported.collect();
+    if reported.is_empty() { String::new() } else { format!("({})", reported.join(", ")) }
 }
 
 fn written<'t>(file: &'t SourceFile, value: &Expr) -> &'t str {

@@ -200,7 +200,7 @@ impl<'a> Surveyor<'_, 'a> {
         self.unit.clear();
     }
 
-    /// What a function block is derived from. How a derived one is used tells nothing of a motion block's inputs.
+    /// What a function block is derived from. How a derived one is used says nothing of a motion block's inputs.
     fn base(&mut self, name: &Ident) {
         self.type_name(name);
         if let Some((_, role)) = self.survey.motion.last_mut().filter(|(met, _)| met.span == name.span) {
@@ -312,12 +312,12 @@ impl<'a> Surveyor<'_, 'a> {
     fn met(&mut self, name: &Ident, fate: Fate) {
         match fate {
             Fate::Replaced(form) if form.suits(self.target) => self.survey.renames.push((name.clone(), form)),
-            Fate::Replaced(_) | Fate::Told => self.told(&name.text, name.span),
+            Fate::Replaced(_) | Fate::Reported => self.report(&name.text, name.span),
             Fate::Motion(role) => self.survey.motion.push((name.clone(), role)),
         }
     }
 
-    fn told(&mut self, name: &str, span: Span) {
+    fn report(&mut self, name: &str, span: Span) {
         let key = |name: &str| name.trim_matches('"').to_ascii_uppercase();
         let library = [Kind::Block, Kind::Function].into_iter().find_map(|kind| foreign::find(&key(name), kind));
         let of = library.map_or(String::new(), |library| format!(" ({})", library.name));
@@ -351,7 +351,7 @@ impl Visitor for Surveyor<'_, '_> {
         if let ExprKind::Name(name) = &expr.kind
             && name.key() == VIRTUAL_TIME_NAME
         {
-            self.told(&name.text, name.span);
+            self.report(&name.text, name.span);
         }
     }
 }

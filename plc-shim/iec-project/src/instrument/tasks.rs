@@ -105,7 +105,7 @@ impl<'a> TaskTable<'a> {
         })
     }
 
-    /// The number of an instance that must be told it.
+    /// The number of an instance that must receive it.
     pub(super) fn number_of_instance(&self, name: &str) -> Option<usize> {
         let at = self.programs.iter().position(|entry| entry.name == name)?;
         let pou = self.programs.get(at)?.pou;

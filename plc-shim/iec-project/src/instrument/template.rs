@@ -125,7 +125,7 @@ fn filled(template: &str, tokens: Vec<Token>, name: &dyn Fn(&str) -> Option<Stri
 pub(super) enum Number {
     /// There is one instance of it.
     Fixed(usize),
-    /// Each instance is told by the configuration.
+    /// Each instance receives it from the configuration.
     OfInstance,
 }
 

@@ -1,4 +1,4 @@
-//! Calls: of what is declared, whose parameters tell what their arguments are; of what is not, which they tell.
+//! Calls: of what is declared, whose parameters show the arguments; of what is not, which show the parameters.
 
 use super::class::Found;
 use super::collect::{Collector, Scope, elementary};

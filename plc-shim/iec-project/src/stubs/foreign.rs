@@ -19,7 +19,7 @@ pub(super) struct Signature {
 }
 
 impl Signature {
-    /// The parameters by their places: calls with names tell the names, others the number. A place that no name can
+    /// The parameters by their places: calls with names give the names, others the number. A place that no name can
     /// have has one from its number.
     pub(super) fn in_order(&self) -> Vec<(String, Argument)> {
         let mut open: Vec<&Named> = self.named.iter().collect();

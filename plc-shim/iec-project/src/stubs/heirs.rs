@@ -1,4 +1,4 @@
-//! What classes of the project tell of bases and interfaces that nobody declares: the members that they override, and
+//! What classes of the project show of bases and interfaces that nobody declares: the members that they override, and
 //! the interfaces that they are given for.
 
 use super::class::Found;
@@ -29,7 +29,7 @@ impl<'a> Collector<'a> {
                 let path = format!("{shown}.{name}");
                 match part {
                     Part::Method => self.override_of(&format!("{path}()"), member, unit, 0),
-                    Part::Property => self.told(&path, member.result.as_ref(), unit),
+                    Part::Property => self.record(&path, member.result.as_ref(), unit),
                 }
             }
         }
@@ -37,13 +37,13 @@ impl<'a> Collector<'a> {
 
     fn override_of(&mut self, path: &str, member: &Pou, unit: &Unit<'_>, skipped: usize) {
         for (index, (name, spec)) in inputs(member).into_iter().skip(skipped).enumerate() {
-            self.told(&format!("{path}.p{}", index + 1), Some(spec), unit);
-            self.told(&format!("{path}.{name}"), Some(spec), unit);
+            self.record(&format!("{path}.p{}", index + 1), Some(spec), unit);
+            self.record(&format!("{path}.{name}"), Some(spec), unit);
         }
-        self.told(path, member.result.as_ref(), unit);
+        self.record(path, member.result.as_ref(), unit);
     }
 
-    fn told(&mut self, path: &str, spec: Option<&TypeSpec>, unit: &Unit<'_>) {
+    fn record(&mut self, path: &str, spec: Option<&TypeSpec>, unit: &Unit<'_>) {
         let Some(spec) = spec else { return };
         let ty = self.type_of(spec, &unit.home, 0);
         let slot = self.slots.of(path);
@@ -79,7 +79,7 @@ impl<'a> Collector<'a> {
         if is_declared { Ty::Declared(key.to_owned()) } else { Ty::Foreign(key.to_owned()) }
     }
 
-    /// True if what is declared tells that a class implements an interface.
+    /// True if what is declared shows that a class implements an interface.
     fn is_a(&mut self, class: &str, interface: &str) -> bool {
         let mut open = vec![class.to_owned()];
         let mut seen = std::collections::BTreeSet::new();

@@ -1,4 +1,4 @@
-//! What a name says of a type, where its use says nothing. The rule is told in `docs/library-stubs.md`.
+//! What a name says of a type, where its use says nothing. The rule is described in `docs/library-stubs.md`.
 
 use super::ty::Ty;
 use onescan_iec::ElementaryType as E;
@@ -35,21 +35,21 @@ const FLAGS: [&str; 10] =
 
 /// The type that a name hints at; DINT if it does not.
 pub(super) fn of_name(name: &str) -> Ty {
-    told(name).unwrap_or(Ty::Elementary(E::Dint))
+    reported(name).unwrap_or(Ty::Elementary(E::Dint))
 }
 
 /// True for a name that hints at a type.
-pub(super) fn tells(name: &str) -> bool {
-    told(name).is_some()
+pub(super) fn shows_type(name: &str) -> bool {
+    reported(name).is_some()
 }
 
-/// Beginnings that tell whether something is given or taken, in front of the one that tells the type.
+/// Beginnings that show whether something is given or taken, in front of the one that shows the type.
 const DIRECTIONS: [&str; 4] = ["i_", "q_", "iq_", "io_"];
 
-fn told(name: &str) -> Option<Ty> {
+fn reported(name: &str) -> Option<Ty> {
     let name = name.trim_start_matches('_');
     let behind = DIRECTIONS.iter().find_map(|direction| name.strip_prefix(direction));
-    if let Some(found) = behind.filter(|rest| rest.starts_with(char::is_lowercase)).and_then(told) {
+    if let Some(found) = behind.filter(|rest| rest.starts_with(char::is_lowercase)).and_then(reported) {
         return Some(found);
     }
     for (prefix, wide) in [("s", false), ("str", false), ("ws", true)] {

@@ -8,7 +8,7 @@
 //! | [`foreign`] | what is named and not declared, and how it is used |
 //! | [`names`] | what a name stands for |
 //! | [`class`] | members of classes and structures |
-//! | [`heirs`] | what classes of the project tell of their bases and interfaces |
+//! | [`heirs`] | what classes of the project show of their bases and interfaces |
 //! | [`instances`] | where instances go |
 //! | [`collect`], [`initial`], [`statement`], [`expression`], [`call`], [`argument`] | one pass over the project |
 //! | [`shape`] | what a type that nobody declares is |

@@ -67,7 +67,7 @@ impl Collector<'_> {
 
 pub(super) struct Printer<'c, 'a> {
     pub(super) collector: &'c Collector<'a>,
-    /// The units that are derived from a foreign type, whose methods tell those of the base.
+    /// The units that are derived from a foreign type, whose methods show those of the base.
     pub(super) heirs: BTreeMap<String, Vec<&'c Unit<'a>>>,
 }
 

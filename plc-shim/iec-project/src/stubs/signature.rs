@@ -43,7 +43,7 @@ impl<'c> Printer<'c, '_> {
         let mut open: Vec<String> = vec![key.to_owned()];
         let mut seen = std::collections::BTreeSet::new();
         while let Some(next) = open.pop() {
-            // What stands for an interface has heirs that tell the interface's methods.
+            // What stands for an interface has heirs that show the interface's methods.
             let below = self.collector.needs.types.iter().filter(|(_, each)| each.stands_for.contains(&next));
             open.extend(below.map(|(key, _)| key.clone()).filter(|key| seen.insert(key.clone())));
             for unit in self.heirs.get(&next).into_iter().flatten() {

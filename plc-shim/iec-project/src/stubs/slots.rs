@@ -10,7 +10,7 @@ use onescan_iec::syntax::ast::ReferenceKind;
 /// What is known of a slot.
 #[derive(Debug, Default)]
 struct Evidence {
-    /// The last part of its path, which may tell its type.
+    /// The last part of its path, which may show its type.
     name: String,
     /// How an anonymous type of it is called.
     path: String,
@@ -172,13 +172,13 @@ impl Slots {
             return Some(inner.clone());
         }
         let built = |ty: &&Ty| matches!(ty, Ty::Array(..) | Ty::Pointer(..));
-        // One that a declaration tells goes before one that is only indexed or followed.
-        let told = |ty: &&Ty| match ty {
+        // One that a declaration shows takes precedence over one that is only indexed or followed.
+        let reported = |ty: &&Ty| match ty {
             Ty::Array(bounds, _) => bounds.iter().any(|each| each != ANY_BOUNDS),
             Ty::Pointer(_, inner) => !matches!(**inner, Ty::Slot(_)),
             _ => false,
         };
-        if let Some(found) = in_order().find(told).or_else(|| in_order().find(built)) {
+        if let Some(found) = in_order().find(reported).or_else(|| in_order().find(built)) {
             return Some(found.clone());
         }
         if let Some(Ty::Text(_)) = in_order().find(|ty| matches!(ty, Ty::Text(_))) {
@@ -199,10 +199,10 @@ impl Slots {
         let linked = self.linked(slot);
         let has = |wanted: &Ty| linked.iter().any(|each| each.all().any(|ty| ty == wanted));
         // The same one for all of them, wherever the question begins.
-        let telling = linked.iter().map(|each| each.name.as_str()).filter(|name| hint::tells(name)).min();
-        let telling = telling.or(linked.first().map(|each| each.name.as_str())).unwrap_or_default();
+        let clearest = linked.iter().map(|each| each.name.as_str()).filter(|name| hint::shows_type(name)).min();
+        let clearest = clearest.or(linked.first().map(|each| each.name.as_str())).unwrap_or_default();
         if has(&Ty::Real) {
-            return Ty::Elementary(hint::real(telling));
+            return Ty::Elementary(hint::real(clearest));
         }
         let wide = linked.iter().flat_map(|each| each.all()).filter_map(|ty| match ty {
             Ty::Wide(found) => Some(*found),
@@ -210,14 +210,14 @@ impl Slots {
         });
         let wide = wide.max_by_key(|ty| (ty.size(), ty.is_signed()));
         if has(&Ty::Integer) || wide.is_some() {
-            return match (hint::integer(telling), wide) {
+            return match (hint::integer(clearest), wide) {
                 (Ty::Elementary(named), Some(wide)) if named.size() <= wide.size() && !named.is_bits() => {
                     Ty::Elementary(wide)
                 }
                 (named, _) => named,
             };
         }
-        hint::of_name(telling)
+        hint::of_name(clearest)
     }
 
     /// What is known of a slot and of all undecided ones that it is linked with, itself first.

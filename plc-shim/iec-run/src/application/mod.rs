@@ -108,7 +108,7 @@ impl Application {
         Self::without_constants(Self::builder().inputs(inputs).covered())
     }
 
-    /// Begins an application whose constants can be set, or that tells what it executes.
+    /// Begins an application whose constants can be set, or that reports what it executes.
     pub fn builder() -> Builder {
         Builder::default()
     }
@@ -208,7 +208,7 @@ impl Application {
         &self.inner.points
     }
 
-    /// True if its statements tell when they run.
+    /// True if its statements report when they run.
     pub(crate) fn is_traced(&self) -> bool {
         self.inner.purpose == Purpose::Trace
     }

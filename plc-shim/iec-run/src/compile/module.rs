@@ -51,7 +51,7 @@ pub(crate) enum Noted<'l> {
     Nothing,
     /// All that is not in these files.
     AllBut(&'l BTreeSet<FileId>),
-    /// Statements that are not in these files tell the host that they run.
+    /// Statements that are not in these files report to the host that they run.
     Traced(&'l BTreeSet<FileId>),
 }
 

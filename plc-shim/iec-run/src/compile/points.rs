@@ -31,7 +31,7 @@ pub(crate) const NOTES_MEMORY: u32 = 1;
 /// All points in the order of their bytes.
 #[derive(Debug, Default)]
 pub(crate) struct Points {
-    /// Statements are told to the host as they run; nothing is noted in memory.
+    /// Statements are reported to the host as they run; nothing is noted in memory.
     traced: bool,
     /// Files that are not the user's.
     library: BTreeSet<FileId>,

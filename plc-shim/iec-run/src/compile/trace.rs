@@ -1,4 +1,4 @@
-//! Statements tell the host when they begin and end, and decisions which way they go, so that it can
+//! Statements report to the host when they begin and end, and decisions which way they go, so that it can
 //! say which statement wrote a byte, and why that one. What statements read is reported, too: it leads
 //! back to the statement that a value comes from.
 //!

@@ -51,7 +51,7 @@ impl fmt::Display for FaultSite {
 
 impl PlcFault {
     /// Who called whom: `, called by P1.axis (Axis) at axis.st:5, called by P1 (P) at main.st:9`;
-    /// nothing for a program. What called itself is told once, with how often, and of a long way its two ends.
+    /// nothing for a program. What called itself is reported once, with how often, and of a long way its two ends.
     pub fn way(&self) -> String {
         let mut lines: Vec<(String, usize)> = Vec::new();
         for site in &self.callers {

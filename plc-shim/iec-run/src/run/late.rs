@@ -118,14 +118,14 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_late_is_told() {
+    fn what_cannot_be_late_is_reported() {
         let by = TimeSpan::from_millis(5).unwrap();
-        let told = [(false, Some("on")), (false, Some("two")), (false, None), (true, None)]
+        let reported = [(false, Some("on")), (false, Some("two")), (false, None), (true, None)]
             .map(|(background, task)| plc(background).postpone(task, by).unwrap_err().to_string());
-        assert!(told[0].starts_with("it has no task `on`"), "{}", told[0]);
+        assert!(reported[0].starts_with("it has no task `on`"), "{}", reported[0]);
         let no_interval = "task `Two` has no interval, so that nothing says when it would be due";
-        assert_eq!(told[1..3], [no_interval, no_interval]);
-        assert_eq!(told[3], "it runs programs without a task in every scan, which are never late");
+        assert_eq!(reported[1..3], [no_interval, no_interval]);
+        assert_eq!(reported[3], "it runs programs without a task in every scan, which are never late");
         let never = TimeSpan::from_nanos(u64::MAX).unwrap();
         assert_eq!(plc(true).postpone(Some("one"), never), Err(LateError::Never("One".to_owned())));
     }

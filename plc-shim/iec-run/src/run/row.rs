@@ -9,7 +9,7 @@ use wasm_encoder::{
 };
 use wasmtime::{Extern, Instance, Store, TypedFunc};
 
-/// The module's name, by which its functions are known where a fault's way is told.
+/// The module's name, by which its functions are known where a fault's way is reported.
 pub(super) const NAME: &str = "rows";
 
 /// Where all imports are.

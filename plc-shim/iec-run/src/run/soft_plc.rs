@@ -142,7 +142,7 @@ impl SoftPlc {
         memory[from..].copy_from_slice(&image[from..]);
     }
 
-    /// `initial` tells that RETAIN variables have their initial values, too.
+    /// `initial` says that RETAIN variables have their initial values, too.
     fn begin(&mut self, now: VirtualTime, initial: bool) {
         self.scheduler.restart_at(now);
         self.now = now;
@@ -200,7 +200,7 @@ impl SoftPlc {
         self.machine.refuel(self.plan.fuel_per_task)
     }
 
-    /// Tells the programs which task runs them, if they ask.
+    /// Gives the programs the task that runs them, if they ask.
     fn enter(&mut self, task: Option<usize>) {
         if let Some(info) = &self.task_info {
             info.enter(task, self.now, self.machine.memory_mut());

@@ -13,7 +13,7 @@ pub(super) struct TaskInfo {
     current: Variable,
     /// Those that have an entry.
     tasks: Vec<Entry>,
-    /// What a start takes away and the plan tells: variables with their bytes.
+    /// What a start takes away and the plan gives: variables with their bytes.
     fixed: Vec<(Variable, Vec<u8>)>,
 }
 

@@ -45,7 +45,7 @@ impl Watched {
         changed
     }
 
-    /// True if a store there is one to the watched bytes; of a single bit only a change tells.
+    /// True if a store there is one to the watched bytes; of a single bit only a change shows it.
     fn is_within(&self, stored: &Range<usize>) -> bool {
         self.bit.is_none() && stored.start < self.range.end && self.range.start < stored.end
     }

@@ -214,12 +214,12 @@ mod tests {
 
     #[test]
     fn the_rows_of_a_statement_are_its_own() {
-        let told = |text| rows(text, 7).into_iter().map(|(line, row)| format!("{line}: {row}")).collect::<Vec<_>>();
+        let reported = |text| rows(text, 7).into_iter().map(|(line, row)| format!("{line}: {row}")).collect::<Vec<_>>();
         assert_eq!(
-            told("IF a (* or b *)\n  AND c THEN\n x := 1;\nELSIF d THEN\n y; END_IF"),
+            reported("IF a (* or b *)\n  AND c THEN\n x := 1;\nELSIF d THEN\n y; END_IF"),
             ["7: IF a", "8: AND c", "10: ELSIF d"]
         );
-        assert_eq!(told("f(a := 1, // one\n\n  b := 2)"), ["7: f ( a := 1 ,", "9: b := 2 )"]);
-        assert_eq!(told("REPEAT\n x := 1;\nUNTIL x > 3\nEND_REPEAT"), ["7: REPEAT", "9: UNTIL x > 3"]);
+        assert_eq!(reported("f(a := 1, // one\n\n  b := 2)"), ["7: f ( a := 1 ,", "9: b := 2 )"]);
+        assert_eq!(reported("REPEAT\n x := 1;\nUNTIL x > 3\nEND_REPEAT"), ["7: REPEAT", "9: UNTIL x > 3"]);
     }
 }

@@ -73,7 +73,7 @@ pub struct Checked {
     pub chart_parts: Vec<(Span, String)>,
 }
 
-/// Checks all units together. `library` tells the files of the standard function blocks, whose
+/// Checks all units together. `library` identifies the files of the standard function blocks, whose
 /// units are compiled only if they are used. Constants named by `overrides` have the initial values that it gives. All variables
 /// together take no more than `limit`.
 pub fn check(

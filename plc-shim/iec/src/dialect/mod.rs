@@ -55,7 +55,7 @@ impl Dialect {
         Self::ALL.into_iter().find(|dialect| dialect.name() == name)
     }
 
-    /// The dialect of program text in a file of this name; PLCopen XML tells its own.
+    /// The dialect of program text in a file of this name; PLCopen XML names its own.
     pub fn of_file(name: &str) -> Self {
         let extension = Path::new(name).extension().and_then(|text| text.to_str()).unwrap_or("");
         match extension.to_ascii_lowercase().as_str() {

@@ -12,7 +12,7 @@ fn every_feature_and_dialect_has_one_row() {
     assert_eq!(dialects, Dialect::ALL);
     for row in FEATURES {
         let count = row.dialects.len();
-        assert!(count > 0 && count < Dialect::ALL.len(), "{:?} tells no dialects apart", row.feature);
+        assert!(count > 0 && count < Dialect::ALL.len(), "{:?} distinguishes no dialects", row.feature);
         assert!(!row.source.is_empty());
     }
 }

@@ -1,7 +1,7 @@
 //! Constants set from outside, by path, before the program is compiled: programs hold their values.
 //!
 //! The path of a constant is that of its declaration: `Unit.name`, `Unit.Method.name`, `name` or `List.name` for
-//! a global one, with namespaces, or configuration and resource, in front where they are needed to tell two
+//! a global one, with namespaces, or configuration and resource, in front where they are needed to distinguish two
 //! constants apart. An instance of a program stands for the program: the constant is the same in all of them.
 
 use thiserror::Error;
@@ -73,7 +73,7 @@ pub struct Setting {
 pub struct Constants {
     pub settings: Vec<Setting>,
     pub overrides: Overrides,
-    /// For each literal a tree without declarations, which tells its dialect.
+    /// For each literal a tree without declarations, which shows its dialect.
     pub units: Vec<(FileId, CompilationUnit)>,
     pub findings: Vec<Diagnostic>,
 }

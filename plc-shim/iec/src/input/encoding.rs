@@ -185,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_text_is_told() {
+    fn what_is_no_text_is_reported() {
         assert_eq!(decode(b"\x7fELF\x02\0\0"), Err(EncodingError::Binary));
         assert_eq!(decode(b"\xff\xfex\0y"), Err(EncodingError::Malformed(Charset::Utf16Le, 4)));
         assert_eq!(decode(b"\xff\xfex\0\0\xd8"), Err(EncodingError::Malformed(Charset::Utf16Le, 4)));

@@ -16,7 +16,7 @@
 //! | [`project`] | a TwinCAT project | the names of its files |
 //!
 //! Invariants: no file can make it fail, what is wrong with one is a diagnostic; what is not read is
-//! told; every place in program text leads back into the file that it was taken out of.
+//! reported; every place in program text leads back into the file that it was taken out of.
 
 mod drawing;
 pub mod encoding;

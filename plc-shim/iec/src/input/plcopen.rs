@@ -145,7 +145,7 @@ impl Writer<'_> {
         self.taken.extract.instead(text, place.clone());
     }
 
-    /// Writes an attribute's value; what has none is told.
+    /// Writes an attribute's value; what has none is reported.
     pub(super) fn attribute(&mut self, element: &Element, name: &str) {
         if let Some(found) = element.attribute(name) {
             self.write(&found.value, &found.span);

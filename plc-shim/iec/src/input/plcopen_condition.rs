@@ -57,14 +57,14 @@ impl Writer<'_> {
         if let Some(inline) = holder.child("inline") {
             return Condition::Body { name: None, body: inline, negated };
         }
-        // An empty one is told of as a connection point that nothing leads to.
+        // An empty one is reported as a connection point that nothing leads to.
         Condition::Wired { chart: node.chart, holder }
     }
 
     pub(super) fn write_condition(&mut self, condition: &Condition<'_>, name: &str, transition: &Element) {
         let open = &transition.open;
         match condition {
-            // It has been told; the rest of the chart is read all the same.
+            // It has been reported; the rest of the chart is read all the same.
             Condition::Missing => self.write(" := FALSE", open),
             Condition::Variable { name, negated } => {
                 self.write(if *negated { " := NOT " } else { " := " }, open);
@@ -222,7 +222,7 @@ pub(super) enum Condition<'c> {
         chart: &'c Element,
         holder: &'c Element,
     },
-    /// It has been told that there is none.
+    /// It has been reported that there is none.
     Missing,
 }
 

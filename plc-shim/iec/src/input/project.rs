@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_project_is_told() {
+    fn what_is_no_project_is_reported() {
         assert!(matches!(files(b"<Project>\n<ItemGroup></Project>"), Err(ProjectError::Xml { line: 2, .. })));
         assert!(files(b"\0\0").is_err());
     }

@@ -288,7 +288,7 @@ VAR_GLOBAL x : INT; END_VAR]]></Declaration></GVL><GVL Name=\"Open\"><Declaratio
     }
 
     #[test]
-    fn what_is_left_out_is_told() {
+    fn what_is_left_out_is_reported() {
         let input = Input::from_text("FB_Ramp.TcPOU", SourceKind::TwinCat, POU);
         let [found] = input.diagnostics.as_slice() else { panic!("{:?}", input.diagnostics) };
         assert_eq!(found.message, "TRANSITION `T1` is not supported yet");

@@ -56,7 +56,7 @@ enum Inside {
 fn is_left(list: &[Statement], inside: Inside) -> bool {
     list.iter().any(|statement| match &statement.kind {
         StatementKind::Exit => inside == Inside::Itself,
-        // What is wrong has been told, and may have been meant to leave.
+        // What is wrong has been reported, and may have been meant to leave.
         StatementKind::Return | StatementKind::Jump(_) | StatementKind::Error => true,
         StatementKind::Instruction(inner) => matches!(**inner, Instruction::Jump(..) | Instruction::Return(_)),
         StatementKind::If(inner) => {

@@ -7,7 +7,7 @@ use crate::input::Input;
 use crate::ir::MemoryLimit;
 use crate::task_plan::TaskPlan;
 
-/// Errors and warnings of files that belong together; `plan` tells which programs share a task.
+/// Errors and warnings of files that belong together; `plan` says which programs share a task.
 ///
 /// What is legal and seldom meant is looked for in programs without errors only: an error makes it
 /// look as if much were unused.

@@ -37,7 +37,7 @@ use crate::task_plan::TaskPlan;
 
 pub use inspect::{inspect, inspect_within};
 
-/// All warnings; `plan` tells which programs run in one task.
+/// All warnings; `plan` says which programs run in one task.
 fn lint(front: &Front, plan: Option<&TaskPlan>) -> Vec<Diagnostic> {
     let index = Index::new(front);
     let units: Vec<Unit<'_>> = index.own().map(|pou| Unit { usage: Usage::of(pou, &index), pou }).collect();

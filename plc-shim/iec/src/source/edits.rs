@@ -189,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn what_overlaps_is_told() {
+    fn what_overlaps_is_reported() {
         let apply = |ranges: &[Range<u32>]| {
             let mut edits = Edits::default();
             for range in ranges {

@@ -31,7 +31,7 @@ pub fn note<'a>(section: &'a Section, constants: &mut Constants<'a>) {
 /// How many constants may stand for each other.
 const DEPTH_MAX: u32 = 32;
 
-/// The value of `expr`; nothing if it has none that the text alone tells.
+/// The value of `expr`; nothing if it has none that the text alone determines.
 pub fn value(expr: &Expr, constants: &Constants<'_>) -> Option<Constant> {
     within(expr, constants, DEPTH_MAX)
 }

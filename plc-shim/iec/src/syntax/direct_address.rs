@@ -273,7 +273,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_address_is_told() {
+    fn what_is_no_address_is_reported() {
         for (text, error) in [
             ("%", AddressError::Area),
             ("%Z1", AddressError::Area),

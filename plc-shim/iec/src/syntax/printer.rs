@@ -37,7 +37,7 @@ impl Printer {
         self.text.push_str(text);
     }
 
-    /// A name where it is declared or needs no telling apart; SCL allows any text between quotes.
+    /// A name where it is declared or needs no distinction; SCL allows any text between quotes.
     fn name(&mut self, name: &Ident) {
         // The constants of a generic block stand as they were written.
         let plain = name.text.split('<').next().unwrap_or(&name.text);

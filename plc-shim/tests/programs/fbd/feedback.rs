@@ -75,7 +75,7 @@ fn places_order_the_blocks_of_a_loop_without_ids() {
 }
 
 #[test]
-fn loops_without_a_variable_are_told() {
+fn loops_without_a_variable_are_reported() {
     let body = [
         block(2, (100, 0), "NOT", "IN=3.OUT", "OUT", ""),
         block(3, (200, 0), "NOT", "IN=2.OUT", "OUT", ""),

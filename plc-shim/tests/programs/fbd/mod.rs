@@ -50,7 +50,7 @@ fn a_value_is_taken_once_and_handed_to_all() {
     }
 }
 
-/// Two networks that each copy one variable to the next: what comes of them tells their order.
+/// Two networks that each copy one variable to the next: what comes of them shows their order.
 fn two(first: (u32, &str), second: (u32, &str)) -> [i64; 2] {
     let block = |id, (y, order): (u32, &str), from, to| {
         [
@@ -145,7 +145,7 @@ fn jumps_divide_a_body() {
 }
 
 #[test]
-fn bad_networks_are_told() {
+fn bad_networks_are_reported() {
     let body = [
         input(1, (0, 0), "a"),
         input(2, (0, 20), "b"),

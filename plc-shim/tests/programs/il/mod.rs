@@ -117,7 +117,7 @@ fn iec2_3_2_4_calls_of_functions() {
 }
 
 #[test]
-fn wrong_instructions_are_told() {
+fn wrong_instructions_are_reported() {
     let text = list(
         "a : BOOL; i : INT; t : TON;",
         "ST a\nLD\nLD a\nADD 1\nST i\nLD i\nAND a\nST a\nBLA i\nLD a\nJMPC nowhere\nLD i i\nLD a\nST i\nCAL t(XX := a)\nLD a\nAND(\nLD i",

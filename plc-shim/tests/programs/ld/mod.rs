@@ -156,7 +156,7 @@ fn an_endless_jump_is_a_fault_at_the_jump() {
 }
 
 #[test]
-fn bad_rungs_are_told() {
+fn bad_rungs_are_reported() {
     let body = [
         rail(1),
         contact(2, (50, 0), "", "a", ""),

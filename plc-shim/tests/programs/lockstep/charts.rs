@@ -110,7 +110,7 @@ fn the_time_of_an_inner_step_is_read_in_its_chart() {
 }
 
 #[test]
-fn what_cannot_be_put_on_virtual_time_is_told() {
+fn what_cannot_be_put_on_virtual_time_is_reported() {
     let text =
         MIXER.replace("FROM Fill TO Idle", "FROM Fill TO Fill := start; END_TRANSITION TRANSITION FROM Fill TO Idle");
     let input = Input::from_text("mixer.st", SourceKind::Text, text);

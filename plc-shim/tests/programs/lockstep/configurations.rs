@@ -104,11 +104,11 @@ fn intervals_may_be_constant_expressions() {
     };
     let (period, rank) = table("INTERVAL := half + T#1ms, PRIORITY := (n - 1) * 2").expect("constants");
     assert!(period.contains(":= [6000000];") && rank.contains(":= [4];"), "{period} {rank}");
-    for (declared, told) in [
+    for (declared, reported) in [
         ("INTERVAL := other, PRIORITY := 1", "INTERVAL other than a constant"),
         ("INTERVAL := T#1ms, PRIORITY := n - 4", "PRIORITY below 0"),
         ("INTERVAL := T#0s - half, PRIORITY := 1", "INTERVAL below 0"),
     ] {
-        assert!(table(declared).is_err_and(|error| error.contains(told)), "{declared}");
+        assert!(table(declared).is_err_and(|error| error.contains(reported)), "{declared}");
     }
 }

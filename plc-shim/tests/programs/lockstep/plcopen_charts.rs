@@ -195,8 +195,8 @@ fn a_project_in_every_language_gives_the_same() {
 }
 
 #[test]
-fn what_of_a_drawn_chart_is_not_instrumented_is_told() {
-    let told = |from: &str, to: &str| {
+fn what_of_a_drawn_chart_is_not_instrumented_is_reported() {
+    let reported = |from: &str, to: &str| {
         let given = forms().replace(from, to);
         assert_ne!(given, forms());
         let options =
@@ -208,9 +208,9 @@ fn what_of_a_drawn_chart_is_not_instrumented_is_told() {
     };
     let plain = block(52, (50, 0), "GE", "IN1=50 IN2=51", "OUT", "");
     let all = [
-        told(&plain, &plain.replace("formalParameter=\"IN1\"", "formalParameter=\"IN1\" edge=\"rising\"")),
-        told("LD i\nAND j\n", "LD i\nST l\n"),
-        told(
+        reported(&plain, &plain.replace("formalParameter=\"IN1\"", "formalParameter=\"IN1\" edge=\"rising\"")),
+        reported("LD i\nAND j\n", "LD i\nST l\n"),
+        reported(
             &output(4, (90, 0), "3.OUT", "ready", ""),
             &(output(4, (90, 0), "3.OUT", "ready", "") + &output(5, (90, 40), "3.OUT", "l", "")),
         ),

@@ -134,7 +134,7 @@ fn tasks_of_the_project_get_a_scheduler() {
     assert!(application.programs().count() >= 4);
 }
 
-/// CODESYS keeps declarations as text beside their elements if it is told to, and reads that text.
+/// CODESYS keeps declarations as text beside their elements if it is set to, and reads that text.
 #[test]
 fn declarations_as_plain_text_are_taken_out_and_come_back() {
     let plain = "<addData><data name=\"http://www.3s-software.com/plcopenxml/interfaceasplaintext\" \
@@ -191,7 +191,7 @@ fn several_instances_of_a_program_are_numbered() {
 }
 
 #[test]
-fn what_is_not_instrumented_is_told() {
+fn what_is_not_instrumented_is_reported() {
     let beside = Input::from_text("a.st", SourceKind::Text, "PROGRAM A END_PROGRAM");
     let error = instrument(&[read(&line()), beside], &Options::default()).expect_err("two files");
     assert!(error.to_string().contains("is one file"), "{error}");

@@ -114,7 +114,7 @@ fn everything_that_has_a_form_is_a_program() {
 }
 
 #[test]
-fn what_has_no_form_is_told_with_its_place() {
+fn what_has_no_form_is_reported_with_its_place() {
     let text = "TYPE T : STRUCT n : INT; END_STRUCT; END_TYPE\nCLASS C END_CLASS\nPROGRAM P\nVAR r : REF_TO T; END_VAR\n    ;\nEND_PROGRAM\n";
     let refused = instrument(&[given(text)], &options(&[task("main", 10, 0, &["P"])])).expect_err("no form");
     insta::assert_snapshot!(refused);

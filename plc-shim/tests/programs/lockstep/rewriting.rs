@@ -155,7 +155,7 @@ fn a_twincat_project_lists_the_shim() {
 }
 
 #[test]
-fn what_cannot_be_replaced_is_told() {
+fn what_cannot_be_replaced_is_reported() {
     let text = "
         FUNCTION_BLOCK F VAR a : MC_MoveAbsolute; b : GETSYSTEMTIME; c : Strange; TIME : INT; END_VAR
             a(); x := SysTimeGetMs() + F_Unknown(1) + TIME; END_FUNCTION_BLOCK
@@ -169,7 +169,7 @@ fn what_cannot_be_replaced_is_told() {
 
 /// Motion control is taken over as a whole or not at all.
 #[test]
-fn motion_control_that_cannot_be_replaced_is_told() {
+fn motion_control_that_cannot_be_replaced_is_reported() {
     for (statement, declaration) in [
         ("probe();", "probe : MC_TouchProbe;"),
         ("on(Axis := X, Enable := TRUE, bRegulatorOn := TRUE);", ""),
@@ -185,8 +185,8 @@ fn motion_control_that_cannot_be_replaced_is_told() {
             "PROGRAM P VAR X : AXIS_REF; on : MC_Power; {declaration} END_VAR on(Axis := X); {statement} END_PROGRAM"
         );
         let project = round_trip(&inputs(&[("p.st", SourceKind::Text, &text)]), &Options::default());
-        let told = project.warnings.to_string();
-        assert!(told.contains("I1002") && told.contains("`MC_Power` is left"), "{statement}: {told}");
+        let reported = project.warnings.to_string();
+        assert!(reported.contains("I1002") && reported.contains("`MC_Power` is left"), "{statement}: {reported}");
         assert!(!project.files.iter().any(|file| file.text.as_deref().is_some_and(|text| text.contains("SDSP_MC_"))));
     }
     let derived =
@@ -196,7 +196,7 @@ fn motion_control_that_cannot_be_replaced_is_told() {
     let text = "PROGRAM P VAR X : AXIS_REF; on : MC_Power; go : MC_GearIn; probe : MC_TouchProbe; END_VAR
         on(Axis := X, Enable := TRUE, bDriveStart := TRUE); probe(Axis := X); END_PROGRAM";
     let project = round_trip(&inputs(&[("p.st", SourceKind::Text, text)]), &Options::default());
-    insta::assert_snapshot!("motion_told", project.warnings.to_string());
+    insta::assert_snapshot!("motion_reported", project.warnings.to_string());
 }
 
 #[test]

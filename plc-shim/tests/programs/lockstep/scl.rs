@@ -217,19 +217,19 @@ fn timers_without_a_kind_take_that_of_their_calls() {
 }
 
 #[test]
-fn what_cannot_be_carried_is_told() {
+fn what_cannot_be_carried_is_reported() {
     let refused = |files: &[(&str, &str)], target| {
         let inputs: Vec<_> = files.iter().map(|(name, text)| Input::from_text(name, SourceKind::Text, *text)).collect();
         instrument(&inputs, &Options { target, ..Options::default() }).expect_err("refused").to_string()
     };
     let st = ("p.st", "PROGRAM P ; END_PROGRAM");
     let scl = ("p.scl", "ORGANIZATION_BLOCK OB1 BEGIN END_ORGANIZATION_BLOCK");
-    let told = [refused(&[scl, st], Target::Scl), refused(&[scl], Target::Iec)];
-    insta::assert_snapshot!("scl_refused", told.join("\n"));
+    let reported = [refused(&[scl, st], Target::Scl), refused(&[scl], Target::Iec)];
+    insta::assert_snapshot!("scl_refused", reported.join("\n"));
     let text = "FUNCTION_BLOCK \"F\"\nVAR_TEMP t : Time; d : DTL; r : Int; END_VAR\nVAR on : TONR_TIME; x : MC_Power; END_VAR\nBEGIN\n\
         #t := TIME_TCK();\n#r := RD_SYS_T(#d);\nPRESET_TIMER(PT := #t, TIMER := #on);\nEND_FUNCTION_BLOCK\n\
         ORGANIZATION_BLOCK OB1\nBEGIN\nEND_ORGANIZATION_BLOCK\n";
-    insta::assert_snapshot!("scl_told", round_trip(&given(text), &options()).warnings.to_string());
+    insta::assert_snapshot!("scl_reported", round_trip(&given(text), &options()).warnings.to_string());
 }
 
 /// PLCopen's axes in SCL: what is written there moves as in text, and no technology object is touched.

@@ -91,14 +91,14 @@ fn assert_equal(name: &str, text: &str, tasks: &[Task], inputs: &[&str], project
 
 #[test]
 fn a_program_of_the_corpus_gives_the_same_or_is_refused() {
-    let told = cases().into_iter().map(|case| match ported(&[("test.st", case.text)], Some(case.tasks.clone())) {
+    let reported = cases().into_iter().map(|case| match ported(&[("test.st", case.text)], Some(case.tasks.clone())) {
         Err(refused) => format!("{}: refused: {}", case.name, refused.to_string().replace('\n', "\n    ")),
         Ok(project) => {
             assert_equal(case.name, case.text, &case.tasks, case.inputs, &project);
             format!("{}: the same", case.name)
         }
     });
-    insta::assert_snapshot!(told.collect::<Vec<_>>().join("\n"));
+    insta::assert_snapshot!(reported.collect::<Vec<_>>().join("\n"));
 }
 
 const LANGUAGE: &str = "
@@ -195,10 +195,10 @@ fn all_of_the_language_that_scl_has() {
 }
 
 #[test]
-fn what_scl_has_not_is_told_with_its_place() {
+fn what_scl_has_not_is_reported_with_its_place() {
     let refused = |text: &str| ported(&[("test.st", text)], None).expect_err("refused").to_string();
     let program = |declared: &str, body: &str| refused(&format!("PROGRAM P\n{declared}\n{body}\nEND_PROGRAM"));
-    let told = [
+    let reported = [
         program("VAR p : REF_TO INT; x : INT; END_VAR", "p := REF(x);"),
         program("VAR x AT %QX0.0 : BOOL; END_VAR", "x := %IX0.1;"),
         program("VAR t : TIME := T#500us; END_VAR", "t := T#1us + T#30d;"),
@@ -220,7 +220,7 @@ fn what_scl_has_not_is_told_with_its_place() {
         refused("FUNCTION_BLOCK P_Program END_FUNCTION_BLOCK PROGRAM P VAR f : P_Program; END_VAR f(); END_PROGRAM"),
         refused("PROGRAM P VAR x : INT; END_VAR x := ; END_PROGRAM"),
     ];
-    insta::assert_snapshot!(told.join("\n"));
+    insta::assert_snapshot!(reported.join("\n"));
 }
 
 proptest::proptest! {

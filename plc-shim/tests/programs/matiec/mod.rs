@@ -111,12 +111,12 @@ fn library() -> Option<PathBuf> {
 
 /// What the peer said of all batches: numbers by the words before them, and each difference.
 #[derive(Debug, Default)]
-struct Told {
+struct Reported {
     counts: BTreeMap<String, u64>,
     differences: Vec<String>,
 }
 
-impl Told {
+impl Reported {
     /// A line is a count, `typed values 4000`, or a difference.
     fn take(&mut self, line: &str) {
         match line.rsplit_once(' ').and_then(|(what, count)| Some((what, count.parse::<u64>().ok()?))) {
@@ -128,18 +128,18 @@ impl Told {
     }
 }
 
-#[expect(clippy::print_stdout, reason = "a difference is told at once, a long run before its end")]
-fn compare(folder: &Path, library: &Path, told: &Mutex<Told>) {
+#[expect(clippy::print_stdout, reason = "a difference is reported at once, a long run before its end")]
+fn compare(folder: &Path, library: &Path, reported: &Mutex<Reported>) {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/peers/matiec/compare.py");
     let output =
         Command::new("python3").arg(script).arg(folder).arg(library).output().expect("Python is on the machine");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let mut told = told.lock().expect("no panic");
+    let mut reported = reported.lock().expect("no panic");
     for line in String::from_utf8_lossy(&output.stdout).lines() {
         if line.starts_with("difference") && !line.starts_with("difference known") {
             println!("{line}");
         }
-        told.take(line);
+        reported.take(line);
     }
 }
 
@@ -154,7 +154,7 @@ fn random_programs_do_the_same_in_matiec() {
     let kept = std::env::var_os("ONESCAN_MATIEC_FOLDER").map(PathBuf::from);
     let root = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("matiec-{}", std::process::id()));
     let root = kept.clone().unwrap_or(root);
-    let (told, next, started) = (Mutex::new(Told::default()), AtomicU64::new(first), Instant::now());
+    let (reported, next, started) = (Mutex::new(Reported::default()), AtomicU64::new(first), Instant::now());
     std::thread::scope(|scope| {
         for _ in 0..WORKERS {
             scope.spawn(|| {
@@ -165,7 +165,7 @@ fn random_programs_do_the_same_in_matiec() {
                     }
                     let folder = root.join(from.to_string());
                     write(&folder, from..(from + BATCH).min(first + count));
-                    compare(&folder, &library, &told);
+                    compare(&folder, &library, &reported);
                     if kept.is_none() {
                         std::fs::remove_dir_all(&folder).unwrap();
                     }
@@ -176,7 +176,7 @@ fn random_programs_do_the_same_in_matiec() {
     if kept.is_none() {
         std::fs::remove_dir_all(&root).unwrap();
     }
-    let Told { counts, differences } = told.into_inner().unwrap();
+    let Reported { counts, differences } = reported.into_inner().unwrap();
     println!("{count} programs of {SCANS} scans in {:.0?}", started.elapsed());
     for (what, count) in counts {
         println!("{what} {count}");
@@ -199,10 +199,10 @@ fn what_is_known_to_differ_in_matiec_does() {
     for (name, known) in named() {
         write_one(&folder, &name, &known.program(), &mut Dice::new(0));
     }
-    let told = Mutex::new(Told::default());
-    compare(&folder, &library, &told);
+    let reported = Mutex::new(Reported::default());
+    compare(&folder, &library, &reported);
     std::fs::remove_dir_all(&folder).unwrap();
-    let differences = told.into_inner().unwrap().differences;
+    let differences = reported.into_inner().unwrap().differences;
     for known in KNOWN {
         println!("{:?} by {}: {}: {}", known.verdict, known.clause, known.what, known.found);
     }

@@ -90,7 +90,7 @@ fn iec2_2_6_each_rule_of_charts_has_its_finding() {
 }
 
 #[test]
-fn iec2_b_1_6_a_slip_in_a_chart_is_told_once() {
+fn iec2_b_1_6_a_slip_in_a_chart_is_reported_once() {
     let good = "TRANSITION FROM B TO A := go; END_TRANSITION";
     let slips = [
         "STEP B valve(N); END_STEP TRANSITION FROM A TO B := go; END_TRANSITION",

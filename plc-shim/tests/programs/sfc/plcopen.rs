@@ -90,7 +90,7 @@ fn a_chart_of_xml_is_the_body_of_an_action() {
 }
 
 #[test]
-fn what_is_wrong_with_a_chart_of_xml_is_told_in_its_place() {
+fn what_is_wrong_with_a_chart_of_xml_is_reported_in_its_place() {
     let changes = [
         ("an unknown step", "targetName=\"Idle\"", "targetName=\"Idel\""),
         ("an unknown action", "name=\"heater\"/></action>", "name=\"heatr\"/></action>"),

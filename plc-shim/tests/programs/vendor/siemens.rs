@@ -44,9 +44,9 @@ fn date_and_time() {
     );
 }
 
-/// A partner that is not a port of the scenario does not answer; wrong lengths and numbers are told at once.
+/// A partner that is not a port of the scenario does not answer; wrong lengths and numbers are reported at once.
 #[test]
-fn open_communication_tells_what_is_wrong() {
+fn open_communication_reports_what_is_wrong() {
     let mut rig = Rig::in_dialect(
         Dialect::SiemensScl,
         "PROGRAM P
@@ -73,7 +73,7 @@ fn open_communication_tells_what_is_wrong() {
 }
 
 #[test]
-fn a_module_that_is_not_there_is_told() {
+fn a_module_that_is_not_there_is_reported() {
     hold(
         Dialect::SiemensScl,
         "send : SEND_PTP; get : RCV_PTP; body : ARRAY [0..9] OF BYTE;",

@@ -123,8 +123,8 @@ fn a_users_own_declaration_goes_before() {
         rig.scan().expect("no fault");
         assert_eq!(["x", "y", "l", "p", "d"].map(|name| rig.int(&format!("P.{name}"))), [7, 10, 10, 40, 25]);
     }
-    let told = findings_in(Dialect::Iec3, "FUNCTION_BLOCK TON END_FUNCTION_BLOCK").to_string();
-    assert!(told.contains("`TON` is a name of the standard"), "{told}");
+    let reported = findings_in(Dialect::Iec3, "FUNCTION_BLOCK TON END_FUNCTION_BLOCK").to_string();
+    assert!(reported.contains("`TON` is a name of the standard"), "{reported}");
 }
 
 #[test]

@@ -50,8 +50,8 @@ impl Judge<'_> {
         let suites = suites::all(self.view);
         let mut tests: Vec<Ran> = suites.iter().flat_map(|suite| self.suite(suite, Some(reason))).collect();
         let when = self.when(reason);
-        let is_told = |test: &Ran| test.error.as_ref().is_some_and(|error| error.ends_with(&when));
-        if !tests.iter().any(is_told) {
+        let is_reported = |test: &Ran| test.error.as_ref().is_some_and(|error| error.ends_with(&when));
+        if !tests.iter().any(is_reported) {
             let error = format!("TcUnit has stored no results {when}");
             let place = if let Reason::Fault(fault) = reason { fault_place(fault) } else { None };
             tests.push(Ran { place, ..self.failed(ALL.to_owned(), error) });
@@ -126,7 +126,7 @@ impl Judge<'_> {
         !case.is_finished && name.is_some_and(|name| name == case.name)
     }
 
-    /// The asserts of a test that did not hold, as messages tell of them; else what is stored of the first.
+    /// The asserts of a test that did not hold, as messages report them; else what is stored of the first.
     fn asserts(&self, case: &Case, place: Option<&SourcePlace>) -> Vec<FailedAssert> {
         let nowhere = || SourcePlace { file: case.class.clone(), line: 0, column: 0 };
         let failed = |text: String, at_ns: u64| FailedAssert {
@@ -136,8 +136,9 @@ impl Judge<'_> {
             at_ns,
             times: 1,
         };
-        let told = self.messages.iter().filter_map(|message| Some((told_of(case, &message.text)?, message.at_ns)));
-        let mut all: Vec<FailedAssert> = told.map(|(text, at_ns)| failed(text.to_owned(), at_ns)).collect();
+        let reported =
+            self.messages.iter().filter_map(|message| Some((reported_of(case, &message.text)?, message.at_ns)));
+        let mut all: Vec<FailedAssert> = reported.map(|(text, at_ns)| failed(text.to_owned(), at_ns)).collect();
         if case.is_failed && all.is_empty() {
             let text = if case.message.is_empty() { "an assert does not hold" } else { &case.message };
             all.push(failed(text.to_owned(), self.now_ns));
@@ -150,7 +151,7 @@ impl Judge<'_> {
 
     /// Puts what `TcUnit` complained of beside the asserts to a test of the suite that it names, else to the first.
     fn note(&self, tests: &mut [Ran]) {
-        let names: Vec<String> = tests.iter().map(|test| told(&test.name)).collect();
+        let names: Vec<String> = tests.iter().map(|test| reported(&test.name)).collect();
         for Message { text, .. } in self.messages {
             if text.starts_with(SUMMARY) || names.iter().any(|name| text.starts_with(name)) {
                 continue;
@@ -171,12 +172,12 @@ fn is_about(message: &str, class: &str) -> bool {
 }
 
 /// What a message about a failed assert of a test begins with.
-fn told(test: &str) -> String {
+fn reported(test: &str) -> String {
     format!("FAILED TEST '{test}'")
 }
 
-/// What a message tells of an assert of this test.
-fn told_of<'m>(case: &Case, message: &'m str) -> Option<&'m str> {
-    let rest = message.strip_prefix(&told(&format!("{}@{}", case.class, case.name)))?;
+/// What a message reports of an assert of this test.
+fn reported_of<'m>(case: &Case, message: &'m str) -> Option<&'m str> {
+    let rest = message.strip_prefix(&reported(&format!("{}@{}", case.class, case.name)))?;
     Some(rest.strip_prefix(", ").unwrap_or(rest))
 }

@@ -5,7 +5,7 @@
 //! |---|---|
 //! | [`sources`] | which units are suites, which programs run them, where tests are declared |
 //! | [`memory`] | values of variables by path |
-//! | [`log`] | messages of `ADSLOGSTR`, with which `TcUnit` tells of asserts that do not hold |
+//! | [`log`] | messages of `ADSLOGSTR`, with which `TcUnit` reports asserts that do not hold |
 //! | [`results`] | what `TcUnit` stores when all suites have finished |
 //! | [`suites`] | the suites themselves, where they do not finish |
 //! | [`judged`] | a test of `TcUnit` as one of ours |

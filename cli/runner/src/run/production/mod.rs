@@ -1,4 +1,4 @@
-//! What a run produced, by its scenario's `[report]`: measured as the run goes, told to people and in pages.
+//! What a run produced, by its scenario's `[report]`: measured as the run goes, reported to people and in pages.
 //!
 //! | module | subject |
 //! |---|---|

@@ -88,7 +88,7 @@ impl Block {
 }
 
 /// The fault without the program around the block, which is not the user's.
-fn told(fault: &PlcFault) -> ClientFault {
+fn reported(fault: &PlcFault) -> ClientFault {
     let FaultSite { pou, part, file, line, column, .. } = &fault.at;
     let part = if part.is_empty() { String::new() } else { format!(", {part}") };
     let place = SourcePlace { file: file.clone(), line: *line, column: *column };
@@ -98,7 +98,7 @@ fn told(fault: &PlcFault) -> ClientFault {
 impl Running for Block {
     fn drive(&mut self, inputs: &[Value], around: &Surroundings<'_>, _: &mut World) -> Result<(), ClientFault> {
         self.feed(inputs, around)?;
-        self.plc.scan(VirtualTime::from_nanos(around.t_v_ns)).map_err(|fault| told(&fault))?;
+        self.plc.scan(VirtualTime::from_nanos(around.t_v_ns)).map_err(|fault| reported(&fault))?;
         for (value, output) in self.outputs().zip(&self.kind.outputs) {
             if let Value::Number(number) = value
                 && !number.is_finite()

@@ -227,9 +227,9 @@ fn call(callee: &Expression, plain: &[Expression], named: &[(String, Expression)
             let entries = named.iter().map(|(key, inner)| Ok((key.clone(), evaluate(inner, names)?)));
             entries.collect::<Result<_, String>>().map(Value::Map)
         }
-        // what a robot's author tells of is for who runs xacro
+        // what a robot's author reports is for who runs xacro
         ("warning" | "message" | "print_location", _) => Ok(Value::Text(String::new())),
-        ("error" | "fatal", [told]) => Err(told.to_string()),
+        ("error" | "fatal", [reported]) => Err(reported.to_string()),
         ("len", [Value::Text(text)]) => Ok(Value::Whole(text.chars().count() as i64)),
         ("len", [Value::List(list)]) => Ok(Value::Whole(list.len() as i64)),
         ("len", [Value::Map(map)]) => Ok(Value::Whole(map.len() as i64)),
@@ -367,7 +367,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_value_is_told() {
+    fn what_has_no_value_is_reported() {
         let cases = [
             ("lenght", "there is no property `lenght`"),
             ("1 +", "the expression ends where a value should stand"),
@@ -380,8 +380,8 @@ mod tests {
             ("1 ; 2", "`;` means nothing in an expression"),
             ("xacro.load_yaml('none.yaml')", "none.yaml cannot be read"),
         ];
-        for (text, told) in cases {
-            assert_eq!(worth(text), Err(told.to_owned()), "{text}");
+        for (text, reported) in cases {
+            assert_eq!(worth(text), Err(reported.to_owned()), "{text}");
         }
         assert!(worth(&"(".repeat(10_000)).is_err() && worth(&"-".repeat(5_000)).is_err());
         assert!(worth(&"2**".repeat(900)).is_err());

@@ -289,8 +289,8 @@ impl Expander<'_> {
             let value = match (element.attribute(key), preset) {
                 (Some(given), _) => self.value(given)?,
                 (None, Some(preset)) => {
-                    let told = |cause| element.wrong(format!("parameter `{key}` of macro `{name}`: {cause}"));
-                    self.preset(key, preset).map_err(told)?
+                    let reported = |cause| element.wrong(format!("parameter `{key}` of macro `{name}`: {cause}"));
+                    self.preset(key, preset).map_err(reported)?
                 }
                 (None, None) => return Err(element.wrong(format!("macro `{name}` needs `{key}`"))),
             };
@@ -340,7 +340,7 @@ mod tests {
     }
 
     fn name_of(inner: &str) -> String {
-        links(inner).map_or_else(|told| told, |links| links.concat())
+        links(inner).map_or_else(|reported| reported, |links| links.concat())
     }
 
     #[test]
@@ -391,23 +391,23 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_end_is_told() {
-        let told = |inner: &str| links(inner).expect_err("refused");
+    fn what_has_no_end_is_reported() {
+        let reported = |inner: &str| links(inner).expect_err("refused");
         let endless = r#"<xacro:macro name="m" params=""><xacro:m/></xacro:macro><xacro:m/>"#;
-        assert!(told(endless).contains("nested more than 48 deep"), "{}", told(endless));
+        assert!(reported(endless).contains("nested more than 48 deep"), "{}", reported(endless));
         let growing = r#"<xacro:macro name="m" params=""><a><a><a><a><a><a><a><a><xacro:m/></a></a></a></a></a></a></a></a></xacro:macro><xacro:m/>"#;
-        assert!(told(growing).contains("nested more than 256 deep"), "{}", told(growing));
+        assert!(reported(growing).contains("nested more than 256 deep"), "{}", reported(growing));
         let wide = r#"<xacro:macro name="m" params="n"><a/><a/><xacro:if value="${n > 0}"><xacro:m n="${n - 1}"/><xacro:m n="${n - 1}"/></xacro:if></xacro:macro><xacro:m n="40"/>"#;
-        assert!(told(wide).contains("more than 200000 elements"), "{}", told(wide));
+        assert!(reported(wide).contains("more than 200000 elements"), "{}", reported(wide));
         assert!(
-            told(
+            reported(
                 r#"<xacro:property name="a" value="${b}"/><xacro:property name="b" value="${a}"/><link name="${a}"/>"#
             )
             .contains("needs itself")
         );
-        assert!(told(r#"<link name="$(env HOME)"/>"#).contains("does not depend on the environment"));
-        assert!(told(r#"<link name="${1"/>"#).contains("has no end"));
-        assert!(told(r#"<xacro:include filename="arm.xacro"/>"#).contains("cannot be read"));
-        assert!(told(r#"<xacro:element xacro:name="a"/>"#).contains("is not understood here"));
+        assert!(reported(r#"<link name="$(env HOME)"/>"#).contains("does not depend on the environment"));
+        assert!(reported(r#"<link name="${1"/>"#).contains("has no end"));
+        assert!(reported(r#"<xacro:include filename="arm.xacro"/>"#).contains("cannot be read"));
+        assert!(reported(r#"<xacro:element xacro:name="a"/>"#).contains("is not understood here"));
     }
 }

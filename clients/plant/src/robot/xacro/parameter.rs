@@ -73,7 +73,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn parameters_are_told_apart() {
+    fn parameters_are_distinguished() {
         let read = parse("a b:='x y' c:=${1 + 2} d:=^ e:=^|0.5 *f **g h=1").unwrap();
         let preset = |k: usize| read[k].preset.clone().map(|preset| (preset.forwarded, preset.text));
         let some = |text: &str| Some(text.to_owned());

@@ -253,8 +253,8 @@ mod tests {
             ("a: 1\n---\nb: 2\n", "line 2: a second document is not read"),
             ("a: &b [1, *b]\n", "line 1: an alias stands within what it names"),
         ];
-        for (text, told) in cases {
-            assert_eq!(parse(text), Err(told.to_owned()), "{text}");
+        for (text, reported) in cases {
+            assert_eq!(parse(text), Err(reported.to_owned()), "{text}");
         }
     }
 

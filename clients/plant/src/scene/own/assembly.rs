@@ -37,7 +37,7 @@ pub(super) struct Assembly {
     pub(super) header: Header,
 }
 
-/// What an assembly's file says of itself; its parts are read for each component anew.
+/// What an assembly's file says of itself; its parts are read again for each component.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[expect(dead_code, reason = "tables of parts are named here, so that no other table is taken for one")]

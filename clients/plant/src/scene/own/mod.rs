@@ -115,11 +115,11 @@ impl Kinds {
         }
         let found: Vec<_> = self.folders.iter().flat_map(|folder| folder.find(name)).collect();
         let first = found.first()?;
-        let told = found.iter().map(|file| format!("`{}`", file.named)).collect::<Vec<_>>().join(" and ");
+        let reported = found.iter().map(|file| format!("`{}`", file.named)).collect::<Vec<_>>().join(" and ");
         let cause = match found.len() {
-            _ if Origin::of_library(name).is_some() => Some(format!("{told} is called like a kind of the library")),
+            _ if Origin::of_library(name).is_some() => Some(format!("{reported} is called like a kind of the library")),
             1 => None,
-            _ => Some(format!("{told} both define it")),
+            _ => Some(format!("{reported} both define it")),
         };
         let own = match cause {
             Some(cause) => {
@@ -167,7 +167,7 @@ fn refuse(error: ProgramError, kind: &Placed<String>, faults: &mut Faults<'_>) {
             for fault in found {
                 let start = fault.place.start();
                 let cause = format!("{} line {}: {}", start.file, start.line, fault.cause);
-                let inside = Inside { told: fault.cause, place: fault.place };
+                let inside = Inside { reported: fault.cause, place: fault.place };
                 faults.add_inside(kind.span(), SceneFaultKind::OwnKind { kind: name(), cause }, fault.hint, inside);
             }
         }

@@ -146,7 +146,7 @@ fn port<'p>(
     let part = named(parts, name)?;
     let kind = text_of(part.get_ref(), "kind")?;
     let constant = match kinds.own.get(text(&kind)) {
-        // something is wrong with it, and is told: its ports are not known
+        // something is wrong with it, and is reported: its ports are not known
         Some(Own::Faulty) => Some(wanted.to_owned()),
         Some(Own::Assembly(inner)) => {
             inner_ports(inner, side).iter().any(|port| port == wanted).then(|| wanted.to_owned())
@@ -275,7 +275,7 @@ impl Aliases {
                     wrong.push(text(key).to_owned());
                 }
             }
-            // what is told is not looked for once more
+            // what is reported is not looked for again
             for key in wrong {
                 component.get_mut().remove(key.as_str());
             }

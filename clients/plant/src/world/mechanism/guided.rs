@@ -120,7 +120,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_rotation_is_told_by_its_shorter_way() {
+    fn a_rotation_is_measured_by_its_shorter_way() {
         let turn = |angle: f64| DQuat::from_xyzw(0.0, libm::sin(0.5 * angle), 0.0, libm::cos(0.5 * angle));
         for angle in [0.0, 1e-9, 0.7, -3.0] {
             assert!((turning(turn(angle)).y - angle).abs() < 1e-15, "{angle}");

@@ -82,7 +82,7 @@ fn resource(resource: &Resource, page: &Page<'_>) -> Written {
     Ok(format!("<resource name=\"{}\">\n{tasks}{globals}{alone}</resource>\n", escaped(name)))
 }
 
-/// The attributes of a task. Its priority must be told; 0 is what it has without one.
+/// The attributes of a task. Its priority must be given; 0 is what it has without one.
 fn task(task: &TaskDeclaration, page: &Page<'_>) -> String {
     let input = |wanted: &str| task.inputs.iter().find(|(name, _)| name.key() == wanted);
     let attribute = |wanted: &str, name: &str| {

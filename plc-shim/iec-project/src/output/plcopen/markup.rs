@@ -7,7 +7,7 @@ const XHTML: &str = "http://www.w3.org/1999/xhtml";
 /// Beginning of the names of CODESYS' additions.
 pub(super) const VENDOR: &str = "http://www.3s-software.com/plcopenxml/";
 
-/// A value in an attribute: line ends and tabs would become blanks, so they are told by their numbers.
+/// A value in an attribute: line ends and tabs would become blanks, so they are written as their numbers.
 pub(crate) fn escaped(text: &str) -> String {
     escaped_text(text).replace('"', "&quot;").replace('\n', "&#10;").replace('\r', "&#13;").replace('\t', "&#9;")
 }

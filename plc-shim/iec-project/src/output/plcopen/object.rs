@@ -22,12 +22,12 @@ pub(super) fn heritage(object: &Object) -> String {
 /// Who may use it, and what may be derived from it.
 pub(super) fn modifiers(modifiers: &[Modifier]) -> String {
     // What overrides a method is known by its name.
-    let told = modifiers.iter().filter(|each| **each != Modifier::Override);
+    let reported = modifiers.iter().filter(|each| **each != Modifier::Override);
     let attribute = |modifier: &Modifier| {
         let (first, rest) = modifier.text().split_at(1);
         format!(" {first}{}=\"true\"", rest.to_lowercase())
     };
-    let attributes: String = told.map(attribute).collect();
+    let attributes: String = reported.map(attribute).collect();
     if attributes.is_empty() {
         return attributes;
     }

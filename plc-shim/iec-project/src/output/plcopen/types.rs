@@ -94,7 +94,7 @@ fn named(name: &Ident) -> String {
     }
 }
 
-/// A type for which the schema has no element, told by its text.
+/// A type for which the schema has no element, given by its text.
 fn by_text(spec: &TypeSpec, page: &Page<'_>) -> Written {
     let at = spec.span.start..spec.span.end;
     if page.slice(at.clone()).is_empty() || !page.remarks(at.clone()).is_empty() {

@@ -173,7 +173,7 @@ impl<'a> Names<'a> {
         !self.library.contains(&file)
     }
 
-    /// A constant expression's value, if the text tells it.
+    /// A constant expression's value, if the text determines it.
     pub(in crate::output) fn integer(&self, expr: &Expr) -> Option<i128> {
         integer(constant::value(expr, &self.constants)?)
     }

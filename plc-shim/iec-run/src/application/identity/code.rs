@@ -37,7 +37,7 @@ pub struct CodeDifference {
 }
 
 impl Code {
-    /// `is_library` tells the files of the standard library; files that it says nothing of are left out.
+    /// `is_library` identifies the files of the standard library; files that it says nothing of are left out.
     pub(in crate::application) fn new(
         sources: &SourceMap,
         is_library: impl Fn(FileId) -> Option<bool>,

@@ -7,7 +7,7 @@ use super::range::Slot;
 use super::step::Steps;
 use onescan_iec::ir::ElementaryType;
 
-/// Most different accesses that are told apart: each is compared with each.
+/// Most different accesses that are distinguished: each is compared with each.
 const MAX_ACCESSES: usize = 512;
 
 /// Accesses of one loop's body.

@@ -18,7 +18,7 @@ pub(crate) enum RunsOn {
     Anywhere,
 }
 
-/// True if the unit, and all that it calls, changes only registers and the instance that it runs on. `is_known` tells it
+/// True if the unit, and all that it calls, changes only registers and the instance that it runs on. `is_known` says so
 /// of what it calls.
 pub(crate) fn stays_inside(pou: &Pou, is_known: &dyn Fn(PouId) -> bool) -> bool {
     pou.guard == Guard::None && Reach { is_known }.statements(&pou.body)

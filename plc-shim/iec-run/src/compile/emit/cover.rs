@@ -28,7 +28,7 @@ impl Emitter<'_, '_> {
 
     fn trace(&mut self, kind: PointKind, span: Span) {
         match kind {
-            // The statement with the call has told already.
+            // The statement with the call has reported already.
             PointKind::Unit => {}
             PointKind::Statement => {
                 if let Some(statement) = self.note_of(kind, span) {

@@ -1,4 +1,4 @@
-//! Statements tell the host when they begin and end and what they read, and decisions which way they go.
+//! Statements report to the host when they begin and end and what they read, and decisions which way they go.
 
 use wasm_encoder::Instruction;
 
@@ -10,7 +10,7 @@ use onescan_iec::ir::{Expr, ExprKind, Place, PouId, Statement, StatementKind, St
 use onescan_iec::syntax::Span;
 
 impl Emitter<'_, '_> {
-    /// Tells that a point's statement begins.
+    /// Reports that a point's statement begins.
     pub(crate) fn trace_begin(&mut self, point: u32) {
         self.free_of_charge(|emitter| {
             emitter.emit(Instruction::I32Const(point as i32));
@@ -18,7 +18,7 @@ impl Emitter<'_, '_> {
         });
     }
 
-    /// Tells that a statement goes a way.
+    /// Reports that a statement goes a way.
     pub(crate) fn trace_choice(&mut self, statement: u32, outcome: u32) {
         self.free_of_charge(|emitter| {
             emitter.emit(Instruction::I32Const(statement as i32));
@@ -27,7 +27,7 @@ impl Emitter<'_, '_> {
         });
     }
 
-    /// Tells that a place is read, if the program is traced. What a library reads is its own business.
+    /// Reports that a place is read, if the program is traced. What a library reads is its own business.
     pub(crate) fn trace_read(&mut self, place: &Place, span: Span) {
         if !self.shared().points().is_some_and(|points| points.is_traced() && points.is_own(span)) {
             return;
@@ -53,7 +53,7 @@ impl Emitter<'_, '_> {
         self.shared().points().is_some_and(|points| span.is_some_and(|span| !points.is_own(span)))
     }
 
-    /// Tells that a statement ends, if the program is traced.
+    /// Reports that a statement ends, if the program is traced.
     pub(crate) fn trace_end(&mut self, statement: &Statement) {
         if !self.shared().points().is_some_and(Points::is_traced) || self.is_declaration(statement.span) {
             return;

@@ -17,7 +17,7 @@ pub(super) struct Findings {
     faulty_starts: BTreeSet<(u32, u32, Occasion)>,
     /// Methods `FB_init` that do not suit those of their bases.
     faulty_hooks: BTreeSet<PouId>,
-    /// Names that are not declared, by the unit that uses them: which finding tells so.
+    /// Names that are not declared, by the unit that uses them: which finding says so.
     unknown: BTreeMap<(Option<PouId>, Code, String), (usize, Span)>,
 }
 
@@ -62,9 +62,9 @@ impl Declarations<'_> {
         // In SCL `"x"` is another name than `x`.
         let slot = (unit, found.code, name.text.to_ascii_uppercase());
         if let Some((index, span)) = self.findings.unknown.get(&slot) {
-            // One that was taken back tells nothing.
-            let told = self.findings.diagnostics.get(*index);
-            if told.is_some_and(|told| told.span == *span && told.code == found.code) {
+            // One that was taken back reports nothing.
+            let reported = self.findings.diagnostics.get(*index);
+            if reported.is_some_and(|reported| reported.span == *span && reported.code == found.code) {
                 return;
             }
         }

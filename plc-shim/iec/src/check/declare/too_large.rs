@@ -15,7 +15,7 @@ impl Declarations<'_> {
         u64::from(self.memory_limit.bytes())
     }
 
-    /// Reports what does not fit, and how large it is. The first tells it; what comes behind it does not fit either.
+    /// Reports what does not fit, and how large it is. The first reports it; what comes behind it does not fit either.
     pub(in crate::check) fn report_too_large(&mut self, span: Span, size: Option<u64>) {
         self.too_large.push((span, size));
         if !self.findings.has(Code::TooLarge) {

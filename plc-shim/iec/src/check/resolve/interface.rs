@@ -208,7 +208,7 @@ impl<'c, 'a> Interface<'c, 'a> {
         }
         let kind = if self.is_own_in_out(section) { SectionKind::Output } else { section.kind };
         let need = if kind == SectionKind::InOut { Need::Reference } else { Need::Size };
-        // Every name has the same type; an error in it is told once.
+        // Every name has the same type; an error in it is reported once.
         let declared = match self.written.generic_input(self.kind, section.kind, &ast.spec) {
             Some(generic) => generic,
             None => self.written.declared(ast, need),

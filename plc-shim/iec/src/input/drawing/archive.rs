@@ -5,7 +5,7 @@
 //! | `<o n="Name" t="Type">` | an object |
 //! | `<v n="Name">"text"</v>` | a value: text between quotes, or a number, which may end in `L` |
 //! | `<n n="Name" />` | nothing |
-//! | `<l2 n="Name" cet="Type">`, `<a ..>` | a list; `cet` is the type of each element that tells none |
+//! | `<l2 n="Name" cet="Type">`, `<a ..>` | a list; `cet` is the type of each element that names none |
 
 use std::ops::Range;
 
@@ -13,7 +13,7 @@ use onescan_xml::{Element, Node};
 
 use crate::input::statement::{Piece, Text};
 
-/// An object and the type that it or its list tells.
+/// An object and the type that it or its list names.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Object<'e> {
     element: &'e Element,
@@ -108,7 +108,7 @@ impl<'e> Object<'e> {
     pub(super) fn first(holder: &'e Element, kind: &str) -> Option<Self> {
         let data = holder.child("XmlArchive")?.child("Data")?;
         let objects = data.elements().filter(|inner| inner.name == "o");
-        objects.map(|element| Self { element, kind: told(element, "t") }).find(|found| found.kind == kind)
+        objects.map(|element| Self { element, kind: reported(element, "t") }).find(|found| found.kind == kind)
     }
 
     /// Where it begins.
@@ -117,12 +117,12 @@ impl<'e> Object<'e> {
     }
 
     fn part(&self, name: &str) -> Option<&'e Element> {
-        self.element.elements().find(|inner| told(inner, "n") == name)
+        self.element.elements().find(|inner| reported(inner, "n") == name)
     }
 
     pub(super) fn object(&self, name: &str) -> Option<Self> {
         let element = self.part(name).filter(|part| part.name == "o")?;
-        Some(Self { element, kind: told(element, "t") })
+        Some(Self { element, kind: reported(element, "t") })
     }
 
     /// The elements of a list; nothing stands for a place that is empty.
@@ -130,9 +130,9 @@ impl<'e> Object<'e> {
         let Some(list) = self.part(name).filter(|part| matches!(part.name.as_str(), "l2" | "a")) else {
             return Vec::new();
         };
-        let of_all = told(list, "cet");
+        let of_all = reported(list, "cet");
         let object = |element: &'e Element| {
-            let own = told(element, "t");
+            let own = reported(element, "t");
             (element.name == "o").then_some(Self { element, kind: if own.is_empty() { of_all } else { own } })
         };
         list.elements().map(object).collect()
@@ -169,6 +169,6 @@ impl<'e> Object<'e> {
     }
 }
 
-fn told<'e>(element: &'e Element, name: &str) -> &'e str {
+fn reported<'e>(element: &'e Element, name: &str) -> &'e str {
     element.attribute(name).map_or("", |found| found.value.as_str())
 }

@@ -156,7 +156,7 @@ impl Sheet<'_> {
         }
     }
 
-    /// What stands between the parentheses; nothing if something is missing, which has been told.
+    /// What stands between the parentheses; nothing if something is missing, which has been reported.
     fn arguments(&mut self, block: &Block) -> Option<Vec<Text>> {
         let is_instance = matches!(block.callee, Callee::Instance(_));
         let all_named = block.arguments.iter().all(|argument| !argument.name.is_empty());

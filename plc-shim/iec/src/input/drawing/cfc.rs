@@ -117,7 +117,7 @@ impl Chart<'_, '_, '_> {
             self.sheet.report(&pin.place, Code::DanglingConnection, message);
             return Some(Text::word("`none`", &pin.place));
         };
-        // What is wrong with the source has been told.
+        // What is wrong with the source has been reported.
         Some(self.source(index, output, pin).unwrap_or_else(|| Text::word("`none`", &pin.place)))
     }
 
@@ -147,7 +147,7 @@ impl Chart<'_, '_, '_> {
             }
             Kind::Composer { type_name } => self.composed(index, element, type_name)?,
             Kind::Selector => self.selected(element, pin)?,
-            // It has been told, or has no output.
+            // It has been reported, or has no output.
             _ => return None,
         };
         Some(if pin.negated { value.negated(&pin.place) } else { value })
@@ -260,7 +260,7 @@ impl Chart<'_, '_, '_> {
             self.sheet.unsupported(&element.place, &what);
         }
         if *enable {
-            // What is connected to it is not told of once more.
+            // What is connected to it is not reported again.
             self.results(index, element);
             let what = format!("EN and ENO of `{type_name}` (element {}) in a chart", element.id);
             return self.sheet.unsupported(&element.place, &what);

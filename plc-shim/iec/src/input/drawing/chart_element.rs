@@ -1,4 +1,4 @@
-//! Steps and transitions of a chart: what the archive tells of them, and the text that they become.
+//! Steps and transitions of a chart: what the archive says of them, and the text that they become.
 //!
 //! | in the chart | in the text |
 //! |---|---|
@@ -66,12 +66,12 @@ pub(super) struct Step {
     exit: Option<String>,
 }
 
-/// Tells of what an element has that is not read.
+/// Reports what an element has that is not read.
 fn report_rest(sheet: &mut Sheet<'_>, element: Object<'_>, attributes: &Attributes, what: &str) {
     let place = element.place();
-    for (id, told) in [(LEAST_TIME, "a least time"), (GREATEST_TIME, "a greatest time"), (PRIORITY, "a priority")] {
+    for (id, reported) in [(LEAST_TIME, "a least time"), (GREATEST_TIME, "a greatest time"), (PRIORITY, "a priority")] {
         if attributes.value(id).is_some_and(|value| value.plain.trim() != "0") {
-            sheet.unsupported(&place, &format!("{told} of {what}"));
+            sheet.unsupported(&place, &format!("{reported} of {what}"));
         }
     }
     if attributes.is_set(EXCLUDED) {

@@ -10,7 +10,7 @@
 //! | [`call`] | a box to the call that it is |
 //! | [`sheet`] | the statements of one body while they are made |
 //!
-//! Invariants: the order of evaluation is that of the archive; what is not understood is told with its element, and
+//! Invariants: the order of evaluation is that of the archive; what is not understood is reported with its element, and
 //! the body gives no other program instead.
 
 mod archive;
@@ -179,7 +179,7 @@ const CHART_FLAGS: [&str; 11] = [
     "SFCTIPMODE",
 ];
 
-/// Tells of such variables: a chart that does not heed them would do something else.
+/// Reports such variables: a chart that does not heed them would do something else.
 fn report_flags(file: &str, unit: &Element, sheet: &mut Sheet<'_>) {
     let Some(declaration) = unit.child("Declaration") else { return };
     let text = Written::below(file, declaration).plain;

@@ -65,7 +65,7 @@ impl Networks<'_, '_> {
         }
     }
 
-    /// The value of a tree; nothing if nothing is connected, or if something is wrong with it, which has been told.
+    /// The value of a tree; nothing if nothing is connected, or if something is wrong with it, which has been reported.
     pub(super) fn tree(&mut self, tree: Object<'_>) -> Option<Signal> {
         match tree.kind {
             "BoxTreeOperand" => self.operand(tree),
@@ -125,7 +125,7 @@ impl Networks<'_, '_> {
         let signal = match self.tree(input) {
             Some(Signal::On) => Signal::On,
             Some(Signal::Value(value)) => Signal::Value(self.kept(value, tree)),
-            // What is wrong with it has been told, once for all that the line leads to.
+            // What is wrong with it has been reported, once for all that the line leads to.
             None if self.sheet.faults.len() > faults => Signal::Value(Text::word("`none`", &tree.place())),
             None => {
                 let message = format!("nothing is connected to the line {number}");

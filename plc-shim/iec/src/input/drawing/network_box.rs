@@ -61,7 +61,7 @@ impl Networks<'_, '_> {
         if self.sheet.faults.len() > faults {
             return None;
         }
-        // It is looked at before the box and told as ENO behind it.
+        // It is looked at before the box and reported as ENO behind it.
         let enable = match enable {
             Signal::Value(value) => {
                 let wire = self.sheet.wire(&id, 0);

@@ -64,7 +64,7 @@ pub(super) struct Memories {
 
 pub(super) struct Sheet<'s> {
     pub(super) file: &'s str,
-    /// Tells the wires of one body from those of another.
+    /// Distinguishes the wires of one body from those of another.
     body: usize,
     memories: &'s mut Memories,
     lines: Vec<Line>,

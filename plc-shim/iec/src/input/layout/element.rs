@@ -169,7 +169,7 @@ fn deep(file: &str, xml: &Xml) -> String {
     text
 }
 
-/// The variable that tells the state of an element.
+/// The variable that holds the state of an element.
 fn state(xml: &Xml, text: &str) -> Option<String> {
     match xml.name.as_str() {
         "contact" | "coil" | "inVariable" | "outVariable" | "inOutVariable" | "transition" if is_path(text) => {

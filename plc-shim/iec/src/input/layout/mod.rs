@@ -6,7 +6,7 @@
 //! | `wire` | connections from pin to pin |
 //!
 //! Nothing here is run: what a drawing means, the readers beside this one say. What has no place in the file gets one that
-//! suits its kind, and what cannot be read is left out, as it is told where the file is compiled.
+//! suits its kind, and what cannot be read is left out, as it is reported where the file is compiled.
 
 mod element;
 mod wire;
@@ -46,7 +46,7 @@ pub struct Element {
     pub text: String,
     /// The name of a block's instance.
     pub instance: Option<String>,
-    /// The path of the variable that tells its state, within the unit: of a contact, a coil, a variable or a step.
+    /// The path of the variable that holds its state, within the unit: of a contact, a coil, a variable or a step.
     pub state: Option<String>,
     /// `negated`, `rising`, `falling`, `set`, `reset`, `initial`.
     pub marks: Vec<&'static str>,

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::element::{Source, value};
 use super::{Element, Lines, Wire};
 
-/// All wires; a connection that leads to nothing is left out, as it is told where the file is compiled.
+/// All wires; a connection that leads to nothing is left out, as it is reported where the file is compiled.
 pub(super) fn wires(lines: &Lines, sources: &[Source<'_>], elements: &[Element]) -> Vec<Wire> {
     let mut numbers: BTreeMap<&str, usize> = BTreeMap::new();
     for (number, element) in elements.iter().enumerate() {

@@ -38,7 +38,7 @@ impl<'n> Builder<'_, '_, 'n> {
         };
         let owner = self.owner(node);
         let value = match owner {
-            // EN may be FALSE, of which only ENO tells.
+            // EN may be FALSE, which only ENO reports.
             Some(owner) if !output.name.eq_ignore_ascii_case(ENO) => {
                 Text::word(format!("{owner}.{}", output.name), &place)
             }

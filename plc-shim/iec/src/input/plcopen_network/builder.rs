@@ -24,7 +24,7 @@ pub(super) enum Signal {
 pub(super) struct Builder<'w, 'f, 'n> {
     pub(super) writer: &'w mut Writer<'f>,
     pub(super) nodes: &'n [Node<'n>],
-    /// Tells the wires of one body from those of another.
+    /// Distinguishes the wires of one body from those of another.
     body: u32,
     /// Several connections at one input are a wired OR.
     ladder: bool,
@@ -194,7 +194,7 @@ impl<'w, 'f, 'n> Builder<'w, 'f, 'n> {
                         None => value,
                     });
                 }
-                // What is wrong with it has been told; the wire that it stands for has no value.
+                // What is wrong with it has been reported; the wire that it stands for has no value.
                 None => joined = joined.or(Some(Text::word("`none`", &link.element.open))),
             }
         }

@@ -95,7 +95,7 @@ impl Writer<'_> {
         statement::write(lines, &names, self.file, &mut self.taken.extract);
     }
 
-    /// What is told of elements that are part of no network but are connected as if they were.
+    /// What is reported of elements that are part of no network but are connected as if they were.
     fn report_foreign(&mut self, body: &Element, wanted: &Wanted<'_>) {
         if matches!(wanted, Wanted::For(..)) {
             return;

@@ -43,7 +43,7 @@ pub struct Association {
     pub qualifier: Option<ActionQualifier>,
     /// The duration of a qualifier that has one.
     pub time: Option<Expr>,
-    /// Boolean variables by which the action tells of itself.
+    /// Boolean variables by which the action reports on itself.
     pub indicators: Vec<Expr>,
     pub span: Span,
 }

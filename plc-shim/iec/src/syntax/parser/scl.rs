@@ -149,7 +149,7 @@ impl Cursor<'_> {
         }
     }
 
-    /// A name in an expression: `"x"` keeps its quotes, by which it is told from a local `x`.
+    /// A name in an expression: `"x"` keeps its quotes, by which it is distinguished from a local `x`.
     pub(super) fn written_name(text: &str, span: Span) -> Ident {
         let local = text.strip_prefix('#').map(|text| text.trim_matches('"'));
         Ident { text: local.unwrap_or(text).to_owned(), span }

@@ -1,4 +1,4 @@
-//! What other languages write, and what is a slip of the hand: each is told once, with what mends it.
+//! What other languages write, and what is a slip of the hand: each is reported once, with what mends it.
 
 use super::cursor::Cursor;
 use crate::diagnostic::{Code, Diagnostic};
@@ -198,7 +198,7 @@ fn zero(span: Span) -> Expr {
 }
 
 /// Keywords that stand between operands or behind a name, so that their place shows whether one is meant as a name.
-fn is_told_by_place(keyword: Keyword) -> bool {
+fn is_known_by_place(keyword: Keyword) -> bool {
     use Keyword as K;
     matches!(keyword, K::Of | K::At | K::To | K::By | K::Do | K::Then | K::Mod | K::And | K::Or | K::Xor)
 }
@@ -216,7 +216,7 @@ impl Cursor<'_> {
             Some(TokenKind::Keyword(next)) => next == Keyword::At || is_section(next),
             _ => false,
         };
-        if declared && is_told_by_place(keyword) {
+        if declared && is_known_by_place(keyword) {
             self.report_keyword_as_name();
             self.take_for_names(keyword);
         }

@@ -252,7 +252,7 @@ impl Cursor<'_> {
         CaseLabel { low, high }
     }
 
-    /// A label is told from a statement by the `:` behind it; a statement has `:=`.
+    /// A label is distinguished from a statement by the `:` behind it; a statement has `:=`.
     fn at_case_label(&self) -> bool {
         match self.peek() {
             Some(

@@ -106,7 +106,7 @@ signals! {
     Outputs {
         /// the drive holds the axis
         ready: bool,
-        /// it moves because it was told to
+        /// it moves because it was ordered to
         busy: bool,
         /// at the last target
         in_position: bool,

@@ -160,14 +160,14 @@ mod tests {
         Rig::new(Gate::new(Parameters { function, inputs, ..Parameters::default() }))
     }
 
-    fn told(function: Function, in_1: bool, in_2: bool) -> bool {
+    fn reported(function: Function, in_1: bool, in_2: bool) -> bool {
         gate(function, 2).run(Inputs { in_1, in_2, in_16: true, ..Inputs::default() }, 0.01, 1).out
     }
 
     #[test]
     fn each_function_has_its_table_of_truth() {
         let cases = [(false, false), (false, true), (true, false), (true, true)];
-        let table = |function: Function| cases.map(|(a, b)| told(function, a, b));
+        let table = |function: Function| cases.map(|(a, b)| reported(function, a, b));
         assert_eq!(table(Function::And), [false, false, false, true]);
         assert_eq!(table(Function::Or), [false, true, true, true]);
         assert_eq!(table(Function::Nand), [true, true, true, false]);

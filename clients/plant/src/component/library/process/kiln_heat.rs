@@ -138,7 +138,7 @@ failures! {
         BrickLost = "brick_lost",
         /// a ring grows: a band becomes cold
         RingGrowing = "ring_growing",
-        /// the coating falls off, and grows anew when this ends
+        /// the coating falls off, and grows again when this ends
         CoatingFalls = "coating_falls",
         /// the burner is out
         BurnerOut = "burner_out",

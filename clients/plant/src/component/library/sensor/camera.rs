@@ -1,7 +1,7 @@
 //! A camera above a field: whether something is in it, how many, and where the first of them lies.
 //!
 //! # Equations
-//! - every `frame_s` it takes a picture, of which the outputs tell `latency_s` later;
+//! - every `frame_s` it takes a picture, which the outputs report `latency_s` later;
 //! - a coordinate is `q round((x + N(0, σ))/q)`, along the axes of the field's body; the angle is about its z.
 //!
 //! # Source
@@ -82,7 +82,7 @@ pub(crate) struct State {
     /// Since the last picture; none before the first.
     since_s: Option<f64>,
     taken: Option<Picture>,
-    told: Picture,
+    reported: Picture,
     pictures: i32,
     random: Random,
 }
@@ -123,8 +123,8 @@ impl Component for Camera {
     }
 
     fn initial(&self, start: &Start<InField>) -> State {
-        let (told, random) = (Picture::default(), Random::new(start.seed));
-        State { since_s: None, taken: None, told, pictures: 0, random }
+        let (reported, random) = (Picture::default(), Random::new(start.seed));
+        State { since_s: None, taken: None, reported, pictures: 0, random }
     }
 
     fn sense(&self, state: &mut State, inputs: &Inputs, turn: &Turn<InField>) -> Outputs {
@@ -133,23 +133,23 @@ impl Component for Camera {
         state.since_s = state.since_s.map(|since_s| since_s + turn.dt_s);
         let frame_over = state.since_s.is_none_or(|since_s| over(since_s, self.p.frame_s));
         let hung = turn.failed.has(Failure::Hung);
-        let tell = |state: &mut State| {
+        let show = |state: &mut State| {
             if let Some(picture) = state.taken.take() {
-                (state.told, state.pictures) = (picture, state.pictures.saturating_add(1));
+                (state.reported, state.pictures) = (picture, state.pictures.saturating_add(1));
             }
         };
         if frame_over || state.since_s.is_some_and(|since_s| over(since_s, self.p.latency_s)) {
-            tell(state);
+            show(state);
         }
         if frame_over && inputs.enable && !hung {
             let dark = turn.failed.has(Failure::Dark);
             let seen = if dark { InField::default() } else { turn.seen };
             (state.since_s, state.taken) = (Some(0.0), Some(self.picture(seen, &mut state.random)));
             if self.p.latency_s <= 0.0 {
-                tell(state);
+                show(state);
             }
         }
-        let Picture { count, x_m, y_m, angle_deg } = state.told;
+        let Picture { count, x_m, y_m, angle_deg } = state.reported;
         Outputs { present: count > 0, count, x_m, y_m, angle_deg, pictures: state.pictures }
     }
 }
@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn pictures_come_at_their_rate_and_are_told_of_later() {
+    fn pictures_come_at_their_rate_and_are_reported_later() {
         let mut rig = rig(Parameters::default());
         let counts: Vec<_> = (0..10).map(|_| rig.run(ON, 0.01, 1).pictures).collect();
         // taken in turns 1, 5, 9; their results two turns later
@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn it_tells_where_the_first_lies_to_a_pixel() {
+    fn it_reports_where_the_first_lies_to_a_pixel() {
         let p = || Parameters { frame_s: 0.0, latency_s: 0.0, ..Parameters::default() };
         let out = rig(p()).run(ON, 0.01, 1);
         assert_eq!((out.count, out.x_m, out.y_m, out.angle_deg), (2, 0.1, -0.2, 30.0));

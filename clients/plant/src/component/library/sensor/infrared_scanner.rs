@@ -76,7 +76,7 @@ parameters! {
 signals! {
     /// What it takes.
     Inputs {
-        /// its trigger, which it tells in a line if it is set to
+        /// its trigger, which it reports in a line if it is set to
         trigger: bool,
         /// what the host sends
         rx: Line,

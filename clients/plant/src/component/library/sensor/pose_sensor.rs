@@ -1,5 +1,5 @@
 //! A pose sensor: where a body is, how it is turned and how fast it moves, as a tracking system or a drive
-//! without one of the usual encoders tells.
+//! without one of the usual encoders reports.
 //!
 //! # Equations
 //! - `y = q round((x + N(0, σ))/q)` for each coordinate and each angle;

@@ -12,7 +12,7 @@
 //! | ENO | TRUE unless the unit or an error makes it FALSE | FALSE |
 //!
 //! An `EN` that a function block declares is kept between calls, like any other input. ENO of a
-//! standard function tells errors, see [`super::enable_error`].
+//! standard function reports errors, see [`super::enable_error`].
 
 use crate::check::body::Body;
 use crate::check::declare::Scope;
@@ -85,7 +85,7 @@ impl Body<'_, '_> {
         self.controlled(call, own, span, |body, rest| body.plain_call(rest, true, span)).map(Operand::Typed)
     }
 
-    /// A call that EN may forbid and ENO tells of; `own` is true if what is called has an ENO itself.
+    /// A call that EN may forbid and ENO reports; `own` is true if what is called has an ENO itself.
     pub(in crate::check) fn controlled(
         &mut self,
         call: &Call,
@@ -144,7 +144,7 @@ impl Body<'_, '_> {
         }
     }
 
-    /// A call that tells by ENO whether it succeeded.
+    /// A call that reports by ENO whether it succeeded.
     fn observed(&mut self, called: Expr, result: Option<&Place>, enabling: &Enabling<'_>) -> Option<Vec<Statement>> {
         let span = called.span;
         let guard = self.error_guard(called, result);

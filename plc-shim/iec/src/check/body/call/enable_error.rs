@@ -1,4 +1,4 @@
-//! Errors of standard functions that ENO tells (2nd ed. 2.5.1.2, Annex E).
+//! Errors of standard functions that ENO reports (2nd ed. 2.5.1.2, Annex E).
 //!
 //! With `ENO =>` the caller asks for them; the error then makes ENO FALSE and stops nothing.
 //!
@@ -17,7 +17,7 @@ use crate::ir::{
 };
 use crate::syntax::Span;
 
-/// A call of a standard function with what tells its errors.
+/// A call of a standard function with what reports its errors.
 pub(in crate::check) struct Guard {
     pub(in crate::check::body) before: Vec<Statement>,
     /// Must hold for the call to be carried out.

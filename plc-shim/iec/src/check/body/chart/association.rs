@@ -118,7 +118,7 @@ impl Body<'_, '_> {
         None
     }
 
-    /// What an action tells of itself it writes itself; here it must only be a BOOL.
+    /// What an action reports of itself it writes itself; here it must only be a BOOL.
     fn check_indicator(&mut self, indicator: &ast::Expr) {
         if let Some(place) = self.target(indicator)
             && self.elementary(place.ty) != Some(ElementaryType::Bool)

@@ -43,7 +43,7 @@ impl Body<'_, '_> {
         for (first, initial) in by_network.values() {
             let found = match initial.as_slice() {
                 [_] => continue,
-                // A part that hangs on nothing is told once, as what it is.
+                // A part that hangs on nothing is reported once, as what it is.
                 [] if has_any => {
                     let message = format!("step `{}` can never be active: no transition leads to it", first.name.text);
                     let help = "join it to the others by a transition, or begin a network with INITIAL_STEP";
@@ -91,7 +91,7 @@ impl Body<'_, '_> {
     fn report_unreachable(&mut self, chart: &Chart, net: &Net, of: &impl Fn(&usize) -> bool, found: &Explored) -> bool {
         let mut unreached = false;
         for (number, step) in chart.steps.iter().enumerate().filter(|(number, _)| of(number)) {
-            // What is not reached behind another that is not is not told.
+            // What is not reached behind another that is not is not reported.
             let leads_here = |arcs: &&Arcs| arcs.to.contains(&number);
             let mut before = net.transitions.iter().filter(leads_here).flat_map(|arcs| &arcs.from);
             if !found.reached.contains(&number) && !before.any(|from| !found.reached.contains(from)) {

@@ -1,4 +1,4 @@
-//! What dialects do their own way. A place in the text tells its file, and the file its dialect.
+//! What dialects do their own way. A place in the text determines its file, and the file its dialect.
 
 use crate::check::body::Body;
 use crate::check::declare::VIRTUAL_TIME_OFFSET;

@@ -16,7 +16,7 @@ impl Body<'_, '_> {
         is_number.then_some(*base)
     }
 
-    /// Runs `check` where the place wants a value of this type, which tells values apart that several enumerations have.
+    /// Runs `check` where the place wants a value of this type, which separates values that several enumerations have.
     pub(in crate::check::body) fn wanting<T>(&mut self, ty: Option<TypeId>, check: impl FnOnce(&mut Self) -> T) -> T {
         let is_enumeration = |ty: &TypeId| matches!(self.declarations.types().get(*ty), Type::Enumeration { .. });
         let wanted = ty.filter(is_enumeration);

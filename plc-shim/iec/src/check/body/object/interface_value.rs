@@ -60,7 +60,7 @@ impl Body<'_, '_> {
         }
     }
 
-    /// `=` and `<>` tell whether two references refer to the same instance.
+    /// `=` and `<>` decide whether two references refer to the same instance.
     pub(in crate::check::body) fn interface_comparison(
         &mut self,
         operator: Binary,

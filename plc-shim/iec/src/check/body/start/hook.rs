@@ -52,7 +52,7 @@ impl Body<'_, '_> {
         let (name, unit) = (self.declarations.pou(last).ast().name.clone(), self.declarations.display_name(base));
         let message = format!("`{}` lacks `{}`, which `{unit}` wants", name.text, first.name);
         let found = Diagnostic::error(Code::HookInputs, name.span, message).with_label(first.span, "declared here");
-        // Told once, however many instances there are.
+        // Reported once, however many instances there are.
         if self.declarations.is_first_hook_fault(last) {
             self.report(found.with_help("what a declaration gives goes to the input of this name in every FB_init"));
         }
@@ -132,7 +132,7 @@ impl Body<'_, '_> {
 
     /// Reports inputs that are given nothing and have no initial value.
     fn all_given(&mut self, scope: &Arc<Scope>, pou: PouId, init: PouId, named: &[Named], span: Span) -> Option<()> {
-        // A name that is wrong is told instead.
+        // A name that is wrong is reported instead.
         if named.iter().any(|(name, _)| scope.own(&name.key()).is_none()) {
             return Some(());
         }

@@ -51,7 +51,7 @@ impl<'a> Body<'_, 'a> {
             if let Some(outer) = outer {
                 self.surround(outer);
             }
-            // What is wrong with a type's text is told once, however often it is used.
+            // What is wrong with a type's text is reported once, however often it is used.
             if self.declarations.has_found_since(known) && !self.declarations.is_first_fault(start.span, occasion) {
                 self.declarations.forget_since(known);
             }

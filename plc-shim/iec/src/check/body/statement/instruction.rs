@@ -74,7 +74,7 @@ struct Lowering {
     out: Vec<Statement>,
     current: Option<Expr>,
     /// Something before has been reported for want of a current result.
-    told: bool,
+    reported: bool,
 }
 
 impl Lowering {
@@ -139,11 +139,11 @@ impl Body<'_, '_> {
     }
 
     fn current(&mut self, state: &mut Lowering, span: Span) -> Option<Expr> {
-        if state.current.is_none() && !state.told {
+        if state.current.is_none() && !state.reported {
             let message = "there is no current result here";
             let help = "`LD` gives one";
             self.report(Diagnostic::error(Code::NoCurrentResult, span, message).with_help(help));
-            state.told = true;
+            state.reported = true;
         }
         state.current.clone()
     }
@@ -154,7 +154,7 @@ impl Body<'_, '_> {
             if !state.has_left() {
                 self.current(state, statement.span);
             }
-            state.told = false;
+            state.reported = false;
             state.hand_over(name, statement.span);
             state.current = Some(handed_wire(name));
         } else {
@@ -178,7 +178,7 @@ impl Body<'_, '_> {
             }
             Instruction::Load { negated, value } => {
                 self.discard(state);
-                state.told = false;
+                state.reported = false;
                 let value = value.clone();
                 state.current = Some(if *negated { unary(UnaryOp::Not, value, span) } else { value });
             }
@@ -230,7 +230,7 @@ impl Body<'_, '_> {
         let value = self.current(state, span)?;
         if !again {
             state.current = None;
-            state.told = true;
+            state.reported = true;
         }
         Some(value)
     }
@@ -316,7 +316,7 @@ impl Body<'_, '_> {
             }
         } else {
             self.discard(state);
-            state.told = false;
+            state.reported = false;
             None
         };
         let call = self.arguments_of(called, first, state);
