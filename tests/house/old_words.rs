@@ -7,7 +7,12 @@ use crate::{root, workspace};
 const LIST: &str = "tests/house/old_words.txt";
 
 /// Where an old word stands for something else, or has to stay.
-const ALLOWED: &[(&str, &str, &str)] = &[];
+const ALLOWED: &[(&str, &str, &str)] = &[
+    ("spots", "clients/plant/src", "hot spots of a kiln's shell, and the spots that a scanner sees"),
+    ("spots", "scenarios/src/map_file.rs", "the spots that a scanner sees"),
+    ("told", "scenarios/src/case/campaign_file.rs", "the key's name before `detected`, read with a warning"),
+    ("told", "scenarios/src/case/catalogue.rs", "the key's name before `detected`, read with a warning"),
+];
 
 /// The old words of the list; `*` at the end of one stands for every word that begins like it.
 fn listed() -> Vec<String> {

@@ -19,8 +19,8 @@ const INTERRUPTED: i32 = 130;
 #[derive(Clone, Debug, Default)]
 pub struct Interrupt {
     raised: Arc<AtomicBool>,
-    /// Set when there is a session that takes heed of it.
-    heeded: Arc<AtomicBool>,
+    /// Set when there is a session that answers it.
+    is_watched: Arc<AtomicBool>,
     mailbox: Mailbox,
 }
 
@@ -38,7 +38,7 @@ impl Interrupt {
             None => {
                 first = Some(Instant::now());
                 interrupt.raised.store(true, Ordering::SeqCst);
-                if !interrupt.heeded.load(Ordering::SeqCst) {
+                if !interrupt.is_watched.load(Ordering::SeqCst) {
                     std::process::exit(INTERRUPTED);
                 }
                 interrupt.mailbox.control(Control::Stop);
@@ -57,8 +57,8 @@ impl Interrupt {
     }
 
     /// From now on somebody looks whether a stop was asked for, and brings things to an end.
-    pub(super) fn heed(&self) {
-        self.heeded.store(true, Ordering::SeqCst);
+    pub(super) fn watch(&self) {
+        self.is_watched.store(true, Ordering::SeqCst);
     }
 
     /// The flag itself, for those who spin on it.

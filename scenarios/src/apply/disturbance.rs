@@ -113,7 +113,7 @@ fn check_keys(catalogue: &Catalogue, disturbance: &DisturbanceFile, place: &Rang
             return wrong("how often frames are pushed is not said", place.clone(), help);
         }
         (Some(interval), true) if !interval_of(interval.get_ref()).is_in_order() => {
-            return wrong("the mean is not between `least` and `most`", interval.span(), "mend one of the three");
+            return wrong("the mean is not between `least` and `most`", interval.span(), "change one of the three");
         }
         (Some(_), true) | (None, false) => {}
     }

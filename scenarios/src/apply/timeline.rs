@@ -87,8 +87,8 @@ impl Scenario {
         for disturbance in &entry.disturbances {
             let period = period_of(catalogue, &known, disturbance)?;
             for (signal, fault) in self.signal_faults(catalogue, disturbance, seed)? {
-                let mend = Operation::Mend { signal: signal.clone() };
-                between(&mut timeline, period.clone(), Operation::Disturb { signal, fault }, mend);
+                let clear = Operation::Mend { signal: signal.clone() };
+                between(&mut timeline, period.clone(), Operation::Disturb { signal, fault }, clear);
             }
         }
         for parameter in &entry.parameters {

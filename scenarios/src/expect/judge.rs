@@ -272,7 +272,7 @@ mod tests {
         assert_eq!(truth(text, &[(0, 0.5)]), None);
         assert_eq!(truth(text, &[(0, 0.5), (1, 0.5)]), Some(true));
         assert_eq!(truth(text, &[(0, 0.5), (3, 0.5)]), Some(false));
-        // Neither holds: no sample that comes can mend it.
+        // Neither holds: no sample that comes can change it.
         assert_eq!(truth(text, &[(0, 0.0)]), Some(true));
     }
 

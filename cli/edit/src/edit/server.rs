@@ -106,7 +106,7 @@ impl EditSession {
     }
 
     /// Does what is wanted, or nothing.
-    fn heed(&mut self, want: Want) -> Result<(), Refused> {
+    fn handle(&mut self, want: Want) -> Result<(), Refused> {
         let mut workspace = self.workspace.clone();
         match want {
             Want::Reload => {
@@ -181,7 +181,7 @@ impl Editor {
         listener.set_nonblocking(true).map_err(&listen)?;
         let address = listener.local_addr().map_err(&listen)?;
         let router = Router::new()
-            .route("/api/edit", get(look).post(heed))
+            .route("/api/edit", get(look).post(handle))
             .route("/api/library", get(library))
             .fallback(get(file))
             .layer(DefaultBodyLimit::max(REQUEST_MAX))
@@ -222,7 +222,7 @@ async fn look(Shared(held): Shared<Held>) -> Response {
     answer(StatusCode::OK, &edit_session.state)
 }
 
-async fn heed(Shared(held): Shared<Held>, body: String) -> Response {
+async fn handle(Shared(held): Shared<Held>, body: String) -> Response {
     let want: Want = match serde_json::from_str(&body) {
         Ok(want) => want,
         Err(error) => {
@@ -231,7 +231,7 @@ async fn heed(Shared(held): Shared<Held>, body: String) -> Response {
         }
     };
     let mut edit_session = held.lock().unwrap_or_else(PoisonError::into_inner);
-    match edit_session.heed(want) {
+    match edit_session.handle(want) {
         Ok(()) => answer(StatusCode::OK, &Answer { error: None, state: Some(&edit_session.state) }),
         Err((status, refusal)) => {
             let changed = edit_session.files.changed(edit_session.workspace.texts());

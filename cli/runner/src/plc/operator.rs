@@ -24,7 +24,7 @@ const COMMANDS: [&str; 6] = ["run", "stop", "cold", "warm", "status", "quit"];
 /// The answers cannot be written.
 pub fn attend(controller: &Controller, interrupt: &Interrupt, out: &mut dyn Write) -> Result<ExitCode, PlcError> {
     let mut lines = Some(typed());
-    interrupt.heed();
+    interrupt.watch();
     while !interrupt.is_raised() {
         let Some(typed) = &lines else {
             std::thread::sleep(GLANCE);

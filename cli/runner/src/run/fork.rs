@@ -45,10 +45,10 @@ pub(super) fn take(lockstep: &mut Lockstep, request: &ForkRequest, end: VirtualT
     file::create_folder(&request.folder)?;
     let mut taken = Taken::default();
     let mut times = request.times.iter().copied().peekable();
-    let mut spots = request.states.iter().copied().peekable();
+    let mut fork_points = request.states.iter().copied().peekable();
     let mut waiting = request.conditions.len();
     loop {
-        let next = [times.peek(), spots.peek()].into_iter().flatten().copied().min();
+        let next = [times.peek(), fork_points.peek()].into_iter().flatten().copied().min();
         let next = next.filter(|next| *next < end).unwrap_or(end);
         if next == end && waiting == 0 {
             return Ok(taken);
@@ -63,8 +63,8 @@ pub(super) fn take(lockstep: &mut Lockstep, request: &ForkRequest, end: VirtualT
         while times.next_if(|time| *time <= t_v).is_some() {
             is_fork = true;
         }
-        while let Some(spot) = spots.next_if(|spot| *spot <= t_v) {
-            is_spot |= spot == t_v;
+        while let Some(fork_point) = fork_points.next_if(|fork_point| *fork_point <= t_v) {
+            is_spot |= fork_point == t_v;
         }
         let checkpoint = lockstep.checkpoint().map_err(RunError::Save)?;
         if is_spot {

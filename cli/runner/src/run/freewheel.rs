@@ -39,7 +39,7 @@ pub(super) fn run(
             }
         }
     }
-    interrupt.heed();
+    interrupt.watch();
     let Trace { mut replay, reached, failed, errors_ns } = spin(config, scenario, number, interrupt, clients)?;
     replay.set_until(Some(reached));
     watch(&mut replay);

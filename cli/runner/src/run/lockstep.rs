@@ -251,7 +251,7 @@ fn form(
             (Member::External(command), _) => remote.push((name, Some(permitted(name, command)?))),
         }
     }
-    interrupt.heed();
+    interrupt.watch();
     let opcua_seats = seats.open(&config.doors, scenario.plan(), interrupt)?;
     if let Some(opcua_seats) = &opcua_seats {
         for client in opcua_seats.clients(config.reach.reply_timeout) {

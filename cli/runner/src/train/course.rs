@@ -163,7 +163,7 @@ impl Classroom<'_> {
 
     /// The lesson on two pages, for as long as the trainer wants it.
     fn live(&self, served: &Served) -> Result<Vec<AttemptRecord>, TrainError> {
-        self.interrupt.heed();
+        self.interrupt.watch();
         let mailbox = self.interrupt.mailbox();
         let stage = Stage { keeps: true, ..self.stage(served.pace, mailbox.clone()) };
         let turns = TurnQueue::new(mailbox);

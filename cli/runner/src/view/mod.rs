@@ -54,7 +54,7 @@ pub struct ViewConfig {
 /// See [`ViewError`]. A re-run that differs is not an error but the exit code.
 pub fn view(config: &ViewConfig, interrupt: &Interrupt, out: &mut dyn Write) -> Result<ExitCode, ViewError> {
     let recorded = Recorded::open(&config.recording)?;
-    interrupt.heed();
+    interrupt.watch();
     let kept = Kept::within(config.past.bytes);
     recorded.leave_inputs(&kept);
     let verdict_board = VerdictBoard::default();

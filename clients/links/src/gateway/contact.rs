@@ -10,7 +10,7 @@ const NOTICE: &str = "onescan::notice";
 /// A connection is tried again after this.
 const AGAIN: Duration = Duration::from_millis(200);
 
-/// Connects `link` for the client `name`, again and again for as long as `patience`. What another attempt cannot mend is
+/// Connects `link` for the client `name`, again and again for as long as `patience`. What another attempt cannot solve is
 /// said at once.
 ///
 /// # Errors

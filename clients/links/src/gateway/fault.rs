@@ -69,7 +69,7 @@ impl LinkFault {
         Self::Lost("there is no connection".to_owned())
     }
 
-    /// True if another attempt may mend it.
+    /// True if another attempt may succeed.
     pub fn is_transient(&self) -> bool {
         matches!(self, Self::Unreachable { .. } | Self::NobodyCame { .. } | Self::Lost(_))
     }
@@ -103,7 +103,7 @@ pub struct MappingFault {
 }
 
 impl MappingFault {
-    /// `point` is wrong, nothing is known that would mend it.
+    /// `point` is wrong, nothing is known that would solve it.
     pub fn new(point: &str, message: impl Into<String>) -> Self {
         Self { point: point.to_owned(), message: message.into(), help: None }
     }

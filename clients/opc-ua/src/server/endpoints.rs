@@ -12,8 +12,8 @@ use opcua::server::{ANONYMOUS_USER_TOKEN_ID, ServerBuilder, ServerHandle, Server
 use opcua::types::MessageSecurityMode;
 use tokio::net::TcpListener;
 
+use super::authenticator::Authenticator;
 use super::door::{self, Channels};
-use super::doorkeeper::Doorkeeper;
 use super::pki::Pki;
 use onescan_links::listener::bind;
 use onescan_links::opcua::{Access, Refusals, ServeError};
@@ -97,7 +97,7 @@ async fn own_port(handle: &ServerHandle, inside: u16, outside: u16) {
     port.store(outside, Ordering::Relaxed);
 }
 
-/// Stands for whoever has a token, where endpoints name their users. No password is good for it: the doorkeeper looks
+/// Stands for whoever has a token, where endpoints name their users. No password is good for it: the authenticator looks
 /// at the token.
 const HOLDER: &str = "holder";
 
@@ -128,7 +128,8 @@ fn builder(address: SocketAddr, name: &str, access: &Access, refusals: &Refusals
         }
         None => users.push(ANONYMOUS_USER_TOKEN_ID),
     }
-    builder = builder.with_authenticator(Arc::new(Doorkeeper::new(known, access.register.clone(), refusals.clone())));
+    builder =
+        builder.with_authenticator(Arc::new(Authenticator::new(known, access.register.clone(), refusals.clone())));
     if access.pki.is_none() {
         let none = ("/", SecurityPolicy::None, MessageSecurityMode::None, &users[..]);
         return builder.add_endpoint("none", none);

@@ -5,12 +5,12 @@
 //! | `endpoints` | the server itself |
 //! | `admitted` | nodes for clients that are who their certificate says |
 //! | `door` | where connections come in, and which of them are closed |
-//! | `doorkeeper` | users, and who was sent away |
+//! | `authenticator` | users, and who was sent away |
 //! | `pki` | the folder for certificates, of servers and of clients |
 
 mod admitted;
+mod authenticator;
 mod door;
-mod doorkeeper;
 mod endpoints;
 pub(crate) mod pki;
 

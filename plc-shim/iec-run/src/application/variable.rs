@@ -102,8 +102,8 @@ impl Application {
             let pou = checked.pous.get(&program.pou)?;
             let of = |wanted: SectionKind| {
                 let in_section = pou.variables.iter().filter(move |variable| variable.section == wanted);
-                let spots = in_section.filter_map(|each| spot(checked, name, each, program.offset));
-                spots.map(|spot| self.describe(spot)).collect()
+                let found = in_section.filter_map(|each| spot(checked, name, each, program.offset));
+                found.map(|spot| self.describe(spot)).collect()
             };
             Some(Program {
                 name: name.to_owned(),

@@ -179,7 +179,7 @@ const CHART_FLAGS: [&str; 11] = [
     "SFCTIPMODE",
 ];
 
-/// Reports such variables: a chart that does not heed them would do something else.
+/// Reports such variables: a chart that ignores them would do something else.
 fn report_flags(file: &str, unit: &Element, sheet: &mut Sheet<'_>) {
     let Some(declaration) = unit.child("Declaration") else { return };
     let text = Written::below(file, declaration).plain;

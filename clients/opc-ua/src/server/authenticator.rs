@@ -16,14 +16,14 @@ use opcua::types::{ByteString, Error, StatusCode, UserTokenPolicy};
 use onescan_links::opcua::Refusals;
 
 /// The users of a server.
-pub(super) struct Doorkeeper {
+pub(super) struct Authenticator {
     users: DefaultAuthenticator,
     /// Tokens that are good, in place of the users.
     register: Option<Arc<Register>>,
     refusals: Refusals,
 }
 
-impl Doorkeeper {
+impl Authenticator {
     pub(super) fn new(
         users: BTreeMap<String, ServerUserToken>,
         register: Option<Arc<Register>>,
@@ -55,7 +55,7 @@ fn holder_of(register: &Register, username: &str, token: &str) -> Result<UserTok
 }
 
 #[async_trait]
-impl AuthManager for Doorkeeper {
+impl AuthManager for Authenticator {
     async fn authenticate_anonymous_token(&self, endpoint: &ServerEndpoint) -> Result<(), Error> {
         let done = self.users.authenticate_anonymous_token(endpoint).await;
         self.noted("an OPC UA client without a user", done)
