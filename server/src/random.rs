@@ -35,7 +35,10 @@ impl Random {
     #[must_use]
     pub fn new(seed: u64) -> Self {
         let mut counter = seed;
-        Self([(); 4].map(|()| split_mix(&mut counter)))
+        let state = [(); 4].map(|()| split_mix(&mut counter));
+        // SplitMix64 is a bijection of its counter, so of four numbers one at most is 0.
+        debug_assert!(state != [0; 4], "a stream of all zeros never leaves that state");
+        Self(state)
     }
 
     /// 64 random bits.
@@ -54,6 +57,7 @@ impl Random {
 
     /// Evenly from 0 (not included) to 1 (included).
     pub fn uniform(&mut self) -> f64 {
+        // 53 bits are all that an `f64` holds; the one that is added keeps 0 out, whose logarithm `normal` cannot take.
         ((self.bits() >> 11) + 1) as f64 / (1_u64 << 53) as f64
     }
 

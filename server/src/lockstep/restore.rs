@@ -82,6 +82,7 @@ impl Lockstep {
     /// It belongs to another session, set otherwise or with another past, or a client cannot take its
     /// state back; the session must not be run then.
     pub fn resume(&mut self, checkpoint: &Checkpoint) -> Result<(), CheckpointError> {
+        // In the order plan, settings, timeline, state, clients: a refusal names the first difference.
         let plan = PlanSummary::of(self.session.plan());
         if let Some(difference) = checkpoint.plan.difference(&plan) {
             return Err(CheckpointError::OtherSession(difference));
@@ -96,6 +97,7 @@ impl Lockstep {
         if !same_clients || !self.session.restore(&checkpoint.session) {
             return Err(CheckpointError::OtherSession("its state does not fit its own plan".to_owned()));
         }
+        debug_assert_eq!(checkpoint.clients.len(), self.slots.len(), "a checkpoint has one state per client");
         let (steps, t_v) = (self.session.cycle().steps(), self.session.t_v());
         for (slot, (client, state)) in self.slots.iter_mut().zip(&checkpoint.clients) {
             let restored = slot.carrier.restore(steps, t_v, state);

@@ -287,6 +287,7 @@ impl Timeline {
             }
         }
         self.look_ahead();
+        debug_assert!(self.next.is_none_or(|next| next > end), "nothing stays due that was due until {end}");
         // Several instants may fall into one step: they keep their order; equal ones that of the list.
         taken.sort_by_key(|(at, _)| *at);
         taken.into_iter().map(|(_, operation)| operation).collect()
@@ -329,8 +330,10 @@ impl Timeline {
         for item in &self.items {
             let monitored =
                 state.condition_monitors.iter().find(|condition_monitor| condition_monitor.when == item.scheduled.when);
+            // Each of theirs stands for one of ours, so that two equal items stay two.
             let same = theirs.iter_mut().find(|their| their.is_some_and(|(their, ..)| *their == item.scheduled));
             let known = same.and_then(Option::take).map(|(_, stage, seen)| (*stage, seen));
+            // What a monitor has seen of a condition is what the item itself would have seen, had it been there.
             let known = known.or(monitored.map(|condition_monitor| (Stage::Waiting, &condition_monitor.seen)));
             stages.push(match (known, &item.scheduled.when) {
                 (Some((stage, seen)), _) => {
@@ -353,6 +356,7 @@ impl Timeline {
         if let Some((gone, ..)) = theirs.into_iter().flatten().find(|(_, stage, _)| *stage == Stage::Done) {
             return Err(TimelineError::Gone { scheduled: Box::new(gone.clone()), t_v });
         }
+        debug_assert_eq!(stages.len(), self.items.len(), "every item has its stage");
         for (item, (stage, seen)) in self.items.iter_mut().zip(stages) {
             (item.stage, item.seen) = (stage, seen);
         }

@@ -30,6 +30,7 @@ impl Emitter<'_, '_> {
     pub(crate) fn store_at(&mut self, address: Address, ty: ElementaryType) {
         self.expect_change(Some(Extent::new(address, ty.size())));
         let pinned = self.pinned(address, ty);
+        // A pinned value has its register already, and must keep it through all turns.
         let entry = match pinned {
             None => self.cache(ty).map(|register| Entry { address, ty, register }),
             pinned => pinned,
@@ -121,8 +122,10 @@ impl Emitter<'_, '_> {
         let entered = self.entered.len();
         self.entered.extend(self.known.registers());
         emit(self);
+        debug_assert!(self.entered.len() >= entered, "a loop inside gives back its own registers only");
         self.entered.truncate(entered);
         self.foreseen.pop();
+        debug_assert!(self.pins.len() >= before, "a loop inside gives back its own pins only");
         // Behind the loop its registers still hold what is in memory.
         self.known = Known::default();
         for entry in self.pins.split_off(before) {
