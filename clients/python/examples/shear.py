@@ -27,7 +27,7 @@ class Shear(Simulation):
         self.Sensor_2 = self.Position_2 >= -0.002
 
     def _way(self, ram: int, up: bool, down: bool) -> float:
-        """How far a ram moves in this step, on its ramp to the speed that it is told."""
+        """How far a ram moves in this step, on its ramp to the speed that it is given."""
         wanted = SPEED_M_S * (int(up) - int(down))
         most = ACCELERATION_M_S2 * self.dt_s
         before = self.speed[ram]

@@ -67,7 +67,7 @@ def campaign(
     packed = _pack(folder if folder.is_dir() else folder.parent)
     file = None if folder.is_dir() else folder.name
     of = parts or 4 * max(1, len(client.scheduler_info()["workers"]))
-    # Its result is lost with its worker, but not what it is made of: then another one makes it anew.
+    # Its result is lost with its worker, but not what it is made of: then another one makes it again.
     trunk = client.submit(_trunk, worker_program, packed, file, name, pure=False)
     futures = [
         client.submit(_part, worker_program, packed, file, name, trunk, number, of, pure=False)
