@@ -230,6 +230,7 @@ impl Checkpoint {
     /// # Errors
     /// None for a checkpoint that a session gave.
     pub fn state_hash(&self) -> Result<StateHash, CheckpointError> {
+        // Without the digest, which is of the way here, and without what has happened already.
         let ahead = (&self.plan, &self.session, self.timeline.pending(), &self.clients);
         let bytes = postcard::to_stdvec(&ahead).map_err(|_| CheckpointError::Damaged)?;
         Ok(StateHash(*blake3::hash(&bytes).as_bytes()))

@@ -120,6 +120,7 @@ impl Cycle {
     pub fn sleep_until(&mut self, client: ClientId, wake: VirtualTime) {
         let seat = &mut self.seats[client.index()];
         seat.asked = wake;
+        // No `write` lies between the set-up and the first turns, so it is in force at once.
         if seat.state == ClientState::Setup {
             seat.wake = wake;
         }

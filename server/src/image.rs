@@ -33,6 +33,7 @@ impl PortMap {
         for ((signal, offset), id) in port.iter().zip(ids) {
             let run = Run { image: layout.offset(*id), port: offset, len: signal.ty.size() };
             match runs.last_mut() {
+                // One long copy instead of many short ones: a step copies every port.
                 Some(last) if last.image + last.len == run.image && last.port + last.len == run.port => {
                     last.len += run.len;
                 }

@@ -60,6 +60,7 @@ impl Mailbox {
 
     /// Leaves a wish.
     pub fn post(&self, request: Request) {
+        // The flag follows the request: who sees the flag finds the request.
         self.lock().push_back(request);
         self.inner.waiting.store(true, Ordering::Release);
         self.inner.arrived.notify_all();

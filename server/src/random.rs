@@ -54,6 +54,7 @@ impl Random {
 
     /// Evenly from 0 (not included) to 1 (included).
     pub fn uniform(&mut self) -> f64 {
+        // 53 bits are all that an `f64` holds; the one that is added keeps 0 out, whose logarithm `normal` cannot take.
         ((self.bits() >> 11) + 1) as f64 / (1_u64 << 53) as f64
     }
 

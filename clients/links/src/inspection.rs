@@ -184,6 +184,7 @@ impl Device {
                 let answer = match group {
                     command::HANDLE_BY_NAME if handles.len() < HANDLES_MAX => {
                         handles.push(named(plc, written)?);
+                        // Handles count from 1, so that 0 is none.
                         Ok((handles.len() as u32).to_le_bytes().to_vec())
                     }
                     command::HANDLE_BY_NAME => Err(Refused(command::NO_ACCESS)),

@@ -375,6 +375,7 @@ impl Client for SoftPlcClient {
         if let Some(tracing) = &self.tracing {
             tracing.begin();
         }
+        // A reset has given every variable its declared value again.
         for (path, value) in &self.presets {
             self.plc.write(path, value).map_err(|error| ClientFault::new(error.to_string()))?;
         }
@@ -432,6 +433,7 @@ impl Client for SoftPlcClient {
         if let Some(journal) = &mut self.journal {
             journal.begin(&mut self.plc, t_v);
         }
+        // The scan's fault is looked at last: journal, trace and watches show what led to it.
         let scanned = self.plc.scan(t_v);
         if let Some(journal) = &self.journal {
             journal.end(&self.plc, t_v);

@@ -143,6 +143,7 @@ impl Schedule {
         self.in_part += 1;
         self.in_block += 1;
         let part = self.in_part == self.part_rows;
+        // A part ends with a block, so that it is complete once its last block is written.
         let block = part || self.in_block == self.block_rows;
         if part {
             self.in_part = 0;

@@ -122,6 +122,7 @@ impl Recording {
             move |source| RecordingError::Damaged { path, source }
         };
         let text = regular::read(&path, Limit::TEXT).map_err(damaged(&path))?;
+        // The version alone, first: a header of another version may have other fields.
         let version: Versioned = serde_json::from_slice(&text).map_err(|e| damaged(&path)(e.into()))?;
         if version.recording != FORMAT {
             return Err(RecordingError::Version { path: folder.to_owned(), version: version.recording });
@@ -335,6 +336,7 @@ impl Recording {
         let columns = self.columns(patterns)?;
         let shape: Arc<[Column]> = columns.iter().map(|(_, column)| column.clone()).collect();
         let mut sink = sink(format, io::BufWriter::new(out), shape, *steps.start()).map_err(RecordingError::Output)?;
+        // `blocks` reports what it is given as damage of the recording; an error of the output is another one.
         let mut failed = None;
         self.blocks(&columns, &steps, &mut |block| {
             if let Some(part) = block.within(&steps)

@@ -124,6 +124,7 @@ impl Recorder {
         let Some(encoder) = &self.encoder else { return Ok(()) };
         self.last = (session.cycle().steps(), session.t_v());
         let (is_full, part) = self.schedule.row();
+        // The lock is given back before the exchange, which may wait for the encoder: that takes the lock to write early.
         let full = {
             let mut block = self.block();
             block.push(session);

@@ -69,6 +69,7 @@ impl Encoder {
         let (to_encode, messages) = sync_channel(BLOCKS);
         let (back, emptied) = sync_channel::<Block>(BLOCKS);
         let (done, written) = sync_channel(1);
+        // The one that is missing here is the session's, which grows.
         for _ in 1..BLOCKS {
             // The channel has room for all of them, and its receiver is here.
             back.send(Block::default()).map_err(io::Error::other)?;
@@ -117,6 +118,7 @@ impl Encoder {
     pub(super) fn finish(self, last: Option<Block>) -> io::Result<()> {
         // If it is not taken the thread has failed, which its own result reports below.
         let _taken = last.map_or(Ok(()), |block| self.to_encode.send(Message::Block(block)));
+        // The thread ends when nobody can send any more.
         drop(self.to_encode);
         self.thread.join().unwrap_or_else(|_| Err(io::Error::other("the recorder's thread ended early")))
     }

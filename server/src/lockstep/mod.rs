@@ -288,6 +288,7 @@ impl Lockstep {
                 self.begin()?;
             }
             ServerState::PreRead => {
+                // Once per step, however many passes it has: operations and the pace belong to steps.
                 if self.session.cycle().pass() == 0 {
                     self.take_timeline()?;
                     self.pacer.hold_until(self.session.t_v() + self.session.step());

@@ -82,6 +82,7 @@ impl Lockstep {
     /// It belongs to another session, set otherwise or with another past, or a client cannot take its
     /// state back; the session must not be run then.
     pub fn resume(&mut self, checkpoint: &Checkpoint) -> Result<(), CheckpointError> {
+        // In the order plan, settings, timeline, state, clients: a refusal names the first difference.
         let plan = PlanSummary::of(self.session.plan());
         if let Some(difference) = checkpoint.plan.difference(&plan) {
             return Err(CheckpointError::OtherSession(difference));

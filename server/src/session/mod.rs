@@ -219,6 +219,7 @@ impl Session {
         }
         let left = self.cycle.server();
         match self.cycle.advance() {
+            // Synchronised, so only the end of virtual time is in the way.
             None => self.finish(SessionEnd::Completed { t_v: self.cycle.t_v() }),
             Some(entered) => {
                 if left == ServerState::PreWrite {

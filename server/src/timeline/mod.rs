@@ -329,8 +329,10 @@ impl Timeline {
         for item in &self.items {
             let monitored =
                 state.condition_monitors.iter().find(|condition_monitor| condition_monitor.when == item.scheduled.when);
+            // Each of theirs stands for one of ours, so that two equal items stay two.
             let same = theirs.iter_mut().find(|their| their.is_some_and(|(their, ..)| *their == item.scheduled));
             let known = same.and_then(Option::take).map(|(_, stage, seen)| (*stage, seen));
+            // What a monitor has seen of a condition is what the item itself would have seen, had it been there.
             let known = known.or(monitored.map(|condition_monitor| (Stage::Waiting, &condition_monitor.seen)));
             stages.push(match (known, &item.scheduled.when) {
                 (Some((stage, seen)), _) => {

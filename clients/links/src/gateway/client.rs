@@ -126,6 +126,7 @@ impl Gateway {
                 }
                 Err(fault) => return Err(fault.into()),
             }
+            // While the connection is lost, `be_lost` and `read` watch the time instead.
             if wait.lost.is_none() && self.handshake.ask() != Ask::Nothing && Instant::now() > wait.deadline {
                 return Err(match self.link.broken_off() {
                     Some(partial) => GatewayFault::BrokenOff { what: self.handshake.what(), after: patience, partial },
@@ -137,6 +138,7 @@ impl Gateway {
 
     /// Reads once. A connection is back when something has been read over it, not before.
     fn read(&mut self, wait: &mut Wait) -> Result<Result<(), LinkFault>, GatewayFault> {
+        // A socket takes no time-out of 0; and the order must be written again in time.
         let rest = wait.deadline.saturating_duration_since(Instant::now()).clamp(Duration::from_millis(1), AGAIN);
         match self.link.read(rest, &mut self.from_plc) {
             Ok(true) => {
@@ -203,6 +205,7 @@ impl Client for Gateway {
     }
 
     fn setup(&mut self, outputs: &mut [u8]) -> Result<(), ClientFault> {
+        // After a reset the PLC must not start on inputs of the trajectory before.
         self.to_plc.fill(0);
         self.handshake.join(VirtualTime::ZERO);
         self.drive(self.patience.start).map_err(|fault| ClientFault::new(fault.to_string()))?;

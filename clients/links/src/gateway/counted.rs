@@ -90,6 +90,7 @@ impl CountedGateway {
     }
 
     fn exchange_blocks(&mut self, t_v: VirtualTime) -> Result<(), GatewayFault> {
+        // First, so that no block counts which the PLC sent before this step's own went out.
         self.tally.replaced += self.link.discard()?;
         self.link.write(&self.to_plc)?;
         let after = self.patience.grant;

@@ -269,6 +269,7 @@ impl Exchange {
 
     /// The words among what was read; all 0 where there are none.
     pub fn report(&self, from_plc: &[u8]) -> Report {
+        // The places are those of `WORDS_FROM_PLC`, then `BOOTS` and `RUNNING`, packed: 4, 4, 2, 4, 4 and 1 bytes.
         let udint =
             |at: usize| u32::from_le_bytes([from_plc[at], from_plc[at + 1], from_plc[at + 2], from_plc[at + 3]]);
         let (boots, running) = match self.words {
@@ -289,6 +290,7 @@ impl Exchange {
             Words::Handshake => (0, 0),
             Words::WithSystem => (udint(0), 4),
         };
+        // `SDSP_TV` is a LINT, low half first.
         let t_v = u64::from(udint(at + 8)) | u64::from(udint(at + 12)) << 32;
         Order {
             session: udint(at),

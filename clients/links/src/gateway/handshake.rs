@@ -155,6 +155,7 @@ impl Handshake {
         self.order.t_v = t_v;
         self.highest = self.highest.max(self.order.grant);
         self.goal = Goal::Grant;
+        // Without a connection the PLC is surveyed before anything is written: it may be another one by now.
         self.phase = if self.phase == Phase::Unlinked { Phase::Unlinked } else { Phase::Writing };
         Ok(())
     }
@@ -263,6 +264,8 @@ impl Handshake {
             self.want_start(t_v, report);
             return Ok(());
         }
+        // Grants count on from the number of their session, and a session's number is above all that were used: a grant of
+        // an earlier session is never the next one. There is no limit, since this gateway gives one grant at a time.
         let highest = self.highest.max(report.done);
         let session = highest.checked_add(1).ok_or(GatewayFault::NumbersUsedUp(highest))?;
         self.highest = session;
@@ -273,6 +276,7 @@ impl Handshake {
     }
 
     fn want_start(&mut self, t_v: VirtualTime, report: Report) {
+        // The session that follows the start needs a number that is new to this PLC, too.
         self.highest = self.highest.max(report.joined).max(report.done);
         let Some(boots) = report.boots else {
             if self.goal != Goal::Start(t_v) {
@@ -349,6 +353,8 @@ impl Handshake {
             }
             // It has joined this session anew, from a late order, and knows nothing of the grants before.
             _ if report.done + 1 < grant => Err(restarted),
+            // A PLC that joins anew from the order of the first grant takes that order's `t_v` with it, so the grant itself is
+            // not later any more.
             (_, Answer::TimeStandsStill) if self.phase == Phase::Awaiting && grant == session + 1 => Err(restarted),
             _ if self.phase == Phase::Surveying => {
                 self.phase = Phase::Writing;

@@ -89,6 +89,7 @@ impl Controller {
     }
 
     fn enter(&self) -> MutexGuard<'_, State> {
+        // A lock alone would let the clock back in first, time and again: it looks at this number and stands back.
         self.waiting.fetch_add(1, Ordering::SeqCst);
         let state = self.lock();
         self.waiting.fetch_sub(1, Ordering::SeqCst);

@@ -116,6 +116,7 @@ impl Journal {
         for (at, bytes) in &changes {
             self.last[*at as usize..][..bytes.len()].copy_from_slice(bytes);
         }
+        // A backtrace costs far more than the comparison; where no statement wrote, there is none to tell of.
         let frames = if statement.is_some() { frames() } else { Vec::new() };
         self.add(Act::Wrote(Wrote { statement: statement.map(StatementId), frames, changes }));
     }

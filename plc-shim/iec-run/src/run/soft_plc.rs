@@ -174,6 +174,7 @@ impl SoftPlc {
         }
         self.now = now;
         self.scanned_until = self.scanned_until.max(now);
+        // Before the trace begins: what forces write is not a statement's.
         self.apply_forces();
         self.machine.begin_trace();
         self.scheduler.begin_scan();

@@ -167,6 +167,7 @@ impl ParquetSink {
     fn end_part(&mut self) -> io::Result<()> {
         let Some(mut part) = self.part.take() else { return Ok(()) };
         part.finish()?;
+        // The part takes its name before the early files go: between the two, a kill leaves each step at least once.
         std::fs::rename(self.partial(), self.folder.join(part_name(self.number)))?;
         self.early.drain(..).try_for_each(std::fs::remove_file)
     }

@@ -79,6 +79,7 @@ impl Columns {
 
     fn fetch(&mut self, block: &Block, from: usize, size: usize) {
         self.from = from;
+        // A value may be longer than a strip, and is fetched whole.
         self.to = (from + size.max(STRIP)).min(block.width);
         self.strip.clear();
         for image in block.images.chunks_exact(block.width) {

@@ -64,6 +64,7 @@ impl Host {
     pub(super) fn act(&self, happened: impl FnOnce(&mut Acceptor, Now) -> Vec<Action>) {
         let mut acceptor = self.acceptor();
         let actions = happened(&mut acceptor, self.now());
+        // Both locks, always in this order: what the acceptor decides reaches a connection in the order in which it was decided.
         let lines = self.lines();
         for action in actions {
             let (visitor, order) = Order::of(action);
@@ -106,6 +107,7 @@ impl Host {
             }
             self.lines().get(&visitor)?.send(Order::HandOver(sender)).ok()?;
         }
+        // Without the locks, which the lobby's one thread needs to get to the order.
         // The task of a connection that has gone drops the sender.
         receiver.recv().ok()?.ok()
     }

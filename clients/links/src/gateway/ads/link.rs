@@ -182,6 +182,7 @@ fn all_well(codes: &mut Bytes<'_>, points: &[Point], what: &str) -> Result<(), L
 impl Link for AdsLink {
     fn connect(&mut self) -> Result<(), LinkFault> {
         let state = self.open()?;
+        // With `PLC_Running` the handshake sees a STOP itself, and waits for the PLC to go on.
         let tells_itself = self.exchange.from_plc().iter().any(|point| point.name == RUNNING.0);
         if state != command::RUN && !tells_itself {
             let reason = format!("the PLC is in {}; set it to RUN", state_name(state));
@@ -209,6 +210,7 @@ impl Link for AdsLink {
     fn read(&mut self, _patience: Duration, from_plc: &mut [u8]) -> Result<bool, LinkFault> {
         let connection = self.connection.as_mut().ok_or_else(LinkFault::not_connected)?;
         for sum in &self.reads {
+            // A return code for each symbol comes first, then the values of all.
             let length = 4 * sum.count() + sum.size;
             let answer = connection.read_write(command::SUM_READ, sum.count(), length, &sum.heads);
             let answer = answer.map_err(Refusal::into_fault)?;

@@ -12,6 +12,7 @@ pub fn put(entry: &Entry, packed: &[u8], order: ByteOrder, span: &Span, words: &
     let value = &packed[entry.point.range()];
     if let (SignalType::BOOL, Some(word)) = (entry.point.ty, words.first_mut()) {
         let mask = 1 << entry.address.bit.unwrap_or(0);
+        // Other points may have other bits of this register.
         let rest = if entry.address.bit.is_some() { *word & !mask } else { 0 };
         *word = rest | if value[0] != 0 { mask } else { 0 };
         return;

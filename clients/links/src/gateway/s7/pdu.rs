@@ -279,6 +279,7 @@ pub fn values(number: u16, values: &[Result<Vec<u8>, u8>]) -> Vec<u8> {
         match value {
             Ok(bytes) => put_value(&mut data, DONE, bytes),
             Err(code) => {
+                // A value begins at an even place: the byte that fills up is left out where it does already.
                 let room = data.len() % 2;
                 data.extend(&[0, *code, 0, 0, 0][1 - room..]);
             }

@@ -91,6 +91,7 @@ impl Emitter<'_, '_> {
     /// Pays for the code since the cost was `before`.
     pub(crate) fn pay_turn(&mut self, before: u64, span: Span) {
         let Some(register) = self.budget else { return };
+        // A turn costs at least 1, or a loop without a body would never use the budget up.
         let cost = self.code.cost().saturating_sub(before).max(1);
         self.get(register);
         self.emit(constant(cost));

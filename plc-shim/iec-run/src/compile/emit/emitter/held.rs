@@ -30,6 +30,7 @@ impl Emitter<'_, '_> {
     pub(crate) fn store_at(&mut self, address: Address, ty: ElementaryType) {
         self.expect_change(Some(Extent::new(address, ty.size())));
         let pinned = self.pinned(address, ty);
+        // A pinned value has its register already, and must keep it through all turns.
         let entry = match pinned {
             None => self.cache(ty).map(|register| Entry { address, ty, register }),
             pinned => pinned,
