@@ -42,6 +42,10 @@ pub struct Cycle {
 impl Cycle {
     /// A session in `start` with `clients` seats, nobody ready.
     pub fn new(step: TimeSpan, coupling: Coupling<ClientId>, clients: usize) -> Self {
+        debug_assert!(
+            !matches!(&coupling, Coupling::Sequential { order } if order.iter().any(|client| client.index() >= clients)),
+            "a sequential order lists clients of the session only"
+        );
         let seat = Seat {
             state: ClientState::Start,
             ready: false,
@@ -108,7 +112,9 @@ impl Cycle {
 
     /// The ready signal of `client` for the state it is in.
     pub fn signal_ready(&mut self, client: ClientId) {
-        self.seats[client.index()].ready = true;
+        let seat = &mut self.seats[client.index()];
+        debug_assert!(seat.due, "only a client that takes part in the pass signals ready");
+        seat.ready = true;
     }
 
     /// Takes the ready signal of `client` back: it has gone before the session began.
@@ -118,6 +124,7 @@ impl Cycle {
 
     /// Asks for a delay of `client` from the commit on: it sleeps through every step before `wake`.
     pub fn sleep_until(&mut self, client: ClientId, wake: VirtualTime) {
+        debug_assert!(wake.is_multiple_of(self.step), "turns end on the grid of the step, not at {wake}");
         let seat = &mut self.seats[client.index()];
         seat.asked = wake;
         // No `write` lies between the set-up and the first turns, so it is in force at once.
@@ -179,6 +186,7 @@ impl Cycle {
             }
             ServerState::Write => {
                 for seat in self.seats.iter_mut().filter(|seat| seat.due) {
+                    debug_assert!(seat.asked > self.t_v, "the next turn of a client is later than its last");
                     seat.wake = seat.asked;
                 }
             }
@@ -206,11 +214,14 @@ impl Cycle {
         let steps = steps.min(self.idle_steps());
         let span = self.step.times(steps).and_then(|span| self.t_v.checked_add(span));
         let Some(t_v) = span.filter(|_| steps > 0) else { return 0 };
+        debug_assert!(t_v > self.t_v, "virtual time grows with every step");
+        debug_assert!(self.seats.iter().all(|seat| seat.wake > t_v), "nobody is due in a step that is passed over");
         self.t_v = t_v;
         self.steps.0 += steps;
         self.server = ServerState::Write;
         self.pass = self.passes() - 1;
         self.seats.iter_mut().for_each(|seat| seat.due = false);
+        debug_assert!(self.is_at_boundary(), "steps are passed over whole");
         steps
     }
 
@@ -224,11 +235,14 @@ impl Cycle {
             (seat.wake, seat.asked) = (VirtualTime::ZERO, VirtualTime::ZERO);
         }
         self.enter(ServerState::InitialWrite);
+        debug_assert!(self.seats.iter().all(|seat| seat.due && !seat.ready), "a reset waits for the set-up of everybody");
     }
 
     /// Takes up a session at the boundary after step `steps`, with every client asleep until its
     /// turn in `wakes`.
     pub(crate) fn resume_at(&mut self, steps: StepCount, t_v: VirtualTime, wakes: &[VirtualTime]) {
+        debug_assert_eq!(wakes.len(), self.seats.len(), "a checkpoint has one delay per client");
+        debug_assert!(wakes.iter().all(|wake| *wake > t_v), "at a boundary every turn is yet to come");
         self.steps = steps;
         self.t_v = t_v;
         (self.server, self.pass) = match steps.0 {
@@ -238,6 +252,7 @@ impl Cycle {
         for (seat, wake) in self.seats.iter_mut().zip(wakes) {
             *seat = Seat { state: self.server.of_clients(), ready: true, due: false, wake: *wake, asked: *wake };
         }
+        debug_assert!(self.is_at_boundary(), "a session is taken up at a step boundary");
     }
 
     fn passes(&self) -> usize {
@@ -258,6 +273,10 @@ impl Cycle {
             };
             seat.due = in_turn && seat.wake <= end_of_step;
         }
+        debug_assert!(
+            self.coupling == Coupling::Parallel || self.seats.iter().filter(|seat| seat.due).count() <= 1,
+            "in sequential coupling one client at most takes part in a pass"
+        );
         Some(())
     }
 

@@ -28,10 +28,14 @@ pub struct PortMap {
 impl PortMap {
     /// Maps `port`, whose signals have the ids `ids` in the same order, onto `layout`.
     pub fn new(port: &PortLayout, ids: &[SignalId], layout: &ImageLayout) -> Self {
+        assert_eq!(port.ports().len(), ids.len(), "every signal of a port has its id");
         let mut runs: Vec<Run> = Vec::new();
         let mut to_canonicalise = Vec::new();
         for ((signal, offset), id) in port.iter().zip(ids) {
             let run = Run { image: layout.offset(*id), port: offset, len: signal.ty.size() };
+            debug_assert_eq!(layout.ty(*id), signal.ty, "port and image agree on the type of `{}`", signal.name);
+            debug_assert!(run.image + run.len <= layout.size(), "`{}` lies within the image", signal.name);
+            debug_assert!(run.port + run.len <= port.size(), "`{}` lies within its port", signal.name);
             match runs.last_mut() {
                 // One long copy instead of many short ones: a step copies every port.
                 Some(last) if last.image + last.len == run.image && last.port + last.len == run.port => {
@@ -90,6 +94,7 @@ impl Image {
 
     /// Copies committed values to the bytes of a port, which has the size of `map`.
     pub fn gather(&self, map: &PortMap, port: &mut [u8]) {
+        debug_assert_eq!(port.len(), map.size, "inputs have the size of their port");
         for run in &map.runs {
             port[run.port..run.port + run.len].copy_from_slice(&self.committed[run.image..run.image + run.len]);
         }
@@ -97,6 +102,7 @@ impl Image {
 
     /// Copies to the bytes of a port what its writer last wrote.
     pub(crate) fn gather_staged(&self, map: &PortMap, port: &mut [u8]) {
+        debug_assert_eq!(port.len(), map.size, "outputs have the size of their port");
         for run in &map.runs {
             port[run.port..run.port + run.len].copy_from_slice(&self.staged[run.image..run.image + run.len]);
         }
@@ -108,6 +114,7 @@ impl Image {
     /// The first signal whose bytes are not a value of its type. What is staged must not be committed
     /// then; the session ends with it.
     pub fn stage(&mut self, map: &PortMap, port: &[u8]) -> Result<(), (SignalId, BadValue)> {
+        debug_assert_eq!(port.len(), map.size, "outputs have the size of their port");
         for run in &map.runs {
             self.staged[run.image..run.image + run.len].copy_from_slice(&port[run.port..run.port + run.len]);
         }
@@ -119,6 +126,7 @@ impl Image {
 
     /// Makes all staged values visible at once.
     pub fn commit(&mut self, commit: Commit) {
+        debug_assert_eq!(self.staged.len(), self.committed.len(), "staged and committed values have one layout");
         self.committed.copy_from_slice(&self.staged);
         if !self.signal_overlay.is_empty() {
             let Self { layout, committed, staged, signal_overlay } = self;
@@ -145,6 +153,9 @@ impl Image {
 
     /// Takes the values of a checkpoint, each of the image's size, and what lies over them.
     pub(crate) fn load(&mut self, committed: &[u8], staged: &[u8], signal_overlay: SignalOverlay) {
+        debug_assert_eq!(committed.len(), self.layout.size(), "the image of a checkpoint has this layout");
+        debug_assert_eq!(staged.len(), self.layout.size(), "the staged values of a checkpoint have this layout");
+        debug_assert!(signal_overlay.fits(&self.layout), "what lies over signals has their sizes");
         self.committed.copy_from_slice(committed);
         self.staged.copy_from_slice(staged);
         self.signal_overlay = signal_overlay;

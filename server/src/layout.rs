@@ -25,6 +25,11 @@ impl ImageLayout {
             offsets[index] = size;
             size += signals[index].ty.size();
         }
+        debug_assert_eq!(
+            size,
+            signals.iter().map(|signal| signal.ty.size()).sum::<usize>(),
+            "the image has no byte that is not a signal's"
+        );
         Self { offsets, types: signals.iter().map(|signal| signal.ty).collect(), size }
     }
 
@@ -47,7 +52,9 @@ impl ImageLayout {
     /// Where `signal` lies in an image.
     pub fn range(&self, signal: SignalId) -> Range<usize> {
         let offset = self.offsets[signal.index()];
-        offset..offset + self.types[signal.index()].size()
+        let end = offset + self.types[signal.index()].size();
+        debug_assert!(end <= self.size, "every signal lies within the image");
+        offset..end
     }
 
     /// The type of `signal`.

@@ -43,6 +43,8 @@ impl Pacer {
         let Pace::Factor(factor) = self.pace else { return };
         let now = Instant::now();
         let (start, from) = *self.origin.get_or_insert((now, t_v));
+        debug_assert!(t_v >= from, "virtual time goes back only with a reset, which rebases");
+        // `Duration` and `Instant` panic on what they cannot hold, and a small factor makes centuries of a step.
         let due = start + Duration::from_secs_f64(((t_v - from) as f64 / 1e9 / factor).clamp(0.0, 1e9));
         match due.checked_duration_since(now) {
             Some(early) => std::thread::sleep(early),

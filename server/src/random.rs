@@ -35,7 +35,10 @@ impl Random {
     #[must_use]
     pub fn new(seed: u64) -> Self {
         let mut counter = seed;
-        Self([(); 4].map(|()| split_mix(&mut counter)))
+        let state = [(); 4].map(|()| split_mix(&mut counter));
+        // SplitMix64 is a bijection of its counter, so of four numbers one at most is 0.
+        debug_assert!(state != [0; 4], "a stream of all zeros never leaves that state");
+        Self(state)
     }
 
     /// 64 random bits.

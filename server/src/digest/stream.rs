@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 
 /// Bytes that are hashed at once: a power of two of chunks, so that each piece is a subtree.
 const SUBTREE_BYTES: usize = 64 * blake3::CHUNK_LEN;
+const _: () = assert!((SUBTREE_BYTES / blake3::CHUNK_LEN).is_power_of_two(), "a subtree of BLAKE3 is a whole one");
 
 /// A BLAKE3 hash as its input grows.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -71,6 +72,7 @@ impl HashStream {
 
     #[cold]
     fn close_subtree(&mut self) {
+        debug_assert_eq!(self.pending.len(), SUBTREE_BYTES, "only a full subtree is closed");
         self.settle();
         let mut right = self.tail.finalize_non_root();
         self.subtrees += 1;
@@ -81,6 +83,11 @@ impl HashStream {
             }
         }
         self.merged.push(right);
+        debug_assert_eq!(
+            self.merged.len(),
+            self.subtrees.count_ones() as usize,
+            "one chaining value is kept per bit that is set in the count"
+        );
         self.pending.clear();
         self.tail = tail_at(self.subtrees);
         self.settled = 0;
@@ -99,6 +106,7 @@ impl HashStream {
         tail.update(&self.pending[self.settled..]);
         let Some((first, others)) = self.merged.split_first() else { return *tail.finalize().as_bytes() };
         // With a subtree before it the tail is never empty: see `take`.
+        debug_assert!(!self.pending.is_empty(), "bytes follow a closed subtree");
         let tail = tail.finalize_non_root();
         let right = others.iter().rev().fold(tail, |right, left| merge_subtrees_non_root(left, &right, Mode::Hash));
         *merge_subtrees_root(first, &right, Mode::Hash).as_bytes()

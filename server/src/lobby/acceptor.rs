@@ -159,6 +159,7 @@ impl Acceptor {
         let waits = self.connections.iter().filter(|(_, connection)| silent(&connection.stage));
         let slowest = waits.min_by_key(|(visitor, connection)| (connection.until, **visitor));
         // There is one at least: who has just come.
+        debug_assert!(slowest.is_some(), "who has just come is silent");
         slowest.map_or(Visitor(0), |(visitor, _)| *visitor)
     }
 
@@ -402,6 +403,7 @@ impl Acceptor {
 
     /// Says why, then parts.
     fn refuse(&mut self, visitor: Visitor, why: &str, now: Now, actions: &mut Vec<Action>) {
+        debug_assert!(self.knows(visitor), "only who is there can be sent away");
         let message = one_line(why).into_owned();
         tracing::warn!(?visitor, why = %message, "sent away");
         actions.push(Action::Send(visitor, Arc::new(ServerMessage::Refused { message })));

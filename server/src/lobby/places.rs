@@ -26,6 +26,7 @@ impl Places {
 
     /// One has left.
     pub(super) fn give_back(&mut self, address: IpAddr) {
+        debug_assert!(self.0.contains_key(&address), "an operator gives back a place that it has taken");
         if let Some(count) = self.0.get_mut(&address) {
             *count -= 1;
             if *count == 0 {

@@ -118,6 +118,7 @@ impl Lockstep {
             let (inputs, outputs) = member.map_or((0, 0), |member| (member.inputs.size(), member.outputs.size()));
             ClientSlot { id, carrier, inputs: vec![0; inputs], outputs: vec![0; outputs] }
         };
+        assert_eq!(carriers.len(), session.clients().len(), "every client of the plan has its carrier");
         let slots: Vec<ClientSlot> = session.clients().zip(carriers).map(slot).collect();
         let mut order: Vec<usize> = (0..slots.len()).collect();
         // A stable sort: among themselves clients stay in the order of their names.
@@ -358,6 +359,11 @@ impl Lockstep {
         for index in &self.order {
             let slot = &mut self.slots[*index];
             if self.session.cycle().is_due(slot.id) {
+                debug_assert_eq!(
+                    Some(slot.inputs.len()),
+                    self.session.member(slot.id).map(|member| member.inputs.size()),
+                    "a grant carries all inputs of its client"
+                );
                 slot.carrier.grant(Grant { sequence, t_v, inputs: &slot.inputs }, &mut slot.outputs);
             }
         }
@@ -379,6 +385,7 @@ impl Lockstep {
     }
 
     fn end_step(&mut self) -> Result<(), RecordError> {
+        debug_assert!(self.digest.is_some(), "the digest begins with the initial values, before the first step");
         if let Some(digest) = &mut self.digest {
             digest.step(self.session.image());
         }

@@ -104,6 +104,7 @@ impl Lockstep {
     fn operate_client(&mut self, name: &ClientName, asked: &ClientOperation) -> Result<(), OperationError> {
         let id = self.client_id(name)?;
         let refused = |source| OperationError::Client { client: name.clone(), source };
+        debug_assert_eq!(self.slots[id.index()].id, id, "slots lie in the order of the ids");
         self.slots[id.index()].carrier.operate(asked).map_err(refused)?;
         if asked.moves_turns() {
             self.session.wake_next(id);

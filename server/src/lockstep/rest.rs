@@ -12,6 +12,7 @@ use crate::time::VirtualTime;
 /// Steps between two looks at the mailbox and at observers that need not see every step; a power of two, at whose
 /// multiples the looks are.
 const STRIDE: u64 = 4096;
+const _: () = assert!(STRIDE.is_power_of_two(), "looks lie at the multiples of a power of two");
 
 impl Lockstep {
     /// At a boundary: goes over the steps in which nothing can happen, up to the first boundary at or after `t_v` and
@@ -23,6 +24,7 @@ impl Lockstep {
         }
         let one_by_one = self.shown.is_watched() || self.observers.iter().any(|one| one.wants_idle_steps());
         let passed = self.session.pass_over(if one_by_one { 1 } else { steps });
+        debug_assert!((1..=steps).contains(&passed), "steps in which nothing can happen are passed over, and no others");
         if let Some(digest) = &mut self.digest {
             digest.steps(self.session.image(), passed);
         }

@@ -97,6 +97,7 @@ impl Lockstep {
         if !same_clients || !self.session.restore(&checkpoint.session) {
             return Err(CheckpointError::OtherSession("its state does not fit its own plan".to_owned()));
         }
+        debug_assert_eq!(checkpoint.clients.len(), self.slots.len(), "a checkpoint has one state per client");
         let (steps, t_v) = (self.session.cycle().steps(), self.session.t_v());
         for (slot, (client, state)) in self.slots.iter_mut().zip(&checkpoint.clients) {
             let restored = slot.carrier.restore(steps, t_v, state);

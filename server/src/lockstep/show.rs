@@ -103,6 +103,7 @@ impl Lockstep {
         view.end = end.cloned();
         view.image.clear();
         view.image.extend_from_slice(self.session.image());
+        debug_assert_eq!(view.image.len(), self.shown.image_bytes, "all views of a session have one size");
         view.forced.clear();
         view.forced.extend(self.session.forced());
         // The last view is looked at by those who come when all is over, too.

@@ -132,6 +132,7 @@ impl Session {
         let membership = admit(request, &self.plan, &self.layout, &self.writers)?;
         let writers = Arc::make_mut(&mut self.writers);
         for signal in &membership.writes {
+            debug_assert!(writers[signal.index()].is_none(), "a signal has one writer");
             writers[signal.index()] = Some(name.clone());
         }
         self.members[id.index()] = Some(Arc::new(membership));
@@ -149,6 +150,11 @@ impl Session {
         if let Some(membership) = self.members[id.index()].take() {
             let writers = Arc::make_mut(&mut self.writers);
             for signal in &membership.writes {
+                debug_assert_eq!(
+                    writers[signal.index()].as_ref(),
+                    self.plan.clients().get(id.index()),
+                    "a client gives back only what it writes"
+                );
                 writers[signal.index()] = None;
             }
             self.cycle.withdraw_ready(id);
@@ -205,6 +211,7 @@ impl Session {
     pub fn pass_over(&mut self, steps: u64) -> u64 {
         let passed = self.cycle.pass_over(steps.min(self.idle_steps()));
         if passed > 0 {
+            debug_assert!(self.cycle.is_at_boundary(), "steps are passed over from boundary to boundary");
             // What an operation has changed since the last commit is seen with the first of them; the others change
             // nothing.
             self.image.commit(Commit::EndsStep);
@@ -217,11 +224,13 @@ impl Session {
         if !self.cycle.is_synchronised() {
             return Progress::Waiting;
         }
-        let left = self.cycle.server();
+        let (left, t_v) = (self.cycle.server(), self.cycle.t_v());
         match self.cycle.advance() {
             // Synchronised, so only the end of virtual time is in the way.
             None => self.finish(SessionEnd::Completed { t_v: self.cycle.t_v() }),
             Some(entered) => {
+                debug_assert!(self.cycle.t_v() >= t_v, "virtual time does not go back within a session");
+                debug_assert!(self.members.iter().all(Option::is_some), "a session begins when nobody is missing");
                 if left == ServerState::PreWrite {
                     let commit = if self.cycle.ends_step() { Commit::EndsStep } else { Commit::Within };
                     self.image.commit(commit);
@@ -257,6 +266,7 @@ impl Session {
     }
 
     fn finish(&mut self, end: SessionEnd) -> Progress {
+        debug_assert!(self.end.is_none(), "a session ends once");
         self.end = Some(end);
         Progress::Ended
     }

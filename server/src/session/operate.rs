@@ -95,6 +95,7 @@ impl Session {
         let id = self.known(signal)?;
         let bytes = self.layout.ty(id).parse_text(value);
         let bytes = bytes.map_err(|source| OperationError::Value { signal: signal.clone(), source })?;
+        debug_assert_eq!(bytes.len(), self.layout.ty(id).size(), "a value has the size of its signal");
         Ok((id, bytes))
     }
 }

@@ -70,6 +70,7 @@ impl PortLayout {
             let nearest = nearest(name, self.ports.iter().map(|port| port.name.as_str())).map(str::to_owned);
             SlotError::Unknown { name: name.to_owned(), nearest }
         })?;
+        debug_assert!(offset + port.ty.size() <= self.size, "`{name}` lies within its port");
         if V::accepts(port.ty) {
             Ok(Slot { offset, value: PhantomData })
         } else {

@@ -47,6 +47,7 @@ impl SignalOverlay {
 
     /// A value for one step; `bytes` has the signal's size.
     pub(crate) fn write(&mut self, signal: SignalId, bytes: Vec<u8>) {
+        debug_assert!(!self.is_forced(signal), "a write never lies under a force");
         self.writes.insert(signal, bytes);
     }
 
@@ -76,6 +77,7 @@ impl SignalOverlay {
     pub(crate) fn disturb(&mut self, signal: SignalId, fault: &SignalFault, onset: &Onset<'_>) -> bool {
         let disturbance = Disturbance::begin(fault, onset);
         let Some(disturbance) = disturbance else { return false };
+        debug_assert!(disturbance.fits(onset.ty), "a fault begins as one that {} can have", onset.ty);
         let disturbance = match (disturbance, self.faults.remove(&signal)) {
             (Disturbance::Line(fault), Some(Disturbance::Line(before))) => Disturbance::Line(fault.after(before)),
             (disturbance, _) => disturbance,
@@ -97,6 +99,8 @@ impl SignalOverlay {
     /// late signals and gives written values to the writers' own.
     #[cold]
     pub(crate) fn apply(&mut self, layout: &ImageLayout, staged: &mut [u8], committed: &mut [u8], ends_step: bool) {
+        debug_assert_eq!(staged.len(), layout.size(), "staged values have the layout of the image");
+        debug_assert_eq!(committed.len(), layout.size(), "committed values have the layout of the image");
         for (signal, fault) in &mut self.faults {
             let at = layout.range(*signal);
             fault.pass(layout.ty(*signal), &mut committed[at], ends_step);

@@ -287,6 +287,7 @@ impl Timeline {
             }
         }
         self.look_ahead();
+        debug_assert!(self.next.is_none_or(|next| next > end), "nothing stays due that was due until {end}");
         // Several instants may fall into one step: they keep their order; equal ones that of the list.
         taken.sort_by_key(|(at, _)| *at);
         taken.into_iter().map(|(_, operation)| operation).collect()
@@ -355,6 +356,7 @@ impl Timeline {
         if let Some((gone, ..)) = theirs.into_iter().flatten().find(|(_, stage, _)| *stage == Stage::Done) {
             return Err(TimelineError::Gone { scheduled: Box::new(gone.clone()), t_v });
         }
+        debug_assert_eq!(stages.len(), self.items.len(), "every item has its stage");
         for (item, (stage, seen)) in self.items.iter_mut().zip(stages) {
             (item.stage, item.seen) = (stage, seen);
         }

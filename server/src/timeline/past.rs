@@ -71,6 +71,7 @@ impl<L> Judged<L> {
     /// Whether it holds on the image of `t_ns`, which is later than all images before; `holds` judges a comparison.
     /// Every image must be shown, or its past is not what it was.
     pub fn judge(&self, memories: &mut Memories, t_ns: u64, holds: &mut dyn FnMut(&L) -> bool) -> bool {
+        debug_assert_eq!(memories.0.len(), self.memories, "a condition has one memory per operator on the past");
         self.part.judge(&mut memories.0, t_ns, holds)
     }
 }
@@ -168,7 +169,10 @@ fn next(memories: &mut usize) -> usize {
 fn runs(memories: &mut [Memory], own: usize) -> Option<&mut Runs> {
     match memories.get_mut(own) {
         Some(Memory::Runs(runs)) => Some(runs),
-        Some(Memory::Before(_)) | None => None,
+        Some(Memory::Before(_)) | None => {
+            debug_assert!(false, "memory {own} is of another operator, and `fits` refuses it");
+            None
+        }
     }
 }
 

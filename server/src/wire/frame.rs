@@ -183,6 +183,7 @@ impl Encoder<FrameRef<'_>> for FrameCodec {
         if length > self.limit || u32::try_from(length).is_err() {
             return Err(FrameError::TooLong { length, limit: self.limit });
         }
+        let end = out.len() + LENGTH_BYTES + length;
         out.reserve(LENGTH_BYTES + length);
         out.put_u32_le(length as u32);
         match frame {
@@ -202,6 +203,7 @@ impl Encoder<FrameRef<'_>> for FrameCodec {
                 out.put_slice(outputs);
             }
         }
+        debug_assert_eq!(out.len(), end, "the length field counts all that follows it");
         Ok(())
     }
 }

@@ -132,6 +132,7 @@ pub struct PlacedSignal {
 
 /// The places of all signals of `layout`.
 pub fn placed(layout: &PortLayout) -> Vec<PlacedSignal> {
+    debug_assert!(u32::try_from(layout.size()).is_ok(), "a port is smaller than the frame that carries it");
     layout
         .iter()
         .map(|(port, offset)| PlacedSignal {

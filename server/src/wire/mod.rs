@@ -18,6 +18,7 @@ pub use message::{ClientMessage, ServerMessage};
 
 /// The lowest and highest protocol version that this build speaks.
 pub const VERSIONS: VersionRange = VersionRange { min: 1, max: 1 };
+const _: () = assert!(VERSIONS.min <= VERSIONS.max, "this build speaks one version at least");
 
 /// Largest frame before a client has joined: nobody unknown makes the server hold more.
 pub const HANDSHAKE_FRAME_BYTES_MAX: usize = 1024 * 1024;
