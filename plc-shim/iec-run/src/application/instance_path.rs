@@ -34,6 +34,7 @@ pub(super) fn write(checked: &mut Checked, sources: &SourceMap) {
     let found = std::mem::take(&mut finder.found);
     for (offset, bytes) in found {
         let start = offset as usize;
+        debug_assert!(start + bytes.len() <= checked.image.len(), "a variable lies within memory");
         if let Some(place) = checked.image.get_mut(start..start + bytes.len()) {
             place.copy_from_slice(&bytes);
         }

@@ -34,6 +34,7 @@ fn joined(mut found: Vec<Range<u32>>) -> Vec<Range<u32>> {
             _ => joined.push(range),
         }
     }
+    debug_assert!(joined.windows(2).all(|pair| pair[0].end < pair[1].start), "ranges ascend with gaps between them");
     joined
 }
 

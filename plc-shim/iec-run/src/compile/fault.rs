@@ -48,6 +48,14 @@ impl FaultKind {
     ];
 }
 
+const _: () = {
+    let mut at = 0;
+    while at < FaultKind::ALL.len() {
+        assert!(FaultKind::ALL[at] as usize == at, "the position of a kind is its number in a saved state");
+        at += 1;
+    }
+};
+
 impl fmt::Display for FaultKind {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str(match self {
@@ -138,6 +146,7 @@ impl FunctionMarks {
     }
 
     fn marks_at(&self, offset: u32) -> impl Iterator<Item = Mark> {
+        debug_assert!(self.marks.is_sorted_by_key(|(at, _)| *at), "marks lie in the order of their offsets");
         let first = self.marks.partition_point(|(at, _)| *at < offset);
         let here = self.marks.iter().skip(first).take_while(move |(at, _)| *at == offset);
         here.map(|(_, mark)| *mark)
@@ -145,6 +154,7 @@ impl FunctionMarks {
 
     /// The last statement that begins at or before `offset`.
     pub(crate) fn statement_before(&self, offset: u32) -> Option<Mark> {
+        debug_assert!(self.marks.is_sorted_by_key(|(at, _)| *at), "marks lie in the order of their offsets");
         let end = self.marks.partition_point(|(at, _)| *at <= offset);
         let before = self.marks.iter().take(end).rev();
         before.map(|(_, mark)| *mark).find(|mark| mark.kind == MarkKind::Statement)

@@ -72,6 +72,13 @@ pub(crate) fn compile(checked: &Checked, noted: Noted<'_>) -> Compiled {
         sections.add_trace_imports();
     }
     let first_function = sections.imports.len();
+    let traced = if matches!(noted, Noted::Traced(_)) { trace::IMPORTS.len() } else { 0 };
+    debug_assert_eq!(
+        first_function as usize,
+        host::IMPORTS.len() + text_host::IMPORTS.len() + traced,
+        "calls of the host name its functions by these numbers"
+    );
+    debug_assert!(u32::try_from(checked.image.len()).is_ok(), "memory is addressed with 32 bits");
     let functions = checked.pous.keys().copied().zip(first_function..).collect();
     let rows = emit::place_rows(&checked.rows, |parameters, results| sections.add_type(parameters, results));
     let points = match noted {
@@ -84,6 +91,11 @@ pub(crate) fn compile(checked: &Checked, noted: Noted<'_>) -> Compiled {
     let mut faults = FaultTable { first_function, functions: Vec::new() };
     sections.add_units(checked, order, &mut shared, &mut faults);
     sections.add_entries(checked, &mut shared, &mut faults);
+    debug_assert_eq!(
+        faults.functions.len(),
+        sections.functions.len() as usize,
+        "the marks of a function are found by its number"
+    );
     let points = shared.points().map_or(0, Points::bytes);
     let wasm = sections.finish(checked, points, &shared, &hints(&faults));
     Compiled { wasm, faults, points: shared.into_points().map_or_else(Vec::new, Points::into_list) }
@@ -105,6 +117,7 @@ fn hints(faults: &FaultTable) -> BranchHints {
 /// A memory of a fixed size that has room for so many bytes.
 fn memory_of(bytes: usize) -> MemoryType {
     let pages = (bytes as u64).div_ceil(PAGE);
+    debug_assert!(pages <= PAGE, "a memory of 32 bits has 65,536 pages at most");
     MemoryType { minimum: pages, maximum: Some(pages), memory64: false, shared: false, page_size_log2: None }
 }
 
@@ -163,6 +176,7 @@ impl Sections {
         let ty = self.add_type(parameters, results);
         self.functions.function(ty);
         self.code.function(body);
+        debug_assert_eq!(self.functions.len(), self.code.len(), "every function that is declared has its body");
         self.imports.len() + self.functions.len() - 1
     }
 
@@ -177,6 +191,7 @@ impl Sections {
             }
         }
         debug_assert_eq!(made.len(), checked.pous.len(), "every unit has its place in the order");
+        debug_assert!(made.keys().eq(checked.pous.keys()), "units are numbered in the order of their ids");
         for (pou, Made { body, marks, units }) in checked.pous.values().zip(made.into_values()) {
             let (parameters, results) = signature(pou, &checked.types);
             self.add_function(parameters, results, &body);

@@ -68,6 +68,7 @@ impl Points {
         if index == next {
             self.list.push(Point { kind, unit: unit.to_owned(), span });
         }
+        debug_assert_eq!(self.known.len(), self.list.len(), "every point has one byte, wherever its unit is compiled");
         Some(index)
     }
 

@@ -39,6 +39,14 @@ pub(crate) const IMPORTS: [TextImport; 6] = [
     TextImport::Parse,
 ];
 
+const _: () = {
+    let mut at = 0;
+    while at < IMPORTS.len() {
+        assert!(IMPORTS[at] as usize == at, "an import's position is its number, which its function index counts on");
+        at += 1;
+    }
+};
+
 impl TextImport {
     pub(crate) fn name(self) -> &'static str {
         match self {

@@ -32,5 +32,6 @@ pub(crate) fn parameters(count: usize) -> Vec<ValType> {
 
 /// Function index of the import at this position.
 pub(crate) fn index(import: usize) -> u32 {
+    debug_assert!(import < IMPORTS.len(), "the host gives no such function");
     (host::IMPORTS.len() + text_host::IMPORTS.len() + import) as u32
 }

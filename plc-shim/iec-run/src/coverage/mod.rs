@@ -43,6 +43,7 @@ struct FileCoverage {
 impl Coverage {
     /// What the bytes say of the points; nothing is known of the run up to `counted_from`.
     pub(crate) fn new(sources: &SourceMap, points: &[Point], seen: &[u8], counted_from: Option<VirtualTime>) -> Self {
+        debug_assert!(seen.len() >= points.len(), "every point has its byte");
         let mut found = Self { counted_from, ..Self::default() };
         for (point, seen) in points.iter().zip(seen) {
             let (file, place) = sources.locate(point.span);

@@ -19,6 +19,7 @@ pub(super) struct Forces {
 impl Forces {
     pub(super) fn apply(&self, memory: &mut [u8]) {
         for Force { variable, bytes } in &self.list {
+            debug_assert!(variable.offset as usize + bytes.len() <= memory.len(), "a force lies within memory");
             variable.store(bytes, memory);
         }
     }
@@ -32,6 +33,7 @@ impl Forces {
     }
 
     pub(super) fn hold(&mut self, variable: Variable, bytes: Vec<u8>) {
+        debug_assert_eq!(bytes.len(), variable.size as usize, "a force has as many bytes as its variable");
         self.release(&variable);
         self.list.push(Force { variable, bytes });
     }

@@ -113,6 +113,7 @@ impl Journal {
         if self.last.len() < memory.len() {
             self.last.resize(memory.len(), 0);
         }
+        debug_assert!(self.last.len() >= memory.len(), "memory never shrinks below what was seen");
         for (at, bytes) in &changes {
             self.last[*at as usize..][..bytes.len()].copy_from_slice(bytes);
         }

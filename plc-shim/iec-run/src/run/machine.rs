@@ -83,6 +83,7 @@ impl Machine {
         let functions = |task: &Vec<usize>| task.iter().filter_map(|at| entries.get(*at)).flatten().cloned().collect();
         let functions: Vec<Vec<_>> = tasks.iter().map(functions).collect();
         let rows = row::link(&mut store, &functions).map_err(|error| module_error(&error))?;
+        debug_assert_eq!(rows.len(), tasks.len(), "every task has its row, be it empty");
         let start = optional(&instance, &mut store, START_EXPORT)?;
         let end = optional(&instance, &mut store, END_EXPORT)?;
         Ok(Self { store, memory, budget, notes, size, entries, rows, start, end })

@@ -90,6 +90,8 @@ pub(super) fn resolve(plan: &TaskPlan, application: &Application) -> Result<Reso
         resolved.tasks.push(entries(application, &task.name, &task.programs, &mut running)?);
         resolved.singles.push(trigger(application, task)?);
     }
+    debug_assert_eq!(resolved.tasks.len(), plan.tasks.len(), "what tasks run is found by their positions in the plan");
+    debug_assert_eq!(resolved.singles.len(), plan.tasks.len(), "triggers are found by the positions of their tasks");
     resolved.background = entries(application, BACKGROUND, &plan.background, &mut running)?;
     Ok(resolved)
 }

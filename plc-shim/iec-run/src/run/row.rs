@@ -57,6 +57,7 @@ fn module(tasks: &[Vec<TypedFunc<(), ()>>]) -> Vec<u8> {
         exports.export(&export(task), ExportKind::Func, imports.len() + functions.len());
         functions.function(0);
     }
+    debug_assert_eq!(next, imports.len(), "what a task runs is imported once, and called once");
     let mut names = NameSection::new();
     names.module(NAME);
     let mut module = Module::new();

@@ -68,6 +68,7 @@ pub(super) struct Scheduler {
 impl Scheduler {
     /// `singles` gives the offset of each task's SINGLE input.
     pub(super) fn new(plan: &TaskPlan, singles: &[Option<usize>]) -> Self {
+        debug_assert_eq!(plan.tasks.len(), singles.len(), "every task has its trigger, or none");
         let entry = |(task, single): (&Task, &Option<usize>)| Entry {
             interval: task.interval,
             priority: task.priority,
@@ -95,6 +96,7 @@ impl Scheduler {
     pub(super) fn look(&mut self, now: VirtualTime, memory: &[u8]) {
         for task in &mut self.tasks {
             let Some(offset) = task.single else { continue };
+            debug_assert!(offset < memory.len(), "a trigger is a variable of the application");
             let level = memory.get(offset).is_some_and(|byte| *byte != 0);
             if level && !task.waiting.level {
                 // An edge that waits already keeps its place in the order.
@@ -115,6 +117,10 @@ impl Scheduler {
         let (_, _, index) = waiting.min()?;
         let task = self.tasks.get_mut(index)?;
         task.advance(now);
+        debug_assert!(
+            task.interval.is_none() || task.waiting.due.is_none_or(|due| due > now),
+            "a task that runs now is due later than now"
+        );
         if task.waiting.edge.is_some() && !task.has_run {
             task.waiting.edge = None;
             task.has_run = true;
@@ -150,6 +156,7 @@ impl Scheduler {
     }
 
     pub(super) fn set_waiting(&mut self, waiting: &[Waiting]) {
+        debug_assert_eq!(waiting.len(), self.tasks.len(), "a state says of every task how it waits");
         for (task, waiting) in self.tasks.iter_mut().zip(waiting) {
             task.waiting = *waiting;
             task.has_run = false;

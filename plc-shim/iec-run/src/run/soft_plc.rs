@@ -91,6 +91,7 @@ impl SoftPlc {
             fault: None,
             forces: Forces::default(),
         };
+        assert_eq!(plc.memory().len(), application.initial_memory().len(), "memory is as large as the image");
         plc.reset();
         Ok(plc)
     }
@@ -136,6 +137,8 @@ impl SoftPlc {
         let mut from = 0;
         for range in kept(application) {
             let to = range.start as usize;
+            debug_assert!(from <= to && range.start <= range.end, "kept ranges ascend and do not overlap");
+            debug_assert!(range.end as usize <= memory.len(), "kept ranges lie within memory");
             memory[from..to].copy_from_slice(&image[from..to]);
             from = range.end as usize;
         }
@@ -210,6 +213,8 @@ impl SoftPlc {
     }
 
     fn run_task(&mut self, task: usize) -> Result<(), PlcFault> {
+        debug_assert!(task < self.tasks.len(), "the scheduler knows the tasks of the plan only");
+        // One call for the whole row. With forces or a trace the host has something to do between its parts.
         if self.forces.is_empty() && !self.machine.is_traced() {
             let ended = self.machine.run_row(task);
             return ended.map_err(|trapped| self.stop(&trapped));
@@ -374,6 +379,7 @@ impl SoftPlc {
     /// The bytes are not a state of a PLC with these variables and this plan, or of one that `policy` refuses.
     pub fn restore_with(&mut self, bytes: &[u8], policy: CodePolicy) -> Result<(), RestoreError> {
         let State { now, waiting, fault, forces, memory } = self.decoded(bytes, policy)?;
+        debug_assert_eq!(memory.len(), self.memory().len(), "a state has all of memory");
         copy_to(self.machine.memory_mut(), 0, &memory);
         self.scheduler.set_waiting(&waiting);
         (self.now, self.fault, self.forces) = (now, fault, forces);
@@ -396,5 +402,6 @@ impl SoftPlc {
 /// `offset` and the bytes behind it are the PLC's own: memory is as large as the image, which is larger than the
 /// cells in front of the variables.
 fn copy_to(memory: &mut [u8], offset: usize, bytes: &[u8]) {
+    debug_assert!(offset + bytes.len() <= memory.len(), "the PLC's own cells lie within memory");
     memory[offset..offset + bytes.len()].copy_from_slice(bytes);
 }

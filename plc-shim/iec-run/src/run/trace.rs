@@ -41,6 +41,7 @@ impl Watched {
             Some(bit) => now.iter().zip(&self.last).any(|(now, last)| (now ^ last) >> bit & 1 == 1),
             None => now != self.last,
         };
+        debug_assert_eq!(self.last.len(), now.len(), "what is watched keeps its size");
         self.last.copy_from_slice(now);
         changed
     }

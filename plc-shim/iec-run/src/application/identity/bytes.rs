@@ -37,6 +37,7 @@ impl Writer {
 
     /// How many items follow. Memory ends at 64 MiB and sources at 256 MiB, so no list is longer than 32 bits count.
     pub(crate) fn count(&mut self, count: usize) {
+        debug_assert!(u32::try_from(count).is_ok(), "no list is longer than 32 bits count");
         self.small_number(count as u32);
     }
 

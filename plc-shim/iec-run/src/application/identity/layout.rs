@@ -174,6 +174,7 @@ fn joined(mut ranges: Vec<Range<usize>>) -> Vec<Range<usize>> {
             _ => joined.push(range),
         }
     }
+    debug_assert!(joined.windows(2).all(|pair| pair[0].end < pair[1].start), "ranges ascend with gaps between them");
     joined
 }
 
@@ -236,6 +237,15 @@ impl<'c> Builder<'c> {
     }
 
     fn add(&mut self, shape: Shape) -> u32 {
+        let is_known = |part: u32| (part as usize) < self.layout.shapes.len();
+        debug_assert!(
+            match &shape.parts {
+                Parts::None => true,
+                Parts::Elements(element) => is_known(*element),
+                Parts::Members(members) => members.iter().all(|member| is_known(member.shape)),
+            },
+            "a type stands behind those that it is made of"
+        );
         self.layout.shapes.push(shape);
         self.layout.shapes.len() as u32 - 1
     }

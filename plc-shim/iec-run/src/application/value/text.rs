@@ -37,6 +37,7 @@ impl Line {
     }
 
     pub(crate) fn text(&self) -> &str {
+        debug_assert!(self.bytes.iter().take(self.used).all(u8::is_ascii), "a line is ASCII, and so is its beginning");
         self.bytes.get(..self.used).and_then(|bytes| std::str::from_utf8(bytes).ok()).unwrap_or("")
     }
 }

@@ -45,6 +45,7 @@ impl Costs {
     pub(crate) fn new(pous: &BTreeMap<PouId, Pou>) -> (Self, Vec<PouId>) {
         let sizes: BTreeMap<PouId, Size> = pous.iter().map(|(id, pou)| (*id, measure(&pou.body))).collect();
         let order = callees_first(&sizes);
+        debug_assert_eq!(order.len(), sizes.len(), "every unit is measured, and once");
         let mut costs = Self::default();
         for callee in sizes.values().flat_map(Size::all_calls) {
             costs.units.entry(*callee).or_default().sites += 1;

@@ -68,6 +68,7 @@ impl Count {
 
     /// How many turns, if that is known.
     pub(crate) fn turns(&self) -> Option<u64> {
+        debug_assert!(self.step != 0, "a loop that counts by itself has a step");
         let ((from, other), (to, another)) = (self.from, self.to);
         let known = from == other && to == another;
         let turns = if (to - from) * self.step.signum() < 0 { 0 } else { (to - from) / self.step + 1 };

@@ -62,6 +62,7 @@ impl Known {
             self.entries.remove(0);
         }
         self.entries.push(entry);
+        debug_assert!(self.entries.len() <= MAX_ENTRIES, "no more is remembered than a machine can hold");
     }
 
     /// Forgets what a store to `extent` may change.

@@ -61,6 +61,7 @@ impl<'p> Scope<'p> {
     /// Names are again those of the unit around. Gives back the registers of the one that was left:
     /// nothing is known of them any more.
     pub(crate) fn leave(&mut self) -> Vec<Register> {
+        debug_assert!(!self.units.is_empty(), "only a unit that was entered is left");
         let registers = self.units.pop().map_or_else(Vec::new, |terms| terms.registers);
         for register in &registers {
             self.roots.lead(*register, None);
@@ -130,6 +131,7 @@ impl<'p> Scope<'p> {
     }
 
     pub(crate) fn close_counter(&mut self) {
+        debug_assert!(!self.counters.is_empty(), "only a loop that was opened ends");
         self.counters.pop();
     }
 
@@ -144,6 +146,7 @@ impl<'p> Scope<'p> {
     }
 
     pub(crate) fn close_branch(&mut self, body: &[Statement]) {
+        debug_assert!(self.leaving >= u32::from(leaves(body)), "only a branch that was opened ends");
         self.leaving -= u32::from(leaves(body));
     }
 

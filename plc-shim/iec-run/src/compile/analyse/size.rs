@@ -26,6 +26,7 @@ pub(crate) fn leaves(branch: &[Statement]) -> bool {
 pub(crate) fn measure(body: &[Statement]) -> Size {
     let mut size = Size::default();
     size.statements(body);
+    debug_assert_eq!(size.leaving, 0, "all branches have been left");
     size
 }
 

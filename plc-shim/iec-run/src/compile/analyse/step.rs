@@ -30,6 +30,7 @@ impl Steps {
     }
 
     pub(crate) fn close_turn(&mut self) {
+        debug_assert!(self.depth > 0, "only a turn that was opened ends");
         self.depth -= 1;
     }
 

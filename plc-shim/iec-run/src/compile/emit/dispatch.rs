@@ -41,6 +41,11 @@ pub(crate) fn table(rows: &[Row], shared: &Shared<'_>) -> (TableSection, Element
     let entries: Vec<ConstExpr> = rows.iter().flat_map(|row| &row.targets).map(function).collect();
     let (mut table, mut elements) = (TableSection::new(), ElementSection::new());
     let size = entries.len() as u64;
+    debug_assert_eq!(
+        entries.len(),
+        rows.iter().map(|row| row.targets.len()).sum::<usize>(),
+        "rows stand behind one another, as `place_rows` has placed them"
+    );
     let element_type = RefType::FUNCREF;
     table.table(TableType { element_type, table64: false, minimum: size, maximum: Some(size), shared: false });
     elements.active(None, &ConstExpr::i32_const(0), Elements::Expressions(element_type, entries.into()));

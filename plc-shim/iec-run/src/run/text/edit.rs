@@ -93,6 +93,8 @@ fn pieces(edit: Edit, used: usize, length: i64, position: i64) -> Pieces {
 pub(super) fn edit(memory: &mut [u8], edit: Edit, strings: [View; 2], length: i64, position: i64, mut target: Target) {
     let [first, second] = strings;
     let Pieces { head, middle, tail } = pieces(edit, first.used, length, position);
+    debug_assert!(head.start <= head.end && head.end <= first.used, "the first piece lies within the first string");
+    debug_assert!(tail.start <= tail.end && tail.end <= first.used, "the last piece lies within the first string");
     target.extend(memory, &first, head);
     if middle {
         target.extend(memory, &second, 0..second.used);

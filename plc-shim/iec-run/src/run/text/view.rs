@@ -70,6 +70,7 @@ impl Target {
 
     /// Adds a character if there is room. One beyond 8 bits becomes `?` in a STRING.
     pub(super) fn push(&mut self, memory: &mut [u8], unit: u16) {
+        debug_assert!(self.used <= usize::from(self.shape.capacity), "a string never has more than there is room for");
         if self.used == usize::from(self.shape.capacity) {
             return;
         }
@@ -116,6 +117,7 @@ impl Target {
 
     /// Writes the count, if there is one, and clears what lies behind the last character.
     pub(super) fn finish(self, memory: &mut [u8]) {
+        debug_assert!(self.used <= usize::from(self.shape.capacity), "a string never has more than there is room for");
         let (first, end) = (self.offset(self.used), self.address + self.shape.size() as usize);
         if let Some(rest) = memory.get_mut(first..end) {
             rest.fill(0);

@@ -112,7 +112,9 @@ impl<'w, 'p> Walk<'w, 'p> {
     }
 
     fn survey(mut self, walk: impl FnOnce(&mut Self)) -> Survey {
+        let around = self.scope.units().count();
         walk(&mut self);
+        debug_assert_eq!(self.scope.units().count(), around, "the walk leaves every unit that it enters");
         let Self { effects, cost, leaves, metered, .. } = self;
         Survey { effects, cost, leaves, metered }
     }

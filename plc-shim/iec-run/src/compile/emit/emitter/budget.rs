@@ -67,6 +67,7 @@ impl Emitter<'_, '_> {
         self.budget = Some(register);
         self.take_budget();
         emit(self);
+        debug_assert_eq!(self.budget, Some(register), "the budget stays in its register while a loop runs");
         self.put_budget_back();
         self.budget = None;
         self.release(register);

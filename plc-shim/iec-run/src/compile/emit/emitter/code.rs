@@ -38,6 +38,7 @@ impl Code {
     /// Puts instructions before all others, of which the last `trapping` stand for a fault of the whole unit.
     pub(super) fn begin_with(&mut self, entry: Vec<Instruction<'static>>, trapping: [usize; 2], fault: FaultKind) {
         let count = entry.len();
+        debug_assert!(trapping.is_sorted() && trapping.iter().all(|at| *at < count), "what traps is part of the entry");
         self.instructions.splice(0..0, entry);
         for (at, _) in &mut self.marks {
             *at += count;
@@ -51,6 +52,8 @@ impl Code {
 
     /// The body, and its marks by byte offset.
     pub(super) fn finish(self, locals: &[ValType]) -> (Function, Vec<(u32, Mark)>) {
+        debug_assert_eq!(self.depth, 0, "every block of a function is closed");
+        debug_assert!(self.marks.is_sorted_by_key(|(at, _)| *at), "marks lie in the order of their instructions");
         let mut function = Function::new_with_locals_types(locals.iter().copied());
         let mut marks = Vec::with_capacity(self.marks.len());
         let mut pending = self.marks.iter().peekable();
@@ -60,6 +63,7 @@ impl Code {
             }
             function.instruction(instruction);
         }
+        debug_assert!(pending.next().is_none(), "every mark stands before an instruction");
         (function, marks)
     }
 }
@@ -120,22 +124,27 @@ impl Emitter<'_, '_> {
     }
 
     pub(crate) fn close(&mut self) {
+        debug_assert!(self.code.depth > 0, "only an open block can be closed");
         self.emit(Instruction::End);
         self.code.depth -= 1;
     }
 
     pub(crate) fn branch(&mut self, label: Label) {
+        debug_assert!((1..=self.code.depth).contains(&label.0), "a branch leads out of a block that is open");
         self.emit(Instruction::Br(self.code.depth - label.0));
     }
 
     /// Branches if the value on the stack is not 0.
     pub(crate) fn branch_if(&mut self, label: Label) {
+        debug_assert!((1..=self.code.depth).contains(&label.0), "a branch leads out of a block that is open");
         self.emit(Instruction::BrIf(self.code.depth - label.0));
     }
 
     /// Branches to the label at the position that the value on the stack says, else to the last.
     pub(crate) fn branch_table(&mut self, labels: &[Label], otherwise: Label) {
         let depth = self.code.depth;
+        let is_open = |label: &Label| (1..=depth).contains(&label.0);
+        debug_assert!(labels.iter().chain([&otherwise]).all(is_open), "a table of jumps leads out of open blocks");
         let targets: Vec<u32> = labels.iter().map(|label| depth - label.0).collect();
         self.emit(Instruction::BrTable(targets.into(), depth - otherwise.0));
     }

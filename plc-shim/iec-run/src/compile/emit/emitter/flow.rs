@@ -55,6 +55,7 @@ impl Emitter<'_, '_> {
         if let Some(known) = ways.0 {
             self.known.meet(&known);
         }
+        debug_assert!(self.held > 0, "ways that come together have been opened");
         self.held -= 1;
     }
 

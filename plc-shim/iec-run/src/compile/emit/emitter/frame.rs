@@ -73,6 +73,7 @@ impl Emitter<'_, '_> {
 
     /// Opens a frame for the unit; registers beyond the `parameters`, which are the function's own, are new.
     pub(crate) fn enter(&mut self, id: PouId, pou: &Pou, parameters: u32, call: Option<(Callee, Span)>) {
+        debug_assert!(parameters as usize <= pou.registers.len(), "parameters of `{}` are registers of it", pou.name);
         let caller = call.map(|(callee, span)| (self.unit(), callee, span));
         let mut registers: Vec<_> = (0..parameters).map(Register::new).collect();
         for ty in pou.registers.iter().skip(parameters as usize) {
@@ -87,6 +88,7 @@ impl Emitter<'_, '_> {
     /// Closes an inlined unit's frame.
     pub(crate) fn leave(&mut self) {
         let unit = self.unit();
+        debug_assert!(self.frames.len() > 1, "the function's own unit is never left");
         self.frames.pop();
         for register in self.scope.leave() {
             self.known.forget_base(register);
@@ -158,6 +160,8 @@ impl Emitter<'_, '_> {
     /// The part at this position, from 1 on, begins.
     pub(crate) fn begin_part(&mut self, at: usize) {
         if let Some(targets) = self.frames.last_mut().and_then(|frame| frame.jumps.last_mut()) {
+            debug_assert!((1..=targets.labels.len()).contains(&at), "part {at} begins behind a label");
+            debug_assert!(at > targets.at, "parts begin in the order of their labels");
             targets.at = at;
         }
     }

@@ -122,8 +122,10 @@ impl Emitter<'_, '_> {
         let entered = self.entered.len();
         self.entered.extend(self.known.registers());
         emit(self);
+        debug_assert!(self.entered.len() >= entered, "a loop inside gives back its own registers only");
         self.entered.truncate(entered);
         self.foreseen.pop();
+        debug_assert!(self.pins.len() >= before, "a loop inside gives back its own pins only");
         // Behind the loop its registers still hold what is in memory.
         self.known = Known::default();
         for entry in self.pins.split_off(before) {

@@ -226,6 +226,10 @@ impl<'s, 'p> Emitter<'s, 'p> {
 
     /// The function's body, its marks by byte offset, and the units that they belong to.
     pub(crate) fn finish(mut self, id: PouId) -> (Function, Vec<(u32, Mark)>, Vec<Unit>) {
+        debug_assert_eq!(self.frames.len(), 1, "units that were put in the place of calls have been left");
+        debug_assert_eq!(self.held, 0, "all ways have come together");
+        debug_assert!(self.foreseen.is_empty() && self.pins.is_empty(), "all loops have ended");
+        debug_assert!(self.budget.is_none(), "the budget stands in its global between two functions");
         self.emit(Instruction::End);
         let is_guarded = self.program().pou(id).is_some_and(|pou| pou.guard != Guard::None);
         let call = self.pay_at_entry(is_guarded);

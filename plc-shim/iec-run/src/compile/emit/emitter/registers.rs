@@ -46,20 +46,25 @@ impl Emitter<'_, '_> {
     }
 
     pub(crate) fn release(&mut self, register: Register) {
+        debug_assert!((register.number() as usize) < self.registers.types.len(), "only a register of this function");
+        debug_assert!(!self.registers.free.contains(&register), "a register is given back once");
         self.registers.free.push(register);
     }
 
     pub(crate) fn get(&mut self, register: Register) {
+        debug_assert!((register.number() as usize) < self.registers.types.len(), "only a register of this function");
         self.emit(Instruction::LocalGet(register.number()));
     }
 
     pub(crate) fn set(&mut self, register: Register) {
         self.known.ranges_mut().forget_register(register);
+        debug_assert!((register.number() as usize) < self.registers.types.len(), "only a register of this function");
         self.emit(Instruction::LocalSet(register.number()));
     }
 
     pub(crate) fn tee(&mut self, register: Register) {
         self.known.ranges_mut().forget_register(register);
+        debug_assert!((register.number() as usize) < self.registers.types.len(), "only a register of this function");
         self.emit(Instruction::LocalTee(register.number()));
     }
 }
