@@ -113,6 +113,7 @@ impl Scenario {
             let place = place_of(texts.text(), "version");
             return Err(wrong(message, place, Some(format!("write `version = {VERSION}`"))));
         }
+        // Before the plan is made, and the plot last: names are looked up as they are after the expansion.
         structure::expand(&mut file)
             .and_then(|()| arrays::expand_plot(&mut file))
             .map_err(|found| wrong(found.message, found.place, found.help))?;

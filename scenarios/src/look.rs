@@ -258,7 +258,7 @@ scene = "plant.toml"
         assert!(look("bodies = [\"a\"]\nscale = 0.0").0.contains("not above 0"));
         let figure = |more: &str| bound(&format!("[[figure]]\nname = \"a\"\n{more}\n")).expect_err("wrong").0;
         assert!(figure("shape = \"box\"").contains("needs `size_m`"));
-        assert!(figure("shape = \"box\"\nsize_m = [1, 0, 1]").contains("no length"));
+        assert!(figure("shape = \"box\"\nsize_m = [1, 0, 1]").contains("not a length"));
         assert!(figure("shape = \"sphere\"\nradius_m = 1.0\nlength_m = 1.0").contains("does not have"));
         let later = "shape = \"sphere\"\nradius_m = 1.0\non = \"b\"\n[[figure]]\nname = \"b\"\nshape = \"sphere\"\nradius_m = 1.0";
         assert!(figure(later).contains("comes later"));

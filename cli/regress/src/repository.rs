@@ -50,6 +50,7 @@ impl Repository {
     /// # Errors
     /// There is no such commit.
     pub fn commit(&self, name: &str) -> Result<String, RepositoryError> {
+        // What a user names may begin with a dash: it is not to be an option.
         let words = ["rev-parse", "--verify", "--quiet", "--end-of-options", &format!("{name}^{{commit}}")];
         let commit = git(&self.root, &words);
         let unknown = |_| Usage::new(format!("the repository has no commit `{name}`"), None);
@@ -112,6 +113,7 @@ impl Repository {
         let Some(tar) = archive.stdout.take() else { return Ok(Err("git gives no archive".to_owned())) };
         let unpacked = Command::new("tar").arg("-xf").arg("-").arg("-C").arg(folder).stdin(tar).output();
         let unpacked = unpacked.map_err(|source| spawn("tar", &source))?;
+        // After tar: git does not end before somebody has read all that it writes.
         let archived = archive.wait().map_err(|source| spawn("git", &source))?;
         let whole = archived.success() && unpacked.status.success();
         Ok(if whole { Ok(()) } else { Err(String::from_utf8_lossy(&unpacked.stderr).trim().to_owned()) })

@@ -145,6 +145,7 @@ impl Scenario {
         signals.sort();
         signals.dedup();
         let step = self.file().step.as_nanos();
+        // An operation acts with the first step that ends at its time or later.
         let grid = |at: VirtualTime| VirtualTime::from_nanos(at.as_nanos().div_ceil(step).saturating_mul(step));
         let at = injection.at.as_ref().map(|(at, _)| grid(*at));
         Some(Injected { at, operations: operations.collect(), signals, over: over(&applied.injected) })

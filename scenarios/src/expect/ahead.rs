@@ -83,6 +83,7 @@ impl<J: Foresight> Ahead<J> {
 
     /// Takes what is known of the next sample, and says what follows from it of earlier ones.
     pub(super) fn push(&mut self, sample: Sample, member: J, out: &mut VecDeque<Judged>) {
+        // A window that ended before this sample must not see it; one that ends with it must.
         self.say_until(|end_ns| end_ns < sample.t_ns, out);
         if self.demand == Demand::Every || self.newest.is_none() {
             self.waiting.push_back(sample);
@@ -135,6 +136,7 @@ impl<J: Foresight> Ahead<J> {
     /// Moves the windows on to those of a sample; `over` when nothing more comes.
     fn slide(&mut self, sample: Sample, over: bool) {
         let from_ns = sample.t_ns.saturating_add(self.window.from_ns);
+        // The value that holds where the window begins is in it: the member before its beginning stays.
         while self.seen.at(1).is_some_and(|second| second.t_ns <= from_ns) {
             self.step();
         }

@@ -159,6 +159,8 @@ impl<J: Joined> Sliding<J> {
     pub(super) fn pop(&mut self) -> Option<(Sample, J)> {
         if self.leaving.is_empty() {
             let mut all = J::NOTHING;
+            // A queue of two stacks: each member is turned over once, so that a `pop` costs the same on average however long
+            // the window is.
             for (_, member) in self.members.iter().rev() {
                 all = member.then(all);
                 self.leaving.push(all);

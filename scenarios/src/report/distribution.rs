@@ -120,6 +120,7 @@ impl Distribution {
 
     /// The shortest time that so many per cent of all do not exceed.
     fn reached_by(&self, per_cent: u64) -> u64 {
+        // The nearest-rank percentile: a time that has occurred, never one between two.
         let rank = (u128::from(self.count) * u128::from(per_cent)).div_ceil(100).max(1);
         let mut seen = 0;
         let reached = self.lengths.iter().find(|(_, count)| {

@@ -44,6 +44,7 @@ impl Day {
     /// Year, month and day of the Gregorian calendar. Years are taken to begin in March, so that the day that may be
     /// missing is the last.
     pub fn parts(self) -> (i64, i64, i64) {
+        // `civil_from_days` of H. Hinnant's "chrono-Compatible Low-Level Date Algorithms", for years from 0 on.
         let days = i64::from(self.0) + EPOCH_DAYS;
         let (era, of_era) = (days / ERA_DAYS, days % ERA_DAYS);
         let year = (of_era - of_era / 1_460 + of_era / 36_524 - of_era / 146_096) / 365;
@@ -55,6 +56,7 @@ impl Day {
     }
 
     fn from_parts(year: i64, month: i64, day: i64) -> Option<Self> {
+        // `days_from_civil` of the same paper.
         let year = if month <= 2 { year - 1 } else { year };
         let (era, of_era) = (year / 400, year % 400);
         let of_year = (153 * ((month + 9) % 12) + 2) / 5 + day - 1;

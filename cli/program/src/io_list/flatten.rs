@@ -196,8 +196,8 @@ mod tests {
         for (ty, why) in [
             ("A", "levels deep"),
             ("POINTER TO INT", "not elementary"),
-            ("ARRAY [0..N] OF INT", "no numbers"),
-            ("ARRAY [1..0] OF INT", "no numbers"),
+            ("ARRAY [0..N] OF INT", "not numbers"),
+            ("ARRAY [1..0] OF INT", "not numbers"),
             ("ARRAY [0..2147483647, 0..2147483647, 0..2147483647] OF INT", "more than 100"),
             ("ARRAY [0..99] OF ARRAY [0..99] OF INT", "more than 100"),
             ("", "not elementary"),

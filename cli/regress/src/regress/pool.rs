@@ -33,6 +33,7 @@ pub fn spread<T: Send>(jobs: NonZeroUsize, count: usize, bar: &ProgressBar, one:
     let worker = || {
         let mut done = Vec::new();
         loop {
+            // `Relaxed` is enough: the number alone is shared, and results come over with `join`.
             let index = next.fetch_add(1, Ordering::Relaxed);
             if index >= count {
                 return done;

@@ -59,6 +59,7 @@ impl Place {
     /// # Errors
     /// The files cannot be written.
     pub fn accept(&self, snapshot: &Snapshot) -> Result<(), StoreError> {
+        // In this order nothing is lost if it ends between the two.
         self.write(&self.reviewed(), snapshot)?;
         self.reject()
     }

@@ -74,6 +74,7 @@ impl RequestQueue {
             if queue.closed {
                 return None;
             }
+            // From behind the one who was served last, so that nobody who asks time and again keeps the others waiting.
             let turn = queue.turn;
             let who = queue.wanted.range(turn..).next().or_else(|| queue.wanted.iter().next()).map(|(who, _)| *who);
             if let Some(who) = who {
@@ -162,6 +163,7 @@ impl PastReader {
 
     /// A checkpoint of a moment. Looking goes on.
     pub(crate) fn save(&self, t_v: VirtualTime) -> oneshot::Receiver<Result<Vec<u8>, String>> {
+        // A number of its own: under the reader's it would replace the moment that the reader waits for.
         let (reply, answer) = oneshot::channel();
         let who = {
             let mut queue = self.queue.lock();

@@ -92,14 +92,14 @@ mod tests {
 
     #[test]
     fn one_asks_for_all() {
-        assert_eq!(due(&[(1, 7), (1, 7), (1, 8), (2, 8), (2, 8), (3, 9), (5, 10)]), [1, 2, 3, 5]);
+        assert_eq!(due(&[(1, 7), (1, 7), (1, 8), (2, 8), (2, 8), (3, 9), (4, 10)]), [1, 2, 3, 4]);
     }
 
     #[test]
     fn a_view_that_takes_frames_leaves_the_session_as_many() {
         let looks: Vec<(u64, u64)> = (1..=20).map(|frame| (frame, frame / 4)).collect();
-        // Asked in 1, there in 4 after two frames more than one: asked again in 6, and so on.
-        assert_eq!(due(&looks), [1, 6, 10, 14, 18]);
+        // Asked in 1, there in 4, two frames later than the next one: asked again in 6. That is there in 8, and so on.
+        assert_eq!(due(&looks), [1, 6, 9, 14, 17]);
     }
 
     #[test]

@@ -97,6 +97,7 @@ pub(super) fn moment(t_ns: f64, session: &Session) -> Result<VirtualTime, Refuse
     let end = session.edge();
     let step = session.plan.step().as_nanos();
     let asked = t_ns as u64;
+    // Put this way, NaN is refused, too.
     if !(t_ns >= 0.0 && asked <= end.as_nanos()) {
         return Err(Refused::NoMoment { t_ns: t_ns.to_string(), end });
     }

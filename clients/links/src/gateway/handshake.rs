@@ -354,7 +354,7 @@ impl Handshake {
             }
             // It has joined this session again, from a late order, and knows nothing of the grants before.
             _ if report.done + 1 < grant => Err(restarted),
-            // A PLC that joins anew from the order of the first grant takes that order's `t_v` with it, so the grant itself is
+            // A PLC that joins again from the order of the first grant takes that order's `t_v` with it, so the grant itself is
             // not later any more.
             (_, Answer::TimeStandsStill) if self.phase == Phase::Awaiting && grant == session + 1 => Err(restarted),
             _ if self.phase == Phase::Surveying => {

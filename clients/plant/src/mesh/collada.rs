@@ -47,6 +47,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Mesh, MeshError> {
     let root = &parse_within(text, ELEMENTS_DEPTH_MAX)
         .map_err(|error| MeshError::Line { line: line(text, error.at), cause: error.to_string() })?;
     let known = root.tree().filter_map(|element| Some((value(element, "id")?, element))).collect();
+    // Nodes can be put into one another by reference, so that a short file may mean any number of them: hence `budget`.
     let mut file = File { text, known, mesh: Mesh::default(), budget: 100_000 };
     if root.name != "COLLADA" {
         return Err(file.wrong(root, "<COLLADA> is missing"));

@@ -28,7 +28,7 @@ pub enum MeshError {
     #[error("cannot be read: {0}")]
     Unreadable(String),
     /// Its name does not end as that of a mesh.
-    #[error("is no mesh that this program reads: `.stl`, `.obj`, `.dae`, `.gltf` or `.glb`")]
+    #[error("is not a mesh that this program reads: `.stl`, `.obj`, `.dae`, `.gltf` or `.glb`")]
     Kind,
     /// It is cut short or has something else in it.
     #[error("line {line}: {cause}")]

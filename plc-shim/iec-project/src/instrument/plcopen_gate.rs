@@ -121,6 +121,7 @@ impl<'g> Gate<'g> {
 
     /// What stands around an expression.
     fn around(&self, negated: bool) -> Around {
+        // A condition that is negated where it is used: `NOT (NOT go OR c)` is `go AND NOT c`.
         let before = if negated { format!("NOT {} OR (", self.open) } else { format!("{} AND (", self.open) };
         (before, ")".to_owned())
     }

@@ -176,6 +176,7 @@ fn documentation(variable: &str) -> Option<String> {
     for piece in inside.split('<') {
         text.push_str(piece.split_once('>').map_or("", |(_, text)| text));
     }
+    // `&amp;` comes last: what is left of `&amp;lt;` is the text `&lt;`.
     let entities = [("&lt;", "<"), ("&gt;", ">"), ("&quot;", "\""), ("&apos;", "'"), ("&amp;", "&")];
     let text = entities.iter().fold(text, |text, (entity, is)| text.replace(entity, is));
     Some(text.trim().to_owned()).filter(|text| !text.is_empty())

@@ -227,6 +227,7 @@ impl Declarations<'_> {
             let family = self.family(root);
             let several = family.len() > 1;
             if several || family.iter().any(|id| self.class(*id).is_some_and(|class| !class.interfaces.is_empty())) {
+                // Depth first, so that all that is derived from a unit has neighbouring numbers: one range to test for.
                 for id in &family {
                     if let Some(class) = self.classes.get_mut(id) {
                         class.type_id = Some(next);

@@ -60,6 +60,7 @@ impl Cursor<'_> {
 
     /// True at `end`, where the file ends and where the next unit begins.
     fn at_end_of(&self, end: &str) -> bool {
+        // `PROGRAM` is not among them: in a configuration it declares an instance.
         let unit = matches!(
             self.peek(),
             None | Some(TokenKind::Keyword(Keyword::Function | Keyword::FunctionBlock | Keyword::Type))

@@ -192,6 +192,7 @@ impl Wall {
     /// The temperature after a step.
     fn after(&self, degc: f64, heat_j_k: f64, dt_s: f64) -> f64 {
         let slope = self.slope_w_k(degc);
+        // `e^x - 1` itself would lose its digits where the step is short.
         degc - self.gain_w(degc) / slope * libm::expm1(-slope * dt_s / heat_j_k)
     }
 
