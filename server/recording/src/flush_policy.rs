@@ -16,7 +16,7 @@ pub enum FlushPolicy {
     Steps(u64),
 }
 
-/// A flush_policy as it goes on the encoder's thread.
+/// A flush policy as it goes on the encoder's thread.
 pub(super) struct FlushTimer {
     /// The last time that all was written; nothing where no clock counts.
     last: Option<Instant>,

@@ -78,7 +78,7 @@ impl Recorder {
         }
     }
 
-    /// The same, with another flush_policy in which steps reach the disk.
+    /// The same, with another flush policy in which steps reach the disk.
     #[must_use]
     pub fn writing(mut self, flush_policy: FlushPolicy) -> Self {
         self.flush_policy = flush_policy;

@@ -50,7 +50,7 @@ impl Lockstep {
     }
 
     /// Goes on to the first boundary at or after `t_v`, or to the next one from which a session can fork whose operations
-    /// wait for one of the timeline's condition_monitors: the last boundary before that comes true. At least one step is done, but
+    /// wait for one of the timeline's condition monitors: the last boundary before that comes true. At least one step is done, but
     /// for a session that has yet to begin, which begins.
     ///
     /// # Errors
@@ -68,7 +68,7 @@ impl Lockstep {
         }
     }
 
-    /// The condition_monitors of the timeline that come true in the step that begins here.
+    /// The condition monitors of the timeline that come true in the step that begins here.
     pub fn coming(&self) -> impl Iterator<Item = &When> {
         self.timeline.coming(&self.session, self.session.t_v())
     }

@@ -1,7 +1,7 @@
 //! Lookouts: conditions that a session judges without acting on them, for the sake of sessions that fork from it.
 //!
 //! A case that waits for a condition can fork from a run without that case only where the condition has not come true
-//! yet, and only if somebody has seen what the condition remembers. A condition_monitor sees it. It is not part of what the
+//! yet, and only if somebody has seen what the condition remembers. A condition monitor sees it. It is not part of what the
 //! session does: the digest and the state hash do not know of it.
 
 use serde::{Deserialize, Serialize};
@@ -21,7 +21,7 @@ pub(super) struct ConditionMonitor {
     passed: bool,
 }
 
-/// What a checkpoint keeps of a condition_monitor that has yet to come true.
+/// What a checkpoint keeps of a condition monitor that has yet to come true.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct ConditionMonitorState {
     pub(super) when: When,
@@ -29,7 +29,7 @@ pub(super) struct ConditionMonitorState {
 }
 
 impl ConditionMonitor {
-    /// A condition_monitor for `when`; nothing for a time, which comes without being looked out for.
+    /// A condition monitor for `when`; nothing for a time, which comes without being looked out for.
     ///
     /// # Errors
     /// A condition on a signal that the session does not have, or with a value that it cannot have.

@@ -230,7 +230,7 @@ impl Timeline {
         Ok(self)
     }
 
-    /// The condition_monitors that come true with the image committed at `t_v`, which the next step will judge.
+    /// The condition monitors that come true with the image committed at `t_v`, which the next step will judge.
     pub(crate) fn coming<'a>(&'a self, session: &'a Session, t_v: VirtualTime) -> impl Iterator<Item = &'a When> {
         self.condition_monitors
             .iter()

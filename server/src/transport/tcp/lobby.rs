@@ -36,7 +36,7 @@ pub struct House {
 /// A listener with a thread of its own; closed when dropped.
 pub struct Lobby {
     address: SocketAddr,
-    /// Nothing once the client_listener is shut.
+    /// Nothing once the client listener is shut.
     pending_clients: Mutex<Option<Receiver<Application>>>,
     host: Arc<Host>,
     close: Arc<Notify>,
