@@ -210,7 +210,7 @@ impl Formation {
         any
     }
 
-    /// Gives an pending client its seat, or sends it away.
+    /// Gives a pending client its seat, or sends it away.
     fn admit(&mut self, pending_client: Box<dyn PendingClient>, reply_timeout: Duration) {
         let (origin, name) = (pending_client.origin(), pending_client.request().name.clone());
         match self.registration.apply(pending_client.request(), &origin) {

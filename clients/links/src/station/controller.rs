@@ -46,7 +46,7 @@ struct State {
 pub struct Controller {
     state: Mutex<State>,
     changed: Condvar,
-    /// Servers at the plc listener: the clock lets them in between two cycles.
+    /// Servers that wait at a PLC listener: the clock lets them in between two cycles.
     waiting: AtomicUsize,
     wires: Wires,
     /// What is written into memory at every start.
