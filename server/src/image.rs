@@ -28,7 +28,7 @@ pub struct PortMap {
 impl PortMap {
     /// Maps `port`, whose signals have the ids `ids` in the same order, onto `layout`.
     pub fn new(port: &PortLayout, ids: &[SignalId], layout: &ImageLayout) -> Self {
-        assert_eq!(port.ports().len(), ids.len(), "every signal of a port has its id");
+        debug_assert_eq!(port.ports().len(), ids.len(), "every signal of a port has its id");
         let mut runs: Vec<Run> = Vec::new();
         let mut to_canonicalise = Vec::new();
         for ((signal, offset), id) in port.iter().zip(ids) {

@@ -91,7 +91,7 @@ impl SoftPlc {
             fault: None,
             forces: Forces::default(),
         };
-        assert_eq!(plc.memory().len(), application.initial_memory().len(), "memory is as large as the image");
+        debug_assert_eq!(plc.memory().len(), application.initial_memory().len(), "memory is as large as the image");
         plc.reset();
         Ok(plc)
     }
