@@ -96,7 +96,7 @@ fn a_moment_of_the_past_is_shown_exactly_and_leaves_no_trace() {
     assert!(
         received(&mut one, "error")["message"]
             .as_str()
-            .is_some_and(|message| message.contains("no moment of the past"))
+            .is_some_and(|message| message.contains("not a moment of the past"))
     );
     // the other one has seen nothing of it
     let live = picture(&mut other, |_| true);
@@ -168,7 +168,7 @@ fn why_there_is_no_past_is_said() {
     ask(&mut viewer, &json!({"type": "operate", "operation": "stop"}));
     assert_eq!(served.report()["status"], "stopped");
     let wrong = typed(&scenario("shear"), &["run", ".", "--web", "--past-memory", "256MB"]);
-    assert!(wrong.code == Some(2) && wrong.err.contains("no amount of memory"), "{wrong:?}");
+    assert!(wrong.code == Some(2) && wrong.err.contains("not an amount of memory"), "{wrong:?}");
 }
 
 fn recorded(folder: &Path) -> String {
@@ -215,7 +215,7 @@ fn a_recording_is_a_page_of_the_past() {
             );
         }
         ask(viewer, &json!({"type": "show", "t_ns": 6_010_000_000_u64}));
-        assert!(received(viewer, "error")["message"].as_str().is_some_and(|why| why.contains("no moment of the past")));
+        assert!(received(viewer, "error")["message"].as_str().is_some_and(|why| why.contains("not a moment of the past")));
     });
     assert_eq!(code, Some(0));
     assert!(said.contains("all steps up to 600 are as recorded"), "{said}");
