@@ -508,11 +508,7 @@ fn what_cannot_be_is_reported() {
             3,
             "no PLC has connected to tcp-listen://127.0.0.1:",
         ),
-        (
-            run([nobody, nobody], "words", &["--gateway", "charger=tcp-listen://plc"]),
-            2,
-            "it has no IP address and",
-        ),
+        (run([nobody, nobody], "words", &["--gateway", "charger=tcp-listen://plc"]), 2, "it has no IP address and"),
         (run([nobody, nobody], "frames", &["--gateway", "charger=modbus://127.0.0.1"]), 2, "modbus has none"),
         (run([nobody, nobody], "words", &["--gateway", "charger=s7://127.0.0.1"]), 2, "`SDSP_Session` is in parts"),
     ];

@@ -215,7 +215,9 @@ fn a_recording_is_a_page_of_the_past() {
             );
         }
         ask(viewer, &json!({"type": "show", "t_ns": 6_010_000_000_u64}));
-        assert!(received(viewer, "error")["message"].as_str().is_some_and(|why| why.contains("not a moment of the past")));
+        assert!(
+            received(viewer, "error")["message"].as_str().is_some_and(|why| why.contains("not a moment of the past"))
+        );
     });
     assert_eq!(code, Some(0));
     assert!(said.contains("all steps up to 600 are as recorded"), "{said}");
