@@ -25,7 +25,7 @@ pub(super) fn expand(written: &mut SceneFile, faults: &mut Faults<'_>) -> Vec<St
         let table = table.get_ref();
         match one(table, written, faults) {
             Some(reported) => {
-                remarks.extend(reported.into_iter().map(|reported| format!("{}: {reported}", table.name.get_ref())))
+                remarks.extend(reported.into_iter().map(|reported| format!("{}: {reported}", table.name.get_ref())));
             }
             None => faults.lose(format!("{}.", table.name.get_ref())),
         }
