@@ -14,7 +14,8 @@ const room = await mkdtemp(join(tmpdir(), "heat-"));
 const [taken, again] = [join(room, "taken"), join(room, "again")];
 const run = (...more) => ["run", furnace, "--until", "68min", "--format", "json", ...more];
 const browser = await browse();
-const { child, said, over, urls } = await begin(program, run("--web", "--pace", "150", "--record", taken), ["the session"]);
+// Slow enough for a browser without a graphics card, in which each step at the pulpit takes a second.
+const { child, said, over, urls } = await begin(program, run("--web", "--pace", "60", "--record", taken), ["the session"]);
 
 /** Shows a page of the pulpit, and no other. */
 async function leaf(page, name) {
