@@ -12,6 +12,7 @@
 //! | [`array`] | names with a range, as in `arm[0..9].hold` |
 //! | [`nearest`] | the name that was probably meant |
 //! | [`regular`] | files that are read: regular ones, up to a limit |
+//! | [`notice`] | the target of log events that are for the user |
 //! | [`foreign`] | text from outside, made fit to be shown |
 //!
 //! Invariants: plain data and pure functions, except in [`regular`], which reads files. No clock, no random number,
@@ -24,6 +25,7 @@ pub mod elementary;
 pub mod field;
 pub mod foreign;
 pub mod nearest;
+pub mod notice;
 pub mod regular;
 pub mod signal_type;
 pub mod time;

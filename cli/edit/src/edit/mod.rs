@@ -37,6 +37,7 @@ mod state;
 mod wire;
 pub mod workspace;
 
+use onescan_base::notice::NOTICE;
 use std::net::SocketAddr;
 use std::path::PathBuf;
 
@@ -46,9 +47,6 @@ use files::Files;
 use onescan_runner::access::admission::Admission;
 use onescan_runner::web;
 use server::Editor;
-
-/// What is said without `-v`, too.
-const NOTICE: &str = "onescan::notice";
 
 /// What is edited, and where.
 #[derive(Clone, Debug)]

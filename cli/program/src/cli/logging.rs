@@ -1,5 +1,6 @@
 //! What is logged, and where.
 
+use onescan_base::notice::NOTICE;
 use tracing_subscriber::filter::{LevelFilter, Targets};
 
 /// Log lines go to standard error: warnings, what is meant for the user, and more with `--verbose`.
@@ -27,7 +28,7 @@ fn targets_of(verbose: u8) -> Targets {
         0 => Targets::new()
             .with_target("opcua", LevelFilter::OFF)
             .with_default(LevelFilter::WARN)
-            .with_target("onescan::notice", LevelFilter::INFO),
+            .with_target(NOTICE, LevelFilter::INFO),
         1 => Targets::new().with_default(LevelFilter::INFO),
         2 => Targets::new().with_default(LevelFilter::DEBUG),
         _ => Targets::new().with_default(LevelFilter::TRACE),

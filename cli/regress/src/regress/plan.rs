@@ -14,8 +14,8 @@ use super::discover::Found;
 use super::error::TestError;
 use crate::snapshot::store::{Place, reviewed};
 use crate::snapshot::take::Choice;
+use onescan_base::notice::NOTICE;
 use onescan_runner::error::Usage;
-use onescan_runner::run::NOTICE;
 
 /// What one process does.
 #[derive(Clone, Debug, PartialEq)]

@@ -15,11 +15,11 @@ use onescan_server::time::VirtualTime;
 use super::config::RunConfig;
 use super::guard::{Group, Guard};
 use super::in_process::in_process;
-use super::notice::{NOTICE, PAGE_AT};
 use crate::access::admission::Admission;
 use crate::error::Usage;
 use crate::past::Form;
 use crate::web::Launch;
+use onescan_base::notice::NOTICE;
 
 /// Why the past of a run of `scenario` cannot be shown: a client of it that cannot be saved and run again.
 pub(crate) fn fork_blocker(scenario: &Scenario, config: Option<&RunConfig>) -> Option<String> {
@@ -56,6 +56,9 @@ pub(crate) fn former(scenario: &Scenario) -> Form {
         Ok(lockstep)
     })
 }
+
+/// The line with which a session says where its page is, up to the address.
+pub(super) const PAGE_AT: &str = "the session is at ";
 
 /// What a session is given that goes on from another.
 #[derive(Clone, Debug)]

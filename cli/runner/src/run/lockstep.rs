@@ -24,8 +24,7 @@ use onescan_server::transport::tcp::Lobby;
 use super::config::{Reach, RunConfig, SaveRequest, Transport};
 use super::error::RunError;
 use super::fork::{self, Joined, Taken};
-use super::forked::{self, ForkSettings};
-use super::notice::{NOTICE, PAGE_AT};
+use super::forked::{self, ForkSettings, PAGE_AT};
 use super::processes::{Passed, Processes};
 use super::progress::Progress;
 use super::seats::{OpcUaSeats, Seats};
@@ -35,6 +34,7 @@ use crate::error::{ListenError, Unreadable, Usage};
 use crate::interrupt::Interrupt;
 use crate::past::{Keeper, Kept, Rewinder};
 use crate::web::{self, Page, VerdictBoard, WebError};
+use onescan_base::notice::NOTICE;
 
 /// What came of a session that was driven to its end.
 pub(super) struct Driven {

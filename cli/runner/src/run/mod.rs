@@ -26,7 +26,6 @@
 //! | [`expectation`] | what a run had to show |
 //! | [`production`] | what a run produced, by its scenario's `[report]` |
 //! | [`watch`] | what watched variables were |
-//! | `notice` | what a run reports to whoever started it |
 //! | [`page`] | all runs as a page |
 //! | [`report`] | what came of a run, for people and machines |
 //! | `seats` | clients that take part over OPC UA |
@@ -47,7 +46,6 @@ pub(crate) mod in_process;
 pub mod judged;
 mod lockstep;
 pub mod maps;
-mod notice;
 pub mod page;
 mod plc_files;
 mod processes;
@@ -85,7 +83,6 @@ pub use error::RunError;
 use fork::{Fork, Joined, Taken};
 use lockstep::Driven;
 pub use lockstep::operator_inputs;
-pub use notice::NOTICE;
 pub use report::{RunReport, RunStatus, Verdict};
 pub use search::SearchError;
 

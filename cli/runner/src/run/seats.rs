@@ -13,10 +13,10 @@ use onescan_server::published::Published;
 
 use super::config::Doors;
 use super::error::RunError;
-use super::notice::NOTICE;
 use super::processes::{Passed, Processes};
 use crate::error::{ListenError, Usage};
 use crate::interrupt::Interrupt;
+use onescan_base::notice::NOTICE;
 
 /// A client that is to come over OPC UA, with the command that starts it; empty if somebody else does.
 struct Expected {

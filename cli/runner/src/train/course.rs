@@ -24,8 +24,9 @@ use super::starts::Starts;
 use crate::access::admission::Admission;
 use crate::error::Usage;
 use crate::interrupt::Interrupt;
-use crate::run::{NOTICE, operator_inputs};
+use crate::run::operator_inputs;
 use crate::web::{self, AtWork, Failing, Page, Role, Training, Turn, TurnQueue};
+use onescan_base::notice::NOTICE;
 
 /// A lesson, and all that is needed to hold it.
 pub(super) struct Classroom<'a> {

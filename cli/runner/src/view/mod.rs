@@ -27,10 +27,10 @@ use crate::access::admission::Admission;
 use crate::error::ExitCode;
 use crate::interrupt::Interrupt;
 use crate::past::{Budget, Kept, Rewinder};
-use crate::run::NOTICE;
 use crate::run::forked::{self, ForkSettings};
 use crate::web::{self, News, Page, VerdictBoard, WebError};
 use check::Checked;
+use onescan_base::notice::NOTICE;
 use recorded::Recorded;
 
 /// How often it is looked whether somebody has seen enough.

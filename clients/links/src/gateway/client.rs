@@ -1,5 +1,6 @@
 //! Handshake and link as a client of a session.
 
+use onescan_base::notice::NOTICE;
 use std::time::{Duration, Instant};
 
 use onescan_server::client::{Client, ClientFault, JoinRequest, Wake};
@@ -53,9 +54,6 @@ struct Wait {
     /// Answers that could not be understood. What is read in between may be well while every write is not.
     garbled: u32,
 }
-
-/// What is said here is for the user, also without `--verbose`.
-const NOTICE: &str = "onescan::notice";
 
 /// Lets the PLC and the machine work until it is asked again: an eighth of what it has taken so far. Questions without a
 /// pause would keep a processor busy that the PLC may share, and a Modbus server from its cycle.

@@ -1,12 +1,11 @@
 //! The first contact with a PLC: as patient as any later one. A PLC that is still starting is not a reason to end.
 
+use onescan_base::notice::NOTICE;
 use std::time::{Duration, Instant};
 
 use super::fault::LinkFault;
 use super::link::Link;
 
-/// What is said here is for the user, also without `--verbose`.
-const NOTICE: &str = "onescan::notice";
 /// A connection is tried again after this.
 const AGAIN: Duration = Duration::from_millis(200);
 

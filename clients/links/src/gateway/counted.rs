@@ -3,6 +3,7 @@
 //! The PLC's scans and timers go by its own clock, and nothing says which scan has seen which block. What holds is
 //! the order: each block out belongs to one step, and a step uses only blocks that came after its own went out.
 
+use onescan_base::notice::NOTICE;
 use std::num::NonZeroU32;
 use std::time::{Duration, Instant};
 
@@ -16,8 +17,6 @@ use super::fault::{GatewayFault, LinkFault};
 use super::link::Link;
 use super::tcp::TcpLink;
 
-/// What is said here is for the user, also without `--verbose`.
-const NOTICE: &str = "onescan::notice";
 /// How long the socket is listened to at a time.
 const GLANCE: Duration = Duration::from_millis(200);
 

@@ -1,5 +1,6 @@
 //! Where a PLC connects that is the TCP client: one at a time.
 
+use onescan_base::notice::NOTICE;
 use std::collections::BTreeSet;
 use std::net::{IpAddr, SocketAddr, TcpListener, TcpStream};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -7,8 +8,6 @@ use std::time::Duration;
 
 use crate::listener::bind;
 
-/// What is said here is for the user, also without `--verbose`.
-const NOTICE: &str = "onescan::notice";
 /// How often the thread that accepts looks whether somebody has come.
 const GLANCE: Duration = Duration::from_millis(10);
 /// Strangers that are reported, by address: no more, however many come.
