@@ -19,14 +19,16 @@ const SPARED_MAX: u64 = 30;
 #[derive(Debug)]
 pub(super) struct Frames {
     began: Instant,
-    request: Mutex<Request>,
+    /// The last request for a view.
+    request: Mutex<Option<Request>>,
 }
 
-/// The last request for a view.
-#[derive(Debug, Default)]
+/// A request for a view.
+#[derive(Debug)]
 struct Request {
-    /// The frame in which it was made, and the revision of the view that was there then.
+    /// The frame in which it was made.
     made: u64,
+    /// The view that was there then.
     revision: u64,
     /// The first frame in which the next one may be made, once the view has come.
     next: Option<u64>,
@@ -48,25 +50,34 @@ impl Frames {
     /// `revision`.
     pub(super) fn is_due(&self, revision: u64) -> bool {
         // A thread that panicked under the lock has left whole numbers.
-        self.request.lock().unwrap_or_else(PoisonError::into_inner).is_due(next(self.began.elapsed()), revision)
+        let mut last = self.request.lock().unwrap_or_else(PoisonError::into_inner);
+        is_due(&mut last, next(self.began.elapsed()), revision)
     }
 }
 
 impl Request {
+    /// True in the first frame in which the next request may be made; the last view has `revision`.
+    ///
     /// A view that takes longer than a frame would be made at every step. So the session works for as many frames as
     /// it has spent on the view before it is asked again: what viewers want takes half of its time at most.
-    fn is_due(&mut self, frame: u64, revision: u64) -> bool {
-        if self.made != 0 && self.revision == revision {
+    fn is_over(&mut self, frame: u64, revision: u64) -> bool {
+        if self.revision == revision {
             return false;
         }
         let spent = frame.saturating_sub(self.made + 1).min(SPARED_MAX);
-        let due = *self.next.get_or_insert(if self.made == 0 { frame } else { frame + spent });
-        if frame < due || frame == self.made {
-            return false;
-        }
-        *self = Self { made: frame, revision, next: None };
-        true
+        // Counted when the view is first seen, which may be in the frame of its request.
+        let next = *self.next.get_or_insert(frame + spent);
+        frame != self.made && frame >= next
     }
+}
+
+/// Makes a request if there is none, or if it is time for the next one.
+fn is_due(last: &mut Option<Request>, frame: u64, revision: u64) -> bool {
+    let is_due = last.as_mut().is_none_or(|last| last.is_over(frame, revision));
+    if is_due {
+        *last = Some(Request { made: frame, revision, next: None });
+    }
+    is_due
 }
 
 /// The number of the next frame, so long after the page has begun, from 1.
@@ -86,8 +97,8 @@ mod tests {
 
     /// Which of the frames are due, for looks at (frame, revision of the last view).
     fn due(looks: &[(u64, u64)]) -> Vec<u64> {
-        let mut request = Request::default();
-        looks.iter().filter(|(frame, revision)| request.is_due(*frame, *revision)).map(|(frame, _)| *frame).collect()
+        let mut last = None;
+        looks.iter().filter(|(frame, revision)| is_due(&mut last, *frame, *revision)).map(|(frame, _)| *frame).collect()
     }
 
     #[test]
