@@ -15,7 +15,7 @@ pub const CANONICAL_NAN_F32: f32 = f32::from_bits(0x7fc0_0000);
 /// The one NaN that an image may hold as LREAL.
 pub const CANONICAL_NAN_F64: f64 = f64::from_bits(0x7ff8_0000_0000_0000);
 
-/// Bytes that are not value of their type.
+/// Bytes that are not a value of their type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Error)]
 pub enum BadValue {
     /// A BOOL byte other than 0 and 1.

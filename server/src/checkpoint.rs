@@ -183,7 +183,7 @@ impl SessionSettings {
         paths.filter(|path| self.settings.get(*path) != there.settings.get(*path))
     }
 
-    /// The first setting in which this is not `there`, beside those that may differ, as the error of a session of this
+    /// The first setting in which this is not `there`, beside those that may differ, as the error of a session with these
     /// settings.
     pub(crate) fn difference(&self, there: &Self, may_differ: &BTreeSet<String>) -> Option<CheckpointError> {
         let setting = self.differing(there).filter(|path| !may_differ.contains(*path)).min()?;

@@ -300,7 +300,7 @@ pub struct Pose {
     pub body: std::sync::Arc<str>,
     /// Its origin in world coordinates, m.
     pub position_m: [f64; 3],
-    /// A unit quaternion.
+    /// x, y, z, w of a quaternion of length 1.
     pub rotation_xyzw: [f64; 4],
 }
 

@@ -121,7 +121,7 @@ pub enum Violation {
         /// Bytes of its port.
         expected: usize,
     },
-    /// Bytes that are not value.
+    /// Bytes that are not a value.
     #[error("its output `{signal}` is not a value: {reason}")]
     BadValue {
         signal: SignalName,

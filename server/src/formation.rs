@@ -128,7 +128,7 @@ impl Formation {
         Ok(id)
     }
 
-    /// Lets clients in through `client_listener` until nobody is missing. Applicants that do not fit receive the reason
+    /// Lets clients in through `client_listener` until nobody is missing. Clients that do not fit receive the reason
     /// and sent away; the wait goes on.
     ///
     /// # Errors

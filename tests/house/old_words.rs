@@ -1,7 +1,8 @@
 //! Words that the field's words replace ([`LIST`]): none of them stands in the sources or in the documents again.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
+use crate::laws::sources;
 use crate::{root, workspace};
 
 const LIST: &str = "tests/house/old_words.txt";
@@ -22,17 +23,13 @@ fn listed() -> Vec<String> {
     lines.map(|line| line.split_once(" -> ").expect("a line `old -> new`").0.to_owned()).collect()
 }
 
-/// The texts in which words are looked for: sources of all crates, and the Markdown below `docs`.
+/// The texts in which words are looked for: sources of all crates of the product, and the Markdown below `docs`.
 fn texts() -> impl Iterator<Item = (String, String)> {
-    let mut files: Vec<PathBuf> = Vec::new();
-    for member in workspace::crates().into_iter().filter(|member| !member.starts_with("tests")) {
-        files.extend(workspace::rust_files(&root().join(member).join("src")));
-    }
-    files.extend(workspace::files_ending(&root().join("docs"), "md"));
-    files.into_iter().map(|path| {
+    let documents = workspace::files_ending(&root().join("docs"), "md").into_iter().map(|path| {
         let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
         (workspace::name(&path), text)
-    })
+    });
+    sources().filter(|(file, _)| !file.starts_with("tests")).chain(documents)
 }
 
 fn is_old(listed: &[String], word: &str) -> Option<usize> {

@@ -26,7 +26,7 @@ pub struct Form<'s> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
     pub position_m: [f64; 3],
-    /// A unit quaternion.
+    /// x, y, z, w of a quaternion of length 1.
     pub rotation_xyzw: [f64; 4],
 }
 

@@ -82,7 +82,7 @@ pub struct Losses {
     pub buffer: u64,
 }
 
-/// Bytes that are not state of a port.
+/// Bytes that are not the state of a port.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("its line of bytes is of another form")]
 pub struct ForeignPort;

@@ -22,7 +22,7 @@ pub struct Token(String);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct TokenHash([u8; BYTES]);
 
-/// A text that is not a token, or no hash of one.
+/// A text that is neither a token nor the hash of one.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum BadToken {
     /// Not a token. The text is not repeated: it may be another secret.

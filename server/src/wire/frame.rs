@@ -67,7 +67,7 @@ pub enum FrameRef<'a> {
     State(&'a [u8]),
 }
 
-/// Why bytes are not frame.
+/// Why bytes are not a frame.
 #[derive(Debug, Error)]
 pub enum FrameError {
     #[error("a frame of {length} bytes is over the limit of {limit}")]

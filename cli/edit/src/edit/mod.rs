@@ -18,7 +18,7 @@
 //! | `state` | all that the page shows |
 //! | `server` | the page, served to browsers of this machine |
 //!
-//! Up to `workspace` nothing reads or writes a file. What is written is checked by the code of every other command; nothing here
+//! Up to `workspace` no module reads or writes a file. What is written is checked by the code of every other command; nothing here
 //! knows what a correct scenario is. The protocol is in `web/PROTOCOL.md`.
 
 mod apply;

@@ -76,7 +76,7 @@ struct Table {
     keys: Object<String, Json>,
 }
 
-/// Checks the files, which are on the disk as they are on the workspace.
+/// Checks the files, which are on the disk as they are in the workspace.
 pub(super) fn of(files: &Files, workspace: &Workspace) -> State {
     let texts = workspace.texts();
     let mut state = State {

@@ -28,7 +28,7 @@ pub struct PlcArgs {
     #[arg(long, value_name = "CLIENT", value_parser = client_name)]
     pub client: Option<ClientName>,
     /// `lockstep`: its programs run when they are granted; `freewheel`: by its own clock and tasks, as if there
-    /// were not shim
+    /// were no shim
     #[arg(long, value_enum, default_value_t)]
     pub mode: PlcModeArg,
     /// How often it scans, wall clock: a time, or `max` for one scan behind the other

@@ -64,7 +64,7 @@ impl Known<'_> {
 /// Writes every kind with a line about it, or all about one; then what is wrong with kinds of the user's own.
 ///
 /// # Errors
-/// There is no such kind; a folder that cannot be read, or a file in it that is not a kind; those of `out`.
+/// The kind does not exist, a folder cannot be read, a file in it is not a kind, or `out` cannot be written.
 pub fn write(config: &ComponentsConfig, out: &mut dyn Write) -> Result<(), PlantError> {
     let listings = config.libraries.iter().map(|folder| read(folder)).collect::<Result<Vec<_>, _>>()?;
     let library: Vec<Known<'_>> = kinds().iter().map(Known::Library).collect();

@@ -54,7 +54,7 @@ impl Journal {
         &self.path
     }
 
-    /// Adds a line.
+    /// Adds a run that is done, as one line.
     ///
     /// # Errors
     /// The journal cannot be written.

@@ -129,7 +129,7 @@ impl OpcUaLink {
 impl Drop for OpcUaLink {
     fn drop(&mut self) {
         if let Some(connection) = self.connection.take() {
-            // A server that is gone needs no close.
+            // With a server that is gone there is nothing to close.
             let _ = self.runtime.block_on(async {
                 tokio::time::timeout(Duration::from_secs(1), connection.session.disconnect()).await
             });

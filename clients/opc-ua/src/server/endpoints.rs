@@ -82,7 +82,7 @@ pub(crate) fn start(
         if let Err(error) = ended {
             tracing::warn!(%error, "the OPC UA server has ended");
         }
-        // Connections of clients that stay are not reason to.
+        // Connections of clients that stay are not a reason to.
         runtime.shutdown_background();
     });
     Ok(Running { address, handle, thread: Some(thread) })

@@ -203,7 +203,7 @@ pub(crate) struct Built {
     pub(crate) ports: Vec<Form>,
 }
 
-/// Why bytes are not state of a component.
+/// Why bytes are not the state of a component.
 #[derive(Debug, Error)]
 pub(crate) enum StateError {
     #[error(transparent)]

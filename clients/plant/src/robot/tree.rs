@@ -6,7 +6,7 @@ use super::{Joint, Link};
 /// The links with parents in front of their children, and the joints in the order of their children.
 ///
 /// # Errors
-/// Links that are not tree.
+/// Links that do not form a tree.
 pub(super) fn sorted(links: &[Link], joints: &[Joint], root: &Element) -> Result<(Vec<Link>, Vec<Joint>), RobotFault> {
     let carried = |link: usize| joints.iter().any(|joint| joint.child == link);
     let roots: Vec<usize> = (0..links.len()).filter(|link| !carried(*link)).collect();

@@ -35,21 +35,21 @@ const FLAGS: [&str; 10] =
 
 /// The type that a name hints at; DINT if it does not.
 pub(super) fn of_name(name: &str) -> Ty {
-    reported(name).unwrap_or(Ty::Elementary(E::Dint))
+    shown_type(name).unwrap_or(Ty::Elementary(E::Dint))
 }
 
 /// True for a name that hints at a type.
 pub(super) fn shows_type(name: &str) -> bool {
-    reported(name).is_some()
+    shown_type(name).is_some()
 }
 
 /// Beginnings that show whether something is given or taken, in front of the one that shows the type.
 const DIRECTIONS: [&str; 4] = ["i_", "q_", "iq_", "io_"];
 
-fn reported(name: &str) -> Option<Ty> {
+fn shown_type(name: &str) -> Option<Ty> {
     let name = name.trim_start_matches('_');
     let behind = DIRECTIONS.iter().find_map(|direction| name.strip_prefix(direction));
-    if let Some(found) = behind.filter(|rest| rest.starts_with(char::is_lowercase)).and_then(reported) {
+    if let Some(found) = behind.filter(|rest| rest.starts_with(char::is_lowercase)).and_then(shown_type) {
         return Some(found);
     }
     for (prefix, wide) in [("s", false), ("str", false), ("ws", true)] {

@@ -200,6 +200,7 @@ impl Slots {
         let has = |wanted: &Ty| linked.iter().any(|each| each.all().any(|ty| ty == wanted));
         // The same one for all of them, wherever the question begins.
         let clearest = linked.iter().map(|each| each.name.as_str()).filter(|name| hint::shows_type(name)).min();
+        // A slot of another table has no evidence, so no name either: nothing hints at its type.
         let clearest = clearest.or(linked.first().map(|each| each.name.as_str())).unwrap_or_default();
         if has(&Ty::Real) {
             return Ty::Elementary(hint::real(clearest));

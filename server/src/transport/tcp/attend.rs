@@ -151,6 +151,7 @@ async fn linger(mut stream: TcpStream) {
         let _ = stream.shutdown().await;
         while matches!(stream.read(&mut rest).await, Ok(1..)) {}
     };
+    // One that neither reads nor closes is left: the alert was all that it was owed.
     let _ = timeout(CLOSE_TIMEOUT, read_out).await;
 }
 

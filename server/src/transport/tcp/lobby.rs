@@ -160,6 +160,6 @@ async fn part_from_all(host: &Host, tasks: &TaskTracker) {
     // Nobody takes these any more.
     while host.mailbox.take().is_some() {}
     tasks.close();
-    // One who does not read is left.
+    // One who does not read is left, and its task ends with the runtime.
     let _ = tokio::time::timeout(CLOSE_TIMEOUT, tasks.wait()).await;
 }

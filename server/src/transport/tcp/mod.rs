@@ -55,7 +55,7 @@ pub enum ReceiveError {
     /// The other side is silent.
     #[error("no answer within {} ms", .0.as_millis())]
     TimedOut(Duration),
-    /// Bytes that are not frame, or a broken transport.
+    /// Bytes that are not a frame, or a broken transport.
     #[error(transparent)]
     Frame(#[from] FrameError),
     /// A frame of a kind that has no place here.

@@ -118,7 +118,7 @@ impl Carrier for Remote {
         self.send_message(&ServerMessage::End(end.clone()));
     }
 
-    /// A client that is gone, or does not read, is not waited for longer than a close takes.
+    /// A client that is gone, or does not read, is not waited for longer than closing may take.
     fn close(&mut self) {
         self.connection.close();
     }

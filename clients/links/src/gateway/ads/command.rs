@@ -49,7 +49,7 @@ pub const BAD_OFFSET: u32 = 0x703;
 pub const NO_ACCESS: u32 = 0x704;
 /// Return code: not as many bytes as the symbol has.
 pub const BAD_SIZE: u32 = 0x705;
-/// Return code: bytes that are not request.
+/// Return code: bytes that are not a request.
 pub const BAD_DATA: u32 = 0x706;
 /// Return code: there is no such symbol.
 pub const NO_SYMBOL: u32 = 0x710;

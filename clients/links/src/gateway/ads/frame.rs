@@ -103,7 +103,7 @@ pub struct Frame {
     pub data: Vec<u8>,
 }
 
-/// Bytes that are not frame.
+/// Bytes that are not a frame.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum BadFrame {
     /// Its length is not that of a frame that anybody here would send.

@@ -120,7 +120,7 @@ impl Form {
         out.resize(end, 0);
     }
 
-    /// The other way; false if the bytes are not value.
+    /// The other way; false if the bytes are not a value.
     pub fn take(self, bytes: &[u8], packed: &mut [u8]) -> bool {
         let width = match self.ty {
             T::String(_) => 1,

@@ -41,7 +41,7 @@ pub enum Message {
     Data(Vec<u8>),
 }
 
-/// Bytes that are not message.
+/// Bytes that are not a message.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum BadTelegram {
     /// It does not begin as a TPKT.

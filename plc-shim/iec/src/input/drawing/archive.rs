@@ -108,7 +108,7 @@ impl<'e> Object<'e> {
     pub(super) fn first(holder: &'e Element, kind: &str) -> Option<Self> {
         let data = holder.child("XmlArchive")?.child("Data")?;
         let objects = data.elements().filter(|inner| inner.name == "o");
-        objects.map(|element| Self { element, kind: reported(element, "t") }).find(|found| found.kind == kind)
+        objects.map(|element| Self { element, kind: text_of(element, "t") }).find(|found| found.kind == kind)
     }
 
     /// Where it begins.
@@ -117,12 +117,12 @@ impl<'e> Object<'e> {
     }
 
     fn part(&self, name: &str) -> Option<&'e Element> {
-        self.element.elements().find(|inner| reported(inner, "n") == name)
+        self.element.elements().find(|inner| text_of(inner, "n") == name)
     }
 
     pub(super) fn object(&self, name: &str) -> Option<Self> {
         let element = self.part(name).filter(|part| part.name == "o")?;
-        Some(Self { element, kind: reported(element, "t") })
+        Some(Self { element, kind: text_of(element, "t") })
     }
 
     /// The elements of a list; nothing stands for a place that is empty.
@@ -130,9 +130,9 @@ impl<'e> Object<'e> {
         let Some(list) = self.part(name).filter(|part| matches!(part.name.as_str(), "l2" | "a")) else {
             return Vec::new();
         };
-        let of_all = reported(list, "cet");
+        let of_all = text_of(list, "cet");
         let object = |element: &'e Element| {
-            let own = reported(element, "t");
+            let own = text_of(element, "t");
             (element.name == "o").then_some(Self { element, kind: if own.is_empty() { of_all } else { own } })
         };
         list.elements().map(object).collect()
@@ -169,6 +169,7 @@ impl<'e> Object<'e> {
     }
 }
 
-fn reported<'e>(element: &'e Element, name: &str) -> &'e str {
+/// The text of an attribute; empty where the element does not have it.
+fn text_of<'e>(element: &'e Element, name: &str) -> &'e str {
     element.attribute(name).map_or("", |found| found.value.as_str())
 }

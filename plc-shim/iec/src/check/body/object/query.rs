@@ -29,7 +29,7 @@ impl Body<'_, '_> {
             }
             Query::Pointer => self.pointed_at(target.clone(), from, span)?,
         };
-        Some(Operand::Typed(reported(assigned, target, span)))
+        Some(Operand::Typed(assigned_and_found(assigned, target, span)))
     }
 
     /// The pointer becomes the address of what the interface refers to.
@@ -46,7 +46,7 @@ impl Body<'_, '_> {
 }
 
 /// Assigns, then reports whether there is anything now.
-fn reported(assigned: Statement, target: Place, span: Span) -> Expr {
+fn assigned_and_found(assigned: Statement, target: Place, span: Span) -> Expr {
     let address = ElementaryType::Udint.into();
     let found = Expr { kind: ExprKind::Load(Place { ty: address, ..target }), ty: address, span };
     let nothing = Expr { kind: ExprKind::Constant(Value::Int(0)), ty: address, span };
