@@ -184,7 +184,7 @@ fn the_published_node_set_is_what_is_served() {
 
 #[test]
 fn who_is_not_known_is_not_let_in() {
-    let words = ["--until", "1s", "--opcua-client", "plc", "--opcua-user", "panel", "--join-timeout", "20s"];
+    let words = ["--until", "1s", "--opcua-client", "plc", "--opcua-user", "panel", "--join-timeout", "5min"];
     let plain = [&["run", ".", "--format", "json", "--opcua", "127.0.0.1:0"], &words[..]].concat();
     let refused = typed(&scenario("shear"), &plain);
     assert_eq!(refused.code, Some(2), "a password in plain text: {refused:?}");
@@ -214,7 +214,7 @@ fn who_is_not_known_is_not_let_in() {
 /// Nobody has joined in time, but somebody tried: who, and why not.
 #[test]
 fn who_was_refused_is_named_when_nobody_has_joined() {
-    let words = ["--opcua-client", "plc", "--opcua-user", "panel", "--opcua-plain-password", "--join-timeout", "20s"];
+    let words = ["--opcua-client", "plc", "--opcua-user", "panel", "--opcua-plain-password", "--join-timeout", "40s"];
     let mut command = onescan(&scenario("shear"));
     command.args(["run", ".", "--opcua", "127.0.0.1:0"]).args(words).env("ONESCAN_OPCUA_PASSWORD", "right");
     let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
@@ -230,7 +230,7 @@ fn who_was_refused_is_named_when_nobody_has_joined() {
     // A long message is broken into lines.
     let reported = rest.replace('│', " ").split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(
-        reported.contains("did not join within 20 s; somebody tried and was refused: user `panel` over OPC UA"),
+        reported.contains("did not join within 40 s; somebody tried and was refused: user `panel` over OPC UA"),
         "{rest}"
     );
     assert!(!rest.contains("ERROR"), "{rest}");
@@ -247,7 +247,7 @@ fn a_certificate_for_another_application_is_refused() {
         let folder = tempfile::tempdir().expect("a folder");
         let text = |path: std::path::PathBuf| path.to_str().expect("text").to_owned();
         let (pki, own) = (text(folder.path().join("pki")), text(folder.path().to_owned()));
-        let words = ["--opcua-client", "plc", "--join-timeout", "20s", "--opcua-pki", &pki, "--opcua-trust"];
+        let words = ["--opcua-client", "plc", "--join-timeout", "5min", "--opcua-pki", &pki, "--opcua-trust"];
         let mut server = Server::start(&scenario("shear"), &[&words[..], more].concat());
         assert_eq!(
             ended(begun("stranger.py", &[&server.url, "session", &own, uri])).trim(),

@@ -12,7 +12,7 @@ from lockstep import Place
 
 
 async def main(url, name, token):
-    client = Client(url, timeout=20)
+    client = Client(url, timeout=120)
     client.set_user(name)
     client.set_password(token)
     try:

@@ -110,4 +110,4 @@ async def by_method(place, who):
 
 
 def connected(url):
-    return Client(url, timeout=20)
+    return Client(url, timeout=120)

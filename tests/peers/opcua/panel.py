@@ -10,7 +10,7 @@ from asyncua import Client, ua
 
 
 async def main(url):
-    async with Client(url, timeout=20) as client:
+    async with Client(url, timeout=120) as client:
         types = await client.get_namespace_index("urn:onescan:lockstep")
         own = await client.get_namespace_index("urn:onescan:session")
         session = await client.nodes.objects.get_child(f"{own}:Session")

@@ -17,7 +17,7 @@ async def main(url, at, folder, uri):
     key, certificate = Path(folder, "key.pem"), Path(folder, "certificate.der")
     await setup_self_signed_certificate(
         key, certificate, uri, "localhost", [ExtendedKeyUsageOID.CLIENT_AUTH], {"commonName": "panel"})
-    client = Client(url, timeout=20)
+    client = Client(url, timeout=120)
     client.application_uri = "urn:a:panel"
     await client.set_security_string(f"Basic256Sha256,SignAndEncrypt,{certificate},{key}")
     async with client:
