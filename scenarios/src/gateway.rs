@@ -381,7 +381,7 @@ impl Scenario {
             InstrumentError::Text(findings) => Box::new(PlcReport { client: name.clone(), findings }).into(),
             other => self.wrong_client(name, other.to_string(), None),
         })?;
-        let application = self.rebuilt(name, project.program().filter_map(input).collect())?;
+        let application = self.rebuilt(name, project.program().filter_map(|file| input(file, &inputs)).collect())?;
         let paths = self.paths(name, bind)?;
         let own = self.bindings(name, &own, &paths)?;
         let bindings = if project.tasks.is_some() {
@@ -437,13 +437,19 @@ fn served(settings: &Settings) -> Words {
     if is_declared || settings.handshake == HandshakeKind::Frames { settings.words() } else { Words::WithSystem }
 }
 
-/// A file of the instrumented project as the compiler takes it.
-fn input(file: &File) -> Option<Input> {
+/// A file of the instrumented project as the compiler takes it: one of the program's own in the dialect that the
+/// scenario gives it, which its name does not tell.
+fn input(file: &File, own: &[Input]) -> Option<Input> {
     let kind = match FileKind::of(std::path::Path::new(&file.name)) {
         Some(FileKind::Source(kind)) => kind,
         _ => SourceKind::Text,
     };
-    file.text.clone().map(|text| Input::from_text(&file.name, kind, text))
+    let input = Input::from_text(&file.name, kind, file.text.clone()?);
+    let dialect = own.iter().find(|own| own.file().name() == file.name).map(|own| own.file().dialect());
+    Some(match dialect {
+        Some(dialect) => input.in_dialect(dialect),
+        None => input,
+    })
 }
 
 /// The paths of all signals in a project that was written in another form: signals are found by their names in the
