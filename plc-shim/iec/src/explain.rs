@@ -136,6 +136,8 @@ const PAGES: &[(&str, &str)] = pages![
     "W0709",
     "W0710",
     "W0711",
+    "W0712",
+    "W0713",
 ];
 
 /// The page that explains `code`, as Markdown.

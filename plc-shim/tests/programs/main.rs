@@ -58,6 +58,7 @@ mod random_programs;
 mod recovery;
 mod recursion;
 mod references;
+mod registers;
 mod relative_addresses;
 mod restarts;
 mod rig;

@@ -327,6 +327,7 @@ NAMESPACE GVL VAR_GLOBAL used, unused : INT; END_VAR END_NAMESPACE"
     );
     let input = onescan_iec::Input::from_text("test.st", onescan_iec::input::kind::SourceKind::Text, text);
     insta::assert_snapshot!(onescan_iec::inspect([input], None), @r#"
+    test.st:16:12: warning[W0713]: this product is cut to INT before it becomes DINT (convert a factor, as in `INT_TO_DINT(a) * b`)
     test.st:21:39: warning[W0706]: variable `left` is never used
     test.st:22:26: warning[W0706]: variable `lost` is never used
     test.st:23:39: warning[W0705]: this is never reached

@@ -126,6 +126,11 @@ impl Dialect {
         self.behaviour().selection
     }
 
+    /// In how many bits integers are computed.
+    pub fn integers(self) -> IntegerWidth {
+        self.behaviour().integers
+    }
+
     /// The values of LTIME.
     pub fn long_time(self) -> LongTime {
         self.behaviour().long_time
@@ -224,6 +229,18 @@ pub struct Behaviour {
     pub long_time: LongTime,
     /// Which inputs of `SEL` are evaluated.
     pub selection: Selection,
+    /// In how many bits integers are computed.
+    pub integers: IntegerWidth,
+}
+
+/// In how many bits `+`, `-`, `*`, `/`, `MOD` of integers are computed, and their results compared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum IntegerWidth {
+    /// In those of the operands' common type: what does not fit wraps at once.
+    Own,
+    /// In 64, as the registers of the target have: what does not fit is cut where a value is assigned, handed over or
+    /// converted.
+    Register,
 }
 
 /// Which inputs of `SEL` are evaluated.

@@ -2,8 +2,8 @@
 
 use super::Dialect::{self, Codesys, Iec2, Iec3, Matiec, SiemensScl, TwinCat};
 use super::{
-    AddressUnit, Behaviour, BeyondSubrange, DivisionByZero, Feature, LongTime, Selection, StringMemory, Ties,
-    TimeRange, Truth,
+    AddressUnit, Behaviour, BeyondSubrange, DivisionByZero, Feature, IntegerWidth, LongTime, Selection, StringMemory,
+    Ties, TimeRange, Truth,
 };
 
 /// Who has a construct, and where that is written.
@@ -171,7 +171,7 @@ pub struct BehaviourRow {
     pub dialect: Dialect,
     pub behaviour: Behaviour,
     /// Where each of it is written, in the order of the fields.
-    pub sources: [&'static str; 12],
+    pub sources: [&'static str; 13],
 }
 
 /// What the standard says, or README.md where it leaves a choice.
@@ -188,9 +188,10 @@ pub const STANDARD: Behaviour = Behaviour {
     beyond_subrange: BeyondSubrange::Fault,
     long_time: LongTime::Signed64,
     selection: Selection::All,
+    integers: IntegerWidth::Own,
 };
 
-const STANDARD_SOURCES: [&str; 12] = [
+const STANDARD_SOURCES: [&str; 13] = [
     "left open by 2nd ed. 2.3.1",
     "left open by 2nd ed. 2.2.3",
     "2nd ed. 2.5.1.5.1, IEC 60559",
@@ -203,6 +204,7 @@ const STANDARD_SOURCES: [&str; 12] = [
     "2nd ed. Annex E",
     "3rd ed. Table 10",
     "2nd ed. 2.5.1.4, a function's inputs",
+    "2nd ed. 2.5.1.5.2, a result of the operands' type",
 ];
 
 /// How the dialects behave.
@@ -218,6 +220,7 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             beyond_subrange: BeyondSubrange::Assign,
             long_time: LongTime::Unsigned64,
             selection: Selection::Selected,
+            integers: IntegerWidth::Register,
             ..STANDARD
         },
         sources: [
@@ -233,6 +236,7 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             "CODESYS: POU CheckRangeSigned; without it no check",
             "CODESYS: data type LTIME",
             "CODESYS: operator SEL",
+            "CODESYS: operators, overflow and underflow in the data type, on a target of 64 bits; SA0066",
         ],
     },
     BehaviourRow {
@@ -246,6 +250,7 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             beyond_subrange: BeyondSubrange::Assign,
             long_time: LongTime::Unsigned64,
             selection: Selection::Selected,
+            integers: IntegerWidth::Register,
             ..STANDARD
         },
         sources: [
@@ -261,6 +266,7 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             "TwinCAT: subrange types; POU CheckRangeSigned checks",
             "TwinCAT: TIME/LTIME",
             "TwinCAT: SEL",
+            "TwinCAT: operators, overflow and underflow in the data type, on a target of 64 bits; SA0066",
         ],
     },
     BehaviourRow {
@@ -286,6 +292,7 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             "2nd ed. Annex E; SCL has no subranges",
             "S7-1500: data types, LTIME",
             "left open by the S7-1200 System Manual",
+            "S7-1200 System Manual: ADD, overflow sets ENO",
         ],
     },
     BehaviourRow {
@@ -304,6 +311,7 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             "2nd ed. Annex E",
             "it has none; as 3rd ed. Table 10",
             "2nd ed. 2.5.1.4, a function's inputs",
+            "MatIEC: iec_std_functions, a macro for each type",
         ],
     },
 ];

@@ -29,7 +29,7 @@ fn dialects_have_names_and_files() {
     assert_eq!(Feature::ChainedAssignment.homes(), "codesys, twincat and siemens-scl");
 }
 
-fn behaviour_cells(behaviour: Behaviour) -> [String; 12] {
+fn behaviour_cells(behaviour: Behaviour) -> [String; 13] {
     let time = match behaviour.time {
         TimeRange::Nanoseconds64 => "signed 64 bit nanoseconds",
         TimeRange::Unsigned32 => "unsigned 32 bit milliseconds, wrapping",
@@ -70,7 +70,11 @@ fn behaviour_cells(behaviour: Behaviour) -> [String; 12] {
         Selection::All => "all are evaluated",
         Selection::Selected => "only the selected one is evaluated",
     };
-    [&length, time, ties, division, unit, power, truth, number, strings, subrange, long, selection]
+    let integers = match behaviour.integers {
+        IntegerWidth::Own => "in the bits of their type",
+        IntegerWidth::Register => "in 64 bits; cut where assigned, handed over or converted",
+    };
+    [&length, time, ties, division, unit, power, truth, number, strings, subrange, long, selection, integers]
         .map(ToOwned::to_owned)
 }
 
@@ -95,6 +99,7 @@ fn tables() -> String {
         "a value that a subrange does not have",
         "LTIME",
         "inputs of `SEL`",
+        "`+`, `-`, `*`, `/`, `MOD` of integers",
     ];
     text += "\n## Behaviour\n\n| behaviour | dialects | what they do | source |\n|---|---|---|---|\n";
     for (index, subject) in subjects.iter().enumerate() {

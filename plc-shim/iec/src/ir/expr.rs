@@ -35,6 +35,9 @@ pub enum ExprKind {
     Binary(Binary, Box<Expr>, Box<Expr>),
     /// From the operand's type to the expression's, the number itself kept as far as it fits.
     Convert(Rounding, Box<Expr>),
+    /// The result of an operation that the target computes in a register, cut to the expression's narrower type. What
+    /// takes a wider value takes that of the register.
+    FromRegister(Box<Expr>),
     /// The second or, if the first is FALSE, the third; the other is not evaluated.
     Conditional(Box<[Expr; 3]>),
     Intrinsic(Intrinsic, Vec<Expr>),

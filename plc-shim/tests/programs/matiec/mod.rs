@@ -24,7 +24,7 @@
 //! `ONESCAN_MATIEC_FOLDER` keeps the programs, traces and C code in a folder.
 
 mod charts;
-mod dice;
+pub(crate) mod dice;
 mod known;
 mod peer_program;
 mod statements;

@@ -13,9 +13,10 @@ pub(crate) fn is_still(expr: &Expr) -> bool {
             Step::Index { index, .. } => is_still(index),
             Step::Pointer { .. } | Step::Open { .. } => false,
         }),
-        ExprKind::Unary(_, operand) | ExprKind::Convert(_, operand) | ExprKind::Limited(_, _, operand) => {
-            is_still(operand)
-        }
+        ExprKind::Unary(_, operand)
+        | ExprKind::Convert(_, operand)
+        | ExprKind::FromRegister(operand)
+        | ExprKind::Limited(_, _, operand) => is_still(operand),
         ExprKind::Binary(_, left, right) => is_still(left) && is_still(right),
         ExprKind::Conditional(parts) => parts.iter().all(is_still),
         ExprKind::Intrinsic(_, operands) => operands.iter().all(is_still),
@@ -56,7 +57,7 @@ fn narrower(scope: &Scope<'_>, ranges: &Ranges, expr: &Expr, depth: u32) -> Opti
             let (slot, ty) = (scope.slot(place)?, scope.types().elementary(place.ty)?);
             range_of(scope, ranges, slot, ty)
         }
-        ExprKind::Convert(_, operand) => interval_at(scope, ranges, operand, depth),
+        ExprKind::Convert(_, operand) | ExprKind::FromRegister(operand) => interval_at(scope, ranges, operand, depth),
         ExprKind::Limited(low, high, _) => Some((*low, *high)),
         ExprKind::Unary(Unary::Negate, operand) => {
             interval_at(scope, ranges, operand, depth).map(|(low, high)| (-high, -low))

@@ -98,9 +98,10 @@ impl Reach<'_> {
         match &expr.kind {
             ExprKind::Constant(_) => true,
             ExprKind::Load(place) | ExprKind::Address(place) => self.place(place),
-            ExprKind::Unary(_, operand) | ExprKind::Convert(_, operand) | ExprKind::Limited(_, _, operand) => {
-                self.expression(operand)
-            }
+            ExprKind::Unary(_, operand)
+            | ExprKind::Convert(_, operand)
+            | ExprKind::FromRegister(operand)
+            | ExprKind::Limited(_, _, operand) => self.expression(operand),
             ExprKind::Binary(_, left, right) => self.expression(left) && self.expression(right),
             ExprKind::Intrinsic(Intrinsic::Memory(MemoryFunction::Copy | MemoryFunction::Fill), _) => false,
             ExprKind::Intrinsic(_, operands) => operands.iter().all(|operand| self.expression(operand)),

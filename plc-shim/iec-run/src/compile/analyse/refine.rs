@@ -112,7 +112,7 @@ fn variable(scope: &Scope<'_>, expr: &Expr) -> Option<(Slot, ElementaryType)> {
             let ty = scope.types().elementary(place.ty).filter(|ty| ty.is_integer())?;
             Some((scope.slot(place)?, ty))
         }
-        ExprKind::Convert(_, operand) => {
+        ExprKind::Convert(_, operand) | ExprKind::FromRegister(operand) => {
             let (from, to) = (scope.held_as(operand.ty).range()?, scope.held_as(expr.ty).range()?);
             let whole = to.0 <= from.0 && from.1 <= to.1;
             whole.then(|| variable(scope, operand)).flatten()

@@ -135,7 +135,10 @@ impl Size {
         match &expr.kind {
             ExprKind::Constant(_) => {}
             ExprKind::Load(place) | ExprKind::Address(place) => self.place(place),
-            ExprKind::Unary(_, operand) | ExprKind::Convert(_, operand) | ExprKind::Limited(_, _, operand) => {
+            ExprKind::Unary(_, operand)
+            | ExprKind::Convert(_, operand)
+            | ExprKind::FromRegister(operand)
+            | ExprKind::Limited(_, _, operand) => {
                 self.expression(operand);
             }
             ExprKind::Binary(_, left, right) => {

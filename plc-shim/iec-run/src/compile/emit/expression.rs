@@ -4,7 +4,7 @@ use wasm_encoder::{BlockType, Ieee32, Ieee64, Instruction, ValType};
 
 use super::emitter::{Emitter, value_type};
 use crate::compile::fault::FaultKind;
-use onescan_iec::ir::{Binary, ElementaryType, Expr, ExprKind, Unary, Value};
+use onescan_iec::ir::{Binary, ElementaryType, Expr, ExprKind, Rounding, Unary, Value};
 
 impl Emitter<'_, '_> {
     /// Pushes the expression's value; an aggregate's address.
@@ -31,6 +31,11 @@ impl Emitter<'_, '_> {
                 let to = self.held_as(expr.ty);
                 self.expression(operand);
                 self.convert(operand, to, *rounding);
+            }
+            ExprKind::FromRegister(operand) => {
+                let to = self.held_as(expr.ty);
+                self.expression(operand);
+                self.convert(operand, to, Rounding::NearestEven);
             }
             ExprKind::Conditional(parts) => self.conditional(parts),
             ExprKind::Limited(low, high, operand) => self.limited(*low, *high, operand),

@@ -89,9 +89,10 @@ fn is_pure_value(expr: &Expr) -> bool {
     match &expr.kind {
         ExprKind::Constant(_) => true,
         ExprKind::Load(place) => is_pure(place),
-        ExprKind::Unary(_, operand) | ExprKind::Convert(_, operand) | ExprKind::Limited(_, _, operand) => {
-            is_pure_value(operand)
-        }
+        ExprKind::Unary(_, operand)
+        | ExprKind::Convert(_, operand)
+        | ExprKind::FromRegister(operand)
+        | ExprKind::Limited(_, _, operand) => is_pure_value(operand),
         ExprKind::Binary(_, left, right) => is_pure_value(left) && is_pure_value(right),
         _ => false,
     }

@@ -23,6 +23,7 @@ pub(in crate::check) fn fold(types: &TypeTable, expr: &Expr) -> Result<Value, No
             binary(*operator, operands, left, right).map_err(|()| NoValue::DivisionByZero(expr.span))
         }
         ExprKind::Convert(rounding, operand) => Ok(convert(*rounding, ty, fold(types, operand)?)),
+        ExprKind::FromRegister(operand) => Ok(convert(Rounding::NearestEven, ty, fold(types, operand)?)),
         ExprKind::Conditional(parts) => {
             let [condition, then, otherwise] = &**parts;
             let holds = fold(types, condition)? == Value::Bool(true);

@@ -33,7 +33,7 @@ impl Walk<'_, '_> {
                 let by_constant = matches!(right.kind, ExprKind::Constant(_));
                 self.charge(price::binary(*operator, self.scope.held_as(left.ty), by_constant));
             }
-            ExprKind::Convert(_, operand) => {
+            ExprKind::Convert(_, operand) | ExprKind::FromRegister(operand) => {
                 self.expression(operand);
                 self.charge(price::conversion(self.scope.held_as(operand.ty), self.scope.held_as(expr.ty)));
             }

@@ -50,6 +50,11 @@ impl Body<'_, '_> {
     pub(super) fn error_guard(&mut self, called: Expr, result: Option<&Place>) -> Guard {
         let (ty, span) = (called.ty, called.span);
         match called.kind {
+            ExprKind::FromRegister(held) => {
+                let Guard { before, sound, called, .. } = self.error_guard(*held, None);
+                let kind = ExprKind::FromRegister(Box::new(called));
+                Guard { before, sound, called: Expr { kind, ty, span }, after: None }
+            }
             ExprKind::Binary(Binary::Divide, left, right) => {
                 let (mut before, divisor) = self.once(*right);
                 let dividend = self.once_more(*left, &mut before);

@@ -127,7 +127,10 @@ impl Body<'_, '_> {
             return self.mismatch("a number", &found, expr.span);
         }
         let ty = expr.ty;
-        Some(Self::intrinsic(Intrinsic::Abs, vec![expr], ty, span))
+        let whole = self.whole_values(vec![expr]);
+        let held = whole.first().map_or(ty, |operand| operand.ty);
+        let kind = ExprKind::Intrinsic(Intrinsic::Abs, whole);
+        Some(Operand::Typed(self.cut(Expr { kind, ty: held, span }, ty)))
     }
 
     fn real_function(&mut self, kind: Intrinsic, operand: Operand, span: Span) -> Option<Operand> {
@@ -271,20 +274,22 @@ impl Body<'_, '_> {
 
     fn extreme(&mut self, kind: Intrinsic, operands: Vec<Operand>, span: Span) -> Option<Operand> {
         let (all, ty) = self.unify_all(operands, span)?;
-        let whole = all.into_iter().reduce(|left, right| {
+        let whole = self.whole_values(all).into_iter().reduce(|left, right| {
+            let ty = left.ty;
             let kind = ExprKind::Intrinsic(kind, vec![left, right]);
             Expr { kind, ty, span }
         });
-        whole.map(Operand::Typed)
+        whole.map(|whole| Operand::Typed(self.cut(whole, ty)))
     }
 
     /// `LIMIT(MN, IN, MX)` is `MIN(MAX(IN, MN), MX)` (2nd ed. Table 27).
     fn limit(&mut self, operands: Vec<Operand>, span: Span) -> Option<Operand> {
         let (all, ty) = self.unify_all(operands, span)?;
-        let [low, value, high] = <[Expr; 3]>::try_from(all).ok()?;
-        let node = |kind, operands| Expr { kind: ExprKind::Intrinsic(kind, operands), ty, span };
+        let [low, value, high] = <[Expr; 3]>::try_from(self.whole_values(all)).ok()?;
+        let held = value.ty;
+        let node = |kind, operands| Expr { kind: ExprKind::Intrinsic(kind, operands), ty: held, span };
         let raised = node(Intrinsic::Max, vec![value, low]);
-        Some(Operand::Typed(node(Intrinsic::Min, vec![raised, high])))
+        Some(Operand::Typed(self.cut(node(Intrinsic::Min, vec![raised, high]), ty)))
     }
 
     fn select(&mut self, selector: Operand, values: Vec<Operand>, span: Span) -> Option<Operand> {
@@ -292,9 +297,10 @@ impl Body<'_, '_> {
         let (mut all, ty) = self.selected_values(values, span)?;
         let is_lazy = self.declarations.dialect(span).selection() == Selection::Selected;
         if is_lazy && self.elementary(ty).is_some() {
-            let [first, second] = <[Expr; 2]>::try_from(all).ok()?;
+            let [first, second] = <[Expr; 2]>::try_from(self.whole_values(all)).ok()?;
+            let held = first.ty;
             let kind = ExprKind::Conditional(Box::new([selector, second, first]));
-            return Some(Operand::Typed(Expr { kind, ty, span }));
+            return Some(Operand::Typed(self.cut(Expr { kind, ty: held, span }, ty)));
         }
         all.insert(0, selector);
         Some(Self::intrinsic(Intrinsic::Select, all, ty, span))
@@ -302,9 +308,12 @@ impl Body<'_, '_> {
 
     fn multiplex(&mut self, selector: Operand, values: Vec<Operand>, span: Span) -> Option<Operand> {
         let selector = self.integer_as_lint(selector)?;
-        let (mut all, ty) = self.selected_values(values, span)?;
+        let (all, ty) = self.selected_values(values, span)?;
+        let mut all = self.whole_values(all);
+        let held = all.first().map_or(ty, |first| first.ty);
         all.insert(0, selector);
-        Some(Self::intrinsic(Intrinsic::Multiplex, all, ty, span))
+        let kind = ExprKind::Intrinsic(Intrinsic::Multiplex, all);
+        Some(Operand::Typed(self.cut(Expr { kind, ty: held, span }, ty)))
     }
 
     pub(in crate::check::body) fn integer_as_lint(&mut self, operand: Operand) -> Option<Expr> {

@@ -2,11 +2,11 @@
 
 use crate::check::body::Body;
 use crate::check::standard::conversion;
-use crate::check::types::operand::{Operand, constant, converted};
+use crate::check::types::operand::{Operand, constant};
 use crate::check::types::reference;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Feature;
-use crate::ir::{ElementaryType, Expr, Field, Rounding, Type, TypeId, TypeTable, Value};
+use crate::ir::{ElementaryType, Expr, Field, Type, TypeId, TypeTable, Value};
 use crate::syntax::Span;
 
 /// What a structure without a name of its own is called.
@@ -106,13 +106,14 @@ impl Body<'_, '_> {
         };
         if self.widens(found, wanted, expr.span) {
             self.warn_of_loss(&expr, found, wanted);
-            return Some(converted(expr, wanted, Rounding::NearestEven));
+            self.warn_of_cut_product(&expr, found, wanted);
+            return Some(self.taken_as(expr, wanted));
         }
         if self.comes_of_narrower(&expr, wanted) {
             let message = format!("this result is kept in {wanted}, which may be too small for it");
             let help = format!("{found}_TO_{wanted} says that it is meant");
             self.report(Diagnostic::warning(Code::LossyConversion, expr.span, message).with_help(help));
-            return Some(converted(expr, wanted, Rounding::NearestEven));
+            return Some(self.taken_as(expr, wanted));
         }
         let message = format!("{wanted} is wanted, this is {found}");
         let mut report = Diagnostic::error(Code::TypeMismatch, expr.span, message);

@@ -90,6 +90,9 @@ impl Body<'_, '_> {
     /// A value that counts or selects, where bit strings and enumerations are numbers; all else as it is.
     pub(in crate::check::body) fn as_index(&self, expr: Expr) -> Expr {
         let expr = self.as_number(expr);
+        if self.held_in_register(&expr).is_some() {
+            return self.taken_as(expr, E::Lint);
+        }
         match self.plain_elementary(&expr) {
             Some(ty) if as_number(ty) != ty && self.bits_are_numbers(ty, expr.span) => {
                 converted(expr, as_number(ty), Rounding::NearestEven)
@@ -108,7 +111,7 @@ impl Body<'_, '_> {
                     2 => E::Dint,
                     _ => E::Lint,
                 };
-                converted(expr, wider, Rounding::NearestEven)
+                self.taken_as(expr, wider)
             }
             _ => expr,
         }
@@ -138,7 +141,8 @@ impl Body<'_, '_> {
     pub(super) fn comes_of_narrower(&self, expr: &Expr, wanted: E) -> bool {
         let is_integer = |expr: &Expr| self.plain_elementary(expr).is_some_and(|ty| as_number(ty).is_integer());
         let allowed = self.declarations.dialect(expr.span).has(Feature::SignChange);
-        let is_operation = matches!(expr.kind, ExprKind::Binary(..) | ExprKind::Intrinsic(..));
+        let is_operation =
+            matches!(expr.kind, ExprKind::Binary(..) | ExprKind::Intrinsic(..) | ExprKind::FromRegister(_));
         allowed && is_operation && is_integer(expr) && as_number(wanted).is_integer() && self.fits(expr, wanted.size())
     }
 
@@ -148,7 +152,9 @@ impl Body<'_, '_> {
             ExprKind::Binary(operator, left, right) if !operator.is_comparison() => {
                 self.fits(left, size) && self.fits(right, size)
             }
-            ExprKind::Convert(_, inner) | ExprKind::Limited(_, _, inner) => self.fits(inner, size),
+            ExprKind::Convert(_, inner) | ExprKind::FromRegister(inner) | ExprKind::Limited(_, _, inner) => {
+                self.fits(inner, size)
+            }
             ExprKind::Intrinsic(Intrinsic::Min | Intrinsic::Max, operands) => {
                 operands.iter().all(|each| self.fits(each, size))
             }

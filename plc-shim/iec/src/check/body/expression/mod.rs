@@ -9,6 +9,7 @@ pub(super) mod dtl;
 pub(super) mod enumeration;
 pub(super) mod limit;
 pub(super) mod operator;
+mod register;
 
 use super::Body;
 use crate::check::types::operand::{Operand, constant};

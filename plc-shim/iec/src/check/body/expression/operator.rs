@@ -149,8 +149,13 @@ impl Body<'_, '_> {
         }
         let ty = pair.ty.into();
         let operator = self.division(operator, span);
-        let kind = ExprKind::Binary(operator, Box::new(pair.left), Box::new(pair.right));
-        Some(Operand::Typed(Expr { kind, ty, span }))
+        let (left, right) = match operator {
+            Binary::Divide | Binary::DivideAnyway | Binary::Modulo => self.whole_operands(pair.left, pair.right),
+            _ => (pair.left, pair.right),
+        };
+        let held = left.ty;
+        let kind = ExprKind::Binary(operator, Box::new(left), Box::new(right));
+        Some(Operand::Typed(self.cut(Expr { kind, ty: held, span }, ty)))
     }
 
     /// Two constants without type make a third.
@@ -206,6 +211,9 @@ impl Body<'_, '_> {
             }
         };
         let (left, right) = (self.unsigned_duration(left), self.unsigned_duration(right));
+        self.warn_of_uncut_difference(&left);
+        self.warn_of_uncut_difference(&right);
+        let (left, right) = self.whole_operands(left, right);
         let kind = ExprKind::Binary(operator, Box::new(left), Box::new(right));
         Some(Operand::Typed(Expr { kind, ty: ElementaryType::Bool.into(), span }))
     }
@@ -311,7 +319,7 @@ impl Body<'_, '_> {
         if ty.is_integer() {
             let counted =
                 if duration.ty == ElementaryType::Ulint.into() { duration.ty } else { ElementaryType::Lint.into() };
-            let factor = converted(factor, ElementaryType::Lint, Rounding::NearestEven);
+            let factor = self.taken_as(factor, ElementaryType::Lint);
             let factor = if counted == ElementaryType::Ulint.into() {
                 converted(factor, ElementaryType::Ulint, Rounding::NearestEven)
             } else {
@@ -323,7 +331,7 @@ impl Body<'_, '_> {
         }
         let lreal = ElementaryType::Lreal;
         let duration = converted(duration, lreal, Rounding::NearestEven);
-        let factor = converted(factor, lreal, Rounding::NearestEven);
+        let factor = self.taken_as(factor, lreal);
         let operator = self.division(operator, span);
         let product = exact(operator, duration, factor);
         let scaled = converted(product, duration_ty, Rounding::NearestEven);
@@ -340,7 +348,7 @@ impl Body<'_, '_> {
             let found = self.type_name(exponent.ty);
             return self.mismatch("a number", &found, exponent.span);
         }
-        let exponent = converted(exponent, ty, Rounding::NearestEven);
+        let exponent = self.taken_as(exponent, ty);
         let kind = ExprKind::Intrinsic(Intrinsic::Power, vec![base, exponent]);
         Some(Operand::Typed(Expr { kind, ty: ty.into(), span }))
     }

@@ -213,6 +213,10 @@ impl Body<'_, '_> {
 
     fn case_statement(&mut self, inner: &ast::CaseStatement) -> Option<StatementKind> {
         let selector = self.expression(&inner.selector).and_then(|operand| self.settle(operand));
+        let selector = selector.map(|selector| match self.held_in_register(&selector) {
+            Some(register) => self.in_register(selector, register),
+            None => selector,
+        });
         let selector = selector.and_then(|selector| self.selectable(selector));
         let ty = selector.as_ref().map(|(selector, _)| selector.ty);
         let mut known = BTreeMap::new();
