@@ -17,6 +17,7 @@ use rapier3d::prelude::*;
 use super::actuator::{Acts, Actuator};
 use super::coordinate::Gauge;
 use super::mechanism::{Coordinates, Guided, Link, Mechanism, Surroundings, guided, mechanisms};
+use super::turning::Turning;
 use super::{SWEEPS_WITH_JOINTS, World, local_frames, measured_axis};
 use crate::coupled::Coupled;
 use crate::effort::{Drives, Mark, Motion};
@@ -216,7 +217,7 @@ impl World {
         let dt_s = self.physics.integration_parameters.dt;
         self.arm(part, dt_s, drives);
         self.guide(part[1], dt_s);
-        self.physics.step();
+        self.physics.step_with_events(&Turning { dt_s }, &());
         let Self { physics, actuators, articulation, .. } = self;
         let Articulation { mechanisms, others, fittings, gauges, motions, guided, .. } = articulation;
         for robot in guided {

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `solid` | the bodies of a scene and their shapes, as the engine has them |
 //! | `reach` | which bodies are too far away to be looked at |
+//! | `turning` | friction with what turns |
 //! | `coordinate` | where a joint stands, measured from the poses of its bodies |
 //! | `actuator` | what drives a joint: along a path, or by a component's equations |
 //! | `mechanism` | bodies on joints, moved by the joints' coordinates |
@@ -15,6 +16,7 @@ pub(crate) mod coordinate;
 mod mechanism;
 mod reach;
 pub(crate) mod solid;
+mod turning;
 
 use onescan_server::client::ClientFault;
 use onescan_server::time::TimeSpan;
@@ -428,6 +430,9 @@ fn integration(scene: &Mechanics, period: TimeSpan) -> IntegrationParameters {
         num_internal_pgs_iterations: 1,
         // without it a motor below a load converges over many steps and lets the load sag meanwhile
         warmstart_joints: true,
+        // kept for 5 cm of motion, points and normals are those of another place: what passes an edge with
+        // clearance would hit it, and what lies on a turntable would slide off
+        contact_recycling: false,
         ..IntegrationParameters::default()
     }
 }

@@ -61,7 +61,8 @@ pub(crate) fn attach(
         .friction(shape.friction)
         .friction_combine_rule(combined(shape.friction_rule))
         .restitution(shape.restitution)
-        .collision_groups(groups(collisions));
+        .collision_groups(groups(collisions))
+        .active_hooks(ActiveHooks::MODIFY_SOLVER_CONTACTS);
     physics.insert_collider(collider, Some(body))
 }
 
@@ -92,6 +93,7 @@ fn collider(body: &Body, shape: &Shape) -> ColliderBuilder {
         .friction_combine_rule(combined(body.friction_rule))
         .restitution(body.restitution)
         .collision_groups(groups(body.collisions))
+        .active_hooks(ActiveHooks::MODIFY_SOLVER_CONTACTS)
 }
 
 /// The engine's rule; of two it takes the later one in its own order, which is that of the scene's rules.

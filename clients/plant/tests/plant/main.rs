@@ -6,6 +6,7 @@ mod belt;
 mod bench;
 mod components;
 mod constants;
+mod contacts;
 mod couplings;
 mod drives;
 mod failures;
