@@ -54,6 +54,62 @@ fn a_spring_swings_by_its_closed_form() {
     }
 }
 
+/// The greatest way that a block of 2 kg on a spring of 800 N/m, which has 20 rad/s, is from its rest in the twentieth
+/// second after it was let go at 50 mm.
+fn swings_m(fitting: &str, period_us: u64) -> f64 {
+    let mut bench = Bench::at_us(&block(false, 0.05, &format!("spring_n_m = 800.0\n{fitting}")), period_us);
+    bench.run_us(19_000_000);
+    let mut greatest_m = 0.0_f64;
+    for _ in 0..1_000_000 / period_us {
+        bench.turn();
+        greatest_m = greatest_m.max(way(&bench).abs());
+    }
+    greatest_m
+}
+
+#[test]
+fn a_spring_beside_friction_swings_as_far_as_without() {
+    for period_us in [1_000, 10_000] {
+        let far_m = swings_m("friction_n = 2e-6", period_us);
+        // looked at each 0.2 rad it is seen within 0.5 % of its greatest way
+        assert!((0.0497..=0.05).contains(&far_m), "{period_us}: {far_m}");
+        // friction takes 4 F/k a swing, which ends within F/k of rest
+        let rests_m = swings_m("friction_n = 0.2", period_us);
+        assert!(rests_m < 0.2 / 800.0, "{period_us}: {rests_m}");
+        // δ = 0.8/(2·2), from the beginning of that second on
+        let damped_m = swings_m("friction_n = 2e-6\ndamping_n_s_m = 0.8", period_us);
+        let exact_m = 0.05 * libm::exp(-0.2 * 19.0);
+        assert!((damped_m / exact_m - 1.0).abs() < 0.03, "{period_us}: {damped_m} {exact_m}");
+    }
+}
+
+#[test]
+fn a_released_brake_adds_nothing_to_a_spring() {
+    for period_us in [1_000, 10_000] {
+        let scene = block(false, 0.05, "spring_n_m = 800.0\nbrake_n = 100.0\nrelease_signal = \"Release\"");
+        let mut bench = Bench::at_us(&scene, period_us);
+        bench.command("Release", true);
+        let mut greatest_m = 0.0_f64;
+        for _ in 0..20_000_000 / period_us {
+            bench.turn();
+            greatest_m = greatest_m.max(way(&bench).abs());
+        }
+        assert!((0.0497..=0.05 + 1e-9).contains(&greatest_m), "{period_us}: {greatest_m}");
+    }
+}
+
+#[test]
+fn a_spring_that_is_stiff_for_its_step_stays_in_its_bounds() {
+    // 2000 rad/s
+    for (friction, period_us) in [("friction_n = 0.001", 1_000), ("friction_n = 0.001", 10_000), ("", 10_000)] {
+        let mut bench = Bench::at_us(&block(false, 0.05, &format!("spring_n_m = 8e6\n{friction}")), period_us);
+        for _ in 0..2_000_000 / period_us {
+            bench.turn();
+            assert!(way(&bench).abs() <= 0.05 + 1e-9, "{period_us}: {}", way(&bench));
+        }
+    }
+}
+
 #[test]
 fn a_counterweight_balances() {
     for period_us in PERIODS_US {

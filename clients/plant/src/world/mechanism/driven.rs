@@ -30,6 +30,7 @@ impl Mechanism {
             return true;
         }
         let own: Vec<(usize, usize)> = self.own_actuators(around.actuators);
+        self.find_springs(around.fittings);
         self.room.driven.clear();
         self.room.driven.resize(n, false);
         for (axis, actuator) in &own {
@@ -94,27 +95,24 @@ impl Mechanism {
         self.rows.all.clear();
         self.room.exact.clone_from(&self.room.driven);
         self.room.force.resize(n, 0.0);
+        self.room.viscous.clear();
+        self.room.viscous.resize(n, 0.0);
         for k in 0..n {
-            let (position, joint) = self.axes[k];
-            let (q, v) = (self.now.q[position], self.now.v[k]);
             self.room.force[k] = -self.moving.bias[k];
-            if let Some(fitting) = joint.map(|joint| &around.fittings[joint]) {
-                self.room.force[k] += fitting.force(q);
-                self.resist(k, fitting.dry(v), fitting.damping, dt_s);
+            if let Some(fitting) = self.axes[k].1.map(|joint| &around.fittings[joint]) {
+                self.room.force[k] += fitting.force(self.spring_at(k, dt_s));
+                self.resist(k, fitting.dry(self.now.v[k]), fitting.damping, dt_s);
             }
         }
         for (axis, index) in own {
             self.act(*axis, *index, dt_s, part, around);
         }
-        self.room.v.clone_from(&self.now.v);
-        for k in 0..n {
-            let line = &self.room.inverse[k * n..(k + 1) * n];
-            let acceleration: f64 = line.iter().zip(&self.room.force).map(|(inverse, force)| inverse * force).sum();
-            self.room.v[k] += dt_s * acceleration;
-        }
         self.couple(dt_s);
-        self.stop(dt_s, around.fittings);
-        self.rows.solve(&self.room.inverse, &mut self.room.v);
+        self.push(dt_s, around.fittings);
+        if self.stop(dt_s, around.fittings) {
+            self.push(dt_s, around.fittings);
+        }
+        self.rows.solve(&self.room.stiff, &mut self.room.v);
         for row in &self.rows.all {
             if let Some(index) = row.actuator {
                 let actuator = &mut around.actuators[index];
@@ -123,6 +121,18 @@ impl Mechanism {
             }
         }
         self.go(dt_s, around.fittings);
+    }
+
+    /// The velocities that all forces together lead to, before the rows hold what they hold.
+    fn push(&mut self, dt_s: f64, fittings: &[Fitting]) {
+        let n = self.tree.velocities;
+        self.stiffen(dt_s, fittings);
+        self.room.v.clone_from(&self.now.v);
+        for k in 0..n {
+            let line = &self.room.stiff[k * n..(k + 1) * n];
+            let acceleration: f64 = line.iter().zip(&self.room.force).map(|(inverse, force)| inverse * force).sum();
+            self.room.v[k] += dt_s * acceleration;
+        }
     }
 
     /// Dry and viscous friction of an axis.
@@ -135,6 +145,7 @@ impl Mechanism {
             self.rows.all.push(Row { softness: 1.0 / (viscous * dt_s), ..Row::rigid(axis, 0.0, f64::INFINITY) });
         } else if part > 0.0 {
             self.room.force[axis] -= viscous * self.now.v[axis];
+            self.room.viscous[axis] += viscous;
         }
     }
 
@@ -168,6 +179,8 @@ impl Mechanism {
                     self.room.force[axis] += force;
                     actuator.exerted = force;
                     actuator.impulse += force * dt_s;
+                    // a mere force has nowhere to be
+                    self.room.exact[axis] &= !self.room.sprung[axis];
                     return;
                 }
             }
@@ -175,12 +188,14 @@ impl Mechanism {
         self.rows.all.push(Row { actuator: Some(index), ..drive });
     }
 
-    /// The rows of the stops that axes may come to in a sub-step.
-    fn stop(&mut self, dt_s: f64, fittings: &[Fitting]) {
+    /// The rows of the stops that axes may come to in a sub-step; true if an axis with a spring comes near.
+    fn stop(&mut self, dt_s: f64, fittings: &[Fitting]) -> bool {
+        let mut sprung = false;
         for (axis, (position, joint)) in self.axes.iter().enumerate() {
             let Some(fitting) = joint.map(|joint| &fittings[joint]) else { continue };
             let q = self.now.q[*position];
             let reach = 2.0 * dt_s * (self.now.v[axis].abs() + self.room.v[axis].abs()) + NEAR;
+            let was_exact = self.room.exact[axis];
             if q - fitting.lower < reach {
                 let wanted = (fitting.lower - q) / dt_s;
                 self.rows.all.push(Row { least: 0.0, ..Row::rigid(axis, wanted, f64::INFINITY) });
@@ -191,7 +206,9 @@ impl Mechanism {
                 self.rows.all.push(Row { most: 0.0, ..Row::rigid(axis, wanted, f64::INFINITY) });
                 self.room.exact[axis] = true;
             }
+            sprung |= self.room.sprung[axis] && self.room.exact[axis] && !was_exact;
         }
+        sprung
     }
 
     /// Takes the new velocities, and goes on with them.
@@ -199,10 +216,16 @@ impl Mechanism {
     /// What is driven or stopped goes on with its new velocity, by which it comes to where it is to be;
     /// the rest with the mean of old and new, which is of second order.
     fn go(&mut self, dt_s: f64, fittings: &[Fitting]) {
-        let Self { lumps, now, axes, room, .. } = self;
-        for (k, exact) in room.exact.iter().enumerate() {
-            now.v[k] = if *exact { room.v[k] } else { 0.5 * (now.v[k] + room.v[k]) };
+        for k in 0..self.tree.velocities {
+            let [before, after] = [self.now.v[k], self.room.v[k]];
+            let sprung = self.axes[k].1.filter(|_| self.room.sprung[k]);
+            self.now.v[k] = match sprung {
+                _ if self.room.exact[k] => after,
+                Some(joint) => self.through(k, [before, after], dt_s, &fittings[joint]),
+                None => 0.5 * (before + after),
+            };
         }
+        let Self { lumps, now, axes, room, .. } = self;
         rates(lumps, &now.q, &now.v, &mut room.rates[0]);
         for (q, rate) in now.q.iter_mut().zip(&room.rates[0]) {
             *q += dt_s * rate;

@@ -17,6 +17,7 @@
 //! | `guided` | robots without dynamics |
 //! | `free` | steps of what only smooth forces move: Runge-Kutta of order 4 |
 //! | `driven` | steps with drives, friction, stops |
+//! | `sprung` | springs and dampers in these |
 //!
 //! # Invariants
 //! - What is computed follows from positions, velocities and the drives' states; how often, too.
@@ -31,6 +32,7 @@ mod lump;
 mod matrix;
 mod rows;
 mod spatial;
+mod sprung;
 mod tree;
 
 use rapier3d::prelude::*;
@@ -74,13 +76,21 @@ pub(crate) struct Mechanism {
 /// Room for steps, used again.
 #[derive(Default)]
 struct Room {
+    /// Where a step began.
+    start: Coordinates,
     q: Vec<f64>,
     v: Vec<f64>,
     rates: [Vec<f64>; 4],
     accelerations: [Vec<f64>; 4],
     force: Vec<f64>,
     inverse: Vec<f64>,
+    /// The same with what springs and dampers add in a sub-step.
+    stiff: Vec<f64>,
+    column: Vec<f64>,
     driven: Vec<bool>,
+    /// Axes with springs, and what of viscous friction these take with them.
+    sprung: Vec<bool>,
+    viscous: Vec<f64>,
     /// Axes that go on with their new velocity in a sub-step.
     exact: Vec<bool>,
 }
