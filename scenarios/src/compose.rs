@@ -10,7 +10,7 @@ use onescan_iec::input::kind::{FileKind, SourceKind};
 use onescan_iec::{Dialect, Input, MemoryLimit, Task, TaskPlan};
 use onescan_iec_run::{Application, Builder};
 use onescan_operator::operator::Operator;
-use onescan_plant::{Inside, Plant, Scene, SceneError, SceneFault};
+use onescan_plant::{Inside, Overlap, Plant, Scene, SceneError, SceneFault};
 use onescan_server::client::{Client, JoinRequest};
 use onescan_server::signal::{ClientName, Port, SignalName, did_you_mean};
 use onescan_soft_plc::watch::Sightings;
@@ -83,6 +83,22 @@ impl Scenario {
                 Ok(Member::Seated { request: self.request(name)?, command: command.clone() })
             }
         }
+    }
+
+    /// Bodies that are in each other at the start, of each plant that has some.
+    ///
+    /// # Errors
+    /// A plant's scene is wrong.
+    pub fn overlaps(&self) -> Result<Vec<(ClientName, Vec<Overlap>)>, ScenarioError> {
+        let mut found = Vec::new();
+        for (name, client) in &self.file().clients {
+            let ClientFile::Plant { scene, .. } = client.get_ref() else { continue };
+            let overlaps = self.scene_once(name, scene)?.overlaps();
+            if !overlaps.is_empty() {
+                found.push((name.clone(), overlaps));
+            }
+        }
+        Ok(found)
     }
 
     /// Lets soft PLCs show their memories to those who look at the session, however large they are.

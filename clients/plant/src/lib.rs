@@ -26,6 +26,7 @@
 //! | [`coupling`] | what ties a component to the world of rigid bodies |
 //! | `part` | a component of the scene, bound to signals, other components and the world |
 //! | `machine` | all of these, one turn at a time |
+//! | `overlap` | bodies that are in each other at the start |
 //! | `layout_mismatch` | why a saved state does not belong to this plant |
 //! | `lateness` | how late a value arrives: a constant, an even part, a normal part |
 //! | `channel` | what happens to signals between the plant and the PLC |
@@ -66,6 +67,7 @@ mod machine;
 pub mod mesh;
 mod model;
 mod outline;
+mod overlap;
 mod part;
 mod placement;
 mod pose;
@@ -83,5 +85,6 @@ pub use failure::FailureRefused;
 pub use file_place::{Place, Source};
 pub use form::{Form, Frame, Geometry};
 pub use outline::{Outline, Surface};
+pub use overlap::{OVERLAP_MIN_M, Overlap};
 pub use placement::{BodyPose, Placement};
 pub use scene::{Inside, ParameterRefused, Scene, SceneError, SceneFault, SceneFaultKind, UnknownFailure};

@@ -124,6 +124,7 @@ fn tree(scene: &Scene, out: &mut dyn Write) -> io::Result<()> {
     )?;
     section(out, "assemblies", scene.assemblies().iter().map(|(name, kind)| format!("{name}: {kind}")))?;
     section(out, "components", scene.components.iter().map(|component| one(component, scene)))?;
+    section(out, "overlaps", scene.overlaps().iter().map(ToString::to_string))?;
     section(out, "remarks", scene.remarks.iter().cloned())?;
     section(out, "reads", scene.reads.iter().map(|port| format!("{} : {}", port.name, port.ty)))?;
     section(out, "writes", scene.writes.iter().map(|port| format!("{} : {}", port.name, port.ty)))

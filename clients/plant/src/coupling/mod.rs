@@ -124,6 +124,7 @@ pub struct Coupling {
     name: &'static str,
     keys: &'static [BindingKey],
     in_words: fn(&Bound, &Mechanics) -> String,
+    targets_wait: bool,
 }
 
 impl Coupling {
@@ -137,9 +138,14 @@ impl Coupling {
         (self.in_words)(bound, scene)
     }
 
+    /// Whether what it names as `targets` is out of the world at the start.
+    pub(crate) const fn targets_wait(&self) -> bool {
+        self.targets_wait
+    }
+
     /// The data of a tie.
     pub(crate) const fn of<T: Tie>() -> Self {
-        Self { name: T::NAME, keys: T::KEYS, in_words: T::in_words }
+        Self { name: T::NAME, keys: T::KEYS, in_words: T::in_words, targets_wait: T::TARGETS_WAIT }
     }
 }
 
@@ -167,6 +173,8 @@ pub(crate) trait Tie: Sized + Send + 'static {
     const NAME: &'static str;
     /// The keys that a scene binds it with; a `body` stands before what refers to it.
     const KEYS: &'static [BindingKey];
+    /// Whether its targets are out of the world until it puts them in.
+    const TARGETS_WAIT: bool = false;
 
     /// What a component sees of the world.
     type Seen: Copy + fmt::Debug + Default + PartialEq + Send;

@@ -34,6 +34,7 @@ impl Tie for Place {
             "dynamic bodies with a shape, out of the world until they appear",
         ),
     ];
+    const TARGETS_WAIT: bool = true;
     type Seen = Targets;
     type Effect = Put;
     type Memory = ();

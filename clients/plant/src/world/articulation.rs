@@ -194,6 +194,11 @@ impl World {
         mechanisms.any(|member| member.mechanism.coupled().any(|own| own == joint))
     }
 
+    /// Whether the shapes of a pair collide at all.
+    pub(crate) fn may_touch(&self, pair: &ContactPair) -> bool {
+        may_touch(pair, &self.physics)
+    }
+
     /// The coordinate and velocity of a joint.
     pub(crate) fn motion(&self, joint: usize) -> Mark {
         self.articulation.motions[joint]

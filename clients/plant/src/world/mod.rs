@@ -348,6 +348,17 @@ impl World {
         Ok(())
     }
 
+    /// Takes a body of the scene out of a world that nothing moves yet.
+    pub(crate) fn leave_out(&mut self, body: usize) {
+        self.physics.bodies[self.bodies[body]].set_enabled(false);
+    }
+
+    /// The body of a shape, by its index in the scene.
+    pub(crate) fn body_of(&self, shape: ColliderHandle) -> Option<usize> {
+        let parent = self.physics.colliders.get(shape).and_then(Collider::parent)?;
+        self.bodies.iter().position(|body| *body == parent)
+    }
+
     /// Puts a body into the world, at rest where another one is.
     pub(crate) fn put_in(&mut self, handle: RigidBodyHandle, place: RigidBodyHandle) -> Result<(), ClientFault> {
         let pose = *self.body(place).position();

@@ -21,6 +21,7 @@ mod measuring;
 mod mechanism;
 mod meshes;
 mod motion;
+mod overlaps;
 mod own_kinds;
 mod parameters;
 mod robots;
