@@ -25,8 +25,16 @@ pub(crate) struct Of {
 #[derive(Clone, Debug, PartialEq)]
 enum Law {
     Ratio(f64),
-    /// Points of a cam and the slopes there, both counted from the scene's pose.
-    Cam(Vec<Knot>),
+    /// Counted from the scene's pose.
+    Cam(Cam),
+}
+
+/// A curve through points without corners, which may repeat.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Cam {
+    knots: Vec<Knot>,
+    /// From its first point to its last, where it begins again.
+    turn: Option<[f64; 2]>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,12 +66,10 @@ impl Coupled {
     fn new(coupling: &model::Coupling, scene: &Mechanics) -> Self {
         let initial = |joint: usize| scene.joints[joint].initial;
         let of = coupling.of.iter().map(|share| {
+            let from = [initial(share.joint), initial(coupling.joint)];
             let law = match &share.law {
                 model::CouplingLaw::Ratio(ratio) => Law::Ratio(*ratio),
-                model::CouplingLaw::Cam(points) => {
-                    let [x, y] = [initial(share.joint), initial(coupling.joint)];
-                    Law::Cam(knots(&points.iter().map(|point| [point[0] - x, point[1] - y]).collect::<Vec<_>>()))
-                }
+                cam => Cam::of(cam, from).map_or(Law::Ratio(1.0), Law::Cam),
             };
             Of { joint: share.joint, law }
         });
@@ -71,19 +77,46 @@ impl Coupled {
     }
 }
 
-/// The slopes at a cam's points are those of the parabola through three of them, so that it has no
-/// corners; at its ends it goes on straight.
-fn knots(points: &[[f64; 2]]) -> Vec<Knot> {
-    let secant = |k: usize| (points[k + 1][1] - points[k][1]) / (points[k + 1][0] - points[k][0]);
-    let slope = |k: usize| match (k, k + 1 == points.len()) {
-        (0, _) => secant(0),
-        (k, true) => secant(k - 1),
-        (k, false) => {
-            let [before, after] = [points[k][0] - points[k - 1][0], points[k + 1][0] - points[k][0]];
-            (secant(k - 1) * after + secant(k) * before) / (before + after)
-        }
-    };
-    points.iter().enumerate().map(|(k, [x, y])| Knot { x: *x, y: *y, slope: slope(k) }).collect()
+impl Cam {
+    /// The cam of a law that has one, its coordinates counted from here.
+    pub(crate) fn of(law: &model::CouplingLaw, [x, y]: [f64; 2]) -> Option<Self> {
+        let (points, repeats) = match law {
+            model::CouplingLaw::Ratio(_) => return None,
+            model::CouplingLaw::Cam(points) => (points, false),
+            model::CouplingLaw::RepeatingCam(points) => (points, true),
+        };
+        let points: Vec<_> = points.iter().map(|point| [point[0] - x, point[1] - y]).collect();
+        Some(Self::through(&points, repeats))
+    }
+
+    /// The slopes at its points are those of the parabola through three of them, so that it has no corners; at its
+    /// ends it goes on straight, or as on its other end.
+    fn through(points: &[[f64; 2]], repeats: bool) -> Self {
+        let secant = |k: usize| (points[k + 1][1] - points[k][1]) / (points[k + 1][0] - points[k][0]);
+        let wide = |k: usize| points[k + 1][0] - points[k][0];
+        let between = |k: usize, next: usize| {
+            let [before, after] = [wide(k), wide(next)];
+            (secant(k) * after + secant(next) * before) / (before + after)
+        };
+        let last = points.len() - 1;
+        let slope = |k: usize| match k {
+            0 if !repeats => secant(0),
+            k if k == last && !repeats => secant(k - 1),
+            k if k == 0 || k == last => between(last - 1, 0),
+            k => between(k - 1, k),
+        };
+        let turn = repeats.then(|| [points[last][0] - points[0][0], points[last][1] - points[0][1]]);
+        let knots = points.iter().enumerate().map(|(k, [x, y])| Knot { x: *x, y: *y, slope: slope(k) }).collect();
+        Self { knots, turn }
+    }
+
+    /// Where it has the joint that is led, and the slope there.
+    pub(crate) fn at(&self, x: f64) -> (f64, f64) {
+        let (Some([wide, high]), Some(first)) = (self.turn, self.knots.first()) else { return on(&self.knots, x) };
+        let turns = ((x - first.x) / wide).floor();
+        let (value, slope) = on(&self.knots, x - turns * wide);
+        (value + turns * high, slope)
+    }
 }
 
 impl Of {
@@ -91,17 +124,12 @@ impl Of {
     pub(crate) fn at(&self, x: f64) -> (f64, f64) {
         match &self.law {
             Law::Ratio(ratio) => (ratio * x, *ratio),
-            Law::Cam(knots) => cam(knots, x),
+            Law::Cam(cam) => cam.at(x),
         }
     }
 }
 
-/// Where the cam through these points has the joint that is led.
-pub(crate) fn on_cam(points: &[[f64; 2]], x: f64) -> f64 {
-    cam(&knots(points), x).0
-}
-
-fn cam(knots: &[Knot], x: f64) -> (f64, f64) {
+fn on(knots: &[Knot], x: f64) -> (f64, f64) {
     let after = knots.partition_point(|knot| knot.x <= x);
     let straight = |knot: &Knot| (knot.y + knot.slope * (x - knot.x), knot.slope);
     let (Some(one), Some(other)) = (after.checked_sub(1).and_then(|k| knots.get(k)), knots.get(after)) else {
@@ -125,22 +153,39 @@ mod tests {
     #[test]
     fn a_cam_goes_through_its_points_without_corners() {
         let points = [[0.0, 0.0], [1.0, 0.5], [2.0, 2.0], [4.0, 2.0]];
-        let knots = knots(&points);
+        let cam = Cam::through(&points, false);
         for [x, y] in points {
-            assert!((cam(&knots, x).0 - y).abs() < 1e-15);
+            assert!((cam.at(x).0 - y).abs() < 1e-15);
         }
+        smooth(&cam);
+    }
+
+    fn smooth(cam: &Cam) {
         for k in -10..60 {
             let x = 0.1 * f64::from(k) + 0.013;
-            let (step, (before, _), (after, _)) = (1e-6, cam(&knots, x - 1e-6), cam(&knots, x + 1e-6));
+            let (step, (before, _), (after, _)) = (1e-6, cam.at(x - 1e-6), cam.at(x + 1e-6));
             // central differences: third derivatives times 1e-12, roundings of 1e-16/1e-6
-            assert!(((after - before) / (2.0 * step) - cam(&knots, x).1).abs() < 1e-8, "{x}");
+            assert!(((after - before) / (2.0 * step) - cam.at(x).1).abs() < 1e-8, "{x}");
         }
     }
 
     #[test]
     fn a_cam_of_a_parabola_is_that_parabola_inside() {
         let points: Vec<_> = (0..6).map(|k| [f64::from(k), f64::from(k * k)]).collect();
-        let knots = knots(&points);
-        assert!((cam(&knots, 2.5).0 - 6.25).abs() < 1e-14 && (cam(&knots, 2.5).1 - 5.0).abs() < 1e-14);
+        let (value, slope) = Cam::through(&points, false).at(2.5);
+        assert!((value - 6.25).abs() < 1e-14 && (slope - 5.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_cam_that_repeats_goes_on_as_it_began() {
+        // as an indexer: it dwells, then goes on by 0.5, each turn of 4
+        let points = [[0.0, 0.0], [1.0, 0.0], [3.0, 0.5], [4.0, 0.5]];
+        let cam = Cam::through(&points, true);
+        for turns in [-3.0, -1.0, 0.0, 1.0, 7.0] {
+            for [x, y] in points {
+                assert!((cam.at(x + 4.0 * turns).0 - (y + 0.5 * turns)).abs() < 1e-12, "{x} {turns}");
+            }
+        }
+        smooth(&cam);
     }
 }

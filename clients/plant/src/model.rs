@@ -273,6 +273,8 @@ pub enum CouplingLaw {
     Ratio(f64),
     /// The curve through these points of coordinates, the leading one first.
     Cam(Vec<[f64; 2]>),
+    /// The same, again and again: from the last point on as from the first, so much further.
+    RepeatingCam(Vec<[f64; 2]>),
 }
 
 /// A brake that a spring applies and a signal releases.

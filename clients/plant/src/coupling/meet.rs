@@ -19,8 +19,8 @@ impl Tie for Meet {
     const NAME: &'static str = "meet";
     const KEYS: &'static [BindingKey] = &[optional(
         "targets",
-        Names::Bodies { named: Which::Dynamic, absent: Which::Dynamic },
-        "bodies that count; all dynamic ones if absent",
+        Names::Bodies { named: Which::Any, absent: Which::Dynamic },
+        "bodies that count, of any kind, though two that are not dynamic do not meet; all dynamic ones if absent",
     )];
     type Seen = u32;
     without_effect!();

@@ -3,7 +3,8 @@
 //!
 //! `[i]` in any other text of such a table is the index of the copy. Bodies and shapes may be placed
 //! in a row by `step_m`, from one copy to the next, or evenly on a circle by `turn_about_m`, a point
-//! of the vertical that the copies are turned about.
+//! of the vertical that the copies are turned about. So may components: an assembly by its place, a kind of
+//! the library by the points and directions that it is bound to.
 
 use toml::Value;
 
@@ -15,6 +16,8 @@ use super::format::{
     AxisTable, BodyTable, ComponentTable, CouplingTable, FailureTable, FittingTable, JointTable, SceneFile,
     SensorTable, ShapeTable, SignalTable, Triple,
 };
+use crate::component::origin::Origin;
+use crate::coupling::Names;
 use onescan_base::array::{ArrayError, at_index, indices, name_at, names};
 
 type Text = Placed<String>;
@@ -206,24 +209,64 @@ impl Table for ComponentTable {
         }
     }
 
-    /// Only assemblies have a place; those that have none refuse the keys.
+    /// A kind of the library has its points moved, and its directions turned; an assembly has a place of its own.
     fn place(&mut self, k: usize, n: usize, faults: &mut Faults<'_>) {
-        let triple = |key: &str| -> Option<Triple> {
-            let value = self.get(key)?;
-            numbers(value.get_ref()).map(|numbers| Placed::new(value.span(), numbers))
-        };
-        let [mut position, mut rpy, turn_about, step] = ["position_m", "rpy_deg", "turn_about_m", "step_m"].map(triple);
+        let [turn_about, step] = ["turn_about_m", "step_m"].map(|key| triple(self, key));
         if turn_about.is_none() && step.is_none() {
             return;
         }
-        placed((&mut position, &mut rpy), (turn_about.as_ref(), step.as_ref()), (k, n), faults);
-        for (key, spot) in [("position_m", position), ("rpy_deg", rpy)] {
-            if let Some(spot) = spot {
-                let value = Value::Array(spot.get_ref().map(Value::Float).to_vec());
-                self.insert(Placed::new(spot.span(), key.to_owned()), Placed::new(spot.span(), value));
+        let kind = self.get("kind").and_then(|kind| kind.get_ref().as_str());
+        let Some(kind) = kind.and_then(Origin::of_library) else {
+            let [mut position, mut rpy] = ["position_m", "rpy_deg"].map(|key| triple(self, key));
+            placed((&mut position, &mut rpy), (turn_about.as_ref(), step.as_ref()), (k, n), faults);
+            put(self, "position_m", position);
+            put(self, "rpy_deg", rpy);
+            return;
+        };
+        let keys = kind.coupling.keys();
+        if !keys.iter().any(|binding| binding.names == Names::Point && self.contains_key(binding.key)) {
+            // nothing of it has a place: the keys stay, and are refused
+            return;
+        }
+        for binding in keys {
+            let written = triple(self, binding.key);
+            match binding.names {
+                Names::Point if written.is_some() => {
+                    let mut point = written;
+                    placed((&mut point, &mut None), (turn_about.as_ref(), step.as_ref()), (k, n), faults);
+                    put(self, binding.key, point);
+                }
+                Names::Direction if turn_about.is_some() && k > 0 => {
+                    let turned = written.map(|written| turned(&written, k, n));
+                    put(self, binding.key, turned);
+                }
+                _ => {}
             }
         }
+        for key in ["turn_about_m", "step_m"] {
+            self.remove(key);
+        }
     }
+}
+
+/// Three numbers behind a key of a component.
+fn triple(table: &ComponentTable, key: &str) -> Option<Triple> {
+    let value = table.get(key)?;
+    numbers(value.get_ref()).map(|numbers| Placed::new(value.span(), numbers))
+}
+
+fn put(table: &mut ComponentTable, key: &str, triple: Option<Triple>) {
+    if let Some(triple) = triple {
+        let value = Value::Array(triple.get_ref().map(Value::Float).to_vec());
+        table.insert(Placed::new(triple.span(), key.to_owned()), Placed::new(triple.span(), value));
+    }
+}
+
+/// A direction of the k-th of n copies around a vertical.
+fn turned(direction: &Triple, k: usize, n: usize) -> Triple {
+    let [x, y, z] = *direction.get_ref();
+    let (sin, cos) = libm::sincos((360.0 * k as f64 / n as f64).to_radians());
+    Placed::new(direction.span(), [cos * x - sin * y, sin * x + cos * y, z])
 }
 
 /// Three numbers of a list.

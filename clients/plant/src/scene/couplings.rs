@@ -9,7 +9,7 @@ use super::names::Names;
 use super::number::{Allowed, Entry, Unit};
 use super::placed::Placed;
 use super::text;
-use crate::coupled::on_cam;
+use crate::coupled::Cam;
 use crate::model::JointKind;
 
 /// The most joints that lead another: a differential has two.
@@ -56,9 +56,9 @@ fn coupling(written: &CouplingTable, file: &SceneFile, joints: &Names, faults: &
 /// In the scene's pose a joint must be where its cam has it.
 fn refuse_off(written: &CouplingTable, coupling: &Coupling, joints: &[Joint], faults: &mut Faults<'_>) {
     for share in &coupling.of {
-        let CouplingLaw::Cam(points) = &share.law else { continue };
+        let Some(cam) = Cam::of(&share.law, [0.0; 2]) else { continue };
         let [x, y] = [joints[share.joint].initial, joints[coupling.joint].initial];
-        let on = on_cam(points, x);
+        let on = cam.at(x).0;
         if (on - y).abs() > OFF_MAX {
             let span = written.cam.as_ref().map_or_else(|| written.name.span(), Placed::span);
             let (wanted, value) = (format!("a curve with {y} at {x}, where the scene has the joints"), on.to_string());
@@ -89,6 +89,10 @@ fn coordinate(
 
 /// By what each of the leading joints leads: a ratio each, or the one cam.
 fn laws(written: &CouplingTable, count: usize, whose: &str, faults: &mut Faults<'_>) -> Option<Vec<CouplingLaw>> {
+    if let (Some(repeats), None) = (&written.cam_repeats, &written.cam) {
+        let whose = format!("{whose} without a `cam`");
+        faults.add(repeats.span(), SceneFaultKind::Misplaced { whose, key: "cam_repeats" });
+    }
     match (&written.ratio, &written.cam) {
         (Some(ratios), None) => {
             let ratios_given = ratios.get_ref();
@@ -105,7 +109,9 @@ fn laws(written: &CouplingTable, count: usize, whose: &str, faults: &mut Faults<
             let rising = points.windows(2).all(|pair| pair[0][0] < pair[1][0]);
             let finite = points.iter().flatten().all(|number| number.is_finite());
             if points.len() >= 2 && rising && finite && count == 1 {
-                return Some(vec![CouplingLaw::Cam(points.clone())]);
+                let repeats = written.cam_repeats.as_ref().is_some_and(|repeats| *repeats.get_ref());
+                let law = if repeats { CouplingLaw::RepeatingCam } else { CouplingLaw::Cam };
+                return Some(vec![law(points.clone())]);
             }
             let wanted =
                 "two points or more, [leading, led] in rising order of the first, of one leading joint".to_owned();

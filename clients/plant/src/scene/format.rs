@@ -218,6 +218,8 @@ pub(super) struct CouplingTable {
     pub(super) of: Vec<Placed<String>>,
     pub(super) ratio: Option<Placed<Vec<f64>>>,
     pub(super) cam: Option<Placed<Vec<[f64; 2]>>>,
+    /// From its last point on the cam goes through its points again.
+    pub(super) cam_repeats: Option<Placed<bool>>,
     pub(super) backlash_m: Option<Placed<f64>>,
     pub(super) backlash_rad: Option<Placed<f64>>,
 }

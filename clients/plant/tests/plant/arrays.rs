@@ -105,6 +105,63 @@ fn a_shape_moves_with_its_body_and_is_felt_by_itself() {
     assert!(bench.read::<bool>("AT[0]"), "each copy has its own switch");
 }
 
+/// Two plates, each with a sensor that looks at it from 1 m above.
+const LOOKED_AT: &str = r#"
+version = 1
+[[body]]
+name = "plate[0..1]"
+kind = "fixed"
+shape = "box"
+size_m = [0.1, 0.2, 0.1]
+position_m = [1.0, 0.0, -0.05]
+step_m = [0.5, 0.0, -0.2]
+[[component]]
+name = "eye[0..1]"
+kind = "laser_distance"
+body = "ground"
+point_m = [1.0, 0.0, 1.0]
+direction = [0.0, 0.0, -1.0]
+distance_m_signal = "Far[i]"
+targets = ["plate[0..1]"]
+step_m = [0.5, 0.0, 0.0]
+"#;
+
+fn seen_m(scene: &str) -> [f64; 2] {
+    let mut bench = Bench::new(scene);
+    (0..100).for_each(|_| bench.turn());
+    ["Far[0]", "Far[1]"].map(|signal| bench.read(signal))
+}
+
+#[test]
+fn the_points_of_components_move_with_their_copies() {
+    let [one, other] = seen_m(LOOKED_AT);
+    assert!((one - 1.0).abs() < 0.01 && (other - 1.2).abs() < 0.01, "{one} {other}");
+    // half a turn on, looking at each plate from outside along x
+    let around = "turn_about_m = [0.0, 0.0, 0.0]";
+    let ring = LOOKED_AT
+        .replace("step_m = [0.5, 0.0, -0.2]", around)
+        .replace("step_m = [0.5, 0.0, 0.0]", around)
+        .replace("point_m = [1.0, 0.0, 1.0]", "point_m = [2.0, 0.0, -0.05]")
+        .replace("direction = [0.0, 0.0, -1.0]", "direction = [-1.0, 0.0, 0.0]");
+    let [one, other] = seen_m(&ring);
+    assert!((one - 0.95).abs() < 0.01 && (other - 0.95).abs() < 0.01, "{one} {other}");
+}
+
+#[test]
+fn a_component_without_a_point_has_no_place() {
+    let scene = YARD.replace("name = \"monitor\"", "name = \"monitor\"\nstep_m = [1.0, 0.0, 0.0]");
+    assert!(refusal(&scene).contains("`step_m`"), "{}", refusal(&scene));
+}
+
+#[test]
+fn what_is_fixed_may_be_among_those_that_should_not_meet() {
+    let floor = "[[body]]\nname = \"floor\"\nkind = \"fixed\"\nshape = \"box\"\nsize_m = [9, 9, 0.1]\nposition_m = [0, 5, -0.2]\n";
+    let scene = format!("{YARD}{floor}").replace("targets = [\"box[2..4]\"]", "targets = [\"box[2..4]\", \"floor\"]");
+    let mut bench = Bench::new(&scene);
+    (0..200).for_each(|_| bench.turn());
+    assert_eq!(bench.read::<i32>("Collisions"), 3, "each box on the floor");
+}
+
 #[test]
 fn bodies_that_meet_are_counted_once_a_contact() {
     // the boxes fall onto a floor that does not count, the last one onto the first

@@ -135,6 +135,27 @@ fn a_cam_leads_its_follower() {
 }
 
 #[test]
+fn a_cam_that_repeats_is_an_indexer() {
+    // in each turn of the motor it dwells, then lifts by 0.1 m
+    let scene = format!(
+        "{WHEELS}[[coupling]]\nname = \"cam\"\njoint = \"slide\"\nof = [\"one\"]\n\
+         cam = [[-2.0, 0.0], [0.0, 0.0], [1.0, 0.0], [3.0, 0.1], [4.0, 0.1]]\ncam_repeats = true\n\
+         [[axis]]\nname = \"motor\"\njoint = \"one\"\ndrive = \"position\"\ncommand_signal = \"To\"\nspeed_rad_s = 8.0\n\
+         acceleration_rad_s2 = 20.0\n"
+    );
+    for period_us in PERIODS_US {
+        let mut bench = Bench::at_us(&scene, period_us);
+        for (to, height_m) in [(0.5, 0.0), (3.5, 0.1), (6.5, 0.1), (9.5, 0.2), (21.5, 0.4), (-2.5, 0.0), (-8.5, -0.1)] {
+            bench.command("To", to);
+            bench.run_us(5_000_000);
+            let over = height(&bench) - height_m;
+            // the curve through its points is not flat between them, but stays below this
+            assert!(over.abs() < 0.006, "{period_us}: {to} {}", height(&bench));
+        }
+    }
+}
+
+#[test]
 fn a_coupling_holds_in_contact_too() {
     // the carriage comes to lie on a floor; the wheel stops with it
     let scene = WHEELS.replace("position_m = [2.0, 0.0, 0.0]\ncollides = false", "position_m = [2.0, 0.0, 0.0]")
@@ -162,6 +183,7 @@ fn a_coupling_that_is_wrong_is_refused() {
         ("of = [\"nobody\"]\nratio = [1.0]", "nobody"),
         ("of = [\"one\"]", "ratio"),
         ("of = [\"one\"]\ncam = [[0.0, 0.5], [1.0, 1.0]]", "a curve with 0 at 0"),
+        ("of = [\"one\"]\nratio = [1.0]\ncam_repeats = true", "cam_repeats"),
         ("of = [\"one\"]\nratio = [1.0]\nbacklash_rad = 0.1", "write `backlash_m`"),
     ] {
         assert!(refusal(keys).contains(reported), "{keys}: {}", refusal(keys));
