@@ -18,7 +18,7 @@ use super::identity::Identity;
 use super::machine::Memory;
 
 const MAGIC: [u8; 8] = *b"onescanP";
-const VERSION: u32 = 8;
+const VERSION: u32 = 9;
 const DIGEST_BYTES: usize = blake3::OUT_LEN;
 const HEADER_BYTES: usize = MAGIC.len() + size_of::<u32>() + DIGEST_BYTES;
 
