@@ -132,3 +132,36 @@ fn a_wrong_scene_is_shown_where_it_is_wrong() {
     insta::assert_snapshot!(said.err);
     assert_eq!(typed(folder.path(), &["describe", "nothing.toml"]).code, Some(2));
 }
+
+/// A carriage that is 0.1 mm in its rail: `describe` says so, and so does a run, once.
+#[test]
+fn bodies_that_overlap_at_the_start_are_named() {
+    let folder = copied_shear();
+    let scene = folder.path().join("plant.toml");
+    let more = r#"
+[[body]]
+name = "rail"
+kind = "fixed"
+shape = "box"
+size_m = [2.0, 0.2, 0.1]
+position_m = [50.0, 0.0, -0.05]
+[[body]]
+name = "carriage"
+kind = "dynamic"
+shape = "box"
+size_m = [0.2, 0.2, 0.1]
+mass_kg = 5.0
+position_m = [50.0, 0.0, 0.0499]
+"#;
+    let text = std::fs::read_to_string(&scene).expect("a scene") + more;
+    std::fs::write(&scene, text).expect("it is written");
+    let described = typed(folder.path(), &["describe", "plant.toml"]);
+    assert_eq!(described.code, Some(0), "{described:?}");
+    assert!(described.out.contains("`rail` and `carriage` overlap by 0.100 mm"), "{}", described.out);
+    let json = typed(folder.path(), &["describe", "plant.toml", "--format", "json"]);
+    let json: serde_json::Value = serde_json::from_str(&json.out).expect("JSON");
+    assert_eq!(json["overlaps"][0]["bodies"], serde_json::json!(["rail", "carriage"]), "{json}");
+    let run = typed(folder.path(), &["run", ".", "--until", "20ms", "--runs", "2"]);
+    let warned = run.err.replace('\n', " ");
+    assert_eq!(warned.matches("overlap by 0.100 mm").count(), 1, "{}", run.err);
+}

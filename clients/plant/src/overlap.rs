@@ -4,6 +4,7 @@
 //! its rail is pressed with more than a meganewton, and its drive feels the friction of that.
 
 use onescan_server::time::TimeSpan;
+use serde::Serialize;
 
 use crate::scene::Scene;
 use crate::world::World;
@@ -14,7 +15,7 @@ pub const OVERLAP_MIN_M: f64 = 1e-6;
 const ANY_PERIOD: TimeSpan = TimeSpan::from_millis(1).expect("not zero");
 
 /// Two bodies that are in each other in the scene's pose.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Overlap {
     /// Their names, in the scene's order.
     pub bodies: [String; 2],

@@ -4,6 +4,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use onescan_base::regular::Within;
+use onescan_plant::Overlap;
 use onescan_plant::component::open_inputs;
 use onescan_plant::scene::model::{Body, BodyKind, Component, Mass, Moved, Scene, Sensing, Shape, Wire};
 use onescan_report::OutputError;
@@ -13,6 +14,7 @@ use onescan_scenario::compose::report;
 use onescan_scenario::file::ClientFile;
 use onescan_scenario::permission::granted;
 use onescan_scenario::{Scenario, ScenarioError};
+use serde::Serialize;
 
 use super::error::PlantError;
 use onescan_runner::error::Usage;
@@ -30,6 +32,15 @@ pub struct DescribeConfig {
     pub svg: Option<PathBuf>,
     /// From where it is seen.
     pub side: Side,
+}
+
+/// A scene for machines.
+#[derive(Serialize)]
+struct Described<'s> {
+    #[serde(flatten)]
+    scene: &'s Scene,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    overlaps: Vec<Overlap>,
 }
 
 /// Reads the scene of a file, or those of a scenario's plants, and writes what it is made of; draws it if that is wanted.
@@ -54,7 +65,8 @@ pub fn write(config: &DescribeConfig, out: &mut dyn Write) -> Result<(), PlantEr
         }
         match format {
             Format::Json => {
-                serde_json::to_writer_pretty(&mut *out, &scene).map_err(io::Error::from).map_err(OutputError)?;
+                let whole = Described { scene: &scene, overlaps: scene.overlaps() };
+                serde_json::to_writer_pretty(&mut *out, &whole).map_err(io::Error::from).map_err(OutputError)?;
                 writeln!(out).map_err(OutputError)?;
             }
             Format::Human => tree(&scene, out).map_err(OutputError)?,
