@@ -162,6 +162,8 @@ codes! {
     UncaughtFault "W0711" "a fault within `__TRY` stops the PLC",
     UncutDifference "W0712" "a difference of unsigned integers is compared before it is cut to their type",
     CutProduct "W0713" "a product is cut to the type of its factors before it becomes wider",
+    AttributeWithoutEffect "W0714" "an attribute that changes values elsewhere has no effect here",
+    EndlessCount "W0715" "a loop up to the limit of its variable's type never ends on the target",
 }
 
 impl fmt::Display for Code {

@@ -138,6 +138,8 @@ const PAGES: &[(&str, &str)] = pages![
     "W0711",
     "W0712",
     "W0713",
+    "W0714",
+    "W0715",
 ];
 
 /// The page that explains `code`, as Markdown.

@@ -13,10 +13,12 @@
 //! | [`unused`] | W0706 |
 //! | [`tasks`] | W0707 |
 //! | [`endless`] | W0709 |
+//! | [`attributes`] | W0714 |
 //!
 //! A warning that is wrong costs more trust than one that is missing: where names alone do not
 //! decide, nothing is said.
 
+mod attributes;
 mod endless;
 mod equality;
 mod index;
@@ -61,6 +63,7 @@ fn lint(front: &Front, plan: Option<&TaskPlan>) -> Vec<Diagnostic> {
     outputs::lint_globals(&units, &index, &mut findings);
     unused::lint_globals(&units, &index, &mut findings);
     tasks::lint(&units, &index, plan, &mut findings);
+    attributes::lint(front, &mut findings);
     findings
 }
 

@@ -103,7 +103,7 @@ impl Body<'_, '_> {
         Expr { kind: ExprKind::FromRegister(Box::new(whole)), ty, span }
     }
     /// Warns of a difference that is compared with the sign or the bits that a register gives it, where another target
-    /// would compare a number of its type: `now - last >= limit` after the counter has begun anew.
+    /// would compare a number of its type: `now - last >= limit` after the counter has begun again.
     pub(super) fn warn_of_uncut_difference(&mut self, operand: &Expr) {
         let is_difference = matches!(operand.kind, ExprKind::Binary(Binary::Subtract, ..));
         let Some(ty) = self.plain_elementary(operand).filter(|ty| is_difference && !ty.is_signed()) else { return };

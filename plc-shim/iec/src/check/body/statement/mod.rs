@@ -13,7 +13,7 @@ use crate::check::types::constant::fold;
 use crate::check::types::number::as_number;
 use crate::check::types::operand::{Operand, constant};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::dialect::Feature;
+use crate::dialect::{Feature, IntegerWidth};
 use crate::ir::{
     CaseArm, CaseStatement, ElementaryType, Expr, ForStatement, IfBranch, Place, Statement, StatementKind, Type,
     TypeId, Value,
@@ -310,10 +310,27 @@ impl Body<'_, '_> {
         });
         let body = self.loop_body(&inner.body);
         let (variable, from, to, by) = header?;
+        self.warn_of_endless_count(&variable, &to, &by);
         let last = self.scope.register(ElementaryType::Lint);
         let step = self.scope.register(ElementaryType::Lint);
         let inner = ForStatement { variable, from, to, by, last, step, body };
         Some(StatementKind::For(Box::new(inner)))
+    }
+
+    /// Warns of a FOR up to the limit of its variable's type, where the target counts in that type: its variable never
+    /// passes the limit. Here, the loop ends.
+    fn warn_of_endless_count(&mut self, variable: &Place, to: &Expr, by: &Expr) {
+        let types = self.declarations.types();
+        let whole = |expr: &Expr| fold(types, expr).ok().and_then(Value::as_int);
+        let (Some(ty), Some(last), Some(step)) = (types.elementary(variable.ty), whole(to), whole(by)) else { return };
+        let Some((least, most)) = ty.range() else { return };
+        let is_endless = step > 0 && last == most || step < 0 && last == least;
+        if is_endless && self.declarations.dialect(to.span).integers() == IntegerWidth::Register {
+            let message =
+                format!("{last} is the last number of {ty}, so the loop never ends on the target; here it does");
+            let found = Diagnostic::warning(Code::EndlessCount, to.span, message);
+            self.report(found.with_help("count with a variable of a wider type"));
+        }
     }
 
     /// The type of a step. Where integers change their sign, an unsigned variable may count down.
@@ -330,6 +347,10 @@ impl Body<'_, '_> {
             }
             Type::Elementary(ty) if self.bits_are_numbers(*ty, place.span) => {
                 let ty = as_number(*ty);
+                Some((Place { ty: ty.into(), ..place }, ty))
+            }
+            _ if self.base_of_enumeration(place.ty, place.span).is_some_and(ElementaryType::is_integer) => {
+                let ty = self.base_of_enumeration(place.ty, place.span)?;
                 Some((Place { ty: ty.into(), ..place }, ty))
             }
             _ => {

@@ -1,0 +1,67 @@
+//! W0714: attributes by which the vendor's tool gives variables other values, and which have no effect here.
+
+use crate::diagnostic::{Code, Diagnostic};
+use crate::dialect::Dialect;
+use crate::front::Front;
+use crate::source::Span;
+use crate::syntax::lexer::tokenize_in;
+use crate::syntax::token::TokenKind;
+
+/// Attributes of CODESYS and TwinCAT, each with what is otherwise here.
+const EFFECTS: &[(&str, &str)] = &[
+    ("call_after_init", "nothing calls the method that it stands before: call it in the first scan"),
+    ("call_after_global_init_slot", "nothing calls what it stands before: call it in the first scan"),
+    ("call_on_type_change", "nothing calls the method that it stands before"),
+    ("global_init_slot", "initial values are computed in the order of the files"),
+    ("init_on_onlchange", "nothing is changed while a program runs"),
+    ("initialize_on_call", "the input keeps the value of the call before"),
+    ("is_connected", "the variable stays FALSE"),
+    ("no_init", "the variable begins with its initial value"),
+    ("no-init", "the variable begins with its initial value"),
+    ("noinit", "the variable begins with its initial value"),
+    ("pack_mode", "members lie where their own sizes put them, with gaps: SIZEOF, unions and copies see it"),
+    ("parameterstringof", "the variable keeps its initial value"),
+    ("to_string", "TO_STRING gives the number, not the name"),
+];
+
+pub(super) fn lint(front: &Front, findings: &mut Vec<Diagnostic>) {
+    for (id, file) in front.sources.iter() {
+        let has_attributes = matches!(file.dialect(), Dialect::Codesys | Dialect::TwinCat);
+        if front.library.contains(&id) || !has_attributes {
+            continue;
+        }
+        for token in
+            tokenize_in(file.dialect(), file.text()).into_iter().filter(|token| token.kind == TokenKind::Pragma)
+        {
+            let pragma = file.text().get(token.start as usize..token.end as usize).unwrap_or_default();
+            if let Some((name, otherwise)) = effect(pragma) {
+                let message = format!("the attribute '{name}' has no effect here");
+                let span = Span { file: id, start: token.start, end: token.end };
+                findings.push(Diagnostic::warning(Code::AttributeWithoutEffect, span, message).with_help(otherwise));
+            }
+        }
+    }
+}
+
+/// The attribute of `{attribute 'name' := 'value'}`, if it has an effect on values elsewhere, and what is otherwise here.
+fn effect(pragma: &str) -> Option<(&'static str, &'static str)> {
+    let inner = pragma.trim_matches(['{', '}']).trim();
+    let (word, rest) = inner.split_once(char::is_whitespace)?;
+    let name = rest.trim().strip_prefix('\'')?.split('\'').next()?;
+    let known = EFFECTS.iter().find(|(known, _)| known.eq_ignore_ascii_case(name));
+    known.copied().filter(|_| word.eq_ignore_ascii_case("attribute"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn attributes_are_known_by_their_names() {
+        assert_eq!(effect("{attribute 'pack_mode' := '1'}").map(|(name, _)| name), Some("pack_mode"));
+        assert_eq!(effect("{ATTRIBUTE  'Call_After_Init' }").map(|(name, _)| name), Some("call_after_init"));
+        for none in ["{attribute 'hide'}", "{warning disable C0196}", "{attribute}", "{}", "{attribute 'to_string"] {
+            assert_eq!(effect(none).is_some(), none.ends_with("to_string"), "{none}");
+        }
+    }
+}
