@@ -174,6 +174,7 @@ fn use_in_projects(feature: Feature) -> &'static str {
         Feature::EmptyArrays => {
             "PROGRAM P VAR a : ARRAY [0..-1] OF INT; b : ARRAY [0..0] OF INT; END_VAR b[0] := 1; END_PROGRAM"
         }
+        Feature::DecimalBase => "PROGRAM P VAR n : INT; END_VAR n := 10#300; END_PROGRAM",
         Feature::GenericConstants => {
             "FUNCTION_BLOCK F VAR_GENERIC CONSTANT n : INT := 1; END_VAR VAR a : ARRAY [1..n] OF INT; END_VAR a[1] := n; END_FUNCTION_BLOCK
              PROGRAM P VAR f1 : F<2>; END_VAR f1(); END_PROGRAM"

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use onescan_iec::Dialect;
 
-use crate::rig::findings_in;
+use crate::rig::{findings, findings_in};
 
 const HEAD: &str = "PROGRAM P VAR a, b, n : INT; x, q : BOOL; t : TON; d : TIME; END_VAR\n";
 
@@ -113,4 +113,33 @@ fn keywords_for_names() {
 PROGRAM P VAR at : INT; if : BOOL; mod AT %MW2 : INT; END_VAR at := mod; END_PROGRAM",
     );
     insta::assert_snapshot!(found);
+}
+
+/// What beginners of the language write, and people who come from another one: the message names what mends it.
+#[test]
+fn slips_of_beginners_are_mended() {
+    let body = |declared: &str, text: &str| findings(&format!("PROGRAM P VAR {declared} END_VAR\n{text}\nEND_PROGRAM"));
+    let all = [
+        body("t : TON; q : BOOL;", "t(IN := q, PT := T#1s, Q := q);"),
+        body("a : INT;", "IF a = 1 THEN a := 2; ELSE IF a = 2 THEN a := 3; END_IF;"),
+        body("s : STRING;", "s := 'it''s';"),
+        body("s : STRING; n : INT;", "s := 'n=' + n;"),
+        body("n : INT;", "n := 0xFF;"),
+        body("i, n : INT;", "FOR i := 0 TO 10 STEP 2 DO n := n + 1; END_FOR;"),
+        body("w : WORD; b : BOOL;", "b := w[3];"),
+        body("n : INT;", "n := 10#30000;"),
+    ];
+    insta::assert_snapshot!(all.concat());
+}
+
+/// Names that are words of Instruction List begin a statement of Structured Text as all others do.
+#[test]
+fn words_of_instruction_list_are_names_in_text() {
+    for name in ["r1", "s1", "in", "pt", "pv", "cu", "cd", "clk", "st", "ld", "eq", "add", "sub"] {
+        let text = format!(
+            "PROGRAM P VAR x, y : INT; {name} : REFERENCE TO INT; END_VAR\n{name} REF= x;\ny := {name};\nEND_PROGRAM"
+        );
+        let found = findings_in(Dialect::Codesys, &text);
+        assert!(!found.has_errors(), "{name}: {found}");
+    }
 }

@@ -382,6 +382,7 @@ features! {
     ProgramInOuts "a `VAR_IN_OUT` of a program that nobody calls",
     CCode "C code that sets variables, `{{ SetFbVar(a, 1); }}`",
     GenericConstants "generic blocks: `VAR_GENERIC CONSTANT`, `FB<8>`",
+    DecimalBase "`10#` before a number of base 10",
 }
 
 impl Feature {

@@ -163,6 +163,7 @@ pub const FEATURES: &[FeatureRow] = &[
         "Beremiz: C code between braces, GetFbVar and SetFbVar; done elsewhere, as a stub is",
     ),
     row(Feature::GenericConstants, &[Codesys, TwinCat], "CODESYS and TwinCAT: VAR_GENERIC CONSTANT"),
+    row(Feature::DecimalBase, &[Codesys, TwinCat], "TwinCAT: accepts it, as public projects show"),
 ];
 
 /// How a dialect behaves, and where that is written.

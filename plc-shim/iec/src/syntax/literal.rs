@@ -14,6 +14,8 @@ pub fn parse_integer(text: &str) -> Result<i128, String> {
         None => (10, text),
         Some(("2", digits)) => (2, digits),
         Some(("8", digits)) => (8, digits),
+        // of vendors; who reads the text reports it elsewhere
+        Some(("10", digits)) => (10, digits),
         Some(("16", digits)) => (16, digits),
         Some((base, _)) => return Err(format!("base {base} is not 2, 8 or 16")),
     };
@@ -147,6 +149,7 @@ mod tests {
         assert_eq!(parse_integer("1_000"), Ok(1000));
         assert_eq!(parse_integer("16#ff_FF"), Ok(0xffff));
         assert_eq!(parse_integer("2#1010"), Ok(10));
+        assert_eq!(parse_integer("10#30_000"), Ok(30_000));
         assert!(parse_integer("3#1").is_err());
         assert!(parse_integer("2#12").is_err());
         assert!(parse_integer("1__0").is_err());

@@ -229,6 +229,12 @@ impl<'a> Cursor<'a> {
         matches!(pair, (Some(first), Some(second)) if first.end == second.start)
     }
 
+    /// True if nothing stands between the token taken last and the one here.
+    pub(super) fn touches_before(&self) -> bool {
+        let before = self.at.checked_sub(1).and_then(|before| self.tokens.get(before));
+        matches!((before, self.tokens.get(self.at)), (Some(first), Some(second)) if first.end == second.start)
+    }
+
     /// Makes names of the keyword here and of those behind it that stand where a name does.
     pub(super) fn take_for_names(&mut self, keyword: Keyword) {
         let word = TokenKind::Keyword(keyword);

@@ -341,7 +341,12 @@ impl Cursor<'_> {
             Some(TokenKind::Integer) if text.contains("__") && self.dialect().has(Feature::LooseUnderscores) => {
                 self.literal(span, parse_integer(&text.replace("__", "_")).map(Literal::Integer))
             }
-            Some(TokenKind::Integer) => self.literal(span, parse_integer(text).map(Literal::Integer)),
+            Some(TokenKind::Integer) => {
+                if text.starts_with("10#") {
+                    self.require(Feature::DecimalBase, span);
+                }
+                self.literal(span, parse_integer(text).map(Literal::Integer))
+            }
             Some(TokenKind::Real) => self.literal(span, parse_real(text).map(Literal::Real)),
             Some(TokenKind::Typed) => self.typed_literal(text, span),
             Some(TokenKind::String | TokenKind::WideString) => ExprKind::Literal(Literal::String(text.to_owned())),
@@ -361,6 +366,9 @@ impl Cursor<'_> {
         if matches!(kind, ExprKind::Literal(Literal::Integer(_) | Literal::Real(_))) && self.pass_unit(span) {
             return error_at(span);
         }
+        if matches!(kind, ExprKind::Literal(Literal::String(_))) {
+            self.pass_doubled_quote();
+        }
         Expr { kind, span, height: 1 }
     }
 
@@ -373,11 +381,20 @@ impl Cursor<'_> {
         let message = format!("`{}` is not a number", self.text(number.start, unit.end));
         let help = format!("a duration is written `T#{}`", self.text(number.start, unit.end));
         let times = ["d", "h", "m", "s", "ms", "us", "ns"];
-        let help = times.iter().any(|name| self.at_word(name)).then_some(help);
+        let is_time = times.iter().any(|name| self.at_word(name));
+        let help = is_time.then_some(help).or_else(|| self.hexadecimal(number));
         let found = Diagnostic::error(Code::InvalidLiteral, number.to(unit), message);
         self.report(found.with_optional_help(help));
         self.advance();
         true
+    }
+
+    /// How the number of `0xFF`, whose letters stand here, is written.
+    fn hexadecimal(&self, number: Span) -> Option<String> {
+        let digits =
+            self.next_text().strip_prefix(['x', 'X']).filter(|_| self.text(number.start, number.end) == "0")?;
+        let is_number = !digits.is_empty() && digits.bytes().all(|digit| digit.is_ascii_hexdigit());
+        is_number.then(|| format!("a hexadecimal number is written `16#{digits}`"))
     }
 
     /// Reports what is not an operand, with a hint for what other languages write.

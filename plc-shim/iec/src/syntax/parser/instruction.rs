@@ -79,8 +79,8 @@ impl Cursor<'_> {
             (Some(Word::Jump(_)), Some(TokenKind::Identifier)) => {
                 self.peek_ahead(ahead + 2) != Some(TokenKind::Punctuation(Punctuation::Semicolon))
             }
-            // `r REF= x`, `s S= x` and `r ?= x` are statements on variables of these names.
-            (Some(Word::Set | Word::Reset), Some(TokenKind::Identifier)) if self.is_statement_mark(ahead + 2) => false,
+            // `r REF= x`, `in S= x` and `st ?= x` are statements on variables of these names.
+            (Some(_), Some(TokenKind::Identifier)) if self.is_statement_mark(ahead + 2) => false,
             (Some(_), Some(TokenKind::Punctuation(mark))) => {
                 !alone && matches!(mark, Punctuation::Minus | Punctuation::Plus)
             }

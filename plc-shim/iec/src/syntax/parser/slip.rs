@@ -89,6 +89,37 @@ impl Cursor<'_> {
         self.peek_ahead(2) == Some(TokenKind::Punctuation(Punctuation::Semicolon))
     }
 
+    /// Reports the doubled quote of `'it''s'` behind the first of its parts, and passes the others.
+    pub(super) fn pass_doubled_quote(&mut self) {
+        let is_part = |kind| matches!(kind, Some(TokenKind::String | TokenKind::WideString));
+        if !is_part(self.peek()) || !self.touches_before() {
+            return;
+        }
+        let help = "write `$'` for a quote within a string, `$\"` within a WSTRING";
+        self.report_slip(self.span(), "a doubled quote ends the string", help);
+        while is_part(self.peek()) && self.touches_before() {
+            self.advance();
+        }
+    }
+
+    /// Reports the `STEP` of other languages where `DO` is wanted; true if it stands here.
+    pub(super) fn foreign_step(&mut self, wanted: Keyword) -> bool {
+        let is_step = wanted == Keyword::Do && self.at_word("STEP");
+        if is_step {
+            self.report_slip(self.span(), "a step of FOR begins with another word", "write `BY`");
+        }
+        is_step
+    }
+
+    /// Reports an IF that `ELSE IF` began and nothing ended.
+    pub(super) fn report_else_if(&mut self, place: Span) {
+        self.report_slip(
+            place,
+            "the IF that begins here has no `END_IF`",
+            "write `ELSIF` for another branch of the same IF",
+        );
+    }
+
     /// What `RETURN` is; `RETURN (b)` returns if `b` holds, where the dialect has that. Otherwise a value behind it on its line is reported, and goes to the result.
     pub(super) fn returned(&mut self) -> StatementKind {
         self.advance();

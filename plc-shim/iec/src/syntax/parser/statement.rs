@@ -172,10 +172,17 @@ impl Cursor<'_> {
                 break;
             }
         }
-        if self.take_keyword(Keyword::Else) {
+        let mut nests = None;
+        if self.at_keyword(Keyword::Else) {
+            let start = self.span();
+            self.advance();
+            nests = (self.at_keyword(Keyword::If) && !self.is_line_break(0)).then(|| self.span_from(start));
             otherwise = self.statements();
         }
-        self.expect_end(Keyword::EndIf);
+        match nests {
+            Some(place) if !self.at_keyword(Keyword::EndIf) => self.report_else_if(place),
+            _ => self.expect_end(Keyword::EndIf),
+        }
         StatementKind::If(IfStatement { branches, otherwise })
     }
 
@@ -184,7 +191,7 @@ impl Cursor<'_> {
         let known = self.reported();
         let condition = self.expression_or_assignment();
         if !self.at_keyword(end) {
-            if self.reported() == known {
+            if self.reported() == known && !self.foreign_step(end) {
                 self.unexpected(&format!("`{}`", end.text()));
             }
             if end == Keyword::Of && self.at_case_label() {

@@ -346,7 +346,13 @@ impl Body<'_, '_> {
         } else if found.is_none() && !scope.may_have(&name.key()) {
             let names = scope.variables().iter().filter(|variable| accepts(variable));
             let help = did_you_mean(&name.text, names.map(|variable| variable.name.as_str()));
-            let message = format!("`{callee}` has no such parameter `{}`", name.text);
+            let is_output = scope.own(&name.key()).is_some_and(|variable| variable.section == SectionKind::Output);
+            let (message, help) = if is_output {
+                let help = format!("an output goes to a variable: write `{} => variable`", name.text);
+                (format!("`{}` is an output of `{callee}`, which takes no value", name.text), Some(help))
+            } else {
+                (format!("`{callee}` has no such parameter `{}`", name.text), help)
+            };
             let found = Diagnostic::error(Code::UnknownArgument, name.span, message);
             self.report(found.with_optional_help(help));
         }

@@ -114,6 +114,9 @@ impl Body<'_, '_> {
         right: Operand,
         span: Span,
     ) -> Option<Operand> {
+        if matches!(operator, Binary::Add | Binary::And) && (self.is_text(&left) || self.is_text(&right)) {
+            return self.joined_texts(&left, &right, span);
+        }
         if !operator.is_comparison() && !matches!((&left, &right), (Operand::Typed(_), _) | (_, Operand::Typed(_))) {
             return self.fold_literals(operator, &left, &right, span);
         }
@@ -192,6 +195,15 @@ impl Body<'_, '_> {
         let (left, right) = (self.describe(left), self.describe(right));
         let message = format!("this operator does not join {left} and {right}");
         self.report(Diagnostic::error(Code::InvalidOperand, span, message));
+        None
+    }
+
+    /// Reports `+` and `&` between strings, with what joins them.
+    fn joined_texts(&mut self, left: &Operand, right: &Operand, span: Span) -> Option<Operand> {
+        let (left, right) = (self.describe(left), self.describe(right));
+        let message = format!("this operator does not join {left} and {right}");
+        let help = "strings are joined by `CONCAT(a, b)`, a number becomes text by `DINT_TO_STRING(n)`";
+        self.report(Diagnostic::error(Code::InvalidOperand, span, message).with_help(help));
         None
     }
 

@@ -467,7 +467,14 @@ impl Body<'_, '_> {
         }
         let Type::Array { dimensions, element } = self.declarations.types().get(base.place.ty).clone() else {
             let message = format!("{} is not an array", self.type_name(base.place.ty));
-            self.report(Diagnostic::error(Code::NotIndexable, span, message));
+            let bits = matches!(self.declarations.types().get(base.place.ty), Type::Elementary(ty) if ty.is_bits() || ty.is_integer());
+            let help = match indices {
+                [ast::Expr { kind: ast::ExprKind::Literal(ast::Literal::Integer(bit)), .. }] if bits => {
+                    Some(format!("a bit is written with a point, as in `x.{bit}`"))
+                }
+                _ => None,
+            };
+            self.report(Diagnostic::error(Code::NotIndexable, span, message).with_optional_help(help));
             return None;
         };
         if dimensions.len() != indices.len() {
