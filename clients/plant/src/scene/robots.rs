@@ -94,7 +94,10 @@ fn refuse(table: &UrdfTable, fault: RobotFault, faults: &mut Faults<'_>) {
 
 /// A path as the scene would name it.
 fn named_from(path: &Path, scene_folder: &Path) -> String {
-    path.strip_prefix(scene_folder).unwrap_or(path).display().to_string()
+    // what a xacro has found is absolute, where the scene may be named from the folder in which the program runs
+    let whole = std::path::absolute(if scene_folder.as_os_str().is_empty() { Path::new(".") } else { scene_folder });
+    let inside = whole.as_ref().ok().and_then(|whole| path.strip_prefix(whole).ok());
+    inside.or_else(|| path.strip_prefix(scene_folder).ok()).unwrap_or(path).display().to_string()
 }
 
 fn packages(table: &UrdfTable, faults: &mut Faults<'_>) -> Packages {

@@ -28,6 +28,7 @@ use std::sync::Arc;
 use onescan_base::nearest;
 
 use super::Reading;
+use super::package;
 use super::xml::{self, Attribute, Element, RobotFault};
 use crate::file_place::Source;
 use parameter::{Parameter, Preset};
@@ -223,14 +224,14 @@ impl Expander<'_> {
         if let Some(space) = element.attribute("ns") {
             return Err(space.place.wrong("`ns` of <xacro:include> is not understood here"));
         }
-        let path = Path::new(&named);
-        let path = if path.is_file() { path.to_path_buf() } else { self.scope.folder().join(path) };
-        let text = self
-            .scope
-            .packages
-            .read_text(&path)
-            .map_err(|error| element.wrong_at("filename", format!("`{named}` cannot be read: {error}")))?;
-        let source = Arc::new(Source { file: path.display().to_string(), text: text.into() });
+        let lost = |cause| element.wrong_at("filename", format!("names `{named}`, {cause}"));
+        let path = self.scope.packages.file(&named, &self.scope.file).map_err(lost)?;
+        let unread = |error| {
+            let named = package::shown(Path::new(&named));
+            element.wrong_at("filename", format!("`{named}` cannot be read: {error}"))
+        };
+        let text = self.scope.packages.read_text(&path).map_err(unread)?;
+        let source = Arc::new(Source { file: package::shown(&path), text: text.into() });
         let root = xml::parse(&source)?;
         let before = std::mem::replace(&mut self.scope.file, path);
         let expanded = self.nested(element, |this| this.all(&root.children));

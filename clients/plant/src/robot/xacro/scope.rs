@@ -10,7 +10,7 @@ use super::evaluate::{Names, evaluate};
 use super::expression::Expression;
 use super::value::Value;
 use super::yaml;
-use crate::robot::Packages;
+use crate::robot::package::{self, Packages};
 use crate::robot::xml::Element;
 
 /// Deepest chain of properties that are each written by another.
@@ -150,7 +150,10 @@ impl<'r> Scope<'r> {
             "find" => self.package(rest),
             "arg" => self.argument(rest),
             "eval" => self.expression(rest),
-            "dirname" => Ok(Value::Text(self.folder().display().to_string())),
+            "dirname" => {
+                let folder = self.file.parent().unwrap_or_else(|| Path::new(""));
+                Ok(Value::Text(package::absolute(folder).display().to_string()))
+            }
             "optenv" => Ok(Value::Text(rest.split_once(' ').map_or("", |(_, preset)| preset).to_owned())),
             "env" => Err(format!("`$(env {rest})`: a scene does not depend on the environment")),
             other => Err(format!("`$({other} …)` is not understood here")),
@@ -158,15 +161,11 @@ impl<'r> Scope<'r> {
     }
 
     fn package(&self, name: &str) -> Result<Value, String> {
-        let found = self.packages.find(name, &self.file);
+        let found = self.packages.find_absolute(name, &self.file);
         let lost = || {
             format!("no folder around it is the package `{name}`; say where: `packages = {{ {name} = \"folder\" }}`")
         };
         found.map(|folder| Value::Text(folder.display().to_string())).ok_or_else(lost)
-    }
-
-    pub(super) fn folder(&self) -> &Path {
-        self.file.parent().unwrap_or_else(|| Path::new(""))
     }
 }
 
@@ -216,8 +215,8 @@ impl Names for Scope<'_> {
     }
 
     fn yaml(&mut self, file: &str) -> Result<Value, String> {
-        let path = Path::new(file);
-        let path = if path.is_file() { path.to_path_buf() } else { self.folder().join(file) };
+        let path = self.packages.file(file, &self.file).map_err(|cause| format!("names `{file}`, {cause}"))?;
+        let file = &package::shown(Path::new(file));
         let text = self.packages.read_text(&path).map_err(|error| format!("`{file}` cannot be read: {error}"))?;
         yaml::parse(&text).map_err(|cause| format!("`{file}` {cause}"))
     }
