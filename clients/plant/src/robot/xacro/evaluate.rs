@@ -3,6 +3,7 @@
 use onescan_base::nearest;
 
 use super::expression::Expression;
+use super::lists;
 use super::value::Value;
 
 /// What an expression asks for outside of itself.
@@ -22,6 +23,11 @@ pub(super) trait Names {
     /// # Errors
     /// An argument that is not given.
     fn argument(&mut self, name: &str) -> Result<Value, String>;
+    /// Takes a part of what lists may have in all.
+    ///
+    /// # Errors
+    /// Nothing is left.
+    fn spend(&mut self, size: usize) -> Result<(), String>;
 }
 
 type Evaluated = Result<Value, String>;
@@ -37,6 +43,7 @@ pub(super) fn evaluate(expression: &Expression, names: &mut dyn Names) -> Evalua
         Expression::List(list) => {
             list.iter().map(|inner| evaluate(inner, names)).collect::<Result<_, _>>().map(Value::List)
         }
+        Expression::Comprehension(inner) => lists::comprehension(inner, names),
         Expression::Index(of, index) => {
             let (of, index) = (evaluate(of, names)?, evaluate(index, names)?);
             item(&of, &index)
@@ -57,7 +64,7 @@ pub(super) fn evaluate(expression: &Expression, names: &mut dyn Names) -> Evalua
         Expression::Not(inner) => Ok(Value::Bool(!evaluate(inner, names)?.is_true())),
         Expression::Binary(sign, left, right) => {
             let (left, right) = (evaluate(left, names)?, evaluate(right, names)?);
-            binary(sign, &left, &right)
+            lists::binary(sign, &left, &right, names).unwrap_or_else(|| binary(sign, &left, &right))
         }
         Expression::Compare(first, others) => {
             let mut left = evaluate(first, names)?;
@@ -102,7 +109,7 @@ fn numeric(value: &Value) -> Result<f64, String> {
     value.number().ok_or_else(|| format!("{} is not a number", quoted(value)))
 }
 
-fn quoted(value: &Value) -> String {
+pub(super) fn quoted(value: &Value) -> String {
     match value {
         Value::Text(text) => format!("the text '{text}'"),
         other => other.sort().to_owned(),
@@ -142,7 +149,7 @@ fn item(of: &Value, index: &Value) -> Evaluated {
     }
 }
 
-fn binary(sign: &str, left: &Value, right: &Value) -> Evaluated {
+pub(super) fn binary(sign: &str, left: &Value, right: &Value) -> Evaluated {
     if sign == "+" {
         match (left, right) {
             (Value::Text(one), Value::Text(other)) => return Ok(Value::Text(format!("{one}{other}"))),
@@ -211,6 +218,9 @@ fn contains(whole: &Value, part: &Value) -> Result<bool, String> {
 }
 
 fn call(callee: &Expression, plain: &[Expression], named: &[(String, Expression)], names: &mut dyn Names) -> Evaluated {
+    if let Some(known) = lists::is_instance(callee, plain, names) {
+        return known;
+    }
     let values: Vec<Value> = plain.iter().map(|inner| evaluate(inner, names)).collect::<Result<_, _>>()?;
     let function = match callee {
         Expression::Name(name) => name.as_str(),
@@ -240,10 +250,13 @@ fn call(callee: &Expression, plain: &[Expression], named: &[(String, Expression)
             Ok(Value::Whole(libm::trunc(numeric(&number)?) as i64))
         }
         ("float", [value]) => numeric(&Value::literal(&value.to_string())).map(Value::Number),
-        ("list" | "tuple", [Value::List(list)]) => Ok(Value::List(list.clone())),
+        ("tokenize", [Value::Text(text)]) => {
+            let by = named.iter().find(|(key, _)| key == "sep").map(|(_, inner)| evaluate(inner, names)).transpose()?;
+            Ok(lists::tokens(text, by.as_ref()))
+        }
         ("min" | "max", [Value::List(list)]) => extreme(function, list),
         ("min" | "max", list @ [_, _, ..]) => extreme(function, list),
-        _ => mathematics(function, &values),
+        _ => lists::function(function, &values, names).unwrap_or_else(|| mathematics(function, &values)),
     }
 }
 
@@ -299,6 +312,11 @@ fn method(of: &Value, name: &str, values: &[Value]) -> Evaluated {
         (Value::Text(text), "startswith", [Value::Text(part)]) => Ok(Value::Bool(text.starts_with(part.as_str()))),
         (Value::Text(text), "endswith", [Value::Text(part)]) => Ok(Value::Bool(text.ends_with(part.as_str()))),
         (Value::Map(map), "keys", []) => Ok(Value::List(map.iter().map(|(key, _)| Value::Text(key.clone())).collect())),
+        (Value::Map(map), "values", []) => Ok(Value::List(map.iter().map(|(_, value)| value.clone()).collect())),
+        (Value::Map(map), "items", []) => Ok(Value::List(lists::items(map))),
+        (Value::Text(by), "join", [Value::List(list)]) => {
+            Ok(Value::Text(list.iter().map(ToString::to_string).collect::<Vec<_>>().join(by)))
+        }
         (Value::Map(_), "get", [key]) => Ok(item(of, key).unwrap_or(Value::None)),
         (Value::Map(_), "get", [key, preset]) => Ok(item(of, key).unwrap_or_else(|_| preset.clone())),
         _ => Err(format!("{} has no `{name}` of {} arguments", quoted(of), values.len())),
@@ -328,6 +346,10 @@ mod tests {
 
         fn argument(&mut self, name: &str) -> Result<Value, String> {
             Err(format!("argument `{name}` is not given"))
+        }
+
+        fn spend(&mut self, size: usize) -> Result<(), String> {
+            if size > 1000 { Err("too much".to_owned()) } else { Ok(()) }
         }
     }
 
@@ -360,6 +382,22 @@ mod tests {
             ("math.sqrt(16)", "4.0"),
             ("dict(a=1, b='c')['b']", "c"),
             ("not not count", "True"),
+            ("2 * [1, 'a']", "[1, 'a', 1, 'a']"),
+            ("[0] * -1", "[]"),
+            ("'ab' * 2", "abab"),
+            ("[f.upper() for f in 'th ff'.split()]", "['TH', 'FF']"),
+            ("[k + v for k, v in python.zip(['a', 'b'], ['c', 'd']) if k != 'a']", "['bd']"),
+            ("[n for n in 'a b'.split() if n in 'ab' and count > 5]", "['a', 'b']"),
+            ("dict([(k, v) for k, v in dict(a=1).items()])['a']", "1"),
+            ("list(python.set(['a', 'b']) - python.set(['b']))", "['a']"),
+            ("len(python.set([1, 2, 1]))", "2"),
+            ("python.isinstance(name, list) or python.isinstance(limits, dict)", "True"),
+            ("python.any([s in 'a,b' for s in ',;'])", "True"),
+            ("python.sum([1, 2.5])", "3.5"),
+            ("len(range(1, 7, 2))", "3"),
+            ("'-'.join(xacro.tokenize('a, b;c'))", "a-b-c"),
+            ("xacro.tokenize('a=1', sep='=')[1]", "1"),
+            ("xacro.dotify(dict(a=dict(b=2))).a.b", "2"),
         ];
         for (text, value) in cases {
             assert_eq!(worth(text).as_deref(), Ok(value), "{text}");
@@ -373,7 +411,11 @@ mod tests {
             ("1 +", "the expression ends where a value should stand"),
             ("(1", "the expression lacks a `)`"),
             ("1 / 0", "division by 0"),
-            ("name * 2", "`*` does not go with the text 'ur5e' and a number"),
+            ("name * 2.5", "`*` does not go with the text 'ur5e' and a number"),
+            ("[1] * 2000", "too much"),
+            ("[a for a, b in [1]]", "a number is not 2 values"),
+            ("[a for a in count]", "a number has no items"),
+            ("[a for 1 in name]", "`for` needs names and an `in`"),
             ("limits['loer']", "the dictionary has no 'loer'; did you mean 'lower'?"),
             ("import os", "`import os` is not an expression that is understood here"),
             ("system('ls')", "the text 'ls' is not a number"),

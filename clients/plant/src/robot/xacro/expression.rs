@@ -13,6 +13,7 @@ pub(super) enum Expression {
     Constant(Value),
     Name(String),
     List(Vec<Self>),
+    Comprehension(Box<Comprehension>),
     Index(Box<Self>, Box<Self>),
     Member(Box<Self>, String),
     /// Callee, arguments, and those with names.
@@ -25,6 +26,16 @@ pub(super) enum Expression {
     And(Box<Self>, Box<Self>),
     Or(Box<Self>, Box<Self>),
     Choice(Box<Self>, Box<Self>, Box<Self>),
+}
+
+/// `[each for names in of if filter]`.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Comprehension {
+    pub(super) each: Expression,
+    /// What an item is called, or its parts are.
+    pub(super) names: Vec<String>,
+    pub(super) of: Expression,
+    pub(super) filter: Option<Expression>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -107,6 +118,15 @@ impl Expression {
             Some(_) => Err(format!("`{}` is not an expression that is understood here", text.trim())),
         }
     }
+}
+
+/// Whether an expression asks for the value of a name.
+pub(super) fn mentions(text: &str, name: &str) -> bool {
+    let Ok(tokens) = tokens(text) else { return false };
+    let named = |at: &usize| matches!(&tokens[*at], Token::Name(known) if known == name);
+    // behind a `.` it is the name of a member
+    let is_member = |at: usize| at.checked_sub(1).is_some_and(|before| tokens[before] == Token::Sign("."));
+    (0..tokens.len()).filter(named).any(|at| !is_member(at))
 }
 
 type Parsed = Result<Expression, String>;
@@ -297,10 +317,36 @@ impl Parser {
                     },
                 )
             }
-            Some(Token::Sign("[")) => self.listed("]").map(|(list, _)| Expression::List(list)),
+            Some(Token::Sign("[")) => self.bracketed(),
             Some(Token::Sign(sign)) => Err(format!("`{sign}` stands where a value should")),
             None => Err("the expression ends where a value should stand".to_owned()),
         }
+    }
+
+    /// A list, of which the opening bracket is taken.
+    fn bracketed(&mut self) -> Parsed {
+        let start = self.at;
+        if self.sign(&["]"]).is_some() {
+            return Ok(Expression::List(Vec::new()));
+        }
+        let each = self.choice()?;
+        if !self.word("for") {
+            self.at = start;
+            return self.listed("]").map(|(list, _)| Expression::List(list));
+        }
+        let mut names = Vec::new();
+        while !self.word("in") {
+            match self.tokens.get(self.at) {
+                Some(Token::Name(name)) => names.push(name.clone()),
+                _ => return Err("`for` needs names and an `in`".to_owned()),
+            }
+            self.at += 1;
+            self.sign(&[","]);
+        }
+        let of = self.or()?;
+        let filter = if self.word("if") { Some(self.or()?) } else { None };
+        self.expect("]")?;
+        Ok(Expression::Comprehension(Box::new(Comprehension { each, names, of, filter })))
     }
 
     /// Values up to a closing sign, and whether there was a comma.

@@ -9,6 +9,7 @@
 //! |---|---|
 //! | `value` | numbers, texts, lists, dictionaries |
 //! | `expression`, `evaluate` | what stands between `${` and `}` |
+//! | `lists` | comprehensions and functions of lists |
 //! | `yaml` | files of parameters |
 //! | `scope` | what a name is worth where it is used |
 //! | `parameter` | the parameters of a macro |
@@ -17,6 +18,7 @@
 
 mod evaluate;
 mod expression;
+mod lists;
 mod parameter;
 mod scope;
 mod value;
@@ -164,7 +166,7 @@ impl Expander<'_> {
     }
 
     fn property(&mut self, element: &Element) -> Result<(), RobotFault> {
-        let name = element.text("name")?.to_owned();
+        let name = self.needed(element, "name")?.to_string();
         let reach = match element.get("scope") {
             None => Reach::Here,
             Some("parent") => Reach::Parent,
@@ -174,27 +176,36 @@ impl Expander<'_> {
                 return Err(wrong);
             }
         };
+        if self.flag(element, "remove", false)? {
+            self.scope.remove(&name);
+            return Ok(());
+        }
         let (written, preset) = (element.attribute("value"), element.attribute("default"));
-        let property = match (written, preset) {
-            (None, Some(_)) if self.scope.has(&name) => return Ok(()),
-            (Some(text), _) | (None, Some(text)) if reach == Reach::Here && !needs_now(&text.value, &name) => {
-                match Value::literal(&text.value) {
-                    Value::Text(inner) if inner.contains('$') => Property::Text(inner),
-                    value => Property::Value(value),
-                }
-            }
-            (Some(text), _) | (None, Some(text)) => Property::Value(match self.value(text)? {
-                Value::Text(text) => Value::literal(&text),
-                value => value,
-            }),
-            (None, None) => {
-                let block = Property::Block(Arc::new(element.children.clone()));
-                self.scope.set(&format!("**{name}"), block, reach);
-                return Ok(());
-            }
+        if written.is_none() && preset.is_some() && self.scope.has(&name) {
+            return Ok(());
+        }
+        let Some(text) = written.or(preset) else {
+            let block = Property::Block(Arc::new(element.children.clone()));
+            self.scope.set(&format!("**{name}"), block, reach);
+            return Ok(());
+        };
+        let property = if reach == Reach::Here && self.flag(element, "lazy_eval", true)? {
+            // what a property is written by its own former value is gone when somebody asks
+            let value = if needs_now(&text.value, &name) { self.scope.text(&text.value).ok() } else { None };
+            value.map_or_else(|| unasked(&text.value), |value| Property::Value(plain(value)))
+        } else {
+            Property::Value(plain(self.value(text)?))
         };
         self.scope.set(&name, property, reach);
         Ok(())
+    }
+
+    /// An attribute that is true or false.
+    fn flag(&mut self, element: &Element, key: &str, preset: bool) -> Result<bool, RobotFault> {
+        let Some(attribute) = element.attribute(key) else { return Ok(preset) };
+        let value = self.value(attribute)?;
+        let wrong = || attribute.place.wrong(format!("`{key}` must be true or false, not `{value}`"));
+        value.condition().ok_or_else(wrong)
     }
 
     fn define(&mut self, element: &Element) -> Result<(), RobotFault> {
@@ -295,11 +306,7 @@ impl Expander<'_> {
                 }
                 (None, None) => return Err(element.wrong(format!("macro `{name}` needs `{key}`"))),
             };
-            let value = match value {
-                Value::Text(text) => Value::literal(&text),
-                other => other,
-            };
-            frame.push((key.clone(), Property::Value(value)));
+            frame.push((key.clone(), Property::Value(plain(value))));
         }
         match blocks.next() {
             None => Ok(frame),
@@ -321,9 +328,28 @@ impl Expander<'_> {
     }
 }
 
-/// Whether a property is written by its own former value, which is gone later.
+/// A property that is worth what its text says when somebody asks: what nobody asks for may be wrong.
+fn unasked(text: &str) -> Property {
+    match Value::literal(text) {
+        Value::Text(inner) if inner.contains('$') => Property::Text(inner),
+        value => Property::Value(value),
+    }
+}
+
+/// A value that was written as a text.
+fn plain(value: Value) -> Value {
+    match value {
+        Value::Text(text) => Value::literal(&text),
+        other => other,
+    }
+}
+
+/// Whether a property is written by its own former value.
 fn needs_now(text: &str, name: &str) -> bool {
-    text.contains('$') && text.contains(name)
+    text.match_indices("${").any(|(at, _)| {
+        let behind = &text[at + 1..];
+        scope::closing(behind, '{', '}').is_some_and(|end| expression::mentions(&behind[1..end], name))
+    })
 }
 
 #[cfg(test)]
@@ -383,7 +409,31 @@ mod tests {
                 r#"<xacro:unless value="${1 == 2}"><link name="yes"/></xacro:unless><xacro:if value="false"><link name="no"/></xacro:if>"#,
                 "yes",
             ),
+            (
+                r#"<xacro:if value="${[1]}"><link name="yes"/></xacro:if><xacro:if value="${[]}"><link name="no"/></xacro:if>"#,
+                "yes",
+            ),
             (r#"<link name="a$${b}"/>"#, "a${b}"),
+            // what nobody asks for may be wrong
+            (
+                r#"<xacro:property name="given" value="${arg given}"/><xacro:property name="b" value="${c}"/><link name="l"/>"#,
+                "l",
+            ),
+            (
+                r#"<xacro:property name="b" value="1"/><xacro:property name="a" value="${b}" lazy_eval="false"/>
+                <xacro:property name="b" value="2"/><link name="l${a}"/>"#,
+                "l1",
+            ),
+            (
+                r#"<xacro:property name="a" value="1"/><xacro:property name="a" remove="true"/>
+                <xacro:property name="${'a'}" default="2"/><link name="l${a}"/>"#,
+                "l2",
+            ),
+            // a property whose name is a part of another's does not need itself
+            (
+                r#"<xacro:property name="a" value="${ab}"/><xacro:property name="ab" value="2"/><link name="l${a}"/>"#,
+                "l2",
+            ),
             (r#"<xacro:property name="l" value="${[1, 2]}"/><link name="${len(l)}${'_'}${l[1]}"/>"#, "2_2"),
         ];
         for (inner, name) in cases {
@@ -404,9 +454,15 @@ mod tests {
             reported(
                 r#"<xacro:property name="a" value="${b}"/><xacro:property name="b" value="${a}"/><link name="${a}"/>"#
             )
-            .contains("needs itself")
+            .ends_with("property `a`: property `b`: `a` needs itself by way of `b`")
         );
         assert!(reported(r#"<link name="$(env HOME)"/>"#).contains("does not depend on the environment"));
+        let loops = r#"<link name="${len([[b for b in range(9999)] for a in range(9999)])}"/>"#;
+        assert!(reported(loops).ends_with("lists have more than 1000000 values and letters"), "{}", reported(loops));
+        let used = r#"<xacro:property name="a" value="${arg b}"/><link name="${a}"/>"#;
+        assert!(reported(used).contains("property `a`: `arg b` is not an expression"), "{}", reported(used));
+        let used = r#"<xacro:property name="a" value="${b}"/><link name="${a}"/>"#;
+        assert!(reported(used).ends_with("property `a`: there is no property `b`"), "{}", reported(used));
         assert!(reported(r#"<link name="${1"/>"#).contains("has no end"));
         assert!(reported(r#"<xacro:include filename="arm.xacro"/>"#).contains("cannot be read"));
         assert!(reported(r#"<xacro:element xacro:name="a"/>"#).contains("is not understood here"));

@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use super::evaluate::{Names, evaluate};
 use super::expression::Expression;
+use super::lists;
 use super::value::Value;
 use super::yaml;
 use crate::robot::package::{self, Packages};
@@ -39,6 +40,8 @@ pub(super) struct Scope<'r> {
     /// How many of the frames a text being evaluated sees.
     visible: usize,
     chain: Vec<String>,
+    /// How much lists may have that are still to be made.
+    size_left: usize,
     pub(super) arguments: Vec<(String, Value)>,
     pub(super) packages: &'r Packages,
     /// The file whose text is read now.
@@ -48,7 +51,15 @@ pub(super) struct Scope<'r> {
 impl<'r> Scope<'r> {
     pub(super) fn new(packages: &'r Packages, file: &Path, arguments: Vec<(String, Value)>) -> Self {
         let file = file.to_path_buf();
-        Self { frames: vec![Vec::new()], visible: 1, chain: Vec::new(), arguments, packages, file }
+        Self {
+            frames: vec![Vec::new()],
+            visible: 1,
+            chain: Vec::new(),
+            size_left: lists::SIZE_MAX,
+            arguments,
+            packages,
+            file,
+        }
     }
 
     pub(super) fn open(&mut self, frame: Vec<(String, Property)>) {
@@ -78,6 +89,13 @@ impl<'r> Scope<'r> {
         match self.find(name).map(|(frame, at)| &self.frames[frame][at].1) {
             Some(Property::Block(block)) => Some(Arc::clone(block)),
             _ => None,
+        }
+    }
+
+    /// Takes a name out of all frames that are seen.
+    pub(super) fn remove(&mut self, name: &str) {
+        while let Some((frame, at)) = self.find(name) {
+            self.frames[frame].remove(at);
         }
     }
 
@@ -170,7 +188,7 @@ impl<'r> Scope<'r> {
 }
 
 /// Where the bracket that a text begins with is closed, outside of quotes.
-fn closing(text: &str, open: char, close: char) -> Option<usize> {
+pub(super) fn closing(text: &str, open: char, close: char) -> Option<usize> {
     let mut depth = 0_usize;
     let mut quote = None;
     for (at, letter) in text.char_indices() {
@@ -198,8 +216,12 @@ impl Names for Scope<'_> {
             Property::Block(_) => return Err(format!("`{name}` is a block and has no value")),
             Property::Text(text) => text.clone(),
         };
-        if self.chain.len() >= CHAIN_MAX || self.chain.iter().any(|known| known == name) {
-            return Err(format!("property `{name}` needs itself"));
+        if let Some(first) = self.chain.iter().position(|known| known == name) {
+            let others: String = self.chain[first + 1..].iter().map(|other| format!(" by way of `{other}`")).collect();
+            return Err(format!("`{name}` needs itself{others}"));
+        }
+        if self.chain.len() >= CHAIN_MAX {
+            return Err(format!("it needs a chain of more than {CHAIN_MAX} properties"));
         }
         self.chain.push(name.to_owned());
         let seen = std::mem::replace(&mut self.visible, frame + 1);
@@ -224,5 +246,10 @@ impl Names for Scope<'_> {
     fn argument(&mut self, name: &str) -> Result<Value, String> {
         let found = self.arguments.iter().find(|(known, _)| known == name).map(|(_, value)| value.clone());
         found.ok_or_else(|| format!("argument `{name}` is not given; give it: `arguments = {{ {name} = \"…\" }}`"))
+    }
+    fn spend(&mut self, size: usize) -> Result<(), String> {
+        let left = self.size_left.checked_sub(size);
+        self.size_left = left.ok_or_else(|| format!("lists have more than {} values and letters", lists::SIZE_MAX))?;
+        Ok(())
     }
 }

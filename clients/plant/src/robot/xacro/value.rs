@@ -60,8 +60,20 @@ impl Value {
                 Self::Text(_) => None,
                 inner => inner.condition(),
             },
-            Self::List(_) | Self::Map(_) => None,
-            Self::None | Self::Bool(_) | Self::Whole(_) | Self::Number(_) => Some(self.is_true()),
+            // ROS takes any other value as Python does
+            Self::None | Self::Bool(_) | Self::Whole(_) | Self::Number(_) | Self::List(_) | Self::Map(_) => {
+                Some(self.is_true())
+            }
+        }
+    }
+
+    /// How many values and bytes it is made of.
+    pub(super) fn size(&self) -> usize {
+        match self {
+            Self::None | Self::Bool(_) | Self::Whole(_) | Self::Number(_) => 1,
+            Self::Text(text) => 1 + text.len(),
+            Self::List(list) => 1 + list.iter().map(Self::size).sum::<usize>(),
+            Self::Map(map) => 1 + map.iter().map(|(key, value)| key.len() + value.size()).sum::<usize>(),
         }
     }
 
