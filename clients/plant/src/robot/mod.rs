@@ -5,6 +5,7 @@
 //! | `xml` | elements and attributes with their places; faults |
 //! | `package` | where `package://` and `$(find …)` lead |
 //! | `xacro` | macros, properties and expressions in robots' files |
+//! | `inertial` | which mass and inertia a link can have |
 //! | `urdf` | the robot of a URDF file |
 //! | `mjcf` | the robot of a MuJoCo model |
 //! | `tree` | parents before children |
@@ -12,6 +13,7 @@
 //! What a picture shows, what a controller limits (effort, velocity) and what simulators add is left
 //! aside: a scene says these things itself.
 
+mod inertial;
 mod mjcf;
 mod package;
 mod tree;
@@ -22,6 +24,7 @@ mod xml;
 use std::path::Path;
 use std::sync::Arc;
 
+pub(crate) use inertial::MASS_MIN_KG;
 pub use package::Packages;
 pub use xml::RobotFault;
 
@@ -92,10 +95,11 @@ pub enum Weight {
 }
 
 impl Weight {
-    /// Whether it is more than nothing.
+    /// Whether it is as much as a body can have.
     pub fn is_some(self) -> bool {
         match self {
-            Self::Mass(value) | Self::Density(value) => value > 0.0,
+            Self::Mass(mass_kg) => mass_kg >= MASS_MIN_KG,
+            Self::Density(density_kg_m3) => density_kg_m3 > 0.0,
         }
     }
 }

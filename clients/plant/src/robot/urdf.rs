@@ -1,14 +1,15 @@
 //! The robot of a URDF file.
 //!
 //! Read are `<link>` with `<inertial>` and `<collision>` (and `<visual>`, which counts where a mass is
-//! to be found), and `<joint>` with origin, axis, limits of position and `<mimic>`. A mass of 0, or one
-//! that is not there, makes a link a mere frame. Planar joints are faults, as a machine would move
+//! to be found), and `<joint>` with origin, axis, limits of position and `<mimic>`. A mass that no body has,
+//! or one that is not there, makes a link a mere frame. Planar joints are faults, as a machine would move
 //! otherwise than its file says.
 //!
 //! Source: ROS, URDF XML specification (wiki.ros.org/urdf/XML).
 
 use onescan_base::nearest;
 
+use super::inertial::{self, is_tensor};
 use super::tree::sorted;
 use super::xml::{Element, RobotFault};
 use super::{Collision, Freedom, Geometry, Inertial, Joint, Link, Mimic, Origin, Robot};
@@ -68,14 +69,19 @@ fn link(element: &Element, remarks: &mut Vec<String>, faults: &mut Vec<RobotFaul
         place: element.place.clone(),
     };
     if let Some(written) = element.child("inertial") {
-        kept(inertial(written).map(|inertial| link.inertial = inertial));
-        if link.inertial.is_none() {
-            remarks.push(format!("link `{}` has a mass of 0: it is a frame", link.name));
-        } else if link.inertial.is_some_and(|inertial| inertial.inertia_kg_m2.is_none()) {
-            remarks.push(format!(
-                "link `{}` has moments of inertia that no body has: those of a ball of its mass are taken",
-                link.name
-            ));
+        match inertial(written) {
+            Ok(read) => {
+                link.inertial = inertial::of_a_body(read);
+                if link.inertial.is_none() {
+                    remarks.push(inertial::remark(&link.name, read.mass_kg));
+                } else if read.inertia_kg_m2.is_none() {
+                    remarks.push(format!(
+                        "link `{}` has moments of inertia that no body has: those of a ball of its mass are taken",
+                        link.name
+                    ));
+                }
+            }
+            Err(fault) => kept(Err(fault)),
         }
     }
     for written in element.all("collision") {
@@ -87,8 +93,8 @@ fn link(element: &Element, remarks: &mut Vec<String>, faults: &mut Vec<RobotFaul
     Some(link).filter(|link| !link.name.is_empty())
 }
 
-/// Mass and inertia; none for a mass of 0.
-fn inertial(element: &Element) -> Result<Option<Inertial>, RobotFault> {
+/// Mass and inertia, as they are written.
+fn inertial(element: &Element) -> Result<Inertial, RobotFault> {
     let mass = element.needed("mass")?;
     let mass_kg = mass.number("value")?;
     let mut inertia_kg_m2 = [0.0; 6];
@@ -101,15 +107,7 @@ fn inertial(element: &Element) -> Result<Option<Inertial>, RobotFault> {
         return Err(mass.wrong_at("value", format!("a mass of {mass_kg} kg")));
     }
     let origin = origin(element)?;
-    let usable = is_tensor(inertia_kg_m2).then_some(inertia_kg_m2);
-    Ok((mass_kg > 0.0).then_some(Inertial { origin, mass_kg, inertia_kg_m2: usable }))
-}
-
-/// Whether a body can have these moments: all principal ones are above 0.
-pub(super) fn is_tensor([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> bool {
-    let minor = xx * yy - xy * xy;
-    let determinant = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
-    xx > 0.0 && minor > 0.0 && determinant > 0.0 && determinant.is_finite()
+    Ok(Inertial { origin, mass_kg, inertia_kg_m2: is_tensor(inertia_kg_m2).then_some(inertia_kg_m2) })
 }
 
 fn collision(element: &Element) -> Result<Collision, RobotFault> {
@@ -264,8 +262,19 @@ mod tests {
         let robot = parsed(&ARM.replace("<mass value=\"2\"/>", "<mass value=\"0\"/>")).unwrap();
         assert_eq!(robot.links[1].inertial, None);
         assert_eq!(robot.remarks, ["link `upper` has a mass of 0: it is a frame"]);
+        let robot = parsed(&ARM.replace("<mass value=\"2\"/>", "<mass value=\"1e-9\"/>")).unwrap();
+        assert_eq!(robot.links[1].inertial, None);
+        assert_eq!(robot.remarks, ["link `upper` has a mass of 1e-9 kg: it is a frame"]);
+        let robot = parsed(&ARM.replace("<mass value=\"2\"/>", "<mass value=\"1e-6\"/>")).unwrap();
+        assert_eq!((robot.links[1].inertial.unwrap().mass_kg, robot.remarks.len()), (1e-6, 0));
         let robot = parsed(&ARM.replace("ixx=\"0.2\"", "ixx=\"0\"")).unwrap();
         assert_eq!(robot.links[1].inertial.unwrap().inertia_kg_m2, None);
+    }
+
+    #[test]
+    fn what_stands_before_the_declaration_is_of_no_meaning() {
+        let robot = parsed(&format!("\n<!-- whose it is -->\n{ARM}")).unwrap();
+        assert_eq!(robot.links.len(), 3);
     }
 
     #[test]

@@ -5,6 +5,7 @@ use super::placed::Placed;
 use super::error::SceneFaultKind;
 use super::faults::Faults;
 use super::format::Triple;
+use crate::robot::MASS_MIN_KG;
 
 /// The greatest number of a scene, in any unit: nothing of a machine is larger.
 const GREATEST: f64 = 1e9;
@@ -141,7 +142,7 @@ impl Faults<'_> {
 // What the engine computes with for certain: beyond, products of several such numbers leave the
 // range in which a double is precise, long before it overflows.
 pub(super) const LENGTH_M: Allowed = Allowed::Within(1e-4, 1e4);
-pub(super) const MASS_KG: Allowed = Allowed::Within(1e-6, 1e9);
+pub(super) const MASS_KG: Allowed = Allowed::Within(MASS_MIN_KG, 1e9);
 pub(super) const DENSITY_KG_M3: Allowed = Allowed::Within(1e-2, 1e5);
 pub(super) const FRICTION: f64 = 0.5;
 pub(super) const RESTITUTION: f64 = 0.0;

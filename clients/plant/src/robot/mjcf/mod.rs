@@ -3,19 +3,27 @@
 //! Read are `<compiler>`, `<default>` classes, `<asset>` meshes, and of `<worldbody>` the bodies with
 //! `<inertial>`, hinges, slides, balls, free joints and geoms; of `<equality>` the joints that follow others. What
 //! a geom weighs is taken where a body has no `<inertial>`, as MuJoCo does. Actuators, tendons, sensors and
-//! contacts are left aside, with a remark. A body with several joints is a fault: a scene has a body between
-//! any two joints.
+//! contacts are left aside, with a remark. A scene has a body between any two joints, so a body with several has
+//! frames without mass between them.
+//!
+//! | module | subject |
+//! |---|---|
+//! | `joint` | the joints of a body, and those that follow others |
+//! | `pose` | where a body, a geom or a mass is |
 //!
 //! Source: MuJoCo documentation, XML reference (3.3).
 
-use rapier3d::glamx::{DMat3, DQuat, DVec3};
+mod joint;
+mod pose;
+
+use rapier3d::glamx::DVec3;
 use rapier3d::math::Pose;
 
+use super::inertial::{self, is_tensor};
 use super::tree::sorted;
-use super::urdf::is_tensor;
 use super::xml::{Element, RobotFault};
-use super::{Collision, Freedom, Geometry, Inertial, Joint, Link, Mimic, Origin, Robot, Weight};
-use crate::pose::to_rpy_deg;
+use super::{Collision, Geometry, Inertial, Joint, Link, Robot, Weight};
+use pose::{along, origin};
 
 /// What MuJoCo takes where a geom says nothing.
 const DENSITY_KG_M3: f64 = 1000.0;
@@ -155,17 +163,27 @@ impl<'e> Reader<'e> {
         self.links.push(Link { name, inertial: None, collisions: Vec::new(), visuals: Vec::new(), place });
         if let Some(written) = element.child("inertial") {
             match self.inertial(written) {
-                Ok(inertial) => self.links[index].inertial = inertial,
+                Ok(read) => {
+                    self.links[index].inertial = inertial::of_a_body(read);
+                    if self.links[index].inertial.is_none() {
+                        self.remarks.push(inertial::remark(&self.links[index].name, read.mass_kg));
+                    }
+                }
                 Err(fault) => self.faults.push(fault),
             }
         }
         if let Some(parent) = parent {
-            let joint = self.joint(element, [parent, index], class);
-            self.keep(joint);
+            let joints = self.joints(element, [parent, index], class);
+            self.keep(joints);
         }
+        let is_weighed = element.child("inertial").is_some();
         for geom in element.all("geom") {
             let geom = self.complete(geom, class);
             match self.geom(&geom) {
+                // what a geom weighs counts only where nothing else says what the body does
+                Ok(Some(shape)) if is_weighed => {
+                    self.links[index].collisions.push(Collision { weight: None, ..shape });
+                }
                 Ok(Some(shape)) => self.links[index].collisions.push(shape),
                 Ok(None) => {}
                 Err(fault) => self.faults.push(fault),
@@ -174,79 +192,22 @@ impl<'e> Reader<'e> {
         element.all("body").for_each(|inner| self.body(inner, Some(index), class));
     }
 
-    fn inertial(&self, element: &Element) -> Result<Option<Inertial>, RobotFault> {
+    fn inertial(&self, element: &Element) -> Result<Inertial, RobotFault> {
         let mass_kg = element.number("mass")?;
+        if mass_kg < 0.0 {
+            return Err(element.wrong_at("mass", format!("a mass of {mass_kg} kg")));
+        }
         let diagonal = element.numbers::<3>("diaginertia")?.map(|[x, y, z]| [x, y, z, 0.0, 0.0, 0.0]);
         let full = element.numbers::<6>("fullinertia")?;
         let inertia_kg_m2 = full.or(diagonal).filter(|tensor| is_tensor(*tensor));
         let origin = origin(&self.pose(element)?);
-        Ok((mass_kg > 0.0).then_some(Inertial { origin, mass_kg, inertia_kg_m2 }))
-    }
-
-    /// The joint of a body, which is fixed to its parent without one.
-    fn joint(&mut self, body: &Element, [parent, child]: [usize; 2], class: &str) -> Result<(), RobotFault> {
-        let origin = origin(&self.pose(body)?);
-        let name = self.links[child].name.clone();
-        let place = body.place.clone();
-        let base = Joint {
-            name,
-            freedom: Freedom::Fixed,
-            parent,
-            child,
-            origin,
-            anchor_m: [0.0; 3],
-            axis: [0.0, 0.0, 1.0],
-            limits: None,
-            mimic: None,
-            place,
-        };
-        let written: Vec<&Element> =
-            body.children.iter().filter(|inner| matches!(inner.name.as_str(), "joint" | "freejoint")).collect();
-        let joint = match written[..] {
-            [] => base,
-            [joint] if joint.name == "freejoint" => Joint { freedom: Freedom::Floats, ..base },
-            [joint] => {
-                let joint = self.complete(joint, class);
-                self.one_joint(&joint, base)?
-            }
-            [_, second, ..] => {
-                let reported =
-                    format!("body `{}` has {} joints: give each a body of its own", base.name, written.len());
-                return Err(second.wrong(reported));
-            }
-        };
-        if self.joints.iter().any(|known| known.name == joint.name) {
-            return Err(joint.place.wrong(format!("joint `{}` is there twice", joint.name)));
-        }
-        self.joints.push(joint);
-        Ok(())
-    }
-
-    fn one_joint(&self, joint: &Element, base: Joint) -> Result<Joint, RobotFault> {
-        let freedom = match joint.get("type").unwrap_or("hinge") {
-            "hinge" => Freedom::Turns,
-            "slide" => Freedom::Slides,
-            "ball" => Freedom::Rolls,
-            "free" => Freedom::Floats,
-            other => return Err(joint.wrong_at("type", format!("a joint of type `{other}` is not known"))),
-        };
-        let axis = joint.triple("axis", [0.0, 0.0, 1.0])?;
-        if axis.iter().all(|part| *part == 0.0) {
-            return Err(joint.wrong_at("axis", "an axis of no length"));
-        }
-        let limited = joint.get("limited").is_none_or(|limited| limited != "false");
-        let turns = freedom == Freedom::Turns && self.compiler.degrees;
-        let range = joint.numbers::<2>("range")?.filter(|[lower, upper]| limited && lower < upper);
-        let limits = range.map(|range| if turns { range.map(f64::to_radians) } else { range });
-        let limits = limits.filter(|_| matches!(freedom, Freedom::Turns | Freedom::Slides));
-        let name = joint.get("name").map_or(base.name, str::to_owned);
-        let (anchor_m, place) = (joint.triple("pos", [0.0; 3])?, joint.place.clone());
-        Ok(Joint { name, freedom, anchor_m, axis, limits, place, ..base })
+        Ok(Inertial { origin, mass_kg, inertia_kg_m2 })
     }
 
     /// A shape; none for what is only shown, and for planes, of which a robot has none.
     fn geom(&mut self, geom: &Element) -> Result<Option<Collision>, RobotFault> {
-        let collides = geom.get("contype") != Some("0") || geom.get("conaffinity") != Some("0");
+        // 32 bits each; MuJoCo's groups and classes do not say who collides
+        let collides = geom.number_or("contype", 1.0)? != 0.0 || geom.number_or("conaffinity", 1.0)? != 0.0;
         let mut place = self.pose(geom)?;
         let sizes: Vec<f64> = geom
             .get("size")
@@ -288,106 +249,12 @@ impl<'e> Reader<'e> {
         let place_in_file = geom.place.clone();
         Ok(Some(Collision { origin: origin(&place), geometry, collides, weight: Some(weight), place: place_in_file }))
     }
-
-    /// The joints of `<equality>` that follow others in a straight line.
-    fn follow(&mut self, root: &Element) {
-        let mut others = 0;
-        for element in root.all("equality").flat_map(|equality| &equality.children) {
-            let Some((follower, leader)) = element.get("joint1").zip(element.get("joint2")) else {
-                others += 1;
-                continue;
-            };
-            let read = |key: &str| element.get(key).unwrap_or("0 1 0 0 0");
-            let numbers: Vec<f64> = read("polycoef").split_whitespace().filter_map(|word| word.parse().ok()).collect();
-            let [offset, factor, curved @ ..] = &numbers[..] else {
-                self.faults.push(element.wrong_at("polycoef", "`polycoef` must be numbers"));
-                continue;
-            };
-            let mimic = Mimic { joint: leader.to_owned(), factor: *factor, offset: *offset };
-            if curved.iter().any(|coefficient| *coefficient != 0.0) {
-                self.faults.push(element.wrong_at("polycoef", "a joint that follows another otherwise than straight"));
-            } else if let Some(joint) = self.joints.iter_mut().find(|joint| joint.name == follower) {
-                joint.mimic = Some(mimic);
-            } else {
-                self.faults.push(element.wrong_at("joint1", format!("there is no joint `{follower}`")));
-            }
-            if !self.joints.iter().any(|joint| joint.name == leader) {
-                self.faults.push(element.wrong_at("joint2", format!("there is no joint `{leader}`")));
-            }
-        }
-        if others > 0 {
-            self.remarks.push(format!("{others} equalities of the model are not taken over"));
-        }
-    }
-
-    /// `pos`, and one of `quat`, `axisangle`, `xyaxes`, `zaxis`, `euler`.
-    fn pose(&self, element: &Element) -> Result<Pose, RobotFault> {
-        let angle = |angle: f64| if self.compiler.degrees { angle.to_radians() } else { angle };
-        let position = DVec3::from_array(element.triple("pos", [0.0; 3])?);
-        let rotation = if let Some([w, x, y, z]) = element.numbers::<4>("quat")? {
-            let length = (w * w + x * x + y * y + z * z).sqrt();
-            if length == 0.0 {
-                return Err(element.wrong_at("quat", "a quaternion of no length"));
-            }
-            DQuat::from_xyzw(x / length, y / length, z / length, w / length)
-        } else if let Some([x, y, z, turned]) = element.numbers::<4>("axisangle")? {
-            about(DVec3::new(x, y, z), angle(turned))
-        } else if let Some([a, b, c, d, e, f]) = element.numbers::<6>("xyaxes")? {
-            let x = unit(DVec3::new(a, b, c));
-            let y = DVec3::new(d, e, f);
-            let y = unit(y - x * y.dot(x));
-            DQuat::from_mat3(&DMat3::from_cols(x, y, x.cross(y)))
-        } else if let Some(z) = element.numbers::<3>("zaxis")? {
-            along(DVec3::from_array(z))
-        } else if let Some(angles) = element.numbers::<3>("euler")? {
-            let mut turned = DQuat::IDENTITY;
-            for (axis, turn) in self.compiler.euler.chars().zip(angles) {
-                let vector = match axis.to_ascii_lowercase() {
-                    'x' => DVec3::X,
-                    'y' => DVec3::Y,
-                    _ => DVec3::Z,
-                };
-                let step = about(vector, angle(turn));
-                // small letters turn with the frame, capitals about fixed axes
-                turned = if axis.is_ascii_lowercase() { turned * step } else { step * turned };
-            }
-            turned
-        } else {
-            DQuat::IDENTITY
-        };
-        Ok(Pose::from_parts(position, rotation))
-    }
-}
-
-fn unit(vector: DVec3) -> DVec3 {
-    let length = vector.length();
-    if length > 0.0 { vector / length } else { DVec3::X }
-}
-
-fn about(axis: DVec3, angle_rad: f64) -> DQuat {
-    let (sin, cos) = libm::sincos(0.5 * angle_rad);
-    let axis = unit(axis) * sin;
-    DQuat::from_xyzw(axis.x, axis.y, axis.z, cos)
-}
-
-/// The least rotation that takes z to a direction.
-fn along(direction: DVec3) -> DQuat {
-    let to = unit(direction);
-    let across = DVec3::Z.cross(to);
-    if across.length() < 1e-12 {
-        return if to.z > 0.0 { DQuat::IDENTITY } else { DQuat::from_xyzw(1.0, 0.0, 0.0, 0.0) };
-    }
-    about(across, libm::atan2(across.length(), to.z))
-}
-
-fn origin(pose: &Pose) -> Origin {
-    Origin { xyz_m: pose.translation.to_array(), rpy_rad: to_rpy_deg(pose.rotation).map(f64::to_radians) }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::robot::{Packages, Reading};
+    use crate::robot::{Freedom, Mimic, Origin, Packages, Reading};
     use std::path::Path;
 
     const ARM: &str = r#"<mujoco model="arm">
@@ -448,6 +315,30 @@ mod tests {
     }
 
     #[test]
+    fn joints_of_one_body_act_in_their_order() {
+        let more =
+            "<joint name=\"lift\" type=\"slide\" axis=\"0 0 1\"/><joint name=\"twist\" pos=\"0 0 0.2\"/><geom fromto";
+        let robot = read(&ARM.replace("<geom fromto", more)).unwrap();
+        let names: Vec<_> = robot.links.iter().map(|link| link.name.as_str()).collect();
+        assert_eq!(names, ["world", "upper.shoulder", "upper.lift", "upper", "lower"]);
+        let chain: Vec<_> = robot.joints.iter().map(|joint| (joint.name.as_str(), joint.parent, joint.child)).collect();
+        assert_eq!(chain, [("shoulder", 0, 1), ("lift", 1, 2), ("twist", 2, 3), ("elbow", 3, 4)]);
+        assert_eq!(robot.joints[0].origin.xyz_m, [0.0, 0.0, 1.0]);
+        assert_eq!([&robot.joints[1].origin, &robot.joints[2].origin], [&Origin::default(); 2]);
+        let anchors: Vec<_> = robot.joints.iter().map(|joint| joint.anchor_m[2]).collect();
+        assert_eq!(anchors, [0.1, 0.0, 0.2, 0.0]);
+        assert!(robot.links[1..3].iter().all(|frame| frame.inertial.is_none() && frame.collisions.is_empty()));
+    }
+
+    #[test]
+    fn a_mass_that_no_body_has_makes_a_frame() {
+        let robot = read(&ARM.replace("mass=\"2\"", "mass=\"1e-08\"")).unwrap();
+        let lower = &robot.links[2];
+        assert_eq!((lower.inertial, lower.collisions[0].weight), (None, None), "its geom has a mass of its own");
+        assert_eq!(robot.remarks[1], "link `lower` has a mass of 1e-8 kg: it is a frame");
+    }
+
+    #[test]
     fn a_joint_may_follow_another() {
         let equality = "<equality><joint joint1=\"elbow\" joint2=\"shoulder\" polycoef=\"0.1 -0.5 0 0 0\"/></equality>";
         let robot = read(&ARM.replace("<actuator>", &format!("{equality}<actuator>"))).unwrap();
@@ -469,10 +360,13 @@ mod tests {
                 "line 18: a box lacks numbers in its `size`"
             ]
         );
-        let two = ARM.replace("<geom fromto", "<joint name=\"twist\"/><geom fromto");
+        let two = ARM.replace("<geom fromto", "<freejoint/><geom fromto");
         assert_eq!(
             read(&two).unwrap_err()[0].to_string(),
-            "line 13: body `upper` has 2 joints: give each a body of its own"
+            "line 13: body `upper` has a free joint, which leaves nothing to its others (remove the others, or give them a \
+             body within this one)"
         );
+        let light = ARM.replace("mass=\"2\"", "mass=\"-2\"");
+        assert_eq!(read(&light).unwrap_err()[0].to_string(), "line 17: a mass of -2 kg");
     }
 }
