@@ -12,10 +12,12 @@ use onescan_base::did_you_mean;
 use super::error::{Inside, SceneFaultKind};
 use super::faults::Faults;
 use super::format::{SceneFile, UrdfTable};
+use super::meshes::is_flat;
 use super::number::{Allowed, Entry};
 use super::placed::Placed;
 use super::robot_tables::Tables;
-use crate::robot::{Freedom, Joint, Packages, Reading, Robot, RobotFault};
+use crate::mesh::Mesh;
+use crate::robot::{Collision, Freedom, Geometry, Joint, Packages, Reading, Robot, RobotFault};
 
 /// Adds what the robots of a file are made of, behind its own bodies, shapes and joints; what was read
 /// otherwise than it is written, for people.
@@ -61,6 +63,8 @@ fn one(table: &UrdfTable, written: &mut SceneFile, faults: &mut Faults<'_>) -> O
             return None;
         }
     };
+    let mesh = |named: &str| Mesh::read_within(&packages.file(named, &path).ok()?, faults.within()).ok();
+    leave_out_pictures(&mut robot, table.density_kg_m3.is_some(), &mesh);
     // reported as the link's or the joint's, so that one of a hundred joints is found
     let coordinates = coordinates(table, &mut robot, faults)?;
     let density = Entry::new("density_kg_m3", table.density_kg_m3.as_ref());
@@ -80,6 +84,30 @@ fn one(table: &UrdfTable, written: &mut SceneFile, faults: &mut Faults<'_>) -> O
         }
     }
     Some(robot.remarks)
+}
+
+/// Takes out flat meshes that nothing collides with: they show a label or the edge of a colour, and are no bodies. Where
+/// links without mass are to be weighed, what is shown of one that does not collide counts, too.
+fn leave_out_pictures(robot: &mut Robot, weighs: bool, mesh: &dyn Fn(&str) -> Option<Mesh>) {
+    for link in &mut robot.links {
+        let mut is_picture = |shape: &Collision| {
+            let Geometry::Mesh(file, stretch) = &shape.geometry else { return false };
+            // what cannot be read is reported with the shapes that are kept
+            let flat = mesh(file).is_some_and(|mesh| is_flat(&mesh, *stretch));
+            if flat {
+                robot.remarks.push(format!(
+                    "the mesh `{file}` of link `{}` is flat and does not collide: it is left out",
+                    link.name
+                ));
+            }
+            flat
+        };
+        let seen = weighs && link.collisions.is_empty() && link.inertial.is_none();
+        link.collisions.retain(|shape| shape.collides || !is_picture(shape));
+        if seen {
+            link.visuals.retain(|shape| !is_picture(shape));
+        }
+    }
 }
 
 /// A fault in a robot's file, reported at the file's name in the scene.

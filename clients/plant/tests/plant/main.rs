@@ -24,6 +24,7 @@ mod motion;
 mod overlaps;
 mod own_kinds;
 mod parameters;
+mod published;
 mod robots;
 mod robustness;
 mod sensors;
