@@ -129,7 +129,7 @@ fn slips_of_beginners_are_mended() {
         body("w : WORD; b : BOOL;", "b := w[3];"),
         body("n : INT;", "n := 10#30000;"),
     ];
-    insta::assert_snapshot!(all.concat());
+    insta::assert_snapshot!(all.join("\n"));
 }
 
 /// Names that are words of Instruction List begin a statement of Structured Text as all others do.
