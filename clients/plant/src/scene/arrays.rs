@@ -262,10 +262,10 @@ fn put(table: &mut ComponentTable, key: &str, triple: Option<Triple>) {
     }
 }
 
-/// A direction of the k-th of n copies around a vertical.
-fn turned(direction: &Triple, k: usize, n: usize) -> Triple {
+/// The direction that a copy has of so many around a vertical.
+fn turned(direction: &Triple, copy: usize, count: usize) -> Triple {
     let [x, y, z] = *direction.get_ref();
-    let (sin, cos) = libm::sincos((360.0 * k as f64 / n as f64).to_radians());
+    let (sin, cos) = libm::sincos((360.0 * copy as f64 / count as f64).to_radians());
     Placed::new(direction.span(), [cos * x - sin * y, sin * x + cos * y, z])
 }
 

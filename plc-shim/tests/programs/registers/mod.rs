@@ -74,7 +74,7 @@ fn examples_of_the_manuals() {
         }
         assert_eq!(rig.real("P.scaled"), 300_000.0, "{dialect}");
         // A register without a sign.
-        assert_eq!(rig.real("P.below"), 1.8446744073709552e19, "{dialect}");
+        assert_eq!(rig.real("P.below"), 1.844_674_407_370_955_2e19, "{dialect}");
     }
 }
 
@@ -218,6 +218,7 @@ fn modelled(lines: &str) -> Option<Vec<String>> {
 
 /// `ONESCAN_REGISTERS=20000` tries more of them.
 #[test]
+#[expect(clippy::print_stdout, reason = "why nothing is compared")]
 fn random_expressions_are_those_of_the_model() {
     let count = std::env::var("ONESCAN_REGISTERS").ok().and_then(|text| text.parse().ok()).unwrap_or(200);
     let mut dice = Dice::new(7);
@@ -229,7 +230,7 @@ fn random_expressions_are_those_of_the_model() {
         programs.push(format!("PROGRAM P VAR {}out : LINT; END_VAR out := {expression}; END_PROGRAM", twin.declared));
     }
     let Some(wanted) = modelled(&lines) else {
-        eprintln!("skipped: `gcc` is not on the PATH");
+        println!("skipped: `gcc` is not on the PATH");
         return;
     };
     assert_eq!(wanted.len(), programs.len());

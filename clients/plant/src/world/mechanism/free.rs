@@ -38,8 +38,8 @@ impl Mechanism {
     fn stiffness(&mut self, around: &Surroundings<'_>) -> Option<f64> {
         let n = self.tree.velocities;
         let fitted = |joint: Option<usize>| joint.map(|joint| &around.fittings[joint]);
-        let gives = |fitting: &&Fitting| fitting.spring != 0.0 || fitting.damping != 0.0;
-        if !self.axes.iter().any(|(_, joint)| fitted(*joint).filter(gives).is_some()) {
+        let gives = |fitting: &Fitting| fitting.spring != 0.0 || fitting.damping != 0.0;
+        if !self.axes.iter().any(|(_, joint)| fitted(*joint).is_some_and(gives)) {
             return Some(0.0);
         }
         self.moving.evaluate(&self.lumps, &self.now.q, &self.now.v, around.gravity);

@@ -130,7 +130,7 @@ impl Body<'_, '_> {
         let whole = self.whole_values(vec![expr]);
         let held = whole.first().map_or(ty, |operand| operand.ty);
         let kind = ExprKind::Intrinsic(Intrinsic::Abs, whole);
-        Some(Operand::Typed(self.cut(Expr { kind, ty: held, span }, ty)))
+        Some(Operand::Typed(Self::cut(Expr { kind, ty: held, span }, ty)))
     }
 
     fn real_function(&mut self, kind: Intrinsic, operand: Operand, span: Span) -> Option<Operand> {
@@ -279,7 +279,7 @@ impl Body<'_, '_> {
             let kind = ExprKind::Intrinsic(kind, vec![left, right]);
             Expr { kind, ty, span }
         });
-        whole.map(|whole| Operand::Typed(self.cut(whole, ty)))
+        whole.map(|whole| Operand::Typed(Self::cut(whole, ty)))
     }
 
     /// `LIMIT(MN, IN, MX)` is `MIN(MAX(IN, MN), MX)` (2nd ed. Table 27).
@@ -289,7 +289,7 @@ impl Body<'_, '_> {
         let held = value.ty;
         let node = |kind, operands| Expr { kind: ExprKind::Intrinsic(kind, operands), ty: held, span };
         let raised = node(Intrinsic::Max, vec![value, low]);
-        Some(Operand::Typed(self.cut(node(Intrinsic::Min, vec![raised, high]), ty)))
+        Some(Operand::Typed(Self::cut(node(Intrinsic::Min, vec![raised, high]), ty)))
     }
 
     fn select(&mut self, selector: Operand, values: Vec<Operand>, span: Span) -> Option<Operand> {
@@ -300,7 +300,7 @@ impl Body<'_, '_> {
             let [first, second] = <[Expr; 2]>::try_from(self.whole_values(all)).ok()?;
             let held = first.ty;
             let kind = ExprKind::Conditional(Box::new([selector, second, first]));
-            return Some(Operand::Typed(self.cut(Expr { kind, ty: held, span }, ty)));
+            return Some(Operand::Typed(Self::cut(Expr { kind, ty: held, span }, ty)));
         }
         all.insert(0, selector);
         Some(Self::intrinsic(Intrinsic::Select, all, ty, span))
@@ -313,7 +313,7 @@ impl Body<'_, '_> {
         let held = all.first().map_or(ty, |first| first.ty);
         all.insert(0, selector);
         let kind = ExprKind::Intrinsic(Intrinsic::Multiplex, all);
-        Some(Operand::Typed(self.cut(Expr { kind, ty: held, span }, ty)))
+        Some(Operand::Typed(Self::cut(Expr { kind, ty: held, span }, ty)))
     }
 
     pub(in crate::check::body) fn integer_as_lint(&mut self, operand: Operand) -> Option<Expr> {

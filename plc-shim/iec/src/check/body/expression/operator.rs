@@ -158,7 +158,7 @@ impl Body<'_, '_> {
         };
         let held = left.ty;
         let kind = ExprKind::Binary(operator, Box::new(left), Box::new(right));
-        Some(Operand::Typed(self.cut(Expr { kind, ty: held, span }, ty)))
+        Some(Operand::Typed(Self::cut(Expr { kind, ty: held, span }, ty)))
     }
 
     /// Two constants without type make a third.

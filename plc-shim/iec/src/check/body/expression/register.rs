@@ -95,7 +95,7 @@ impl Body<'_, '_> {
     }
 
     /// What was made of [whole operands](Self::whole_operands), in the type that the operation has.
-    pub(in crate::check::body) fn cut(&self, whole: Expr, ty: TypeId) -> Expr {
+    pub(in crate::check::body) fn cut(whole: Expr, ty: TypeId) -> Expr {
         if whole.ty == ty {
             return whole;
         }
