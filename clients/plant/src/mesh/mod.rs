@@ -5,6 +5,7 @@
 //! Advanced Visualizer, appendix B1, of which faces may have any number of corners.
 
 mod collada;
+pub(crate) mod flat;
 mod gltf;
 
 use std::path::Path;

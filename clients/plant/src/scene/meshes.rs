@@ -2,10 +2,6 @@
 
 use std::ops::Range;
 
-use rapier3d::glamx::DVec3;
-use rapier3d::math::Vector;
-use rapier3d::prelude::SharedShape;
-
 use super::error::SceneFaultKind;
 use super::faults::Faults;
 use super::model::Shape;
@@ -13,16 +9,12 @@ use super::number::{Allowed, Entry};
 use super::placed::Placed;
 use super::shapes::{Measures, MeshKeys};
 use crate::mesh::Mesh;
+use crate::mesh::flat::{hull_is_flat, stretched};
 
 /// What a file's unit may be: from micrometres to kilometres.
 const UNIT_M: Allowed = Allowed::Within(1e-6, 1e3);
 /// How far from its body's origin a corner may be.
 const CORNER_M: f64 = 1e4;
-
-/// Part of the volume around it below which a hull is flat.
-const FLAT: f64 = 1e-9;
-/// Part of the cube of its length above which what four corners span is a body beyond doubt.
-const THICK: f64 = 1e-3;
 
 impl MeshKeys<'_> {
     /// The places of these keys, where they are written.
@@ -64,61 +56,10 @@ impl MeshKeys<'_> {
     }
 }
 
-/// Whether a mesh is no body, as what pictures are made of often is: a label, a line between two colours.
-pub(super) fn is_flat(mesh: &Mesh, stretch: [f64; 3]) -> bool {
-    let corners_m = stretched(mesh, stretch);
-    // a hull takes long, and few meshes are flat
-    !is_thick(&corners_m) && hull_is_flat(&corners_m)
-}
-
-fn stretched(mesh: &Mesh, stretch: [f64; 3]) -> Vec<[f64; 3]> {
-    mesh.corners.iter().map(|corner| [0, 1, 2].map(|axis| corner[axis] * stretch[axis])).collect()
-}
-
-/// Whether four corners, each far from those before, span so much volume that their hull cannot be flat. The engine
-/// also finds no hull around what is a curved sheet, which this does not.
-fn is_thick(corners_m: &[[f64; 3]]) -> bool {
-    let corners = || corners_m.iter().map(|corner| DVec3::from_array(*corner));
-    let farthest = |distance: &dyn Fn(DVec3) -> f64| corners().max_by(|a, b| distance(*a).total_cmp(&distance(*b)));
-    let Some(a) = corners().next() else { return false };
-    let Some(b) = farthest(&|corner| (corner - a).length()) else { return false };
-    let Some(c) = farthest(&|corner| (corner - a).cross(b - a).length()) else { return false };
-    let across = (b - a).cross(c - a);
-    let volume_m3 = corners().map(|corner| (corner - a).dot(across).abs() / 6.0).fold(0.0, f64::max);
-    volume_m3 > THICK * (b - a).length().powi(3)
-}
-
-fn hull_is_flat(corners_m: &[[f64; 3]]) -> bool {
-    let points: Vec<_> = corners_m.iter().map(|corner| Vector::from_array(*corner)).collect();
-    let volume_m3 = SharedShape::convex_hull(&points).map_or(0.0, |hull| hull.mass_properties(1.0).mass());
-    volume_m3 <= FLAT * extent_m(corners_m).powi(3)
-}
-
-fn extent_m(corners_m: &[[f64; 3]]) -> f64 {
-    corners_m.iter().flatten().fold(0.0_f64, |most, number| most.max(number.abs()))
-}
-
 /// What keeps corners from being those of a body.
 fn flaw(corners_m: &[[f64; 3]]) -> Option<String> {
     if corners_m.iter().flatten().any(|number| number.abs() > CORNER_M) {
         return Some(format!("has a corner more than {CORNER_M} m away: `unit_m` is the file's unit, 0.001 for mm"));
     }
     hull_is_flat(corners_m).then(|| "is flat, and no body".to_owned())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_flat_mesh_is_not_a_thin_one() {
-        let plate = |thick: f64| {
-            let corners = (0..8).map(|k| [f64::from(k & 1), f64::from(k >> 1 & 1), thick * f64::from(k >> 2)]);
-            Mesh { corners: corners.collect(), triangles: vec![[0, 1, 2]] }
-        };
-        assert!(!is_flat(&plate(1e-3), [1.0; 3]) && is_flat(&plate(0.0), [1.0; 3]));
-        assert!(!is_flat(&plate(1.0), [1.0, 1.0, 1e-3]) && is_flat(&plate(1.0), [1.0, 1.0, 0.0]));
-        let line = Mesh { corners: vec![[0.0; 3], [1.0; 3], [2.0; 3]], triangles: vec![[0, 1, 2]] };
-        assert!(is_flat(&line, [1.0; 3]) && is_flat(&Mesh::default(), [1.0; 3]));
-    }
 }

@@ -12,7 +12,6 @@ use onescan_base::did_you_mean;
 use super::error::{Inside, SceneFaultKind};
 use super::faults::Faults;
 use super::format::{SceneFile, UrdfTable};
-use super::meshes::is_flat;
 use super::number::{Allowed, Entry};
 use super::placed::Placed;
 use super::robot_tables::Tables;
@@ -93,7 +92,7 @@ fn leave_out_pictures(robot: &mut Robot, weighs: bool, mesh: &dyn Fn(&str) -> Op
         let mut is_picture = |shape: &Collision| {
             let Geometry::Mesh(file, stretch) = &shape.geometry else { return false };
             // what cannot be read is reported with the shapes that are kept
-            let flat = mesh(file).is_some_and(|mesh| is_flat(&mesh, *stretch));
+            let flat = mesh(file).is_some_and(|mesh| crate::mesh::flat::is_flat(&mesh, *stretch));
             if flat {
                 robot.remarks.push(format!(
                     "the mesh `{file}` of link `{}` is flat and does not collide: it is left out",

@@ -4,33 +4,8 @@ use onescan_base::nearest;
 
 use super::expression::Expression;
 use super::lists;
-use super::value::Value;
-
-/// What an expression asks for outside of itself.
-pub(super) trait Names {
-    /// The value of a property.
-    ///
-    /// # Errors
-    /// A property whose own expression is at fault.
-    fn value(&mut self, name: &str) -> Result<Option<Value>, String>;
-    /// The contents of a YAML file.
-    ///
-    /// # Errors
-    /// A file that cannot be read.
-    fn yaml(&mut self, file: &str) -> Result<Value, String>;
-    /// An argument of the robot.
-    ///
-    /// # Errors
-    /// An argument that is not given.
-    fn argument(&mut self, name: &str) -> Result<Value, String>;
-    /// Takes a part of what lists may have in all.
-    ///
-    /// # Errors
-    /// Nothing is left.
-    fn spend(&mut self, size: usize) -> Result<(), String>;
-}
-
-type Evaluated = Result<Value, String>;
+use super::names::{Evaluated, Names};
+use super::value::{Value, quoted};
 
 /// The value of an expression.
 ///
@@ -43,7 +18,7 @@ pub(super) fn evaluate(expression: &Expression, names: &mut dyn Names) -> Evalua
         Expression::List(list) => {
             list.iter().map(|inner| evaluate(inner, names)).collect::<Result<_, _>>().map(Value::List)
         }
-        Expression::Comprehension(inner) => lists::comprehension(inner, names),
+        Expression::Comprehension(inner) => lists::comprehension(inner, names, evaluate),
         Expression::Index(of, index) => {
             let (of, index) = (evaluate(of, names)?, evaluate(index, names)?);
             item(&of, &index)
@@ -107,13 +82,6 @@ fn name(name: &str, names: &mut dyn Names) -> Evaluated {
 
 fn numeric(value: &Value) -> Result<f64, String> {
     value.number().ok_or_else(|| format!("{} is not a number", quoted(value)))
-}
-
-pub(super) fn quoted(value: &Value) -> String {
-    match value {
-        Value::Text(text) => format!("the text '{text}'"),
-        other => other.sort().to_owned(),
-    }
 }
 
 /// `of[index]`, or `of.index` of a dictionary.
@@ -218,7 +186,7 @@ fn contains(whole: &Value, part: &Value) -> Result<bool, String> {
 }
 
 fn call(callee: &Expression, plain: &[Expression], named: &[(String, Expression)], names: &mut dyn Names) -> Evaluated {
-    if let Some(known) = lists::is_instance(callee, plain, names) {
+    if let Some(known) = lists::is_instance(callee, plain, names, evaluate) {
         return known;
     }
     let values: Vec<Value> = plain.iter().map(|inner| evaluate(inner, names)).collect::<Result<_, _>>()?;

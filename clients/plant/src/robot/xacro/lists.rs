@@ -1,15 +1,13 @@
 //! Lists in expressions: comprehensions, and what Python's functions make of them. A set is a list in which nothing
 //! is there twice.
 
-use super::evaluate::{Names, evaluate, quoted};
 use super::expression::{Comprehension, Expression};
-use super::value::Value;
+use super::names::{Evaluate, Evaluated, Names};
+use super::value::{Value, quoted};
 
 /// How many values and bytes all lists of a robot's file may have that are made of others: loops in loops would else take
 /// all memory and time.
 pub(super) const SIZE_MAX: usize = 1_000_000;
-
-type Evaluated = Result<Value, String>;
 
 /// Names of a comprehension before those around it.
 struct Bound<'n> {
@@ -38,7 +36,7 @@ impl Names for Bound<'_> {
     }
 }
 
-pub(super) fn comprehension(of: &Comprehension, names: &mut dyn Names) -> Evaluated {
+pub(super) fn comprehension(of: &Comprehension, names: &mut dyn Names, evaluate: Evaluate) -> Evaluated {
     let mut list = Vec::new();
     for item in iterated(&evaluate(&of.of, names)?)? {
         names.spend(item.size())?;
@@ -112,7 +110,12 @@ pub(super) fn tokens(text: &str, by: Option<&Value>) -> Value {
 }
 
 /// `isinstance(value, type)`, whose second argument is a name that is no property; none for other calls.
-pub(super) fn is_instance(callee: &Expression, plain: &[Expression], names: &mut dyn Names) -> Option<Evaluated> {
+pub(super) fn is_instance(
+    callee: &Expression,
+    plain: &[Expression],
+    names: &mut dyn Names,
+    evaluate: Evaluate,
+) -> Option<Evaluated> {
     let (Expression::Name(function) | Expression::Member(_, function)) = callee else { return None };
     let ("isinstance", [value, Expression::Name(sort)]) = (function.as_str(), plain) else { return None };
     let value = match evaluate(value, names) {

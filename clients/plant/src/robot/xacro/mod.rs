@@ -9,6 +9,7 @@
 //! |---|---|
 //! | `value` | numbers, texts, lists, dictionaries |
 //! | `expression`, `evaluate` | what stands between `${` and `}` |
+//! | `names` | what an expression asks its surroundings for |
 //! | `lists` | comprehensions and functions of lists |
 //! | `yaml` | files of parameters |
 //! | `scope` | what a name is worth where it is used |
@@ -19,6 +20,7 @@
 mod evaluate;
 mod expression;
 mod lists;
+mod names;
 mod parameter;
 mod scope;
 mod value;
@@ -315,7 +317,7 @@ impl Expander<'_> {
     }
 
     fn preset(&mut self, key: &str, preset: &Preset) -> Result<Value, String> {
-        use evaluate::Names as _;
+        use names::Names as _;
         if preset.forwarded
             && let Some(value) = self.scope.value(key)?
         {

@@ -6,9 +6,10 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::evaluate::{Names, evaluate};
+use super::evaluate::evaluate;
 use super::expression::Expression;
 use super::lists;
+use super::names::Names;
 use super::value::Value;
 use super::yaml;
 use crate::robot::package::{self, Packages};

@@ -125,3 +125,11 @@ impl fmt::Display for Value {
         }
     }
 }
+
+/// A value as a message names it.
+pub(super) fn quoted(value: &Value) -> String {
+    match value {
+        Value::Text(text) => format!("the text '{text}'"),
+        other => other.sort().to_owned(),
+    }
+}
