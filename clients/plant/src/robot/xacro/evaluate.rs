@@ -2,6 +2,7 @@
 
 use onescan_base::nearest;
 
+use super::arithmetic::binary;
 use super::expression::Expression;
 use super::lists;
 use super::names::{Evaluated, Names};
@@ -115,45 +116,6 @@ fn item(of: &Value, index: &Value) -> Evaluated {
             Err(format!("{} has no items", quoted(of)))
         }
     }
-}
-
-pub(super) fn binary(sign: &str, left: &Value, right: &Value) -> Evaluated {
-    if sign == "+" {
-        match (left, right) {
-            (Value::Text(one), Value::Text(other)) => return Ok(Value::Text(format!("{one}{other}"))),
-            (Value::List(one), Value::List(other)) => return Ok(Value::List([one.as_slice(), other].concat())),
-            _ => {}
-        }
-    }
-    if let (Value::Whole(one), Value::Whole(other)) = (left, right) {
-        let whole = match sign {
-            "+" => one.checked_add(*other),
-            "-" => one.checked_sub(*other),
-            "*" => one.checked_mul(*other),
-            "//" if *other > 0 => one.checked_div_euclid(*other),
-            "%" if *other > 0 => one.checked_rem_euclid(*other),
-            "**" => u32::try_from(*other).ok().and_then(|exponent| one.checked_pow(exponent)),
-            _ => None,
-        };
-        if let Some(whole) = whole {
-            return Ok(Value::Whole(whole));
-        }
-    }
-    let (Some(one), Some(other)) = (left.number(), right.number()) else {
-        return Err(format!("`{sign}` does not go with {} and {}", quoted(left), quoted(right)));
-    };
-    if matches!(sign, "/" | "//" | "%") && other == 0.0 {
-        return Err("division by 0".to_owned());
-    }
-    Ok(Value::Number(match sign {
-        "+" => one + other,
-        "-" => one - other,
-        "*" => one * other,
-        "/" => one / other,
-        "//" => libm::floor(one / other),
-        "%" => one - other * libm::floor(one / other),
-        _ => libm::pow(one, other),
-    }))
 }
 
 fn compare(operator: &str, left: &Value, right: &Value) -> Result<bool, String> {

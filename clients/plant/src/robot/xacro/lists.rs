@@ -1,6 +1,7 @@
 //! Lists in expressions: comprehensions, and what Python's functions make of them. A set is a list in which nothing
 //! is there twice.
 
+use super::arithmetic;
 use super::expression::{Comprehension, Expression};
 use super::names::{Evaluate, Evaluated, Names};
 use super::value::{Value, quoted};
@@ -143,7 +144,7 @@ pub(super) fn function(name: &str, values: &[Value], names: &mut dyn Names) -> O
         ("any", [of]) => iterated(of).map(|list| Value::Bool(list.iter().any(Value::is_true))),
         ("all", [of]) => iterated(of).map(|list| Value::Bool(list.iter().all(Value::is_true))),
         ("sum", [Value::List(list)]) => {
-            list.iter().try_fold(Value::Whole(0), |sum, item| super::evaluate::binary("+", &sum, item))
+            list.iter().try_fold(Value::Whole(0), |sum, item| arithmetic::binary("+", &sum, item))
         }
         ("range", [Value::Whole(end)]) => range([0, *end, 1], names),
         ("range", [Value::Whole(start), Value::Whole(end)]) => range([*start, *end, 1], names),

@@ -9,6 +9,7 @@
 //! |---|---|
 //! | `value` | numbers, texts, lists, dictionaries |
 //! | `expression`, `evaluate` | what stands between `${` and `}` |
+//! | `arithmetic` | what operators make of two values |
 //! | `names` | what an expression asks its surroundings for |
 //! | `lists` | comprehensions and functions of lists |
 //! | `yaml` | files of parameters |
@@ -17,6 +18,7 @@
 //!
 //! Source: ROS wiki, xacro (the dialect since ROS Jade, which is that of ROS 2).
 
+mod arithmetic;
 mod evaluate;
 mod expression;
 mod lists;
