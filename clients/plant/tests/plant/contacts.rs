@@ -87,3 +87,26 @@ fn what_passes_an_edge_with_clearance_does_not_touch_it() {
         }
     }
 }
+
+#[test]
+fn a_stack_of_boxes_stands_as_high_as_its_boxes() {
+    let boxed = |number: usize| {
+        format!(
+            "[[body]]\nname = \"box{number}\"\nkind = \"dynamic\"\nshape = \"box\"\nsize_m = [0.2, 0.2, 0.2]\n\
+             mass_kg = 5.0\nposition_m = [0.0, 0.0, {z:?}]\n",
+            z = 0.1 + 0.2 * number as f64
+        )
+    };
+    // With contacts of 30 Hz between the boxes, 20 of them were 105 mm too low, or fell.
+    for (period_us, time_us, count, lower_m) in [(1_000, 5_000_000, 20, 3e-4), (10_000, 20_000_000, 12, 5e-3)] {
+        let boxes: String = (0..count).map(boxed).collect();
+        let floor = "version = 1\n[[body]]\nname = \"floor\"\nkind = \"fixed\"\nshape = \"box\"\n\
+                     size_m = [9.0, 9.0, 0.1]\nposition_m = [0.0, 0.0, -0.05]\n";
+        let mut bench = Bench::at_us(&format!("{floor}{boxes}"), period_us);
+        bench.run_us(time_us);
+        let [x, y, z] = place(&bench, &format!("box{}", count - 1));
+        let height_m = 0.1 + 0.2 * (count - 1) as f64;
+        assert!(x.hypot(y) < 5e-3, "{period_us}: it leans by {} m", x.hypot(y));
+        assert!((height_m - z).abs() < lower_m, "{period_us}: {z} in place of {height_m}");
+    }
+}
