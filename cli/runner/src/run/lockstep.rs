@@ -146,8 +146,8 @@ fn warn_of_overlaps(scenario: &Scenario) -> Result<(), RunError> {
         for overlap in overlaps {
             tracing::warn!(
                 target: NOTICE,
-                "plant `{plant}`: at the start {overlap}, and will be pushed apart: move one of them, \
-                 or give both the same `group`"
+                "plant `{plant}`: at the start {overlap}, and the contact presses them apart: move one of them by as \
+                 much, or give both the same `group` if they are never to touch"
             );
         }
     }
