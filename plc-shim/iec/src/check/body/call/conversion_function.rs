@@ -44,13 +44,10 @@ impl Body<'_, '_> {
         if self.shape(expr.ty).is_some() && rounding == Rounding::NearestEven {
             return self.parsed(expr, to, span);
         }
+        let expr = self.whole(expr);
         let Some(from) = self.elementary(expr.ty) else {
             let found = self.type_name(expr.ty);
             return self.mismatch("an elementary value", &found, expr.span);
-        };
-        let (expr, from) = match self.held_in_register(&expr) {
-            Some(register) => (self.in_register(expr, register), register),
-            None => (expr, from),
         };
         if is_mixed(from, to) && self.declarations.dialect(span).has(Feature::BitsAsReals) {
             return Some(Operand::Typed(self.as_numbers_do(expr, (from, to), rounding)));

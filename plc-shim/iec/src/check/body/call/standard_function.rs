@@ -127,10 +127,9 @@ impl Body<'_, '_> {
             return self.mismatch("a number", &found, expr.span);
         }
         let ty = expr.ty;
-        let whole = self.whole_values(vec![expr]);
-        let held = whole.first().map_or(ty, |operand| operand.ty);
-        let kind = ExprKind::Intrinsic(Intrinsic::Abs, whole);
-        Some(Operand::Typed(Self::cut(Expr { kind, ty: held, span }, ty)))
+        let whole = self.whole(expr);
+        let held = whole.ty;
+        Some(Self::cut(ExprKind::Intrinsic(Intrinsic::Abs, vec![whole]), held, ty, span))
     }
 
     fn real_function(&mut self, kind: Intrinsic, operand: Operand, span: Span) -> Option<Operand> {
@@ -279,7 +278,7 @@ impl Body<'_, '_> {
             let kind = ExprKind::Intrinsic(kind, vec![left, right]);
             Expr { kind, ty, span }
         });
-        whole.map(|whole| Operand::Typed(Self::cut(whole, ty)))
+        whole.map(|Expr { kind, ty: held, .. }| Self::cut(kind, held, ty, span))
     }
 
     /// `LIMIT(MN, IN, MX)` is `MIN(MAX(IN, MN), MX)` (2nd ed. Table 27).
@@ -287,9 +286,8 @@ impl Body<'_, '_> {
         let (all, ty) = self.unify_all(operands, span)?;
         let [low, value, high] = <[Expr; 3]>::try_from(self.whole_values(all)).ok()?;
         let held = value.ty;
-        let node = |kind, operands| Expr { kind: ExprKind::Intrinsic(kind, operands), ty: held, span };
-        let raised = node(Intrinsic::Max, vec![value, low]);
-        Some(Operand::Typed(Self::cut(node(Intrinsic::Min, vec![raised, high]), ty)))
+        let raised = Expr { kind: ExprKind::Intrinsic(Intrinsic::Max, vec![value, low]), ty: held, span };
+        Some(Self::cut(ExprKind::Intrinsic(Intrinsic::Min, vec![raised, high]), held, ty, span))
     }
 
     fn select(&mut self, selector: Operand, values: Vec<Operand>, span: Span) -> Option<Operand> {
@@ -300,7 +298,7 @@ impl Body<'_, '_> {
             let [first, second] = <[Expr; 2]>::try_from(self.whole_values(all)).ok()?;
             let held = first.ty;
             let kind = ExprKind::Conditional(Box::new([selector, second, first]));
-            return Some(Operand::Typed(Self::cut(Expr { kind, ty: held, span }, ty)));
+            return Some(Self::cut(kind, held, ty, span));
         }
         all.insert(0, selector);
         Some(Self::intrinsic(Intrinsic::Select, all, ty, span))
@@ -312,8 +310,7 @@ impl Body<'_, '_> {
         let mut all = self.whole_values(all);
         let held = all.first().map_or(ty, |first| first.ty);
         all.insert(0, selector);
-        let kind = ExprKind::Intrinsic(Intrinsic::Multiplex, all);
-        Some(Operand::Typed(Self::cut(Expr { kind, ty: held, span }, ty)))
+        Some(Self::cut(ExprKind::Intrinsic(Intrinsic::Multiplex, all), held, ty, span))
     }
 
     pub(in crate::check::body) fn integer_as_lint(&mut self, operand: Operand) -> Option<Expr> {

@@ -115,7 +115,8 @@ impl Body<'_, '_> {
         span: Span,
     ) -> Option<Operand> {
         if matches!(operator, Binary::Add | Binary::And) && (self.is_text(&left) || self.is_text(&right)) {
-            return self.joined_texts(&left, &right, span);
+            let help = "strings are joined by `CONCAT(a, b)`, a number becomes text by `DINT_TO_STRING(n)`";
+            return self.not_joined(&left, &right, span, Some(help.to_owned()));
         }
         if !operator.is_comparison() && !matches!((&left, &right), (Operand::Typed(_), _) | (_, Operand::Typed(_))) {
             return self.fold_literals(operator, &left, &right, span);
@@ -158,7 +159,7 @@ impl Body<'_, '_> {
         };
         let held = left.ty;
         let kind = ExprKind::Binary(operator, Box::new(left), Box::new(right));
-        Some(Operand::Typed(Self::cut(Expr { kind, ty: held, span }, ty)))
+        Some(Self::cut(kind, held, ty, span))
     }
 
     /// Two constants without type make a third.
@@ -192,18 +193,13 @@ impl Body<'_, '_> {
         right: &Operand,
         span: Span,
     ) -> Option<T> {
-        let (left, right) = (self.describe(left), self.describe(right));
-        let message = format!("this operator does not join {left} and {right}");
-        self.report(Diagnostic::error(Code::InvalidOperand, span, message));
-        None
+        self.not_joined(left, right, span, None)
     }
 
-    /// Reports `+` and `&` between strings, with what joins them.
-    fn joined_texts(&mut self, left: &Operand, right: &Operand, span: Span) -> Option<Operand> {
+    fn not_joined<T>(&mut self, left: &Operand, right: &Operand, span: Span, help: Option<String>) -> Option<T> {
         let (left, right) = (self.describe(left), self.describe(right));
         let message = format!("this operator does not join {left} and {right}");
-        let help = "strings are joined by `CONCAT(a, b)`, a number becomes text by `DINT_TO_STRING(n)`";
-        self.report(Diagnostic::error(Code::InvalidOperand, span, message).with_help(help));
+        self.report(Diagnostic::error(Code::InvalidOperand, span, message).with_optional_help(help));
         None
     }
 

@@ -6,7 +6,7 @@
 //! operation once more, in the register's type.
 
 use crate::check::body::Body;
-use crate::check::types::operand::converted;
+use crate::check::types::operand::{Operand, converted};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::IntegerWidth;
 use crate::ir::{Binary, ElementaryType, Expr, ExprKind, Rounding, TypeId, Unary};
@@ -51,15 +51,12 @@ impl Body<'_, '_> {
 
     /// The value as a register of type `register` has it.
     pub(in crate::check::body) fn in_register(&self, expr: Expr, register: ElementaryType) -> Expr {
-        if self.held_in_register(&expr).is_none() {
-            return converted(expr, register, Rounding::NearestEven);
-        }
-        let span = expr.span;
+        let (holds, span) = (self.held_in_register(&expr).is_some(), expr.span);
         let again = |operand: Box<Expr>| Box::new(self.in_register(*operand, register));
         let kind = match expr.kind {
-            ExprKind::FromRegister(held) => return converted(*held, register, Rounding::NearestEven),
-            ExprKind::Unary(operator, operand) => ExprKind::Unary(operator, again(operand)),
-            ExprKind::Binary(operator, left, right) => ExprKind::Binary(operator, again(left), again(right)),
+            ExprKind::FromRegister(held) if holds => return converted(*held, register, Rounding::NearestEven),
+            ExprKind::Unary(operator, operand) if holds => ExprKind::Unary(operator, again(operand)),
+            ExprKind::Binary(operator, left, right) if holds => ExprKind::Binary(operator, again(left), again(right)),
             kind => return converted(Expr { kind, ..expr }, register, Rounding::NearestEven),
         };
         Expr { kind, ty: register.into(), span }
@@ -78,7 +75,15 @@ impl Body<'_, '_> {
         Expr { kind: ExprKind::FromRegister(Box::new(held)), ty: wanted.into(), span }
     }
 
-    /// Two operands of an operation on all of their bits: in a register if it holds more of one of them than its type.
+    /// A value all of whose bits count: as a register has it, if that holds more than the value's type.
+    pub(in crate::check::body) fn whole(&self, value: Expr) -> Expr {
+        match self.held_in_register(&value) {
+            Some(register) => self.in_register(value, register),
+            None => value,
+        }
+    }
+
+    /// Two operands of one type, both in a register if it holds more of one of them than that type.
     pub(in crate::check::body) fn whole_operands(&self, left: Expr, right: Expr) -> (Expr, Expr) {
         match self.held_in_register(&left).or_else(|| self.held_in_register(&right)) {
             Some(register) => (self.in_register(left, register), self.in_register(right, register)),
@@ -94,14 +99,13 @@ impl Body<'_, '_> {
         }
     }
 
-    /// What was made of [whole operands](Self::whole_operands), in the type that the operation has.
-    pub(in crate::check::body) fn cut(whole: Expr, ty: TypeId) -> Expr {
-        if whole.ty == ty {
-            return whole;
-        }
-        let span = whole.span;
-        Expr { kind: ExprKind::FromRegister(Box::new(whole)), ty, span }
+    /// An operation on values that are [whole](Self::whole) and held as one of `held`, in the type that it has.
+    pub(in crate::check::body) fn cut(kind: ExprKind, held: TypeId, ty: TypeId, span: Span) -> Operand {
+        let whole = Expr { kind, ty: held, span };
+        let is_cut = held != ty;
+        Operand::Typed(if is_cut { Expr { kind: ExprKind::FromRegister(Box::new(whole)), ty, span } } else { whole })
     }
+
     /// Warns of a difference that is compared with the sign or the bits that a register gives it, where another target
     /// would compare a number of its type: `now - last >= limit` after the counter has begun again.
     pub(super) fn warn_of_uncut_difference(&mut self, operand: &Expr) {
@@ -116,8 +120,8 @@ impl Body<'_, '_> {
         }
     }
 
-    /// Warns of a product that wraps in the type of its factors although what takes it is wider: other targets compute it
-    /// in wide registers.
+    /// Warns of a product that wraps in the type of its factors although what takes it is wider. CODESYS and TwinCAT
+    /// compute it in 64 bits.
     pub(super) fn warn_of_cut_product(&mut self, expr: &Expr, found: ElementaryType, wanted: ElementaryType) {
         let is_product = matches!(expr.kind, ExprKind::Binary(Binary::Multiply, ..));
         let is_wider = found.is_integer() && (wanted.is_real() || wanted.is_integer() && wanted.size() > found.size());

@@ -213,10 +213,7 @@ impl Body<'_, '_> {
 
     fn case_statement(&mut self, inner: &ast::CaseStatement) -> Option<StatementKind> {
         let selector = self.expression(&inner.selector).and_then(|operand| self.settle(operand));
-        let selector = selector.map(|selector| match self.held_in_register(&selector) {
-            Some(register) => self.in_register(selector, register),
-            None => selector,
-        });
+        let selector = selector.map(|selector| self.whole(selector));
         let selector = selector.and_then(|selector| self.selectable(selector));
         let ty = selector.as_ref().map(|(selector, _)| selector.ty);
         let mut known = BTreeMap::new();
@@ -349,11 +346,10 @@ impl Body<'_, '_> {
                 let ty = as_number(*ty);
                 Some((Place { ty: ty.into(), ..place }, ty))
             }
-            _ if self.base_of_enumeration(place.ty, place.span).is_some_and(ElementaryType::is_integer) => {
-                let ty = self.base_of_enumeration(place.ty, place.span)?;
-                Some((Place { ty: ty.into(), ..place }, ty))
-            }
             _ => {
+                if let Some(ty) = self.base_of_enumeration(place.ty, place.span).filter(|ty| ty.is_integer()) {
+                    return Some((Place { ty: ty.into(), ..place }, ty));
+                }
                 let message = format!("a FOR control variable is an integer, this is {}", self.type_name(place.ty));
                 self.report(Diagnostic::error(Code::LoopVariable, place.span, message));
                 None
