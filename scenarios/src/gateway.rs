@@ -445,9 +445,8 @@ fn input(file: &File, own: &[Input]) -> Option<Input> {
         _ => SourceKind::Text,
     };
     let input = Input::from_text(&file.name, kind, file.text.clone()?);
-    let dialect = own.iter().find(|own| own.file().name() == file.name).map(|own| own.file().dialect());
-    Some(match dialect {
-        Some(dialect) => input.in_dialect(dialect),
+    Some(match own.iter().find(|own| own.file().name() == file.name) {
+        Some(own) => input.in_dialect(own.file().dialect()),
         None => input,
     })
 }

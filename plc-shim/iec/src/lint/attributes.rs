@@ -5,6 +5,7 @@ use crate::dialect::Dialect;
 use crate::front::Front;
 use crate::source::Span;
 use crate::syntax::lexer::tokenize_in;
+use crate::syntax::pragma::attribute;
 use crate::syntax::token::TokenKind;
 
 /// Attributes of CODESYS and TwinCAT, each with what is otherwise here.
@@ -27,16 +28,15 @@ const EFFECTS: &[(&str, &str)] = &[
 pub(super) fn lint(front: &Front, findings: &mut Vec<Diagnostic>) {
     for (id, file) in front.sources.iter() {
         let has_attributes = matches!(file.dialect(), Dialect::Codesys | Dialect::TwinCat);
-        if front.library.contains(&id) || !has_attributes {
+        if front.library.contains(&id) || !has_attributes || !file.text().contains('{') {
             continue;
         }
         for token in
             tokenize_in(file.dialect(), file.text()).into_iter().filter(|token| token.kind == TokenKind::Pragma)
         {
-            let pragma = file.text().get(token.start as usize..token.end as usize).unwrap_or_default();
-            if let Some((name, otherwise)) = effect(pragma) {
+            let span = Span { file: id, start: token.start, end: token.end };
+            if let Some((name, otherwise)) = effect(front.sources.text(span)) {
                 let message = format!("the attribute '{name}' has no effect here");
-                let span = Span { file: id, start: token.start, end: token.end };
                 findings.push(Diagnostic::warning(Code::AttributeWithoutEffect, span, message).with_help(otherwise));
             }
         }
@@ -45,11 +45,9 @@ pub(super) fn lint(front: &Front, findings: &mut Vec<Diagnostic>) {
 
 /// The attribute of `{attribute 'name' := 'value'}`, if it has an effect on values elsewhere, and what is otherwise here.
 fn effect(pragma: &str) -> Option<(&'static str, &'static str)> {
-    let inner = pragma.trim_matches(['{', '}']).trim();
-    let (word, rest) = inner.split_once(char::is_whitespace)?;
-    let name = rest.trim().strip_prefix('\'')?.split('\'').next()?;
-    let known = EFFECTS.iter().find(|(known, _)| known.eq_ignore_ascii_case(name));
-    known.copied().filter(|_| word.eq_ignore_ascii_case("attribute"))
+    let attribute = attribute(pragma.trim_matches(['{', '}']).trim())?;
+    let name = attribute.strip_prefix('\'')?.split('\'').next()?;
+    EFFECTS.iter().find(|(known, _)| known.eq_ignore_ascii_case(name)).copied()
 }
 
 #[cfg(test)]

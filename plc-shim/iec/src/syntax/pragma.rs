@@ -18,6 +18,12 @@ pub fn behind_pragma(tokens: &[Token], text: &str, is_it: impl Fn(&str) -> bool)
     found
 }
 
+/// What stands behind the word in `attribute 'name' := 'value'`, the inner part of a pragma.
+pub(crate) fn attribute(pragma: &str) -> Option<&str> {
+    let (word, rest) = pragma.split_once(char::is_whitespace)?;
+    word.eq_ignore_ascii_case("attribute").then(|| rest.trim())
+}
+
 /// True for C code that sets variables, which `MatIEC` takes between braces.
 pub(crate) fn sets_by_c(pragma: &str) -> bool {
     ["__SET_VAR(", "__SET_EXTERNAL(", "__SET_LOCATED(", "SetFbVar("].iter().any(|call| pragma.contains(call))

@@ -8,7 +8,7 @@ use crate::dialect::{Dialect, Feature};
 use crate::source::origin::Origin;
 use crate::source::{FileId, Span};
 use crate::syntax::ast::{Expr, Ident, TemplateUse};
-use crate::syntax::pragma::behind_pragma;
+use crate::syntax::pragma::{attribute, behind_pragma};
 use crate::syntax::token::{Keyword, Punctuation, Token, TokenKind};
 
 /// Reads the tokens that matter to the grammar; trivia and broken tokens are left out.
@@ -225,14 +225,18 @@ impl<'a> Cursor<'a> {
 
     /// True if nothing stands between the token so many places ahead and the one behind it.
     pub(super) fn touches_next(&self, ahead: usize) -> bool {
-        let pair = (self.tokens.get(self.at + ahead), self.tokens.get(self.at + ahead + 1));
-        matches!(pair, (Some(first), Some(second)) if first.end == second.start)
+        self.touch(self.at + ahead)
     }
 
     /// True if nothing stands between the token taken last and the one here.
     pub(super) fn touches_before(&self) -> bool {
-        let before = self.at.checked_sub(1).and_then(|before| self.tokens.get(before));
-        matches!((before, self.tokens.get(self.at)), (Some(first), Some(second)) if first.end == second.start)
+        self.at.checked_sub(1).is_some_and(|before| self.touch(before))
+    }
+
+    /// True if nothing stands between this token and the one behind it.
+    fn touch(&self, token: usize) -> bool {
+        let pair = (self.tokens.get(token), self.tokens.get(token + 1));
+        matches!(pair, (Some(first), Some(second)) if first.end == second.start)
     }
 
     /// Makes names of the keyword here and of those behind it that stand where a name does.
@@ -461,8 +465,7 @@ fn promote_soft_keywords(tokens: &mut [Token], text: &str) {
 }
 
 fn is_qualified_only(pragma: &str) -> bool {
-    let attribute = pragma.split_once(char::is_whitespace).filter(|(word, _)| word.eq_ignore_ascii_case("attribute"));
-    attribute.is_some_and(|(_, name)| name.trim().eq_ignore_ascii_case("'qualified_only'"))
+    attribute(pragma).is_some_and(|attribute| attribute.eq_ignore_ascii_case("'qualified_only'"))
 }
 
 /// True for a word whose next one is a name, be it one that begins a part of a chart elsewhere: `CLASS Step IMPLEMENTS`.
