@@ -14,7 +14,6 @@ use super::failure::FailureRefused;
 use super::identity::Identity;
 use super::layout_mismatch::LayoutMismatch;
 use super::machine::Machine;
-use super::overlap::Overlap;
 use super::placement::{BodyPose, Placement};
 use super::scene::{ParameterRefused, Scene, SceneError};
 use super::state::{self, Restored};
@@ -99,11 +98,6 @@ impl Plant {
     /// What the plant is made of.
     pub fn scene(&self) -> &Scene {
         &self.scene
-    }
-
-    /// Bodies that are in each other at the start; see [`Scene::overlaps`].
-    pub fn overlaps(&self) -> Vec<Overlap> {
-        self.scene.overlaps()
     }
 
     /// The machine at work; none before the set-up.

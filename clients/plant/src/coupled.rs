@@ -23,7 +23,7 @@ pub(crate) struct Of {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-enum Law {
+pub(crate) enum Law {
     Ratio(f64),
     /// Counted from the scene's pose.
     Cam(Cam),
@@ -67,28 +67,34 @@ impl Coupled {
         let initial = |joint: usize| scene.joints[joint].initial;
         let of = coupling.of.iter().map(|share| {
             let from = [initial(share.joint), initial(coupling.joint)];
-            let law = match &share.law {
-                model::CouplingLaw::Ratio(ratio) => Law::Ratio(*ratio),
-                cam => Cam::of(cam, from).map_or(Law::Ratio(1.0), Law::Cam),
-            };
-            Of { joint: share.joint, law }
+            Of { joint: share.joint, law: Law::of(&share.law, from) }
         });
         Self { joint: coupling.joint, of: of.collect(), backlash: coupling.backlash }
     }
 }
 
-impl Cam {
-    /// The cam of a law that has one, its coordinates counted from here.
-    pub(crate) fn of(law: &model::CouplingLaw, [x, y]: [f64; 2]) -> Option<Self> {
+impl Law {
+    /// The law of a scene, its coordinates counted from here.
+    pub(crate) fn of(law: &model::CouplingLaw, [x, y]: [f64; 2]) -> Self {
         let (points, repeats) = match law {
-            model::CouplingLaw::Ratio(_) => return None,
+            model::CouplingLaw::Ratio(ratio) => return Self::Ratio(*ratio),
             model::CouplingLaw::Cam(points) => (points, false),
             model::CouplingLaw::RepeatingCam(points) => (points, true),
         };
         let points: Vec<_> = points.iter().map(|point| [point[0] - x, point[1] - y]).collect();
-        Some(Self::through(&points, repeats))
+        Self::Cam(Cam::through(&points, repeats))
     }
 
+    /// Where it has the joint that is led, and the slope there.
+    pub(crate) fn at(&self, x: f64) -> (f64, f64) {
+        match self {
+            Self::Ratio(ratio) => (ratio * x, *ratio),
+            Self::Cam(cam) => cam.at(x),
+        }
+    }
+}
+
+impl Cam {
     /// The slopes at its points are those of the parabola through three of them, so that it has no corners; at its
     /// ends it goes on straight, or as on its other end.
     fn through(points: &[[f64; 2]], repeats: bool) -> Self {
@@ -110,8 +116,7 @@ impl Cam {
         Self { knots, turn }
     }
 
-    /// Where it has the joint that is led, and the slope there.
-    pub(crate) fn at(&self, x: f64) -> (f64, f64) {
+    fn at(&self, x: f64) -> (f64, f64) {
         let (Some([wide, high]), Some(first)) = (self.turn, self.knots.first()) else { return on(&self.knots, x) };
         let turns = ((x - first.x) / wide).floor();
         let (value, slope) = on(&self.knots, x - turns * wide);
@@ -122,10 +127,7 @@ impl Cam {
 impl Of {
     /// What it asks for at a coordinate, and the slope there.
     pub(crate) fn at(&self, x: f64) -> (f64, f64) {
-        match &self.law {
-            Law::Ratio(ratio) => (ratio * x, *ratio),
-            Law::Cam(cam) => cam.at(x),
-        }
+        self.law.at(x)
     }
 }
 

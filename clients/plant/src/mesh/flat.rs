@@ -11,7 +11,7 @@ const FLAT: f64 = 1e-9;
 /// Part of the cube of its length above which what four corners span is a body beyond doubt.
 const THICK: f64 = 1e-3;
 
-/// Whether a mesh is no body, as what pictures are made of often is: a label, a line between two colours.
+/// Whether a mesh is too flat to be a body: pictures have such meshes for labels and for lines between colours.
 pub(crate) fn is_flat(mesh: &Mesh, stretch: [f64; 3]) -> bool {
     let corners_m = stretched(mesh, stretch);
     // a hull takes long, and few meshes are flat

@@ -240,6 +240,7 @@ impl Table for ComponentTable {
                     let turned = written.map(|written| turned(&written, k, n));
                     put(self, binding.key, turned);
                 }
+                // bodies, joints and sides stay the same by name; directions too unless they turn
                 _ => {}
             }
         }

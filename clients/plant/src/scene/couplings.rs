@@ -9,7 +9,7 @@ use super::names::Names;
 use super::number::{Allowed, Entry, Unit};
 use super::placed::Placed;
 use super::text;
-use crate::coupled::Cam;
+use crate::coupled::Law;
 use crate::model::JointKind;
 
 /// The most joints that lead another: a differential has two.
@@ -56,9 +56,11 @@ fn coupling(written: &CouplingTable, file: &SceneFile, joints: &Names, faults: &
 /// In the scene's pose a joint must be where its cam has it.
 fn refuse_off(written: &CouplingTable, coupling: &Coupling, joints: &[Joint], faults: &mut Faults<'_>) {
     for share in &coupling.of {
-        let Some(cam) = Cam::of(&share.law, [0.0; 2]) else { continue };
+        if let CouplingLaw::Ratio(_) = share.law {
+            continue;
+        }
         let [x, y] = [joints[share.joint].initial, joints[coupling.joint].initial];
-        let on = cam.at(x).0;
+        let on = Law::of(&share.law, [0.0; 2]).at(x).0;
         if (on - y).abs() > OFF_MAX {
             let span = written.cam.as_ref().map_or_else(|| written.name.span(), Placed::span);
             let (wanted, value) = (format!("a curve with {y} at {x}, where the scene has the joints"), on.to_string());

@@ -174,8 +174,8 @@ impl World {
     }
 
     fn fault(&self, scene: &Mechanics, handle: RigidBodyHandle, what: &str) -> ClientFault {
-        let index = self.bodies.iter().position(|known| *known == handle);
-        let name = index.and_then(|index| scene.bodies.get(index)).map_or("ground", |body| body.name.as_str());
+        let name =
+            self.index_of(handle).and_then(|index| scene.bodies.get(index)).map_or("ground", |body| body.name.as_str());
         ClientFault::new(format!("body `{name}`: {what}"))
     }
 
@@ -359,7 +359,12 @@ impl World {
     /// The body of a shape, by its index in the scene.
     pub(crate) fn body_of(&self, shape: ColliderHandle) -> Option<usize> {
         let parent = self.physics.colliders.get(shape).and_then(Collider::parent)?;
-        self.bodies.iter().position(|body| *body == parent)
+        self.index_of(parent)
+    }
+
+    /// A body's index in the scene; none of the ground.
+    fn index_of(&self, handle: RigidBodyHandle) -> Option<usize> {
+        self.bodies.iter().position(|known| *known == handle)
     }
 
     /// Puts a body into the world, at rest where another one is.

@@ -9,6 +9,7 @@ pub(super) fn binary(sign: &str, left: &Value, right: &Value) -> Evaluated {
         match (left, right) {
             (Value::Text(one), Value::Text(other)) => return Ok(Value::Text(format!("{one}{other}"))),
             (Value::List(one), Value::List(other)) => return Ok(Value::List([one.as_slice(), other].concat())),
+            // numbers are added below, and what is none is refused there
             _ => {}
         }
     }

@@ -110,7 +110,7 @@ pub(super) fn tokens(text: &str, by: Option<&Value>) -> Value {
     Value::List(words.map(|word| Value::Text(word.to_owned())).collect())
 }
 
-/// `isinstance(value, type)`, whose second argument is a name that is no property; none for other calls.
+/// `isinstance(value, type)`, whose second argument is the name of a type, not a property; none for other calls.
 pub(super) fn is_instance(
     callee: &Expression,
     plain: &[Expression],

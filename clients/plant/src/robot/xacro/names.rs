@@ -28,6 +28,6 @@ pub(super) trait Names {
     /// Takes a part of what lists may have in all.
     ///
     /// # Errors
-    /// Nothing is left.
+    /// The lists would have more than they may.
     fn spend(&mut self, size: usize) -> Result<(), String>;
 }

@@ -248,6 +248,7 @@ impl Names for Scope<'_> {
         let found = self.arguments.iter().find(|(known, _)| known == name).map(|(_, value)| value.clone());
         found.ok_or_else(|| format!("argument `{name}` is not given; give it: `arguments = {{ {name} = \"…\" }}`"))
     }
+
     fn spend(&mut self, size: usize) -> Result<(), String> {
         let left = self.size_left.checked_sub(size);
         self.size_left = left.ok_or_else(|| format!("lists have more than {} values and letters", lists::SIZE_MAX))?;
