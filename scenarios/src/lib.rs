@@ -35,6 +35,7 @@
 //! | [`falsify`] | its `[falsify]`, bound to its signals and clients |
 //! | [`ports_file`], `ports` | the ports and files of soft PLCs, as they are written and made |
 //! | [`gateway`] | its real PLCs |
+//! | `undriven` | inputs of its soft PLCs that nobody drives |
 //! | [`watch`] | variables of its soft PLCs that a run looks at |
 //! | [`figure`], [`look`] | what is drawn beside the bodies of plants, and what they look like while something holds |
 //! | [`visible`] | which bodies a look is of |
@@ -93,6 +94,7 @@ mod timed;
 pub mod timing;
 pub mod timing_file;
 mod timing_tolerance;
+mod undriven;
 pub mod value_names;
 pub mod visible;
 pub mod watch;

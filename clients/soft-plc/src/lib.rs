@@ -8,6 +8,7 @@
 //! | [`ports`] | lines of bytes: serial terminals, connections |
 //! | [`files`] | files that its program finds |
 //! | [`trace`] | which statements wrote its outputs, which ways decisions went |
+//! | [`undriven`] | inputs that nobody drives |
 //! | `variables` | variables written and forced by path |
 //! | [`watch`] | variables that somebody looks at |
 
@@ -17,6 +18,7 @@ pub mod files;
 pub mod journal;
 pub mod ports;
 pub mod trace;
+pub mod undriven;
 mod variables;
 pub mod watch;
 

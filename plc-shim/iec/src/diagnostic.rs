@@ -164,6 +164,7 @@ codes! {
     CutProduct "W0713" "a product is cut to the type of its factors before it becomes wider",
     AttributeWithoutEffect "W0714" "an attribute that changes values elsewhere has no effect here",
     EndlessCount "W0715" "a loop up to the limit of its variable's type never ends on the target",
+    UndrivenInput "W0716" "an input of a program is driven by nobody",
 }
 
 impl fmt::Display for Code {

@@ -140,6 +140,7 @@ const PAGES: &[(&str, &str)] = pages![
     "W0713",
     "W0714",
     "W0715",
+    "W0716",
 ];
 
 /// The page that explains `code`, as Markdown.

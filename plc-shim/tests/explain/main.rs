@@ -13,6 +13,12 @@ fn block<'a>(page: &'a str, mark: &str) -> (&'a str, &'a str) {
 
 /// The codes that an example yields.
 fn codes_of((language, text): (&str, &str)) -> Vec<&'static str> {
+    if let Some(language) = language.strip_suffix(" alone") {
+        // As a scenario without signals would have it.
+        let input = Input::from_text(&format!("example.{language}"), SourceKind::Text, text);
+        let application = onescan_iec_run::Application::from_inputs([input]).expect("a program");
+        return application.open_inputs().iter().map(|_| Code::UndrivenInput.text()).collect();
+    }
     let (language, instrumented) = language.strip_suffix(" instrument").map_or((language, false), |st| (st, true));
     let input = match language {
         "st" | "exp" | "scl" => Input::from_text(&format!("example.{language}"), SourceKind::Text, text),

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
 use onescan_base::regular::{self, Limit};
 use onescan_iec::input::found::Found;
@@ -26,6 +27,8 @@ pub struct Program {
     pub inputs: Vec<Input>,
     /// The client of a scenario that it is the program of.
     pub client: Option<ClientName>,
+    /// That scenario.
+    pub scenario: Option<Rc<Scenario>>,
     /// Which programs run in which task, where that is known.
     pub plan: Option<TaskPlan>,
     /// How much memory its variables may take.
@@ -74,7 +77,7 @@ pub fn collect(paths: &[PathBuf], reading: Reading) -> Result<Collected, CheckEr
     let passed_over = files.passed_over();
     if has_sources {
         let memory_limit = memory_limit.unwrap_or_default();
-        programs.push(Program { inputs: needed(files.inputs), client: None, plan: None, memory_limit });
+        programs.push(Program { inputs: needed(files.inputs), client: None, scenario: None, plan: None, memory_limit });
     }
     if programs.is_empty() {
         let help = match passed_over {
@@ -108,7 +111,7 @@ fn scenario(
     chosen: Option<Dialect>,
     chosen_limit: Option<MemoryLimit>,
 ) -> Result<Vec<Program>, CheckError> {
-    let scenario = Scenario::load(path)?;
+    let scenario = Rc::new(Scenario::load(path)?);
     let mut programs = Vec::new();
     for plc in scenario.plcs() {
         let mut files = Files { dialect: chosen.or(plc.dialect), ..Files::default() };
@@ -117,7 +120,8 @@ fn scenario(
         }
         let memory_limit = chosen_limit.unwrap_or(plc.memory_limit);
         let client = Some(plc.name.clone());
-        programs.push(Program { inputs: files.inputs, client, plan: plc.plan, memory_limit });
+        let (plan, scenario) = (plc.plan, Some(Rc::clone(&scenario)));
+        programs.push(Program { inputs: files.inputs, client, scenario, plan, memory_limit });
     }
     Ok(programs)
 }

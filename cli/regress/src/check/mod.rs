@@ -88,9 +88,19 @@ pub enum Warnings {
 pub fn check(config: &CheckConfig, out: &mut dyn Write) -> Result<ExitCode, CheckError> {
     let Collected { programs, passed_over } = collect::collect(&config.paths, config.reading())?;
     let files = programs.iter().map(|program| program.inputs.len()).sum();
-    let findings =
-        programs.into_iter().map(|program| inspect_within(program.memory_limit, program.inputs, program.plan.as_ref()));
-    let report = Report { files, findings: findings.collect(), passed_over };
+    let mut findings = Vec::new();
+    for program in programs {
+        let found = inspect_within(program.memory_limit, program.inputs, program.plan.as_ref());
+        // In another dialect than the scenario's it is another program.
+        let is_its_program = config.dialect.is_none() && !found.has_errors();
+        findings.push(found);
+        if let (true, Some(scenario), Some(client)) = (is_its_program, program.scenario, program.client)
+            && let Some(compiled) = scenario.compiled_plc(&client)?
+        {
+            findings.push(scenario.undriven_of(&client, &compiled)?);
+        }
+    }
+    let report = Report { files, findings, passed_over };
     let written = match config.format {
         CheckFormat::Human => human::write(&report, out),
         CheckFormat::Json => json::write(&report, out),

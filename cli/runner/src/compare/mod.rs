@@ -15,7 +15,7 @@ use crate::format::Format;
 use crate::interrupt::Interrupt;
 use crate::run::config::{Drawing, Picture};
 use crate::run::sampler::{Samples, drawn, panel};
-use crate::run::{Ran, RunConfig, RunError, one_run};
+use crate::run::{Ran, RunConfig, RunError, notices, one_run};
 
 /// A way of bringing plant and PLC together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -105,6 +105,7 @@ struct Run {
 /// As those of a run.
 pub fn compare(config: &CompareConfig, interrupt: &Interrupt, out: &mut dyn Write) -> Result<Vec<Row>, RunError> {
     let plain = Scenario::load_case(&config.run.subject.scenario, config.run.subject.case.as_deref())?;
+    notices::warn(&plain)?;
     let counted = config.count.as_ref().map(|name| counted(&plain, name)).transpose()?;
     let scenario = &plain;
     let names: Vec<SignalName> = scenario.file().signals.keys().cloned().collect();

@@ -66,9 +66,6 @@ pub(super) fn run(
     (log, verdict_board): (&SessionLog, &VerdictBoard),
     watch: impl FnOnce(&mut Lockstep),
 ) -> Result<Driven, RunError> {
-    if number == 1 {
-        warn_of_overlaps(scenario)?;
-    }
     let mut processes = Processes::default();
     let Formed { mut lockstep, lobby: _lobby, opcua_seats } = form(config, scenario, interrupt, log, &mut processes)?;
     lockstep.set_until(Some(config.subject.end(scenario)));
@@ -138,20 +135,6 @@ pub(super) fn run(
         None
     };
     Ok(Driven { outcome: lockstep.run()?, unsaved, taken, joined, state, errors_ns: Vec::new() })
-}
-
-/// Says which bodies are in each other as the run begins.
-fn warn_of_overlaps(scenario: &Scenario) -> Result<(), RunError> {
-    for (plant, overlaps) in scenario.overlaps()? {
-        for overlap in overlaps {
-            tracing::warn!(
-                target: NOTICE,
-                "plant `{plant}`: at the start {overlap}, and the contact presses them apart: move one of them by as \
-                 much, or give both the same `group` if they are never to touch"
-            );
-        }
-    }
-    Ok(())
 }
 
 /// What the scenario does by itself, and what is looked out for on behalf of others.

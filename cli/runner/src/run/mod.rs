@@ -16,6 +16,7 @@
 //! | `chosen` | signals chosen by name, as numbers |
 //! | [`sampler`] | what a plot shows |
 //! | [`maps`] | tables of values as they are at the end |
+//! | `notices` | what the scenario leaves open, said once |
 //! | `plc_files` | files of PLCs as they are at the end |
 //! | [`recorded`] | a run's recording |
 //! | `in_process` | a session of which all clients are here |
@@ -46,6 +47,7 @@ pub(crate) mod in_process;
 pub mod judged;
 mod lockstep;
 pub mod maps;
+pub(crate) mod notices;
 pub mod page;
 mod plc_files;
 mod processes;
@@ -129,6 +131,7 @@ pub fn execute(config: &RunConfig, interrupt: &Interrupt, out: &mut dyn Write) -
     if !config.watch.variables.is_empty() {
         scenario.watch(&config.watch.variables, config.watch.on == WatchOn::Change)?;
     }
+    notices::warn(&scenario)?;
     let mut reports: Vec<RunReport> = Vec::new();
     let (mut samples, mut unsaved, mut last) = (Vec::new(), None, ClientView::default());
     for number in 1..=config.runs {

@@ -28,7 +28,12 @@ impl Application {
             }))
         });
         let roots: Vec<Spot> = shared.chain(own).chain(programs).collect();
-        roots.into_iter().flat_map(|root| Leaves { application: self, open: vec![Open::new(root)] })
+        roots.into_iter().flat_map(|root| self.leaves_of(root))
+    }
+
+    /// The same of one variable: itself, if it has no parts.
+    pub(super) fn leaves_of(&self, root: Spot) -> impl Iterator<Item = Variable> {
+        Leaves { application: self, open: vec![Open::new(root)] }
     }
 }
 

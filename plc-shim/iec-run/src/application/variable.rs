@@ -154,7 +154,7 @@ impl Application {
     }
 
     /// What lies at a direct address; nothing if the program does not use that part of the area.
-    fn direct(&self, path: &str) -> Option<Spot> {
+    pub(super) fn direct(&self, path: &str) -> Option<Spot> {
         let checked = &self.inner.checked;
         let address = DirectAddress::parse(path).ok()?;
         let (offset, bit) = address.place(checked.address_unit).ok()??;

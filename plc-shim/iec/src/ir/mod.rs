@@ -6,6 +6,7 @@ pub mod area;
 pub mod configuration;
 pub mod expr;
 mod memory_limit;
+pub mod place_use;
 pub mod pou;
 pub mod statement;
 pub mod text;
@@ -22,6 +23,7 @@ pub use expr::{
     Receiver, Rounding, Row, Step, Storage, Unary,
 };
 pub use memory_limit::{MemoryLimit, MemoryLimitError};
+pub use place_use::{PlaceUse, place_uses};
 pub use pou::{EdgeDetection, Guard, Pou, PouId, Retention, Variable, Visibility};
 pub use statement::{
     CaseArm, CaseStatement, ForStatement, IfBranch, InstanceCall, LabelId, Labelled, Statement, StatementKind,

@@ -1,0 +1,77 @@
+//! Inputs of a PLC that nobody drives: no signal goes to them, and nothing in the program gives them a value.
+
+use onescan_base::nearest;
+use onescan_iec::diagnostic::{Code, Diagnostic};
+use onescan_iec_run::{Application, OpenInput, Variable};
+use onescan_server::signal::SignalDecl;
+
+use crate::bind::{Bindings, Place};
+
+/// A warning at the declaration of each input of `application` to which no signal goes, which the application itself
+/// does not write, and which is none of `others`, the variables that something else than a signal writes. `signals`
+/// are those of the session: one that the PLC does not read and that has a similar name may be meant.
+pub fn undriven(
+    application: &Application,
+    bindings: &Bindings,
+    signals: &[SignalDecl],
+    others: &[Variable],
+) -> Vec<Diagnostic> {
+    let is_free = |signal: &&SignalDecl| {
+        let mut known = bindings.inputs.iter().chain(&bindings.outputs);
+        known.all(|bound| bound.port.name != signal.name)
+    };
+    let free: Vec<&str> = signals.iter().filter(is_free).map(|signal| signal.name.as_str()).collect();
+    let mut found = Vec::new();
+    for mut input in application.open_inputs() {
+        input.parts.retain(|part| !is_driven(part, bindings, others));
+        if !input.parts.is_empty() {
+            found.push(warning(application, &input, &free));
+        }
+    }
+    found
+}
+
+fn is_driven(variable: &Variable, bindings: &Bindings, others: &[Variable]) -> bool {
+    let mut places = bindings.inputs.iter().flat_map(|bound| {
+        let len = bound.port.ty.size();
+        bound.places.iter().map(move |place| (*place, place.size(len)))
+    });
+    places.any(|(place, size)| overlaps(place, size, variable)) || others.iter().any(|other| other.overlaps(variable))
+}
+
+fn overlaps(place: Place, size: usize, variable: &Variable) -> bool {
+    let (start, end) = (variable.offset as usize, (variable.offset + variable.size) as usize);
+    let is_same_bit = match (place.bit, variable.bit) {
+        (Some(one), Some(other)) => one == other,
+        _ => true,
+    };
+    place.offset < end && start < place.offset + size && is_same_bit
+}
+
+fn warning(application: &Application, input: &OpenInput, free: &[&str]) -> Diagnostic {
+    let path = &input.variable.path;
+    let message = match (&*input.parts, input.part_count) {
+        ([only], 1) => {
+            let value = application.value_text(only, application.initial_memory());
+            format!("nobody drives the input `{path}`: it stays {value}")
+        }
+        (parts, count) if parts.len() == count => {
+            format!("nobody drives the input `{path}`: its {count} parts stay as they are at the start")
+        }
+        ([only], _) => {
+            let value = application.value_text(only, application.initial_memory());
+            format!("nobody drives the input `{}`: it stays {value}", only.path)
+        }
+        ([first, rest @ ..], count) => {
+            let more = rest.len();
+            format!("nobody drives `{}` and {more} more of the {count} parts of the input `{path}`", first.path)
+        }
+        ([], _) => format!("nobody drives the input `{path}`"),
+    };
+    let name = path.rsplit('.').next().unwrap_or(path);
+    let help = match nearest(name, free.iter().copied()) {
+        Some(near) => format!("did you mean the signal `{near}`, which the PLC does not read? Give both the same name"),
+        None => "declare a signal of its name, or bind one to it under `bind`".to_owned(),
+    };
+    Diagnostic::warning(Code::UndrivenInput, input.span, message).with_help(help)
+}

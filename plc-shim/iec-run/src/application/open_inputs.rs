@@ -1,0 +1,179 @@
+//! The inputs that nothing in the application gives a value: somebody outside has to, or they stay as they are.
+
+use std::ops::Range;
+
+use onescan_iec::check::Checked;
+use onescan_iec::ir::{ElementaryType, Location, Part, Place, PlaceUse, Statement, Step, Storage, place_uses};
+use onescan_iec::syntax::Span;
+use onescan_iec::syntax::ast::SectionKind;
+use onescan_iec::syntax::direct_address::Area;
+
+use super::variable::{Spot, spot};
+use super::{Application, Variable};
+
+/// An input of a program, or what it reads of the input area.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct OpenInput {
+    /// The whole variable.
+    pub variable: Variable,
+    /// Where it is declared; where a direct address is read that no variable is located at.
+    pub span: Span,
+    /// Its elementary parts and strings that nothing in the application writes, in the order of memory; itself if it
+    /// has no parts.
+    pub parts: Vec<Variable>,
+    /// How many such parts the variable has, written or not.
+    pub part_count: usize,
+}
+
+/// Bytes of memory, or one bit of a byte.
+type Bits = (Range<u32>, Option<u8>);
+
+impl Variable {
+    /// True if it has bits in common with `other`.
+    pub fn overlaps(&self, other: &Self) -> bool {
+        overlap(&bits(self), &bits(other))
+    }
+}
+
+impl Application {
+    /// Every `VAR_INPUT` of a program that no connection, call or assignment of the application gives a value, then
+    /// every located variable or direct address of the input area that it reads and does not write.
+    pub fn open_inputs(&self) -> Vec<OpenInput> {
+        let checked = &self.inner.checked;
+        let uses = Uses::of(checked);
+        let mut open = Vec::new();
+        for (program, name) in checked.programs.iter().zip(self.entry_names()) {
+            let variables = checked.interfaces.get(&program.pou).map_or(&[][..], Vec::as_slice);
+            let inputs = variables.iter().filter(|variable| variable.section == SectionKind::Input);
+            for variable in inputs.filter(|variable| !matches!(variable.storage, Storage::Located(_))) {
+                let found = spot(checked, name, variable, program.offset);
+                open.extend(found.and_then(|spot| self.open_input(spot, variable.span, &uses)));
+            }
+        }
+        self.add_located(&uses, &mut open);
+        open
+    }
+
+    /// What is read of the input area: by the names of the variables located there, else by the address.
+    fn add_located(&self, uses: &Uses, open: &mut Vec<OpenInput>) {
+        let checked = &self.inner.checked;
+        let programs = checked.programs.iter().zip(self.entry_names()).flat_map(|(program, name)| {
+            let variables = checked.interfaces.get(&program.pou).map_or(&[][..], Vec::as_slice);
+            variables.iter().map(move |variable| (name, variable))
+        });
+        let resources = checked.configuration.iter().flat_map(|configuration| &configuration.resources);
+        let own = resources.flat_map(|resource| {
+            let home = resource.name.as_deref().unwrap_or_default();
+            resource.globals.iter().map(move |global| (home, global))
+        });
+        let all = checked.globals.iter().map(|global| ("", global)).chain(own).chain(programs);
+        let mut named: Vec<Bits> = Vec::new();
+        for (home, variable) in all {
+            let Storage::Located(Location { area: Area::Input, .. }) = variable.storage else { continue };
+            let Some(found) = spot(checked, home, variable, 0) else { continue };
+            let taken = bits(&self.describe(found.clone()));
+            let is_read = uses.read_inputs.iter().any(|(read, _)| overlap(read, &taken));
+            named.push(taken);
+            if is_read {
+                open.extend(self.open_input(found, variable.span, uses));
+            }
+        }
+        let mut seen: Vec<&Bits> = Vec::new();
+        for (read, span) in &uses.read_inputs {
+            if seen.contains(&read) || named.iter().any(|named| overlap(named, read)) {
+                continue;
+            }
+            seen.push(read);
+            let path = self.sources().text(*span);
+            open.extend(self.direct(path).and_then(|spot| self.open_input(spot, *span, uses)));
+        }
+    }
+
+    fn open_input(&self, spot: Spot, span: Span, uses: &Uses) -> Option<OpenInput> {
+        let variable = self.describe(spot.clone());
+        let mut parts: Vec<Variable> = self.leaves_of(spot).collect();
+        let part_count = parts.len();
+        parts.retain(|leaf| !uses.written.iter().any(|written| overlap(written, &bits(leaf))));
+        (!parts.is_empty()).then_some(OpenInput { variable, span, parts, part_count })
+    }
+}
+
+fn bits(variable: &Variable) -> Bits {
+    (variable.offset..variable.offset + variable.size, variable.bit)
+}
+
+fn overlap((one, one_bit): &Bits, (other, other_bit): &Bits) -> bool {
+    let is_same_bit = match (one_bit, other_bit) {
+        (Some(one), Some(other)) => one == other,
+        _ => true,
+    };
+    one.start < other.end && other.start < one.end && is_same_bit
+}
+
+/// What the application does with memory that those outside may write as well.
+#[derive(Default)]
+struct Uses {
+    written: Vec<Bits>,
+    /// What is read of the input area, with the place where it is.
+    read_inputs: Vec<(Bits, Span)>,
+}
+
+impl Uses {
+    fn of(checked: &Checked) -> Self {
+        let mut uses = Self::default();
+        let bodies = checked.pous.values().chain(checked.entries.iter().flat_map(|entry| &entry.units));
+        for unit in bodies.chain(&checked.start) {
+            uses.note(checked, &unit.body);
+        }
+        uses
+    }
+
+    fn note(&mut self, checked: &Checked, statements: &[Statement]) {
+        place_uses(statements, &checked.types, &mut |place, how| {
+            let Some(bits) = bits_of(checked, place) else { return };
+            let is_input = matches!(place.storage, Storage::Located(Location { area: Area::Input, .. }));
+            if is_input && how != PlaceUse::Write {
+                self.read_inputs.push((bits.clone(), place.span));
+            }
+            if how != PlaceUse::Read {
+                self.written.push(bits);
+            }
+        });
+    }
+}
+
+/// The memory of a place at a fixed address; of an element by an index, the whole array.
+fn bits_of(checked: &Checked, place: &Place) -> Option<Bits> {
+    let (start, bit) = match place.storage {
+        Storage::Absolute(offset) => (offset, None),
+        Storage::Located(location) => (checked.areas.offset(location), location.bit),
+        // Parts of an instance that is running; a program's own inputs are not driven by what it does itself.
+        Storage::AbsolutePointer(_)
+        | Storage::Instance(_)
+        | Storage::InstancePointer(_)
+        | Storage::Register(_)
+        | Storage::RegisterPointer(_)
+        | Storage::Referred => return None,
+    };
+    let mut at = start;
+    for step in &place.steps {
+        match step {
+            Step::Offset(further) => at += further,
+            Step::Index { count, stride, .. } => {
+                return Some((at..at.saturating_add(count.saturating_mul(*stride)), None));
+            }
+            // It leads elsewhere.
+            Step::Pointer { .. } | Step::Open { .. } => return None,
+        }
+    }
+    let (size, part) = match place.part {
+        Some(Part { whole: ElementaryType::Byte, shift }) if is_bit(checked, place) => (1, u8::try_from(shift).ok()),
+        Some(Part { whole, .. }) => (whole.size(), None),
+        None => (checked.types.size(place.ty), None),
+    };
+    Some((at..at + size, bit.or(part)))
+}
+
+fn is_bit(checked: &Checked, place: &Place) -> bool {
+    checked.types.elementary(place.ty) == Some(ElementaryType::Bool)
+}
