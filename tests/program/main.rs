@@ -87,6 +87,7 @@ mod training;
 mod twincat;
 mod two_hosts;
 mod typed;
+mod undriven;
 mod unit_tests;
 mod venv;
 mod watch;

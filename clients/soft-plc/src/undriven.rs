@@ -9,23 +9,21 @@ use crate::bind::{Bindings, Place};
 
 /// A warning at the declaration of each input of `application` to which no signal goes, which the application itself
 /// does not write, and which is none of `others`, the variables that something else than a signal writes. `signals`
-/// are those of the session: one that the PLC does not read and that has a similar name may be meant.
+/// are those of the session: one of a similar name may be meant.
 pub fn undriven(
     application: &Application,
     bindings: &Bindings,
     signals: &[SignalDecl],
     others: &[Variable],
 ) -> Vec<Diagnostic> {
-    let is_free = |signal: &&SignalDecl| {
-        let mut known = bindings.inputs.iter().chain(&bindings.outputs);
-        known.all(|bound| bound.port.name != signal.name)
-    };
-    let free: Vec<&str> = signals.iter().filter(is_free).map(|signal| signal.name.as_str()).collect();
+    let is_own = |signal: &SignalDecl| bindings.outputs.iter().any(|bound| bound.port.name == signal.name);
+    let others_write: Vec<&str> =
+        signals.iter().filter(|signal| !is_own(signal)).map(|signal| signal.name.as_str()).collect();
     let mut found = Vec::new();
     for mut input in application.open_inputs() {
         input.parts.retain(|part| !is_driven(part, bindings, others));
         if !input.parts.is_empty() {
-            found.push(warning(application, &input, &free));
+            found.push(warning(application, &input, &others_write));
         }
     }
     found
@@ -48,7 +46,7 @@ fn overlaps(place: Place, size: usize, variable: &Variable) -> bool {
     place.offset < end && start < place.offset + size && is_same_bit
 }
 
-fn warning(application: &Application, input: &OpenInput, free: &[&str]) -> Diagnostic {
+fn warning(application: &Application, input: &OpenInput, signals: &[&str]) -> Diagnostic {
     let path = &input.variable.path;
     let message = match (&*input.parts, input.part_count) {
         ([only], 1) => {
@@ -69,8 +67,10 @@ fn warning(application: &Application, input: &OpenInput, free: &[&str]) -> Diagn
         ([], _) => format!("nobody drives the input `{path}`"),
     };
     let name = path.rsplit('.').next().unwrap_or(path);
-    let help = match nearest(name, free.iter().copied()) {
-        Some(near) => format!("did you mean the signal `{near}`, which the PLC does not read? Give both the same name"),
+    let help = match nearest(name, signals.iter().copied()) {
+        Some(near) => {
+            format!("did you mean the signal `{near}`? Give both the same name, or name the input under `bind`")
+        }
         None => "declare a signal of its name, or bind one to it under `bind`".to_owned(),
     };
     Diagnostic::warning(Code::UndrivenInput, input.span, message).with_help(help)

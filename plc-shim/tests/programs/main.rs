@@ -77,5 +77,6 @@ mod string_expressions;
 mod string_memory;
 mod strings;
 mod subranges;
+mod undriven_inputs;
 mod unions;
 mod vendor;

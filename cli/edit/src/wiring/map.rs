@@ -22,6 +22,9 @@ pub struct Map {
     /// Inputs of a plant's components that nobody drives: no fault, but a reason to look.
     #[schemars(default)]
     pub open: Vec<OpenInput>,
+    /// Inputs of soft PLCs that nobody drives: most often one of two names was changed.
+    #[schemars(default)]
+    pub undriven: Vec<UndrivenInput>,
     /// What is wrong, signal by signal.
     pub troubles: Vec<Trouble>,
 }
@@ -36,6 +39,19 @@ pub struct OpenInput {
     /// What it is all the time.
     #[schemars(with = "serde_json::Value")]
     pub preset: Setting,
+}
+
+/// An input of a soft PLC that nobody drives.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct UndrivenInput {
+    /// The PLC.
+    pub client: String,
+    /// The file that declares the input.
+    pub file: String,
+    /// The line there, from 1.
+    pub line: u32,
+    /// Which input it is, what it stays, and what could be done.
+    pub message: String,
 }
 
 /// A client.
@@ -127,12 +143,19 @@ impl Map {
     pub fn of(scenario: &Scenario) -> Result<Self, ScenarioError> {
         let mut clients = Vec::new();
         let mut found: Vec<(ClientName, Option<Ends>)> = Vec::new();
+        let mut undriven = Vec::new();
         for (name, entry) in &scenario.file().clients {
             let (kind, ends) = match entry.get_ref() {
                 ClientFile::Plant { scene, .. } => ("plant", Some(of_plant(&scenario.scene_of(name, scene)?))),
                 ClientFile::SoftPlc { sources, dialect, bind, .. } => {
-                    let Compiled { application, paths, .. } = scenario.compiled(name, sources, *dialect, bind)?;
-                    ("soft-plc", Some(of_plc(&application, name, scenario.plan().signals(), &paths)))
+                    let compiled = scenario.compiled(name, sources, *dialect, bind)?;
+                    let Compiled { application, paths, .. } = &compiled;
+                    let ends = of_plc(application, name, scenario.plan().signals(), paths);
+                    // A signal without a variable is reported itself; which inputs are left is then not known.
+                    if ends.unbound.is_empty() {
+                        undriven.extend(undriven_of(scenario, name, &compiled)?);
+                    }
+                    ("soft-plc", Some(ends))
                 }
                 // It writes whatever the scenario says that it writes.
                 ClientFile::Operator { .. } => ("operator", None),
@@ -143,7 +166,7 @@ impl Map {
             clients.push(Member { name: name.to_string(), kind, known: ends.is_some() });
             found.push((name.clone(), ends));
         }
-        let mut map = Self { clients, signals: Vec::new(), open: open(&found), troubles: Vec::new() };
+        let mut map = Self { clients, signals: Vec::new(), open: open(&found), undriven, troubles: Vec::new() };
         for (name, signal) in &scenario.file().signals {
             let signal = signal.get_ref();
             let wired = Wired {
@@ -223,6 +246,24 @@ impl Map {
             }
         }
     }
+}
+
+fn undriven_of(
+    scenario: &Scenario,
+    name: &ClientName,
+    compiled: &Compiled,
+) -> Result<Vec<UndrivenInput>, ScenarioError> {
+    let warnings = scenario.undriven_of(name, compiled)?;
+    let inputs = warnings.findings().iter().map(|finding| {
+        let help = finding.diagnostic().help.as_ref().map(|help| format!(" ({help})")).unwrap_or_default();
+        UndrivenInput {
+            client: name.to_string(),
+            file: finding.file().to_owned(),
+            line: finding.start().line,
+            message: format!("{}{help}", finding.diagnostic().message),
+        }
+    });
+    Ok(inputs.collect())
 }
 
 fn open(found: &[(ClientName, Option<Ends>)]) -> Vec<OpenInput> {

@@ -27,7 +27,7 @@ use onescan_scenario::Scenario;
 use onescan_runner::format::Format;
 
 pub use error::WiringError;
-pub use map::{Map, OpenInput, Trouble, TroubleKind};
+pub use map::{Map, OpenInput, Trouble, TroubleKind, UndrivenInput};
 
 /// What to report about a scenario's wiring.
 #[derive(Clone, Debug)]

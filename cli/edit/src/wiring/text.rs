@@ -33,7 +33,13 @@ pub(super) fn write(map: &Map, out: &mut dyn Write) -> io::Result<()> {
             writeln!(out, "  {}: {}", line[0], line[1])?;
         }
     }
-    open(map, out)
+    open(map, out)?;
+    if !map.undriven.is_empty() {
+        writeln!(out, "\ninputs of PLCs that nobody drives ({})", map.undriven.len())?;
+    }
+    map.undriven
+        .iter()
+        .try_for_each(|input| writeln!(out, "  {}: {}:{}: {}", input.client, input.file, input.line, input.message))
 }
 
 /// The inputs of components that nobody drives, and what they are.

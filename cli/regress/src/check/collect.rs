@@ -6,7 +6,7 @@ use std::rc::Rc;
 
 use onescan_base::regular::{self, Limit};
 use onescan_iec::input::found::Found;
-use onescan_iec::input::kind::{EXTENSIONS, FileKind};
+use onescan_iec::input::kind::{EXTENSIONS, FileKind, is_other_program};
 use onescan_iec::input::needed;
 use onescan_iec::input::project;
 use onescan_iec::{Code, Dialect, Input, MemoryLimit, TaskPlan};
@@ -153,6 +153,8 @@ enum Reason {
     OtherXml,
     /// It was made of the sources beside it, and is the same program once more.
     InstrumentedProject,
+    /// It holds a program in a form that is not read.
+    OtherProgram,
 }
 
 /// What a folder holds.
@@ -225,6 +227,7 @@ impl Files {
             match reason {
                 Reason::OtherXml => counts.other_xml += 1,
                 Reason::InstrumentedProject => counts.instrumented_projects += 1,
+                Reason::OtherProgram => counts.other_programs += 1,
             }
         }
         counts
@@ -310,7 +313,12 @@ impl Files {
                 entries.push(Entry::Folder(path));
                 continue;
             }
-            let Some(FileKind::Source(kind)) = FileKind::of(&path).filter(|_| path.is_file()) else { continue };
+            let Some(FileKind::Source(kind)) = FileKind::of(&path).filter(|_| path.is_file()) else {
+                if is_other_program(&path) && path.is_file() {
+                    self.left_out.insert(Identity::of(&path), Reason::OtherProgram);
+                }
+                continue;
+            };
             let identity = Identity::of(&path);
             if self.seen.contains(&identity) {
                 sources += 1;

@@ -14,6 +14,9 @@ pub struct PassedOver {
     /// Projects with their shim in one file, which `instrument` wrote beside the sources.
     #[serde(skip_serializing_if = "is_none")]
     pub instrumented_projects: usize,
+    /// PLC programs in a form that is not read, by their names.
+    #[serde(skip_serializing_if = "is_none")]
+    pub other_programs: usize,
 }
 
 #[allow(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
@@ -31,9 +34,21 @@ impl PassedOver {
 impl fmt::Display for PassedOver {
     /// `1 other XML file passed over`
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let kinds = [(self.other_xml, "other XML file"), (self.instrumented_projects, "instrumented project")];
-        let kinds = kinds.into_iter().filter(|(count, _)| *count > 0).map(|(count, word)| counted(count, word));
+        let kinds = [
+            (self.other_xml, "other XML file"),
+            (self.instrumented_projects, "instrumented project"),
+            (self.other_programs, "program file of another kind"),
+        ];
+        let kinds = kinds.into_iter().filter(|(count, _)| *count > 0).map(|(count, word)| plural(count, word));
         write!(f, "{} passed over", kinds.collect::<Vec<_>>().join(" and "))
+    }
+}
+
+/// `1 program file of another kind`, `2 program files of another kind`
+fn plural(count: usize, word: &str) -> String {
+    match word.split_once(" of ") {
+        Some((head, tail)) => format!("{} of {tail}", counted(count, head)),
+        None => counted(count, word),
     }
 }
 
@@ -48,6 +63,8 @@ mod tests {
         let one = PassedOver { other_xml: 1, ..PassedOver::default() };
         assert_eq!(one.to_string(), "1 other XML file passed over");
         assert_eq!(serde_json::to_string(&one).unwrap(), "{\"other_xml\":1}");
+        let programs = PassedOver { other_xml: 1, other_programs: 2, ..PassedOver::default() };
+        assert_eq!(programs.to_string(), "1 other XML file and 2 program files of another kind passed over");
         assert!(PassedOver::default().is_empty() && !one.is_empty());
     }
 }

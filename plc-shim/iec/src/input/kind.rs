@@ -38,6 +38,17 @@ pub const EXTENSIONS: [(&str, FileKind); 12] = [
     ("xml", FileKind::Source(SourceKind::PlcOpen)),
 ];
 
+/// Extensions of files that hold PLC programs in a form that is not read: STL of SIMATIC, projects of Logix, CODESYS,
+/// Omron, Schneider and 4diac, documents of SIMATIC SD.
+const OTHER_PROGRAMS: [&str; 11] =
+    ["awl", "stl", "l5x", "l5k", "project", "export", "smc2", "xef", "stu", "fbt", "s7dcl"];
+
+/// True if the name says that the file holds a PLC program in a form that is not read.
+pub fn is_other_program(path: &Path) -> bool {
+    let extension = path.extension().and_then(|extension| extension.to_str());
+    extension.is_some_and(|extension| OTHER_PROGRAMS.iter().any(|known| known.eq_ignore_ascii_case(extension)))
+}
+
 impl FileKind {
     /// The kind of a file, by its extension in any case.
     pub fn of(path: &Path) -> Option<Self> {
@@ -56,5 +67,6 @@ mod tests {
         assert_eq!(FileKind::of(Path::new("x.plcproj")), Some(FileKind::Project));
         assert_eq!(FileKind::of(Path::new("x.txt")), None);
         assert_eq!(FileKind::of(Path::new("st")), None);
+        assert!(is_other_program(Path::new("a/Pump.AWL")) && !is_other_program(Path::new("awl")));
     }
 }

@@ -49,6 +49,7 @@ impl Body<'_, '_> {
             let found = self.type_name(expr.ty);
             return self.mismatch("an elementary value", &found, expr.span);
         };
+        self.warn_of_cut_product(&expr, from, to);
         if is_mixed(from, to) && self.declarations.dialect(span).has(Feature::BitsAsReals) {
             return Some(Operand::Typed(self.as_numbers_do(expr, (from, to), rounding)));
         }

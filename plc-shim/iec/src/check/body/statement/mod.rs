@@ -351,7 +351,17 @@ impl Body<'_, '_> {
                     return Some((Place { ty: ty.into(), ..place }, ty));
                 }
                 let message = format!("a FOR control variable is an integer, this is {}", self.type_name(place.ty));
-                self.report(Diagnostic::error(Code::LoopVariable, place.span, message));
+                let help = match self.declarations.types().get(place.ty) {
+                    Type::Elementary(ElementaryType::Bool) => None,
+                    Type::Elementary(ty) if ty.is_real() => {
+                        Some("count with a DINT, and convert it in the loop".to_owned())
+                    }
+                    Type::Elementary(ty) if as_number(*ty) != *ty => {
+                        Some(format!("declare it as {}, which counts the same numbers", as_number(*ty)))
+                    }
+                    _ => None,
+                };
+                self.report(Diagnostic::error(Code::LoopVariable, place.span, message).with_optional_help(help));
                 None
             }
         }
