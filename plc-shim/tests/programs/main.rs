@@ -49,6 +49,7 @@ mod namespaces;
 mod object_inputs;
 mod objects;
 mod open_arrays;
+mod packing;
 mod partial_access;
 mod plcopen;
 mod program_instances;

@@ -58,7 +58,7 @@ mod tests {
 
     #[test]
     fn each_reason_has_its_count() {
-        let both = PassedOver { other_xml: 2, instrumented_projects: 1 };
+        let both = PassedOver { other_xml: 2, instrumented_projects: 1, ..PassedOver::default() };
         assert_eq!(both.to_string(), "2 other XML files and 1 instrumented project passed over");
         let one = PassedOver { other_xml: 1, ..PassedOver::default() };
         assert_eq!(one.to_string(), "1 other XML file passed over");

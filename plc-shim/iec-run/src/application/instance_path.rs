@@ -54,8 +54,9 @@ fn marked(sources: &SourceMap) -> BTreeMap<(FileId, u32), &'static str> {
         if !text.contains(ATTRIBUTE) {
             continue;
         }
-        let starts = behind_pragma(&tokenize_in(dialect, text), text, |pragma| pragma.contains(ATTRIBUTE));
-        marked.extend(starts.into_iter().map(|start| ((id, start), before)));
+        let starts =
+            behind_pragma(&tokenize_in(dialect, text), text, |pragma| pragma.contains(ATTRIBUTE).then_some(()));
+        marked.extend(starts.into_iter().map(|(start, ())| ((id, start), before)));
     }
     marked
 }

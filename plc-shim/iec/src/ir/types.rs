@@ -293,9 +293,18 @@ impl TypeTable {
         self.add(Type::Struct { name, fields: Vec::new() }, 0, 1, Arc::from([]))
     }
 
-    /// Gives a structure that was only named its members and its initial image.
-    pub fn complete_structure(&mut self, id: TypeId, members: Vec<Field>, image: Arc<[u8]>) {
-        let align = members.iter().map(|field| self.align(field.ty)).max().unwrap_or(1);
+    /// The alignment of a structure of these members, whose own ones are at most `packing` bytes.
+    pub fn structure_align(&self, members: &[Field], packing: Option<u32>) -> u32 {
+        members.iter().map(|field| self.packed_align(field.ty, packing)).max().unwrap_or(1)
+    }
+
+    /// The alignment of a member of this type.
+    pub fn packed_align(&self, id: TypeId, packing: Option<u32>) -> u32 {
+        packing.unwrap_or(u32::MAX).min(self.align(id))
+    }
+
+    /// Gives a structure that was only named its members, its alignment and its initial image.
+    pub fn complete_structure(&mut self, id: TypeId, members: Vec<Field>, align: u32, image: Arc<[u8]>) {
         if let Some(entry) = self.entries.get_mut(id.0 as usize) {
             if let Type::Struct { fields, .. } = &mut entry.ty {
                 *fields = members;

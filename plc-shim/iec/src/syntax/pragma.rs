@@ -2,20 +2,35 @@
 
 use super::token::{Token, TokenKind};
 
-/// Starts of the tokens that a pragma is before of which `is_it` is true, with other trivia in between at most; it gets
-/// what stands between the braces.
-pub fn behind_pragma(tokens: &[Token], text: &str, is_it: impl Fn(&str) -> bool) -> Vec<u32> {
-    let mut found = Vec::new();
-    let mut is_behind = false;
+/// What `found` makes of pragmas, each with the start of the token that it stands before, with other trivia in between
+/// at most; it gets what stands between the braces. Of several before one token the last one counts.
+pub fn behind_pragma<T>(tokens: &[Token], text: &str, found: impl Fn(&str) -> Option<T>) -> Vec<(u32, T)> {
+    let mut all = Vec::new();
+    let mut open = None;
     for token in tokens {
         if token.kind == TokenKind::Pragma {
             let pragma = text.get(token.start as usize..token.end as usize).unwrap_or("");
-            is_behind |= is_it(pragma.trim_matches(['{', '}']).trim());
-        } else if !token.kind.is_trivia() && std::mem::take(&mut is_behind) {
-            found.push(token.start);
+            open = found(pragma.trim_matches(['{', '}']).trim()).or(open);
+        } else if !token.kind.is_trivia() {
+            all.extend(open.take().map(|found| (token.start, found)));
         }
     }
-    found
+    all
+}
+
+/// Most bytes that members of a structure are aligned to, of `attribute 'pack_mode' := '1'`. 0 and 8 leave them as
+/// they are.
+pub(crate) fn packing(pragma: &str) -> Option<u32> {
+    let (name, value) = attribute(pragma)?.split_once(":=")?;
+    if !name.trim().eq_ignore_ascii_case("'pack_mode'") {
+        return None;
+    }
+    match value.trim().trim_matches('\'').trim() {
+        "1" => Some(1),
+        "2" => Some(2),
+        "4" => Some(4),
+        _ => None,
+    }
 }
 
 /// What stands behind the word in `attribute 'name' := 'value'`, the inner part of a pragma.

@@ -42,7 +42,8 @@ impl<'a> Written<'_, 'a> {
         let Type::Struct { fields, .. } = self.declarations().types().get(seen).clone() else { return None };
         let image = self.declarations().types().image(seen).clone();
         let ty = self.declarations_mut().types_mut().structure(generic.name().to_owned());
-        self.declarations_mut().types_mut().complete_structure(ty, fields, image);
+        let align = self.declarations().types().structure_align(&fields, None);
+        self.declarations_mut().types_mut().complete_structure(ty, fields, align, image);
         self.declarations_mut().add_generic(ty, generic);
         Some(ty)
     }

@@ -20,12 +20,29 @@ pub(super) enum Sharing {
     Allowed,
 }
 
+/// How members are placed.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Placing {
+    pub(super) sharing: Sharing,
+    /// Most bytes that members are aligned to, where an attribute says so.
+    pub(super) packing: Option<u32>,
+}
+
+impl Placing {
+    /// As the types of the members have it.
+    pub(super) fn natural(sharing: Sharing) -> Self {
+        Self { sharing, packing: None }
+    }
+}
+
 /// A structure while its members are placed.
 struct Making<'a> {
     fields: Vec<Field>,
     image: Vec<u8>,
     starts: Vec<Start<'a>>,
     taken: Taken,
+    /// Where the member before lies, if it is a `BIT`.
+    last_bit: Option<(u32, u8)>,
 }
 
 /// Bits that members take: disjoint ranges, end by begin.
@@ -55,7 +72,7 @@ impl<'a> Written<'_, 'a> {
         &mut self,
         name: &str,
         (reserved, extends): (Option<TypeId>, Option<&Ident>),
-        (members, sharing): (&'a [ast::Field], Sharing),
+        (members, placing): (&'a [ast::Field], Placing),
         span: Span,
     ) -> Option<TypedImage<'a>> {
         let mut making = self.extended(extends)?;
@@ -71,7 +88,7 @@ impl<'a> Written<'_, 'a> {
                 Surrounding { place, declared: making.fields.clone() }
             });
             let outer = self.body.surround(around);
-            sound &= self.member(&mut making, member, (sharing, span)).is_some();
+            sound &= self.member(&mut making, member, (placing, span)).is_some();
             self.body.surround(outer);
         }
         if !sound {
@@ -80,11 +97,11 @@ impl<'a> Written<'_, 'a> {
         // What has no members takes a byte, so that no array has more elements than bytes.
         let Making { fields, mut image, starts, .. } = making;
         image.resize(image.len().max(1), 0);
-        let align = fields.iter().map(|field| self.declarations().types().align(field.ty)).max();
-        image.resize(align_up(image.len() as u32, align.unwrap_or(1)) as usize, 0);
+        let align = self.declarations().types().structure_align(&fields, placing.packing);
+        image.resize(align_up(image.len() as u32, align) as usize, 0);
         let image: Arc<[u8]> = image.into();
         let ty = reserved.unwrap_or_else(|| self.declarations_mut().types_mut().structure(name.to_owned()));
-        self.declarations_mut().types_mut().complete_structure(ty, fields, image.clone());
+        self.declarations_mut().types_mut().complete_structure(ty, fields, align, image.clone());
         // What members of other structures do has been said where they are declared.
         let within = |start: &Start<'_>| start.within.or(Some(Within { structure: ty, offset: start.offset }));
         let starts = starts.into_iter().map(|start| Start { within: within(&start), ..start }).collect();
@@ -95,14 +112,14 @@ impl<'a> Written<'_, 'a> {
         &mut self,
         making: &mut Making<'a>,
         member: &'a ast::Field,
-        (sharing, span): (Sharing, Span),
+        (placing, span): (Placing, Span),
     ) -> Option<()> {
         let mut resolved = self.resolve(&member.spec, Need::Size)?;
         self.body.reject_open_array(resolved.ty, member.spec.span)?;
         if let Some(initial) = &member.initial {
             resolved = self.with_initial(&resolved, initial)?;
         }
-        self.place_member(making, member, &resolved, (sharing, span))
+        self.place_member(making, member, &resolved, (placing, span))
     }
 
     /// The members of the structure that another adds to, as vendors have it.
@@ -121,7 +138,7 @@ impl<'a> Written<'_, 'a> {
         if !image.is_empty() {
             taken.add(0..8 * image.len() as u64);
         }
-        Some(Making { fields, image, starts, taken })
+        Some(Making { fields, image, starts, taken, last_bit: None })
     }
 
     /// Adds a member where its address says, else behind all that there are.
@@ -130,9 +147,11 @@ impl<'a> Written<'_, 'a> {
         making: &mut Making<'a>,
         member: &ast::Field,
         resolved: &TypedImage<'a>,
-        (sharing, span): (Sharing, Span),
+        (placing, span): (Placing, Span),
     ) -> Option<()> {
-        let behind = align_up(making.image.len() as u32, self.declarations().types().align(resolved.ty));
+        let align = self.declarations().types().packed_align(resolved.ty, placing.packing);
+        let behind = align_up(making.image.len() as u32, align);
+        let is_bit = self.is_bit(member);
         let open = member.address.as_ref().and_then(open_address);
         let (offset, bit) = match &member.address {
             Some(address) => match open {
@@ -142,8 +161,13 @@ impl<'a> Written<'_, 'a> {
                 }
                 None => self.relative_place(address, resolved.ty)?,
             },
+            None if is_bit => match making.last_bit {
+                Some((byte, bit)) if bit < 7 => (byte, Some(bit + 1)),
+                _ => (behind, Some(0)),
+            },
             None => (behind, None),
         };
+        making.last_bit = bit.filter(|_| is_bit).map(|bit| (offset, bit));
         let end = offset as usize + resolved.image.len();
         if end as u64 > self.declarations().memory_limit() {
             self.declarations_mut().report_too_large(span, Some(end as u64));
@@ -152,7 +176,7 @@ impl<'a> Written<'_, 'a> {
         let begin = 8 * u64::from(offset) + bit.map_or(0, u64::from);
         let bits = begin..begin + if bit.is_some() { 1 } else { 8 * resolved.image.len() as u64 };
         let shares = making.taken.touches(&bits);
-        if shares && sharing == Sharing::Refused {
+        if shares && placing.sharing == Sharing::Refused {
             return self.report_shared(member);
         }
         making.taken.add(bits);
@@ -175,6 +199,12 @@ impl<'a> Written<'_, 'a> {
             open: open.map(|open| open.area),
         });
         Some(())
+    }
+
+    /// True for a member of the vendors' type `BIT`: up to eight that follow each other share a byte.
+    fn is_bit(&self, member: &ast::Field) -> bool {
+        let is_named = |name: &Ident| name.key() == "BIT" && self.declarations().type_key("BIT").is_none();
+        member.address.is_none() && matches!(&member.spec.kind, ast::TypeSpecKind::Name(name) if is_named(name))
     }
 
     /// Byte and bit of `%B4` or `%X3.0`. `%B` is for members of every type, as the standard's examples

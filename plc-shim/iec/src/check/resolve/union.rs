@@ -13,7 +13,7 @@ impl<'a> Written<'_, 'a> {
     pub(super) fn union(
         &mut self,
         name: &str,
-        reserved: Option<TypeId>,
+        (reserved, packing): (Option<TypeId>, Option<u32>),
         ast: &'a [ast::Field],
         span: Span,
     ) -> Option<TypedImage<'a>> {
@@ -42,7 +42,7 @@ impl<'a> Written<'_, 'a> {
             return None;
         }
         let size = images.iter().map(|(_, image)| image.len()).max().unwrap_or(0).max(1) as u32;
-        let align = fields.iter().map(|field| self.declarations().types().align(field.ty)).max().unwrap_or(1);
+        let align = self.declarations().types().structure_align(&fields, packing);
         self.declarations_mut().charge_image(u64::from(size), span)?;
         let mut image = vec![0; align_up(size, align) as usize];
         for (_, bytes) in images.iter().filter(|(counts, _)| *counts) {
@@ -50,7 +50,7 @@ impl<'a> Written<'_, 'a> {
         }
         let image: Arc<[u8]> = image.into();
         let ty = reserved.unwrap_or_else(|| self.declarations_mut().types_mut().structure(name.to_owned()));
-        self.declarations_mut().types_mut().complete_structure(ty, fields, image.clone());
+        self.declarations_mut().types_mut().complete_structure(ty, fields, align, image.clone());
         Some(TypedImage { ty, image, starts: starts.into() })
     }
 

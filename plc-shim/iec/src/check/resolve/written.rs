@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::Written;
-use super::structure::Sharing;
+use super::structure::{Placing, Sharing};
 use crate::check::declare::{Enumerator, Need, Rank, StartKind, TypedImage};
 use crate::check::standard::vendor::{is_qualified_only, of_pointer_width};
 use crate::check::types::generic::Generic;
@@ -22,15 +22,25 @@ impl<'a> Written<'_, 'a> {
         let mut resolved = match &ast.spec.kind {
             TypeSpecKind::Struct(fields) => {
                 let ty = self.declarations_mut().own_reserved(&ast.name);
-                self.structure(name, (ty, ast.extends.as_ref()), (fields, Sharing::Refused), ast.name.span)
+                self.structure(
+                    name,
+                    (ty, ast.extends.as_ref()),
+                    (fields, Placing { sharing: Sharing::Refused, packing: ast.packing }),
+                    ast.name.span,
+                )
             }
             TypeSpecKind::Overlapping(fields) => {
                 let ty = self.declarations_mut().own_reserved(&ast.name);
-                self.structure(name, (ty, ast.extends.as_ref()), (fields, Sharing::Allowed), ast.name.span)
+                self.structure(
+                    name,
+                    (ty, ast.extends.as_ref()),
+                    (fields, Placing { sharing: Sharing::Allowed, packing: ast.packing }),
+                    ast.name.span,
+                )
             }
             TypeSpecKind::Union(fields) => {
                 let ty = self.declarations_mut().own_reserved(&ast.name);
-                self.union(name, ty, fields, ast.name.span)
+                self.union(name, (ty, ast.packing), fields, ast.name.span)
             }
             TypeSpecKind::Enumeration(values, base) => {
                 self.enumeration(name, values, base.as_ref(), ast.qualified_only)
@@ -49,10 +59,10 @@ impl<'a> Written<'_, 'a> {
             TypeSpecKind::Name(name) => self.type_by_name(name, need),
             TypeSpecKind::Array(dimensions, element) => self.array(dimensions, element, spec.span),
             TypeSpecKind::Struct(fields) => {
-                self.structure("STRUCT", (None, None), (fields, Sharing::Refused), spec.span)
+                self.structure("STRUCT", (None, None), (fields, Placing::natural(Sharing::Refused)), spec.span)
             }
             TypeSpecKind::Overlapping(fields) => {
-                self.structure("STRUCT", (None, None), (fields, Sharing::Allowed), spec.span)
+                self.structure("STRUCT", (None, None), (fields, Placing::natural(Sharing::Allowed)), spec.span)
             }
             TypeSpecKind::Instance(name, arguments) => self.instance_with_arguments(name, arguments, need),
             TypeSpecKind::Reference(kind, target) => self.reference_type(*kind, target),
@@ -62,7 +72,7 @@ impl<'a> Written<'_, 'a> {
                 let ty = self.declarations_mut().types_mut().open_array(*dimensions, element);
                 Some(self.whole(ty))
             }
-            TypeSpecKind::Union(fields) => self.union("UNION", None, fields, spec.span),
+            TypeSpecKind::Union(fields) => self.union("UNION", (None, None), fields, spec.span),
             TypeSpecKind::Enumeration(values, base) => self.enumeration("enumeration", values, base.as_ref(), false),
             TypeSpecKind::String(name, length) => {
                 let ty = self.body.text_type(name.key() == "WSTRING", length.as_deref(), spec.span)?;

@@ -8,7 +8,7 @@ use crate::dialect::{Dialect, Feature};
 use crate::source::origin::Origin;
 use crate::source::{FileId, Span};
 use crate::syntax::ast::{Expr, Ident, TemplateUse};
-use crate::syntax::pragma::{attribute, behind_pragma};
+use crate::syntax::pragma::{attribute, behind_pragma, packing};
 use crate::syntax::token::{Keyword, Punctuation, Token, TokenKind};
 
 /// Reads the tokens that matter to the grammar; trivia and broken tokens are left out.
@@ -32,9 +32,11 @@ pub(super) struct Cursor<'a> {
     /// The name that the unit's result has; nothing in units without one.
     result_name: Option<String>,
     /// Starts of tokens behind the pragma `{external}`, in order.
-    external: Vec<u32>,
+    external: Vec<(u32, ())>,
     /// The same behind `{attribute 'qualified_only'}`.
-    qualified_only: Vec<u32>,
+    qualified_only: Vec<(u32, ())>,
+    /// The same behind `{attribute 'pack_mode' := '1'}`, with the bytes.
+    packed: Vec<(u32, u32)>,
     /// True inside of what stands behind it.
     in_external: bool,
     /// The unit's constants without a type, by their keys.
@@ -56,8 +58,9 @@ impl<'a> Cursor<'a> {
             kind if kind.is_trivia() || is_broken(kind) => None,
             _ => Some(*token),
         };
-        let external = behind_pragma(tokens, text, |pragma| pragma.eq_ignore_ascii_case("external"));
-        let qualified_only = behind_pragma(tokens, text, is_qualified_only);
+        let external = behind_pragma(tokens, text, |pragma| pragma.eq_ignore_ascii_case("external").then_some(()));
+        let qualified_only = behind_pragma(tokens, text, |pragma| is_qualified_only(pragma).then_some(()));
+        let packed = behind_pragma(tokens, text, packing);
         let mut tokens: Vec<Token> = tokens.iter().filter_map(good).collect();
         promote_soft_keywords(&mut tokens, text);
         Self {
@@ -76,6 +79,7 @@ impl<'a> Cursor<'a> {
             result_name: None,
             external,
             qualified_only,
+            packed,
             in_external: false,
             constants: BTreeMap::new(),
             templates: Vec::new(),
@@ -84,12 +88,24 @@ impl<'a> Cursor<'a> {
 
     /// True if `{external}` stands before the next token.
     pub(super) fn at_external(&self) -> bool {
-        self.external.binary_search(&self.span().start).is_ok()
+        self.before_next(&self.external).is_some()
     }
 
     /// True if `{attribute 'qualified_only'}` stands before the next token.
     pub(super) fn at_qualified_only(&self) -> bool {
-        self.qualified_only.binary_search(&self.span().start).is_ok()
+        self.before_next(&self.qualified_only).is_some()
+    }
+
+    /// Most bytes that the members of the structure behind the next token are aligned to, if an attribute says so.
+    pub(super) fn packing(&self) -> Option<u32> {
+        self.before_next(&self.packed)
+    }
+
+    /// What stands before the next token.
+    fn before_next<T: Copy>(&self, found: &[(u32, T)]) -> Option<T> {
+        let start = self.span().start;
+        let at = found.binary_search_by_key(&start, |(start, _)| *start).ok()?;
+        found.get(at).map(|(_, found)| *found)
     }
 
     /// The same, of text that was taken out of a file.

@@ -349,10 +349,11 @@ impl Cursor<'_> {
     }
 
     fn type_block(&mut self, into: &mut Vec<Declaration>) {
-        let (external, all_qualified) = (self.at_external(), self.at_qualified_only());
+        let (external, all_qualified, all_packed) = (self.at_external(), self.at_qualified_only(), self.packing());
         self.advance();
         while self.peek() == Some(TokenKind::Identifier) {
             let qualified_only = all_qualified || self.at_qualified_only();
+            let packing = self.packing().or(all_packed);
             self.pass_access_of_type();
             let (known, start) = (self.reported(), self.span());
             let Some(name) = self.take_identifier() else {
@@ -370,6 +371,7 @@ impl Cursor<'_> {
                 extends,
                 external,
                 qualified_only,
+                packing,
                 spec,
                 initial,
                 span,
