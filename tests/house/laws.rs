@@ -212,7 +212,6 @@ const LARGEST: &[(&str, &str)] = &[
     ("plc-shim/iec/src/check/declare/scope.rs", "a type that is broken; an enum would say it"),
     ("plc-shim/iec/src/check/standard/form.rs", "functions of any number of operands"),
     ("plc-shim/iec/src/input/drawing", "flags that cannot be read; a diagnostic would say it"),
-    ("plc-shim/iec/src/input/plcopen_network/order.rs", "sorts last what has no order"),
     ("scenarios/src/expect", "a window without an end; an `Option` would say it"),
     ("scenarios/src/mutants.rs", "takes all there are"),
     ("scenarios/src/report/distribution.rs", "the least of none so far"),

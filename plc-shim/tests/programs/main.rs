@@ -20,6 +20,7 @@ mod direct_addresses;
 mod drawing_flow;
 mod drawing_mistakes;
 mod drawings;
+mod drawn;
 mod dtl;
 mod dynamic_memory;
 mod expressions;

@@ -16,6 +16,21 @@ pub(crate) fn project(pous: &str) -> String {
     )
 }
 
+/// The project as a tool writes it: `codesys`, `twincat`, `beremiz`, `openplc4`, or nobody that is known.
+pub(crate) fn of_tool(tool: &str, text: &str) -> String {
+    const TWICE: &str =
+        "xmlns:ns1=\"http://www.plcopen.org/xml/tc6_0201\" xmlns:xsd=\"http://www.w3.org/2001/XMLSchema";
+    let (more, name) = match tool {
+        "codesys" => (String::new(), "CODESYS V3.5"),
+        "twincat" => (String::new(), "TwinCAT PLC Control"),
+        "beremiz" => (format!("{TWICE}\" "), "Unnamed"),
+        "openplc4" => (format!("{TWICE}-instance\" "), "Unnamed"),
+        _ => (String::new(), ""),
+    };
+    let header = format!("<fileHeader companyName=\"\" productName=\"{name}\"/>\n<types>");
+    text.replacen("<project ", &format!("<project {more}"), 1).replacen("<types>", &header, 1)
+}
+
 /// `name : TYPE` for each variable of a section: `local a : BOOL, b : INT; in c : INT`.
 pub(crate) fn interface(sections: &str) -> String {
     let mut text = String::from("<interface>");

@@ -9,6 +9,7 @@
 //! | `twincat`, `twincat_task` | TwinCAT's objects | program text |
 //! | `plcopen`, `plcopen_instances`, `plcopen_object` | PLCopen XML, and what CODESYS adds to it | program text |
 //! | `plcopen_chart`, `plcopen_chart_graph`, `plcopen_condition` | its Sequential Function Charts | program text |
+//! | `plcopen_tool` | PLCopen XML | the tool that wrote it |
 //! | `plcopen_network` | its networks in LD and FBD | statements |
 //! | [`layout`] | PLCopen XML | its drawings as they are laid out, for those who look at them |
 //! | `drawing` | bodies that TwinCAT keeps as archives of objects: CFC, LD, FBD and SFC | statements |
@@ -33,6 +34,7 @@ pub mod plcopen_condition;
 pub mod plcopen_instances;
 mod plcopen_network;
 pub mod plcopen_object;
+mod plcopen_tool;
 pub mod project;
 mod statement;
 mod twincat;

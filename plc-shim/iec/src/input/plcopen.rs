@@ -10,13 +10,14 @@ use onescan_xml::{Element, XmlError, parse};
 
 use super::Taken;
 use super::plcopen_addition::sections_of;
+use super::plcopen_tool::Tool;
 use crate::diagnostic::Code;
 use crate::dialect::{Dialect, Feature};
 
 /// Program text of a project.
 pub(super) fn extract(file: &str) -> Result<Taken, XmlError> {
     let root = parse(file)?;
-    let mut writer = Writer::new(file, dialect(file, &root), programs(&root));
+    let mut writer = Writer::new(file, Tool::of(file, &root), programs(&root));
     writer.strings = strings(&root);
     if root.name != "project" {
         let message = "`<project>` is wanted here: only PLCopen XML is read";
@@ -75,36 +76,11 @@ fn strings(root: &Element) -> BTreeMap<String, char> {
     found
 }
 
-/// How the editor of Beremiz, which OpenPLC's is made of, names the schema once more. It writes no name of its own.
-const BEREMIZ_NAMESPACE: &str = "xmlns:ns1=\"http://www.plcopen.org/xml/tc6";
-
-/// C code in a file can only be for `MatIEC`: it names the block's data so.
-const BEREMIZ_C_CODE: &str = "(data__->,";
-
-/// The dialect of the tool that wrote the file: its name, or CODESYS' own data in it.
-fn dialect(file: &str, root: &Element) -> Dialect {
-    let header = root.child("fileHeader");
-    let product = header.and_then(|header| header.attribute("productName"));
-    let product = product.map_or_else(String::new, |name| name.value.to_ascii_uppercase());
-    // What it was made with, by whom and what it is.
-    let about = header.into_iter().flat_map(|header| &header.attributes);
-    let about: String = about.map(|attribute| attribute.value.to_ascii_uppercase() + " ").collect();
-    if product.contains("TWINCAT") {
-        Dialect::TwinCat
-    } else if product.contains("CODESYS") || file.contains("3s-software.com/plcopenxml/") {
-        Dialect::Codesys
-    } else if ["BEREMIZ", "OPENPLC"].iter().any(|name| about.contains(name))
-        || [BEREMIZ_NAMESPACE, BEREMIZ_C_CODE].iter().any(|mark| file.contains(mark))
-    {
-        Dialect::Matiec
-    } else {
-        Dialect::default()
-    }
-}
-
 pub(super) struct Writer<'a> {
     pub(super) taken: Taken,
     pub(super) file: &'a str,
+    /// What wrote it.
+    pub(super) tool: Tool,
     /// Names of the file's programs as keys: what is called by such a name keeps its outputs.
     pub(super) programs: BTreeSet<String>,
     /// Instances that remember edges, by where the element begins that sees one.
@@ -133,10 +109,10 @@ const QUALIFIERS: [(&str, &str); 4] =
     [("constant", " CONSTANT"), ("retain", " RETAIN"), ("nonretain", " NON_RETAIN"), ("persistent", " PERSISTENT")];
 
 impl<'a> Writer<'a> {
-    fn new(file: &'a str, dialect: Dialect, programs: BTreeSet<String>) -> Self {
-        let taken = Taken { dialect, ..Taken::default() };
+    fn new(file: &'a str, tool: Tool, programs: BTreeSet<String>) -> Self {
+        let taken = Taken { dialect: tool.dialect(), ..Taken::default() };
         let (triggers, strings) = (BTreeMap::new(), BTreeMap::new());
-        Self { taken, file, programs, triggers, bodies: 0, transition: None, strings }
+        Self { taken, file, tool, programs, triggers, bodies: 0, transition: None, strings }
     }
 }
 

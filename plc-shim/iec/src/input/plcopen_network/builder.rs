@@ -1,6 +1,6 @@
 //! Elements in the order of their evaluation, to statements: variables, contacts, coils, jumps.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use onescan_xml::{Element, Node as Content};
@@ -31,6 +31,9 @@ pub(super) struct Builder<'w, 'f, 'n> {
     lines: Vec<Line>,
     wires: BTreeMap<(usize, String), usize>,
     names: Vec<String>,
+    /// Elements whose value has been taken: what is wrong with them has been reported.
+    taken: BTreeSet<usize>,
+    is_quiet: bool,
 }
 
 /// True for what needs no parentheses as an operand.
@@ -59,8 +62,8 @@ fn is_literal(text: &str) -> bool {
 
 impl<'w, 'f, 'n> Builder<'w, 'f, 'n> {
     pub(super) fn new(writer: &'w mut Writer<'f>, nodes: &'n [Node<'n>], body: u32, ladder: bool) -> Self {
-        let (wires, names) = (BTreeMap::new(), Vec::new());
-        Self { writer, nodes, body, ladder, lines: Vec::new(), wires, names }
+        let (wires, names, taken) = (BTreeMap::new(), Vec::new(), BTreeSet::new());
+        Self { writer, nodes, body, ladder, lines: Vec::new(), wires, names, taken, is_quiet: false }
     }
 
     /// The statements, and the names of the wires in them.
@@ -69,7 +72,9 @@ impl<'w, 'f, 'n> Builder<'w, 'f, 'n> {
     }
 
     pub(super) fn report(&mut self, place: &Range<u32>, code: Code, message: &str) {
-        self.writer.taken.report(place.clone(), code, message);
+        if !self.is_quiet {
+            self.writer.taken.report(place.clone(), code, message);
+        }
     }
 
     /// The wire at an output of an element.
@@ -287,6 +292,31 @@ impl<'w, 'f, 'n> Builder<'w, 'f, 'n> {
             }
             Kind::LeftRail | Kind::RightRail => {}
         }
+    }
+
+    /// Takes the value of an element for those that come next, as it is now.
+    pub(super) fn take(&mut self, index: usize) {
+        let Some(node) = self.nodes.get(index) else { return };
+        let sees_edge = Modifiers::of(node.element, "").edge.is_some();
+        if !self.taken.insert(index) {
+            // An edge is seen once.
+            if sees_edge && node.kind == Kind::Contact {
+                return;
+            }
+            self.is_quiet = true;
+        }
+        self.wires.remove(&(index, String::new()));
+        match node.kind {
+            Kind::Coil => {
+                if let Some(left) = node.inputs.first().and_then(|input| self.arriving(input)) {
+                    self.define(index, "", Self::text_of(left, &node.place()));
+                }
+            }
+            // It is read by its name, or has no value.
+            Kind::InOutVariable | Kind::Block | Kind::OutVariable => {}
+            _ => self.evaluate(index),
+        }
+        self.is_quiet = false;
     }
 
     pub(super) fn text_of(signal: Signal, place: &Range<u32>) -> Text {

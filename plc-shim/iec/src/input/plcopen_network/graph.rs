@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::element::{Kind, Node, attribute};
-use super::order::{finished, key};
+use super::order::{Rank, finished};
 use crate::diagnostic::Code;
 
 /// Something that is wrong with a network, and the element it is wrong with.
@@ -111,7 +111,7 @@ fn root(parent: &mut [usize], mut index: usize) -> usize {
 /// Cuts every loop where a feedback variable keeps the value of the evaluation before (3rd ed. 8.1.4.3):
 /// at an output of an instance, or at a variable in the line. Of several in one loop the one that is
 /// evaluated last feeds back: `executionOrderId` says which that is, and where it does not, where they stand.
-pub(super) fn cut_loops(nodes: &[Node<'_>], sources: &mut [Vec<usize>]) -> Vec<Fault> {
+pub(super) fn cut_loops(nodes: &[Node<'_>], sources: &mut [Vec<usize>], ranks: &[Rank]) -> Vec<Fault> {
     let mut faults = Vec::new();
     loop {
         let loops = components(sources);
@@ -119,7 +119,7 @@ pub(super) fn cut_loops(nodes: &[Node<'_>], sources: &mut [Vec<usize>]) -> Vec<F
             return faults;
         }
         for inside in loops {
-            let last = last_of(nodes, &inside, &mut faults);
+            let last = last_of(nodes, &inside, ranks, &mut faults);
             for index in &inside {
                 if let Some(list) = sources.get_mut(*index) {
                     list.retain(|source| *source != last);
@@ -129,8 +129,23 @@ pub(super) fn cut_loops(nodes: &[Node<'_>], sources: &mut [Vec<usize>]) -> Vec<F
     }
 }
 
+/// A loop with this element in it has nothing to begin with.
+pub(super) fn keeps_nothing(node: &Node<'_>) -> Fault {
+    let message = "this loop has no feedback variable: no instance and no variable keeps a value in it".into();
+    Fault { place: node.place(), code: Code::FeedbackWithoutVariable, message }
+}
+
+/// What this element needs is needed too often elsewhere.
+pub(super) fn too_large(node: &Node<'_>) -> Fault {
+    let message =
+        "the contacts and variables of this body are read again by more than 200,000 others; draw it in several \
+                   units, or write values that many need to a variable"
+            .into();
+    Fault { place: node.place(), code: Code::UnsupportedFeature, message }
+}
+
 /// The element of a loop whose value the others take from the evaluation before.
-fn last_of(nodes: &[Node<'_>], inside: &[usize], faults: &mut Vec<Fault>) -> usize {
+fn last_of(nodes: &[Node<'_>], inside: &[usize], ranks: &[Rank], faults: &mut Vec<Fault>) -> usize {
     let keeps = |node: &Node<'_>| match node.kind {
         Kind::Block => !attribute(node.element, "instanceName").is_empty(),
         Kind::InOutVariable => true,
@@ -145,8 +160,7 @@ fn last_of(nodes: &[Node<'_>], inside: &[usize], faults: &mut Vec<Fault>) -> usi
     match keepers.as_slice() {
         [] => {
             let Some(node) = nodes.get(first) else { return first };
-            let message = "this loop has no feedback variable: no instance and no variable keeps a value in it".into();
-            faults.push(Fault { place: node.place(), code: Code::FeedbackWithoutVariable, message });
+            faults.push(keeps_nothing(node));
             first
         }
         [(only, _)] => *only,
@@ -159,7 +173,7 @@ fn last_of(nodes: &[Node<'_>], inside: &[usize], faults: &mut Vec<Fault>) -> usi
                            comes: those without come last, the highest first, then the one furthest left"
                     .into();
             faults.push(Fault { place: node.place(), code: Code::FeedbackWithoutOrder, message });
-            keepers.iter().map(|(index, _)| *index).max_by_key(|index| key(nodes, *index)).unwrap_or(*one)
+            keepers.iter().map(|(index, _)| *index).max_by_key(|index| ranks.get(*index)).unwrap_or(*one)
         }
     }
 }

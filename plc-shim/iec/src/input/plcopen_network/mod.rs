@@ -24,6 +24,8 @@ use onescan_xml::Element;
 
 use self::builder::Builder;
 use self::element::{Input, Modifiers, Node, nodes};
+use self::graph::Fault;
+use self::order::{Problem, Rule, Step};
 use super::plcopen::Writer;
 use super::statement;
 use crate::diagnostic::Code;
@@ -54,22 +56,35 @@ impl Writer<'_> {
             nodes.push(Node::end(point));
         }
         let mut faults = graph::connect(&mut nodes);
-        let mut sources = graph::sources(&nodes);
-        let networks = graph::networks(&nodes, &sources);
-        let needed: Option<BTreeSet<usize>> = match wanted {
-            Wanted::All => None,
-            Wanted::For(..) => {
-                Some(order::finished(vec![nodes.len().saturating_sub(1)], &sources).into_iter().collect())
-            }
-        };
-        faults.extend(graph::cut_loops(&nodes, &mut sources));
-        let mut order = order::order(&nodes, &networks, &sources);
+        let sources = graph::sources(&nodes);
+        let end = matches!(wanted, Wanted::For(..)).then(|| nodes.len().saturating_sub(1));
+        let needed: Option<BTreeSet<usize>> = end.map(|end| order::finished(vec![end], &sources).into_iter().collect());
+        let (mut steps, found) = ordered(&nodes, sources, end, Rule::of(self.tool, &nodes));
+        faults.extend(found);
         if let Some(needed) = &needed {
-            order.retain(|index| needed.contains(index));
+            steps.retain(|step| needed.contains(&step.index()));
             faults.retain(|fault| {
                 needed.iter().filter_map(|index| nodes.get(*index)).any(|node| node.holds(fault.place.start))
             });
         }
+        self.report_faults(faults);
+        self.bodies += 1;
+        let number = self.bodies;
+        let mut builder = Builder::new(self, &nodes, number, body.name != "FBD");
+        for step in steps {
+            match step {
+                Step::Evaluate(index) => builder.evaluate(index),
+                Step::Take(index) => builder.take(index),
+            }
+        }
+        if let (Wanted::For(_, variable), Some(end)) = (wanted, nodes.last()) {
+            builder.result(end, variable);
+        }
+        let (lines, names) = builder.finish();
+        statement::write(lines, &names, self.file, &mut self.taken.extract);
+    }
+
+    fn report_faults(&mut self, faults: Vec<Fault>) {
         for fault in faults {
             if fault.code == Code::FeedbackWithoutOrder {
                 self.taken.warn(
@@ -82,17 +97,6 @@ impl Writer<'_> {
                 self.taken.report(fault.place, fault.code, &fault.message);
             }
         }
-        self.bodies += 1;
-        let number = self.bodies;
-        let mut builder = Builder::new(self, &nodes, number, body.name != "FBD");
-        for index in order {
-            builder.evaluate(index);
-        }
-        if let (Wanted::For(_, variable), Some(end)) = (wanted, nodes.last()) {
-            builder.result(end, variable);
-        }
-        let (lines, names) = builder.finish();
-        statement::write(lines, &names, self.file, &mut self.taken.extract);
     }
 
     /// What is reported of elements that are part of no network but are connected as if they were.
@@ -121,6 +125,31 @@ fn refers_to(element: &Element, id: &str) -> bool {
         open.extend(element.elements());
     }
     false
+}
+
+/// All elements, or what `end` needs, in the order of the rule; and what is wrong with their loops.
+fn ordered(
+    nodes: &[Node<'_>],
+    mut sources: Vec<Vec<usize>>,
+    end: Option<usize>,
+    rule: Rule,
+) -> (Vec<Step>, Vec<Fault>) {
+    match rule {
+        Rule::Flow(as_in_file) => {
+            let networks = graph::networks(nodes, &sources);
+            let ranks = order::ranks(nodes, &networks, as_in_file);
+            let faults = graph::cut_loops(nodes, &mut sources, &ranks);
+            (order::by_flow(nodes, &networks, &sources, &ranks, as_in_file), faults)
+        }
+        Rule::Beremiz => {
+            let (steps, problems) = order::by_beremiz(nodes, &sources, end);
+            let fault = |problem| match problem {
+                Problem::Loop(index) => nodes.get(index).map(graph::keeps_nothing),
+                Problem::TooLarge(index) => nodes.get(index).map(graph::too_large),
+            };
+            (steps, problems.into_iter().filter_map(fault).collect())
+        }
+    }
 }
 
 impl<'e> Node<'e> {
