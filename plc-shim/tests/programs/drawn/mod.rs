@@ -1,5 +1,8 @@
 //! The order of drawn networks, which is that of the tool that wrote the file.
 
+mod drawings;
+mod sketch;
+
 use crate::plcopen::{block, coil, contact, input, of_tool, output, program, rail, rig};
 use crate::rig::Rig;
 
@@ -8,7 +11,6 @@ pub(crate) const CODESYS: &str = "codesys";
 pub(crate) const BEREMIZ: &str = "beremiz";
 pub(crate) const OPENPLC_4: &str = "openplc4";
 pub(crate) const OTHER: &str = "";
-pub(crate) const TOOLS: [&str; 4] = [CODESYS, BEREMIZ, OPENPLC_4, OTHER];
 
 fn after_a_scan(tool: &str, text: &str) -> Rig {
     let mut rig = rig(&of_tool(tool, text));
