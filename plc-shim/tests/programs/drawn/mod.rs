@@ -1,5 +1,6 @@
 //! The order of drawn networks, which is that of the tool that wrote the file.
 
+mod beremiz;
 mod drawings;
 mod sketch;
 
