@@ -260,8 +260,11 @@ fn element(types: &TypeTable, ty: TypeId) -> Option<ElementaryType> {
 /// all that they must agree on.
 fn signal_type(types: &TypeTable, ty: TypeId) -> Option<SignalType> {
     match types.get(ty) {
-        Type::Text(shape) if shape.wide => SignalType::wstring(shape.capacity),
-        Type::Text(shape) => SignalType::string(shape.capacity),
+        // No signal holds so many characters as vendors' strings may.
+        Type::Text(shape) => {
+            let capacity = u16::try_from(shape.capacity).ok()?;
+            if shape.wide { SignalType::wstring(capacity) } else { SignalType::string(capacity) }
+        }
         _ => types.elementary(ty).map(SignalType::from),
     }
 }

@@ -8,8 +8,11 @@ use onescan_base::ElementaryType;
 use super::expr::{Expr, Place};
 use crate::dialect::StringMemory;
 
-/// Most characters of a string, so that every position is an INT.
-pub const MAX_CAPACITY: u16 = 32_767;
+/// Most characters of a literal, and of a string with a count, so that every position is an INT.
+pub const MAX_CAPACITY: u32 = 32_767;
+
+/// Bits of a capacity in [`TextShape::code`].
+const CAPACITY_BITS: u32 = 28;
 
 /// Bytes of the count in front of the characters, where there is one.
 const COUNT_SIZE: u32 = 2;
@@ -18,11 +21,24 @@ const COUNT_SIZE: u32 = 2;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct TextShape {
     pub wide: bool,
-    pub capacity: u16,
+    pub capacity: u32,
     pub memory: StringMemory,
 }
 
 impl TextShape {
+    /// Most characters of a string that lies so in memory. Where it ends with a 0, the PLC's memory is a limit before.
+    pub fn most(memory: StringMemory) -> u32 {
+        match memory {
+            StringMemory::Counted => MAX_CAPACITY,
+            StringMemory::ZeroTerminated => (1 << CAPACITY_BITS) - 1,
+        }
+    }
+
+    /// The type of a number of its characters: an INT while that holds all of them.
+    pub fn number(self) -> ElementaryType {
+        if self.capacity > MAX_CAPACITY { ElementaryType::Dint } else { ElementaryType::Int }
+    }
+
     /// Bytes of one character.
     pub fn unit(self) -> u32 {
         if self.wide { 2 } else { 1 }
@@ -30,10 +46,9 @@ impl TextShape {
 
     /// Bytes in memory.
     pub fn size(self) -> u32 {
-        let capacity = u32::from(self.capacity);
         match self.memory {
-            StringMemory::Counted => COUNT_SIZE + capacity * self.unit(),
-            StringMemory::ZeroTerminated => (capacity + 1) * self.unit(),
+            StringMemory::Counted => COUNT_SIZE + self.capacity * self.unit(),
+            StringMemory::ZeroTerminated => (self.capacity + 1) * self.unit(),
         }
     }
 
@@ -53,19 +68,22 @@ impl TextShape {
     /// As one number, for calls of the host.
     pub fn code(self) -> i32 {
         let terminated = self.memory == StringMemory::ZeroTerminated;
-        i32::from(self.capacity) | i32::from(self.wide) << 16 | i32::from(terminated) << 17
+        self.capacity.cast_signed()
+            | i32::from(self.wide) << CAPACITY_BITS
+            | i32::from(terminated) << (CAPACITY_BITS + 1)
     }
 
     /// What [`Self::code`] made.
     pub fn from_code(code: i32) -> Self {
-        let terminated = code >> 17 & 1 == 1;
+        let terminated = code >> (CAPACITY_BITS + 1) & 1 == 1;
         let memory = if terminated { StringMemory::ZeroTerminated } else { StringMemory::Counted };
-        Self { wide: code >> 16 & 1 == 1, capacity: code as u16, memory }
+        let capacity = code.cast_unsigned() & ((1 << CAPACITY_BITS) - 1);
+        Self { wide: code >> CAPACITY_BITS & 1 == 1, capacity, memory }
     }
 
     /// The bytes of these characters; what does not fit is cut off.
     pub fn encode(self, units: &[u16]) -> Vec<u8> {
-        let used = units.len().min(usize::from(self.capacity));
+        let used = units.len().min(self.capacity as usize);
         let mut bytes = Vec::with_capacity(self.size() as usize);
         if self.memory == StringMemory::Counted {
             bytes.extend_from_slice(&(used as u16).to_le_bytes());
@@ -79,7 +97,7 @@ impl TextShape {
 
     /// How many characters of a string are in use; never more than there is room for, whatever stands in memory.
     pub fn used(self, bytes: &[u8]) -> usize {
-        let capacity = usize::from(self.capacity);
+        let capacity = self.capacity as usize;
         match self.memory {
             StringMemory::Counted => {
                 let count = bytes.first_chunk::<2>().map_or(0, |count| u16::from_le_bytes(*count));
@@ -113,11 +131,11 @@ pub struct TextCall {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TextFunction {
-    /// Characters in use, as INT.
+    /// Characters in use, as [`TextShape::number`] has it.
     Length,
     /// -1, 0 or 1 as DINT: how two strings are ordered, character by character.
     Compare,
-    /// Position of the second string in the first as INT, 0 if it is not there.
+    /// Position of the second string in the first, 0 if it is not there.
     Find,
     Edit(Edit),
     /// The text of a value.

@@ -69,7 +69,7 @@ fn string(shape: TextShape, text: &str) -> Result<Vec<u8>, String> {
         return Err(format!("a string stands between {quote} and {quote}"));
     }
     let units = parse_text(text)?.units;
-    if units.len() > usize::from(shape.capacity) {
+    if units.len() > shape.capacity as usize {
         return Err(format!("it has {} characters", units.len()));
     }
     Ok(shape.encode(&units))

@@ -80,7 +80,7 @@ impl Emitter<'_, '_> {
             self.text_operands(operands);
             return self.host(TextImport::Length);
         }
-        let capacity = i32::from(shape.capacity);
+        let capacity = shape.capacity.cast_signed();
         let used = self.scratch(ValType::I32);
         self.expression(operand);
         self.emit(Instruction::I32Load16U(MemArg { offset: 0, align: 0, memory_index: 0 }));

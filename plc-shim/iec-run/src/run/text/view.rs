@@ -70,8 +70,8 @@ impl Target {
 
     /// Adds a character if there is room. One beyond 8 bits becomes `?` in a STRING.
     pub(super) fn push(&mut self, memory: &mut [u8], unit: u16) {
-        debug_assert!(self.used <= usize::from(self.shape.capacity), "a string never has more than there is room for");
-        if self.used == usize::from(self.shape.capacity) {
+        debug_assert!(self.used <= self.shape.capacity as usize, "a string never has more than there is room for");
+        if self.used == self.shape.capacity as usize {
             return;
         }
         let at = self.offset(self.used);
@@ -87,7 +87,7 @@ impl Target {
         if self.shape.wide {
             return text.iter().for_each(|byte| self.push(memory, u16::from(*byte)));
         }
-        let count = text.len().min(usize::from(self.shape.capacity) - self.used);
+        let count = text.len().min(self.shape.capacity as usize - self.used);
         let at = self.offset(self.used);
         if let (Some(room), Some(text)) = (memory.get_mut(at..at + count), text.get(..count)) {
             room.copy_from_slice(text);
@@ -97,7 +97,7 @@ impl Target {
 
     /// Adds characters of another string.
     pub(super) fn extend(&mut self, memory: &mut [u8], source: &View, range: std::ops::Range<usize>) {
-        let count = range.len().min(usize::from(self.shape.capacity) - self.used);
+        let count = range.len().min(self.shape.capacity as usize - self.used);
         if source.shape.wide == self.shape.wide {
             let unit = self.shape.unit() as usize;
             let from = source.start + range.start * unit;
@@ -117,7 +117,7 @@ impl Target {
 
     /// Writes the count, if there is one, and clears what lies behind the last character.
     pub(super) fn finish(self, memory: &mut [u8]) {
-        debug_assert!(self.used <= usize::from(self.shape.capacity), "a string never has more than there is room for");
+        debug_assert!(self.used <= self.shape.capacity as usize, "a string never has more than there is room for");
         let (first, end) = (self.offset(self.used), self.address + self.shape.size() as usize);
         if let Some(rest) = memory.get_mut(first..end) {
             rest.fill(0);

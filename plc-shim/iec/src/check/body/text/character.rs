@@ -30,8 +30,8 @@ impl Body<'_, '_> {
     }
 
     /// How many characters may be read: with vendors the 0 at the end too.
-    fn readable(&self, shape: TextShape, span: Span) -> u16 {
-        shape.capacity + u16::from(self.ends_with_zero(span))
+    fn readable(&self, shape: TextShape, span: Span) -> u32 {
+        shape.capacity + u32::from(self.ends_with_zero(span))
     }
 
     fn character_type(&self, shape: TextShape, span: Span) -> ElementaryType {
@@ -83,12 +83,8 @@ impl Body<'_, '_> {
         let inside =
             compared(Binary::LessEqual, load(&position), lint(i64::from(self.readable(shape, span)) - 1, span));
         let ended = joined(Binary::And, [behind, inside])?;
-        let step = Step::Index {
-            index: Box::new(load(&position)),
-            low: 0,
-            count: shape.capacity.into(),
-            stride: shape.unit(),
-        };
+        let step =
+            Step::Index { index: Box::new(load(&position)), low: 0, count: shape.capacity, stride: shape.unit() };
         let character = self.character_at(Located { place: text, access: Access::ReadWrite }, shape, step, span).place;
         let ty = self.character_type(shape, span);
         let none = Expr { span, ..constant(Value::Int(0), ty, span) };
@@ -134,12 +130,8 @@ impl Body<'_, '_> {
         let value = self.expression_of(value, ty)?;
         let Indexed { text, position, before } = self.indexed(text.place, shape.capacity, index, span)?;
         let register = Place::whole(Storage::Register(self.scope.register(ty)), ty.into(), span);
-        let step = Step::Index {
-            index: Box::new(load(&position)),
-            low: 0,
-            count: shape.capacity.into(),
-            stride: shape.unit(),
-        };
+        let step =
+            Step::Index { index: Box::new(load(&position)), low: 0, count: shape.capacity, stride: shape.unit() };
         let character =
             self.character_at(Located { place: text.clone(), access: Access::ReadWrite }, shape, step, span).place;
         let count = text.clone().member(0, ElementaryType::Uint.into());
@@ -167,7 +159,7 @@ impl Body<'_, '_> {
         let span = position.span;
         let next = operation(Binary::Add, load(position), lint(1, span));
         let room = compared(Binary::Less, next.clone(), lint(i64::from(shape.capacity), span));
-        let step = Step::Index { index: Box::new(next), low: 0, count: shape.capacity.into(), stride: shape.unit() };
+        let step = Step::Index { index: Box::new(next), low: 0, count: shape.capacity, stride: shape.unit() };
         let located = Located { place: text.clone(), access: Access::ReadWrite };
         let behind = self.character_at(located, shape, step, span).place;
         let zero = constant(Value::Int(0), self.character_type(shape, span), span);
@@ -176,7 +168,7 @@ impl Body<'_, '_> {
     }
 
     /// The position of a character out of so many, from 0.
-    fn indexed(&mut self, text: Place, count: u16, index: &ast::Expr, span: Span) -> Option<Indexed> {
+    fn indexed(&mut self, text: Place, count: u32, index: &ast::Expr, span: Span) -> Option<Indexed> {
         let low = i64::from(!self.ends_with_zero(span));
         let bounds = Dimension { low, high: low + i64::from(count) - 1 };
         let from_0 = match self.index_step(bounds, index, 1)? {

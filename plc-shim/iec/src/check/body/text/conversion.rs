@@ -22,7 +22,7 @@ use crate::ir::{ElementaryType, Expr};
 use crate::syntax::Span;
 
 /// Longest text of a value of elementary type.
-const VALUE_CAPACITY: u16 = 48;
+const VALUE_CAPACITY: u32 = 48;
 
 impl Body<'_, '_> {
     pub(in crate::check) fn text_conversion(

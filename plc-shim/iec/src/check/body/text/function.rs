@@ -11,7 +11,7 @@
 use crate::check::body::Body;
 use crate::check::standard::text::TextForm;
 use crate::check::types::operand::{Operand, converted};
-use crate::ir::text::{Edit, MAX_CAPACITY, TextFunction, TextShape};
+use crate::ir::text::{Edit, TextFunction, TextShape};
 use crate::ir::{ElementaryType, Expr, Rounding};
 use crate::syntax::Span;
 
@@ -33,7 +33,9 @@ impl Body<'_, '_> {
     /// The result is of any integer type (`ANY_INT`): the place's own, else INT.
     fn text_measure(&mut self, function: TextFunction, operands: Vec<Operand>, span: Span) -> Option<Operand> {
         let strings = self.strings(operands)?;
-        let number = Self::text_number(function, strings, ElementaryType::Int, span);
+        let counted =
+            strings.first().and_then(|first| self.shape(first.ty)).map_or(ElementaryType::Int, TextShape::number);
+        let number = Self::text_number(function, strings, counted, span);
         let wanted = self.context.filter(|ty| ty.is_integer() && ty.size() > 1);
         let ty = wanted.unwrap_or(ElementaryType::Int);
         Some(Operand::Typed(converted(number, ty, Rounding::NearestEven)))
@@ -75,11 +77,13 @@ impl Body<'_, '_> {
 
     /// The result holds the characters of all operands.
     fn joined(&mut self, edit: Edit, strings: Vec<Expr>, numbers: Vec<Expr>, span: Span) -> Option<Expr> {
+        // What would not fit memory is cut off, and not made.
+        let limit = (self.declarations.memory_limit() / 2) as u32 - 1;
         let shapes = strings.iter().filter_map(|each| self.shape(each.ty));
         let shape = shapes.reduce(|sum, each| TextShape {
             wide: sum.wide,
             memory: sum.memory,
-            capacity: sum.capacity.saturating_add(each.capacity).min(MAX_CAPACITY),
+            capacity: (sum.capacity + each.capacity).min(TextShape::most(sum.memory)).min(limit),
         })?;
         let operands = strings.into_iter().chain(numbers).collect();
         self.text_edit(edit, operands, shape, span)

@@ -24,7 +24,7 @@ impl Body<'_, '_> {
         }
         let has_windows = self.declarations.dialect(span).has(Feature::WindowsCharacters);
         match if has_windows { parse_windows_text(text) } else { parse_text(text) } {
-            Ok(text) if text.units.len() <= usize::from(MAX_CAPACITY) => Some(Operand::Text { text, span }),
+            Ok(text) if text.units.len() <= MAX_CAPACITY as usize => Some(Operand::Text { text, span }),
             Ok(_) => self.invalid_literal("string is too long".to_owned(), span),
             Err(message) => self.invalid_literal(message, span),
         }
@@ -69,11 +69,11 @@ impl Body<'_, '_> {
 
     /// A literal as a string of its own length.
     pub(super) fn settled_text(&mut self, text: &Text, span: Span) -> Option<Expr> {
-        let shape = self.own_shape(text, text.units.len() as u16, span);
+        let shape = self.own_shape(text, text.units.len() as u32, span);
         self.stored_text(shape, text, span)
     }
 
-    fn own_shape(&self, text: &Text, capacity: u16, span: Span) -> TextShape {
+    fn own_shape(&self, text: &Text, capacity: u32, span: Span) -> TextShape {
         TextShape { wide: text.wide, capacity, memory: self.declarations.dialect(span).strings() }
     }
 
@@ -142,7 +142,7 @@ impl Body<'_, '_> {
     }
 
     fn warn_if_cut(&mut self, text: &Text, shape: TextShape, span: Span) {
-        if text.units.len() > usize::from(shape.capacity) {
+        if text.units.len() > shape.capacity as usize {
             let message = format!("only the first {} of {} characters fit", shape.capacity, text.units.len());
             self.report(Diagnostic::warning(Code::OutOfRange, span, message));
         }
@@ -208,7 +208,7 @@ impl Body<'_, '_> {
         let mut widest: Option<TextShape> = None;
         for operand in &operands {
             let shape = match operand {
-                Operand::Text { text, span } => Some(self.own_shape(text, text.units.len().max(1) as u16, *span)),
+                Operand::Text { text, span } => Some(self.own_shape(text, text.units.len().max(1) as u32, *span)),
                 Operand::Typed(expr) => self.shape(expr.ty),
                 _ => None,
             };
