@@ -3,7 +3,7 @@
 use super::class::Found;
 use super::collect::{Collector, Scope, elementary};
 use super::heirs::inputs;
-use super::names::{Access, Kind};
+use super::names::{Access, Kind, outer};
 use super::ty::Ty;
 use super::world::{Home, World};
 use onescan_iec::ElementaryType as E;
@@ -24,6 +24,9 @@ impl<'a> Collector<'a> {
     }
 
     fn call_of_name(&mut self, name: &Ident, call: &Call, is_used: bool, scope: &Scope<'a>) -> Ty {
+        if let Some((name, outside)) = outer(name, scope) {
+            return self.call_of_library(&name, call, is_used, &outside, scope);
+        }
         let key = name.key();
         let own = scope.local.is_some_and(|local| local.name.key() == key);
         if !own {

@@ -6,6 +6,7 @@ use super::foreign::{Function, Global, Head};
 use super::hint;
 use super::ty::Ty;
 use super::world::{VALUE, has_value};
+use onescan_iec::ElementaryType;
 use onescan_iec::check::{is_list, joined};
 use onescan_iec::syntax::ast::{Expr, ExprKind, Ident};
 
@@ -46,9 +47,25 @@ pub(super) enum Kind {
     Member(String),
 }
 
+/// True for types that every tool has, where one stands as a value in `SIZEOF(INT)`, and for operators of the tools:
+/// no stub may declare them.
+fn is_of_the_language(key: &str) -> bool {
+    key.starts_with("__") || matches!(key, "STRING" | "WSTRING" | "BIT") || ElementaryType::find(key).is_some()
+}
+
+/// `.name` of CODESYS as `name`, outside of all units; nothing for any other name.
+pub(super) fn outer<'a>(name: &Ident, scope: &Scope<'a>) -> Option<(Ident, Scope<'a>)> {
+    let text = name.text.strip_prefix('.')?.to_owned();
+    let outside = Scope { home: scope.home.clone(), class: None, local: None };
+    Some((Ident { text, span: name.span }, outside))
+}
+
 impl<'a> Collector<'a> {
     /// What a name alone stands for.
     pub(super) fn name(&mut self, name: &Ident, access: Access, scope: &Scope<'a>) -> Ty {
+        if let Some((name, outside)) = outer(name, scope) {
+            return self.name(&name, access, &outside);
+        }
         if let Some(found) = self.seen(name, scope) {
             return found;
         }
@@ -126,7 +143,7 @@ impl<'a> Collector<'a> {
         }
         matches!(key, "TRUE" | "FALSE" | "NULL" | "INIT_RETAINS" | "VIRTUAL_TIME")
             .then_some(Ty::Unknown)
-            .or_else(|| matches!(key, "__TRY" | "__CATCH" | "__FINALLY" | "__ENDTRY").then_some(Ty::Unknown))
+            .or_else(|| is_of_the_language(key).then_some(Ty::Unknown))
     }
 
     fn base_type(&mut self, scope: &Scope<'a>) -> Ty {
@@ -141,7 +158,7 @@ impl<'a> Collector<'a> {
         let based = scope.class.clone().and_then(|class| self.foreign_base(&class));
         let head = self.needs.heads.entry(name.key()).or_default();
         if head.name.is_empty() {
-            head.name.clone_from(&name.text);
+            name.text.trim_start_matches('.').clone_into(&mut head.name);
         }
         head.outside |= based.is_none();
         head
@@ -332,6 +349,7 @@ impl<'a> Collector<'a> {
 
     /// A variable of a list.
     pub(super) fn listed(&mut self, list: &str, shown: &str, name: &Ident, access: Access) -> Ty {
+        let shown = shown.trim_start_matches('.');
         self.needs.lists.entry(list.to_owned()).or_insert_with(|| shown.to_owned());
         self.global(&joined(list, &name.key()), &format!("{shown}.{}", name.text), access)
     }

@@ -176,6 +176,35 @@ END_PROGRAM"
 }
 
 #[test]
+fn types_that_every_tool_has_and_what_a_point_leads_to() {
+    let text = "PROGRAM P VAR n : UDINT; p : POINTER TO STRING(5); s : STRING; END_VAR
+  n := SIZEOF(STRING(255)) + SIZEOF(BOOL) + SIZEOF(WSTRING) + SIZEOF(REAL);
+  p := __NEW(STRING(5), 3); s := __POSITION();
+  .nLimit := n; .F_Report(n := n);
+END_PROGRAM";
+    insta::assert_snapshot!(stubs(text), @r"
+    {dialect 'twincat'}
+
+    {external}
+    FUNCTION F_Report
+        VAR_INPUT
+            n : UDINT;
+        END_VAR
+    END_FUNCTION
+
+    VAR_GLOBAL
+        nLimit : UDINT;
+    END_VAR
+    ");
+}
+
+#[test]
+fn operators_of_tools_get_no_stub() {
+    let text = "PROGRAM P VAR v : BOOL; END_VAR v := __VARINFO(v); __XADD(v); END_PROGRAM";
+    assert_eq!(write(&[input(text)], None).added, 0);
+}
+
+#[test]
 fn a_stub_gets_what_a_project_uses_later() {
     let first = "PROGRAM P VAR fb : FB_Gate; END_VAR fb(bOpen := TRUE); END_PROGRAM";
     let later = "PROGRAM P VAR fb : FB_Gate; st : ST_A; x : INT; END_VAR
