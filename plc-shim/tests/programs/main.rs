@@ -62,6 +62,7 @@ mod recursion;
 mod references;
 mod registers;
 mod relative_addresses;
+mod released_code;
 mod restarts;
 mod rig;
 mod robustness;

@@ -96,7 +96,7 @@ impl Visitor for Reader<'_> {
             return;
         }
         let place = variable(base).map(|name| {
-            let is_local = !name.is_quoted() && self.locals.contains(&name.key());
+            let is_local = !name.is_global() && self.locals.contains(&name.key());
             (if is_local { self.unit.clone() } else { String::new() }, name.key())
         });
         if let Some(place) = &place {

@@ -383,6 +383,11 @@ features! {
     CCode "C code that sets variables, `{{ SetFbVar(a, 1); }}`",
     GenericConstants "generic blocks: `VAR_GENERIC CONSTANT`, `FB<8>`",
     DecimalBase "`10#` before a number of base 10",
+    BaseParts "a structure assigned to one that it extends: a copy of its part",
+    GlobalOperator "a point before the name of what is global, `.name`",
+    PlacesOfText "`__POUNAME()`, `__POSITION()`",
+    BitsInOut "an unsigned integer for a `VAR_IN_OUT` that is a bit string, or the other way",
+    NamedCounts "a count of equal initial values by its name, `[N(5), 7]`",
 }
 
 impl Feature {

@@ -93,7 +93,11 @@ pub const FEATURES: &[FeatureRow] = &[
     row(Feature::LeftOutInputs, &[Codesys, TwinCat], "CODESYS and TwinCAT: FUNCTION, optional inputs"),
     row(Feature::LooseStrings, &[Codesys, TwinCat], "CODESYS and TwinCAT: VAR_IN_OUT, strings"),
     row(Feature::DoubleQuotes, &[Matiec], "OpenPLC's editor, initial values"),
-    row(Feature::LooseWidths, &[Matiec], "MatIEC: accepts it"),
+    row(
+        Feature::LooseWidths,
+        &[Codesys, TwinCat, Matiec],
+        "MatIEC: accepts it; TwinCAT: accepts it, as public projects show",
+    ),
     row(
         Feature::OwnStandardFunctions,
         &[Codesys, TwinCat, Matiec],
@@ -164,6 +168,15 @@ pub const FEATURES: &[FeatureRow] = &[
     ),
     row(Feature::GenericConstants, &[Codesys, TwinCat], "CODESYS and TwinCAT: VAR_GENERIC CONSTANT"),
     row(Feature::DecimalBase, &[Codesys, TwinCat], "TwinCAT: accepts it, as public projects show"),
+    row(Feature::BaseParts, &[Codesys, TwinCat], "TwinCAT: accepts it, as public projects show"),
+    row(Feature::GlobalOperator, &[Codesys, TwinCat], "CODESYS: global namespace operator; TwinCAT: Global Namespace"),
+    row(
+        Feature::PlacesOfText,
+        &[Codesys, TwinCat],
+        "CODESYS: operators __POUNAME, __POSITION; TwinCAT: accepts them, as public projects show",
+    ),
+    row(Feature::BitsInOut, &[Codesys, TwinCat], "TwinCAT: accepts it, as public projects show"),
+    row(Feature::NamedCounts, &[Codesys, TwinCat], "TwinCAT: accepts it, as public projects show"),
 ];
 
 /// How a dialect behaves, and where that is written.

@@ -67,6 +67,7 @@ const PARTS: &[Part] = parts![
     Iec3 &Dialect::ALL, "generic_inputs";
     Iec3 &Dialect::ALL, "dtl";
     Codesys BOTH, "dynamic_memory";
+    Codesys BOTH, "system_exception";
     TwinCat BOTH, "tc2_standard";
     TwinCat BOTH, "tc2_system";
     TwinCat BOTH, "tc2_system_files";

@@ -42,12 +42,12 @@ pub struct Ident {
 impl Ident {
     /// The form in which names are compared.
     pub fn key(&self) -> String {
-        self.text.trim_matches('"').to_ascii_uppercase()
+        self.text.trim_start_matches('.').trim_matches('"').to_ascii_uppercase()
     }
 
-    /// True for `"name"`, which in SCL is never a local one.
-    pub fn is_quoted(&self) -> bool {
-        self.text.starts_with('"')
+    /// True for `"name"` of SCL and `.name` of CODESYS, which is never a local one.
+    pub fn is_global(&self) -> bool {
+        self.text.starts_with(['"', '.'])
     }
 
     /// The key without the constants of a generic block: that of `List` for `List<8>`.

@@ -11,6 +11,7 @@ mod cursor;
 mod declaration;
 mod exception;
 mod expression;
+mod here;
 mod initialiser;
 mod instruction;
 mod object;

@@ -50,7 +50,7 @@ impl Printer {
 
     /// A name in an expression: `"x"` is global and as it was written, any other is local first.
     fn variable_name(&mut self, name: &Ident) {
-        if name.is_quoted() || is_plain(&name.text) {
+        if name.is_global() || is_plain(&name.text) {
             self.word(&name.text);
         } else {
             self.word(&format!("#\"{}\"", name.text));

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::Declarations;
 use super::entry::TypedImage;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::dialect::Feature;
+use crate::dialect::{Dialect, Feature};
 use crate::ir::{ElementaryType, Location, Storage, Type, TypeId};
 use crate::syntax::Span;
 use crate::syntax::ast::{self, Ident, PouKind, SectionKind};
@@ -81,7 +81,7 @@ impl Declarations<'_> {
     /// True for a structure or the like at a bit, where `MatIEC` accepts it: nothing of it is at the address.
     fn is_apart_from_bit(&mut self, ty: TypeId, address: &Ident) -> bool {
         let whole = matches!(self.types.get(ty), Type::FunctionBlock { .. } | Type::Nothing);
-        let loose = self.dialect(address.span).has(Feature::LooseWidths);
+        let loose = self.dialect(address.span) == Dialect::Matiec;
         let apart = loose && !whole && self.types.elementary(ty).is_none();
         if apart {
             let found = self.types.name(ty);
@@ -168,7 +168,7 @@ impl Declarations<'_> {
             }
             (None, _) => (width != Width::Bit, format!("{found} begins at a byte, as in %B0")),
         };
-        if !suitable && elementary.is_some() && self.dialect(address.span).has(Feature::LooseWidths) {
+        if !suitable && elementary.is_some() && self.has_loose_width(width, address.span) {
             let message = format!("`{}` is of another width than {found}, which lies at its beginning", address.text);
             self.report(Diagnostic::warning(Code::UnsuitableAddress, address.span, message));
             return Some(());
@@ -180,6 +180,13 @@ impl Declarations<'_> {
             return None;
         }
         Some(())
+    }
+
+    /// True where an elementary variable lies at an address of another width. A bit holds no more than a BOOL, except
+    /// where `MatIEC` takes its byte.
+    fn has_loose_width(&self, width: Width, span: Span) -> bool {
+        let dialect = self.dialect(span);
+        dialect.has(Feature::LooseWidths) && (width != Width::Bit || dialect == Dialect::Matiec)
     }
 
     /// Writes the initial values of what is located. Where several overlap, a value of a variable's own

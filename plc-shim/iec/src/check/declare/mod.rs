@@ -86,6 +86,8 @@ pub(super) struct Declarations<'a> {
     type_names: BTreeMap<String, TypeEntry<'a>>,
     /// Structures that something refers to, and whose declarations are wrong.
     unmade: BTreeSet<TypeId>,
+    /// The structure that another one extends.
+    structure_bases: BTreeMap<TypeId, TypeId>,
     pous: Vec<PouEntry<'a>>,
     pou_names: BTreeMap<String, PouId>,
     /// Where what is being resolved stands.
@@ -157,6 +159,7 @@ impl<'a> Declarations<'a> {
             types: TypeTable::new(),
             type_names: BTreeMap::new(),
             unmade: BTreeSet::new(),
+            structure_bases: BTreeMap::new(),
             pous: Vec::new(),
             pou_names: BTreeMap::new(),
             home: Arc::default(),

@@ -54,6 +54,17 @@ impl<'a> Declarations<'a> {
         self.type_span(key).is_some_and(|span| self.library.contains(&span.file))
     }
 
+    /// Notes what a structure adds to.
+    pub(in crate::check) fn note_structure_base(&mut self, structure: TypeId, base: TypeId) {
+        self.structure_bases.insert(structure, base);
+    }
+
+    /// True if a structure extends another one, be it through those between.
+    pub(in crate::check) fn structure_extends(&self, structure: TypeId, base: TypeId) -> bool {
+        let above = |ty: &TypeId| self.structure_bases.get(ty).copied();
+        std::iter::successors(above(&structure), above).take(self.structure_bases.len()).any(|each| each == base)
+    }
+
     /// True for a place in a file of the library.
     pub(in crate::check) fn is_in_library(&self, span: Span) -> bool {
         self.library.contains(&span.file)

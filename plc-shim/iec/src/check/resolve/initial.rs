@@ -21,6 +21,13 @@ struct Making<'a> {
     starts: Vec<Start<'a>>,
 }
 
+/// What an element is given.
+#[derive(Clone, Copy)]
+enum Given<'a> {
+    Written(&'a Initialiser),
+    Value(&'a Expr),
+}
+
 /// A value inside of the variable: its type, and bytes from the variable's beginning.
 #[derive(Clone, Copy)]
 struct Spot {
@@ -49,27 +56,11 @@ impl<'a> Written<'_, 'a> {
     }
 
     fn fill(&mut self, spot: Spot, initial: &'a Initialiser, making: &mut Making<'a>) -> Option<()> {
+        if let InitialiserKind::Value(expr) = &initial.kind {
+            return self.fill_value(spot, expr, making);
+        }
         let shape = self.declarations().types().get(spot.ty).clone();
         match (&initial.kind, shape) {
-            (InitialiserKind::Value(expr), Type::Text(_)) if !self.is_constant_text(expr) => {
-                self.begins_with(spot, expr, making);
-                Some(())
-            }
-            (InitialiserKind::Value(expr), _) if self.body.elementary(spot.ty).is_some() => {
-                self.fill_elementary(spot, expr, making)
-            }
-            (InitialiserKind::Value(expr), Type::Text(shape)) => {
-                let bytes = self.body.text_image(shape, expr)?;
-                let range = self.range(spot);
-                making.image.get_mut(range)?.iter_mut().zip(bytes).for_each(|(target, source)| *target = source);
-                Some(())
-            }
-            (InitialiserKind::Value(expr), Type::Struct { .. }) if is_dtl_literal(expr) => {
-                let bytes = self.body.dtl_bytes(expr, spot.ty)?;
-                let range = self.range(spot);
-                making.image.get_mut(range)?.copy_from_slice(&bytes);
-                Some(())
-            }
             (InitialiserKind::Array(elements), Type::Array { dimensions, element }) => {
                 let count = dimensions.iter().map(|each: &Dimension| each.count()).product();
                 self.fill_array(Spot { ty: element, ..spot }, count, elements, making)
@@ -84,25 +75,49 @@ impl<'a> Written<'_, 'a> {
             (InitialiserKind::Struct(members), Type::FunctionBlock { pou, .. }) => {
                 self.fill_instance(spot, pou, members, (initial.span, making))
             }
-            (InitialiserKind::Value(expr), Type::Struct { .. } | Type::Array { .. } | Type::FunctionBlock { .. })
-                if let Some(constant) = self.whole_constant(expr, spot.ty) =>
-            {
-                let range = self.range(spot);
-                making.image.get_mut(range)?.copy_from_slice(&constant);
-                Some(())
-            }
-            (InitialiserKind::Value(expr), Type::Struct { .. } | Type::Array { .. } | Type::FunctionBlock { .. })
-                if self.declarations().dialect(expr.span).has(Feature::ComputedInitialValues) =>
-            {
+            _ => self.does_not_initialise(spot, initial.span),
+        }
+    }
+
+    fn fill_value(&mut self, spot: Spot, expr: &'a Expr, making: &mut Making<'a>) -> Option<()> {
+        match self.declarations().types().get(spot.ty).clone() {
+            Type::Text(_) if !self.is_constant_text(expr) => {
                 self.begins_with(spot, expr, making);
                 Some(())
             }
-            _ => {
-                let message = format!("this does not initialise {}", self.body.type_name(spot.ty));
-                self.report(Diagnostic::error(Code::InvalidInitialiser, initial.span, message));
-                None
+            _ if self.body.elementary(spot.ty).is_some() => self.fill_elementary(spot, expr, making),
+            Type::Text(shape) => {
+                let bytes = self.body.text_image(shape, expr)?;
+                let range = self.range(spot);
+                making.image.get_mut(range)?.iter_mut().zip(bytes).for_each(|(target, source)| *target = source);
+                Some(())
             }
+            Type::Struct { .. } if is_dtl_literal(expr) => {
+                let bytes = self.body.dtl_bytes(expr, spot.ty)?;
+                let range = self.range(spot);
+                making.image.get_mut(range)?.copy_from_slice(&bytes);
+                Some(())
+            }
+            Type::Struct { .. } | Type::Array { .. } | Type::FunctionBlock { .. } => {
+                if let Some(constant) = self.whole_constant(expr, spot.ty) {
+                    let range = self.range(spot);
+                    making.image.get_mut(range)?.copy_from_slice(&constant);
+                    return Some(());
+                }
+                if !self.declarations().dialect(expr.span).has(Feature::ComputedInitialValues) {
+                    return self.does_not_initialise(spot, expr.span);
+                }
+                self.begins_with(spot, expr, making);
+                Some(())
+            }
+            _ => self.does_not_initialise(spot, expr.span),
         }
+    }
+
+    fn does_not_initialise<T>(&mut self, spot: Spot, span: Span) -> Option<T> {
+        let message = format!("this does not initialise {}", self.body.type_name(spot.ty));
+        self.report(Diagnostic::error(Code::InvalidInitialiser, span, message));
+        None
     }
 
     /// The bytes of a constant of several parts.
@@ -196,8 +211,14 @@ impl<'a> Written<'_, 'a> {
         let mut next: u64 = 0;
         for initial in elements {
             let (times, value) = match &initial.kind {
-                InitialiserKind::Repeat(times, value) => (self.body.constant_integer(times)?, value.as_deref()),
-                _ => (1, Some(initial)),
+                InitialiserKind::Repeat(times, value) => {
+                    (self.body.constant_integer(times)?, value.as_deref().map(Given::Written))
+                }
+                InitialiserKind::Value(expr) => match self.named_count(expr) {
+                    Some((count, value)) => (self.body.constant_integer(count)?, value.map(Given::Value)),
+                    None => (1, Some(Given::Value(expr))),
+                },
+                _ => (1, Some(Given::Written(initial))),
             };
             let times = u64::try_from(times).unwrap_or(u64::MAX);
             if next.checked_add(times).is_none_or(|end| end > count) {
@@ -242,9 +263,18 @@ impl<'a> Written<'_, 'a> {
     }
 
     /// Gives so many elements in a row the same value.
-    fn fill_alike(&mut self, first: Spot, times: u32, value: &'a Initialiser, making: &mut Making<'a>) -> Option<()> {
+    fn fill_alike(&mut self, first: Spot, times: u32, value: Given<'a>, making: &mut Making<'a>) -> Option<()> {
         let known = making.starts.len();
-        self.fill(first, value, making)?;
+        let span = match value {
+            Given::Written(initial) => {
+                self.fill(first, initial, making)?;
+                initial.span
+            }
+            Given::Value(expr) => {
+                self.fill_value(first, expr, making)?;
+                expr.span
+            }
+        };
         let (range, size) = (self.range(first), self.declarations().types().size(first.ty));
         let (from, end) = (range.start, range.start + size as usize * times as usize);
         let row = making.image.get_mut(from..end)?;
@@ -255,9 +285,25 @@ impl<'a> Written<'_, 'a> {
             let own = making.starts.split_off(known);
             let inside = own.into_iter().map(|start| Start { offset: start.offset - first.offset, ..start });
             let kind = StartKind::Each { count: times, stride: size, starts: inside.collect() };
-            making.starts.push(self.start(first.offset, kind, value.span));
+            making.starts.push(self.start(first.offset, kind, span));
         }
         Some(())
+    }
+
+    /// `N(5)` is five `N` times where `N` is a constant, and else a call (CODESYS, TwinCAT).
+    fn named_count(&mut self, expr: &'a Expr) -> Option<(&'a Expr, Option<&'a Expr>)> {
+        let ExprKind::Call(call) = &expr.kind else { return None };
+        let value = match &call.arguments[..] {
+            [] => None,
+            [Argument::Positional(value)] => Some(value),
+            _ => return None,
+        };
+        if !self.declarations().dialect(expr.span).has(Feature::NamedCounts)
+            || !self.body.is_constant_named(&call.callee)
+        {
+            return None;
+        }
+        Some((&*call.callee, value))
     }
 
     fn too_many_elements<T>(&mut self, count: u64, span: Span) -> Option<T> {

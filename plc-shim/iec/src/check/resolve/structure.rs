@@ -43,6 +43,7 @@ struct Making<'a> {
     taken: Taken,
     /// Where the member before lies, if it is a `BIT`.
     last_bit: Option<(u32, u8)>,
+    base: Option<TypeId>,
 }
 
 /// Bits that members take: disjoint ranges, end by begin.
@@ -95,13 +96,16 @@ impl<'a> Written<'_, 'a> {
             return None;
         }
         // What has no members takes a byte, so that no array has more elements than bytes.
-        let Making { fields, mut image, starts, .. } = making;
+        let Making { fields, mut image, starts, base, .. } = making;
         image.resize(image.len().max(1), 0);
         let align = self.declarations().types().structure_align(&fields, placing.packing);
         image.resize(align_up(image.len() as u32, align) as usize, 0);
         let image: Arc<[u8]> = image.into();
         let ty = reserved.unwrap_or_else(|| self.declarations_mut().types_mut().structure(name.to_owned()));
         self.declarations_mut().types_mut().complete_structure(ty, fields, align, image.clone());
+        if let Some(base) = base {
+            self.declarations_mut().note_structure_base(ty, base);
+        }
         // What members of other structures do has been said where they are declared.
         let within = |start: &Start<'_>| start.within.or(Some(Within { structure: ty, offset: start.offset }));
         let starts = starts.into_iter().map(|start| Start { within: within(&start), ..start }).collect();
@@ -124,7 +128,7 @@ impl<'a> Written<'_, 'a> {
 
     /// The members of the structure that another adds to, as vendors have it.
     fn extended(&mut self, base: Option<&Ident>) -> Option<Making<'a>> {
-        let (mut fields, mut image, mut starts) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut fields, mut image, mut starts, mut extended) = (Vec::new(), Vec::new(), Vec::new(), None);
         if let Some(name) = base {
             let resolved = self.type_by_name(name, Need::Size)?;
             let Type::Struct { fields: inherited, .. } = self.declarations().types().get(resolved.ty) else {
@@ -133,12 +137,13 @@ impl<'a> Written<'_, 'a> {
                 return None;
             };
             (fields, image, starts) = (inherited.clone(), resolved.image.to_vec(), resolved.starts.to_vec());
+            extended = Some(resolved.ty);
         }
         let mut taken = Taken::default();
         if !image.is_empty() {
             taken.add(0..8 * image.len() as u64);
         }
-        Some(Making { fields, image, starts, taken, last_bit: None })
+        Some(Making { fields, image, starts, taken, last_bit: None, base: extended })
     }
 
     /// Adds a member where its address says, else behind all that there are.

@@ -4,7 +4,7 @@ use crate::diagnostic::Code;
 use crate::ir::ElementaryType;
 
 /// Functions of vendors' controllers that have no equal here, by how their names begin, and what to use.
-pub(in crate::check) const VENDOR_FUNCTIONS: [(&str, Code, &str); 14] = [
+pub(in crate::check) const VENDOR_FUNCTIONS: [(&str, Code, &str); 17] = [
     ("S_PULSE", Code::ClassicTimer, "use TP"),
     ("S_PEXT", Code::ClassicTimer, "use TP"),
     ("S_ODTS", Code::ClassicTimer, "use TON"),
@@ -17,6 +17,13 @@ pub(in crate::check) const VENDOR_FUNCTIONS: [(&str, Code, &str); 14] = [
     ("POKE", Code::VendorRuntime, "declare a variable and use that"),
     ("SYSTIME", Code::VendorRuntime, "TIME() gives virtual time"),
     ("TIME_TCK", Code::VendorRuntime, "use a timer: it counts virtual time"),
+    (
+        "__VARINFO",
+        Code::VendorRuntime,
+        "write what you need of the variable as text: its name, its type, SIZEOF(variable)",
+    ),
+    ("__XADD", Code::VendorRuntime, "add without it: tasks do not interrupt one another here"),
+    ("__COMPARE_AND_SWAP", Code::VendorRuntime, "write IF: tasks do not interrupt one another here"),
     ("__NEW", Code::VendorRuntime, "CODESYS and TwinCAT have it: --dialect chooses"),
     ("__DELETE", Code::VendorRuntime, "CODESYS and TwinCAT have it: --dialect chooses"),
 ];

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::MAX_NESTING;
+use super::here::Here;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::{Dialect, Feature};
 use crate::source::origin::Origin;
@@ -43,6 +44,7 @@ pub(super) struct Cursor<'a> {
     constants: BTreeMap<String, Expr>,
     /// Where generic blocks are named with their constants.
     templates: Vec<TemplateUse>,
+    here: Here,
 }
 
 impl<'a> Cursor<'a> {
@@ -83,6 +85,7 @@ impl<'a> Cursor<'a> {
             in_external: false,
             constants: BTreeMap::new(),
             templates: Vec::new(),
+            here: Here::default(),
         }
     }
 
@@ -163,6 +166,14 @@ impl<'a> Cursor<'a> {
     /// Sets it, and gives that of the unit around.
     pub(super) fn replace_result_name(&mut self, name: Option<String>) -> Option<String> {
         std::mem::replace(&mut self.result_name, name)
+    }
+
+    pub(super) fn here(&self) -> &Here {
+        &self.here
+    }
+
+    pub(super) fn replace_here(&mut self, here: Here) -> Here {
+        std::mem::replace(&mut self.here, here)
     }
 
     /// Sets the constants without a type, and gives those of the unit around.

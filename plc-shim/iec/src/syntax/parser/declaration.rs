@@ -363,7 +363,9 @@ impl Cursor<'_> {
             if !self.at_bare_structure() {
                 self.expect_mark(Punctuation::Colon);
             }
+            let outer = self.enter(&name.text, start);
             let (spec, behind) = self.type_spec_extending();
+            self.replace_here(outer);
             let (initial, extends) = (self.optional_initialiser(), before.or(behind));
             let span = self.span_from(start);
             into.push(Declaration::Type(TypeDeclaration {

@@ -215,7 +215,7 @@ impl Cursor<'_> {
         Some(part)
     }
 
-    fn member_name(&mut self) -> Option<Ident> {
+    pub(super) fn member_name(&mut self) -> Option<Ident> {
         self.expect_identifier("a member's name")
     }
 
@@ -336,6 +336,10 @@ impl Cursor<'_> {
                     self.advance();
                     return value;
                 }
+                if let Some(literal) = self.place_of_text(span) {
+                    self.advance();
+                    return Expr { kind: literal, span: self.span_from(span), height: 1 };
+                }
                 ExprKind::Name(Self::written_name(text, span))
             }
             Some(TokenKind::Integer) if text.contains("__") && self.dialect().has(Feature::LooseUnderscores) => {
@@ -357,6 +361,12 @@ impl Cursor<'_> {
                 ExprKind::Name(Ident { text: text.to_owned(), span })
             }
             Some(TokenKind::Punctuation(Punctuation::LeftParen)) => return self.parenthesised(),
+            Some(TokenKind::Punctuation(Punctuation::Dot)) if self.peek_ahead(1) == Some(TokenKind::Identifier) => {
+                self.require(Feature::GlobalOperator, span);
+                self.advance();
+                let span = span.to(self.span());
+                ExprKind::Name(Ident { text: format!(".{}", self.next_text()), span })
+            }
             _ => {
                 self.unexpected_operand();
                 return error_at(Span { end: span.start, ..span });
@@ -441,7 +451,7 @@ impl Cursor<'_> {
 
     /// A node above others of `height`; one that is too high becomes an error, so that no tree
     /// ever is.
-    fn node(&mut self, kind: ExprKind, span: Span, height: u16) -> Expr {
+    pub(super) fn node(&mut self, kind: ExprKind, span: Span, height: u16) -> Expr {
         if height >= MAX_HEIGHT {
             let message = format!("expression is nested or chained beyond {MAX_HEIGHT} levels");
             let help = "assign parts of it to variables first";

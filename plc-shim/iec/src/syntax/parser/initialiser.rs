@@ -2,7 +2,9 @@
 
 use super::cursor::Cursor;
 use crate::dialect::Feature;
-use crate::syntax::ast::{Initialiser, InitialiserKind, ReferenceKind, StructureInit, TypeSpec, TypeSpecKind};
+use crate::syntax::ast::{
+    Expr, ExprKind, Initialiser, InitialiserKind, ReferenceKind, StructureInit, TypeSpec, TypeSpecKind,
+};
 use crate::syntax::token::{Punctuation, TokenKind};
 
 impl Cursor<'_> {
@@ -87,7 +89,7 @@ impl Cursor<'_> {
         if !repeated && !self.at_named_count() {
             return self.initialiser();
         }
-        let count = Box::new(self.primary());
+        let count = Box::new(self.count());
         self.advance();
         let absent = self.at_mark(Punctuation::RightParen);
         let value = if absent { None } else { Some(Box::new(self.initialiser())) };
@@ -95,15 +97,34 @@ impl Cursor<'_> {
         Initialiser { kind: InitialiserKind::Repeat(count, value), span: self.span_from(start) }
     }
 
-    /// `count((member := ..))`, where a constant says how many structures there are (CODESYS, TwinCAT).
+    /// `count((member := ..))`, `List.count([1, 2])`: a constant says how many structures or arrays there are (CODESYS,
+    /// TwinCAT). With any other value, it is written as a call.
     fn at_named_count(&self) -> bool {
-        let open = Some(TokenKind::Punctuation(Punctuation::LeftParen));
-        self.dialect().has(Feature::ComputedInitialValues)
-            && self.peek() == Some(TokenKind::Identifier)
-            && self.peek_ahead(1) == open
-            && self.peek_ahead(2) == open
-            && self.peek_ahead(3) == Some(TokenKind::Identifier)
-            && self.peek_ahead(4) == Some(TokenKind::Punctuation(Punctuation::Assign))
+        let mark = |mark| Some(TokenKind::Punctuation(mark));
+        let name = Some(TokenKind::Identifier);
+        if self.peek() != name || !self.dialect().has(Feature::NamedCounts) {
+            return false;
+        }
+        let mut at = 1;
+        while self.peek_ahead(at) == mark(Punctuation::Dot) && self.peek_ahead(at + 1) == name {
+            at += 2;
+        }
+        let open = self.peek_ahead(at) == mark(Punctuation::LeftParen);
+        let structure = self.peek_ahead(at + 1) == mark(Punctuation::LeftParen)
+            && self.peek_ahead(at + 2) == name
+            && self.peek_ahead(at + 3) == mark(Punctuation::Assign);
+        open && (structure || self.peek_ahead(at + 1) == mark(Punctuation::LeftBracket))
+    }
+
+    /// What stands before the parenthesis of a count.
+    fn count(&mut self) -> Expr {
+        let mut count = self.primary();
+        while self.take_mark(Punctuation::Dot) {
+            let Some(member) = self.member_name() else { break };
+            let (span, height) = (count.span.to(member.span), count.height);
+            count = self.node(ExprKind::Member(Box::new(count), member), span, height);
+        }
+        count
     }
 
     fn structure_initialiser(&mut self) -> InitialiserKind {

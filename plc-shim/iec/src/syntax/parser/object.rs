@@ -34,10 +34,12 @@ impl Cursor<'_> {
         let generic = self.generic_sections();
         self.heritage(&mut object);
         self.take_mark(Punctuation::Semicolon);
+        let outer = self.enter(&name.text, start);
         let around = self.replace_result_name(result.is_some().then(|| name.text.clone()));
         let mut unit = self.unit_behind_head(kind, end, (name, result, object), start);
         unit.sections.splice(0..0, generic);
         self.replace_result_name(around);
+        self.replace_here(outer);
         Some(unit)
     }
 
@@ -56,7 +58,9 @@ impl Cursor<'_> {
         let from = self.span();
         let members = std::mem::take(&mut object.members);
         let mut parts = UnitParts { sections, members, ..UnitParts::default() };
+        let declared = self.enter_body();
         let body = self.body(end, &mut parts);
+        self.replace_here(declared);
         self.replace_constants(around);
         let UnitParts { sections, members, chart } = parts;
         object.members = members;
@@ -181,6 +185,7 @@ impl Cursor<'_> {
         let spec = self.type_spec();
         self.take_mark(Punctuation::Semicolon);
         let known = members.len();
+        let outer = self.enter(&name.text, name.span);
         loop {
             let (kind, end) = if self.at_word("GET") {
                 (MemberKind::Getter, Keyword::EndGet)
@@ -194,10 +199,13 @@ impl Cursor<'_> {
             let own = self.accessor_access();
             let object = Object { modifiers: [own, modifiers.clone()].concat(), ..Object::default() };
             let head = (name.clone(), Some(spec.clone()), object);
+            let around = self.enter(if kind == MemberKind::Getter { "Get" } else { "Set" }, start);
             let pou = self.unit_behind_head(PouKind::Method, end, head, start);
+            self.replace_here(around);
             members.push(Member { kind, pou });
             self.take_mark(Punctuation::Semicolon);
         }
+        self.replace_here(outer);
         if members.len() == known {
             self.unexpected("`GET` or `SET`");
         }
@@ -278,7 +286,9 @@ impl Cursor<'_> {
             return self.skip_until(begins_declaration);
         };
         let name = self.qualified(name);
+        let outer = self.enter_namespace(&name.text, name.span);
         let inner = self.nested(Self::namespace_content);
+        self.replace_here(outer);
         let (using, declarations) = inner.unwrap_or_default();
         if !self.take_keyword(Keyword::EndNamespace) {
             self.unexpected("`END_NAMESPACE`");

@@ -4,6 +4,7 @@ use super::Matched;
 use crate::check::body::place::Access;
 use crate::check::body::{Body, Meant};
 use crate::check::types::constant::decode;
+use crate::check::types::number::as_number;
 use crate::check::types::operand::{Operand, constant};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::{Feature, StringMemory};
@@ -106,7 +107,8 @@ impl Body<'_, '_> {
         let is_alike = place.ty == parameter.ty
             || self.derives(place.ty, parameter.ty)
             || self.begins_as(place.ty, parameter.ty)
-            || self.is_number_of(place.ty, parameter.ty, expr.span);
+            || self.is_number_of(place.ty, parameter.ty, expr.span)
+            || self.has_bits_of(place.ty, parameter.ty, expr.span);
         if !is_alike {
             let (wanted, found) = (self.type_name(parameter.ty), self.type_name(place.ty));
             let message = format!("VAR_IN_OUT `{}` is {wanted}, this is {found}", parameter.name);
@@ -162,6 +164,16 @@ impl Body<'_, '_> {
     fn is_number_of(&self, found: TypeId, wanted: TypeId, span: Span) -> bool {
         let base = self.base_of_enumeration(found, span);
         base.is_some_and(|base| wanted == base.into())
+    }
+
+    /// True for a UINT where a WORD is wanted, and the like, as vendors have it: both are the same bits.
+    fn has_bits_of(&self, found: TypeId, wanted: TypeId, span: Span) -> bool {
+        let types = self.declarations.types();
+        let has = self.declarations.dialect(span).has(Feature::BitsInOut);
+        match (types.get(found), types.get(wanted)) {
+            (Type::Elementary(found), Type::Elementary(wanted)) => has && as_number(*found) == as_number(*wanted),
+            _ => false,
+        }
     }
 
     /// True for a structure that adds to another one, whose members it begins with, and for a longer string.

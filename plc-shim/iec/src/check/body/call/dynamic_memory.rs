@@ -3,7 +3,7 @@
 //! The memory is that of `OnescanMemory` in the libraries here, which belongs to the program's variables: what is taken
 //! where depends on the calls alone, and a saved state has all of it.
 
-use crate::check::body::{Body, Meant};
+use crate::check::body::Body;
 use crate::check::declare::Occasion;
 use crate::check::types::build::{assign, load, operation, when};
 use crate::check::types::operand::{Operand, constant, converted};
@@ -70,7 +70,7 @@ impl Body<'_, '_> {
             ast::ExprKind::Call(inner) => (&*inner.callee, inner.arguments.as_slice()),
             _ => (written, [].as_slice()),
         };
-        let Some(ty) = self.text_made(written).or_else(|| self.type_named(named)) else {
+        let Some(ty) = self.text_type_written(written).or_else(|| self.type_named(named)) else {
             let message = "a type is wanted here";
             self.report(Diagnostic::error(Code::NotAVariable, named.span, message));
             return None;
@@ -85,21 +85,6 @@ impl Body<'_, '_> {
         let value = Expr { ty: pointer, ..load(&Self::number(address, span)) };
         let kind = ExprKind::After(statements, Some(Box::new(value)));
         Some(Operand::Typed(Expr { kind, ty: pointer, span }))
-    }
-
-    /// `__NEW(STRING)`, `__NEW(STRING(n))`
-    fn text_made(&mut self, written: &ast::Expr) -> Meant<TypeId> {
-        let (named, length) = match &written.kind {
-            ast::ExprKind::Call(inner) => (&*inner.callee, inner.arguments.first().and_then(positional)),
-            _ => (written, None),
-        };
-        let ast::ExprKind::Name(name) = &named.kind else { return None };
-        let wide = match name.key().as_str() {
-            "STRING" => false,
-            "WSTRING" => true,
-            _ => return None,
-        };
-        Some(self.text_type(wide, length, written.span))
     }
 
     fn number(register: LocalId, span: Span) -> Place {

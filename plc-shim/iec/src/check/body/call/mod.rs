@@ -101,7 +101,7 @@ impl Body<'_, '_> {
     }
 
     fn is_local(&self, name: &Ident) -> bool {
-        !name.is_quoted() && self.is_callable_variable(&name.key())
+        !name.is_global() && self.is_callable_variable(&name.key())
     }
 
     /// True for a variable of the unit, and for an instance among those that its methods see. Of these

@@ -15,6 +15,7 @@ impl Body<'_, '_> {
             Operand::Real { span, .. } => self.mismatch("an integer", "a real number", span),
             Operand::Text { span, .. } => self.mismatch("an integer", "a string", span),
             Operand::Typed(typed) => {
+                let typed = self.as_index(typed);
                 let integer = self.elementary(typed.ty).is_some_and(ElementaryType::is_integer);
                 if !integer {
                     let found = self.type_name(typed.ty);
@@ -23,6 +24,13 @@ impl Body<'_, '_> {
                 self.value_of(&typed)?.as_int()
             }
         }
+    }
+
+    /// True for the name of a constant that is a number.
+    pub(in crate::check) fn is_constant_named(&mut self, expr: &ast::Expr) -> bool {
+        let qualified = self.qualified_name(expr);
+        let ((ast::ExprKind::Name(name), _) | (_, Some(name))) = (&expr.kind, &qualified) else { return false };
+        matches!(self.variable_named(name), Some(Ok(variable)) if variable.is_constant && variable.constant.is_some())
     }
 
     /// The value of a constant expression as one of type `ty`.

@@ -52,6 +52,9 @@ impl Body<'_, '_> {
             (Operand::Typed(expr), None) if self.is_alike_structure(expr.ty, target, expr.span) => {
                 Some(Expr { ty: target, ..expr })
             }
+            (Operand::Typed(expr), None) if self.has_base_part(expr.ty, target, expr.span) => {
+                Some(Expr { ty: target, ..expr })
+            }
             (Operand::Typed(expr), Some(wanted)) => match self.value_as_number(&expr, wanted) {
                 Some(value) => Some(value),
                 None => self.widen(expr, wanted),
@@ -75,6 +78,12 @@ impl Body<'_, '_> {
         let nameless = |ty| matches!(types.get(ty), Type::Struct { name, .. } if name == NAMELESS);
         let has = self.declarations.dialect(span).has(Feature::AlikeStructures);
         has && (nameless(found) || nameless(wanted)) && is_alike(types, found, wanted)
+    }
+
+    /// True for a structure that extends the wanted one, whose members it begins with, where the dialect copies that part.
+    fn has_base_part(&self, found: TypeId, wanted: TypeId, span: Span) -> bool {
+        let has = self.declarations.dialect(span).has(Feature::BaseParts);
+        has && self.declarations.structure_extends(found, wanted)
     }
 
     fn is_generic_value(&self, expr: &Expr, target: TypeId) -> bool {

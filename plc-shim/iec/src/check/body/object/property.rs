@@ -27,7 +27,7 @@ impl Body<'_, '_> {
 
     fn own_property_object(&mut self, name: &Ident) -> Option<Object> {
         let key = name.key();
-        if !self.declarations.has_property_named(&key) || self.scope.declares(&key) {
+        if !self.declarations.has_property_named(&key) || self.scope.declares(&key) || name.is_global() {
             return None;
         }
         let class = self.own_class()?;

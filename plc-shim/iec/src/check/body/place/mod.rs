@@ -229,7 +229,7 @@ impl Body<'_, '_> {
     /// The variable of this name; an error is one that has been reported.
     pub(in crate::check) fn variable_named(&mut self, name: &Ident) -> Option<Result<Variable, ()>> {
         let key = name.key();
-        let local = !name.is_quoted() || self.is_own_result(name);
+        let local = !name.is_global() || self.is_own_result(name);
         if local && self.scope.is_broken(&key) {
             return Some(Err(()));
         }

@@ -8,7 +8,7 @@ impl Body<'_, '_> {
     pub(in crate::check) fn qualified_name(&self, expr: &ast::Expr) -> Option<Ident> {
         let ast::ExprKind::Member(base, last) = &expr.kind else { return None };
         let first = match &base.kind {
-            ast::ExprKind::Name(name) if !self.scope.declares(&name.key()) => name.clone(),
+            ast::ExprKind::Name(name) if name.is_global() || !self.scope.declares(&name.key()) => name.clone(),
             // What a variable or a program of a namespace has are members.
             _ => self.qualified_name(base).filter(|name| !self.is_global(name))?,
         };

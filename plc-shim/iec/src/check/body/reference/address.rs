@@ -130,8 +130,24 @@ impl Body<'_, '_> {
                 self.names_type(&name).then(|| self.declarations.type_meant(&name))
             }
             ast::ExprKind::Type(spec) => Some(self.type_specified(spec)),
-            _ => None,
+            _ => self.text_type_written(expr),
         }
+    }
+
+    /// `STRING`, `STRING(n)` and `WSTRING[n]` where a type may stand.
+    pub(in crate::check::body) fn text_type_written(&mut self, expr: &ast::Expr) -> Meant<TypeId> {
+        let (named, length) = match &expr.kind {
+            ast::ExprKind::Call(inner) => (&*inner.callee, inner.arguments.first().and_then(positional)),
+            ast::ExprKind::Index(named, indices) => (&**named, indices.first()),
+            _ => (expr, None),
+        };
+        let ast::ExprKind::Name(name) = &named.kind else { return None };
+        let wide = match name.key().as_str() {
+            "STRING" => false,
+            "WSTRING" => true,
+            _ => return None,
+        };
+        Some(self.text_type(wide, length, expr.span))
     }
 
     /// The same where nothing but a type may stand: a variable of the name is not meant.
@@ -156,6 +172,9 @@ impl Body<'_, '_> {
             ast::TypeSpecKind::Reference(kind, inner) => {
                 let target = self.type_specified(inner)?;
                 Some(self.declarations.types_mut().reference(Some(*kind), target))
+            }
+            ast::TypeSpecKind::String(name, length) => {
+                self.text_type(name.key() == "WSTRING", length.as_deref(), spec.span)
             }
             _ => {
                 let message = "the name of a type is wanted here";
