@@ -167,3 +167,97 @@ fn views_that_would_show_something_else_are_refused() {
     let other = "PROGRAM P VAR a : WORD; b AT a : BYTE; END_VAR b := 1; END_PROGRAM";
     insta::assert_snapshot!(findings_in(Dialect::Iec3, other), @"test.st:1:30: error[S0110]: a view of another variable's memory, `b AT a : DWORD` is not part of iec3 (it is part of siemens-scl: --dialect chooses)");
 }
+
+/// Timers as TIA Portal inserts them: a data block of each, or a variable of the block.
+#[test]
+fn timers_and_counters_are_called_by_what_they_do() {
+    let text = r#"
+DATA_BLOCK "IEC_Timer_0_DB"
+{InstructionName := 'IEC_TIMER';
+LibVersion := '1.0';
+S7_Optimized_Access := 'TRUE' }
+AUTHOR : Simatic
+FAMILY : IEC
+NAME : IEC_TMR
+VERSION : 1.0
+NON_RETAIN
+IEC_TIMER
+
+BEGIN
+
+END_DATA_BLOCK
+
+DATA_BLOCK "IEC_Counter_0_DB"
+{InstructionName := 'IEC_COUNTER';
+LibVersion := '1.0';
+S7_Optimized_Access := 'TRUE' }
+VERSION : 1.0
+IEC_COUNTER
+BEGIN
+END_DATA_BLOCK
+
+FUNCTION_BLOCK "Line"
+{ S7_Optimized_Access := 'TRUE' }
+VERSION : 0.1
+   VAR_INPUT
+      run : Bool;
+      reset : Bool;
+   END_VAR
+   VAR_OUTPUT
+      on : Bool;
+      off : Bool;
+      pulse : Bool;
+      kept : Bool;
+      passed : Time;
+      full : Bool;
+      empty : Bool;
+      count : Int;
+   END_VAR
+   VAR
+      t {InstructionName := 'IEC_TIMER'; LibVersion := '1.0'} : IEC_TIMER;
+      u : IEC_TIMER;
+      v : Array[0..1] of IEC_TIMER;
+      c {InstructionName := 'IEC_COUNTER'; LibVersion := '1.0'} : IEC_COUNTER;
+      d : IEC_DCOUNTER;
+   END_VAR
+BEGIN
+	"IEC_Timer_0_DB".TON(IN := #run,
+	                     PT := T#30ms,
+	                     Q => #on);
+	#t.TOF(IN := #run, PT := T#20ms, Q => #off);
+	#u.TP(IN := #run, PT := T#20ms);
+	#pulse := #u.Q;
+	#v[1].TONR(IN := #run, R := #reset, PT := T#40ms, Q => #kept, ET => #passed);
+	"IEC_Counter_0_DB".CTUD(CU := #run, CD := #reset, R := FALSE, LD := FALSE, PV := 2, QU => #full, QD => #empty, CV => #count);
+	#c.CTU(CU := #run, R := FALSE, PV := 1);
+	#d.CTD(CD := #run, LD := #reset, PV := 5);
+END_FUNCTION_BLOCK
+
+DATA_BLOCK "Line_DB"
+"Line"
+BEGIN
+END_DATA_BLOCK
+
+ORGANIZATION_BLOCK "Main"
+VERSION : 0.1
+BEGIN
+	"Line_DB"();
+END_ORGANIZATION_BLOCK
+"#;
+    assert_eq!(findings_in(SiemensScl, text).to_string(), "");
+    let mut rig = Rig::in_dialect(SiemensScl, text);
+    let drawn = |rig: &mut Rig, run: bool, reset: bool| {
+        rig.plc.write("Line_DB.run", if run { "TRUE" } else { "FALSE" }).expect("an input");
+        rig.plc.write("Line_DB.reset", if reset { "TRUE" } else { "FALSE" }).expect("an input");
+        rig.scan().expect("no fault");
+        let level = |name: &str| if rig.bool(&format!("Line_DB.{name}")) { '#' } else { '.' };
+        ["on", "off", "pulse", "kept"].map(level).into_iter().collect::<String>()
+    };
+    let scans = [true, true, true, true, false, false, false, true, true].map(|run| drawn(&mut rig, run, false));
+    assert_eq!(scans, [".##.", ".##.", ".#..", "##..", ".#..", ".#..", "....", ".##.", ".###"]);
+    assert_eq!(rig.plc.read("Line_DB.passed").expect("a duration"), "T#40ms");
+    assert_eq!(drawn(&mut rig, true, true), ".#..");
+    assert_eq!([rig.int("Line_DB.count"), rig.int("IEC_Counter_0_DB.CV"), rig.int("Line_DB.c.CV")], [1, 1, 2]);
+    assert_eq!(rig.int("Line_DB.d.CV"), 5);
+    assert!(rig.bool("Line_DB.c.QU") && !rig.bool("Line_DB.full"));
+}

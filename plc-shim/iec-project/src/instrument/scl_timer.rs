@@ -17,7 +17,7 @@ use onescan_iec::syntax::walk::{self, Visitor};
 use onescan_iec::syntax::{FileId, Span};
 
 /// What a call on an instance may name.
-const TIMERS: [&str; 3] = ["TON", "TOF", "TP"];
+const TIMERS: [&str; 4] = ["TON", "TOF", "TP", "TONR"];
 /// The type of a timer that is called as any of them.
 const ANY_TIMER: &str = "IEC_TIMER";
 

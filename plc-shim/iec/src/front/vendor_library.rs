@@ -92,6 +92,7 @@ const PARTS: &[Part] = parts![
     SiemensScl SCL, "siemens_conversion";
     SiemensScl SCL, "siemens_time";
     Iec3 SCL, "siemens_clock";
+    Iec3 SCL, "siemens_timers";
     TwinCat SCL, "siemens_open_communication";
     TwinCat SCL, "siemens_point_to_point";
     Codesys AX, "ax_unit";

@@ -208,10 +208,24 @@ fn timers_without_a_kind_take_that_of_their_calls() {
     assert!(text.contains("t, u : \"SDSP_TOF_TIME\"(*@sdsp was IEC_TIMER*);"), "{text}");
     assert!(text.contains("#t(*@sdsp cut .TOF*)(IN := TRUE") && text.contains("#w[1](*@sdsp cut .TP*)();"), "{text}");
     assert_eq!(project.warnings.to_string(), "");
-    for statements in ["#t.TON();\n#t.TOF();", "", "#t.TON();\nRESET_TIMER(#t);", "\"G\".t.TON();"] {
+    for statements in [
+        "#t.TON();\n#t.TOF();",
+        "",
+        "#t.TON();\nRESET_TIMER(#t);",
+        "\"G\".t.TON();",
+        "#t.TONR();",
+        "#t.TON();\n#t.TONR();",
+    ] {
         let project = round_trip(&given(&block("t : IEC_TIMER;", statements)), &options());
         assert!(project.warnings.to_string().contains("I1001"), "{statements}: {}", project.warnings);
     }
+    let global = block("r : Bool;", "\"IEC_Timer_0_DB\".TON(IN := TRUE, PT := T#1s, Q => #r);")
+        + "DATA_BLOCK \"IEC_Timer_0_DB\"\nVERSION : 1.0\nIEC_TIMER\nBEGIN\nEND_DATA_BLOCK\n";
+    let project = round_trip(&given(&global), &options());
+    let text = project.files[0].text.as_deref().expect("a text");
+    assert!(text.contains("\"SDSP_TON_TIME\"(*@sdsp was IEC_TIMER*)"), "{text}");
+    assert!(text.contains("\"IEC_Timer_0_DB\"(*@sdsp cut .TON*)(IN := TRUE, PT := T#1s, Q => #r)"), "{text}");
+    assert_eq!(project.warnings.to_string(), "");
     let project = round_trip(&given(&block("t : IEC_TIMER;", "#t.TON();\n#t.TOF();")), &options());
     assert!(!project.files[0].text.as_deref().expect("a text").contains("cut"), "{:?}", project.files[0].text);
 }
