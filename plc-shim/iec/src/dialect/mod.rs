@@ -387,6 +387,7 @@ features! {
     GlobalOperator "a point before the name of what is global, `.name`",
     PlacesOfText "`__POUNAME()`, `__POSITION()`",
     BitsInOut "an unsigned integer for a `VAR_IN_OUT` that is a bit string, or the other way",
+    EmptyLists "a call without arguments where each input has a value of its own",
     NamedCounts "a count of equal initial values by its name, `[N(5), 7]`",
 }
 

@@ -176,6 +176,11 @@ pub const FEATURES: &[FeatureRow] = &[
         "CODESYS: operators __POUNAME, __POSITION; TwinCAT: accepts them, as public projects show",
     ),
     row(Feature::BitsInOut, &[Codesys, TwinCat], "TwinCAT: accepts it, as public projects show"),
+    row(
+        Feature::EmptyLists,
+        &[Iec3, Codesys, TwinCat],
+        "SIMATIC AX: accepts it, as public projects show; CODESYS and TwinCAT: FUNCTION, optional inputs",
+    ),
     row(Feature::NamedCounts, &[Codesys, TwinCat], "TwinCAT: accepts it, as public projects show"),
 ];
 

@@ -41,9 +41,17 @@ impl Body<'_, '_> {
     fn has_own_value(&self, parameter: &Variable, call: Span) -> bool {
         let is_allowed = |at: Span| self.declarations.dialect(at).has(Feature::LeftOutInputs);
         // The caller may be of such a dialect, or what it calls: stubs are plain text.
-        let Some(owner) = parameter.owner.filter(|_| is_allowed(parameter.span) || is_allowed(call)) else {
-            return false;
-        };
+        (is_allowed(parameter.span) || is_allowed(call)) && self.is_declared_with_value(parameter)
+    }
+
+    /// True for a list that leaves out an input by its name: with names, or, where that has a value, without anything.
+    pub(in crate::check::body) fn leaves_out(&self, parameter: &Variable, call: &ast::Call, formal: bool) -> bool {
+        let may_be_empty = self.declarations.dialect(call.callee.span).has(Feature::EmptyLists);
+        formal || may_be_empty && call.arguments.is_empty() && self.is_declared_with_value(parameter)
+    }
+
+    fn is_declared_with_value(&self, parameter: &Variable) -> bool {
+        let Some(owner) = parameter.owner else { return false };
         let mut declared = self.declarations.pou(owner).ast().sections.iter().flat_map(|section| &section.variables);
         let is_it = |variable: &&ast::Variable| variable.names.iter().any(|name| name.span == parameter.span);
         declared.find(is_it).is_some_and(|variable| variable.initial.is_some())

@@ -378,7 +378,7 @@ impl Body<'_, '_> {
                 _ if parameter::is_control(parameter) => Some(Argument::Value(enable::boolean(true, span))),
                 Some(expr) => self.argument(parameter, expr, &mut passing),
                 None if self.declarations.is_library(id) && asserts::is_site(parameter) => Some(asserts::site(span)),
-                None => self.default_argument(parameter, formal, span),
+                None => self.default_argument(parameter, self.leaves_out(parameter, call, formal), span),
             };
             sound &= argument.is_some();
             arguments.extend(argument);

@@ -189,7 +189,7 @@ impl Body<'_, '_> {
                 // The call is carried out, or the method would not read it.
                 _ if parameter::is_control(parameter) => Some(Argument::Value(enable::boolean(true, span))),
                 Some(expr) => self.argument(parameter, expr, &mut passing),
-                None => self.default_argument(parameter, formal, span),
+                None => self.default_argument(parameter, self.leaves_out(parameter, call, formal), span),
             };
             sound &= argument.is_some();
             arguments.extend(argument);
