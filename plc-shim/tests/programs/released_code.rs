@@ -42,6 +42,14 @@ fn equal_initial_values_are_counted_by_name() {
            r := INT_TO_DINT(a[2].l) * 10000 + a[3].k * 1000 + b[1] * 100 + b[2] * 10 + c[1][1]; END_PROGRAM",
         56_813,
     );
+    gives(
+        "NAMESPACE OPEN GVL VAR_GLOBAL CONSTANT n : UINT := 2; END_VAR END_NAMESPACE
+         PROGRAM P VAR a : ARRAY [1..3] OF INT := [GVL.n(5), GVL.n - 1]; r : INT; END_VAR
+           r := a[1] * 100 + a[2] * 10 + a[3]; END_PROGRAM",
+        551,
+    );
+    let text = "PROGRAM P VAR n : INT := 2; a : ARRAY [1..2] OF INT := [n(5)]; END_VAR a[1] := a[2]; END_PROGRAM";
+    assert!(findings_in(TwinCat, text).to_string().contains("a constant is wanted here"));
     // A function is called, as before.
     gives(
         "FUNCTION F : INT VAR_INPUT x : INT; END_VAR F := 2 * x; END_FUNCTION

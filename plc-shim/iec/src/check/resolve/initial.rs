@@ -290,7 +290,7 @@ impl<'a> Written<'_, 'a> {
         Some(())
     }
 
-    /// `N(5)` is five `N` times where `N` is a constant, and else a call (CODESYS, TwinCAT).
+    /// `N(5)` is five `N` times where `N` is a variable, which must be a constant, and else a call (CODESYS, TwinCAT).
     fn named_count(&mut self, expr: &'a Expr) -> Option<(&'a Expr, Option<&'a Expr>)> {
         let ExprKind::Call(call) = &expr.kind else { return None };
         let value = match &call.arguments[..] {
@@ -298,8 +298,7 @@ impl<'a> Written<'_, 'a> {
             [Argument::Positional(value)] => Some(value),
             _ => return None,
         };
-        if !self.declarations().dialect(expr.span).has(Feature::NamedCounts)
-            || !self.body.is_constant_named(&call.callee)
+        if !self.declarations().dialect(expr.span).has(Feature::NamedCounts) || !self.body.is_value_named(&call.callee)
         {
             return None;
         }

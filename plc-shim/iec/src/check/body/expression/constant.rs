@@ -26,11 +26,11 @@ impl Body<'_, '_> {
         }
     }
 
-    /// True for the name of a constant that is a number.
-    pub(in crate::check) fn is_constant_named(&mut self, expr: &ast::Expr) -> bool {
+    /// True for the name of a variable with one value, be it a constant or, as an error, not.
+    pub(in crate::check) fn is_value_named(&mut self, expr: &ast::Expr) -> bool {
         let qualified = self.qualified_name(expr);
         let ((ast::ExprKind::Name(name), _) | (_, Some(name))) = (&expr.kind, &qualified) else { return false };
-        matches!(self.variable_named(name), Some(Ok(variable)) if variable.is_constant && variable.constant.is_some())
+        matches!(self.variable_named(name), Some(Ok(variable)) if self.elementary(variable.ty).is_some())
     }
 
     /// The value of a constant expression as one of type `ty`.
