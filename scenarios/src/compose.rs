@@ -10,7 +10,7 @@ use onescan_iec::input::kind::{FileKind, SourceKind};
 use onescan_iec::{Dialect, Input, MemoryLimit, Task, TaskPlan};
 use onescan_iec_run::{Application, Builder};
 use onescan_operator::operator::Operator;
-use onescan_plant::{Inside, Overlap, Plant, Scene, SceneError, SceneFault};
+use onescan_plant::{Excess, Inside, Overlap, Plant, Scene, SceneError, SceneFault};
 use onescan_server::client::{Client, JoinRequest};
 use onescan_server::signal::{ClientName, Port, SignalName, did_you_mean};
 use onescan_soft_plc::watch::Sightings;
@@ -96,6 +96,22 @@ impl Scenario {
             let overlaps = self.scene_once(name, scene)?.overlaps();
             if !overlaps.is_empty() {
                 found.push((name.clone(), overlaps));
+            }
+        }
+        Ok(found)
+    }
+
+    /// What the scene of each plant asks for beyond what it can carry at its physics step, of each plant that has such.
+    ///
+    /// # Errors
+    /// A plant's scene is wrong.
+    pub fn excesses(&self) -> Result<Vec<(ClientName, Vec<Excess>)>, ScenarioError> {
+        let mut found = Vec::new();
+        for (name, client) in &self.file().clients {
+            let ClientFile::Plant { scene, period, .. } = client.get_ref() else { continue };
+            let excesses = self.scene_once(name, scene)?.excesses(period.unwrap_or(self.file().step));
+            if !excesses.is_empty() {
+                found.push((name.clone(), excesses));
             }
         }
         Ok(found)

@@ -165,3 +165,43 @@ position_m = [50.0, 0.0, 0.0499]
     let warned = run.err.replace('\n', " ");
     assert_eq!(warned.matches("overlap by 0.100 mm").count(), 1, "{}", run.err);
 }
+
+/// A spring that is too fast for the step: `describe` names it at its end, and so does a run, once.
+#[test]
+fn what_a_plant_cannot_carry_is_named() {
+    let folder = copied_shear();
+    let scene = folder.path().join("plant.toml");
+    let more = r#"
+[[body]]
+name = "wagging"
+kind = "dynamic"
+shape = "box"
+size_m = [0.1, 0.1, 0.1]
+mass_kg = 1.0
+position_m = [50.0, 0.0, 0.0]
+[[joint]]
+name = "wag"
+kind = "prismatic"
+parent = "ground"
+child = "wagging"
+axis = [1, 0, 0]
+[[fitting]]
+name = "leaf"
+joint = "wag"
+spring_n_m = 400000.0
+"#;
+    let text = std::fs::read_to_string(&scene).expect("a scene") + more;
+    std::fs::write(&scene, text).expect("it is written");
+    let described = typed(folder.path(), &["describe", "plant.toml"]);
+    let last = described.out.lines().last().unwrap_or_default();
+    assert_eq!(
+        last, "  the spring of `leaf` on joint `wag` swings with 100.7 Hz, which takes a physics step of 2 ms",
+        "{}",
+        described.out
+    );
+    let json = typed(folder.path(), &["describe", "plant.toml", "--format", "json"]);
+    let json: serde_json::Value = serde_json::from_str(&json.out).expect("JSON");
+    assert_eq!(json["excesses"][0]["kind"], "swing", "{json}");
+    let run = typed(folder.path(), &["run", ".", "--until", "20ms", "--runs", "2"]);
+    assert_eq!(run.err.replace('\n', " ").matches("100.7 Hz").count(), 1, "{}", run.err);
+}

@@ -27,6 +27,7 @@
 //! | `part` | a component of the scene, bound to signals, other components and the world |
 //! | `machine` | all of these, one turn at a time |
 //! | `overlap` | bodies that are in each other at the start |
+//! | `excess` | what a scene asks for beyond what the plant can carry at its step |
 //! | `layout_mismatch` | why a saved state does not belong to this plant |
 //! | `lateness` | how late a value arrives: a constant, an even part, a normal part |
 //! | `channel` | what happens to signals between the plant and the PLC |
@@ -55,6 +56,7 @@ pub mod component;
 mod coupled;
 pub mod coupling;
 mod effort;
+mod excess;
 mod failure;
 mod file_place;
 mod fitting;
@@ -81,6 +83,7 @@ mod temperature_field;
 mod world;
 
 pub use client::Plant;
+pub use excess::{Excess, HULL_POINTS_MAX, MASS_RATIO_MAX, STEPS_A_SWING, TRIANGLES_MAX};
 pub use failure::FailureRefused;
 pub use file_place::{Place, Source};
 pub use form::{Form, Frame, Geometry};

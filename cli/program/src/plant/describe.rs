@@ -4,9 +4,9 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use onescan_base::regular::Within;
-use onescan_plant::Overlap;
 use onescan_plant::component::open_inputs;
 use onescan_plant::scene::model::{Body, BodyKind, Component, Mass, Moved, Scene, Sensing, Shape, Wire};
+use onescan_plant::{Excess, Overlap};
 use onescan_report::OutputError;
 use onescan_report::file::write_whole;
 use onescan_report::view::Side;
@@ -14,6 +14,7 @@ use onescan_scenario::compose::report;
 use onescan_scenario::file::ClientFile;
 use onescan_scenario::permission::granted;
 use onescan_scenario::{Scenario, ScenarioError};
+use onescan_server::time::TimeSpan;
 use serde::Serialize;
 
 use super::error::PlantError;
@@ -41,7 +42,12 @@ struct Described<'s> {
     scene: &'s Scene,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     overlaps: Vec<Overlap>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    excesses: Vec<Excess>,
 }
+
+/// A scene that stands alone is looked at as in turns of this period, that of a new scenario.
+const USUAL_PERIOD: TimeSpan = TimeSpan::from_millis(10).expect("not zero");
 
 /// Reads the scene of a file, or those of a scenario's plants, and writes what it is made of; draws it if that is wanted.
 ///
@@ -51,11 +57,11 @@ struct Described<'s> {
 pub fn write(config: &DescribeConfig, out: &mut dyn Write) -> Result<(), PlantError> {
     let DescribeConfig { path, format, svg, side } = config;
     let (scenes, within) = scenes(path)?;
-    if let (Some(_), [_, other, ..]) = (svg, &scenes[..]) {
+    if let (Some(_), [_, (other, _), ..]) = (svg, &scenes[..]) {
         let help = format!("give the scene to draw, as `onescan describe {} --svg FILE`", other.display());
         return Err(Usage::new(format!("{} has several scenes", path.display()), Some(help)).into());
     }
-    for path in &scenes {
+    for (path, period) in &scenes {
         if scenes.len() > 1 && *format == Format::Human {
             writeln!(out, "{}", path.display()).map_err(OutputError)?;
         }
@@ -65,25 +71,28 @@ pub fn write(config: &DescribeConfig, out: &mut dyn Write) -> Result<(), PlantEr
         }
         match format {
             Format::Json => {
-                let whole = Described { scene: &scene, overlaps: scene.overlaps() };
+                let excesses = scene.excesses(*period);
+                let whole = Described { scene: &scene, overlaps: scene.overlaps(), excesses };
                 serde_json::to_writer_pretty(&mut *out, &whole).map_err(io::Error::from).map_err(OutputError)?;
                 writeln!(out).map_err(OutputError)?;
             }
-            Format::Human => tree(&scene, out).map_err(OutputError)?,
+            Format::Human => tree(&scene, *period, out).map_err(OutputError)?,
         }
     }
     Ok(())
 }
 
-/// The scene files behind a path, and what they may read.
-fn scenes(path: &Path) -> Result<(Vec<PathBuf>, Within), PlantError> {
+/// The scene files behind a path, each with the period of its plant's turns, and what they may read.
+fn scenes(path: &Path) -> Result<(Vec<(PathBuf, TimeSpan)>, Within), PlantError> {
     if !path.is_dir() {
         let folder = path.parent().unwrap_or_else(|| Path::new(""));
-        return Ok((vec![path.to_owned()], granted().within(folder)));
+        return Ok((vec![(path.to_owned(), USUAL_PERIOD)], granted().within(folder)));
     }
     let scenario = Scenario::load(path)?;
     let scenes = scenario.file().clients.values().filter_map(|client| match client.get_ref() {
-        ClientFile::Plant { scene, .. } => Some(scenario.folder().join(scene)),
+        ClientFile::Plant { scene, period, .. } => {
+            Some((scenario.folder().join(scene), period.unwrap_or(scenario.file().step)))
+        }
         _ => None,
     });
     let scenes: Vec<_> = scenes.collect();
@@ -103,7 +112,7 @@ fn read(path: &Path, within: &Within) -> Result<Scene, PlantError> {
     Ok(scene.map_err(|error| ScenarioError::from(Box::new(report(&error, &file, &text))))?)
 }
 
-fn tree(scene: &Scene, out: &mut dyn Write) -> io::Result<()> {
+fn tree(scene: &Scene, period: TimeSpan, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "bodies and joints")?;
     writeln!(out, "  ground")?;
     hanging(scene, None, 2, out)?;
@@ -136,10 +145,15 @@ fn tree(scene: &Scene, out: &mut dyn Write) -> io::Result<()> {
     )?;
     section(out, "assemblies", scene.assemblies().iter().map(|(name, kind)| format!("{name}: {kind}")))?;
     section(out, "components", scene.components.iter().map(|component| one(component, scene)))?;
-    section(out, "overlaps", scene.overlaps().iter().map(ToString::to_string))?;
-    section(out, "remarks", scene.remarks.iter().cloned())?;
     section(out, "reads", scene.reads.iter().map(|port| format!("{} : {}", port.name, port.ty)))?;
-    section(out, "writes", scene.writes.iter().map(|port| format!("{} : {}", port.name, port.ty)))
+    section(out, "writes", scene.writes.iter().map(|port| format!("{} : {}", port.name, port.ty)))?;
+    section(out, "remarks", scene.remarks.iter().cloned())?;
+    section(out, "overlaps", scene.overlaps().iter().map(ToString::to_string))?;
+    let title = match scene.substeps {
+        1 => format!("beyond what a plant can carry in turns of {period}"),
+        substeps => format!("beyond what a plant can carry in turns of {period} with {substeps} physics steps"),
+    };
+    section(out, &title, scene.excesses(period).iter().map(ToString::to_string))
 }
 
 fn section(out: &mut dyn Write, title: &str, lines: impl Iterator<Item = String>) -> io::Result<()> {

@@ -1,15 +1,23 @@
 //! What the scenario cannot carry or leaves open, said once as the first run begins.
 
 use onescan_base::notice::NOTICE;
+use onescan_plant::Excess;
 use onescan_scenario::Scenario;
 
 use super::error::RunError;
 
-/// Says which bodies are in each other, and which inputs of PLCs nobody drives.
+/// Says which bodies are in each other, what scenes ask for beyond what they can carry, and which inputs of PLCs
+/// nobody drives.
 ///
 /// # Errors
 /// A client's files are wrong.
 pub(crate) fn warn(scenario: &Scenario) -> Result<(), RunError> {
+    warn_of_overlaps(scenario)?;
+    warn_of_excesses(scenario)?;
+    warn_of_undriven_inputs(scenario)
+}
+
+fn warn_of_overlaps(scenario: &Scenario) -> Result<(), RunError> {
     for (plant, overlaps) in scenario.overlaps()? {
         for overlap in overlaps {
             tracing::warn!(
@@ -19,6 +27,30 @@ pub(crate) fn warn(scenario: &Scenario) -> Result<(), RunError> {
             );
         }
     }
+    Ok(())
+}
+
+fn warn_of_excesses(scenario: &Scenario) -> Result<(), RunError> {
+    for (plant, excesses) in scenario.excesses()? {
+        for excess in excesses {
+            let help = match &excess {
+                Excess::Swing { .. } | Excess::TimeConstant { .. } => {
+                    "set `substeps` in the scene, or a shorter `period` of the plant"
+                }
+                Excess::MassRatio { .. } => {
+                    "contacts and loops between them are inexact: raise `solver_iterations`, or make the light one heavier"
+                }
+                Excess::Hull { .. } | Excess::Surface { .. } => {
+                    "each of its contacts costs time: give it a simpler shape, or `collides = false`"
+                }
+            };
+            tracing::warn!(target: NOTICE, "plant `{plant}`: {excess}: {help}");
+        }
+    }
+    Ok(())
+}
+
+fn warn_of_undriven_inputs(scenario: &Scenario) -> Result<(), RunError> {
     for (plc, warnings) in scenario.undriven_inputs()? {
         for finding in warnings.findings() {
             let (warning, place) = (finding.diagnostic(), finding.start());

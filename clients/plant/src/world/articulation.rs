@@ -108,6 +108,23 @@ impl Articulation {
         measured_axis(self.links[joint].kind)
     }
 
+    /// The joints of all mechanisms, with the inverse of what each moves.
+    pub(crate) fn apparent(&mut self, gravity: Vector, held: &dyn Fn(usize) -> bool) -> Vec<(usize, f64)> {
+        let each = self.mechanisms.iter_mut().filter_map(|member| member.mechanism.apparent(gravity, held));
+        each.flatten().collect()
+    }
+
+    /// The joints that are in no mechanism, with their kinds, their bodies and where they are.
+    pub(crate) fn unmoved<'a>(
+        &'a self,
+        bodies: &'a RigidBodySet,
+    ) -> impl Iterator<Item = (usize, JointKind, [RigidBodyHandle; 2], Pose)> + 'a {
+        self.others.iter().map(|joint| {
+            let link = &self.links[*joint];
+            (*joint, link.kind, link.bodies, *bodies[link.bodies[0]].position() * link.frames[0])
+        })
+    }
+
     /// Finds the mechanisms again: a body is held or let go, taken out or put in.
     fn find(
         &mut self,

@@ -9,6 +9,7 @@ mod constants;
 mod contacts;
 mod couplings;
 mod drives;
+mod excesses;
 mod failures;
 mod faults;
 mod fittings;

@@ -30,6 +30,11 @@ impl Bond {
         (off, with)
     }
 
+    /// The axis that it leads, and how that changes with those that lead it.
+    pub(super) fn ties(&self, q: impl Fn(usize) -> f64) -> (usize, [Option<(usize, f64)>; 2]) {
+        (self.on, self.off(q).1)
+    }
+
     /// Its rows in a sub-step that ends at `dt_s`, at no more than `fastest`.
     fn rows(&self, q: impl Fn(usize) -> f64, dt_s: f64, fastest: f64) -> [Option<Row>; 2] {
         let (off, with) = self.off(q);

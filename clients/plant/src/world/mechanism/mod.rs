@@ -18,11 +18,13 @@
 //! | `free` | steps of what only smooth forces move: Runge-Kutta of order 4 |
 //! | `driven` | steps with drives, friction, stops |
 //! | `sprung` | springs and dampers in these |
+//! | `apparent` | what each joint has to move |
 //!
 //! # Invariants
 //! - What is computed follows from positions, velocities and the drives' states; how often, too.
 //! - Only operations of IEC 60559 and `libm`.
 
+mod apparent;
 mod coupled;
 mod driven;
 mod dynamics;
