@@ -4,6 +4,8 @@
 pub(crate) const BAR_PA: f64 = 1e5;
 /// Atmosphere, Pa: the reference of every gauge pressure.
 pub(crate) const ATMOSPHERE_PA: f64 = 101_325.0;
+/// m³/s in a l/min.
+pub(crate) const L_MIN_M3_S: f64 = 1.0 / 60_000.0;
 /// Gas constant of dry air, J/(kg·K).
 pub(crate) const AIR_J_KG_K: f64 = 287.05;
 /// Absolute temperature of 0 °C.

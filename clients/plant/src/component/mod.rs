@@ -7,6 +7,8 @@
 //! | `behaviour` | what every component is: a state and two halves of a turn |
 //! | `dynamics` | lags, friction, sub-steps |
 //! | `fluid` | flow of air and oil through orifices |
+//! | `port_valves` | valves through which oil leaves a cylinder |
+//! | `commanded` | drives with a force or torque command |
 //! | `profile` | motion from rest to rest within limits |
 //! | `library` | the kinds, a file each |
 //! | `program` | a kind of the user's own: a function block, run by the soft PLC |
@@ -19,6 +21,7 @@
 //! - What it states of itself is read by the scene, the schema, the documentation and the program.
 
 pub(crate) mod behaviour;
+pub(crate) mod commanded;
 pub(crate) mod declare;
 pub(crate) mod dynamics;
 pub(crate) mod fluid;
@@ -28,6 +31,7 @@ pub(crate) mod library;
 pub(crate) mod melt;
 pub mod origin;
 pub mod page;
+pub(crate) mod port_valves;
 pub(crate) mod profile;
 pub(crate) mod program;
 #[cfg(test)]

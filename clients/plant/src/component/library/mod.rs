@@ -99,6 +99,8 @@ library! {
         hydraulic_cylinder::HydraulicCylinder,
         servo_axis::ServoAxis,
         command_axis::CommandAxis,
+        force_drive::ForceDrive,
+        torque_drive::TorqueDrive,
         asynchronous_motor::AsynchronousMotor,
         conveyor::Conveyor,
         arm::Arm,
@@ -130,6 +132,7 @@ library! {
     }
     process {
         tank::Tank,
+        hydraulic_unit::HydraulicUnit,
         heater::Heater,
         workpiece_source::WorkpieceSource,
         workpiece_sink::WorkpieceSink,

@@ -1,4 +1,4 @@
-//! A hydraulic cylinder with a 4/3 proportional valve.
+//! A hydraulic cylinder with a 4/3 proportional valve, valves in its ports and end cushions.
 //!
 //! # Equations
 //! With the spool at `u` from -1 to 1, chamber A (piston side) and B (rod side):
@@ -7,6 +7,9 @@
 //!   rated flow at the rated difference of pressure;
 //! - `dp_A/dt = E/V_A (q_A - A_A v - q_leak)`, `dp_B/dt = E/V_B (q_leak + A_B v - q_B)`: compressible oil;
 //! - `m dv/dt = p_A A_A - p_B A_B - F_load - d v - F_c sgn(v)`.
+//!
+//! What leaves a chamber goes through the valves in its port (`port_valves`); what
+//! enters passes them by their check valves.
 //!
 //! Commanded by a velocity, the valve is fed forward as a machine's control does it from its table
 //! of flows and areas: `u = A v / (Q_N √(Δp/Δp_N))` with the pressures that hold now.
@@ -25,12 +28,15 @@ use serde::{Deserialize, Serialize};
 use crate::component::behaviour::{Component, Conflict, Start, Turn};
 use crate::component::declare::{choice, failures, own_types, parameters, signals};
 use crate::component::dynamics::{Resistance, Travel, lag, slope_of, substeps};
-use crate::component::fluid::{BAR_PA, implicit_pa, oil_m3_s};
+use crate::component::fluid::{BAR_PA, L_MIN_M3_S, implicit_pa};
+use crate::component::port_valves::{Counterbalance, Leaving, PortValves};
 use crate::coupling::{Coordinate, Slides};
 use crate::effort::{Effort, Motion};
 
 /// Longest sub-step.
 const LONGEST_S: f64 = 50e-6;
+/// The place of `unit_bar` among the inputs.
+const UNIT_BAR: usize = 2;
 /// A greater spool than this counts as open.
 const SPOOL_MIN: f64 = 1e-9;
 
@@ -41,6 +47,28 @@ choice! {
         Spool = "spool",
         /// The rod's velocity, fed forward to the spool.
         Velocity = "velocity",
+    }
+}
+
+choice! {
+    /// Where the supply comes from.
+    Supply {
+        /// It is constant.
+        Constant = "constant",
+        /// A hydraulic unit.
+        Unit = "unit",
+    }
+}
+
+choice! {
+    /// The chamber whose port has a counterbalance valve.
+    Balanced {
+        /// No chamber.
+        Neither = "none",
+        /// The piston's side: a load that pushes in.
+        Cap = "cap",
+        /// The rod's side: a load that pulls out.
+        Rod = "rod",
     }
 }
 
@@ -59,6 +87,8 @@ parameters! {
         command: Command = Command::Spool;
         /// supply
         supply_bar: f64 = 160.0 => 1.0, 700.0;
+        /// where the supply comes from: "constant" is `supply_bar`, "unit" the input `unit_bar`
+        supply: Supply = Supply::Constant;
         /// tank
         tank_bar: f64 = 0.0 => 0.0, 50.0;
         /// the valve's flow over one edge, open, at the rated difference
@@ -83,6 +113,22 @@ parameters! {
         viscous_n_s_m: f64 = 500.0 => 0.0, 1e7;
         /// how far from its end a switch sees the piston
         switch_m: f64 = 0.003 => 0.0, 0.5;
+        /// length of the cushion at each end; 0 for none
+        cushion_m: f64 = 0.0 => 0.0, 1.0;
+        /// flow through the cushion's screw at `rated_bar`
+        cushion_l_min: f64 = 2.0 => 0.001, 10000.0;
+        /// one-way throttle in each port: flow out at `rated_bar`; 0 for none
+        throttle_l_min: f64 = 0.0 => 0.0, 10000.0;
+        /// one-way flow control in each port: greatest flow out, whatever the pressure; 0 for none
+        flow_control_l_min: f64 = 0.0 => 0.0, 10000.0;
+        /// the chamber whose port has a counterbalance valve: "none", "cap" or "rod"
+        counterbalance: Balanced = Balanced::Neither;
+        /// pressure of that chamber at which the valve opens by itself
+        counterbalance_bar: f64 = 200.0 => 1.0, 700.0;
+        /// what of the other chamber's pressure counts for opening it, as a ratio to its own
+        pilot_ratio: f64 = 3.0 => 0.0, 20.0;
+        /// flow that the valve lets pass for each bar beyond its opening
+        counterbalance_l_s_bar: f64 = 0.02 => 1e-6, 100.0;
     }
 }
 
@@ -93,6 +139,8 @@ signals! {
         enable: bool = true,
         /// spool from -1 (in) to 1 (out), or velocity in m/s
         command: f64,
+        /// pressure of the hydraulic unit, if it is the `supply`
+        unit_bar: f64,
     }
 }
 
@@ -113,6 +161,8 @@ signals! {
         extended: bool,
         /// switch at the inner end
         retracted: bool,
+        /// flow from the supply, mean over the period
+        drawn_l_min: f64,
     }
 }
 
@@ -127,6 +177,8 @@ failures! {
         NoSupply = "no_supply",
         /// the rod does not move
         Jammed = "jammed",
+        /// the counterbalance valve stays open
+        CounterbalanceOpen = "counterbalance_open",
     }
 }
 
@@ -137,6 +189,8 @@ pub(crate) struct State {
     cap_pa: f64,
     rod_pa: f64,
     rod: Travel,
+    /// What it has drawn in this period.
+    drawn_m3: f64,
 }
 
 /// A cylinder by its parameters.
@@ -146,6 +200,7 @@ pub(crate) struct HydraulicCylinder {
     ring_m2: f64,
     /// `Q_N / √Δp_N`, m³/(s·√Pa)
     gain: f64,
+    valves: PortValves,
     longest_s: f64,
 }
 
@@ -160,24 +215,40 @@ impl HydraulicCylinder {
         (area * velocity_m_s / (self.gain * drop_pa.max(least_pa).sqrt())).clamp(-1.0, 1.0)
     }
 
-    /// Flows into chambers A and B at these pressures, m³/s.
-    fn flows(&self, spool: f64, supply_pa: f64, [cap_pa, rod_pa]: [f64; 2]) -> [f64; 2] {
+    /// Flows into chambers A and B at these pressures and a way of the rod, m³/s.
+    fn flows(&self, spool: f64, supply_pa: f64, [cap_pa, rod_pa]: [f64; 2], x: f64, open: bool) -> [f64; 2] {
         let tank_pa = self.p.tank_bar * BAR_PA;
         let gain = self.gain * spool.abs();
         if spool.abs() < SPOOL_MIN {
-            [0.0, 0.0]
-        } else if spool > 0.0 {
-            [oil_m3_s(gain, supply_pa - cap_pa), oil_m3_s(gain, tank_pa - rod_pa)]
-        } else {
-            [oil_m3_s(gain, tank_pa - cap_pa), oil_m3_s(gain, supply_pa - rod_pa)]
+            return [0.0, 0.0];
         }
+        let [cap_port, rod_port] = if spool > 0.0 { [supply_pa, tank_pa] } else { [tank_pa, supply_pa] };
+        let balances = |side: Balanced| self.p.counterbalance == side && !open;
+        let cap = Leaving { left_m: x, own_pa: cap_pa, other_pa: rod_pa, balanced: balances(Balanced::Cap) };
+        let rod = Leaving {
+            left_m: self.p.stroke_m - x,
+            own_pa: rod_pa,
+            other_pa: cap_pa,
+            balanced: balances(Balanced::Rod),
+        };
+        [self.valves.inflow(gain, cap_port, &cap), self.valves.inflow(gain, rod_port, &rod)]
+    }
+
+    /// The pressure of the supply in this turn.
+    fn supply_pa(&self, inputs: &Inputs, turn: &Turn<Option<Coordinate>>) -> f64 {
+        let lost = turn.failed.has(Failure::NoSupply);
+        let bar = match self.p.supply {
+            _ if lost => self.p.tank_bar,
+            Supply::Constant => self.p.supply_bar,
+            Supply::Unit => inputs.unit_bar.max(0.0),
+        };
+        bar * BAR_PA
     }
 
     /// Moves spool and pressures by a sub-step in which the rod goes on as it does.
     fn flow(&self, state: &mut State, inputs: &Inputs, turn: &Turn<Option<Coordinate>>, dt_s: f64) {
         let p = &self.p;
-        let lost = turn.failed.has(Failure::NoSupply);
-        let supply_pa = if lost { p.tank_bar } else { p.supply_bar } * BAR_PA;
+        let supply_pa = self.supply_pa(inputs, turn);
         let wanted = match (inputs.enable, p.command) {
             (false, _) => 0.0,
             (true, Command::Spool) => inputs.command.clamp(-1.0, 1.0),
@@ -193,17 +264,21 @@ impl HydraulicCylinder {
         let worn = if turn.failed.has(Failure::Leaking) { 0.002 } else { 0.0 };
         let leak = (p.leak_l_s_bar + worn) * 1e-3 / BAR_PA;
         let (cap_pa, rod_pa, spool) = (state.cap_pa, state.rod_pa, state.spool);
+        let open = turn.failed.has(Failure::CounterbalanceOpen);
+        let flows = |pressures: [f64; 2]| self.flows(spool, supply_pa, pressures, x, open);
         let cap_rate = |pa: f64| {
-            let inflow = self.flows(spool, supply_pa, [pa, rod_pa])[0];
+            let inflow = flows([pa, rod_pa])[0];
             bulk_pa / cap_m3 * (inflow - self.cap_m2 * v - leak * (pa - rod_pa))
         };
         let rod_rate = |pa: f64| {
-            let inflow = self.flows(spool, supply_pa, [cap_pa, pa])[1];
+            let inflow = flows([cap_pa, pa])[1];
             bulk_pa / rod_m3 * (inflow + self.ring_m2 * v - leak * (pa - cap_pa))
         };
         // oil does not pull: below zero it would turn to vapour
         state.cap_pa = implicit_pa(cap_pa, dt_s, cap_rate).max(0.0);
         state.rod_pa = implicit_pa(rod_pa, dt_s, rod_rate).max(0.0);
+        let drawn = if spool > 0.0 { flows([state.cap_pa, rod_pa])[0] } else { flows([cap_pa, state.rod_pa])[1] };
+        state.drawn_m3 += drawn * dt_s;
     }
 
     fn force_n(&self, state: &State) -> f64 {
@@ -225,12 +300,15 @@ impl HydraulicCylinder {
 
 impl Component for HydraulicCylinder {
     const NAME: &'static str = "hydraulic_cylinder";
-    const SUMMARY: &'static str = "hydraulic cylinder with a 4/3 proportional valve";
+    const SUMMARY: &'static str =
+        "hydraulic cylinder with a 4/3 proportional valve, valves in its ports and end cushions";
     const FORMULA: &'static [&'static str] = &[
         "q = Q_N u √(Δp/Δp_N)",
         "dp_A/dt = E/V_A (q_A - A_A v - q_leak), dp_B/dt = E/V_B (q_leak + A_B v - q_B)",
         "m dv/dt = p_A A_A - p_B A_B - F_load - d v - F_c sgn(v)",
         "fed forward: u = A v / (Q_N √(Δp/Δp_N))",
+        "out through a throttle or cushion behind the spool's edge: 1/k² = 1/k_1² + 1/k_2²",
+        "out through a counterbalance valve: q ≤ K (p + R p_other - p_set)",
     ];
     const SOURCE: &'static str = "M. Jelali, A. Kroll, Hydraulic Servo-systems, 2003, ch. 4; Nyyssönen 2018, 3.1.4";
     const INITIAL: &'static [&'static str] = &["initial_m"];
@@ -240,7 +318,18 @@ impl Component for HydraulicCylinder {
         let cap_m2 = FRAC_PI_4 * p.bore_m * p.bore_m;
         let ring_m2 = cap_m2 - FRAC_PI_4 * p.rod_m * p.rod_m;
         let gain = p.rated_l_min / 60_000.0 / (p.rated_bar * BAR_PA).sqrt();
-        Self { p, cap_m2, ring_m2, gain, longest_s: LONGEST_S }
+        let at_rated = |l_min: f64| l_min * L_MIN_M3_S / (p.rated_bar * BAR_PA).sqrt();
+        let valves = PortValves {
+            throttle: (p.throttle_l_min > 0.0).then(|| at_rated(p.throttle_l_min)),
+            cushion: (p.cushion_m > 0.0).then(|| (p.cushion_m, at_rated(p.cushion_l_min))),
+            most_m3_s: (p.flow_control_l_min > 0.0).then_some(p.flow_control_l_min * L_MIN_M3_S),
+            counterbalance: Counterbalance {
+                set_pa: p.counterbalance_bar * BAR_PA,
+                pilot_ratio: p.pilot_ratio,
+                gain: p.counterbalance_l_s_bar * 1e-3 / BAR_PA,
+            },
+        };
+        Self { p, cap_m2, ring_m2, gain, valves, longest_s: LONGEST_S }
     }
 
     fn conflict(p: &Parameters) -> Option<Conflict> {
@@ -259,10 +348,16 @@ impl Component for HydraulicCylinder {
             cap_pa: load_n.max(0.0) / self.cap_m2,
             rod_pa: (-load_n).max(0.0) / self.ring_m2,
             rod: Travel { position, velocity: 0.0 },
+            drawn_m3: 0.0,
         }
     }
 
+    fn uses(p: &Parameters, input: usize) -> bool {
+        p.supply == Supply::Unit || input != UNIT_BAR
+    }
+
     fn drive(&self, state: &mut State, inputs: &Inputs, turn: &Turn<Option<Coordinate>>) {
+        state.drawn_m3 = 0.0;
         if turn.seen.is_some() {
             return;
         }
@@ -315,6 +410,7 @@ impl Component for HydraulicCylinder {
             spool: state.spool,
             extended: position_m >= self.p.stroke_m - self.p.switch_m,
             retracted: position_m <= self.p.switch_m,
+            drawn_l_min: if turn.dt_s > 0.0 { state.drawn_m3 / turn.dt_s / L_MIN_M3_S } else { 0.0 },
         }
     }
 }
@@ -333,7 +429,7 @@ mod tests {
     }
 
     fn spool(command: f64) -> Inputs {
-        Inputs { enable: true, command }
+        Inputs { enable: true, command, unit_bar: 0.0 }
     }
 
     /// Rod's velocity with no load: with `φ = A_A/A_B`, the flows `A_A v = K u √(p_s - p_A)` and
@@ -404,7 +500,7 @@ mod tests {
     #[test]
     fn a_locked_cylinder_holds_its_load_and_its_ends_are_seen() {
         let mut loaded = rig(Parameters { load_n: 10_000.0, initial_m: 0.2, ..Parameters::default() });
-        let out = loaded.run(Inputs { enable: false, command: 1.0 }, 0.01, 100);
+        let out = loaded.run(Inputs { enable: false, ..spool(1.0) }, 0.01, 100);
         assert!((out.position_m - 0.2).abs() < 1e-6 && out.spool == 0.0, "{out:?}");
         let out = loaded.run(spool(1.0), 0.01, 300);
         assert!(out.extended && out.position_m == 0.5, "{out:?}");
@@ -424,5 +520,80 @@ mod tests {
         };
         let p = Parameters { load_n: 20_000.0, initial_m: 0.3, ..Parameters::default() };
         assert!(sinking(rig(p.clone()).failing(Failure::Leaking)) < sinking(rig(p)) - 0.01);
+    }
+
+    /// A flow control lets as much out as it is set to: `v = Q / A_B`.
+    #[test]
+    fn a_flow_control_sets_the_velocity_whatever_the_load() {
+        for (load_n, dt_s, turns) in [(0.0, 1e-4, 20_000), (0.0, 1e-3, 2000), (0.0, 1e-2, 200), (15_000.0, 1e-3, 2000)]
+        {
+            let mut rig = rig(Parameters { flow_control_l_min: 6.0, load_n, ..free() });
+            let out = rig.run(spool(1.0), dt_s, turns);
+            let exact = 1e-4 / rig.component.ring_m2;
+            assert!((out.velocity_m_s / exact - 1.0).abs() < 2e-3, "{load_n} {dt_s}: {out:?} {exact}");
+            let drawn = exact * rig.component.cap_m2 * 60_000.0;
+            assert!((out.drawn_l_min / drawn - 1.0).abs() < 5e-3, "{out:?} {drawn}");
+        }
+    }
+
+    /// With a pushing load and the valve in its port the rod is driven in, and goes as the supply fills the other side:
+    /// `K (p_A + R p_B - p_set) = A_A v`, `A_B v = k u √(p_s - p_B)`, `p_A A_A = F + p_B A_B`.
+    #[test]
+    fn a_counterbalance_valve_lets_a_load_down_as_the_supply_drives_it() {
+        let p = || Parameters {
+            counterbalance: Balanced::Cap,
+            counterbalance_l_s_bar: 0.0003,
+            load_n: 30_000.0,
+            initial_m: 1.8,
+            viscous_n_s_m: 5000.0,
+            ..free()
+        };
+        for (dt_s, turns) in [(1e-4, 20_000), (1e-3, 2000), (1e-2, 200)] {
+            let mut rig = rig(p());
+            let out = rig.run(spool(-0.2), dt_s, turns);
+            let c = &rig.component;
+            let v = -out.velocity_m_s;
+            let wanted_pa = 160e5 - (c.ring_m2 * v / (0.2 * c.gain)).powi(2);
+            assert!(v > 0.01 && out.position_m > 0.1, "{out:?}");
+            assert!((out.rod_bar * 1e5 / wanted_pa - 1.0).abs() < 0.01, "{out:?} {wanted_pa}");
+            let opened = out.cap_bar + 3.0 * out.rod_bar - 200.0;
+            assert!((c.cap_m2 * v / (0.0003e-3 * opened) - 1.0).abs() < 0.01, "{out:?}");
+        }
+        // it holds while nobody drives the rod in, but not if it stays open
+        let held = rig(p()).run(spool(0.0), 1e-3, 1000);
+        assert!((held.position_m - 1.8).abs() < 0.01, "{held:?}");
+        let open = rig(p()).failing(Failure::CounterbalanceOpen).run(spool(-0.2), 1e-3, 1000);
+        let braked = rig(p()).run(spool(-0.2), 1e-3, 1000);
+        assert!(open.velocity_m_s < 1.2 * braked.velocity_m_s, "it runs ahead: {open:?} {braked:?}");
+    }
+
+    /// In the cushion the rod goes as its screw lets it: `A_B v = k_c √(p_B)` with both chambers in balance.
+    #[test]
+    fn a_cushion_slows_the_rod_before_its_end() {
+        let mut rig = rig(Parameters { cushion_m: 0.1, ..free() });
+        let mut fastest: f64 = 0.0;
+        let mut last: f64 = 0.0;
+        for _ in 0..20_000 {
+            let out = rig.run(spool(1.0), 1e-3, 1);
+            fastest = fastest.max(out.velocity_m_s);
+            if out.position_m < 1.999 {
+                last = out.velocity_m_s;
+            }
+        }
+        let c = &rig.component;
+        let series = |one: f64, other: f64| one * other / (one * one + other * other).sqrt();
+        let screw = series(c.gain, 2.0 / 60_000.0 / (35.0 * BAR_PA).sqrt());
+        // (160 bar - p_A) and p_B drive the two flows: A_A v = k √(p_s - p_A), A_B v = k_c √p_B, p_A A_A = p_B A_B
+        let phi = c.cap_m2 / c.ring_m2;
+        let exact = (160.0 * BAR_PA / ((c.cap_m2 / c.gain).powi(2) + (c.ring_m2 / screw).powi(2) / phi)).sqrt();
+        assert!(fastest > 5.0 * exact && (last / exact - 1.0).abs() < 0.02, "{fastest} {last} {exact}");
+    }
+
+    #[test]
+    fn a_unit_that_gives_nothing_moves_nothing() {
+        let mut rig = rig(Parameters { supply: Supply::Unit, ..free() });
+        assert_eq!(rig.run(spool(1.0), 1e-3, 500).position_m, 0.0);
+        let out = rig.run(Inputs { unit_bar: 160.0, ..spool(1.0) }, 1e-3, 500);
+        assert!(out.position_m > 0.1, "{out:?}");
     }
 }

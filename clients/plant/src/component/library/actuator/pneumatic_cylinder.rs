@@ -4,7 +4,8 @@
 //! Chamber A pushes the rod out, chamber B in. For each, with mass flow `ṁ` into it and area `A`:
 //! - `dp/dt = n/V (R T ṁ - p dV/dt)`: air in a chamber, polytropic with exponent n;
 //! - `ṁ = C ρ0 p1 ψ(p2/p1)`: ISO 6358-1, from supply or to the atmosphere, by the valve's position;
-//!   within `cushion_m` of an end the chamber that empties does so through the cushion's screw;
+//!   within `cushion_m` of an end the chamber that empties does so through the cushion's screw, and everywhere through
+//!   the one-way throttle in its port, whichever is narrower;
 //! - `m dv/dt = p_A A_A - p_B A_B - p_0 A_rod - F_load - d v - F_c sgn(v)`.
 //!
 //! Pressures are in Pa absolute, signals in bar above the atmosphere. At the set-up the air has been on for
@@ -29,6 +30,8 @@ use crate::effort::{Effort, Motion};
 
 /// Longest sub-step.
 const LONGEST_S: f64 = 50e-6;
+/// What opens a pilot-operated check valve, above the atmosphere.
+const PILOT_PA: f64 = 1e5;
 /// m³/(s·Pa) in a l/(s·bar).
 const CONDUCTANCE: f64 = 1e-8;
 
@@ -87,6 +90,12 @@ parameters! {
         air_degc: f64 = 20.0 => -40.0, 120.0;
         /// how far from its end a switch sees the piston
         switch_m: f64 = 0.003 => 0.0, 0.5;
+        /// one-way throttle for the air that leaves while the rod goes out; 0 for none
+        throttle_out_l_s_bar: f64 = 0.0 => 0.0, 1000.0;
+        /// one-way throttle for the air that leaves while the rod goes in; 0 for none
+        throttle_in_l_s_bar: f64 = 0.0 => 0.0, 1000.0;
+        /// pilot-operated check valves in both ports: air leaves a chamber only while the other port has 1 bar or more
+        holds_air: bool = false;
     }
 }
 
@@ -133,6 +142,8 @@ failures! {
         ExtendedDead = "extended_dead",
         /// the switch at the inner end stays off
         RetractedDead = "retracted_dead",
+        /// the throttles are wide open
+        ThrottlesOpen = "throttles_open",
     }
 }
 
@@ -192,12 +203,21 @@ impl PneumaticCylinder {
         self.ports(spool, supply_pa).map(|port| port.unwrap_or(ATMOSPHERE_PA))
     }
 
-    /// Mass flow into a chamber that is `left_m` away from being empty.
-    fn inflow(&self, port: Option<f64>, chamber_pa: f64, left_m: f64) -> f64 {
+    /// Mass flow into a chamber that is `left_m` away from being empty and has a one-way throttle in its port.
+    fn inflow(&self, [port, other]: [Option<f64>; 2], chamber_pa: f64, left_m: f64, throttle: f64) -> f64 {
         let Some(port_pa) = port else { return 0.0 };
-        let cushioned = left_m < self.p.cushion_m && chamber_pa > port_pa;
-        let conductance =
-            if cushioned { self.p.cushion_l_s_bar.min(self.p.conductance_l_s_bar) } else { self.p.conductance_l_s_bar };
+        let mut conductance = self.p.conductance_l_s_bar;
+        if chamber_pa > port_pa {
+            if self.p.holds_air && other.is_none_or(|other_pa| other_pa < ATMOSPHERE_PA + PILOT_PA) {
+                return 0.0;
+            }
+            if throttle > 0.0 {
+                conductance = conductance.min(throttle);
+            }
+            if left_m < self.p.cushion_m {
+                conductance = conductance.min(self.p.cushion_l_s_bar);
+            }
+        }
         air_kg_s(conductance * CONDUCTANCE, self.p.critical_ratio, port_pa, chamber_pa)
     }
 
@@ -215,13 +235,17 @@ impl PneumaticCylinder {
         let dead_m3 = p.dead_cm3 * 1e-6;
         let (cap_m3, rod_m3) = (dead_m3 + self.cap_m2 * cap_left, dead_m3 + self.ring_m2 * rod_left);
         let leak = if turn.failed.has(Failure::Leaking) { 0.1 * p.conductance_l_s_bar * CONDUCTANCE } else { 0.0 };
+        let open = turn.failed.has(Failure::ThrottlesOpen);
+        let [out, back] =
+            [p.throttle_out_l_s_bar, p.throttle_in_l_s_bar].map(|throttle| if open { 0.0 } else { throttle });
         let (cap_pa, rod_pa) = (state.cap_pa, state.rod_pa);
         state.cap_pa = implicit_pa(cap_pa, dt_s, |pa| {
-            let mass = self.inflow(ports[0], pa, cap_left) + air_kg_s(leak, p.critical_ratio, rod_pa, pa);
+            let mass = self.inflow(ports, pa, cap_left, back) + air_kg_s(leak, p.critical_ratio, rod_pa, pa);
             p.polytropic / cap_m3 * (self.heat_j_kg * mass - pa * self.cap_m2 * v)
         });
         state.rod_pa = implicit_pa(rod_pa, dt_s, |pa| {
-            let mass = self.inflow(ports[1], pa, rod_left) + air_kg_s(leak, p.critical_ratio, cap_pa, pa);
+            let mass =
+                self.inflow([ports[1], ports[0]], pa, rod_left, out) + air_kg_s(leak, p.critical_ratio, cap_pa, pa);
             p.polytropic / rod_m3 * (self.heat_j_kg * mass + pa * self.ring_m2 * v)
         });
     }
@@ -270,13 +294,7 @@ impl Component for PneumaticCylinder {
         let position = start.seen.map_or(0.0, |joint| joint.position.clamp(0.0, self.p.stroke_m));
         let spool = if matches!(self.p.valve, Valve::Spring | Valve::Impulse) { Spool::In } else { Spool::Rest };
         let [cap_pa, rod_pa] = self.settled_pa(spool);
-        State {
-            spool,
-            switching: OnDelay::default(),
-            cap_pa,
-            rod_pa,
-            rod: Travel { position, velocity: 0.0 },
-        }
+        State { spool, switching: OnDelay::default(), cap_pa, rod_pa, rod: Travel { position, velocity: 0.0 } }
     }
 
     fn drive(&self, state: &mut State, inputs: &Inputs, turn: &Turn<Option<Coordinate>>) {
@@ -495,5 +513,50 @@ mod tests {
         assert!(leaking.rod_bar > 0.02 && leaking.cap_bar < 5.999, "air runs through: {leaking:?}");
         let start = rig(Parameters::default()).failing(Failure::RetractedDead).run(IN, 0.01, 10);
         assert!(!start.retracted);
+    }
+
+    /// Air that leaves choked takes its density with it: `v = C ρ0 R T / A`, whatever pushes.
+    #[test]
+    fn a_throttled_rod_goes_as_fast_as_choked_air_leaves() {
+        for (throttle, dt_s, turns) in [(0.2, 1e-4, 15_000), (0.2, 1e-3, 1500), (0.2, 1e-2, 150), (0.1, 1e-3, 3000)] {
+            let p = Parameters {
+                stroke_m: 1.0,
+                dead_cm3: 0.1,
+                friction_n: 0.0,
+                viscous_n_s_m: 0.0,
+                polytropic: 1.0,
+                throttle_out_l_s_bar: throttle,
+                ..Parameters::default()
+            };
+            let mut rig = Rig::new(PneumaticCylinder::new(p));
+            let out = rig.run(Inputs { extend: true, retract: false }, dt_s, turns);
+            let exact = throttle * CONDUCTANCE * 1.185 * AIR_J_KG_K * 293.15 / rig.component.ring_m2;
+            assert!(
+                out.position_m < 0.9 && (out.velocity_m_s / exact - 1.0).abs() < 0.01,
+                "{throttle}: {out:?} {exact}"
+            );
+        }
+    }
+
+    #[test]
+    fn open_throttles_throttle_nothing() {
+        let p = || Parameters { throttle_out_l_s_bar: 0.1, stroke_m: 1.0, ..Parameters::default() };
+        let on = Inputs { extend: true, retract: false };
+        let slow = Rig::new(PneumaticCylinder::new(p())).run(on, 1e-3, 500);
+        let fast = Rig::new(PneumaticCylinder::new(p())).failing(Failure::ThrottlesOpen).run(on, 1e-3, 500);
+        assert!(fast.position_m > 3.0 * slow.position_m, "{slow:?} {fast:?}");
+    }
+
+    #[test]
+    fn check_valves_hold_a_load_whose_air_is_lost() {
+        for (holds_air, least, most) in [(true, 0.05, 0.2), (false, 0.0, 1e-9)] {
+            let p = Parameters { holds_air, load_n: 400.0, friction_n: 0.0, ..Parameters::default() };
+            let mut rig = Rig::new(PneumaticCylinder::new(p));
+            let on = Inputs { extend: true, retract: false };
+            rig.run(on, 0.01, 300);
+            let mut rig = rig.failing(Failure::NoSupply);
+            let out = rig.run(on, 0.01, 1000);
+            assert!((least..=most).contains(&out.position_m), "{holds_air}: {out:?}");
+        }
     }
 }
