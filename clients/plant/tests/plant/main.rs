@@ -12,6 +12,7 @@ mod drives;
 mod excesses;
 mod failures;
 mod faults;
+mod fidelity;
 mod fittings;
 mod friction;
 mod guided;
