@@ -13,6 +13,8 @@ pub(crate) struct Coupled {
     pub(crate) of: Vec<Of>,
     /// Play between the flanks, m or rad of the joint.
     pub(crate) backlash: f64,
+    /// The greatest force on the joint, N or N·m, beyond which it slips.
+    pub(crate) slip: Option<f64>,
 }
 
 /// A joint that leads, and what it asks for.
@@ -53,7 +55,7 @@ impl Coupled {
         let follows = moved.filter_map(|(joint, described)| {
             let follows = described.follows?;
             let of = vec![Of { joint: follows.joint, law: Law::Ratio(follows.factor) }];
-            Some(Self { joint, of, backlash: 0.0 })
+            Some(Self { joint, of, backlash: 0.0, slip: None })
         });
         written.chain(follows).collect()
     }
@@ -69,7 +71,7 @@ impl Coupled {
             let from = [initial(share.joint), initial(coupling.joint)];
             Of { joint: share.joint, law: Law::of(&share.law, from) }
         });
-        Self { joint: coupling.joint, of: of.collect(), backlash: coupling.backlash }
+        Self { joint: coupling.joint, of: of.collect(), backlash: coupling.backlash, slip: coupling.slip }
     }
 }
 

@@ -255,6 +255,9 @@ pub struct Coupling {
     pub of: Vec<Share>,
     /// Play, m or rad of the joint that is led.
     pub backlash: f64,
+    /// The greatest force on the joint that is led, N or N·m: beyond it the coupling slips, and stays where it is then.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub slip: Option<f64>,
 }
 
 /// What one joint has of leading another.

@@ -48,9 +48,28 @@ fn coupling(written: &CouplingTable, file: &SceneFile, joints: &Names, faults: &
     let radian = Entry::new("backlash_rad", written.backlash_rad.as_ref());
     let backlash = faults.in_unit(&whose, unit, metre, radian);
     let backlash = faults.number(backlash, Allowed::NotNegative).unwrap_or_default();
+    let slip = slip(written, backlash, unit, &whose, faults);
     let laws = laws(written, of.len(), &whose, faults)?;
     let of = of.into_iter().zip(laws).map(|(joint, law)| Share { joint, law }).collect();
-    Some(Coupling { name: written.name.get_ref().clone(), joint, of, backlash })
+    Some(Coupling { name: written.name.get_ref().clone(), joint, of, backlash, slip })
+}
+
+/// The force beyond which it slips. What slips has no place of its own, as a cam and play have.
+fn slip(written: &CouplingTable, backlash: f64, unit: Unit, whose: &str, faults: &mut Faults<'_>) -> Option<f64> {
+    let newton = Entry::new("slip_n", written.slip_n.as_ref());
+    let newton_metre = Entry::new("slip_nm", written.slip_nm.as_ref());
+    let entry = faults.in_unit(whose, unit, newton, newton_metre);
+    let beside = match (&written.cam, backlash > 0.0) {
+        (Some(_), _) => Some("a `cam`"),
+        (None, true) => Some("backlash"),
+        (None, false) => None,
+    };
+    if let (Some(value), Some(beside)) = (entry.value, beside) {
+        let whose = format!("{whose} with {beside}");
+        faults.add(value.span(), SceneFaultKind::Misplaced { whose, key: entry.key });
+        return None;
+    }
+    faults.number(entry, Allowed::Positive)
 }
 
 /// In the scene's pose a joint must be where its cam has it.

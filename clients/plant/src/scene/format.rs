@@ -222,6 +222,9 @@ pub(super) struct CouplingTable {
     pub(super) cam_repeats: Option<Placed<bool>>,
     pub(super) backlash_m: Option<Placed<f64>>,
     pub(super) backlash_rad: Option<Placed<f64>>,
+    /// Beyond this force on the led joint it slips.
+    pub(super) slip_n: Option<Placed<f64>>,
+    pub(super) slip_nm: Option<Placed<f64>>,
 }
 
 /// `[[fitting]]`: what is fitted to a joint beside its drive.

@@ -69,6 +69,7 @@
 //! | `ratio` | for each of them, how far the joint goes when it goes by 1: of a gear, a belt, a rack (1/radius or radius), a screw (lead/2π), a differential (two) |
 //! | `cam` | in its place, points `[leading, led]` of a curve |
 //! | `backlash_m` or `backlash_rad` | play of the joint, none if absent |
+//! | `slip_n` or `slip_nm` | a belt or a clutch: it slips beyond this force on the joint, never if absent |
 //!
 //! | `[[axis]]` | meaning |
 //! |---|---|

@@ -269,7 +269,7 @@ impl World {
             }
             let mut around = Surroundings { gravity, fittings, actuators, drives, part };
             let alone = (!touched || loose) && member.mechanism.advance(dt_s, &mut around);
-            let reconciled = !alone && member.mechanism.measure(&physics.bodies);
+            let reconciled = !alone && member.mechanism.measure(&physics.bodies, dt_s);
             for (joint, position, velocity) in member.mechanism.joints() {
                 let now = Mark { position: fittings[joint].initial + position, velocity };
                 let before = std::mem::replace(&mut motions[joint], now);

@@ -189,3 +189,43 @@ fn a_coupling_that_is_wrong_is_refused() {
         assert!(refusal(keys).contains(reported), "{keys}: {}", refusal(keys));
     }
 }
+
+/// A carriage of 10 kg on a belt that slips at 5 N, led by a wheel of 0.5 m that at once goes with 2 rad/s: it follows
+/// with 0.5 m/s² until it is as fast, after 2 s.
+#[test]
+fn a_belt_slips_beyond_its_force_and_holds_below_it() {
+    let belt = "[[coupling]]\nname = \"belt\"\njoint = \"slide\"\nof = [\"one\"]\nratio = [0.5]\nslip_n = 5.0\n\
+                [[axis]]\nname = \"motor\"\njoint = \"one\"\ndrive = \"velocity\"\ncommand_signal = \"V\"\n\
+                speed_rad_s = 10.0\nacceleration_rad_s2 = 1e6\n";
+    for period_us in PERIODS_US {
+        let scene = format!("gravity_m_s2 = [0, 0, 0]\n{}{belt}", WHEELS.trim_start());
+        let mut bench = Bench::at_us(
+            &scene.replacen("gravity_m_s2 = [0, 0, 0]\nversion = 1", "version = 1\ngravity_m_s2 = [0, 0, 0]", 1),
+            period_us,
+        );
+        bench.command("V", 2.0);
+        bench.run_us(1_000_000);
+        // a/2 t²; the first order of what is coupled is half of a sub-step of 1 ms at most
+        assert!((height(&bench) - 0.25).abs() < 3e-4, "{period_us}: {}", height(&bench));
+        bench.run_us(2_000_000);
+        // v²/2a = 1 m until it is as fast, then 1 m/s for a second
+        assert!((height(&bench) - 2.0).abs() < 2e-3, "{period_us}: {}", height(&bench));
+        bench.run_us(1_000_000);
+        let at = height(&bench);
+        assert!((at - 3.0).abs() < 2e-3, "{period_us}: {at}");
+    }
+}
+
+#[test]
+fn what_slips_has_no_cam_and_no_play() {
+    for (keys, wanted) in [
+        ("cam = [[0.0, 0.0], [1.0, 1.0]]\nslip_n = 5.0", "coupling `belt` with a `cam`"),
+        ("ratio = [1.0]\nbacklash_m = 0.1\nslip_n = 5.0", "coupling `belt` with backlash"),
+        ("ratio = [1.0]\nslip_nm = 5.0", "slip_nm"),
+        ("ratio = [1.0]\nslip_n = 0.0", "slip_n"),
+    ] {
+        let belt = format!("[[coupling]]\nname = \"belt\"\njoint = \"slide\"\nof = [\"one\"]\n{keys}\n");
+        let refused = Scene::parse(&format!("{WHEELS}{belt}"), "plant.toml").expect_err("it is refused").to_string();
+        assert!(refused.contains(wanted), "{keys}: {refused}");
+    }
+}

@@ -35,9 +35,13 @@ impl Bond {
         (self.on, self.off(q).1)
     }
 
-    /// Its rows in a sub-step that ends at `dt_s`, at no more than `fastest`.
-    fn rows(&self, q: impl Fn(usize) -> f64, dt_s: f64, fastest: f64) -> [Option<Row>; 2] {
+    /// Its rows in a sub-step that ends at `dt_s`, at no more than `fastest`, with impulses of a time of `over_s`.
+    fn rows(&self, q: impl Fn(usize) -> f64, [dt_s, over_s]: [f64; 2], fastest: f64) -> [Option<Row>; 2] {
         let (off, with) = self.off(q);
+        if let Some(most) = self.coupled.slip {
+            // it knows no place: where it has slipped to, it stays
+            return [Some(Row { with, ..Row::rigid(self.on, 0.0, most * over_s) }), None];
+        }
         let half = 0.5 * self.coupled.backlash;
         let back = |off: f64| (-off / dt_s).clamp(-fastest, fastest);
         let row = Row { with, ..Row::rigid(self.on, back(off), f64::INFINITY) };
@@ -76,7 +80,7 @@ impl Mechanism {
         let Self { bonds, rows, room, now, axes, .. } = self;
         for bond in bonds {
             let q = |axis: usize| now.q[axes[axis].0];
-            rows.all.extend(bond.rows(q, dt_s, CATCH_UP).into_iter().flatten());
+            rows.all.extend(bond.rows(q, [dt_s; 2], CATCH_UP).into_iter().flatten());
             for axis in bond.of.into_iter().flatten().chain([bond.on]) {
                 room.exact[axis] = true;
             }
@@ -84,8 +88,8 @@ impl Mechanism {
     }
 
     /// Brings coordinates and velocities that the engine has moved back to what the couplings allow, each
-    /// by its inertia; true if there are any.
-    pub(super) fn reconcile(&mut self) -> bool {
+    /// by its inertia, after a step of `dt_s`; true if there are any.
+    pub(super) fn reconcile(&mut self, dt_s: f64) -> bool {
         let n = self.tree.velocities;
         if self.bonds.is_empty() {
             return false;
@@ -95,7 +99,7 @@ impl Mechanism {
         // first the way back, as a velocity of one second, then what is left of the velocity
         self.room.v.clear();
         self.room.v.resize(n, 0.0);
-        self.solve_bonds(1.0, f64::INFINITY);
+        self.solve_bonds([1.0, 0.0], f64::INFINITY);
         self.room.rates[0].resize(self.tree.positions, 0.0);
         rates(&self.tree, &self.now.q, &self.room.v, &mut self.room.rates[0]);
         for (q, way) in self.now.q.iter_mut().zip(&self.room.rates[0]) {
@@ -103,17 +107,17 @@ impl Mechanism {
         }
         normalise(&self.tree, &mut self.now.q);
         self.room.v.clone_from(&self.now.v);
-        self.solve_bonds(1e-3, 0.0);
+        self.solve_bonds([1e-3, dt_s], 0.0);
         self.now.v.clone_from(&self.room.v);
         true
     }
 
-    fn solve_bonds(&mut self, dt_s: f64, fastest: f64) {
+    fn solve_bonds(&mut self, times_s: [f64; 2], fastest: f64) {
         let Self { bonds, rows, room, now, axes, .. } = self;
         rows.all.clear();
         for bond in bonds {
             let q = |axis: usize| now.q[axes[axis].0];
-            rows.all.extend(bond.rows(q, dt_s, fastest).into_iter().flatten());
+            rows.all.extend(bond.rows(q, times_s, fastest).into_iter().flatten());
         }
         rows.solve(&room.inverse, &mut room.v);
     }

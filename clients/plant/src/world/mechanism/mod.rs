@@ -127,7 +127,8 @@ pub(crate) fn mechanisms(
                 mechanism.now.q[jointed.first[0]] = last(joint);
             }
         }
-        mechanism.measure(bodies);
+        // no time has passed in which what slips could have driven
+        mechanism.measure(bodies, 0.0);
         mechanism
     });
     (mechanisms.collect(), forest.others)
@@ -194,9 +195,9 @@ impl Mechanism {
         self.now = memory;
     }
 
-    /// Takes its coordinates from where its bodies are and how they move; true if couplings have changed
-    /// them.
-    pub(crate) fn measure(&mut self, bodies: &RigidBodySet) -> bool {
+    /// Takes its coordinates from where its bodies are and how they move after a step of `dt_s`; true if couplings
+    /// have changed them.
+    pub(crate) fn measure(&mut self, bodies: &RigidBodySet, dt_s: f64) -> bool {
         for jointed in &self.tree.joints {
             let (slid, turned, rotation) = tree::between(&jointed.link, bodies);
             let first = jointed.first[0];
@@ -218,7 +219,7 @@ impl Mechanism {
         let Coordinates { q, v } = &mut self.now;
         let own = own_motion(&self.tree, self.equations.about, bodies);
         if self.equations.project(&self.tree, q, own, v) {
-            return self.reconcile();
+            return self.reconcile(dt_s);
         }
         v.fill(0.0);
         false
