@@ -28,7 +28,9 @@ struct Walk<'a> {
 
 impl Walk<'_> {
     fn statements(&mut self, statements: &[Statement]) {
-        statements.iter().for_each(|statement| self.statement(&statement.kind));
+        for statement in statements {
+            self.statement(&statement.kind);
+        }
     }
 
     fn statement(&mut self, statement: &StatementKind) {
@@ -58,7 +60,9 @@ impl Walk<'_> {
             }
             StatementKind::For(turns) => {
                 self.place(&turns.variable, PlaceUse::Write);
-                [&turns.from, &turns.to, &turns.by].into_iter().for_each(|value| self.expression(value));
+                for value in [&turns.from, &turns.to, &turns.by] {
+                    self.expression(value);
+                }
                 self.statements(&turns.body);
             }
             StatementKind::While(condition, body) | StatementKind::Repeat(body, condition) => {
@@ -109,7 +113,9 @@ impl Walk<'_> {
             ExprKind::Call(call) => self.function(call),
             ExprKind::After(statements, value) => {
                 self.statements(statements);
-                value.iter().for_each(|value| self.expression(value));
+                if let Some(value) = value {
+                    self.expression(value);
+                }
             }
             ExprKind::Cast(cast) => self.expression(&cast.reference),
         }
@@ -135,7 +141,9 @@ impl Walk<'_> {
                 Step::Offset(_) => {}
                 Step::Open { description, indices, .. } => {
                     self.place(description, PlaceUse::Read);
-                    indices.iter().for_each(|index| self.expression(index));
+                    for index in indices {
+                        self.expression(index);
+                    }
                 }
                 Step::Index { index, .. } => self.expression(index),
             }
