@@ -16,11 +16,11 @@ fn values(sketch: &Sketch, tool: &str, drawing: &Drawing, seed: u64) -> Vec<i64>
     let mut dice = Dice::new(seed);
     let mut found = Vec::new();
     for _ in 0..SCANS {
-        for (name, value) in sketch.inputs(&mut dice) {
+        for (name, value) in Sketch::inputs(&mut dice) {
             rig.set(&format!("P.{name}"), value);
         }
         rig.scan().expect("no fault");
-        found.extend(sketch.variables().iter().map(|name| rig.int(&format!("P.{name}"))));
+        found.extend(Sketch::variables().iter().map(|name| rig.int(&format!("P.{name}"))));
     }
     found
 }

@@ -148,7 +148,7 @@ impl Net<'_, '_> {
         let columns = 1 + self.dice.below(4);
         for column in (0..columns).map(|column| 3 * column) {
             let mut made = Vec::new();
-            for _ in 0..1 + self.dice.below(2) {
+            for _ in 0..=self.dice.below(2) {
                 made.push(self.box_at(column));
             }
             for index in made {
@@ -197,7 +197,7 @@ impl Net<'_, '_> {
         let columns = 2 + self.dice.below(4);
         for column in 0..columns {
             let mut made = Vec::new();
-            for _ in 0..1 + self.dice.below(2) {
+            for _ in 0..=self.dice.below(2) {
                 let mut left = vec![if column == 0 { rail } else { self.values[self.dice.below(self.values.len())] }];
                 let writes = column + 1 == columns || column > 0 && self.dice.once_in(3);
                 let variable = self.one_of("b");
@@ -233,17 +233,17 @@ impl Sketch {
             sketch.elements.push(Element { shape: Shape::Rail, at: (0, 0), sources: Vec::new(), number: None });
         }
         let mut below = 1;
-        for _ in 0..1 + dice.below(3) {
+        for _ in 0..=dice.below(3) {
             let mut right = 1;
             let mut deepest = below;
             // Networks stand one below the other, and sometimes side by side.
-            for _ in 0..1 + usize::from(dice.once_in(4)) {
+            for _ in 0..=usize::from(dice.once_in(4)) {
                 let corner = (right, below);
                 let mut net = Net { sketch: &mut sketch, dice, corner, taken: Vec::new(), values: Vec::new() };
                 if ladder {
-                    net.ladder(0)
+                    net.ladder(0);
                 } else {
-                    net.diagram()
+                    net.diagram();
                 }
                 right += net.taken.len() as i64 + 1;
                 deepest = deepest.max(below + net.taken.iter().copied().max().unwrap_or(0));
@@ -271,14 +271,14 @@ impl Sketch {
     }
 
     /// What comes from outside in a scan.
-    pub(crate) fn inputs(&self, dice: &mut Dice) -> [(&'static str, i64); 4] {
+    pub(crate) fn inputs(dice: &mut Dice) -> [(&'static str, i64); 4] {
         let mut number = || dice.between(-9, 9);
         let (v0, v1) = (number(), number());
         [("v0", v0), ("v1", v1), ("b0", dice.between(0, 1)), ("b1", dice.between(0, 1))]
     }
 
     /// The variables that networks write.
-    pub(crate) fn variables(&self) -> Vec<String> {
+    pub(crate) fn variables() -> Vec<String> {
         ["v", "b"].iter().flat_map(|prefix| (0..POOL).map(move |number| format!("{prefix}{number}"))).collect()
     }
 
