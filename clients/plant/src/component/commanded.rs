@@ -16,6 +16,7 @@ pub(crate) struct Limits {
 }
 
 /// What a drive is asked for in a turn.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Order {
     /// Nothing at all.
     Off,

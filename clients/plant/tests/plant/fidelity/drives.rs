@@ -31,43 +31,46 @@ pub(super) fn lines() -> Vec<Line> {
     lines
 }
 
+fn wheel(step_us: u64) -> f64 {
+    let parts = format!(
+        "[[body]]\nname = \"w\"\nkind = \"dynamic\"\nshape = \"cylinder\"\nradius_m = 0.1\nlength_m = 0.05\nmass_kg = 2.0\n\
+         {}[[component]]\nname = \"c\"\njoint = \"j\"\nkind = \"torque_drive\"\ncommand_nm = 0.5\ncurrent_loop_s = 0.0\n\
+         velocity_rad_s_signal = \"Out\"\n",
+        joint("j", "revolute", "w", "[0, 0, 1]", "")
+    );
+    after(&parts, 1_000_000, step_us)
+}
+
+fn holds(step_us: u64) -> f64 {
+    let parts = format!(
+        "{}{}[[axis]]\nname = \"m\"\njoint = \"j\"\ndrive = \"position\"\ncommand_signal = \"At\"\nspeed_m_s = 1.0\n\
+         acceleration_m_s2 = 1.0\nforce_signal = \"Out\"\n",
+        cube("a", [0.0; 3], 2.0, ""),
+        joint("j", "prismatic", "a", "[0, 0, 1]", "")
+    );
+    after(&parts, 500_000, step_us)
+}
+
+fn servo(step_us: u64) -> f64 {
+    let parts = format!(
+        "gravity_m_s2 = [0, 0, 0]\n{}{}[[component]]\nname = \"c\"\njoint = \"j\"\nkind = \"servo_axis\"\nenable = true\n\
+         needs_homing = false\njerk_m_s3 = 0.0\nfeed_forward_ratio = 1.0\nfriction_n = 0.0\nexecute_signal = \"Go\"\n\
+         target_m = 0.5\nlower_m = -0.1\nin_position_signal = \"There\"\n",
+        cube("a", [0.0; 3], 20.0, ""),
+        joint("j", "prismatic", "a", "[1, 0, 0]", "")
+    );
+    let mut bench = bench(&parts, step_us);
+    bench.run_us(100_000);
+    bench.command("Go", true);
+    let mut turns = 0_u32;
+    while !bench.read::<bool>("There") && turns < 100_000 {
+        bench.turn();
+        turns += 1;
+    }
+    f64::from(turns) * 1e-6 * step_us as f64
+}
+
 fn electric() -> Vec<Line> {
-    let wheel = |step_us: u64| {
-        let parts = format!(
-            "[[body]]\nname = \"w\"\nkind = \"dynamic\"\nshape = \"cylinder\"\nradius_m = 0.1\nlength_m = 0.05\nmass_kg = 2.0\n\
-             {}[[component]]\nname = \"c\"\njoint = \"j\"\nkind = \"torque_drive\"\ncommand_nm = 0.5\ncurrent_loop_s = 0.0\n\
-             velocity_rad_s_signal = \"Out\"\n",
-            joint("j", "revolute", "w", "[0, 0, 1]", "")
-        );
-        after(&parts, 1_000_000, step_us)
-    };
-    let holds = |step_us: u64| {
-        let parts = format!(
-            "{}{}[[axis]]\nname = \"m\"\njoint = \"j\"\ndrive = \"position\"\ncommand_signal = \"At\"\nspeed_m_s = 1.0\n\
-             acceleration_m_s2 = 1.0\nforce_signal = \"Out\"\n",
-            cube("a", [0.0; 3], 2.0, ""),
-            joint("j", "prismatic", "a", "[0, 0, 1]", "")
-        );
-        after(&parts, 500_000, step_us)
-    };
-    let servo = |step_us: u64| {
-        let parts = format!(
-            "gravity_m_s2 = [0, 0, 0]\n{}{}[[component]]\nname = \"c\"\njoint = \"j\"\nkind = \"servo_axis\"\nenable = true\n\
-             needs_homing = false\njerk_m_s3 = 0.0\nfeed_forward_ratio = 1.0\nfriction_n = 0.0\nexecute_signal = \"Go\"\n\
-             target_m = 0.5\nlower_m = -0.1\nin_position_signal = \"There\"\n",
-            cube("a", [0.0; 3], 20.0, ""),
-            joint("j", "prismatic", "a", "[1, 0, 0]", "")
-        );
-        let mut bench = bench(&parts, step_us);
-        bench.run_us(100_000);
-        bench.command("Go", true);
-        let mut turns = 0_u32;
-        while !bench.read::<bool>("There") && turns < 100_000 {
-            bench.turn();
-            turns += 1;
-        }
-        f64::from(turns) * 1e-6 * step_us as f64
-    };
     vec![
         Line::new(
             "50 N on 5 kg (`force_drive`), velocity after 0.5 s",

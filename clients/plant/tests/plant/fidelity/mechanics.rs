@@ -7,6 +7,9 @@ use super::{G, Line, bench, crossings, cube, joint, place, turned, when};
 const HIBBELER: &str = "Hibbeler, *Dynamics*";
 const MESSAGE: &str = "d'Alembert";
 
+/// Ten periods of 2 π/20 s, to the nearest 10 ms.
+const TEN_PERIODS_US: u64 = 3_140_000;
+
 pub(super) fn lines() -> Vec<Line> {
     let mut lines = falls();
     lines.extend(swings());
@@ -67,6 +70,19 @@ fn pendulum_s(small_s: f64, amplitude_rad: f64) -> f64 {
     small_s / a
 }
 
+fn two_masses(step_us: u64) -> f64 {
+    let parts = format!(
+        "{}{}{}[[joint]]\nname = \"k\"\nkind = \"prismatic\"\nparent = \"a\"\nchild = \"b\"\naxis = [1, 0, 0]\ninitial_m = 0.01\n\
+         [[fitting]]\nname = \"f\"\njoint = \"k\"\nspring_n_m = 18000.0\n",
+        cube("a", [0.0, 0.0, 0.0], 1.0, ""),
+        cube("b", [1.0, 0.0, 0.0], 3.0, ""),
+        joint("j", "prismatic", "a", "[1, 0, 0]", ""),
+    );
+    let mut bench = bench(&format!("gravity_m_s2 = [0, 0, 0]\n{parts}"), step_us);
+    let apart = |bench: &crate::bench::Bench| place(bench, "b")[0] - place(bench, "a")[0] - 0.99;
+    20.0 / crossings(&mut bench, step_us, 21, apart)
+}
+
 fn swings() -> Vec<Line> {
     // a thin bob at 1 m: the cube's own inertia counts
     let arm = 1.0 + 0.01 / 6.0;
@@ -88,25 +104,12 @@ fn swings() -> Vec<Line> {
             let at = cube("a", [0.05, 0.0, 0.0], 1.0, "");
             let slide = joint("j", "prismatic", "a", "[1, 0, 0]", "initial_m = 0.05");
             let mut bench = bench(&format!("gravity_m_s2 = [0, 0, 0]\n{at}{slide}{fitting}"), step_us);
-            // ten periods of 2 π/20 s, to the whole 10 ms that are nearest
-            bench.run_us(3_140_000);
+            bench.run_us(TEN_PERIODS_US);
             place(&bench, "a")[0]
         }
     };
-    let two_masses = |step_us: u64| {
-        let parts = format!(
-            "{}{}{}[[joint]]\nname = \"k\"\nkind = \"prismatic\"\nparent = \"a\"\nchild = \"b\"\naxis = [1, 0, 0]\ninitial_m = 0.01\n\
-             [[fitting]]\nname = \"f\"\njoint = \"k\"\nspring_n_m = 18000.0\n",
-            cube("a", [0.0, 0.0, 0.0], 1.0, ""),
-            cube("b", [1.0, 0.0, 0.0], 3.0, ""),
-            joint("j", "prismatic", "a", "[1, 0, 0]", ""),
-        );
-        let mut bench = bench(&format!("gravity_m_s2 = [0, 0, 0]\n{parts}"), step_us);
-        let apart = |bench: &crate::bench::Bench| place(bench, "b")[0] - place(bench, "a")[0] - 0.99;
-        20.0 / crossings(&mut bench, step_us, 21, apart)
-    };
     let frequency = (18_000.0_f64 / 0.75).sqrt() / (2.0 * PI);
-    let t = 3.14;
+    let t = 1e-6 * TEN_PERIODS_US as f64;
     let damped = 0.05 * libm::exp(-0.2 * t) * {
         let w = (400.0_f64 - 0.04).sqrt();
         libm::cos(w * t) + 0.2 / w * libm::sin(w * t)
@@ -146,85 +149,89 @@ fn swings() -> Vec<Line> {
     ]
 }
 
+fn atwood(step_us: u64) -> f64 {
+    let parts = format!(
+        "{}{}{}{}[[coupling]]\nname = \"rope\"\njoint = \"k\"\nof = [\"j\"]\nratio = [-1.0]\n",
+        cube("a", [0.0; 3], 3.0, ""),
+        cube("b", [1.0, 0.0, 0.0], 2.0, ""),
+        joint("j", "prismatic", "a", "[0, 0, -1]", ""),
+        joint("k", "prismatic", "b", "[0, 0, -1]", ""),
+    );
+    let mut bench = bench(&parts, step_us);
+    bench.run_us(1_000_000);
+    -place(&bench, "a")[2]
+}
+
+fn geared(step_us: u64) -> f64 {
+    let wheel = |name: &str, x: f64| {
+        format!(
+            "[[body]]\nname = \"{name}\"\nkind = \"dynamic\"\nshape = \"cylinder\"\nradius_m = 0.1\nlength_m = 0.05\n\
+             mass_kg = 2.0\nposition_m = [{x:?}, 0.0, 0.0]\n"
+        )
+    };
+    let parts = format!(
+        "{}{}{}{}[[coupling]]\nname = \"gear\"\njoint = \"j\"\nof = [\"k\"]\nratio = [3.0]\n\
+         [[fitting]]\nname = \"weight\"\njoint = \"k\"\nbalance_nm = 0.3\n",
+        wheel("a", 0.0),
+        wheel("b", 1.0),
+        joint("j", "revolute", "a", "[0, 0, 1]", ""),
+        joint("k", "revolute", "b", "[0, 0, 1]", ""),
+    );
+    let mut bench = bench(&parts, step_us);
+    bench.run_us(1_000_000);
+    turned(&bench, "b", 2)
+}
+
+fn geneva(step_us: u64) -> f64 {
+    // dwells for three quarters of a turn, and indexes by a quarter with a cycloid
+    let points: Vec<String> = (0..=64)
+        .map(|k| {
+            let part = f64::from(k) / 64.0;
+            let t = (4.0 * part - 3.0).max(0.0);
+            format!("[{:?}, {:?}]", 2.0 * PI * part, FRAC_PI_2 * (t - libm::sin(2.0 * PI * t) / (2.0 * PI)))
+        })
+        .collect();
+    let parts = format!(
+        "{}{}{}{}[[coupling]]\nname = \"cam\"\njoint = \"k\"\nof = [\"j\"]\ncam = [{}]\ncam_repeats = true\n\
+         [[axis]]\nname = \"m\"\njoint = \"j\"\ndrive = \"velocity\"\ncommand_signal = \"V\"\nspeed_rad_s = 100.0\n\
+         acceleration_rad_s2 = 1e6\n",
+        cube("a", [0.0; 3], 1.0, ""),
+        cube("b", [1.0, 0.0, 0.0], 1.0, ""),
+        joint("j", "revolute", "a", "[0, 0, 1]", ""),
+        joint("k", "revolute", "b", "[0, 0, 1]", ""),
+        points.join(", ")
+    );
+    let mut bench = bench(&parts, step_us);
+    bench.command("V", 2.0 * PI);
+    bench.run_us(1_100_000);
+    turned(&bench, "b", 2)
+}
+
+fn crank(step_us: u64) -> f64 {
+    let rod = "[[body]]\nname = \"rod\"\nkind = \"dynamic\"\nshape = \"box\"\nsize_m = [0.3, 0.02, 0.02]\nmass_kg = 0.5\n\
+               position_m = [0.25, 0.0, 0.0]\ncollides = false\n";
+    let own = "collides = false";
+    let parts = format!(
+        "gravity_m_s2 = [0, 0, 0]\n{}{rod}{}{}{}\
+         [[joint]]\nname = \"pin\"\nkind = \"revolute\"\nparent = \"crank\"\nchild = \"rod\"\naxis = [0, 0, 1]\nanchor_m = [0.1, 0, 0]\n\
+         [[joint]]\nname = \"wrist\"\nkind = \"revolute\"\nparent = \"slider\"\nchild = \"rod\"\naxis = [0, 0, 1]\nanchor_m = [0.4, 0, 0]\n\
+         [[axis]]\nname = \"m\"\njoint = \"j\"\ndrive = \"velocity\"\ncommand_signal = \"V\"\nspeed_rad_s = 100.0\n\
+         acceleration_rad_s2 = 1e3\n",
+        cube("crank", [0.0; 3], 1.0, own),
+        cube("slider", [0.4, 0.0, 0.0], 1.0, own),
+        joint("j", "revolute", "crank", "[0, 0, 1]", ""),
+        joint("s", "prismatic", "slider", "[1, 0, 0]", ""),
+    );
+    let mut bench = bench(&parts, step_us);
+    bench.command("V", 5.0);
+    bench.run_us(500_000);
+    // where the slider is, for the angle that the crank has
+    let angle = turned(&bench, "crank", 2);
+    let (sin, cos) = libm::sincos(angle);
+    place(&bench, "slider")[0] - (0.1 * cos + (0.09 - 0.01 * sin * sin).sqrt()) + 0.3
+}
+
 fn couplings() -> Vec<Line> {
-    let atwood = |step_us: u64| {
-        let parts = format!(
-            "{}{}{}{}[[coupling]]\nname = \"rope\"\njoint = \"k\"\nof = [\"j\"]\nratio = [-1.0]\n",
-            cube("a", [0.0; 3], 3.0, ""),
-            cube("b", [1.0, 0.0, 0.0], 2.0, ""),
-            joint("j", "prismatic", "a", "[0, 0, -1]", ""),
-            joint("k", "prismatic", "b", "[0, 0, -1]", ""),
-        );
-        let mut bench = bench(&parts, step_us);
-        bench.run_us(1_000_000);
-        -place(&bench, "a")[2]
-    };
-    let geared = |step_us: u64| {
-        let wheel = |name: &str, x: f64| {
-            format!(
-                "[[body]]\nname = \"{name}\"\nkind = \"dynamic\"\nshape = \"cylinder\"\nradius_m = 0.1\nlength_m = 0.05\n\
-                 mass_kg = 2.0\nposition_m = [{x:?}, 0.0, 0.0]\n"
-            )
-        };
-        let parts = format!(
-            "{}{}{}{}[[coupling]]\nname = \"gear\"\njoint = \"j\"\nof = [\"k\"]\nratio = [3.0]\n\
-             [[fitting]]\nname = \"weight\"\njoint = \"k\"\nbalance_nm = 0.3\n",
-            wheel("a", 0.0),
-            wheel("b", 1.0),
-            joint("j", "revolute", "a", "[0, 0, 1]", ""),
-            joint("k", "revolute", "b", "[0, 0, 1]", ""),
-        );
-        let mut bench = bench(&parts, step_us);
-        bench.run_us(1_000_000);
-        turned(&bench, "b", 2)
-    };
-    let geneva = |step_us: u64| {
-        // dwells for three quarters of a turn, and indexes by a quarter with a cycloid
-        let points: Vec<String> = (0..=64)
-            .map(|k| {
-                let part = f64::from(k) / 64.0;
-                let t = (4.0 * part - 3.0).max(0.0);
-                format!("[{:?}, {:?}]", 2.0 * PI * part, FRAC_PI_2 * (t - libm::sin(2.0 * PI * t) / (2.0 * PI)))
-            })
-            .collect();
-        let parts = format!(
-            "{}{}{}{}[[coupling]]\nname = \"cam\"\njoint = \"k\"\nof = [\"j\"]\ncam = [{}]\ncam_repeats = true\n\
-             [[axis]]\nname = \"m\"\njoint = \"j\"\ndrive = \"velocity\"\ncommand_signal = \"V\"\nspeed_rad_s = 100.0\n\
-             acceleration_rad_s2 = 1e6\n",
-            cube("a", [0.0; 3], 1.0, ""),
-            cube("b", [1.0, 0.0, 0.0], 1.0, ""),
-            joint("j", "revolute", "a", "[0, 0, 1]", ""),
-            joint("k", "revolute", "b", "[0, 0, 1]", ""),
-            points.join(", ")
-        );
-        let mut bench = bench(&parts, step_us);
-        bench.command("V", 2.0 * PI);
-        bench.run_us(1_100_000);
-        turned(&bench, "b", 2)
-    };
-    let crank = |step_us: u64| {
-        let rod = "[[body]]\nname = \"rod\"\nkind = \"dynamic\"\nshape = \"box\"\nsize_m = [0.3, 0.02, 0.02]\nmass_kg = 0.5\n\
-                   position_m = [0.25, 0.0, 0.0]\ncollides = false\n";
-        let own = "collides = false";
-        let parts = format!(
-            "gravity_m_s2 = [0, 0, 0]\n{}{rod}{}{}{}\
-             [[joint]]\nname = \"pin\"\nkind = \"revolute\"\nparent = \"crank\"\nchild = \"rod\"\naxis = [0, 0, 1]\nanchor_m = [0.1, 0, 0]\n\
-             [[joint]]\nname = \"wrist\"\nkind = \"revolute\"\nparent = \"slider\"\nchild = \"rod\"\naxis = [0, 0, 1]\nanchor_m = [0.4, 0, 0]\n\
-             [[axis]]\nname = \"m\"\njoint = \"j\"\ndrive = \"velocity\"\ncommand_signal = \"V\"\nspeed_rad_s = 100.0\n\
-             acceleration_rad_s2 = 1e3\n",
-            cube("crank", [0.0; 3], 1.0, own),
-            cube("slider", [0.4, 0.0, 0.0], 1.0, own),
-            joint("j", "revolute", "crank", "[0, 0, 1]", ""),
-            joint("s", "prismatic", "slider", "[1, 0, 0]", ""),
-        );
-        let mut bench = bench(&parts, step_us);
-        bench.command("V", 5.0);
-        bench.run_us(500_000);
-        // where the slider is, for the angle that the crank has
-        let angle = turned(&bench, "crank", 2);
-        let (sin, cos) = libm::sincos(angle);
-        place(&bench, "slider")[0] - (0.1 * cos + (0.09 - 0.01 * sin * sin).sqrt()) + 0.3
-    };
     let wheel_kg_m2 = 0.5 * 2.0 * 0.01;
     vec![
         Line::new("Atwood machine of 3 and 2 kg, way in 1 s", (0.5 * G / 5.0, "m"), MESSAGE, atwood),
