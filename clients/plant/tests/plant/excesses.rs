@@ -1,5 +1,7 @@
 //! What scenes ask for beyond what the plant can carry.
 
+use std::fmt::Write as _;
+
 use onescan_plant::{Excess, Scene};
 use onescan_server::time::TimeSpan;
 
@@ -111,10 +113,10 @@ fn ball(points: usize) -> String {
     for k in 0..points {
         let z = 1.0 - 2.0 * (k as f64 + 0.5) / points as f64;
         let (r, turned) = ((1.0 - z * z).sqrt(), golden * k as f64);
-        text.push_str(&format!("v {} {} {z}\n", r * turned.cos(), r * turned.sin()));
+        writeln!(text, "v {} {} {z}", r * turned.cos(), r * turned.sin()).expect("a text");
     }
     for k in 3..=points {
-        text.push_str(&format!("f {} {} {k}\n", k - 2, k - 1));
+        writeln!(text, "f {} {} {k}", k - 2, k - 1).expect("a text");
     }
     text
 }

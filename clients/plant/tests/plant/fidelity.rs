@@ -139,9 +139,8 @@ fn page() -> String {
         ("Contacts", contacts::lines()),
     ];
     for (title, lines) in parts {
-        page.push_str(&format!(
-            "\n## {title}\n\n| what | exact | 100 µs | 1 ms | 10 ms | source |\n|---|---|---|---|---|---|\n"
-        ));
+        writeln!(page, "\n## {title}\n\n| what | exact | 100 µs | 1 ms | 10 ms | source |\n|---|---|---|---|---|---|")
+            .expect("a text");
         for line in lines {
             let cells = STEPS_US.map(|step_us| line.cell(step_us)).join(" | ");
             let exact = format!("{} {}", number(line.exact), line.unit);
