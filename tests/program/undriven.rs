@@ -62,7 +62,8 @@ fn no_scenario_of_the_project_has_one() {
 /// The files of a folder that are scenarios.
 fn scenarios_in(folder: &Path) -> Vec<String> {
     let names = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
-    let mut names: Vec<String> = names.filter(|name| name.ends_with(".toml")).collect();
+    let mut names: Vec<String> =
+        names.filter(|name| Path::new(name).extension().is_some_and(|end| end == "toml")).collect();
     names.retain(|name| std::fs::read_to_string(folder.join(name)).unwrap().contains("[clients.plc"));
     names.sort();
     names

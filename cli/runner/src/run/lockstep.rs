@@ -7,7 +7,6 @@ use std::path::Path;
 use onescan_base::foreign::one_line;
 use onescan_base::regular::{self, Limit};
 use onescan_links::inspection::{Inspected, Inspection};
-use onescan_plant::Excess;
 use onescan_recording::{Recording, event};
 use onescan_report::file;
 use onescan_scenario::compose::Member;
