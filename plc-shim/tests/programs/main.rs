@@ -1,5 +1,6 @@
 //! Programs in, traces out: the whole way from text to a scanning PLC.
 
+mod after_start;
 mod any_inputs;
 mod ax_projects;
 mod bit_strings;

@@ -27,7 +27,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use self::body::check_unit;
 use self::configuration::{Configured, Configurer};
-use self::declare::{Declarations, Occasion, Outcome, Templates, stages};
+use self::declare::{Declarations, Outcome, Templates, stages};
 use self::resolve::Resolver;
 use crate::diagnostic::Diagnostic;
 use crate::dialect::AddressUnit;
@@ -96,7 +96,7 @@ pub fn check(
     configurer.configure();
     declarations.enqueue_stages();
     let mut configurer = Configurer::new(&mut declarations, &mut configured);
-    let (start, end) = (configurer.occasion(Occasion::Start), configurer.occasion(Occasion::End));
+    let (start, end) = (configurer.start(), configurer.end());
     let mut pous = BTreeMap::new();
     // Bodies name further units, which are queued.
     while let Some(id) = declarations.next_unit() {

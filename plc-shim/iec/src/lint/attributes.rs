@@ -1,5 +1,6 @@
 //! W0714: attributes by which the vendor's tool gives variables other values, and which have no effect here.
 
+use super::Unit;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Dialect;
 use crate::front::Front;
@@ -10,7 +11,6 @@ use crate::syntax::token::TokenKind;
 
 /// Attributes of CODESYS and TwinCAT, each with what is otherwise here.
 const EFFECTS: &[(&str, &str)] = &[
-    ("call_after_init", "nothing calls the method that it stands before: call it in the first scan"),
     ("call_after_global_init_slot", "nothing calls what it stands before: call it in the first scan"),
     ("call_on_type_change", "nothing calls the method that it stands before"),
     ("global_init_slot", "initial values are computed in the order of the files"),
@@ -42,6 +42,20 @@ pub(super) fn lint(front: &Front, findings: &mut Vec<Diagnostic>) {
     }
 }
 
+/// Methods that are to run after the start of a block which does not say so: the tools want the attribute at both.
+pub(super) fn lint_methods(unit: &Unit<'_>, findings: &mut Vec<Diagnostic>) {
+    let object = &unit.pou.object;
+    // A base that is not looked at here may have it.
+    if object.call_after_init || !object.extends.is_empty() {
+        return;
+    }
+    for method in object.members.iter().map(|member| &member.pou).filter(|method| method.object.call_after_init) {
+        let message = format!("nothing calls `{}` after the start", method.name.text);
+        let help = format!("put `{{attribute 'call_after_init'}}` before `{}` as well", unit.pou.name.text);
+        findings.push(Diagnostic::warning(Code::AttributeWithoutEffect, method.name.span, message).with_help(help));
+    }
+}
+
 /// The attribute of `{attribute 'name' := 'value'}`, if it has an effect on values elsewhere, and what is otherwise here.
 fn effect(pragma: &str) -> Option<(&'static str, &'static str)> {
     let attribute = attribute(pragma.trim_matches(['{', '}']).trim())?;
@@ -56,7 +70,7 @@ mod tests {
     #[test]
     fn attributes_are_known_by_their_names() {
         assert_eq!(effect("{attribute 'global_init_slot' := '1'}").map(|(name, _)| name), Some("global_init_slot"));
-        assert_eq!(effect("{ATTRIBUTE  'Call_After_Init' }").map(|(name, _)| name), Some("call_after_init"));
+        assert_eq!(effect("{ATTRIBUTE  'No_Init' }").map(|(name, _)| name), Some("no_init"));
         for none in ["{attribute 'hide'}", "{warning disable C0196}", "{attribute}", "{}", "{attribute 'to_string"] {
             assert_eq!(effect(none).is_some(), none.ends_with("to_string"), "{none}");
         }

@@ -87,7 +87,9 @@ impl Body<'_, '_> {
         let key = variable.name.to_ascii_uppercase();
         let Some((_, starts)) = fleeting.iter().find(|(name, _)| *name == key) else { return Vec::new() };
         let place = Place::whole(variable.storage, variable.ty, variable.span);
-        self.performed(&place, starts, Occasion::Start)
+        let mut statements = self.performed(&place, starts, Occasion::Start);
+        statements.extend(self.performed(&place, starts, Occasion::AfterStart));
+        statements
     }
 
     fn initialised(&self, variable: &Variable) -> Statement {

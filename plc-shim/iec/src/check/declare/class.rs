@@ -19,6 +19,8 @@ pub(in crate::check) enum Role {
     Setter,
     /// What the unit's variables do before the first scan.
     Start,
+    /// What they do once all variables have their first values.
+    AfterStart,
     /// What they do before another start.
     End,
 }
@@ -38,15 +40,18 @@ impl From<MemberKind> for Role {
 pub(in crate::check) enum Occasion {
     /// Before the first scan after a start.
     Start,
+    /// Then, once all variables of the application have their first values.
+    AfterStart,
     End,
 }
 
 impl Occasion {
-    pub(super) const ALL: [Self; 2] = [Self::Start, Self::End];
+    pub(super) const ALL: [Self; 3] = [Self::Start, Self::AfterStart, Self::End];
 
     pub(super) fn role(self) -> Role {
         match self {
             Self::Start => Role::Start,
+            Self::AfterStart => Role::AfterStart,
             Self::End => Role::End,
         }
     }

@@ -39,6 +39,7 @@ impl Declarations<'_> {
     pub(in crate::check) fn hooks(&self, pou: PouId, occasion: Occasion) -> Vec<PouId> {
         let name = match occasion {
             Occasion::Start => "FB_INIT",
+            Occasion::AfterStart => return self.called_after_init(pou),
             Occasion::End => "FB_EXIT",
         };
         let key = (Role::Method, name.to_owned());
@@ -50,6 +51,31 @@ impl Declarations<'_> {
         }
         found.reverse();
         found
+    }
+
+    /// The methods with `{attribute 'call_after_init'}` of a block that has it as well, or whose base has it: each as
+    /// the block itself has it, those that its bases declare first.
+    fn called_after_init(&self, pou: PouId) -> Vec<PouId> {
+        let chain: Vec<PouId> = self.with_bases(pou).collect();
+        if !chain.iter().any(|id| self.pou(*id).ast.object.call_after_init) {
+            return Vec::new();
+        }
+        let mut names: Vec<&(Role, String)> = Vec::new();
+        for class in chain.iter().rev().filter_map(|id| self.class(*id)) {
+            let marked = class
+                .members
+                .iter()
+                .filter(|((role, _), method)| *role == Role::Method && self.pou(**method).ast.object.call_after_init);
+            for (key, _) in marked {
+                if !names.contains(&key) {
+                    names.push(key);
+                }
+            }
+        }
+        let own = |key: &&(Role, String)| {
+            chain.iter().filter_map(|id| self.class(*id)).find_map(|class| class.members.get(*key)).copied()
+        };
+        names.iter().filter_map(own).collect()
     }
 
     pub(in crate::check) fn has_hook(&self, pou: PouId, occasion: Occasion) -> bool {

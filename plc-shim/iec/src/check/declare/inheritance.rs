@@ -110,7 +110,7 @@ impl Declarations<'_> {
             let what = match role {
                 Role::Getter => "GET of the property",
                 Role::Setter => "SET of the property",
-                Role::Body | Role::Method | Role::Start | Role::End => "the method",
+                Role::Body | Role::Method | Role::Start | Role::AfterStart | Role::End => "the method",
             };
             let owner = &self.pou(self.owner_of(prototype)).ast.name.text;
             let message = format!("`{}` lacks {what} `{}` of `{owner}`", unit.text, wanted.text);

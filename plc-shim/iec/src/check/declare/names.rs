@@ -58,7 +58,9 @@ impl<'a> Declarations<'a> {
             }
             match role {
                 Role::Getter | Role::Setter => self.property_names.insert(name.key()),
-                Role::Method | Role::Body | Role::Start | Role::End => self.method_names.insert(name.key()),
+                Role::Method | Role::Body | Role::Start | Role::AfterStart | Role::End => {
+                    self.method_names.insert(name.key())
+                }
             };
         }
         if ast.kind != PouKind::Function {

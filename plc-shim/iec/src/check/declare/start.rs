@@ -55,7 +55,7 @@ pub(in crate::check) enum StartKind<'a> {
 }
 
 /// The units that make starts and ends: they have no text. By where their owners' names stand.
-pub(super) type Stages = BTreeMap<(u32, u32), [ast::Pou; 2]>;
+pub(super) type Stages = BTreeMap<(u32, u32), [ast::Pou; 3]>;
 
 /// A unit for each occasion of each unit that has variables.
 pub(in crate::check) fn stages(units: &[(crate::syntax::FileId, &CompilationUnit)]) -> Stages {
@@ -65,7 +65,7 @@ pub(in crate::check) fn stages(units: &[(crate::syntax::FileId, &CompilationUnit
         for declaration in list {
             match declaration {
                 Declaration::Pou(pou) if !matches!(pou.kind, PouKind::Function | PouKind::Interface) => {
-                    stages.insert(place_of(&pou.name), [stage(pou, "start"), stage(pou, "end")]);
+                    stages.insert(place_of(&pou.name), ["start", "after start", "end"].map(|name| stage(pou, name)));
                 }
                 Declaration::Namespace(namespace) => open.push(&namespace.declarations),
                 // The others declare no unit that keeps variables.
@@ -171,6 +171,7 @@ impl Declarations<'_> {
         let Membership { owner, role } = self.pou(id).membership?;
         match role {
             Role::Start => Some((owner, Occasion::Start)),
+            Role::AfterStart => Some((owner, Occasion::AfterStart)),
             Role::End => Some((owner, Occasion::End)),
             _ => None,
         }

@@ -56,6 +56,8 @@ pub struct Object {
     pub using: Vec<Ident>,
     /// Its methods, properties and actions.
     pub members: Vec<Member>,
+    /// True behind `{attribute 'call_after_init'}`, of a block and of its method that runs then.
+    pub call_after_init: bool,
 }
 
 /// What a member is.

@@ -38,6 +38,8 @@ pub(super) struct Cursor<'a> {
     qualified_only: Vec<(u32, ())>,
     /// The same behind `{attribute 'pack_mode' := '1'}`, with the bytes.
     packed: Vec<(u32, u32)>,
+    /// The same behind `{attribute 'call_after_init'}`.
+    call_after_init: Vec<(u32, ())>,
     /// True inside of what stands behind it.
     in_external: bool,
     /// The unit's constants without a type, by their keys.
@@ -61,7 +63,10 @@ impl<'a> Cursor<'a> {
             _ => Some(*token),
         };
         let external = behind_pragma(tokens, text, |pragma| pragma.eq_ignore_ascii_case("external").then_some(()));
-        let qualified_only = behind_pragma(tokens, text, |pragma| is_qualified_only(pragma).then_some(()));
+        let qualified_only =
+            behind_pragma(tokens, text, |pragma| is_attribute(pragma, "'qualified_only'").then_some(()));
+        let call_after_init =
+            behind_pragma(tokens, text, |pragma| is_attribute(pragma, "'call_after_init'").then_some(()));
         let packed = behind_pragma(tokens, text, packing);
         let mut tokens: Vec<Token> = tokens.iter().filter_map(good).collect();
         promote_soft_keywords(&mut tokens, text);
@@ -82,6 +87,7 @@ impl<'a> Cursor<'a> {
             external,
             qualified_only,
             packed,
+            call_after_init,
             in_external: false,
             constants: BTreeMap::new(),
             templates: Vec::new(),
@@ -97,6 +103,11 @@ impl<'a> Cursor<'a> {
     /// True if `{attribute 'qualified_only'}` stands before the next token.
     pub(super) fn at_qualified_only(&self) -> bool {
         self.before_next(&self.qualified_only).is_some()
+    }
+
+    /// True if `{attribute 'call_after_init'}` stands before the next token.
+    pub(super) fn at_call_after_init(&self) -> bool {
+        self.before_next(&self.call_after_init).is_some()
     }
 
     /// Most bytes that the members of the structure behind the next token are aligned to, if an attribute says so.
@@ -491,8 +502,8 @@ fn promote_soft_keywords(tokens: &mut [Token], text: &str) {
     }
 }
 
-fn is_qualified_only(pragma: &str) -> bool {
-    attribute(pragma).is_some_and(|attribute| attribute.eq_ignore_ascii_case("'qualified_only'"))
+fn is_attribute(pragma: &str, wanted: &str) -> bool {
+    attribute(pragma).is_some_and(|attribute| attribute.eq_ignore_ascii_case(wanted))
 }
 
 /// True for a word whose next one is a name, be it one that begins a part of a chart elsewhere: `CLASS Step IMPLEMENTS`.

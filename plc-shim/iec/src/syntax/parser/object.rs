@@ -17,11 +17,11 @@ use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 impl Cursor<'_> {
     /// A unit from its keyword to its end; nothing if it has no name.
     pub(super) fn unit(&mut self, kind: PouKind, end: Keyword) -> Option<Pou> {
-        let external = self.at_external();
+        let (external, call_after_init) = (self.at_external(), self.at_call_after_init());
         let outer = self.set_external(external || self.is_in_external());
         let unit = self.plain_unit(kind, end);
         self.set_external(outer);
-        unit.map(|unit| Pou { external, ..unit })
+        unit.map(|unit| Pou { external, object: Object { call_after_init, ..unit.object }, ..unit })
     }
 
     fn plain_unit(&mut self, kind: PouKind, end: Keyword) -> Option<Pou> {

@@ -145,8 +145,12 @@ impl Body<'_, '_> {
             let stage = self.declarations.stage(pou, Occasion::Start);
             statements.extend(stage.and_then(|stage| self.stage_call(place, stage, wanted.span)));
             statements.extend(self.init_calls(place, pou, wanted.given));
+            let stage = self.declarations.stage(pou, Occasion::AfterStart);
+            statements.extend(stage.and_then(|stage| self.stage_call(place, stage, wanted.span)));
+            statements.extend(self.after_init_calls(place, pou));
         } else {
             statements.extend(self.structure_performs(place, Occasion::Start));
+            statements.extend(self.structure_performs(place, Occasion::AfterStart));
         }
         statements
     }

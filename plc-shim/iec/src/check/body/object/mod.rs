@@ -148,7 +148,7 @@ impl Body<'_, '_> {
         let roles = [Role::Method, Role::Getter, Role::Setter];
         let role = roles.into_iter().find(|role| self.declarations.find_member(class, *role, &name.text).is_some())?;
         let (code, message) = match role {
-            Role::Method | Role::Body | Role::Start | Role::End => {
+            Role::Method | Role::Body | Role::Start | Role::AfterStart | Role::End => {
                 (Code::NotAVariable, format!("`{0}` is a method: call it as `{0}()`", name.text))
             }
             Role::Getter => (Code::WrongProperty, format!("`{}` is a property, which is not a variable", name.text)),

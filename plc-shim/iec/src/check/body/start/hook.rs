@@ -1,4 +1,4 @@
-//! `FB_init` and `FB_exit`, which CODESYS and TwinCAT run for each instance without a call.
+//! `FB_init`, `FB_exit` and methods with `call_after_init`, which CODESYS and TwinCAT run for each instance without a call.
 //!
 //! `FB_init` runs at every start, behind the initial values of the instance's own variables and before
 //! the values that its declaration gives; of a derived block the base's runs first. `FB_exit` runs
@@ -72,6 +72,14 @@ impl Body<'_, '_> {
         let hooks = self.declarations.hooks(pou, Occasion::End);
         let copies = [Argument::Input(ident(EXIT_INPUTS[0], place.span), truth(false, place.span))];
         let calls = hooks.into_iter().rev().map(|hook| self.hook_call(place, pou, hook, copies.to_vec()));
+        calls.collect::<Option<Vec<_>>>().unwrap_or_default()
+    }
+
+    /// The calls of methods with `{attribute 'call_after_init'}` on the instance at a place.
+    pub(in crate::check::body) fn after_init_calls(&mut self, place: &Place, pou: PouId) -> Vec<Statement> {
+        let hooks = self.declarations.hooks(pou, Occasion::AfterStart);
+        let calls = hooks.into_iter().map(|hook| self.hook_call(place, pou, hook, Vec::new()));
+        // A call that is wrong has been reported.
         calls.collect::<Option<Vec<_>>>().unwrap_or_default()
     }
 

@@ -83,7 +83,7 @@ impl<'a> Body<'_, 'a> {
                 let place = at(ElementaryType::Byte.into());
                 vec![self.repeated(place, (*count, *stride), starts, occasion)]
             }
-            _ if occasion == Occasion::End => Vec::new(),
+            _ if occasion != Occasion::Start => Vec::new(),
             StartKind::Value(ty, expr) => {
                 let known = self.declarations.mark();
                 let value = self.beginning(expr, *ty);
@@ -117,6 +117,10 @@ impl<'a> Body<'_, 'a> {
             Occasion::Start => {
                 statements.extend(inner.and_then(|stage| self.stage_call(place, stage, place.span)));
                 statements.extend(self.init_calls(place, pou, given));
+            }
+            Occasion::AfterStart => {
+                statements.extend(inner.and_then(|stage| self.stage_call(place, stage, place.span)));
+                statements.extend(self.after_init_calls(place, pou));
             }
             // What was made last ends first.
             Occasion::End => {
