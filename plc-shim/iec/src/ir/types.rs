@@ -300,7 +300,8 @@ impl TypeTable {
 
     /// The alignment of a member of this type.
     pub fn packed_align(&self, id: TypeId, packing: Option<u32>) -> u32 {
-        packing.unwrap_or(u32::MAX).min(self.align(id))
+        let own = self.align(id);
+        packing.map_or(own, |packing| packing.min(own))
     }
 
     /// Gives a structure that was only named its members, its alignment and its initial image.

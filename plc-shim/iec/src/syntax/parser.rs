@@ -18,6 +18,7 @@ mod object;
 mod scl;
 mod slip;
 mod statement;
+mod text_unit;
 mod type_spec;
 mod untyped_constant;
 

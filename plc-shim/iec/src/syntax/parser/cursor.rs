@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::MAX_NESTING;
-use super::here::Here;
+use super::text_unit::TextUnit;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::{Dialect, Feature};
 use crate::source::origin::Origin;
@@ -46,7 +46,7 @@ pub(super) struct Cursor<'a> {
     constants: BTreeMap<String, Expr>,
     /// Where generic blocks are named with their constants.
     templates: Vec<TemplateUse>,
-    here: Here,
+    here: TextUnit,
 }
 
 impl<'a> Cursor<'a> {
@@ -91,7 +91,7 @@ impl<'a> Cursor<'a> {
             in_external: false,
             constants: BTreeMap::new(),
             templates: Vec::new(),
-            here: Here::default(),
+            here: TextUnit::default(),
         }
     }
 
@@ -179,11 +179,11 @@ impl<'a> Cursor<'a> {
         std::mem::replace(&mut self.result_name, name)
     }
 
-    pub(super) fn here(&self) -> &Here {
+    pub(super) fn here(&self) -> &TextUnit {
         &self.here
     }
 
-    pub(super) fn replace_here(&mut self, here: Here) -> Here {
+    pub(super) fn replace_here(&mut self, here: TextUnit) -> TextUnit {
         std::mem::replace(&mut self.here, here)
     }
 

@@ -1,40 +1,29 @@
 //! Where the text stands, as `__POUNAME()` and `__POSITION()` give it (CODESYS, TwinCAT): they are literals.
 
 use super::cursor::Cursor;
+use super::text_unit::TextUnit;
 use crate::dialect::Feature;
 use crate::source::Span;
 use crate::syntax::ast::{ExprKind, Literal};
 use crate::syntax::token::{Punctuation, TokenKind};
 
-/// The unit around, and from where its lines are counted.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Here {
-    /// The name of the unit, behind that of what it belongs to.
-    name: String,
-    /// True within a unit, whose name namespaces do not begin.
-    in_unit: bool,
-    /// Where the declaration begins or, in a body, ends.
-    from: u32,
-    in_body: bool,
-}
-
 impl Cursor<'_> {
     /// Goes into a unit or a part of it; gives what was around.
-    pub(super) fn enter(&mut self, name: &str, start: Span) -> Here {
+    pub(super) fn enter(&mut self, name: &str, start: Span) -> TextUnit {
         let around = self.here();
         let name = if around.in_unit { format!("{}.{name}", around.name) } else { name.to_owned() };
-        self.replace_here(Here { name, in_unit: true, from: start.start, in_body: false })
+        self.replace_here(TextUnit { name, in_unit: true, from: start.start, in_body: false })
     }
 
     /// Goes into a list of global variables, or another namespace.
-    pub(super) fn enter_namespace(&mut self, name: &str, start: Span) -> Here {
-        self.replace_here(Here { name: name.to_owned(), in_unit: false, from: start.start, in_body: false })
+    pub(super) fn enter_namespace(&mut self, name: &str, start: Span) -> TextUnit {
+        self.replace_here(TextUnit { name: name.to_owned(), in_unit: false, from: start.start, in_body: false })
     }
 
     /// Goes on to the statements of the unit, which the last token stands before.
-    pub(super) fn enter_body(&mut self) -> Here {
+    pub(super) fn enter_body(&mut self) -> TextUnit {
         let from = self.previous_span().end;
-        let here = Here { from, in_body: true, ..self.here().clone() };
+        let here = TextUnit { from, in_body: true, ..self.here().clone() };
         self.replace_here(here)
     }
 
