@@ -5,7 +5,7 @@ use onescan_iec::diagnostic::{Code, Diagnostic};
 use onescan_iec_run::{Application, OpenInput, Variable};
 use onescan_server::signal::SignalDecl;
 
-use crate::bind::{Bindings, Place};
+use crate::bind::{Bindings, Bound, Place};
 
 /// A warning at the declaration of each input of `application` to which no signal goes, which the application itself
 /// does not write, and which is none of `others`, the variables that something else than a signal writes. `signals`
@@ -16,17 +16,36 @@ pub fn undriven(
     signals: &[SignalDecl],
     others: &[Variable],
 ) -> Vec<Diagnostic> {
-    let is_own = |signal: &SignalDecl| bindings.outputs.iter().any(|bound| bound.port.name == signal.name);
-    let others_write: Vec<&str> =
-        signals.iter().filter(|signal| !is_own(signal)).map(|signal| signal.name.as_str()).collect();
+    let foreign = Foreign::of(bindings, signals);
     let mut found = Vec::new();
     for mut input in application.open_inputs() {
         input.parts.retain(|part| !is_driven(part, bindings, others));
         if !input.parts.is_empty() {
-            found.push(warning(application, &input, &others_write));
+            found.push(warning(application, &input, &foreign));
         }
     }
     found
+}
+
+/// Signals that others write.
+struct Foreign<'a> {
+    /// Those that the PLC does not read, which are the likelier to be meant.
+    unread: Vec<&'a str>,
+    read: Vec<&'a str>,
+}
+
+impl<'a> Foreign<'a> {
+    fn of(bindings: &Bindings, signals: &'a [SignalDecl]) -> Self {
+        let is_in = |bound: &[Bound], signal: &SignalDecl| bound.iter().any(|bound| bound.port.name == signal.name);
+        let foreign = signals.iter().filter(|signal| !is_in(&bindings.outputs, signal));
+        let (read, unread): (Vec<&SignalDecl>, _) = foreign.partition(|signal| is_in(&bindings.inputs, signal));
+        let names = |signals: Vec<&'a SignalDecl>| signals.iter().map(|signal| signal.name.as_str()).collect();
+        Self { unread: names(unread), read: names(read) }
+    }
+
+    fn nearest(&self, name: &str) -> Option<&'a str> {
+        nearest(name, self.unread.iter().copied()).or_else(|| nearest(name, self.read.iter().copied()))
+    }
 }
 
 fn is_driven(variable: &Variable, bindings: &Bindings, others: &[Variable]) -> bool {
@@ -46,7 +65,7 @@ fn overlaps(place: Place, size: usize, variable: &Variable) -> bool {
     place.offset < end && start < place.offset + size && is_same_bit
 }
 
-fn warning(application: &Application, input: &OpenInput, signals: &[&str]) -> Diagnostic {
+fn warning(application: &Application, input: &OpenInput, foreign: &Foreign<'_>) -> Diagnostic {
     let path = &input.variable.path;
     let message = match (&*input.parts, input.part_count) {
         ([only], 1) => {
@@ -67,7 +86,7 @@ fn warning(application: &Application, input: &OpenInput, signals: &[&str]) -> Di
         ([], _) => format!("nobody drives the input `{path}`"),
     };
     let name = path.rsplit('.').next().unwrap_or(path);
-    let help = match nearest(name, signals.iter().copied()) {
+    let help = match foreign.nearest(name) {
         Some(near) => {
             format!("did you mean the signal `{near}`? Give both the same name, or name the input under `bind`")
         }

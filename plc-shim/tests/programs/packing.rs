@@ -70,8 +70,8 @@ fn packing_is_of_the_structure_that_the_attribute_stands_before() {
 #[test]
 fn bits_of_a_structure_share_bytes() {
     let types =
-        "TYPE Word : STRUCT a, b, c, d, e, f, g, h : BIT; i : BIT := TRUE; n : BYTE; j : BIT; END_STRUCT END_TYPE
-        TYPE Seen : UNION word : Word; bytes : ARRAY [0..3] OF BYTE; END_UNION END_TYPE";
+        "TYPE Flags : STRUCT a, b, c, d, e, f, g, h : BIT; i : BIT := TRUE; n : BYTE; j : BIT; END_STRUCT END_TYPE
+        TYPE Seen : UNION word : Flags; bytes : ARRAY [0..3] OF BYTE; END_UNION END_TYPE";
     let rig = rig(
         Dialect::Codesys,
         types,
