@@ -509,6 +509,27 @@ export function readTroubleKind(field: Field): TroubleKind {
   return one_of("unconnected", "written-twice", "unequal-type", "unread")(field);
 }
 
+/** An input of a soft PLC that nobody drives. */
+export interface UndrivenInput {
+  /** The PLC. */
+  readonly client: string;
+  /** The file that declares the input. */
+  readonly file: string;
+  /** The line there, from 1. */
+  readonly line: number;
+  /** Which input it is, what it stays, and what could be done. */
+  readonly message: string;
+}
+
+export function readUndrivenInput(field: Field): UndrivenInput {
+  return {
+    client: text(field.at("client")),
+    file: text(field.at("file")),
+    line: whole(field.at("line")),
+    message: text(field.at("message")),
+  };
+}
+
 /** What a page wants. */
 export type Want =
   /** These changes, together. */
@@ -558,6 +579,8 @@ export interface Wiring {
   readonly clients: readonly Member[];
   /** Inputs of a plant's components that nobody drives: no fault, but a reason to look. */
   readonly open: readonly OpenInput[];
+  /** Inputs of soft PLCs that nobody drives: most often one of two names was changed. */
+  readonly undriven: readonly UndrivenInput[];
 }
 
 export function readWiring(field: Field): Wiring {
@@ -566,5 +589,6 @@ export function readWiring(field: Field): Wiring {
     troubles: list(readTrouble)(field.at("troubles")),
     clients: list(readMember)(field.at("clients", [])),
     open: list(readOpenInput)(field.at("open", [])),
+    undriven: list(readUndrivenInput)(field.at("undriven", [])),
   };
 }

@@ -66,5 +66,12 @@ pub(super) fn of_map(map: &Map, texts: &Texts) -> Vec<Finding> {
             file: place.map(|place| place.file),
         }
     };
-    map.troubles.iter().map(finding).collect()
+    let undriven = map.undriven.iter().map(|input| Finding {
+        is_error: false,
+        message: format!("{}: {}", input.client, input.message),
+        help: None,
+        line: Some(input.line as usize),
+        file: Some(input.file.clone()),
+    });
+    map.troubles.iter().map(finding).chain(undriven).collect()
 }
