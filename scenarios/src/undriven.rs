@@ -27,7 +27,7 @@ impl Scenario {
         Ok(found)
     }
 
-    /// The same of soft PLC `name`.
+    /// The same of soft PLC `name`; none in a scenario without signals, in which nothing is connected yet.
     ///
     /// # Errors
     /// A signal without a variable.
@@ -36,6 +36,9 @@ impl Scenario {
         name: &ClientName,
         Compiled { application, paths, .. }: &Compiled,
     ) -> Result<Diagnostics, ScenarioError> {
+        if self.plan().signals().is_empty() {
+            return Ok(Diagnostics::new(Vec::new(), application.sources()));
+        }
         let bindings = self.bindings(name, application, paths)?;
         let set = self.set_in(name);
         let others: Vec<Variable> = set.filter_map(|path| application.variable(path).ok()).collect();

@@ -27,9 +27,9 @@ fn a_renamed_input_is_reported_with_its_place_and_the_signal_that_may_be_meant()
     assert_eq!(wiring.code, Some(0), "{wiring:?}");
     let check = typed(folder.path(), &["check", ".", "--format", "json"]);
     let found: Vec<serde_json::Value> = check.out.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
-    let undriven: Vec<_> = found.iter().filter(|found| found["code"] == "W0716").collect();
-    assert_eq!(undriven.len(), 2, "{check:?}");
-    assert_eq!(undriven[0]["message"], "nobody drives the input `Alignment.Sensor_B`: it stays FALSE");
+    let undriven = found.iter().filter(|found| found["code"] == "W0716").map(|found| found["message"].clone());
+    let other = "nobody drives the input `Alignment.Sensor_B`: it stays FALSE";
+    assert_eq!(undriven.collect::<Vec<_>>(), [MESSAGE, other], "{check:?}");
     assert_eq!(check.code, Some(0), "a warning alone lets a check pass: {check:?}");
     assert_eq!(typed(folder.path(), &["check", ".", "--deny-warnings"]).code, Some(1));
 }
