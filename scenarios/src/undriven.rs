@@ -1,7 +1,7 @@
 //! Inputs of its soft PLCs that nobody drives.
 
 use onescan_iec::Diagnostics;
-use onescan_iec_run::Variable;
+use onescan_iec_run::{Application, Variable};
 use onescan_server::signal::ClientName;
 use onescan_soft_plc::undriven::undriven;
 
@@ -46,6 +46,22 @@ impl Scenario {
         Ok(Diagnostics::new(warnings, application.sources()))
     }
 
+    /// The same of an application that was compiled of the sources of soft PLC `name` elsewhere; none if it is not one.
+    ///
+    /// # Errors
+    /// A `bind` that is wrong; a signal without a variable.
+    pub fn undriven_in(
+        &self,
+        name: &ClientName,
+        application: Application,
+    ) -> Result<Option<Diagnostics>, ScenarioError> {
+        let Some(ClientFile::SoftPlc { bind, .. }) = self.file().clients.get(name).map(toml::Spanned::get_ref) else {
+            return Ok(None);
+        };
+        let paths = self.paths(name, bind)?;
+        self.undriven_of(name, &Compiled { application, paths, inputs: Vec::new() }).map(Some)
+    }
+
     /// Paths of variables of `name` that something else than a signal writes: ports, and what the case sets. Whether
     /// there are such variables is asked elsewhere.
     fn set_in<'a>(&'a self, name: &'a ClientName) -> impl Iterator<Item = &'a str> {
@@ -56,6 +72,10 @@ impl Scenario {
         let images = ports.into_iter().flat_map(|ports| ports.values());
         let images = images.filter_map(|port| port.serial.as_ref()?.input.as_deref());
         let settings = self.case().map(|case| case.settings.as_slice()).unwrap_or_default();
-        images.chain(settings.iter().filter_map(|one| one.path.strip_prefix(name.as_str())?.strip_prefix('.')))
+        let applied = self.applied().into_iter().flat_map(|applied| &applied.variables);
+        let written = applied.filter(|at| at.client == *name).map(|at| at.variable.as_str());
+        images
+            .chain(written)
+            .chain(settings.iter().filter_map(|one| one.path.strip_prefix(name.as_str())?.strip_prefix('.')))
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::typed::{copied_shear, edit, scenario, typed};
+use crate::typed::{copied_shear, edit, scenario, typed, utf8};
 
 const MESSAGE: &str = "nobody drives the input `Shear.Sensor_Two`: it stays FALSE";
 const MEND: &str = "did you mean the signal `Sensor_2`? Give both the same name, or name the input under `bind`";
@@ -30,6 +30,8 @@ fn a_renamed_input_is_reported_with_its_place_and_the_signal_that_may_be_meant()
     let undriven = found.iter().filter(|found| found["code"] == "W0716").map(|found| found["message"].clone());
     let other = "nobody drives the input `Alignment.Sensor_B`: it stays FALSE";
     assert_eq!(undriven.collect::<Vec<_>>(), [MESSAGE, other], "{check:?}");
+    let beside = typed(folder.path().parent().unwrap(), &["check", utf8(folder.path())]);
+    assert!(beside.out.ends_with("in 2 files\n"), "places are named as those of other findings: {beside:?}");
     assert_eq!(check.code, Some(0), "a warning alone lets a check pass: {check:?}");
     assert_eq!(typed(folder.path(), &["check", ".", "--deny-warnings"]).code, Some(1));
 }

@@ -87,6 +87,9 @@ fn warning(application: &Application, input: &OpenInput, foreign: &Foreign<'_>) 
     };
     let name = path.rsplit('.').next().unwrap_or(path);
     let help = match foreign.nearest(name) {
+        Some(near) if near.eq_ignore_ascii_case(name) => {
+            format!("the signal `{near}` goes elsewhere: name the input under `bind` as well")
+        }
         Some(near) => {
             format!("did you mean the signal `{near}`? Give both the same name, or name the input under `bind`")
         }

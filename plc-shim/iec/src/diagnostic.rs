@@ -278,6 +278,8 @@ impl Diagnostics {
     /// Joins findings with their text, in the order of files and places.
     pub fn new(mut diagnostics: Vec<Diagnostic>, sources: &SourceMap) -> Self {
         diagnostics.sort_by_key(|found| (found.span.file, found.span.start, found.code));
+        // What is checked in two ways, as the operands of SEL are, is said once.
+        diagnostics.dedup();
         let findings = diagnostics.into_iter().map(|found| Finding::new(found, sources));
         let findings: Vec<Finding> = findings.collect();
         let count = |severity| findings.iter().filter(|found| found.diagnostic.severity == severity).count();

@@ -73,6 +73,20 @@ PROGRAM P VAR x : Lone; END_VAR x(); END_PROGRAM";
 }
 
 #[test]
+fn a_block_that_extends_it_may_have_the_attribute_for_it() {
+    let text = "FUNCTION_BLOCK Lone VAR n : INT; END_VAR
+{attribute 'call_after_init'}
+METHOD Settle
+  n := 70;
+END_METHOD
+END_FUNCTION_BLOCK
+{attribute 'call_after_init'} FUNCTION_BLOCK More EXTENDS Lone END_FUNCTION_BLOCK
+PROGRAM P VAR x : More; END_VAR x(); END_PROGRAM";
+    assert_eq!(rig(text).int("P.x.n"), 70);
+    assert!(!findings_in(Dialect::TwinCat, text).to_string().contains("W0714"));
+}
+
+#[test]
 fn it_takes_no_inputs() {
     let text = "{attribute 'call_after_init'} FUNCTION_BLOCK B
 {attribute 'call_after_init'} METHOD Settle VAR_INPUT n : INT; END_VAR END_METHOD

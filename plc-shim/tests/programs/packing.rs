@@ -84,6 +84,18 @@ fn bits_of_a_structure_share_bytes() {
 }
 
 #[test]
+fn a_bit_of_a_union_is_the_lowest_of_its_byte() {
+    let types = "TYPE Seen : UNION flag : BIT; byte : BYTE; END_UNION END_TYPE";
+    let rig = rig(
+        Dialect::Codesys,
+        types,
+        "s, t : Seen; was : BOOL;",
+        "s.byte := 2; was := s.flag; t.byte := 3; t.flag := FALSE;",
+    );
+    assert_eq!((rig.bool("P.was"), rig.int("P.t.byte")), (false, 2));
+}
+
+#[test]
 fn a_bit_has_no_address() {
     let text = "TYPE T : STRUCT a, b : BIT; END_STRUCT END_TYPE
         PROGRAM P VAR t : T; p : POINTER TO BYTE; END_VAR p := ADR(t.b); END_PROGRAM";

@@ -49,6 +49,13 @@ fn what_is_read_of_the_input_area_is_open() {
 }
 
 #[test]
+fn what_lies_somewhere_in_the_input_area_is_open() {
+    let text = "VAR_GLOBAL gone AT %I* : INT; taken AT %I* : INT; END_VAR
+        PROGRAM P VAR stop AT %I* : BOOL; lamp AT %Q* : BOOL; END_VAR lamp := stop AND gone > 3; taken := 1; END_PROGRAM";
+    assert_eq!(open("a.exp", text), ["gone", "P.stop"]);
+}
+
+#[test]
 fn a_program_does_not_drive_its_own_input() {
     let text = "PROGRAM P VAR_INPUT reset : BOOL; END_VAR VAR n : INT; END_VAR
         IF reset THEN n := 0; reset := FALSE; END_IF n := n + 1; END_PROGRAM";

@@ -25,6 +25,7 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use onescan_iec::{Dialect, MemoryLimit, inspect_within};
+use onescan_iec_run::Application;
 use onescan_report::OutputError;
 
 pub use error::CheckError;
@@ -90,14 +91,14 @@ pub fn check(config: &CheckConfig, out: &mut dyn Write) -> Result<ExitCode, Chec
     let files = programs.iter().map(|program| program.inputs.len()).sum();
     let mut findings = Vec::new();
     for program in programs {
+        let inputs = program.inputs.clone();
         let found = inspect_within(program.memory_limit, program.inputs, program.plan.as_ref());
-        // In another dialect than the scenario's it is another program.
-        let is_its_program = config.dialect.is_none() && !found.has_errors();
+        let is_sound = !found.has_errors();
         findings.push(found);
-        if let (true, Some(scenario), Some(client)) = (is_its_program, program.scenario, program.client)
-            && let Some(compiled) = scenario.compiled_plc(&client)?
+        if let (true, Some(scenario), Some(client)) = (is_sound, program.scenario, program.client)
+            && let Ok(application) = Application::builder().inputs(inputs).memory_limit(program.memory_limit).build()
         {
-            findings.push(scenario.undriven_of(&client, &compiled)?);
+            findings.extend(scenario.undriven_in(&client, application)?);
         }
     }
     let report = Report { files, findings, passed_over };

@@ -63,9 +63,21 @@ impl Commanded {
         (self.effort != 0.0 && next * self.effort.signum() > limits.speed).then_some(most)
     }
 
-    /// What it exerts on a mass of its own in a sub-step.
-    pub(crate) fn by_itself(&mut self, limits: &Limits, motion: &Motion, load: f64, dt_s: f64) -> f64 {
+    /// What it exerts on a mass of its own in a sub-step, which moves within a range.
+    pub(crate) fn by_itself(
+        &mut self,
+        limits: &Limits,
+        motion: &Motion,
+        (load, range): (f64, (f64, f64)),
+        dt_s: f64,
+    ) -> f64 {
         self.settle(limits, dt_s);
+        let net = self.effort - load;
+        let presses = net > 0.0 && motion.position >= range.1 || net < 0.0 && motion.position <= range.0;
+        if presses {
+            // The stop takes the force, and the mass does not come to a speed.
+            return self.exerted;
+        }
         if let Some(most) = self.limit(limits, motion, load, dt_s) {
             let keeps = load + motion.mass * (most - motion.velocity) / dt_s;
             self.exerted = keeps.clamp(-self.effort.abs(), self.effort.abs());

@@ -3,7 +3,9 @@
 use std::ops::Range;
 
 use onescan_iec::check::Checked;
-use onescan_iec::ir::{ElementaryType, Location, Part, Place, PlaceUse, Statement, Step, Storage, place_uses};
+use onescan_iec::ir::{
+    ElementaryType, Location, Part, Place, PlaceUse, Statement, Step, Storage, Variable as Declared, place_uses,
+};
 use onescan_iec::syntax::Span;
 use onescan_iec::syntax::ast::SectionKind;
 use onescan_iec::syntax::direct_address::Area;
@@ -59,22 +61,29 @@ impl Application {
         let checked = &self.inner.checked;
         let programs = checked.programs.iter().zip(self.entry_names()).flat_map(|(program, name)| {
             let variables = checked.interfaces.get(&program.pou).map_or(&[][..], Vec::as_slice);
-            variables.iter().map(move |variable| (name, variable))
+            variables.iter().map(move |variable| (name, program.offset, variable))
         });
         let resources = checked.configuration.iter().flat_map(|configuration| &configuration.resources);
         let own = resources.flat_map(|resource| {
             let home = resource.name.as_deref().unwrap_or_default();
-            resource.globals.iter().map(move |global| (home, global))
+            resource.globals.iter().map(move |global| (home, 0, global))
         });
-        let all = checked.globals.iter().map(|global| ("", global)).chain(own).chain(programs);
+        let all = checked.globals.iter().map(|global| ("", 0, global)).chain(own).chain(programs);
         let mut named: Vec<Bits> = Vec::new();
-        for (home, variable) in all {
-            let Storage::Located(Location { area: Area::Input, .. }) = variable.storage else { continue };
-            let Some(found) = spot(checked, home, variable, 0) else { continue };
+        for (home, base, variable) in all.filter(|(.., variable)| is_at_input(variable)) {
+            let Some(found) = spot(checked, home, variable, base) else { continue };
             let taken = bits(&self.describe(found.clone()));
-            let is_read = uses.read_inputs.iter().any(|(read, _)| overlap(read, &taken));
+            // Who reads what lies in an instance, as behind `AT %I*`, is not looked at.
+            let is_read = !matches!(variable.storage, Storage::Located(_))
+                || uses.read_inputs.iter().any(|(read, _)| overlap(read, &taken));
             named.push(taken);
-            if is_read {
+            let is_own = match variable.section {
+                SectionKind::External => false,
+                // One of a program's inputs is open as such.
+                SectionKind::Input => matches!(variable.storage, Storage::Located(_)),
+                _ => true,
+            };
+            if is_read && is_own {
                 open.extend(self.open_input(found, variable.span, uses));
             }
         }
@@ -96,6 +105,14 @@ impl Application {
         parts.retain(|leaf| !uses.written.iter().any(|written| overlap(written, &bits(leaf))));
         (!parts.is_empty()).then_some(OpenInput { variable, span, parts, part_count })
     }
+}
+
+/// True for a variable at `%IX0.0`, or at `%I*`, whose place is not known.
+fn is_at_input(variable: &Declared) -> bool {
+    variable
+        .address
+        .as_deref()
+        .is_some_and(|address| address.get(..2).is_some_and(|area| area.eq_ignore_ascii_case("%I")))
 }
 
 fn bits(variable: &Variable) -> Bits {

@@ -43,10 +43,12 @@ pub(super) fn lint(front: &Front, findings: &mut Vec<Diagnostic>) {
 }
 
 /// Methods that are to run after the start of a block which does not say so: the tools want the attribute at both.
-pub(super) fn lint_methods(unit: &Unit<'_>, findings: &mut Vec<Diagnostic>) {
+pub(super) fn lint_methods(unit: &Unit<'_>, units: &[Unit<'_>], findings: &mut Vec<Diagnostic>) {
     let object = &unit.pou.object;
-    // A base that is not looked at here may have it.
-    if object.call_after_init || !object.extends.is_empty() {
+    let own = unit.pou.name.key();
+    let is_extended = units.iter().any(|other| other.pou.object.extends.iter().any(|base| base.key() == own));
+    // A base may have it, which is not looked at here, and what is derived as well.
+    if object.call_after_init || !object.extends.is_empty() || is_extended {
         return;
     }
     for method in object.members.iter().map(|member| &member.pou).filter(|method| method.object.call_after_init) {

@@ -51,7 +51,7 @@ fn lint(front: &Front, plan: Option<&TaskPlan>) -> Vec<Diagnostic> {
         reachability::lint(unit, &mut findings);
         endless::lint(unit, &mut findings);
         unused::lint(unit, &index, &mut findings);
-        attributes::lint_methods(unit, &mut findings);
+        attributes::lint_methods(unit, &units, &mut findings);
     }
     for pou in index.own_members() {
         let unit = Unit { usage: Usage::of(pou, &index), pou };

@@ -207,7 +207,7 @@ impl<'a> Written<'_, 'a> {
     }
 
     /// True for a member of the vendors' type `BIT`: up to eight that follow each other share a byte.
-    fn is_bit(&self, member: &ast::Field) -> bool {
+    pub(super) fn is_bit(&self, member: &ast::Field) -> bool {
         let is_named = |name: &Ident| name.key() == "BIT" && self.declarations().type_key("BIT").is_none();
         member.address.is_none() && matches!(&member.spec.kind, ast::TypeSpecKind::Name(name) if is_named(name))
     }

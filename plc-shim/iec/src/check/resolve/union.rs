@@ -31,7 +31,8 @@ impl<'a> Written<'_, 'a> {
                 sound = false;
                 continue;
             };
-            fields.push(Field { name: field.name.text.clone(), ty: resolved.ty, offset: 0, bit: None, open: None });
+            let bit = self.is_bit(field).then_some(0);
+            fields.push(Field { name: field.name.text.clone(), ty: resolved.ty, offset: 0, bit, open: None });
             let counts = field.initial.is_some() || images.is_empty();
             if counts {
                 starts.extend(resolved.starts.iter().cloned());

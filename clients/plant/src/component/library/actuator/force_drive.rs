@@ -142,8 +142,8 @@ impl Component for ForceDrive {
             }
             let Travel { position, velocity } = state.travel;
             let motion = Motion { position, velocity, mass: p.moving_kg, exerted: 0.0 };
-            let force = state.commanded.by_itself(&self.limits(), &motion, p.load_n, dt_s);
             let range = (p.lower_m, p.upper_m);
+            let force = state.commanded.by_itself(&self.limits(), &motion, (p.load_n, range), dt_s);
             let resistance = Resistance { mass: p.moving_kg, dry: p.friction_n, viscous: 0.0, range };
             state.travel.push(force - p.load_n, &resistance, dt_s);
         }
@@ -203,6 +203,23 @@ mod tests {
         let mut rig = Rig::new(ForceDrive::new(p));
         let out = rig.run(on(5000.0), 0.01, 100);
         assert!(out.limited && (out.velocity_m_s - 0.5).abs() < 1e-12 && out.force_n.abs() < 1e-9, "{out:?}");
+    }
+
+    #[test]
+    fn at_its_stop_it_presses_with_all_of_its_force() {
+        for command_n in [500.0, -500.0] {
+            let p = Parameters {
+                moving_kg: 1.0,
+                speed_max_m_s: 0.05,
+                current_loop_s: 0.0,
+                lower_m: -0.005,
+                upper_m: 0.005,
+                ..Parameters::default()
+            };
+            let mut rig = Rig::new(ForceDrive::new(p));
+            let out = rig.run(on(command_n), 0.01, 100);
+            assert_eq!((out.velocity_m_s, out.force_n, out.limited), (0.0, command_n, false));
+        }
     }
 
     #[test]

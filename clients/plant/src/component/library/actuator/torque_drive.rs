@@ -142,8 +142,8 @@ impl Component for TorqueDrive {
             }
             let Travel { position, velocity } = state.travel;
             let motion = Motion { position, velocity, mass: p.inertia_kg_m2, exerted: 0.0 };
-            let torque = state.commanded.by_itself(&self.limits(), &motion, p.load_nm, dt_s);
             let range = (p.lower_rad, p.upper_rad);
+            let torque = state.commanded.by_itself(&self.limits(), &motion, (p.load_nm, range), dt_s);
             let resistance = Resistance { mass: p.inertia_kg_m2, dry: p.friction_nm, viscous: 0.0, range };
             state.travel.push(torque - p.load_nm, &resistance, dt_s);
         }
