@@ -7,7 +7,7 @@ use std::path::Path;
 use serde_json::Value;
 
 use crate::sitter::Sitter;
-use crate::typed::{copied, edit, is_the_same_over_tcp_and_resumed, rows, scenario, typed, utf8};
+use crate::typed::{ROUNDS, copied, edit, is_the_same_over_tcp_and_resumed, rows, scenario, typed, utf8};
 use crate::web::Served;
 
 /// A run of the furnace: the values of these signals, a row a change, and what was said.
@@ -269,13 +269,21 @@ fn drive_a_heat(person: &mut Sitter) {
 #[test]
 fn checks_of_consistency_fail_without_lockstep_alone() {
     let words = ["compare", ".", "--case", "feedback", "--until", "6s", "--runs", "1", "--count", "Regulation_fault"];
-    let said = typed(&scenario("arc-furnace"), &[&words[..], &["--format", "json"]].concat());
-    assert_eq!(said.code, Some(0), "{said:?}");
-    let rows: Vec<Value> = said.out.lines().map(|line| serde_json::from_str(line).expect("JSON lines")).collect();
-    let counted = |mode: &str| {
-        let of = rows.iter().filter(|row| row["mode"] == mode);
-        of.map(|row| row["counted"].as_f64().expect("a number")).collect::<Vec<f64>>()
-    };
-    assert_eq!(counted("lockstep"), [0.0]);
-    assert!(counted("follow").into_iter().all(|times| times > 0.0), "{said:?}");
+    let mut seen = Vec::new();
+    // When plant and PLC meet is the wall clock's affair: it is tried until it is seen.
+    for _ in 0..ROUNDS {
+        let said = typed(&scenario("arc-furnace"), &[&words[..], &["--format", "json"]].concat());
+        assert_eq!(said.code, Some(0), "{said:?}");
+        let rows: Vec<Value> = said.out.lines().map(|line| serde_json::from_str(line).expect("JSON lines")).collect();
+        let counted = |mode: &str| {
+            let of = rows.iter().filter(|row| row["mode"] == mode);
+            of.map(|row| row["counted"].as_f64().expect("a number")).collect::<Vec<f64>>()
+        };
+        assert_eq!(counted("lockstep"), [0.0]);
+        if counted("follow").into_iter().all(|times| times > 0.0) {
+            return;
+        }
+        seen.push(said);
+    }
+    panic!("{seen:?}");
 }

@@ -25,6 +25,13 @@ fn the_map_is_drawn_and_written_for_machines() {
     insta::assert_snapshot!("shear_wiring_drawn", std::fs::read_to_string(file).unwrap());
 }
 
+#[test]
+fn a_port_of_a_plc_is_an_end_of_its_lines() {
+    let said = typed(&scenario("rotary-kiln"), &["wiring", "thesis-serial.toml"]);
+    assert!(said.code == Some(0) && !said.out.contains("unconnected"), "{said:?}");
+    assert!(said.out.contains("port "), "{said:?}");
+}
+
 /// One of each: nobody writes it, two write it, its ends differ, nothing declares it.
 #[test]
 fn all_that_is_wrong_is_reported_at_once() {

@@ -1,10 +1,13 @@
 //! Where signals begin and end inside of a client: at components of a scene, at variables of a PLC.
 
+use std::collections::BTreeMap;
+
 use onescan_iec_run::Application;
 use onescan_plant::component::kind::Setting;
 use onescan_plant::component::open_inputs;
 use onescan_plant::scene::model::{Component, Drive, Scene, When, Wire};
 use onescan_scenario::compose::Paths;
+use onescan_scenario::ports_file::PortFile;
 use onescan_server::signal::{ClientName, SignalDecl, SignalName, SignalType};
 use onescan_soft_plc::{BindError, bind};
 
@@ -94,6 +97,18 @@ fn places_of(scene: &Scene) -> Vec<(SignalName, String)> {
         }
     }
     places
+}
+
+/// The lines of a soft PLC's ports, which are bound to no variable.
+pub(super) fn of_ports(ports: &BTreeMap<String, PortFile>, declared: &[SignalDecl], ends: &mut Ends) {
+    for (name, port) in ports {
+        let end = |signal: &SignalName| {
+            let found = declared.iter().find(|declared| declared.name == *signal)?;
+            Some(End { signal: found.name.clone(), ty: found.ty, places: vec![format!("port {name}")] })
+        };
+        ends.reads.extend(end(&port.receive));
+        ends.writes.extend(end(&port.transmit));
+    }
 }
 
 /// The ends of a soft PLC, each signal by itself, so that one that is wrong hides no other.

@@ -8,7 +8,7 @@ use onescan_server::signal::{ClientName, SignalName, SignalType, nearest};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::ends::{End, Ends, of_plant, of_plc};
+use super::ends::{End, Ends, of_plant, of_plc, of_ports};
 
 /// The wiring of a scenario.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
@@ -147,10 +147,11 @@ impl Map {
         for (name, entry) in &scenario.file().clients {
             let (kind, ends) = match entry.get_ref() {
                 ClientFile::Plant { scene, .. } => ("plant", Some(of_plant(&scenario.scene_of(name, scene)?))),
-                ClientFile::SoftPlc { sources, dialect, bind, .. } => {
+                ClientFile::SoftPlc { sources, dialect, bind, ports, .. } => {
                     let compiled = scenario.compiled(name, sources, *dialect, bind)?;
                     let Compiled { application, paths, .. } = &compiled;
-                    let ends = of_plc(application, name, scenario.plan().signals(), paths);
+                    let mut ends = of_plc(application, name, scenario.plan().signals(), paths);
+                    of_ports(ports, scenario.plan().signals(), &mut ends);
                     // A signal without a variable is reported itself; which inputs are left is then not known.
                     if ends.unbound.is_empty() {
                         undriven.extend(undriven_of(scenario, name, &compiled)?);

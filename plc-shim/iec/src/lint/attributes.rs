@@ -6,7 +6,7 @@ use crate::dialect::Dialect;
 use crate::front::Front;
 use crate::source::Span;
 use crate::syntax::lexer::tokenize_in;
-use crate::syntax::pragma::attribute;
+use crate::syntax::pragma::{attribute, is_packing};
 use crate::syntax::token::TokenKind;
 
 /// Attributes of CODESYS and TwinCAT, each with what is otherwise here.
@@ -60,8 +60,13 @@ pub(super) fn lint_methods(unit: &Unit<'_>, units: &[Unit<'_>], findings: &mut V
 
 /// The attribute of `{attribute 'name' := 'value'}`, if it has an effect on values elsewhere, and what is otherwise here.
 fn effect(pragma: &str) -> Option<(&'static str, &'static str)> {
-    let attribute = attribute(pragma.trim_matches(['{', '}']).trim())?;
+    let inner = pragma.trim_matches(['{', '}']).trim();
+    let attribute = attribute(inner)?;
     let name = attribute.strip_prefix('\'')?.split('\'').next()?;
+    if name.eq_ignore_ascii_case("pack_mode") {
+        return (!is_packing(inner))
+            .then_some(("pack_mode", "give it '1', '2', '4' or '8', the most bytes that members are aligned to"));
+    }
     EFFECTS.iter().find(|(known, _)| known.eq_ignore_ascii_case(name)).copied()
 }
 
@@ -73,6 +78,9 @@ mod tests {
     fn attributes_are_known_by_their_names() {
         assert_eq!(effect("{attribute 'global_init_slot' := '1'}").map(|(name, _)| name), Some("global_init_slot"));
         assert_eq!(effect("{ATTRIBUTE  'No_Init' }").map(|(name, _)| name), Some("no_init"));
+        assert!(
+            effect("{attribute 'pack_mode' := '1'}").is_none() && effect("{attribute 'pack_mode' := '3'}").is_some()
+        );
         for none in ["{attribute 'hide'}", "{warning disable C0196}", "{attribute}", "{}", "{attribute 'to_string"] {
             assert_eq!(effect(none).is_some(), none.ends_with("to_string"), "{none}");
         }

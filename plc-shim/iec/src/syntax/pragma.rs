@@ -21,16 +21,23 @@ pub fn behind_pragma<T>(tokens: &[Token], text: &str, found: impl Fn(&str) -> Op
 /// Most bytes that members of a structure are aligned to, of `attribute 'pack_mode' := '1'`. 0 and 8 leave them as
 /// they are.
 pub(crate) fn packing(pragma: &str) -> Option<u32> {
-    let (name, value) = attribute(pragma)?.split_once(":=")?;
-    if !name.trim().eq_ignore_ascii_case("'pack_mode'") {
-        return None;
-    }
-    match value.trim().trim_matches('\'').trim() {
+    match pack_mode(pragma)? {
         "1" => Some(1),
         "2" => Some(2),
         "4" => Some(4),
         _ => None,
     }
+}
+
+/// True for a `pack_mode` that the tools have.
+pub(crate) fn is_packing(pragma: &str) -> bool {
+    pack_mode(pragma).is_some_and(|mode| ["0", "1", "2", "4", "8"].contains(&mode))
+}
+
+fn pack_mode(pragma: &str) -> Option<&str> {
+    let (name, value) = attribute(pragma)?.split_once(":=")?;
+    let is_it = name.trim().eq_ignore_ascii_case("'pack_mode'");
+    is_it.then(|| value.trim().trim_matches('\'').trim())
 }
 
 /// What stands behind the word in `attribute 'name' := 'value'`, the inner part of a pragma.

@@ -65,9 +65,10 @@ impl<'a> Cursor<'a> {
         let external = behind_pragma(tokens, text, |pragma| pragma.eq_ignore_ascii_case("external").then_some(()));
         let qualified_only =
             behind_pragma(tokens, text, |pragma| is_attribute(pragma, "'qualified_only'").then_some(()));
-        let call_after_init =
-            behind_pragma(tokens, text, |pragma| is_attribute(pragma, "'call_after_init'").then_some(()));
-        let packed = behind_pragma(tokens, text, packing);
+        let of_vendors = matches!(dialect, Dialect::Codesys | Dialect::TwinCat);
+        let is_called = |pragma: &str| (of_vendors && is_attribute(pragma, "'call_after_init'")).then_some(());
+        let call_after_init = behind_pragma(tokens, text, is_called);
+        let packed = behind_pragma(tokens, text, |pragma| packing(pragma).filter(|_| of_vendors));
         let mut tokens: Vec<Token> = tokens.iter().filter_map(good).collect();
         promote_soft_keywords(&mut tokens, text);
         Self {
