@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::component::dynamics::lag;
+use crate::component::dynamics::{Resistance, Travel, lag, substeps};
 use crate::effort::{Effort, Motion};
 
 /// Longest sub-step.
@@ -13,6 +13,13 @@ pub(crate) struct Limits {
     pub(crate) effort: f64,
     pub(crate) speed: f64,
     pub(crate) lag_s: f64,
+}
+
+/// What a drive without a joint moves: N or N·m of load against the way up, and the mass or inertia with its friction
+/// and range.
+pub(crate) struct OwnMass {
+    pub(crate) load: f64,
+    pub(crate) resistance: Resistance,
 }
 
 /// What a drive is asked for in a turn.
@@ -63,14 +70,25 @@ impl Commanded {
         (self.effort != 0.0 && next * self.effort.signum() > limits.speed).then_some(most)
     }
 
+    /// A turn in which it moves a mass of its own against a load; a jammed one stands.
+    pub(crate) fn turn(&mut self, travel: &mut Travel, limits: &Limits, own: &OwnMass, turn: (f64, bool)) {
+        let ((turn_s, jammed), resistance) = (turn, &own.resistance);
+        let (count, dt_s) = substeps(turn_s, LONGEST_S);
+        for _ in 0..count {
+            if jammed {
+                self.settle(limits, dt_s);
+                travel.velocity = 0.0;
+                continue;
+            }
+            let Travel { position, velocity } = *travel;
+            let motion = Motion { position, velocity, mass: resistance.mass, exerted: 0.0 };
+            let effort = self.by_itself(limits, &motion, (own.load, resistance.range), dt_s);
+            travel.push(effort - own.load, resistance, dt_s);
+        }
+    }
+
     /// What it exerts on a mass of its own in a sub-step, which moves within a range.
-    pub(crate) fn by_itself(
-        &mut self,
-        limits: &Limits,
-        motion: &Motion,
-        (load, range): (f64, (f64, f64)),
-        dt_s: f64,
-    ) -> f64 {
+    fn by_itself(&mut self, limits: &Limits, motion: &Motion, (load, range): (f64, (f64, f64)), dt_s: f64) -> f64 {
         self.settle(limits, dt_s);
         let net = self.effort - load;
         let presses = net > 0.0 && motion.position >= range.1 || net < 0.0 && motion.position <= range.0;

@@ -15,11 +15,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::component::behaviour::{Component, Start, Turn};
 use crate::component::declare::{failures, own_types, parameters, signals};
-use crate::component::dynamics::{Resistance, Travel, substeps};
+use crate::component::dynamics::{Resistance, Travel};
 use crate::coupling::{Coordinate, Slides};
 use crate::effort::{Effort, Motion};
 
-use crate::component::commanded::{Commanded, LONGEST_S, Limits, Order};
+use crate::component::commanded::{Commanded, LONGEST_S, Limits, Order, OwnMass};
 
 parameters! {
     /// A drive, and what it moves without a joint.
@@ -133,20 +133,11 @@ impl Component for ForceDrive {
             return;
         }
         let p = &self.p;
-        let (count, dt_s) = substeps(turn.dt_s, LONGEST_S);
-        for _ in 0..count {
-            if turn.failed.has(Failure::Jammed) {
-                state.commanded.settle(&self.limits(), dt_s);
-                state.travel.velocity = 0.0;
-                continue;
-            }
-            let Travel { position, velocity } = state.travel;
-            let motion = Motion { position, velocity, mass: p.moving_kg, exerted: 0.0 };
-            let range = (p.lower_m, p.upper_m);
-            let force = state.commanded.by_itself(&self.limits(), &motion, (p.load_n, range), dt_s);
-            let resistance = Resistance { mass: p.moving_kg, dry: p.friction_n, viscous: 0.0, range };
-            state.travel.push(force - p.load_n, &resistance, dt_s);
-        }
+        let range = (p.lower_m, p.upper_m);
+        let resistance = Resistance { mass: p.moving_kg, dry: p.friction_n, viscous: 0.0, range };
+        let own = OwnMass { load: p.load_n, resistance };
+        let jammed = turn.failed.has(Failure::Jammed);
+        state.commanded.turn(&mut state.travel, &self.limits(), &own, (turn.dt_s, jammed));
     }
 
     fn longest_s(&self) -> f64 {

@@ -15,11 +15,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::component::behaviour::{Component, Start, Turn};
 use crate::component::declare::{failures, own_types, parameters, signals};
-use crate::component::dynamics::{Resistance, Travel, substeps};
+use crate::component::dynamics::{Resistance, Travel};
 use crate::coupling::{Coordinate, Turns};
 use crate::effort::{Effort, Motion};
 
-use crate::component::commanded::{Commanded, LONGEST_S, Limits, Order};
+use crate::component::commanded::{Commanded, LONGEST_S, Limits, Order, OwnMass};
 
 parameters! {
     /// A drive, and what it moves without a joint.
@@ -133,20 +133,11 @@ impl Component for TorqueDrive {
             return;
         }
         let p = &self.p;
-        let (count, dt_s) = substeps(turn.dt_s, LONGEST_S);
-        for _ in 0..count {
-            if turn.failed.has(Failure::Jammed) {
-                state.commanded.settle(&self.limits(), dt_s);
-                state.travel.velocity = 0.0;
-                continue;
-            }
-            let Travel { position, velocity } = state.travel;
-            let motion = Motion { position, velocity, mass: p.inertia_kg_m2, exerted: 0.0 };
-            let range = (p.lower_rad, p.upper_rad);
-            let torque = state.commanded.by_itself(&self.limits(), &motion, (p.load_nm, range), dt_s);
-            let resistance = Resistance { mass: p.inertia_kg_m2, dry: p.friction_nm, viscous: 0.0, range };
-            state.travel.push(torque - p.load_nm, &resistance, dt_s);
-        }
+        let range = (p.lower_rad, p.upper_rad);
+        let resistance = Resistance { mass: p.inertia_kg_m2, dry: p.friction_nm, viscous: 0.0, range };
+        let own = OwnMass { load: p.load_nm, resistance };
+        let jammed = turn.failed.has(Failure::Jammed);
+        state.commanded.turn(&mut state.travel, &self.limits(), &own, (turn.dt_s, jammed));
     }
 
     fn longest_s(&self) -> f64 {
