@@ -14,26 +14,13 @@ use std::process::Command;
 
 use onescan_iec::Dialect;
 
-use super::BEREMIZ;
 use super::sketch::{Drawing, Sketch};
+use super::{BEREMIZ, values};
 use crate::matiec::dice::Dice;
 use crate::plcopen::{of_tool, rig};
 use crate::rig::Rig;
 
 const SCANS: usize = 100;
-
-fn values(mut rig: Rig, seed: u64) -> Vec<i64> {
-    let mut dice = Dice::new(seed);
-    let mut found = Vec::new();
-    for _ in 0..SCANS {
-        for (name, value) in Sketch::inputs(&mut dice) {
-            rig.set(&format!("P.{name}"), value);
-        }
-        rig.scan().expect("no fault");
-        found.extend(Sketch::variables().iter().map(|name| rig.int(&format!("P.{name}"))));
-    }
-    found
-}
 
 #[test]
 #[expect(clippy::print_stdout, reason = "a measurement's figures, and why there are none")]
@@ -64,8 +51,8 @@ fn random_networks_do_the_same_in_beremiz() {
             left_out += 1;
             continue;
         };
-        let theirs = values(Rig::in_dialect(Dialect::Matiec, &made), seed as u64);
-        let ours = values(rig(text), seed as u64);
+        let theirs = values(Rig::in_dialect(Dialect::Matiec, &made), SCANS, seed as u64);
+        let ours = values(rig(text), SCANS, seed as u64);
         assert_eq!(ours, theirs, "seed {seed}:\n{text}\n{made}");
         compared += ours.len();
     }

@@ -2,7 +2,7 @@
 //! where the drawing has the order, with their elements elsewhere in the file. `ONESCAN_DRAWINGS=20000` tries more.
 
 use super::sketch::{Drawing, Sketch};
-use super::{BEREMIZ, CODESYS, OPENPLC_4, OTHER};
+use super::{BEREMIZ, CODESYS, OPENPLC_4, OTHER, values};
 use crate::matiec::dice::Dice;
 use crate::plcopen::{of_tool, rig};
 
@@ -10,19 +10,8 @@ const SCANS: usize = 20;
 /// Drawings of each network, the first one included.
 const DRAWINGS: usize = 5;
 
-/// What all variables are in all scans.
-fn values(sketch: &Sketch, tool: &str, drawing: &Drawing, seed: u64) -> Vec<i64> {
-    let mut rig = rig(&of_tool(tool, &sketch.project(drawing)));
-    let mut dice = Dice::new(seed);
-    let mut found = Vec::new();
-    for _ in 0..SCANS {
-        for (name, value) in Sketch::inputs(&mut dice) {
-            rig.set(&format!("P.{name}"), value);
-        }
-        rig.scan().expect("no fault");
-        found.extend(Sketch::variables().iter().map(|name| rig.int(&format!("P.{name}"))));
-    }
-    found
+fn drawn(sketch: &Sketch, tool: &str, drawing: &Drawing, seed: u64) -> Vec<i64> {
+    values(rig(&of_tool(tool, &sketch.project(drawing))), SCANS, seed)
 }
 
 #[test]
@@ -34,15 +23,15 @@ fn other_drawings_of_a_network_have_its_values() {
         let sketch = Sketch::random(&mut dice, false);
         let tool = [OTHER, OPENPLC_4, CODESYS, BEREMIZ][seed as usize / 2 % 4];
         let in_file = tool == CODESYS || tool == BEREMIZ;
-        let first = values(&sketch, tool, &Drawing::plain(&sketch), seed);
+        let first = drawn(&sketch, tool, &Drawing::plain(&sketch), seed);
         alive += usize::from(first.windows(2).any(|pair| pair[0] != pair[1]));
         for number in 1..DRAWINGS {
             let drawing = Drawing::other(&sketch, in_file, &mut dice);
-            let other = values(&sketch, tool, &drawing, seed);
+            let other = drawn(&sketch, tool, &drawing, seed);
             assert_eq!(other, first, "seed {seed}, drawing {number}, `{tool}`:\n{}", sketch.project(&drawing));
         }
         // The law says something: a drawing with the order of its elements turned round is another program.
-        let turned = values(&sketch, tool, &Drawing::turned(&sketch), seed);
+        let turned = drawn(&sketch, tool, &Drawing::turned(&sketch), seed);
         differ += usize::from(turned != first);
     }
     let networks = count / DRAWINGS;

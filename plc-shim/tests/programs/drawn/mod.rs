@@ -4,6 +4,8 @@ mod beremiz;
 mod drawings;
 mod sketch;
 
+use self::sketch::Sketch;
+use crate::matiec::dice::Dice;
 use crate::plcopen::{block, coil, contact, input, of_tool, output, program, rail, rig};
 use crate::rig::Rig;
 
@@ -12,6 +14,20 @@ pub(crate) const CODESYS: &str = "codesys";
 pub(crate) const BEREMIZ: &str = "beremiz";
 pub(crate) const OPENPLC_4: &str = "openplc4";
 pub(crate) const OTHER: &str = "";
+
+/// What the variables of a sketch are in so many scans, with inputs drawn by a seed.
+fn values(mut rig: Rig, scans: usize, seed: u64) -> Vec<i64> {
+    let mut dice = Dice::new(seed);
+    let mut found = Vec::new();
+    for _ in 0..scans {
+        for (name, value) in Sketch::inputs(&mut dice) {
+            rig.set(&format!("P.{name}"), value);
+        }
+        rig.scan().expect("no fault");
+        found.extend(Sketch::variables().iter().map(|name| rig.int(&format!("P.{name}"))));
+    }
+    found
+}
 
 fn after_a_scan(tool: &str, text: &str) -> Rig {
     let mut rig = rig(&of_tool(tool, text));
