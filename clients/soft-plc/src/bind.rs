@@ -5,6 +5,7 @@
 //! (IEC 61131-3 2.1.2). A path given for a signal, or a direct address like `%QX0.1`, goes before its name.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use onescan_base::{ElementaryType, SignalType, nearest};
 use onescan_iec_run::{Application, Variable, ZeroTerminated};
@@ -40,6 +41,11 @@ impl Place {
     /// Bytes that it takes in memory; `len` are those of the signal's value.
     pub fn size(self, len: usize) -> usize {
         self.text.map_or(len, ZeroTerminated::size)
+    }
+
+    /// The bytes of memory that it takes, or that its bit is in.
+    pub(crate) fn bytes(self, len: usize) -> Range<u32> {
+        self.offset as u32..(self.offset + self.size(len)) as u32
     }
 
     /// Writes a signal's value into the PLC's memory. A place of another application, beyond its end, is left out.

@@ -5,7 +5,7 @@ use onescan_iec::diagnostic::{Code, Diagnostic};
 use onescan_iec_run::{Application, OpenInput, Variable};
 use onescan_server::signal::SignalDecl;
 
-use crate::bind::{Bindings, Bound, Place};
+use crate::bind::{Bindings, Bound};
 
 /// A warning at the declaration of each input of `application` to which no signal goes, which the application itself
 /// does not write, and which is none of `others`, the variables that something else than a signal writes. `signals`
@@ -49,20 +49,11 @@ impl<'a> Foreign<'a> {
 }
 
 fn is_driven(variable: &Variable, bindings: &Bindings, others: &[Variable]) -> bool {
-    let mut places = bindings.inputs.iter().flat_map(|bound| {
+    let of_signal = bindings.inputs.iter().any(|bound| {
         let len = bound.port.ty.size();
-        bound.places.iter().map(move |place| (*place, place.size(len)))
+        bound.places.iter().any(|place| variable.meets(place.bytes(len), place.bit))
     });
-    places.any(|(place, size)| overlaps(place, size, variable)) || others.iter().any(|other| other.overlaps(variable))
-}
-
-fn overlaps(place: Place, size: usize, variable: &Variable) -> bool {
-    let (start, end) = (variable.offset as usize, (variable.offset + variable.size) as usize);
-    let is_same_bit = match (place.bit, variable.bit) {
-        (Some(one), Some(other)) => one == other,
-        _ => true,
-    };
-    place.offset < end && start < place.offset + size && is_same_bit
+    of_signal || others.iter().any(|other| other.overlaps(variable))
 }
 
 fn warning(application: &Application, input: &OpenInput, foreign: &Foreign<'_>) -> Diagnostic {

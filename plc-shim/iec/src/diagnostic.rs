@@ -241,6 +241,14 @@ impl Diagnostic {
         self
     }
 
+    /// The message, with what to do about it in parentheses if that is known.
+    pub fn with_its_help(&self) -> String {
+        match &self.help {
+            Some(help) => format!("{} ({help})", self.message),
+            None => self.message.clone(),
+        }
+    }
+
     /// Adds a further place.
     pub fn with_label(mut self, span: Span, message: impl Into<String>) -> Self {
         self.labels.push(Label { span, message: message.into() });
@@ -420,11 +428,7 @@ impl Finding {
         let Self { diagnostic, source, start, .. } = self;
         let (name, code, severity) = (source.name(), diagnostic.code, diagnostic.severity);
         let LineColumn { line, column } = start;
-        write!(formatter, "{name}:{line}:{column}: {severity}[{code}]: {}", diagnostic.message)?;
-        match &diagnostic.help {
-            Some(help) => write!(formatter, " ({help})"),
-            None => Ok(()),
-        }
+        write!(formatter, "{name}:{line}:{column}: {severity}[{code}]: {}", diagnostic.with_its_help())
     }
 }
 

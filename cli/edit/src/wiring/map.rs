@@ -255,14 +255,11 @@ fn undriven_of(
     compiled: &Compiled,
 ) -> Result<Vec<UndrivenInput>, ScenarioError> {
     let warnings = scenario.undriven_of(name, compiled)?;
-    let inputs = warnings.findings().iter().map(|finding| {
-        let help = finding.diagnostic().help.as_ref().map(|help| format!(" ({help})")).unwrap_or_default();
-        UndrivenInput {
-            client: name.to_string(),
-            file: finding.file().to_owned(),
-            line: finding.start().line,
-            message: format!("{}{help}", finding.diagnostic().message),
-        }
+    let inputs = warnings.findings().iter().map(|finding| UndrivenInput {
+        client: name.to_string(),
+        file: finding.file().to_owned(),
+        line: finding.start().line,
+        message: finding.diagnostic().with_its_help(),
     });
     Ok(inputs.collect())
 }

@@ -54,9 +54,8 @@ fn warn_of_undriven_inputs(scenario: &Scenario) -> Result<(), RunError> {
     for (plc, warnings) in scenario.undriven_inputs()? {
         for finding in warnings.findings() {
             let (warning, place) = (finding.diagnostic(), finding.start());
-            let help = warning.help.as_ref().map(|help| format!(" ({help})")).unwrap_or_default();
             let (file, line, code) = (finding.file(), place.line, warning.code);
-            tracing::warn!(target: NOTICE, "PLC `{plc}`: {file}:{line}: {code}: {}{help}", warning.message);
+            tracing::warn!(target: NOTICE, "PLC `{plc}`: {file}:{line}: {code}: {}", warning.with_its_help());
         }
     }
     Ok(())

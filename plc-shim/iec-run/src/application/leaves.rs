@@ -10,12 +10,7 @@ impl Application {
     /// declaration: globals first, then those of each resource, then those of each program.
     pub fn leaves(&self) -> impl Iterator<Item = Variable> {
         let checked = &self.inner.checked;
-        let resources = checked.configuration.iter().flat_map(|configuration| &configuration.resources);
-        let shared = checked.globals.iter().filter_map(|global| spot(checked, "", global, 0));
-        let own = resources.flat_map(|resource| {
-            let home = resource.name.as_deref().unwrap_or_default();
-            resource.globals.iter().filter_map(move |global| spot(checked, home, global, 0))
-        });
+        let globals = self.globals().filter_map(|(home, global)| spot(checked, home, global, 0));
         let programs = checked.programs.iter().zip(self.entry_names()).flat_map(|(program, name)| {
             let variables = checked.interfaces.get(&program.pou).map_or(&[][..], Vec::as_slice);
             let held = variables
@@ -27,8 +22,20 @@ impl Application {
                 kept.variables.iter().filter_map(move |variable| spot(checked, &prefix, variable, program.offset))
             }))
         });
-        let roots: Vec<Spot> = shared.chain(own).chain(programs).collect();
+        let roots: Vec<Spot> = globals.chain(programs).collect();
         roots.into_iter().flat_map(|root| self.leaves_of(root))
+    }
+
+    /// The global variables, each behind the name of its resource: those of all resources first, behind no name.
+    pub(super) fn globals(&self) -> impl Iterator<Item = (&str, &onescan_iec::ir::Variable)> {
+        let checked = &self.inner.checked;
+        let resources = checked.configuration.iter().flat_map(|configuration| &configuration.resources);
+        let own = resources.flat_map(|resource| {
+            // The only resource of a configuration has no name.
+            let home = resource.name.as_deref().unwrap_or_default();
+            resource.globals.iter().map(move |global| (home, global))
+        });
+        checked.globals.iter().map(|global| ("", global)).chain(own)
     }
 
     /// The same of one variable: itself, if it has no parts.

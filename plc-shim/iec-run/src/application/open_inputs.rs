@@ -33,7 +33,12 @@ type Bits = (Range<u32>, Option<u8>);
 impl Variable {
     /// True if it has bits in common with `other`.
     pub fn overlaps(&self, other: &Self) -> bool {
-        overlap(&bits(self), &bits(other))
+        self.meets(bits(other).0, other.bit)
+    }
+
+    /// True if it has bits in common with bytes of memory, or with one bit of a byte.
+    pub fn meets(&self, bytes: Range<u32>, bit: Option<u8>) -> bool {
+        overlap(&bits(self), &(bytes, bit))
     }
 }
 
@@ -63,12 +68,7 @@ impl Application {
             let variables = checked.interfaces.get(&program.pou).map_or(&[][..], Vec::as_slice);
             variables.iter().map(move |variable| (name, program.offset, variable))
         });
-        let resources = checked.configuration.iter().flat_map(|configuration| &configuration.resources);
-        let own = resources.flat_map(|resource| {
-            let home = resource.name.as_deref().unwrap_or_default();
-            resource.globals.iter().map(move |global| (home, 0, global))
-        });
-        let all = checked.globals.iter().map(|global| ("", 0, global)).chain(own).chain(programs);
+        let all = self.globals().map(|(home, global)| (home, 0, global)).chain(programs);
         let mut named: Vec<Bits> = Vec::new();
         for (home, base, variable) in all.filter(|(.., variable)| is_at_input(variable)) {
             let Some(found) = spot(checked, home, variable, base) else { continue };
