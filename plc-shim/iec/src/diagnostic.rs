@@ -141,6 +141,8 @@ codes! {
     TimeConflict "Q1211" "an action may have two times at once",
     DeadEnd "Q1212" "a chart comes to an end",
     SharedAction "Q1213" "two charts of a unit control one action",
+    LostPulse "Q1214" "an action gets no pulse from a step that follows another one",
+    PulseWithoutEffect "Q1215" "a pulse of a step's edge does not set a BOOL",
     NotText "F0601" "a file is not text in an encoding that is read",
     MalformedXml "F0602" "a file is not the XML that its name promises",
     NotProgramText "F0603" "a file holds no program text",

@@ -8,6 +8,7 @@ use super::chart_action::Moved;
 use super::chart_script::{ROUND, Script};
 use super::clock::Form;
 use super::template::{self, ChartController, Number};
+use onescan_iec::dialect::ActionPulses;
 use onescan_iec::source::edits::Edits;
 use onescan_iec::syntax::SourceFile;
 use onescan_iec::syntax::Span;
@@ -27,6 +28,18 @@ pub(super) fn own_flag(action: &str) -> String {
 /// The instance that controls an action in its place.
 pub(super) fn controlled_by(action: &str) -> String {
     format!("SDSP_Ctl_{action}")
+}
+
+/// Whether a step was active in the scan before.
+fn was(step: &str) -> String {
+    format!("SDSP_Was_{step}")
+}
+
+/// The input of an action's control that lets its statements run in this scan alone.
+const ONCE: &str = "SDSP_Once";
+
+fn is_pulse(qualifier: ActionQualifier) -> bool {
+    matches!(qualifier, ActionQualifier::P | ActionQualifier::P0 | ActionQualifier::P1)
 }
 
 /// What in a chart reads its parts: `a.T` of steps, `Fill.Q` of actions.
@@ -179,6 +192,10 @@ impl<'w> Plan<'w> {
         for step in self.timed_steps(chart).values() {
             let _ = writeln!(own, "    SDSP_Step_{} : SDSP_SFC_STEP;", step.name.text);
         }
+        for step in self.edged_steps(chart) {
+            let at_start = if step.is_initial { " := TRUE" } else { "" };
+            let _ = writeln!(own, "    {} : BOOL{at_start};", was(&step.name.text));
+        }
         for (action, _) in &uses {
             let _ = writeln!(own, "    {} : SDSP_ACTION_CONTROL;", controlled_by(&action.text));
         }
@@ -214,10 +231,13 @@ impl<'w> Plan<'w> {
         }
         let uses = Self::uses(chart);
         for (action, found) in &uses {
-            self.controlled(&action.text, found).iter().for_each(|line| script.put(line));
+            self.controlled(action, found).iter().for_each(|line| script.put(line));
             if !self.reads.actions.contains(&action.key()) {
                 script.put(&format!("    {0} := SDSP_Ctl_{0}.Q;", action.text));
             }
+        }
+        for step in self.edged_steps(chart) {
+            script.put(&format!("    {} := {}.X;", was(&step.name.text), step.name.text));
         }
         let runs = |action: &&Ident| moved.get(&action.key()).is_none_or(|moved| !moved.is_empty);
         script.run(self.bodies(&uses).filter(runs), moved, &of_chart(ROUND, chart));
@@ -229,7 +249,8 @@ impl<'w> Plan<'w> {
     }
 
     /// The call of an action's control.
-    fn controlled(&self, action: &str, uses: &[(&ChartStep, &Association)]) -> Vec<String> {
+    fn controlled(&self, of: &Ident, uses: &[(&ChartStep, &Association)]) -> Vec<String> {
+        let action = &of.text;
         let mut lines = Vec::new();
         for (step, association) in uses {
             if let Some(time) = &association.time {
@@ -237,14 +258,48 @@ impl<'w> Plan<'w> {
                 lines.push(format!("    IF {}.X THEN SDSP_Ctl_{action}.T := {value}; END_IF;", step.name.text));
             }
         }
-        let input = |qualifier: ActionQualifier| {
-            let by = uses.iter().filter(|(_, association)| association.effective_qualifier() == qualifier);
-            let flags: Vec<_> = by.map(|(step, _)| format!("{}.X", step.name.text)).collect();
-            (!flags.is_empty()).then(|| format!("{} := {}", qualifier.text(), flags.join(" OR ")))
-        };
-        let inputs: Vec<_> = ActionQualifier::ALL.into_iter().filter_map(input).collect();
+        let pulse = |association: &Association| is_pulse(association.effective_qualifier());
+        // MatIEC sets and clears an action for one step after the other: the last one has its way.
+        let last = uses.iter().rposition(|(_, association)| pulse(association));
+        let mut inputs: BTreeMap<&str, Vec<String>> = BTreeMap::new();
+        for (at, (step, association)) in uses.iter().enumerate() {
+            if !self.has_edges_of_steps() || !pulse(association) || last == Some(at) {
+                let (input, flag) = self.input(of, step, association.effective_qualifier());
+                inputs.entry(input).or_default().push(flag);
+            }
+        }
+        let names = ActionQualifier::ALL.into_iter().map(ActionQualifier::text).chain([ONCE]);
+        let inputs = names.filter_map(|name| Some(format!("{name} := {}", inputs.get(name)?.join(" OR "))));
+        let inputs: Vec<_> = inputs.collect();
         lines.push(format!("    SDSP_Ctl_{action}({});", inputs.join(", ")));
         lines
+    }
+
+    /// The input of an action's control that a step drives by `qualifier`, and with what.
+    fn input(&self, action: &Ident, step: &ChartStep, qualifier: ActionQualifier) -> (&'static str, String) {
+        let (name, has_statements) = (&step.name.text, self.reads.actions.contains(&action.key()));
+        if !self.has_edges_of_steps() || !is_pulse(qualifier) {
+            return (qualifier.text(), format!("{name}.X"));
+        }
+        let edge = match qualifier {
+            ActionQualifier::P0 => format!("{} AND NOT {name}.X", was(name)),
+            _ => format!("{name}.X AND NOT {}", was(name)),
+        };
+        // The control's own detector of edges would see two steps as one.
+        let input = if has_statements && qualifier != ActionQualifier::P { ONCE } else { ActionQualifier::N.text() };
+        (input, edge)
+    }
+
+    /// True where each step has edges of its own, as in `MatIEC`.
+    fn has_edges_of_steps(&self) -> bool {
+        self.file.dialect().action_pulses() == ActionPulses::OfStep
+    }
+
+    /// The steps whose edges give pulses, where these are their own.
+    fn edged_steps(&self, chart: &'w Pou) -> impl Iterator<Item = &'w ChartStep> + use<'w> {
+        let has_edges = self.has_edges_of_steps();
+        let pulses = |step: &&ChartStep| step.associations.iter().any(|each| is_pulse(each.effective_qualifier()));
+        chart.chart.steps.iter().filter(move |_| has_edges).filter(pulses)
     }
 
     /// Text of the file with what reads the clock replaced.

@@ -131,6 +131,11 @@ impl Dialect {
         self.behaviour().integers
     }
 
+    /// Whose edges give actions of a chart their pulses.
+    pub fn action_pulses(self) -> ActionPulses {
+        self.behaviour().action_pulses
+    }
+
     /// The values of LTIME.
     pub fn long_time(self) -> LongTime {
         self.behaviour().long_time
@@ -231,6 +236,17 @@ pub struct Behaviour {
     pub selection: Selection,
     /// In how many bits integers are computed.
     pub integers: IntegerWidth,
+    /// Whose edges give actions of a chart their pulses.
+    pub action_pulses: ActionPulses,
+}
+
+/// Whose edges give the actions of a chart their pulses, `P`, `P1` and `P0`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ActionPulses {
+    /// Those of an action: one detector sees all steps that name it.
+    OfAction,
+    /// Those of the last step that names it; they set a BOOL, too.
+    OfStep,
 }
 
 /// In how many bits `+`, `-`, `*`, `/`, `MOD` of integers are computed, and their results compared.

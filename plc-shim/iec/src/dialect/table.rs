@@ -2,8 +2,8 @@
 
 use super::Dialect::{self, Codesys, Iec2, Iec3, Matiec, SiemensScl, TwinCat};
 use super::{
-    AddressUnit, Behaviour, BeyondSubrange, DivisionByZero, Feature, IntegerWidth, LongTime, Selection, StringMemory,
-    Ties, TimeRange, Truth,
+    ActionPulses, AddressUnit, Behaviour, BeyondSubrange, DivisionByZero, Feature, IntegerWidth, LongTime, Selection,
+    StringMemory, Ties, TimeRange, Truth,
 };
 
 /// Who has a construct, and where that is written.
@@ -190,7 +190,7 @@ pub struct BehaviourRow {
     pub dialect: Dialect,
     pub behaviour: Behaviour,
     /// Where each of it is written, in the order of the fields.
-    pub sources: [&'static str; 13],
+    pub sources: [&'static str; 14],
 }
 
 /// What the standard says, or README.md where it leaves a choice.
@@ -208,9 +208,10 @@ pub const STANDARD: Behaviour = Behaviour {
     long_time: LongTime::Signed64,
     selection: Selection::All,
     integers: IntegerWidth::Own,
+    action_pulses: ActionPulses::OfAction,
 };
 
-const STANDARD_SOURCES: [&str; 13] = [
+const STANDARD_SOURCES: [&str; 14] = [
     "left open by 2nd ed. 2.3.1",
     "left open by 2nd ed. 2.2.3",
     "2nd ed. 2.5.1.5.1, IEC 60559",
@@ -224,6 +225,7 @@ const STANDARD_SOURCES: [&str; 13] = [
     "3rd ed. Table 10",
     "2nd ed. 2.5.1.4, a function's inputs",
     "2nd ed. 2.5.1.5.2, a result of the operands' type",
+    "2nd ed. 2.6.4.5, Figure 15; 3rd ed. 6.7.4.6",
 ];
 
 /// How the dialects behave.
@@ -256,6 +258,7 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             "CODESYS: data type LTIME",
             "CODESYS: operator SEL",
             "CODESYS: operators, overflow and underflow in the data type, on a target of 64 bits; SA0066",
+            "CODESYS: SFC, IEC actions, one control for an action; not tried on the tool",
         ],
     },
     BehaviourRow {
@@ -286,6 +289,7 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             "TwinCAT: TIME/LTIME",
             "TwinCAT: SEL",
             "TwinCAT: operators, overflow and underflow in the data type, on a target of 64 bits; SA0066",
+            "TwinCAT: SFC, IEC actions, one control for an action; not tried on the tool",
         ],
     },
     BehaviourRow {
@@ -312,11 +316,17 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             "S7-1500: data types, LTIME",
             "left open by the S7-1200 System Manual",
             "S7-1200 System Manual: ADD, overflow sets ENO",
+            "SCL has no charts",
         ],
     },
     BehaviourRow {
         dialect: Matiec,
-        behaviour: Behaviour { truth: Truth::NotZero, time_number_ns: 1_000_000_000, ..STANDARD },
+        behaviour: Behaviour {
+            truth: Truth::NotZero,
+            time_number_ns: 1_000_000_000,
+            action_pulses: ActionPulses::OfStep,
+            ..STANDARD
+        },
         sources: [
             "left open by 2nd ed. 2.3.1",
             "left open by 2nd ed. 2.2.3",
@@ -331,6 +341,7 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             "it has none; as 3rd ed. Table 10",
             "2nd ed. 2.5.1.4, a function's inputs",
             "MatIEC: iec_std_functions, a macro for each type",
+            "MatIEC: the code that it makes of charts, tried",
         ],
     },
 ];

@@ -29,7 +29,7 @@ fn dialects_have_names_and_files() {
     assert_eq!(Feature::ChainedAssignment.homes(), "codesys, twincat and siemens-scl");
 }
 
-fn behaviour_cells(behaviour: Behaviour) -> [String; 13] {
+fn behaviour_cells(behaviour: Behaviour) -> [String; 14] {
     let time = match behaviour.time {
         TimeRange::Nanoseconds64 => "signed 64 bit nanoseconds",
         TimeRange::Unsigned32 => "unsigned 32 bit milliseconds, wrapping",
@@ -74,7 +74,13 @@ fn behaviour_cells(behaviour: Behaviour) -> [String; 13] {
         IntegerWidth::Own => "in the bits of their type",
         IntegerWidth::Register => "in 64 bits; cut where assigned, handed over or converted",
     };
-    [&length, time, ties, division, unit, power, truth, number, strings, subrange, long, selection, integers]
+    let pulses = match behaviour.action_pulses {
+        ActionPulses::OfAction => "from one detector of edges for all steps that name the action",
+        ActionPulses::OfStep => {
+            "from edges of the last step alone that names the action, which set a BOOL, too; none at the start"
+        }
+    };
+    [&length, time, ties, division, unit, power, truth, number, strings, subrange, long, selection, integers, pulses]
         .map(ToOwned::to_owned)
 }
 
@@ -100,6 +106,7 @@ fn tables() -> String {
         "LTIME",
         "inputs of `SEL`",
         "`+`, `-`, `*`, `/`, `MOD` of integers",
+        "pulses of actions in charts: `P`, `P1`, `P0`",
     ];
     text += "\n## Behaviour\n\n| behaviour | dialects | what they do | source |\n|---|---|---|---|\n";
     for (index, subject) in subjects.iter().enumerate() {

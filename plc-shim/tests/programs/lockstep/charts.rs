@@ -169,6 +169,7 @@ proptest! {
     ) {
         let chart = Chart::new(&part, &numbers);
         is_the_same(&chart.text(), inputs.clone())?;
-        is_the_same(&chart.nested(), inputs)?;
+        is_the_same(&chart.nested(), inputs.clone())?;
+        is_the_same(&format!("{{dialect 'matiec'}}\n{}", chart.text()), inputs)?;
     }
 }

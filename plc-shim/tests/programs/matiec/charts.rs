@@ -1,8 +1,10 @@
 //! The random charts, without what is known to differ.
 //!
 //! What [`known`](super::known) lists is not made: conditions exclude each other and wait for the second scan, each action
-//! has one use without a stored time, and nothing is counted in a final scan. Nor has a transition a PRIORITY, for which
+//! has one use without a stored time or several pulses, and nothing is counted in a final scan. Nor has a transition a PRIORITY, for which
 //! the peer takes the flag of a step away before it looks at the next condition.
+
+use onescan_iec::Dialect;
 
 use std::fmt::Write;
 
@@ -30,11 +32,13 @@ pub(super) fn program(chart: &Chart) -> PeerProgram {
         writeln!(text, "TRANSITION FROM {from} TO {to} := go AND {own}{others}; END_TRANSITION")
             .expect("a string takes all");
     }
-    for used in uses.iter().filter(|used| used.action >= BOOLEAN) {
-        let (action, step) = (used.action, used.step);
+    for action in BOOLEAN..ACTIONS {
+        let Some(used) = uses.iter().find(|used| used.action == action) else { continue };
         // In which order actions run in a scan is left to the implementation.
         let count = 1_000_u32.pow((action - BOOLEAN) as u32);
-        let statement = format!("IF s{step}.X THEN story := story + {count}; END_IF;");
+        // Behind a pulse there is no final scan, and at the end of a step it is not active.
+        let counts = format!("story := story + {count};");
+        let statement = if is_pulse(used) { counts } else { format!("IF s{}.X THEN {counts} END_IF;", used.step) };
         writeln!(text, "ACTION b{action}:\n    {statement}\nEND_ACTION").expect("a string takes all");
     }
     text.push_str("END_PROGRAM\n");
@@ -44,7 +48,7 @@ pub(super) fn program(chart: &Chart) -> PeerProgram {
     outputs.extend((0..chart.steps).map(|step| (format!("s{step}.T"), "TIME")));
     outputs.extend((0..BOOLEAN).map(|action| (format!("b{action}"), "BOOL")));
     outputs.push(("story".to_owned(), "UDINT"));
-    PeerProgram { family: "charts", text, inputs, outputs, rounded: Vec::new() }
+    PeerProgram { dialect: Dialect::Matiec, family: "charts", text, inputs, outputs, rounded: Vec::new() }
 }
 
 /// One use of each action; one that a step sets may be reset by another.
@@ -55,15 +59,17 @@ fn alone(uses: &[Use]) -> Vec<Use> {
         // Statements that follow a pulse or a limit run once more behind it, while the step still is active.
         let final_scan = statements && !["N", "P1", "D"].contains(&used.qualifier);
         let stored = ["SD", "DS", "SL"].contains(&used.qualifier);
-        let initial = used.step == 0 && ["P", "P1"].contains(&used.qualifier);
-        let edge = !statements && ["P0", "P1"].contains(&used.qualifier);
-        let known = final_scan || stored || initial || edge;
-        let taken = kept.iter().any(|other| other.action == used.action);
+        let known = final_scan || stored;
+        let taken = kept.iter().any(|other| other.action == used.action && !(is_pulse(other) && is_pulse(used)));
         if !known && !taken && used.action < ACTIONS {
             kept.push(used.clone());
         }
     }
     kept
+}
+
+fn is_pulse(used: &Use) -> bool {
+    ["P", "P0", "P1"].contains(&used.qualifier)
 }
 
 fn list(steps: &[usize]) -> String {

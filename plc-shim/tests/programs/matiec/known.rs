@@ -2,6 +2,8 @@
 //!
 //! By the 2nd edition, the soft PLC is [`Verdict::Right`], or both are allowed ([`Verdict::Open`]).
 
+use onescan_iec::Dialect;
+
 use super::peer_program::PeerProgram;
 
 /// What the 2nd edition says of a difference.
@@ -35,7 +37,7 @@ impl Known {
         let (declared, body) = self.text.split_once("---").expect("it has both parts");
         let text = format!("PROGRAM P\nVAR r : {}; {declared} END_VAR\n{body}\nEND_PROGRAM\n", self.ty);
         let outputs = vec![("r".to_owned(), self.ty)];
-        PeerProgram { family: "known", text, inputs: Vec::new(), outputs, rounded: Vec::new() }
+        PeerProgram { dialect: Dialect::Iec2, family: "known", text, inputs: Vec::new(), outputs, rounded: Vec::new() }
     }
 
     /// The line of the comparison.

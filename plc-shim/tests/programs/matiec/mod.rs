@@ -26,7 +26,7 @@
 mod charts;
 pub(crate) mod dice;
 mod known;
-mod peer_program;
+pub(crate) mod peer_program;
 mod statements;
 mod timers;
 mod typed;
@@ -102,7 +102,7 @@ fn number(name: &str, usual: u64) -> u64 {
 }
 
 /// The library of `iec2c`; nothing if that is not on the PATH.
-fn library() -> Option<PathBuf> {
+pub(crate) fn library() -> Option<PathBuf> {
     let path = std::env::var_os("PATH")?;
     let found = std::env::split_paths(&path).find(|folder| folder.join("iec2c").is_file())?;
     let named = std::env::var_os("ONESCAN_MATIEC_LIB").map(PathBuf::from);
@@ -111,9 +111,9 @@ fn library() -> Option<PathBuf> {
 
 /// What the peer said of all batches: numbers by the words before them, and each difference.
 #[derive(Debug, Default)]
-struct Reported {
-    counts: BTreeMap<String, u64>,
-    differences: Vec<String>,
+pub(crate) struct Reported {
+    pub(crate) counts: BTreeMap<String, u64>,
+    pub(crate) differences: Vec<String>,
 }
 
 impl Reported {
@@ -129,7 +129,7 @@ impl Reported {
 }
 
 #[expect(clippy::print_stdout, reason = "a difference is reported at once, a long run before its end")]
-fn compare(folder: &Path, library: &Path, reported: &Mutex<Reported>) {
+pub(crate) fn compare(folder: &Path, library: &Path, reported: &Mutex<Reported>) {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/peers/matiec/compare.py");
     let output =
         Command::new("python3").arg(script).arg(folder).arg(library).output().expect("Python is on the machine");

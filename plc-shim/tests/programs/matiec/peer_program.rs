@@ -9,7 +9,7 @@ use crate::rig::Rig;
 
 /// What the programs use of their own. A call gives a value the width of its type: C computes narrow types as `int`,
 /// and a REAL with a literal as `double`, where here each operation has its type. The standard leaves both open.
-pub(super) const PRELUDE: &str = "\
+pub(crate) const PRELUDE: &str = "\
 TYPE Spot : STRUCT n : INT; l : LREAL; b : BOOL; END_STRUCT; END_TYPE
 FUNCTION W_SINT : SINT VAR_INPUT x : SINT; END_VAR W_SINT := x; END_FUNCTION
 FUNCTION W_INT : INT VAR_INPUT x : INT; END_VAR W_INT := x; END_FUNCTION
@@ -61,38 +61,44 @@ END_FUNCTION_BLOCK
 ";
 
 /// Scans of each program.
-pub(super) const SCANS: usize = 100;
+pub(crate) const SCANS: usize = 100;
 
 /// An input that is FALSE in the first scan, and only then.
-pub(super) const GO: &str = "go";
+pub(crate) const GO: &str = "go";
 
 /// A variable, by its path in the program, and the name of its elementary type.
-pub(super) type Watched = (String, &'static str);
+pub(crate) type Watched = (String, &'static str);
 
 /// A program of a seed.
-pub(super) struct PeerProgram {
+pub(crate) struct PeerProgram {
+    /// The one in which the soft PLC reads it.
+    pub(crate) dialect: Dialect,
     /// What kind of program it is.
-    pub(super) family: &'static str,
+    pub(crate) family: &'static str,
     /// From `PROGRAM P` to `END_PROGRAM`.
-    pub(super) text: String,
+    pub(crate) text: String,
     /// Written before each scan.
-    pub(super) inputs: Vec<Watched>,
+    pub(crate) inputs: Vec<Watched>,
     /// Compared after each scan.
-    pub(super) outputs: Vec<Watched>,
+    pub(crate) outputs: Vec<Watched>,
     /// Compared, too, but to one unit in the last place: what functions gave that no standard rounds.
-    pub(super) rounded: Vec<Watched>,
+    pub(crate) rounded: Vec<Watched>,
 }
 
 impl PeerProgram {
     /// The file for the peer: names of all programs of a batch differ.
-    pub(super) fn named(&self, name: &str) -> String {
+    pub(crate) fn named(&self, name: &str) -> String {
         self.text.replacen("PROGRAM P\n", &format!("PROGRAM {name}\n"), 1)
     }
 
     /// A line of names and types, then a line of values for each scan: the digits of their bytes.
     /// A line that says which fault it was ends a run that has one.
-    pub(super) fn trace(&self, dice: &mut Dice) -> String {
-        let mut rig = Rig::in_dialect(Dialect::Iec2, &format!("{PRELUDE}{}", self.text));
+    pub(crate) fn trace(&self, dice: &mut Dice) -> String {
+        self.trace_of(Rig::in_dialect(self.dialect, &format!("{PRELUDE}{}", self.text)), dice)
+    }
+
+    /// The same of a program that has been read from elsewhere.
+    pub(crate) fn trace_of(&self, mut rig: Rig, dice: &mut Dice) -> String {
         let marked = |mark: &'static str, those: &[Watched]| {
             those.iter().map(move |(path, ty)| format!("{mark}{path}:{ty}")).collect::<Vec<_>>()
         };

@@ -1,5 +1,7 @@
 //! The random programs of every statement, without what is known to differ.
 
+use onescan_iec::Dialect;
+
 use super::peer_program::PeerProgram;
 use crate::random_programs::program::{DEPTH, Number, Statement, Truth, Wording, control};
 
@@ -19,7 +21,14 @@ pub(super) fn program(mut body: Vec<Statement>) -> PeerProgram {
     // The program may write them, too, until the next scan.
     let mut inputs = named(&["v1", "v2", "v3"], "INT");
     inputs.extend(named(&["b1", "b2"], "BOOL"));
-    PeerProgram { family: "statements", text: WORDING.program(&body), inputs, outputs, rounded: Vec::new() }
+    PeerProgram {
+        dialect: Dialect::Iec2,
+        family: "statements",
+        text: WORDING.program(&body),
+        inputs,
+        outputs,
+        rounded: Vec::new(),
+    }
 }
 
 /// Takes out of a program what the standard leaves open, what it calls an error, and what is known to differ.

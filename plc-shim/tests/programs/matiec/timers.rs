@@ -1,5 +1,7 @@
 //! The random programs of timers and counters, without what is known to differ.
 
+use onescan_iec::Dialect;
+
 use super::peer_program::PeerProgram;
 use crate::lockstep::random::program as written;
 
@@ -19,7 +21,14 @@ pub(super) fn program(statements: &[(u32, u32)]) -> PeerProgram {
         }
     }
     let inputs = vec![("i".to_owned(), "BOOL"), ("j".to_owned(), "BOOL")];
-    PeerProgram { family: "timers", text: written("P", &statements), inputs, outputs, rounded: Vec::new() }
+    PeerProgram {
+        dialect: Dialect::Iec2,
+        family: "timers",
+        text: written("P", &statements),
+        inputs,
+        outputs,
+        rounded: Vec::new(),
+    }
 }
 
 fn timer(outputs: &mut Vec<(String, &'static str)>, letter: char, number: usize) {

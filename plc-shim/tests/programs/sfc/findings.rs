@@ -1,6 +1,8 @@
 //! What is wrong with a chart, and where.
 
-use crate::rig::findings;
+use onescan_iec::Dialect;
+
+use crate::rig::{findings, findings_in};
 
 fn chart(body: &str) -> String {
     findings(&format!("PROGRAM P\nVAR go, valve, lamp : BOOL; n : INT; delay : TIME; END_VAR\n{body}\nEND_PROGRAM"))
@@ -112,6 +114,26 @@ fn iec2_b_1_6_a_slip_in_a_chart_is_reported_once() {
         format!("{slip}\n{}", chart(&text))
     });
     insta::assert_snapshot!(each.collect::<Vec<_>>().join("\n\n"));
+}
+
+/// What the letter of the standard gives, and what the code of `MatIEC` does.
+#[test]
+fn a_pulse_that_is_never_given_is_reported() {
+    let text = "PROGRAM P
+VAR go, lamp : BOOL; n : INT; END_VAR
+    INITIAL_STEP A: lamp(P0); END_STEP
+    STEP B: Count(P1); lamp(P1); END_STEP
+    STEP C: Count(P1); END_STEP
+    STEP D: Other(P0); END_STEP
+    TRANSITION FROM A TO B := go; END_TRANSITION
+    TRANSITION FROM B TO C := go; END_TRANSITION
+    TRANSITION FROM C TO D := go; END_TRANSITION
+    TRANSITION FROM D TO A := go; END_TRANSITION
+    ACTION Count: n := n + 1; END_ACTION
+    ACTION Other: n := 0; END_ACTION
+END_PROGRAM";
+    let [iec3, matiec] = [Dialect::Iec3, Dialect::Matiec].map(|dialect| findings_in(dialect, text).to_string());
+    insta::assert_snapshot!(format!("iec3\n{iec3}\n\nmatiec\n{matiec}"));
 }
 
 #[test]

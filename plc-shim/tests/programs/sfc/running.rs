@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use onescan_iec::input::kind::SourceKind;
-use onescan_iec::{Input, TimeSpan, VirtualTime};
+use onescan_iec::{Dialect, Input, TimeSpan, VirtualTime};
 use onescan_iec_run::{Application, SoftPlc};
 
 use crate::rig::{MS, Rig};
@@ -25,6 +25,36 @@ END_PROGRAM";
         rig.scan().expect_err("a division by zero").to_string()
     };
     insta::assert_snapshot!([fault(0), fault(1)].join("\n"));
+}
+
+/// Two steps that follow each other, and P1, P0 of a BOOL: by the letter, and as `MatIEC` does it.
+#[test]
+fn pulses_are_those_of_the_action_or_of_the_last_step() {
+    let text = "PROGRAM P
+VAR lamp, left : BOOL; n : INT; END_VAR
+    INITIAL_STEP A: END_STEP
+    STEP B: Count(P1); lamp(P); END_STEP
+    STEP C: Count(P1); lamp(P1); left(P0); END_STEP
+    TRANSITION FROM A TO B := TRUE; END_TRANSITION
+    TRANSITION FROM B TO C := TRUE; END_TRANSITION
+    TRANSITION FROM C TO A := TRUE; END_TRANSITION
+    ACTION Count: n := n + 1; END_ACTION
+END_PROGRAM";
+    let values = |dialect| -> Vec<(bool, bool, i64)> {
+        let mut rig = Rig::in_dialect(dialect, text);
+        let scan = |_| {
+            rig.scan().expect("no fault");
+            (rig.bool("P.lamp"), rig.bool("P.left"), rig.int("P.n"))
+        };
+        (0..5).map(scan).collect()
+    };
+    let (none, lamp, left) = ((false, false), (true, false), (false, true));
+    let counted = |flags: [(bool, bool); 5], counts: [i64; 5]| -> Vec<(bool, bool, i64)> {
+        flags.into_iter().zip(counts).map(|((lamp, left), count)| (lamp, left, count)).collect()
+    };
+    // The steps of the scans: A, B, C, A, B.
+    assert_eq!(values(Dialect::Iec3), counted([none, lamp, none, none, lamp], [0, 1, 1, 1, 2]));
+    assert_eq!(values(Dialect::Matiec), counted([none, none, lamp, left, none], [0, 0, 1, 1, 1]));
 }
 
 #[test]

@@ -7,6 +7,8 @@
 mod expressions;
 mod types;
 
+use onescan_iec::Dialect;
+
 use std::fmt::Write;
 
 use super::dice::Dice;
@@ -107,7 +109,7 @@ impl Typed<'_> {
             outputs.extend(parts.iter().map(|(part, ty)| (format!("{name}.{part}"), *ty)));
         }
         text = text + "END_VAR\n" + &self.text + "END_PROGRAM\n";
-        PeerProgram { family: "typed", text, inputs, outputs, rounded }
+        PeerProgram { dialect: Dialect::Iec2, family: "typed", text, inputs, outputs, rounded }
     }
 
     fn statements(&mut self, count: usize, depth: usize) {

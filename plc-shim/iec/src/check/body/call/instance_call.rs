@@ -10,7 +10,9 @@ use crate::check::declare::Scope;
 use crate::check::types::parameter::ENO;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Feature;
-use crate::ir::{Argument, ElementaryType, InstanceCall, Place, Statement, StatementKind, Storage, Type};
+use crate::ir::{
+    Argument, Dispatch, ElementaryType, InstanceCall, Place, PouId, Statement, StatementKind, Storage, Type,
+};
 use crate::syntax::Span;
 use crate::syntax::ast::{Call, SectionKind};
 
@@ -48,6 +50,15 @@ impl Body<'_, '_> {
         back.extend(outputs);
         let call = InstanceCall { instance, pou, dispatch, pointer, inputs, outputs: back };
         self.controlled_instance(&scope, call, enabling)
+    }
+
+    /// Calls the body of an instance without arguments.
+    pub(in crate::check::body) fn bare_call(&mut self, instance: Place, pou: PouId, span: Span) -> Statement {
+        self.note_call(pou, span);
+        let pointer = self.scope.register(ElementaryType::Udint);
+        let dispatch = Dispatch::Direct;
+        let call = InstanceCall { instance, pou, dispatch, pointer, inputs: Vec::new(), outputs: Vec::new() };
+        Statement { kind: StatementKind::CallInstance(Box::new(call)), span }
     }
 
     /// Sets the inputs of an instance that are given.

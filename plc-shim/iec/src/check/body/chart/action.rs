@@ -1,21 +1,27 @@
 //! Action control and the actions themselves (2nd ed. 2.6.4.5, 3rd ed. 6.7.4.6).
 
 use super::association::{Action, Runs};
+use super::pulse::{Before, PULSES};
 use crate::check::body::Body;
 use crate::check::body::call::argument::Passing;
 use crate::check::declare::Role;
 use crate::check::types::build::{assign, joined, load, not, operation, when};
-use crate::ir::{Binary, Dispatch, ElementaryType, Expr, InstanceCall, Place, PouId, Statement, StatementKind, Type};
+use crate::ir::{Binary, Expr, Place, PouId, Statement, StatementKind, Type};
 use crate::syntax::Span;
 use crate::syntax::ast::{ActionQualifier, Chart};
 
 impl Body<'_, '_> {
     /// All controls, then what they let run.
-    pub(super) fn action_control(&mut self, chart: &Chart, actions: &[Action]) -> Vec<Statement> {
+    pub(super) fn action_control(
+        &mut self,
+        chart: &Chart,
+        actions: &[Action],
+        before: Option<&Before>,
+    ) -> Vec<Statement> {
         let Some(quiet) = self.quiet() else { return Vec::new() };
         let mut statements = Vec::new();
         for action in actions {
-            statements.extend(self.control_of(chart, action, quiet).into_iter().flatten());
+            statements.extend(self.control_of(chart, action, before, quiet).into_iter().flatten());
         }
         for is_flagged in [false, true] {
             for action in actions {
@@ -26,18 +32,28 @@ impl Body<'_, '_> {
     }
 
     /// The inputs of an action's control, its call, and what becomes of a Boolean action.
-    fn control_of(&mut self, chart: &Chart, action: &Action, quiet: Span) -> Option<Vec<Statement>> {
+    fn control_of(
+        &mut self,
+        chart: &Chart,
+        action: &Action,
+        before: Option<&Before>,
+        quiet: Span,
+    ) -> Option<Vec<Statement>> {
         let mut flags = Vec::new();
         for used in &action.uses {
             let step = self.chart_place(&chart.steps.get(used.step)?.name.key(), quiet)?;
             flags.push(self.chart_member(&step, "X")?);
         }
         let mut statements = Vec::new();
-        for qualifier in ActionQualifier::ALL {
+        let common = ActionQualifier::ALL.into_iter().filter(|each| before.is_none() || !PULSES.contains(each));
+        for qualifier in common {
             let by = action.uses.iter().zip(&flags).filter(|(used, _)| used.qualifier == qualifier);
             if let Some(any) = joined(Binary::Or, by.map(|(_, flag)| load(flag))) {
                 statements.push(assign(&self.chart_member(&action.control, qualifier.text())?, any));
             }
+        }
+        if let Some(before) = before {
+            statements.extend(self.pulse_of_step(action, &flags, before, quiet)?);
         }
         let time = self.chart_member(&action.control, "T")?;
         for (used, flag) in action.uses.iter().zip(&flags) {
@@ -56,11 +72,7 @@ impl Body<'_, '_> {
     fn control_call(&mut self, control: &Place, quiet: Span) -> Option<Statement> {
         let Type::FunctionBlock { pou, .. } = self.declarations.types().get(control.ty) else { return None };
         let pou: PouId = *pou;
-        self.note_call(pou, quiet);
-        let pointer = self.scope.register(ElementaryType::Udint);
-        let (instance, dispatch) = (control.clone(), Dispatch::Direct);
-        let call = InstanceCall { instance, pou, dispatch, pointer, inputs: Vec::new(), outputs: Vec::new() };
-        Some(Statement { kind: StatementKind::CallInstance(Box::new(call)), span: quiet })
+        Some(self.bare_call(control.clone(), pou, quiet))
     }
 
     /// The action's statements, where its flag is as it should be.

@@ -1,6 +1,7 @@
 //! One evolution in a scan (2nd ed. 2.6.5, 3rd ed. 6.7.6).
 
 use super::net::Net;
+use super::pulse::Before;
 use crate::check::body::Body;
 use crate::check::declare::VIRTUAL_TIME_OFFSET;
 use crate::check::declare::chart::begun_key;
@@ -28,7 +29,7 @@ struct Test<'t> {
 }
 
 impl Body<'_, '_> {
-    pub(super) fn evolution(&mut self, pou: &Pou, net: &Net) -> Vec<Statement> {
+    pub(super) fn evolution(&mut self, pou: &Pou, net: &Net, before: Option<&Before>) -> Vec<Statement> {
         let chart = &pou.chart;
         let Some(quiet) = self.quiet() else { return Vec::new() };
         let states: Vec<Option<StepState>> = chart.steps.iter().map(|step| self.step_state(step, quiet)).collect();
@@ -43,7 +44,8 @@ impl Body<'_, '_> {
         let conditions: Vec<_> = tests.iter().map(|test| self.tested(test, quiet)).collect();
         let (Some(states), Some(begun)) = (states, self.chart_place(&begun_key(pou), quiet)) else { return Vec::new() };
         let mut evolve = Vec::new();
-        for state in &states {
+        for (step, state) in states.iter().enumerate() {
+            evolve.extend(before.and_then(|before| before.of(step)).map(|flag| assign(flag, load(&state.flag))));
             evolve.push(assign(&state.token, load(&state.flag)));
             evolve.push(when(load(&state.flag), vec![assign(&state.time, elapsed(state, quiet))], quiet));
         }
@@ -61,6 +63,9 @@ impl Body<'_, '_> {
         }
         let initial = chart.steps.iter().zip(&states).filter(|(step, _)| step.is_initial);
         let mut first: Vec<Statement> = initial.flat_map(|(_, state)| activation(state, quiet)).collect();
+        let initial = chart.steps.iter().enumerate().filter(|(_, step)| step.is_initial);
+        let initial = initial.filter_map(|(step, _)| before.and_then(|before| before.of(step)));
+        first.extend(initial.map(|flag| assign(flag, truth(true, quiet))));
         first.push(assign(&begun, truth(true, quiet)));
         let branch = IfBranch { condition: load(&begun), body: evolve };
         vec![Statement { kind: StatementKind::If(vec![branch], first), span: quiet }]

@@ -8,6 +8,7 @@
 //! | [`net`] | the situations that a chart can come to |
 //! | [`soundness`] | charts that are unsafe, unreachable or come to an end |
 //! | [`evolution`] | which transitions are cleared, and what becomes active |
+//! | [`pulse`] | the edges that give actions their pulses, and which are lost |
 //! | [`action`] | action control, and when actions run |
 //!
 //! A scan of a unit with a chart:
@@ -32,6 +33,7 @@ pub(super) mod association;
 pub(super) mod evolution;
 pub(super) mod links;
 pub(super) mod net;
+pub(super) mod pulse;
 pub(super) mod soundness;
 
 use super::Body;
@@ -66,8 +68,10 @@ impl Body<'_, '_> {
         if links.are_whole {
             self.check_soundness(&ast.chart, &links.net, &actions);
         }
-        let mut statements = self.evolution(ast, &links.net);
-        statements.extend(self.action_control(&ast.chart, &actions));
+        self.report_lost_pulses(&ast.chart, &links.net, &actions);
+        let before = self.quiet().and_then(|quiet| self.before(&ast.chart, &actions, quiet));
+        let mut statements = self.evolution(ast, &links.net, before.as_ref());
+        statements.extend(self.action_control(&ast.chart, &actions, before.as_ref()));
         statements
     }
 
