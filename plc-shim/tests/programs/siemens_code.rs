@@ -2,7 +2,11 @@
 
 use onescan_iec::Dialect::{self, SiemensScl};
 
-use crate::rig::{Rig, findings_in};
+use onescan_iec::input::kind::SourceKind;
+use onescan_iec::{Input, TaskPlan, TimeSpan, inspect};
+use onescan_iec_run::SoftPlc;
+
+use crate::rig::{Rig, application_in, findings_in, task};
 
 fn after_a_scan(text: &str) -> Rig {
     let mut rig = Rig::in_dialect(SiemensScl, text);
@@ -260,4 +264,50 @@ END_ORGANIZATION_BLOCK
     assert_eq!([rig.int("Line_DB.count"), rig.int("IEC_Counter_0_DB.CV"), rig.int("Line_DB.c.CV")], [1, 1, 2]);
     assert_eq!(rig.int("Line_DB.d.CV"), 5);
     assert!(rig.bool("Line_DB.c.QU") && !rig.bool("Line_DB.full"));
+}
+
+/// By its number, or by the title that TIA Portal gives it under any name.
+#[test]
+fn a_block_of_the_start_runs_once() {
+    let blocks = [
+        ("OB100", "ORGANIZATION_BLOCK OB100"),
+        (
+            "Startup",
+            "ORGANIZATION_BLOCK \"Startup\"\nTITLE = \"Complete Restart\"\n{ S7_Optimized_Access := 'TRUE' }\nVERSION : 0.1",
+        ),
+    ];
+    for (name, head) in blocks {
+        let text = format!(
+            "DATA_BLOCK \"data\" STRUCT speed : INT := 1; starts : INT; END_STRUCT; BEGIN speed := 2; END_DATA_BLOCK
+{head}
+VAR_TEMP twice : INT; END_VAR BEGIN twice := \"data\".speed * 2; \"data\".speed := twice + 40; \"data\".starts += 1;
+END_ORGANIZATION_BLOCK
+ORGANIZATION_BLOCK \"Main\"\nTITLE = \"Main Program Sweep (Cycle)\"\nVERSION : 0.1
+BEGIN \"data\".speed := \"data\".speed + 1; END_ORGANIZATION_BLOCK"
+        );
+        assert_eq!(findings_in(SiemensScl, &text).to_string(), "", "{name}");
+        let application = application_in(SiemensScl, &text);
+        let plan = application.single_task(TimeSpan::millis::<10>());
+        assert_eq!(plan.tasks[0].programs, ["Main"]);
+        let mut rig = Rig::with_plan(&application, &plan);
+        assert_eq!(rig.int("data.speed"), 44, "{name}: before the first scan");
+        rig.scan().expect("no fault");
+        rig.scan().expect("no fault");
+        assert_eq!((rig.int("data.speed"), rig.int("data.starts")), (46, 1), "{name}");
+        let both = task("cycle", 10, 0, &["Main", name]);
+        let wrong = SoftPlc::new(&application, &TaskPlan::new(vec![both])).map(|_| ()).expect_err("it has no task");
+        assert_eq!(
+            wrong.to_string(),
+            format!("task `cycle` runs `{name}`, which every start runs once; take it out of the task")
+        );
+    }
+}
+
+#[test]
+fn a_block_of_the_start_may_write_what_a_task_writes() {
+    let text = "DATA_BLOCK \"data\" STRUCT n : INT; END_STRUCT; BEGIN END_DATA_BLOCK
+        ORGANIZATION_BLOCK OB100 BEGIN \"data\".n := 1; END_ORGANIZATION_BLOCK
+        ORGANIZATION_BLOCK OB1 BEGIN \"data\".n := 2; END_ORGANIZATION_BLOCK";
+    let input = Input::from_text("main.scl", SourceKind::Text, text).in_dialect(SiemensScl);
+    assert_eq!(inspect([input], None).to_string(), "");
 }

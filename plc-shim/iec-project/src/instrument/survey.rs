@@ -172,7 +172,8 @@ impl<'a> Surveyor<'_, 'a> {
 
     fn pou(&mut self, pou: &'a Pou) {
         self.own_name(&pou.name);
-        if pou.kind == PouKind::Program {
+        // The PLC itself runs an organization block of the start.
+        if pou.kind == PouKind::Program && !pou.object.runs_at_start {
             self.survey.programs.push(pou);
         }
         if pou.kind == PouKind::FunctionBlock {

@@ -260,6 +260,11 @@ impl Application {
         self.entry_names().position(|entry| entry.eq_ignore_ascii_case(name))
     }
 
+    /// True for a program that the start calls, by its position. Those of programs come first.
+    pub(crate) fn runs_at_start(&self, index: usize) -> bool {
+        self.inner.checked.programs.get(index).is_some_and(|program| program.runs_at_start)
+    }
+
     /// The part of a chart that a place is in.
     pub(crate) fn chart_part(&self, at: Span) -> Option<&str> {
         let holds = |span: &Span| span.file == at.file && (span.start..=span.end).contains(&at.start);

@@ -60,6 +60,8 @@ pub struct Program {
     pub name: String,
     /// True if another unit calls it: then it runs with that.
     pub is_called: bool,
+    /// True for an organization block that the start calls: no task runs it.
+    pub runs_at_start: bool,
     pub inputs: Vec<Variable>,
     pub outputs: Vec<Variable>,
     pub locals: Vec<Variable>,
@@ -108,6 +110,7 @@ impl Application {
             Some(Program {
                 name: name.to_owned(),
                 is_called: program.is_called,
+                runs_at_start: program.runs_at_start,
                 inputs: of(SectionKind::Input),
                 outputs: of(SectionKind::Output),
                 locals: of(SectionKind::Local),

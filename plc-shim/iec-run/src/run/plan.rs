@@ -39,6 +39,9 @@ pub enum RunError {
         program: String,
         help: Option<String>,
     },
+    /// A program that a start calls.
+    #[error("task `{task}` runs `{program}`, which every start runs once; take it out of the task")]
+    RunsAtStart { task: String, program: String },
     /// A program has one instance, which belongs to one task.
     #[error("program `{program}` runs in two tasks, `{task}` is the second")]
     ProgramTwice { program: String, task: String },
@@ -105,6 +108,9 @@ fn entries(
     let mut found = Vec::new();
     for name in names {
         let index = entry(application, task, name)?;
+        if application.runs_at_start(index) {
+            return Err(RunError::RunsAtStart { task: task.to_owned(), program: name.clone() });
+        }
         if !running.insert(index) {
             return Err(RunError::ProgramTwice { program: name.clone(), task: task.to_owned() });
         }

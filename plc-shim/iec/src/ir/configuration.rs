@@ -19,6 +19,8 @@ pub struct Program {
     pub retention: Option<Retention>,
     /// True if a unit calls it, as some vendors allow: then no task runs it unless one names it.
     pub is_called: bool,
+    /// True for an organization block that the start calls, once: no task may run it.
+    pub runs_at_start: bool,
 }
 
 /// What a task can run: an instance of a program with its connections, or an instance of a function

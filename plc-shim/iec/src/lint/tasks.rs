@@ -6,7 +6,7 @@ use super::Unit;
 use super::index::{Index, declared};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::Span;
-use crate::syntax::ast::{Ident, PouKind, SectionKind};
+use crate::syntax::ast::{Ident, Pou, PouKind, SectionKind};
 use crate::task_plan::TaskPlan;
 
 /// Without a plan the configuration says which task runs what; without one of those every program
@@ -15,7 +15,9 @@ pub(super) fn lint(units: &[Unit<'_>], index: &Index<'_>, plan: Option<&TaskPlan
     let units: BTreeMap<String, &Unit<'_>> = units.iter().map(|unit| (unit.pou.name.key(), unit)).collect();
     // The first write of each task to each global.
     let mut writers: BTreeMap<String, BTreeMap<String, Span>> = BTreeMap::new();
-    for (key, unit) in units.iter().filter(|(_, unit)| unit.pou.kind == PouKind::Program) {
+    // What a start runs is over before any task begins.
+    let of_tasks = |pou: &Pou| pou.kind == PouKind::Program && !pou.object.runs_at_start;
+    for (key, unit) in units.iter().filter(|(_, unit)| of_tasks(unit.pou)) {
         for task in tasks_of(&unit.pou.name, plan, index) {
             for reached in reached(key, &units, index) {
                 for (name, span) in global_writes(reached, index) {

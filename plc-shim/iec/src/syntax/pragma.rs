@@ -18,6 +18,12 @@ pub fn behind_pragma<T>(tokens: &[Token], text: &str, found: impl Fn(&str) -> Op
     all
 }
 
+/// True for the line `TITLE = "Complete Restart"`, which TIA Portal writes into a block of the start, whatever its name.
+pub(crate) fn is_start_title(line: &str) -> bool {
+    let title = line.split_once('=').filter(|(word, _)| word.trim().eq_ignore_ascii_case("TITLE"));
+    title.is_some_and(|(_, title)| title.trim().trim_matches(['"', '\'']).eq_ignore_ascii_case("Complete Restart"))
+}
+
 /// Most bytes that members of a structure are aligned to, of `attribute 'pack_mode' := '1'`. 0 and 8 leave them as
 /// they are.
 pub(crate) fn packing(pragma: &str) -> Option<u32> {

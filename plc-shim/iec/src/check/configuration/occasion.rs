@@ -6,7 +6,7 @@ use crate::check::declare::{Occasion, Start, StartKind};
 use crate::ir::{ElementaryType, Guard, Place, Pou, Storage};
 
 impl Configurer<'_, '_> {
-    /// What the PLC does at a start: first values, then what wants all of them.
+    /// What the PLC does at a start: first values, then what wants all of them, then programs that it calls.
     pub(in crate::check) fn start(&mut self) -> Option<Pou> {
         self.occasions("PLC start", &[Occasion::Start, Occasion::AfterStart])
     }
@@ -36,6 +36,11 @@ impl Configurer<'_, '_> {
             // What the configuration says takes precedence over what declarations say, so it comes last.
             for each in &self.configured.values {
                 statements.extend(body.performed(&each.place, &each.starts, occasion));
+            }
+        }
+        if occasions.contains(&Occasion::AfterStart) {
+            for program in programs.iter().filter(|program| program.runs_at_start) {
+                statements.push(body.program_at_start(program.pou, program.offset));
             }
         }
         let registers = body.into_scope().into_registers();

@@ -58,6 +58,8 @@ pub struct Object {
     pub members: Vec<Member>,
     /// True behind `{attribute 'call_after_init'}`, of a block and of its method that runs then.
     pub call_after_init: bool,
+    /// True for an organization block that runs once at a start, as OB100 of S7.
+    pub runs_at_start: bool,
 }
 
 /// What a member is.

@@ -9,7 +9,7 @@ use crate::dialect::{Dialect, Feature};
 use crate::source::origin::Origin;
 use crate::source::{FileId, Span};
 use crate::syntax::ast::{Expr, Ident, TemplateUse};
-use crate::syntax::pragma::{attribute, behind_pragma, packing};
+use crate::syntax::pragma::{attribute, behind_pragma, is_start_title, packing};
 use crate::syntax::token::{Keyword, Punctuation, Token, TokenKind};
 
 /// Reads the tokens that matter to the grammar; trivia and broken tokens are left out.
@@ -40,6 +40,8 @@ pub(super) struct Cursor<'a> {
     packed: Vec<(u32, u32)>,
     /// The same behind `{attribute 'call_after_init'}`.
     call_after_init: Vec<(u32, ())>,
+    /// The same behind the title that TIA Portal gives an organization block of the start.
+    start_titles: Vec<(u32, ())>,
     /// True inside of what stands behind it.
     in_external: bool,
     /// The unit's constants without a type, by their keys.
@@ -68,6 +70,8 @@ impl<'a> Cursor<'a> {
         let of_vendors = matches!(dialect, Dialect::Codesys | Dialect::TwinCat);
         let is_called = |pragma: &str| (of_vendors && is_attribute(pragma, "'call_after_init'")).then_some(());
         let call_after_init = behind_pragma(tokens, text, is_called);
+        let starts = |title: &str| (dialect == Dialect::SiemensScl && is_start_title(title)).then_some(());
+        let start_titles = behind_pragma(tokens, text, starts);
         let packed = behind_pragma(tokens, text, |pragma| packing(pragma).filter(|_| of_vendors));
         let mut tokens: Vec<Token> = tokens.iter().filter_map(good).collect();
         promote_soft_keywords(&mut tokens, text);
@@ -89,6 +93,7 @@ impl<'a> Cursor<'a> {
             qualified_only,
             packed,
             call_after_init,
+            start_titles,
             in_external: false,
             constants: BTreeMap::new(),
             templates: Vec::new(),
@@ -109,6 +114,12 @@ impl<'a> Cursor<'a> {
     /// True if `{attribute 'call_after_init'}` stands before the next token.
     pub(super) fn at_call_after_init(&self) -> bool {
         self.before_next(&self.call_after_init).is_some()
+    }
+
+    /// True if a block that began at `start` has the title of one that runs at the start.
+    pub(super) fn has_start_title(&self, start: u32) -> bool {
+        let end = self.span().start;
+        self.start_titles.iter().any(|(at, ())| (start..end).contains(at))
     }
 
     /// Most bytes that the members of the structure behind the next token are aligned to, if an attribute says so.

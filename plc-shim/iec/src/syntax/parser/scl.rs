@@ -12,17 +12,25 @@ use crate::syntax::ast::{
 use crate::syntax::literal::{parse_duration, parse_typed};
 use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 
+/// The organization blocks of a warm, hot and cold restart: STEP 7, System and Standard Functions, startup.
+const START_BLOCKS: std::ops::RangeInclusive<u32> = 100..=102;
+
 impl Cursor<'_> {
-    /// `ORGANIZATION_BLOCK`, which the system calls: in each cycle or interval, so it is a program.
+    /// `ORGANIZATION_BLOCK`, which the system calls: in each cycle or interval, so it is a program, or once at the start.
     pub(super) fn organization_block(&mut self, into: &mut Vec<Declaration>) {
-        let known = into.len();
+        let (known, start) = (into.len(), self.span().start);
         self.pou(PouKind::Program, Keyword::EndOrganizationBlock, into);
-        let Some(Declaration::Pou(block)) = into.get(known) else { return };
+        let has_title = self.has_start_title(start);
+        let Some(Declaration::Pou(block)) = into.get_mut(known) else { return };
         let number = block.name.key().strip_prefix("OB").and_then(|text| text.parse::<u32>().ok());
+        block.object.runs_at_start = has_title || number.is_some_and(|number| START_BLOCKS.contains(&number));
+        if block.object.runs_at_start {
+            return;
+        }
         if number.is_some_and(|number| number != 1 && !(30..=38).contains(&number) && number < 123) {
             let message = "an organization block that is called on an event is not supported";
             let found = Diagnostic::error(Code::VendorRuntime, block.name.span, message);
-            self.report(found.with_help("OB1 and OB30 to OB38 become programs"));
+            self.report(found.with_help("OB1 and OB30 to OB38 become programs, OB100 runs once at the start"));
         }
     }
 

@@ -99,6 +99,12 @@ impl<'a> Body<'_, 'a> {
         }
     }
 
+    /// Runs a program that the start calls.
+    pub(in crate::check) fn program_at_start(&mut self, pou: PouId, offset: u32) -> Statement {
+        let (ty, span) = (self.instance_type(pou), self.declarations.pou(pou).ast().name.span);
+        self.bare_call(Place::whole(Storage::Absolute(offset), ty, span), pou, span)
+    }
+
     fn instance_type(&mut self, pou: PouId) -> TypeId {
         let name = &self.declarations.pou(pou).ast().name.text;
         self.declarations.types_mut().block(name, pou)
