@@ -94,3 +94,21 @@ END_FUNCTION_BLOCK
 PROGRAM P VAR x : B; END_VAR END_PROGRAM";
     assert!(findings_in(Dialect::Codesys, text).has_errors(), "nobody gives it an input");
 }
+
+#[test]
+fn a_private_method_of_the_base_runs_beside_that_of_the_derived_block() {
+    let rig = rig(&format!(
+        "{}
+{{attribute 'call_after_init'}}
+FUNCTION_BLOCK Derived EXTENDS Base
+{{attribute 'call_after_init'}}
+METHOD Settle
+  Note(3);
+END_METHOD
+END_FUNCTION_BLOCK
+VAR_GLOBAL Others : LINT; d : Derived(1); END_VAR
+PROGRAM P END_PROGRAM",
+        NOTE.replace("METHOD Settle", "METHOD PRIVATE Settle")
+    ));
+    assert_eq!(rig.int("trail"), 163, "FB_init, the base's own, the derived block's own");
+}

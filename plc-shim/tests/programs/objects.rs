@@ -510,3 +510,29 @@ fn actions_of_vendors_take_the_inputs_of_their_unit() {
     let reported = findings_in(Dialect::TwinCat, &text.replace("b := 10", "c := 10")).to_string();
     assert!(reported.contains("`Add` has no such parameter `c`"), "{reported}");
 }
+
+/// 3rd ed. 6.6.5.9: what is PRIVATE to the base is not overridden, whatever its parameters are.
+#[test]
+fn a_private_method_of_the_base_stays_beside_that_of_the_derived_block() {
+    let text = "FUNCTION_BLOCK Base
+VAR n, m : INT; END_VAR
+METHOD PRIVATE Step : INT Step := 1; END_METHOD
+METHOD Run n := THIS^.Step(); m := Step(); END_METHOD
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK Derived EXTENDS Base
+VAR own, given : INT; END_VAR
+METHOD Step : INT VAR_INPUT by : INT; END_VAR Step := 10 * by; END_METHOD
+METHOD Work own := Step(2); END_METHOD
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK Last EXTENDS Derived
+METHOD Step : INT VAR_INPUT by : INT; END_VAR Step := 100 * by; END_METHOD
+END_FUNCTION_BLOCK
+PROGRAM P
+VAR d : Last; p : POINTER TO Derived; END_VAR
+  p := ADR(d); p^.Run(); p^.Work(); d.given := p^.Step(3);
+END_PROGRAM";
+    assert_eq!(findings_in(Dialect::Codesys, text).to_string(), "");
+    let mut rig = Rig::in_dialect(Dialect::Codesys, text);
+    rig.scan().expect("no fault");
+    assert_eq!(["n", "m", "own", "given"].map(|name| rig.int(&format!("P.d.{name}"))), [1, 1, 200, 300]);
+}

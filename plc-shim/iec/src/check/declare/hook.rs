@@ -54,28 +54,24 @@ impl Declarations<'_> {
     }
 
     /// The methods with `{attribute 'call_after_init'}` of a block that has it as well, or whose base has it: each as
-    /// the block itself has it, those that its bases declare first.
+    /// the block itself has it, or as it is PRIVATE to a base; those that its bases declare first.
     fn called_after_init(&self, pou: PouId) -> Vec<PouId> {
         let chain: Vec<PouId> = self.with_bases(pou).collect();
         if !chain.iter().any(|id| self.pou(*id).ast.object.call_after_init) {
             return Vec::new();
         }
-        let mut names: Vec<&(Role, String)> = Vec::new();
+        let mut found: Vec<PouId> = Vec::new();
         for class in chain.iter().rev().filter_map(|id| self.class(*id)) {
             let marked = class
                 .members
                 .iter()
                 .filter(|((role, _), method)| *role == Role::Method && self.pou(**method).ast.object.call_after_init);
-            for (key, _) in marked {
-                if !names.contains(&key) {
-                    names.push(key);
-                }
+            for ((role, name), declared) in marked {
+                let own = if self.is_private(*declared) { Some(*declared) } else { self.find_member(pou, *role, name) };
+                found.extend(own.filter(|own| !found.contains(own)));
             }
         }
-        let own = |key: &&(Role, String)| {
-            chain.iter().filter_map(|id| self.class(*id)).find_map(|class| class.members.get(*key)).copied()
-        };
-        names.iter().filter_map(own).collect()
+        found
     }
 
     pub(in crate::check) fn has_hook(&self, pou: PouId, occasion: Occasion) -> bool {

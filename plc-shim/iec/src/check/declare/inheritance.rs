@@ -37,6 +37,8 @@ impl Declarations<'_> {
                 self.report(Diagnostic::error(Code::AbstractInstance, span, message));
             }
             let of_base = self.base_of(id).and_then(|base| self.find_member(base, role, &name));
+            // What is PRIVATE to the base stays beside it.
+            let of_base = of_base.filter(|base| !self.is_private(*base));
             if let Some(base) = of_base {
                 self.check_finality(member, base);
             } else if overrides && !self.may_inherit(id) {
@@ -48,7 +50,8 @@ impl Declarations<'_> {
             if is_hook(&key.1) {
                 continue;
             }
-            let above: Vec<PouId> = above.filter_map(|each| self.class(each)?.members.get(&key).copied()).collect();
+            let above = above.filter_map(|each| self.class(each)?.members.get(&key).copied());
+            let above: Vec<PouId> = above.filter(|each| !self.is_private(*each)).collect();
             for each in above {
                 self.check_signature(member, each);
             }

@@ -41,6 +41,11 @@ impl Declarations<'_> {
         }
     }
 
+    /// True for a method that only its own unit sees: what is derived from that cannot override it.
+    pub(in crate::check) fn is_private(&self, method: PouId) -> bool {
+        method_visibility(&self.pou(method).ast.object.modifiers) == Visibility::Private
+    }
+
     pub(in crate::check) fn sees(&self, from: Option<PouId>, visibility: Visibility, owner: PouId) -> bool {
         let class = from.map(|id| self.owner_of(id));
         match visibility {

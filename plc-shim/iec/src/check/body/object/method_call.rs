@@ -269,6 +269,10 @@ impl Body<'_, '_> {
             self.note_call(method, span);
             return Some((method, Dispatch::Direct));
         }
+        if self.declarations.is_private(method) {
+            self.note_call(method, span);
+            return Some((method, Dispatch::Direct));
+        }
         let targets = self.declarations.targets(class, role, name);
         let first = targets.first().map(|(_, target)| *target);
         let only = first.filter(|first| targets.iter().all(|(_, target)| target == first));
