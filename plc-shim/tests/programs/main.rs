@@ -83,4 +83,5 @@ mod strings;
 mod subranges;
 mod undriven_inputs;
 mod unions;
+mod variants;
 mod vendor;

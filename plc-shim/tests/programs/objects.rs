@@ -520,19 +520,19 @@ METHOD PRIVATE Step : INT Step := 1; END_METHOD
 METHOD Run n := THIS^.Step(); m := Step(); END_METHOD
 END_FUNCTION_BLOCK
 FUNCTION_BLOCK Derived EXTENDS Base
-VAR own, given : INT; END_VAR
-METHOD Step : INT VAR_INPUT by : INT; END_VAR Step := 10 * by; END_METHOD
+VAR own : INT; END_VAR
+METHOD Step : INT VAR_INPUT x : INT; END_VAR Step := 10 * x; END_METHOD
 METHOD Work own := Step(2); END_METHOD
 END_FUNCTION_BLOCK
 FUNCTION_BLOCK Last EXTENDS Derived
-METHOD Step : INT VAR_INPUT by : INT; END_VAR Step := 100 * by; END_METHOD
+METHOD Step : INT VAR_INPUT x : INT; END_VAR Step := 100 * x; END_METHOD
 END_FUNCTION_BLOCK
 PROGRAM P
-VAR d : Last; p : POINTER TO Derived; END_VAR
-  p := ADR(d); p^.Run(); p^.Work(); d.given := p^.Step(3);
+VAR d : Last; p : POINTER TO Derived; given : INT; END_VAR
+  p := ADR(d); p^.Run(); p^.Work(); given := p^.Step(3);
 END_PROGRAM";
     assert_eq!(findings_in(Dialect::Codesys, text).to_string(), "");
     let mut rig = Rig::in_dialect(Dialect::Codesys, text);
     rig.scan().expect("no fault");
-    assert_eq!(["n", "m", "own", "given"].map(|name| rig.int(&format!("P.d.{name}"))), [1, 1, 200, 300]);
+    assert_eq!(["d.n", "d.m", "d.own", "given"].map(|name| rig.int(&format!("P.{name}"))), [1, 1, 200, 300]);
 }

@@ -221,6 +221,7 @@ VERSION : 0.1
       t {InstructionName := 'IEC_TIMER'; LibVersion := '1.0'} : IEC_TIMER;
       u : IEC_TIMER;
       v : Array[0..1] of IEC_TIMER;
+      w : TONR_TIME;
       c {InstructionName := 'IEC_COUNTER'; LibVersion := '1.0'} : IEC_COUNTER;
       d : IEC_DCOUNTER;
    END_VAR
@@ -232,6 +233,7 @@ BEGIN
 	#u.TP(IN := #run, PT := T#20ms);
 	#pulse := #u.Q;
 	#v[1].TONR(IN := #run, R := #reset, PT := T#40ms, Q => #kept, ET => #passed);
+	#w.TONR(IN := #run, R := #reset, PT := T#40ms);
 	"IEC_Counter_0_DB".CTUD(CU := #run, CD := #reset, R := FALSE, LD := FALSE, PV := 2, QU => #full, QD => #empty, CV => #count);
 	#c.CTU(CU := #run, R := FALSE, PV := 1);
 	#d.CTD(CD := #run, LD := #reset, PV := 5);
@@ -254,6 +256,7 @@ END_ORGANIZATION_BLOCK
         rig.plc.write("Line_DB.run", if run { "TRUE" } else { "FALSE" }).expect("an input");
         rig.plc.write("Line_DB.reset", if reset { "TRUE" } else { "FALSE" }).expect("an input");
         rig.scan().expect("no fault");
+        assert_eq!(rig.bool("Line_DB.w.Q"), rig.bool("Line_DB.kept"), "both retain");
         let level = |name: &str| if rig.bool(&format!("Line_DB.{name}")) { '#' } else { '.' };
         ["on", "off", "pulse", "kept"].map(level).into_iter().collect::<String>()
     };

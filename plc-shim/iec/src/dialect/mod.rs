@@ -351,6 +351,7 @@ features! {
     LossyReals "a REAL from an LREAL or a wide integer, without conversion",
     CharactersAsBytes "characters `s[0]` as BYTE, with a 0 behind the last",
     VendorParameters "`RESET`, `LOAD` and the like of counters and bistables",
+    Variants "a parameter of type `VARIANT`",
     GenericInputs "an input of type `ANY`, `ANY_NUM` and the like",
     IntegerShifts "a shift or rotation of an integer",
     ClockFunctions "`TIME()`, `LTIME()`",

@@ -61,6 +61,11 @@ pub const FEATURES: &[FeatureRow] = &[
     ),
     row(Feature::VendorParameters, &[Codesys, TwinCat], "CODESYS: library Standard; TwinCAT: Tc2_Standard"),
     row(
+        Feature::Variants,
+        &[SiemensScl],
+        "TIA Portal: VARIANT; a source declares it in VAR_INPUT and VAR_IN_OUT here, not in VAR_OUTPUT or VAR_TEMP",
+    ),
+    row(
         Feature::GenericInputs,
         &[Codesys, TwinCat, SiemensScl],
         "CODESYS and TwinCAT: data types ANY and ANY_<type>; S7-SCL V5.3: parameter type ANY, of VAR_INPUT here",

@@ -90,6 +90,7 @@ const PARTS: &[Part] = parts![
     Codesys BOTH, "codesys_nbs";
     Codesys BOTH, "codesys_syssock";
     SiemensScl SCL, "siemens_conversion";
+    SiemensScl SCL, "siemens_variant";
     SiemensScl SCL, "siemens_time";
     Iec3 SCL, "siemens_clock";
     Iec3 SCL, "siemens_timers";
@@ -102,8 +103,9 @@ const PARTS: &[Part] = parts![
 ];
 
 /// Files that words of the language ask for, which no file declares: of what inputs of generic types are inside, and
-/// of the memory of `__NEW`, and a namespace that is named as a whole.
-const BY_WORDS: [(&str, &[&str]); 3] = [
+/// of the memory of `__NEW`, of VARIANT, and a namespace that is named as a whole.
+const BY_WORDS: [(&str, &[&str]); 4] = [
+    ("iec/vendor/siemens_variant.st", &["VARIANT"]),
     ("iec/vendor/generic_inputs.st", &["ANY", "ANY_BIT", "ANY_DATE", "ANY_NUM", "ANY_REAL", "ANY_INT", "ANY_STRING"]),
     ("iec/vendor/dynamic_memory.st", &["__NEW", "__DELETE"]),
     // Named by `USING AxUnit;`, and then only in parts.

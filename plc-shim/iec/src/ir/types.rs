@@ -14,6 +14,13 @@ use crate::syntax::direct_address::Area;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct TypeId(u32);
 
+impl TypeId {
+    /// Its place in the table, by which a program's text tells types apart while it runs.
+    pub(crate) fn number(self) -> u32 {
+        self.0
+    }
+}
+
 impl From<ElementaryType> for TypeId {
     fn from(ty: ElementaryType) -> Self {
         // The table begins with the elementary types in their order.

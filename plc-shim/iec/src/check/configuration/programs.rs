@@ -54,17 +54,9 @@ impl<'a> Configurer<'_, 'a> {
     /// Notes which programs other units call.
     pub(super) fn note_called_programs(&mut self) {
         let called = self.declarations.called();
-        for program in self.declarations.programs().to_vec() {
-            let at_start = self.runs_at_start(program.pou);
-            let is_called = called.contains(&program.pou) || at_start;
-            let of_it = self.declarations.programs_mut().filter(|each| each.pou == program.pou);
-            of_it.for_each(|each| (each.is_called, each.runs_at_start) = (is_called, at_start));
+        for program in self.declarations.programs_mut() {
+            program.is_called = program.runs_at_start || called.contains(&program.pou);
         }
-    }
-
-    /// True for an organization block that the start calls.
-    pub(super) fn runs_at_start(&self, pou: PouId) -> bool {
-        self.declarations.pou(pou).ast().object.runs_at_start
     }
 
     fn place_program(&mut self, pou: PouId, name: &Ident, resource: Option<usize>, retention: Option<Retention>) {
@@ -88,7 +80,7 @@ impl<'a> Configurer<'_, 'a> {
                 resource,
                 retention,
                 is_called: false,
-                runs_at_start: false,
+                runs_at_start: self.declarations.pou(pou).ast().object.runs_at_start,
             });
         }
     }

@@ -6,7 +6,6 @@ use super::Written;
 use super::structure::{Placing, Sharing};
 use crate::check::declare::{Enumerator, Need, Rank, StartKind, TypedImage};
 use crate::check::standard::vendor::{is_qualified_only, of_pointer_width};
-use crate::check::types::generic::Generic;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::dialect::Feature;
 use crate::ir::{Dimension, ElementaryType, TypeId};
@@ -151,7 +150,7 @@ impl<'a> Written<'_, 'a> {
     }
 
     fn report_unknown_type(&mut self, name: &Ident) {
-        if Generic::find(&name.key()).is_some() {
+        if self.generic_named(name).is_some() {
             return self.reject_generic(name);
         }
         let elementary = ElementaryType::ALL.iter().map(|ty| ty.name());

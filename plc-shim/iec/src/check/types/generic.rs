@@ -1,4 +1,5 @@
-//! Generic types of inputs (CODESYS, TwinCAT: `ANY`, `ANY_NUM` and the like): their names, and what they take.
+//! Generic types of inputs (CODESYS, TwinCAT: `ANY`, `ANY_NUM` and the like; Siemens: `VARIANT`): their names, and what
+//! they take.
 
 use crate::ir::ElementaryType;
 use crate::ir::elementary::Kind;
@@ -13,11 +14,21 @@ pub(in crate::check) enum Generic {
     AnyReal,
     AnyInt,
     AnyString,
+    /// `VARIANT` of Siemens.
+    Variant,
 }
 
 impl Generic {
-    const ALL: [Self; 7] =
-        [Self::Any, Self::AnyBit, Self::AnyDate, Self::AnyNum, Self::AnyReal, Self::AnyInt, Self::AnyString];
+    const ALL: [Self; 8] = [
+        Self::Any,
+        Self::AnyBit,
+        Self::AnyDate,
+        Self::AnyNum,
+        Self::AnyReal,
+        Self::AnyInt,
+        Self::AnyString,
+        Self::Variant,
+    ];
 
     pub(in crate::check) fn name(self) -> &'static str {
         match self {
@@ -28,6 +39,7 @@ impl Generic {
             Self::AnyReal => "ANY_REAL",
             Self::AnyInt => "ANY_INT",
             Self::AnyString => "ANY_STRING",
+            Self::Variant => "VARIANT",
         }
     }
 
@@ -40,7 +52,7 @@ impl Generic {
     pub(in crate::check) fn takes(self, kind: Kind) -> bool {
         let integer = matches!(kind, Kind::Signed | Kind::Unsigned);
         match self {
-            Self::Any => true,
+            Self::Any | Self::Variant => true,
             Self::AnyBit => matches!(kind, Kind::Bool | Kind::Bits),
             Self::AnyDate => matches!(kind, Kind::Date | Kind::TimeOfDay | Kind::DateTime),
             Self::AnyNum => integer || kind == Kind::Real,

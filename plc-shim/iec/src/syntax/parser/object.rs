@@ -77,7 +77,8 @@ impl Cursor<'_> {
         let mut sections = Vec::new();
         loop {
             if let Some(kind) = self.next_section() {
-                sections.push(self.section(kind));
+                let section = self.section(kind);
+                sections.extend(self.with_variants_as_inputs(section));
             } else if self.at_constants() {
                 self.constants();
             } else if self.at_keyword(Keyword::Using) {

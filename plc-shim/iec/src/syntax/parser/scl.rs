@@ -34,6 +34,21 @@ impl Cursor<'_> {
         }
     }
 
+    /// A VARIANT comes as an input does, also one that is declared in `VAR_IN_OUT`: it is a pointer, and the unit does not
+    /// change what it points to.
+    pub(super) fn with_variants_as_inputs(&self, section: Section) -> Vec<Section> {
+        let is_variant =
+            |variable: &Variable| matches!(&variable.spec.kind, TypeSpecKind::Name(name) if name.key() == "VARIANT");
+        let applies = section.kind == SectionKind::InOut && self.dialect().has(Feature::Variants);
+        if !applies || !section.variables.iter().any(is_variant) {
+            return vec![section];
+        }
+        let Section { kind, qualifiers, variables, span } = section;
+        let (inputs, others): (Vec<Variable>, Vec<Variable>) = variables.into_iter().partition(is_variant);
+        let inputs = Section { kind: SectionKind::Input, qualifiers: qualifiers.clone(), variables: inputs, span };
+        vec![inputs, Section { kind, qualifiers, variables: others, span }]
+    }
+
     /// `DATA_BLOCK "x" STRUCT .. END_STRUCT BEGIN .. END_DATA_BLOCK` is a global variable, be it a
     /// structure, of a user's type or an instance.
     pub(super) fn data_block(&mut self, into: &mut Vec<Declaration>) {

@@ -37,6 +37,8 @@ impl Body<'_, '_> {
             return None;
         };
         let size = self.declarations.types().size(variable.ty);
+        let (element, elements) = self.elements_of(variable.ty);
+        let (of_type, of_element) = (self.type_code(variable.ty), self.type_code(element));
         let memory = self.through_memory(variable, passing)?;
         let given = self.temporary(parameter.ty, span)?;
         let Type::Struct { fields, .. } = self.declarations.types().get(parameter.ty).clone() else { return None };
@@ -46,6 +48,9 @@ impl Body<'_, '_> {
             let value = match field.name.as_str() {
                 "TypeClass" => udint(class, field.ty),
                 "pValue" => Expr { kind: ExprKind::Address(memory.clone()), ty: field.ty, span },
+                "TypeCode" => udint(of_type, field.ty),
+                "ElementCode" => udint(of_element, field.ty),
+                "ElementCount" => udint(i128::from(elements), field.ty),
                 _ => constant(Value::Int(i128::from(size)), ElementaryType::Dint, span),
             };
             passing.before.push(assign(&member, value));
@@ -79,7 +84,7 @@ impl Body<'_, '_> {
             Type::OpenArray { .. } | Type::Nothing | Type::Null => return None,
         };
         let taken = match (generic, kind) {
-            (Generic::Any, _) => true,
+            (Generic::Any | Generic::Variant, _) => true,
             (Generic::AnyString, _) => matches!(self.declarations.types().get(ty), Type::Text(_)),
             (_, Some(kind)) => generic.takes(kind),
             (_, None) => false,

@@ -9,6 +9,7 @@ pub(super) mod enable_error;
 pub(super) mod instance_call;
 pub(super) mod memory_function;
 pub(super) mod standard_function;
+mod variant;
 
 use std::collections::BTreeMap;
 
@@ -275,6 +276,13 @@ impl Body<'_, '_> {
                     sound &= found.is_some();
                     let key = found.map_or_else(|| name.key(), |found| found.name.to_ascii_uppercase());
                     (key, name.span, expr)
+                }
+                ast::Argument::Output { name, negated: false, target: Some(target) }
+                    if let Some(variable) = self.variant_given_back(scope, name) =>
+                {
+                    // It points to the variable that the function writes.
+                    sound &= self.target(target).is_some();
+                    (variable.name.to_ascii_uppercase(), name.span, target)
                 }
                 ast::Argument::Output { name, negated, target } => {
                     let output = |variable: &Variable| variable.section == SectionKind::Output;

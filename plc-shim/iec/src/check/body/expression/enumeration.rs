@@ -58,6 +58,23 @@ impl Body<'_, '_> {
         (left, self.wanting(wanted, |body| body.expression(right)))
     }
 
+    /// The operands of `=` and `<>`: names of types may stand where the other side asks for one.
+    pub(super) fn both_compared(&mut self, left: &ast::Expr, right: &ast::Expr) -> (Option<Operand>, Option<Operand>) {
+        if let Some(named) = self.type_asked(left, right) {
+            return (self.expression(left), named);
+        }
+        if let Some(named) = self.type_asked(right, left) {
+            return (named, self.expression(right));
+        }
+        if let Some(address) = self.address_of_variant(left, right) {
+            return self.both_operands(&address, right);
+        }
+        if let Some(address) = self.address_of_variant(right, left) {
+            return self.both_operands(left, &address);
+        }
+        self.both_operands(left, right)
+    }
+
     fn is_value_of_several(&self, expr: &ast::Expr) -> bool {
         let ast::ExprKind::Name(name) = &expr.kind else { return false };
         self.declarations.enumerators(&self.declarations.behind_libraries(name).key()).len() > 1

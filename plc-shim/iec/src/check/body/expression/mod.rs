@@ -35,7 +35,10 @@ impl Body<'_, '_> {
             ast::ExprKind::Binary(operator, left, right) => {
                 // What a comparison compares has nothing to do with where its result goes.
                 let context = self.context.filter(|_| !operator.is_comparison());
-                let (left, right) = self.within(context, |body| body.both_operands(left, right));
+                let (left, right) = self.within(context, |body| match operator {
+                    BinaryOp::Equal | BinaryOp::NotEqual => body.both_compared(left, right),
+                    _ => body.both_operands(left, right),
+                });
                 self.binary(*operator, left?, right?, expr.span)
             }
             ast::ExprKind::Chain(first, links) => self.row_of_operators(first, links, expr.span),

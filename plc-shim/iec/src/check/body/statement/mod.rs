@@ -219,7 +219,7 @@ impl Body<'_, '_> {
         let mut known = BTreeMap::new();
         let mut arms = Vec::new();
         for branch in &inner.branches {
-            let labels = ty.map(|ty| self.case_labels(&branch.labels, ty, &mut known));
+            let labels = ty.map(|ty| self.case_labels(&inner.selector, &branch.labels, ty, &mut known));
             let body = self.statements(&branch.body);
             // Labels that are wrong have been reported; without any the arm is never taken.
             arms.push(CaseArm { labels: labels.unwrap_or_default(), body });
@@ -246,15 +246,16 @@ impl Body<'_, '_> {
 
     fn case_labels(
         &mut self,
+        selector: &ast::Expr,
         labels: &[ast::CaseLabel],
         ty: TypeId,
         known: &mut BTreeMap<i128, i128>,
     ) -> Vec<(i128, i128)> {
         let mut ranges = Vec::new();
         for label in labels {
-            let low = self.label_value(&label.low, ty);
+            let low = self.label_value(selector, &label.low, ty);
             let high = match &label.high {
-                Some(high) => self.label_value(high, ty),
+                Some(high) => self.label_value(selector, high, ty),
                 None => low,
             };
             let (Some(low), Some(high)) = (low, high) else {
@@ -279,7 +280,11 @@ impl Body<'_, '_> {
     }
 
     /// The number of a label. Where enumerations are integers, one of another width may select, too.
-    fn label_value(&mut self, label: &ast::Expr, ty: TypeId) -> Option<i128> {
+    fn label_value(&mut self, selector: &ast::Expr, label: &ast::Expr, ty: TypeId) -> Option<i128> {
+        if let Some(named) = self.type_asked(selector, label) {
+            let Operand::Typed(value) = named? else { return None };
+            return fold(self.declarations.types(), &value).ok().and_then(Value::as_int);
+        }
         if self.declarations.dialect(label.span).has(Feature::EnumerationsAsIntegers) {
             let known = self.declarations.mark();
             let value = self.within(None, |body| body.wanting(Some(ty), |body| body.expression(label)));
