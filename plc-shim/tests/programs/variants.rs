@@ -19,6 +19,7 @@ BEGIN
   IF IS_ARRAY(#v) AND TypeOfElements(#v) = Real THEN #Kind := 100 + UDINT_TO_INT(CountOfElements(#v)); END_IF;
 END_FUNCTION
 FUNCTION \"Handed\" : Int VAR_IN_OUT v : Variant; END_VAR BEGIN #Handed := \"Kind\"(#v); END_FUNCTION
+FUNCTION \"Given\" : Bool VAR_INPUT v : Variant; END_VAR BEGIN #Given := #v <> NULL AND NOT (NULL = #v); END_FUNCTION
 FUNCTION \"Double\" : Bool
 VAR_IN_OUT v : Variant; n : Int; END_VAR
 VAR_TEMP i : Int; r : Real; END_VAR
@@ -69,10 +70,8 @@ fn what_it_points_to_is_read_and_written() {
          #given := \"Given\"(#u);",
     );
     assert_eq!((rig.int("d.i"), rig.real("d.r"), rig.real("d.l"), rig.int("d.n")), (42, 3.0, 1.5, 3));
-    assert_eq!(
-        ["x", "y", "z", "same", "other"].map(|name| rig.bool(&format!("d.{name}"))),
-        [true, true, false, true, false]
-    );
+    let flags = ["x", "y", "z", "same", "other", "given"].map(|name| rig.bool(&format!("d.{name}")));
+    assert_eq!(flags, [true, true, false, true, false, true]);
 }
 
 #[test]
