@@ -7,7 +7,7 @@ use std::sync::Arc;
 use miette::{NamedSource, SourceSpan};
 use onescan_base::regular::{self, Limit};
 use onescan_iec::input::kind::{FileKind, SourceKind};
-use onescan_iec::{Dialect, Input, MemoryLimit, Task, TaskPlan};
+use onescan_iec::{Dialect, Input, MemoryLimit, Task, TaskPlan, WordSize};
 use onescan_iec_run::{Application, Builder};
 use onescan_operator::operator::Operator;
 use onescan_plant::{Excess, Inside, Overlap, Plant, Scene, SceneError, SceneFault};
@@ -52,6 +52,8 @@ pub struct PlcSources<'a> {
     pub sources: &'a [String],
     /// The dialect of all of them; from each file's name if absent.
     pub dialect: Option<Dialect>,
+    /// Bits of its registers; 64 if absent.
+    pub word_size: Option<WordSize>,
     /// The tasks that the scenario gives it.
     pub plan: Option<TaskPlan>,
     /// How much memory its variables may take.
@@ -145,10 +147,11 @@ impl Scenario {
     /// What the scenario says of each soft PLC.
     pub fn plcs(&self) -> impl Iterator<Item = PlcSources<'_>> {
         self.file().clients.iter().filter_map(|(name, client)| match client.get_ref() {
-            ClientFile::SoftPlc { sources, dialect, tasks, .. } => Some(PlcSources {
+            ClientFile::SoftPlc { sources, dialect, word_size_bits, tasks, .. } => Some(PlcSources {
                 name,
                 sources,
                 dialect: *dialect,
+                word_size: *word_size_bits,
                 plan: plan_of(tasks),
                 memory_limit: self.memory_limit(name),
             }),
@@ -161,6 +164,14 @@ impl Scenario {
         match self.file().clients.get(name).map(toml::Spanned::get_ref) {
             Some(ClientFile::SoftPlc { memory_limit_mib, .. }) => memory_limit_mib.unwrap_or_default(),
             _ => MemoryLimit::default(),
+        }
+    }
+
+    /// Bits of the registers of PLC `name`, if the scenario says so.
+    fn word_size(&self, name: &ClientName) -> Option<WordSize> {
+        match self.file().clients.get(name).map(toml::Spanned::get_ref) {
+            Some(ClientFile::SoftPlc { word_size_bits, .. }) => *word_size_bits,
+            _ => None,
         }
     }
 
@@ -193,11 +204,7 @@ impl Scenario {
             source,
             help: None,
         })?;
-        let input = Input::read(source, kind, &bytes);
-        let input = match dialect {
-            Some(dialect) => input.in_dialect(dialect),
-            None => input,
-        };
+        let input = Input::read(source, kind, &bytes).read_as(dialect, self.word_size(name));
         let input = self.with_texts_of_case(name, own, input)?;
         Ok(match self.mistake() {
             Some(mistake) if mistake.client == *name && mistake.source == own => mistake.mutant.applied_to(&input),

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use onescan_iec::{Dialect, MemoryLimit};
+use onescan_iec::{Dialect, MemoryLimit, WordSize};
 use onescan_links::gateway::Settings;
 use onescan_server::signal::{ClientName, SignalName, SignalType};
 use onescan_server::time::{TimeSpan, VirtualTime};
@@ -12,7 +12,7 @@ use toml::Spanned;
 
 use crate::expect::KnownSignal;
 use crate::falsify_file::FalsifyFile;
-use crate::form::{DialectName, Mebibytes, Name, Scalar, Time, Type, Values, from_optional_text, from_text};
+use crate::form::{DialectName, Mebibytes, Name, Scalar, Time, Type, Values, WordBits, from_optional_text, from_text};
 use crate::look_file::{FigureFile, LookFile, ViewFile};
 use crate::map_file::MapFile;
 use crate::panel_file::PanelFile;
@@ -182,6 +182,10 @@ pub enum ClientFile {
         #[serde(default, deserialize_with = "from_optional_text")]
         #[schemars(with = "Option<DialectName>")]
         dialect: Option<Dialect>,
+        /// Bits of the registers in which the target computes integers, in codesys and twincat; 64 if absent.
+        #[serde(default, deserialize_with = "word_size")]
+        #[schemars(with = "Option<WordBits>")]
+        word_size_bits: Option<WordSize>,
         /// MiB that all its variables may take together, up to 2047; 64 if absent.
         #[serde(default, deserialize_with = "memory_limit")]
         #[schemars(with = "Option<Mebibytes>")]
@@ -340,6 +344,12 @@ fn percent<'de, D: Deserializer<'de>>(from: D) -> Result<u8, D::Error> {
         percent @ 0..=100 => Ok(percent),
         more => Err(serde::de::Error::custom(format!("{more} is more than 100 %"))),
     }
+}
+
+/// Bits of a target's registers.
+fn word_size<'de, D: Deserializer<'de>>(from: D) -> Result<Option<WordSize>, D::Error> {
+    let bits = u32::deserialize(from)?;
+    WordSize::of_bits(bits).map(Some).map_err(serde::de::Error::custom)
 }
 
 /// A number of MiB that a PLC can address.

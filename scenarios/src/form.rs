@@ -74,6 +74,12 @@ form!(
 );
 
 form!(
+    /// Bits of the registers of a PLC.
+    WordBits,
+    json_schema!({ "type": "integer", "enum": [32, 64] })
+);
+
+form!(
     /// What is changed in a mutant.
     MutantWord,
     json_schema!({ "type": "string", "enum": MutantKind::ALL.map(MutantKind::word) })

@@ -437,8 +437,8 @@ fn served(settings: &Settings) -> Words {
     if is_declared || settings.handshake == HandshakeKind::Frames { settings.words() } else { Words::WithSystem }
 }
 
-/// A file of the instrumented project as the compiler takes it: one of the program's own in the dialect that the
-/// scenario gives it, which its name does not tell.
+/// A file of the instrumented project as the compiler takes it: one of the program's own in the dialect and
+/// for the registers that the scenario gives it, which its name does not tell.
 fn input(file: &File, own: &[Input]) -> Option<Input> {
     let kind = match FileKind::of(std::path::Path::new(&file.name)) {
         Some(FileKind::Source(kind)) => kind,
@@ -446,7 +446,7 @@ fn input(file: &File, own: &[Input]) -> Option<Input> {
     };
     let input = Input::from_text(&file.name, kind, file.text.clone()?);
     Some(match own.iter().find(|own| own.file().name() == file.name) {
-        Some(own) => input.in_dialect(own.file().dialect()),
+        Some(own) => input.read_like(own.file()),
         None => input,
     })
 }

@@ -34,7 +34,7 @@ pub mod syntax;
 pub mod task_plan;
 
 pub use diagnostic::{Code, Diagnostic, Diagnostics, Finding, Severity};
-pub use dialect::Dialect;
+pub use dialect::{Dialect, WordSize};
 pub use front::ConstantError;
 pub use input::Input;
 pub use ir::{MemoryLimit, MemoryLimitError};

@@ -51,7 +51,7 @@ pub(crate) fn findings_in(dialect: Dialect, text: &str) -> Diagnostics {
     inspect([input_in(dialect, text)], None)
 }
 
-fn input_in(dialect: Dialect, text: &str) -> Input {
+pub(crate) fn input_in(dialect: Dialect, text: &str) -> Input {
     Input::from_text("test.st", SourceKind::Text, text).in_dialect(dialect)
 }
 
@@ -59,6 +59,16 @@ impl Rig {
     /// All programs in one task of 10 ms, of a file read as `dialect`.
     pub(crate) fn in_dialect(dialect: Dialect, text: &str) -> Self {
         let application = application_in(dialect, text);
+        let plan = application.single_task(TimeSpan::millis::<10>());
+        Self::with_plan(&application, &plan)
+    }
+
+    /// The same of the file `input`.
+    pub(crate) fn of_input(input: Input) -> Self {
+        let application = match Application::from_inputs([input]) {
+            Ok(application) => application,
+            Err(diagnostics) => panic!("{diagnostics}"),
+        };
         let plan = application.single_task(TimeSpan::millis::<10>());
         Self::with_plan(&application, &plan)
     }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args as ClapArgs, ValueEnum};
-use onescan_iec::{Dialect, MemoryLimit, Task};
+use onescan_iec::{Dialect, MemoryLimit, Task, WordSize};
 use onescan_iec_project::instrument::{Inputs, Target};
 use onescan_report::OutputError;
 use onescan_server::signal::ClientName;
@@ -29,6 +29,10 @@ pub struct CheckArgs {
     /// name or PLCopen XML says, as in `.scl`, else iec3]
     #[arg(long, value_name = "NAME")]
     pub dialect: Option<Dialect>,
+    /// Bits of the registers in which the target computes integers, in the dialects codesys and twincat: 32 or 64
+    /// [default: the scenario's or the file's, else 64]
+    #[arg(long, value_name = "BITS")]
+    pub word_size: Option<WordSize>,
     /// MiB that all variables of a PLC may take together, up to 2047 [default: the scenario's, else 64]
     #[arg(long, value_name = "MIB")]
     pub memory_limit: Option<MemoryLimit>,
@@ -86,8 +90,9 @@ pub fn check(args: CheckArgs) -> Result<ExitCode, CommandError> {
         return Ok(stubs::write(&config, &mut std::io::stdout().lock())?);
     }
     let (warnings, stubs) = (denied(args.deny_warnings), denied(args.deny_stubs));
-    let CheckArgs { paths, dialect, memory_limit, libraries, format, .. } = args;
-    let config = CheckConfig { paths, dialect, memory_limit, libraries, format: format.into(), warnings, stubs };
+    let CheckArgs { paths, dialect, word_size, memory_limit, libraries, format, .. } = args;
+    let format = format.into();
+    let config = CheckConfig { paths, dialect, word_size, memory_limit, libraries, format, warnings, stubs };
     Ok(check::check(&config, &mut std::io::stdout().lock())?)
 }
 

@@ -4,7 +4,7 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use clap::Args as ClapArgs;
-use onescan_iec::{Dialect, MemoryLimit};
+use onescan_iec::{Dialect, MemoryLimit, WordSize};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
 use super::error::CommandError;
@@ -77,6 +77,10 @@ pub struct TestArgs {
     /// The dialect of sources with test programs [default: what a file's name says, else iec3]
     #[arg(long, value_name = "NAME")]
     pub dialect: Option<Dialect>,
+    /// Bits of the registers in which the target of these sources computes integers, in the dialects codesys and
+    /// twincat: 32 or 64 [default: 64]
+    #[arg(long, value_name = "BITS")]
+    pub word_size: Option<WordSize>,
     /// Refuse PLC sources that call a stub: a unit behind `{external}`, which does nothing
     #[arg(long)]
     pub deny_stubs: bool,
@@ -109,6 +113,7 @@ impl TestArgs {
             scan: self.scan,
             until: self.until,
             dialect: self.dialect,
+            word_size: self.word_size,
             memory_limit: self.memory_limit,
             libraries: self.libraries,
             junit: self.junit,
@@ -173,6 +178,9 @@ pub struct WorkerArgs {
     /// Their dialect
     #[arg(long)]
     pub dialect: Option<Dialect>,
+    /// Their registers
+    #[arg(long)]
+    pub word_size: Option<WordSize>,
     /// Their memory
     #[arg(long)]
     pub memory_limit: Option<MemoryLimit>,
@@ -195,10 +203,23 @@ pub struct WorkerArgs {
 
 impl WorkerArgs {
     fn config(self) -> WorkerConfig {
-        let Self { scenario, case, sources, scan, until, dialect, memory_limit, cover, draw, .. } = self;
+        let Self { scenario, case, sources, scan, until, dialect, word_size, memory_limit, cover, draw, .. } = self;
         let (libraries, tags, skipped_tags) = (self.libraries, self.tags, self.skipped_tags);
         let selection = Selection { tags, skipped_tags, ..Selection::default() };
-        WorkerConfig { scenario, case, sources, scan, until, dialect, memory_limit, libraries, selection, cover, draw }
+        WorkerConfig {
+            scenario,
+            case,
+            sources,
+            scan,
+            until,
+            dialect,
+            word_size,
+            memory_limit,
+            libraries,
+            selection,
+            cover,
+            draw,
+        }
     }
 }
 

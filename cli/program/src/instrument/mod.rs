@@ -168,13 +168,12 @@ fn agreed(config: &InstrumentConfig, program: &Program) -> Result<Option<Agreeme
     let inputs = program.inputs.as_slice();
     let (Some(scenario), Some(client)) = (scenario(config)?, &program.client) else { return Ok(None) };
     let Ok(plain) = instrument::remove(inputs) else { return Ok(None) };
-    let dialect_of =
-        |name: &str| inputs.iter().find(|input| input.file().name() == name).map(|input| input.file().dialect());
+    let own_of = |name: &str| inputs.iter().find(|input| input.file().name() == name).map(Input::file);
     let own = plain.files.iter().filter_map(|file| {
         let Some(FileKind::Source(kind)) = FileKind::of(Path::new(&file.name)) else { return None };
         let input = Input::from_text(&file.name, kind, file.text.clone()?);
-        Some(match dialect_of(&file.name) {
-            Some(dialect) => input.in_dialect(dialect),
+        Some(match own_of(&file.name) {
+            Some(own) => input.read_like(own),
             None => input,
         })
     });

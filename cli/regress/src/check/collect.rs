@@ -9,7 +9,7 @@ use onescan_iec::input::found::Found;
 use onescan_iec::input::kind::{EXTENSIONS, FileKind, is_other_program};
 use onescan_iec::input::needed;
 use onescan_iec::input::project;
-use onescan_iec::{Code, Dialect, Input, MemoryLimit, TaskPlan};
+use onescan_iec::{Code, Dialect, Input, MemoryLimit, TaskPlan, WordSize};
 use onescan_iec_project::instrument;
 use onescan_scenario::Scenario;
 use onescan_scenario::load::FILE_NAME;
@@ -47,6 +47,8 @@ pub struct Collected {
 pub struct Reading<'a> {
     /// The dialect of all files; it takes precedence over those of scenarios and files.
     pub dialect: Option<Dialect>,
+    /// Bits of the registers of the target; it takes precedence over those of scenarios and files.
+    pub word_size: Option<WordSize>,
     /// How much memory variables may take; it takes precedence over that of scenarios.
     pub memory_limit: Option<MemoryLimit>,
     /// Sources of libraries that the files use.
@@ -58,14 +60,14 @@ pub struct Reading<'a> {
 /// # Errors
 /// A file is not there, cannot be read, or is of no kind that is read.
 pub fn collect(paths: &[PathBuf], reading: Reading) -> Result<Collected, CheckError> {
-    let Reading { dialect, memory_limit, libraries } = reading;
+    let Reading { dialect, word_size, memory_limit, libraries } = reading;
     let mut programs = Vec::new();
-    let mut files = Files { dialect, ..Files::default() };
+    let mut files = Files { dialect, word_size, ..Files::default() };
     for path in paths {
         if path.is_dir() && !path.join(FILE_NAME).is_file() {
             files.folder(path)?;
         } else if path.is_dir() || path.file_name().is_some_and(|name| name == FILE_NAME) {
-            programs.extend(scenario(path, dialect, memory_limit)?);
+            programs.extend(scenario(path, reading)?);
         } else {
             files.named(path)?;
         }
@@ -106,19 +108,16 @@ fn endings() -> String {
     format!("files with PLC sources end in {}", known.join(" "))
 }
 
-fn scenario(
-    path: &Path,
-    chosen: Option<Dialect>,
-    chosen_limit: Option<MemoryLimit>,
-) -> Result<Vec<Program>, CheckError> {
+fn scenario(path: &Path, chosen: Reading) -> Result<Vec<Program>, CheckError> {
     let scenario = Rc::new(Scenario::load(path)?);
     let mut programs = Vec::new();
     for plc in scenario.plcs() {
-        let mut files = Files { dialect: chosen.or(plc.dialect), ..Files::default() };
+        let (dialect, word_size) = (chosen.dialect.or(plc.dialect), chosen.word_size.or(plc.word_size));
+        let mut files = Files { dialect, word_size, ..Files::default() };
         for source in plc.sources {
             files.named(&scenario.folder().join(source))?;
         }
-        let memory_limit = chosen_limit.unwrap_or(plc.memory_limit);
+        let memory_limit = chosen.memory_limit.unwrap_or(plc.memory_limit);
         let client = Some(plc.name.clone());
         let (plan, scenario) = (plc.plan, Some(Rc::clone(&scenario)));
         programs.push(Program { inputs: files.inputs, client, scenario, plan, memory_limit });
@@ -130,6 +129,8 @@ fn scenario(
 struct Files {
     /// The dialect of all of them, if not the one that each file's name says.
     dialect: Option<Dialect>,
+    /// Bits of the registers of the target, if not those that each file says.
+    word_size: Option<WordSize>,
     inputs: Vec<Input>,
     /// The files of `inputs`, and the projects.
     seen: BTreeSet<Identity>,
@@ -213,10 +214,7 @@ impl Files {
             Part::Own => Input::found(&name, found),
             Part::Library(namespace) => Input::of_library(namespace.as_deref(), &name, found),
         };
-        self.inputs.push(match self.dialect {
-            Some(dialect) => input.in_dialect(dialect),
-            None => input,
-        });
+        self.inputs.push(input.read_as(self.dialect, self.word_size));
     }
 
     /// What was left out of folders and not named elsewhere.

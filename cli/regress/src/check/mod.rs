@@ -24,7 +24,7 @@ pub mod stubs;
 use std::io::Write;
 use std::path::PathBuf;
 
-use onescan_iec::{Dialect, MemoryLimit, inspect_within};
+use onescan_iec::{Dialect, MemoryLimit, WordSize, inspect_within};
 use onescan_iec_run::Application;
 use onescan_report::OutputError;
 
@@ -52,6 +52,8 @@ pub struct CheckConfig {
     pub paths: Vec<PathBuf>,
     /// The dialect of all files, if not the one that each file's name says.
     pub dialect: Option<Dialect>,
+    /// Bits of the registers of the target, if not those that scenarios and files say.
+    pub word_size: Option<WordSize>,
     /// How much memory variables may take, if not what a scenario says or the default.
     pub memory_limit: Option<MemoryLimit>,
     /// Sources of libraries that the files use.
@@ -66,8 +68,8 @@ pub struct CheckConfig {
 
 impl CheckConfig {
     fn reading(&self) -> Reading<'_> {
-        let Self { dialect, memory_limit, .. } = *self;
-        Reading { dialect, memory_limit, libraries: &self.libraries }
+        let Self { dialect, word_size, memory_limit, .. } = *self;
+        Reading { dialect, word_size, memory_limit, libraries: &self.libraries }
     }
 }
 

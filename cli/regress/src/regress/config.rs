@@ -3,7 +3,7 @@
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
-use onescan_iec::{Dialect, MemoryLimit};
+use onescan_iec::{Dialect, MemoryLimit, WordSize};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
 use super::selection::Selection;
@@ -46,6 +46,8 @@ pub struct TestConfig {
     pub until: VirtualTime,
     /// The dialect of test sources.
     pub dialect: Option<Dialect>,
+    /// Bits of the registers of the target.
+    pub word_size: Option<WordSize>,
     /// How much memory their variables may take.
     pub memory_limit: Option<MemoryLimit>,
     /// Sources of libraries that they use.
@@ -79,6 +81,8 @@ pub struct WorkerConfig {
     /// When a test program that is not done has failed.
     pub until: VirtualTime,
     pub dialect: Option<Dialect>,
+    /// Bits of the registers of the target.
+    pub word_size: Option<WordSize>,
     /// How much memory their variables may take.
     pub memory_limit: Option<MemoryLimit>,
     /// Sources of libraries that they use.
@@ -94,7 +98,7 @@ pub struct WorkerConfig {
 impl WorkerConfig {
     /// How its sources are read.
     pub fn reading(&self) -> Reading<'_> {
-        let Self { dialect, memory_limit, .. } = *self;
-        Reading { dialect, memory_limit, libraries: &self.libraries }
+        let Self { dialect, word_size, memory_limit, .. } = *self;
+        Reading { dialect, word_size, memory_limit, libraries: &self.libraries }
     }
 }

@@ -131,6 +131,9 @@ fn command(config: &TestConfig, unit: &Unit, mut command: Command) -> Command {
             if let Some(dialect) = config.dialect {
                 command.arg("--dialect").arg(dialect.to_string());
             }
+            if let Some(size) = config.word_size {
+                command.arg("--word-size").arg(size.to_string());
+            }
             for library in &config.libraries {
                 command.arg("--library").arg(library);
             }

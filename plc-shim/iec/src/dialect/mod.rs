@@ -3,14 +3,17 @@
 //! | module | subject |
 //! |---|---|
 //! | [`table`] | every difference, as data, each with its source |
+//! | `word_size` | of how many bits the registers of the target are |
 //!
 //! A dialect belongs to a file, so that a library of one may be used by a program of another. The
 //! lexer, the parser and the checker ask the table; `docs/dialects.md` shows it.
 
 mod pragma;
 pub mod table;
+mod word_size;
 
 pub(crate) use pragma::Chosen;
+pub use word_size::{UnknownWordSize, WordSize};
 
 use std::path::Path;
 
@@ -254,8 +257,8 @@ pub enum ActionPulses {
 pub enum IntegerWidth {
     /// In those of the operands' common type: what does not fit wraps at once.
     Own,
-    /// In 64, as the registers of the target have: what does not fit is cut where a value is assigned, handed over or
-    /// converted.
+    /// In those of the target's registers, see [`WordSize`]: what does not fit is cut where a value is assigned, handed
+    /// over or converted.
     Register,
 }
 

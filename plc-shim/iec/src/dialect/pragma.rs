@@ -1,16 +1,17 @@
-//! `{dialect 'twincat'}` at the beginning of program text: its dialect, where the file's name says none.
+//! `{dialect 'twincat'}` at the beginning of program text: its dialect, where the file's name says none;
+//! `{dialect 'twincat' 32}`: for a target with registers of 32 bits.
 
 use std::ops::Range;
 
-use super::{Dialect, UnknownDialect};
+use super::{Dialect, WordSize};
 
 /// What the pragma says.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Chosen {
     Nothing,
-    Dialect(Dialect),
-    /// A name that no dialect has, and its place.
-    Unknown(UnknownDialect, Range<u32>),
+    Dialect(Dialect, Option<WordSize>),
+    /// A name that no dialect has, or a size that no target has: what is wrong, and its place.
+    Unknown(String, Range<u32>),
 }
 
 impl Chosen {
@@ -20,18 +21,24 @@ impl Chosen {
         let Some(inner) = rest.strip_prefix('{').and_then(|rest| rest.split_once('}')).map(|(inner, _)| inner) else {
             return Self::Nothing;
         };
-        let mut words = inner.trim().splitn(2, char::is_whitespace);
+        let mut words = inner.split_whitespace();
         let is_it = words.next().is_some_and(|word| word.eq_ignore_ascii_case("dialect"));
-        let Some(name) = words.next().map(|name| name.trim().trim_matches('\'')).filter(|_| is_it) else {
+        let Some(name) = words.next().map(|name| name.trim_matches('\'')).filter(|_| is_it) else {
             return Self::Nothing;
         };
-        match name.parse() {
-            Ok(dialect) => Self::Dialect(dialect),
-            Err(error) => {
-                // `name` is a part of `text`.
-                let start = (name.as_ptr() as usize - text.as_ptr() as usize) as u32;
-                Self::Unknown(error, start..start + name.len() as u32)
-            }
+        let unknown = |message: String, word: &str| {
+            // `word` is a part of `text`.
+            let start = (word.as_ptr() as usize - text.as_ptr() as usize) as u32;
+            Self::Unknown(message, start..start + word.len() as u32)
+        };
+        let dialect: Dialect = match name.parse() {
+            Ok(dialect) => dialect,
+            Err(error) => return unknown(super::UnknownDialect::to_string(&error), name),
+        };
+        let Some(bits) = words.next() else { return Self::Dialect(dialect, None) };
+        match bits.parse::<WordSize>() {
+            Ok(word_size) => Self::Dialect(dialect, Some(word_size)),
+            Err(error) => unknown(error.to_string(), bits),
         }
     }
 }
@@ -61,12 +68,18 @@ mod tests {
     #[test]
     fn a_pragma_behind_comments_chooses_the_dialect() {
         let chosen = |text| Chosen::in_text(text);
-        assert_eq!(chosen("// a\n(* b *) {dialect 'twincat'}\nPROGRAM P"), Chosen::Dialect(Dialect::TwinCat));
-        assert_eq!(chosen("{DIALECT codesys}"), Chosen::Dialect(Dialect::Codesys));
+        assert_eq!(chosen("// a\n(* b *) {dialect 'twincat'}\nPROGRAM P"), Chosen::Dialect(Dialect::TwinCat, None));
+        assert_eq!(chosen("{DIALECT codesys}"), Chosen::Dialect(Dialect::Codesys, None));
         for text in ["", "{", "(* a", "// a", "{dialect}", "{test 'twincat'}", "PROGRAM P {dialect 'twincat'}"] {
             assert_eq!(chosen(text), Chosen::Nothing, "{text}");
         }
-        let Chosen::Unknown(error, place) = chosen("{dialect 'twinkat'}") else { panic!("known") };
-        assert_eq!((error.to_string().contains("twinkat"), place), (true, 10..17));
+        let small = Chosen::Dialect(Dialect::Codesys, Some(WordSize::Bits32));
+        assert_eq!(chosen("{dialect 'codesys' 32}"), small);
+        for (text, word, wanted) in
+            [("{dialect 'twinkat'}", "twinkat", 10..17), ("{dialect 'codesys' 16}", "`16` is not a word size", 19..21)]
+        {
+            let Chosen::Unknown(message, place) = chosen(text) else { panic!("known") };
+            assert_eq!((message.contains(word), place), (true, wanted));
+        }
     }
 }

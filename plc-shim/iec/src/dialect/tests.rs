@@ -72,7 +72,9 @@ fn behaviour_cells(behaviour: Behaviour) -> [String; 14] {
     };
     let integers = match behaviour.integers {
         IntegerWidth::Own => "in the bits of their type",
-        IntegerWidth::Register => "in 64 bits; cut where assigned, handed over or converted",
+        IntegerWidth::Register => {
+            "in the target's registers, 64 bits if you do not set 32; cut where assigned, handed over or converted"
+        }
     };
     let pulses = match behaviour.action_pulses {
         ActionPulses::OfAction => "from one detector of edges for all steps that name the action",

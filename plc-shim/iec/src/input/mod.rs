@@ -51,7 +51,7 @@ use self::kind::SourceKind;
 pub use self::needed::needed;
 use self::project::{Listed, Listing};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::dialect::{Chosen, Dialect};
+use crate::dialect::{Chosen, Dialect, WordSize};
 use crate::source::LineColumn;
 use crate::source::origin::Extract;
 use crate::syntax::{FileId, SourceFile, SourceMap, Span};
@@ -109,8 +109,8 @@ impl Input {
                 if let Some(foreign) = foreign::recognise(&text) {
                     return Self::holding_no_program(name, &text, foreign);
                 }
-                let (dialect, diagnostics) = dialect_of(name, &text);
-                let file = SourceFile::new(name, text).in_dialect(dialect);
+                let (dialect, word_size, diagnostics) = dialect_of(name, &text);
+                let file = SourceFile::new(name, text).in_dialect(dialect).for_words(word_size);
                 return Self { file, encoding: None, diagnostics, owner: Owner::Program };
             }
             SourceKind::TwinCat => twincat::extract(&text, namespace),
@@ -163,6 +163,27 @@ impl Input {
     #[must_use]
     pub fn in_dialect(self, dialect: Dialect) -> Self {
         Self { file: self.file.in_dialect(dialect), ..self }
+    }
+
+    /// The same file for a target with registers of this size, whatever its text says.
+    #[must_use]
+    pub fn for_words(self, word_size: WordSize) -> Self {
+        Self { file: self.file.for_words(word_size), ..self }
+    }
+
+    /// The same file as a scenario or a command line wants it read; what they leave open is as the file says.
+    #[must_use]
+    pub fn read_as(self, dialect: Option<Dialect>, word_size: Option<WordSize>) -> Self {
+        let file = self.file;
+        let dialect = dialect.unwrap_or(file.dialect());
+        let word_size = word_size.unwrap_or(file.word_size());
+        Self { file: file.in_dialect(dialect).for_words(word_size), ..self }
+    }
+
+    /// The same file, read as `other` is.
+    #[must_use]
+    pub fn read_like(self, other: &SourceFile) -> Self {
+        self.read_as(Some(other.dialect()), Some(other.word_size()))
     }
 
     /// Its program text.
@@ -250,14 +271,15 @@ impl Taken {
     }
 }
 
-/// The dialect that plain text names itself, or else the one of its file's name.
-fn dialect_of(name: &str, text: &str) -> (Dialect, Vec<Diagnostic>) {
+/// The dialect that plain text names itself, or else the one of its file's name, and the target's word size.
+fn dialect_of(name: &str, text: &str) -> (Dialect, WordSize, Vec<Diagnostic>) {
+    let of_name = Dialect::of_file(name);
     match Chosen::in_text(text) {
-        Chosen::Dialect(dialect) => (dialect, Vec::new()),
-        Chosen::Nothing => (Dialect::of_file(name), Vec::new()),
-        Chosen::Unknown(error, place) => {
+        Chosen::Dialect(dialect, word_size) => (dialect, word_size.unwrap_or_default(), Vec::new()),
+        Chosen::Nothing => (of_name, WordSize::default(), Vec::new()),
+        Chosen::Unknown(message, place) => {
             let span = Span::new(UNNUMBERED, place.start, place.end);
-            (Dialect::of_file(name), vec![Diagnostic::error(Code::WrongDialect, span, error.to_string())])
+            (of_name, WordSize::default(), vec![Diagnostic::error(Code::WrongDialect, span, message)])
         }
     }
 }

@@ -12,7 +12,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use self::origin::Origin;
-use crate::dialect::Dialect;
+use crate::dialect::{Dialect, WordSize};
 
 /// Identifies a file within its [`SourceMap`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -58,6 +58,7 @@ pub struct SourceFile {
     text: Arc<str>,
     origin: Option<Origin>,
     dialect: Dialect,
+    word_size: WordSize,
     /// Of the text that is shown.
     line_starts: Vec<u32>,
 }
@@ -67,20 +68,27 @@ impl SourceFile {
     pub fn new(name: impl Into<String>, text: impl Into<Arc<str>>) -> Self {
         let text = text.into();
         let line_starts = line_starts(&text);
-        Self { name: name.into(), text, origin: None, dialect: Dialect::default(), line_starts }
+        let (dialect, word_size) = (Dialect::default(), WordSize::default());
+        Self { name: name.into(), text, origin: None, dialect, word_size, line_starts }
     }
 
     /// Takes program text that was taken out of a file.
     pub fn extracted(name: impl Into<String>, text: impl Into<Arc<str>>, origin: Origin) -> Self {
         let line_starts = line_starts(origin.text());
-        let dialect = Dialect::default();
-        Self { name: name.into(), text: text.into(), origin: Some(origin), dialect, line_starts }
+        let (dialect, word_size) = (Dialect::default(), WordSize::default());
+        Self { name: name.into(), text: text.into(), origin: Some(origin), dialect, word_size, line_starts }
     }
 
     /// The same file, read as `dialect`.
     #[must_use]
     pub fn in_dialect(self, dialect: Dialect) -> Self {
         Self { dialect, ..self }
+    }
+
+    /// The same file, for a target with registers of this size.
+    #[must_use]
+    pub fn for_words(self, word_size: WordSize) -> Self {
+        Self { word_size, ..self }
     }
 
     /// The same with another text for a part of its program text. Of text that was taken out of a file, places behind
@@ -95,12 +103,17 @@ impl SourceFile {
             Some(origin) => Self::extracted(self.name.clone(), changed, origin.clone()),
             None => Self::new(self.name.clone(), changed),
         };
-        file.in_dialect(self.dialect)
+        file.in_dialect(self.dialect).for_words(self.word_size)
     }
 
     /// The dialect of its program text.
     pub fn dialect(&self) -> Dialect {
         self.dialect
+    }
+
+    /// Bits of the registers of the target that runs it.
+    pub fn word_size(&self) -> WordSize {
+        self.word_size
     }
 
     /// The name that diagnostics show.

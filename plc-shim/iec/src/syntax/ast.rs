@@ -28,7 +28,7 @@ pub use statement::{
     StatementKind, TryStatement, UpdateOp, WhileStatement,
 };
 
-use crate::dialect::Dialect;
+use crate::dialect::{Dialect, WordSize};
 use crate::source::Span;
 
 /// A name as written.
@@ -62,6 +62,8 @@ impl Ident {
 pub struct CompilationUnit {
     /// The dialect it is written in.
     pub dialect: Dialect,
+    /// Bits of the registers of the target that runs it.
+    pub word_size: WordSize,
     pub declarations: Vec<Declaration>,
     /// Where generic blocks are named with their constants.
     pub templates: Vec<TemplateUse>,

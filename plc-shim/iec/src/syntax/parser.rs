@@ -63,7 +63,9 @@ pub fn parse_in(dialect: Dialect, file: FileId, text: &str) -> Parsed {
 /// Parses a file in its own dialect; text that stands for other than text in it may be what only the
 /// extraction writes. Never fails either.
 pub fn parse_source(id: FileId, file: &SourceFile) -> Parsed {
-    parse_text(file.dialect(), id, file.text(), file.origin())
+    let mut parsed = parse_text(file.dialect(), id, file.text(), file.origin());
+    parsed.unit.word_size = file.word_size();
+    parsed
 }
 
 fn parse_text(dialect: Dialect, file: FileId, text: &str, origin: Option<&Origin>) -> Parsed {

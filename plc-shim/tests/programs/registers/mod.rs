@@ -5,12 +5,18 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 use std::process::{Command, Stdio};
 
-use onescan_iec::{Code, Dialect};
+use onescan_iec::input::kind::SourceKind;
+use onescan_iec::{Code, Dialect, Input, WordSize, inspect};
 
 use crate::matiec::dice::Dice;
-use crate::rig::{Rig, findings_in};
+use crate::rig::{Rig, findings_in, input_in};
 
 const DIALECTS: [Dialect; 2] = [Dialect::Codesys, Dialect::TwinCat];
+
+/// A program for a target with registers of 32 bits.
+fn small(dialect: Dialect, text: &str) -> Input {
+    input_in(dialect, text).for_words(WordSize::Bits32)
+}
 
 /// What stands in the manuals, and what the review of everyday programs asked for.
 const EXAMPLES: &str = "
@@ -78,6 +84,74 @@ fn examples_of_the_manuals() {
     }
 }
 
+/// The same with registers of 32 bits: what has more than 32 is cut, and what comes below 0 has 32 bits.
+#[test]
+fn examples_of_the_manuals_in_32_bits() {
+    for dialect in DIALECTS {
+        let mut rig = Rig::of_input(small(dialect, EXAMPLES));
+        rig.scan().expect("it runs");
+        let found = ["first", "second", "third", "fourth", "fifth", "sixth", "seventh"]
+            .map(|name| rig.bool(&format!("P.{name}")));
+        assert_eq!(found, [false, false, true, true, true, true, false], "{dialect}");
+        let numbers = [
+            ("dw", 65536),
+            ("wide", 300_000),
+            ("sum", 265),
+            ("mean", 25_000),
+            ("long", -294_967_296),
+            ("extreme", 50_000),
+            ("quotient", 32_768),
+            ("opposite", 32_768),
+            ("kept", 32_769),
+            ("ordered", 40_000),
+            ("selected", 50_000),
+            ("chosen", 2),
+        ];
+        for (name, wanted) in numbers {
+            assert_eq!(rig.int(&format!("P.{name}")), wanted, "{dialect} {name}");
+        }
+        assert_eq!(rig.real("P.scaled"), 300_000.0, "{dialect}");
+        // 4294967286 as REAL.
+        assert_eq!(rig.real("P.below"), 4_294_967_296.0, "{dialect}");
+        // An operand of 64 bits takes two registers.
+        let text =
+            "PROGRAM P VAR d : DINT := 2000000000; l : LINT := 2; long : LINT; END_VAR long := d * l; END_PROGRAM";
+        let mut rig = Rig::of_input(small(dialect, text));
+        rig.scan().expect("it runs");
+        assert_eq!(rig.int("P.long"), 4_000_000_000, "{dialect}");
+    }
+}
+
+/// The pragma says so of one text, and what reads it for another target takes precedence.
+#[test]
+fn a_text_names_its_word_size() {
+    let text =
+        "{dialect 'codesys' 32}\nPROGRAM P VAR d : DINT := 2000000000; long : LINT; END_VAR long := d * 2; END_PROGRAM";
+    let input = || Input::from_text("a.st", SourceKind::Text, text);
+    for (input, wanted) in [
+        (input(), -294_967_296),
+        (input().read_as(None, None), -294_967_296),
+        (input().read_as(Some(Dialect::TwinCat), Some(WordSize::Bits64)), 4_000_000_000),
+    ] {
+        let mut rig = Rig::of_input(input);
+        rig.scan().expect("it runs");
+        assert_eq!(rig.int("P.long"), wanted);
+    }
+    let wrong = Input::from_text("a.st", SourceKind::Text, "{dialect 'codesys' 16}\nPROGRAM P END_PROGRAM");
+    insta::assert_snapshot!(inspect([wrong], None), @"a.st:1:20: error[S0110]: `16` is not a word size: 32 or 64 bits");
+}
+
+/// A state of one target is not one of the other.
+#[test]
+fn word_sizes_are_part_of_the_code() {
+    let text = "PROGRAM P VAR d : DINT; END_VAR d := d + 1; END_PROGRAM";
+    let mut wide = Rig::in_dialect(Dialect::Codesys, text);
+    wide.scan().expect("it runs");
+    let state = wide.plc.save();
+    let mut narrow = Rig::of_input(small(Dialect::Codesys, text));
+    assert!(narrow.plc.restore(&state).is_err(), "compiled for other registers");
+}
+
 /// The other dialects compute in the operands' type.
 #[test]
 fn others_wrap_in_their_type() {
@@ -109,6 +183,16 @@ fn where_widths_differ_is_reported() {
     for dialect in DIALECTS {
         assert!(codes(dialect, difference).contains(&Code::UncutDifference), "{dialect}");
         assert!(!codes(dialect, product).contains(&Code::CutProduct), "{dialect}");
+        // With 32 bits, a UDINT and a DINT fill a register.
+        let codes = |text| inspect([small(dialect, text)], None).iter().map(|found| found.code).collect::<Vec<_>>();
+        assert!(codes(difference).contains(&Code::UncutDifference), "{dialect}");
+        let (filling, long) = (
+            "PROGRAM P VAR now, last : UDINT; due : BOOL; END_VAR due := now - last >= 10; END_PROGRAM",
+            "PROGRAM P VAR a : DINT; b : LINT; END_VAR b := a * 1000; END_PROGRAM",
+        );
+        assert!(!codes(filling).contains(&Code::UncutDifference), "{dialect}");
+        assert!(!codes(product).contains(&Code::CutProduct), "{dialect}");
+        assert!(codes(long).contains(&Code::CutProduct), "{dialect}");
     }
     for dialect in [Dialect::Iec2, Dialect::Iec3, Dialect::SiemensScl, Dialect::Matiec] {
         assert!(!codes(dialect, difference).contains(&Code::UncutDifference), "{dialect}");
@@ -222,25 +306,28 @@ fn modelled(lines: &str) -> Option<Vec<String>> {
 fn random_expressions_are_those_of_the_model() {
     let count = std::env::var("ONESCAN_REGISTERS").ok().and_then(|text| text.parse().ok()).unwrap_or(200);
     let mut dice = Dice::new(7);
-    let (mut lines, mut programs) = (String::new(), Vec::new());
+    let (mut models, mut programs) = (Vec::new(), Vec::new());
     for _ in 0..count {
         let mut twin = Twin { dice: &mut dice, model: String::new(), declared: String::new(), variables: 0 };
         let expression = twin.whole();
-        writeln!(lines, "x {}", twin.model).expect("a string");
+        models.push(twin.model);
         programs.push(format!("PROGRAM P VAR {}out : LINT; END_VAR out := {expression}; END_PROGRAM", twin.declared));
     }
-    let Some(wanted) = modelled(&lines) else {
-        println!("skipped: `gcc` is not on the PATH");
-        return;
-    };
-    assert_eq!(wanted.len(), programs.len());
-    let faults = wanted.iter().filter(|value| *value == "fault").count();
-    assert!(faults * 3 < count, "most of them have a value: {faults} faults of {count}");
-    for dialect in DIALECTS {
-        for (program, wanted) in programs.iter().zip(&wanted) {
-            let mut rig = Rig::in_dialect(dialect, program);
-            let found = rig.scan().map_or_else(|_| "fault".to_owned(), |()| rig.int("P.out").to_string());
-            assert_eq!(found, *wanted, "{dialect}: {program}");
+    for size in [WordSize::Bits64, WordSize::Bits32] {
+        let lines: String = models.iter().map(|model| format!("{size} {model}\n")).collect();
+        let Some(wanted) = modelled(&lines) else {
+            println!("skipped: `gcc` is not on the PATH");
+            return;
+        };
+        assert_eq!(wanted.len(), programs.len());
+        let faults = wanted.iter().filter(|value| *value == "fault").count();
+        assert!(faults * 3 < count, "most of them have a value: {faults} faults of {count}");
+        for dialect in DIALECTS {
+            for (program, wanted) in programs.iter().zip(&wanted) {
+                let mut rig = Rig::of_input(input_in(dialect, program).for_words(size));
+                let found = rig.scan().map_or_else(|_| "fault".to_owned(), |()| rig.int("P.out").to_string());
+                assert_eq!(found, *wanted, "{dialect}, {size} bits: {program}");
+            }
         }
     }
 }

@@ -1,6 +1,7 @@
-/* Integers as a target with registers of 64 bits computes them, written from the manuals of CODESYS and TwinCAT (operators,
+/* Integers as a target with registers of 64 or 32 bits computes them, written from the manuals of CODESYS and TwinCAT (operators,
    overflow and underflow in the data type) and apart from the compiler. Reads an expression per line in prefix form, prints
-   its value as LINT, or `fault` where it divides by zero.
+   its value as LINT, or `fault` where it divides by zero. A line begins with the bits of the registers; what has 64 bits
+   takes two of 32.
 
    i8:-5 u16:7 b32:9   a variable of a signed, unsigned, bit string type of so many bits
    + - * / %           of two operands
@@ -22,6 +23,7 @@ typedef struct {
 } Value;
 
 static jmp_buf fault;
+static int width; /* bits of a register */
 
 static uint64_t cut(uint64_t held, char kind, int bits) {
     if (bits == 64) return held;
@@ -38,6 +40,12 @@ static Value common(Value a, Value b) {
     if (signed_bits > other) return (Value){'i', signed_bits, 0};
     if (other == 64) return (Value){'u', 64, 0};
     return (Value){'i', other * 2, 0};
+}
+
+/* What the registers that hold a value of its type keep of it. */
+static Value kept(Value a) {
+    if (a.bits <= width) a.held = cut(a.held, a.kind == 'i' ? 'i' : 'u', width);
+    return a;
 }
 
 static Value read_value(void);
@@ -65,14 +73,16 @@ static Value read_value(void) {
         Value a = read_value();
         if (a.kind != 'i') a = (Value){'i', a.bits == 64 ? 64 : a.bits * 2, a.held};
         a.held = 0 - a.held;
-        return a;
+        return kept(a);
     }
     if (!strcmp(word, "abs")) {
         Value a = read_value();
         if (a.kind == 'i' && (int64_t)a.held < 0) a.held = 0 - a.held;
-        return a;
+        return kept(a);
     }
     Value a, b, made = operands(&a, &b);
+    /* Registers that hold what they did, as the common type has it. */
+    a = kept((Value){made.kind, made.bits, a.held}), b = kept((Value){made.kind, made.bits, b.held});
     int is_signed = made.kind == 'i';
     int less = is_signed ? (int64_t)a.held < (int64_t)b.held : a.held < b.held;
     int more = is_signed ? (int64_t)a.held > (int64_t)b.held : a.held > b.held;
@@ -94,7 +104,7 @@ static Value read_value(void) {
         else if (is_signed) made.held = (uint64_t)(is_quotient ? (int64_t)a.held / (int64_t)b.held : (int64_t)a.held % (int64_t)b.held);
         else made.held = is_quotient ? a.held / b.held : a.held % b.held;
     }
-    return made;
+    return kept(made);
 }
 
 int main(void) {
@@ -103,6 +113,7 @@ int main(void) {
         /* `strtok` goes on from here. */
         char *first = strtok(line, " \n");
         if (!first) continue;
+        width = atoi(first);
         if (setjmp(fault)) {
             puts("fault");
             continue;

@@ -7,6 +7,7 @@ use std::fmt;
 
 use super::bytes::{Reader, Writer};
 use super::{Digest, digest};
+use onescan_iec::WordSize;
 use onescan_iec::syntax::token::TokenKind;
 use onescan_iec::syntax::{FileId, SourceFile, SourceMap, tokenize_in};
 
@@ -128,6 +129,9 @@ impl Code {
 fn of_file(file: &SourceFile) -> Digest {
     let mut hasher = blake3::Hasher::new();
     hasher.update(file.dialect().name().as_bytes());
+    if file.word_size() != WordSize::default() {
+        hasher.update(&file.word_size().bits().to_le_bytes());
+    }
     for token in tokenize_in(file.dialect(), file.text()) {
         let text = file.text().get(token.start as usize..token.end as usize).unwrap_or_default();
         match token.kind {

@@ -46,7 +46,7 @@ use self::namespace::OpenNames;
 use self::start::Stages;
 use self::stub::Stubs;
 use crate::check::types::generic::Generic;
-use crate::dialect::{AddressUnit, Dialect};
+use crate::dialect::{AddressUnit, Dialect, WordSize};
 use crate::ir::{Areas, ElementaryType, MemoryLimit, PouId, Program, TypeId, TypeTable};
 use crate::syntax::{FileId, Span, ast};
 
@@ -81,7 +81,7 @@ pub(super) struct Declarations<'a> {
     overrides: &'a Overrides,
     /// What is done at a start outside of units.
     started: Vec<Started<'a>>,
-    dialects: BTreeMap<FileId, Dialect>,
+    dialects: BTreeMap<FileId, (Dialect, WordSize)>,
     types: TypeTable,
     type_names: BTreeMap<String, TypeEntry<'a>>,
     /// Structures that something refers to, and whose declarations are wrong.
@@ -200,6 +200,11 @@ impl Declarations<'_> {
     /// The dialect of the text at `span`.
     pub(super) fn dialect(&self, span: Span) -> Dialect {
         // What the runtime provides stands in no file.
-        self.dialects.get(&span.file).copied().unwrap_or_default()
+        self.dialects.get(&span.file).map_or_else(Dialect::default, |(dialect, _)| *dialect)
+    }
+
+    /// Bits of the registers of the target that runs the text at `span`.
+    pub(super) fn word_size(&self, span: Span) -> WordSize {
+        self.dialects.get(&span.file).map_or_else(WordSize::default, |(_, size)| *size)
     }
 }

@@ -149,7 +149,7 @@ impl<'a> Declarations<'a> {
     pub(in crate::check) fn collect(&mut self, units: &[(crate::syntax::FileId, &'a CompilationUnit)]) {
         // Who looks from outside sees the addresses as the first file has them.
         self.address_unit = units.first().map_or_else(AddressUnit::default, |(_, unit)| unit.dialect.address_unit());
-        self.dialects = units.iter().map(|(file, unit)| (*file, unit.dialect)).collect();
+        self.dialects = units.iter().map(|(file, unit)| (*file, (unit.dialect, unit.word_size))).collect();
         let mut used = Vec::new();
         for (_, unit) in units {
             let mut home = Home::default();

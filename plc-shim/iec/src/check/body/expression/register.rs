@@ -28,10 +28,9 @@ impl Body<'_, '_> {
     /// The type of a register that holds an integer of type `ty`, if a register has more bits.
     pub(in crate::check::body) fn register_of(&self, ty: ElementaryType, span: Span) -> Option<ElementaryType> {
         let computes = self.declarations.dialect(span).integers() == IntegerWidth::Register;
-        let is_narrow = ty.size() < ElementaryType::Lint.size();
+        let register = self.declarations.word_size(span).register(ty.is_signed());
         let is_number = ty.is_integer() || ty.is_bits() && ty != ElementaryType::Bool;
-        let register = if ty.is_signed() { ElementaryType::Lint } else { ElementaryType::Ulint };
-        (computes && is_narrow && is_number).then_some(register)
+        (computes && is_number && ty.size() < register.size()).then_some(register)
     }
 
     /// The register that holds the result of an operation, whose bits beyond its type are still there.
@@ -112,8 +111,9 @@ impl Body<'_, '_> {
         let is_difference = matches!(operand.kind, ExprKind::Binary(Binary::Subtract, ..));
         let Some(ty) = self.plain_elementary(operand).filter(|ty| is_difference && !ty.is_signed()) else { return };
         if self.register_of(ty, operand.span).is_some() {
+            let bits = self.declarations.word_size(operand.span);
             let message = format!(
-                "below 0 this difference is not cut to {ty} before it is compared: the target compares 64 bits"
+                "below 0 this difference is not cut to {ty} before it is compared: the target compares {bits} bits"
             );
             let found = Diagnostic::warning(Code::UncutDifference, operand.span, message);
             self.report(found.with_help(format!("`TO_{ty}(..)` cuts it, on every target")));
@@ -121,7 +121,7 @@ impl Body<'_, '_> {
     }
 
     /// Warns of a product that wraps in the type of its factors although what takes it is wider. CODESYS and TwinCAT
-    /// compute it in 64 bits.
+    /// compute it in the registers of the target.
     pub(in crate::check::body) fn warn_of_cut_product(
         &mut self,
         expr: &Expr,
