@@ -167,6 +167,7 @@ codes! {
     AttributeWithoutEffect "W0714" "an attribute that changes values elsewhere has no effect here",
     EndlessCount "W0715" "a loop up to the limit of its variable's type never ends on the target",
     UndrivenInput "W0716" "an input of a program is driven by nobody",
+    CutText "W0730" "a function of strings takes or gives no more than 255 characters",
 }
 
 impl fmt::Display for Code {

@@ -143,6 +143,7 @@ const PAGES: &[(&str, &str)] = pages![
     "W0714",
     "W0715",
     "W0716",
+    "W0730",
 ];
 
 /// The page that explains `code`, as Markdown.

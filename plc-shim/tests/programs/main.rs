@@ -85,3 +85,4 @@ mod undriven_inputs;
 mod unions;
 mod variants;
 mod vendor;
+mod vendor_texts;

@@ -139,6 +139,11 @@ impl Dialect {
         self.behaviour().action_pulses
     }
 
+    /// Most characters that functions of strings take and give; nothing where they take all.
+    pub fn text_functions(self) -> Option<u32> {
+        self.behaviour().text_functions
+    }
+
     /// The values of LTIME.
     pub fn long_time(self) -> LongTime {
         self.behaviour().long_time
@@ -241,6 +246,8 @@ pub struct Behaviour {
     pub integers: IntegerWidth,
     /// Whose edges give actions of a chart their pulses.
     pub action_pulses: ActionPulses,
+    /// Most characters that functions of strings take and give; nothing where they take all.
+    pub text_functions: Option<u32>,
 }
 
 /// Whose edges give the actions of a chart their pulses, `P`, `P1` and `P0`.

@@ -195,7 +195,7 @@ pub struct BehaviourRow {
     pub dialect: Dialect,
     pub behaviour: Behaviour,
     /// Where each of it is written, in the order of the fields.
-    pub sources: [&'static str; 14],
+    pub sources: [&'static str; 15],
 }
 
 /// What the standard says, or README.md where it leaves a choice.
@@ -214,9 +214,10 @@ pub const STANDARD: Behaviour = Behaviour {
     selection: Selection::All,
     integers: IntegerWidth::Own,
     action_pulses: ActionPulses::OfAction,
+    text_functions: None,
 };
 
-const STANDARD_SOURCES: [&str; 14] = [
+const STANDARD_SOURCES: [&str; 15] = [
     "left open by 2nd ed. 2.3.1",
     "left open by 2nd ed. 2.2.3",
     "2nd ed. 2.5.1.5.1, IEC 60559",
@@ -231,6 +232,7 @@ const STANDARD_SOURCES: [&str; 14] = [
     "2nd ed. 2.5.1.4, a function's inputs",
     "2nd ed. 2.5.1.5.2, a result of the operands' type",
     "2nd ed. 2.6.4.5, Figure 15; 3rd ed. 6.7.4.6",
+    "2nd ed. Table 29",
 ];
 
 /// How the dialects behave.
@@ -247,6 +249,7 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             long_time: LongTime::Unsigned64,
             selection: Selection::Selected,
             integers: IntegerWidth::Register,
+            text_functions: Some(255),
             ..STANDARD
         },
         sources: [
@@ -264,6 +267,7 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             "CODESYS: operator SEL",
             "CODESYS: operators, overflow and underflow in the data type; SA0066",
             "CODESYS: SFC, IEC actions, one control for an action; not tried on the tool",
+            "CODESYS: library Standard, CONCAT, LEN",
         ],
     },
     BehaviourRow {
@@ -278,6 +282,7 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             long_time: LongTime::Unsigned64,
             selection: Selection::Selected,
             integers: IntegerWidth::Register,
+            text_functions: Some(255),
             ..STANDARD
         },
         sources: [
@@ -295,6 +300,7 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             "TwinCAT: SEL",
             "TwinCAT: operators, overflow and underflow in the data type; SA0066",
             "TwinCAT: SFC, IEC actions, one control for an action; not tried on the tool",
+            "TwinCAT: Tc2_Standard, CONCAT, LEN; Tc2_System, T_MaxString",
         ],
     },
     BehaviourRow {
@@ -322,6 +328,7 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             "left open by the S7-1200 System Manual",
             "S7-1200 System Manual: ADD, overflow sets ENO",
             "SCL has no charts",
+            "S7-1200 System Manual: strings, as long as the output's",
         ],
     },
     BehaviourRow {
@@ -347,6 +354,7 @@ pub const BEHAVIOURS: &[BehaviourRow] = &[
             "2nd ed. 2.5.1.4, a function's inputs",
             "MatIEC: iec_std_functions, a macro for each type",
             "MatIEC: the code that it makes of charts, tried",
+            "2nd ed. Table 29",
         ],
     },
 ];

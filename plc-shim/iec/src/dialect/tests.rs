@@ -29,7 +29,7 @@ fn dialects_have_names_and_files() {
     assert_eq!(Feature::ChainedAssignment.homes(), "codesys, twincat and siemens-scl");
 }
 
-fn behaviour_cells(behaviour: Behaviour) -> [String; 14] {
+fn behaviour_cells(behaviour: Behaviour) -> [String; 15] {
     let time = match behaviour.time {
         TimeRange::Nanoseconds64 => "signed 64 bit nanoseconds",
         TimeRange::Unsigned32 => "unsigned 32 bit milliseconds, wrapping",
@@ -82,8 +82,15 @@ fn behaviour_cells(behaviour: Behaviour) -> [String; 14] {
             "from edges of the last step alone that names the action, which set a BOOL, too; none at the start"
         }
     };
-    [&length, time, ties, division, unit, power, truth, number, strings, subrange, long, selection, integers, pulses]
-        .map(ToOwned::to_owned)
+    let texts = match behaviour.text_functions {
+        None => "as long as their types".to_owned(),
+        Some(most) => format!("of {most} characters; what is behind them is cut off, with a warning"),
+    };
+    let all = [
+        &length, time, ties, division, unit, power, truth, number, strings, subrange, long, selection, integers,
+        pulses, &texts,
+    ];
+    all.map(ToOwned::to_owned)
 }
 
 /// The tables of `docs/dialects.md`.
@@ -109,6 +116,7 @@ fn tables() -> String {
         "inputs of `SEL`",
         "`+`, `-`, `*`, `/`, `MOD` of integers",
         "pulses of actions in charts: `P`, `P1`, `P0`",
+        "strings that CONCAT, LEN and the like take and give",
     ];
     text += "\n## Behaviour\n\n| behaviour | dialects | what they do | source |\n|---|---|---|---|\n";
     for (index, subject) in subjects.iter().enumerate() {

@@ -58,6 +58,8 @@ pub enum Type {
         values: Vec<(String, i128)>,
         /// The declaration says the base type: its other values are of the type as well (3rd ed. 6.4.4.3).
         has_base: bool,
+        /// The text of a value is its name (`{attribute 'to_string'}`).
+        shows_names: bool,
     },
     Array {
         dimensions: Vec<Dimension>,
@@ -262,12 +264,18 @@ impl TypeTable {
     }
 
     /// An enumeration; without a base type in its declaration, of INT.
-    pub fn enumeration(&mut self, name: String, base: Option<ElementaryType>, values: Vec<(String, i128)>) -> TypeId {
+    pub fn enumeration(
+        &mut self,
+        name: String,
+        base: Option<ElementaryType>,
+        values: Vec<(String, i128)>,
+        shows_names: bool,
+    ) -> TypeId {
         let (base, has_base) = (base.unwrap_or(ElementaryType::Int), base.is_some());
         // A variable begins with the first value (2nd ed. Table 13).
         let first = values.first().map_or(0, |(_, value)| *value);
         let image = super::Value::Int(first).bytes()[..base.size() as usize].into();
-        self.add(Type::Enumeration { name, base, values, has_base }, base.size(), base.size(), image)
+        self.add(Type::Enumeration { name, base, values, has_base, shows_names }, base.size(), base.size(), image)
     }
 
     /// The array type; `size` is that of the whole array.

@@ -15,6 +15,15 @@ use crate::syntax::ast::{self, EnumValue, Ident, PouKind, TypeSpec, TypeSpecKind
 /// The namespace of what vendors' compilers declare.
 const SYSTEM: &str = "__SYSTEM";
 
+/// What attributes say of the names of an enumeration's values.
+#[derive(Clone, Copy, Default)]
+struct Known {
+    /// They are known behind the enumeration's name.
+    qualified: bool,
+    /// They are the text of their values.
+    as_text: bool,
+}
+
 impl<'a> Written<'_, 'a> {
     pub(super) fn declared_type(&mut self, ast: &'a ast::TypeDeclaration) -> Option<TypedImage<'a>> {
         let name = &ast.name.text;
@@ -42,7 +51,8 @@ impl<'a> Written<'_, 'a> {
                 self.union(name, (ty, ast.packing), fields, ast.name.span)
             }
             TypeSpecKind::Enumeration(values, base) => {
-                self.enumeration(name, values, base.as_ref(), ast.qualified_only)
+                let known = Known { qualified: ast.qualified_only, as_text: ast.shows_names };
+                self.enumeration(name, values, base.as_ref(), known)
             }
             _ => self.resolve(&ast.spec, Need::Size),
         }?;
@@ -72,7 +82,9 @@ impl<'a> Written<'_, 'a> {
                 Some(self.whole(ty))
             }
             TypeSpecKind::Union(fields) => self.union("UNION", (None, None), fields, spec.span),
-            TypeSpecKind::Enumeration(values, base) => self.enumeration("enumeration", values, base.as_ref(), false),
+            TypeSpecKind::Enumeration(values, base) => {
+                self.enumeration("enumeration", values, base.as_ref(), Known::default())
+            }
             TypeSpecKind::String(name, length) => {
                 let ty = self.body.text_type(name.key() == "WSTRING", length.as_deref(), spec.span)?;
                 let size = u64::from(self.declarations().types().size(ty));
@@ -214,7 +226,7 @@ impl<'a> Written<'_, 'a> {
         name: &str,
         ast: &'a [EnumValue],
         base: Option<&Ident>,
-        qualified: bool,
+        names: Known,
     ) -> Option<TypedImage<'a>> {
         let said = base.map(|base| self.integer_base(base).ok_or(())).transpose().ok()?;
         let base = said.unwrap_or(ElementaryType::Int);
@@ -240,12 +252,12 @@ impl<'a> Written<'_, 'a> {
             values.push((each.name.text.clone(), next));
             next += 1;
         }
-        let ty = self.declarations_mut().types_mut().enumeration(name.to_owned(), said, values.clone());
+        let ty = self.declarations_mut().types_mut().enumeration(name.to_owned(), said, values.clone(), names.as_text);
         // Values of vendors' system are known by their type only: projects have values of the same names.
         let of_library = ast.first().is_some_and(|each| self.declarations().is_in_library(each.name.span));
         let qualified_only = self.declarations().home().namespace == SYSTEM || of_library && is_qualified_only(name);
         let known = if qualified_only { Vec::new() } else { values };
-        let rank = match (qualified, of_library) {
+        let rank = match (names.qualified, of_library) {
             (true, _) => Rank::Qualified,
             (false, true) => Rank::Library,
             (false, false) => Rank::User,

@@ -258,6 +258,8 @@ pub struct TypeDeclaration {
     pub external: bool,
     /// True behind `{attribute 'qualified_only'}`: the values of an enumeration are known behind its name.
     pub qualified_only: bool,
+    /// True behind `{attribute 'to_string'}`: the text of an enumeration's value is its name.
+    pub shows_names: bool,
     /// Behind `{attribute 'pack_mode' := '1'}`: most bytes that the members of a structure are aligned to.
     pub packing: Option<u32>,
     pub spec: TypeSpec,

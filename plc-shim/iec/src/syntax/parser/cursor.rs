@@ -36,6 +36,8 @@ pub(super) struct Cursor<'a> {
     external: Vec<(u32, ())>,
     /// The same behind `{attribute 'qualified_only'}`.
     qualified_only: Vec<(u32, ())>,
+    /// The same behind `{attribute 'to_string'}`.
+    to_string: Vec<(u32, ())>,
     /// The same behind `{attribute 'pack_mode' := '1'}`, with the bytes.
     packed: Vec<(u32, u32)>,
     /// The same behind `{attribute 'call_after_init'}`.
@@ -72,6 +74,8 @@ impl<'a> Cursor<'a> {
         let call_after_init = behind_pragma(tokens, text, is_called);
         let starts = |title: &str| (dialect == Dialect::SiemensScl && is_start_title(title)).then_some(());
         let start_titles = behind_pragma(tokens, text, starts);
+        let shows = |pragma: &str| (of_vendors && is_attribute(pragma, "'to_string'")).then_some(());
+        let to_string = behind_pragma(tokens, text, shows);
         let packed = behind_pragma(tokens, text, |pragma| packing(pragma).filter(|_| of_vendors));
         let mut tokens: Vec<Token> = tokens.iter().filter_map(good).collect();
         promote_soft_keywords(&mut tokens, text);
@@ -91,6 +95,7 @@ impl<'a> Cursor<'a> {
             result_name: None,
             external,
             qualified_only,
+            to_string,
             packed,
             call_after_init,
             start_titles,
@@ -109,6 +114,11 @@ impl<'a> Cursor<'a> {
     /// True if `{attribute 'qualified_only'}` stands before the next token.
     pub(super) fn at_qualified_only(&self) -> bool {
         self.before_next(&self.qualified_only).is_some()
+    }
+
+    /// True if `{attribute 'to_string'}` stands before the next token.
+    pub(super) fn at_to_string(&self) -> bool {
+        self.before_next(&self.to_string).is_some()
     }
 
     /// True if `{attribute 'call_after_init'}` stands before the next token.

@@ -350,10 +350,12 @@ impl Cursor<'_> {
 
     fn type_block(&mut self, into: &mut Vec<Declaration>) {
         let (external, all_qualified, all_packed) = (self.at_external(), self.at_qualified_only(), self.packing());
+        let all_show_names = self.at_to_string();
         self.advance();
         while self.peek() == Some(TokenKind::Identifier) {
             let qualified_only = all_qualified || self.at_qualified_only();
             let packing = self.packing().or(all_packed);
+            let shows_names = all_show_names || self.at_to_string();
             self.pass_access_of_type();
             let (known, start) = (self.reported(), self.span());
             let Some(name) = self.take_identifier() else {
@@ -373,6 +375,7 @@ impl Cursor<'_> {
                 extends,
                 external,
                 qualified_only,
+                shows_names,
                 packing,
                 spec,
                 initial,

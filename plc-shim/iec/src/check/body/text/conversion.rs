@@ -3,7 +3,7 @@
 //! | type | text |
 //! |---|---|
 //! | BOOL | `TRUE`, `FALSE` |
-//! | integers, bit strings | decimal |
+//! | integers, bit strings, enumerations | decimal; an enumeration's name where its attribute says so |
 //! | REAL, LREAL | the shortest that reads back as the same number: `1.5`, `100.0`, `1.0E+20` |
 //! | TIME, LTIME | `T#1h2m3s4ms`, `LT#...`; `LTIME#...` where that has no sign |
 //! | dates | `D#1994-06-15`, `TOD#15:36:55.36`, `DT#1994-06-15-15:36:55.36`, `LD#...` |
@@ -55,6 +55,7 @@ impl Body<'_, '_> {
             let found = self.type_name(text.ty);
             return self.mismatch("a string", &found, text.span);
         }
+        self.warn_of_cut_text(&text);
         Some(Operand::Typed(Self::text_number(TextFunction::Parse(to), vec![text], to, span)))
     }
 
@@ -68,9 +69,22 @@ impl Body<'_, '_> {
             return None;
         };
         let shape = TextShape { wide, capacity: VALUE_CAPACITY, memory: self.declarations.dialect(span).strings() };
+        match self.values_shown_by_name(expr.ty) {
+            Some(values) => self.name_as_text(expr, &values, shape, span),
+            None => self.formatted_number(expr, from, shape, span).map(Operand::Typed),
+        }
+    }
+
+    pub(super) fn formatted_number(
+        &mut self,
+        expr: Expr,
+        from: ElementaryType,
+        shape: TextShape,
+        span: Span,
+    ) -> Option<Expr> {
         let is_long =
             from == ElementaryType::Ltime && self.declarations.dialect(span).long_time() == LongTime::Unsigned64;
         let function = if is_long { TextFunction::FormatLongTime } else { TextFunction::Format(from) };
-        self.made_text(function, vec![expr], shape, span).map(Operand::Typed)
+        self.made_text(function, vec![expr], shape, span)
     }
 }

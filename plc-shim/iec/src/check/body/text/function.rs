@@ -7,6 +7,7 @@
 //! | position outside of the string: MID | the empty string |
 //! | position outside of the string: INSERT, DELETE, REPLACE | the first string as it is |
 //! | result longer than its place | cut off |
+//! | string longer than vendors' functions take or give | cut off |
 
 use crate::check::body::Body;
 use crate::check::standard::text::TextForm;
@@ -33,6 +34,7 @@ impl Body<'_, '_> {
     /// The result is of any integer type (`ANY_INT`): the place's own, else INT.
     fn text_measure(&mut self, function: TextFunction, operands: Vec<Operand>, span: Span) -> Option<Operand> {
         let strings = self.strings(operands)?;
+        strings.iter().for_each(|each| self.warn_of_cut_text(each));
         let counted =
             strings.first().and_then(|first| self.shape(first.ty)).map_or(ElementaryType::Int, TextShape::number);
         let number = Self::text_number(function, strings, counted, span);
@@ -53,7 +55,7 @@ impl Body<'_, '_> {
                 let found = self.type_name(expr.ty);
                 return self.mismatch(wanted, &found, expr.span);
             }
-            strings.push(expr);
+            strings.push(self.taken_by_function(expr)?);
         }
         Some(strings)
     }
@@ -70,6 +72,10 @@ impl Body<'_, '_> {
     fn edit(&mut self, edit: Edit, mut operands: Vec<Operand>, span: Span) -> Option<Operand> {
         let numbers = operands.split_off(edit.strings().min(operands.len()));
         let strings = self.strings(operands)?;
+        // The beginning of what is cut is the same.
+        if edit != Edit::Left {
+            strings.iter().for_each(|each| self.warn_of_cut_text(each));
+        }
         let numbers = numbers.into_iter().map(|operand| self.integer_as_lint(operand));
         let numbers = numbers.collect::<Option<Vec<_>>>()?;
         self.joined(edit, strings, numbers, span).map(Operand::Typed)
@@ -79,6 +85,7 @@ impl Body<'_, '_> {
     fn joined(&mut self, edit: Edit, strings: Vec<Expr>, numbers: Vec<Expr>, span: Span) -> Option<Expr> {
         // What would not fit memory is cut off, and not made.
         let limit = (self.declarations.memory_limit() / 2) as u32 - 1;
+        let limit = self.most_characters(span).map_or(limit, |most| most.min(limit));
         let shapes = strings.iter().filter_map(|each| self.shape(each.ty));
         let shape = shapes.reduce(|sum, each| TextShape {
             wide: sum.wide,

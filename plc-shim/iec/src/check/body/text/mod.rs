@@ -4,6 +4,8 @@ pub(super) mod character;
 pub(super) mod conversion;
 mod declared;
 pub(super) mod function;
+mod limit;
+mod named;
 
 use super::Body;
 use crate::check::types::operand::{Operand, constant};
@@ -107,6 +109,9 @@ impl Body<'_, '_> {
                 self.stored_text(shape, &text, span)
             }
             Operand::Typed(expr) if self.shape(expr.ty).is_some_and(|found| found.wide == shape.wide) => {
+                if self.most_characters(expr.span).is_some_and(|most| shape.capacity > most) {
+                    self.warn_of_cut_text(&expr);
+                }
                 self.fitted(expr, shape)
             }
             other => {
@@ -193,6 +198,8 @@ impl Body<'_, '_> {
             return self.invalid_operands(&left, &right, span);
         }
         let (left, right) = (self.settle(left)?, self.settle(right)?);
+        self.warn_of_cut_text(&left);
+        self.warn_of_cut_text(&right);
         if self.shape(left.ty).map(|shape| shape.wide) != self.shape(right.ty).map(|shape| shape.wide) {
             return self.invalid_operands(&Operand::Typed(left), &Operand::Typed(right), span);
         }
