@@ -10,7 +10,7 @@ fn codes(dialect: Dialect, text: &str) -> Vec<Code> {
     findings_in(dialect, text).iter().map(|found| found.code).collect()
 }
 
-/// CODESYS: library Standard; TwinCAT: Tc2_Standard. Each function, with what it takes and what it gives.
+/// CODESYS: library Standard; TwinCAT: `Tc2_Standard`. Each function, with what it takes and what it gives.
 #[test]
 fn functions_take_and_give_255_characters() {
     let text = "PROGRAM P

@@ -57,7 +57,7 @@ pub(super) fn ported(plain: &Plain, options: &Options) -> Result<Project, Instru
     let interval = options.cycle.unwrap_or(table.shortest);
     let cycle = Cycle { interval: literal(interval), programs: programs(&table) };
     let whole = matiec::assembled(&lowered.text, merged.dialect, &layout.addresses, &cycle);
-    let mut files = plain.unchanged()?;
+    let mut files = plain.unchanged();
     plain.add_own(Own { name: NAME.to_owned(), text: format!("{}\n{whole}", marks::WHOLE) }, &mut files);
     let whole = files.last().map(|file| file.name.clone());
     plain.delete_stale(&mut files);

@@ -215,13 +215,14 @@ impl File {
 /// # Errors
 /// Text or tasks are wrong; see [`InstrumentError`].
 pub fn instrument(inputs: &[Input], options: &Options) -> Result<Project, InstrumentError> {
-    let plain = Plain::of(&port::read_by(options.target, inputs))?;
+    let mut plain = Plain::of(&port::read_by(options.target, inputs))?;
     if let Some(own) = plain.only_own() {
         return Err(InstrumentError::OnlyOwn(own.to_owned()));
     }
     if let Some(refused) = plain.without_inputs(options) {
         return Err(InstrumentError::Text(Diagnostics::new(vec![refused], &plain.sources)));
     }
+    port::with_conversions(&mut plain, inputs, options.target)?;
     let project = match port::ported(&plain, options) {
         Some(ported) => ported?,
         None => attach(&plain, options)?.project,
@@ -307,7 +308,7 @@ pub fn is_whole(text: &str) -> bool {
 /// Marks have been damaged.
 pub fn remove(inputs: &[Input]) -> Result<Project, InstrumentError> {
     let plain = Plain::of(inputs)?;
-    let mut files = plain.unchanged()?;
+    let mut files = plain.unchanged();
     plain.delete_own(&mut files);
     plain.list_own(&mut files)?;
     Ok(Project::of(files, Diagnostics::new(Vec::new(), &plain.sources)))

@@ -1,5 +1,6 @@
 //! A project as it is without the shim, and the changes that make it one with it.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -24,6 +25,8 @@ use onescan_iec::task_plan::Task;
 /// A project without the shim.
 pub(super) struct Plain {
     pub(super) sources: SourceMap,
+    /// The same as their author has them, where conversions have been written into `sources`.
+    original: Option<SourceMap>,
     /// Of each file in `sources` what it was when it was given.
     pub(super) given: Vec<Given>,
     /// What kind of file each of them is.
@@ -45,6 +48,7 @@ impl Plain {
     pub(super) fn of(inputs: &[Input]) -> Result<Self, InstrumentError> {
         let mut plain = Self {
             sources: SourceMap::default(),
+            original: None,
             given: Vec::new(),
             kinds: Vec::new(),
             own: Vec::new(),
@@ -75,7 +79,7 @@ impl Plain {
         let plain = match original {
             Ok(Original::Nothing) => return self.own.push(given),
             Ok(Original::Same) => input.clone(),
-            Ok(Original::Text(plain)) => Input::from_text(name, kind, plain.text).in_dialect(input.file().dialect()),
+            Ok(Original::Text(plain)) => Input::from_text(name, kind, plain.text).read_like(input.file()),
             Err(damaged) => return self.damaged(name, text, &damaged),
         };
         self.given.push(given);
@@ -198,8 +202,32 @@ impl Plain {
     }
 
     /// The project's files without the shim.
-    pub(super) fn unchanged(&self) -> Result<Vec<File>, InstrumentError> {
-        self.edited(&Survey::default(), &Motion::default(), &TaskTable::default(), "")
+    pub(super) fn unchanged(&self) -> Vec<File> {
+        let texts = self.original.as_ref().unwrap_or(&self.sources);
+        let same = |(given, (_, file)): (&Given, (FileId, &SourceFile))| {
+            let text = file.shown_text();
+            given.file(Some(text.clone()), LineMap::same(text))
+        };
+        self.given.iter().zip(texts.iter()).map(same).collect()
+    }
+
+    /// The texts of a project in program text, as they are translated.
+    pub(super) fn texts(&self) -> impl Iterator<Item = Input> {
+        let text =
+            |file: &SourceFile| Input::from_text(file.name(), SourceKind::Text, file.text().as_ref()).read_like(file);
+        self.sources.iter().map(move |(_, file)| text(file))
+    }
+
+    /// Changes the texts that are translated; the files stay as they are. No change begins a line.
+    pub(super) fn change(&mut self, mut edits: BTreeMap<FileId, Edits>) -> Result<(), InstrumentError> {
+        let mut changed = SourceMap::default();
+        for (id, file) in self.sources.iter() {
+            let conflict = |conflict| InstrumentError::Conflict { file: file.name().to_owned(), conflict };
+            let text = edits.remove(&id).unwrap_or_default().apply(file.text()).map_err(conflict)?.text;
+            changed.add(SourceFile::new(file.name(), text).in_dialect(file.dialect()).for_words(file.word_size()));
+        }
+        self.original = Some(std::mem::replace(&mut self.sources, changed));
+        Ok(())
     }
 
     /// The project's files with their changes.

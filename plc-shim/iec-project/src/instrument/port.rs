@@ -6,8 +6,13 @@
 use super::plain::Plain;
 use super::target::Target;
 use super::{InstrumentError, Options, Project, attach, codesys, matiec, scl_port};
-use onescan_iec::dialect::Dialect;
+use crate::output::Refused;
+use crate::output::width::{self, Way};
+use onescan_iec::diagnostic::{Code, Diagnostic, Diagnostics};
+use onescan_iec::dialect::{Dialect, IntegerWidth, WordSize};
+use onescan_iec::front::{Front, with_room};
 use onescan_iec::input::Input;
+use onescan_iec::syntax::FileId;
 
 /// The project's text as the tool reads it that takes its port: what is not of its dialect is reported.
 pub(super) fn read_by(target: Target, inputs: &[Input]) -> Vec<Input> {
@@ -19,6 +24,48 @@ pub(super) fn read_by(target: Target, inputs: &[Input]) -> Vec<Input> {
         }
     };
     inputs.iter().map(read).collect()
+}
+
+/// Writes the conversions that a port needs whose target computes integers in other bits than the dialect of a file.
+/// `inputs` are the files as their author has them.
+pub(super) fn with_conversions(plain: &mut Plain, inputs: &[Input], target: Target) -> Result<(), InstrumentError> {
+    let (way, from) = match target {
+        Target::Codesys => (Way::ToRegisters, IntegerWidth::Own),
+        Target::Scl | Target::OpenPlc | Target::Beremiz => (Way::ToOperands, IntegerWidth::Register),
+        // Files are the author's, and stay in the tool that they are of.
+        Target::Iec | Target::TwinCat => return Ok(()),
+    };
+    let own = |name: &str| inputs.iter().find(|input| input.file().name() == name).map(|input| input.file().dialect());
+    let names: Vec<_> = plain.sources.iter().map(|(_, file)| file.name().to_owned()).collect();
+    let is_concerned = |id: FileId| {
+        let dialect = names.get(id.0 as usize).and_then(|name| own(name));
+        dialect.is_some_and(|dialect| dialect.integers() == from)
+    };
+    if !plain.is_text() || !(0..names.len() as u32).any(|id| is_concerned(FileId(id))) {
+        return Ok(());
+    }
+    let as_read = |input: Input| match way {
+        // What is cut for wide registers is right in narrow ones.
+        Way::ToRegisters => input.for_words(WordSize::Bits64),
+        Way::ToOperands => input,
+    };
+    let texts: Vec<Input> = plain.texts().map(as_read).collect();
+    let found = with_room(|| {
+        let front = Front::new(texts);
+        // What is wrong with it is reported where it is translated.
+        (!front.has_errors()).then(|| width::explicit(&front, way, &is_concerned))
+    });
+    let Some(found) = found else { return Ok(()) };
+    plain.change(found.map_err(|refused| refused_widths(plain, refused))?)
+}
+
+fn refused_widths(plain: &Plain, refused: Vec<Refused>) -> InstrumentError {
+    let reported = |each: Refused| {
+        let message = format!("{} cannot be written for a target that computes in other bits", each.message);
+        let help = "convert the operands yourself, and all targets agree";
+        Diagnostic::error(Code::UnsupportedFeature, each.span, message).with_help(help)
+    };
+    InstrumentError::Text(Diagnostics::new(refused.into_iter().map(reported).collect(), &plain.sources))
 }
 
 /// The project in the form of a target that does not take its text; nothing for any other.
@@ -36,7 +83,7 @@ pub(super) fn ported(plain: &Plain, options: &Options) -> Option<Result<Project,
     let whole = || {
         let attached = attach(plain, options)?;
         let source = port(plain, &attached)?;
-        let mut files = plain.unchanged()?;
+        let mut files = plain.unchanged();
         plain.add_own(source, &mut files);
         let whole = files.last().map(|file| file.name.clone());
         plain.delete_stale(&mut files);

@@ -27,7 +27,7 @@ const NAME: &str = "sdsp.scl";
 
 /// The project in SCL with the shim attached.
 pub(super) fn ported(plain: &Plain, options: &Options) -> Result<Project, InstrumentError> {
-    let inputs: Vec<Input> = plain.sources.iter().map(|(_, file)| input(file)).collect();
+    let inputs: Vec<Input> = plain.texts().collect();
     let wrong = |findings| InstrumentError::Text(Diagnostics::new(findings, &plain.sources));
     if plain.findings.iter().any(|found| found.severity == Severity::Error) {
         return Err(wrong(plain.findings.clone()));
@@ -56,16 +56,12 @@ pub(super) fn ported(plain: &Plain, options: &Options) -> Result<Project, Instru
         }
         values = if values.is_empty() { missing } else { return Err(no_start_values(plain, &missing)) };
     }
-    let mut files = plain.unchanged()?;
+    let mut files = plain.unchanged();
     plain.add_own(Own { name: NAME.to_owned(), text: last.unwrap_or_default() }, &mut files);
     let whole = files.last().map(|file| file.name.clone());
     plain.delete_stale(&mut files);
     let warnings = Diagnostics::new(warnings, &plain.sources);
     Ok(Project { whole, tasks: Some(called(&tasks)), homes, ..Project::of(files, warnings) })
-}
-
-fn input(file: &onescan_iec::syntax::SourceFile) -> Input {
-    Input::from_text(file.name(), SourceKind::Text, file.text().as_ref()).in_dialect(file.dialect())
 }
 
 fn in_scl(name: &str, text: &str) -> Input {

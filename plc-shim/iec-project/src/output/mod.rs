@@ -6,6 +6,7 @@
 //! | [`matiec`] | a project in text | one text that MatIEC compiles |
 //! | [`plcopen`] | a project in text | one file of PLCopen XML, as CODESYS imports it |
 //! | [`scl`] | a project in text | an external source in SCL, as TIA Portal imports it |
+//! | [`width`] | a checked project | the conversions that it needs where integers are computed in other bits |
 //!
 //! Invariants: statements are taken over as they are written; what a form cannot say is refused with its place, never
 //! left out.
@@ -14,6 +15,7 @@ pub(crate) mod matiec;
 pub(crate) mod page;
 pub(crate) mod plcopen;
 pub(crate) mod scl;
+pub(crate) mod width;
 
 use onescan_iec::syntax::Span;
 

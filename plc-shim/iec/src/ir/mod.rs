@@ -12,6 +12,7 @@ pub mod statement;
 pub mod text;
 pub mod types;
 pub mod value;
+pub mod walk;
 
 /// The types of the ground floor, which are the program's own elementary types.
 pub use onescan_base::elementary::{self, ElementaryType};

@@ -21,3 +21,4 @@ mod scl;
 mod scl_port;
 mod single;
 mod verified;
+mod widths;

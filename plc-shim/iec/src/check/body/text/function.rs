@@ -34,7 +34,9 @@ impl Body<'_, '_> {
     /// The result is of any integer type (`ANY_INT`): the place's own, else INT.
     fn text_measure(&mut self, function: TextFunction, operands: Vec<Operand>, span: Span) -> Option<Operand> {
         let strings = self.strings(operands)?;
-        strings.iter().for_each(|each| self.warn_of_cut_text(each));
+        for each in &strings {
+            self.warn_of_cut_text(each);
+        }
         let counted =
             strings.first().and_then(|first| self.shape(first.ty)).map_or(ElementaryType::Int, TextShape::number);
         let number = Self::text_number(function, strings, counted, span);
@@ -74,7 +76,9 @@ impl Body<'_, '_> {
         let strings = self.strings(operands)?;
         // The beginning of what is cut is the same.
         if edit != Edit::Left {
-            strings.iter().for_each(|each| self.warn_of_cut_text(each));
+            for each in &strings {
+                self.warn_of_cut_text(each);
+            }
         }
         let numbers = numbers.into_iter().map(|operand| self.integer_as_lint(operand));
         let numbers = numbers.collect::<Option<Vec<_>>>()?;

@@ -1,4 +1,4 @@
-//! The vendors' functions of strings take and give 255 characters (CODESYS: library Standard, TwinCAT: Tc2_Standard).
+//! The vendors' functions of strings take and give 255 characters (CODESYS: library Standard, TwinCAT: `Tc2_Standard`).
 //!
 //! What is cut is the end, so that nothing is lost where no more than the beginning is wanted: in a `CONCAT` or `LEFT`,
 //! and in a variable of 255 characters or fewer. Everywhere else it is reported.
