@@ -155,7 +155,7 @@ fn every_kind_of_client_is_taken() {
         coupling = { sequential = [\"plc\", \"plant\"] }
         signals.Sensor = { type = \"STRING[80]\", writer = \"plant\" }
         clients.plant = { kind = \"plant\", scene = \"plant.toml\", period = \"20ms\" }
-        clients.plc = { kind = \"soft-plc\", sources = [\"a.st\"], dialect = \"siemens-scl\", bind = { \"a*\" = \"P.a*\" } }
+        clients.plc = { kind = \"soft-plc\", sources = [\"a.st\"], dialect = \"siemens-scl\", word_size_bits = 32, bind = { \"a*\" = \"P.a*\" } }
         clients.real = { kind = \"gateway\", reads = [\"Sensor\"], gateway = { url = \"s7://10.0.0.1\", s7.slot = 2 } }
         clients.panel = { kind = \"operator\", initial = { Start = false, Speed = 0.5, Rest = \"200ms\" } }
         clients.cell = { kind = \"opc-ua\" }

@@ -76,6 +76,25 @@ fn a_dialect_is_reported_by_name_flag_and_scenario() {
 }
 
 #[test]
+fn a_word_size_is_that_of_flag_text_and_scenario() {
+    let cut: &[u8] = b"PROGRAM Main VAR_OUTPUT o : LINT; END_VAR VAR_INPUT i : DINT; END_VAR o := i * 1000; END_PROGRAM\n";
+    let named = [b"{dialect 'codesys' 32}\n", cut].concat();
+    let folder = folder(&[("wide.exp", cut), ("small.st", named.as_slice())]);
+    let is_cut = |arguments: &[&str]| checked(folder.path(), arguments).out.contains("W0713");
+    assert!(!is_cut(&["wide.exp"]) && is_cut(&["wide.exp", "--word-size", "32"]));
+    assert!(is_cut(&["small.st"]) && !is_cut(&["small.st", "--word-size", "64"]));
+    let said = checked(folder.path(), &["wide.exp", "--word-size", "16"]);
+    assert!(said.code == Some(2) && said.err.contains("`16` is not a word size: 32 or 64 bits"), "{said:?}");
+
+    let shear = copied_shear();
+    edit(shear.path(), "scenario.toml", "sources = ", "dialect = \"codesys\"\nword_size_bits = 32\nsources = ");
+    assert_eq!(checked(shear.path(), &["."]).code, Some(0));
+    edit(shear.path(), "scenario.toml", "word_size_bits = 32", "word_size_bits = 16");
+    let said = checked(shear.path(), &["."]);
+    assert!(said.code == Some(2) && said.err.contains("`16` is not a word size"), "{said:?}");
+}
+
+#[test]
 fn findings_read_well() {
     let said = checked(folder(WRONG).path(), &["."]);
     assert_eq!((said.code, said.err.as_str()), (Some(2), ""), "{said:?}");
