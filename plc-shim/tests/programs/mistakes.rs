@@ -128,6 +128,22 @@ fn slips_of_beginners_are_mended() {
         body("i, n : INT;", "FOR i := 0 TO 10 STEP 2 DO n := n + 1; END_FOR;"),
         body("w : WORD; b : BOOL;", "b := w[3];"),
         body("n : INT;", "n := 10#30000;"),
+        body("n : INT;", "n := $FF;"),
+        body("s : STRING;", "s := ‘text’;"),
+        body("s : STRING;", "s := “text”;"),
+        body("i, n : INT;", "FOR i = 0 TO 10 DO n := n + 1; END_FOR;"),
+        body("i, n : INT;", "FOR i := 0 TO 10 DO n := n + 1; NEXT i;"),
+        body("x : BOOL; n : INT;", "IF x THEN n := 1; ENDIF;"),
+        body("i, n : INT;", "FOR i := 0 TO 3 DO IF n = i THEN n := 1; END IF; end for;"),
+        body("w : WORD; b : BOOL;", "b := w.bit3;"),
+        body("n : INT;", "n := n % 2;"),
+        body("n : INT;", "n := n ^ 2;"),
+        body("w : WORD;", "w := w << 1;"),
+        body("x : BOOL; n : INT;", "x := n =< 3;"),
+        body("x : BOOL; n : INT;", "x := n => 3;"),
+        body("r : REAL;", "r := 1,5;"),
+        body("x : BOOL; n : INT;", "n := x ? 1 : 2;"),
+        body("n : INT;", "INT z; n := 1;"),
     ];
     insta::assert_snapshot!(all.join("\n"));
 }

@@ -252,9 +252,28 @@ impl<'a> Lexer<'a> {
             self.at += found.text().len();
             return TokenKind::Punctuation(found);
         }
-        self.take_while(|character| character == first);
+        self.foreign(first);
         TokenKind::Unknown
     }
+
+    /// Passes what begins no token, as far as it is one thing: `||`, `$FF`, a text between typographic quotes.
+    fn foreign(&mut self, first: char) {
+        let line = self.rest().lines().next().unwrap_or("");
+        let mut quotes = line.match_indices(is_typographic_quote).map(|(at, quote)| at + quote.len());
+        if let Some(end) = quotes.nth(1).filter(|_| is_typographic_quote(first)) {
+            self.at += end;
+        } else if first == '$' && self.peek(1).is_ascii_hexdigit() {
+            self.at += 1;
+            self.take_while(|character| character.is_ascii_alphanumeric());
+        } else {
+            self.take_while(|character| character == first);
+        }
+    }
+}
+
+/// Quotes that word processors put in the place of `'` and `"`.
+pub(super) fn is_typographic_quote(character: char) -> bool {
+    matches!(character, '\u{2018}'..='\u{201f}')
 }
 
 /// Letters of every language in SCL, those of ASCII elsewhere (2nd ed. 2.1.1; TIA Portal: rules for names).

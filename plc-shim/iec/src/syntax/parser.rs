@@ -11,6 +11,7 @@ mod cursor;
 mod declaration;
 mod exception;
 mod expression;
+mod foreign;
 mod here;
 mod initialiser;
 mod instruction;
@@ -153,11 +154,7 @@ fn report_lexical_errors(cursor: &mut Cursor<'_>, tokens: &[Token]) {
             TokenKind::Unknown => {
                 let text = cursor.text(token.start, token.end).escape_debug().to_string();
                 let message = format!("`{text}` begins no token");
-                let help = match text.as_str() {
-                    "|" | "||" => Some("write `OR`".to_owned()),
-                    "!" => Some("write `NOT`, or `<>` for `!=`".to_owned()),
-                    _ => None,
-                };
+                let help = slip::meant_by(&text);
                 let found = Diagnostic::error(Code::UnknownCharacter, span, message);
                 cursor.report(found.with_optional_help(help));
             }

@@ -58,6 +58,9 @@ impl Cursor<'_> {
                 let message = "this is a comparison, not an assignment";
                 let found = Diagnostic::error(Code::UnexpectedToken, target.span, message);
                 self.report(found.with_help("assign with `:=`"));
+            } else if let Some(help) = self.meant_declaration(self.text(target.span.start, target.span.end)) {
+                let message = "a variable is not declared among statements";
+                self.report(Diagnostic::error(Code::UnexpectedToken, target.span, message).with_help(help));
             } else {
                 self.unexpected("`:=` or `(`");
             }

@@ -409,14 +409,7 @@ impl Cursor<'_> {
 
     /// Reports what is not an operand, with a hint for what other languages write.
     fn unexpected_operand(&mut self) {
-        use Punctuation as P;
-        let previous = self.previous();
-        let help = match (previous, self.peek()) {
-            (Some(TokenKind::Punctuation(P::Equal)), Some(TokenKind::Punctuation(P::Equal))) => "compare with `=`",
-            (Some(TokenKind::Punctuation(P::Ampersand)), Some(TokenKind::Punctuation(P::Ampersand))) => "write `AND`",
-            (Some(TokenKind::Punctuation(P::Equal)), Some(TokenKind::Punctuation(P::Colon))) => "assign with `:=`",
-            _ => return self.unexpected("an expression"),
-        };
+        let Some(help) = self.meant_operand() else { return self.unexpected("an expression") };
         let found = format!("an expression expected, found `{}`", self.next_text());
         let span = self.span();
         self.report_syntax(Diagnostic::error(Code::UnexpectedToken, span, found).with_help(help));

@@ -7,6 +7,7 @@ use crate::source::Span;
 use crate::syntax::ast::{
     Dimension, Expr, ExprKind, Ident, IfBranch, IfStatement, Literal, Statement, StatementKind, TypeSpec, TypeSpecKind,
 };
+use crate::syntax::lexer::is_typographic_quote;
 use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 
 impl Cursor<'_> {
@@ -109,6 +110,11 @@ impl Cursor<'_> {
             self.report_slip(self.span(), "a step of FOR begins with another word", "write `BY`");
         }
         is_step
+    }
+
+    /// Reports `FOR i = 0`.
+    pub(super) fn report_equal_for_assign(&mut self) {
+        self.report_slip(self.span(), "`:=` expected, found `=`", "assign with `:=`");
     }
 
     /// Reports an IF that `ELSE IF` began and nothing ended.
@@ -214,6 +220,24 @@ impl Cursor<'_> {
         let help = format!("write `: ARRAY [{bounds}] OF` and the type");
         self.report_slip(self.span_from(start), "bounds are part of the type", help);
     }
+}
+
+/// What mends text that begins no token.
+pub(super) fn meant_by(text: &str) -> Option<String> {
+    Some(match text {
+        "|" | "||" => "write `OR`".to_owned(),
+        "!" => "write `NOT`, or `<>` for `!=`".to_owned(),
+        "?" => "write an IF, or `SEL(condition, b, a)`".to_owned(),
+        "~" => "write `NOT`".to_owned(),
+        _ if text.starts_with(is_typographic_quote) => {
+            let inside = text.trim_matches(is_typographic_quote);
+            format!("these are quotes of a word processor: write `'{inside}'`")
+        }
+        _ => {
+            let digits = text.strip_prefix('$').filter(|digits| !digits.is_empty())?;
+            format!("a hexadecimal number is written `16#{digits}`")
+        }
+    })
 }
 
 /// The bounds of so many elements.

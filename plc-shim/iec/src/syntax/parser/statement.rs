@@ -39,6 +39,11 @@ impl Cursor<'_> {
         self.statements_until(|_| false)
     }
 
+    /// The statements of a branch or loop.
+    fn inner_statements(&mut self) -> Vec<Statement> {
+        self.statements_until(Self::at_foreign_end)
+    }
+
     pub(super) fn statements_until(&mut self, stop: impl Fn(&Self) -> bool) -> Vec<Statement> {
         let mut list = Vec::new();
         loop {
@@ -97,13 +102,15 @@ impl Cursor<'_> {
         let before = self.previous_span();
         let span = Span { start: before.end.saturating_sub(1).max(before.start), ..before };
         let message = "`;` expected after this";
-        let help = behind_end.then(|| format!("{} may leave it out: --dialect chooses", Feature::LooseEnds.homes()));
+        let loose = behind_end.then(|| format!("{} may leave it out: --dialect chooses", Feature::LooseEnds.homes()));
+        let help = self.meant_behind().or(loose);
         self.report_syntax(Diagnostic::error(Code::UnexpectedToken, span, message).with_optional_help(help));
         // What follows is most often a good statement; only a stray remainder is skipped.
         let good = match self.peek() {
             // A name with nothing behind it is what remains of the statement before.
             Some(TokenKind::Identifier) => self.peek_ahead(1) != Some(TokenKind::Punctuation(Punctuation::Semicolon)),
-            Some(TokenKind::DirectAddress) | None => true,
+            Some(TokenKind::DirectAddress) => self.next_text() != "%",
+            None => true,
             Some(TokenKind::Keyword(keyword)) => closes_list(keyword) || begins_statement(keyword),
             _ => false,
         };
@@ -166,7 +173,7 @@ impl Cursor<'_> {
         loop {
             self.advance();
             let condition = self.condition(Keyword::Then);
-            let body = self.statements();
+            let body = self.inner_statements();
             branches.push(IfBranch { condition, body });
             if !self.at_keyword(Keyword::Elsif) {
                 break;
@@ -177,7 +184,7 @@ impl Cursor<'_> {
             let start = self.span();
             self.advance();
             nests = (self.at_keyword(Keyword::If) && !self.is_line_break(0)).then(|| self.span_from(start));
-            otherwise = self.statements();
+            otherwise = self.inner_statements();
         }
         match nests {
             Some(place) if !self.at_keyword(Keyword::EndIf) => self.report_else_if(place),
@@ -208,7 +215,7 @@ impl Cursor<'_> {
     }
 
     fn expect_end(&mut self, end: Keyword) {
-        if !self.take_keyword(end) {
+        if !self.take_keyword(end) && !self.pass_foreign_end(end) {
             self.unexpected(&format!("`{}`", end.text()));
         }
     }
@@ -217,7 +224,9 @@ impl Cursor<'_> {
         self.advance();
         let selector = self.condition(Keyword::Of);
         let mut branches = Vec::new();
-        while self.at_foreign_label() || !matches!(self.peek(), None | Some(TokenKind::Keyword(_))) {
+        while self.at_foreign_label()
+            || !matches!(self.peek(), None | Some(TokenKind::Keyword(_))) && !self.at_foreign_end()
+        {
             self.pass_foreign_label();
             let position = self.position();
             branches.push(self.case_branch());
@@ -227,7 +236,7 @@ impl Cursor<'_> {
         }
         let otherwise = if self.take_keyword(Keyword::Else) {
             self.pass_colon_of_else();
-            self.statements()
+            self.inner_statements()
         } else {
             Vec::new()
         };
@@ -249,7 +258,8 @@ impl Cursor<'_> {
             });
             self.take_mark(Punctuation::Colon);
         }
-        let body = self.statements_until(|cursor| cursor.at_foreign_label() || cursor.at_case_label());
+        let body = self
+            .statements_until(|cursor| cursor.at_foreign_label() || cursor.at_case_label() || cursor.at_foreign_end());
         CaseBranch { labels, body }
     }
 
@@ -307,8 +317,7 @@ impl Cursor<'_> {
         if !matches!(variable.kind, ExprKind::Name(_)) {
             self.require(Feature::ControlParts, variable.span);
         }
-        self.expect_mark(Punctuation::Assign);
-        self.take_mark(Punctuation::Equal);
+        self.assign_of_for();
         let from = self.expression();
         let (to, by) = if !self.expect_keyword(Keyword::To) {
             self.skip_until(|kind| match kind {
@@ -323,9 +332,20 @@ impl Cursor<'_> {
         } else {
             (self.condition(Keyword::Do), None)
         };
-        let body = self.statements();
+        let body = self.inner_statements();
         self.expect_end(Keyword::EndFor);
         StatementKind::For(Box::new(ForStatement { variable, from, to, by, body }))
+    }
+
+    /// The `:=` of a loop's header.
+    fn assign_of_for(&mut self) {
+        if self.at_mark(Punctuation::Equal) {
+            self.report_equal_for_assign();
+            self.advance();
+            return;
+        }
+        self.expect_mark(Punctuation::Assign);
+        self.take_mark(Punctuation::Equal);
     }
 
     /// Looks for `BY` before `DO` on the way to the body.
@@ -348,7 +368,7 @@ impl Cursor<'_> {
     fn while_statement(&mut self) -> StatementKind {
         self.advance();
         let condition = self.condition(Keyword::Do);
-        let body = self.statements();
+        let body = self.inner_statements();
         self.expect_end(Keyword::EndWhile);
         StatementKind::While(WhileStatement { condition, body })
     }

@@ -377,7 +377,9 @@ impl Body<'_, '_> {
             }
             _ => {
                 let message = format!("{} has no members", self.type_name(base.place.ty));
-                self.report(Diagnostic::error(Code::NotAStructure, span, message));
+                let has_bits = self.elementary(base.place.ty).is_some_and(|ty| ty.is_bits() && ty.size() > 0);
+                let help = has_bits.then(|| "a bit has its number for a name, as in `a.3`".to_owned());
+                self.report(Diagnostic::error(Code::NotAStructure, span, message).with_optional_help(help));
                 None
             }
         }
