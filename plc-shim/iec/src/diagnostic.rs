@@ -167,6 +167,15 @@ codes! {
     AttributeWithoutEffect "W0714" "an attribute that changes values elsewhere has no effect here",
     EndlessCount "W0715" "a loop up to the limit of its variable's type never ends on the target",
     UndrivenInput "W0716" "an input of a program is driven by nobody",
+    ZeroDivisor "W0720" "a number is divided by the constant 0",
+    LostFraction "W0721" "a quotient of integers loses its fraction before it becomes real",
+    LoopNeverRuns "W0722" "a FOR loop never runs",
+    LoopVariableWritten "W0723" "the variable of a FOR loop is written in the loop",
+    DecidedComparison "W0724" "a comparison is always TRUE or always FALSE",
+    Overwritten "W0725" "a value is overwritten before anything reads it",
+    OutputWithTwoNames "W0726" "two variables at one output are both written",
+    ConstantCondition "W0727" "a condition is TRUE or FALSE as it is written",
+    AssignedToItself "W0728" "a variable is assigned to itself",
     CutText "W0730" "a function of strings takes or gives no more than 255 characters",
 }
 

@@ -33,6 +33,7 @@ mod field;
 mod forcing;
 mod foreign_projects;
 mod generic_blocks;
+mod guidelines;
 mod il;
 mod index_ranges;
 mod inputs;

@@ -31,7 +31,7 @@ use self::declare::{Declarations, Outcome, Templates, stages};
 use self::resolve::Resolver;
 use crate::diagnostic::Diagnostic;
 use crate::dialect::AddressUnit;
-use crate::ir::{Areas, Configuration, Entry, MemoryLimit, Pou, PouId, Program, Row, TypeTable, Variable};
+use crate::ir::{Areas, Configuration, Entry, Expr, MemoryLimit, Pou, PouId, Program, Row, TypeTable, Value, Variable};
 use crate::syntax::ast::CompilationUnit;
 use crate::syntax::{FileId, Span};
 
@@ -71,6 +71,11 @@ pub struct Checked {
     pub image: Vec<u8>,
     /// The steps and transitions of charts: where they stand, and what they are called.
     pub chart_parts: Vec<(Span, String)>,
+}
+
+/// The value of an expression that is constant.
+pub(crate) fn constant_value(types: &TypeTable, expr: &Expr) -> Option<Value> {
+    types::constant::fold(types, expr).ok()
 }
 
 /// Checks all units together. `library` identifies the files of the standard function blocks, whose

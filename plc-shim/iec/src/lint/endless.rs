@@ -36,7 +36,7 @@ impl Loops<'_> {
 }
 
 /// The value of `TRUE`, `(FALSE)`, `NOT TRUE`.
-fn literal(condition: &Expr) -> Option<bool> {
+pub(super) fn literal(condition: &Expr) -> Option<bool> {
     match &condition.kind {
         ExprKind::Literal(Literal::Bool(value)) => Some(*value),
         ExprKind::Paren(inner) => literal(inner),

@@ -14,23 +14,36 @@
 //! | [`tasks`] | W0707 |
 //! | [`endless`] | W0709 |
 //! | [`attributes`] | W0714 |
+//! | [`bodies`] | the checked units: expressions with types, names with places |
+//! | [`zero_divisors`] | W0720 |
+//! | [`counting`] | W0722, W0723 |
+//! | [`decided`] | W0724, W0727 |
+//! | [`overwritten`] | W0725, W0728 |
+//! | [`shared_outputs`] | W0726 |
 //!
 //! A warning that is wrong costs more trust than one that is missing: where names alone do not
 //! decide, nothing is said.
 
 mod attributes;
+mod bodies;
+mod counting;
+mod decided;
 mod endless;
 mod equality;
 mod index;
 mod inspect;
 mod instances;
 mod outputs;
+mod overwritten;
 mod reachability;
+mod shared_outputs;
 mod tasks;
 mod types;
 mod unused;
 mod usage;
+mod zero_divisors;
 
+use self::bodies::Bodies;
 use self::index::Index;
 use self::usage::Usage;
 use crate::diagnostic::Diagnostic;
@@ -50,6 +63,7 @@ fn lint(front: &Front, plan: Option<&TaskPlan>) -> Vec<Diagnostic> {
         equality::lint(unit, &index, &mut findings);
         reachability::lint(unit, &mut findings);
         endless::lint(unit, &mut findings);
+        decided::lint_conditions(unit, &mut findings);
         unused::lint(unit, &index, &mut findings);
         attributes::lint_methods(unit, &units, &mut findings);
     }
@@ -59,13 +73,25 @@ fn lint(front: &Front, plan: Option<&TaskPlan>) -> Vec<Diagnostic> {
         equality::lint(&unit, &index, &mut findings);
         reachability::lint(&unit, &mut findings);
         endless::lint(&unit, &mut findings);
+        decided::lint_conditions(&unit, &mut findings);
         unused::lint(&unit, &index, &mut findings);
     }
     outputs::lint_globals(&units, &index, &mut findings);
     unused::lint_globals(&units, &index, &mut findings);
     tasks::lint(&units, &index, plan, &mut findings);
     attributes::lint(front, &mut findings);
+    shared_outputs::lint(&units, &index, &mut findings);
+    lint_bodies(front, &index, &mut findings);
     findings
+}
+
+/// Warnings that need types and places.
+fn lint_bodies<'a>(front: &'a Front, index: &Index<'a>, findings: &mut Vec<Diagnostic>) {
+    let bodies = Bodies::new(front, index);
+    zero_divisors::lint(&bodies, findings);
+    counting::lint(&bodies, findings);
+    decided::lint_comparisons(&bodies, findings);
+    overwritten::lint(&bodies, findings);
 }
 
 /// A unit of the user's and what it does with names.

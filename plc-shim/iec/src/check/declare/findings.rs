@@ -91,6 +91,13 @@ impl Declarations<'_> {
         self.findings.diagnostics.truncate(mark.0);
     }
 
+    /// Forgets what has been found since of quotients that lose their fraction.
+    pub(in crate::check) fn forget_lost_fractions(&mut self, mark: Mark) {
+        let mut since = self.findings.diagnostics.split_off(mark.0.min(self.findings.diagnostics.len()));
+        since.retain(|found| found.code != Code::LostFraction);
+        self.findings.diagnostics.append(&mut since);
+    }
+
     /// True for the first fault in what is done at `span` at an occasion. A type's text is gone through for each
     /// variable of it, and is reported once.
     pub(in crate::check) fn is_first_fault(&mut self, span: Span, occasion: Occasion) -> bool {

@@ -38,6 +38,13 @@ impl Body<'_, '_> {
             to = self.context.filter(|wanted| wanted.is_integer()).unwrap_or(to);
         }
         let expr = match from {
+            Some(from) if to.is_integer() => {
+                let known = self.declarations.mark();
+                let value = self.coerce(operand, from.into());
+                // What becomes an integer again was meant to lose it.
+                self.declarations.forget_lost_fractions(known);
+                value?
+            }
             Some(from) => self.coerce(operand, from.into())?,
             None => self.settle(operand)?,
         };

@@ -116,6 +116,7 @@ impl Body<'_, '_> {
         if self.widens(found, wanted, expr.span) {
             self.warn_of_loss(&expr, found, wanted);
             self.warn_of_cut_product(&expr, found, wanted);
+            self.warn_of_lost_fraction(&expr, found, wanted);
             return Some(self.taken_as(expr, wanted));
         }
         if self.comes_of_narrower(&expr, wanted) {

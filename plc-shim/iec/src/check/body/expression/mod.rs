@@ -8,6 +8,7 @@ pub(super) mod dialect;
 pub(super) mod dtl;
 pub(super) mod enumeration;
 pub(super) mod limit;
+mod loss;
 pub(super) mod operator;
 mod register;
 

@@ -172,6 +172,7 @@ impl Body<'_, '_> {
         let folded = match (left, right) {
             (Operand::Text { .. }, _) | (_, Operand::Text { .. }) => return self.invalid_operands(left, right, span),
             (Operand::Integer { value: left, .. }, Operand::Integer { value: right, .. }) => {
+                self.warn_of_lost_fraction_of(operator, (*left, *right), span);
                 constant::integer(operator, *left, *right).map(|value| Operand::Integer { value, span })
             }
             _ if matches!(operator, Binary::Add | Binary::Subtract | Binary::Multiply | Binary::Divide) => {

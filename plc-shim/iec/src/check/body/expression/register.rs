@@ -119,34 +119,4 @@ impl Body<'_, '_> {
             self.report(found.with_help(format!("`TO_{ty}(..)` cuts it, on every target")));
         }
     }
-
-    /// Warns of a product that wraps in the type of its factors although what takes it is wider. CODESYS and TwinCAT
-    /// compute it in the registers of the target.
-    pub(in crate::check::body) fn warn_of_cut_product(
-        &mut self,
-        expr: &Expr,
-        found: ElementaryType,
-        wanted: ElementaryType,
-    ) {
-        let Some(product) = product_in(expr) else { return };
-        let is_wider = found.is_integer() && (wanted.is_real() || wanted.is_integer() && wanted.size() > found.size());
-        let is_cut = self.held_in_register(expr).is_none() && found.size() < ElementaryType::Lint.size();
-        if is_wider && is_cut {
-            let message = format!("this product is cut to {found} before it becomes {wanted}");
-            let report = Diagnostic::warning(Code::CutProduct, product.span, message);
-            self.report(report.with_help(format!("convert a factor, as in `{found}_TO_{wanted}(a) * b`")));
-        }
-    }
-}
-
-/// The product of variables that an expression of its type is or is made of, as in `raw * 1000 / span`.
-fn product_in(expr: &Expr) -> Option<&Expr> {
-    match &expr.kind {
-        ExprKind::Binary(Binary::Multiply, ..) => Some(expr),
-        ExprKind::Binary(Binary::Add | Binary::Subtract | Binary::Divide | Binary::Modulo, left, right) => {
-            product_in(left).or_else(|| product_in(right))
-        }
-        ExprKind::Unary(Unary::Negate, operand) => product_in(operand),
-        _ => None,
-    }
 }
