@@ -101,3 +101,24 @@ fn a_bit_has_no_address() {
         PROGRAM P VAR t : T; p : POINTER TO BYTE; END_VAR p := ADR(t.b); END_PROGRAM";
     assert!(findings_in(Dialect::Codesys, text).has_errors());
 }
+
+/// CODESYS and TwinCAT: C0203; the data type BIT is for individual variables of structures and function blocks.
+#[test]
+fn a_bit_stands_in_structures_and_blocks_only() {
+    let right = "TYPE T : STRUCT a, b : BIT; END_STRUCT END_TYPE
+        FUNCTION_BLOCK F VAR_INPUT i : BIT; END_VAR VAR b : BIT; t : T; END_VAR b := i; t.a := b; END_FUNCTION_BLOCK";
+    assert!(!findings_in(Dialect::Codesys, right).has_errors());
+    for wrong in [
+        "PROGRAM P VAR b : BIT; END_VAR b := TRUE; END_PROGRAM",
+        "FUNCTION F : BOOL VAR_INPUT b : BIT; END_VAR F := b; END_FUNCTION",
+        "VAR_GLOBAL b : BIT; END_VAR",
+        "FUNCTION_BLOCK F VAR b : ARRAY [0..7] OF BIT; END_VAR b[0] := TRUE; END_FUNCTION_BLOCK",
+        "TYPE T : STRUCT l : ARRAY [0..7] OF BIT; END_STRUCT END_TYPE",
+        "FUNCTION_BLOCK F VAR p : POINTER TO BIT; x : BOOL; END_VAR x := p <> 0; END_FUNCTION_BLOCK",
+    ] {
+        for dialect in [Dialect::Codesys, Dialect::TwinCat] {
+            let found = findings_in(dialect, wrong).to_string();
+            assert!(found.contains("error[D0407]: BIT is for single members"), "{dialect}: {wrong}: {found}");
+        }
+    }
+}

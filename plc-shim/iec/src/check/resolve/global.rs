@@ -13,6 +13,7 @@ impl<'a> Written<'_, 'a> {
         ast: &'a ast::Variable,
         qualifiers: &[Qualifier],
     ) -> Option<Variable> {
+        self.reject_bit(&ast.spec);
         let declared = self.declared(ast, Need::Size)?;
         let declared = self.set_from_outside(name, ast, declared)?;
         self.body.reject_open_array(declared.ty, name.span)?;

@@ -208,6 +208,9 @@ impl<'c, 'a> Interface<'c, 'a> {
         }
         let kind = if self.is_own_in_out(section) { SectionKind::Output } else { section.kind };
         let need = if kind == SectionKind::InOut { Need::Reference } else { Need::Size };
+        if !self.kind.has_instances() && section.kind != SectionKind::External {
+            self.written.reject_bit(&ast.spec);
+        }
         // Every name has the same type; an error in it is reported once.
         let declared = match self.written.generic_input(self.kind, section.kind, &ast.spec) {
             Some(generic) => generic,

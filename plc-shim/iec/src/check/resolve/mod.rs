@@ -8,12 +8,13 @@
 //! | [`written`], [`subrange`], [`structure`], [`union`] | types as written to types |
 //! | [`initial`], [`start`] | initial values to bytes, and to what a start adds |
 //! | [`instance_arguments`] | instances with arguments for their `FB_init` |
-//! | [`generic`] | inputs of generic types |
+//! | [`generic`], [`bit`] | inputs of generic types, where BIT may stand |
 //! | [`global`] | global variables |
 //! | [`interface`], [`storage`] | the sections of a unit to placed variables |
 //! | [`inherit`], [`keep`], [`chart`] | what a unit has from its base, for its methods, for its charts |
 //! | [`enable`], [`referred`] | EN and ENO, variables whose addresses are taken |
 
+mod bit;
 mod chart;
 mod enable;
 mod generic;

@@ -208,8 +208,7 @@ impl<'a> Written<'_, 'a> {
 
     /// True for a member of the vendors' type `BIT`: up to eight that follow each other share a byte.
     pub(super) fn is_bit(&self, member: &ast::Field) -> bool {
-        let is_named = |name: &Ident| name.key() == "BIT" && self.declarations().type_key("BIT").is_none();
-        member.address.is_none() && matches!(&member.spec.kind, ast::TypeSpecKind::Name(name) if is_named(name))
+        member.address.is_none() && self.is_bit_type(&member.spec)
     }
 
     /// Byte and bit of `%B4` or `%X3.0`. `%B` is for members of every type, as the standard's examples

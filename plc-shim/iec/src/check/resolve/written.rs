@@ -102,6 +102,7 @@ impl<'a> Written<'_, 'a> {
 
     /// A reference's target need not be known yet: structures refer to one another, and to themselves.
     fn reference_type(&mut self, kind: ast::ReferenceKind, target: &'a TypeSpec) -> Option<TypedImage<'a>> {
+        self.reject_bit(target);
         let reserved = match &target.kind {
             TypeSpecKind::Name(name) => {
                 let key = self.declarations().type_key(&name.key());
@@ -177,6 +178,7 @@ impl<'a> Written<'_, 'a> {
 
     fn array(&mut self, dimensions: &'a [ast::Dimension], element: &'a TypeSpec, span: Span) -> Option<TypedImage<'a>> {
         let bounds: Vec<_> = dimensions.iter().map(|each| self.dimension(each)).collect();
+        self.reject_bit(element);
         let (element, lists) = self.element_type(element)?;
         self.body.reject_open_array(element.ty, span)?;
         let bounds: Vec<Dimension> = bounds.into_iter().collect::<Option<_>>()?;
