@@ -77,14 +77,31 @@ fn warning(application: &Application, input: &OpenInput, foreign: &Foreign<'_>) 
         ([], _) => format!("nobody drives the input `{path}`"),
     };
     let name = path.rsplit('.').next().unwrap_or(path);
+    let can_be_signal = |part: &Variable| part.signal_type.is_some() && !is_reference(part);
     let help = match foreign.nearest(name) {
+        _ if !input.parts.iter().any(can_be_signal) => {
+            let ty = &input.variable.type_name;
+            format!("no signal is of type {ty}: give it a value in a unit that calls the program or assigns to its input")
+        }
         Some(near) if near.eq_ignore_ascii_case(name) => {
             format!("the signal `{near}` goes elsewhere: name the input under `bind` as well")
         }
         Some(near) => {
             format!("did you mean the signal `{near}`? Give both the same name, or name the input under `bind`")
         }
+        None if input.assigned.is_some() => {
+            "its own program assigns to it, and nobody else does: declare it under VAR".to_owned()
+        }
         None => "declare a signal of its name, or bind one to it under `bind`".to_owned(),
     };
-    Diagnostic::warning(Code::UndrivenInput, input.span, message).with_help(help)
+    let found = Diagnostic::warning(Code::UndrivenInput, input.span, message).with_help(help);
+    match input.assigned {
+        Some(place) => found.with_label(place, "assigned here"),
+        None => found,
+    }
+}
+
+/// True for what refers to another variable, which no signal can name.
+fn is_reference(part: &Variable) -> bool {
+    ["POINTER TO ", "REFERENCE TO ", "REF_TO "].iter().any(|kind| part.type_name.starts_with(kind))
 }

@@ -61,3 +61,21 @@ fn a_program_does_not_drive_its_own_input() {
         IF reset THEN n := 0; reset := FALSE; END_IF n := n + 1; END_PROGRAM";
     assert_eq!(open("a.exp", text), ["P.reset"]);
 }
+
+#[test]
+fn what_lies_in_the_input_area_inside_of_instances_is_open() {
+    let text = "TYPE Rack : STRUCT door AT %I* : BOOL; n : INT; END_STRUCT END_TYPE
+        FUNCTION_BLOCK Axis VAR home AT %I* : BOOL; fixed AT %IX7.0 : BOOL; n : INT; END_VAR
+        VAR_OUTPUT o : BOOL; END_VAR o := home AND fixed; END_FUNCTION_BLOCK
+        PROGRAM P VAR x : ARRAY [1..2] OF Axis; rack : Rack; lamp : BOOL; END_VAR
+        x[1](); x[2](); lamp := rack.door AND x[1].o; END_PROGRAM";
+    assert_eq!(open("a.exp", text), ["P.x[1].home", "P.x[1].fixed", "P.x[2].home", "P.rack.door"]);
+}
+
+#[test]
+fn a_structure_in_the_input_area_that_the_program_writes_is_not_open() {
+    let text = "TYPE Rack : STRUCT door AT %I* : BOOL; n : INT; END_STRUCT END_TYPE
+        VAR_GLOBAL rack : Rack; END_VAR
+        PROGRAM P VAR lamp : BOOL; END_VAR rack.door := TRUE; lamp := rack.door; END_PROGRAM";
+    assert_eq!(open("a.exp", text), [""; 0]);
+}

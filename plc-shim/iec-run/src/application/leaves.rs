@@ -90,7 +90,7 @@ impl Iterator for Leaves<'_> {
 
 impl Application {
     /// The way to the part at a position of a structure, array or instance.
-    fn part(&self, of: &Spot, at: u64) -> Option<Piece> {
+    pub(super) fn part(&self, of: &Spot, at: u64) -> Option<Piece> {
         let checked = &self.inner.checked;
         let index = usize::try_from(at).ok()?;
         match checked.types.get(of.ty) {

@@ -3,6 +3,7 @@
 mod builder;
 mod declaration;
 pub(crate) mod identity;
+mod inner_inputs;
 mod instance_path;
 mod leaves;
 mod namespace;

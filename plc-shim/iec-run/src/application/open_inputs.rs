@@ -4,12 +4,13 @@ use std::ops::Range;
 
 use onescan_iec::check::Checked;
 use onescan_iec::ir::{
-    ElementaryType, Location, Part, Place, PlaceUse, Statement, Step, Storage, Variable as Declared, place_uses,
+    ElementaryType, Location, Part, Place, PlaceUse, Pou, Statement, Step, Storage, Variable as Declared, place_uses,
 };
 use onescan_iec::syntax::Span;
 use onescan_iec::syntax::ast::SectionKind;
 use onescan_iec::syntax::direct_address::Area;
 
+use super::inner_inputs::{InnerInputs, is_at_input};
 use super::variable::{Spot, spot};
 use super::{Application, Variable};
 
@@ -25,6 +26,8 @@ pub struct OpenInput {
     pub parts: Vec<Variable>,
     /// How many such parts the variable has, written or not.
     pub part_count: usize,
+    /// Where its own program assigns to it, although it is an input.
+    pub assigned: Option<Span>,
 }
 
 /// Bytes of memory, or one bit of a byte.
@@ -54,7 +57,9 @@ impl Application {
             let inputs = variables.iter().filter(|variable| variable.section == SectionKind::Input);
             for variable in inputs.filter(|variable| !matches!(variable.storage, Storage::Located(_))) {
                 let found = spot(checked, name, variable, program.offset);
-                open.extend(found.and_then(|spot| self.open_input(spot, variable.span, &uses)));
+                let found = found.and_then(|spot| self.open_input(spot, variable.span, &uses));
+                let assigned = || checked.pous.get(&program.pou).and_then(|unit| assigned(checked, unit, variable));
+                open.extend(found.map(|found| OpenInput { assigned: assigned(), ..found }));
             }
         }
         self.add_located(&uses, &mut open);
@@ -64,13 +69,8 @@ impl Application {
     /// What is read of the input area: by the names of the variables located there, else by the address.
     fn add_located(&self, uses: &Uses, open: &mut Vec<OpenInput>) {
         let checked = &self.inner.checked;
-        let programs = checked.programs.iter().zip(self.entry_names()).flat_map(|(program, name)| {
-            let variables = checked.interfaces.get(&program.pou).map_or(&[][..], Vec::as_slice);
-            variables.iter().map(move |variable| (name, program.offset, variable))
-        });
-        let all = self.globals().map(|(home, global)| (home, 0, global)).chain(programs);
         let mut named: Vec<Bits> = Vec::new();
-        for (home, base, variable) in all.filter(|(.., variable)| is_at_input(variable)) {
+        for (home, base, variable) in self.all_variables().filter(|(.., variable)| is_at_input(variable)) {
             let Some(found) = spot(checked, home, variable, base) else { continue };
             let taken = bits(&self.describe(found.clone()));
             // Who reads what lies in an instance, as behind `AT %I*`, is not looked at.
@@ -87,6 +87,7 @@ impl Application {
                 open.extend(self.open_input(found, variable.span, uses));
             }
         }
+        self.add_inner(uses, &mut named, open);
         let mut seen: Vec<&Bits> = Vec::new();
         for (read, span) in &uses.read_inputs {
             if seen.contains(&read) || named.iter().any(|named| overlap(named, read)) {
@@ -98,21 +99,62 @@ impl Application {
         }
     }
 
+    /// The same of what lies inside of instances and structures; at one address once, however many instances name it.
+    fn add_inner(&self, uses: &Uses, named: &mut Vec<Bits>, open: &mut Vec<OpenInput>) {
+        let mut inner = InnerInputs::of(self);
+        for (home, base, variable) in self.all_variables().filter(|(.., variable)| is_whole(variable)) {
+            if let Some(whole) = spot(&self.inner.checked, home, variable, base) {
+                inner.add(&whole, variable.span);
+            }
+        }
+        for (found, declared) in inner.found {
+            let taken = bits(&self.describe(found.clone()));
+            let is_at_address = found.address.as_deref().is_some_and(|address| !address.contains('*'));
+            let is_read = uses.read_inputs.iter().any(|(read, _)| overlap(read, &taken));
+            if named.contains(&taken) {
+                continue;
+            }
+            named.push(taken);
+            if is_read || !is_at_address {
+                open.extend(self.open_input(found, declared, uses));
+            }
+        }
+    }
+
+    /// The global variables and those of programs, each with its home and where that begins.
+    fn all_variables(&self) -> impl Iterator<Item = (&str, u32, &Declared)> {
+        let checked = &self.inner.checked;
+        let programs = checked.programs.iter().zip(self.entry_names()).flat_map(|(program, name)| {
+            let variables = checked.interfaces.get(&program.pou).map_or(&[][..], Vec::as_slice);
+            variables.iter().map(move |variable| (name, program.offset, variable))
+        });
+        self.globals().map(|(home, global)| (home, 0, global)).chain(programs)
+    }
+
     fn open_input(&self, spot: Spot, span: Span, uses: &Uses) -> Option<OpenInput> {
         let variable = self.describe(spot.clone());
         let mut parts: Vec<Variable> = self.leaves_of(spot).collect();
         let part_count = parts.len();
         parts.retain(|leaf| !uses.written.iter().any(|written| overlap(written, &bits(leaf))));
-        (!parts.is_empty()).then_some(OpenInput { variable, span, parts, part_count })
+        (!parts.is_empty()).then_some(OpenInput { variable, span, parts, part_count, assigned: None })
     }
 }
 
-/// True for a variable at `%IX0.0`, or at `%I*`, whose place is not known.
-fn is_at_input(variable: &Declared) -> bool {
-    variable
-        .address
-        .as_deref()
-        .is_some_and(|address| address.get(..2).is_some_and(|area| area.eq_ignore_ascii_case("%I")))
+/// Where a unit assigns to its own input first.
+fn assigned(checked: &Checked, unit: &Pou, input: &Declared) -> Option<Span> {
+    let mut first = None;
+    place_uses(&unit.body, &checked.types, &mut |place, how| {
+        if how == PlaceUse::Write && place.storage == input.storage {
+            first = first.or(Some(place.span));
+        }
+    });
+    first
+}
+
+/// True for a variable of its own that is not an input as a whole.
+fn is_whole(variable: &Declared) -> bool {
+    let is_own = !matches!(variable.section, SectionKind::External | SectionKind::Input | SectionKind::InOut);
+    is_own && !is_at_input(variable)
 }
 
 fn bits(variable: &Variable) -> Bits {
