@@ -113,7 +113,7 @@ pub struct PlcReport {
 
 impl Diagnostic for PlcReport {
     fn related<'a>(&'a self) -> Option<Box<dyn Iterator<Item = &'a dyn Diagnostic> + 'a>> {
-        self.findings.related()
+        Some(Box::new(self.findings.errors()))
     }
 }
 

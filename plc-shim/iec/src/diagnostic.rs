@@ -276,6 +276,8 @@ pub struct Diagnostics {
     findings: Vec<Finding>,
     /// For people who read to the end; nothing if there is only one finding, or none.
     summary: Option<Summary>,
+    /// The same behind the errors alone.
+    errors_summary: Option<Summary>,
 }
 
 /// How many findings there are, as the last thing that is read.
@@ -307,7 +309,16 @@ impl Diagnostics {
         let both = [(errors, "error"), (warnings, "warning")].into_iter().filter(|(number, _)| *number > 0);
         let both: Vec<String> = both.map(|(number, word)| counted(number, word)).collect();
         let summary = (findings.len() > 1).then(|| Summary(both.join(", ")));
-        Self { findings, summary }
+        let others = if warnings > 0 { "; `onescan check` shows the warnings" } else { "" };
+        let errors_summary = summary.as_ref().map(|Summary(both)| Summary(format!("{both}{others}")));
+        Self { findings, summary, errors_summary }
+    }
+
+    /// What stops people who want to run the program: the errors, and how many warnings there are.
+    pub fn errors(&self) -> impl Iterator<Item = &dyn miette::Diagnostic> {
+        let is_error = |found: &&Finding| found.diagnostic.severity == Severity::Error;
+        let each = self.findings.iter().filter(is_error).map(|finding| finding as &dyn miette::Diagnostic);
+        each.chain(self.errors_summary.iter().map(|summary| summary as &dyn miette::Diagnostic))
     }
 
     /// As they are read: warnings first, so that the errors are the last that is seen.
@@ -487,6 +498,16 @@ impl miette::Diagnostic for Finding {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn who_wants_to_run_sees_errors_alone() {
+        let span = Span::new(crate::syntax::FileId(0), 0, 0);
+        let found =
+            [Diagnostic::warning(Code::UnusedVariable, span, "w"), Diagnostic::error(Code::UnknownName, span, "e")];
+        let found = Diagnostics::new(found.to_vec(), &SourceMap::default());
+        let said: Vec<String> = found.errors().map(ToString::to_string).collect();
+        assert_eq!(said, ["e", "1 error, 1 warning; `onescan check` shows the warnings"]);
+    }
 
     #[test]
     fn codes_are_unique() {

@@ -61,6 +61,6 @@ impl Exit for Box<SourcesReport> {
 
 impl miette::Diagnostic for SourcesReport {
     fn related<'a>(&'a self) -> Option<Box<dyn Iterator<Item = &'a dyn miette::Diagnostic> + 'a>> {
-        miette::Diagnostic::related(&self.findings)
+        Some(Box::new(self.findings.errors()))
     }
 }
