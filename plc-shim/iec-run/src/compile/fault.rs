@@ -63,7 +63,7 @@ impl fmt::Display for FaultKind {
             Self::IndexOutOfRange => "array index out of range",
             Self::SelectorOutOfRange => "selector out of range",
             Self::ZeroStep => "FOR with a step of 0",
-            Self::EndlessLoop => "endless loop",
+            Self::EndlessLoop => "endless or very long loop",
             Self::CallTooDeep => "calls nested too deep",
             Self::Internal => "internal error",
             Self::OutOfSubrange => "value out of subrange",
