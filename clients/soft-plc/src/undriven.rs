@@ -81,7 +81,9 @@ fn warning(application: &Application, input: &OpenInput, foreign: &Foreign<'_>) 
     let help = match foreign.nearest(name) {
         _ if !input.parts.iter().any(can_be_signal) => {
             let ty = &input.variable.type_name;
-            format!("no signal is of type {ty}: give it a value in a unit that calls the program or assigns to its input")
+            format!(
+                "no signal is of type {ty}: give it a value in a unit that calls the program or assigns to its input"
+            )
         }
         Some(near) if near.eq_ignore_ascii_case(name) => {
             format!("the signal `{near}` goes elsewhere: name the input under `bind` as well")

@@ -173,9 +173,10 @@ codes! {
     LoopVariableWritten "W0723" "the variable of a FOR loop is written in the loop",
     DecidedComparison "W0724" "a comparison is always TRUE or always FALSE",
     Overwritten "W0725" "a value is overwritten before anything reads it",
-    OutputWithTwoNames "W0726" "two variables at one output are both written",
+    OutputWithTwoNames "W0726" "one output is written under two names or by two programs",
     ConstantCondition "W0727" "a condition is TRUE or FALSE as it is written",
     AssignedToItself "W0728" "a variable is assigned to itself",
+    CounterWraps "W0729" "a counter wraps that is compared and never set back",
     CutText "W0730" "a function of strings takes or gives no more than 255 characters",
 }
 

@@ -258,6 +258,25 @@ PROGRAM B VAR two AT %QX0.0 : BOOL; n : BOOL; END_VAR n := two; END_PROGRAM";
 }
 
 #[test]
+fn one_output_that_two_programs_write() {
+    let said = |first: &str, second: &str| {
+        let text = format!(
+            "PROGRAM A VAR x, y : BOOL; END_VAR {first} x := y; END_PROGRAM
+PROGRAM B VAR x, y : BOOL; END_VAR {second} x := y; END_PROGRAM"
+        );
+        findings_in(Dialect::Iec3, &text).to_string()
+    };
+    insta::assert_snapshot!(said("%QX0.0 := y;", "%Q0.0 := NOT y;"), @"test.st:2:36: warning[W0726]: output `%Q0.0` is written by each call of `B` and of `A`: the last one wins (let one of them write it, and the others ask that one by variables of their own)");
+    assert_eq!(said("%QX0.0 := y;", "IF x THEN %QX0.0 := y; END_IF;"), "");
+    assert_eq!(said("%QX0.0 := y;", "%QX0.1 := y;"), "");
+    let global = "VAR_GLOBAL lamp AT %QX0.0 : BOOL; END_VAR
+PROGRAM A VAR_EXTERNAL lamp : BOOL; END_VAR lamp := TRUE; END_PROGRAM
+PROGRAM B VAR_EXTERNAL lamp : BOOL; END_VAR lamp := FALSE; END_PROGRAM";
+    let found = findings_in(Dialect::Iec3, global).to_string();
+    assert!(found.contains("W0707") && found.lines().count() == 1, "{found}");
+}
+
+#[test]
 fn conditions_that_are_constant_and_assignments_to_oneself() {
     insta::assert_snapshot!(all(
         Dialect::Iec3,
@@ -296,4 +315,31 @@ fn products_that_fit_are_not_cut() {
     ] {
         assert_eq!(said(cut), 1, "{cut}");
     }
+}
+
+#[test]
+fn a_counter_that_wraps() {
+    let at = |ty: &str, body: &str| {
+        let text = format!("PROGRAM P VAR n : {ty}; m : {ty}; x, q : BOOL; END_VAR {body} END_PROGRAM");
+        let plan = onescan_iec::TaskPlan::new(vec![crate::rig::task("main", 1000, 0, &["p"])]);
+        let input = onescan_iec::Input::from_text("test.st", onescan_iec::input::kind::SourceKind::Text, text);
+        let found = onescan_iec::inspect([input.in_dialect(Dialect::Codesys)], Some(&plan));
+        let found: Vec<_> = found.iter().filter(|each| each.code == onescan_iec::Code::CounterWraps).collect();
+        found.first().map_or_else(String::new, |each| each.message.clone())
+    };
+    assert_eq!(
+        at("INT", "n := n + 1; x := n > 100;"),
+        "`n` grows in each scan and is never set back: after 9 h 6 min it goes from 32767 to -32768"
+    );
+    assert_eq!(at("DINT", "n := n + 1; x := n > 100;"), "");
+    for quiet in [
+        "n := n + 1; m := n;",
+        "n := n + 1; IF n > 100 THEN n := 0; END_IF;",
+        "IF n < 100 THEN n := n + 1; END_IF; x := n > 5;",
+        "IF q THEN RETURN; END_IF; n := n + 1; x := n > 5;",
+        "n := m + 1; x := n > 5;",
+    ] {
+        assert_eq!(at("INT", quiet), "", "{quiet}");
+    }
+    assert_eq!(at("UINT", "n := n + 1; x := n > 100;"), "");
 }

@@ -20,6 +20,7 @@
 //! | [`decided`] | W0724, W0727 |
 //! | [`overwritten`] | W0725, W0728 |
 //! | [`shared_outputs`] | W0726 |
+//! | [`wrapping`] | W0729 |
 //!
 //! A warning that is wrong costs more trust than one that is missing: where names alone do not
 //! decide, nothing is said.
@@ -41,6 +42,7 @@ mod tasks;
 mod types;
 mod unused;
 mod usage;
+mod wrapping;
 mod zero_divisors;
 
 use self::bodies::Bodies;
@@ -81,17 +83,24 @@ fn lint(front: &Front, plan: Option<&TaskPlan>) -> Vec<Diagnostic> {
     tasks::lint(&units, &index, plan, &mut findings);
     attributes::lint(front, &mut findings);
     shared_outputs::lint(&units, &index, &mut findings);
-    lint_bodies(front, &index, &mut findings);
+    lint_bodies((front, plan), &units, &index, &mut findings);
     findings
 }
 
 /// Warnings that need types and places.
-fn lint_bodies<'a>(front: &'a Front, index: &Index<'a>, findings: &mut Vec<Diagnostic>) {
+fn lint_bodies<'a>(
+    (front, plan): (&'a Front, Option<&TaskPlan>),
+    units: &[Unit<'a>],
+    index: &Index<'a>,
+    findings: &mut Vec<Diagnostic>,
+) {
     let bodies = Bodies::new(front, index);
     zero_divisors::lint(&bodies, findings);
     counting::lint(&bodies, findings);
     decided::lint_comparisons(&bodies, findings);
     overwritten::lint(&bodies, findings);
+    shared_outputs::lint_programs(&bodies, findings);
+    wrapping::lint(front, units, &bodies, plan, findings);
 }
 
 /// A unit of the user's and what it does with names.

@@ -8,7 +8,7 @@ use crate::syntax::Span;
 
 impl Body<'_, '_> {
     /// Warns of a product that wraps in the type of its factors although what takes it is wider. CODESYS and TwinCAT
-    /// compute it in 64 bits.
+    /// compute it in the registers of the target.
     pub(in crate::check::body) fn warn_of_cut_product(
         &mut self,
         expr: &Expr,
