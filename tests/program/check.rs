@@ -77,7 +77,8 @@ fn a_dialect_is_reported_by_name_flag_and_scenario() {
 
 #[test]
 fn a_word_size_is_that_of_flag_text_and_scenario() {
-    let cut: &[u8] = b"PROGRAM Main VAR_OUTPUT o : LINT; END_VAR VAR_INPUT i : DINT; END_VAR o := i * 1000; END_PROGRAM\n";
+    let cut: &[u8] =
+        b"PROGRAM Main VAR_OUTPUT o : LINT; END_VAR VAR_INPUT i : DINT; END_VAR o := i * 1000; END_PROGRAM\n";
     let named = [b"{dialect 'codesys' 32}\n", cut].concat();
     let folder = folder(&[("wide.exp", cut), ("small.st", named.as_slice())]);
     let is_cut = |arguments: &[&str]| checked(folder.path(), arguments).out.contains("W0713");

@@ -124,5 +124,8 @@ fn a_loop_that_waits_within_a_scan_is_reported() {
     let said = scanned("thesis-serial.toml", "200s", &[]);
     assert_eq!(said.code, Some(3), "{said:?}");
     let reported = format!("{}{}", said.out, said.err);
-    assert!(reported.contains("endless or very long loop in PRG_Measure_serial at thesis/measure_serial.st:16:13"), "{reported}");
+    assert!(
+        reported.contains("endless or very long loop in PRG_Measure_serial at thesis/measure_serial.st:16:13"),
+        "{reported}"
+    );
 }

@@ -96,7 +96,7 @@ impl<'a> InnerInputs<'a> {
     }
 }
 
-/// True for what the unit itself has there; VAR_EXTERNAL names what is declared elsewhere.
+/// True for what the unit itself has there; `VAR_EXTERNAL` names what is declared elsewhere.
 fn is_own_input(variable: &Variable) -> bool {
     variable.section != SectionKind::External && is_at_input(variable)
 }

@@ -60,7 +60,9 @@ fn statement(kind: &StatementKind, reader: &mut dyn Reader) {
         }
         StatementKind::For(turns) => {
             place(&turns.variable, reader);
-            [&turns.from, &turns.to, &turns.by].into_iter().for_each(|value| expression(value, reader));
+            for value in [&turns.from, &turns.to, &turns.by] {
+                expression(value, reader);
+            }
             branch(&turns.body, reader);
         }
         StatementKind::While(condition, body) | StatementKind::Repeat(body, condition) => {
@@ -108,7 +110,9 @@ fn expression(expr: &Expr, reader: &mut dyn Reader) {
         ExprKind::Call(call) => function(call, reader),
         ExprKind::After(statements, value) => {
             read(statements, reader);
-            value.iter().for_each(|value| expression(value, reader));
+            for value in value {
+                expression(value, reader);
+            }
         }
         ExprKind::Cast(cast) => expression(&cast.reference, reader),
     }

@@ -77,7 +77,9 @@ impl Writes<'_> {
         for statement in statements {
             match &statement.kind {
                 StatementKind::If(branches, otherwise) => {
-                    branches.iter().for_each(|branch| self.list(&branch.body));
+                    for branch in branches {
+                        self.list(&branch.body);
+                    }
                     self.list(otherwise);
                 }
                 StatementKind::Case(case) => {
