@@ -8,7 +8,6 @@ pub mod expr;
 mod memory_limit;
 pub mod place_use;
 pub mod pou;
-pub mod reading;
 pub mod statement;
 pub mod text;
 pub mod types;
@@ -27,7 +26,6 @@ pub use expr::{
 pub use memory_limit::{MemoryLimit, MemoryLimitError};
 pub use place_use::{PlaceUse, place_uses};
 pub use pou::{EdgeDetection, Guard, Pou, PouId, Retention, Variable, Visibility};
-pub use reading::{Reader, read};
 pub use statement::{
     CaseArm, CaseStatement, ForStatement, IfBranch, InstanceCall, LabelId, Labelled, Statement, StatementKind,
 };

@@ -1,17 +1,42 @@
-//! Every expression of checked statements, for those who look at values and not at places.
+//! Every statement and expression of a body, in the order in which it runs.
 
 use super::expr::{Argument, Expr, ExprKind, FunctionCall, Place, Step};
 use super::statement::{Statement, StatementKind};
 
-/// Looks at expressions; [`children`] leads on.
+/// Looks at the parts of a body; what it does not care for it leaves out.
 pub trait Visitor {
-    fn expression(&mut self, expr: &Expr);
+    /// A statement, before its parts.
+    fn statement(&mut self, _statement: &Statement) {}
+    /// An expression, before its parts.
+    fn expression(&mut self, _expr: &Expr) {}
+    /// True if the parts of each expression are shown as well; else [`children`] leads on.
+    fn goes_into_expressions(&self) -> bool {
+        true
+    }
+    /// What follows runs on a condition, or more than once.
+    fn enter(&mut self) {}
+    /// That ends.
+    fn leave(&mut self) {}
 }
 
-/// Shows `visitor` the expressions of the statements, those within other expressions not.
+/// Shows `visitor` each of the statements, and what is inside of them.
 pub fn statements(list: &[Statement], visitor: &mut dyn Visitor) {
     for each in list {
+        visitor.statement(each);
         statement(&each.kind, visitor);
+    }
+}
+
+fn branch(list: &[Statement], visitor: &mut dyn Visitor) {
+    visitor.enter();
+    statements(list, visitor);
+    visitor.leave();
+}
+
+fn expression(expr: &Expr, visitor: &mut dyn Visitor) {
+    visitor.expression(expr);
+    if visitor.goes_into_expressions() {
+        children(expr, visitor);
     }
 }
 
@@ -19,45 +44,45 @@ fn statement(kind: &StatementKind, visitor: &mut dyn Visitor) {
     match kind {
         StatementKind::Assign(target, value) | StatementKind::Copy(target, value) => {
             place(target, visitor);
-            visitor.expression(value);
+            expression(value, visitor);
         }
         StatementKind::Bind(target, shared) => {
             place(target, visitor);
             place(shared, visitor);
         }
         StatementKind::Initialise(target, _) => place(target, visitor),
-        StatementKind::Evaluate(value) => visitor.expression(value),
+        StatementKind::Evaluate(value) => expression(value, visitor),
         StatementKind::CallInstance(call) => {
             place(&call.instance, visitor);
             statements(&call.inputs, visitor);
             statements(&call.outputs, visitor);
         }
         StatementKind::If(branches, otherwise) => {
-            for branch in branches {
-                visitor.expression(&branch.condition);
-                statements(&branch.body, visitor);
+            for each in branches {
+                expression(&each.condition, visitor);
+                branch(&each.body, visitor);
             }
-            statements(otherwise, visitor);
+            branch(otherwise, visitor);
         }
         StatementKind::Case(case) => {
-            visitor.expression(&case.selector);
-            case.arms.iter().for_each(|arm| statements(&arm.body, visitor));
-            statements(&case.otherwise, visitor);
+            expression(&case.selector, visitor);
+            case.arms.iter().for_each(|arm| branch(&arm.body, visitor));
+            branch(&case.otherwise, visitor);
         }
         StatementKind::For(turns) => {
             place(&turns.variable, visitor);
             for value in [&turns.from, &turns.to, &turns.by] {
-                visitor.expression(value);
+                expression(value, visitor);
             }
-            statements(&turns.body, visitor);
+            branch(&turns.body, visitor);
         }
         StatementKind::While(condition, body) | StatementKind::Repeat(body, condition) => {
-            visitor.expression(condition);
-            statements(body, visitor);
+            expression(condition, visitor);
+            branch(body, visitor);
         }
         StatementKind::Labelled(labelled) => {
-            statements(&labelled.first, visitor);
-            labelled.parts.iter().for_each(|(_, part)| statements(part, visitor));
+            branch(&labelled.first, visitor);
+            labelled.parts.iter().for_each(|(_, part)| branch(part, visitor));
         }
         StatementKind::Exit
         | StatementKind::Continue
@@ -75,34 +100,41 @@ pub fn children(expr: &Expr, visitor: &mut dyn Visitor) {
         ExprKind::Unary(_, operand)
         | ExprKind::Convert(_, operand)
         | ExprKind::FromRegister(operand)
-        | ExprKind::Limited(_, _, operand) => visitor.expression(operand),
+        | ExprKind::Limited(_, _, operand) => expression(operand, visitor),
         ExprKind::Binary(_, left, right) => {
-            visitor.expression(left);
-            visitor.expression(right);
+            expression(left, visitor);
+            expression(right, visitor);
         }
-        ExprKind::Conditional(parts) => parts.iter().for_each(|part| visitor.expression(part)),
-        ExprKind::Intrinsic(_, operands) => operands.iter().for_each(|operand| visitor.expression(operand)),
+        ExprKind::Conditional(parts) => {
+            let [condition, then, otherwise] = &**parts;
+            expression(condition, visitor);
+            visitor.enter();
+            expression(then, visitor);
+            expression(otherwise, visitor);
+            visitor.leave();
+        }
+        ExprKind::Intrinsic(_, operands) => operands.iter().for_each(|operand| expression(operand, visitor)),
         ExprKind::Text(call) => {
-            call.operands.iter().for_each(|operand| visitor.expression(operand));
+            call.operands.iter().for_each(|operand| expression(operand, visitor));
             call.target.iter().for_each(|target| place(target, visitor));
         }
         ExprKind::Call(call) => function(call, visitor),
         ExprKind::After(before, value) => {
             statements(before, visitor);
             if let Some(value) = value {
-                visitor.expression(value);
+                expression(value, visitor);
             }
         }
-        ExprKind::Cast(cast) => visitor.expression(&cast.reference),
+        ExprKind::Cast(cast) => expression(&cast.reference, visitor),
     }
 }
 
 fn function(call: &FunctionCall, visitor: &mut dyn Visitor) {
     statements(&call.before, visitor);
-    call.receiver.iter().for_each(|receiver| visitor.expression(&receiver.instance));
+    call.receiver.iter().for_each(|receiver| expression(&receiver.instance, visitor));
     for argument in &call.arguments {
         match argument {
-            Argument::Value(value) => visitor.expression(value),
+            Argument::Value(value) => expression(value, visitor),
             Argument::Reference(shared) => place(shared, visitor),
         }
     }
@@ -113,15 +145,15 @@ fn function(call: &FunctionCall, visitor: &mut dyn Visitor) {
 fn place(of: &Place, visitor: &mut dyn Visitor) {
     for step in &of.steps {
         match step {
-            Step::Pointer { address, .. } => visitor.expression(address),
+            Step::Pointer { address, .. } => expression(address, visitor),
             Step::Offset(_) => {}
             Step::Open { description, indices, .. } => {
                 place(description, visitor);
                 for index in indices {
-                    visitor.expression(index);
+                    expression(index, visitor);
                 }
             }
-            Step::Index { index, .. } => visitor.expression(index),
+            Step::Index { index, .. } => expression(index, visitor),
         }
     }
 }

@@ -2,15 +2,16 @@
 
 use super::bodies::Bodies;
 use crate::diagnostic::{Code, Diagnostic};
+use crate::ir::walk::{self, Visitor};
 use crate::ir::{
-    Argument, Expr, ExprKind, ForStatement, FunctionCall, InstanceCall, Place, Pou, Reader, Statement, StatementKind,
-    Step, Storage, Value, read,
+    Argument, Expr, ExprKind, ForStatement, FunctionCall, InstanceCall, Place, Pou, Statement, StatementKind, Step,
+    Storage, Value,
 };
 use crate::syntax::Span;
 
 pub(super) fn lint(bodies: &Bodies<'_>, findings: &mut Vec<Diagnostic>) {
     for body in bodies.iter() {
-        read(&body.checked.body, &mut Loops { bodies, findings });
+        walk::statements(&body.checked.body, &mut Loops { bodies, findings });
     }
 }
 
@@ -19,7 +20,7 @@ struct Loops<'a, 'f> {
     findings: &'f mut Vec<Diagnostic>,
 }
 
-impl Reader for Loops<'_, '_> {
+impl Visitor for Loops<'_, '_> {
     fn statement(&mut self, statement: &Statement) {
         if let StatementKind::For(turns) = &statement.kind {
             self.never_runs(turns);
@@ -93,10 +94,10 @@ impl Writes<'_> {
                 StatementKind::While(_, body) | StatementKind::Repeat(body, _) => self.list(body),
                 StatementKind::Assign(target, _) => {
                     self.written(target, "is written inside of it");
-                    read(std::slice::from_ref(statement), &mut Calls(self));
+                    walk::statements(std::slice::from_ref(statement), &mut Calls(self));
                 }
                 StatementKind::CallInstance(call) => self.instance(call),
-                _ => read(std::slice::from_ref(statement), &mut Calls(self)),
+                _ => walk::statements(std::slice::from_ref(statement), &mut Calls(self)),
             }
         }
     }
@@ -144,7 +145,7 @@ impl Writes<'_> {
 /// Functions are called inside of expressions.
 struct Calls<'w, 'a>(&'w mut Writes<'a>);
 
-impl Reader for Calls<'_, '_> {
+impl Visitor for Calls<'_, '_> {
     fn expression(&mut self, expr: &Expr) {
         if let ExprKind::Call(call) = &expr.kind {
             self.0.function(call);
@@ -165,7 +166,7 @@ fn is_same(one: &Place, other: &Place) -> bool {
 /// True if a unit itself assigns to what its caller hands it.
 fn writes(unit: &Pou, parameter: Storage) -> bool {
     struct Targets(Storage, bool);
-    impl Reader for Targets {
+    impl Visitor for Targets {
         fn statement(&mut self, statement: &Statement) {
             let target = match &statement.kind {
                 StatementKind::Assign(target, _) | StatementKind::Copy(target, _) => target,
@@ -176,6 +177,6 @@ fn writes(unit: &Pou, parameter: Storage) -> bool {
         }
     }
     let mut targets = Targets(parameter, false);
-    read(&unit.body, &mut targets);
+    walk::statements(&unit.body, &mut targets);
     targets.1
 }

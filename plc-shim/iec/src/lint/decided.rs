@@ -3,14 +3,14 @@
 use super::bodies::Bodies;
 use super::endless::literal;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::ir::{Binary, ElementaryType, Expr, ExprKind, Reader, Value, read};
+use crate::ir::{Binary, ElementaryType, Expr, ExprKind, Value};
 use crate::syntax::ast::{self, StatementKind};
 use crate::syntax::walk::{self, Visitor};
 
 /// Comparisons with a number that no value of a type reaches, or that all reach.
 pub(super) fn lint_comparisons(bodies: &Bodies<'_>, findings: &mut Vec<Diagnostic>) {
     for body in bodies.iter() {
-        read(&body.checked.body, &mut Comparisons { bodies, findings });
+        crate::ir::walk::statements(&body.checked.body, &mut Comparisons { bodies, findings });
     }
 }
 
@@ -26,7 +26,7 @@ struct Range {
     high: i128,
 }
 
-impl Reader for Comparisons<'_, '_> {
+impl crate::ir::walk::Visitor for Comparisons<'_, '_> {
     fn expression(&mut self, expr: &Expr) {
         let ExprKind::Binary(operator, left, right) = &expr.kind else { return };
         let number = |side| self.bodies.literal(side).and_then(Value::as_int);

@@ -2,14 +2,13 @@
 
 use super::bodies::{Bodies, Body};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::ir::{
-    ElementaryType, Expr, ExprKind, Place, PlaceUse, Reader, Statement, StatementKind, Step, Storage, place_uses, read,
-};
+use crate::ir::walk::{self, Visitor};
+use crate::ir::{ElementaryType, Expr, ExprKind, Place, PlaceUse, Statement, StatementKind, Step, Storage, place_uses};
 use crate::syntax::ast::{SectionKind, Variable};
 
 pub(super) fn lint(bodies: &Bodies<'_>, findings: &mut Vec<Diagnostic>) {
     for body in bodies.iter() {
-        read(&body.checked.body, &mut Itself { bodies, findings });
+        walk::statements(&body.checked.body, &mut Itself { bodies, findings });
         // What a chart makes of its steps is not a list that runs from its beginning to its end.
         let viewed =
             body.pou.sections.iter().flat_map(|section| &section.variables).any(|each| each.viewed().is_some());
@@ -24,7 +23,7 @@ struct Itself<'a, 'f> {
     findings: &'f mut Vec<Diagnostic>,
 }
 
-impl Reader for Itself<'_, '_> {
+impl Visitor for Itself<'_, '_> {
     fn statement(&mut self, statement: &Statement) {
         let (StatementKind::Assign(target, value) | StatementKind::Copy(target, value)) = &statement.kind else {
             return;
@@ -115,7 +114,7 @@ fn may_look_at(statement: &Statement, place: &Place, bodies: &Bodies<'_>) -> boo
         looks |= how != PlaceUse::Write && (is_elsewhere || may_meet(used, place));
     });
     let mut calls = Opaque { bodies, found: false };
-    read(std::slice::from_ref(statement), &mut calls);
+    walk::statements(std::slice::from_ref(statement), &mut calls);
     looks || calls.found
 }
 
@@ -133,7 +132,7 @@ impl Opaque<'_> {
     }
 }
 
-impl Reader for Opaque<'_> {
+impl Visitor for Opaque<'_> {
     fn statement(&mut self, statement: &Statement) {
         match &statement.kind {
             StatementKind::CallInstance(call) => self.calls(call.pou),

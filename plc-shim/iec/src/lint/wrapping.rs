@@ -4,9 +4,9 @@ use super::Unit;
 use super::bodies::{Bodies, Body};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::front::Front;
+use crate::ir::walk::{self, Visitor};
 use crate::ir::{
-    Binary, ElementaryType, Expr, ExprKind, Place, PlaceUse, Reader, Statement, StatementKind, Storage, Type, Value,
-    place_uses, read,
+    Binary, ElementaryType, Expr, ExprKind, Place, PlaceUse, Statement, StatementKind, Storage, Type, Value, place_uses,
 };
 use crate::syntax::ast::PouKind;
 use crate::task_plan::TaskPlan;
@@ -68,14 +68,14 @@ fn interval_of(program: &str, front: &Front, plan: Option<&TaskPlan>) -> Option<
 /// True if what follows is not reached in each call.
 fn leaves(statement: &Statement) -> bool {
     struct Ends(bool);
-    impl Reader for Ends {
+    impl Visitor for Ends {
         fn statement(&mut self, statement: &Statement) {
             let kind = &statement.kind;
             self.0 |= matches!(kind, StatementKind::Return | StatementKind::Jump(_) | StatementKind::Labelled(_));
         }
     }
     let mut ends = Ends(false);
-    read(std::slice::from_ref(statement), &mut ends);
+    walk::statements(std::slice::from_ref(statement), &mut ends);
     ends.0
 }
 
@@ -115,7 +115,7 @@ fn is_for_ever(body: &Body<'_>, counter: &Place, bodies: &Bodies<'_>) -> bool {
         writes += u32::from(how != PlaceUse::Read && place.storage == counter.storage);
     });
     let mut compared = Compared { counter, found: false };
-    read(&body.checked.body, &mut compared);
+    walk::statements(&body.checked.body, &mut compared);
     writes == 1 && compared.found
 }
 
@@ -124,7 +124,7 @@ struct Compared<'a> {
     found: bool,
 }
 
-impl Reader for Compared<'_> {
+impl Visitor for Compared<'_> {
     fn expression(&mut self, expr: &Expr) {
         let ExprKind::Binary(operator, left, right) = &expr.kind else { return };
         let by_size = matches!(operator, Binary::Less | Binary::LessEqual | Binary::Greater | Binary::GreaterEqual);

@@ -2,11 +2,12 @@
 
 use super::bodies::Bodies;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::ir::{Binary, Expr, ExprKind, Reader, Value, read};
+use crate::ir::walk::{self, Visitor};
+use crate::ir::{Binary, Expr, ExprKind, Value};
 
 pub(super) fn lint(bodies: &Bodies<'_>, findings: &mut Vec<Diagnostic>) {
     for body in bodies.iter() {
-        read(&body.checked.body, &mut Divisions { bodies, depth: 0, findings });
+        walk::statements(&body.checked.body, &mut Divisions { bodies, depth: 0, findings });
     }
 }
 
@@ -17,7 +18,7 @@ struct Divisions<'a, 'f> {
     findings: &'f mut Vec<Diagnostic>,
 }
 
-impl Reader for Divisions<'_, '_> {
+impl Visitor for Divisions<'_, '_> {
     fn enter(&mut self) {
         self.depth += 1;
     }

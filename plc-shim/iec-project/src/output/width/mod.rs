@@ -76,6 +76,11 @@ struct Writer<'w> {
 }
 
 impl Visitor for Writer<'_> {
+    /// What an expression is made of depends on what becomes of it.
+    fn goes_into_expressions(&self) -> bool {
+        false
+    }
+
     fn expression(&mut self, expr: &Expr) {
         if !(self.is_concerned)(expr.span.file) {
             return walk::children(expr, self);
