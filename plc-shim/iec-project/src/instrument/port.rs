@@ -7,7 +7,7 @@ use super::plain::Plain;
 use super::target::Target;
 use super::{InstrumentError, Options, Project, attach, codesys, matiec, scl_port};
 use crate::output::Refused;
-use crate::output::width::{self, Way};
+use crate::output::width::{self, Fronts, Way};
 use onescan_iec::diagnostic::{Code, Diagnostic, Diagnostics};
 use onescan_iec::dialect::{Dialect, IntegerWidth, WordSize};
 use onescan_iec::front::{Front, with_room};
@@ -49,11 +49,22 @@ pub(super) fn with_conversions(plain: &mut Plain, inputs: &[Input], target: Targ
         Way::ToRegisters => input.for_words(WordSize::Bits64),
         Way::ToOperands => input,
     };
+    let reader = match target {
+        Target::Scl => Dialect::SiemensScl,
+        Target::OpenPlc | Target::Beremiz => Dialect::Matiec,
+        Target::Codesys | Target::Iec | Target::TwinCat => Dialect::Codesys,
+    };
     let texts: Vec<Input> = plain.texts().map(as_read).collect();
+    let owns = texts.iter().cloned().map(|text| {
+        let dialect = own(text.file().name());
+        text.read_as(dialect, None)
+    });
+    let owns: Vec<Input> = owns.collect();
     let found = with_room(|| {
-        let front = Front::new(texts);
+        let theirs = texts.into_iter().map(|text| text.in_dialect(reader));
+        let fronts = Fronts { own: Front::new(owns), theirs: Front::new(theirs) };
         // What is wrong with it is reported where it is translated.
-        (!front.has_errors()).then(|| width::explicit(&front, way, &is_concerned))
+        (!fronts.of_registers(way).has_errors()).then(|| width::explicit(&fronts, way, &is_concerned))
     });
     let Some(found) = found else { return Ok(()) };
     plain.change(found.map_err(|refused| refused_widths(plain, refused))?)

@@ -122,6 +122,23 @@ fn what_makes_no_difference_stays() {
     }
 }
 
+/// Initial values are computed as well.
+#[test]
+fn computed_initial_values_are_numbers() {
+    let text = "VAR_GLOBAL CONSTANT K : INT := 300; END_VAR
+        PROGRAM P VAR a : DINT := K * 1000; b : DINT := K + 1; c : LREAL := K * 1000; d : INT := (K * 200) / 2; END_VAR
+        b := b + 1; END_PROGRAM";
+    for (from, target, reader) in WAYS {
+        let mut rig = Rig::of_input(input(from, text));
+        rig.scan().expect("it runs");
+        let project = ported(input(from, text), target).unwrap_or_else(|refused| panic!("{from}: {refused}"));
+        let plc = run(&project, reader, WordSize::Bits64);
+        for name in ["a", "c", "d"] {
+            assert_eq!(bytes(&plc, name), bytes(&rig.plc, name), "{from} to {target:?}: {name}\n{}", text_of(&project));
+        }
+    }
+}
+
 /// The targets iec and twincat leave the author's files to the tool that they are of.
 #[test]
 fn files_that_stay_carry_none() {

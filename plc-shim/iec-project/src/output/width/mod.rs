@@ -7,7 +7,9 @@
 //! | module | subject |
 //! |---|---|
 //! | [`tree`] | operations in registers, and the values they can have |
+//! | [`initial`] | initial values that are computed |
 
+mod initial;
 mod tree;
 
 use std::collections::BTreeMap;
@@ -29,20 +31,49 @@ pub(crate) enum Way {
     ToRegisters,
 }
 
+/// A project, checked twice.
+pub(crate) struct Fronts {
+    /// As its author means it.
+    pub(crate) own: Front,
+    /// The same text as the target reads it.
+    pub(crate) theirs: Front,
+}
+
+impl Fronts {
+    /// The one that shows what registers hold.
+    pub(crate) fn of_registers(&self, way: Way) -> &Front {
+        match way {
+            Way::ToOperands => &self.own,
+            Way::ToRegisters => &self.theirs,
+        }
+    }
+}
+
 /// The changes of the files of a checked project that `is_concerned`.
 ///
 /// # Errors
 /// Places that cannot be written so.
 pub(crate) fn explicit(
-    front: &Front,
+    fronts: &Fronts,
     way: Way,
     is_concerned: &dyn Fn(FileId) -> bool,
 ) -> Result<BTreeMap<FileId, Edits>, Vec<Refused>> {
+    let front = fronts.of_registers(way);
     let types = &front.checked.types;
     let mut writer =
         Writer { types, sources: &front.sources, way, is_concerned, done: BTreeMap::new(), refused: Vec::new() };
     for pou in front.checked.pous.values().chain(&front.checked.start) {
         walk::statements(&pou.body, &mut writer);
+    }
+    match initial::changed(&fronts.own, &fronts.theirs) {
+        Ok(changes) => {
+            let concerned = changes.into_iter().filter(|(span, _)| is_concerned(span.file));
+            for (span, change) in concerned {
+                let noted = writer.note(span, vec![change]);
+                writer.refused.extend(noted.err());
+            }
+        }
+        Err(refused) => writer.refused.push(refused),
     }
     let Writer { done, refused, .. } = writer;
     if !refused.is_empty() {
