@@ -139,6 +139,16 @@ fn computed_initial_values_are_numbers() {
     }
 }
 
+/// A list has no place for a conversion of what is computed so far.
+#[test]
+fn instruction_lists_that_differ_are_refused() {
+    let list =
+        |behind: &str| format!("PROGRAM P\nVAR a, b : INT; c : INT; END_VAR\nLD a\nADD b\n{behind}ST c\nEND_PROGRAM\n");
+    assert!(ported(input(Dialect::Iec3, &list("")), Target::Codesys).is_ok());
+    let refused = ported(input(Dialect::Iec3, &list("DIV 2\n")), Target::Codesys).expect_err("it differs");
+    assert!(refused.contains("an instruction list that goes beyond"), "{refused}");
+}
+
 /// The targets iec and twincat leave the author's files to the tool that they are of.
 #[test]
 fn files_that_stay_carry_none() {

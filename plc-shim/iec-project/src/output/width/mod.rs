@@ -20,7 +20,8 @@ use onescan_iec::front::Front;
 use onescan_iec::ir::walk::{self, Visitor};
 use onescan_iec::ir::{Binary, ElementaryType as E, Expr, ExprKind, TypeTable};
 use onescan_iec::source::edits::Edits;
-use onescan_iec::syntax::{FileId, SourceMap, Span};
+use onescan_iec::syntax::ast::{Declaration, Statement, StatementKind};
+use onescan_iec::syntax::{self, FileId, SourceMap, Span};
 
 /// Where a text goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -60,8 +61,15 @@ pub(crate) fn explicit(
 ) -> Result<BTreeMap<FileId, Edits>, Vec<Refused>> {
     let front = fronts.of_registers(way);
     let types = &front.checked.types;
-    let mut writer =
-        Writer { types, sources: &front.sources, way, is_concerned, done: BTreeMap::new(), refused: Vec::new() };
+    let mut writer = Writer {
+        types,
+        sources: &front.sources,
+        way,
+        is_concerned,
+        lists: instructions(front),
+        done: BTreeMap::new(),
+        refused: Vec::new(),
+    };
     for pou in front.checked.pous.values().chain(&front.checked.start) {
         walk::statements(&pou.body, &mut writer);
     }
@@ -89,6 +97,28 @@ pub(crate) fn explicit(
     Ok(edits)
 }
 
+/// Where instructions stand.
+fn instructions(front: &Front) -> Vec<Span> {
+    struct Lists(Vec<Span>);
+    impl syntax::walk::Visitor for Lists {
+        fn statement(&mut self, statement: &Statement) {
+            if matches!(statement.kind, StatementKind::Instruction(_)) {
+                self.0.push(statement.span);
+            }
+        }
+    }
+    let mut lists = Lists(Vec::new());
+    for declaration in front.units.iter().flat_map(|(_, unit)| &unit.declarations) {
+        if let Declaration::Pou(pou) = declaration {
+            syntax::walk::unit(pou, &mut lists);
+            for member in &pou.object.members {
+                syntax::walk::unit(&member.pou, &mut lists);
+            }
+        }
+    }
+    lists.0
+}
+
 /// What comes in the place of a part of a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct Change {
@@ -101,6 +131,8 @@ struct Writer<'w> {
     sources: &'w SourceMap,
     way: Way,
     is_concerned: &'w dyn Fn(FileId) -> bool,
+    /// Instructions, in which no conversion can be put around an operand.
+    lists: Vec<Span>,
     /// Changes by the place of what they belong to, the outer one first: a text may be checked more than once.
     done: BTreeMap<(FileId, u32, std::cmp::Reverse<u32>), Vec<Change>>,
     refused: Vec<Refused>,
@@ -144,6 +176,13 @@ impl Writer<'_> {
     fn note(&mut self, span: Span, changes: Vec<Change>) -> Written<()> {
         if changes.is_empty() {
             return Ok(());
+        }
+        let is_in = |list: &Span| list.file == span.file && (list.start..list.end).contains(&span.start);
+        if self.lists.iter().any(is_in) {
+            return Err(Refused {
+                span,
+                message: "an instruction list that goes beyond its operands' type".to_owned(),
+            });
         }
         let key = (span.file, span.start, std::cmp::Reverse(span.end));
         match self.done.get(&key) {
@@ -361,8 +400,8 @@ fn conversions(types: &[E], wanted: E) -> (String, usize) {
     let mut way: Vec<E> = Vec::new();
     for ty in types.iter().copied().chain([wanted]) {
         // A type on the way that holds every value of the one before changes nothing.
-        if way.len() > 1
-            && way.iter().rev().take(2).collect::<Vec<_>>().windows(2).all(|pair| holds(*pair[0], *pair[1]))
+        if let [.., before, last] = way[..]
+            && holds(last, before)
         {
             way.pop();
         }
