@@ -19,7 +19,7 @@ fn given(settings: &str) -> [i64; 2] {
     std::fs::write(folder.path().join("scenario.toml"), text).expect("written");
     std::fs::write(folder.path().join("a.st"), SOURCE).expect("written");
     let scenario = Scenario::load(folder.path()).unwrap_or_else(|error| panic!("{error}"));
-    let name: ClientName = "plc".parse().expect("a name");
+    let name = ClientName::new("plc").expect("a name");
     let compiled = scenario.compiled_plc(&name).unwrap_or_else(|error| panic!("{error}")).expect("a soft PLC");
     let served = scenario.instrumented(&name, Mode::Lockstep).unwrap_or_else(|error| panic!("{error}"));
     [&compiled.application, &served.application].map(scanned)
