@@ -103,6 +103,14 @@ pub(crate) const SCRIPTS: &[Script] = &[
         not_on_windows: Some("it expects the environment of Python in `bin`"),
     },
     Script {
+        name: "foreign",
+        file: "tests/foreign/compare",
+        language: Language::Python,
+        about: "test suites of other compilers and whole foreign projects, from a folder that you fetched",
+        time: "minutes per suite",
+        not_on_windows: None,
+    },
+    Script {
         name: "platforms",
         file: "tests/platforms",
         language: Language::Bash,

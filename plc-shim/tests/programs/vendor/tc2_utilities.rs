@@ -211,6 +211,23 @@ fn times() {
     );
 }
 
+/// The text and its number are those of the test of the timestamp in `TcUnit`'s advanced example.
+#[test]
+fn distributed_clocks() {
+    hold(
+        Dialect::TwinCat,
+        "moment : Tc2_EtherCAT.T_DCTIME64 := 16#07C76560A71025C0; parts : DCTIMESTRUCT;",
+        "parts := DCTIME64_TO_DCTIMESTRUCT(moment);",
+        &[
+            "DCTIME64_TO_STRING(in := moment) = '2017-10-05-14:15:44.425035200'",
+            "STRING_TO_DCTIME64('2017-10-05-14:15:44.425035200') = moment",
+            "parts.wDayOfWeek = 4 AND parts.wMilliseconds = 425 AND parts.wMicroseconds = 35 AND parts.wNanoseconds = 200",
+            "DCTIME64_TO_STRING(Tc2_EtherCAT.F_GetCurDcTaskTime64()) = '2000-01-01-00:00:00.010000000'",
+            "F_GetCurDcTickTime64() = F_GetCurDcTaskTime64() AND F_GetActualDcTime64() = F_GetCurDcTaskTime64()",
+        ],
+    );
+}
+
 #[test]
 fn records_in_a_ring() {
     let text = "
