@@ -1,6 +1,7 @@
 """A case of a foreign suite: a program, what is written into it and when, and the values that its authors want."""
 
 import dataclasses
+import datetime
 import json
 import pathlib
 import re
@@ -40,6 +41,9 @@ class Case:
     interval_ms: int = SCAN_MS
     # Names of an enumeration's values, in the order of the declaration: a suite may want numbers.
     ordinals: dict = dataclasses.field(default_factory=dict)
+    # Numbers that the suite has for a ms of TIME, and for a s of DATE and DT: machines keep times differently.
+    per_ms: float = 1
+    per_s: float = 1
     # The suite wants the program refused, or stopped by a fault.
     refused: bool = False
     unreadable: str = ""
@@ -85,9 +89,9 @@ def write_scenario(case, folder):
         f'[clients.plc]\nkind = "soft-plc"\nsources = ["program.st"]\ndialect = "{case.dialect}"\n'
         f'tasks = [{{ name = "task", interval = "{interval}", programs = ["{case.program}"] }}]\n')
     if case.writes:
-        (folder / "cases.toml").write_text('[[case]]\nname = "case"\n' + "".join(
+        (folder / "cases.toml").write_text('version = 1\n\n[[case]]\nname = "case"\n' + "".join(
             f'\n[[case.variable]]\nvariable = "{write.path}"\nvalue = {json.dumps(write.value)}\n'
-            f'at = "{(write.scan - 1) * case.interval_ms}ms"\n' for write in case.writes))
+            f'at = "{write.scan * case.interval_ms}ms"\n' for write in case.writes))
 
 
 def first_message(text):
@@ -116,7 +120,7 @@ def compared(case, seen):
         values = [value for since, value in seen.get(expected.path, []) if since <= end]
         if not values:
             return Outcome("unreadable", f"{expected.path} was not watched")
-        ours = number(values[-1], case.ordinals)
+        ours = number(values[-1], case)
         if not equal(ours, expected.value, expected.tolerance):
             differences.append(f"{expected.path} after scan {expected.scan}: wanted {expected.value!r}, was {values[-1]}")
     return Outcome("other values", "; ".join(differences[:4])) if differences else Outcome("equal")
@@ -136,12 +140,15 @@ def equal(ours, wanted, tolerance):
 UNITS = {"d": 86_400_000, "h": 3_600_000, "m": 60_000, "s": 1000, "ms": 1, "us": 1e-3, "ns": 1e-6}
 
 
-def number(literal, ordinals=None):
-    """The value of a literal as onescan writes it: times in ms, dates as they are, text without quotes."""
+DAY_S = 86_400
+
+
+def number(literal, case):
+    """The value of a literal as onescan writes it, in the suite's units; text without quotes."""
     text = literal.strip()
     name = text.rpartition("#")[2]
-    if ordinals and name.upper() in ordinals:
-        return ordinals[name.upper()]
+    if name.upper() in case.ordinals:
+        return case.ordinals[name.upper()]
     if text in ("TRUE", "FALSE"):
         return int(text == "TRUE")
     if text[:1] in "'\"":
@@ -150,7 +157,15 @@ def number(literal, ordinals=None):
     if time:
         parts = re.findall(r"([\d.]+)(ms|us|ns|d|h|m|s)", time[2])
         total = sum(float(count) * UNITS[unit] for count, unit in parts)
-        return -total if time[1] else total
+        return case.per_ms * (-total if time[1] else total)
+    moment = re.fullmatch(r"(?:L?TOD|L?TIME_OF_DAY)#(\d+):(\d+):([\d.]+)", text)
+    if moment:
+        return case.per_ms * 1000 * (int(moment[1]) * 3600 + int(moment[2]) * 60 + float(moment[3]))
+    date = re.fullmatch(r"(?:L?D|L?DT|L?DATE|L?DATE_AND_TIME)#(\d+)-(\d+)-(\d+)(?:-(\d+):(\d+):([\d.]+))?", text)
+    if date:
+        days = (datetime.date(*map(int, date.groups()[:3])) - datetime.date(1970, 1, 1)).days
+        hours, minutes, seconds = (float(part or 0) for part in date.groups()[3:])
+        return case.per_s * (days * DAY_S + hours * 3600 + minutes * 60 + seconds)
     based = re.fullmatch(r"(?:\w+#)?(-?)(2|8|16)#([0-9A-Fa-f_]+)", text)
     if based:
         return int(based[1] + based[3].replace("_", ""), int(based[2]))

@@ -157,13 +157,13 @@ READS = [
 def statements(body, known, one_scan, source):
     """The writes, rounds and asserts of a body, in their order."""
     steps = [("run", 0)] if one_scan else []
-    names = r"vm\.run_round|vm\.write_variable|assert_eq|assert|read_string"
+    names = r"vm\.run_round|vm\.write_variable(?:_raw)?|assert_eq|assert|read_string"
     if re.search(r"\bfor \w+ in\b", body):
         raise ValueError("a loop")
     for name, arguments, _ in rust_text.calls(body, names):
         if name.endswith("run_round"):
             steps.append(("run", rust_text.value(arguments[0])))
-        elif name.endswith("write_variable"):
+        elif "write_variable" in name:
             steps.append(("write", int(re.search(r"\d+", arguments[0])[0]), rust_text.value(arguments[1])))
         elif name == "assert_eq":
             steps.append(assertion(*arguments[:2], known, source))
@@ -234,19 +234,25 @@ def built(name, source, options, steps):
     tick = tick_of(source, steps)
     start = next(step[1] for step in steps if step[0] == "run")
     scan = 0
+    pending = []
     for step in steps:
         if step[0] == "run":
             scan = (step[1] - start) // tick + 1 if tick else scan + 1
+            # Where time matters there are scans between theirs, which must not see the value yet.
+            case.writes += [Write(scan, path, value) for path, value in pending]
+            pending = []
         elif step[0] == "text":
             case.expected.append(Expected(texts[step[1]][0], step[2], 0.0, scan))
         elif step[1] >= len(slots):
             return Case(name, unreadable="a slot that has no name")
+        elif step[-1 if step[0] == "write" else 2] is None:
+            return Case(name, unreadable="a value that needs Rust")
         elif step[0] == "write":
             path, kind = slots[step[1]]
-            case.writes.append(Write(scan + 1, path, literal(step[2], kind)))
+            pending.append((path, literal(step[2], kind)))
         else:
             path, kind = slots[step[1]]
-            if step[2] is None or kind.upper().startswith(("STRING", "WSTRING")):
+            if kind.upper().startswith(("STRING", "WSTRING")):
                 return Case(name, unreadable="a value that is not a number")
             case.expected.append(Expected(path, narrowed(step[2], kind), step[3], scan))
     case.scans = max(scan, 1)

@@ -13,6 +13,7 @@
 
 import collections
 import concurrent.futures
+import json
 import pathlib
 import re
 import shutil
@@ -22,7 +23,9 @@ import tempfile
 from case import first_message
 
 LIMIT_S = 300
-LEFT_OUT = {"node_modules", ".git", ".apax"}
+# Errors of a project that are printed.
+SHOWN = 6
+LEFT_OUT = {"node_modules", ".git", ".apax", "build"}
 
 
 def found(folder):
@@ -50,7 +53,7 @@ def kind_of(path):
         return "PLCopen XML" if not (path.parent / "plc.xml").exists() else None
     if path.name == "apax.yml":
         return "SIMATIC AX" if any(path.parent.rglob("*.st")) else None
-    if suffix == ".st" and not (path.parent / "plc.xml").exists() and path.parent.parent.name != "build" and path.parent.name != "build":
+    if suffix == ".st" and not (path.parent / "plc.xml").exists():
         return "ST"
     return {".scl": "SCL", ".exp": "CODESYS 2.3"}.get(suffix)
 
@@ -72,6 +75,7 @@ class Result:
     def __init__(self, kind, path):
         self.kind, self.path = kind, path
         self.alone = self.stubs = self.instrumented = self.restored = None
+        self.is_library = False
         self.said = ""
 
 
@@ -87,29 +91,31 @@ def judged(kind, path, program):
                 shutil.rmtree(tests, ignore_errors=True)
         project = copy if path.is_dir() else copy / path.name
         own = ["--dialect", "codesys"] if kind == "ST" else []
-        done = onescan(program, "check", project, *own)
+        done = onescan(program, "check", project, "--format", "json", *own)
         result.alone = done.returncode == 0
+        extra = []
         if not result.alone:
             stubs = copy / "libraries"
             onescan(program, "check", project, f"--write-stubs={stubs}", *own)
             extra = [stubs] if stubs.exists() and kind not in ("TwinCAT",) and not project.is_dir() else []
-            done = onescan(program, "check", project, *extra, *own)
+            done = onescan(program, "check", project, *extra, "--format", "json", *own)
             result.said = last_errors(done)
         result.stubs = done.returncode == 0
         if result.stubs:
-            round_trip(kind, project, copy, result, program)
+            round_trip(kind, project, copy, [*own, *extra], result, program)
     return result
 
 
-def round_trip(kind, project, copy, result, program):
-    """`instrument` in place, check, and `--remove`: every file must have its bytes again."""
+def round_trip(kind, project, copy, extra, result, program):
+    """`instrument` in place, check, and `--remove`: every file must have its bytes again. A library has no PROGRAM to instrument."""
     before = contents(copy)
     target = {"TwinCAT": ["--target", "twincat"], "SCL": ["--target", "scl"], "PLCopen XML": ["--target", "codesys"]}.get(kind, [])
     done = onescan(program, "instrument", project, "--in-place", *target)
     if done.returncode:
-        result.instrumented, result.said = False, last_errors(done)
+        result.said = last_errors(done)
+        result.is_library = "no PROGRAM" in result.said or "no tasks" in result.said
         return
-    after = onescan(program, "check", project)
+    after = onescan(program, "check", project, *extra, "--format", "json")
     result.instrumented = after.returncode == 0 or kind == "SCL"
     if not result.instrumented:
         result.said = "instrumented, it does not check: " + last_errors(after)
@@ -133,11 +139,17 @@ def onescan(program, *arguments):
 
 
 def last_errors(done):
-    """Which codes of errors there are, how often, and the first sentences."""
-    plain = re.sub(r"\x1b\[[0-9;]*m", "", done.stdout + done.stderr)
-    errors = re.findall(r"^\S*(?:error|×).*$|^error\[.*$", plain, re.MULTILINE)
-    codes = collections.Counter(re.findall(r"\b([A-VX-Z]\d{4})\b", plain))
-    return f"{dict(codes.most_common(5))} {' | '.join(errors[:3])}"[:400] if codes else first_message(plain)
+    """The errors of `check`, as JSON: how often each code, and the first sentences; else what was said."""
+    errors = []
+    for line in done.stdout.splitlines():
+        if line.startswith("{") and '"severity":"error"' in line:
+            finding = json.loads(line)
+            errors.append((finding.get("code"), finding.get("message"), finding.get("file"), finding.get("line")))
+    if not errors:
+        return first_message(done.stdout + done.stderr)
+    codes = collections.Counter(code for code, *_ in errors)
+    first = [f"{code} {message} ({pathlib.Path(file or '').name}:{line})" for code, message, file, line in errors[:SHOWN]]
+    return f"{sum(codes.values())} errors {dict(codes.most_common(6))}: " + " | ".join(first)
 
 
 def report(folder, program, only, jobs):
@@ -147,12 +159,14 @@ def report(folder, program, only, jobs):
         for result in pool.map(lambda project: judged(*project, program), projects):
             row = table[result.kind]
             row["projects"] += 1
+            row["libraries"] += result.is_library
             for name in ("alone", "stubs", "instrumented", "restored"):
                 row[name] += bool(getattr(result, name))
-            if not (result.stubs and result.instrumented and result.restored):
+            if not (result.stubs and (result.is_library or result.instrumented and result.restored)):
                 state = "refused" if not result.stubs else "not instrumented" if not result.instrumented else "not restored"
                 print(f"{state:<16} {result.kind} {result.path.relative_to(folder)}: {result.said}", flush=True)
-    print("\n| format | projects | check alone | with stubs | instrumented | restored to the byte |\n|---|---|---|---|---|---|")
+    print("\n| format | projects | check alone | with stubs | of these without PROGRAM | instrumented | restored to the byte |")
+    print("|---|---|---|---|---|---|---|")
     for kind, row in sorted(table.items()):
-        print(f"| {kind} | " + " | ".join(str(row[name]) for name in ("projects", "alone", "stubs", "instrumented", "restored")) + " |")
+        print(f"| {kind} | " + " | ".join(str(row[name]) for name in ("projects", "alone", "stubs", "libraries", "instrumented", "restored")) + " |")
     return 0

@@ -1,8 +1,8 @@
 """STruC++'s validation: pairs `NAME.st` and `test_NAME.st` below `tests/st-validation`, and its example of a traffic light.
 
 Its tests are ST with `TEST 'name' … END_TEST`, `ASSERT_EQ`, `ASSERT_NEAR` and `ADVANCE_TIME`, and call PROGRAMs as if they
-were function blocks. Each becomes a test program of `onescan test`: PROGRAM becomes FUNCTION_BLOCK with all variables to be
-read, and what follows an `ADVANCE_TIME` waits so many scans of 1 ms.
+were function blocks. Each becomes a test program of `onescan test`: PROGRAM becomes FUNCTION_BLOCK whose variables are
+inputs, and what follows an `ADVANCE_TIME` waits so many scans of 1 ms.
 """
 
 import json
@@ -44,10 +44,11 @@ def tests(prefix, source, text):
 
 
 def opened(source):
-    """PROGRAMs that can be declared, and whose variables can be read."""
+    """PROGRAMs that can be declared, and whose variables can be read and written."""
     def open_program(found):
-        inner = re.sub(r"\bVAR\b(?!_)(?!\s+CONSTANT)", "VAR_OUTPUT", found[2], flags=re.IGNORECASE)
+        inner = re.sub(r"\bVAR\b(?!_)(?!\s+CONSTANT)", "VAR_INPUT", found[2], flags=re.IGNORECASE)
         return f"FUNCTION_BLOCK {found[1]}{inner}END_FUNCTION_BLOCK"
+    source = iec_text.without_comments(source)
     source = re.sub(r"\bCONFIGURATION\b.*?\bEND_CONFIGURATION\b", "", source, flags=re.DOTALL | re.IGNORECASE)
     return re.sub(r"\bPROGRAM\s+(\w+)(.*?)\bEND_PROGRAM\b", open_program, source, flags=re.DOTALL | re.IGNORECASE)
 
@@ -93,12 +94,17 @@ def run(case, program):
         return Outcome("equal")
     if done.returncode == 1:
         return Outcome("other values", failures(done.stdout))
-    return Outcome("refused", first_message(done.stdout + done.stderr))
+    return Outcome("refused", first_message(reported(done.stdout) + done.stderr))
+
+
+def reported(text):
+    """What was said of the source, out of the JSON."""
+    lines = [json.loads(line) for line in text.splitlines() if line.startswith("{")]
+    return "\n".join(str(line.get("error") or line.get("message") or "") for line in lines)
 
 
 def failures(text):
-    """What `onescan test` says of the test that failed."""
-    for line in text.splitlines():
-        if line.startswith("{") and "TEST_harness" in line:
-            return line[:400]
-    return text[-300:]
+    """The asserts that failed, by name and phase."""
+    lines = [json.loads(line) for line in text.splitlines() if line.startswith("{")]
+    asserts = [failed["text"] for line in lines for failed in line.get("asserts", [])]
+    return ", ".join(asserts) or text[-300:]
