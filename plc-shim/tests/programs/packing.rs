@@ -95,10 +95,20 @@ fn a_bit_of_a_union_is_the_lowest_of_its_byte() {
     assert_eq!((rig.bool("P.was"), rig.int("P.t.byte")), (false, 2));
 }
 
+/// `TcUnit` and others of its kind compare values of any type through a union with a BIT.
 #[test]
-fn a_bit_has_no_address() {
-    let text = "TYPE T : STRUCT a, b : BIT; END_STRUCT END_TYPE
-        PROGRAM P VAR t : T; p : POINTER TO BYTE; END_VAR p := ADR(t.b); END_PROGRAM";
+fn the_address_of_a_bit_is_that_of_its_byte() {
+    let types = "TYPE T : STRUCT n : INT; a, b : BIT; END_STRUCT END_TYPE
+        TYPE Seen : UNION flag : BIT; byte : BYTE; END_UNION END_TYPE
+        FUNCTION Filled : Seen VAR_INPUT src : POINTER TO BYTE; END_VAR MEMCPY(ADR(Filled.flag), src, 1); END_FUNCTION";
+    let rig = rig(
+        Dialect::TwinCat,
+        types,
+        "t : T; p : POINTER TO BYTE; was, one : BYTE := 1; s : Seen;",
+        "t.b := TRUE; p := ADR(t.b); was := p^; s := Filled(ADR(one));",
+    );
+    assert_eq!((rig.int("P.was"), rig.int("P.s.byte")), (2, 1));
+    let text = "PROGRAM P VAR w : WORD; p : POINTER TO BYTE; END_VAR p := ADR(w.3); END_PROGRAM";
     assert!(findings_in(Dialect::Codesys, text).has_errors());
 }
 

@@ -57,7 +57,14 @@ impl Body<'_, '_> {
     }
 
     fn address_of(&mut self, argument: &ast::Expr, span: Span) -> Option<Operand> {
-        let place = self.place(argument)?.place;
+        let mut place = self.place(argument)?.place;
+        // Of a BIT of a structure or union the tools give the address of its byte (CODESYS with the warning C0355).
+        if matches!(argument.kind, ast::ExprKind::Member(..))
+            && place.part.is_some_and(|part| part.whole == ElementaryType::Byte)
+        {
+            place.part = None;
+            place.ty = ElementaryType::Byte.into();
+        }
         self.require_address(&place, argument.span)?;
         let ty = self.declarations.types_mut().reference(None, place.ty);
         Some(Operand::Typed(Expr { kind: ExprKind::Address(place), ty, span }))
