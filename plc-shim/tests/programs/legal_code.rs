@@ -230,3 +230,16 @@ fn a_method_called_by_pointer_or_reference_is_that_of_the_instance() {
         22,
     );
 }
+
+/// The 3rd edition's own example of arrays of variable length (6.5.3), which `RuSTy` tests.
+#[test]
+fn a_repetition_of_repetitions() {
+    gives(
+        ALL,
+        "PROGRAM P VAR a : ARRAY [1..20, -2..2] OF INT := [20(5(1))]; b : ARRAY [0..6] OF INT := [2(3(7)), 5]; r : DINT; END_VAR
+           r := INT_TO_DINT(a[20, 2]) * 1000 + INT_TO_DINT(b[5]) * 100 + INT_TO_DINT(b[6]); END_PROGRAM",
+        1705,
+    );
+    let text = "PROGRAM P VAR a : ARRAY [0..5] OF INT := [2(4(7))]; END_VAR a[0] := a[1]; END_PROGRAM";
+    assert!(findings_in(Iec3, text).has_errors());
+}

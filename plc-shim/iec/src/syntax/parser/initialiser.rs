@@ -3,7 +3,7 @@
 use super::cursor::Cursor;
 use crate::dialect::Feature;
 use crate::syntax::ast::{
-    Expr, ExprKind, Initialiser, InitialiserKind, ReferenceKind, StructureInit, TypeSpec, TypeSpecKind,
+    Expr, ExprKind, Initialiser, InitialiserKind, Literal, ReferenceKind, StructureInit, TypeSpec, TypeSpecKind,
 };
 use crate::syntax::token::{Punctuation, TokenKind};
 
@@ -84,17 +84,34 @@ impl Cursor<'_> {
 
     fn array_element(&mut self) -> Initialiser {
         let start = self.span();
-        let repeated = self.peek() == Some(TokenKind::Integer)
-            && self.peek_ahead(1) == Some(TokenKind::Punctuation(Punctuation::LeftParen));
-        if !repeated && !self.at_named_count() {
+        if !self.at_number_of_elements() && !self.at_named_count() {
             return self.initialiser();
         }
-        let count = Box::new(self.count());
+        let mut count = Box::new(self.count());
         self.advance();
-        let absent = self.at_mark(Punctuation::RightParen);
-        let value = if absent { None } else { Some(Box::new(self.initialiser())) };
+        let value = match self.peek() {
+            Some(TokenKind::Punctuation(Punctuation::RightParen)) => None,
+            // `20(5(1))`, as the 3rd edition writes it for two dimensions (6.5.3), is `100(1)`.
+            Some(TokenKind::Integer) if self.at_number_of_elements() => {
+                let inner = self.nested(Self::array_element);
+                match inner.map(|inner| (inner.kind, inner.span)) {
+                    Some((InitialiserKind::Repeat(times, value), _)) => {
+                        count = Box::new(product(*count, &times));
+                        value
+                    }
+                    other => other.map(|(kind, span)| Box::new(Initialiser { kind, span })),
+                }
+            }
+            _ => Some(Box::new(self.initialiser())),
+        };
         self.expect_mark(Punctuation::RightParen);
         Initialiser { kind: InitialiserKind::Repeat(count, value), span: self.span_from(start) }
+    }
+
+    /// `5(`
+    fn at_number_of_elements(&self) -> bool {
+        self.peek() == Some(TokenKind::Integer)
+            && self.peek_ahead(1) == Some(TokenKind::Punctuation(Punctuation::LeftParen))
     }
 
     /// `count((member := ..))`, `List.count([1, 2])`: a constant says how many structures or arrays there are (CODESYS,
@@ -139,4 +156,14 @@ impl Cursor<'_> {
         self.expect_mark(Punctuation::RightParen);
         InitialiserKind::Struct(members)
     }
+}
+
+/// A count of counts. A product beyond all numbers is as far too great as the greatest.
+fn product(outer: Expr, inner: &Expr) -> Expr {
+    let (ExprKind::Literal(Literal::Integer(left)), ExprKind::Literal(Literal::Integer(right))) =
+        (&outer.kind, &inner.kind)
+    else {
+        return outer;
+    };
+    Expr { kind: ExprKind::Literal(Literal::Integer(left.saturating_mul(*right))), ..outer }
 }
