@@ -75,6 +75,31 @@ fn a_dialect_is_reported_by_name_flag_and_scenario() {
     assert!(said.code == Some(2) && said.err.contains("`s7` is not a dialect"), "{said:?}");
 }
 
+/// As `OpenPLC` Editor leaves its folder after a build: the program is there three times.
+#[test]
+fn what_beremiz_generates_is_passed_over() {
+    let xml = br#"<?xml version="1.0" encoding="utf-8"?>
+<project xmlns="http://www.plcopen.org/xml/tc6_0201"><fileHeader companyName="" productName="" productVersion="1"
+ creationDateTime="2026-01-01T00:00:00"/><contentHeader name="x"><coordinateInfo><fbd><scaling x="1" y="1"/></fbd>
+<ld><scaling x="1" y="1"/></ld><sfc><scaling x="1" y="1"/></sfc></coordinateInfo></contentHeader><types><dataTypes/><pous>
+<pou name="Main" pouType="program"><interface><outputVars><variable name="o"><type><INT/></type></variable></outputVars>
+</interface><body><ST><xhtml xmlns="http://www.w3.org/1999/xhtml">o := o + 1;</xhtml></ST></body></pou></pous></types>
+<instances><configurations/></instances></project>"#;
+    let files: [(&str, &[u8]); 5] = [
+        ("plc.xml", xml),
+        ("beremiz.xml", b"<BeremizRoot/>"),
+        ("exported.st", CLEAN),
+        ("build/plc.st", CLEAN),
+        ("build/generated_plc.st", CLEAN),
+    ];
+    let project = folder(&files);
+    let said = checked(project.path(), &["."]);
+    assert_eq!(said.code, Some(0), "{said:?}");
+    assert!(said.out.contains("3 generated files passed over"), "{said:?}");
+    // Without Beremiz' own file they are sources as any others.
+    assert_eq!(checked(folder(&[files[0], files[2]]).path(), &["."]).code, Some(2));
+}
+
 #[test]
 fn a_word_size_is_that_of_flag_text_and_scenario() {
     let cut: &[u8] =

@@ -6,7 +6,7 @@ use std::rc::Rc;
 
 use onescan_base::regular::{self, Limit};
 use onescan_iec::input::found::Found;
-use onescan_iec::input::kind::{EXTENSIONS, FileKind, is_other_program};
+use onescan_iec::input::kind::{EXTENSIONS, FileKind, SourceKind, is_other_program};
 use onescan_iec::input::needed;
 use onescan_iec::input::project;
 use onescan_iec::{Code, Dialect, Input, MemoryLimit, TaskPlan, WordSize};
@@ -156,6 +156,8 @@ enum Reason {
     InstrumentedProject,
     /// It holds a program in a form that is not read.
     OtherProgram,
+    /// Beremiz or `OpenPLC` Editor made it of the project's `plc.xml`, and it declares the same once more.
+    Generated,
 }
 
 /// What a folder holds.
@@ -226,6 +228,7 @@ impl Files {
                 Reason::OtherXml => counts.other_xml += 1,
                 Reason::InstrumentedProject => counts.instrumented_projects += 1,
                 Reason::OtherProgram => counts.other_programs += 1,
+                Reason::Generated => counts.generated += 1,
             }
         }
         counts
@@ -287,6 +290,9 @@ impl Files {
         if let Some(project) = entries.iter().find(is_project) {
             return self.file(project, FileKind::Project);
         }
+        if is_beremiz_project(path) {
+            self.leave_out_generated(&mut entries)?;
+        }
         let (entries, sources) = self.entries(entries)?;
         for entry in entries {
             match entry {
@@ -295,6 +301,25 @@ impl Files {
                     self.left_out.insert(Identity::of(&path), Reason::InstrumentedProject);
                 }
                 Entry::Source(path, found) => self.source(&path, found),
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes out of the entries of a project of Beremiz what was made of its `plc.xml`: program text beside it, and `build`.
+    fn leave_out_generated(&mut self, entries: &mut Vec<PathBuf>) -> Result<(), CheckError> {
+        let is_build = |path: &Path| path.is_dir() && path.file_name().is_some_and(|name| name == "build");
+        let is_text = |path: &Path| FileKind::of(path) == Some(FileKind::Source(SourceKind::Text)) && path.is_file();
+        let (generated, kept) = entries.drain(..).partition(|path: &PathBuf| is_build(path) || is_text(path));
+        *entries = kept;
+        let mut unread: Vec<PathBuf> = generated;
+        while let Some(path) = unread.pop() {
+            if path.is_dir() && !path.is_symlink() {
+                for entry in std::fs::read_dir(&path).map_err(Unreadable::at(&path))? {
+                    unread.push(entry.map_err(Unreadable::at(&path))?.path());
+                }
+            } else if is_text(&path) {
+                self.left_out.insert(Identity::of(&path), Reason::Generated);
             }
         }
         Ok(())
@@ -333,6 +358,11 @@ impl Files {
         }
         Ok((entries, sources))
     }
+}
+
+/// True for a folder as Beremiz and `OpenPLC` Editor have it: they compile its `plc.xml`, and nothing beside it.
+fn is_beremiz_project(folder: &Path) -> bool {
+    folder.join("plc.xml").is_file() && folder.join("beremiz.xml").is_file()
 }
 
 fn is_task(path: &Path) -> bool {

@@ -17,6 +17,9 @@ pub struct PassedOver {
     /// PLC programs in a form that is not read, by their names.
     #[serde(skip_serializing_if = "is_none")]
     pub other_programs: usize,
+    /// Program text that Beremiz or `OpenPLC` Editor made of the project's `plc.xml`.
+    #[serde(skip_serializing_if = "is_none")]
+    pub generated: usize,
 }
 
 #[allow(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
@@ -38,6 +41,7 @@ impl fmt::Display for PassedOver {
             (self.other_xml, "other XML file"),
             (self.instrumented_projects, "instrumented project"),
             (self.other_programs, "program file of another kind"),
+            (self.generated, "generated file"),
         ];
         let kinds = kinds.into_iter().filter(|(count, _)| *count > 0).map(|(count, word)| plural(count, word));
         write!(f, "{} passed over", kinds.collect::<Vec<_>>().join(" and "))
@@ -65,6 +69,8 @@ mod tests {
         assert_eq!(serde_json::to_string(&one).unwrap(), "{\"other_xml\":1}");
         let programs = PassedOver { other_xml: 1, other_programs: 2, ..PassedOver::default() };
         assert_eq!(programs.to_string(), "1 other XML file and 2 program files of another kind passed over");
+        let generated = PassedOver { generated: 2, ..PassedOver::default() };
+        assert_eq!(generated.to_string(), "2 generated files passed over");
         assert!(PassedOver::default().is_empty() && !one.is_empty());
     }
 }
