@@ -91,6 +91,7 @@ impl<'a> Collector<'a> {
                 let found = self.foreign(&key);
                 found.base_of_interface |= is_interface;
                 found.base_of_block |= !is_interface;
+                found.base_of_class |= unit.pou.kind == PouKind::Class;
             }
         }
         for base in &unit.pou.object.implements {

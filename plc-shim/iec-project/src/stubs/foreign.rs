@@ -93,6 +93,8 @@ pub(super) struct Foreign {
     /// So many inputs are given without names.
     pub(super) inputs: usize,
     pub(super) base_of_block: bool,
+    /// A CLASS extends it, which extends classes alone.
+    pub(super) base_of_class: bool,
     pub(super) base_of_interface: bool,
     pub(super) base_of_structure: bool,
     pub(super) implemented: bool,

@@ -8,7 +8,7 @@ use super::ty::Ty;
 use super::world::{VALUE, has_value};
 use onescan_iec::ElementaryType;
 use onescan_iec::check::{is_list, joined};
-use onescan_iec::syntax::ast::{Expr, ExprKind, Ident};
+use onescan_iec::syntax::ast::{Expr, ExprKind, Ident, ReferenceKind};
 
 /// What is done to a place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -229,9 +229,12 @@ impl<'a> Collector<'a> {
                 self.slots.use_parts(slot);
                 Ty::Unknown
             }
-            Ty::Pointer(onescan_iec::syntax::ast::ReferenceKind::Reference, inner) => {
-                self.member(&inner, name, access, inside)
-            }
+            Ty::Pointer(ReferenceKind::Reference, inner) => self.member(&inner, name, access, inside),
+            Ty::Any => match name.key().as_str() {
+                "PVALUE" => Ty::Pointer(ReferenceKind::Pointer, Box::new(Ty::Elementary(ElementaryType::Byte))),
+                "DISIZE" => Ty::Elementary(ElementaryType::Dint),
+                _ => Ty::Unknown,
+            },
             _ => Ty::Unknown,
         }
     }

@@ -172,7 +172,8 @@ impl Printer<'_, '_> {
             Shape::Block => {
                 let (above, members) = (self.above(key, found, " IMPLEMENTS "), self.block_members(key, found));
                 let constants = generic_constants(found.constants);
-                format!("{{external}}\nFUNCTION_BLOCK {name}{constants}{above}\n{members}END_FUNCTION_BLOCK\n")
+                let kind = if found.base_of_class { "CLASS" } else { "FUNCTION_BLOCK" };
+                format!("{{external}}\n{kind} {name}{constants}{above}\n{members}END_{kind}\n")
             }
         }
     }
@@ -307,7 +308,10 @@ impl Printer<'_, '_> {
             if lines.is_empty() { lines } else { format!("{word}\n{lines}END_VAR\n") }
         };
         let constants = section("VAR CONSTANT", constants);
-        [section("VAR_INPUT", inputs), section("VAR_OUTPUT", outputs), constants, others].concat()
+        // A class has neither inputs nor outputs.
+        let (input, output) =
+            if found.base_of_class { ("VAR PUBLIC", "VAR PUBLIC") } else { ("VAR_INPUT", "VAR_OUTPUT") };
+        [section(input, inputs), section(output, outputs), constants, others].concat()
     }
 
     fn interface_members(&self, key: &str, found: &Foreign) -> String {

@@ -97,6 +97,26 @@ PROGRAM P VAR t : FB_Test; END_VAR t(); t.Run(); END_PROGRAM"
     ));
 }
 
+/// As projects of SIMATIC AX have their bases in packages.
+#[test]
+fn a_base_of_a_class_is_a_class() {
+    let text = "CLASS MoveAxis EXTENDS Command
+VAR PUBLIC target : LREAL; END_VAR
+METHOD PUBLIC Run : BOOL
+  THIS.Begin(target := target);
+  Run := state = INT#3;
+END_METHOD
+END_CLASS
+PROGRAM P VAR m : MoveAxis; b : BOOL; END_VAR b := m.Run(); END_PROGRAM";
+    let own = || Input::from_text("main.st", SourceKind::Text, text);
+    let written = write(&[own()], None).text;
+    assert!(written.contains("{external}\nCLASS Command\nVAR PUBLIC\n"), "{written}");
+    let stubs = Input::from_text("stubs.st", SourceKind::Text, written.as_str());
+    let all = inspect(vec![own(), stubs], None);
+    let errors = all.findings().iter().filter(|found| found.diagnostic().severity == Severity::Error).count();
+    assert_eq!(errors, 0, "{written}");
+}
+
 #[test]
 fn an_interface_by_what_implements_it() {
     insta::assert_snapshot!(stubs(
