@@ -243,3 +243,28 @@ fn overloads_say_what_to_do() {
          FUNCTION F : INT VAR_INPUT a : INT; END_VAR F := 1; END_FUNCTION PROGRAM P END_PROGRAM";
     assert!(!findings_in(Iec3, twice).to_string().contains(help));
 }
+
+/// `TcOpen` takes the names of its inputs and outputs for its messages.
+#[test]
+fn what_is_known_of_a_variable() {
+    gives(
+        "TYPE S : STRUCT level : ARRAY [0..2] OF INT; END_STRUCT END_TYPE
+         PROGRAM P VAR s : S; x : REAL; info, other : __SYSTEM.VAR_INFO; r : DINT; END_VAR
+           info := __VARINFO(s.level); other := __VARINFO(x);
+           IF info.Symbol = 's.level' AND other.Symbol = 'x' AND other.TypeName = 'REAL' AND info.BitNr = -1
+             AND info.TypeClass = __SYSTEM.TYPE_CLASS.TYPE_ARRAY AND other.TypeClass = __SYSTEM.TYPE_CLASS.TYPE_REAL
+             AND info.BaseTypeClass = __SYSTEM.TYPE_CLASS.TYPE_INT AND info.ElemBitSize = 16 THEN
+             r := UDINT_TO_DINT(info.NumElements * 10000 + info.BitSize * 100 + other.BitSize); END_IF END_PROGRAM",
+        34_832,
+    );
+}
+
+/// `TwinCAT3-Utilities-Hash-BLAKE3` has its flags so.
+#[test]
+fn a_constant_is_a_shift() {
+    gives(
+        "VAR_GLOBAL CONSTANT flag : DWORD := SHL(DWORD#1, 4); low : WORD := SHR(WORD#16#FF00, 8); END_VAR
+         PROGRAM P VAR a : ARRAY [0..flag] OF BYTE; r : DWORD; END_VAR r := SIZEOF(a) * 1000 + low; END_PROGRAM",
+        17_255,
+    );
+}

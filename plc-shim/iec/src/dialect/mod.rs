@@ -412,7 +412,7 @@ features! {
     DecimalBase "`10#` before a number of base 10",
     BaseParts "a structure assigned to one that it extends: a copy of its part",
     GlobalOperator "a point before the name of what is global, `.name`",
-    PlacesOfText "`__POUNAME()`, `__POSITION()`",
+    PlacesOfText "`__POUNAME()`, `__POSITION()`, `__VARINFO(x)`",
     BitsInOut "an unsigned integer for a `VAR_IN_OUT` that is a bit string, or the other way",
     EmptyLists "a call without arguments where each input has a value of its own",
     NamedCounts "a count of equal initial values by its name, `[N(5), 7]`",

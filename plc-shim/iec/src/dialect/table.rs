@@ -178,7 +178,7 @@ pub const FEATURES: &[FeatureRow] = &[
     row(
         Feature::PlacesOfText,
         &[Codesys, TwinCat],
-        "CODESYS: operators __POUNAME, __POSITION; TwinCAT: accepts them, as public projects show",
+        "CODESYS: operators __POUNAME, __POSITION, __VARINFO; TwinCAT: operator __VARINFO; accepts the others, as public projects show",
     ),
     row(Feature::BitsInOut, &[Codesys, TwinCat], "TwinCAT: accepts it, as public projects show"),
     row(

@@ -68,6 +68,7 @@ const PARTS: &[Part] = parts![
     Iec3 &Dialect::ALL, "dtl";
     Codesys BOTH, "dynamic_memory";
     Codesys BOTH, "system_exception";
+    Codesys BOTH, "system_var_info";
     TwinCat BOTH, "tc2_standard";
     TwinCat BOTH, "tc2_system";
     TwinCat BOTH, "tc2_system_files";
@@ -104,10 +105,11 @@ const PARTS: &[Part] = parts![
 
 /// Files that words of the language ask for, which no file declares: of what inputs of generic types are inside, and
 /// of the memory of `__NEW`, of VARIANT, and a namespace that is named as a whole.
-const BY_WORDS: [(&str, &[&str]); 4] = [
+const BY_WORDS: [(&str, &[&str]); 5] = [
     ("iec/vendor/siemens_variant.st", &["VARIANT"]),
     ("iec/vendor/generic_inputs.st", &["ANY", "ANY_BIT", "ANY_DATE", "ANY_NUM", "ANY_REAL", "ANY_INT", "ANY_STRING"]),
     ("iec/vendor/dynamic_memory.st", &["__NEW", "__DELETE"]),
+    ("iec/vendor/system_var_info.st", &["__VARINFO"]),
     // Named by `USING AxUnit;`, and then only in parts.
     ("iec/vendor/ax_unit.st", &["AXUNIT"]),
 ];

@@ -220,6 +220,7 @@ fn distributed_clocks() {
         "parts := DCTIME64_TO_DCTIMESTRUCT(moment);",
         &[
             "DCTIME64_TO_STRING(in := moment) = '2017-10-05-14:15:44.425035200'",
+            "DCTIME64_TO_STRING(16#FFFFFFFFFFFFFFFF) = '2584-07-20-23:34:33.709551615'",
             "STRING_TO_DCTIME64('2017-10-05-14:15:44.425035200') = moment",
             "parts.wDayOfWeek = 4 AND parts.wMilliseconds = 425 AND parts.wMicroseconds = 35 AND parts.wNanoseconds = 200",
             "DCTIME64_TO_STRING(Tc2_EtherCAT.F_GetCurDcTaskTime64()) = '2000-01-01-00:00:00.010000000'",

@@ -1,6 +1,6 @@
 //! Constant expressions to values, by the rules that the compiled code follows.
 
-use crate::ir::{Binary, ElementaryType, Expr, ExprKind, Rounding, TypeTable, Unary, Value};
+use crate::ir::{Binary, ElementaryType, Expr, ExprKind, Intrinsic, Rounding, TypeTable, Unary, Value};
 use crate::syntax::Span;
 
 /// Why an expression has no constant value.
@@ -31,6 +31,11 @@ pub(in crate::check) fn fold(types: &TypeTable, expr: &Expr) -> Result<Value, No
         }
         ExprKind::Limited(_, _, operand) => fold(types, operand),
         ExprKind::Address(place) => place.fixed_address().map(|at| Value::Int(i128::from(at))).ok_or(not_constant),
+        ExprKind::Intrinsic(shift @ (Intrinsic::ShiftLeft | Intrinsic::ShiftRight), operands) => {
+            let [value, count] = &operands[..] else { return Err(not_constant) };
+            let (value, count) = (fold(types, value)?, fold(types, count)?);
+            shifted(*shift, ty, value, count).ok_or(not_constant)
+        }
         ExprKind::Load(_)
         | ExprKind::Intrinsic(..)
         | ExprKind::Text(_)
@@ -38,6 +43,17 @@ pub(in crate::check) fn fold(types: &TypeTable, expr: &Expr) -> Result<Value, No
         | ExprKind::Cast(_)
         | ExprKind::After(..) => Err(not_constant),
     }
+}
+
+/// Bits that are shifted out are lost, and zeros come in (2nd ed. Table 25); a count beyond the width depends on the
+/// dialect, so that it is left to the running program.
+fn shifted(shift: Intrinsic, ty: ElementaryType, value: Value, count: Value) -> Option<Value> {
+    let width = ty.size().checked_mul(8)?;
+    let count = u32::try_from(count.as_int()?).ok().filter(|count| *count < width)?;
+    let mask = (1_i128 << width) - 1;
+    let bits = value.as_int()? & mask;
+    let moved = if shift == Intrinsic::ShiftLeft { (bits << count) & mask } else { bits >> count };
+    Some(Value::Int(ty.wrap(moved)))
 }
 
 fn unary(operator: Unary, ty: ElementaryType, value: Value) -> Value {

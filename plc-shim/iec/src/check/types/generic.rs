@@ -95,4 +95,4 @@ pub(in crate::check) fn class_of(ty: ElementaryType) -> i128 {
     }
 }
 
-const NO_CLASS: i128 = 29;
+pub(in crate::check) const NO_CLASS: i128 = 29;

@@ -7,6 +7,7 @@ use crate::check::types::build::assign;
 use crate::check::types::generic::{Generic, class_of};
 use crate::check::types::operand::constant;
 use crate::diagnostic::{Code, Diagnostic};
+use crate::ir::elementary::Kind;
 use crate::ir::{
     Argument, ElementaryType, Expr, ExprKind, Place, Statement, StatementKind, Type, TypeId, Value, Variable,
 };
@@ -71,7 +72,19 @@ impl Body<'_, '_> {
 
     /// The class of a type, if variables of it are taken.
     fn class_taken(&self, generic: Generic, ty: TypeId) -> Option<i128> {
-        let (class, kind) = match self.declarations.types().get(ty) {
+        let (class, kind) = self.class_and_kind(ty)?;
+        let taken = match (generic, kind) {
+            (Generic::Any | Generic::Variant, _) => true,
+            (Generic::AnyString, _) => matches!(self.declarations.types().get(ty), Type::Text(_)),
+            (_, Some(kind)) => generic.takes(kind),
+            (_, None) => false,
+        };
+        taken.then_some(class)
+    }
+
+    /// The number of a type in `__SYSTEM.TYPE_CLASS`, and the kind of its values if they are elementary.
+    pub(super) fn class_and_kind(&self, ty: TypeId) -> Option<(i128, Option<Kind>)> {
+        Some(match self.declarations.types().get(ty) {
             Type::Elementary(elementary) => (class_of(*elementary), Some(elementary.kind())),
             Type::Subrange { base, .. } => (24, Some(base.kind())),
             Type::Enumeration { base, .. } => (25, Some(base.kind())),
@@ -82,14 +95,7 @@ impl Body<'_, '_> {
             Type::Struct { .. } | Type::FunctionBlock { .. } => (28, None),
             Type::Interface { .. } => (0xF000, None),
             Type::OpenArray { .. } | Type::Nothing | Type::Null => return None,
-        };
-        let taken = match (generic, kind) {
-            (Generic::Any | Generic::Variant, _) => true,
-            (Generic::AnyString, _) => matches!(self.declarations.types().get(ty), Type::Text(_)),
-            (_, Some(kind)) => generic.takes(kind),
-            (_, None) => false,
-        };
-        taken.then_some(class)
+        })
     }
 
     pub(super) fn is_generic(&self, ty: TypeId) -> bool {

@@ -9,6 +9,7 @@ pub(super) mod enable_error;
 pub(super) mod instance_call;
 pub(super) mod memory_function;
 pub(super) mod standard_function;
+pub(super) mod var_info;
 mod variant;
 
 use std::collections::BTreeMap;
@@ -85,6 +86,9 @@ impl Body<'_, '_> {
             && self.declarations.dialect(span).has(Feature::DynamicMemory)
         {
             return self.dynamic_memory_call(operator, call, span);
+        }
+        if name.key() == "__VARINFO" && self.declarations.dialect(span).has(Feature::PlacesOfText) {
+            return self.var_info(call, span);
         }
         if let Some(query) = Query::find(&name.key()) {
             return self.query(query, name, call, span);
