@@ -259,6 +259,15 @@ fn what_is_known_of_a_variable() {
     );
 }
 
+/// Alone, without another name of its namespace.
+#[test]
+fn the_symbol_of_a_variable_alone() {
+    gives(
+        "PROGRAM P VAR x, r : DINT; END_VAR r := LEN(__VARINFO(x).Symbol) * 10 + LEN(__VARINFO(x).TypeName); END_PROGRAM",
+        14,
+    );
+}
+
 /// `TwinCAT3-Utilities-Hash-BLAKE3` has its flags so.
 #[test]
 fn a_constant_is_a_shift() {
