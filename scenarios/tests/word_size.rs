@@ -14,7 +14,8 @@ fn given(settings: &str) -> [i64; 2] {
     let folder = tempfile::tempdir().expect("a folder");
     let text = format!(
         "version = 1\nstep = \"10ms\"\nuntil = \"100ms\"\nsignals.wide = {{ type = \"LINT\", writer = \"plc\" }}\n\
-         clients.plc = {{ kind = \"soft-plc\", sources = [\"a.st\"], dialect = \"codesys\"{settings} }}\n"
+         clients.plc = {{ kind = \"soft-plc\", sources = [\"a.st\"], dialect = \"codesys\"{settings}, \
+           tasks = [{{ name = \"main\", interval = \"10ms\", programs = [\"P\"] }}] }}\n"
     );
     std::fs::write(folder.path().join("scenario.toml"), text).expect("written");
     std::fs::write(folder.path().join("a.st"), SOURCE).expect("written");

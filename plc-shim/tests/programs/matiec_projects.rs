@@ -103,7 +103,8 @@ fn a_chart_needs_none_of_the_blocks_that_a_project_has_of_its_own() {
          ACTION Once: m := m + 1; END_ACTION
          END_PROGRAM",
     );
-    assert_eq!((rig.int("P.n"), rig.int("P.m")), (1, 1));
+    // MatIEC gives an initial step no pulse at the start.
+    assert_eq!((rig.int("P.n"), rig.int("P.m")), (1, 0));
 }
 
 #[test]

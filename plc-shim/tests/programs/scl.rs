@@ -145,7 +145,7 @@ fn a_good_source_has_no_findings() {
 
 #[test]
 fn what_is_of_s7_alone_is_reported() {
-    let text = r#"ORGANIZATION_BLOCK OB100
+    let text = r#"ORGANIZATION_BLOCK OB40
 BEGIN
 END_ORGANIZATION_BLOCK
 ORGANIZATION_BLOCK OB1
@@ -170,7 +170,7 @@ BEGIN
 END_DATA_BLOCK
 "#;
     insta::assert_snapshot!(findings_in(SiemensScl, text), @r#"
-    test.st:1:20: error[L0513]: an organization block that is called on an event is not supported (OB1 and OB30 to OB38 become programs)
+    test.st:1:20: error[L0513]: an organization block that is called on an event is not supported (OB1 and OB30 to OB38 become programs, OB100 runs once at the start)
     test.st:10:8: error[L0512]: `S_ODT` is a function of a vendor's controllers (use TON)
     test.st:11:8: error[L0513]: `PEEK_WORD` is a function of a vendor's controllers (declare a variable and use that)
     test.st:12:8: error[L0512]: a counter's value of S5 is not supported

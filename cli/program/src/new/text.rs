@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use onescan_base::{ElementaryType, SignalType};
 use onescan_server::time::TimeSpan;
 use serde_json::Value;
 
@@ -176,10 +177,35 @@ pub(super) fn stand_in(name: &str, variables: &[(&Signal, String)]) -> String {
         text += "END_VAR\n";
     }
     // An output that nothing writes is a finding of `check`; the programs that come in its place write it.
-    for (_, variable) in variables.iter().filter(|(signal, _)| signal.point.direction == Direction::Output) {
-        let _ = writeln!(text, "    {variable} := {variable};");
+    for (signal, variable) in variables.iter().filter(|(signal, _)| signal.point.direction == Direction::Output) {
+        let _ = writeln!(text, "    {variable} := {};", at_rest(signal.point.ty));
     }
     text + "END_PROGRAM\n"
+}
+
+/// The value with which a stand-in writes an output of the type.
+fn at_rest(ty: SignalType) -> &'static str {
+    use ElementaryType as E;
+    match ty {
+        SignalType::Elementary(ty) => match ty {
+            E::Bool => "FALSE",
+            E::Real | E::Lreal => "0.0",
+            E::Time => "T#0s",
+            E::Ltime => "LTIME#0s",
+            E::Date => "DATE#1970-01-01",
+            E::Ldate => "LDATE#1970-01-01",
+            E::Tod => "TOD#00:00:00",
+            E::Ltod => "LTOD#00:00:00",
+            E::Dt => "DT#1970-01-01-00:00:00",
+            E::Ldt => "LDT#1970-01-01-00:00:00",
+            E::Char => "' '",
+            E::Wchar => "\" \"",
+            E::Sint | E::Int | E::Dint | E::Lint | E::Usint | E::Uint | E::Udint | E::Ulint => "0",
+            E::Byte | E::Word | E::Dword | E::Lword => "16#0",
+        },
+        SignalType::Wstring(_) => "\"\"",
+        SignalType::String(_) | SignalType::Bytes(_) => "''",
+    }
 }
 
 /// `README.md`.

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use crate::ir::ElementaryType;
+use onescan_base::ElementaryType;
 
 /// Bits of the target's registers. What it computes is a matter of the dialect: see
 /// [`IntegerWidth`](super::IntegerWidth).

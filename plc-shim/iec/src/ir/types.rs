@@ -15,7 +15,7 @@ use crate::syntax::direct_address::Area;
 pub struct TypeId(u32);
 
 impl TypeId {
-    /// Its place in the table, by which a program's text tells types apart while it runs.
+    /// Its place in the table, which distinguishes types while a program runs.
     pub(crate) fn number(self) -> u32 {
         self.0
     }

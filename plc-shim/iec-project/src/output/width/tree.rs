@@ -196,7 +196,7 @@ pub(super) fn has(ty: E, value: i128) -> bool {
 }
 
 /// More than any register holds.
-const ANY: (i128, i128) = (i64::MIN as i128, u64::MAX as i128);
+const ANY: (i128, i128) = (-(1 << 63), (1 << 64) - 1);
 
 fn of_operation(kind: Operation, ranges: &[(i128, i128)]) -> (i128, i128) {
     let hull = |values: &[i128]| {

@@ -170,7 +170,8 @@ impl<'a> Written<'_, 'a> {
         let derived = self.declarations().type_names();
         let blocks = self.declarations().unit_names(PouKind::has_instances);
         let help = did_you_mean(&name.text, elementary.chain(derived).chain(blocks));
-        let help = self.declarations().elsewhere(name).or(help);
+        let of_others = (name.key() == "VARIANT").then(|| Feature::Variants.help());
+        let help = self.declarations().elsewhere(name).or(of_others).or(help);
         let message = format!("type `{}` is not declared", name.text);
         let found = Diagnostic::error(Code::UnknownType, name.span, message);
         self.report(found.with_optional_help(help));

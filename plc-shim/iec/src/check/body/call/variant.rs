@@ -29,7 +29,7 @@ impl Body<'_, '_> {
         Operand::Typed(Expr { ty: udint.into(), ..constant(Value::Int(self.type_code(ty)), udint, span) })
     }
 
-    /// The number by which types are told apart while a program runs. Strings of any length are one type.
+    /// The number that distinguishes types while a program runs. Strings of any length are one type.
     pub(super) fn type_code(&self, ty: TypeId) -> i128 {
         match self.declarations.types().get(ty) {
             Type::Elementary(elementary) => class_of(*elementary),
