@@ -79,6 +79,9 @@ fn warning(application: &Application, input: &OpenInput, foreign: &Foreign<'_>) 
     let name = path.rsplit('.').next().unwrap_or(path);
     let can_be_signal = |part: &Variable| part.signal_type.is_some() && !is_reference(part);
     let help = match foreign.nearest(name) {
+        _ if OF_THE_SYSTEM.iter().any(|known| known.eq_ignore_ascii_case(name)) => {
+            "the system of the controller sets it before it calls the block; here it keeps its first value".to_owned()
+        }
         _ if !input.parts.iter().any(can_be_signal) => {
             let ty = &input.variable.type_name;
             format!(
@@ -102,6 +105,9 @@ fn warning(application: &Application, input: &OpenInput, foreign: &Foreign<'_>) 
         None => found,
     }
 }
+
+/// Inputs that an S7-1500 gives its organization blocks of the cycle and of the start.
+const OF_THE_SYSTEM: [&str; 4] = ["Initial_Call", "Remanence", "LostRetentive", "LostRTC"];
 
 /// True for what refers to another variable, which no signal can name.
 fn is_reference(part: &Variable) -> bool {

@@ -306,6 +306,15 @@ BEGIN \"data\".speed := \"data\".speed + 1; END_ORGANIZATION_BLOCK"
     }
 }
 
+/// Its division goes on with 0, and is another operation: the product before it is cut as well.
+#[test]
+fn a_product_before_a_division_is_cut() {
+    let text = "FUNCTION \"Scale\" : DInt VAR_INPUT raw, span : Int; END_VAR BEGIN #Scale := #raw * 1000 / #span; END_FUNCTION
+        ORGANIZATION_BLOCK OB1 VAR_TEMP d : DInt; END_VAR BEGIN #d := \"Scale\"(raw := 3, span := 4); END_ORGANIZATION_BLOCK";
+    let found = findings_in(SiemensScl, text).to_string();
+    assert!(found.contains("warning[W0713]: this product is cut to INT before it becomes DINT"), "{found}");
+}
+
 #[test]
 fn a_block_of_the_start_may_write_what_a_task_writes() {
     let text = "DATA_BLOCK \"data\" STRUCT n : INT; END_STRUCT; BEGIN END_DATA_BLOCK

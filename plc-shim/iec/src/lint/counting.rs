@@ -4,8 +4,8 @@ use super::bodies::Bodies;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::walk::{self, Visitor};
 use crate::ir::{
-    Argument, Expr, ExprKind, ForStatement, FunctionCall, InstanceCall, Place, Pou, Statement, StatementKind, Step,
-    Storage, Value,
+    Argument, ElementaryType, Expr, ExprKind, ForStatement, FunctionCall, InstanceCall, Place, Pou, Statement,
+    StatementKind, Step, Storage, Value,
 };
 use crate::syntax::Span;
 
@@ -38,7 +38,9 @@ impl Loops<'_, '_> {
         let is_empty = by > 0 && from > to || by < 0 && from < to;
         if is_empty {
             let (way, help) = if by > 0 {
-                ("up", format!("`BY -1` counts down from {from} to {to}"))
+                let has_sign = self.bodies.types().elementary(turns.variable.ty).is_some_and(ElementaryType::is_signed);
+                let sign = if has_sign { "" } else { ", with a variable of a type that has a sign" };
+                ("up", format!("`BY -1` counts down from {from} to {to}{sign}"))
             } else {
                 ("down", format!("without BY, the loop counts up from {from} to {to}"))
             };

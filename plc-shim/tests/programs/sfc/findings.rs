@@ -136,6 +136,27 @@ END_PROGRAM";
     insta::assert_snapshot!(format!("iec3\n{iec3}\n\nmatiec\n{matiec}"));
 }
 
+/// A step that follows itself stays active, and one that names an action twice has one pulse.
+#[test]
+fn a_pulse_of_one_step_is_lost() {
+    let text = "PROGRAM P
+VAR go : BOOL; n : INT; END_VAR
+    INITIAL_STEP A: END_STEP
+    STEP B: Count(P1); Count(P0); END_STEP
+    TRANSITION FROM A TO B := go; END_TRANSITION
+    TRANSITION FROM B TO B := NOT go; END_TRANSITION
+    TRANSITION FROM B TO A := n > 9; END_TRANSITION
+    ACTION Count: n := n + 1; END_ACTION
+END_PROGRAM";
+    let found = findings_in(Dialect::Iec3, text).to_string();
+    assert!(found.contains("`Count` gets no pulse from `B` where `B` follows `B`"), "{found}");
+    let found = findings_in(Dialect::Matiec, text).to_string();
+    assert!(
+        found.contains("`B` names `Count` by two pulses: MatIEC's code of the last takes this one back"),
+        "{found}"
+    );
+}
+
 #[test]
 fn words_of_charts_are_names_elsewhere() {
     let text = "PROGRAM P VAR step, transition, initial_step, from : INT; END_VAR

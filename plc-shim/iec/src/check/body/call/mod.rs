@@ -284,8 +284,8 @@ impl Body<'_, '_> {
                 ast::Argument::Output { name, negated: false, target: Some(target) }
                     if let Some(variable) = self.variant_given_back(scope, name) =>
                 {
-                    // It points to the variable that the function writes.
-                    sound &= self.target(target).is_some();
+                    // It points to the variable that the function writes, or is handed on.
+                    sound &= self.is_variant(target) || self.target(target).is_some();
                     (variable.name.to_ascii_uppercase(), name.span, target)
                 }
                 ast::Argument::Output { name, negated, target } => {

@@ -58,6 +58,13 @@ impl Body<'_, '_> {
         (self.declarations.generic(found.ty) == Some(Generic::Variant)).then_some(found)
     }
 
+    /// True for the name of a VARIANT.
+    pub(super) fn is_variant(&self, expr: &ast::Expr) -> bool {
+        let ast::ExprKind::Name(name) = &expr.kind else { return false };
+        let variable = self.scope.find(&name.key());
+        variable.is_some_and(|variable| self.declarations.generic(variable.ty) == Some(Generic::Variant))
+    }
+
     /// `#v = NULL`: whether a VARIANT points to nothing, asked of its address.
     pub(in crate::check::body) fn address_of_variant(
         &mut self,
@@ -65,9 +72,7 @@ impl Body<'_, '_> {
         other: &ast::Expr,
     ) -> Option<ast::Expr> {
         let is_null = matches!(&other.kind, ast::ExprKind::Name(name) if name.key() == "NULL");
-        let ast::ExprKind::Name(name) = &expr.kind else { return None };
-        let variable = self.scope.find(&name.key()).filter(|_| is_null)?;
-        if self.declarations.generic(variable.ty) != Some(Generic::Variant) {
+        if !is_null || !self.is_variant(expr) {
             return None;
         }
         let member = Ident { text: "pValue".to_owned(), span: expr.span };

@@ -86,10 +86,16 @@ impl Body<'_, '_> {
 
     fn report_pulse_taken_back(&mut self, chart: &Chart, action: &Action, used: &Use, last: &Use) {
         let (name, step, behind) = (&action.name, step_name(chart, used), step_name(chart, last));
-        let message = format!("`{name}` gets no pulse from `{step}`: MatIEC's code of `{behind}` takes it back");
-        let found =
-            Diagnostic::warning(Code::LostPulse, used.span, message).with_label(last.span, "this one has its way");
-        self.report(found.with_help(format!("give `{step}` an action of its own")));
+        let (message, help) = if used.step == last.step {
+            let message =
+                format!("`{step}` names `{name}` by two pulses: MatIEC's code of the last takes this one back");
+            (message, "delete one of them".to_owned())
+        } else {
+            let message = format!("`{name}` gets no pulse from `{step}`: MatIEC's code of `{behind}` takes it back");
+            (message, format!("give `{step}` an action of its own"))
+        };
+        let found = Diagnostic::warning(Code::LostPulse, used.span, message);
+        self.report(found.with_label(last.span, "this one has its way").with_help(help));
     }
 
     fn report_pulse_without_effect(&mut self, action: &Action, used: &Use) {
@@ -106,8 +112,9 @@ impl Body<'_, '_> {
 
     /// `used` is that of a step which another step with the same pulse follows directly.
     fn report_joined_pulse(&mut self, chart: &Chart, net: &Net, action: &Action, used: &Use) {
+        // A step may follow itself.
         let follows = |from: usize, to: usize| {
-            from != to && net.transitions.iter().any(|arcs| arcs.from.contains(&from) && arcs.to.contains(&to))
+            net.transitions.iter().any(|arcs| arcs.from.contains(&from) && arcs.to.contains(&to))
         };
         let joined =
             action.uses.iter().find(|other| other.qualifier == used.qualifier && follows(other.step, used.step));

@@ -35,9 +35,11 @@ impl Body<'_, '_> {
                 let may_wrap = expr.ty == held.into() && self.bounds(expr).is_none();
                 if may_wrap { Some(expr) } else { either(left, right) }
             }
-            ExprKind::Binary(Binary::Add | Binary::Subtract | Binary::Divide | Binary::Modulo, left, right) => {
-                either(left, right)
-            }
+            ExprKind::Binary(
+                Binary::Add | Binary::Subtract | Binary::Divide | Binary::DivideAnyway | Binary::Modulo,
+                left,
+                right,
+            ) => either(left, right),
             ExprKind::Unary(Unary::Negate, operand) => self.product_in(operand, held),
             ExprKind::Intrinsic(Intrinsic::Abs | Intrinsic::Max | Intrinsic::Min, operands) => {
                 operands.iter().find_map(|operand| self.product_in(operand, held))
