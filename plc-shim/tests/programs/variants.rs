@@ -102,10 +102,10 @@ fn elements_of_arrays_are_moved() {
 
 #[test]
 fn a_variant_is_handed_on_to_be_written() {
-    let text = "FUNCTION \"Move\" : Int VAR_INPUT src : Variant; END_VAR VAR_IN_OUT dst : Variant; END_VAR
-        BEGIN #Move := MOVE_BLK_VARIANT(SRC := #src, COUNT := 2, SRC_INDEX := 0, DEST_INDEX := 1, DEST => #dst); END_FUNCTION
+    let text = "FUNCTION \"Moved\" : Int VAR_INPUT src : Variant; END_VAR VAR_IN_OUT dst : Variant; END_VAR
+        BEGIN #Moved := MOVE_BLK_VARIANT(SRC := #src, COUNT := 2, SRC_INDEX := 0, DEST_INDEX := 1, DEST => #dst); END_FUNCTION
         FUNCTION_BLOCK \"F\" VAR a, b : Array[1..3] of Int := [7, 8, 9]; r : Int; END_VAR
-        BEGIN #r := \"Move\"(src := #a, dst := #b); END_FUNCTION_BLOCK
+        BEGIN #r := \"Moved\"(src := #a, dst := #b); END_FUNCTION_BLOCK
         DATA_BLOCK \"d\" \"F\" BEGIN END_DATA_BLOCK
         ORGANIZATION_BLOCK \"Main\" BEGIN \"d\"(); END_ORGANIZATION_BLOCK";
     assert_eq!(findings_in(SiemensScl, text).to_string(), "");
