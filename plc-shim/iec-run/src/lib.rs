@@ -20,7 +20,7 @@ pub mod run;
 
 pub use application::{
     Application, BuildError, Builder, CodeDifference, Declaration, OpenInput, Program, Radix, UnknownVariable,
-    Variable, VariableAccess, VariableDifference, WriteError, ZeroTerminated, without_home,
+    Variable, VariableAccess, VariableDifference, WriteError, ZeroTerminated, literal, without_home,
 };
 pub use compile::fault::FaultKind;
 pub use coverage::Coverage;

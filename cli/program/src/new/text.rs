@@ -2,7 +2,8 @@
 
 use std::fmt::Write;
 
-use onescan_base::{ElementaryType, SignalType};
+use onescan_base::SignalType;
+use onescan_iec_run::literal;
 use onescan_server::time::TimeSpan;
 use serde_json::Value;
 
@@ -184,27 +185,11 @@ pub(super) fn stand_in(name: &str, variables: &[(&Signal, String)]) -> String {
 }
 
 /// The value with which a stand-in writes an output of the type.
-fn at_rest(ty: SignalType) -> &'static str {
-    use ElementaryType as E;
+fn at_rest(ty: SignalType) -> String {
     match ty {
-        SignalType::Elementary(ty) => match ty {
-            E::Bool => "FALSE",
-            E::Real | E::Lreal => "0.0",
-            E::Time => "T#0s",
-            E::Ltime => "LTIME#0s",
-            E::Date => "DATE#1970-01-01",
-            E::Ldate => "LDATE#1970-01-01",
-            E::Tod => "TOD#00:00:00",
-            E::Ltod => "LTOD#00:00:00",
-            E::Dt => "DT#1970-01-01-00:00:00",
-            E::Ldt => "LDT#1970-01-01-00:00:00",
-            E::Char => "' '",
-            E::Wchar => "\" \"",
-            E::Sint | E::Int | E::Dint | E::Lint | E::Usint | E::Uint | E::Udint | E::Ulint => "0",
-            E::Byte | E::Word | E::Dword | E::Lword => "16#0",
-        },
-        SignalType::Wstring(_) => "\"\"",
-        SignalType::String(_) | SignalType::Bytes(_) => "''",
+        SignalType::Elementary(ty) => literal(ty, &[]),
+        SignalType::Wstring(_) => "\"\"".to_owned(),
+        SignalType::String(_) | SignalType::Bytes(_) => "''".to_owned(),
     }
 }
 

@@ -223,8 +223,9 @@ impl Plain {
         let mut changed = SourceMap::default();
         for (id, file) in self.sources.iter() {
             let conflict = |conflict| InstrumentError::Conflict { file: file.name().to_owned(), conflict };
+            // Most files have no changes.
             let text = edits.remove(&id).unwrap_or_default().apply(file.text()).map_err(conflict)?.text;
-            changed.add(SourceFile::new(file.name(), text).in_dialect(file.dialect()).for_words(file.word_size()));
+            changed.add(SourceFile::new(file.name(), text).read_like(file));
         }
         self.original = Some(std::mem::replace(&mut self.sources, changed));
         Ok(())

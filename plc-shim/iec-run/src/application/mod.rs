@@ -39,7 +39,7 @@ pub use identity::{CodeDifference, VariableDifference};
 pub use instance_path::without_home;
 pub use open_inputs::OpenInput;
 pub(crate) use value::text;
-pub use value::{Radix, WriteError};
+pub use value::{Radix, WriteError, literal};
 pub use variable::{Program, UnknownVariable, Variable, VariableAccess};
 pub use zero_terminated::ZeroTerminated;
 

@@ -183,7 +183,7 @@ impl Input {
     /// The same file, read as `other` is.
     #[must_use]
     pub fn read_like(self, other: &SourceFile) -> Self {
-        self.read_as(Some(other.dialect()), Some(other.word_size()))
+        Self { file: self.file.read_like(other), ..self }
     }
 
     /// Its program text.
@@ -275,6 +275,7 @@ impl Taken {
 fn dialect_of(name: &str, text: &str) -> (Dialect, WordSize, Vec<Diagnostic>) {
     let of_name = Dialect::of_file(name);
     match Chosen::in_text(text) {
+        // A text that names no size is for the usual target.
         Chosen::Dialect(dialect, word_size) => (dialect, word_size.unwrap_or_default(), Vec::new()),
         Chosen::Nothing => (of_name, WordSize::default(), Vec::new()),
         Chosen::Unknown(message, place) => {

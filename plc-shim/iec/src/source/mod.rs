@@ -91,6 +91,12 @@ impl SourceFile {
         Self { word_size, ..self }
     }
 
+    /// The same file in the dialect of `other`, and for its target.
+    #[must_use]
+    pub fn read_like(self, other: &Self) -> Self {
+        self.in_dialect(other.dialect).for_words(other.word_size)
+    }
+
     /// The same with another text for a part of its program text. Of text that was taken out of a file, places behind
     /// that part are shown where they would be without the change.
     pub(crate) fn with_replaced(&self, range: Range<u32>, text: &str) -> Self {
@@ -103,7 +109,7 @@ impl SourceFile {
             Some(origin) => Self::extracted(self.name.clone(), changed, origin.clone()),
             None => Self::new(self.name.clone(), changed),
         };
-        file.in_dialect(self.dialect).for_words(self.word_size)
+        file.read_like(self)
     }
 
     /// The dialect of its program text.

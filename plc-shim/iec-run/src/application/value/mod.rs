@@ -13,6 +13,7 @@ mod show;
 pub(crate) mod text;
 
 pub use radix::Radix;
+pub use show::literal;
 
 use thiserror::Error;
 

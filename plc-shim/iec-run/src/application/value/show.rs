@@ -108,6 +108,13 @@ fn number(bytes: &[u8]) -> u64 {
     bytes.iter().take(8).rev().fold(0, |number, byte| number << 8 | u64::from(*byte))
 }
 
+/// The literal of an elementary value, given by its bytes, least significant first.
+pub fn literal(ty: ElementaryType, bytes: &[u8]) -> String {
+    let mut text = String::new();
+    show_elementary(ty, bytes, &mut text);
+    text
+}
+
 fn show_elementary(ty: ElementaryType, bytes: &[u8], text: &mut String) {
     let raw = number(bytes);
     let _ = match ty.kind() {
