@@ -25,8 +25,9 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use onescan_iec::{Dialect, MemoryLimit, WordSize, inspect_within};
-use onescan_iec_run::Application;
+use onescan_iec_run::{Application, BuildError};
 use onescan_report::OutputError;
+use onescan_runner::error::Usage;
 
 pub use error::CheckError;
 
@@ -93,14 +94,16 @@ pub fn check(config: &CheckConfig, out: &mut dyn Write) -> Result<ExitCode, Chec
     let files = programs.iter().map(|program| program.inputs.len()).sum();
     let mut findings = Vec::new();
     for program in programs {
-        let inputs = program.inputs.clone();
+        let of_scenario = program.scenario.zip(program.client).map(|of| (of, program.inputs.clone()));
         let found = inspect_within(program.memory_limit, program.inputs, program.plan.as_ref());
         let is_sound = !found.has_errors();
         findings.push(found);
-        if let (true, Some(scenario), Some(client)) = (is_sound, program.scenario, program.client)
-            && let Ok(application) = Application::builder().inputs(inputs).memory_limit(program.memory_limit).build()
-        {
-            findings.extend(scenario.undriven_in(&client, application)?);
+        let Some(((scenario, client), inputs)) = of_scenario.filter(|_| is_sound) else { continue };
+        match Application::builder().inputs(inputs).memory_limit(program.memory_limit).build() {
+            Ok(application) => findings.extend(scenario.undriven_in(&client, application)?),
+            // What has no errors compiles; should it not, you see why.
+            Err(BuildError::Sources(found)) => findings.push(found),
+            Err(BuildError::Constant(error)) => return Err(Usage::new(error.to_string(), None).into()),
         }
     }
     let report = Report { files, findings, passed_over };
