@@ -15,8 +15,8 @@ pub(crate) struct Limits {
     pub(crate) lag_s: f64,
 }
 
-/// What a drive without a joint moves: N or N·m of load against the way up, and the mass or inertia with its friction
-/// and range.
+/// What a drive without a joint moves: N or N·m of load against the way up; kg or kg·m² with friction in N or N·m, within
+/// a range in m or rad.
 pub(crate) struct OwnMass {
     pub(crate) load: f64,
     pub(crate) resistance: Resistance,

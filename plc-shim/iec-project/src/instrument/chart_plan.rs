@@ -38,10 +38,6 @@ fn was(step: &str) -> String {
 /// The input of an action's control that lets its statements run in this scan alone.
 const ONCE: &str = "SDSP_Once";
 
-fn is_pulse(qualifier: ActionQualifier) -> bool {
-    matches!(qualifier, ActionQualifier::P | ActionQualifier::P0 | ActionQualifier::P1)
-}
-
 /// What in a chart reads its parts: `a.T` of steps, `Fill.Q` of actions.
 #[derive(Default)]
 pub(super) struct Reads {
@@ -258,7 +254,7 @@ impl<'w> Plan<'w> {
                 lines.push(format!("    IF {}.X THEN SDSP_Ctl_{action}.T := {value}; END_IF;", step.name.text));
             }
         }
-        let pulse = |association: &Association| is_pulse(association.effective_qualifier());
+        let pulse = |association: &Association| association.effective_qualifier().is_pulse();
         // MatIEC sets and clears an action for one step after the other: the last one has its way.
         let last = uses.iter().rposition(|(_, association)| pulse(association));
         let mut inputs: BTreeMap<&str, Vec<String>> = BTreeMap::new();
@@ -278,7 +274,7 @@ impl<'w> Plan<'w> {
     /// The input of an action's control that a step drives by `qualifier`, and with what.
     fn input(&self, action: &Ident, step: &ChartStep, qualifier: ActionQualifier) -> (&'static str, String) {
         let (name, has_statements) = (&step.name.text, self.reads.actions.contains(&action.key()));
-        if !self.has_edges_of_steps() || !is_pulse(qualifier) {
+        if !self.has_edges_of_steps() || !qualifier.is_pulse() {
             return (qualifier.text(), format!("{name}.X"));
         }
         let edge = match qualifier {
@@ -298,7 +294,7 @@ impl<'w> Plan<'w> {
     /// The steps whose edges give pulses, where these are their own.
     fn edged_steps(&self, chart: &'w Pou) -> impl Iterator<Item = &'w ChartStep> + use<'w> {
         let has_edges = self.has_edges_of_steps();
-        let pulses = |step: &&ChartStep| step.associations.iter().any(|each| is_pulse(each.effective_qualifier()));
+        let pulses = |step: &&ChartStep| step.associations.iter().any(|each| each.effective_qualifier().is_pulse());
         chart.chart.steps.iter().filter(move |_| has_edges).filter(pulses)
     }
 

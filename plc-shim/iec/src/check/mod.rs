@@ -41,6 +41,7 @@ pub use self::declare::{
 };
 pub use self::standard::vendor::{is_qualified_only, of_pointer_width};
 pub use self::standard::{exists as is_standard_function, is_known as knows_function};
+pub use self::types::number::as_number;
 
 #[derive(Debug)]
 pub struct Checked {

@@ -33,7 +33,7 @@ impl WordSize {
         }
     }
 
-    /// How many bits.
+    /// Bits of a register: 32 or 64.
     pub fn bits(self) -> u32 {
         match self {
             Self::Bits32 => 32,

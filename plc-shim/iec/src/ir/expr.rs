@@ -292,6 +292,14 @@ impl Place {
         }
     }
 
+    /// True if both are one variable, member or bit, seen as one type; of what is indexed or referred to nobody knows.
+    pub fn is_surely(&self, other: &Self) -> bool {
+        let offset = |step: &Step| if let Step::Offset(offset) = step { Some(*offset) } else { None };
+        let inside = |place: &Self| place.steps.iter().map(offset).sum::<Option<u32>>();
+        let is_fixed = inside(self).is_some_and(|offset| inside(other) == Some(offset));
+        is_fixed && self.storage == other.storage && self.part == other.part && self.ty == other.ty
+    }
+
     /// True if it has an address of its own: it is in no register and no bit of a byte.
     pub fn has_address(&self) -> bool {
         self.part.is_none() && !matches!(self.storage, Storage::Register(_))

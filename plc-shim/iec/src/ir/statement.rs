@@ -70,6 +70,14 @@ pub struct InstanceCall {
     pub outputs: Vec<Statement>,
 }
 
+impl InstanceCall {
+    /// The call of an instance's body alone: its inputs stay as they are, and nothing takes its outputs.
+    pub(crate) fn bare(instance: Place, pou: PouId, pointer: LocalId) -> Self {
+        let dispatch = super::expr::Dispatch::Direct;
+        Self { instance, pou, dispatch, pointer, inputs: Vec::new(), outputs: Vec::new() }
+    }
+}
+
 #[derive(Debug, Clone)]
 pub struct CaseStatement {
     pub selector: Expr,

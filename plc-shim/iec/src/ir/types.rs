@@ -87,6 +87,15 @@ pub enum Type {
     },
 }
 
+impl Type {
+    /// What the elements of an array are, and how many there are in all its dimensions; nothing of another type.
+    pub fn elements(&self) -> Option<(TypeId, u64)> {
+        let Self::Array { dimensions, element } = self else { return None };
+        let counts = dimensions.iter().map(|dimension| dimension.count());
+        Some((*element, counts.fold(1, u64::saturating_mul)))
+    }
+}
+
 /// Bounds of one dimension of an array, both within 32 bits signed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Dimension {

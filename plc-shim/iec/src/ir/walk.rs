@@ -13,9 +13,9 @@ pub trait Visitor {
     fn goes_into_expressions(&self) -> bool {
         true
     }
-    /// What follows runs on a condition, or more than once.
+    /// What follows runs on a condition, or more than once, until [`leave`](Self::leave).
     fn enter(&mut self) {}
-    /// That ends.
+    /// What follows runs as often as what was before [`enter`](Self::enter).
     fn leave(&mut self) {}
 }
 

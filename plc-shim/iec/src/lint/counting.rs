@@ -105,7 +105,7 @@ impl Writes<'_> {
     }
 
     fn written(&mut self, place: &Place, how: &'static str) {
-        if self.found.is_none() && is_same(place, self.variable) {
+        if self.found.is_none() && place.is_surely(self.variable) {
             self.found = Some((place.span, how));
         }
     }
@@ -153,16 +153,6 @@ impl Visitor for Calls<'_, '_> {
             self.0.function(call);
         }
     }
-}
-
-/// True if two places are the same variable or member; what is indexed may be another one.
-fn is_same(one: &Place, other: &Place) -> bool {
-    let offsets = |place: &Place| -> Option<Vec<u32>> {
-        let offset = |step: &Step| if let Step::Offset(offset) = step { Some(*offset) } else { None };
-        place.steps.iter().map(offset).collect()
-    };
-    let (Some(one_offsets), Some(other_offsets)) = (offsets(one), offsets(other)) else { return false };
-    one.storage == other.storage && one_offsets == other_offsets && one.part == other.part
 }
 
 /// True if a unit itself assigns to what its caller hands it.

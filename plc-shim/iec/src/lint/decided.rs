@@ -135,6 +135,7 @@ impl Visitor for Conditions<'_> {
             StatementKind::While(inner) if literal(&inner.condition) == Some(false) => {
                 self.condition(&inner.condition, false);
             }
+            // REPEAT .. UNTIL TRUE runs once, as its author says; others have no condition.
             _ => {}
         }
     }

@@ -75,25 +75,12 @@ fn overwriting<'s>(place: &Place, list: &[&'s Statement], bodies: &Bodies<'_>) -
             return None;
         }
         match assigned(statement) {
-            Some((target, value)) if is_same(target, place) => return Some((target, value)),
+            Some((target, value)) if target.is_surely(place) => return Some((target, value)),
+            // What neither looks at the place nor writes it changes nothing.
             _ => {}
         }
     }
     None
-}
-
-fn is_same(one: &Place, other: &Place) -> bool {
-    let offsets = |place: &Place| -> u32 {
-        let offset = |step: &Step| if let Step::Offset(offset) = step { *offset } else { 0 };
-        place.steps.iter().map(offset).sum()
-    };
-    let is_fixed = |place: &Place| place.steps.iter().all(|step| matches!(step, Step::Offset(_)));
-    is_fixed(one)
-        && is_fixed(other)
-        && one.storage == other.storage
-        && offsets(one) == offsets(other)
-        && one.part == other.part
-        && one.ty == other.ty
 }
 
 /// True if both may have bytes in common.
@@ -139,6 +126,7 @@ impl Visitor for Opaque<'_> {
             StatementKind::Return | StatementKind::Jump(_) | StatementKind::Labelled(_) | StatementKind::Exit => {
                 self.found = true;
             }
+            // The others name all that they read.
             _ => {}
         }
     }
@@ -147,6 +135,7 @@ impl Visitor for Opaque<'_> {
         match &expr.kind {
             ExprKind::Call(call) => self.calls(call.pou),
             ExprKind::Intrinsic(crate::ir::Intrinsic::Memory(_), _) => self.found = true,
+            // The others name all that they read.
             _ => {}
         }
     }

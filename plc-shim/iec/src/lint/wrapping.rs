@@ -85,7 +85,7 @@ fn growth<'s>(statement: &'s Statement, bodies: &Bodies<'_>) -> Option<(&'s Plac
     let Type::Elementary(ty) = bodies.types().get(place.ty) else { return None };
     let is_counter = ty.is_integer() && ty.is_signed() && ty.size() < ElementaryType::Lint.size();
     let ExprKind::Binary(Binary::Add, left, right) = &bare(value).kind else { return None };
-    let is_own = |expr: &Expr| matches!(&bare(expr).kind, ExprKind::Load(from) if is_same(from, place));
+    let is_own = |expr: &Expr| matches!(&bare(expr).kind, ExprKind::Load(from) if from.is_surely(place));
     let step = match (is_own(left), is_own(right)) {
         (true, false) => bodies.constant(right),
         (false, true) => bodies.constant(left),
@@ -102,10 +102,6 @@ fn bare(expr: &Expr) -> &Expr {
         ExprKind::Convert(_, operand) | ExprKind::FromRegister(operand) => bare(operand),
         _ => expr,
     }
-}
-
-fn is_same(one: &Place, other: &Place) -> bool {
-    one.storage == other.storage && one.steps.is_empty() && other.steps.is_empty()
 }
 
 /// True if nothing else writes the variable, and something compares its size.
@@ -128,7 +124,7 @@ impl Visitor for Compared<'_> {
     fn expression(&mut self, expr: &Expr) {
         let ExprKind::Binary(operator, left, right) = &expr.kind else { return };
         let by_size = matches!(operator, Binary::Less | Binary::LessEqual | Binary::Greater | Binary::GreaterEqual);
-        let is_it = |side: &Expr| matches!(&bare(side).kind, ExprKind::Load(from) if is_same(from, self.counter));
+        let is_it = |side: &Expr| matches!(&bare(side).kind, ExprKind::Load(from) if from.is_surely(self.counter));
         self.found |= by_size && (is_it(left) || is_it(right));
     }
 }

@@ -36,7 +36,7 @@ pub(super) fn program(chart: &Chart) -> PeerProgram {
         let Some(used) = uses.iter().find(|used| used.action == action) else { continue };
         // In which order actions run in a scan is left to the implementation.
         let count = 1_000_u32.pow((action - BOOLEAN) as u32);
-        // Behind a pulse there is no final scan, and at the end of a step it is not active.
+        // A pulse has no final scan, and P0 runs when its step is no longer active.
         let counts = format!("story := story + {count};");
         let statement = if is_pulse(used) { counts } else { format!("IF s{}.X THEN {counts} END_IF;", used.step) };
         writeln!(text, "ACTION b{action}:\n    {statement}\nEND_ACTION").expect("a string takes all");

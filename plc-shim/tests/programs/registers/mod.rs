@@ -53,34 +53,39 @@ const EXAMPLES: &str = "
         CASE full + 1 OF 0: chosen := 1; 256: chosen := 2; END_CASE
     END_PROGRAM";
 
+/// What the examples give in every register, and `d * 2` and `ten - twenty` in those of the rig.
+fn examples_hold(dialect: Dialect, mut rig: Rig, long: i64, below: f64) {
+    rig.scan().expect("it runs");
+    let found =
+        ["first", "second", "third", "fourth", "fifth", "sixth", "seventh"].map(|name| rig.bool(&format!("P.{name}")));
+    assert_eq!(found, [false, false, true, true, true, true, false], "{dialect}");
+    let numbers = [
+        ("dw", 65536),
+        ("wide", 300_000),
+        ("sum", 265),
+        ("mean", 25_000),
+        ("long", long),
+        ("extreme", 50_000),
+        ("quotient", 32_768),
+        ("opposite", 32_768),
+        ("kept", 32_769),
+        ("ordered", 40_000),
+        ("selected", 50_000),
+        ("chosen", 2),
+    ];
+    for (name, wanted) in numbers {
+        assert_eq!(rig.int(&format!("P.{name}")), wanted, "{dialect} {name}");
+    }
+    assert_eq!(rig.real("P.scaled"), 300_000.0, "{dialect}");
+    assert_eq!(rig.real("P.below"), below, "{dialect}");
+}
+
 #[test]
 fn examples_of_the_manuals() {
     for dialect in DIALECTS {
-        let mut rig = Rig::in_dialect(dialect, EXAMPLES);
-        rig.scan().expect("it runs");
-        let found = ["first", "second", "third", "fourth", "fifth", "sixth", "seventh"]
-            .map(|name| rig.bool(&format!("P.{name}")));
-        assert_eq!(found, [false, false, true, true, true, true, false], "{dialect}");
-        let numbers = [
-            ("dw", 65536),
-            ("wide", 300_000),
-            ("sum", 265),
-            ("mean", 25_000),
-            ("long", 4_000_000_000),
-            ("extreme", 50_000),
-            ("quotient", 32_768),
-            ("opposite", 32_768),
-            ("kept", 32_769),
-            ("ordered", 40_000),
-            ("selected", 50_000),
-            ("chosen", 2),
-        ];
-        for (name, wanted) in numbers {
-            assert_eq!(rig.int(&format!("P.{name}")), wanted, "{dialect} {name}");
-        }
-        assert_eq!(rig.real("P.scaled"), 300_000.0, "{dialect}");
         // A register without a sign.
-        assert_eq!(rig.real("P.below"), 1.844_674_407_370_955_2e19, "{dialect}");
+        let below = 1.844_674_407_370_955_2e19;
+        examples_hold(dialect, Rig::in_dialect(dialect, EXAMPLES), 4_000_000_000, below);
     }
 }
 
@@ -88,31 +93,9 @@ fn examples_of_the_manuals() {
 #[test]
 fn examples_of_the_manuals_in_32_bits() {
     for dialect in DIALECTS {
-        let mut rig = Rig::of_input(small(dialect, EXAMPLES));
-        rig.scan().expect("it runs");
-        let found = ["first", "second", "third", "fourth", "fifth", "sixth", "seventh"]
-            .map(|name| rig.bool(&format!("P.{name}")));
-        assert_eq!(found, [false, false, true, true, true, true, false], "{dialect}");
-        let numbers = [
-            ("dw", 65536),
-            ("wide", 300_000),
-            ("sum", 265),
-            ("mean", 25_000),
-            ("long", -294_967_296),
-            ("extreme", 50_000),
-            ("quotient", 32_768),
-            ("opposite", 32_768),
-            ("kept", 32_769),
-            ("ordered", 40_000),
-            ("selected", 50_000),
-            ("chosen", 2),
-        ];
-        for (name, wanted) in numbers {
-            assert_eq!(rig.int(&format!("P.{name}")), wanted, "{dialect} {name}");
-        }
-        assert_eq!(rig.real("P.scaled"), 300_000.0, "{dialect}");
         // 4294967286 as REAL.
-        assert_eq!(rig.real("P.below"), 4_294_967_296.0, "{dialect}");
+        let below = 4_294_967_296.0;
+        examples_hold(dialect, Rig::of_input(small(dialect, EXAMPLES)), -294_967_296, below);
         // An operand of 64 bits takes two registers.
         let text =
             "PROGRAM P VAR d : DINT := 2000000000; l : LINT := 2; long : LINT; END_VAR long := d * l; END_PROGRAM";

@@ -14,8 +14,9 @@ mod tree;
 
 use std::collections::BTreeMap;
 
-use self::tree::{Node, as_number, has, is_whole, node};
+use self::tree::{Node, has, is_whole, node};
 use super::{Refused, Written};
+use onescan_iec::check::as_number;
 use onescan_iec::front::Front;
 use onescan_iec::ir::walk::{self, Visitor};
 use onescan_iec::ir::{Binary, ElementaryType as E, Expr, ExprKind, TypeTable};
@@ -97,7 +98,7 @@ pub(crate) fn explicit(
     Ok(edits)
 }
 
-/// Where instructions stand.
+/// The places of instructions in lists, which have no parentheses for a conversion.
 fn instructions(front: &Front) -> Vec<Span> {
     struct Lists(Vec<Span>);
     impl syntax::walk::Visitor for Lists {

@@ -1,5 +1,6 @@
 //! What is computed in registers: operations, and what they are done with.
 
+use onescan_iec::check::as_number;
 use onescan_iec::ir::{Binary, ElementaryType as E, Expr, ExprKind, Intrinsic, TypeTable, Unary};
 use onescan_iec::syntax::Span;
 
@@ -107,17 +108,6 @@ fn leaf<'e>(types: &TypeTable, expr: &'e Expr, register: E) -> Node<'e> {
 /// True for integers and bit strings.
 pub(super) fn is_whole(ty: E) -> bool {
     ty.is_integer() || ty.is_bits() && ty != E::Bool
-}
-
-/// The integer of as many bits.
-pub(super) fn as_number(ty: E) -> E {
-    match ty {
-        E::Byte => E::Usint,
-        E::Word => E::Uint,
-        E::Dword => E::Udint,
-        E::Lword => E::Ulint,
-        other => other,
-    }
 }
 
 impl Node<'_> {

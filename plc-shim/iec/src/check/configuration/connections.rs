@@ -8,8 +8,8 @@ use crate::check::declare::Scope;
 use crate::check::types::operand::Operand;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{
-    Dispatch, ElementaryType, Entry, Expr, ExprKind, Guard, InstanceCall, Place, Pou, PouId, Statement, StatementKind,
-    Storage, Target, Type,
+    ElementaryType, Entry, Expr, ExprKind, Guard, InstanceCall, Place, Pou, PouId, Statement, StatementKind, Storage,
+    Target, Type,
 };
 use crate::syntax::Span;
 use crate::syntax::ast::{self, Connection, Ident, ProgramDeclaration, SectionKind};
@@ -112,8 +112,7 @@ impl<'a> Configurer<'_, 'a> {
         let mut scope = Scope::default();
         let pointer = scope.register(ElementaryType::Udint);
         let instance = Place::whole(Storage::Absolute(offset), ty, span);
-        let dispatch = Dispatch::Direct;
-        let call = InstanceCall { instance, pou, dispatch, pointer, inputs: Vec::new(), outputs: Vec::new() };
+        let call = InstanceCall::bare(instance, pou, pointer);
         let body = vec![Statement { kind: StatementKind::CallInstance(Box::new(call)), span }];
         let call = Side { statements: body, scope };
         let sides = [before, call, after].into_iter().filter(|side| !side.statements.is_empty());

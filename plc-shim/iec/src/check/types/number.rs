@@ -27,7 +27,7 @@ pub(in crate::check) fn as_bits(ty: E) -> E {
 }
 
 /// The integer type that calculates as a bit string does; others as they are.
-pub(in crate::check) fn as_number(ty: E) -> E {
+pub fn as_number(ty: E) -> E {
     match ty {
         E::Byte => E::Usint,
         E::Word => E::Uint,

@@ -99,6 +99,11 @@ impl ActionQualifier {
         }
     }
 
+    /// True for those that an edge of a step gives, for one scan.
+    pub fn is_pulse(self) -> bool {
+        matches!(self, Self::P | Self::P0 | Self::P1)
+    }
+
     /// True for those with a duration.
     pub fn is_timed(self) -> bool {
         matches!(self, Self::L | Self::D | Self::SD | Self::DS | Self::SL)

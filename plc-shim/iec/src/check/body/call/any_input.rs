@@ -38,7 +38,8 @@ impl Body<'_, '_> {
             return None;
         };
         let size = self.declarations.types().size(variable.ty);
-        let (element, elements) = self.elements_of(variable.ty);
+        // What is not an array is its own element, and has none.
+        let (element, elements) = self.declarations.types().get(variable.ty).elements().unwrap_or((variable.ty, 0));
         let (of_type, of_element) = (self.type_code(variable.ty), self.type_code(element));
         let memory = self.through_memory(variable, passing)?;
         let given = self.temporary(parameter.ty, span)?;

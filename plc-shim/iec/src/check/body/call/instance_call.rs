@@ -10,9 +10,7 @@ use crate::check::declare::Scope;
 use crate::check::types::parameter::ENO;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Feature;
-use crate::ir::{
-    Argument, Dispatch, ElementaryType, InstanceCall, Place, PouId, Statement, StatementKind, Storage, Type,
-};
+use crate::ir::{Argument, ElementaryType, InstanceCall, Place, PouId, Statement, StatementKind, Storage, Type};
 use crate::syntax::Span;
 use crate::syntax::ast::{Call, SectionKind};
 
@@ -56,9 +54,7 @@ impl Body<'_, '_> {
     pub(in crate::check::body) fn bare_call(&mut self, instance: Place, pou: PouId, span: Span) -> Statement {
         self.note_call(pou, span);
         let pointer = self.scope.register(ElementaryType::Udint);
-        let dispatch = Dispatch::Direct;
-        let call = InstanceCall { instance, pou, dispatch, pointer, inputs: Vec::new(), outputs: Vec::new() };
-        Statement { kind: StatementKind::CallInstance(Box::new(call)), span }
+        Statement { kind: StatementKind::CallInstance(Box::new(InstanceCall::bare(instance, pou, pointer))), span }
     }
 
     /// Sets the inputs of an instance that are given.

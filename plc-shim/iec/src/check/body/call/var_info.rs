@@ -4,7 +4,7 @@ use crate::check::body::Body;
 use crate::check::types::generic::NO_CLASS;
 use crate::check::types::operand::Operand;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::ir::{Place, Type, TypeId};
+use crate::ir::{Place, TypeId};
 use crate::syntax::Span;
 use crate::syntax::ast::{self, Call, Ident, Literal};
 
@@ -33,13 +33,8 @@ impl Body<'_, '_> {
 
     fn var_info_arguments(&self, place: &Place, argument: &ast::Expr, span: Span) -> Vec<ast::Argument> {
         let bits = |ty: TypeId| i128::from(self.declarations.types().size(ty)) * 8;
-        let (elements, element) = match self.declarations.types().get(place.ty) {
-            Type::Array { dimensions, element } => {
-                let count = dimensions.iter().fold(1_i128, |all, each| all.saturating_mul(i128::from(each.count())));
-                (count, Some(*element))
-            }
-            _ => (0, None),
-        };
+        let elements = self.declarations.types().get(place.ty).elements();
+        let element = elements.map(|(element, _)| element);
         let bit = place.part.filter(|_| bits(place.ty) == 8).map(|part| i128::from(part.shift));
         let number = |name: &str, value: i128| (name.to_owned(), Literal::Integer(value));
         let text = |name: &str, value: &str, most: usize| {
@@ -51,7 +46,7 @@ impl Body<'_, '_> {
             number("bitSize", if bit.is_some() { 1 } else { bits(place.ty) }),
             number("class", self.var_class(place.ty)),
             text("typeName", &self.type_name(place.ty), TYPE_NAME_MAX),
-            number("elements", elements),
+            number("elements", elements.map_or(0, |(_, count)| i128::from(count))),
             number("baseClass", element.map_or(NO_CLASS, |element| self.var_class(element))),
             number("elementBits", element.map_or(0, bits)),
             text("symbol", &written(argument), SYMBOL_MAX),

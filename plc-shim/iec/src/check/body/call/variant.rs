@@ -38,16 +38,6 @@ impl Body<'_, '_> {
         }
     }
 
-    /// What the elements of an array are, and how many there are of them; of anything else itself, and 0.
-    pub(super) fn elements_of(&self, ty: TypeId) -> (TypeId, u64) {
-        match self.declarations.types().get(ty) {
-            Type::Array { element, dimensions } => {
-                (*element, dimensions.iter().map(|dimension| dimension.count()).product())
-            }
-            _ => (ty, 0),
-        }
-    }
-
     /// The parameter of type VARIANT that `=>` gives its variable, as TIA Portal writes it.
     pub(super) fn variant_given_back<'s>(
         &self,

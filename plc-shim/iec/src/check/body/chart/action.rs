@@ -1,7 +1,7 @@
 //! Action control and the actions themselves (2nd ed. 2.6.4.5, 3rd ed. 6.7.4.6).
 
 use super::association::{Action, Runs};
-use super::pulse::{Before, PULSES};
+use super::pulse::Before;
 use crate::check::body::Body;
 use crate::check::body::call::argument::Passing;
 use crate::check::declare::Role;
@@ -45,7 +45,7 @@ impl Body<'_, '_> {
             flags.push(self.chart_member(&step, "X")?);
         }
         let mut statements = Vec::new();
-        let common = ActionQualifier::ALL.into_iter().filter(|each| before.is_none() || !PULSES.contains(each));
+        let common = ActionQualifier::ALL.into_iter().filter(|each| before.is_none() || !each.is_pulse());
         for qualifier in common {
             let by = action.uses.iter().zip(&flags).filter(|(used, _)| used.qualifier == qualifier);
             if let Some(any) = joined(Binary::Or, by.map(|(_, flag)| load(flag))) {

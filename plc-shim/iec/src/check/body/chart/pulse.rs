@@ -1,7 +1,7 @@
 //! The pulses of actions: `P`, `P1` and `P0` (2nd ed. 2.6.4.5, Figure 15; 3rd ed. 6.7.4.6).
 //!
 //! In the standard one detector of edges sees all steps of an action together. Where one of them follows another directly,
-//! the detector sees no edge, and there is no second pulse; this is reported. Nor does `P1` or `P0` ever set a Boolean
+//! the detector sees no edge, and gives no second pulse, which is reported. Nor does `P1` or `P0` ever set a Boolean
 //! action. In `MatIEC` each step has edges of its own, except that of the first scan, and they set a Boolean action; of
 //! several steps that name an action, the last one's count.
 
@@ -14,8 +14,6 @@ use crate::dialect::ActionPulses;
 use crate::ir::{Binary, ElementaryType, Expr, Place, Statement, Storage};
 use crate::syntax::Span;
 use crate::syntax::ast::{ActionQualifier, Chart};
-
-pub(super) const PULSES: [ActionQualifier; 3] = [ActionQualifier::P, ActionQualifier::P1, ActionQualifier::P0];
 
 /// For each step whether it was active before the scan's evolution.
 pub(super) struct Before(Vec<Place>);
@@ -31,7 +29,7 @@ impl Body<'_, '_> {
     pub(super) fn before(&mut self, chart: &Chart, actions: &[Action], quiet: Span) -> Option<Before> {
         let first = chart.steps.first()?;
         let of_step = self.declarations.dialect(first.span).action_pulses() == ActionPulses::OfStep;
-        let needed = actions.iter().flat_map(|action| &action.uses).any(|used| PULSES.contains(&used.qualifier));
+        let needed = actions.iter().flat_map(|action| &action.uses).any(|used| used.qualifier.is_pulse());
         (of_step && needed).then(|| {
             let flags = chart.steps.iter().map(|_| {
                 let register = self.scope.register(ElementaryType::Bool);
@@ -42,8 +40,7 @@ impl Body<'_, '_> {
     }
 
     /// The pulse of an action whose steps have edges of their own, as an input of its control. `flags` are those of the
-    /// steps in its uses. The peer sets and clears the action for one step after the other, so that the last one has its
-    /// way.
+    /// steps in its uses. MatIEC's code sets or clears the action for one step after the other, so only the last counts.
     pub(super) fn pulse_of_step(
         &self,
         action: &Action,
@@ -51,7 +48,7 @@ impl Body<'_, '_> {
         before: &Before,
         quiet: Span,
     ) -> Option<Vec<Statement>> {
-        let last = action.uses.iter().zip(flags).rev().find(|(used, _)| PULSES.contains(&used.qualifier));
+        let last = action.uses.iter().zip(flags).rev().find(|(used, _)| used.qualifier.is_pulse());
         let Some((used, flag)) = last else { return Some(Vec::new()) };
         let edge = edge(used.qualifier, flag, before.of(used.step)?);
         // The control's own detector must see this as an edge, whatever was before.
@@ -67,7 +64,7 @@ impl Body<'_, '_> {
     /// Pulses that the action control never gives.
     pub(super) fn report_lost_pulses(&mut self, chart: &Chart, net: &Net, actions: &[Action]) {
         for action in actions {
-            let pulses: Vec<&Use> = action.uses.iter().filter(|used| PULSES.contains(&used.qualifier)).collect();
+            let pulses: Vec<&Use> = action.uses.iter().filter(|used| used.qualifier.is_pulse()).collect();
             for (at, used) in pulses.iter().enumerate() {
                 let of_step = self.declarations.dialect(used.span).action_pulses() == ActionPulses::OfStep;
                 let sets_bool = matches!(action.runs, Runs::Variable(_));
