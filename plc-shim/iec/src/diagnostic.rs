@@ -80,6 +80,7 @@ codes! {
     InvalidArgument "C0305" "an argument does not suit its parameter",
     NotCallable "C0306" "what is called is not a function or instance",
     ResultIgnored "C0307" "a function is called as a statement and its result is lost",
+    UnclearOverload "C0308" "which function or method of the name is called is not clear",
     InvalidEnable "C0310" "EN or ENO is declared as what it is not",
     AssignToConstant "D0401" "a constant is assigned to",
     AssignToInput "D0402" "an input is assigned to inside its own unit",

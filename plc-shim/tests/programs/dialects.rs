@@ -196,6 +196,23 @@ fn use_in_projects(feature: Feature) -> &'static str {
             "FUNCTION F : INT VAR_INPUT a : INT := 4; END_VAR F := a; END_FUNCTION
              PROGRAM P VAR n : INT; END_VAR n := F(); END_PROGRAM"
         }
+        Feature::CharactersAsText => "PROGRAM P VAR c : CHAR; s : STRING; END_VAR s := c; END_PROGRAM",
+        Feature::PositionalOutputs => {
+            "FUNCTION F : INT VAR_INPUT a : INT; END_VAR VAR_OUTPUT b : INT; END_VAR F := a; b := 2 * a; END_FUNCTION
+             PROGRAM P VAR n, m : INT; END_VAR n := F(n, m); END_PROGRAM"
+        }
+        Feature::CharactersSelect => {
+            "PROGRAM P VAR s : STRING; n : INT; END_VAR CASE s OF 'a': n := 1; 'b', 'c': n := 2; END_CASE; END_PROGRAM"
+        }
+        Feature::BareCalls => {
+            "FUNCTION F : INT VAR_INPUT a : INT; END_VAR F := a; END_FUNCTION
+             PROGRAM P VAR n : INT; END_VAR n := F(); END_PROGRAM"
+        }
+        Feature::Overloads => {
+            "FUNCTION F : INT VAR_INPUT a : INT; END_VAR F := a; END_FUNCTION
+             FUNCTION F : INT VAR_INPUT a : BOOL; END_VAR F := 1; END_FUNCTION
+             PROGRAM P VAR n : INT; END_VAR n := F(n); END_PROGRAM"
+        }
         Feature::NamedCounts => {
             "VAR_GLOBAL CONSTANT n : INT := 3; END_VAR
              PROGRAM P VAR a : ARRAY [1..4] OF INT := [n(5), 7]; END_VAR a[1] := a[2]; END_PROGRAM"
@@ -225,7 +242,12 @@ fn every_construct_is_for_its_dialects_alone() {
 }
 
 /// Constructs whose absence is not a syntax of its own: another error says it.
-const REPORTED_OTHERWISE: [Feature; 50] = [
+const REPORTED_OTHERWISE: [Feature; 55] = [
+    Feature::PositionalOutputs,
+    Feature::CharactersSelect,
+    Feature::CharactersAsText,
+    Feature::BareCalls,
+    Feature::Overloads,
     Feature::Variants,
     Feature::EmptyLists,
     Feature::BitsInOut,

@@ -416,6 +416,11 @@ features! {
     BitsInOut "an unsigned integer for a `VAR_IN_OUT` that is a bit string, or the other way",
     EmptyLists "a call without arguments where each input has a value of its own",
     NamedCounts "a count of equal initial values by its name, `[N(5), 7]`",
+    CharactersAsText "a CHAR where a STRING is wanted, a WCHAR where a WSTRING is",
+    PositionalOutputs "outputs behind the inputs in a list without names",
+    CharactersSelect "`CASE` of a CHAR, WCHAR or string",
+    BareCalls "a call without arguments: each input has its initial value",
+    Overloads "functions or methods of one name with other parameters",
 }
 
 impl Feature {

@@ -187,6 +187,15 @@ pub const FEATURES: &[FeatureRow] = &[
         "SIMATIC AX: accepts it, as public projects show; CODESYS and TwinCAT: FUNCTION, optional inputs",
     ),
     row(Feature::NamedCounts, &[Codesys, TwinCat], "TwinCAT: accepts it, as public projects show"),
+    row(Feature::CharactersAsText, &[Iec3], "3rd ed. Figures 11 and 12"),
+    row(Feature::PositionalOutputs, &[Iec3], "SIMATIC AX: accepts them, as public projects show"),
+    row(Feature::CharactersSelect, &[Iec3], "3rd ed. 7.3.3.3.3: the selector is of an elementary type"),
+    row(
+        Feature::BareCalls,
+        &[Iec3],
+        "3rd ed. 6.6.1.4.2, a formal list that leaves out all; SIMATIC AX: accepts it, as public projects show",
+    ),
+    row(Feature::Overloads, &[Iec3], "SIMATIC AX: overloads, as public projects show; not in 3rd ed."),
 ];
 
 /// How a dialect behaves, and where that is written.

@@ -8,7 +8,7 @@ mod instruction;
 mod object;
 mod statement;
 
-use super::ast::{CompilationUnit, Expr, Ident};
+use super::ast::{CompilationUnit, Expr, Ident, TypeSpec};
 
 /// Text of a whole file.
 pub fn print_unit(unit: &CompilationUnit) -> String {
@@ -23,6 +23,13 @@ pub fn print_unit(unit: &CompilationUnit) -> String {
 pub fn print_expression(expr: &Expr) -> String {
     let mut printer = Printer::default();
     printer.expression(expr);
+    printer.text
+}
+
+/// Text of a type, as a declaration has it.
+pub(crate) fn print_type(spec: &TypeSpec) -> String {
+    let mut printer = Printer::default();
+    printer.type_spec(spec);
     printer.text
 }
 

@@ -32,6 +32,7 @@ mod wire;
 
 use std::collections::BTreeMap;
 
+use self::call::overload::Meanings;
 use self::statement::jump::Labels;
 use self::view::View;
 use crate::check::declare::{Declarations, Scope};
@@ -70,6 +71,8 @@ pub(super) struct Body<'c, 'a> {
     later: Vec<(PouId, String)>,
     /// How many wires lists of instructions have so far.
     instruction_wires: u32,
+    /// Which of several functions or methods of one name calls mean.
+    meanings: Meanings,
     /// The structure in one of whose initial values the expression stands.
     surrounding: Option<Surrounding>,
     /// Views of the unit's variables.
@@ -97,6 +100,7 @@ impl<'c, 'a> Body<'c, 'a> {
             later: Vec::new(),
             is_running: false,
             instruction_wires: 0,
+            meanings: Meanings::new(),
             network: None,
             surrounding: None,
             views: Vec::new(),

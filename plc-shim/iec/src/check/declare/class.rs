@@ -221,6 +221,12 @@ impl Declarations<'_> {
         derived == base || self.ancestors(derived).contains(&base)
     }
 
+    /// How many steps an ancestor is away: 0 for the unit itself.
+    pub(in crate::check) fn generations(&self, derived: PouId, base: PouId) -> u32 {
+        let behind = |id: PouId| self.ancestors(id).len() as u32;
+        if derived == base { 0 } else { behind(derived).saturating_sub(behind(base)).max(1) }
+    }
+
     /// Numbers what can be taken for something else; what is derived from a unit comes behind it.
     fn number_types(&mut self) {
         let ids: Vec<PouId> = self.classes.keys().copied().collect();
@@ -295,6 +301,14 @@ impl Declarations<'_> {
         // Of an interface, and of an abstract class that leaves a method to others.
         let above = self.ancestors(id);
         above.iter().find_map(|each| self.class(*each)?.members.get(&key).copied())
+    }
+
+    /// True if the unit has a member of the name, with whatever parameters.
+    pub(in crate::check) fn has_member(&self, id: PouId, role: Role, name: &str) -> bool {
+        match role {
+            Role::Method => !self.methods_named(id, name).is_empty(),
+            _ => self.find_member(id, role, name).is_some(),
+        }
     }
 
     /// The names of all members of a unit.

@@ -82,7 +82,7 @@ impl Declarations<'_> {
     }
 
     /// What has been found since.
-    pub(super) fn found_since(&self, mark: Mark) -> &[Diagnostic] {
+    pub(in crate::check) fn found_since(&self, mark: Mark) -> &[Diagnostic] {
         self.findings.diagnostics.get(mark.0..).unwrap_or_default()
     }
 

@@ -42,8 +42,7 @@ impl Declarations<'_> {
             if let Some(base) = of_base {
                 self.check_finality(member, base);
             } else if overrides && !self.may_inherit(id) {
-                let message = format!("no base has a method `{}` to override", self.pou(member).ast.name.text);
-                self.report(Diagnostic::error(Code::NothingOverridden, span, message));
+                self.report_nothing_overridden(id, member);
             }
             let key = (role, name);
             let above = self.ancestors(id).into_iter();
@@ -56,6 +55,18 @@ impl Declarations<'_> {
                 self.check_signature(member, each);
             }
         }
+    }
+
+    fn report_nothing_overridden(&mut self, id: PouId, member: PouId) {
+        let name = &self.pou(member).ast.name;
+        let alike = self.base_of(id).map_or_else(Vec::new, |base| self.methods_named(base, &name.text));
+        let parameters = self.shown_parameters(member).unwrap_or_default();
+        let message = format!("no base has a method `{}{parameters}` to override", name.text);
+        let found = Diagnostic::error(Code::NothingOverridden, name.span, message);
+        let labelled = alike.into_iter().fold(found, |found, method| {
+            found.with_label(self.pou(method).ast.name.span, "this one has other parameters")
+        });
+        self.report(labelled);
     }
 
     fn check_finality(&mut self, member: PouId, base: PouId) {
@@ -116,7 +127,8 @@ impl Declarations<'_> {
                 Role::Body | Role::Method | Role::Start | Role::AfterStart | Role::End => "the method",
             };
             let owner = &self.pou(self.owner_of(prototype)).ast.name.text;
-            let message = format!("`{}` lacks {what} `{}` of `{owner}`", unit.text, wanted.text);
+            let parameters = self.shown_parameters(prototype).unwrap_or_default();
+            let message = format!("`{}` lacks {what} `{}{parameters}` of `{owner}`", unit.text, wanted.text);
             let found = Diagnostic::error(Code::MissingMethod, unit.span, message);
             let found = found.with_label(wanted.span, "declared here");
             self.report(found);

@@ -18,6 +18,7 @@ mod located;
 mod names;
 mod namespace;
 mod numbered;
+mod overload;
 mod overrides;
 mod program;
 mod query;
@@ -43,6 +44,7 @@ use self::global::Alternatives;
 use self::layout::Memory;
 use self::located::Initial;
 use self::namespace::OpenNames;
+use self::overload::Overloads;
 use self::start::Stages;
 use self::stub::Stubs;
 use crate::check::types::generic::Generic;
@@ -101,6 +103,7 @@ pub(super) struct Declarations<'a> {
     /// Names that a method or action has in some unit, and those of properties.
     method_names: BTreeSet<String>,
     property_names: BTreeSet<String>,
+    overloads: Overloads,
     globals: BTreeMap<String, GlobalEntry<'a>>,
     enumerators: BTreeMap<String, Vec<Enumerator>>,
     memory: Memory,
@@ -169,6 +172,7 @@ impl<'a> Declarations<'a> {
             classes: BTreeMap::new(),
             method_names: BTreeSet::new(),
             property_names: BTreeSet::new(),
+            overloads: Overloads::default(),
             generics: BTreeMap::new(),
             globals: BTreeMap::from([
                 (VIRTUAL_TIME_NAME.to_owned(), provided(VIRTUAL_TIME_NAME, ElementaryType::Time, VIRTUAL_TIME_OFFSET)),

@@ -12,7 +12,7 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Feature;
 use crate::ir::{ElementaryType, PouId};
 use crate::syntax::Span;
-use crate::syntax::ast::{self, Ident, PouKind, SectionKind, TypeDeclaration, TypeSpecKind};
+use crate::syntax::ast::{self, Ident, PouKind, TypeDeclaration};
 
 impl<'a> Declarations<'a> {
     pub(super) fn collect_pou(&mut self, ast: &'a ast::Pou) {
@@ -30,8 +30,12 @@ impl<'a> Declarations<'a> {
         let is_own_function = ast.kind == PouKind::Function
             && self.declared_at(&ast.name).is_none()
             && standard::is_reserved(&ast.name.key())
-            && self.dialect(ast.name.span).has(Feature::OwnStandardFunctions);
-        if !is_own_function && self.is_taken(&ast.name, Some(ast)) {
+            && (self.dialect(ast.name.span).has(Feature::OwnStandardFunctions) || self.home.is_named());
+        if self.stands_beside(ast) {
+            self.add_overload(ast);
+            return;
+        }
+        if !is_own_function && self.is_taken(&ast.name) {
             return;
         }
         self.add_unit(ast);
@@ -52,9 +56,8 @@ impl<'a> Declarations<'a> {
             let role = member.kind.into();
             let found = self.add_pou(&member.pou, Some(Membership { owner: id, role }));
             let name = &member.pou.name;
-            if let Some(first) = class.members.insert((role, name.key()), found) {
-                let first = self.pou(first).ast;
-                self.report_duplicate_with(name, Some(first.name.span), overload(first, &member.pou));
+            if let Some(first) = class.members.insert((role, self.overloads.member_key(&member.pou, role)), found) {
+                self.report_duplicate(name, Some(self.pou(first).ast.name.span));
             }
             match role {
                 Role::Getter | Role::Setter => self.property_names.insert(name.key()),
@@ -94,7 +97,7 @@ impl<'a> Declarations<'a> {
         if self.library.contains(&ast.name.span.file) && self.declared_at(&ast.name).is_some() {
             return;
         }
-        if !self.is_taken(&ast.name, None) {
+        if !self.is_taken(&ast.name) {
             let (home, progress) = (self.home.clone(), Progress::Untouched);
             let entry = TypeEntry { ast, home, progress, reserved: None, resolved: None };
             let key = self.home.key(&ast.name);
@@ -135,7 +138,7 @@ impl<'a> Declarations<'a> {
     }
 
     /// True, with a report, if a type or unit of the name exists already.
-    fn is_taken(&mut self, name: &Ident, unit: Option<&ast::Pou>) -> bool {
+    fn is_taken(&mut self, name: &Ident) -> bool {
         if ElementaryType::find(&name.text).is_some()
             || matches!(name.key().as_str(), "STRING" | "WSTRING")
             || standard::is_reserved(&name.key())
@@ -145,9 +148,7 @@ impl<'a> Declarations<'a> {
         }
         let first = self.declared_at(name);
         if first.is_some() {
-            let before = unit.zip(self.pou_names.get(&self.home.key(name)));
-            let help = before.and_then(|(unit, first)| overload(self.pou(*first).ast, unit));
-            self.report_duplicate_with(name, first, help);
+            self.report_duplicate(name, first);
         }
         first.is_some()
     }
@@ -165,38 +166,11 @@ impl<'a> Declarations<'a> {
     }
 
     pub(in crate::check) fn report_duplicate(&mut self, name: &Ident, first: Option<Span>) {
-        self.report_duplicate_with(name, first, None);
-    }
-
-    fn report_duplicate_with(&mut self, name: &Ident, first: Option<Span>, help: Option<String>) {
         let message = format!("`{}` is declared twice", name.text);
         let mut found = Diagnostic::error(Code::DuplicateName, name.span, message);
         if let Some(first) = first {
             found = found.with_label(first, "first declared here");
         }
-        self.report(found.with_optional_help(help));
-    }
-}
-
-/// What to do about two functions or methods of one name with other inputs, as SIMATIC AX has them.
-fn overload(first: &ast::Pou, second: &ast::Pou) -> Option<String> {
-    let is_called = |pou: &ast::Pou| matches!(pou.kind, PouKind::Function | PouKind::Method);
-    let inputs = |pou: &ast::Pou| {
-        let sections =
-            pou.sections.iter().filter(|section| matches!(section.kind, SectionKind::Input | SectionKind::InOut));
-        let variables = sections.flat_map(|section| &section.variables);
-        variables.map(|variable| (variable.names.len(), spelling(&variable.spec))).collect::<Vec<_>>()
-    };
-    let differ = is_called(first) && is_called(second) && inputs(first) != inputs(second);
-    differ.then(|| {
-        "one name for several lists of parameters is not supported yet: give each a name of its own".to_owned()
-    })
-}
-
-/// The name of a type, where it has one.
-fn spelling(spec: &ast::TypeSpec) -> Option<String> {
-    match &spec.kind {
-        TypeSpecKind::Name(name) => Some(name.key()),
-        _ => None,
+        self.report(found);
     }
 }

@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::Declarations;
+use super::overload::Overloads;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::dialect::AddressUnit;
 use crate::ir::PouId;
@@ -84,6 +85,11 @@ impl Home {
         joined(&self.shown, &name.text)
     }
 
+    /// True inside of a namespace.
+    pub(super) fn is_named(&self) -> bool {
+        !self.namespace.is_empty()
+    }
+
     fn inside(&self, namespace: &Namespace) -> Self {
         let mut using = self.using.clone();
         using.extend(namespace.using.iter().map(Ident::key));
@@ -150,6 +156,7 @@ impl<'a> Declarations<'a> {
         // Who looks from outside sees the addresses as the first file has them.
         self.address_unit = units.first().map_or_else(AddressUnit::default, |(_, unit)| unit.dialect.address_unit());
         self.dialects = units.iter().map(|(file, unit)| (*file, (unit.dialect, unit.word_size))).collect();
+        self.overloads = Overloads::of(units);
         let mut used = Vec::new();
         for (_, unit) in units {
             let mut home = Home::default();

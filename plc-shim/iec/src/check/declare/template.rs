@@ -111,7 +111,7 @@ impl Declarations<'_> {
         unit.map_or_else(String::new, |id| self.key_of(self.owner_of(id)))
     }
 
-    fn key_of(&self, id: PouId) -> String {
+    pub(super) fn key_of(&self, id: PouId) -> String {
         let entry = self.pou(id);
         entry.home.key(&entry.ast.name)
     }

@@ -35,10 +35,11 @@ impl Declarations<'_> {
     /// The name of a unit, that of a method with its class.
     pub(in crate::check) fn display_name(&self, id: PouId) -> String {
         let name = &self.pou(id).ast.name.text;
-        match self.pou(id).membership {
+        let shown = match self.pou(id).membership {
             Some(membership) => format!("{}.{name}", self.pou(membership.owner).ast.name.text),
             None => name.clone(),
-        }
+        };
+        shown + &self.shown_parameters(id).unwrap_or_default()
     }
 
     /// True for a method that only its own unit sees: what is derived from that cannot override it.

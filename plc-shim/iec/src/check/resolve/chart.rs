@@ -92,7 +92,7 @@ impl<'a> Interface<'_, 'a> {
         }
         let Some(declared) = self.library_type(CONTROL_TYPE, action.span) else { return };
         let unit = self.unit();
-        let has_body = unit.is_some_and(|id| self.declarations().find_member(id, Role::Method, &action.text).is_some());
+        let has_body = unit.is_some_and(|id| self.declarations().has_member(id, Role::Method, &action.text));
         if let Some(variable) = self.scope().own(&action.key()).filter(|_| has_body) {
             let first = variable.span;
             self.declarations_mut().report_duplicate(action, Some(first));

@@ -157,6 +157,10 @@ impl Form {
             (Self::Select | Self::Multiplex, _) => numbered()?.checked_add(1),
             (Self::Limit | Self::Shift(_) | Self::RealPair(_), _) => None,
             _ if self.arity() == (1, 1) => None,
+            // SIMATIC AX: System.Strings.Concat.
+            (Self::Text(_), _) if name.starts_with("STRING") => {
+                name.strip_prefix("STRING")?.parse::<usize>().ok()?.checked_sub(1)
+            }
             _ => numbered()?.checked_sub(1),
         }
     }

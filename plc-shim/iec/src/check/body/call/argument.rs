@@ -44,10 +44,36 @@ impl Body<'_, '_> {
         (is_allowed(parameter.span) || is_allowed(call)) && self.is_declared_with_value(parameter)
     }
 
-    /// True for a list that leaves out an input by its name: with names, or, where that has a value, without anything.
-    pub(in crate::check::body) fn leaves_out(&self, parameter: &Variable, call: &ast::Call, formal: bool) -> bool {
-        let may_be_empty = self.declarations.dialect(call.callee.span).has(Feature::EmptyLists);
-        formal || may_be_empty && call.arguments.is_empty() && self.is_declared_with_value(parameter)
+    /// What a parameter has that a call does not give.
+    pub(in crate::check::body) fn left_out(
+        &mut self,
+        parameter: &Variable,
+        call: &ast::Call,
+        formal: bool,
+        span: Span,
+    ) -> Option<Argument> {
+        let named = self.leaves_out(parameter, call, formal);
+        self.default_argument(parameter, named, span)
+    }
+
+    /// True for a list that leaves out an input by its name: with names, or without anything, where with vendors the
+    /// input must have a value. Reported if it has none.
+    fn leaves_out(&mut self, parameter: &Variable, call: &ast::Call, formal: bool) -> bool {
+        let dialect = self.declarations.dialect(call.callee.span);
+        if formal || !call.arguments.is_empty() || parameter.section != SectionKind::Input {
+            return formal;
+        }
+        if self.is_declared_with_value(parameter) {
+            return dialect.has(Feature::EmptyLists) || dialect.has(Feature::BareCalls);
+        }
+        if dialect.has(Feature::BareCalls) {
+            let message = format!("parameter `{}` is missing: it is what its type begins with", parameter.name);
+            let help = format!("write `{} := ...`, or give it a value in its declaration", parameter.name);
+            let found = Diagnostic::warning(Code::MissingArgument, call.callee.span, message);
+            self.report(found.with_help(help));
+            return true;
+        }
+        false
     }
 
     fn is_declared_with_value(&self, parameter: &Variable) -> bool {

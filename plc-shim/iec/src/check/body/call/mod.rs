@@ -8,6 +8,7 @@ pub(super) mod enable;
 pub(super) mod enable_error;
 pub(super) mod instance_call;
 pub(super) mod memory_function;
+pub(super) mod overload;
 pub(super) mod standard_function;
 pub(super) mod var_info;
 mod variant;
@@ -73,6 +74,7 @@ impl Body<'_, '_> {
             return self.not_a_function(call, span);
         }
         if let Some(id) = self.function_named(name) {
+            let id = self.meant(&self.declarations.functions_beside(id), name, call, span)?;
             return self.function_call(id, name, call, formal, span).map(Operand::Typed);
         }
         let name = &self.declarations.behind_libraries(name);
@@ -263,8 +265,11 @@ impl Body<'_, '_> {
                     }
                     if let Some(variable) = scope.positional().nth(index) {
                         (variable.name.to_ascii_uppercase(), expr.span, expr)
-                    } else if let Some(only) = self.only_output(scope, call, expr.span) {
-                        matched.outputs.push(Wanted { variable: only, negated: false, target: expr });
+                    } else if let Some(output) = self
+                        .positional_output(scope, index, expr.span)
+                        .or_else(|| self.only_output(scope, call, expr.span))
+                    {
+                        matched.outputs.push(Wanted { variable: output, negated: false, target: expr });
                         continue;
                     } else {
                         let count = scope.positional().count();
@@ -312,6 +317,13 @@ impl Body<'_, '_> {
             }
         }
         sound.then_some(matched)
+    }
+
+    /// In a list without names outputs may stand behind the inputs, in the order of their declaration.
+    fn positional_output(&self, scope: &Scope, index: usize, span: Span) -> Option<Variable> {
+        let has = self.declarations.dialect(span).has(Feature::PositionalOutputs);
+        let behind = index.checked_sub(scope.positional().count()).filter(|_| has)?;
+        scope.outputs().filter(|output| !parameter::is_control(output)).nth(behind).cloned()
     }
 
     /// Where a unit has one parameter, its name is left out, even if it is an output: `RD_SYS_T(now)`.
@@ -390,7 +402,7 @@ impl Body<'_, '_> {
                 _ if parameter::is_control(parameter) => Some(Argument::Value(enable::boolean(true, span))),
                 Some(expr) => self.argument(parameter, expr, &mut passing),
                 None if self.declarations.is_library(id) && asserts::is_site(parameter) => Some(asserts::site(span)),
-                None => self.default_argument(parameter, self.leaves_out(parameter, call, formal), span),
+                None => self.left_out(parameter, call, formal, span),
             };
             sound &= argument.is_some();
             arguments.extend(argument);

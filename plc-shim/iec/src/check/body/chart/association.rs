@@ -1,7 +1,6 @@
 //! The actions that steps name, with qualifier, time and indicators (2nd ed. 2.6.4, 3rd ed. 6.7.4).
 
 use crate::check::body::Body;
-use crate::check::declare::Role;
 use crate::check::declare::chart::control_key;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::ir::{ElementaryType, Expr, Place, PouId};
@@ -63,7 +62,7 @@ impl Body<'_, '_> {
     fn action(&mut self, association: &Association) -> Option<(Runs, Place)> {
         let name = &association.action;
         let class = self.own_class()?;
-        let member = self.declarations.find_member(class, Role::Method, &name.text);
+        let member = self.declarations.methods_named(class, &name.text).first().copied();
         let runs = match member.filter(|id| self.declarations.pou(*id).ast().kind == PouKind::Action) {
             Some(id) => Runs::Statements(id),
             None => Runs::Variable(self.boolean_action(association)?),

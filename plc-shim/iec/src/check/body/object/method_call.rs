@@ -5,9 +5,11 @@ use crate::check::body::call::{enable, is_formal};
 use crate::check::body::place::member::member_place;
 use crate::check::body::{Body, Meant};
 use crate::check::declare::{Role, Scope};
+use crate::check::standard;
 use crate::check::types::operand::Operand;
 use crate::check::types::parameter::{self, ENO};
 use crate::diagnostic::{Code, Diagnostic};
+use crate::dialect::Feature;
 use crate::ir::{
     Argument, Dispatch, ElementaryType, Expr, ExprKind, FunctionCall, Place, PouId, Receiver, Storage, Type, TypeTable,
     Value, Variable,
@@ -47,7 +49,9 @@ impl Body<'_, '_> {
                     return None;
                 }
                 let class = self.own_class()?;
-                self.declarations.find_member(class, Role::Method, &name.text)?;
+                if !self.declarations.has_member(class, Role::Method, &name.text) || self.means_function(name) {
+                    return None;
+                }
                 (self.this_object(class, name.span), name)
             }
             ast::ExprKind::Member(base, name) => {
@@ -61,14 +65,24 @@ impl Body<'_, '_> {
             }
             _ => return None,
         };
-        let Some(method) = self.declarations.find_member(object.class, Role::Method, &name.text) else {
+        let methods = self.declarations.methods_named(object.class, &name.text);
+        if methods.is_empty() {
             // A variable of the name may be an instance to call.
             let is_variable = |scope: std::sync::Arc<Scope>| scope.find(&name.key()).is_some();
             let is_unknown = object.known == Known::Super
                 && !self.declarations.interface(object.class, span).is_some_and(is_variable);
             return is_unknown.then(|| self.unknown_method(object.class, name));
-        };
+        }
+        let Some(method) = self.meant(&methods, name, call, span) else { return Some(None) };
         Some(self.called(object, method, name, call, span))
+    }
+
+    /// True for the name of the method that runs, where methods do not call themselves and a function has it: by its bare
+    /// name it calls that (SIMATIC AX).
+    fn means_function(&self, name: &Ident) -> bool {
+        let may_recur = self.declarations.dialect(name.span).has(Feature::Recursion);
+        let has_function = || self.function_named(name).is_some() || standard::exists(&name.key());
+        !may_recur && self.is_own_result(name) && has_function()
     }
 
     fn called(&mut self, object: Object, method: PouId, name: &Ident, call: &Call, span: Span) -> Option<Expr> {
@@ -189,7 +203,7 @@ impl Body<'_, '_> {
                 // The call is carried out, or the method would not read it.
                 _ if parameter::is_control(parameter) => Some(Argument::Value(enable::boolean(true, span))),
                 Some(expr) => self.argument(parameter, expr, &mut passing),
-                None => self.default_argument(parameter, self.leaves_out(parameter, call, formal), span),
+                None => self.left_out(parameter, call, formal, span),
             };
             sound &= argument.is_some();
             arguments.extend(argument);
@@ -229,7 +243,7 @@ impl Body<'_, '_> {
         span: Span,
     ) -> Option<Expr> {
         let scope = self.declarations.interface(method, span)?;
-        let name = self.declarations.pou(method).ast().name.text.clone();
+        let name = self.declarations.member_key(method);
         self.declarations.note_stub(method, span);
         let (pou, dispatch) = self.dispatch(object.class, object.known, role, &name, method, span)?;
         if self.declarations.lacks_result(method) {

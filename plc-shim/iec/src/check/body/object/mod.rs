@@ -146,7 +146,7 @@ impl Body<'_, '_> {
     /// What is wrong with naming a method or property like a variable.
     pub(super) fn not_a_variable<T>(&mut self, class: PouId, name: &Ident) -> Meant<T> {
         let roles = [Role::Method, Role::Getter, Role::Setter];
-        let role = roles.into_iter().find(|role| self.declarations.find_member(class, *role, &name.text).is_some())?;
+        let role = roles.into_iter().find(|role| self.declarations.has_member(class, *role, &name.text))?;
         let (code, message) = match role {
             Role::Method | Role::Body | Role::Start | Role::AfterStart | Role::End => {
                 (Code::NotAVariable, format!("`{0}` is a method: call it as `{0}()`", name.text))

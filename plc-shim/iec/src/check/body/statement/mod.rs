@@ -1,6 +1,7 @@
 //! Statements (2nd ed. 3.3.2).
 
 pub(super) mod assignment;
+mod case_of_text;
 mod exception;
 pub(super) mod instruction;
 pub(super) mod jump;
@@ -214,6 +215,9 @@ impl Body<'_, '_> {
     fn case_statement(&mut self, inner: &ast::CaseStatement) -> Option<StatementKind> {
         let selector = self.expression(&inner.selector).and_then(|operand| self.settle(operand));
         let selector = selector.map(|selector| self.whole(selector));
+        if let Some(selector) = selector.clone().filter(|selector| self.selects_by_text(selector)) {
+            return self.case_of_text(selector, inner);
+        }
         let selector = selector.and_then(|selector| self.selectable(selector));
         let ty = selector.as_ref().map(|(selector, _)| selector.ty);
         let mut known = BTreeMap::new();
@@ -231,10 +235,19 @@ impl Body<'_, '_> {
         Some(StatementKind::Case(Box::new(case)))
     }
 
-    /// 2nd ed. 3.3.2.3: an integer or an enumeration selects; 3rd ed. adds bit strings.
+    fn selects_by_text(&self, selector: &Expr) -> bool {
+        let has = self.declarations.dialect(selector.span).has(Feature::CharactersSelect);
+        has && self.shape(selector.ty).is_some()
+    }
+
+    /// 2nd ed. 3.3.2.3: an integer or an enumeration selects; 3rd ed. adds bit strings and characters.
     fn selectable(&mut self, selector: Expr) -> Option<(Expr, ElementaryType)> {
+        let has_characters = self.declarations.dialect(selector.span).has(Feature::CharactersSelect);
         match self.elementary(selector.ty) {
-            Some(ty) if (ty.is_integer() || ty.is_bits()) && !self.is_reference(&Operand::Typed(selector.clone())) => {
+            Some(ty)
+                if (ty.is_integer() || ty.is_bits() || ty.is_character() && has_characters)
+                    && !self.is_reference(&Operand::Typed(selector.clone())) =>
+            {
                 Some((selector, ty))
             }
             _ => {

@@ -51,6 +51,7 @@ impl Body<'_, '_> {
         for operand in operands {
             let known = strings.first().and_then(|first| self.shape(first.ty)).map(|shape| shape.wide);
             let expr = self.settle(operand)?;
+            let expr = self.one_character(expr)?;
             let found = self.shape(expr.ty).map(|shape| shape.wide);
             if found.is_none() || known.is_some() && known != found {
                 let wanted = if known == Some(true) { "a WSTRING" } else { "a STRING" };

@@ -108,6 +108,11 @@ impl Body<'_, '_> {
                 self.warn_if_cut(&text, shape, span);
                 self.stored_text(shape, &text, span)
             }
+            Operand::Typed(expr) if self.character_as_text(&expr) == Some(shape.wide) => {
+                let from = if shape.wide { ElementaryType::Wchar } else { ElementaryType::Char };
+                let span = expr.span;
+                self.formatted_number(expr, from, shape, span)
+            }
             Operand::Typed(expr) if self.shape(expr.ty).is_some_and(|found| found.wide == shape.wide) => {
                 if self.most_characters(expr.span).is_some_and(|most| shape.capacity > most) {
                     self.warn_of_cut_text(&expr);
@@ -127,6 +132,34 @@ impl Body<'_, '_> {
                 None
             }
         }
+    }
+
+    /// Of a character that may stand for a string of its own: whether that is a WSTRING (3rd ed. Figure 12).
+    fn character_as_text(&self, expr: &Expr) -> Option<bool> {
+        let has = self.declarations.dialect(expr.span).has(Feature::CharactersAsText);
+        match self.elementary(expr.ty).filter(|_| has)? {
+            ElementaryType::Char => Some(false),
+            ElementaryType::Wchar => Some(true),
+            _ => None,
+        }
+    }
+
+    /// The character as a string of its own, if it may stand for one.
+    pub(super) fn one_character(&mut self, expr: Expr) -> Option<Expr> {
+        let Some(wide) = self.character_as_text(&expr) else { return Some(expr) };
+        let shape = TextShape { wide, capacity: 1, memory: self.declarations.dialect(expr.span).strings() };
+        self.coerce_text(Operand::Typed(expr), shape)
+    }
+
+    /// Of two values the character beside a string as a string; a literal stands for either.
+    fn alike_texts(&mut self, left: Operand, right: Operand) -> Option<(Operand, Operand)> {
+        let is_string = |operand: &Operand| operand.typed().is_some_and(|expr| self.shape(expr.ty).is_some());
+        let (left_is_string, right_is_string) = (is_string(&left), is_string(&right));
+        Some(match (left, right) {
+            (Operand::Typed(left), right) if right_is_string => (Operand::Typed(self.one_character(left)?), right),
+            (left, Operand::Typed(right)) if left_is_string => (left, Operand::Typed(self.one_character(right)?)),
+            others => others,
+        })
     }
 
     /// A STRING between double quotes, where the dialect's tools write it so; all else as it is.
@@ -188,6 +221,7 @@ impl Body<'_, '_> {
         right: Operand,
         span: Span,
     ) -> Option<Operand> {
+        let (left, right) = self.alike_texts(left, right)?;
         let character = |operand: &Operand| matches!(operand, Operand::Typed(expr) if self.plain_elementary(expr).is_some_and(ElementaryType::is_character));
         if character(&left) != character(&right) {
             let pair = self.unify(operator, left, right, "characters", span)?;
@@ -216,7 +250,12 @@ impl Body<'_, '_> {
         for operand in &operands {
             let shape = match operand {
                 Operand::Text { text, span } => Some(self.own_shape(text, text.units.len().max(1) as u32, *span)),
-                Operand::Typed(expr) => self.shape(expr.ty),
+                Operand::Typed(expr) => match self.character_as_text(expr) {
+                    Some(wide) => {
+                        Some(TextShape { wide, capacity: 1, memory: self.declarations.dialect(expr.span).strings() })
+                    }
+                    None => self.shape(expr.ty),
+                },
                 _ => None,
             };
             widest = match (widest, shape) {
