@@ -411,7 +411,7 @@ METHOD Alone END_METHOD"
     test.st:76:8: error[T0201]: IDrive is wanted, this is an integer
     test.st:77:6: error[T0203]: references are compared with `=` and `<>` only
     test.st:78:3: error[O0808]: SUPER is used in what extends nothing
-    test.st:79:3: error[C0302]: parameter `value` is missing
+    test.st:79:3: warning[C0302]: parameter `value` is missing: it is what its type begins with (write `value := ...`, or give it a value in its declaration)
     test.st:80:16: error[C0303]: `SetSize` takes 1 arguments
     test.st:81:13: error[C0301]: `SetSize` has no such parameter `size`
     test.st:82:33: error[T0201]: Square is wanted, this is INT

@@ -150,7 +150,7 @@ impl<'a> Collector<'a> {
             // A structure without a name goes to no other parameter.
             TypeSpecKind::Struct(_) => Ty::Any,
             TypeSpecKind::OpenArray(count, inner) => {
-                let bounds = (0..*count).map(|_| super::slots::ANY_BOUNDS.to_owned()).collect();
+                let bounds = (0..*count).map(|_| super::slots::OPEN_BOUNDS.to_owned()).collect();
                 Ty::Array(bounds, Box::new(self.type_of(inner, home, depth)))
             }
             TypeSpecKind::Reference(kind, inner) => Ty::Pointer(*kind, Box::new(self.type_of(inner, home, depth))),

@@ -6,7 +6,7 @@ use super::collect::Collector;
 use super::ty::Ty;
 use super::world::{INIT, INIT_INPUTS};
 use super::world::{Part, Unit};
-use onescan_iec::syntax::ast::{Pou, PouKind, SectionKind, TypeSpec};
+use onescan_iec::syntax::ast::{Modifier, Pou, PouKind, SectionKind, TypeSpec};
 
 impl<'a> Collector<'a> {
     /// The types of an override's parameters and result are those of what it overrides.
@@ -27,6 +27,9 @@ impl<'a> Collector<'a> {
                 }
                 let shown = self.foreign(&base).name.clone();
                 let path = format!("{shown}.{name}");
+                if *part == Part::Method && member.object.modifiers.contains(&Modifier::Override) {
+                    self.foreign(&base).member(&member.name.text);
+                }
                 match part {
                     Part::Method => self.override_of(&format!("{path}()"), member, unit, 0),
                     Part::Property => self.record(&path, member.result.as_ref(), unit),

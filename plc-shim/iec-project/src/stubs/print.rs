@@ -7,6 +7,7 @@ use super::Stubs;
 use super::collect::Collector;
 use super::foreign::{Foreign, Global, Member};
 use super::shape::Shape;
+use super::slots::{ANY_BOUNDS, OPEN_BOUNDS};
 use super::ty::{Slot, Ty};
 use super::world::INIT;
 use super::world::{Part, Unit};
@@ -388,7 +389,7 @@ impl Printer<'_, '_> {
 
     pub(super) fn slot_text(&self, slot: Option<Slot>, name: &str) -> String {
         let ty = slot.map_or(Ty::Unknown, |slot| self.collector.slots.last_choice(slot));
-        self.type_text(&ty, name)
+        self.type_text(&closed(ty), name)
     }
 
     pub(super) fn type_text(&self, ty: &Ty, name: &str) -> String {
@@ -462,4 +463,16 @@ fn generic_constants(count: usize) -> String {
     }
     let lines: String = (1..=count).map(|index| format!("    generic{index} : DINT := 1;\n")).collect();
     format!("\nVAR_GENERIC CONSTANT\n{lines}END_VAR")
+}
+
+/// A type as a variable has it, which gets its bounds from nobody.
+fn closed(ty: Ty) -> Ty {
+    match ty {
+        Ty::Array(bounds, element) => {
+            let close = |bound: String| if bound == OPEN_BOUNDS { ANY_BOUNDS.to_owned() } else { bound };
+            Ty::Array(bounds.into_iter().map(close).collect(), Box::new(closed(*element)))
+        }
+        Ty::Pointer(kind, inner) => Ty::Pointer(kind, Box::new(closed(*inner))),
+        other => other,
+    }
 }

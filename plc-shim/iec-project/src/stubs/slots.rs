@@ -37,6 +37,8 @@ impl Evidence {
 
 /// The bounds of an array of which only elements are known.
 pub(super) const ANY_BOUNDS: &str = "0..255";
+/// Of an array that has those of what a caller gives.
+pub(super) const OPEN_BOUNDS: &str = "*";
 
 /// All slots, by their paths.
 #[derive(Debug, Default)]
@@ -174,7 +176,7 @@ impl Slots {
         let built = |ty: &&Ty| matches!(ty, Ty::Array(..) | Ty::Pointer(..));
         // One that a declaration shows takes precedence over one that is only indexed or followed.
         let reported = |ty: &&Ty| match ty {
-            Ty::Array(bounds, _) => bounds.iter().any(|each| each != ANY_BOUNDS),
+            Ty::Array(bounds, _) => bounds.iter().any(|each| each != ANY_BOUNDS && each != OPEN_BOUNDS),
             Ty::Pointer(_, inner) => !matches!(**inner, Ty::Slot(_)),
             _ => false,
         };
@@ -251,9 +253,10 @@ impl Slots {
             })
             .collect();
         let ((first, element), rest) = arrays.split_first()?;
-        let differ = rest.iter().any(|(bounds, _)| bounds != first);
+        let is_open = arrays.iter().any(|(bounds, _)| bounds.iter().any(|each| each == OPEN_BOUNDS));
+        let differ = is_open || rest.iter().any(|(bounds, _)| bounds != first);
         let alike = rest.iter().all(|(bounds, other)| bounds.len() == first.len() && other == element);
-        (differ && alike).then(|| Ty::Array(vec!["*".to_owned(); first.len()], element.clone()))
+        (differ && alike).then(|| Ty::Array(vec![OPEN_BOUNDS.to_owned(); first.len()], element.clone()))
     }
 
     /// True if what is given for a parameter has no type in common.

@@ -164,7 +164,7 @@ pub const FEATURES: &[FeatureRow] = &[
         &[Iec3, SiemensScl],
         "S7-1200 System Manual: accessing a slice of a tag; SIMATIC AX: accepts it; 3rd ed. Table 17, bit strings alone",
     ),
-    row(Feature::LoneOutputs, &[SiemensScl], "TIA Portal: calling functions, a block with one parameter"),
+    row(Feature::LoneOutputs, &[Iec3, SiemensScl], "TIA Portal: calling functions, a block with one parameter"),
     row(Feature::ProgramInOuts, &[Matiec], "MatIEC: accepts it; CODESYS and TwinCAT: for programs that others call"),
     row(
         Feature::CCode,

@@ -2,6 +2,7 @@
 
 use crate::check::body::Body;
 use crate::check::types::operand::Operand;
+use crate::check::types::parameter;
 use crate::diagnostic::{Code, Diagnostic, Severity};
 use crate::ir::{ElementaryType, Expr, ExprKind, PouId, Type, TypeId, Value};
 use crate::syntax::Span;
@@ -106,7 +107,9 @@ impl Body<'_, '_> {
                 (None, None) => 0,
             });
         }
-        distance.push((scope.positional().count() - matched.inputs.len().min(scope.positional().count())) as u32);
+        let outputs = scope.outputs().filter(|output| !parameter::is_control(output)).count();
+        let given = matched.inputs.len() + matched.outputs.len();
+        distance.push((scope.positional().count() + outputs).saturating_sub(given) as u32);
         Some(distance)
     }
 
