@@ -49,13 +49,14 @@ pub(crate) struct Chain {
 /// # Errors
 /// A file that cannot be read or is not TOML, bases that lead in a circle.
 pub(crate) fn read(path: &Path) -> Result<Chain, ScenarioError> {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    permission::granted().check(folder, path)?;
     let text = regular::read_text(path).map_err(|source| ScenarioError::Unreadable {
         path: path.to_owned(),
         help: (source.kind() == std::io::ErrorKind::NotFound)
             .then(|| format!("a scenario is a folder with a `{FILE_NAME}`; give the folder")),
         source,
     })?;
-    let folder = path.parent().unwrap_or(Path::new(""));
     let mut texts = Texts::of(path.to_owned(), text);
     let (mut folders, mut seen) = (vec![PathBuf::new()], vec![identity(path)]);
     let mut start = 0;

@@ -10,6 +10,7 @@ mod documented;
 mod graph;
 mod laws;
 mod old_words;
+mod processes;
 mod source;
 mod tokens;
 mod workspace;

@@ -115,3 +115,57 @@ fn the_commit_of_the_snapshot_counts_where_the_last_one_has_changed_it() {
     git(folder.path(), &["commit", "-qam", "Up and down"]);
     assert_eq!(place(folder.path()).as_deref(), Some("plc/shear.st:40"));
 }
+
+/// A stranger's repository names programs in its configuration and attributes: for filters, for what watches files, for
+/// what shows signatures, for hooks. None of them is started, and a folder that is itself a bare repository is not one.
+#[cfg(unix)]
+#[test]
+fn the_configuration_of_a_repository_starts_nothing() {
+    let folder = copied_shear();
+    std::fs::write(folder.path().join(".gitattributes"), "* filter=own diff=own\n").unwrap();
+    reviewed(folder.path());
+    edit(folder.path(), "plc/shear.st", "ixUp := NOT ixDown;", "ixUp := ixDown;");
+    let marker = folder.path().join("started");
+    let touch = format!("touch {} && cat", marker.display());
+    for name in
+        ["filter.own.smudge", "filter.own.clean", "core.fsmonitor", "core.pager", "gpg.program", "diff.own.textconv"]
+    {
+        git(folder.path(), &["config", name, &touch]);
+    }
+    git(folder.path(), &["config", "filter.own.required", "true"]);
+    git(folder.path(), &["config", "log.showSignature", "true"]);
+    assert_eq!(place(folder.path()).as_deref(), Some("plc/shear.st:40"), "the reviewed program is still found");
+    assert!(!marker.exists(), "a program of the configuration has run");
+
+    // The same repository as plain files in the scenario's folder.
+    let bare = folder.path().join(".git");
+    for entry in std::fs::read_dir(&bare).unwrap() {
+        let entry = entry.unwrap();
+        std::fs::rename(entry.path(), folder.path().join(entry.file_name())).unwrap();
+    }
+    std::fs::remove_dir(bare).unwrap();
+    let config = std::fs::read_to_string(folder.path().join("config")).unwrap();
+    std::fs::write(folder.path().join("config"), config.replace("bare = false", "bare = true")).unwrap();
+    let said = typed(folder.path(), &["test", ".", "--check"]);
+    assert_eq!((said.code, said.out.contains("parts from")), (Some(1), false), "{said:?}");
+    assert!(!marker.exists(), "a program of the configuration has run");
+}
+
+/// With `--no-commands` nothing is started, git neither.
+#[test]
+fn without_commands_git_is_not_asked() {
+    let folder = copied_shear();
+    reviewed(folder.path());
+    edit(folder.path(), "plc/shear.st", "ixUp := NOT ixDown;", "ixUp := ixDown;");
+    let said = typed(folder.path(), &["test", ".", "--check", "--no-commands"]);
+    assert_eq!((said.code, said.out.contains("parts from")), (Some(1), false), "{said:?}");
+    let forbidden = "this asks git, which `--no-commands` forbids";
+    let asked: [&[&str]; 2] = [
+        &["test", ".", "--check", "--against", "HEAD", "--no-commands"],
+        &["bisect", ".", "--good", "HEAD", "--bad", "HEAD", "--no-commands"],
+    ];
+    for words in asked {
+        let said = typed(folder.path(), words);
+        assert_eq!((said.code, said.err.contains(forbidden)), (Some(2), true), "{words:?} {said:?}");
+    }
+}

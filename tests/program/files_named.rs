@@ -154,3 +154,93 @@ fn keys_of_links() {
     let all = said_all(&said);
     assert!(said.code == Some(2) && all.contains("outside of the scenario's folder"), "{said:?}");
 }
+
+/// It is refused, and nothing of what is in the file is said; with permission it is read.
+fn is_refused_by(at: &Place, words: &[&str]) {
+    let said = typed(&at.own, words);
+    let all = said_all(&said);
+    assert!(
+        said.code == Some(2) && all.contains("outside of the") && all.contains("--allow-path"),
+        "{words:?}: {said:?}"
+    );
+    assert!(!all.contains(SECRET), "{words:?}: {said:?}");
+    let allowed = typed(&at.own, &[words, &["--allow-path", at.other.to_str().unwrap()]].concat());
+    assert!(said_all(&allowed).contains(SECRET), "{words:?}: {allowed:?}");
+}
+
+/// PLC sources of a folder that is no scenario.
+#[test]
+fn sources_of_folders() {
+    let at = place("");
+    std::fs::remove_file(at.own.join("scenario.toml")).unwrap();
+    write(at.other.join("a.st"), SECRET).unwrap();
+    write(at.own.join("b.st"), "PROGRAM P END_PROGRAM").unwrap();
+    std::os::unix::fs::symlink(at.other.join("a.st"), at.own.join("a.st")).unwrap();
+    is_refused_by(&at, &["check", "."]);
+    is_refused_by(&at, &["instrument", ".", "-o", "out"]);
+    // One that the user names is read wherever it is.
+    assert!(said_all(&typed(&at.own, &["check", "a.st"])).contains(SECRET));
+}
+
+/// Those that a project of TwinCAT lists.
+#[test]
+fn sources_of_projects() {
+    let at = place("");
+    std::fs::remove_file(at.own.join("scenario.toml")).unwrap();
+    let secret = at.other.join("a.TcPOU");
+    write(
+        &secret,
+        "<TcPlcObject><POU Name=\"P\"><Declaration><![CDATA[PROGRAM P s3cret]]></Declaration></POU></TcPlcObject>",
+    )
+    .unwrap();
+    for path in ["..\\other\\a.TcPOU", secret.to_str().unwrap()] {
+        let text = format!("<Project><ItemGroup><Compile Include=\"{path}\" /></ItemGroup></Project>");
+        write(at.own.join("p.plcproj"), text).unwrap();
+        for words in [
+            &["check", "p.plcproj"][..],
+            &["check", "."],
+            &["test", "p.plcproj"],
+            &["instrument", "p.plcproj", "-o", "out"],
+        ] {
+            let said = typed(&at.own, words);
+            let all = said_all(&said);
+            assert!(said.code == Some(2) && all.contains("outside of the folder"), "{path} {words:?}: {said:?}");
+            assert!(!all.contains(SECRET), "{path} {words:?}: {said:?}");
+        }
+    }
+}
+
+/// The scenario's own file, and what it is based on.
+#[test]
+fn scenarios() {
+    let at = place("version = 1\n");
+    write(at.other.join("scenario.toml"), "version = \"s3cret\"\n").unwrap();
+    std::fs::remove_file(at.own.join("scenario.toml")).unwrap();
+    std::os::unix::fs::symlink(at.other.join("scenario.toml"), at.own.join("scenario.toml")).unwrap();
+    for command in ["run", "check", "test", "describe", "wiring"] {
+        is_refused_by(&at, &[command, "."]);
+    }
+}
+
+/// Snapshots are neither read nor written nor removed through a link.
+#[test]
+fn snapshots() {
+    let folder = crate::typed::copied_shear();
+    let outside = tempfile::tempdir().unwrap();
+    let shelf = folder.path().join("snapshots");
+    std::fs::remove_dir_all(&shelf).unwrap();
+    std::os::unix::fs::symlink(outside.path(), &shelf).unwrap();
+    let pending = outside.path().join("nominal.traj.new");
+    write(&pending, SECRET).unwrap();
+    for words in [&["test", "."][..], &["review", ".", "--accept-all"], &["review", ".", "--reject-all"]] {
+        let said = typed(folder.path(), words);
+        assert!(
+            said.code != Some(0) && said_all(&said).contains("outside of the scenario's folder"),
+            "{words:?}: {said:?}"
+        );
+        assert!(!said_all(&said).contains(SECRET), "{words:?}: {said:?}");
+    }
+    let left: Vec<_> = std::fs::read_dir(outside.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    assert_eq!(left, ["nominal.traj.new"]);
+    assert_eq!(std::fs::read_to_string(&pending).unwrap(), SECRET);
+}

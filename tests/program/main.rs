@@ -15,6 +15,7 @@ mod coverage;
 mod dask;
 mod diff;
 mod digests;
+mod doors;
 mod drawn;
 mod edit;
 mod errors;

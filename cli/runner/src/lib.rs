@@ -18,6 +18,7 @@
 //! | [`access`] | who may take part in sessions over a network |
 //! | [`session`] | part in a session that another process serves |
 //! | [`plc`] | a soft PLC as a process of its own |
+//! | `environment` | what programs that are not ours see of the environment |
 //! | [`interrupt`] | Ctrl-C |
 //! | [`format`] | for whom the output is |
 //! | [`error`] | errors of several commands, and exit codes |
@@ -26,6 +27,7 @@
 
 pub mod access;
 pub mod compare;
+mod environment;
 pub mod error;
 pub mod format;
 pub mod freewheel;

@@ -19,6 +19,7 @@ use super::join::{self, Tip};
 use super::state::{self, State};
 use super::workspace::Workspace;
 use onescan_runner::error::ListenError;
+use onescan_runner::web::doorway::Doorway;
 use onescan_runner::web::{asset, guarded_here};
 
 /// The longest request, bytes.
@@ -201,7 +202,7 @@ impl Editor {
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(&listen)?;
         let served = async {
             let listener = tokio::net::TcpListener::from_std(self.listener)?;
-            axum::serve(listener, self.router).await
+            axum::serve(Doorway::new(listener, None)?, self.router).await
         };
         Ok(runtime.block_on(served).map_err(listen)?)
     }

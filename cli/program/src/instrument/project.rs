@@ -8,6 +8,7 @@ use onescan_iec::input::encoding::{Charset, Encoding, encode};
 use onescan_iec::input::kind::{FileKind, SourceKind};
 use onescan_iec_project::instrument::{File, Project};
 use onescan_report::file::Write;
+use onescan_scenario::permission::granted;
 use onescan_server::signal::{ClientName, did_you_mean};
 
 use super::error::InstrumentError;
@@ -90,7 +91,7 @@ fn add_own(inputs: &mut Vec<Input>) -> Result<(), InstrumentError> {
     own.sort();
     for path in own {
         if let Some(FileKind::Source(kind)) = FileKind::of(&path) {
-            let bytes = regular::read(&path, Limit::TEXT).map_err(Unreadable::at(&path))?;
+            let bytes = granted().within(shown).read(&path, Limit::TEXT).map_err(Unreadable::at(&path))?;
             inputs.push(Input::read(&path.display().to_string(), kind, &bytes));
         }
     }

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-use onescan_base::regular::{self, Limit};
+use onescan_base::regular::{self, Limit, NotWithin, Within};
 use onescan_iec::input::found::Found;
 use onescan_iec::input::kind::{EXTENSIONS, FileKind, SourceKind, is_other_program};
 use onescan_iec::input::needed;
@@ -13,6 +13,7 @@ use onescan_iec::{Code, Dialect, Input, MemoryLimit, TaskPlan, WordSize};
 use onescan_iec_project::instrument;
 use onescan_scenario::Scenario;
 use onescan_scenario::load::FILE_NAME;
+use onescan_scenario::permission::granted;
 use onescan_server::signal::ClientName;
 
 use super::error::CheckError;
@@ -114,9 +115,9 @@ fn scenario(path: &Path, chosen: Reading) -> Result<Vec<Program>, CheckError> {
     for plc in scenario.plcs() {
         let (dialect, word_size) = (chosen.dialect.or(plc.dialect), chosen.word_size.or(plc.word_size));
         let mut files = Files { dialect, word_size, ..Files::default() };
-        for source in plc.sources {
-            files.named(&scenario.folder().join(source))?;
-        }
+        files.within(scenario.folder(), |files| {
+            plc.sources.iter().try_for_each(|source| files.named(&scenario.folder().join(source)))
+        })?;
         let memory_limit = chosen.memory_limit.unwrap_or(plc.memory_limit);
         let client = Some(plc.name.clone());
         let (plan, scenario) = (plc.plan, Some(Rc::clone(&scenario)));
@@ -136,6 +137,8 @@ struct Files {
     seen: BTreeSet<Identity>,
     left_out: BTreeMap<Identity, Reason>,
     part: Part,
+    /// The folders that are being read: what they and their projects name is read only where it lies in one of them.
+    folders: Vec<PathBuf>,
 }
 
 /// A file, by whatever name it was found.
@@ -189,11 +192,35 @@ impl Files {
         Err(Usage::new(format!("{} is of no kind that is read", path.display()), Some(endings())).into())
     }
 
+    /// What is in a file. One that the user names is read wherever it is, one that a folder or project has only within.
+    fn read(&self, path: &Path) -> std::io::Result<Vec<u8>> {
+        if self.folders.is_empty() {
+            return regular::read(path, Limit::TEXT);
+        }
+        let allowed = self.folders.iter().chain(&granted().paths);
+        match Within::places(allowed.cloned().collect()).find(path) {
+            Ok(real) => regular::read(&real, Limit::TEXT),
+            Err(NotWithin::Missing(error)) => Err(error),
+            Err(NotWithin::Elsewhere(real)) => {
+                let text = format!("it is {}, outside of the folder; `--allow-path` allows more", real.display());
+                Err(std::io::Error::new(std::io::ErrorKind::PermissionDenied, text))
+            }
+        }
+    }
+
+    /// Does `action` with a folder whose files may be read.
+    fn within<T>(&mut self, folder: &Path, action: impl FnOnce(&mut Self) -> T) -> T {
+        self.folders.push(folder.to_owned());
+        let done = action(self);
+        self.folders.pop();
+        done
+    }
+
     fn file(&mut self, path: &Path, kind: FileKind) -> Result<(), CheckError> {
         if self.seen.contains(&Identity::of(path)) {
             return Ok(());
         }
-        let bytes = regular::read(path, Limit::TEXT).map_err(Unreadable::at(path))?;
+        let bytes = self.read(path).map_err(Unreadable::at(path))?;
         match kind {
             FileKind::Source(kind) => {
                 self.source(path, Found::decode(kind, &bytes));
@@ -260,7 +287,7 @@ impl Files {
                     if self.part != Part::Own && is_task(&file) || self.seen.contains(&Identity::of(&file)) {
                         continue;
                     }
-                    match regular::read(&file, Limit::TEXT) {
+                    match self.within(folder, |files| files.read(&file)) {
                         Ok(bytes) => self.source(&file, Found::decode(kind, &bytes)),
                         // What is there is checked all the same.
                         Err(error) if error.kind() == std::io::ErrorKind::NotFound => missing.push(listed),
@@ -281,6 +308,10 @@ impl Files {
 
     /// All sources in a folder and below it. Where a project is, it says which files are meant.
     fn folder(&mut self, path: &Path) -> Result<(), CheckError> {
+        // The outermost one has all that is in those below it.
+        if self.folders.is_empty() {
+            return self.within(path, |files| files.folder(path));
+        }
         let mut entries = Vec::new();
         for entry in std::fs::read_dir(path).map_err(Unreadable::at(path))? {
             entries.push(entry.map_err(Unreadable::at(path))?.path());
@@ -347,7 +378,7 @@ impl Files {
                 sources += 1;
                 continue;
             }
-            let bytes = regular::read(&path, Limit::TEXT).map_err(Unreadable::at(&path))?;
+            let bytes = self.read(&path).map_err(Unreadable::at(&path))?;
             let found = Found::decode(kind, &bytes);
             if found.is_other_xml() {
                 self.left_out.insert(identity, Reason::OtherXml);

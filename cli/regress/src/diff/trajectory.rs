@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Write};
 use std::path::Path;
 
+use onescan_base::regular::Within;
 use onescan_report::table;
 use onescan_server::signal::SignalName;
 use onescan_server::signal::pattern::{SignalPattern, choose};
@@ -40,7 +41,7 @@ impl TrajectoryReport {
     pub fn of(paths: [&Path; 2], since: VirtualTime, patterns: &[SignalPattern]) -> Result<Self, DiffError> {
         let one = |path: &Path| -> Result<Snapshot, DiffError> {
             let none = || Usage::new(format!("{} is not there", path.display()), None);
-            Ok(read(path)?.ok_or_else(none)?)
+            Ok(read(path, &Within::anywhere())?.ok_or_else(none)?)
         };
         let mut snapshots = [one(paths[0])?, one(paths[1])?];
         choose_signals(&mut snapshots, patterns)?;

@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use onescan_base::regular::{self, Limit};
+use onescan_base::regular::{Limit, NotWithin, Within};
 use onescan_report::{FileError, file};
+use onescan_scenario::permission::granted;
 
 use super::Snapshot;
 use super::error::StoreError;
@@ -43,7 +44,7 @@ impl Place {
     /// # Errors
     /// It cannot be read, or is none.
     pub fn read_reviewed(&self) -> Result<Option<Snapshot>, StoreError> {
-        read(&self.reviewed())
+        read(&self.reviewed(), &granted().within(self.folder()))
     }
 
     /// The pending snapshot, if there is one.
@@ -51,7 +52,7 @@ impl Place {
     /// # Errors
     /// It cannot be read, or is none.
     pub fn read_pending(&self) -> Result<Option<Snapshot>, StoreError> {
-        read(&self.pending())
+        read(&self.pending(), &granted().within(self.folder()))
     }
 
     /// Makes a snapshot the reviewed one; what was pending is so no longer.
@@ -77,6 +78,7 @@ impl Place {
     /// # Errors
     /// The file cannot be removed.
     pub fn reject(&self) -> Result<(), StoreError> {
+        self.check_shelf()?;
         let path = self.pending();
         match std::fs::remove_file(&path) {
             Err(source) if source.kind() != std::io::ErrorKind::NotFound => Err(FileError { path, source }.into()),
@@ -84,8 +86,18 @@ impl Place {
         }
     }
 
+    /// A folder that is a link would have files written and removed elsewhere.
+    fn check_shelf(&self) -> Result<(), StoreError> {
+        let path = shelf(&self.scenario);
+        match granted().within(self.folder()).find(&path) {
+            Ok(_) | Err(NotWithin::Missing(_)) => Ok(()),
+            Err(elsewhere) => Err(FileError { path, source: elsewhere.into() }.into()),
+        }
+    }
+
     fn write(&self, path: &Path, snapshot: &Snapshot) -> Result<(), StoreError> {
         file::create_folder(&shelf(&self.scenario))?;
+        self.check_shelf()?;
         Ok(file::write_whole(path, snapshot.to_text().as_bytes())?)
     }
 }
@@ -113,8 +125,8 @@ fn shelf(scenario: &Path) -> PathBuf {
 ///
 /// # Errors
 /// It cannot be read, or is none.
-pub fn read(path: &Path) -> Result<Option<Snapshot>, StoreError> {
-    let bytes = match regular::read(path, Limit::TEXT) {
+pub fn read(path: &Path, within: &Within) -> Result<Option<Snapshot>, StoreError> {
+    let bytes = match within.read(path, Limit::TEXT) {
         Ok(bytes) => bytes,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
         Err(source) => return Err(Unreadable { path: path.to_owned(), source }.into()),

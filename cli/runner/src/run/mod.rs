@@ -9,7 +9,6 @@
 //! | [`lockstep`] | one run in lockstep |
 //! | [`processes`] | clients as processes of their own |
 //! | [`guard`] | who ends these if this process cannot |
-//! | `environment` | what they see of the environment |
 //! | `fork` | checkpoints from which other cases fork |
 //! | [`freewheel`] | one run without lockstep |
 //! | [`progress`] | a bar on a terminal |
@@ -36,7 +35,6 @@ mod check;
 pub mod chosen;
 pub mod config;
 pub mod coverage;
-mod environment;
 mod error;
 pub mod expectation;
 pub mod fork;

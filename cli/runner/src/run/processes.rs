@@ -8,10 +8,10 @@ use std::time::{Duration, Instant};
 use onescan_server::signal::ClientName;
 
 use super::config::Subject;
-use super::environment;
 use super::error::RunError;
 use super::guard::{Group, Guard};
 use crate::access::admission::Shown;
+use crate::environment;
 use crate::error::SpawnError;
 
 /// How long a process may take to leave once the session is over.

@@ -7,6 +7,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::{Duration, Instant};
 
 use super::error::ShotError;
+use crate::environment;
 use crate::web::Drawn;
 
 /// Where the browser is, if it is to be another one than the first of [`NAMES`].
@@ -48,6 +49,7 @@ impl Browser {
         let wrong = |source| ShotError::Browser { program: self.program.display().to_string(), source };
         let profile = tempfile::tempdir().map_err(wrong)?;
         let mut command = Command::new(&self.program);
+        environment::confine(&mut command, &[]);
         command.args([
             "--headless=new",
             "--no-first-run",

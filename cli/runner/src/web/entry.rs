@@ -15,6 +15,8 @@ use crate::access::tokens::today;
 
 /// Browsers that are known at a time; who came first has to log in again.
 const KNOWN_MAX: usize = 1_024;
+/// Browsers that one token lets in at a time, of which the same holds: nobody's logins push others out.
+const KNOWN_OF_TOKEN_MAX: usize = 32;
 
 /// What somebody may do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -44,10 +46,19 @@ pub(super) enum Entry {
     /// Whoever shows a token.
     Tokens {
         register: Register,
-        known: Mutex<VecDeque<(TokenHash, Rank)>>,
+        known: Mutex<VecDeque<Known>>,
         cookie: String,
         is_tls: bool,
     },
+}
+
+/// A browser that has logged in.
+#[derive(Debug)]
+pub(super) struct Known {
+    cookie: TokenHash,
+    rank: Rank,
+    /// The name of the token that it has shown.
+    token: String,
 }
 
 impl Entry {
@@ -78,20 +89,25 @@ impl Entry {
         // all are compared, in constant time each
         let found = known
             .iter()
-            .fold(None, |found, (kept, rank)| if bool::from(kept.matches(&hash)) { Some(*rank) } else { found });
+            .fold(None, |found, kept| if bool::from(kept.cookie.matches(&hash)) { Some(kept.rank) } else { found });
         found.ok_or_else(|| TokenRefusal::Missing.into())
     }
 
     /// Takes a token that somebody has typed; gives the cookie for the browser.
     pub(super) fn log_in(&self, token: &str) -> Result<String, AuthError> {
         let Self::Tokens { register, known, cookie, is_tls } = self else { return Ok(String::new()) };
-        let rank = rank(register.holder(Some(token.trim()), today())?)?;
+        let holder = register.holder(Some(token.trim()), today())?;
+        let token = holder.name.clone();
+        let rank = rank(holder)?;
         let secret = Token::generate()?;
         let mut known = known.lock().unwrap_or_else(PoisonError::into_inner);
-        if known.len() >= KNOWN_MAX {
+        if known.iter().filter(|each| each.token == token).count() >= KNOWN_OF_TOKEN_MAX {
+            let first = known.iter().position(|each| each.token == token);
+            first.and_then(|first| known.remove(first));
+        } else if known.len() >= KNOWN_MAX {
             known.pop_front();
         }
-        known.push_back((secret.hash(), rank));
+        known.push_back(Known { cookie: secret.hash(), rank, token });
         let secure = if *is_tls { "; Secure" } else { "" };
         Ok(format!("{cookie}={}; HttpOnly; SameSite=Strict; Path=/{secure}", secret.reveal()))
     }
@@ -176,6 +192,17 @@ mod tests {
             assert!(door.admit(&showing("cookie", &wrong)).is_err(), "{wrong}");
         }
         assert!(door.log_in("x").is_err());
+    }
+
+    #[test]
+    fn logins_with_one_token_push_nobody_else_out() {
+        let (door, tokens) = door(&[("anna", "operator"), ("wall", "viewer")]);
+        let log_in = |token: &Token| door.log_in(token.reveal()).unwrap().split(';').next().unwrap().to_owned();
+        let rank = |cookie: &str| door.admit(&showing("cookie", cookie)).ok();
+        let operator = log_in(&tokens[0]);
+        let viewers: Vec<String> = (0..1_100).map(|_| log_in(&tokens[1])).collect();
+        assert_eq!(rank(&operator), Some(Rank::Operates));
+        assert_eq!((rank(&viewers[0]), rank(&viewers[1_099])), (None, Some(Rank::Looks)));
     }
 
     #[test]

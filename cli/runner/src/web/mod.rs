@@ -6,7 +6,7 @@
 //! | `routes` | what a browser may ask for |
 //! | [`guard`] | whose requests are answered |
 //! | [`entry`] | who comes in where a token is asked for |
-//! | `tls` | the page under TLS |
+//! | `doorway` | where connections come in: their number, their time, TLS |
 //! | [`structure`] | what of a session does not change |
 //! | [`machine`] | bodies and components |
 //! | [`signals`] | signals |
@@ -39,6 +39,7 @@ mod alarms;
 mod ask;
 mod attendance;
 mod bundle;
+pub mod doorway;
 mod drawings;
 mod entry;
 mod error;
@@ -59,7 +60,6 @@ mod seats;
 mod signals;
 mod sources;
 mod structure;
-mod tls;
 mod training;
 mod verdicts;
 mod viewer;
@@ -89,6 +89,7 @@ use crate::error::{Exit, ExitCode, ListenError, Usage};
 use crate::past::Rewinder;
 use attendance::Attendance;
 pub use bundle::charts;
+use doorway::{Doorway, Visitor};
 use entry::Entry;
 use error::Refused;
 use frames::Frames;
@@ -97,7 +98,6 @@ use looks::Called;
 use routes::router;
 pub use routes::{asset, guarded_here};
 use seats::Seats;
-use tls::TlsDoor;
 pub(crate) use training::{AtWork, Failing, Role, Training, Turn, TurnQueue};
 pub(crate) use verdicts::VerdictBoard;
 
@@ -368,10 +368,8 @@ impl Page {
             runtime.block_on(async move {
                 let served = async {
                     let listener = tokio::net::TcpListener::from_std(listener)?;
-                    match identity {
-                        Some(identity) => axum::serve(TlsDoor::new(listener, &identity)?, router).await,
-                        None => axum::serve(listener, router).await,
-                    }
+                    let doorway = Doorway::new(listener, identity.as_ref())?;
+                    axum::serve(doorway, router.into_make_service_with_connect_info::<Visitor>()).await
                 };
                 tokio::select! {
                     outcome = served => if let Err(error) = outcome {

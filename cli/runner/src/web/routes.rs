@@ -2,14 +2,15 @@
 
 use std::sync::Arc;
 
-use axum::body::{Body, Bytes};
-use axum::extract::{DefaultBodyLimit, Path, Request, State, WebSocketUpgrade};
+use axum::body::Body;
+use axum::extract::{ConnectInfo, Path, Request, State, WebSocketUpgrade};
 use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, header};
 use axum::middleware::{self, Next};
 use axum::response::{Html, IntoResponse, Response};
 use axum::routing::{get, post};
 use axum::{Extension, Router};
 
+use super::doorway::Visitor;
 use super::entry::{AuthError, Rank};
 use super::{Session, bundle, entry, guard, viewer};
 
@@ -28,7 +29,7 @@ pub(super) fn router(session: Arc<Session>) -> Router {
         .route("/api/session", get(structure_of))
         .route("/api/live", get(live))
         .route("/api/panel/{picture}", get(behind_panel))
-        .route("/api/picture", post(picture).layer(DefaultBodyLimit::max(PICTURE_MAX)))
+        .route("/api/picture", post(picture))
         .route("/api/login", post(log_in))
         .fallback(get(|request: Request| async move { asset(request.uri().path()) }))
         .layer(middleware::from_fn_with_state(Arc::clone(&session), guarded))
@@ -87,9 +88,17 @@ async fn structure_of(State(session): State<Arc<Session>>) -> Response {
 async fn live(
     State(session): State<Arc<Session>>,
     Extension(rank): Extension<Rank>,
+    ConnectInfo(visitor): ConnectInfo<Visitor>,
     upgrade: WebSocketUpgrade,
 ) -> Response {
-    upgrade.max_message_size(MESSAGE_MAX).on_upgrade(move |socket| viewer::attend(socket, session, rank))
+    if !visitor.stay() {
+        return (StatusCode::SERVICE_UNAVAILABLE, "there are too many viewers\n").into_response();
+    }
+    upgrade.max_message_size(MESSAGE_MAX).on_upgrade(move |socket| async move {
+        viewer::attend(socket, session, rank).await;
+        // The place is the viewer's until then.
+        drop(visitor);
+    })
 }
 
 /// A token that somebody has typed.
@@ -116,9 +125,13 @@ async fn behind_panel(State(session): State<Arc<Session>>, Path(number): Path<St
 }
 
 /// A picture that the page has drawn: a PNG, or a text that says why there is none.
-async fn picture(State(session): State<Arc<Session>>, headers: HeaderMap, body: Bytes) -> Response {
+async fn picture(State(session): State<Arc<Session>>, headers: HeaderMap, body: Body) -> Response {
+    // Before anything of it is read.
     let Some(pictures) = &session.pictures else {
         return (StatusCode::NOT_FOUND, "nobody has asked for a picture\n").into_response();
+    };
+    let Ok(body) = axum::body::to_bytes(body, PICTURE_MAX).await else {
+        return (StatusCode::PAYLOAD_TOO_LARGE, "a picture is smaller\n").into_response();
     };
     let is_picture = headers.get(header::CONTENT_TYPE).is_some_and(|media| media == "image/png");
     let drawn = if is_picture { Ok(body.to_vec()) } else { Err(String::from_utf8_lossy(&body).into_owned()) };

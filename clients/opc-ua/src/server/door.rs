@@ -1,5 +1,6 @@
 //! Where connections come in: each is handed on to the server, which listens on the loopback alone. So it is known at
-//! once when one is closed, also by a reset, and what does not speak the protocol never reaches the server.
+//! once when one is closed, also by a reset, and what does not speak the protocol never reaches the server. A client
+//! that opens a secure channel stays; whoever does not gives way to one who comes.
 //!
 //! The first eight bytes of a chunk are its kind and size; the number of the secure channel follows in plain text, also
 //! where the rest is encrypted (OPC 10000-6 6.7.2.2, 7.1.2.2).
@@ -8,15 +9,24 @@ use std::collections::BTreeSet;
 use std::io;
 use std::net::SocketAddr;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
+use onescan_server::transport::door::{Door, Limits, Place};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::tcp::{OwnedReadHalf, OwnedWriteHalf};
 use tokio::net::{TcpListener, TcpStream};
+use tokio::sync::oneshot;
 
 /// The longest HELLO: 32 bytes and a URL of 4096 (OPC 10000-6 7.1.2.3).
 const LONGEST_HELLO: u32 = 8192;
+/// How long a HELLO may take to come.
+const HELLO_TIMEOUT: Duration = Duration::from_secs(5);
 /// So much is handed on at a time.
 const PIECE: usize = 64 * 1024;
+/// Connections at a time.
+const LIMITS: Limits = Limits { all: 64, of_address: 32, staying: 48 };
+/// How long it is waited after a connection could not be taken, as where there are too many files.
+const PAUSE: Duration = Duration::from_millis(100);
 
 /// The secure channels whose connections are there.
 #[derive(Clone, Debug, Default)]
@@ -35,17 +45,32 @@ impl Channels {
 
 /// Lets connections in until the server ends.
 pub(super) async fn let_in(outside: TcpListener, server: SocketAddr, channels: Channels) {
+    let door = Door::new(LIMITS);
     loop {
         let (stream, from) = match outside.accept().await {
             Ok(accepted) => accepted,
             Err(error) => {
-                tracing::warn!(%error, "an OPC UA client could not be let in");
+                tracing::debug!(%error, "an OPC UA client could not be let in");
+                tokio::time::sleep(PAUSE).await;
                 continue;
             }
         };
+        let (leave, leaving) = oneshot::channel::<()>();
+        let leave = move || {
+            // It may have gone by itself.
+            leave.send(()).ok();
+        };
+        let Some(place) = door.admit(from.ip(), leave) else {
+            tracing::debug!(%from, "refused an OPC UA client: all places are taken");
+            continue;
+        };
         let channels = channels.clone();
         tokio::spawn(async move {
-            if let Err(error) = hand_on(stream, server, &channels).await {
+            let ended = tokio::select! {
+                _ = leaving => Err(io::Error::new(io::ErrorKind::ConnectionAborted, "it has left for one who came later")),
+                ended = hand_on(stream, server, &channels, &place) => ended,
+            };
+            if let Err(error) = ended {
                 tracing::debug!(%from, %error, "a connection of an OPC UA client has ended");
             }
         });
@@ -53,15 +78,16 @@ pub(super) async fn let_in(outside: TcpListener, server: SocketAddr, channels: C
 }
 
 /// One connection, until one of its sides closes it.
-async fn hand_on(mut stream: TcpStream, server: SocketAddr, channels: &Channels) -> io::Result<()> {
+async fn hand_on(mut stream: TcpStream, server: SocketAddr, channels: &Channels, place: &Place) -> io::Result<()> {
     stream.set_nodelay(true)?;
-    let hello = hello(&mut stream).await?;
+    let late = |_| io::Error::new(io::ErrorKind::TimedOut, "no HELLO of OPC UA came");
+    let hello = tokio::time::timeout(HELLO_TIMEOUT, hello(&mut stream)).await.map_err(late)??;
     let mut inside = TcpStream::connect(server).await?;
     inside.set_nodelay(true)?;
     inside.write_all(&hello).await?;
     let (from_client, to_client) = stream.into_split();
     let (from_server, to_server) = inside.into_split();
-    let mut seen = Seen { channels, channel: None };
+    let mut seen = Seen { channels, place, channel: None };
     // Whoever closes first ends both ways.
     tokio::select! {
         ended = pump(from_client, to_server) => ended,
@@ -100,7 +126,7 @@ async fn answers(mut from: OwnedReadHalf, mut to: OwnedWriteHalf, seen: &mut See
         let [a, b, c, _, s0, s1, s2, s3, channel @ ..] = head;
         let rest = u32::from_le_bytes([s0, s1, s2, s3]).saturating_sub(12);
         if [a, b, c] == *b"OPN" {
-            seen.opened(u32::from_le_bytes(channel));
+            seen.opened(u32::from_le_bytes(channel))?;
         }
         to.write_all(&head).await?;
         let copied = tokio::io::copy(&mut (&mut from).take(rest.into()), &mut to).await?;
@@ -114,14 +140,19 @@ async fn answers(mut from: OwnedReadHalf, mut to: OwnedWriteHalf, seen: &mut See
 /// The channel of a connection, which is closed with it.
 struct Seen<'c> {
     channels: &'c Channels,
+    place: &'c Place,
     channel: Option<u32>,
 }
 
 impl Seen<'_> {
     /// Noted before the client hears of it, so that a channel that is used is known.
-    fn opened(&mut self, channel: u32) {
+    fn opened(&mut self, channel: u32) -> io::Result<()> {
+        if !self.place.stay() {
+            return Err(io::Error::other("there are too many clients"));
+        }
         self.channels.lock().insert(channel);
         self.channel = Some(channel);
+        Ok(())
     }
 }
 

@@ -27,7 +27,8 @@ impl<'a> Collector<'a> {
                 }
                 let shown = self.foreign(&base).name.clone();
                 let path = format!("{shown}.{name}");
-                if *part == Part::Method && member.object.modifiers.contains(&Modifier::Override) {
+                let overrides = *part == Part::Method && member.object.modifiers.contains(&Modifier::Override);
+                if overrides && !self.has_method(&base, name) {
                     self.foreign(&base).member(&member.name.text);
                 }
                 match part {
@@ -36,6 +37,12 @@ impl<'a> Collector<'a> {
                 }
             }
         }
+    }
+
+    /// True for a stub of an earlier pass that has the method.
+    fn has_method(&self, class: &str, name: &str) -> bool {
+        let stub = self.world.units.get(class);
+        stub.is_some_and(|stub| stub.members.contains_key(&(Part::Method, name.to_ascii_uppercase())))
     }
 
     fn override_of(&mut self, path: &str, member: &Pou, unit: &Unit<'_>, skipped: usize) {

@@ -117,6 +117,29 @@ PROGRAM P VAR m : MoveAxis; b : BOOL; END_VAR b := m.Run(); END_PROGRAM";
     assert_eq!(errors, 0, "{written}");
 }
 
+/// What an heir overrides stands in its base, once, however often the stubs are written; a caller's array has its bounds.
+#[test]
+fn a_base_of_a_class_has_what_its_heirs_override() {
+    let text = "CLASS Move EXTENDS Command
+METHOD PUBLIC OVERRIDE Run : BOOL VAR_INPUT fast : BOOL; END_VAR
+  Run := fast;
+END_METHOD
+END_CLASS
+FUNCTION Count : INT VAR_IN_OUT values : ARRAY [*] OF INT; END_VAR Count := CountOf(values); END_FUNCTION
+PROGRAM P VAR m : Move; b : BOOL; n : INT; a : ARRAY [1..3] OF INT; END_VAR b := m.Run(b); n := Count(a); END_PROGRAM";
+    let own = || Input::from_text("main.st", SourceKind::Text, text);
+    let mut written = write(&[own()], None).text;
+    for _ in 0..2 {
+        written = write(&[own()], Some(&written)).text;
+    }
+    assert_eq!(written.matches("METHOD Run : BOOL").count(), 1, "{written}");
+    assert!(written.contains("ARRAY [*] OF INT"), "{written}");
+    let stubs = Input::from_text("stubs.st", SourceKind::Text, written.as_str());
+    let all = inspect(vec![own(), stubs], None);
+    let errors = all.findings().iter().filter(|found| found.diagnostic().severity == Severity::Error).count();
+    assert_eq!(errors, 0, "{written}");
+}
+
 #[test]
 fn an_interface_by_what_implements_it() {
     insta::assert_snapshot!(stubs(

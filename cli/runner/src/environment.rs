@@ -1,5 +1,5 @@
-//! What a scenario's own programs see of this process's environment: what programs need to run, and what the scenario
-//! names. Secrets of whoever runs it, as of a CI server, are not among that.
+//! What programs that are not ours see of this process's environment: what programs need to run, and what a scenario
+//! names for its own. Secrets of whoever runs it, as of a CI server, are not among that.
 
 use std::ffi::OsString;
 use std::process::Command;
@@ -48,7 +48,7 @@ const PRESETS: [&str; 37] = [
 const PRESET_PREFIXES: [&str; 1] = ["LC_"];
 
 /// Lets `command` see no more of this process's environment than programs need, and what is in `named`.
-pub(super) fn confine(command: &mut Command, named: &[String]) {
+pub(crate) fn confine(command: &mut Command, named: &[String]) {
     let passed: Vec<(OsString, OsString)> =
         std::env::vars_os().filter(|(name, _)| passes(name.to_str(), named)).collect();
     command.env_clear().envs(passed);

@@ -1,0 +1,206 @@
+//! The door of a listener: how many connections stand in it at a time, and who of them leaves for one who comes.
+//!
+//! Whoever has proved to be a client stays. All others give way, the longest there first, so that strangers who say
+//! nothing keep nobody out, however many they are: one who comes and speaks has spoken before those behind it push it out.
+
+use std::collections::BTreeMap;
+use std::net::IpAddr;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// How many connections a listener keeps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// Of all addresses together.
+    pub all: usize,
+    /// Of one address.
+    pub of_address: usize,
+    /// Of those that stay.
+    pub staying: usize,
+}
+
+/// Who stands in the door. Clones are the same door.
+#[derive(Clone)]
+pub struct Door(Arc<Mutex<Present>>);
+
+struct Present {
+    limits: Limits,
+    next: u64,
+    /// In the order in which they came.
+    guests: BTreeMap<u64, Guest>,
+}
+
+struct Guest {
+    address: IpAddr,
+    stays: bool,
+    leave: Box<dyn FnOnce() + Send>,
+}
+
+/// The place of a connection in the door; it is free again when this is dropped.
+pub struct Place {
+    door: Door,
+    number: u64,
+}
+
+impl Door {
+    /// A door in which nobody stands.
+    #[must_use]
+    pub fn new(limits: Limits) -> Self {
+        Self(Arc::new(Mutex::new(Present { limits, next: 0, guests: BTreeMap::new() })))
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Present> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Lets a connection in. Where there is no room, the one that came first of those that do not stay must leave, of
+    /// the same address if that has its share: its `leave` is called, once. Nothing if all of them stay.
+    pub fn admit(&self, address: IpAddr, leave: impl FnOnce() + Send + 'static) -> Option<Place> {
+        let mut present = self.lock();
+        let Limits { all, of_address, staying: _ } = present.limits;
+        let of_same = present.guests.values().filter(|guest| guest.address == address).count();
+        let leaving = if of_same >= of_address {
+            Some(present.first(|guest| guest.address == address)?)
+        } else if present.guests.len() >= all {
+            Some(present.first(|_| true)?)
+        } else {
+            None
+        };
+        let leaving = leaving.and_then(|number| present.guests.remove(&number));
+        let number = present.next;
+        present.next += 1;
+        present.guests.insert(number, Guest { address, stays: false, leave: Box::new(leave) });
+        debug_assert!(present.guests.len() <= all.max(1), "one leaves for one who comes");
+        // Whoever leaves may give its place back at once.
+        drop(present);
+        if let Some(guest) = leaving {
+            (guest.leave)();
+        }
+        Some(Place { door: self.clone(), number })
+    }
+
+    /// How many connections stand in the door.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.lock().guests.len()
+    }
+}
+
+impl Present {
+    /// The first of those that do not stay.
+    fn first(&self, accept: impl Fn(&Guest) -> bool) -> Option<u64> {
+        self.guests.iter().find(|(_, guest)| !guest.stays && accept(guest)).map(|(number, _)| *number)
+    }
+}
+
+impl Place {
+    /// From now on the connection leaves for nobody. False if it had to leave already, or too many stay.
+    #[must_use]
+    pub fn stay(&self) -> bool {
+        let mut present = self.door.lock();
+        let is_full = present.guests.values().filter(|guest| guest.stays).count() >= present.limits.staying;
+        match present.guests.get_mut(&self.number) {
+            Some(guest) => {
+                guest.stays |= !is_full;
+                guest.stays
+            }
+            None => false,
+        }
+    }
+}
+
+impl Drop for Place {
+    fn drop(&mut self) {
+        // One that had to leave has no guest any more.
+        self.door.lock().guests.remove(&self.number);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::mpsc;
+
+    use super::*;
+
+    const LIMITS: Limits = Limits { all: 4, of_address: 3, staying: 4 };
+
+    fn address(last: u8) -> IpAddr {
+        IpAddr::from([10, 0, 0, last])
+    }
+
+    /// A door, and who had to leave it.
+    struct Watched {
+        door: Door,
+        left: mpsc::Receiver<u8>,
+        leave: mpsc::Sender<u8>,
+    }
+
+    impl Watched {
+        fn new() -> Self {
+            let (leave, left) = mpsc::channel();
+            Self { door: Door::new(LIMITS), left, leave }
+        }
+
+        fn admit(&self, from: u8, name: u8) -> Option<Place> {
+            let leave = self.leave.clone();
+            self.door.admit(address(from), move || leave.send(name).unwrap())
+        }
+
+        fn left(&self) -> Vec<u8> {
+            self.left.try_iter().collect()
+        }
+    }
+
+    #[test]
+    fn the_first_of_an_address_leaves_when_that_has_its_share() {
+        let watched = Watched::new();
+        let other = watched.admit(1, 0).unwrap();
+        let first: Vec<_> = (1..=3).map(|name| watched.admit(2, name).unwrap()).collect();
+        assert!(watched.left().is_empty());
+        let fourth = watched.admit(2, 4).unwrap();
+        assert_eq!(watched.left(), [1]);
+        assert!(!first[0].stay() && first[1].stay() && fourth.stay() && other.stay());
+        drop(first);
+        assert_eq!(watched.door.count(), 2, "one that had to leave gives back no other's place");
+    }
+
+    #[test]
+    fn the_first_of_all_leaves_when_the_door_is_full() {
+        let watched = Watched::new();
+        let places: Vec<_> = (0..4).map(|name| watched.admit(name, name).unwrap()).collect();
+        assert!(places[0].stay());
+        let _last = watched.admit(9, 9).unwrap();
+        assert_eq!((watched.left(), watched.door.count()), (vec![1], 4));
+    }
+
+    #[test]
+    fn who_stays_leaves_for_nobody() {
+        let watched = Watched::new();
+        let places: Vec<_> = (0..4).map(|name| watched.admit(name, name).unwrap()).collect();
+        assert!(places.iter().all(Place::stay));
+        assert!(watched.admit(9, 9).is_none());
+        drop(places);
+        assert!(watched.admit(9, 9).is_some());
+        assert!(watched.left().is_empty());
+    }
+
+    #[test]
+    fn no_more_stay_than_may() {
+        let door = Door::new(Limits { staying: 1, ..LIMITS });
+        let [first, second] = [1, 2].map(|from| door.admit(address(from), || ()).unwrap());
+        assert!(first.stay() && first.stay() && !second.stay());
+        drop(first);
+        assert!(second.stay());
+    }
+
+    #[test]
+    fn whoever_leaves_may_drop_its_place_at_once() {
+        let door = Door::new(Limits { all: 1, of_address: 1, staying: 1 });
+        let kept = Arc::new(Mutex::new(None::<Place>));
+        let own = Arc::clone(&kept);
+        let place = door.admit(address(1), move || drop(own.lock().unwrap().take())).unwrap();
+        *kept.lock().unwrap() = Some(place);
+        let _next = door.admit(address(1), || ()).unwrap();
+        assert!(kept.lock().unwrap().is_none());
+        assert_eq!(door.count(), 1);
+    }
+}
