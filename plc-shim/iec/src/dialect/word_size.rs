@@ -42,7 +42,7 @@ impl WordSize {
     }
 
     /// The type that fills a register, with a sign or without.
-    pub(crate) fn register(self, is_signed: bool) -> ElementaryType {
+    pub fn register(self, is_signed: bool) -> ElementaryType {
         match (self, is_signed) {
             (Self::Bits32, true) => ElementaryType::Dint,
             (Self::Bits32, false) => ElementaryType::Udint,

@@ -9,6 +9,10 @@ pub trait Visitor {
     fn statement(&mut self, _statement: &Statement) {}
     /// An expression, before its parts.
     fn expression(&mut self, _expr: &Expr) {}
+    /// An index of an array, before its parts.
+    fn index(&mut self, index: &Expr) {
+        self.expression(index);
+    }
     /// True if the parts of each expression are shown as well; else [`children`] leads on.
     fn goes_into_expressions(&self) -> bool {
         true
@@ -150,10 +154,17 @@ fn place(of: &Place, visitor: &mut dyn Visitor) {
             Step::Open { description, indices, .. } => {
                 place(description, visitor);
                 for index in indices {
-                    expression(index, visitor);
+                    element(index, visitor);
                 }
             }
-            Step::Index { index, .. } => expression(index, visitor),
+            Step::Index { index, .. } => element(index, visitor),
         }
+    }
+}
+
+fn element(index: &Expr, visitor: &mut dyn Visitor) {
+    visitor.index(index);
+    if visitor.goes_into_expressions() {
+        children(index, visitor);
     }
 }

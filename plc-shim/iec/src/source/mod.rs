@@ -19,7 +19,7 @@ use crate::dialect::{Dialect, WordSize};
 pub struct FileId(pub u32);
 
 /// A range of bytes in a file; `start..end`, half open.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Span {
     pub file: FileId,
     /// Offset of the first byte.

@@ -253,3 +253,91 @@ fn random_programs_and_their_ports_agree() {
         }
     }
 }
+
+/// Statements that convert by themselves in CODESYS and TwinCAT, each with what it is about.
+const EVERYDAY: [&str; 44] = [
+    "w := w + 1;",
+    "w := w - i;",
+    "w := w / 2;",
+    "w := w * 2 / 3;",
+    "lw := lw + 1;",
+    "y := y + 1;",
+    "w := -1;",
+    "w := MANY;",
+    "i := w;",
+    "w := i;",
+    "i := w + 1;",
+    "d := w;",
+    "dw := i;",
+    "dw := d + w;",
+    "u := w;",
+    "l := lw;",
+    "u := u + w;",
+    "d := i + w;",
+    "i := NOT i;",
+    "i := NOT (i * 1000);",
+    "w := NOT i;",
+    "w := NOT (w + 1);",
+    "i := i AND 7;",
+    "i := i AND -2;",
+    "d := (i * 1000) AND 16#FFFF;",
+    "w := (w + 1) AND 255;",
+    "d := w OR i;",
+    "w := i XOR w;",
+    "b := (w AND 4) <> 0;",
+    "b := (i AND 4) = 4;",
+    "b := w > i;",
+    "b := w + 1 = 0;",
+    "i := SHL(i, 2);",
+    "w := SHR(w + 1, 2);",
+    "i := SHL(i, w);",
+    "u := SHR(u, 1);",
+    "w := SHL(1, 3);",
+    "w := ROL(w, i);",
+    "r := lr;",
+    "r := l;",
+    "t := DINT_TO_TIME(i AND 7);",
+    "i := cells[k];",
+    "cells[(k + 1) / 2] := 5;",
+    "i := cells[w2];",
+];
+
+#[test]
+fn what_vendors_convert_is_converted() {
+    let mut wrong = Vec::new();
+    for statement in EVERYDAY {
+        let text = format!(
+            "VAR_GLOBAL CONSTANT MANY : INT := 300; END_VAR
+            PROGRAM P VAR w : WORD := 16#FFFE; w2 : WORD := 2; dw : DWORD := 16#FFFF_FFF0; y : BYTE := 255; lw : LWORD := 77;
+            i : INT := -300; u : UINT := 60000; d : DINT := 70000; l : LINT := 123456789; k : LINT := 2; r : REAL; lr : LREAL := 0.1; t : TIME;
+            b : BOOL; cells : ARRAY [0..3] OF INT := [1, 2, 3, 4]; END_VAR\n{statement}\nEND_PROGRAM\n"
+        );
+        if let Err(found) = Application::from_inputs([input(Dialect::Codesys, &text)]) {
+            wrong.push(format!("{statement}\n{found}"));
+            continue;
+        }
+        for (from, target, reader) in WAYS.into_iter().filter(|(_, target, _)| *target != Target::Codesys) {
+            let mut rig = Rig::of_input(input(from, &text));
+            for _ in 0..3 {
+                rig.scan().expect("it runs");
+            }
+            let project = match ported(input(from, &text), target) {
+                Ok(project) => project,
+                Err(refused) => {
+                    wrong.push(format!("{from} to {target:?}: {statement}\n{refused}"));
+                    continue;
+                }
+            };
+            let plc = run(&project, reader, WordSize::Bits64);
+            for result in ["w", "dw", "y", "lw", "i", "u", "d", "l", "r", "b", "cells[1]"] {
+                if bytes(&plc, result) != bytes(&rig.plc, result) {
+                    wrong.push(format!(
+                        "{from} to {target:?}: {statement} gives another {result}\n{}",
+                        text_of(&project)
+                    ));
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}

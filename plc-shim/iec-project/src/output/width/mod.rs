@@ -7,16 +7,19 @@
 //! | module | subject |
 //! |---|---|
 //! | [`tree`] | operations in registers, and the values they can have |
+//! | [`implicit`] | what a dialect converts by itself, and the target's does not |
 //! | [`initial`] | initial values that are computed |
 
+mod implicit;
 mod initial;
 mod tree;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use self::tree::{Node, has, is_whole, node};
 use super::{Refused, Written};
 use onescan_iec::check::as_number;
+use onescan_iec::dialect::Dialect;
 use onescan_iec::front::Front;
 use onescan_iec::ir::walk::{self, Visitor};
 use onescan_iec::ir::{Binary, ElementaryType as E, Expr, ExprKind, TypeTable};
@@ -66,6 +69,8 @@ pub(crate) fn explicit(
         types,
         sources: &front.sources,
         way,
+        reader: fronts.theirs.sources.iter().next().map_or(Dialect::Iec3, |(_, file)| file.dialect()),
+        unread: implicit::unread(&fronts.theirs),
         is_concerned,
         lists: instructions(front),
         done: BTreeMap::new(),
@@ -131,6 +136,10 @@ struct Writer<'w> {
     types: &'w TypeTable,
     sources: &'w SourceMap,
     way: Way,
+    /// The dialect of the target.
+    reader: Dialect,
+    /// Where it finds a value of another type than it wants.
+    unread: BTreeSet<Span>,
     is_concerned: &'w dyn Fn(FileId) -> bool,
     /// Instructions, in which no conversion can be put around an operand.
     lists: Vec<Span>,
@@ -143,6 +152,14 @@ impl Visitor for Writer<'_> {
     /// What an expression is made of depends on what becomes of it.
     fn goes_into_expressions(&self) -> bool {
         false
+    }
+
+    fn index(&mut self, index: &Expr) {
+        let written = match self.way {
+            Way::ToOperands if (self.is_concerned)(index.span.file) => self.indexed(index),
+            _ => return self.expression(index),
+        };
+        self.refused.extend(written.err());
     }
 
     fn expression(&mut self, expr: &Expr) {
@@ -204,16 +221,14 @@ impl Writer<'_> {
         match (&expr.kind, target) {
             (ExprKind::FromRegister(inner) | ExprKind::Convert(_, inner), Some(target)) => {
                 let Some((node, register)) = self.wider(given(inner)) else {
-                    walk::children(expr, self);
-                    return Ok(());
+                    return self.said(expr);
                 };
                 self.converted(expr, (&node, register), target)?;
                 self.leaves(&node);
             }
             (ExprKind::Binary(operator, left, right), _) if operator.is_comparison() => {
                 let Some(register) = self.register(left) else {
-                    walk::children(expr, self);
-                    return Ok(());
+                    return self.said(expr);
                 };
                 let sides = [left, right].map(|side| node(self.types, side, register));
                 if sides.iter().any(|side| side.is_wider_in(register)) {
@@ -235,7 +250,7 @@ impl Writer<'_> {
                     self.note(expr.span, changes)?;
                     self.leaves(&node);
                 }
-                None => walk::children(expr, self),
+                None => self.said(expr)?,
             },
         }
         Ok(())
@@ -270,7 +285,8 @@ impl Writer<'_> {
             return Ok(());
         }
         if computed != target {
-            changes.extend(wrapped(node.span(), &format!("{computed}_TO_{target}("), 1));
+            let (head, count) = conversions(&[computed], target);
+            changes.extend(wrapped(node.span(), &head, count));
         }
         changes.extend(inside);
         self.note(node.span(), changes)
@@ -406,12 +422,27 @@ fn conversions(types: &[E], wanted: E) -> (String, usize) {
         {
             way.pop();
         }
-        if way.last() != Some(&ty) {
-            way.push(ty);
+        match way.last() {
+            Some(last) if *last == ty => {}
+            // How a number with a sign fills a longer bit string, tools see differently.
+            Some(last) if ty.is_bits() && last.is_signed() && last.size() < ty.size() => {
+                way.extend([signed(ty), ty]);
+            }
+            _ => way.push(ty),
         }
     }
     let steps: Vec<_> = way.windows(2).map(|pair| format!("{}_TO_{}(", pair[0], pair[1])).collect();
     (steps.iter().rev().map(String::as_str).collect(), steps.len())
+}
+
+/// The integer with a sign that has as many bits.
+fn signed(bits: E) -> E {
+    match bits.size() {
+        1 => E::Sint,
+        2 => E::Int,
+        4 => E::Dint,
+        _ => E::Lint,
+    }
 }
 
 fn holds(wide: E, narrow: E) -> bool {
