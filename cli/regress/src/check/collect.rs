@@ -17,6 +17,7 @@ use onescan_scenario::permission::granted;
 use onescan_server::signal::ClientName;
 
 use super::error::CheckError;
+use super::listed;
 use super::passed_over::PassedOver;
 use onescan_runner::error::{Unreadable, Usage};
 
@@ -281,7 +282,7 @@ impl Files {
                 }
                 let mut missing = Vec::new();
                 for listed in &listing.files {
-                    let file = folder.join(&listed.path);
+                    let file = listed::on_disk(folder, &listed.path);
                     let Some(FileKind::Source(kind)) = FileKind::of(&file) else { continue };
                     // A library has no tasks of its own.
                     if self.part != Part::Own && is_task(&file) || self.seen.contains(&Identity::of(&file)) {

@@ -3,6 +3,7 @@
 //! | module | subject |
 //! |---|---|
 //! | [`collect`] | which files are meant, and what is in them |
+//! | `listed` | where the files of a project are |
 //! | [`passed_over`] | which files of folders are left out |
 //! | [`report`] | how the findings are shown |
 //! | [`human`] | for people |
@@ -16,6 +17,7 @@ mod error;
 pub mod explain;
 pub mod human;
 pub mod json;
+mod listed;
 pub mod passed_over;
 pub mod report;
 pub mod sarif;
