@@ -179,6 +179,7 @@ codes! {
     AssignedToItself "W0728" "a variable is assigned to itself",
     CounterWraps "W0729" "a counter wraps that is compared and never set back",
     CutText "W0730" "a function of strings takes or gives no more than 255 characters",
+    UnusedUnit "W0731" "a unit with errors that no task uses is left out",
 }
 
 impl fmt::Display for Code {

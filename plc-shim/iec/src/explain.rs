@@ -155,6 +155,7 @@ const PAGES: &[(&str, &str)] = pages![
     "W0728",
     "W0729",
     "W0730",
+    "W0731",
 ];
 
 /// The page that explains `code`, as Markdown.

@@ -217,6 +217,17 @@ fn use_in_projects(feature: Feature) -> &'static str {
             "VAR_GLOBAL CONSTANT n : INT := 3; END_VAR
              PROGRAM P VAR a : ARRAY [1..4] OF INT := [n(5), 7]; END_VAR a[1] := a[2]; END_PROGRAM"
         }
+        Feature::UnusedUnits => {
+            "PROGRAM P END_PROGRAM FUNCTION F : INT F := nowhere; END_FUNCTION
+             CONFIGURATION C TASK T (INTERVAL := T#10ms, PRIORITY := 1); PROGRAM P1 WITH T : P; END_CONFIGURATION"
+        }
+        Feature::ThisPointer => {
+            "FUNCTION_BLOCK F VAR p : POINTER TO F; END_VAR p := THIS; END_FUNCTION_BLOCK
+             PROGRAM P VAR f1 : F; END_VAR f1(); END_PROGRAM"
+        }
+        Feature::LiteralAddresses => {
+            "PROGRAM P VAR p : POINTER TO BYTE; b : BYTE; END_VAR p := ADR('text'); b := p^; END_PROGRAM"
+        }
         Feature::DecimalBase => "PROGRAM P VAR n : INT; END_VAR n := 10#300; END_PROGRAM",
         Feature::GenericConstants => {
             "FUNCTION_BLOCK F VAR_GENERIC CONSTANT n : INT := 1; END_VAR VAR a : ARRAY [1..n] OF INT; END_VAR a[1] := n; END_FUNCTION_BLOCK
@@ -242,12 +253,15 @@ fn every_construct_is_for_its_dialects_alone() {
 }
 
 /// Constructs whose absence is not a syntax of its own: another error says it.
-const REPORTED_OTHERWISE: [Feature; 55] = [
+const REPORTED_OTHERWISE: [Feature; 58] = [
     Feature::PositionalOutputs,
     Feature::CharactersSelect,
     Feature::CharactersAsText,
     Feature::BareCalls,
     Feature::Overloads,
+    Feature::UnusedUnits,
+    Feature::ThisPointer,
+    Feature::LiteralAddresses,
     Feature::Variants,
     Feature::EmptyLists,
     Feature::BitsInOut,

@@ -1,6 +1,7 @@
 //! References (3rd ed. 6.4.4.10, Table 12), and the pointers of vendors.
 
 use crate::rig::{Rig, findings};
+use onescan_iec::Dialect;
 
 fn run(text: &str) -> Rig {
     let mut rig = Rig::new(text);
@@ -141,12 +142,40 @@ fn functions_of_vendors_work_on_bytes_at_addresses() {
         more := MEMCMP(ADR(c), ADR(a), 8); x := ADR(a); size := SIZEOF(x); MEMCPY(ADR(a), ADR(b), 0); END_PROGRAM");
     let list = |name: &str| [0, 1, 2, 3].map(|index| rig.int(&format!("P.{name}[{index}]")));
     assert_eq!((list("a"), list("b"), list("c")), ([1, 1, 2, 3], [1, 2, 3, 4], [0x1111, 0x1111, 0, -1]));
-    assert_eq!((rig.int("P.n"), rig.int("P.size")), (8, 4));
+    assert_eq!((rig.int("P.n"), rig.int("P.size")), (8, 8));
     assert_eq!((rig.int("P.less"), rig.int("P.same"), rig.int("P.more")), (-1, 0, 1));
     insta::assert_snapshot!(fault("PROGRAM P\nVAR a : INT; END_VAR\n  MEMSET(ADR(a), 0, 16#FFFFFFFF);\nEND_PROGRAM"),
         @"pointer out of memory at test.st:3:3 in P, t_v = 0.010 s");
     insta::assert_snapshot!(fault("PROGRAM P\nVAR a : INT; p : POINTER TO INT; END_VAR\n  MEMCPY(ADR(a), p, 2);\nEND_PROGRAM"),
         @"use of a NULL reference at test.st:3:3 in P, t_v = 0.010 s");
+}
+
+#[test]
+fn this_alone_is_a_pointer_and_literals_have_addresses() {
+    let text = "FUNCTION_BLOCK F VAR_OUTPUT same, alike : BOOL; n : LWORD; END_VAR
+          VAR p : POINTER TO F; q : POINTER TO BYTE; x : INT := 7; END_VAR
+        p := THIS; q := THIS; same := p = THIS; alike := THIS^.x = p^.x; n := THIS; p^.x := p^.x + 1; END_FUNCTION_BLOCK
+        PROGRAM P VAR f1 : F; t : POINTER TO BYTE; b, c, d, e : BYTE; own : BOOL; END_VAR
+        f1(); own := f1.n = ADR(f1); t := ADR('abc'); b := t^; c := t[2]; d := t[3]; t := ADR(''); e := t^; END_PROGRAM";
+    for dialect in [Dialect::Codesys, Dialect::TwinCat] {
+        let mut rig = Rig::in_dialect(dialect, text);
+        rig.scan().expect("no fault");
+        let flags = ["P.f1.same", "P.f1.alike", "P.own"].map(|name| rig.bool(name));
+        assert_eq!((flags, rig.int("P.f1.x")), ([true; 3], 8), "{dialect}");
+        assert_eq!(["P.b", "P.c", "P.d", "P.e"].map(|name| rig.int(name)), [0x61, 0x63, 0, 0], "{dialect}");
+    }
+}
+
+#[test]
+fn types_as_wide_as_pointers_are_as_wide_as_the_targets_registers() {
+    let text = "PROGRAM P VAR x : __XWORD; u : __UXINT; i : __XINT; p : PVOID; size, bits : INT; small : BOOL; t : DINT; END_VAR
+        t := -2; size := SIZEOF(x) + SIZEOF(u) + SIZEOF(i) + SIZEOF(p); i := TO___XINT(t); x := ADR(t); small := i < 0 AND x > 0;
+        bits := TO_INT(__SYSTEM.Constants.nRegisterSize); END_PROGRAM";
+    let mut rig = Rig::in_dialect(Dialect::Codesys, text);
+    rig.scan().expect("no fault");
+    assert_eq!((rig.int("P.size"), rig.bool("P.small"), rig.int("P.bits")), (32, true, 64));
+    let rig = run(&format!("{{dialect 'codesys' 32}}\n{}", text.replace("i := TO___XINT(t)", "i := t")));
+    assert_eq!((rig.int("P.size"), rig.bool("P.small")), (16, true));
 }
 
 #[test]

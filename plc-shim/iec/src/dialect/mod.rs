@@ -421,6 +421,9 @@ features! {
     CharactersSelect "`CASE` of a CHAR, WCHAR or string",
     BareCalls "a call without arguments: each input has its initial value",
     Overloads "functions or methods of one name with other parameters",
+    UnusedUnits "a unit with errors that no task's program uses",
+    ThisPointer "`THIS` alone, a pointer to the running instance",
+    LiteralAddresses "the address of a literal, `ADR('text')`",
 }
 
 impl Feature {

@@ -196,6 +196,13 @@ pub const FEATURES: &[FeatureRow] = &[
         "3rd ed. 6.6.1.4.2, a formal list that leaves out all; SIMATIC AX: accepts it, as public projects show",
     ),
     row(Feature::Overloads, &[Iec3], "SIMATIC AX: overloads, as public projects show; not in 3rd ed."),
+    row(
+        Feature::UnusedUnits,
+        &[Codesys, TwinCat],
+        "TwinCAT: commands Build PLC project, Check all objects; CODESYS: command Check all Application Objects",
+    ),
+    row(Feature::ThisPointer, &[Codesys, TwinCat], "CODESYS and TwinCAT: pointer THIS"),
+    row(Feature::LiteralAddresses, &[Codesys, TwinCat], "CODESYS: accepts it, as public projects show"),
 ];
 
 /// How a dialect behaves, and where that is written.

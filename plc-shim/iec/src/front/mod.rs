@@ -7,6 +7,7 @@
 //! | `motion_library` | motion control as program text, and whose of it a program has |
 //! | `twincat_motion` | TwinCAT's names for motion blocks |
 //! | `vendor_library` | libraries of vendors, by their names |
+//! | `unused` | what no task uses and nobody compiles |
 //! | `room` | the stack that deep trees need |
 
 mod constant;
@@ -14,6 +15,7 @@ pub mod library;
 mod motion_library;
 mod room;
 mod twincat_motion;
+mod unused;
 mod vendor_library;
 
 use std::collections::BTreeSet;
@@ -28,6 +30,7 @@ use crate::syntax::{FileId, SourceMap, parse_source};
 use constant::is_declared;
 pub use constant::{ConstantError, Constants, Setting};
 pub use room::with_room;
+use unused::Unused;
 
 /// What is known of files once they have been checked.
 pub struct Front {
@@ -107,12 +110,24 @@ impl Parsed {
         Self { sources, units, library, findings }
     }
 
+    /// Checks what there is; what no task uses is left out if it has errors, and then the rest is checked once more.
     fn checked(self, constants: &Constants, limit: MemoryLimit) -> Front {
-        let Self { sources, units, library, mut findings } = self;
-        let trees: Vec<_> = units.iter().chain(&constants.units).map(|(id, unit)| (*id, unit)).collect();
-        let (checked, found) = check(&trees, &library, &constants.overrides, limit);
-        findings.extend(constants.findings.iter().cloned().chain(found));
-        Front { sources, units, library, checked, findings }
+        let Self { sources, mut units, library, findings: mut of_text } = self;
+        let mut unused: Option<Unused> = None;
+        loop {
+            let trees: Vec<_> = units.iter().chain(&constants.units).map(|(id, unit)| (*id, unit)).collect();
+            let (checked, found) = check(&trees, &library, &constants.overrides, limit);
+            let mut findings = of_text.clone();
+            findings.extend(constants.findings.iter().cloned().chain(found));
+            if findings.iter().any(|found| found.severity == Severity::Error) {
+                let unused = unused.get_or_insert_with(|| Unused::of(&units, &library, &sources));
+                if unused.leave_out(&mut units, &mut of_text, &findings) {
+                    continue;
+                }
+            }
+            findings.extend(unused.map(Unused::into_warnings).unwrap_or_default());
+            return Front { sources, units, library, checked, findings };
+        }
     }
 }
 

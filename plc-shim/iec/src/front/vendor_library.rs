@@ -67,6 +67,7 @@ const PARTS: &[Part] = parts![
     Iec3 &Dialect::ALL, "generic_inputs";
     Iec3 &Dialect::ALL, "dtl";
     Codesys BOTH, "dynamic_memory";
+    Codesys BOTH, "system_constants";
     Codesys BOTH, "system_exception";
     Codesys BOTH, "system_var_info";
     TwinCat BOTH, "tc2_standard";
@@ -113,6 +114,9 @@ const BY_WORDS: [(&str, &[&str]); 5] = [
     // Named by `USING AxUnit;`, and then only in parts.
     ("iec/vendor/ax_unit.st", &["AXUNIT"]),
 ];
+
+/// What many programs name and mean otherwise: it is there for those who ask for another part of its file.
+const PLAIN_WORDS: [&str; 1] = ["VERSION"];
 
 const TWINCAT_TYPES: &str = "iec/vendor/tc2_mc2_types.st";
 
@@ -168,7 +172,8 @@ impl Index {
             let mut by_name: BTreeMap<String, Vec<usize>> = BTreeMap::new();
             for (at, part) in parts.iter().enumerate() {
                 let words = BY_WORDS.iter().filter(|(name, _)| part.name == *name).flat_map(|(_, words)| *words);
-                for name in declared(part.text).into_iter().chain(words.map(|word| (*word).to_owned())) {
+                let names = declared(part.text).into_iter().filter(|name| !PLAIN_WORDS.contains(&name.as_str()));
+                for name in names.chain(words.map(|word| (*word).to_owned())) {
                     let homes = by_name.entry(name.to_ascii_uppercase()).or_default();
                     if homes.last() != Some(&at) {
                         homes.push(at);

@@ -127,7 +127,7 @@ impl<'a> Written<'_, 'a> {
         if let Some(key) = self.declarations().type_key(&key) {
             return self.declarations_mut().named_type(&key, Some(name.span));
         }
-        if let Some(found) = of_pointer_width(&key) {
+        if let Some(found) = of_pointer_width(&key, self.declarations().word_size(name.span)) {
             return Some(self.whole(found.into()));
         }
         // Vendors' BIT is a BOOL; only in their structures do several share a byte.

@@ -15,6 +15,8 @@
 //! | LTIME, LDATE, LTOD, LDT, number | nanoseconds |
 //! | number, DATE or TOD | the day it lies in, the time of its day |
 
+use super::vendor::of_pointer_width;
+use crate::dialect::WordSize;
 use crate::ir::elementary::Kind;
 use crate::ir::{ElementaryType, Rounding};
 
@@ -36,7 +38,10 @@ pub(in crate::check) fn find(key: &str) -> Option<Conversion> {
         return Some(Conversion { from: None, to: ElementaryType::Dint, rounding, takes_context: true });
     }
     let overloaded = |name: &str, rounding| {
-        let to = ElementaryType::find(key.strip_prefix(name)?.strip_prefix('_')?)?;
+        let to = key.strip_prefix(name)?.strip_prefix('_')?;
+        // Of vendors' names with underscores; what has 64 bits narrows to fewer with a conversion only.
+        let wide = || of_pointer_width(to, WordSize::default()).filter(|_| to.starts_with("__"));
+        let to = ElementaryType::find(to).or_else(wide)?;
         let exists = matches!(name, "TO" | "ANY_TO") || to.is_integer();
         exists.then_some(Conversion { from: None, to, rounding, takes_context: false })
     };
@@ -112,6 +117,7 @@ mod tests {
         let found = find("LREAL_TRUNC_DINT").map(|found| found.rounding);
         assert_eq!(found, Some(Rounding::Truncate));
         assert_eq!(find("TO_SINT").and_then(|found| found.from), None);
+        assert_eq!(find("TO___UXINT").map(|found| found.to), Some(ElementaryType::Ulint));
         assert!(find("INT_TO_INT").is_none() && is_of_vendors("REAL_TO_WORD") && !is_of_vendors("REAL_TO_DWORD"));
         assert!(find("INT_TRUNC_SINT").is_none() && find("GOTO_INT").is_none());
     }

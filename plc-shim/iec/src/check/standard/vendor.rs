@@ -1,6 +1,7 @@
 //! Functions of vendors' controllers that have no equal here, and enumerations that vendors know their own way.
 
 use crate::diagnostic::Code;
+use crate::dialect::WordSize;
 use crate::ir::ElementaryType;
 
 /// Functions of vendors' controllers that have no equal here, by how their names begin, and what to use.
@@ -36,11 +37,16 @@ pub fn is_qualified_only(name: &str) -> bool {
     QUALIFIED_ONLY.iter().any(|known| known.eq_ignore_ascii_case(name))
 }
 
-/// Vendors' names of the types that are as wide as a pointer.
-pub fn of_pointer_width(key: &str) -> Option<ElementaryType> {
+/// Vendors' names of the types that are as wide as a register of the target, which is as wide as its pointers. One that
+/// holds a pointer keeps the address.
+pub fn of_pointer_width(key: &str, target: WordSize) -> Option<ElementaryType> {
+    let is_long = target == WordSize::Bits64;
     Some(match key {
+        "__XWORD" | "XWORD" if is_long => ElementaryType::Lword,
         "__XWORD" | "XWORD" => ElementaryType::Dword,
+        "__UXINT" | "UXINT" | "PVOID" if is_long => ElementaryType::Ulint,
         "__UXINT" | "UXINT" | "PVOID" => ElementaryType::Udint,
+        "__XINT" | "XINT" if is_long => ElementaryType::Lint,
         "__XINT" | "XINT" => ElementaryType::Dint,
         _ => return None,
     })

@@ -24,6 +24,11 @@ impl Expr {
     pub fn names_the_object(&self) -> bool {
         matches!(&self.kind, ExprKind::Name(name) if matches!(name.key().as_str(), "THIS" | "SUPER"))
     }
+
+    /// `THIS^` or `SUPER^`; of the object without the caret vendors have a pointer.
+    pub fn names_the_object_by_caret(&self) -> bool {
+        self.names_the_object() && matches!(&self.kind, ExprKind::Name(name) if name.span != self.span)
+    }
 }
 
 /// The forms of an expression.

@@ -170,7 +170,7 @@ impl Cursor<'_> {
     /// A primary with its members, indices and calls.
     pub(super) fn postfix(&mut self) -> Expr {
         let mut expr = self.primary();
-        self.pass_object_caret(&expr);
+        self.pass_object_caret(&mut expr);
         loop {
             let (start, height) = (expr.span, expr.height);
             let (kind, below) = if self.take_mark(Punctuation::Dot) {

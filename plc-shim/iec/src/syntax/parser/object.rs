@@ -347,9 +347,9 @@ impl Cursor<'_> {
     }
 
     /// Vendors write `THIS^` and `SUPER^` for what the standard calls `THIS` and `SUPER`.
-    pub(super) fn pass_object_caret(&mut self, expr: &Expr) {
-        if expr.names_the_object() {
-            self.take_mark(Punctuation::Caret);
+    pub(super) fn pass_object_caret(&mut self, expr: &mut Expr) {
+        if expr.names_the_object() && self.take_mark(Punctuation::Caret) {
+            expr.span = self.span_from(expr.span);
         }
     }
 }

@@ -131,7 +131,9 @@ fn a_printed_unit_of_a_vendor_parses_to_itself() {
 
 #[test]
 fn one_caret_behind_the_object_is_part_of_its_name() {
-    for (written, printed) in [("THIS^.x", "THIS.x"), ("SUPER^^^.x", "SUPER^^^.x"), ("p^^.x", "p^^.x")] {
+    for (written, printed) in
+        [("THIS^.x", "THIS^.x"), ("THIS.x", "THIS.x"), ("SUPER^^^.x", "SUPER^^^.x"), ("p^^.x", "p^^.x")]
+    {
         let (text, diagnostics) = reparse(&format!("PROGRAM p y := {written}; END_PROGRAM"));
         assert_eq!(diagnostics, []);
         assert!(text.contains(&format!("y := {printed};")), "{text}");

@@ -7,7 +7,12 @@ impl Printer {
     pub(super) fn expression(&mut self, expr: &Expr) {
         match &expr.kind {
             ExprKind::Literal(literal) => self.literal(literal),
-            ExprKind::Name(name) => self.variable_name(name),
+            ExprKind::Name(name) => {
+                self.variable_name(name);
+                if expr.names_the_object_by_caret() {
+                    self.word("^");
+                }
+            }
             ExprKind::DirectAddress(text) => self.word(text),
             ExprKind::Member(base, name) => {
                 self.expression(base);
@@ -22,7 +27,8 @@ impl Printer {
             ExprKind::Dereference(base) => {
                 self.expression(base);
                 // The first caret is part of the name.
-                self.word(if base.names_the_object() { "^^" } else { "^" });
+                let is_short = base.names_the_object() && !base.names_the_object_by_caret();
+                self.word(if is_short { "^^" } else { "^" });
             }
             ExprKind::Index(base, indices) => {
                 self.expression(base);

@@ -47,6 +47,12 @@ impl Body<'_, '_> {
                 let result = self.call_expression(call, expr.span)?;
                 Some(self.referred_result(result))
             }
+            ast::ExprKind::Name(name) if self.is_this(name) && !expr.names_the_object_by_caret() => {
+                match self.this_pointer(name) {
+                    Some(pointer) => Some(pointer),
+                    None => self.load(expr),
+                }
+            }
             ast::ExprKind::Name(_)
             | ast::ExprKind::Member(..)
             | ast::ExprKind::Index(..)

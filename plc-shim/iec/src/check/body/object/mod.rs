@@ -10,10 +10,12 @@ pub(super) mod query;
 use super::place::{Access, Located};
 use super::{Body, Meant};
 use crate::check::declare::{Membership, Role, method_visibility};
+use crate::check::types::operand::Operand;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::ir::{Place, PouId, StatementKind, Storage, Type, TypeId, Variable, Visibility};
+use crate::dialect::Feature;
+use crate::ir::{Expr, ExprKind, Place, PouId, StatementKind, Storage, Type, TypeId, Variable, Visibility};
 use crate::syntax::Span;
-use crate::syntax::ast::{self, Ident, PouKind};
+use crate::syntax::ast::{self, Ident, PouKind, ReferenceKind};
 
 impl Body<'_, '_> {
     /// The unit whose instance runs; nothing in functions.
@@ -27,7 +29,7 @@ impl Body<'_, '_> {
         self.own_class().is_some_and(|class| self.declarations.may_inherit(class))
     }
 
-    pub(super) fn is_this(&self, name: &Ident) -> bool {
+    pub(in crate::check::body) fn is_this(&self, name: &Ident) -> bool {
         name.key() == "THIS" && !self.scope.declares("THIS")
     }
 
@@ -49,6 +51,18 @@ impl Body<'_, '_> {
         };
         let place = self.this(class, name.span);
         Some(Some(Located { place, access: Access::ReadWrite }))
+    }
+
+    /// `THIS` as a value, where it is a pointer to the running instance.
+    pub(in crate::check::body) fn this_pointer(&mut self, name: &Ident) -> Option<Operand> {
+        let is_pointer = self.declarations.dialect(name.span).has(Feature::ThisPointer);
+        if !is_pointer || self.this_structure(name).is_some() {
+            return None;
+        }
+        let class = self.own_class().filter(|class| self.declarations.pou(*class).ast().kind.has_instances())?;
+        let place = self.this(class, name.span);
+        let ty = self.declarations.types_mut().reference(Some(ReferenceKind::Pointer), place.ty);
+        Some(Operand::Typed(Expr { kind: ExprKind::Address(place), ty, span: name.span }))
     }
 
     /// The running instance as one of its base, for `SUPER^.x`; nothing if the expression is not `SUPER`.

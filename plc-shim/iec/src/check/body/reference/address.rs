@@ -7,6 +7,7 @@ use crate::check::standard::place::PlaceFunction;
 use crate::check::types::operand::{Operand, constant};
 use crate::check::types::reference;
 use crate::diagnostic::{Code, Diagnostic};
+use crate::dialect::Feature;
 use crate::ir::{Binary, ElementaryType, Expr, ExprKind, Place, Storage, Type, TypeId, Value};
 use crate::syntax::Span;
 use crate::syntax::ast::{self, Argument, Call, Ident, PouKind, ReferenceKind, SectionKind};
@@ -57,7 +58,10 @@ impl Body<'_, '_> {
     }
 
     fn address_of(&mut self, argument: &ast::Expr, span: Span) -> Option<Operand> {
-        let mut place = self.place(argument)?.place;
+        let mut place = match self.literal_in_memory(argument) {
+            Some(literal) => literal?,
+            None => self.place(argument)?.place,
+        };
         // Of a BIT of a structure or union the tools give the address of its byte (CODESYS with the warning C0355).
         if matches!(argument.kind, ast::ExprKind::Member(..))
             && place.part.is_some_and(|part| part.whole == ElementaryType::Byte)
@@ -68,6 +72,19 @@ impl Body<'_, '_> {
         self.require_address(&place, argument.span)?;
         let ty = self.declarations.types_mut().reference(None, place.ty);
         Some(Operand::Typed(Expr { kind: ExprKind::Address(place), ty, span }))
+    }
+
+    /// Where a literal string stands, which lies in the constants of the program; nothing if it is none.
+    fn literal_in_memory(&mut self, argument: &ast::Expr) -> Meant<Place> {
+        let is_text = matches!(argument.kind, ast::ExprKind::Literal(ast::Literal::String(_)));
+        if !is_text || !self.declarations.dialect(argument.span).has(Feature::LiteralAddresses) {
+            return None;
+        }
+        let text = self.expression(argument).and_then(|text| self.settle(text));
+        Some(text.and_then(|text| match text.kind {
+            ExprKind::Load(place) => Some(place),
+            _ => None,
+        }))
     }
 
     /// What a reference may refer to: it outlives the call and may be written to.

@@ -158,9 +158,6 @@ impl Body<'_, '_> {
                 Type::Reference { kind: ReferenceKind::Pointer, target: other } if self.derives(other, target) => {
                     Some(Expr { ty: wanted, ..expr })
                 }
-                Type::FunctionBlock { .. } if self.is_this_instance(&expr) && self.derives(expr.ty, target) => {
-                    pointer_to(expr, wanted)
-                }
                 Type::Reference { kind: ReferenceKind::Pointer, target: other } => {
                     let (target, other) = (self.type_name(target), self.type_name(other));
                     let message = format!("a pointer to {target} is made of one to {other}");
@@ -174,13 +171,6 @@ impl Body<'_, '_> {
             },
             (operand, _) => self.no_reference(&operand, wanted),
         }
-    }
-
-    /// True for `THIS`, which is a pointer with vendors.
-    fn is_this_instance(&self, expr: &Expr) -> bool {
-        let own = self.own_class().and_then(|class| self.declarations.types().known_block(class));
-        let is_this = |place: &Place| place.storage == Storage::Instance(0) && place.steps.is_empty();
-        own == Some(expr.ty) && matches!(&expr.kind, ExprKind::Load(place) if is_this(place))
     }
 
     fn no_reference<T>(&mut self, operand: &Operand, wanted: TypeId) -> Option<T> {
@@ -407,12 +397,6 @@ impl Body<'_, '_> {
         };
         Some(Statement { kind: StatementKind::Assign(place, value), span })
     }
-}
-
-/// The address of what lies at a place.
-fn pointer_to(value: Expr, wanted: TypeId) -> Option<Expr> {
-    let ExprKind::Load(place) = value.kind else { return None };
-    Some(Expr { kind: ExprKind::Address(place), ty: wanted, span: value.span })
 }
 
 /// The reference that a value was read by, if it was.
