@@ -192,7 +192,7 @@ impl<'a> Collector<'a> {
         if let Some(elementary) = ElementaryType::find(&key) {
             return Ty::Elementary(elementary);
         }
-        if let Some(elementary) = of_pointer_width(&key) {
+        if let Some(elementary) = of_pointer_width(&key, onescan_iec::WordSize::default()) {
             return Ty::Elementary(elementary);
         }
         match key.as_str() {
