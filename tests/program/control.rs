@@ -27,11 +27,26 @@ fn ctrl_c_stops_at_a_step_and_leaves_everything_whole() {
     let signalled = std::process::Command::new("kill").args(["-INT", &server.id().to_string()]).status().unwrap();
     assert!(signalled.success());
     let output = server.wait_with_output().unwrap();
-    assert_eq!(output.status.code(), Some(0));
+    assert_eq!(output.status.code(), Some(130));
     let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(report["status"], "stopped");
     let csv = std::fs::read_to_string(folder.path().join("run-1/trajectory.csv")).unwrap();
     assert_eq!(csv.lines().count() as u64, 2 + report["steps"].as_u64().unwrap());
+}
+
+/// The exit code says which signal has asked to end.
+#[test]
+fn a_request_to_end_has_an_exit_code_of_its_own() {
+    for (signal, code) in [("-TERM", 143), ("-HUP", 129)] {
+        let words = ["run", ".", "--until", "1h", "--pace", "1", "--listen", "127.0.0.1:0", "--transport", "tcp"];
+        let mut server = begun(&scenario("shear"), &words);
+        let mut said = BufReader::new(server.stderr.take().unwrap());
+        let address = listening_at(&mut said);
+        while typed(&scenario("shear"), &["control", &address]).code != Some(0) {}
+        let signalled = std::process::Command::new("kill").args([signal, &server.id().to_string()]).status().unwrap();
+        assert!(signalled.success());
+        assert_eq!(server.wait_with_output().unwrap().status.code(), Some(code), "{signal}");
+    }
 }
 
 #[test]

@@ -53,7 +53,7 @@ fn idle_strangers_neither_end_a_session_nor_keep_viewers_out() {
     ask(&mut first, &json!({"type": "operate", "operation": "stop"}));
     drop((idle, halves, bodies));
     assert_eq!(served.report()["status"], "stopped");
-    assert!(out.join("run.json").is_file(), "the recording is whole");
+    assert!(out.join("run-1/run.json").is_file(), "the recording is whole");
 }
 
 /// Whether anybody wants a picture is looked at before one is read.

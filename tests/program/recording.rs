@@ -191,3 +191,27 @@ fn run_in(folder: &Path, words: &[&str]) {
     let said = typed(folder, words);
     assert_eq!(said.code, Some(0), "{said:?}");
 }
+
+/// Two runs that record into one folder would mix their files.
+#[test]
+fn one_run_records_into_a_folder_at_a_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let place = out.to_str().unwrap();
+    let served = crate::web::Served::begin("shear", &["--until", "1h", "--record", place]);
+    for more in [&[][..], &["--overwrite"]] {
+        let said = typed(&scenario("shear"), &[&["run", ".", "--until", "100ms", "--record", place], more].concat());
+        assert_eq!(said.code, Some(2), "{said:?}");
+        let is_said = said.err.contains("another run records into") || said.err.contains("holds an earlier recording");
+        assert!(is_said, "{said:?}");
+    }
+    let mut viewer = served.view();
+    crate::web::ask(&mut viewer, &serde_json::json!({"type": "operate", "operation": "stop"}));
+    let report = served.report();
+    assert_eq!(report["status"], "stopped");
+    let own: serde_json::Value = serde_json::from_slice(&std::fs::read(out.join("run-1/run.json")).unwrap()).unwrap();
+    assert_eq!(own["digest"], report["digest"], "the recording is the first run's");
+    assert!(!out.join("run-1/.recording.lock").exists());
+    let after = typed(&scenario("shear"), &["run", ".", "--until", "100ms", "--record", place, "--overwrite"]);
+    assert_eq!(after.code, Some(0), "{after:?}");
+}

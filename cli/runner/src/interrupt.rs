@@ -1,9 +1,9 @@
-//! Ctrl-C: the run stops at the next step boundary, with recordings and reports whole. Another one
-//! after a while ends the process at once; so does the first, as long as there is no session that could stop: while
-//! files are read, checked and compiled.
+//! Ctrl-C, and other polite requests to end: the run stops at the next step boundary, with recordings and reports whole.
+//! Another one after a while ends the process at once; so does the first, as long as there is no session that could stop:
+//! while files are read, checked and compiled. Whatever came of it, the exit code says that a signal ended it.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicI32, Ordering};
 use std::time::{Duration, Instant};
 
 use onescan_server::mailbox::Mailbox;
@@ -12,8 +12,19 @@ use onescan_server::operation::Control;
 /// A second signal before this is an echo of the first: some programs signal a process and its group.
 const IMPATIENCE: Duration = Duration::from_secs(1);
 
-/// The exit code of a program that was ended by Ctrl-C, as shells have it.
-const INTERRUPTED: i32 = 130;
+/// The number of Ctrl-C's signal.
+const INTERRUPT: i32 = 2;
+
+/// The first signal that has asked this process to end; 0 while none has.
+static SIGNAL: AtomicI32 = AtomicI32::new(0);
+
+/// The exit code of a process that a signal has asked to end, as shells have it: 130 after Ctrl-C, 143 after SIGTERM, 129
+/// after SIGHUP.
+#[must_use]
+pub fn exit_code() -> Option<u8> {
+    let signal = SIGNAL.load(Ordering::SeqCst);
+    u8::try_from(128 + signal).ok().filter(|_| signal != 0)
+}
 
 /// A wish to stop, seen by all runs of a process.
 #[derive(Clone, Debug, Default)]
@@ -34,19 +45,24 @@ impl Interrupt {
     pub fn on_signals(&self) {
         let interrupt = self.clone();
         let mut first: Option<Instant> = None;
-        let handler = move || match first {
-            None => {
-                first = Some(Instant::now());
-                interrupt.raised.store(true, Ordering::SeqCst);
-                if !interrupt.is_watched.load(Ordering::SeqCst) {
-                    std::process::exit(INTERRUPTED);
+        let handler = move |signal: i32| {
+            // One that comes later does not say why it ends.
+            let _ = SIGNAL.compare_exchange(0, signal, Ordering::SeqCst, Ordering::SeqCst);
+            let end = || std::process::exit(128 + SIGNAL.load(Ordering::SeqCst));
+            match first {
+                None => {
+                    first = Some(Instant::now());
+                    interrupt.raised.store(true, Ordering::SeqCst);
+                    if !interrupt.is_watched.load(Ordering::SeqCst) {
+                        end();
+                    }
+                    interrupt.mailbox.control(Control::Stop);
                 }
-                interrupt.mailbox.control(Control::Stop);
+                Some(first) if first.elapsed() > IMPATIENCE => end(),
+                Some(_) => {}
             }
-            Some(first) if first.elapsed() > IMPATIENCE => std::process::exit(INTERRUPTED),
-            Some(_) => {}
         };
-        if let Err(error) = ctrlc::set_handler(handler) {
+        if let Err(error) = on_each(handler) {
             tracing::warn!(%error, "Ctrl-C will end the program without a report");
         }
     }
@@ -70,4 +86,21 @@ impl Interrupt {
     pub(super) fn mailbox(&self) -> Mailbox {
         self.mailbox.clone()
     }
+}
+
+/// Calls `handler` with the number of each signal that asks to end, in a thread of its own.
+#[cfg(unix)]
+fn on_each(mut handler: impl FnMut(i32) + Send + 'static) -> std::io::Result<()> {
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+
+    debug_assert_eq!(SIGINT, INTERRUPT, "as POSIX has it");
+    let mut signals = signal_hook::iterator::Signals::new([SIGHUP, SIGINT, SIGTERM])?;
+    let watch = move || signals.forever().for_each(&mut handler);
+    std::thread::Builder::new().name("signals".to_owned()).spawn(watch).map(drop)
+}
+
+/// There all are as Ctrl-C.
+#[cfg(windows)]
+fn on_each(mut handler: impl FnMut(i32) + Send + 'static) -> std::io::Result<()> {
+    ctrlc::set_handler(move || handler(INTERRUPT)).map_err(std::io::Error::other)
 }

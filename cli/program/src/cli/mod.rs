@@ -54,6 +54,7 @@ use onescan_report::OutputError;
 pub use error::CommandError;
 
 use onescan_runner::error::{Exit, ExitCode};
+use onescan_runner::interrupt;
 
 /// Runs the program with the process's arguments.
 pub fn main() -> std::process::ExitCode {
@@ -76,7 +77,8 @@ pub fn main() -> std::process::ExitCode {
             code
         }
     };
-    std::process::ExitCode::from(code as u8)
+    // One that was asked to end has not come to its end, whatever there is of it.
+    std::process::ExitCode::from(interrupt::exit_code().unwrap_or(code as u8))
 }
 
 /// Errors go to standard error, with the place in the source where there is one.

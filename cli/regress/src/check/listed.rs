@@ -4,7 +4,7 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 /// The file `path` below `folder`; if there is none, the first whose names differ in capital letters alone.
-pub fn on_disk(folder: &Path, path: &str) -> PathBuf {
+pub(super) fn on_disk(folder: &Path, path: &str) -> PathBuf {
     let whole = folder.join(path);
     if whole.exists() {
         return whole;

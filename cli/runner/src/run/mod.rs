@@ -18,6 +18,7 @@
 //! | `notices` | what the scenario leaves open, said once |
 //! | `plc_files` | files of PLCs as they are at the end |
 //! | [`recorded`] | a run's recording |
+//! | `record_lock` | one records into a folder at a time |
 //! | `in_process` | a session of which all clients are here |
 //! | `judged` | the same, judged step by step |
 //! | `search` | why a search through many runs came to nothing |
@@ -51,6 +52,7 @@ mod plc_files;
 mod processes;
 pub mod production;
 mod progress;
+mod record_lock;
 pub mod recorded;
 pub mod report;
 pub mod rerun;

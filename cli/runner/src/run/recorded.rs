@@ -15,6 +15,7 @@ use onescan_server::time::VirtualTime;
 
 use super::config::{RecordRequest, Subject};
 use super::error::RunError;
+use super::record_lock::RecordLock;
 use super::report::RunReport;
 use crate::error::Usage;
 
@@ -24,6 +25,7 @@ const SCENARIO: &str = "scenario";
 /// The recording of one run.
 pub(crate) struct Recorded {
     folder: PathBuf,
+    _lock: RecordLock,
 }
 
 impl Recorded {
@@ -36,6 +38,9 @@ impl Recorded {
         number: u32,
     ) -> Result<(Self, Recorder), RunError> {
         let folder = file::create_folder(&folder_of(request, number))?;
+        let lock = RecordLock::of(&folder)?;
+        // Another run may have recorded here since it was looked at.
+        refuse_to_overwrite_run(request, number)?;
         // What an earlier run left here would be taken for this one's.
         remove(&folder.join("run.json"))?;
         let (own_folder, files) = copy_scenario(scenario, &folder.join(SCENARIO))?;
@@ -52,7 +57,7 @@ impl Recorded {
             files,
         };
         let recorder = Recorder::new(&folder, provenance, request.choice.clone());
-        Ok((Self { folder }, recorder))
+        Ok((Self { folder, _lock: lock }, recorder))
     }
 
     /// What there is of a recording that was cut off, in words.
@@ -85,15 +90,16 @@ fn folder_of(request: &RecordRequest, number: u32) -> PathBuf {
 
 /// Refuses to record over earlier runs, unless that is asked for.
 pub(super) fn refuse_to_overwrite(request: &RecordRequest, runs: u32) -> Result<(), Usage> {
-    let is_recording = |number: &u32| folder_of(request, *number).join(HEADER).exists();
-    match (1..=runs).find(is_recording) {
-        Some(number) if !request.overwrite => {
-            let folder = folder_of(request, number);
-            let help = "record into another folder, or replace what is there with `--overwrite`".to_owned();
-            Err(Usage::new(format!("{} holds an earlier recording", folder.display()), Some(help)))
-        }
-        _ => Ok(()),
+    (1..=runs).try_for_each(|number| refuse_to_overwrite_run(request, number))
+}
+
+fn refuse_to_overwrite_run(request: &RecordRequest, number: u32) -> Result<(), Usage> {
+    let folder = folder_of(request, number);
+    if request.overwrite || !folder.join(HEADER).exists() {
+        return Ok(());
     }
+    let help = "record into another folder, or replace what is there with `--overwrite`".to_owned();
+    Err(Usage::new(format!("{} holds an earlier recording", folder.display()), Some(help)))
 }
 
 fn remove(path: &Path) -> Result<(), RunError> {

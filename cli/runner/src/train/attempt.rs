@@ -84,8 +84,12 @@ pub(super) fn drive(course: Course<'_>, stage: &Stage, moments: &mut Moments) ->
     lockstep.observe(Box::new(Examiner { examination: Rc::clone(&examination), inputs: Rc::clone(&heard) }));
     stage.failing.begin_with(from.at_work);
     lockstep.observe(stage.failing.observer());
+    // Nobody else records into the attempt's folder until it is over.
+    let mut kept = None;
     if let Some((folder, number, path)) = record {
-        lockstep.observe(Box::new(recorder(scenario, folder, number, path)?));
+        let (recorded, recorder) = recorded(scenario, folder, number, path)?;
+        kept = Some(recorded);
+        lockstep.observe(Box::new(recorder));
     }
     lockstep.replay(inputs);
     let failed = |source| StartError::Checkpoint { name: start.to_owned(), source };
@@ -114,15 +118,15 @@ pub(super) fn drive(course: Course<'_>, stage: &Stage, moments: &mut Moments) ->
     }
     let outcome = lockstep.run()?;
     drop(lockstep);
+    drop(kept);
     let end = if matches!(outcome.end, SessionEnd::Completed { .. }) { TraceEnd::Complete } else { TraceEnd::Cut };
     let score = examination.borrow().clone().finish(scenario, end);
     let inputs = heard.take();
     Ok(Ended { outcome, began: from.checkpoint.digest(), score, inputs })
 }
 
-fn recorder(scenario: &Scenario, folder: &Path, number: u32, path: &Path) -> Result<Recorder, TrainError> {
+fn recorded(scenario: &Scenario, folder: &Path, number: u32, path: &Path) -> Result<(Recorded, Recorder), TrainError> {
     let request = RecordRequest { folder: folder.to_owned(), overwrite: true, choice: Choice::default() };
     let subject = Subject { scenario: path.to_owned(), case: None, until: Some(scenario.until()) };
-    let (_, recorder) = Recorded::begin(&request, &subject, (Mode::Lockstep, &[]), scenario, number)?;
-    Ok(recorder)
+    Ok(Recorded::begin(&request, &subject, (Mode::Lockstep, &[]), scenario, number)?)
 }
