@@ -12,6 +12,9 @@ use crate::error::Wrong;
 use crate::file::{ClientFile, ScenarioFile};
 use crate::timing_file::{LateFile, TaskTimingFile};
 
+/// The greatest lateness, in steps: a search tries each number of them.
+pub(crate) const LATE_STEPS_MAX: u64 = 10_000;
+
 /// One thing that may happen otherwise in time.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum TimingTolerance {
@@ -125,6 +128,7 @@ fn whole_steps(file: &ScenarioFile, by: TimeSpan, place: Range<usize>) -> Result
             let message = format!("{by} is less than a step, {}", file.step);
             Err(wrong(message, place, Some("time goes on in whole steps")))
         }
+        steps if steps > LATE_STEPS_MAX => Err(too_late(&by.to_string(), place)),
         steps => Ok(steps),
     }
 }
@@ -135,8 +139,14 @@ fn steps_of(file: &ScenarioFile, late: &LateFile) -> Result<u64, Wrong> {
             let message = format!("`{}` is late by less than a step, {}", written.get_ref(), file.step);
             Err(wrong(message, written.span(), Some("time goes on in whole steps")))
         }
+        (steps, Some(written)) if steps > LATE_STEPS_MAX => Err(too_late(&late.by.to_string(), written.span())),
         (steps, _) => Ok(steps),
     }
+}
+
+fn too_late(by: &str, place: Range<usize>) -> Wrong {
+    let message = format!("{by} is more than {LATE_STEPS_MAX} steps");
+    wrong(message, place, Some("`explore` tries each number of steps: allow less"))
 }
 
 /// The signals that are meant, each with the place of its name.

@@ -4,7 +4,7 @@ use onescan_server::time::TimeSpan;
 
 use crate::error::ScenarioError;
 use crate::load::Scenario;
-use crate::timing::{TaskTolerance, TimedTask, TimingTolerance};
+use crate::timing::{LATE_STEPS_MAX, TaskTolerance, TimedTask, TimingTolerance};
 
 impl Scenario {
     /// All that `[timing]` allows. PLCs are compiled if it names tasks.
@@ -56,6 +56,11 @@ impl Scenario {
                     self.file().step
                 );
                 let help = "a scan that is late by a whole interval is left out: `two_cycles = true`".to_owned();
+                return Err(self.wrong_timing(message, place, Some(help)));
+            }
+            if steps > LATE_STEPS_MAX {
+                let message = format!("task `{}`: {span} is more than {LATE_STEPS_MAX} steps", task.name);
+                let help = "`explore` tries each number of steps: allow less".to_owned();
                 return Err(self.wrong_timing(message, place, Some(help)));
             }
             Ok(steps)

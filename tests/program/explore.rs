@@ -132,3 +132,19 @@ fn what_cannot_be_explored_is_reported() {
     ];
     insta::assert_snapshot!(all.join("\n"));
 }
+
+/// A search tries each number of steps: a lateness without bound would take all memory there is.
+#[test]
+fn a_lateness_has_a_bound() {
+    let folder = copied_shear();
+    let path = folder.path().join("scenario.toml");
+    let text = std::fs::read_to_string(&path).unwrap();
+    for (table, said_is) in [
+        ("late = [{ signals = [\"Sensor_1\"], by = \"100000000s\" }]", "is more than 10000 steps"),
+        ("start = [{ client = \"plc\", by = \"100000000s\" }]", "is more than 10000 steps"),
+    ] {
+        std::fs::write(&path, format!("{text}\n[timing]\n{table}\n")).unwrap();
+        let said = typed(folder.path(), &["explore", "."]);
+        assert!(said.code == Some(2) && said.err.contains(said_is), "{said:?}");
+    }
+}
