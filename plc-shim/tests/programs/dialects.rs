@@ -225,6 +225,7 @@ fn use_in_projects(feature: Feature) -> &'static str {
             "FUNCTION_BLOCK F VAR p : POINTER TO F; END_VAR p := THIS; END_FUNCTION_BLOCK
              PROGRAM P VAR f1 : F; END_VAR f1(); END_PROGRAM"
         }
+        Feature::TimesAsDates => "PROGRAM P VAR t : TIME; d : DT; END_VAR d := TIME_TO_DT(t); END_PROGRAM",
         Feature::LiteralAddresses => {
             "PROGRAM P VAR p : POINTER TO BYTE; b : BYTE; END_VAR p := ADR('text'); b := p^; END_PROGRAM"
         }
@@ -253,12 +254,13 @@ fn every_construct_is_for_its_dialects_alone() {
 }
 
 /// Constructs whose absence is not a syntax of its own: another error says it.
-const REPORTED_OTHERWISE: [Feature; 58] = [
+const REPORTED_OTHERWISE: [Feature; 59] = [
     Feature::PositionalOutputs,
     Feature::CharactersSelect,
     Feature::CharactersAsText,
     Feature::BareCalls,
     Feature::Overloads,
+    Feature::TimesAsDates,
     Feature::UnusedUnits,
     Feature::ThisPointer,
     Feature::LiteralAddresses,
@@ -615,4 +617,20 @@ END_PROGRAM",
     rig.scan().expect("no fault");
     assert_eq!(["left", "n", "m", "k", "d", "f"].map(|name| rig.int(&format!("P.{name}"))), [8, 4, 5, 3, 3, 7]);
     assert_eq!(["P.r", "P.q", "P.text"].map(|path| rig.plc.read(path).expect("it exists")), ["1000.0", "3.0", "'cd'"]);
+}
+
+#[test]
+fn durations_dates_and_times_of_day_come_of_one_another() {
+    let text = "PROGRAM P VAR t : TIME := T#1d2h3m4s500ms; day : DATE := D#1970-01-03; a, e, h : DT; b, f : DATE; c : TOD; d : TIME; i : TOD; x, y : BOOL; END_VAR
+        a := TIME_TO_DT(t); b := TIME_TO_DATE(t); c := DATE_TO_TOD(day); d := DATE_TO_TIME(day); e := TOD_TO_DT(TOD#01:02:03.400);
+        f := BOOL_TO_DATE(t > T#0s); h := TO_DT(TRUE); i := BOOL_TO_TOD(TRUE); x := DT_TO_BOOL(a); y := TOD_TO_BOOL(c); END_PROGRAM";
+    for dialect in [Dialect::Codesys, Dialect::TwinCat] {
+        let mut rig = Rig::in_dialect(dialect, text);
+        rig.scan().expect("no fault");
+        let seconds = ["a", "b", "e", "f", "h"].map(|name| rig.int(&format!("P.{name}")) / 1_000_000_000);
+        assert_eq!(seconds, [93_784, 86_400, 3_723, 0, 1], "{dialect}");
+        let ms = ["c", "d", "i"].map(|name| rig.int(&format!("P.{name}")) / 1_000_000);
+        assert_eq!(ms, [0, 172_800_000, 1], "{dialect}");
+        assert_eq!((rig.bool("P.x"), rig.bool("P.y")), (true, false), "{dialect}");
+    }
 }

@@ -334,3 +334,16 @@ END_PROGRAM");
     let found: Vec<i64> = (1..=5).map(|index| rig.int(&format!("P.r[{index}]"))).collect();
     assert_eq!(found, [3, 7, 3, 5, 7]);
 }
+
+#[test]
+fn an_interface_with_fb_init_is_implemented_by_who_declares_none() {
+    let text = "INTERFACE I METHOD FB_init : BOOL VAR_INPUT bInitRetains, bInCopyCode : BOOL; END_VAR END_METHOD
+          METHOD Get : INT END_METHOD END_INTERFACE
+        FUNCTION_BLOCK Plain IMPLEMENTS I METHOD Get : INT Get := 4; END_METHOD END_FUNCTION_BLOCK
+        FUNCTION_BLOCK Own IMPLEMENTS I VAR n : INT; END_VAR METHOD Get : INT Get := n; END_METHOD
+          METHOD FB_init : BOOL VAR_INPUT bInitRetains, bInCopyCode : BOOL; END_VAR n := n + 7; END_METHOD END_FUNCTION_BLOCK
+        PROGRAM P VAR p : Plain; o : Own; i : I; a, b : INT; END_VAR i := p; a := i.Get(); i := o; b := i.Get(); END_PROGRAM";
+    let mut rig = Rig::in_dialect(Dialect::TwinCat, text);
+    rig.scan().expect("no fault");
+    assert_eq!((rig.int("P.a"), rig.int("P.b")), (4, 7));
+}

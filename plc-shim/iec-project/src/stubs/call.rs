@@ -249,10 +249,13 @@ impl<'a> Collector<'a> {
         let key = home.as_str();
         // What has members of its own is an instance.
         let shown = self.foreign(key).name.clone();
+        // An earlier pass may have seen it, in statements behind this one.
         let field = self.foreign(key).member(&name.text).field;
+        let field = field.or_else(|| self.slots.known(&format!("{shown}.{}", name.text)));
         if let Some(field) = field
             && matches!(self.slots.resolved(&Ty::Slot(field)), Ty::Foreign(_) | Ty::Declared(_))
         {
+            self.foreign(key).member(&name.text).field = Some(field);
             return self.instance_call(&Ty::Slot(field), call, scope);
         }
         let types = self.given(&call.arguments, scope);

@@ -7,8 +7,9 @@ use super::world::{Home, Unit, World};
 use onescan_iec::ElementaryType;
 use onescan_iec::check::of_pointer_width;
 use onescan_iec::syntax::ast::{
-    BinaryOp, Expr, ExprKind, Ident, Literal, Pou, PouKind, Section, TransitionCondition, TypeSpec, TypeSpecKind,
+    BinaryOp, Expr, ExprKind, Field, Ident, Literal, Pou, PouKind, Section, TransitionCondition, TypeSpec, TypeSpecKind,
 };
+use onescan_iec::syntax::{FileId, Span};
 
 /// Greatest number of types that stand for one another in a row.
 const MAX_DEPTH: u8 = 40;
@@ -20,6 +21,8 @@ pub(super) struct Collector<'a> {
     pub(super) needs: Needs,
     /// Heads as an earlier pass has found them; nothing in the first one.
     pub(super) known: Option<std::collections::BTreeMap<String, super::foreign::Head>>,
+    /// The members of structures without names, by the places where these stand.
+    pub(super) nameless: std::collections::BTreeMap<(FileId, u32), (Vec<Field>, Home)>,
 }
 
 /// Where a body stands.
@@ -147,8 +150,7 @@ impl<'a> Collector<'a> {
                     element => Ty::Array(bounds, Box::new(element)),
                 }
             }
-            // A structure without a name goes to no other parameter.
-            TypeSpecKind::Struct(_) => Ty::Any,
+            TypeSpecKind::Struct(fields) => self.structure_here(fields, spec.span, home),
             TypeSpecKind::OpenArray(count, inner) => {
                 let bounds = (0..*count).map(|_| super::slots::OPEN_BOUNDS.to_owned()).collect();
                 Ty::Array(bounds, Box::new(self.type_of(inner, home, depth)))
@@ -156,6 +158,21 @@ impl<'a> Collector<'a> {
             TypeSpecKind::Reference(kind, inner) => Ty::Pointer(*kind, Box::new(self.type_of(inner, home, depth))),
             _ => Ty::Unknown,
         }
+    }
+
+    fn structure_here(&mut self, fields: &[Field], span: Span, home: &Home) -> Ty {
+        let place = (span.file, span.start);
+        self.nameless.entry(place).or_insert_with(|| (fields.to_vec(), home.clone()));
+        Ty::Nameless(span.file, span.start)
+    }
+
+    /// A member of a structure without a name.
+    pub(super) fn nameless_member(&mut self, file: FileId, start: u32, name: &Ident) -> Ty {
+        let found = self.nameless.get(&(file, start)).and_then(|(fields, home)| {
+            let field = fields.iter().find(|field| field.name.key() == name.key())?;
+            Some((field.spec.clone(), home.clone()))
+        });
+        found.map_or(Ty::Unknown, |(spec, home)| self.type_of(&spec, &home, 0))
     }
 
     /// The text of a bound that means the same in the file of stubs: of numbers and global constants.
@@ -192,7 +209,7 @@ impl<'a> Collector<'a> {
         if let Some(elementary) = ElementaryType::find(&key) {
             return Ty::Elementary(elementary);
         }
-        if let Some(elementary) = of_pointer_width(&key, onescan_iec::WordSize::default()) {
+        if let Some(elementary) = of_pointer_width(&key, self.world.word_size(name.span)) {
             return Ty::Elementary(elementary);
         }
         match key.as_str() {
@@ -230,8 +247,11 @@ impl<'a> Collector<'a> {
         let Some((first, library, rest)) = first.filter(|(_, key, _)| !own(key)) else {
             // A namespace that is declared lacks it.
             let key = name.key();
-            self.foreign(&key).name.clone_from(&name.text);
-            return Ty::Foreign(key);
+            let found = self.foreign_type(key.clone());
+            if found == Ty::Foreign(key.clone()) {
+                self.foreign(&key).name.clone_from(&name.text);
+            }
+            return found;
         };
         // A name in front of a type's is that of a library.
         if !self.world.is_namespace(home, &library) {

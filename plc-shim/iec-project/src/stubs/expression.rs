@@ -46,9 +46,14 @@ impl<'a> Collector<'a> {
             }
             ExprKind::Index(base, indices) => {
                 let base = self.place(base, access.of_base(), scope);
-                for index in indices {
+                let bounds = match self.slots.resolved(&base) {
+                    Ty::Array(bounds, _) => bounds,
+                    _ => Vec::new(),
+                };
+                for (place, index) in indices.iter().enumerate() {
                     let found = self.infer(index, scope);
                     self.flow(&found, &Ty::Integer);
+                    self.note_first_index(&found, bounds.get(place));
                 }
                 self.element(&base, indices.len())
             }
@@ -150,6 +155,15 @@ impl<'a> Collector<'a> {
                 }
                 Ty::Unknown
             }
+        }
+    }
+
+    /// Values of an enumeration that are indices begin where the array does.
+    fn note_first_index(&mut self, index: &Ty, bounds: Option<&String>) {
+        let first = bounds.and_then(|bounds| bounds.split("..").next()).and_then(|low| low.parse().ok());
+        if let (Ty::Foreign(key), Some(first)) = (self.slots.resolved(index), first) {
+            let found = self.foreign(&key);
+            found.first_index = found.first_index.max(first);
         }
     }
 

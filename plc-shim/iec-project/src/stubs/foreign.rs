@@ -103,6 +103,8 @@ pub(super) struct Foreign {
     pub(super) init: Option<Signature>,
     /// Names of its values, as an enumeration.
     pub(super) values: Vec<String>,
+    /// The first index of arrays that its values are indices of.
+    pub(super) first_index: i128,
     /// Names of variables of it.
     pub(super) variables: BTreeSet<String>,
     /// It is the type of what a call gives.
@@ -178,6 +180,9 @@ pub(super) struct Needs {
     /// Types of libraries whose names the project has for units of its own.
     pub(super) shadowed: BTreeSet<String>,
     pub(super) heads: BTreeMap<String, Head>,
+    /// Types that are other names of structures which go into one another: as written, and the key of the one that is
+    /// declared.
+    pub(super) aliases: BTreeMap<String, (String, String)>,
     /// What an earlier pass has found of types and the interfaces that they stand for, with those ones' members.
     pub(super) relations: Relations,
 }

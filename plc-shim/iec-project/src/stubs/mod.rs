@@ -11,6 +11,7 @@
 //! | [`heirs`] | what classes of the project show of their bases and interfaces |
 //! | [`instances`] | where instances go |
 //! | [`collect`], [`initial`], [`statement`], [`expression`], [`call`], [`argument`] | one pass over the project |
+//! | [`alike`] | structures that go into one another |
 //! | [`shape`] | what a type that nobody declares is |
 //! | [`print`], [`signature`] | all of it as program text |
 //!
@@ -18,6 +19,7 @@
 //! changes. What has been written is then read as part of the project, and what is still missing is added, so that a
 //! second run adds to a file and never takes away. Invariant: what is declared already is never declared again.
 
+mod alike;
 mod argument;
 mod call;
 mod class;
@@ -106,7 +108,13 @@ fn completed(inputs: &[Input], text: &str) -> Stubs {
     let parsed = Parsed::new(inputs.iter().cloned().chain([own]));
     let file = parsed.sources.iter().map(|(id, _)| id).nth(inputs.len());
     let world = World::new(&parsed.units, &parsed.library, &parsed.sources);
-    let mut collector = Collector { world: &world, slots: Slots::default(), needs: Needs::default(), known: None };
+    let mut collector = Collector {
+        world: &world,
+        slots: Slots::default(),
+        needs: Needs::default(),
+        known: None,
+        nameless: std::collections::BTreeMap::new(),
+    };
     infer(&mut collector);
     print::completed(&mut collector, text, file)
 }
@@ -121,7 +129,7 @@ fn infer(collector: &mut Collector<'_>) {
         let related = foreign::Relations::of(&collector.needs.types);
         let is_new = collector.known.as_ref() != Some(&heads) || related != collector.needs.relations;
         collector.known = Some(heads);
-        if !collector.slots.decide() && !is_new && !is_settled && !name_anonymous(collector) {
+        if !collector.slots.decide() && !is_new && !is_settled && !collector.unite() && !name_anonymous(collector) {
             return;
         }
     }
@@ -147,6 +155,7 @@ fn fresh(needs: Needs) -> Needs {
         heads: needs.heads,
         libraries: needs.libraries,
         shadowed: needs.shadowed,
+        aliases: needs.aliases,
         ..Needs::default()
     }
 }

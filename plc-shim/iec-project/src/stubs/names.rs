@@ -8,7 +8,7 @@ use super::ty::Ty;
 use super::world::{VALUE, has_value};
 use onescan_iec::ElementaryType;
 use onescan_iec::check::{is_list, joined};
-use onescan_iec::syntax::ast::{Expr, ExprKind, Ident, ReferenceKind};
+use onescan_iec::syntax::ast::{Expr, ExprKind, Ident, ReferenceKind, TypeSpecKind};
 
 /// What is done to a place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -230,6 +230,7 @@ impl<'a> Collector<'a> {
                 Ty::Unknown
             }
             Ty::Pointer(ReferenceKind::Reference, inner) => self.member(&inner, name, access, inside),
+            Ty::Nameless(file, start) => self.nameless_member(file, start, name),
             Ty::Any => match name.key().as_str() {
                 "PVALUE" => Ty::Pointer(ReferenceKind::Pointer, Box::new(Ty::Elementary(ElementaryType::Byte))),
                 "DISIZE" => Ty::Elementary(ElementaryType::Dint),
@@ -278,7 +279,7 @@ impl<'a> Collector<'a> {
         let scope = if in_library { &outside } else { scope };
         match rest {
             [] => Some(self.name(last, access, scope)),
-            [first] => self.in_namespace(first, last, access, scope).or_else(|| {
+            [first] => self.of_alias_or_namespace(first, last, access, scope).or_else(|| {
                 let found = in_library.then(|| self.global_seen(&first.key(), scope)).flatten();
                 match found {
                     Some(found) => Some(self.member(&found, last, access, false)),
@@ -287,6 +288,22 @@ impl<'a> Collector<'a> {
             }),
             _ => None,
         }
+    }
+
+    fn of_alias_or_namespace(&mut self, first: &Ident, last: &Ident, access: Access, scope: &Scope<'a>) -> Option<Ty> {
+        self.value_by_alias(first, last, scope).or_else(|| self.in_namespace(first, last, access, scope))
+    }
+
+    /// `Alias.Value` where the project declares another name of an enumeration that nobody declares.
+    fn value_by_alias(&mut self, first: &Ident, last: &Ident, scope: &Scope<'a>) -> Option<Ty> {
+        let key = self.world.type_key(&scope.home, &first.key())?;
+        let named = self.world.types.get(&key)?;
+        if !matches!(named.ast.spec.kind, TypeSpecKind::Name(_)) {
+            return None;
+        }
+        let Ty::Foreign(found) = self.named(first, &scope.home, 0) else { return None };
+        self.foreign(&found).add_value(&last.text);
+        Some(Ty::Foreign(found))
     }
 
     /// The names behind those of libraries, and whether there is such a library in front.

@@ -117,6 +117,11 @@ impl Printer<'_, '_> {
             inner.push('\n');
             inner.push_str(&self.foreign(key, name, found, &shape));
         }
+        for (name, kept) in needs.aliases.values() {
+            let kept = needs.types.get(kept).map_or(kept, |found| &found.name);
+            let _ = write!(types, "\n{{external}}\nTYPE {name} : {kept}; END_TYPE\n");
+            added += 1;
+        }
         for function in needs.functions.values() {
             let (list, text) = self.function(function);
             let target = if list.is_empty() { &mut *functions } else { lists.entry(list).or_default() };
@@ -157,7 +162,11 @@ impl Printer<'_, '_> {
         match shape {
             Shape::Alias(ty) => format!("{{external}}\nTYPE {name} : {}; END_TYPE\n", self.type_text(ty, name)),
             Shape::Enumeration => {
-                let values = if found.values.is_empty() { format!("{name}_0") } else { found.values.join(", ") };
+                let mut values = if found.values.is_empty() { format!("{name}_0") } else { found.values.join(", ") };
+                if found.first_index > 0 {
+                    let first = found.values.first().map_or(values.len(), String::len);
+                    values.insert_str(first, &format!(" := {}", found.first_index));
+                }
                 let base = self.collector.base_of(found).map(|base| format!(" {}", base.name())).unwrap_or_default();
                 format!("{{external}}\nTYPE {name} : ({values}){base}; END_TYPE\n")
             }
@@ -396,7 +405,8 @@ impl Printer<'_, '_> {
         match ty {
             Ty::Unknown => self.type_text(&super::hint::of_name(name), name),
             Ty::Integer => "DINT".to_owned(),
-            Ty::Any => "ANY".to_owned(),
+            Ty::Any | Ty::Nameless(..) => "ANY".to_owned(),
+            rows @ Ty::Array(..) if rows.is_nameless() => "ANY".to_owned(),
             Ty::Real => "LREAL".to_owned(),
             Ty::Elementary(found) | Ty::Wide(found) => found.name().to_owned(),
             Ty::Text(wide) => if *wide { "WSTRING(255)" } else { "STRING(255)" }.to_owned(),

@@ -60,6 +60,11 @@ impl Slots {
         Slot(self.all.len() - 1)
     }
 
+    /// The slot of a path, if there has been one.
+    pub(super) fn known(&self, path: &str) -> Option<Slot> {
+        self.keys.get(&path.to_ascii_uppercase()).map(|index| Slot(*index))
+    }
+
     /// What a slot refers to, or its elements.
     pub(super) fn below(&mut self, slot: Slot, mark: &str) -> Slot {
         let path = self.all.get(slot.0).map(|each| each.path.clone()).unwrap_or_default();
@@ -140,7 +145,7 @@ impl Slots {
         }
         let resolved = |list: &[Ty]| -> Vec<Ty> { list.iter().map(|ty| self.resolved(ty)).collect() };
         let (from, to, beside) = (resolved(&each.from), resolved(&each.to), resolved(&each.beside));
-        if from.contains(&Ty::Any) {
+        if from.iter().any(|ty| *ty == Ty::Any || ty.is_nameless()) {
             return Some(Ty::Any);
         }
         let in_order = || to.iter().chain(&from).chain(&beside);
@@ -311,6 +316,15 @@ impl Slots {
         self.all.get(slot.0).map(|each| each.path.clone()).unwrap_or_default()
     }
 
+    /// What has been decided as a type that has become another.
+    pub(super) fn rename(&mut self, gone: &str, kept: &str) {
+        for each in &mut self.all {
+            if matches!(&each.decided, Some(Ty::Foreign(key)) if key == gone) {
+                each.decided = Some(Ty::Foreign(kept.to_owned()));
+            }
+        }
+    }
+
     /// Decides a slot for good.
     pub(super) fn settle(&mut self, slot: Slot, ty: Ty) {
         self.at(slot).decided = Some(ty);
@@ -354,7 +368,7 @@ fn push(list: &mut Vec<Ty>, ty: &Ty, slot: Slot) {
 /// Types of one group are converted into one another.
 fn group(ty: &Ty) -> Option<String> {
     Some(match ty {
-        Ty::Unknown | Ty::Slot(_) | Ty::Any => return None,
+        Ty::Unknown | Ty::Slot(_) | Ty::Any | Ty::Nameless(..) => return None,
         Ty::Integer | Ty::Wide(_) | Ty::Real => "number".to_owned(),
         Ty::Elementary(found) if found.is_number() || found.is_bits() && *found != ElementaryType::Bool => {
             "number".to_owned()

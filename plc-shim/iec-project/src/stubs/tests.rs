@@ -437,3 +437,49 @@ fn a_structure_without_a_name_is_given_for_any() {
     let findings = inspect([project(), Input::from_text("stubs.st", SourceKind::Text, written.text.as_str())], None);
     assert!(findings.findings().iter().all(|found| found.diagnostic().severity != Severity::Error), "{findings}");
 }
+
+#[test]
+fn structures_that_go_into_one_another_are_one_type() {
+    let text = stubs(
+        "FUNCTION_BLOCK Old VAR_INPUT state : DUT_State; END_VAR VAR n : INT; END_VAR n := state.number; END_FUNCTION_BLOCK
+PROGRAM P VAR o : Old; s : ST_State; a : ARRAY [1..3] OF ST_State; END_VAR
+  s.name := 'x'; a[1] := s; o(state := a[1]);
+END_PROGRAM",
+    );
+    assert!(text.contains("TYPE ST_State : DUT_State; END_TYPE"), "{text}");
+    assert!(text.contains("number : INT;") && text.contains("name : STRING(255);"), "{text}");
+}
+
+#[test]
+fn values_of_an_enumeration_are_known_by_another_name_of_it_and_begin_where_its_array_does() {
+    let text = stubs(
+        "TYPE T_Area : E_Area; END_TYPE
+PROGRAM P VAR e : E_Area; a : ARRAY [1..9] OF INT; b : BOOL; END_VAR
+  b := e = T_Area.Static; a[E_Area.Dynamic] := 3;
+END_PROGRAM",
+    );
+    assert!(text.contains("TYPE E_Area : (Static := 1, Dynamic); END_TYPE"), "{text}");
+}
+
+#[test]
+fn a_member_is_called_before_its_own_members_are_used() {
+    let text = stubs(
+        "PROGRAM P VAR m : DUT_Stage; b : BOOL; END_VAR
+  m.run(start := TRUE, stop := m.run.halted); b := m.run.done;
+END_PROGRAM",
+    );
+    assert!(text.contains("FUNCTION_BLOCK T_DUT_Stage_run"), "{text}");
+}
+
+#[test]
+fn members_of_structures_without_names_are_known() {
+    let text =
+        "VAR_GLOBAL db : STRUCT run : BOOL; part : STRUCT header : STRING; day : INT; END_STRUCT END_STRUCT; END_VAR
+PROGRAM P VAR log : DataLog; END_VAR
+  log(REQ := db.run, HEADER := db.part.header, DATA := db.part); db.part.day := DayOf(clock := db.part.day);
+END_PROGRAM";
+    let text = stubs(text);
+    for line in ["REQ : BOOL;", "HEADER : STRING(255);", "DATA : ANY;", "FUNCTION DayOf : INT"] {
+        assert!(text.contains(line), "{line} {text}");
+    }
+}

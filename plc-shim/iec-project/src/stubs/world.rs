@@ -3,13 +3,13 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::ty::Ty;
-use onescan_iec::ElementaryType;
 use onescan_iec::check::{find_key, is_library_name, is_list, joined, knows_function, short_inside};
 use onescan_iec::syntax::ast::{
     CompilationUnit, Declaration, EnumValue, Ident, MemberKind, Namespace, NamespaceKind, Pou, PouKind, Section,
     SectionKind, TypeDeclaration, TypeSpec, TypeSpecKind,
 };
-use onescan_iec::syntax::{FileId, SourceMap};
+use onescan_iec::syntax::{FileId, SourceFile, SourceMap, Span};
+use onescan_iec::{ElementaryType, WordSize};
 
 /// From where names are seen.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -112,6 +112,11 @@ impl<'a> World<'a> {
         world
     }
 
+    /// Bits of the registers of the target that runs the text at `span`.
+    pub(super) fn word_size(&self, span: Span) -> WordSize {
+        self.sources.get(span.file).map_or_else(WordSize::default, SourceFile::word_size)
+    }
+
     fn note_using(&mut self, names: &[Ident]) {
         self.using.extend(names.iter().map(|name| (name.key(), name.text.clone())));
     }
@@ -209,6 +214,10 @@ impl<'a> World<'a> {
             for value in values {
                 self.enumerators.entry(value.name.key()).or_insert_with(|| key.clone());
             }
+        }
+        if let TypeSpecKind::Struct(fields) = &ast.spec.kind {
+            let found = fields.iter().flat_map(|field| values(&field.spec));
+            self.loose_values.extend(found.map(|value| value.name.key()));
         }
         self.types.insert(key, Named { ast, home: home.clone() });
     }

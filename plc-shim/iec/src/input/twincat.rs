@@ -9,7 +9,7 @@ use super::Taken;
 use super::drawing::{Drawings, Keeps};
 use crate::diagnostic::Code;
 use crate::dialect::Dialect;
-use crate::syntax::token::{Keyword, TokenKind};
+use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 use crate::syntax::tokenize;
 
 /// Program text of a `.TcPOU`, `.TcDUT`, `.TcGVL`, `.TcIO` or `.TcTTO`, in the namespace of a library.
@@ -177,7 +177,9 @@ fn body(taken: &mut Taken, file: &str, implementation: &Element, drawings: &mut 
 /// The keyword that ends the unit which `declaration` begins.
 fn end_of_unit(declaration: &str) -> Option<Keyword> {
     let tokens = tokenize(declaration);
-    let first = tokens.into_iter().find(|token| !token.kind.is_trivia())?;
+    // Some write a semicolon behind an attribute.
+    let is_empty = |kind: TokenKind| kind.is_trivia() || kind == TokenKind::Punctuation(Punctuation::Semicolon);
+    let first = tokens.into_iter().find(|token| !is_empty(token.kind))?;
     Some(match first.kind {
         TokenKind::Keyword(Keyword::Program) => Keyword::EndProgram,
         TokenKind::Keyword(Keyword::FunctionBlock) => Keyword::EndFunctionBlock,

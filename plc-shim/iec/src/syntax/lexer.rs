@@ -6,6 +6,9 @@ use super::calendar::calendar_prefix;
 use super::token::{Keyword, Punctuation, Token, TokenKind};
 use crate::dialect::{Dialect, Feature};
 
+/// How a line of debugging code begins.
+const DEBUG_LINE: &str = "(*DBG:";
+
 /// Splits `text`, in the default dialect, into tokens; their texts concatenated are `text`.
 pub fn tokenize(text: &str) -> Vec<Token> {
     tokenize_in(Dialect::default(), text)
@@ -61,6 +64,10 @@ impl<'a> Lexer<'a> {
                 self.take_while(|character| character.is_whitespace() || character == '\u{feff}');
                 TokenKind::Whitespace
             }
+            '(' if rest.starts_with(DEBUG_LINE) && self.is_debug_line() => {
+                self.take_while(|character| character != '\n');
+                TokenKind::LineComment
+            }
             '(' if rest.starts_with("(*") => self.block_comment("(*", "*)"),
             '/' if rest.starts_with("/*") => self.block_comment("/*", "*/"),
             '/' if rest.starts_with("//") => {
@@ -80,6 +87,13 @@ impl<'a> Lexer<'a> {
 
     fn begins_name(&self, first: char) -> bool {
         is_part_of_name(self.dialect, first) && !first.is_numeric()
+    }
+
+    /// A line of the C code that OpenPLC Editor puts behind a program, with comments and parentheses of its own: its tools
+    /// take such lines out, whatever stands in them.
+    fn is_debug_line(&self) -> bool {
+        let is_first = self.text.get(..self.at).is_some_and(|before| before.is_empty() || before.ends_with('\n'));
+        is_first && self.rest().lines().next().is_some_and(|line| line.trim_end().ends_with("*)"))
     }
 
     /// Comments nest in the 3rd edition (6.1.5), in the 2nd they do not (2.1.5).
@@ -321,6 +335,19 @@ mod tests {
                 (Typed, "Colour#Red"),
             ]
         );
+    }
+
+    #[test]
+    fn a_line_of_debugging_code_is_a_comment_whatever_stands_in_it() {
+        let text = "x\n(*DBG:    return (void *)((((__IEC_BOOL_p *) p)->flags |= 1;*)\r\ny (*DBG: a *) z";
+        let plain = kinds_without_blanks(text);
+        let expected = [TokenKind::Identifier, TokenKind::LineComment, TokenKind::Identifier];
+        assert_eq!(plain[..3], expected);
+        assert_eq!(plain[3..], [TokenKind::BlockComment, TokenKind::Identifier]);
+    }
+
+    fn kinds_without_blanks(text: &str) -> Vec<TokenKind> {
+        tokenize(text).into_iter().map(|token| token.kind).filter(|kind| *kind != TokenKind::Whitespace).collect()
     }
 
     #[test]

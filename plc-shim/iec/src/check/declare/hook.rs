@@ -7,8 +7,8 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::{ElementaryType, PouId, TypeId};
 
 /// A method that runs without a call, and the BOOL inputs that it begins with.
-struct Hook {
-    name: &'static str,
+pub(super) struct Hook {
+    pub(super) name: &'static str,
     inputs: &'static [&'static str],
     /// True if more inputs may follow.
     open: bool,
@@ -21,7 +21,7 @@ pub(in crate::check) const INIT_INPUTS: [&str; 2] = ["bInitRetains", "bInCopyCod
 /// Inputs of `FB_exit` that the runtime gives.
 pub(in crate::check) const EXIT_INPUTS: [&str; 1] = ["bInCopyCode"];
 
-const INIT: Hook = Hook { name: "FB_INIT", inputs: &INIT_INPUTS, open: true };
+pub(super) const INIT: Hook = Hook { name: "FB_INIT", inputs: &INIT_INPUTS, open: true };
 
 const HOOKS: [Hook; 3] = [
     INIT,

@@ -2,8 +2,9 @@
 
 use super::Declarations;
 use super::class::Role;
-use super::hook::is_hook;
+use super::hook::{INIT, is_hook};
 use crate::diagnostic::{Code, Diagnostic};
+use crate::dialect::Feature;
 use crate::ir::{PouId, Variable};
 use crate::syntax::ast::{Modifier, PouKind, SectionKind};
 
@@ -113,6 +114,12 @@ impl Declarations<'_> {
         for above in self.ancestors(id) {
             for ((role, name), prototype) in self.class(above).iter().flat_map(|class| &class.members) {
                 let found = self.find_member(id, *role, name);
+                // Each block has one, be it declared or not.
+                let is_implicit =
+                    name.as_str() == INIT.name && self.dialect(self.pou(id).ast.name.span).has(Feature::InitArguments);
+                if is_implicit {
+                    continue;
+                }
                 if self.is_prototype(*prototype) && found.is_none_or(|found| self.is_prototype(found)) {
                     missing.push((*role, *prototype));
                 }

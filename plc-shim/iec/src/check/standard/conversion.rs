@@ -52,7 +52,8 @@ pub(in crate::check) fn find(key: &str) -> Option<Conversion> {
         marks.into_iter().find_map(|(mark, rounding)| {
             let (from, to) = key.split_once(mark)?;
             let (from, to) = (ElementaryType::find(from)?, ElementaryType::find(to)?);
-            let exists = is_allowed(from, to, rounding) || is_mixed(from, to) && rounding == Rounding::NearestEven;
+            let is_loose = is_mixed(from, to) || is_between_times(from, to);
+            let exists = is_allowed(from, to, rounding) || is_loose && rounding == Rounding::NearestEven;
             exists.then_some(Conversion { from: Some(from), to, rounding, takes_context: false })
         })
     })
@@ -77,6 +78,15 @@ pub(super) fn is_of_vendors(key: &str) -> bool {
 pub(in crate::check) fn is_mixed(from: ElementaryType, to: ElementaryType) -> bool {
     let bits = |ty: ElementaryType| ty.kind() == Kind::Bits;
     from.is_real() && bits(to) || bits(from) && to.is_real()
+}
+
+/// True for two of durations, dates and times of day, or a BOOL and one of these, that only vendors convert: both count
+/// from 1970 or from midnight.
+pub(in crate::check) fn is_between_times(from: ElementaryType, to: ElementaryType) -> bool {
+    let counts = |ty: ElementaryType| ty.is_duration() || ty.is_calendar();
+    let is_number = |ty: ElementaryType| ty == ElementaryType::Bool;
+    let is_pair = counts(from) && counts(to) || is_number(from) && counts(to) || counts(from) && is_number(to);
+    is_pair && from != to && !is_defined(from, to)
 }
 
 /// True if `from_TO_to` exists.

@@ -14,10 +14,11 @@
 //! | DATE, DT, number | seconds |
 //! | LTIME, LDATE, LTOD, LDT, number | nanoseconds |
 //! | number, DATE or TOD | the day it lies in, the time of its day |
+//! | TIME, DATE, TOD, DT among them (CODESYS, TwinCAT) | the same time since 1970 or midnight |
 
 use crate::check::body::Body;
 use crate::check::body::expression::calendar::{day_start, within_day};
-use crate::check::standard::conversion::{Conversion, is_allowed, is_mixed};
+use crate::check::standard::conversion::{Conversion, is_allowed, is_between_times, is_mixed};
 use crate::check::types::number::as_number;
 use crate::check::types::operand::{Operand, constant, converted};
 use crate::diagnostic::{Code, Diagnostic};
@@ -62,7 +63,10 @@ impl Body<'_, '_> {
         }
         // What is whole already has nothing to cut off.
         let rounding = if from.is_integer() && to.is_integer() { Rounding::NearestEven } else { rounding };
-        if from != to && !is_allowed(from, to, rounding) {
+        let is_between_times = rounding == Rounding::NearestEven
+            && is_between_times(from, to)
+            && self.declarations.dialect(span).has(Feature::TimesAsDates);
+        if from != to && !is_allowed(from, to, rounding) && !is_between_times {
             let message = format!("there is no conversion from {from} to {to}");
             let found = Diagnostic::error(Code::InvalidOperand, span, message);
             self.report(found.with_help("convert to an integer type on the way"));
@@ -122,8 +126,16 @@ fn lower(expr: Expr, (from, to): (ElementaryType, ElementaryType), rounding: Rou
             let kind = ExprKind::Intrinsic(Intrinsic::Reinterpret, vec![expr]);
             Expr { kind, ty: to.into(), span }
         }
-        (Kind::DateTime, Kind::Date) => converted(day_start(expr), to, rounding),
-        (Kind::DateTime | Kind::Duration, Kind::TimeOfDay) => converted(within_day(expr), to, rounding),
+        (Kind::DateTime | Kind::Duration | Kind::TimeOfDay, Kind::Date) if from.kind() != to.kind() => {
+            converted(day_start(expr), to, rounding)
+        }
+        (Kind::DateTime | Kind::Duration | Kind::Date, Kind::TimeOfDay) => converted(within_day(expr), to, rounding),
+        (Kind::Duration | Kind::TimeOfDay, Kind::DateTime) if to == ElementaryType::Dt => {
+            let second = lint(unit_ns(to, dialect));
+            let whole =
+                Expr { kind: ExprKind::Intrinsic(Intrinsic::FloorMultiple, vec![expr, second]), ty: from.into(), span };
+            converted(whole, to, rounding)
+        }
         _ if counts(from) && counts(to) => converted(expr, to, rounding),
         (_, Kind::Real) if counts(from) => {
             let ns = converted(expr, ElementaryType::Lreal, rounding);
