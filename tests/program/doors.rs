@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use serde_json::json;
 
-use crate::typed::{onescan, scenario};
+use crate::typed::{onescan, scenario, typed};
 use crate::web::{Served, ask, received};
 
 /// `onescan` with so few descriptors that strangers could take them all.
@@ -113,4 +113,14 @@ fn strangers_do_not_keep_opc_ua_clients_out() {
     drop((idle, hellos));
     program.kill().expect("it runs");
     program.wait().expect("it ends");
+}
+
+/// Beyond this machine anybody could read and write.
+#[test]
+fn open_opc_ua_beyond_this_machine_is_said() {
+    let words = ["run", ".", "--until", "20ms", "--opcua", "0.0.0.0:0"];
+    let said = typed(&scenario("shear"), &words);
+    assert!(said.code == Some(0) && said.err.contains("is open to anybody who reaches this machine"), "{said:?}");
+    let own = typed(&scenario("shear"), &["run", ".", "--until", "20ms", "--opcua", "127.0.0.1:0"]);
+    assert!(own.code == Some(0) && !own.err.contains("is open to anybody"), "{own:?}");
 }

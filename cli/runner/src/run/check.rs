@@ -1,5 +1,7 @@
 //! Options that contradict each other or the scenario are refused before anything has begun.
 
+use onescan_base::notice::NOTICE;
+use onescan_links::opcua::Access;
 use onescan_report::plot::Part;
 use onescan_scenario::file::ClientFile;
 use onescan_scenario::{Mode, Scenario};
@@ -101,7 +103,21 @@ impl RunConfig {
             let help = "what a case changes in a client does not reach a program that stands in for it".to_owned();
             return Err(Usage::new("--opcua-client means nothing with --case", Some(help)).into());
         }
+        self.warn_of_open_opcua();
         Ok(())
+    }
+
+    /// Beyond this machine anybody may read and write who is not asked for a user, a token or a certificate.
+    fn warn_of_open_opcua(&self) {
+        let Access { user, register, pki, trust_clients, .. } = &self.doors.access;
+        let asks = user.is_some() || register.is_some() || pki.is_some() && !trust_clients;
+        if let Some(address) = self.doors.opcua.filter(|address| !address.ip().is_loopback() && !asks) {
+            tracing::warn!(
+                target: NOTICE,
+                "OPC UA at {address} is open to anybody who reaches this machine: ask for a user (--opcua-user) or tokens \
+                 (--access)"
+            );
+        }
     }
 
     /// Free-wheeling has no server: what only a server can do is refused, not ignored.
