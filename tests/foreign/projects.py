@@ -90,7 +90,7 @@ def judged(kind, path, program):
             for tests in [item for item in copy.rglob("*") if item.is_dir() and item.name.lower() in ("test", "tests")]:
                 shutil.rmtree(tests, ignore_errors=True)
         project = copy if path.is_dir() else copy / path.name
-        own = ["--dialect", "codesys"] if kind == "ST" else []
+        own = ["--dialect", dialect_of_text(path)] if kind == "ST" else []
         done = onescan(program, "check", project, "--format", "json", *own)
         result.alone = done.returncode == 0
         extra = []
@@ -104,6 +104,11 @@ def judged(kind, path, program):
         if result.stubs:
             round_trip(kind, project, copy, [*own, *extra], result, program)
     return result
+
+
+def dialect_of_text(path):
+    """Plain text does not say which tool it is for; the repository's name does."""
+    return "matiec" if re.search("openplc|beremiz", str(path), re.IGNORECASE) else "codesys"
 
 
 def round_trip(kind, project, copy, extra, result, program):

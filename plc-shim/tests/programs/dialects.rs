@@ -634,3 +634,20 @@ fn durations_dates_and_times_of_day_come_of_one_another() {
         assert_eq!((rig.bool("P.x"), rig.bool("P.y")), (true, false), "{dialect}");
     }
 }
+
+#[test]
+fn codesys_2_3_has_inner_arrays_in_one_row_and_an_empty_var_config() {
+    let text = "VAR_CONFIG END_VAR
+        PROGRAM P VAR a : ARRAY [1..3] OF ARRAY [1..2] OF SINT := -1, -2, 2(-3), -5; b : ARRAY [0..1] OF ARRAY [0..1] OF INT := [1, 2], [3, 4]; END_VAR
+        ; END_PROGRAM";
+    let mut rig = Rig::in_dialect(Dialect::Codesys, text);
+    rig.scan().expect("no fault");
+    let row =
+        ["a[1][1]", "a[1][2]", "a[2][1]", "a[2][2]", "a[3][1]", "a[3][2]"].map(|name| rig.int(&format!("P.{name}")));
+    assert_eq!((row, rig.int("P.b[1][0]")), ([-1, -2, -3, -3, -5, 0], 3));
+    let found = findings_in(
+        Dialect::Codesys,
+        "VAR_CONFIG P.x AT %IX0.0 : BOOL; END_VAR PROGRAM P VAR x : BOOL; END_VAR x := x; END_PROGRAM",
+    );
+    insta::assert_snapshot!(found, @"test.st:1:1: error[L0501]: VAR_CONFIG outside of a CONFIGURATION is not supported yet");
+}

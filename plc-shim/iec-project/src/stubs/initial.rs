@@ -6,16 +6,20 @@ use super::names::Access;
 use super::ty::Ty;
 use onescan_iec::ElementaryType;
 use onescan_iec::syntax::ast::{
-    Argument, Expr, InitArguments, Initialiser, InitialiserKind, Qualifier, Section, TypeSpec, TypeSpecKind,
+    Argument, Expr, InitArguments, Initialiser, InitialiserKind, Qualifier, Section, SectionKind, TypeSpec,
+    TypeSpecKind,
 };
 
 impl<'a> Collector<'a> {
     pub(super) fn initials(&mut self, section: &Section, scope: &Scope<'a>) {
+        // An input of a call that is not given has its value from before the program runs.
+        let is_input = scope.local.is_some() && section.kind == SectionKind::Input;
+        let is_constant = is_input || section.qualifiers.contains(&Qualifier::Constant);
         for variable in &section.variables {
             self.constants_of(&variable.spec, scope);
             let ty = self.type_of(&variable.spec, &scope.home, 0);
             match variable.initial.as_ref().map(|initial| (&initial.kind, initial)) {
-                Some((InitialiserKind::Value(value), _)) if section.qualifiers.contains(&Qualifier::Constant) => {
+                Some((InitialiserKind::Value(value), _)) if is_constant => {
                     let found = self.place(value, Access::Constant, scope);
                     self.flow(&found, &ty);
                 }

@@ -253,13 +253,15 @@ impl Slots {
         let given = parameter.filter_map(|slot| self.all.get(slot.0)).flat_map(|each| &each.from);
         let arrays: Vec<(Vec<String>, Box<Ty>)> = given
             .filter_map(|ty| match self.resolved(ty) {
-                Ty::Array(bounds, element) if bounds.iter().all(|each| each != ANY_BOUNDS) => Some((bounds, element)),
+                Ty::Array(bounds, element) if !matches!(*element, Ty::Slot(_)) => Some((bounds, element)),
                 _ => None,
             })
             .collect();
         let ((first, element), rest) = arrays.split_first()?;
         let is_open = arrays.iter().any(|(bounds, _)| bounds.iter().any(|each| each == OPEN_BOUNDS));
-        let differ = is_open || rest.iter().any(|(bounds, _)| bounds != first);
+        // Bounds that say nothing in the file of stubs are those of a length of its own.
+        let is_unknown = first.iter().any(|each| each == ANY_BOUNDS);
+        let differ = is_open || is_unknown || rest.iter().any(|(bounds, _)| bounds != first);
         let alike = rest.iter().all(|(bounds, other)| bounds.len() == first.len() && other == element);
         (differ && alike).then(|| Ty::Array(vec![OPEN_BOUNDS.to_owned(); first.len()], element.clone()))
     }

@@ -483,3 +483,21 @@ END_PROGRAM";
         assert!(text.contains(line), "{line} {text}");
     }
 }
+
+#[test]
+fn an_input_that_a_call_leaves_out_begins_with_a_constant() {
+    let text = stubs(
+        "FUNCTION_BLOCK B EXTENDS Sequencer METHOD Go : INT VAR_INPUT n : INT := MinStep - 1; END_VAR Go := n; END_METHOD END_FUNCTION_BLOCK
+PROGRAM P VAR b1 : B; x : INT; END_VAR x := b1.Go(); END_PROGRAM",
+    );
+    assert!(text.contains("VAR CONSTANT\n    MinStep : INT := 100;"), "{text}");
+}
+
+#[test]
+fn an_array_whose_bounds_the_stub_cannot_name_is_one_of_any_length() {
+    let text = stubs(
+        "FUNCTION_BLOCK H VAR CONSTANT n : INT := 7; END_VAR VAR a : ARRAY [0..n] OF BYTE; END_VAR Fill('ab', a); END_FUNCTION_BLOCK
+PROGRAM P VAR h1 : H; END_VAR h1(); END_PROGRAM",
+    );
+    assert!(text.contains("p2 : ARRAY [*] OF BYTE;"), "{text}");
+}

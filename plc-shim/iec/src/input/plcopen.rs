@@ -9,7 +9,7 @@ use std::ops::Range;
 use onescan_xml::{Element, XmlError, parse};
 
 use super::Taken;
-use super::plcopen_addition::sections_of;
+use super::plcopen_addition::{open_array, sections_of};
 use super::plcopen_tool::Tool;
 use crate::diagnostic::Code;
 use crate::dialect::{Dialect, Feature};
@@ -250,11 +250,25 @@ impl Writer<'_> {
             }
         }
         self.write("\n", &element.open);
+        let mut current = keyword;
         for variable in element.elements().filter(|inner| inner.name == "variable") {
+            let open = open_array(variable);
+            let wanted = open.as_ref().map_or(keyword, |open| open.section);
+            if wanted != std::mem::replace(&mut current, wanted) {
+                self.write(&format!("END_VAR\n{wanted}\n"), &variable.open);
+            }
             self.write("    ", &variable.open);
-            self.variable(variable);
+            match open {
+                Some(open) => self.open_array(variable, open.ty),
+                None => self.variable(variable),
+            }
         }
         self.write("END_VAR\n", &element.close);
+    }
+
+    fn open_array(&mut self, element: &Element, ty: &str) {
+        self.attribute(element, "name");
+        self.write(&format!(" : {ty};\n"), &element.open);
     }
 
     /// The members of a structure or union.

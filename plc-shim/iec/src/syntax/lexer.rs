@@ -66,7 +66,7 @@ impl<'a> Lexer<'a> {
             }
             '(' if rest.starts_with(DEBUG_LINE) && self.is_debug_line() => {
                 self.take_while(|character| character != '\n');
-                TokenKind::LineComment
+                TokenKind::BlockComment
             }
             '(' if rest.starts_with("(*") => self.block_comment("(*", "*)"),
             '/' if rest.starts_with("/*") => self.block_comment("/*", "*/"),
@@ -341,7 +341,7 @@ mod tests {
     fn a_line_of_debugging_code_is_a_comment_whatever_stands_in_it() {
         let text = "x\n(*DBG:    return (void *)((((__IEC_BOOL_p *) p)->flags |= 1;*)\r\ny (*DBG: a *) z";
         let plain = kinds_without_blanks(text);
-        let expected = [TokenKind::Identifier, TokenKind::LineComment, TokenKind::Identifier];
+        let expected = [TokenKind::Identifier, TokenKind::BlockComment, TokenKind::Identifier];
         assert_eq!(plain[..3], expected);
         assert_eq!(plain[3..], [TokenKind::BlockComment, TokenKind::Identifier]);
     }

@@ -62,8 +62,8 @@ impl<'a> Written<'_, 'a> {
         let shape = self.declarations().types().get(spot.ty).clone();
         match (&initial.kind, shape) {
             (InitialiserKind::Array(elements), Type::Array { dimensions, element }) => {
-                let count = dimensions.iter().map(|each: &Dimension| each.count()).product();
-                self.fill_array(Spot { ty: element, ..spot }, count, elements, making)
+                let whole = self.row(&dimensions, element, initial, elements);
+                self.fill_array(Spot { ty: whole.1, ..spot }, whole.0, elements, making)
             }
             (InitialiserKind::Elements(elements), Type::Array { dimensions, element }) => {
                 let first = Spot { ty: element, ..spot };
@@ -198,6 +198,35 @@ impl<'a> Written<'_, 'a> {
         let computed = self.declarations().dialect(expr.span).has(Feature::ComputedInitialValues);
         let literal = matches!(expr.kind, ExprKind::Literal(_));
         !computed || literal || self.body.constant_text(expr).is_some()
+    }
+
+    /// How many values an array takes, and of which type. A list without brackets has those of inner arrays in one row
+    /// (`CoDeSys` V2.3: ARRAY).
+    fn row(
+        &self,
+        dimensions: &[Dimension],
+        element: TypeId,
+        initial: &Initialiser,
+        elements: &[Initialiser],
+    ) -> (u64, TypeId) {
+        let number = |dimensions: &[Dimension]| dimensions.iter().map(|each| each.count()).product::<u64>();
+        let is_bare = elements.first().is_some_and(|first| first.span.start == initial.span.start);
+        let is_plain = |each: &Initialiser| match &each.kind {
+            InitialiserKind::Value(_) => true,
+            InitialiserKind::Repeat(_, inner) => {
+                inner.as_deref().is_none_or(|inner| matches!(inner.kind, InitialiserKind::Value(_)))
+            }
+            _ => false,
+        };
+        let (mut count, mut ty) = (number(dimensions), element);
+        while is_bare
+            && elements.iter().all(is_plain)
+            && let Type::Array { dimensions, element } = self.declarations().types().get(ty)
+        {
+            count = count.saturating_mul(number(dimensions));
+            ty = *element;
+        }
+        (count, ty)
     }
 
     fn fill_array(

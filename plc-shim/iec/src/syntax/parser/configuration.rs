@@ -3,6 +3,7 @@
 //! Their words are not keywords elsewhere: programs have variables called `task` and `on`.
 
 use super::cursor::Cursor;
+use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::ast::{
     AccessDirection, AccessPath, Configuration, Connection, Declaration, Ident, InstanceValue, ProgramDeclaration,
     Qualifier, Resource, SectionKind, TaskDeclaration, TypeSpec, TypeSpecKind,
@@ -196,6 +197,17 @@ impl Cursor<'_> {
             self.skip_to_anchor();
         }
         self.take_mark(Punctuation::Semicolon);
+    }
+
+    /// `VAR_CONFIG` outside of a configuration.
+    pub(super) fn loose_instance_values(&mut self) {
+        let start = self.span();
+        let mut lines = Vec::new();
+        self.lines_of_section(Self::instance_value, &mut lines);
+        if !lines.is_empty() {
+            let message = "VAR_CONFIG outside of a CONFIGURATION is not supported yet";
+            self.report_syntax(Diagnostic::error(Code::UnsupportedFeature, start, message));
+        }
     }
 
     fn access_path(&mut self, known: usize) -> Option<AccessPath> {

@@ -77,6 +77,10 @@ impl Cursor<'_> {
                 Some(found) => into.push(found),
                 None => self.skip_until(begins_declaration),
             },
+            // CoDeSys V2.3 has one in each project, mostly without a line.
+            TokenKind::Identifier if self.at_word("VAR_CONFIG") && self.dialect().has(Feature::StaticSection) => {
+                self.loose_instance_values();
+            }
             TokenKind::Keyword(Keyword::OrganizationBlock) => self.organization_block(into),
             TokenKind::Keyword(Keyword::DataBlock) => self.data_block(into),
             // Vendors' exports end a unit with a semicolon; it declares nothing.
