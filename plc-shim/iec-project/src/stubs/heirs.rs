@@ -4,21 +4,22 @@
 use super::class::Found;
 use super::collect::Collector;
 use super::ty::Ty;
-use super::world::{INIT, INIT_INPUTS};
-use super::world::{Part, Unit};
-use onescan_iec::syntax::ast::{Modifier, Pou, PouKind, SectionKind, TypeSpec};
+use super::world::{Home, INIT, INIT_INPUTS, Part, Unit};
+use onescan_iec::syntax::ast::{Ident, Modifier, Pou, PouKind, SectionKind, TypeSpec};
 
 impl<'a> Collector<'a> {
     /// The types of an override's parameters and result are those of what it overrides.
     pub(super) fn overrides(&mut self, key: &str, unit: &'a Unit<'a>) {
         let mut above: Vec<String> = self.foreign_base(key).into_iter().collect();
-        for name in &unit.pou.object.implements {
-            match self.named(name, &unit.home, 0) {
+        for (name, home) in self.interfaces_of(unit) {
+            match self.named(&name, &home, 0) {
                 Ty::Foreign(interface) => above.push(interface),
                 Ty::Declared(interface) => above.extend(self.foreign_base(&interface)),
                 _ => {}
             }
         }
+        above.sort();
+        above.dedup();
         for base in above {
             for ((part, name), member) in &unit.members {
                 if name.eq_ignore_ascii_case(INIT) {
@@ -43,6 +44,21 @@ impl<'a> Collector<'a> {
     fn has_method(&self, class: &str, name: &str) -> bool {
         let stub = self.world.units.get(class);
         stub.is_some_and(|stub| stub.members.contains_key(&(Part::Method, name.to_ascii_uppercase())))
+    }
+
+    /// What a unit and the bases that are declared implement, with from where each name is seen.
+    fn interfaces_of(&mut self, unit: &'a Unit<'a>) -> Vec<(Ident, Home)> {
+        let mut found = Vec::new();
+        let mut seen = std::collections::BTreeSet::new();
+        let mut open = vec![unit];
+        while let Some(next) = open.pop() {
+            found.extend(next.pou.object.implements.iter().map(|name| (name.clone(), next.home.clone())));
+            for base in &next.pou.object.extends {
+                let Ty::Declared(base) = self.named(base, &next.home, 0) else { continue };
+                open.extend(self.world.units.get(&base).filter(|_| seen.insert(base.clone())));
+            }
+        }
+        found
     }
 
     fn override_of(&mut self, path: &str, member: &Pou, unit: &Unit<'_>, skipped: usize) {

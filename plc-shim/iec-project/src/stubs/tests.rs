@@ -501,3 +501,14 @@ PROGRAM P VAR h1 : H; END_VAR h1(); END_PROGRAM",
     );
     assert!(text.contains("p2 : ARRAY [*] OF BYTE;"), "{text}");
 }
+
+#[test]
+fn a_property_of_an_interface_has_the_type_of_who_implements_it_by_a_base() {
+    let text = stubs(
+        "INTERFACE ITask EXTENDS IExecutable END_INTERFACE
+FUNCTION_BLOCK Task EXTENDS BaseObject IMPLEMENTS ITask END_FUNCTION_BLOCK
+FUNCTION_BLOCK Own EXTENDS Task PROPERTY Size : ULINT GET Size := 3; END_GET END_PROPERTY END_FUNCTION_BLOCK
+PROGRAM P VAR t : ITask; o : Own; n : INT; END_VAR t := o; n := Parts(t.Size); END_PROGRAM",
+    );
+    assert!(text.contains("p1 : ULINT;"), "{text}");
+}
