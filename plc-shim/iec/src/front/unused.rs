@@ -13,7 +13,7 @@ use crate::dialect::Feature;
 use crate::source::Span;
 use crate::syntax::ast::{CompilationUnit, Declaration, Ident, Section, TypeDeclaration, TypeSpecKind};
 use crate::syntax::token::TokenKind;
-use crate::syntax::{FileId, SourceMap, tokenize_in};
+use crate::syntax::{FileId, SourceFile, SourceMap, tokenize_in};
 
 /// Declarations that no task's program uses.
 pub(super) struct Unused {
@@ -32,8 +32,8 @@ impl Unused {
         if !has_tasks {
             return Self { declared: Vec::new(), warnings: Vec::new() };
         }
-        let parts = own().flat_map(|(file, unit)| parts_of(*file, unit, sources)).collect();
-        Self { declared: unreached(parts, sources), warnings: Vec::new() }
+        let parts = own().flat_map(|(file, unit)| parts_of(*file, unit, sources)).collect::<Vec<Part>>();
+        Self { declared: unreached(&parts, sources), warnings: Vec::new() }
     }
 
     /// Takes what is unused and has errors out of `units`, and its errors out of both lists; false if there was nothing.
@@ -102,7 +102,7 @@ struct Part {
 
 /// The declarations of a file.
 fn parts_of(file: FileId, unit: &CompilationUnit, sources: &SourceMap) -> Vec<Part> {
-    let text = sources.get(file).map(|source| source.text());
+    let text = sources.get(file).map(SourceFile::text);
     let is_linked = text.is_some_and(|text| text.to_ascii_lowercase().contains("'linkalways'"));
     let whole = text.filter(|_| unit.declarations.len() == 1).map(|text| Span::new(file, 0, text.len() as u32));
     let parts = unit.declarations.iter().map(|declaration| {
@@ -168,8 +168,9 @@ fn name_of(declaration: &Declaration) -> Option<&Ident> {
     match declaration {
         Declaration::Pou(pou) => Some(&pou.name),
         Declaration::Type(declared) => Some(&declared.name),
-        Declaration::Globals(_) | Declaration::Namespace(_) | Declaration::Using(_) => None,
-        Declaration::Configuration(_) => None,
+        Declaration::Globals(_) | Declaration::Namespace(_) | Declaration::Using(_) | Declaration::Configuration(_) => {
+            None
+        }
     }
 }
 
@@ -182,7 +183,7 @@ fn has_globals(declaration: &Declaration) -> bool {
 }
 
 /// What can go and is named by nothing that counts.
-fn unreached(parts: Vec<Part>, sources: &SourceMap) -> Vec<(String, Span)> {
+fn unreached(parts: &[Part], sources: &SourceMap) -> Vec<(String, Span)> {
     let mut declared: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
     for (index, part) in parts.iter().enumerate() {
         part.names.iter().for_each(|name| declared.entry(name).or_default().push(index));
