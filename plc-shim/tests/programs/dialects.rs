@@ -217,6 +217,18 @@ fn use_in_projects(feature: Feature) -> &'static str {
             "VAR_GLOBAL CONSTANT n : INT := 3; END_VAR
              PROGRAM P VAR a : ARRAY [1..4] OF INT := [n(5), 7]; END_VAR a[1] := a[2]; END_PROGRAM"
         }
+        Feature::DecimalBase => "PROGRAM P VAR n : INT; END_VAR n := 10#300; END_PROGRAM",
+        Feature::GenericConstants => {
+            "FUNCTION_BLOCK F VAR_GENERIC CONSTANT n : INT := 1; END_VAR VAR a : ARRAY [1..n] OF INT; END_VAR a[1] := n; END_FUNCTION_BLOCK
+             PROGRAM P VAR f1 : F<2>; END_VAR f1(); END_PROGRAM"
+        }
+        other => use_in_released_projects(other),
+    }
+}
+
+/// And of what tools accept without saying so.
+fn use_in_released_projects(feature: Feature) -> &'static str {
+    match feature {
         Feature::UnusedUnits => {
             "PROGRAM P END_PROGRAM FUNCTION F : INT F := nowhere; END_FUNCTION
              CONFIGURATION C TASK T (INTERVAL := T#10ms, PRIORITY := 1); PROGRAM P1 WITH T : P; END_CONFIGURATION"
@@ -228,11 +240,6 @@ fn use_in_projects(feature: Feature) -> &'static str {
         Feature::TimesAsDates => "PROGRAM P VAR t : TIME; d : DT; END_VAR d := TIME_TO_DT(t); END_PROGRAM",
         Feature::LiteralAddresses => {
             "PROGRAM P VAR p : POINTER TO BYTE; b : BYTE; END_VAR p := ADR('text'); b := p^; END_PROGRAM"
-        }
-        Feature::DecimalBase => "PROGRAM P VAR n : INT; END_VAR n := 10#300; END_PROGRAM",
-        Feature::GenericConstants => {
-            "FUNCTION_BLOCK F VAR_GENERIC CONSTANT n : INT := 1; END_VAR VAR a : ARRAY [1..n] OF INT; END_VAR a[1] := n; END_FUNCTION_BLOCK
-             PROGRAM P VAR f1 : F<2>; END_VAR f1(); END_PROGRAM"
         }
         other => panic!("{other:?} has no program"),
     }
