@@ -305,6 +305,8 @@ impl<'a> Surveyor<'_, 'a> {
         } else if self.names.units_and_types.contains(&key) {
         } else if let Some(fate) = clock::fate(&key, Kind::Function) {
             self.met(name, fate);
+        } else if library::is_assert(&key) {
+            self.assert(name);
         } else if !is_standard_unit(&key) && !is_standard_function(&key) {
             self.unknown("function", name);
         }
@@ -325,6 +327,17 @@ impl<'a> Surveyor<'_, 'a> {
         let message = format!("`{name}`{of} reads the PLC's own clock and cannot be replaced");
         let help = "read the time from SDSP_Now while SDSP_Simulated is TRUE";
         self.survey.findings.push(Diagnostic::warning(Code::ClockNotReplaced, span, message).with_help(help));
+    }
+
+    /// What only tests of onescan have; program text for `iec` may still go to its own soft PLC.
+    fn assert(&mut self, name: &Ident) {
+        let message = format!("`{}` is a function of onescan for tests, which no PLC has", name.text);
+        let found = match self.target {
+            Target::Iec => Diagnostic::warning(Code::ClockNotReplaced, name.span, message),
+            _ => Diagnostic::error(Code::UnsupportedFeature, name.span, message),
+        };
+        let help = "keep tests in files of their own, and leave those out of the project that you instrument";
+        self.survey.findings.push(found.with_help(help));
     }
 
     fn unknown(&mut self, what: &str, name: &Ident) {

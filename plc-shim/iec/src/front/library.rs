@@ -5,6 +5,7 @@ pub use super::motion_library::{GROUPS, MOTION, Motion};
 use super::twincat_motion;
 use super::vendor_library::{self, Part};
 use crate::dialect::Dialect;
+use crate::ir::ElementaryType;
 use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 use crate::syntax::{SourceFile, tokenize};
 
@@ -29,6 +30,12 @@ const ASSERTS: (&str, &str) = ("iec/test/assert.st", include_str!("../../library
 /// Whether a source may mean an assert; one that does not has no use for [`ASSERTS`].
 fn mentions_assert(text: &str) -> bool {
     text.as_bytes().windows(6).any(|word| word.eq_ignore_ascii_case(b"ASSERT"))
+}
+
+/// True for the name, in capitals, of a function that checks something in a test.
+pub fn is_assert(key: &str) -> bool {
+    let of_type = |ty: &str| ty == "STRING" || ElementaryType::find(ty).is_some();
+    matches!(key, "ASSERT" | "ASSERT_TRUE" | "ASSERT_FALSE") || key.strip_prefix("ASSERT_EQUAL_").is_some_and(of_type)
 }
 
 /// The library for a program of these files: nobody pays for motion control or asserts but who uses them.
@@ -103,6 +110,15 @@ fn named_in(text: &str, name: &str) -> Option<Named> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn asserts_are_known_by_name() {
+        let names: Vec<_> =
+            ASSERTS.1.split("FUNCTION ").skip(1).filter_map(|rest| rest.split_whitespace().next()).collect();
+        let asserts: Vec<_> = names.iter().filter(|name| name.starts_with("ASSERT")).collect();
+        assert!(asserts.len() > 15 && asserts.iter().all(|name| is_assert(name)), "{asserts:?}");
+        assert!(!is_assert("ASSERTTRUE") && !is_assert("ASSERT_EQUAL") && !is_assert("ASSERT_EQUAL_X"));
+    }
 
     #[test]
     fn motion_control_is_for_who_names_an_axis() {

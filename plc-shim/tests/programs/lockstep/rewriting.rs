@@ -252,3 +252,18 @@ fn wrong_projects_are_refused() {
     assert!(taken.starts_with("p.st:1:12: error[I1003]: `sdsp_turn`: names that begin"), "{taken}");
     insta::assert_snapshot!(refused("PROGRAM Main ; END_PROGRAM", Some(vec![task("a", 1, 0, &["Mian"])])), @"task `a` runs program `Mian`, which is not declared (did you mean `Main`?)");
 }
+
+/// Asserts are of onescan's own tests.
+#[test]
+fn asserts_are_refused_where_no_tool_has_them() {
+    let text =
+        "PROGRAM P VAR n : INT; END_VAR n := n + 1; ASSERT(n > 0, 'n'); ASSERT_EQUAL_INT(1, n, 'n'); END_PROGRAM";
+    for target in [Target::Codesys, Target::TwinCat, Target::Scl, Target::OpenPlc, Target::Beremiz] {
+        let options = Options { target, ..Options::default() };
+        let refused = instrument(&inputs(&[("p.st", SourceKind::Text, text)]), &options).expect_err("no tool has them");
+        let refused = refused.to_string();
+        assert_eq!(refused.matches("is a function of onescan for tests").count(), 2, "{target:?}: {refused}");
+    }
+    let project = instrument(&inputs(&[("p.st", SourceKind::Text, text)]), &Options::default()).expect("it runs here");
+    assert!(project.warnings.to_string().contains("is a function of onescan for tests"), "{}", project.warnings);
+}
