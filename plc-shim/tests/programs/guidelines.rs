@@ -343,3 +343,106 @@ fn a_counter_that_wraps() {
     }
     assert_eq!(at("UINT", "n := n + 1; x := n > 100;"), "");
 }
+
+#[test]
+fn unsigned_results_and_numbers_that_are_compared() {
+    insta::assert_snapshot!(all(
+        Dialect::Iec3,
+        &["x := u - b < 0;", "x := u + u >= 0;", "IF 1 = 1 THEN n := i; END_IF;", "IF (2 < 1) THEN n := i; END_IF;"]
+    ));
+    assert_ne!(said(Dialect::Codesys, "x := u - b < 0;"), "");
+    quiet(&["x := i - n < 0;", "IF i = 1 THEN n := i; END_IF;", "x := ten = 10;"]);
+}
+
+#[test]
+fn outputs_that_have_bits_in_common() {
+    let found = |addresses: [&str; 2]| {
+        let [one, two] = addresses;
+        let ty = |at: &str| match at.as_bytes().get(2) {
+            Some(b'W') => ("WORD", "0"),
+            Some(b'B') => ("BYTE", "0"),
+            _ => ("BOOL", "FALSE"),
+        };
+        let ((first, low), (second, zero)) = (ty(one), ty(two));
+        let text = format!(
+            "PROGRAM P VAR a AT {one} : {first}; b AT {two} : {second}; END_VAR a := {low}; b := {zero}; END_PROGRAM"
+        );
+        findings_in(Dialect::Iec3, &text).to_string().contains("W0726")
+    };
+    for (addresses, shared) in [
+        (["%QW0", "%QB1"], true),
+        (["%QW0", "%QB2"], false),
+        (["%QW0", "%QX1.3"], true),
+        (["%QX1.3", "%QX1.4"], false),
+        (["%QB1", "%QX1.0"], true),
+        (["%QX0.0", "%Q0.0"], true),
+    ] {
+        assert_eq!(found(addresses), shared, "{addresses:?}");
+    }
+}
+
+#[test]
+fn a_step_of_zero_is_an_error() {
+    for dialect in [Dialect::Iec3, Dialect::Codesys] {
+        for step in ["0", "none", "ten - 10"] {
+            let found = said(dialect, &format!("FOR i := 1 TO 3 BY {step} DO n := n + 1; END_FOR;"));
+            assert!(found.contains("error[T0211]"), "{dialect}: {found}");
+        }
+    }
+    quiet(&["FOR i := 1 TO 3 BY 1 DO n := n + 1; END_FOR;"]);
+}
+
+#[test]
+fn a_counter_that_selects() {
+    let text = "PROGRAM P VAR n : INT; b : BOOL; END_VAR n := n + 1; CASE n OF 1..5: b := TRUE; ELSE b := FALSE; END_CASE;
+        END_PROGRAM CONFIGURATION C TASK t(INTERVAL := T#10ms, PRIORITY := 0); PROGRAM p1 WITH t : P; END_CONFIGURATION";
+    assert!(findings_in(Dialect::Iec3, text).to_string().contains("W0729"));
+}
+
+#[test]
+fn literals_beside_integers() {
+    assert_eq!(said(Dialect::Codesys, "r := i * 2.0 + 1.0;"), "");
+    assert_ne!(said(Dialect::Codesys, "r := d * 2.0;"), "");
+    assert_ne!(said(Dialect::Codesys, "r := l * 2.0;"), "");
+    let found = said(Dialect::Iec3, "r := i * 2.0;");
+    assert!(found.contains("`REAL#` before it makes it a REAL"), "{found}");
+}
+
+#[test]
+fn enumerations_with_attributes() {
+    let found = |statement: &str| {
+        let text = format!(
+            "{{attribute 'qualified_only'}}\nTYPE Far : (off, on); END_TYPE
+            {{attribute 'strict'}}\nTYPE Mode : (idle, busy := 5); END_TYPE\nTYPE Free : (one, two); END_TYPE
+            PROGRAM P VAR f : Far; m, m2 : Mode; g : Free; i : INT; END_VAR {statement} END_PROGRAM"
+        );
+        let found = findings_in(Dialect::Codesys, &text).to_string();
+        found.lines().filter_map(|line| line.split("error[").nth(1)?.split(']').next()).collect::<Vec<_>>().join(" ")
+    };
+    for statement in [
+        "f := Far.on;",
+        "m := busy;",
+        "m := 5;",
+        "m := m2;",
+        "i := m;",
+        "g := 7;",
+        "g := i;",
+        "i := g + 1;",
+        "i := f + 1;",
+        "i := i + busy;",
+        "CASE m OF 0: i := 1; 7: i := 2; END_CASE",
+    ] {
+        assert_eq!(found(statement), "", "{statement}");
+    }
+    assert_eq!(found("f := on;"), "N0108");
+    assert_eq!(found("IF f = off THEN i := 1; END_IF"), "N0108");
+    for statement in ["m := 6;", "m := i;", "i := m + 1;", "m := g;", "m := m + 1;"] {
+        assert_eq!(found(statement), "T0212", "{statement}");
+    }
+}
+
+#[test]
+fn a_bit_has_no_other_name() {
+    let found = findings_in(Dialect::Codesys, "TYPE A : BIT; END_TYPE").to_string();
+    assert!(found.contains("D0407"), "{found}");
+}

@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use super::{Dialect, WordSize};
+use super::{Dialect, IntegerWidth, WordSize};
 
 /// What the pragma says.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -37,6 +37,11 @@ impl Chosen {
         };
         let Some(bits) = words.next() else { return Self::Dialect(dialect, None) };
         match bits.parse::<WordSize>() {
+            Ok(_) if dialect.integers() != IntegerWidth::Register => {
+                let message =
+                    format!("{dialect} computes integers in their own types, whatever the target's word size");
+                unknown(message, bits)
+            }
             Ok(word_size) => Self::Dialect(dialect, Some(word_size)),
             Err(error) => unknown(error.to_string(), bits),
         }
@@ -75,9 +80,11 @@ mod tests {
         }
         let small = Chosen::Dialect(Dialect::Codesys, Some(WordSize::Bits32));
         assert_eq!(chosen("{dialect 'codesys' 32}"), small);
-        for (text, word, wanted) in
-            [("{dialect 'twinkat'}", "twinkat", 10..17), ("{dialect 'codesys' 16}", "`16` is not a word size", 19..21)]
-        {
+        for (text, word, wanted) in [
+            ("{dialect 'twinkat'}", "twinkat", 10..17),
+            ("{dialect 'codesys' 16}", "`16` is not a word size", 19..21),
+            ("{dialect 'iec3' 32}", "iec3 computes integers in their own types", 16..18),
+        ] {
             let Chosen::Unknown(message, place) = chosen(text) else { panic!("known") };
             assert_eq!((message.contains(word), place), (true, wanted));
         }

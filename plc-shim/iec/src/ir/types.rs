@@ -60,6 +60,8 @@ pub enum Type {
         has_base: bool,
         /// The text of a value is its name (`{attribute 'to_string'}`).
         shows_names: bool,
+        /// It takes its own values only, and nothing is reckoned with them (`{attribute 'strict'}`).
+        is_strict: bool,
     },
     Array {
         dimensions: Vec<Dimension>,
@@ -278,13 +280,18 @@ impl TypeTable {
         name: String,
         base: Option<ElementaryType>,
         values: Vec<(String, i128)>,
-        shows_names: bool,
+        (shows_names, is_strict): (bool, bool),
     ) -> TypeId {
         let (base, has_base) = (base.unwrap_or(ElementaryType::Int), base.is_some());
         // A variable begins with the first value (2nd ed. Table 13).
         let first = values.first().map_or(0, |(_, value)| *value);
         let image = super::Value::Int(first).bytes()[..base.size() as usize].into();
-        self.add(Type::Enumeration { name, base, values, has_base, shows_names }, base.size(), base.size(), image)
+        self.add(
+            Type::Enumeration { name, base, values, has_base, shows_names, is_strict },
+            base.size(),
+            base.size(),
+            image,
+        )
     }
 
     /// The array type; `size` is that of the whole array.

@@ -47,7 +47,7 @@ impl crate::ir::walk::Visitor for Comparisons<'_, '_> {
 }
 
 impl Comparisons<'_, '_> {
-    /// The values that a variable can have, whatever it is compared as.
+    /// The values that a variable, or an unsigned result, can have, whatever it is compared as.
     fn range(&self, expr: &Expr) -> Option<Range> {
         match &expr.kind {
             ExprKind::Load(_) => {
@@ -55,6 +55,13 @@ impl Comparisons<'_, '_> {
                 let counts = ty.is_integer() || ty.is_bits() && ty != ElementaryType::Bool;
                 let is_plain = !matches!(self.bodies.types().get(expr.ty), crate::ir::Type::Enumeration { .. });
                 let (low, high) = ty.range().filter(|_| counts && is_plain)?;
+                Some(Range { ty, low, high })
+            }
+            // What is computed of unsigned numbers has no sign either.
+            ExprKind::Binary(Binary::Add | Binary::Subtract | Binary::Multiply, ..) => {
+                let ty = self.bodies.types().elementary(expr.ty)?;
+                let counts = !ty.is_signed() && ty.is_integer() || ty.is_bits() && ty != ElementaryType::Bool;
+                let (low, high) = ty.range().filter(|_| counts)?;
                 Some(Range { ty, low, high })
             }
             ExprKind::Convert(_, operand) => {
@@ -95,7 +102,7 @@ fn turned(operator: Binary) -> Binary {
     }
 }
 
-/// Conditions of IF and WHILE that are `TRUE`, `FALSE`, or the opposite of one of them.
+/// Conditions of IF and WHILE that are `TRUE`, `FALSE`, the opposite of one of them, or a comparison of two numbers.
 pub(super) fn lint_conditions(unit: &super::Unit<'_>, findings: &mut Vec<Diagnostic>) {
     walk::unit(unit.pou, &mut Conditions { findings });
 }

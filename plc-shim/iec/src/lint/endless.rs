@@ -1,9 +1,11 @@
 //! W0709: `WHILE TRUE` and `REPEAT .. UNTIL FALSE` that nothing leaves. A scan ends only if all loops do.
 
+use std::cmp::Ordering;
+
 use super::Unit;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::Span;
-use crate::syntax::ast::{Expr, ExprKind, Instruction, Literal, Statement, StatementKind, UnaryOp};
+use crate::syntax::ast::{BinaryOp, Expr, ExprKind, Instruction, Literal, Statement, StatementKind, UnaryOp};
 use crate::syntax::walk::{self, Visitor};
 
 pub(super) fn lint(unit: &Unit<'_>, findings: &mut Vec<Diagnostic>) {
@@ -41,8 +43,29 @@ pub(super) fn literal(condition: &Expr) -> Option<bool> {
         ExprKind::Literal(Literal::Bool(value)) => Some(*value),
         ExprKind::Paren(inner) => literal(inner),
         ExprKind::Unary(UnaryOp::Not, inner) => literal(inner).map(|value| !value),
+        ExprKind::Binary(operator, left, right) => compared(*operator, integer(left)?.cmp(&integer(right)?)),
         _ => None,
     }
+}
+
+fn integer(expr: &Expr) -> Option<i128> {
+    match &expr.kind {
+        ExprKind::Literal(Literal::Integer(value)) => Some(*value),
+        ExprKind::Paren(inner) => integer(inner),
+        _ => None,
+    }
+}
+
+fn compared(operator: BinaryOp, order: Ordering) -> Option<bool> {
+    Some(match operator {
+        BinaryOp::Equal => order.is_eq(),
+        BinaryOp::NotEqual => order.is_ne(),
+        BinaryOp::Less => order.is_lt(),
+        BinaryOp::LessEqual => order.is_le(),
+        BinaryOp::Greater => order.is_gt(),
+        BinaryOp::GreaterEqual => order.is_ge(),
+        _ => return None,
+    })
 }
 
 /// Whose `EXIT` is met.

@@ -24,10 +24,15 @@ pub fn inspect_within(
     let inputs: Vec<Input> = inputs.into_iter().collect();
     with_room(|| {
         let mut front = Front::within(limit, inputs);
-        if !front.has_errors() {
-            let warnings = lint(&front, plan);
-            front.findings.extend(warnings);
-        }
+        add_warnings(&mut front, plan);
         Diagnostics::new(front.findings, &front.sources)
     })
+}
+
+/// Adds what is legal and seldom meant to the findings of files that have been checked and have no errors.
+pub fn add_warnings(front: &mut Front, plan: Option<&TaskPlan>) {
+    if !front.has_errors() {
+        let warnings = lint(front, plan);
+        front.findings.extend(warnings);
+    }
 }

@@ -52,7 +52,7 @@ use crate::diagnostic::Diagnostic;
 use crate::front::Front;
 use crate::task_plan::TaskPlan;
 
-pub use inspect::{inspect, inspect_within};
+pub use inspect::{add_warnings, inspect, inspect_within};
 
 /// All warnings; `plan` says which programs run in one task.
 fn lint(front: &Front, plan: Option<&TaskPlan>) -> Vec<Diagnostic> {
@@ -82,7 +82,7 @@ fn lint(front: &Front, plan: Option<&TaskPlan>) -> Vec<Diagnostic> {
     unused::lint_globals(&units, &index, &mut findings);
     tasks::lint(&units, &index, plan, &mut findings);
     attributes::lint(front, &mut findings);
-    shared_outputs::lint(&units, &index, &mut findings);
+    shared_outputs::lint(&units, &index, &front.sources, &mut findings);
     lint_bodies((front, plan), &units, &index, &mut findings);
     findings
 }

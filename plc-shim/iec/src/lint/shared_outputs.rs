@@ -1,60 +1,103 @@
 //! W0726: two variables lie at one output, and both are written; or two programs write one output in each call.
 
-use std::collections::BTreeMap;
-
 use super::Unit;
 use super::bodies::{Bodies, Body};
 use super::index::Index;
 use crate::diagnostic::{Code, Diagnostic};
+use crate::dialect::AddressUnit;
 use crate::ir::{Place, Statement, StatementKind, Storage};
+use crate::syntax::SourceMap;
 use crate::syntax::Span;
 use crate::syntax::ast::{Ident, PouKind, SectionKind, Variable};
-use crate::syntax::direct_address::Area;
+use crate::syntax::direct_address::{Area, DirectAddress};
 
 /// A variable at an output that somebody writes.
 struct Written<'a> {
     name: &'a Ident,
+    address: &'a str,
+    at: At,
     place: Span,
 }
 
-pub(super) fn lint(units: &[Unit<'_>], index: &Index<'_>, findings: &mut Vec<Diagnostic>) {
-    let mut at: BTreeMap<String, Vec<Written<'_>>> = BTreeMap::new();
+/// What an address takes of the outputs.
+#[derive(PartialEq, Eq)]
+enum At {
+    /// So many bits from this one on.
+    Bits(u64, u64),
+    /// An address whose parts only the machine knows, in capitals.
+    Named(String),
+}
+
+impl At {
+    /// `%Q*` is given its place later.
+    fn of(address: &str, unit: AddressUnit) -> Option<Self> {
+        let key = address.to_ascii_uppercase();
+        if !key.starts_with("%Q") || key.contains('*') {
+            return None;
+        }
+        // Without X a bit is meant, too.
+        let has_no_width = key.as_bytes().get(2).is_some_and(u8::is_ascii_digit);
+        let written = if has_no_width { key.replacen("%Q", "%QX", 1) } else { key.clone() };
+        let Some((byte, bit, width)) = DirectAddress::parse(&written).ok().and_then(|parsed| {
+            let (byte, bit) = parsed.place(unit).ok()??;
+            Some((byte, bit, parsed.width))
+        }) else {
+            return Some(Self::Named(key));
+        };
+        Some(Self::Bits(u64::from(byte) * 8 + u64::from(bit.unwrap_or(0)), u64::from(width.bits().max(1))))
+    }
+
+    fn overlaps(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Bits(one, count), Self::Bits(two, others)) => *one < two + others && *two < one + count,
+            _ => self == other,
+        }
+    }
+}
+
+pub(super) fn lint(units: &[Unit<'_>], index: &Index<'_>, sources: &SourceMap, findings: &mut Vec<Diagnostic>) {
+    let mut written: Vec<Written<'_>> = Vec::new();
     for section in index.globals() {
-        for (address, name) in located(&section.variables) {
+        for (address, at, name) in located(&section.variables, sources) {
             let writer = units.iter().find_map(|unit| unit.usage.get(&name.key()).written);
-            at.entry(address).or_default().extend(writer.map(|place| Written { name, place }));
+            written.extend(writer.map(|place| Written { name, address, at, place }));
         }
     }
     for unit in units {
         for section in unit.pou.sections.iter().filter(|section| section.kind != SectionKind::External) {
-            for (address, name) in located(&section.variables) {
+            for (address, at, name) in located(&section.variables, sources) {
                 let writer = unit.usage.get(&name.key()).written;
-                at.entry(address).or_default().extend(writer.map(|place| Written { name, place }));
+                written.extend(writer.map(|place| Written { name, address, at, place }));
             }
         }
     }
-    for (address, written) in &at {
-        let [first, others @ ..] = &written[..] else { continue };
-        for other in others {
-            let (one, two) = (&first.name.text, &other.name.text);
-            let message = format!("`{two}` lies at {address} as `{one}` does, and both are written: the last one wins");
-            let found = Diagnostic::warning(Code::OutputWithTwoNames, other.name.span, message)
-                .with_label(first.place, format!("`{one}` is written here"))
-                .with_label(other.place, format!("`{two}` is written here"))
-                .with_help("give one of them another address, or let one variable have the output");
-            findings.push(found);
-        }
+    for (count, other) in written.iter().enumerate() {
+        let before = written.get(..count).unwrap_or_default();
+        let Some(first) = before.iter().find(|first| first.at.overlaps(&other.at)) else { continue };
+        let (one, two, address) = (&first.name.text, &other.name.text, other.address);
+        let message = if first.at == other.at {
+            format!("`{two}` lies at {address} as `{one}` does, and both are written: the last one wins")
+        } else {
+            let place = first.address;
+            format!("`{two}` at {address} has bits of `{one}` at {place}, and both are written: the last one wins")
+        };
+        let found = Diagnostic::warning(Code::OutputWithTwoNames, other.name.span, message)
+            .with_label(first.place, format!("`{one}` is written here"))
+            .with_label(other.place, format!("`{two}` is written here"))
+            .with_help("give one of them another address, or let one variable have the output");
+        findings.push(found);
     }
 }
 
-/// The names at outputs, with the address of each as it is compared.
-fn located(variables: &[Variable]) -> impl Iterator<Item = (String, &Ident)> {
-    variables.iter().flat_map(|variable| {
-        let address = variable.address.as_ref().map(|address| address.text.to_ascii_uppercase());
-        // `%Q*` is given its place later; without X a bit is meant, too.
-        let address = address.filter(|text| text.starts_with("%Q") && !text.contains('*'));
-        let address = address.map(|text| text.replace("%QX", "%Q"));
-        variable.names.iter().filter_map(move |name| Some((address.clone()?, name)))
+/// The names at outputs, with the address of each and what it takes.
+fn located<'a>(
+    variables: &'a [Variable],
+    sources: &'a SourceMap,
+) -> impl Iterator<Item = (&'a str, At, &'a Ident)> + 'a {
+    variables.iter().flat_map(move |variable| {
+        let address = variable.address.as_ref().map(|address| address.text.as_str());
+        let unit = |name: &Ident| Some(sources.get(name.span.file)?.dialect().address_unit());
+        variable.names.iter().filter_map(move |name| Some((address?, At::of(address?, unit(name)?)?, name)))
     })
 }
 

@@ -104,7 +104,7 @@ fn bare(expr: &Expr) -> &Expr {
     }
 }
 
-/// True if nothing else writes the variable, and something compares its size.
+/// True if nothing else writes the variable, and something compares its size or selects by it.
 fn is_for_ever(body: &Body<'_>, counter: &Place, bodies: &Bodies<'_>) -> bool {
     let mut writes = 0_u32;
     place_uses(&body.checked.body, bodies.types(), &mut |place, how| {
@@ -121,6 +121,12 @@ struct Compared<'a> {
 }
 
 impl Visitor for Compared<'_> {
+    fn statement(&mut self, statement: &Statement) {
+        let StatementKind::Case(case) = &statement.kind else { return };
+        let is_it = matches!(&bare(&case.selector).kind, ExprKind::Load(from) if from.is_surely(self.counter));
+        self.found |= is_it;
+    }
+
     fn expression(&mut self, expr: &Expr) {
         let ExprKind::Binary(operator, left, right) = &expr.kind else { return };
         let by_size = matches!(operator, Binary::Less | Binary::LessEqual | Binary::Greater | Binary::GreaterEqual);

@@ -14,9 +14,9 @@ pub use configuration::{
     TaskDeclaration,
 };
 pub use declaration::{
-    Declaration, Dimension, Edge, ElementInit, EnumValue, Field, InitArguments, Initialiser, InitialiserKind, Pou,
-    PouKind, Qualifier, ReferenceKind, Section, SectionKind, StructureInit, Subrange, TypeDeclaration, TypeSpec,
-    TypeSpecKind, Variable,
+    Declaration, Dimension, Edge, ElementInit, EnumValue, Field, INITIAL_CALL, InitArguments, Initialiser,
+    InitialiserKind, Pou, PouKind, Qualifier, ReferenceKind, Section, SectionKind, StructureInit, Subrange,
+    TypeDeclaration, TypeSpec, TypeSpecKind, Variable,
 };
 pub use expression::{
     Argument, BinaryOp, CHAIN_HEIGHT, Call, Expr, ExprKind, Link, Literal, MAX_HEIGHT, TypedValue, UnaryOp,

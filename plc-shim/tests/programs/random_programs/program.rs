@@ -243,6 +243,8 @@ impl Wording {
             }
             Statement::For { from, to, by, body } => {
                 let control = control(0, loops);
+                // A constant step of 0 is an error.
+                let by = if *by == 0 { format!("i{control} - i{control}") } else { by.to_string() };
                 line(format!("FOR i{control} := {} TO {} BY {by} DO", self.number(from), self.number(to)));
                 self.write_block(text, body, loops + 1);
                 text.push_str("END_FOR;\n");

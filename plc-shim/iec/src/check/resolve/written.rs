@@ -22,6 +22,8 @@ struct Known {
     qualified: bool,
     /// They are the text of their values.
     as_text: bool,
+    /// It takes its own values only.
+    is_strict: bool,
 }
 
 impl<'a> Written<'_, 'a> {
@@ -51,10 +53,13 @@ impl<'a> Written<'_, 'a> {
                 self.union(name, (ty, ast.packing), fields, ast.name.span)
             }
             TypeSpecKind::Enumeration(values, base) => {
-                let known = Known { qualified: ast.qualified_only, as_text: ast.shows_names };
+                let known = Known { qualified: ast.qualified_only, as_text: ast.shows_names, is_strict: ast.is_strict };
                 self.enumeration(name, values, base.as_ref(), known)
             }
-            _ => self.resolve(&ast.spec, Need::Size),
+            _ => {
+                self.reject_bit(&ast.spec);
+                self.resolve(&ast.spec, Need::Size)
+            }
         }?;
         if let Some(initial) = &ast.initial {
             resolved = self.with_initial(&resolved, initial)?;
@@ -255,7 +260,9 @@ impl<'a> Written<'_, 'a> {
             values.push((each.name.text.clone(), next));
             next += 1;
         }
-        let ty = self.declarations_mut().types_mut().enumeration(name.to_owned(), said, values.clone(), names.as_text);
+        let attributes = (names.as_text, names.is_strict);
+        let types = self.declarations_mut().types_mut();
+        let ty = types.enumeration(name.to_owned(), said, values.clone(), attributes);
         // Values of vendors' system are known by their type only: projects have values of the same names.
         let of_library = ast.first().is_some_and(|each| self.declarations().is_in_library(each.name.span));
         let qualified_only = self.declarations().home().namespace == SYSTEM || of_library && is_qualified_only(name);

@@ -2,6 +2,9 @@
 
 use super::{Argument, Chart, Configuration, Expr, Ident, Modifier, Namespace, Object, Span, Statement};
 
+/// What the input of an organization block is called that is TRUE in its first call, in capitals.
+pub const INITIAL_CALL: &str = "INITIAL_CALL";
+
 /// Something a file declares.
 #[derive(Debug, Clone)]
 pub enum Declaration {
@@ -260,6 +263,8 @@ pub struct TypeDeclaration {
     pub qualified_only: bool,
     /// True behind `{attribute 'to_string'}`: the text of an enumeration's value is its name.
     pub shows_names: bool,
+    /// True behind `{attribute 'strict'}`: an enumeration takes its own values only.
+    pub is_strict: bool,
     /// Behind `{attribute 'pack_mode' := '1'}`: most bytes that the members of a structure are aligned to.
     pub packing: Option<u32>,
     pub spec: TypeSpec,

@@ -38,6 +38,8 @@ pub(super) struct Cursor<'a> {
     qualified_only: Vec<(u32, ())>,
     /// The same behind `{attribute 'to_string'}`.
     to_string: Vec<(u32, ())>,
+    /// The same behind `{attribute 'strict'}`.
+    strict: Vec<(u32, ())>,
     /// The same behind `{attribute 'pack_mode' := '1'}`, with the bytes.
     packed: Vec<(u32, u32)>,
     /// The same behind `{attribute 'call_after_init'}`.
@@ -76,6 +78,8 @@ impl<'a> Cursor<'a> {
         let start_titles = behind_pragma(tokens, text, starts);
         let shows = |pragma: &str| (of_vendors && is_attribute(pragma, "'to_string'")).then_some(());
         let to_string = behind_pragma(tokens, text, shows);
+        let limits = |pragma: &str| (of_vendors && is_attribute(pragma, "'strict'")).then_some(());
+        let strict = behind_pragma(tokens, text, limits);
         let packed = behind_pragma(tokens, text, |pragma| packing(pragma).filter(|_| of_vendors));
         let mut tokens: Vec<Token> = tokens.iter().filter_map(good).collect();
         promote_soft_keywords(&mut tokens, text);
@@ -96,6 +100,7 @@ impl<'a> Cursor<'a> {
             external,
             qualified_only,
             to_string,
+            strict,
             packed,
             call_after_init,
             start_titles,
@@ -119,6 +124,11 @@ impl<'a> Cursor<'a> {
     /// True if `{attribute 'to_string'}` stands before the next token.
     pub(super) fn at_to_string(&self) -> bool {
         self.before_next(&self.to_string).is_some()
+    }
+
+    /// True if `{attribute 'strict'}` stands before the next token.
+    pub(super) fn at_strict(&self) -> bool {
+        self.before_next(&self.strict).is_some()
     }
 
     /// True if `{attribute 'call_after_init'}` stands before the next token.

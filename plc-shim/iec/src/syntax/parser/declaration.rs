@@ -354,12 +354,13 @@ impl Cursor<'_> {
 
     fn type_block(&mut self, into: &mut Vec<Declaration>) {
         let (external, all_qualified, all_packed) = (self.at_external(), self.at_qualified_only(), self.packing());
-        let all_show_names = self.at_to_string();
+        let (all_show_names, all_strict) = (self.at_to_string(), self.at_strict());
         self.advance();
         while self.peek() == Some(TokenKind::Identifier) {
             let qualified_only = all_qualified || self.at_qualified_only();
             let packing = self.packing().or(all_packed);
             let shows_names = all_show_names || self.at_to_string();
+            let is_strict = all_strict || self.at_strict();
             self.pass_access_of_type();
             let (known, start) = (self.reported(), self.span());
             let Some(name) = self.take_identifier() else {
@@ -380,6 +381,7 @@ impl Cursor<'_> {
                 external,
                 qualified_only,
                 shows_names,
+                is_strict,
                 packing,
                 spec,
                 initial,

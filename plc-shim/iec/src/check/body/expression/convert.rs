@@ -127,7 +127,12 @@ impl Body<'_, '_> {
         }
         let message = format!("{wanted} is wanted, this is {found}");
         let mut report = Diagnostic::error(Code::TypeMismatch, expr.span, message);
-        if conversion::is_defined(found, wanted) {
+        if wanted == ElementaryType::Real
+            && let Some(literal) = self.literal_that_widens(&expr)
+        {
+            let help = format!("a literal beside an integer is an {found}: `{wanted}#` before it makes it a {wanted}");
+            report = report.with_label(literal, "this one").with_help(help);
+        } else if conversion::is_defined(found, wanted) {
             report = report.with_help(format!("convert it with {found}_TO_{wanted}"));
         }
         self.report(report);

@@ -169,7 +169,9 @@ impl Body<'_, '_> {
     /// Warns of a value that may not be the same one of type `wanted`, which the dialect allows.
     pub(super) fn warn_of_loss(&mut self, expr: &Expr, found: E, wanted: E) {
         let (from, to) = (as_number(found), as_number(wanted));
-        if from.widens_to(to) || found == E::Bool {
+        // A literal takes the type of what it is reckoned with.
+        let is_of_literal = || to == E::Real && self.literal_that_widens(expr).is_some();
+        if from.widens_to(to) || found == E::Bool || is_of_literal() {
             return;
         }
         if let Ok(value) = fold(self.declarations.types(), expr)

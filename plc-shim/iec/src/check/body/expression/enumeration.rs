@@ -3,7 +3,9 @@
 use super::enumeration_value;
 use crate::check::body::Body;
 use crate::check::declare::Enumerator;
+use crate::check::types::constant::fold;
 use crate::check::types::operand::Operand;
+use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Feature;
 use crate::ir::{ElementaryType, Expr, ExprKind, Type, TypeId, Value};
 use crate::syntax::{Span, ast};
@@ -121,5 +123,48 @@ impl Body<'_, '_> {
             }
             other => Err(other),
         }
+    }
+
+    /// Reports what is assigned to an enumeration that is `strict` and does not take it; true if it is reported.
+    pub(in crate::check::body) fn refuse_foreign_value(&mut self, operand: &Operand, target: TypeId) -> bool {
+        let Type::Enumeration { name, values, is_strict: true, .. } = self.declarations.types().get(target) else {
+            return false;
+        };
+        let number = match operand {
+            Operand::Integer { value, .. } => Some(*value),
+            Operand::Typed(expr) if expr.ty == target => return false,
+            Operand::Typed(expr) => fold(self.declarations.types(), expr).ok().and_then(Value::as_int),
+            _ => return false,
+        };
+        if number.is_some_and(|number| values.iter().any(|(_, value)| *value == number)) {
+            return false;
+        }
+        let message = match number {
+            Some(number) => format!("{number} is not a value of {name}, which is strict"),
+            None => format!("{name} is strict and takes its own values only"),
+        };
+        let help = values.first().map(|(value, _)| format!("its values are written as `{name}.{value}`"));
+        let found = Diagnostic::error(Code::StrictEnumeration, operand.span(), message);
+        self.report(found.with_optional_help(help));
+        true
+    }
+
+    /// Reports an operand with which nothing is reckoned, because its enumeration is `strict`.
+    pub(super) fn refuse_strict_operands(&mut self, operands: [&Operand; 2]) -> Option<()> {
+        for operand in operands {
+            let Operand::Typed(expr) = operand else { continue };
+            // The tools take its constants: they are numbers.
+            if matches!(expr.kind, ExprKind::Constant(_)) {
+                continue;
+            }
+            let Type::Enumeration { name, is_strict: true, .. } = self.declarations.types().get(expr.ty) else {
+                continue;
+            };
+            let message = format!("{name} is strict: nothing is reckoned with its values");
+            let found = Diagnostic::error(Code::StrictEnumeration, expr.span, message);
+            self.report(found.with_help("assign a value by its name, or convert this one with TO_INT"));
+            return None;
+        }
+        Some(())
     }
 }

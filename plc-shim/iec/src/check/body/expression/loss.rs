@@ -7,6 +7,32 @@ use crate::ir::{Binary, ElementaryType, Expr, ExprKind, Intrinsic, Type, Unary, 
 use crate::syntax::Span;
 
 impl Body<'_, '_> {
+    /// The literal that alone makes an expression one of LREAL, whose other operands a REAL holds: `n * 2.0`.
+    pub(in crate::check::body) fn literal_that_widens(&self, expr: &Expr) -> Option<Span> {
+        let mut literal = None;
+        self.is_of_literals(expr, &mut literal).then_some(literal).flatten()
+    }
+
+    fn is_of_literals(&self, expr: &Expr, literal: &mut Option<Span>) -> bool {
+        match &expr.kind {
+            ExprKind::Constant(Value::Lreal(_)) => {
+                literal.get_or_insert(expr.span);
+                true
+            }
+            ExprKind::Convert(_, operand) => {
+                let ty = self.plain_elementary(operand);
+                operand.span == expr.span && ty.is_some_and(|ty| ty.is_integer() && ty.widens_to(ElementaryType::Real))
+            }
+            ExprKind::Unary(Unary::Negate, operand) => self.is_of_literals(operand, literal),
+            ExprKind::Binary(
+                Binary::Add | Binary::Subtract | Binary::Multiply | Binary::Divide | Binary::DivideAnyway,
+                left,
+                right,
+            ) => self.is_of_literals(left, literal) && self.is_of_literals(right, literal),
+            _ => false,
+        }
+    }
+
     /// Warns of a product that wraps in the type of its factors although what takes it is wider. CODESYS and TwinCAT
     /// compute it in the registers of the target.
     pub(in crate::check::body) fn warn_of_cut_product(

@@ -121,6 +121,9 @@ impl Body<'_, '_> {
         if !operator.is_comparison() && !matches!((&left, &right), (Operand::Typed(_), _) | (_, Operand::Typed(_))) {
             return self.fold_literals(operator, &left, &right, span);
         }
+        if !operator.is_comparison() {
+            self.refuse_strict_operands([&left, &right])?;
+        }
         let (left, right) = self.as_numbers(left, right, operator.is_comparison());
         if self.is_interface(&left) || self.is_interface(&right) {
             return self.interface_comparison(operator, left, right, span);

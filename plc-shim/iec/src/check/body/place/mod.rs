@@ -10,7 +10,7 @@ pub(super) mod part;
 
 use super::expression::enumeration_value;
 use super::{Body, Meant, wire};
-use crate::check::declare::{Numbered, chart};
+use crate::check::declare::{Numbered, Rank, chart};
 use crate::check::types::constant;
 use crate::check::types::operand::Operand;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
@@ -289,6 +289,15 @@ impl Body<'_, '_> {
             return Some(Meaning::Value(value));
         }
         let found = self.declarations.enumerators(&bare.key());
+        if let [first, ..] = found
+            && first.rank == Rank::Qualified
+            && self.declarations.dialect(name.span).has(Feature::EnumerationsAsIntegers)
+        {
+            let message = format!("`{}` is known behind the name of its enumeration only", name.text);
+            let help = format!("write `{}.{}`", self.type_name(first.ty), name.text);
+            self.report(Diagnostic::error(Code::NotQualified, name.span, message).with_help(help));
+            return None;
+        }
         match found {
             [only] => Some(Meaning::Value(enumeration_value(only.ty, only.value, name.span))),
             [] if name.key() == "NULL" => Some(Meaning::Value(Self::null(name.span))),

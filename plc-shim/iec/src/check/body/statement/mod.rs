@@ -141,6 +141,9 @@ impl Body<'_, '_> {
         if matches!(self.declarations.types().get(target.ty), Type::FunctionBlock { .. }) {
             return self.instance_copy(target, value, span);
         }
+        if self.refuse_foreign_value(&value, target.ty) {
+            return None;
+        }
         let value = self.coerce(value, target.ty)?;
         Some(self.assignment(target, value, span))
     }
@@ -325,11 +328,23 @@ impl Body<'_, '_> {
         });
         let body = self.loop_body(&inner.body);
         let (variable, from, to, by) = header?;
+        self.refuse_zero_step(&by)?;
         self.warn_of_endless_count(&variable, &to, &by);
         let last = self.scope.register(ElementaryType::Lint);
         let step = self.scope.register(ElementaryType::Lint);
         let inner = ForStatement { variable, from, to, by, last, step, body };
         Some(StatementKind::For(Box::new(inner)))
+    }
+
+    /// The standard has no loop that stays where it is; at run time it stops the PLC.
+    fn refuse_zero_step(&mut self, by: &Expr) -> Option<()> {
+        let step = fold(self.declarations.types(), by).ok().and_then(Value::as_int);
+        if step != Some(0) {
+            return Some(());
+        }
+        let found = Diagnostic::error(Code::ZeroStep, by.span, "a FOR with a step of 0 never comes to its end");
+        self.report(found.with_help("`BY 1` counts up, `BY -1` counts down"));
+        None
     }
 
     /// Warns of a FOR up to the limit of its variable's type, where the target counts in that type: its variable never
