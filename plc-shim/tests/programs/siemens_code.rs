@@ -323,3 +323,32 @@ fn a_block_of_the_start_may_write_what_a_task_writes() {
     let input = Input::from_text("main.scl", SourceKind::Text, text).in_dialect(SiemensScl);
     assert_eq!(inspect([input], None).to_string(), "");
 }
+
+#[test]
+fn the_first_call_of_an_organization_block_is_known_to_it() {
+    let text = "DATA_BLOCK \"g\" STRUCT first, calls, start : Int; END_STRUCT; BEGIN END_DATA_BLOCK
+        ORGANIZATION_BLOCK \"OB100\" VAR_INPUT Initial_Call : Bool; END_VAR
+        BEGIN IF #Initial_Call THEN \"g\".start := \"g\".start + 1; END_IF; END_ORGANIZATION_BLOCK
+        ORGANIZATION_BLOCK \"Main\" VAR_INPUT Initial_Call : Bool; Remanence : Bool; END_VAR
+        BEGIN
+        \"g\".calls := \"g\".calls + 1;
+        IF #Initial_Call THEN \"g\".first := \"g\".first + \"g\".calls; RETURN; END_IF;
+        END_ORGANIZATION_BLOCK";
+    let mut rig = Rig::in_dialect(SiemensScl, text);
+    for _ in 0..3 {
+        rig.scan().expect("no fault");
+    }
+    assert_eq!(["g.calls", "g.first", "g.start"].map(|name| rig.int(name)), [3, 1, 1]);
+}
+
+#[test]
+fn a_quoted_name_is_a_block_of_the_project() {
+    let text = "FUNCTION \"Mid\" : Int VAR_INPUT a : Int; END_VAR BEGIN #Mid := #a + 1; END_FUNCTION
+        FUNCTION \"Move\" : Void VAR_INPUT a : Int; END_VAR VAR_OUTPUT b : Int; END_VAR BEGIN #b := #a + 2; END_FUNCTION
+        FUNCTION_BLOCK \"F\" VAR r, n : Int; s : String[10]; END_VAR
+        BEGIN #r := \"Mid\"(a := 3); \"Move\"(a := 4, b => #n); #s := MID(IN := 'abc', L := 1, P := 2); END_FUNCTION_BLOCK
+        DATA_BLOCK \"d\" \"F\" BEGIN END_DATA_BLOCK
+        ORGANIZATION_BLOCK \"Main\" BEGIN \"d\"(); END_ORGANIZATION_BLOCK";
+    let rig = after_a_scan(text);
+    assert_eq!((rig.int("d.r"), rig.int("d.n"), rig.text("d.s").as_str()), (4, 6, "b"));
+}

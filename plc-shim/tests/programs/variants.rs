@@ -134,3 +134,29 @@ BEGIN VariantGet(SRC := #i, DST => #c); #G := 1; END_FUNCTION"
         .join("\n---\n")
     );
 }
+
+#[test]
+fn strings_of_other_lengths_are_one_type() {
+    let rig = rig(
+        "long : String[20] := 'abcdefghij'; short : String[4]; wide : WString[12] := WSTRING#\"kurz\"; other : WString[40]; ok : Bool;",
+        "VariantGet(SRC := #long, DST => #short, ENO => #ok); VariantPut(SRC := #wide, DST := #other);",
+    );
+    assert_eq!((rig.text("d.short").as_str(), rig.text("d.other").as_str(), rig.bool("d.ok")), ("abcd", "kurz", true));
+}
+
+#[test]
+fn what_is_no_type_and_what_is_constant_is_refused() {
+    let reported = |statement: &str| {
+        let text = format!(
+            "{UNITS}FUNCTION \"G\" : Int VAR CONSTANT c : Int := 1; END_VAR VAR_TEMP i, n : Int; b : Bool; END_VAR
+BEGIN {statement} #G := 1; END_FUNCTION"
+        );
+        let found = findings_in(SiemensScl, &text).to_string();
+        found.lines().filter(|line| line.contains("error")).collect::<Vec<_>>().join("\n")
+    };
+    assert_eq!(reported("#b := TypeOf(#i) = TypeOf(#n) OR TypeOf(#i) <> Int;"), "");
+    assert!(reported("#b := TypeOf(#i) = 5;").contains("this is not a type"), "{}", reported("#b := TypeOf(#i) = 5;"));
+    let given = reported("#b := \"Double\"(v := #c, n := #n);");
+    assert!(given.contains("`v` is VAR_IN_OUT, which takes no constant"), "{given}");
+    assert_eq!(reported("#n := \"Handed\"(#i);"), "");
+}

@@ -5,14 +5,15 @@ use std::collections::BTreeMap;
 use super::Configurer;
 use crate::check::body::Body;
 use crate::check::declare::Scope;
-use crate::check::types::operand::Operand;
+use crate::check::types::operand::{Operand, constant};
 use crate::diagnostic::{Code, Diagnostic};
+use crate::dialect::Dialect;
 use crate::ir::{
-    ElementaryType, Entry, Expr, ExprKind, Guard, InstanceCall, Place, Pou, PouId, Statement, StatementKind, Storage,
-    Target, Type,
+    ElementaryType, Entry, Expr, ExprKind, Guard, InstanceCall, Place, Pou, PouId, Program, Statement, StatementKind,
+    Storage, Target, Type, Value,
 };
 use crate::syntax::Span;
-use crate::syntax::ast::{self, Connection, Ident, ProgramDeclaration, SectionKind};
+use crate::syntax::ast::{self, Connection, INITIAL_CALL, Ident, ProgramDeclaration, SectionKind};
 
 /// The statements around an instance's call.
 #[derive(Default)]
@@ -64,6 +65,7 @@ impl<'a> Configurer<'_, 'a> {
                     }
                 };
             }
+            self.clear_initial_call(&program, span, &mut around.after);
             let name = self.entry_name(at);
             let entry = self.entry(name, program.pou, program.offset, around, span);
             self.configured.entries.push(entry);
@@ -76,6 +78,23 @@ impl<'a> Configurer<'_, 'a> {
         for (resource, task, entry) in blocks {
             self.schedule(resource, self.configured.entries.len(), Some(task));
             self.configured.entries.push(entry);
+        }
+    }
+
+    /// `Initial_Call` of an organization block is TRUE in its first call alone.
+    fn clear_initial_call(&self, program: &Program, span: Span, side: &mut Side) {
+        let unit = self.declarations.pou(program.pou);
+        let is_block = self.declarations.dialect(unit.ast().name.span) == Dialect::SiemensScl;
+        let Some(variable) = unit.scope().filter(|_| is_block).and_then(|scope| scope.find(INITIAL_CALL)) else {
+            return;
+        };
+        let bool = ElementaryType::Bool;
+        if let (SectionKind::Input, Storage::Instance(offset)) = (variable.section, variable.storage)
+            && variable.ty == bool.into()
+        {
+            let target = Place::whole(Storage::Absolute(program.offset + offset), variable.ty, span);
+            let kind = StatementKind::Assign(target, constant(Value::Bool(false), bool, span));
+            side.statements.push(Statement { kind, span });
         }
     }
 

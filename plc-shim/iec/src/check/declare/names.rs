@@ -9,7 +9,7 @@ use super::entry::{GlobalEntry, PouEntry, Progress, TypeEntry};
 use super::start::Starts;
 use crate::check::standard;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::dialect::Feature;
+use crate::dialect::{Dialect, Feature};
 use crate::ir::{ElementaryType, PouId};
 use crate::syntax::Span;
 use crate::syntax::ast::{self, Ident, PouKind, TypeDeclaration};
@@ -30,7 +30,7 @@ impl<'a> Declarations<'a> {
         let is_own_function = ast.kind == PouKind::Function
             && self.declared_at(&ast.name).is_none()
             && standard::is_reserved(&ast.name.key())
-            && (self.dialect(ast.name.span).has(Feature::OwnStandardFunctions) || self.home.is_named());
+            && (self.has_own_standard_functions(ast.name.span) || self.home.is_named());
         if self.stands_beside(ast) {
             self.add_overload(ast);
             return;
@@ -42,6 +42,12 @@ impl<'a> Declarations<'a> {
         // What is made of a generic block stands where that does.
         let templates = self.templates;
         templates.made_of(ast).for_each(|made| self.add_unit(made));
+    }
+
+    /// In SCL they have quotation marks wherever they are called.
+    fn has_own_standard_functions(&self, span: Span) -> bool {
+        let dialect = self.dialect(span);
+        dialect == Dialect::SiemensScl || dialect.has(Feature::OwnStandardFunctions)
     }
 
     fn add_unit(&mut self, ast: &'a ast::Pou) {

@@ -6,14 +6,29 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::{Dialect, Feature};
 use crate::source::Span;
 use crate::syntax::ast::{
-    Declaration, ElementInit, Expr, ExprKind, Field, Ident, Initialiser, InitialiserKind, Literal, PouKind, Qualifier,
-    Section, SectionKind, StructureInit, TypeSpec, TypeSpecKind, Variable,
+    Declaration, ElementInit, Expr, ExprKind, Field, INITIAL_CALL, Ident, Initialiser, InitialiserKind, Literal,
+    PouKind, Qualifier, Section, SectionKind, StructureInit, TypeSpec, TypeSpecKind, Variable,
 };
 use crate::syntax::literal::{parse_duration, parse_typed};
 use crate::syntax::token::{Keyword, Punctuation, TokenKind};
 
 /// The organization blocks of a warm, hot and cold restart: STEP 7, System and Standard Functions, startup.
 const START_BLOCKS: std::ops::RangeInclusive<u32> = 100..=102;
+
+/// The system calls with TRUE first: the input begins with it, and whoever calls clears it.
+fn begin_with_initial_call(sections: &mut [Section]) {
+    let inputs = sections.iter_mut().filter(|section| section.kind == SectionKind::Input);
+    for variable in inputs.flat_map(|section| &mut section.variables) {
+        if let [name] = variable.names.as_slice()
+            && name.key() == INITIAL_CALL
+            && variable.initial.is_none()
+        {
+            let span = name.span;
+            let value = Expr { kind: ExprKind::Literal(Literal::Bool(true)), span, height: 1 };
+            variable.initial = Some(Initialiser { kind: InitialiserKind::Value(value), span });
+        }
+    }
+}
 
 impl Cursor<'_> {
     /// `ORGANIZATION_BLOCK`, which the system calls: in each cycle or interval, so it is a program, or once at the start.
@@ -22,6 +37,7 @@ impl Cursor<'_> {
         self.pou(PouKind::Program, Keyword::EndOrganizationBlock, into);
         let has_title = self.has_start_title(start);
         let Some(Declaration::Pou(block)) = into.get_mut(known) else { return };
+        begin_with_initial_call(&mut block.sections);
         let number = block.name.key().strip_prefix("OB").and_then(|text| text.parse::<u32>().ok());
         block.object.runs_at_start = has_title || number.is_some_and(|number| START_BLOCKS.contains(&number));
         if block.object.runs_at_start {

@@ -3,6 +3,7 @@
 
 use super::argument::Passing;
 use crate::check::body::Body;
+use crate::check::body::place::Access;
 use crate::check::types::build::assign;
 use crate::check::types::generic::{Generic, class_of};
 use crate::check::types::operand::constant;
@@ -11,6 +12,7 @@ use crate::ir::elementary::Kind;
 use crate::ir::{
     Argument, ElementaryType, Expr, ExprKind, Place, Statement, StatementKind, Type, TypeId, Value, Variable,
 };
+use crate::syntax::Span;
 use crate::syntax::ast::{self, ReferenceKind};
 
 impl Body<'_, '_> {
@@ -25,8 +27,15 @@ impl Body<'_, '_> {
         if parameter.owner.is_some_and(|owner| self.declarations.is_external(owner)) {
             return self.ignored_argument(parameter, expr, passing).map(Argument::Value);
         }
-        let variable = self.place(expr)?.place;
+        let located = self.place(expr)?;
         let span = expr.span;
+        if located.access == Access::Constant && self.is_declared_in_out(parameter) {
+            let message = format!("`{}` is VAR_IN_OUT, which takes no constant", parameter.name);
+            let found = Diagnostic::error(Code::InvalidArgument, span, message);
+            self.report(found.with_help("give it a variable, which the block may write"));
+            return None;
+        }
+        let variable = located.place;
         if self.declarations.generic(variable.ty).is_some() && (generic == Generic::Any || variable.ty == parameter.ty)
         {
             return Some(Argument::Value(Expr { kind: ExprKind::Load(variable), ty: parameter.ty, span }));
@@ -58,6 +67,15 @@ impl Body<'_, '_> {
             passing.before.push(assign(&member, value));
         }
         Some(Argument::Value(Expr { kind: ExprKind::Load(Place { span, ..given }), ty: parameter.ty, span }))
+    }
+
+    /// True for a VARIANT of VAR_IN_OUT, which comes as an input does.
+    fn is_declared_in_out(&self, parameter: &Variable) -> bool {
+        let Some(owner) = parameter.owner.filter(|_| self.is_generic(parameter.ty)) else { return false };
+        let sections = &self.declarations.pou(owner).ast().sections;
+        let holds =
+            |span: Span| span.file == parameter.span.file && (span.start..span.end).contains(&parameter.span.start);
+        sections.iter().any(|section| section.kind == ast::SectionKind::InOut && holds(section.span))
     }
 
     /// A stub does nothing with what it is given, so it takes values, too.

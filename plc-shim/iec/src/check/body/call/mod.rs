@@ -26,7 +26,7 @@ use crate::check::standard::{self, form, memory};
 use crate::check::types::operand::Operand;
 use crate::check::types::parameter::{self, EN};
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
-use crate::dialect::Feature;
+use crate::dialect::{Dialect, Feature};
 use crate::ir::{
     Argument, ElementaryType, Expr, ExprKind, FunctionCall, Intrinsic, MemoryFunction, Place, PouId, Statement,
     StatementKind, Type, TypeTable, Unary, Variable,
@@ -135,7 +135,13 @@ impl Body<'_, '_> {
     }
 
     pub(super) fn function_named(&self, name: &Ident) -> Option<PouId> {
-        let id = self.declarations.pou_named(&name.key())?;
+        let key = name.key();
+        let id = self.declarations.pou_named(&key)?;
+        // Without quotation marks it is the function that comes with the language.
+        let is_scl = self.declarations.dialect(name.span) == Dialect::SiemensScl;
+        if is_scl && !name.is_global() && !self.declarations.is_library(id) && standard::is_reserved(&key) {
+            return None;
+        }
         (self.declarations.pou(id).ast().kind == PouKind::Function).then_some(id)
     }
 

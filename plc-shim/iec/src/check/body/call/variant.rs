@@ -3,6 +3,7 @@
 use crate::check::body::{Body, Meant};
 use crate::check::types::generic::{Generic, class_of};
 use crate::check::types::operand::{Operand, constant};
+use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Feature;
 use crate::ir::{ElementaryType, Expr, Type, TypeId, Value, Variable};
 use crate::syntax::Span;
@@ -16,12 +17,26 @@ const FIRST_DERIVED: i128 = 1_000;
 impl Body<'_, '_> {
     /// The number of the type that `expr` names, where `question` asks for a type: `TypeOf(#v) = Int`.
     pub(in crate::check::body) fn type_asked(&mut self, question: &ast::Expr, expr: &ast::Expr) -> Meant<Operand> {
-        let ast::ExprKind::Call(call) = &question.kind else { return None };
-        let ast::ExprKind::Name(name) = &call.callee.kind else { return None };
-        let asks =
-            QUESTIONS.contains(&name.key().as_str()) && self.declarations.dialect(question.span).has(Feature::Variants);
-        let ty = if asks { self.type_written(expr)? } else { return None };
-        Some(ty.map(|ty| self.type_number(ty, expr.span)))
+        if !self.asks_for_type(question) {
+            return None;
+        }
+        match self.type_written(expr) {
+            Some(ty) => Some(ty.map(|ty| self.type_number(ty, expr.span))),
+            None if self.asks_for_type(expr) => None,
+            None => {
+                let message = "this is not a type, and not what TypeOf gives";
+                let found = Diagnostic::error(Code::TypeMismatch, expr.span, message);
+                self.report(found.with_help("compare with a type by its name, as in `TypeOf(#v) = Int`"));
+                Some(None)
+            }
+        }
+    }
+
+    /// True for a call of `TypeOf` and the like.
+    fn asks_for_type(&self, expr: &ast::Expr) -> bool {
+        let ast::ExprKind::Call(call) = &expr.kind else { return false };
+        let ast::ExprKind::Name(name) = &call.callee.kind else { return false };
+        QUESTIONS.contains(&name.key().as_str()) && self.declarations.dialect(expr.span).has(Feature::Variants)
     }
 
     fn type_number(&self, ty: TypeId, span: Span) -> Operand {
