@@ -407,6 +407,19 @@ impl Scenario {
         Ok(Operator::new(name.clone(), self.file().step, signals))
     }
 
+    /// Whether the tasks of soft PLC `name` suit its program, which was compiled elsewhere, and the session.
+    ///
+    /// # Errors
+    /// Tasks of programs that are not there, or that never run at a step.
+    pub fn tasks_suit(&self, name: &ClientName, application: &Application) -> Result<(), ScenarioError> {
+        let Some(ClientFile::SoftPlc { tasks, .. }) = self.file().clients.get(name).map(toml::Spanned::get_ref) else {
+            return Ok(());
+        };
+        let plan = self.task_plan(name, application, tasks)?;
+        self.fits_step(name, &plan)?;
+        application.check_plan(&plan).map_err(|error| self.wrong_client(name, error.to_string(), None))
+    }
+
     /// A task can be due at the steps of the session only.
     fn fits_step(&self, name: &ClientName, plan: &TaskPlan) -> Result<(), ScenarioError> {
         let step = self.file().step;

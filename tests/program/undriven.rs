@@ -70,3 +70,14 @@ fn scenarios_in(folder: &Path) -> Vec<String> {
     names.sort();
     names
 }
+
+/// What a run refuses, a check says before it.
+#[test]
+fn a_check_reports_tasks_of_programs_that_are_not_there() {
+    let folder = copied_shear();
+    assert_eq!(typed(folder.path(), &["check", "."]).code, Some(0));
+    edit(folder.path(), "scenario.toml", "programs = [\"Shear\"", "programs = [\"Shaer\"");
+    let check = typed(folder.path(), &["check", "."]);
+    assert_ne!(check.code, Some(0), "{check:?}");
+    assert!(check.err.contains("runs program `Shaer`, which is not declared"), "{check:?}");
+}

@@ -33,7 +33,7 @@ use onescan_runner::error::Usage;
 
 pub use error::CheckError;
 
-use collect::{Collected, Reading};
+use collect::{Collected, Program, Reading};
 use onescan_runner::error::ExitCode;
 use report::Report;
 
@@ -96,14 +96,17 @@ pub fn check(config: &CheckConfig, out: &mut dyn Write) -> Result<ExitCode, Chec
     let files = programs.iter().map(|program| program.inputs.len()).sum();
     let mut findings = Vec::new();
     for program in programs {
-        let of_scenario = program.scenario.zip(program.client).map(|of| (of, program.inputs.clone()));
-        let found = inspect_within(program.memory_limit, program.inputs, program.plan.as_ref());
-        let is_sound = !found.has_errors();
-        findings.push(found);
-        let Some(((scenario, client), inputs)) = of_scenario.filter(|_| is_sound) else { continue };
-        match Application::builder().inputs(inputs).memory_limit(program.memory_limit).build() {
-            Ok(application) => findings.extend(scenario.undriven_in(&client, application)?),
-            // What has no errors compiles; should it not, you see why.
+        let Program { inputs, client, scenario, plan, memory_limit } = program;
+        let Some((scenario, client)) = scenario.zip(client) else {
+            findings.push(inspect_within(memory_limit, inputs, plan.as_ref()));
+            continue;
+        };
+        match Application::builder().inputs(inputs).memory_limit(memory_limit).inspected(plan).build() {
+            Ok(application) => {
+                scenario.tasks_suit(&client, &application)?;
+                findings.push(application.warnings().clone());
+                findings.extend(scenario.undriven_in(&client, application)?);
+            }
             Err(BuildError::Sources(found)) => findings.push(found),
             Err(BuildError::Constant(error)) => return Err(Usage::new(error.to_string(), None).into()),
         }

@@ -5,6 +5,7 @@ use onescan_iec::diagnostic::Diagnostics;
 use onescan_iec::front::{ConstantError, Front, with_room};
 use onescan_iec::input::Input;
 use onescan_iec::ir::MemoryLimit;
+use onescan_iec::task_plan::TaskPlan;
 
 /// Collects what an application is compiled from; made by [`Application::builder`].
 ///
@@ -26,6 +27,8 @@ pub struct Builder {
     pub(super) constants: Vec<(String, String)>,
     pub(super) purpose: Purpose,
     pub(super) memory_limit: MemoryLimit,
+    /// The tasks, if known, of programs in which warnings are looked for.
+    pub(super) inspection: Option<Option<TaskPlan>>,
 }
 
 /// Why there is no application.
@@ -82,6 +85,13 @@ impl Builder {
     /// Sets how much memory all variables may take together, 64 MiB if nobody says otherwise.
     pub fn memory_limit(mut self, limit: MemoryLimit) -> Self {
         self.memory_limit = limit;
+        self
+    }
+
+    /// Looks for what is legal and seldom meant as well, which [`Application::warnings`] then has; `plan` says which
+    /// programs run in which task.
+    pub fn inspected(mut self, plan: Option<TaskPlan>) -> Self {
+        self.inspection = Some(plan);
         self
     }
 

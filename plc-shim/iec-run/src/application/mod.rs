@@ -28,6 +28,7 @@ use onescan_iec::front::{Constants, Front, Setting, with_room};
 use onescan_iec::input::Input;
 use onescan_iec::input::kind::SourceKind;
 use onescan_iec::ir::{Configuration, Retention};
+use onescan_iec::lint::add_warnings;
 use onescan_iec::syntax::Span;
 use onescan_iec::syntax::{FileId, SourceMap};
 
@@ -120,9 +121,13 @@ impl Application {
         with_room(|| Self::compiled(Front::within(memory_limit, inputs), &Constants::default(), purpose))
     }
 
-    fn built(Builder { inputs, constants, purpose, memory_limit }: Builder) -> Result<Self, BuildError> {
+    fn built(builder: Builder) -> Result<Self, BuildError> {
+        let Builder { inputs, constants, purpose, memory_limit, inspection } = builder;
         with_room(|| {
-            let (front, constants) = Front::with_constants(memory_limit, inputs, &constants)?;
+            let (mut front, constants) = Front::with_constants(memory_limit, inputs, &constants)?;
+            if let Some(plan) = inspection {
+                add_warnings(&mut front, plan.as_ref());
+            }
             match constants.wrong_value(&front.findings, &front.sources) {
                 Some(error) => Err(error.into()),
                 None => Ok(Self::compiled(front, &constants, purpose)?),

@@ -19,6 +19,16 @@ impl Application {
     }
 }
 
+impl Application {
+    /// Whether a PLC can run `plan`, without setting it up.
+    ///
+    /// # Errors
+    /// Tasks, programs and triggers that are not there.
+    pub fn check_plan(&self, plan: &TaskPlan) -> Result<(), RunError> {
+        resolve(plan, self).map(|_| ())
+    }
+}
+
 /// Why a PLC cannot be set up.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum RunError {
