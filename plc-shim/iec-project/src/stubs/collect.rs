@@ -6,8 +6,10 @@ use super::ty::Ty;
 use super::world::{Home, Unit, World};
 use onescan_iec::ElementaryType;
 use onescan_iec::check::of_pointer_width;
+use onescan_iec::dialect::Feature;
 use onescan_iec::syntax::ast::{
-    BinaryOp, Expr, ExprKind, Field, Ident, Literal, Pou, PouKind, Section, TransitionCondition, TypeSpec, TypeSpecKind,
+    BinaryOp, Expr, ExprKind, Field, Ident, Literal, Pou, PouKind, Section, SectionKind, TransitionCondition, TypeSpec,
+    TypeSpecKind,
 };
 use onescan_iec::syntax::{FileId, Span};
 
@@ -108,6 +110,14 @@ impl<'a> Collector<'a> {
         for variable in &section.variables {
             let names: Vec<&str> = variable.names.iter().map(|name| name.text.as_str()).collect();
             self.spec(&variable.spec, home, &names);
+            // What keeps nothing has no instances but with vendors: it is a reference to one.
+            if section.kind == SectionKind::Temp
+                && !self.world.dialect(variable.spec.span).has(Feature::FleetingInstances)
+                && let TypeSpecKind::Name(name) = &variable.spec.kind
+                && let Ty::Foreign(key) = self.named(name, home, 0)
+            {
+                self.foreign(&key).is_value = true;
+            }
         }
     }
 

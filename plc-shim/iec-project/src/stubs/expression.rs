@@ -214,8 +214,15 @@ impl<'a> Collector<'a> {
 
     fn binary(&mut self, op: BinaryOp, left: &Expr, right: &Expr, access: Access, scope: &Scope<'a>) -> Ty {
         let access = if access == Access::Constant { access } else { Access::Read };
+        let (null_left, null_right) = (is_null(left), is_null(right));
         let (left, right) = (self.place(left, access, scope), self.place(right, access, scope));
         let bool = elementary(E::Bool);
+        for (other, beside_null) in [(&left, null_right), (&right, null_left)] {
+            if let (Ty::Foreign(key), true) = (other, beside_null) {
+                // What refers to nothing is a reference, of an instance to an interface.
+                self.foreign(key).is_value = true;
+            }
+        }
         if matches!(op, BinaryOp::AndThen | BinaryOp::OrElse) {
             self.beside(&left, &bool);
             self.beside(&right, &bool);
@@ -268,6 +275,10 @@ fn joined(known_left: Ty, known_right: Ty, left: Ty, right: Ty) -> Ty {
         (Ty::Slot(_), _) => left,
         _ => right,
     }
+}
+
+fn is_null(expr: &Expr) -> bool {
+    matches!(&expr.kind, ExprKind::Name(name) if name.key() == "NULL")
 }
 
 fn is_super(expr: &Expr) -> bool {

@@ -117,6 +117,26 @@ PROGRAM P VAR m : MoveAxis; b : BOOL; END_VAR b := m.Run(); END_PROGRAM";
     assert_eq!(errors, 0, "{written}");
 }
 
+/// What is compared with NULL, or stands where nothing is kept, refers to an instance.
+#[test]
+fn a_reference_to_an_instance_is_an_interface() {
+    let text = "CLASS Lamp
+VAR PUBLIC output : BinOutput; END_VAR
+METHOD PUBLIC Switch : BOOL VAR_TEMP sensor : BinSignal; END_VAR
+  IF output <> NULL THEN output.SetOn(); END_IF;
+  Switch := sensor.IsOn();
+END_METHOD
+END_CLASS
+PROGRAM P VAR l : Lamp; b : BOOL; END_VAR b := l.Switch(); END_PROGRAM";
+    let own = || Input::from_text("main.st", SourceKind::Text, text);
+    let written = write(&[own()], None).text;
+    assert!(written.contains("INTERFACE BinOutput") && written.contains("INTERFACE BinSignal"), "{written}");
+    let stubs = Input::from_text("stubs.st", SourceKind::Text, written.as_str());
+    let all = inspect(vec![own(), stubs], None);
+    let errors = all.findings().iter().filter(|found| found.diagnostic().severity == Severity::Error).count();
+    assert_eq!(errors, 0, "{written}");
+}
+
 /// What an heir overrides stands in its base, once, however often the stubs are written; a caller's array has its bounds.
 #[test]
 fn a_base_of_a_class_has_what_its_heirs_override() {

@@ -9,7 +9,7 @@ use onescan_iec::syntax::ast::{
     SectionKind, TypeDeclaration, TypeSpec, TypeSpecKind,
 };
 use onescan_iec::syntax::{FileId, SourceFile, SourceMap, Span};
-use onescan_iec::{ElementaryType, WordSize};
+use onescan_iec::{Dialect, ElementaryType, WordSize};
 
 /// From where names are seen.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -110,6 +110,11 @@ impl<'a> World<'a> {
             world.add_all(&unit.declarations, &home, library.contains(file));
         }
         world
+    }
+
+    /// The dialect of the text at `span`.
+    pub(super) fn dialect(&self, span: Span) -> Dialect {
+        self.sources.get(span.file).map_or_else(Dialect::default, SourceFile::dialect)
     }
 
     /// Bits of the registers of the target that runs the text at `span`.
