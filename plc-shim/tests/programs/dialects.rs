@@ -237,6 +237,7 @@ fn use_in_released_projects(feature: Feature) -> &'static str {
             "FUNCTION_BLOCK F VAR p : POINTER TO F; END_VAR p := THIS; END_FUNCTION_BLOCK
              PROGRAM P VAR f1 : F; END_VAR f1(); END_PROGRAM"
         }
+        Feature::TimesBesideNumbers => "PROGRAM P VAR t : TIME; b : BOOL; END_VAR b := t < 0; END_PROGRAM",
         Feature::TimesAsDates => "PROGRAM P VAR t : TIME; d : DT; END_VAR d := TIME_TO_DT(t); END_PROGRAM",
         Feature::LiteralAddresses => {
             "PROGRAM P VAR p : POINTER TO BYTE; b : BYTE; END_VAR p := ADR('text'); b := p^; END_PROGRAM"
@@ -261,7 +262,8 @@ fn every_construct_is_for_its_dialects_alone() {
 }
 
 /// Constructs whose absence is not a syntax of its own: another error says it.
-const REPORTED_OTHERWISE: [Feature; 59] = [
+const REPORTED_OTHERWISE: [Feature; 60] = [
+    Feature::TimesBesideNumbers,
     Feature::PositionalOutputs,
     Feature::CharactersSelect,
     Feature::CharactersAsText,

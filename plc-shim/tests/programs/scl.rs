@@ -226,3 +226,13 @@ END_ORGANIZATION_BLOCK
     let dwell = ["Machine_DB.arms[1,2].path[2].Dwell", "Machine_DB.arms[1,2].path[2].X"].map(shown);
     assert_eq!(dwell, ["T#20ms", "1.5"]);
 }
+
+/// TIA Portal, without IEC check: a TIME is compared with a number of milliseconds.
+#[test]
+fn a_time_is_compared_with_milliseconds() {
+    let text = "PROGRAM P VAR t : TIME := T#-5ms; a, b, c : BOOL; END_VAR
+        a := t < 0; b := t = -5; c := 10 > t; END_PROGRAM";
+    let mut rig = crate::rig::Rig::in_dialect(onescan_iec::Dialect::SiemensScl, text);
+    rig.scan().expect("no fault");
+    assert_eq!(["a", "b", "c"].map(|name| rig.bool(&format!("P.{name}"))), [true; 3]);
+}

@@ -424,6 +424,7 @@ features! {
     UnusedUnits "a unit with errors that no task's program uses",
     ThisPointer "`THIS` alone, a pointer to the running instance",
     LiteralAddresses "the address of a literal, `ADR('text')`",
+    TimesBesideNumbers "a TIME compared with a number of milliseconds",
     TimesAsDates "durations, dates and times of day from one another, `TIME_TO_DT`, `BOOL_TO_DATE`",
 }
 

@@ -204,6 +204,11 @@ pub const FEATURES: &[FeatureRow] = &[
     row(Feature::ThisPointer, &[Codesys, TwinCat], "CODESYS and TwinCAT: pointer THIS"),
     row(Feature::LiteralAddresses, &[Codesys, TwinCat], "CODESYS: accepts it, as public projects show"),
     row(
+        Feature::TimesBesideNumbers,
+        &[SiemensScl],
+        "TIA Portal: implicit conversion of DInt to Time, without IEC check",
+    ),
+    row(
         Feature::TimesAsDates,
         &[Codesys, TwinCat],
         "CODESYS: operators TIME_TO, DATE_TO, BOOL_TO; TwinCAT: conversions of TIME, DATE, BOOL",

@@ -4,7 +4,8 @@ use crate::check::body::Body;
 use crate::check::types::constant;
 use crate::check::types::operand::{Operand, converted};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::ir::{Binary, ElementaryType, Expr, ExprKind, Intrinsic, Rounding, Unary};
+use crate::dialect::Feature;
+use crate::ir::{Binary, ElementaryType, Expr, ExprKind, Intrinsic, Rounding, Unary, Value};
 use crate::syntax::Span;
 use crate::syntax::ast::{BinaryOp, UnaryOp};
 
@@ -211,6 +212,7 @@ impl Body<'_, '_> {
         if self.is_text(&left) || self.is_text(&right) {
             return self.text_comparison(operator, left, right, span);
         }
+        let (left, right) = self.milliseconds_beside_time(left, right);
         let (left, right) = match (left, right) {
             (Operand::Typed(left), Operand::Typed(right))
                 if left.ty == right.ty && self.elementary(left.ty).is_some() =>
@@ -228,6 +230,24 @@ impl Body<'_, '_> {
         let (left, right) = self.whole_operands(left, right);
         let kind = ExprKind::Binary(operator, Box::new(left), Box::new(right));
         Some(Operand::Typed(Expr { kind, ty: ElementaryType::Bool.into(), span }))
+    }
+
+    /// A number beside a TIME as so many milliseconds, where vendors have it so.
+    fn milliseconds_beside_time(&self, left: Operand, right: Operand) -> (Operand, Operand) {
+        let time = ElementaryType::Time;
+        let is_time = |operand: &Operand| {
+            let has = |span| self.declarations.dialect(span).has(Feature::TimesBesideNumbers);
+            operand.typed().is_some_and(|expr| expr.ty == time.into() && has(expr.span))
+        };
+        let of_ms = |value: i128, span| {
+            let kind = ExprKind::Constant(Value::Int(value.saturating_mul(1_000_000)));
+            Operand::Typed(Expr { kind, ty: time.into(), span })
+        };
+        match (left, right) {
+            (left, Operand::Integer { value, span }) if is_time(&left) => (left, of_ms(value, span)),
+            (Operand::Integer { value, span }, right) if is_time(&right) => (of_ms(value, span), right),
+            others => others,
+        }
     }
 
     fn bitwise(&mut self, operator: Binary, left: Operand, right: Operand, span: Span) -> Option<Operand> {
