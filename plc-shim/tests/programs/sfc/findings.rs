@@ -167,3 +167,32 @@ fn words_of_charts_are_names_elsewhere() {
         END_PROGRAM";
     assert_eq!(findings(text), "");
 }
+
+/// A detector that sees a step of one branch does not see that one of the other begins or ends meanwhile.
+#[test]
+fn pulses_of_parallel_branches_cover_each_other() {
+    let chart = |left: &str, right: &str| {
+        let text = format!(
+            "PROGRAM P
+VAR go : BOOL; n : INT; END_VAR
+    INITIAL_STEP A: END_STEP
+    STEP L1: {left} END_STEP
+    STEP L2: END_STEP
+    STEP R1: END_STEP
+    STEP R2: {right} END_STEP
+    TRANSITION FROM A TO (L1, R1) := go; END_TRANSITION
+    TRANSITION FROM L1 TO L2 := n > 3; END_TRANSITION
+    TRANSITION FROM R1 TO R2 := NOT go; END_TRANSITION
+    TRANSITION FROM (L2, R2) TO A := n > 9; END_TRANSITION
+    ACTION Count: n := n + 1; END_ACTION
+    ACTION Other: n := n + 2; END_ACTION
+END_PROGRAM"
+        );
+        let found = findings_in(Dialect::Iec3, &text).to_string();
+        found.lines().filter(|line| line.contains("Q1214")).count()
+    };
+    assert_eq!(chart("Count(P1);", "Count(P1);"), 1, "`L1` begins when `R2` is not active");
+    assert_eq!(chart("Count(P0);", "Count(P0);"), 1, "`R2` ends when `L1` is not active");
+    assert_eq!(chart("Count(P1);", "Other(P1);"), 0);
+    assert_eq!(chart("Count(P1);", "Count(N);"), 0);
+}

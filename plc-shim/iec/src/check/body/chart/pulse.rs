@@ -6,7 +6,7 @@
 //! several steps that name an action, the last one's count.
 
 use super::association::{Action, Runs, Use};
-use super::net::Net;
+use super::net::{Arcs, Net};
 use crate::check::body::Body;
 use crate::check::types::build::{assign, load, not, operation, truth};
 use crate::diagnostic::{Code, Diagnostic};
@@ -115,7 +115,7 @@ impl Body<'_, '_> {
         };
         let joined =
             action.uses.iter().find(|other| other.qualifier == used.qualifier && follows(other.step, used.step));
-        let Some(first) = joined else { return };
+        let Some(first) = joined else { return self.report_covered_pulse(chart, net, action, used) };
         let (qualifier, before, behind) = (used.qualifier.text(), step_name(chart, first), step_name(chart, used));
         // The falling edge that is lost is that of the step which is left.
         let lost = if used.qualifier == ActionQualifier::P0 { before } else { behind };
@@ -125,6 +125,37 @@ impl Body<'_, '_> {
         );
         let found = Diagnostic::warning(Code::LostPulse, used.span, message).with_label(first.span, "the other");
         let help = format!("put a step between them, or give `{behind}` an action of its own with `{qualifier}`");
+        self.report(found.with_help(help));
+    }
+
+    /// `used` is that of a step in another branch than a step with the same pulse, which may be active meanwhile.
+    fn report_covered_pulse(&mut self, chart: &Chart, net: &Net, action: &Action, used: &Use) {
+        let others: Vec<&Use> = action.uses.iter().filter(|other| other.qualifier == used.qualifier).collect();
+        if others.len() < 2 {
+            return;
+        }
+        let edges = |arcs: &&Arcs| {
+            let edge = if used.qualifier == ActionQualifier::P0 { &arcs.from } else { &arcs.to };
+            edge.contains(&used.step)
+        };
+        let before = net.transitions.iter().filter(edges).flat_map(|arcs| arcs.from.iter().copied());
+        let together = net.explore(&before.chain(others.iter().map(|other| other.step)).collect()).together;
+        let are_together = |one: usize, other: usize| together.contains(&(one.min(other), one.max(other)));
+        // The edge of one step comes while the other is active, and stays so.
+        let comes_alone = |other: usize| {
+            net.transitions.iter().filter(edges).any(|arcs| {
+                let stays = !arcs.from.contains(&other) && !arcs.to.contains(&other);
+                stays && arcs.from.iter().all(|from| are_together(*from, other))
+            })
+        };
+        let covered = others.iter().find(|other| other.step != used.step && comes_alone(other.step));
+        let Some(other) = covered else { return };
+        let (name, step, first) = (&action.name, step_name(chart, used), step_name(chart, other));
+        let message = format!(
+            "`{name}` gets no pulse from `{step}` while `{first}` is active: one detector of edges sees both steps"
+        );
+        let found = Diagnostic::warning(Code::LostPulse, used.span, message).with_label(other.span, "the other");
+        let help = format!("give `{step}` an action of its own with `{}`", used.qualifier.text());
         self.report(found.with_help(help));
     }
 }
