@@ -27,8 +27,16 @@ pub struct Builder {
     pub(super) constants: Vec<(String, String)>,
     pub(super) purpose: Purpose,
     pub(super) memory_limit: MemoryLimit,
-    /// The tasks, if known, of programs in which warnings are looked for.
-    pub(super) inspection: Option<Option<TaskPlan>>,
+    pub(super) inspection: Inspection,
+}
+
+/// Whether what is legal and seldom meant is looked for.
+#[derive(Debug, Clone, Default)]
+pub(super) enum Inspection {
+    #[default]
+    None,
+    /// With the tasks, if they are known.
+    Of(Option<TaskPlan>),
 }
 
 /// Why there is no application.
@@ -91,7 +99,7 @@ impl Builder {
     /// Looks for what is legal and seldom meant as well, which [`Application::warnings`] then has; `plan` says which
     /// programs run in which task.
     pub fn inspected(mut self, plan: Option<TaskPlan>) -> Self {
-        self.inspection = Some(plan);
+        self.inspection = Inspection::Of(plan);
         self
     }
 

@@ -32,6 +32,7 @@ use onescan_iec::lint::add_warnings;
 use onescan_iec::syntax::Span;
 use onescan_iec::syntax::{FileId, SourceMap};
 
+use builder::Inspection;
 pub use builder::{BuildError, Builder};
 pub use declaration::Declaration;
 use identity::code::Code;
@@ -125,7 +126,7 @@ impl Application {
         let Builder { inputs, constants, purpose, memory_limit, inspection } = builder;
         with_room(|| {
             let (mut front, constants) = Front::with_constants(memory_limit, inputs, &constants)?;
-            if let Some(plan) = inspection {
+            if let Inspection::Of(plan) = inspection {
                 add_warnings(&mut front, plan.as_ref());
             }
             match constants.wrong_value(&front.findings, &front.sources) {

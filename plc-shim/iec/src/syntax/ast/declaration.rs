@@ -253,6 +253,7 @@ pub struct EnumValue {
 
 /// One type of a `TYPE` block.
 #[derive(Debug, Clone)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a pragma of its own, and any may stand beside any other")]
 pub struct TypeDeclaration {
     pub name: Ident,
     /// The structure that it adds members to, as vendors have it.

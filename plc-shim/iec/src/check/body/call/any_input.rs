@@ -69,7 +69,7 @@ impl Body<'_, '_> {
         Some(Argument::Value(Expr { kind: ExprKind::Load(Place { span, ..given }), ty: parameter.ty, span }))
     }
 
-    /// True for a VARIANT of VAR_IN_OUT, which comes as an input does.
+    /// True for a VARIANT of `VAR_IN_OUT`, which comes as an input does.
     fn is_declared_in_out(&self, parameter: &Variable) -> bool {
         let Some(owner) = parameter.owner.filter(|_| self.is_generic(parameter.ty)) else { return false };
         let sections = &self.declarations.pou(owner).ast().sections;
