@@ -180,18 +180,6 @@ const READS: &[(&str, &str)] = &[
     ("web/codegen/src/published.rs", "what is published, compared by tests"),
 ];
 
-/// Where processes are started.
-const PROCESSES: &[(&str, &str)] = &[
-    ("cli/regress/src/regress/pool.rs", "each case runs in a process of its own, with a time limit"),
-    ("cli/regress/src/repository.rs", "git, for the sources of another revision"),
-    ("cli/runner/src/run/guard.rs", "the guard, which ends the clients of a server that was killed"),
-    ("cli/runner/src/run/processes.rs", "one process per client"),
-    ("cli/runner/src/run/forked.rs", "a session that continues from a past state"),
-    ("cli/runner/src/shot/browser.rs", "the browser that takes a picture"),
-    ("tests/fuzzing/src/main.rs", "inputs run where a crash can be survived"),
-    ("tests/xtask/src", "the tools of a release and the scripts of the tests"),
-];
-
 /// Where the largest number of a width stands, as a number.
 const LARGEST: &[(&str, &str)] = &[
     ("base/src/time.rs", "the last moment there is"),
@@ -308,12 +296,6 @@ fn calls_of(calls: &[&str]) -> BTreeMap<String, Vec<String>> {
 #[test]
 fn files_are_read_in_one_way() {
     let found = against(&calls_of(&["fs::read(", "fs::read_to_string(", "File::open("]), READS);
-    assert!(found.is_empty(), "\n{found}");
-}
-
-#[test]
-fn processes_are_started_in_few_rooms() {
-    let found = against(&calls_of(&["Command::new("]), PROCESSES);
     assert!(found.is_empty(), "\n{found}");
 }
 

@@ -64,6 +64,7 @@ fn commands(text: &str) -> usize {
 #[test]
 fn every_process_that_is_started_is_listed_with_its_environment() {
     let mut found: BTreeMap<String, (usize, Option<Environment>)> = BTreeMap::new();
+    // The tools of the tests are not in the product.
     let folders = crates().into_iter().filter(|folder| !folder.starts_with("tests") && !folder.ends_with("/tests"));
     for folder in folders {
         for file in rust_files(&root().join(&folder).join("src")) {

@@ -2,10 +2,10 @@
 //!
 //! | module | subject |
 //! |---|---|
-//! | [`door`] | how many connections a listener keeps, and who leaves for one who comes |
+//! | [`connection_limit`] | how many connections a listener keeps, and which gives way to one that comes |
 //! | [`tcp`] | clients and operators over TCP |
 //! | [`tls`] | certificates, and who is trusted |
 
-pub mod door;
+pub mod connection_limit;
 pub mod tcp;
 pub mod tls;

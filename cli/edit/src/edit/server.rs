@@ -19,7 +19,7 @@ use super::join::{self, Tip};
 use super::state::{self, State};
 use super::workspace::Workspace;
 use onescan_runner::error::ListenError;
-use onescan_runner::web::doorway::Doorway;
+use onescan_runner::web::listener::LimitedListener;
 use onescan_runner::web::{asset, guarded_here};
 
 /// The longest request, bytes.
@@ -202,7 +202,7 @@ impl Editor {
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(&listen)?;
         let served = async {
             let listener = tokio::net::TcpListener::from_std(self.listener)?;
-            axum::serve(Doorway::new(listener, None)?, self.router).await
+            axum::serve(LimitedListener::new(listener, None)?, self.router).await
         };
         Ok(runtime.block_on(served).map_err(listen)?)
     }

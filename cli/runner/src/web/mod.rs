@@ -6,7 +6,7 @@
 //! | `routes` | what a browser may ask for |
 //! | [`guard`] | whose requests are answered |
 //! | [`entry`] | who comes in where a token is asked for |
-//! | `doorway` | where connections come in: their number, their time, TLS |
+//! | `listener` | where connections come in: their number, their time, TLS |
 //! | [`structure`] | what of a session does not change |
 //! | [`machine`] | bodies and components |
 //! | [`signals`] | signals |
@@ -39,13 +39,13 @@ mod alarms;
 mod ask;
 mod attendance;
 mod bundle;
-pub mod doorway;
 mod drawings;
 mod entry;
 mod error;
 mod frames;
 mod guard;
 mod known;
+pub mod listener;
 mod looks;
 pub mod machine;
 mod maps;
@@ -89,11 +89,11 @@ use crate::error::{Exit, ExitCode, ListenError, Usage};
 use crate::past::Rewinder;
 use attendance::Attendance;
 pub use bundle::charts;
-use doorway::{Doorway, Visitor};
 use entry::Entry;
 use error::Refused;
 use frames::Frames;
 use known::Known;
+use listener::{LimitedListener, Visitor};
 use looks::Called;
 use routes::router;
 pub use routes::{asset, guarded_here};
@@ -368,8 +368,8 @@ impl Page {
             runtime.block_on(async move {
                 let served = async {
                     let listener = tokio::net::TcpListener::from_std(listener)?;
-                    let doorway = Doorway::new(listener, identity.as_ref())?;
-                    axum::serve(doorway, router.into_make_service_with_connect_info::<Visitor>()).await
+                    let listener = LimitedListener::new(listener, identity.as_ref())?;
+                    axum::serve(listener, router.into_make_service_with_connect_info::<Visitor>()).await
                 };
                 tokio::select! {
                     outcome = served => if let Err(error) = outcome {

@@ -10,8 +10,8 @@ use axum::response::{Html, IntoResponse, Response};
 use axum::routing::{get, post};
 use axum::{Extension, Router};
 
-use super::doorway::Visitor;
 use super::entry::{AuthError, Rank};
+use super::listener::Visitor;
 use super::{Session, bundle, entry, guard, viewer};
 
 /// What a page may load and do: what comes from here, and nothing from outside.

@@ -11,7 +11,7 @@ use std::net::SocketAddr;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use onescan_server::transport::door::{Door, Limits, Place};
+use onescan_server::transport::connection_limit::{ConnectionLimit, Limits, Place};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::tcp::{OwnedReadHalf, OwnedWriteHalf};
 use tokio::net::{TcpListener, TcpStream};
@@ -45,7 +45,7 @@ impl Channels {
 
 /// Lets connections in until the server ends.
 pub(super) async fn let_in(outside: TcpListener, server: SocketAddr, channels: Channels) {
-    let door = Door::new(LIMITS);
+    let limit = ConnectionLimit::new(LIMITS);
     loop {
         let (stream, from) = match outside.accept().await {
             Ok(accepted) => accepted,
@@ -60,7 +60,7 @@ pub(super) async fn let_in(outside: TcpListener, server: SocketAddr, channels: C
             // It may have gone by itself.
             leave.send(()).ok();
         };
-        let Some(place) = door.admit(from.ip(), leave) else {
+        let Some(place) = limit.admit(from.ip(), leave) else {
             tracing::debug!(%from, "refused an OPC UA client: all places are taken");
             continue;
         };

@@ -10,7 +10,8 @@ use onescan_iec::syntax::ast::{Ident, Modifier, Pou, PouKind, SectionKind, TypeS
 impl<'a> Collector<'a> {
     /// The types of an override's parameters and result are those of what it overrides.
     pub(super) fn overrides(&mut self, key: &str, unit: &'a Unit<'a>) {
-        let mut above: Vec<String> = self.foreign_base(key).into_iter().collect();
+        let foreign_base = self.foreign_base(key);
+        let mut above: Vec<String> = foreign_base.iter().cloned().collect();
         for (name, home) in self.interfaces_of(unit) {
             match self.named(&name, &home, 0) {
                 Ty::Foreign(interface) => above.push(interface),
@@ -28,8 +29,9 @@ impl<'a> Collector<'a> {
                 }
                 let shown = self.foreign(&base).name.clone();
                 let path = format!("{shown}.{name}");
+                // What is overridden is a base's; an interface's is implemented.
                 let overrides = *part == Part::Method && member.object.modifiers.contains(&Modifier::Override);
-                if overrides && !self.has_method(&base, name) {
+                if overrides && foreign_base.as_ref() == Some(&base) && !self.has_method(&base, name) {
                     self.foreign(&base).member(&member.name.text);
                 }
                 match part {

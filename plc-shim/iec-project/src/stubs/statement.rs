@@ -4,7 +4,7 @@ use super::collect::{Collector, Scope, elementary};
 use super::names::Access;
 use super::ty::{Slot, Ty};
 use onescan_iec::ElementaryType;
-use onescan_iec::syntax::ast::{Expr, Statement, StatementKind, UpdateOp};
+use onescan_iec::syntax::ast::{Expr, ReferenceKind, Statement, StatementKind, UpdateOp};
 
 impl<'a> Collector<'a> {
     pub(super) fn statements(&mut self, list: &[Statement], scope: &Scope<'a>) {
@@ -122,6 +122,13 @@ impl<'a> Collector<'a> {
         }
         if let (Ty::Pointer(_, from), Ty::Pointer(_, to)) | (Ty::Array(_, from), Ty::Array(_, to)) = (from, to) {
             self.beside(&from.clone(), &to.clone());
+        }
+        if let (Ty::Pointer(ReferenceKind::RefTo, from), Ty::Pointer(ReferenceKind::RefTo, to)) = (from, to) {
+            // What one refers to is taken for what the other does; pointers of vendors ask for nothing.
+            let (from, to) = (self.slots.resolved(from), self.slots.resolved(to));
+            if from != to {
+                self.stands_for(&from, &to);
+            }
         }
         let (from, to) = (self.slots.resolved(from), self.slots.resolved(to));
         if from == to {

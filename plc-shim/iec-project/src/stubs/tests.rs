@@ -140,13 +140,13 @@ PROGRAM P VAR l : Lamp; b : BOOL; END_VAR b := l.Switch(); END_PROGRAM";
 /// What an heir overrides stands in its base, once, however often the stubs are written; a caller's array has its bounds.
 #[test]
 fn a_base_of_a_class_has_what_its_heirs_override() {
-    let text = "CLASS Move EXTENDS Command
+    let text = "CLASS Drive EXTENDS Command
 METHOD PUBLIC OVERRIDE Run : BOOL VAR_INPUT fast : BOOL; END_VAR
   Run := fast;
 END_METHOD
 END_CLASS
 FUNCTION Count : INT VAR_IN_OUT values : ARRAY [*] OF INT; END_VAR Count := CountOf(values); END_FUNCTION
-PROGRAM P VAR m : Move; b : BOOL; n : INT; a : ARRAY [1..3] OF INT; END_VAR b := m.Run(b); n := Count(a); END_PROGRAM";
+PROGRAM P VAR m : Drive; b : BOOL; n : INT; a : ARRAY [1..3] OF INT; END_VAR b := m.Run(b); n := Count(a); END_PROGRAM";
     let own = || Input::from_text("main.st", SourceKind::Text, text);
     let mut written = write(&[own()], None).text;
     for _ in 0..2 {

@@ -74,7 +74,7 @@ fn warning(name: &str, first: &Diagnostic, count: usize) -> Diagnostic {
         first.code.text(),
         first.message
     );
-    let help = "mend it before a program uses it, or take it out of the project";
+    let help = "correct it before a program uses it, or take it out of the project";
     Diagnostic::warning(Code::UnusedUnit, first.span, message).with_help(help)
 }
 

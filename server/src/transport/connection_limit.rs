@@ -1,7 +1,7 @@
-//! The door of a listener: how many connections stand in it at a time, and who of them leaves for one who comes.
+//! How many connections a listener keeps at a time, and which of them is closed for one that comes.
 //!
-//! Whoever has proved to be a client stays. All others give way, the longest there first, so that strangers who say
-//! nothing keep nobody out, however many they are: one who comes and speaks has spoken before those behind it push it out.
+//! One that has proved to be a client's stays. All others give way, the longest there first, so that strangers who say
+//! nothing keep nobody out, however many they are: one that comes and speaks has spoken before others push it out.
 
 use std::collections::BTreeMap;
 use std::net::IpAddr;
@@ -18,34 +18,34 @@ pub struct Limits {
     pub staying: usize,
 }
 
-/// Who stands in the door. Clones are the same door.
+/// The connections of a listener. Clones are of the same listener.
 #[derive(Clone)]
-pub struct Door(Arc<Mutex<Present>>);
+pub struct ConnectionLimit(Arc<Mutex<Present>>);
 
 struct Present {
     limits: Limits,
     next: u64,
     /// In the order in which they came.
-    guests: BTreeMap<u64, Guest>,
+    connections: BTreeMap<u64, Connection>,
 }
 
-struct Guest {
+struct Connection {
     address: IpAddr,
     stays: bool,
     leave: Box<dyn FnOnce() + Send>,
 }
 
-/// The place of a connection in the door; it is free again when this is dropped.
+/// The place of a connection among those of its listener; it is free again when this is dropped.
 pub struct Place {
-    door: Door,
+    limit: ConnectionLimit,
     number: u64,
 }
 
-impl Door {
-    /// A door in which nobody stands.
+impl ConnectionLimit {
+    /// The limit of a listener without connections.
     #[must_use]
     pub fn new(limits: Limits) -> Self {
-        Self(Arc::new(Mutex::new(Present { limits, next: 0, guests: BTreeMap::new() })))
+        Self(Arc::new(Mutex::new(Present { limits, next: 0, connections: BTreeMap::new() })))
     }
 
     fn lock(&self) -> MutexGuard<'_, Present> {
@@ -57,38 +57,41 @@ impl Door {
     pub fn admit(&self, address: IpAddr, leave: impl FnOnce() + Send + 'static) -> Option<Place> {
         let mut present = self.lock();
         let Limits { all, of_address, staying: _ } = present.limits;
-        let of_same = present.guests.values().filter(|guest| guest.address == address).count();
+        let of_same = present.connections.values().filter(|connection| connection.address == address).count();
         let leaving = if of_same >= of_address {
-            Some(present.first(|guest| guest.address == address)?)
-        } else if present.guests.len() >= all {
+            Some(present.first(|connection| connection.address == address)?)
+        } else if present.connections.len() >= all {
             Some(present.first(|_| true)?)
         } else {
             None
         };
-        let leaving = leaving.and_then(|number| present.guests.remove(&number));
+        let leaving = leaving.and_then(|number| present.connections.remove(&number));
         let number = present.next;
         present.next += 1;
-        present.guests.insert(number, Guest { address, stays: false, leave: Box::new(leave) });
-        debug_assert!(present.guests.len() <= all.max(1), "one leaves for one who comes");
+        present.connections.insert(number, Connection { address, stays: false, leave: Box::new(leave) });
+        debug_assert!(present.connections.len() <= all.max(1), "one leaves for one who comes");
         // Whoever leaves may give its place back at once.
         drop(present);
-        if let Some(guest) = leaving {
-            (guest.leave)();
+        if let Some(connection) = leaving {
+            (connection.leave)();
         }
-        Some(Place { door: self.clone(), number })
+        Some(Place { limit: self.clone(), number })
     }
 
-    /// How many connections stand in the door.
+    /// How many connections there are.
     #[must_use]
     pub fn count(&self) -> usize {
-        self.lock().guests.len()
+        self.lock().connections.len()
     }
 }
 
 impl Present {
     /// The first of those that do not stay.
-    fn first(&self, accept: impl Fn(&Guest) -> bool) -> Option<u64> {
-        self.guests.iter().find(|(_, guest)| !guest.stays && accept(guest)).map(|(number, _)| *number)
+    fn first(&self, accept: impl Fn(&Connection) -> bool) -> Option<u64> {
+        self.connections
+            .iter()
+            .find(|(_, connection)| !connection.stays && accept(connection))
+            .map(|(number, _)| *number)
     }
 }
 
@@ -96,12 +99,13 @@ impl Place {
     /// From now on the connection leaves for nobody. False if it had to leave already, or too many stay.
     #[must_use]
     pub fn stay(&self) -> bool {
-        let mut present = self.door.lock();
-        let is_full = present.guests.values().filter(|guest| guest.stays).count() >= present.limits.staying;
-        match present.guests.get_mut(&self.number) {
-            Some(guest) => {
-                guest.stays |= !is_full;
-                guest.stays
+        let mut present = self.limit.lock();
+        let is_full =
+            present.connections.values().filter(|connection| connection.stays).count() >= present.limits.staying;
+        match present.connections.get_mut(&self.number) {
+            Some(connection) => {
+                connection.stays |= !is_full;
+                connection.stays
             }
             None => false,
         }
@@ -110,8 +114,8 @@ impl Place {
 
 impl Drop for Place {
     fn drop(&mut self) {
-        // One that had to leave has no guest any more.
-        self.door.lock().guests.remove(&self.number);
+        // One that had to leave is not there any more.
+        self.limit.lock().connections.remove(&self.number);
     }
 }
 
@@ -127,9 +131,9 @@ mod tests {
         IpAddr::from([10, 0, 0, last])
     }
 
-    /// A door, and who had to leave it.
+    /// A limit, and who had to leave.
     struct Watched {
-        door: Door,
+        limit: ConnectionLimit,
         left: mpsc::Receiver<u8>,
         leave: mpsc::Sender<u8>,
     }
@@ -137,12 +141,12 @@ mod tests {
     impl Watched {
         fn new() -> Self {
             let (leave, left) = mpsc::channel();
-            Self { door: Door::new(LIMITS), left, leave }
+            Self { limit: ConnectionLimit::new(LIMITS), left, leave }
         }
 
         fn admit(&self, from: u8, name: u8) -> Option<Place> {
             let leave = self.leave.clone();
-            self.door.admit(address(from), move || leave.send(name).unwrap())
+            self.limit.admit(address(from), move || leave.send(name).unwrap())
         }
 
         fn left(&self) -> Vec<u8> {
@@ -160,16 +164,16 @@ mod tests {
         assert_eq!(watched.left(), [1]);
         assert!(!first[0].stay() && first[1].stay() && fourth.stay() && other.stay());
         drop(first);
-        assert_eq!(watched.door.count(), 2, "one that had to leave gives back no other's place");
+        assert_eq!(watched.limit.count(), 2, "one that had to leave gives back no other's place");
     }
 
     #[test]
-    fn the_first_of_all_leaves_when_the_door_is_full() {
+    fn the_first_of_all_leaves_when_all_places_are_taken() {
         let watched = Watched::new();
         let places: Vec<_> = (0..4).map(|name| watched.admit(name, name).unwrap()).collect();
         assert!(places[0].stay());
         let _last = watched.admit(9, 9).unwrap();
-        assert_eq!((watched.left(), watched.door.count()), (vec![1], 4));
+        assert_eq!((watched.left(), watched.limit.count()), (vec![1], 4));
     }
 
     #[test]
@@ -185,8 +189,8 @@ mod tests {
 
     #[test]
     fn no_more_stay_than_may() {
-        let door = Door::new(Limits { staying: 1, ..LIMITS });
-        let [first, second] = [1, 2].map(|from| door.admit(address(from), || ()).unwrap());
+        let limit = ConnectionLimit::new(Limits { staying: 1, ..LIMITS });
+        let [first, second] = [1, 2].map(|from| limit.admit(address(from), || ()).unwrap());
         assert!(first.stay() && first.stay() && !second.stay());
         drop(first);
         assert!(second.stay());
@@ -194,13 +198,13 @@ mod tests {
 
     #[test]
     fn whoever_leaves_may_drop_its_place_at_once() {
-        let door = Door::new(Limits { all: 1, of_address: 1, staying: 1 });
+        let limit = ConnectionLimit::new(Limits { all: 1, of_address: 1, staying: 1 });
         let kept = Arc::new(Mutex::new(None::<Place>));
         let own = Arc::clone(&kept);
-        let place = door.admit(address(1), move || drop(own.lock().unwrap().take())).unwrap();
+        let place = limit.admit(address(1), move || drop(own.lock().unwrap().take())).unwrap();
         *kept.lock().unwrap() = Some(place);
-        let _next = door.admit(address(1), || ()).unwrap();
+        let _next = limit.admit(address(1), || ()).unwrap();
         assert!(kept.lock().unwrap().is_none());
-        assert_eq!(door.count(), 1);
+        assert_eq!(limit.count(), 1);
     }
 }

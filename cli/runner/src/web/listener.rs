@@ -3,7 +3,7 @@
 //!
 //! A browser's connections come and go with its requests; each has [`PATIENCE`] from one answer to the next. Only a viewer's
 //! connection stays. So whoever connects and says nothing, or half a request, or does not read, is gone after a while, and
-//! gives way before to one who comes ([`Door`]). Descriptors are left for the session's own files.
+//! gives way before to one who comes ([`ConnectionLimit`]). Descriptors are left for the session's own files.
 
 use std::io;
 use std::net::SocketAddr;
@@ -15,7 +15,7 @@ use std::time::Duration;
 
 use axum::extract::connect_info::Connected;
 use axum::serve::{IncomingStream, Listener};
-use onescan_server::transport::door::{Door, Limits, Place};
+use onescan_server::transport::connection_limit::{ConnectionLimit, Limits, Place};
 use onescan_server::transport::tls::Identity;
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::net::{TcpListener, TcpStream};
@@ -36,12 +36,12 @@ const CONNECTIONS_MAX: usize = 256;
 const CONNECTIONS_MIN: usize = 8;
 
 /// A listener of which connections come into a page.
-pub struct Doorway {
+pub struct LimitedListener {
     address: SocketAddr,
     connections: mpsc::Receiver<(Guarded, SocketAddr)>,
 }
 
-impl Doorway {
+impl LimitedListener {
     /// Takes the connections of `listener`, on the runtime of whoever calls; with `identity` under TLS.
     ///
     /// # Errors
@@ -50,31 +50,33 @@ impl Doorway {
         let address = listener.local_addr()?;
         let (send, connections) = mpsc::channel(1);
         let acceptor = identity.map(|identity| TlsAcceptor::from(identity.server_config()));
-        tokio::spawn(take(listener, Door::new(limits()), acceptor, send));
+        tokio::spawn(take(listener, ConnectionLimit::new(limits()), acceptor, send));
         Ok(Self { address, connections })
     }
 }
 
 /// A quarter of the descriptors that this process may have.
 fn limits() -> Limits {
-    let all = (descriptors() / 4).clamp(CONNECTIONS_MIN, CONNECTIONS_MAX);
+    let quarter = descriptors().map_or(CONNECTIONS_MAX, |descriptors| descriptors / 4);
+    let all = quarter.clamp(CONNECTIONS_MIN, CONNECTIONS_MAX);
     Limits { all, of_address: all / 2, staying: all / 2 }
 }
 
+/// Nothing where there is no limit.
 #[cfg(unix)]
-fn descriptors() -> usize {
+fn descriptors() -> Option<usize> {
     let limit = rustix::process::getrlimit(rustix::process::Resource::Nofile).current;
-    limit.and_then(|limit| usize::try_from(limit).ok()).unwrap_or(usize::MAX)
+    limit.and_then(|limit| usize::try_from(limit).ok())
 }
 
 #[cfg(not(unix))]
-fn descriptors() -> usize {
-    usize::MAX
+fn descriptors() -> Option<usize> {
+    None
 }
 
 async fn take(
     listener: TcpListener,
-    door: Door,
+    limit: ConnectionLimit,
     acceptor: Option<TlsAcceptor>,
     connections: mpsc::Sender<(Guarded, SocketAddr)>,
 ) {
@@ -92,7 +94,7 @@ async fn take(
             // It may have gone by itself.
             leave.send(()).ok();
         };
-        let Some(place) = door.admit(from.ip(), leave) else {
+        let Some(place) = limit.admit(from.ip(), leave) else {
             tracing::debug!(%from, "refused a connection to the page: all places are taken by viewers");
             continue;
         };
@@ -131,11 +133,11 @@ async fn received(
             },
         },
     };
-    let guest = Arc::new(Guest { place, stays: AtomicBool::new(false) });
-    Some(Guarded { io, guest, leaving: Some(leaving), patience: Box::pin(tokio::time::sleep(PATIENCE)) })
+    let connection = Arc::new(Connection { place, stays: AtomicBool::new(false) });
+    Some(Guarded { io, connection, leaving: Some(leaving), patience: Box::pin(tokio::time::sleep(PATIENCE)) })
 }
 
-impl Listener for Doorway {
+impl Listener for LimitedListener {
     type Io = Guarded;
     type Addr = SocketAddr;
 
@@ -152,17 +154,17 @@ impl Listener for Doorway {
     }
 }
 
-struct Guest {
+struct Connection {
     place: Place,
     stays: AtomicBool,
 }
 
 /// The connection that a request has come by.
 #[derive(Clone)]
-pub(super) struct Visitor(Arc<Guest>);
+pub(super) struct Visitor(Arc<Connection>);
 
 impl Visitor {
-    /// From now on the connection is a viewer's, which says and is told little for as long as it likes. False if there are
+    /// From now on the connection is a viewer's, on which little is said for as long as it likes. False if there are
     /// too many of them.
     pub(super) fn stay(&self) -> bool {
         let stays = self.0.place.stay();
@@ -171,9 +173,9 @@ impl Visitor {
     }
 }
 
-impl Connected<IncomingStream<'_, Doorway>> for Visitor {
-    fn connect_info(stream: IncomingStream<'_, Doorway>) -> Self {
-        Self(Arc::clone(&stream.io().guest))
+impl Connected<IncomingStream<'_, LimitedListener>> for Visitor {
+    fn connect_info(stream: IncomingStream<'_, LimitedListener>) -> Self {
+        Self(Arc::clone(&stream.io().connection))
     }
 }
 
@@ -185,7 +187,7 @@ enum Io {
 /// A connection with its place and its time.
 pub struct Guarded {
     io: Io,
-    guest: Arc<Guest>,
+    connection: Arc<Connection>,
     /// Says that it must leave; nothing once it has been said.
     leaving: Option<oneshot::Receiver<()>>,
     patience: Pin<Box<Sleep>>,
@@ -194,7 +196,7 @@ pub struct Guarded {
 impl Guarded {
     /// Whether the connection may go on.
     fn check(&mut self, context: &mut Context<'_>) -> io::Result<()> {
-        if self.guest.stays.load(Ordering::Acquire) {
+        if self.connection.stays.load(Ordering::Acquire) {
             return Ok(());
         }
         let must_leave = match &mut self.leaving {
