@@ -159,10 +159,7 @@ fn keys_of_links() {
 fn is_refused_by(at: &Place, words: &[&str]) {
     let said = typed(&at.own, words);
     let all = said_all(&said);
-    assert!(
-        said.code == Some(2) && all.contains("outside of the") && all.contains("more"),
-        "{words:?}: {said:?}"
-    );
+    assert!(said.code == Some(2) && all.contains("outside of the") && all.contains("more"), "{words:?}: {said:?}");
     assert!(!all.contains(SECRET), "{words:?}: {said:?}");
     let allowed = typed(&at.own, &[words, &["--allow-path", at.other.to_str().unwrap()]].concat());
     assert!(said_all(&allowed).contains(SECRET), "{words:?}: {allowed:?}");

@@ -265,3 +265,18 @@ fn outputs_stand_behind_inputs_and_say_which_function_is_meant() {
         FUNCTION F : INT VAR_OUTPUT b : INT; END_VAR b := 1; F := 1; END_FUNCTION";
     assert!(findings_in(Iec3, same).iter().any(|found| found.code == Code::DuplicateName));
 }
+
+#[test]
+fn a_reference_to_a_base_refers_to_what_is_derived() {
+    let text = "
+        CLASS Base METHOD PUBLIC Kind : INT Kind := 1; END_METHOD END_CLASS
+        CLASS Derived EXTENDS Base VAR n : INT; END_VAR METHOD PUBLIC OVERRIDE Kind : INT Kind := 2; END_METHOD END_CLASS
+        PROGRAM P VAR base : Base; derived : Derived; r : REF_TO Base; s : REF_TO Derived; a, b, c : INT; END_VAR
+          s := REF(derived); r := s; a := r^.Kind(); r := REF(base); b := r^.Kind(); r := REF(derived); c := r^.Kind();
+        END_PROGRAM";
+    let mut rig = Rig::in_dialect(Iec3, text);
+    rig.scan().expect("no fault");
+    assert_eq!(["a", "b", "c"].map(|name| rig.int(&format!("P.{name}"))), [2, 1, 2]);
+    let wrong = text.replace("r := s;", "s := r;");
+    assert!(findings_in(Iec3, &wrong).iter().any(|found| found.code == Code::TypeMismatch));
+}

@@ -114,9 +114,7 @@ fn use_in_projects(feature: Feature) -> &'static str {
         Feature::Views => {
             "PROGRAM P VAR a : DWORD; b AT a : ARRAY [0..3] OF BYTE; c : BYTE; END_VAR c := b[0]; END_PROGRAM"
         }
-        Feature::ElseColon => {
-            "PROGRAM P VAR a : INT; END_VAR CASE a OF 1: a := 2; ELSE: a := 3; END_CASE; END_PROGRAM"
-        }
+        Feature::ElseColon => "PROGRAM P VAR a : INT; END_VAR CASE a OF 1: a := 2; ELSE: a := 3; END_CASE; END_PROGRAM",
         Feature::LooseParts => {
             "TYPE C : (Red, Green); END_TYPE PROGRAM P VAR c1 : C; b : BOOL; END_VAR b := c1.0; END_PROGRAM"
         }
@@ -138,9 +136,7 @@ fn use_in_projects(feature: Feature) -> &'static str {
              PROGRAM P VAR a, b : INT; END_VAR a := F(b); END_PROGRAM"
         }
         Feature::IntegerParts => "PROGRAM P VAR i : INT; x : BOOL; END_VAR x := i.%X3; END_PROGRAM",
-        Feature::ProgramInOuts => {
-            "PROGRAM P VAR_IN_OUT n : INT; END_VAR n := n + 1; END_PROGRAM"
-        }
+        Feature::ProgramInOuts => "PROGRAM P VAR_IN_OUT n : INT; END_VAR n := n + 1; END_PROGRAM",
         Feature::CCode => "PROGRAM P VAR a : INT; END_VAR {{ SetFbVar(a, 1); }} a := a + 1; END_PROGRAM",
         Feature::ConditionalReturns => "PROGRAM P VAR b : BOOL; END_VAR RETURN (b); b := TRUE; END_PROGRAM",
         Feature::LooseLast => "PROGRAM P VAR b : BOOL; END_VAR IF b THEN b := FALSE END_IF; END_PROGRAM",
@@ -178,6 +174,13 @@ fn use_in_projects(feature: Feature) -> &'static str {
         Feature::EmptyArrays => {
             "PROGRAM P VAR a : ARRAY [0..-1] OF INT; b : ARRAY [0..0] OF INT; END_VAR b[0] := 1; END_PROGRAM"
         }
+        other => use_in_more_projects(other),
+    }
+}
+
+/// And of what others did.
+fn use_in_more_projects(feature: Feature) -> &'static str {
+    match feature {
         Feature::BaseParts => {
             "TYPE B : STRUCT a : INT; END_STRUCT END_TYPE TYPE D EXTENDS B : STRUCT c : INT; END_STRUCT END_TYPE
              PROGRAM P VAR b1 : B; d1 : D; END_VAR b1 := d1; END_PROGRAM"

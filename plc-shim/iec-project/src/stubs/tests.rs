@@ -117,6 +117,24 @@ PROGRAM P VAR m : MoveAxis; b : BOOL; END_VAR b := m.Run(); END_PROGRAM";
     assert_eq!(errors, 0, "{written}");
 }
 
+/// What `REF_TO` variables exchange is of one type.
+#[test]
+fn references_that_are_assigned_refer_to_one_type() {
+    let text = "CLASS Axis
+VAR one : REF_TO TO_Speed; two : REF_TO TO_Pos; END_VAR
+METHOD PUBLIC Attach : BOOL VAR_INPUT given : REF_TO TO_Pos; END_VAR
+  two := given; one := given; Attach := one <> NULL;
+END_METHOD
+END_CLASS
+PROGRAM P VAR m : Axis; b : BOOL; END_VAR b := m.Attach(NULL); END_PROGRAM";
+    let own = || Input::from_text("main.st", SourceKind::Text, text);
+    let written = write(&[own()], None).text;
+    let stubs = Input::from_text("stubs.st", SourceKind::Text, written.as_str());
+    let all = inspect(vec![own(), stubs], None);
+    let errors = all.findings().iter().filter(|found| found.diagnostic().severity == Severity::Error).count();
+    assert_eq!(errors, 0, "{written}");
+}
+
 /// What is compared with NULL, or stands where nothing is kept, refers to an instance.
 #[test]
 fn a_reference_to_an_instance_is_an_interface() {

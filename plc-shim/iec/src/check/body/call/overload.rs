@@ -31,13 +31,12 @@ impl Body<'_, '_> {
             return Some(*only);
         }
         let place = (span.file.0, span.start, span.end);
-        let found = match self.meanings.get(&place) {
-            Some(known) => known.clone(),
-            None => {
-                let found = self.nearest(units, name, call, span);
-                self.meanings.insert(place, found.clone());
-                found
-            }
+        let found = if let Some(known) = self.meanings.get(&place) {
+            known.clone()
+        } else {
+            let found = self.nearest(units, name, call, span);
+            self.meanings.insert(place, found.clone());
+            found
         };
         found.map_err(|wrong| self.report(wrong)).ok()
     }

@@ -169,6 +169,13 @@ impl Body<'_, '_> {
                 }
                 _ => self.no_reference(&Operand::Typed(expr), wanted),
             },
+            // To a base one to what is derived from it may be assigned (3rd ed. 6.4.4.10.3).
+            (Operand::Typed(expr), ReferenceKind::RefTo) => match *self.declarations.types().get(expr.ty) {
+                Type::Reference { kind: ReferenceKind::RefTo, target: other } if self.derives(other, target) => {
+                    Some(Expr { ty: wanted, ..expr })
+                }
+                _ => self.no_reference(&Operand::Typed(expr), wanted),
+            },
             (operand, _) => self.no_reference(&operand, wanted),
         }
     }
