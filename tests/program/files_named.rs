@@ -241,3 +241,17 @@ fn snapshots() {
     assert_eq!(left, ["nominal.traj.new"]);
     assert_eq!(std::fs::read_to_string(&pending).unwrap(), SECRET);
 }
+
+/// Nor is a folder made behind one: those of a scenario's file of another name have one of their own.
+#[test]
+fn folders_of_snapshots() {
+    let folder = crate::typed::copied_shear();
+    let outside = tempfile::tempdir().unwrap();
+    let shelf = folder.path().join("snapshots");
+    std::fs::remove_dir_all(&shelf).unwrap();
+    std::os::unix::fs::symlink(outside.path(), &shelf).unwrap();
+    std::fs::copy(folder.path().join("scenario.toml"), folder.path().join("other.toml")).unwrap();
+    let said = typed(folder.path(), &["test", "other.toml"]);
+    assert!(said.code != Some(0) && said_all(&said).contains("outside of the scenario's folder"), "{said:?}");
+    assert_eq!(std::fs::read_dir(outside.path()).unwrap().count(), 0);
+}

@@ -98,7 +98,7 @@ fn a_call_means_the_function_whose_parameters_suit_best() {
         ("Kind(a)", 6),
         ("Kind()", 7),
         ("Kind(d)", 11),
-        // What there is no list for goes to the nearest that it widens to.
+        // An argument of another type goes to the nearest one that it widens to.
         ("Kind(s)", 1),
         ("Kind(r)", 2),
         ("Kind(u)", 11),

@@ -7,12 +7,14 @@ use std::collections::BTreeMap;
 use std::net::IpAddr;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use tokio::sync::oneshot;
+
 /// How many connections a listener keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
     /// Of all addresses together.
     pub all: usize,
-    /// Of one address.
+    /// Of one IP address.
     pub of_address: usize,
     /// Of those that stay.
     pub staying: usize,
@@ -76,6 +78,16 @@ impl ConnectionLimit {
             (connection.leave)();
         }
         Some(Place { limit: self.clone(), number })
+    }
+
+    /// The same for a connection of a task, which waits for the word that it must leave.
+    pub fn admit_task(&self, address: IpAddr) -> Option<(Place, oneshot::Receiver<()>)> {
+        let (leave, leaving) = oneshot::channel();
+        let place = self.admit(address, move || {
+            // It may have gone by itself.
+            leave.send(()).ok();
+        });
+        place.map(|place| (place, leaving))
     }
 
     /// How many connections there are.

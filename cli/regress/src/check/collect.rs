@@ -138,8 +138,9 @@ struct Files {
     seen: BTreeSet<Identity>,
     left_out: BTreeMap<Identity, Reason>,
     part: Part,
-    /// The folders that are being read: what they and their projects name is read only where it lies in one of them.
-    folders: Vec<PathBuf>,
+    /// Where what is read must lie: in the outermost folder or project that is being read. Nothing for files that the
+    /// user names.
+    bounds: Option<Within>,
 }
 
 /// A file, by whatever name it was found.
@@ -195,11 +196,8 @@ impl Files {
 
     /// What is in a file. One that the user names is read wherever it is, one that a folder or project has only within.
     fn read(&self, path: &Path) -> std::io::Result<Vec<u8>> {
-        if self.folders.is_empty() {
-            return regular::read(path, Limit::TEXT);
-        }
-        let allowed = self.folders.iter().chain(&granted().paths);
-        match Within::places(allowed.cloned().collect()).find(path) {
+        let Some(bounds) = &self.bounds else { return regular::read(path, Limit::TEXT) };
+        match bounds.find(path) {
             Ok(real) => regular::read(&real, Limit::TEXT),
             Err(NotWithin::Missing(error)) => Err(error),
             Err(NotWithin::Elsewhere(real)) => {
@@ -209,11 +207,12 @@ impl Files {
         }
     }
 
-    /// Does `action` with a folder whose files may be read.
+    /// Does `action` with what lies in a folder alone, if it is not in one already that is being read.
     fn within<T>(&mut self, folder: &Path, action: impl FnOnce(&mut Self) -> T) -> T {
-        self.folders.push(folder.to_owned());
+        let outer = self.bounds.clone();
+        self.bounds.get_or_insert_with(|| granted().within(folder));
         let done = action(self);
-        self.folders.pop();
+        self.bounds = outer;
         done
     }
 
@@ -309,10 +308,10 @@ impl Files {
 
     /// All sources in a folder and below it. Where a project is, it says which files are meant.
     fn folder(&mut self, path: &Path) -> Result<(), CheckError> {
-        // The outermost one has all that is in those below it.
-        if self.folders.is_empty() {
-            return self.within(path, |files| files.folder(path));
-        }
+        self.within(path, |files| files.all_below(path))
+    }
+
+    fn all_below(&mut self, path: &Path) -> Result<(), CheckError> {
         let mut entries = Vec::new();
         for entry in std::fs::read_dir(path).map_err(Unreadable::at(path))? {
             entries.push(entry.map_err(Unreadable::at(path))?.path());

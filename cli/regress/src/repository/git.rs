@@ -11,6 +11,8 @@ use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
 use onescan_runner::error::Usage;
 
+use super::RepositoryError;
+
 /// Variables without which git does not start: where programs and libraries are, and what Windows needs.
 const KEPT: [&str; 7] = ["PATH", "LD_LIBRARY_PATH", "TMPDIR", "TEMP", "TMP", "SYSTEMROOT", "SystemRoot"];
 
@@ -55,14 +57,15 @@ pub(super) enum Silent {
     Refused(String),
 }
 
-impl From<Silent> for Usage {
+impl From<Silent> for RepositoryError {
     fn from(silent: Silent) -> Self {
-        match silent {
+        let usage = match silent {
             Silent::NotStarted(source) => {
-                Self::new(format!("cannot start `git`: {source}"), Some("this needs git".to_owned()))
+                Usage::new(format!("cannot start `git`: {source}"), Some("this needs git".to_owned()))
             }
-            Silent::Refused(said) => Self::new(format!("git: {said}"), None),
-        }
+            Silent::Refused(said) => Usage::new(format!("git: {said}"), None),
+        };
+        usage.into()
     }
 }
 
@@ -73,7 +76,7 @@ fn command(folder: &Path, words: &[&str]) -> Command {
     command
 }
 
-/// What git says.
+/// What git writes to its standard output, as bytes.
 pub(super) fn ask(folder: &Path, words: &[&str]) -> Result<Vec<u8>, Silent> {
     let output = command(folder, words).stdin(Stdio::null()).output().map_err(Silent::NotStarted)?;
     if output.status.success() {

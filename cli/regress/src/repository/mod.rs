@@ -42,8 +42,8 @@ impl Repository {
         }
         let folder = if scenario.is_dir() { scenario } else { scenario.parent().unwrap_or(Path::new(".")) };
         let folder = if folder == Path::new("") { Path::new(".") } else { folder };
-        let root = git::line(folder, &["rev-parse", "--show-toplevel"]).map_err(Usage::from)?;
-        let prefix = git::line(folder, &["rev-parse", "--show-prefix"]).map_err(Usage::from)?;
+        let root = git::line(folder, &["rev-parse", "--show-toplevel"])?;
+        let prefix = git::line(folder, &["rev-parse", "--show-prefix"])?;
         Ok(Self { root: PathBuf::from(root), scenario: PathBuf::from(prefix) })
     }
 
@@ -70,7 +70,7 @@ impl Repository {
     pub fn last_change(&self, file: &Path) -> Result<Option<String>, RepositoryError> {
         let path = self.scenario.join(file);
         let words = ["rev-list", "--max-count=1", "HEAD", "--", &path.to_string_lossy()];
-        let commit = git::line(&self.root, &words).map_err(Usage::from)?;
+        let commit = git::line(&self.root, &words)?;
         Ok(Some(commit).filter(|commit| !commit.is_empty()))
     }
 
@@ -82,7 +82,7 @@ impl Repository {
         let (good, bad) = (self.commit(good)?, self.commit(bad)?);
         let range = format!("{good}..{bad}");
         let words = ["rev-list", "--first-parent", "--reverse", &range];
-        let list = git::line(&self.root, &words).map_err(Usage::from)?;
+        let list = git::line(&self.root, &words)?;
         let mut commits = vec![good];
         commits.extend(list.lines().map(str::to_owned));
         if commits.len() < 2 {
@@ -99,7 +99,7 @@ impl Repository {
     pub fn about(&self, commit: &str) -> Result<[String; 4], RepositoryError> {
         // Unlike `git show` it starts no program that looks at signatures.
         let words = ["rev-list", "--max-count=1", "--format=%H%n%an <%ae>%n%aI%n%s", commit];
-        let text = git::line(&self.root, &words).map_err(Usage::from)?;
+        let text = git::line(&self.root, &words)?;
         // Behind `commit NAME`. A commit may have no subject, which is then no line.
         let mut lines = text.lines().skip(1).map(str::to_owned);
         Ok(std::array::from_fn(|_| lines.next().unwrap_or_default()))
@@ -115,7 +115,7 @@ impl Repository {
         match tree::take_out(&self.root, commit, part, folder) {
             Ok(()) => Ok(Ok(())),
             Err(NotTaken::Commit(why) | NotTaken::Git(git::Silent::Refused(why))) => Ok(Err(why)),
-            Err(NotTaken::Git(silent)) => Err(Usage::from(silent).into()),
+            Err(NotTaken::Git(silent)) => Err(silent.into()),
             Err(NotTaken::File(error)) => Err(error.into()),
         }
     }

@@ -86,18 +86,21 @@ impl Place {
         }
     }
 
-    /// A folder that is a link would have files written and removed elsewhere.
+    /// A folder that is a link would have files and folders made, and files removed, elsewhere.
     fn check_shelf(&self) -> Result<(), StoreError> {
-        let path = shelf(&self.scenario);
-        match granted().within(self.folder()).find(&path) {
-            Ok(_) | Err(NotWithin::Missing(_)) => Ok(()),
-            Err(elsewhere) => Err(FileError { path, source: elsewhere.into() }.into()),
+        let bounds = granted().within(self.folder());
+        for path in [self.folder().join(FOLDER), shelf(&self.scenario)] {
+            match bounds.find(&path) {
+                Ok(_) | Err(NotWithin::Missing(_)) => {}
+                Err(elsewhere) => return Err(FileError { path, source: elsewhere.into() }.into()),
+            }
         }
+        Ok(())
     }
 
     fn write(&self, path: &Path, snapshot: &Snapshot) -> Result<(), StoreError> {
-        file::create_folder(&shelf(&self.scenario))?;
         self.check_shelf()?;
+        file::create_folder(&shelf(&self.scenario))?;
         Ok(file::write_whole(path, snapshot.to_text().as_bytes())?)
     }
 }

@@ -85,7 +85,7 @@ mod tests {
         assert!(refused.to_string().contains("another run records into"), "{refused}");
         drop(first);
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
-        // What a killed run has left is no lock.
+        // The file that a killed run has left locks nobody out.
         std::fs::write(folder.path().join(NAME), "").unwrap();
         drop(RecordLock::of(folder.path()).unwrap());
     }

@@ -62,7 +62,7 @@ fn limits() -> Limits {
     Limits { all, of_address: all / 2, staying: all / 2 }
 }
 
-/// Nothing where there is no limit.
+/// How many this process may have; nothing if that is not limited.
 #[cfg(unix)]
 fn descriptors() -> Option<usize> {
     let limit = rustix::process::getrlimit(rustix::process::Resource::Nofile).current;
@@ -89,12 +89,7 @@ async fn take(
                 continue;
             }
         };
-        let (leave, leaving) = oneshot::channel();
-        let leave = move || {
-            // It may have gone by itself.
-            leave.send(()).ok();
-        };
-        let Some(place) = limit.admit(from.ip(), leave) else {
+        let Some((place, leaving)) = limit.admit_task(from.ip()) else {
             tracing::debug!(%from, "refused a connection to the page: all places are taken by viewers");
             continue;
         };

@@ -15,7 +15,6 @@ use onescan_server::transport::connection_limit::{ConnectionLimit, Limits, Place
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::tcp::{OwnedReadHalf, OwnedWriteHalf};
 use tokio::net::{TcpListener, TcpStream};
-use tokio::sync::oneshot;
 
 /// The longest HELLO: 32 bytes and a URL of 4096 (OPC 10000-6 7.1.2.3).
 const LONGEST_HELLO: u32 = 8192;
@@ -55,12 +54,7 @@ pub(super) async fn let_in(outside: TcpListener, server: SocketAddr, channels: C
                 continue;
             }
         };
-        let (leave, leaving) = oneshot::channel::<()>();
-        let leave = move || {
-            // It may have gone by itself.
-            leave.send(()).ok();
-        };
-        let Some(place) = limit.admit(from.ip(), leave) else {
+        let Some((place, leaving)) = limit.admit_task(from.ip()) else {
             tracing::debug!(%from, "refused an OPC UA client: all places are taken");
             continue;
         };

@@ -13,9 +13,18 @@ fn input(text: &str) -> Input {
 
 /// The stubs of a project, without the remarks in front; asserts that it checks with them, and they alone.
 fn stubs(text: &str) -> String {
-    let written = write(&[input(text)], None);
+    declarations(&sound_stubs(|| input(text)))
+}
+
+/// The same of a project in the language of the standard, with the remarks.
+fn stubs_in_iec3(text: &str) -> String {
+    sound_stubs(|| Input::from_text("main.st", SourceKind::Text, text))
+}
+
+fn sound_stubs(project: impl Fn() -> Input) -> String {
+    let written = write(&[project()], None);
     let own = || Input::from_text("stubs.st", SourceKind::Text, written.text.as_str());
-    for inputs in [vec![own()], vec![input(text), own()]] {
+    for inputs in [vec![own()], vec![project(), own()]] {
         let findings = inspect(inputs, None);
         let errors: Vec<String> = findings
             .findings()
@@ -25,9 +34,9 @@ fn stubs(text: &str) -> String {
             .collect();
         assert!(errors.is_empty(), "{errors:#?}\n{}", written.text);
     }
-    let again = write(&[input(text)], Some(&written.text));
+    let again = write(&[project()], Some(&written.text));
     assert_eq!((again.added, again.text.as_str()), (0, written.text.as_str()), "a second time adds nothing");
-    declarations(&written.text)
+    written.text
 }
 
 /// What stands behind the remarks at the beginning.
@@ -108,13 +117,8 @@ METHOD PUBLIC Run : BOOL
 END_METHOD
 END_CLASS
 PROGRAM P VAR m : MoveAxis; b : BOOL; END_VAR b := m.Run(); END_PROGRAM";
-    let own = || Input::from_text("main.st", SourceKind::Text, text);
-    let written = write(&[own()], None).text;
+    let written = stubs_in_iec3(text);
     assert!(written.contains("{external}\nCLASS Command\nVAR PUBLIC\n"), "{written}");
-    let stubs = Input::from_text("stubs.st", SourceKind::Text, written.as_str());
-    let all = inspect(vec![own(), stubs], None);
-    let errors = all.findings().iter().filter(|found| found.diagnostic().severity == Severity::Error).count();
-    assert_eq!(errors, 0, "{written}");
 }
 
 /// What `REF_TO` variables exchange is of one type.
@@ -127,12 +131,7 @@ METHOD PUBLIC Attach : BOOL VAR_INPUT given : REF_TO TO_Pos; END_VAR
 END_METHOD
 END_CLASS
 PROGRAM P VAR m : Axis; b : BOOL; END_VAR b := m.Attach(NULL); END_PROGRAM";
-    let own = || Input::from_text("main.st", SourceKind::Text, text);
-    let written = write(&[own()], None).text;
-    let stubs = Input::from_text("stubs.st", SourceKind::Text, written.as_str());
-    let all = inspect(vec![own(), stubs], None);
-    let errors = all.findings().iter().filter(|found| found.diagnostic().severity == Severity::Error).count();
-    assert_eq!(errors, 0, "{written}");
+    stubs_in_iec3(text);
 }
 
 /// What is compared with NULL, or stands where nothing is kept, refers to an instance.
@@ -146,13 +145,8 @@ METHOD PUBLIC Switch : BOOL VAR_TEMP sensor : BinSignal; END_VAR
 END_METHOD
 END_CLASS
 PROGRAM P VAR l : Lamp; b : BOOL; END_VAR b := l.Switch(); END_PROGRAM";
-    let own = || Input::from_text("main.st", SourceKind::Text, text);
-    let written = write(&[own()], None).text;
+    let written = stubs_in_iec3(text);
     assert!(written.contains("INTERFACE BinOutput") && written.contains("INTERFACE BinSignal"), "{written}");
-    let stubs = Input::from_text("stubs.st", SourceKind::Text, written.as_str());
-    let all = inspect(vec![own(), stubs], None);
-    let errors = all.findings().iter().filter(|found| found.diagnostic().severity == Severity::Error).count();
-    assert_eq!(errors, 0, "{written}");
 }
 
 /// What an heir overrides stands in its base, once, however often the stubs are written; a caller's array has its bounds.
@@ -165,17 +159,9 @@ END_METHOD
 END_CLASS
 FUNCTION Count : INT VAR_IN_OUT values : ARRAY [*] OF INT; END_VAR Count := CountOf(values); END_FUNCTION
 PROGRAM P VAR m : Drive; b : BOOL; n : INT; a : ARRAY [1..3] OF INT; END_VAR b := m.Run(b); n := Count(a); END_PROGRAM";
-    let own = || Input::from_text("main.st", SourceKind::Text, text);
-    let mut written = write(&[own()], None).text;
-    for _ in 0..2 {
-        written = write(&[own()], Some(&written)).text;
-    }
+    let written = stubs_in_iec3(text);
     assert_eq!(written.matches("METHOD Run : BOOL").count(), 1, "{written}");
     assert!(written.contains("ARRAY [*] OF INT"), "{written}");
-    let stubs = Input::from_text("stubs.st", SourceKind::Text, written.as_str());
-    let all = inspect(vec![own(), stubs], None);
-    let errors = all.findings().iter().filter(|found| found.diagnostic().severity == Severity::Error).count();
-    assert_eq!(errors, 0, "{written}");
 }
 
 #[test]

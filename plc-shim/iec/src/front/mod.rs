@@ -125,7 +125,7 @@ impl Parsed {
                     continue;
                 }
             }
-            findings.extend(unused.map(Unused::into_warnings).unwrap_or_default());
+            findings.extend(unused.into_iter().flat_map(Unused::into_warnings));
             return Front { sources, units, library, checked, findings };
         }
     }

@@ -193,7 +193,7 @@ fn unreached(parts: &[Part], sources: &SourceMap) -> Vec<(String, Span)> {
     while let Some(part) = unread.pop() {
         let mut named = part.programs.clone();
         part.texts.iter().for_each(|text| names_in(*text, sources, &mut named));
-        for index in named.iter().flat_map(|name| declared.remove(name.as_str()).unwrap_or_default()) {
+        for index in named.iter().filter_map(|name| declared.remove(name.as_str())).flatten() {
             if let (Some(reached @ false), Some(next)) = (is_reached.get_mut(index), parts.get(index)) {
                 *reached = true;
                 unread.push(next);

@@ -72,8 +72,8 @@ pub(super) fn lint(units: &[Unit<'_>], index: &Index<'_>, sources: &SourceMap, f
         }
     }
     for (count, other) in written.iter().enumerate() {
-        let before = written.get(..count).unwrap_or_default();
-        let Some(first) = before.iter().find(|first| first.at.overlaps(&other.at)) else { continue };
+        let mut before = written.iter().take(count);
+        let Some(first) = before.find(|first| first.at.overlaps(&other.at)) else { continue };
         let (one, two, address) = (&first.name.text, &other.name.text, other.address);
         let message = if first.at == other.at {
             format!("`{two}` lies at {address} as `{one}` does, and both are written: the last one wins")

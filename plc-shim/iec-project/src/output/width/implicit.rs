@@ -202,7 +202,7 @@ impl Writer<'_> {
         }
     }
 
-    /// A value that is no operation on bits, as a bit string.
+    /// A value that is not an operation on bits, as a bit string.
     fn bits(&mut self, expr: &Expr, bits: E, changes: &mut Vec<Change>) -> Written<()> {
         if let Some((node, register)) = self.wider(expr) {
             let (head, count) = conversions(&[register], bits);

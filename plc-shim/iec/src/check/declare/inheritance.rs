@@ -61,7 +61,7 @@ impl Declarations<'_> {
     fn report_nothing_overridden(&mut self, id: PouId, member: PouId) {
         let name = &self.pou(member).ast.name;
         let alike = self.base_of(id).map_or_else(Vec::new, |base| self.methods_named(base, &name.text));
-        let parameters = self.shown_parameters(member).unwrap_or_default();
+        let parameters = self.shown_parameters(member);
         let message = format!("no base has a method `{}{parameters}` to override", name.text);
         let found = Diagnostic::error(Code::NothingOverridden, name.span, message);
         let labelled = alike.into_iter().fold(found, |found, method| {
@@ -134,7 +134,7 @@ impl Declarations<'_> {
                 Role::Body | Role::Method | Role::Start | Role::AfterStart | Role::End => "the method",
             };
             let owner = &self.pou(self.owner_of(prototype)).ast.name.text;
-            let parameters = self.shown_parameters(prototype).unwrap_or_default();
+            let parameters = self.shown_parameters(prototype);
             let message = format!("`{}` lacks {what} `{}{parameters}` of `{owner}`", unit.text, wanted.text);
             let found = Diagnostic::error(Code::MissingMethod, unit.span, message);
             let found = found.with_label(wanted.span, "declared here");

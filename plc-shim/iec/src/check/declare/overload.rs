@@ -124,8 +124,9 @@ impl<'a> Declarations<'a> {
         self.overloads.member_key(entry.ast, role)
     }
 
-    /// The types of a unit's parameters, if there are others of its name: `(INT, STRING)`.
-    pub(in crate::check) fn shown_parameters(&self, id: PouId) -> Option<String> {
+    /// What distinguishes a unit from others of its name, to be written behind it: `(INT, STRING)`; empty if there are
+    /// none.
+    pub(in crate::check) fn shown_parameters(&self, id: PouId) -> String {
         let entry = self.pou(id);
         let several = match entry.membership {
             Some(membership) => {
@@ -133,7 +134,7 @@ impl<'a> Declarations<'a> {
             }
             None => self.overloads.functions.contains_key(&self.key_of(id)),
         };
-        several.then(|| format!("({})", parameter_list(entry.ast)))
+        if several { format!("({})", parameter_list(entry.ast)) } else { String::new() }
     }
 }
 

@@ -39,7 +39,7 @@ impl Declarations<'_> {
             Some(membership) => format!("{}.{name}", self.pou(membership.owner).ast.name.text),
             None => name.clone(),
         };
-        shown + &self.shown_parameters(id).unwrap_or_default()
+        shown + &self.shown_parameters(id)
     }
 
     /// True for a method that only its own unit sees: what is derived from that cannot override it.

@@ -4,7 +4,7 @@ use crate::check::body::Body;
 use crate::check::types::operand::Operand;
 use crate::check::types::parameter;
 use crate::diagnostic::{Code, Diagnostic, Severity};
-use crate::ir::{ElementaryType, Expr, ExprKind, PouId, Type, TypeId, Value};
+use crate::ir::{ElementaryType, PouId, Type, TypeId};
 use crate::syntax::Span;
 use crate::syntax::ast::{self, Call, Ident};
 
@@ -17,6 +17,14 @@ type Distance = Vec<u32>;
 
 /// Between types of different kinds, where there is a conversion all the same.
 const OTHER_KIND: u32 = 1000;
+/// To a parameter that takes anything.
+const GENERIC: u32 = 2 * OTHER_KIND;
+
+/// An argument, and what it has come to by itself; nothing if only its place says that.
+struct Given<'e> {
+    expr: &'e ast::Expr,
+    operand: Option<Operand>,
+}
 
 impl Body<'_, '_> {
     /// Of units that have one name, the one whose parameters suit the arguments best.
@@ -42,9 +50,11 @@ impl Body<'_, '_> {
     }
 
     fn nearest(&mut self, units: &[PouId], name: &Ident, call: &Call, span: Span) -> Result<PouId, Diagnostic> {
+        // What they are does not depend on who takes them.
+        let given: Vec<Given> = call.arguments.iter().filter_map(|argument| self.given(argument)).collect();
         let mut fitting: Vec<(PouId, Distance)> = Vec::new();
         for unit in units {
-            fitting.extend(self.fitness(*unit, name, call, span).map(|distance| (*unit, distance)));
+            fitting.extend(self.fitness(*unit, name, (call, &given), span).map(|distance| (*unit, distance)));
         }
         let is_nearest = |(unit, own): &&(PouId, Distance)| {
             fitting.iter().all(|(other, distance)| other == unit || is_nearer(own, distance))
@@ -66,13 +76,30 @@ impl Body<'_, '_> {
         };
         let found = Diagnostic::error(Code::UnclearOverload, span, message).with_help(help);
         shown.into_iter().fold(found, |found, unit| {
-            let parameters = self.declarations.shown_parameters(unit).unwrap_or_default();
+            let parameters = self.declarations.shown_parameters(unit);
             found.with_label(self.declarations.pou(unit).ast().name.span, format!("takes {parameters}"))
         })
     }
 
+    fn given<'e>(&mut self, argument: &'e ast::Argument) -> Option<Given<'e>> {
+        let (ast::Argument::Positional(expr)
+        | ast::Argument::Input(_, expr)
+        | ast::Argument::Output { target: Some(expr), .. }) = argument
+        else {
+            return None;
+        };
+        let operand = self.on_trial(|body| body.within(None, |body| body.expression(expr)));
+        Some(Given { expr, operand })
+    }
+
     /// How well a unit's parameters suit the arguments; nothing if they do not.
-    fn fitness(&mut self, unit: PouId, name: &Ident, call: &Call, span: Span) -> Option<Distance> {
+    fn fitness(
+        &mut self,
+        unit: PouId,
+        name: &Ident,
+        (call, given): (&Call, &[Given<'_>]),
+        span: Span,
+    ) -> Option<Distance> {
         let scope = self.declarations.interface(unit, span)?;
         let formal = super::is_formal(call);
         let matched = self.on_trial(|body| {
@@ -82,28 +109,17 @@ impl Body<'_, '_> {
         })?;
         // By the order in the call: every unit is measured alike.
         let mut distance = Distance::new();
-        for argument in &call.arguments {
-            let (ast::Argument::Positional(expr)
-            | ast::Argument::Input(_, expr)
-            | ast::Argument::Output { target: Some(expr), .. }) = argument
-            else {
-                continue;
-            };
-            let is_given = |(_, given): &(&String, &&ast::Expr)| std::ptr::eq(**given, expr);
+        for Given { expr, operand } in given {
+            let is_given = |(_, given): &(&String, &&ast::Expr)| std::ptr::eq(**given, *expr);
             let input = matched.inputs.iter().find(is_given).and_then(|(key, _)| scope.own(key));
-            let output = matched.outputs.iter().find(|wanted| std::ptr::eq(wanted.target, expr));
-            distance.push(match (input, output) {
-                (Some(parameter), _) => {
-                    let operand = self.on_trial(|body| body.within(None, |body| body.expression(expr)));
-                    operand.map_or(0, |operand| self.steps(&operand, parameter.ty))
+            let output = matched.outputs.iter().find(|wanted| std::ptr::eq(wanted.target, *expr));
+            distance.push(match (input, output, operand) {
+                (Some(parameter), _, Some(operand)) => self.steps(operand, parameter.ty),
+                (None, Some(output), _) => {
+                    let target = self.on_trial(|body| body.target(expr));
+                    target.map_or(0, |target| self.steps_between(output.variable.ty, target.ty))
                 }
-                (None, Some(output)) => {
-                    let target = self.on_trial(|body| body.target(expr)).map(|target| target.ty);
-                    let kind = ExprKind::Constant(Value::Int(0));
-                    let value = Operand::Typed(Expr { kind, ty: output.variable.ty, span });
-                    target.map_or(0, |target| self.steps(&value, target))
-                }
-                (None, None) => 0,
+                _ => 0,
             });
         }
         let outputs = scope.outputs().filter(|output| !parameter::is_control(output)).count();
@@ -122,35 +138,39 @@ impl Body<'_, '_> {
         found.filter(|_| is_sound)
     }
 
-    /// How far an argument's type is from a parameter's, to which it converts: 0 for the same.
+    /// How far an argument is from a parameter's type, to which it converts: 0 for one of the same.
     fn steps(&self, operand: &Operand, wanted: TypeId) -> u32 {
         let types = self.declarations.types();
-        if self.declarations.generic(wanted).is_some() {
-            return 2 * OTHER_KIND;
-        }
         match operand {
-            Operand::Typed(expr) if expr.ty == wanted => 0,
-            Operand::Typed(expr) => match (types.get(expr.ty), types.get(wanted)) {
-                (Type::Elementary(found), Type::Elementary(wanted)) => widened(*found, *wanted),
-                (Type::FunctionBlock { pou: found, .. } | Type::Interface { pou: found, .. }, wanted) => match wanted {
-                    Type::FunctionBlock { pou, .. } | Type::Interface { pou, .. } => {
-                        self.declarations.generations(*found, *pou)
-                    }
-                    _ => OTHER_KIND,
-                },
-                (Type::Text(found), Type::Text(wanted)) => u32::from(found != wanted),
-                (_, Type::OpenArray { .. }) => 1,
-                _ => OTHER_KIND,
-            },
-            Operand::Integer { .. } => match types.elementary(wanted) {
-                Some(ty) if ty.is_integer() => 1,
-                _ => OTHER_KIND,
-            },
+            _ if self.declarations.generic(wanted).is_some() => GENERIC,
+            Operand::Typed(expr) => self.steps_between(expr.ty, wanted),
+            Operand::Integer { .. } if types.elementary(wanted).is_some_and(ElementaryType::is_integer) => 1,
+            Operand::Integer { .. } => OTHER_KIND,
             Operand::Real { .. } => 1,
-            Operand::Text { .. } => match types.get(wanted) {
-                Type::Text(_) => 0,
-                _ => 1,
-            },
+            Operand::Text { .. } => u32::from(!matches!(types.get(wanted), Type::Text(_))),
+        }
+    }
+
+    fn steps_between(&self, found: TypeId, wanted: TypeId) -> u32 {
+        if self.declarations.generic(wanted).is_some() {
+            return GENERIC;
+        }
+        let types = self.declarations.types();
+        match (types.get(found), types.get(wanted)) {
+            _ if found == wanted => 0,
+            (Type::Elementary(found), Type::Elementary(wanted)) => widened(*found, *wanted),
+            (
+                Type::FunctionBlock { pou: found, .. } | Type::Interface { pou: found, .. },
+                Type::FunctionBlock { pou: wanted, .. } | Type::Interface { pou: wanted, .. },
+            ) => self.declarations.generations(*found, *wanted),
+            (Type::Text(found), Type::Text(wanted)) => u32::from(found != wanted),
+            // Instances go to no array; all else that is taken for one without bounds is an array.
+            (found, Type::OpenArray { .. })
+                if !matches!(found, Type::FunctionBlock { .. } | Type::Interface { .. }) =>
+            {
+                1
+            }
+            _ => OTHER_KIND,
         }
     }
 }

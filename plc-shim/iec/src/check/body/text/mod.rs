@@ -108,7 +108,7 @@ impl Body<'_, '_> {
                 self.warn_if_cut(&text, shape, span);
                 self.stored_text(shape, &text, span)
             }
-            Operand::Typed(expr) if self.character_as_text(&expr) == Some(shape.wide) => {
+            Operand::Typed(expr) if self.character_shape(&expr).is_some_and(|own| own.wide == shape.wide) => {
                 let from = if shape.wide { ElementaryType::Wchar } else { ElementaryType::Char };
                 let span = expr.span;
                 self.formatted_number(expr, from, shape, span)
@@ -134,21 +134,23 @@ impl Body<'_, '_> {
         }
     }
 
-    /// Of a character that may stand for a string of its own: whether that is a WSTRING (3rd ed. Figure 12).
-    fn character_as_text(&self, expr: &Expr) -> Option<bool> {
-        let has = self.declarations.dialect(expr.span).has(Feature::CharactersAsText);
-        match self.elementary(expr.ty).filter(|_| has)? {
-            ElementaryType::Char => Some(false),
-            ElementaryType::Wchar => Some(true),
-            _ => None,
-        }
+    /// The string of its own that a character may stand for (3rd ed. Figure 12).
+    fn character_shape(&self, expr: &Expr) -> Option<TextShape> {
+        let dialect = self.declarations.dialect(expr.span);
+        let wide = match self.elementary(expr.ty).filter(|_| dialect.has(Feature::CharactersAsText))? {
+            ElementaryType::Char => false,
+            ElementaryType::Wchar => true,
+            _ => return None,
+        };
+        Some(TextShape { wide, capacity: 1, memory: dialect.strings() })
     }
 
     /// The character as a string of its own, if it may stand for one.
     pub(super) fn one_character(&mut self, expr: Expr) -> Option<Expr> {
-        let Some(wide) = self.character_as_text(&expr) else { return Some(expr) };
-        let shape = TextShape { wide, capacity: 1, memory: self.declarations.dialect(expr.span).strings() };
-        self.coerce_text(Operand::Typed(expr), shape)
+        match self.character_shape(&expr) {
+            Some(shape) => self.coerce_text(Operand::Typed(expr), shape),
+            None => Some(expr),
+        }
     }
 
     /// Of two values the character beside a string as a string; a literal stands for either.
@@ -250,12 +252,7 @@ impl Body<'_, '_> {
         for operand in &operands {
             let shape = match operand {
                 Operand::Text { text, span } => Some(self.own_shape(text, text.units.len().max(1) as u32, *span)),
-                Operand::Typed(expr) => match self.character_as_text(expr) {
-                    Some(wide) => {
-                        Some(TextShape { wide, capacity: 1, memory: self.declarations.dialect(expr.span).strings() })
-                    }
-                    None => self.shape(expr.ty),
-                },
+                Operand::Typed(expr) => self.character_shape(expr).or_else(|| self.shape(expr.ty)),
                 _ => None,
             };
             widest = match (widest, shape) {
