@@ -165,7 +165,6 @@ codes! {
     WrittenByTwoTasks "W0707" "a variable is written by two tasks",
     EndlessLoop "W0709" "a loop is never left",
     StubUsed "W0710" "a stub is called, which does nothing",
-    UncaughtFault "W0711" "a fault within `__TRY` stops the PLC",
     UncutDifference "W0712" "a difference of unsigned integers is compared before it is cut to their type",
     CutProduct "W0713" "a product is cut to the type of its factors before it becomes wider",
     AttributeWithoutEffect "W0714" "an attribute that changes values elsewhere has no effect here",

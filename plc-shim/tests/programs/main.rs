@@ -24,6 +24,7 @@ mod drawings;
 mod drawn;
 mod dtl;
 mod dynamic_memory;
+mod exceptions;
 mod expressions;
 mod external;
 mod fault_forms;

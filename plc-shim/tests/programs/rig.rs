@@ -58,9 +58,7 @@ pub(crate) fn input_in(dialect: Dialect, text: &str) -> Input {
 impl Rig {
     /// All programs in one task of 10 ms, of a file read as `dialect`.
     pub(crate) fn in_dialect(dialect: Dialect, text: &str) -> Self {
-        let application = application_in(dialect, text);
-        let plan = application.single_task(TimeSpan::millis::<10>());
-        Self::with_plan(&application, &plan)
+        Self::of(&application_in(dialect, text))
     }
 
     /// The same of the file `input`.
@@ -69,15 +67,17 @@ impl Rig {
             Ok(application) => application,
             Err(diagnostics) => panic!("{diagnostics}"),
         };
-        let plan = application.single_task(TimeSpan::millis::<10>());
-        Self::with_plan(&application, &plan)
+        Self::of(&application)
     }
 
     /// All programs in one task of 10 ms.
     pub(crate) fn new(text: &str) -> Self {
-        let application = application(text);
+        Self::of(&application(text))
+    }
+
+    pub(crate) fn of(application: &Application) -> Self {
         let plan = application.single_task(TimeSpan::millis::<10>());
-        Self::with_plan(&application, &plan)
+        Self::with_plan(application, &plan)
     }
 
     pub(crate) fn with_plan(application: &Application, plan: &TaskPlan) -> Self {

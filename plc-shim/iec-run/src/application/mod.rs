@@ -70,6 +70,7 @@ struct Inner {
     checked: Checked,
     wasm: Vec<u8>,
     faults: FaultTable,
+    guards: Vec<Range<u32>>,
     points: Vec<Point>,
     purpose: Purpose,
     retained: Vec<Range<u32>>,
@@ -148,7 +149,7 @@ impl Application {
             Purpose::Coverage => Noted::AllBut(&library),
             Purpose::Trace => Noted::Traced(&library),
         };
-        let Compiled { wasm, faults, points } = compile(&checked, noted);
+        let Compiled { wasm, faults, guards, points } = compile(&checked, noted);
         let retained = retain::ranges(&checked, Retention::Retain);
         let persistent = retain::ranges(&checked, Retention::Persistent);
         let constants = constants.settings.clone();
@@ -161,6 +162,7 @@ impl Application {
                 checked,
                 wasm,
                 faults,
+                guards,
                 points,
                 purpose,
                 retained,
@@ -237,6 +239,11 @@ impl Application {
             let constants = constants.iter().map(|Setting { path, literal, .. }| (path.clone(), literal.clone()));
             Code::new(sources, is_library, constants.collect())
         })
+    }
+
+    /// Memory that says which units run.
+    pub(crate) fn guards(&self) -> &[Range<u32>] {
+        &self.inner.guards
     }
 
     pub(crate) fn faults(&self) -> &FaultTable {

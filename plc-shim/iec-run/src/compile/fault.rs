@@ -111,6 +111,8 @@ pub(crate) enum Callee {
     Inner,
     /// An instance that is a global variable; the mark's span is its name.
     Global,
+    /// Statements of the calling unit itself, which a fault ends.
+    Itself,
 }
 
 /// The marks of one function by offset in its body, in order.

@@ -6,6 +6,7 @@
 //! | [`emit`] | units and tasks to functions |
 //! | [`module`] | sections, functions, exports |
 //! | [`host`], [`text_host`], [`trace`] | functions that the host gives |
+//! | [`tried`] | statements that a fault ends, as the host runs them |
 //! | [`points`] | places whose execution is noted |
 //! | [`fault`] | what stops the PLC, and the place in the source that an instruction stands for |
 //!
@@ -20,6 +21,7 @@ mod module;
 pub(crate) mod points;
 pub(crate) mod text_host;
 pub(crate) mod trace;
+pub(crate) mod tried;
 
 pub(crate) use module::{
     BUDGET_EXPORT, Compiled, END_EXPORT, MEMORY_EXPORT, NOTES_EXPORT, Noted, START_EXPORT, compile, entry_export,

@@ -1,6 +1,7 @@
 //! Sections, functions and exports of the module.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 
 use wasm_encoder::{
     BranchHint, BranchHints, CodeSection, DataCountSection, DataSection, EntityType, ExportKind, ExportSection,
@@ -11,9 +12,9 @@ use super::analyse::Program;
 use super::emit::{self, Made, Shared, value_type};
 use super::fault::{FaultTable, FunctionMarks};
 use super::points::{NOTES_MEMORY, Point, Points};
-use super::{host, text_host, trace};
-use onescan_iec::check::Checked;
-use onescan_iec::ir::{Pou, PouId, TypeTable};
+use super::{host, text_host, trace, tried};
+use onescan_iec::check::{CALL_DEPTH_OFFSET, Checked};
+use onescan_iec::ir::{Guard, Pou, PouId, TypeTable};
 use onescan_iec::syntax::FileId;
 
 /// Name of the export of the PLC's memory.
@@ -41,6 +42,8 @@ pub(crate) const END_EXPORT: &str = "end";
 pub(crate) struct Compiled {
     pub(crate) wasm: Vec<u8>,
     pub(crate) faults: FaultTable,
+    /// Memory that says which units run, by offset and size: as before once a fault has ended statements.
+    pub(crate) guards: Vec<Range<u32>>,
     /// What is noted while it runs.
     pub(crate) points: Vec<Point>,
 }
@@ -62,7 +65,8 @@ pub(crate) enum Noted<'l> {
 /// 2. the signatures of the rows of methods, which calls name;
 /// 3. the units, in the order of their ids: their numbers are given out before any is compiled, as one calls the
 ///    other;
-/// 4. what tasks run, then what runs at the start and the end, which nothing calls.
+/// 4. what tasks run, then what runs at the start and the end, which nothing calls;
+/// 5. statements that a fault ends, which the host calls by their numbers.
 ///
 /// [`Sections::finish`] puts the sections into the order that WebAssembly prescribes.
 pub(crate) fn compile(checked: &Checked, noted: Noted<'_>) -> Compiled {
@@ -75,7 +79,7 @@ pub(crate) fn compile(checked: &Checked, noted: Noted<'_>) -> Compiled {
     let traced = if matches!(noted, Noted::Traced(_)) { trace::IMPORTS.len() } else { 0 };
     debug_assert_eq!(
         first_function as usize,
-        host::IMPORTS.len() + text_host::IMPORTS.len() + traced,
+        tried::index() as usize + 1 + traced,
         "calls of the host name its functions by these numbers"
     );
     debug_assert!(u32::try_from(checked.image.len()).is_ok(), "memory is addressed with 32 bits");
@@ -91,6 +95,7 @@ pub(crate) fn compile(checked: &Checked, noted: Noted<'_>) -> Compiled {
     let mut faults = FaultTable { first_function, functions: Vec::new() };
     sections.add_units(checked, order, &mut shared, &mut faults);
     sections.add_entries(checked, &mut shared, &mut faults);
+    sections.add_tries(&mut shared, &mut faults);
     debug_assert_eq!(
         faults.functions.len(),
         sections.functions.len() as usize,
@@ -98,7 +103,22 @@ pub(crate) fn compile(checked: &Checked, noted: Noted<'_>) -> Compiled {
     );
     let points = shared.points().map_or(0, Points::bytes);
     let wasm = sections.finish(checked, points, &shared, &hints(&faults));
-    Compiled { wasm, faults, points: shared.into_points().map_or_else(Vec::new, Points::into_list) }
+    Compiled {
+        wasm,
+        faults,
+        guards: guards(checked),
+        points: shared.into_points().map_or_else(Vec::new, Points::into_list),
+    }
+}
+
+/// Where it stands which units run, of those that a call may come back to.
+fn guards(checked: &Checked) -> Vec<Range<u32>> {
+    let flags = checked.pous.values().filter_map(|pou| match pou.guard {
+        Guard::Once(flag) => Some(flag..flag + 1),
+        Guard::Depth | Guard::None => None,
+    });
+    let depth = CALL_DEPTH_OFFSET..CALL_DEPTH_OFFSET + 4;
+    std::iter::once(depth).chain(flags).collect()
 }
 
 /// Which branches are taken as a rule.
@@ -162,6 +182,9 @@ impl Sections {
             let ty = self.add_type(parameters, vec![result]);
             self.imports.import(text_host::MODULE, import.name(), EntityType::Function(ty));
         }
+        let (parameters, results) = tried::signature();
+        let ty = self.add_type(parameters, results);
+        self.imports.import(tried::MODULE, tried::RUN, EntityType::Function(ty));
     }
 
     fn add_trace_imports(&mut self) {
@@ -217,6 +240,15 @@ impl Sections {
         }
     }
 
+    /// Statements that a fault ends, by the numbers that they have been given.
+    fn add_tries(&mut self, shared: &mut Shared<'_>, faults: &mut FaultTable) {
+        for (number, Made { body, marks, units }) in (0..).zip(shared.take_tries()) {
+            let at = self.add_function(Vec::new(), vec![ValType::I32], &body);
+            self.exports.export(&tried::export(number), ExportKind::Func, at);
+            faults.functions.push(FunctionMarks { units, is_entry: false, marks });
+        }
+    }
+
     /// A function without parameters for the host to call.
     fn add_export(&mut self, name: &str, body: &Function) {
         let at = self.add_function(Vec::new(), Vec::new(), body);
@@ -243,10 +275,10 @@ impl Sections {
         let mut module = Module::new();
         module.section(&self.types).section(&self.imports).section(&self.functions);
         if checked.rows.is_empty() {
-            module.section(&memories).section(&emit::globals()).section(&self.exports);
+            module.section(&memories).section(&emit::globals(shared)).section(&self.exports);
         } else {
             let (table, elements) = emit::table(&checked.rows, shared);
-            module.section(&table).section(&memories).section(&emit::globals());
+            module.section(&table).section(&memories).section(&emit::globals(shared));
             module.section(&self.exports).section(&elements);
         }
         module.section(&DataCountSection { count: data.len() });

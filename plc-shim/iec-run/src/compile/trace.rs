@@ -8,7 +8,7 @@
 
 use wasm_encoder::ValType;
 
-use super::{host, text_host};
+use super::tried;
 
 /// Module name of the imports.
 pub(crate) const MODULE: &str = "trace";
@@ -33,5 +33,5 @@ pub(crate) fn parameters(count: usize) -> Vec<ValType> {
 /// Function index of the import at this position.
 pub(crate) fn index(import: usize) -> u32 {
     debug_assert!(import < IMPORTS.len(), "the host gives no such function");
-    (host::IMPORTS.len() + text_host::IMPORTS.len() + import) as u32
+    tried::index() + 1 + import as u32
 }

@@ -5,7 +5,7 @@ use std::fmt;
 use onescan_base::VirtualTime;
 use wasmtime::Trap;
 
-use super::frames::{MAX_CALLERS, Trapped, Writer};
+use super::frames::{Frames, MAX_CALLERS, Trapped, Writer};
 use super::way::WayId;
 use crate::application::Application;
 use crate::compile::fault::{Callee, FaultKind, FunctionMarks, Mark};
@@ -88,9 +88,7 @@ const SHOWN_CALLERS: usize = 16;
 
 /// What the trap means in the source.
 pub(super) fn explain(application: &Application, trapped: &Trapped, virtual_time: VirtualTime) -> PlcFault {
-    let table = application.faults();
-    let frames = trapped.frames.iter();
-    let known: Vec<Frame<'_>> = frames.filter_map(|(index, offset)| Some((table.function(*index)?, *offset))).collect();
+    let known = known(application, &trapped.frames);
     let (kind, mark) = cause(trapped.trap, known.first().copied());
     let mut sites = sites(application, &active(&known, mark));
     // Nothing is active in a fault of the host, which has no place in the source.
@@ -99,6 +97,11 @@ pub(super) fn explain(application: &Application, trapped: &Trapped, virtual_time
     sites.reverse();
     sites.truncate(MAX_CALLERS);
     PlcFault { kind, at, callers: sites, virtual_time }
+}
+
+/// What the trap is, wherever it was.
+pub(super) fn kind(application: &Application, trapped: &Trapped) -> FaultKind {
+    cause(trapped.trap, known(application, &trapped.frames).first().copied()).0
 }
 
 /// A statement that wrote something.
@@ -117,9 +120,7 @@ pub struct WriteSite {
 /// The statement at `span`, as `writer` says.
 pub(super) fn write_site(application: &Application, span: Span, writer: &Writer) -> WriteSite {
     let Writer { frames, within, .. } = writer;
-    let table = application.faults();
-    let known: Vec<Frame<'_>> =
-        frames.iter().filter_map(|(index, offset)| Some((table.function(*index)?, *offset))).collect();
+    let known = known(application, frames);
     let mark = known.first().and_then(|(function, offset)| function.statement_before((*offset)?));
     let mut sites = sites(application, &active(&known, mark));
     let mut at = sites.pop().unwrap_or_default();
@@ -132,6 +133,12 @@ pub(super) fn write_site(application: &Application, span: Span, writer: &Writer)
 
 /// A function that was active, and the offset in its body.
 type Frame<'a> = (&'a FunctionMarks, Option<u32>);
+
+/// The functions among `frames` that the application's units were made to.
+fn known<'a>(application: &'a Application, frames: &Frames) -> Vec<Frame<'a>> {
+    let table = application.faults();
+    frames.iter().filter_map(|(index, offset)| Some((table.function(*index)?, *offset))).collect()
+}
 
 /// A unit that was active, and the call that it had made.
 struct Active<'a> {
@@ -146,6 +153,11 @@ fn active<'a>(frames: &[Frame<'a>], mark: Option<Mark>) -> Vec<Active<'a>> {
     let mut found = Vec::new();
     for (index, (function, offset)) in frames.iter().enumerate() {
         let call = offset.and_then(|offset| function.call_at(offset)).filter(|_| index > 0);
+        if let Some((Callee::Itself, mark)) = call {
+            // The unit is there already, as the function of these statements; it is the unit's own that was called.
+            debug_assert_eq!(mark.unit, 0, "what has such statements is put in the place of no call");
+            continue;
+        }
         let mut made = call.map(|(callee, mark)| (callee, mark.span));
         let stopped = if index == 0 { mark } else { call.map(|(_, mark)| mark) };
         let mut next = Some(stopped.map_or(0, |mark| mark.unit));
@@ -171,7 +183,7 @@ fn sites(application: &Application, active: &[Active<'_>]) -> Vec<FaultSite> {
             _ if *is_entry => (*unit).to_owned(),
             Some((Callee::Inner, span)) => format!("{instance}.{}", name(span)),
             Some((Callee::Global, span)) => name(span),
-            Some((Callee::Function, _)) => (*unit).to_owned(),
+            Some((Callee::Function | Callee::Itself, _)) => (*unit).to_owned(),
             None if instance.is_empty() => (*unit).to_owned(),
             None => instance,
         };

@@ -1,6 +1,8 @@
 //! The functions that were active when something happened in the module, as wasmtime knows them.
 
-use wasmtime::Trap;
+use wasmtime::{Trap, WasmBacktrace};
+
+use super::row;
 
 /// Functions by their index, innermost first, each with the offset in its body.
 pub(super) type Frames = Vec<(u32, Option<u32>)>;
@@ -19,6 +21,15 @@ pub(super) struct Trapped {
 impl Trapped {
     /// What cannot happen has, outside of the program: an internal fault without a place in the source.
     pub(super) const NOWHERE: Self = Self { trap: None, frames: Vec::new() };
+
+    /// What a call of the module has ended with.
+    pub(super) fn of(error: &wasmtime::Error) -> Self {
+        let backtrace = error.downcast_ref::<WasmBacktrace>();
+        let frames = backtrace.map(WasmBacktrace::frames).unwrap_or_default().iter();
+        let frames = frames.filter(|frame| frame.module().name() != Some(row::NAME));
+        let frames = frames.map(|frame| (frame.func_index(), frame.func_offset().map(|offset| offset as u32)));
+        Self { trap: error.downcast_ref::<Trap>().copied(), frames: frames.collect() }
+    }
 }
 
 /// The statement that wrote, by its point, and the functions that were active.

@@ -2,7 +2,7 @@
 
 use std::num::NonZeroUsize;
 
-use wasmtime::{Config, Engine, Global, Instance, Linker, Memory, Module, Store, Trap, TypedFunc, Val, WasmBacktrace};
+use wasmtime::{Config, Engine, Global, Instance, Linker, Memory, Module, Store, TypedFunc, Val};
 
 use super::frames::{MAX_CALLERS, Trapped};
 use super::host_state::HostState;
@@ -11,7 +11,7 @@ use super::plan::RunError;
 use super::row;
 use super::text::link::link;
 use super::trace::Trace;
-use super::trace_link;
+use super::{trace_link, tried};
 use crate::application::Application;
 use crate::compile::{BUDGET_EXPORT, END_EXPORT, MEMORY_EXPORT, NOTES_EXPORT, START_EXPORT, entry_export, host};
 
@@ -72,7 +72,12 @@ impl Machine {
         let notes = instance.get_memory(&mut store, NOTES_EXPORT);
         let budget = instance.get_global(&mut store, BUDGET_EXPORT);
         let budget = budget.ok_or_else(|| RunError::Module("the budget is missing".to_owned()))?;
-        *store.data_mut() = HostState { memory: Some(memory), budget: Some(budget), trace: None };
+        *store.data_mut() = HostState {
+            memory: Some(memory),
+            budget: Some(budget),
+            application: Some(application.clone()),
+            trace: None,
+        };
         let size = application.initial_memory().len();
         if memory.data_size(&store) < size {
             return Err(RunError::Module("memory is smaller than the variables".to_owned()));
@@ -109,7 +114,7 @@ impl Machine {
     pub(super) fn refuel(&mut self, fuel: u64) -> Result<(), Trapped> {
         // No PLC lives long enough to use up the rest.
         let budget = Val::I64(i64::try_from(fuel).unwrap_or(i64::MAX));
-        self.budget.set(&mut self.store, budget).map_err(|error| trapped(&error))
+        self.budget.set(&mut self.store, budget).map_err(|error| Trapped::of(&error))
     }
 
     /// What statements are held against; nothing unless that was asked for.
@@ -175,7 +180,7 @@ impl Machine {
     /// Runs what there is for the occasion.
     pub(super) fn run_occasion(&mut self, occasion: Occasion) -> Result<(), Trapped> {
         let Some(function) = self.occasion(occasion).cloned() else { return Ok(()) };
-        function.call(&mut self.store, ()).map_err(|error| trapped(&error))
+        function.call(&mut self.store, ()).map_err(|error| Trapped::of(&error))
     }
 
     /// Runs all of a task, without a halt between its parts.
@@ -183,12 +188,12 @@ impl Machine {
         let row = self.rows.get(task).ok_or(Trapped::NOWHERE)?;
         // A task need not have programs.
         let Some(function) = row else { return Ok(()) };
-        function.call(&mut self.store, ()).map_err(|error| trapped(&error))
+        function.call(&mut self.store, ()).map_err(|error| Trapped::of(&error))
     }
 
     pub(super) fn run(&mut self, entry: usize, part: usize) -> Result<(), Trapped> {
         let function = self.entries.get(entry).and_then(|parts| parts.get(part)).ok_or(Trapped::NOWHERE)?;
-        function.call(&mut self.store, ()).map_err(|error| trapped(&error))
+        function.call(&mut self.store, ()).map_err(|error| Trapped::of(&error))
     }
 }
 
@@ -232,6 +237,7 @@ fn linker(engine: &Engine) -> Result<Linker<HostState>, wasmtime::Error> {
         };
     }
     link(&mut linker)?;
+    tried::link(&mut linker)?;
     trace_link::link(&mut linker)?;
     Ok(linker)
 }
@@ -243,12 +249,4 @@ fn canonical_single(value: f32) -> f32 {
 
 fn canonical_double(value: f64) -> f64 {
     if value.is_nan() { f64::from_bits(0x7ff8_0000_0000_0000) } else { value }
-}
-
-fn trapped(error: &wasmtime::Error) -> Trapped {
-    let backtrace = error.downcast_ref::<WasmBacktrace>();
-    let frames = backtrace.map(WasmBacktrace::frames).unwrap_or_default().iter();
-    let frames = frames.filter(|frame| frame.module().name() != Some(row::NAME));
-    let frames = frames.map(|frame| (frame.func_index(), frame.func_offset().map(|offset| offset as u32)));
-    Trapped { trap: error.downcast_ref::<Trap>().copied(), frames: frames.collect() }
 }

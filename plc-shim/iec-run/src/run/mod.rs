@@ -17,6 +17,7 @@
 //! | `host_state` | what functions of the host work on |
 //! | `text` | functions on character strings |
 //! | `state` | its state as bytes |
+//! | `tried` | statements that a fault ends |
 //! | `trace`, `trace_link`, `way` | which statement wrote a byte; which ways decisions went |
 //! | `journal` | all that a scan did |
 
@@ -39,6 +40,7 @@ mod task_info;
 pub(crate) mod text;
 mod trace;
 mod trace_link;
+mod tried;
 mod way;
 
 pub use asserts::{Asserts, FailedAssert};

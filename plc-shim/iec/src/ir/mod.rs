@@ -27,7 +27,7 @@ pub use memory_limit::{MemoryLimit, MemoryLimitError};
 pub use place_use::{PlaceUse, place_uses};
 pub use pou::{EdgeDetection, Guard, Pou, PouId, Retention, Variable, Visibility};
 pub use statement::{
-    CaseArm, CaseStatement, ForStatement, IfBranch, InstanceCall, LabelId, Labelled, Statement, StatementKind,
+    CaseArm, CaseStatement, ForStatement, IfBranch, InstanceCall, LabelId, Labelled, Statement, StatementKind, Try,
 };
 pub use types::{Dimension, Field, Type, TypeId, TypeTable};
 pub use value::Value;

@@ -73,6 +73,7 @@ impl Walk<'_> {
                 self.statements(&labelled.first);
                 labelled.parts.iter().for_each(|(_, part)| self.statements(part));
             }
+            StatementKind::Try(tried) => self.statements(&tried.body),
             StatementKind::Exit
             | StatementKind::Continue
             | StatementKind::Return

@@ -32,10 +32,33 @@ pub enum StatementKind {
     Continue,
     Return,
     Labelled(Box<Labelled>),
+    /// Runs statements that a fault ends.
+    Try(Box<Try>),
     /// Goes on at a label of a [`Labelled`] around.
     Jump(LabelId),
     /// Does nothing; a place that execution comes to.
     Pass,
+}
+
+/// Statements that a fault ends without stopping the PLC. They are a function of their own: every variable that they
+/// change lies in memory, so that it is as it was at the fault.
+#[derive(Debug, Clone)]
+pub struct Try {
+    pub body: Vec<Statement>,
+    /// Holds as a DINT how they ended: one of the numbers below, or the code of the fault, which is greater than 0. All
+    /// registers of the unit that `body` reads have lower numbers.
+    pub outcome: LocalId,
+}
+
+impl Try {
+    /// The last of the statements has run.
+    pub const ENDED: i32 = 0;
+    /// RETURN has left them.
+    pub const RETURNED: i32 = -1;
+    /// EXIT has left them, out of a loop around.
+    pub const EXITED: i32 = -2;
+    /// CONTINUE has left them, for the next turn of a loop around.
+    pub const CONTINUED: i32 = -3;
 }
 
 /// Identifies a label of a unit.

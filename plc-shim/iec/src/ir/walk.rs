@@ -88,6 +88,7 @@ fn statement(kind: &StatementKind, visitor: &mut dyn Visitor) {
             branch(&labelled.first, visitor);
             labelled.parts.iter().for_each(|(_, part)| branch(part, visitor));
         }
+        StatementKind::Try(tried) => branch(&tried.body, visitor),
         StatementKind::Exit
         | StatementKind::Continue
         | StatementKind::Return

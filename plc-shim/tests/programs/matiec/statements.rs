@@ -87,6 +87,12 @@ impl Tame {
                 self.truth(condition);
                 self.block(body, loops + 1);
             }
+            // Vendors' programs alone have it; its statements are for the peer what they are without it.
+            Statement::Try { body, handler, finally } => {
+                for part in [body, handler, finally] {
+                    self.block(part, loops);
+                }
+            }
         }
     }
 

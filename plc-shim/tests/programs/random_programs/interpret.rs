@@ -21,6 +21,8 @@ pub(super) struct Memory {
     pub(super) array: [i32; 4],
     pub(super) loops: [i16; DEPTH * 3],
     pub(super) counts: [i16; 2],
+    /// Of the last fault after which the program went on.
+    pub(super) code: i64,
 }
 
 impl Memory {
@@ -137,6 +139,7 @@ impl Memory {
                     }
                 }
             }
+            Statement::Try { body, handler, finally } => return self.tried(body, handler, finally, depth),
             Statement::Repeat(limit, until, body) => {
                 let control = control(2, depth);
                 self.loops[control] = *limit;
@@ -153,6 +156,30 @@ impl Memory {
             }
         }
         Ok(())
+    }
+
+    /// What is done in any case follows however the rest is left, but for a fault of the handler.
+    fn tried(
+        &mut self,
+        body: &[Statement],
+        handler: &[Statement],
+        finally: &[Statement],
+        depth: usize,
+    ) -> Result<(), Stop> {
+        self.code = match self.block(body, depth) {
+            Err(Stop::Fault(FaultKind::DivisionByZero)) => 0x102,
+            Err(Stop::Fault(FaultKind::IndexOutOfRange)) => 0x101,
+            other => return self.finally(other, finally, depth),
+        };
+        let ended = self.block(handler, depth);
+        self.finally(ended, finally, depth)
+    }
+
+    fn finally(&mut self, ended: Result<(), Stop>, finally: &[Statement], depth: usize) -> Result<(), Stop> {
+        if matches!(ended, Err(Stop::Fault(_))) {
+            return ended;
+        }
+        self.block(finally, depth).and(ended)
     }
 
     fn leave(&self, condition: &Truth, way: Stop) -> Result<(), Stop> {

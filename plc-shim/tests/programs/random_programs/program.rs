@@ -60,6 +60,12 @@ pub(crate) enum Statement {
     Return(Truth),
     /// Of an instance that adds.
     CallInstance(usize, Number),
+    /// `__TRY … __CATCH(code) … __FINALLY … __ENDTRY`
+    Try {
+        body: Vec<Statement>,
+        handler: Vec<Statement>,
+        finally: Vec<Statement>,
+    },
 }
 
 fn number() -> impl Strategy<Value = Number> {
@@ -108,11 +114,12 @@ fn labels() -> impl Strategy<Value = Labels> {
     prop::collection::vec(label, 1..3)
 }
 
-fn block(depth: usize) -> BoxedStrategy<Vec<Statement>> {
-    prop::collection::vec(statement(depth), 0..4).boxed()
+fn block(depth: usize, tries: bool) -> BoxedStrategy<Vec<Statement>> {
+    prop::collection::vec(statement(depth, tries), 0..4).boxed()
 }
 
-fn statement(depth: usize) -> BoxedStrategy<Statement> {
+/// With `tries`, some of the statements are a `__TRY`.
+fn statement(depth: usize, tries: bool) -> BoxedStrategy<Statement> {
     let simple = prop_oneof![
         4 => (0_usize..4, number()).prop_map(|(index, value)| Statement::Assign(index, value)),
         2 => (0_usize..3, truth()).prop_map(|(index, value)| Statement::AssignTruth(index, value)),
@@ -126,13 +133,16 @@ fn statement(depth: usize) -> BoxedStrategy<Statement> {
     if depth == 0 {
         return simple.boxed();
     }
-    let inner = block(depth - 1);
+    let inner = block(depth - 1, tries);
     let branches = prop::collection::vec((truth(), inner.clone()), 1..3);
     let arms = prop::collection::vec((labels(), inner.clone()), 1..4);
     let near = || prop_oneof![3 => (-4_i16..8).prop_map(Number::Literal), 1 => number()];
     let step = prop_oneof![(-3_i16..4), Just(5000_i16), Just(i16::MIN)];
     let turns = || (0_i16..5, truth(), inner.clone());
+    let tried = (inner.clone(), inner.clone(), inner.clone());
+    let tried = tried.prop_map(|(body, handler, finally)| Statement::Try { body, handler, finally });
     prop_oneof![
+        (if tries { 6 } else { 0 }) => tried,
         3 => simple,
         2 => (branches, inner.clone()).prop_map(|(branches, otherwise)| Statement::If(branches, otherwise)),
         1 => (number(), arms, inner.clone()).prop_map(|(value, arms, otherwise)| Statement::Case(value, arms, otherwise)),
@@ -145,7 +155,12 @@ fn statement(depth: usize) -> BoxedStrategy<Statement> {
 }
 
 pub(crate) fn program() -> impl Strategy<Value = Vec<Statement>> {
-    prop::collection::vec(statement(DEPTH), 1..8)
+    prop::collection::vec(statement(DEPTH, false), 1..8)
+}
+
+/// One that goes on after some of its faults.
+pub(super) fn trying_program() -> impl Strategy<Value = Vec<Statement>> {
+    prop::collection::vec(statement(DEPTH, true), 1..8)
 }
 
 /// Loops around a statement: those of each depth and kind have a control variable.
@@ -265,6 +280,15 @@ impl Wording {
                 writeln!(text, "UNTIL i{control} <= 0 OR {} END_REPEAT;", self.truth(until))
                     .expect("a string takes all");
             }
+            Statement::Try { body, handler, finally } => {
+                let parts = [("__TRY", body), ("__CATCH(code)", handler), ("__FINALLY", finally)];
+                // An empty one is left out: a handler goes on elsewhere then.
+                for (word, part) in parts.into_iter().filter(|(word, part)| *word != "__FINALLY" || !part.is_empty()) {
+                    writeln!(text, "{word}").expect("a string takes all");
+                    self.write_block(text, part, loops);
+                }
+                text.push_str("__ENDTRY\n");
+            }
             _ => {}
         }
     }
@@ -281,12 +305,24 @@ impl Wording {
     }
 }
 
+/// The whole file of a program that goes on after some of its faults, in the dialect of CODESYS: a function makes what
+/// is computed a number of 16 bits again.
+pub(super) fn trying_text(body: &[Statement]) -> String {
+    let own = "FUNCTION Narrow : INT VAR_INPUT n : INT; END_VAR Narrow := n; END_FUNCTION
+        FUNCTION Pick : INT VAR_INPUT c : BOOL; a, b : INT; END_VAR IF c THEN Pick := b; ELSE Pick := a; END_IF END_FUNCTION\n";
+    let wording = Wording { narrow: "Narrow", nothing: ";" };
+    let program = wording.program(body).replace("c0, c1 : Sum;", "c0, c1 : Sum; code : DINT;");
+    // SEL of CODESYS evaluates one of its two values only.
+    BLOCKS.to_owned() + own + &program.replace("SEL(", "Pick(")
+}
+
 /// The whole file.
 pub(super) fn text(body: &[Statement]) -> String {
-    let blocks = "FUNCTION Clamp : INT VAR_INPUT n : INT; END_VAR
+    BLOCKS.to_owned() + &Wording { narrow: "", nothing: ";" }.program(body)
+}
+
+const BLOCKS: &str = "FUNCTION Clamp : INT VAR_INPUT n : INT; END_VAR
             Clamp := n; IF n > 100 THEN Clamp := 100; RETURN; END_IF; IF n < -100 THEN Clamp := -100; END_IF;
         END_FUNCTION
         FUNCTION_BLOCK Sum VAR_INPUT x : INT; END_VAR VAR_OUTPUT total : INT; END_VAR total := total + x; END_FUNCTION_BLOCK
         ";
-    blocks.to_owned() + &Wording { narrow: "", nothing: ";" }.program(body)
-}

@@ -38,6 +38,8 @@ struct Cost {
 #[derive(Debug, Default)]
 pub(crate) struct Costs {
     units: BTreeMap<PouId, Cost>,
+    /// Some unit has statements that a fault ends.
+    tries: bool,
 }
 
 impl Costs {
@@ -46,7 +48,7 @@ impl Costs {
         let sizes: BTreeMap<PouId, Size> = pous.iter().map(|(id, pou)| (*id, measure(&pou.body))).collect();
         let order = callees_first(&sizes);
         debug_assert_eq!(order.len(), sizes.len(), "every unit is measured, and once");
-        let mut costs = Self::default();
+        let mut costs = Self { tries: sizes.values().any(|size| size.tries), ..Self::default() };
         for callee in sizes.values().flat_map(Size::all_calls) {
             costs.units.entry(*callee).or_default().sites += 1;
         }
@@ -63,7 +65,8 @@ impl Costs {
             (cost.metered, cost.call) = (guarded, u64::from(guarded));
             cost.inside = stays_inside;
             cost.size = own.nodes.saturating_add(inside);
-            cost.inlined = !guarded && (cost.size <= TINY || (cost.sites == 1 && cost.size <= LONE));
+            // What a fault ends is a function that knows its unit's registers alone.
+            cost.inlined = !guarded && !own.tries && (cost.size <= TINY || (cost.sites == 1 && cost.size <= LONE));
         }
         (costs, order)
     }
@@ -85,6 +88,11 @@ impl Costs {
     /// True if a call of the unit changes nothing but the instance that it runs on.
     pub(crate) fn stays_inside(&self, pou: PouId) -> bool {
         self.units.get(&pou).is_some_and(|cost| cost.inside)
+    }
+
+    /// True if some unit has statements that a fault ends, and the program goes on.
+    pub(crate) fn has_tries(&self) -> bool {
+        self.tries
     }
 
     pub(crate) fn of_call(&self, pou: PouId) -> u64 {

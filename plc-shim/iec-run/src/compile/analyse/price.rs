@@ -36,6 +36,9 @@ pub(super) const TEXT_CALL: u64 = 27;
 /// A call of a method that only the run decides.
 pub(super) const ROW_CALL: u64 = 106;
 
+/// Statements that a fault ends: a call by way of the host, beside a number for each register.
+pub(super) const TRY: u64 = 200;
+
 /// A CASE: a block for each arm, and a search for the label.
 pub(super) fn case(arms: u64, labels: u64) -> u64 {
     4 + 3 * arms + 6 * labels

@@ -63,6 +63,8 @@ impl Reach<'_> {
             StatementKind::Labelled(inner) => {
                 self.statements(&inner.first) && inner.parts.iter().all(|(_, part)| self.statements(part))
             }
+            // A fault in there leaves its variables half changed, and this caller goes on.
+            StatementKind::Try(_) => false,
             StatementKind::Exit
             | StatementKind::Continue
             | StatementKind::Return

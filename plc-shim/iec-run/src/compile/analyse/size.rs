@@ -13,6 +13,8 @@ pub(crate) struct Size {
     pub(crate) calls: Vec<PouId>,
     /// Calls in branches that leave the unit: they are seldom made, and never inlined.
     pub(crate) seldom: Vec<PouId>,
+    /// It has statements that a fault ends.
+    pub(crate) tries: bool,
     /// How many such branches are around.
     leaving: u32,
 }
@@ -87,6 +89,10 @@ impl Size {
             StatementKind::Labelled(inner) => {
                 self.statements(&inner.first);
                 inner.parts.iter().for_each(|(_, part)| self.statements(part));
+            }
+            StatementKind::Try(tried) => {
+                self.tries = true;
+                self.statements(&tried.body);
             }
             StatementKind::Exit
             | StatementKind::Continue

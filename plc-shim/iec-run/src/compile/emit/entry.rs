@@ -2,8 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::emitter::Shared;
-use super::function::{self, Made};
+use super::emitter::{Made, Shared};
+use super::function;
 use crate::compile::fault::FunctionMarks;
 use onescan_iec::check::Checked;
 use onescan_iec::ir::{Pou, PouId, StatementKind, Storage};

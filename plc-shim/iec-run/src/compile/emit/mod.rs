@@ -5,6 +5,7 @@
 //! | [`function`], [`entry`] | one unit to one function; what a task runs |
 //! | [`emitter`] | the function that is being made |
 //! | [`statement`], [`selection`], [`choice`], [`repetition`], [`counting`], [`jump`] | statements |
+//! | [`tried`] | statements that a fault ends, as functions of their own |
 //! | [`inline`], [`dispatch`] | calls, units put in their place; methods: which one runs |
 //! | [`expression`], [`arithmetic`], [`conversion`], [`intrinsic`], [`bytes`] | expressions |
 //! | [`place`], [`part`], [`pointer`], [`open_array`], [`memory`] | addresses and what lies there |
@@ -38,8 +39,9 @@ mod selection;
 mod statement;
 mod text;
 mod trace;
+mod tried;
 
 pub(super) use dispatch::{place_rows, table};
-pub(super) use emitter::{Shared, globals, value_type};
+pub(super) use emitter::{Made, Shared, globals, value_type};
 pub(super) use entry::{function as entry_function, only_instances};
-pub(super) use function::{Made, unit};
+pub(super) use function::unit;

@@ -9,7 +9,9 @@ use super::inline::Call;
 use crate::compile::analyse::{Address, Choice, Extent, RunsOn, leaves, may_be_any_nan};
 use crate::compile::fault::Callee;
 use crate::compile::points::PointKind;
-use onescan_iec::ir::{Dispatch, Expr, IfBranch, InstanceCall, Place, Statement, StatementKind, Storage, TypeTable};
+use onescan_iec::ir::{
+    Dispatch, Expr, IfBranch, InstanceCall, Place, Statement, StatementKind, Storage, Try, TypeTable,
+};
 use onescan_iec::syntax::Span;
 
 impl Emitter<'_, '_> {
@@ -49,10 +51,11 @@ impl Emitter<'_, '_> {
             StatementKind::Repeat(body, until) => {
                 self.repeat_statement(body, until, statement.span);
             }
-            StatementKind::Exit => self.leave_to(|labels| labels.exit),
-            StatementKind::Continue => self.leave_to(|labels| labels.next),
-            StatementKind::Return => self.return_statement(),
+            StatementKind::Exit => self.leave_to(|labels| labels.exit, Try::EXITED),
+            StatementKind::Continue => self.leave_to(|labels| labels.next, Try::CONTINUED),
+            StatementKind::Return => self.return_statement(Try::RETURNED),
             StatementKind::Labelled(inner) => self.labelled(inner, statement.span),
+            StatementKind::Try(inner) => self.try_statement(inner, statement.span),
             StatementKind::Jump(label) => self.jump(*label, statement.span),
             StatementKind::Pass => {}
         }
@@ -165,14 +168,19 @@ impl Emitter<'_, '_> {
         self.close();
     }
 
-    fn leave_to(&mut self, label: impl FnOnce(LoopLabels) -> Label) {
-        if let Some(labels) = self.innermost_loop() {
-            self.branch(label(labels));
-            self.leave_here();
+    /// Without a loop around, the one around the statements that a fault ends goes on there.
+    fn leave_to(&mut self, label: impl FnOnce(LoopLabels) -> Label, outcome: i32) {
+        match self.innermost_loop() {
+            Some(labels) => {
+                self.branch(label(labels));
+                self.leave_here();
+            }
+            None => self.return_statement(outcome),
         }
     }
 
-    fn return_statement(&mut self) {
+    fn return_statement(&mut self, outcome: i32) {
+        self.set_outcome(outcome);
         if let Some(end) = self.begin_return() {
             self.put_budget_back();
             self.branch(end);

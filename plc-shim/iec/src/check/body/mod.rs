@@ -33,6 +33,7 @@ mod wire;
 use std::collections::BTreeMap;
 
 use self::call::overload::Meanings;
+use self::statement::exception::Tried;
 use self::statement::jump::Labels;
 use self::view::View;
 use crate::check::declare::{Declarations, Scope};
@@ -62,6 +63,8 @@ pub(super) struct Body<'c, 'a> {
     labels: Vec<Labels>,
     /// How many labels the unit has so far.
     label_count: u32,
+    /// The parts of `__TRY` around the statement, the innermost last.
+    tried: Vec<Tried>,
     /// Values that elements of a network hand on.
     wires: BTreeMap<String, Place>,
     /// Statements are checked, not declarations: what a caller gives has the value that it is given. A bound of an
@@ -96,6 +99,7 @@ impl<'c, 'a> Body<'c, 'a> {
             result_assigned: false,
             labels: Vec::new(),
             label_count: 0,
+            tried: Vec::new(),
             wires: BTreeMap::new(),
             later: Vec::new(),
             is_running: false,

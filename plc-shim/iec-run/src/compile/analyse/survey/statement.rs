@@ -51,6 +51,12 @@ impl Walk<'_, '_> {
                 self.parts(inner);
             }
             StatementKind::Labelled(inner) => self.parts_once(inner),
+            StatementKind::Try(tried) => {
+                self.metered = true;
+                self.charge(price::TRY.saturating_add(u64::from(tried.outcome.0)));
+                self.changed(None);
+                self.set(self.scope.register(tried.outcome));
+            }
             StatementKind::Exit | StatementKind::Continue | StatementKind::Return | StatementKind::Jump(_) => {
                 self.charge(1);
                 self.leaves = true;

@@ -6,7 +6,7 @@
 
 use wasm_encoder::{BlockType, ConstExpr, GlobalSection, GlobalType, Instruction, ValType};
 
-use super::Emitter;
+use super::{Emitter, Shared};
 use crate::compile::analyse::SMALL;
 use crate::compile::fault::FaultKind;
 use onescan_iec::syntax::Span;
@@ -14,11 +14,23 @@ use onescan_iec::syntax::Span;
 /// Index of the global.
 const GLOBAL: u32 = 0;
 
+/// The first of the globals that hand registers on, see [`handed`](super::handed).
+pub(super) const FIRST_HANDED: u32 = GLOBAL + 1;
+
 /// The module's globals.
-pub(crate) fn globals() -> GlobalSection {
+pub(crate) fn globals(shared: &Shared<'_>) -> GlobalSection {
     let mut section = GlobalSection::new();
     let ty = GlobalType { val_type: ValType::I64, mutable: true, shared: false };
     section.global(ty, &ConstExpr::i64_const(0));
+    for ty in shared.handed.types() {
+        let zero = match ty {
+            ValType::I64 => ConstExpr::i64_const(0),
+            ValType::F32 => ConstExpr::f32_const(0.0.into()),
+            ValType::F64 => ConstExpr::f64_const(0.0.into()),
+            _ => ConstExpr::i32_const(0),
+        };
+        section.global(GlobalType { val_type: *ty, mutable: true, shared: false }, &zero);
+    }
     section
 }
 
@@ -98,6 +110,11 @@ impl Emitter<'_, '_> {
         self.emit(constant(cost));
         self.emit(Instruction::I64Sub);
         self.tee(register);
+        if self.program().costs().has_tries() {
+            // A fault may end the loop and not the task, which then has what is left here.
+            self.emit(Instruction::GlobalSet(GLOBAL));
+            self.get(register);
+        }
         self.emit(Instruction::I64Const(0));
         self.emit(Instruction::I64LtS);
         self.fault_if(FaultKind::EndlessLoop, span);

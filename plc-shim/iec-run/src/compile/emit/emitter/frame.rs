@@ -1,6 +1,8 @@
 //! What a unit's own terms mean in the function that is being made, be it the unit's own function
 //! or one that it is inlined into.
 
+use wasm_encoder::{Instruction, ValType};
+
 use super::code::Label;
 use super::{Emitter, value_type};
 use crate::compile::analyse::{Address, Extent, INSTANCE, Known, Register};
@@ -196,6 +198,22 @@ impl Emitter<'_, '_> {
             None => frame.returned = Some(self.known.clone()),
         }
         frame.end
+    }
+
+    /// The function is one of statements that a fault ends: the register says from here on how they have.
+    pub(crate) fn begin_outcome(&mut self, first: i32) -> Register {
+        let register = self.scratch(ValType::I32);
+        self.outcome = Some(register);
+        self.set_outcome(first);
+        register
+    }
+
+    /// Says how statements end that a fault may end; nothing anywhere else, nor in a unit that they call.
+    pub(crate) fn set_outcome(&mut self, outcome: i32) {
+        if let Some(register) = self.outcome.filter(|_| self.frames.len() == 1) {
+            self.emit(Instruction::I32Const(outcome));
+            self.set(register);
+        }
     }
 
     /// All RETURNs of the unit come together here.

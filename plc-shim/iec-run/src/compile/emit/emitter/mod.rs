@@ -10,12 +10,14 @@
 //! | [`held`] | values that registers hold for memory, through loops too |
 //! | [`access`] | loads and stores |
 //! | [`budget`] | what code costs, and how endless loops end |
+//! | [`handed`] | globals that hand a unit's registers on |
 
 mod access;
 mod budget;
 mod code;
 mod flow;
 mod frame;
+mod handed;
 mod held;
 mod registers;
 
@@ -26,6 +28,7 @@ use wasm_encoder::{Function, Instruction, ValType};
 
 use self::code::Code;
 use self::frame::Frame;
+use self::handed::Handed;
 use self::registers::Registers;
 use crate::compile::analyse::{Address, Effects, Entry, Extent, Known, Program, Register, Scope};
 use crate::compile::fault::{FaultKind, Mark, Unit};
@@ -56,6 +59,13 @@ pub(crate) fn value_type(ty: ElementaryType) -> ValType {
     }
 }
 
+/// A function's code and what its instructions stand for.
+pub(crate) struct Made {
+    pub(crate) body: Function,
+    pub(crate) marks: Vec<(u32, Mark)>,
+    pub(crate) units: Vec<Unit>,
+}
+
 /// What all functions of the module share.
 pub(crate) struct Shared<'p> {
     program: Program<'p>,
@@ -64,6 +74,9 @@ pub(crate) struct Shared<'p> {
     memory_size: u32,
     points: Option<Points>,
     data: Vec<Arc<[u8]>>,
+    handed: Handed,
+    /// The functions of statements that a fault ends.
+    tries: Vec<Made>,
 }
 
 impl<'p> Shared<'p> {
@@ -75,7 +88,16 @@ impl<'p> Shared<'p> {
         memory_size: u32,
         points: Option<Points>,
     ) -> Self {
-        Self { program, functions, rows, memory_size, points, data: Vec::new() }
+        Self {
+            program,
+            functions,
+            rows,
+            memory_size,
+            points,
+            data: Vec::new(),
+            handed: Handed::default(),
+            tries: Vec::new(),
+        }
     }
 
     /// The index of a unit's function.
@@ -109,6 +131,17 @@ impl<'p> Shared<'p> {
     /// Initial bytes of temporary aggregates, by data segment.
     pub(crate) fn data(&self) -> &[Arc<[u8]>] {
         &self.data
+    }
+
+    /// The functions of statements that a fault ends, by their numbers.
+    pub(crate) fn take_tries(&mut self) -> Vec<Made> {
+        std::mem::take(&mut self.tries)
+    }
+
+    /// The number of the function of statements that a fault ends.
+    pub(crate) fn add_try(&mut self, made: Made) -> u32 {
+        self.tries.push(made);
+        self.tries.len() as u32 - 1
     }
 
     /// The number of a new data segment with these bytes.
@@ -147,6 +180,8 @@ pub(crate) struct Emitter<'s, 'p> {
     budget: Option<Register>,
     /// True if the code uses the budget.
     metered: bool,
+    /// Holds how the statements end, in the function of some that a fault ends.
+    outcome: Option<Register>,
 }
 
 impl<'s, 'p> Emitter<'s, 'p> {
@@ -168,6 +203,7 @@ impl<'s, 'p> Emitter<'s, 'p> {
             held: 0,
             budget: None,
             metered: false,
+            outcome: None,
         }
     }
 
@@ -224,17 +260,32 @@ impl<'s, 'p> Emitter<'s, 'p> {
         self.program().inlined(pou, &self.scope)
     }
 
-    /// The function's body, its marks by byte offset, and the units that they belong to.
-    pub(crate) fn finish(mut self, id: PouId) -> (Function, Vec<(u32, Mark)>, Vec<Unit>) {
+    /// The function of a unit.
+    pub(crate) fn finish(mut self, id: PouId) -> Made {
+        let is_guarded = self.program().pou(id).is_some_and(|pou| pou.guard != Guard::None);
+        let call = self.finish_code(is_guarded);
+        self.shared.program.found(id, call, self.metered);
+        self.made()
+    }
+
+    /// The function of statements that a fault ends: the host calls it, so it pays for itself.
+    pub(crate) fn finish_try(mut self) -> Made {
+        self.finish_code(true);
+        self.made()
+    }
+
+    /// Ends the code; returns what is left to pay for callers.
+    fn finish_code(&mut self, pays_itself: bool) -> u64 {
         debug_assert_eq!(self.frames.len(), 1, "units that were put in the place of calls have been left");
         debug_assert_eq!(self.held, 0, "all ways have come together");
         debug_assert!(self.foreseen.is_empty() && self.pins.is_empty(), "all loops have ended");
         debug_assert!(self.budget.is_none(), "the budget stands in its global between two functions");
         self.emit(Instruction::End);
-        let is_guarded = self.program().pou(id).is_some_and(|pou| pou.guard != Guard::None);
-        let call = self.pay_at_entry(is_guarded);
-        self.shared.program.found(id, call, self.metered);
-        let (function, marks) = self.code.finish(self.registers.locals());
-        (function, marks, self.units)
+        self.pay_at_entry(pays_itself)
+    }
+
+    fn made(self) -> Made {
+        let (body, marks) = self.code.finish(self.registers.locals());
+        Made { body, marks, units: self.units }
     }
 }

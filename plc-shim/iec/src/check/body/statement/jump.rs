@@ -73,7 +73,9 @@ impl Body<'_, '_> {
             return Some(StatementKind::Jump(id));
         }
         let known = self.labels.iter().flat_map(|labels| &labels.known).map(|(key, _)| key.as_str());
-        let help = did_you_mean(&name.text, known);
+        let in_try = "no jump leads out of a part of `__TRY`; RETURN, EXIT and CONTINUE do";
+        let in_try = (!self.tried.is_empty()).then(|| in_try.to_owned());
+        let help = did_you_mean(&name.text, known).or(in_try);
         let message = format!("there is no label `{}` that this jump could lead to", name.text);
         self.report(Diagnostic::error(Code::UnknownLabel, name.span, message).with_optional_help(help));
         None

@@ -2,12 +2,13 @@
 
 pub(super) mod assignment;
 mod case_of_text;
-mod exception;
+pub(super) mod exception;
 pub(super) mod instruction;
 pub(super) mod jump;
 
 use std::collections::BTreeMap;
 
+use self::exception::Leave;
 use super::Body;
 use super::place::{Access, Located};
 use crate::check::types::constant::fold;
@@ -84,9 +85,9 @@ impl Body<'_, '_> {
                 let body = self.loop_body(&inner.body);
                 StatementKind::Repeat(body, self.condition(&inner.until)?)
             }
-            ast::StatementKind::Exit => self.inside_loop("EXIT", StatementKind::Exit, span)?,
-            ast::StatementKind::Continue => self.inside_loop("CONTINUE", StatementKind::Continue, span)?,
-            ast::StatementKind::Return => StatementKind::Return,
+            ast::StatementKind::Exit => self.inside_loop("EXIT", Leave::Exit, span)?,
+            ast::StatementKind::Continue => self.inside_loop("CONTINUE", Leave::Continue, span)?,
+            ast::StatementKind::Return => self.leaving(Leave::Return, span),
             ast::StatementKind::Jump(label) => self.jump(label)?,
             // What it does stands behind it.
             ast::StatementKind::Instruction(_) => StatementKind::Pass,
@@ -95,9 +96,18 @@ impl Body<'_, '_> {
         Some(Statement { kind, span })
     }
 
-    fn inside_loop(&mut self, word: &str, kind: StatementKind, span: Span) -> Option<StatementKind> {
+    /// `a.b;`: reads it, which a property may notice.
+    fn value_statement(&mut self, value: &ast::Expr) -> Option<StatementKind> {
+        let operand = self.within(None, |body| body.expression(value))?;
+        let found = self.settle(operand)?;
+        let message = "this value goes nowhere";
+        self.report(Diagnostic::warning(Code::ResultIgnored, value.span, message));
+        Some(StatementKind::Evaluate(found))
+    }
+
+    fn inside_loop(&mut self, word: &str, leave: Leave, span: Span) -> Option<StatementKind> {
         if self.loops > 0 {
-            return Some(kind);
+            return Some(self.leaving(leave, span));
         }
         let message = format!("{word} outside of a loop");
         self.report(Diagnostic::error(Code::MisplacedStatement, span, message));
