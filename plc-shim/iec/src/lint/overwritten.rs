@@ -1,10 +1,13 @@
 //! W0725: a variable is assigned to, and assigned to again before anything reads it. W0728: one is assigned to itself.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use super::bodies::{Bodies, Body};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::ir::walk::{self, Visitor};
 use crate::ir::{ElementaryType, Expr, ExprKind, Place, PlaceUse, Statement, StatementKind, Step, Storage, place_uses};
 use crate::syntax::ast::{SectionKind, Variable};
+use crate::syntax::direct_address::Area;
 
 pub(super) fn lint(bodies: &Bodies<'_>, findings: &mut Vec<Diagnostic>) {
     for body in bodies.iter() {
@@ -54,12 +57,10 @@ fn twice(body: Body<'_>, bodies: &Bodies<'_>, findings: &mut Vec<Diagnostic>) {
     // What a call begins with, as the first value of a VAR_TEMP, stands in a declaration.
     let is_written = |each: &&Statement| each.span.file == begin.file && each.span.start >= begin.start;
     let list: Vec<&Statement> = body.checked.body.iter().filter(is_written).collect();
+    let index = Index::of(&body.checked.body, &list, bodies);
     for (at, first) in list.iter().enumerate() {
         let Some((place, value)) = assigned(first) else { continue };
-        if is_shared(&body.checked.body, place, bodies) {
-            continue;
-        }
-        let Some((again, next)) = overwriting(place, &list[at + 1..], bodies) else { continue };
+        let Some((again, next)) = index.overwriting(place, at, &list) else { continue };
         // A value for all cases, before what computes it.
         let is_default = bodies.constant(value).is_some() && bodies.constant(next).is_none();
         if !is_default {
@@ -68,41 +69,109 @@ fn twice(body: Body<'_>, bodies: &Bodies<'_>, findings: &mut Vec<Diagnostic>) {
     }
 }
 
-/// The statement that assigns to the same place, if nothing between looks at it.
-fn overwriting<'s>(place: &Place, list: &[&'s Statement], bodies: &Bodies<'_>) -> Option<(&'s Place, &'s Expr)> {
-    for statement in list {
-        if may_look_at(statement, place, bodies) {
+/// Where a place lies that may have bytes in common with others: what has another key has none.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Whole {
+    Absolute(u32),
+    Instance(u32),
+    Area(Area),
+}
+
+/// Where exactly it begins.
+type Begin = (Whole, u32, Option<u8>);
+
+fn whole(storage: Storage) -> Option<Whole> {
+    match storage {
+        Storage::Absolute(offset) => Some(Whole::Absolute(offset)),
+        Storage::Instance(offset) => Some(Whole::Instance(offset)),
+        Storage::Located(location) => Some(Whole::Area(location.area)),
+        Storage::AbsolutePointer(_)
+        | Storage::InstancePointer(_)
+        | Storage::Register(_)
+        | Storage::RegisterPointer(_)
+        | Storage::Referred => None,
+    }
+}
+
+fn begin(place: &Place) -> Option<Begin> {
+    let offset = |step: &Step| if let Step::Offset(offset) = step { Some(*offset) } else { None };
+    let inside = place.steps.iter().map(offset).sum::<Option<u32>>()?;
+    let (from, bit) = match place.storage {
+        Storage::Located(location) => (location.offset, location.bit),
+        _ => (0, None),
+    };
+    Some((whole(place.storage)?, from.checked_add(inside)?, bit))
+}
+
+/// What the statements of a list do, by places: found in one walk, however long the list is.
+#[derive(Default)]
+struct Index {
+    /// The statements that may look at a place, in their order.
+    looks: BTreeMap<Whole, Vec<usize>>,
+    /// Those that may look at any place, or end what follows them.
+    anything: Vec<usize>,
+    /// Those that assign to a place.
+    assigned: BTreeMap<Begin, Vec<usize>>,
+    /// Places whose address something else gets.
+    shared: BTreeSet<Whole>,
+}
+
+impl Index {
+    fn of(all: &[Statement], list: &[&Statement], bodies: &Bodies<'_>) -> Self {
+        let mut index = Self::default();
+        place_uses(all, bodies.types(), &mut |used, how| {
+            if how == PlaceUse::Share {
+                index.shared.extend(whole(used.storage));
+            }
+        });
+        for (at, statement) in list.iter().enumerate() {
+            index.add(at, statement, bodies);
+        }
+        index
+    }
+
+    fn add(&mut self, at: usize, statement: &Statement, bodies: &Bodies<'_>) {
+        let mut calls = Opaque { bodies, found: false };
+        walk::statements(std::slice::from_ref(statement), &mut calls);
+        place_uses(std::slice::from_ref(statement), bodies.types(), &mut |used, how| {
+            if how == PlaceUse::Write {
+                return;
+            }
+            // What a reference leads to may be any variable.
+            calls.found |= matches!(used.steps.first(), Some(Step::Pointer { .. } | Step::Open { .. }))
+                || matches!(
+                    used.storage,
+                    Storage::InstancePointer(_) | Storage::AbsolutePointer(_) | Storage::Referred
+                );
+            if let Some(whole) = whole(used.storage) {
+                let looking = self.looks.entry(whole).or_default();
+                if looking.last() != Some(&at) {
+                    looking.push(at);
+                }
+            }
+        });
+        if calls.found {
+            self.anything.push(at);
+        }
+        if let Some(begin) = assigned(statement).and_then(|(place, _)| begin(place)) {
+            self.assigned.entry(begin).or_default().push(at);
+        }
+    }
+
+    /// The statement after `at` that assigns to the same place, if nothing between looks at it, and nothing else has its
+    /// address.
+    fn overwriting<'s>(&self, place: &Place, at: usize, list: &[&'s Statement]) -> Option<(&'s Place, &'s Expr)> {
+        let after = |all: &[usize]| all.partition_point(|other| *other <= at);
+        let whole = whole(place.storage)?;
+        if self.shared.contains(&whole) {
             return None;
         }
-        match assigned(statement) {
-            Some((target, value)) if target.is_surely(place) => return Some((target, value)),
-            // What neither looks at the place nor writes it changes nothing.
-            _ => {}
-        }
+        let looks = self.looks.get(&whole).map_or(&[][..], Vec::as_slice);
+        let seen = [looks, &self.anything].into_iter().filter_map(|all| all.get(after(all))).min();
+        let assigning = self.assigned.get(&begin(place)?)?;
+        let unseen = assigning[after(assigning)..].iter().take_while(|next| seen.is_none_or(|seen| *next < seen));
+        unseen.filter_map(|next| assigned(list.get(*next)?)).find(|(target, _)| target.is_surely(place))
     }
-    None
-}
-
-/// True if both may have bytes in common.
-fn may_meet(one: &Place, other: &Place) -> bool {
-    match (one.storage, other.storage) {
-        (Storage::Located(one), Storage::Located(other)) => one.area == other.area,
-        (one, other) => one == other,
-    }
-}
-
-/// True if the statement may read the place, or end what follows it.
-fn may_look_at(statement: &Statement, place: &Place, bodies: &Bodies<'_>) -> bool {
-    let mut looks = false;
-    place_uses(std::slice::from_ref(statement), bodies.types(), &mut |used, how| {
-        // What a reference leads to may be this very variable.
-        let is_elsewhere = matches!(used.steps.first(), Some(Step::Pointer { .. } | Step::Open { .. }))
-            || matches!(used.storage, Storage::InstancePointer(_) | Storage::AbsolutePointer(_) | Storage::Referred);
-        looks |= how != PlaceUse::Write && (is_elsewhere || may_meet(used, place));
-    });
-    let mut calls = Opaque { bodies, found: false };
-    walk::statements(std::slice::from_ref(statement), &mut calls);
-    looks || calls.found
 }
 
 /// Looks for what may read anything, and for what may leave the list.
@@ -139,15 +208,6 @@ impl Visitor for Opaque<'_> {
             _ => {}
         }
     }
-}
-
-/// True if something else gets the address of the variable.
-fn is_shared(statements: &[Statement], place: &Place, bodies: &Bodies<'_>) -> bool {
-    let mut shared = false;
-    place_uses(statements, bodies.types(), &mut |used, how| {
-        shared |= how == PlaceUse::Share && may_meet(used, place);
-    });
-    shared
 }
 
 fn report(body: Body<'_>, (first, again): (&Place, &Place), bodies: &Bodies<'_>, findings: &mut Vec<Diagnostic>) {

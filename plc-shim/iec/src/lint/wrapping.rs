@@ -1,12 +1,15 @@
 //! W0729: a counter that grows in each scan, is compared, and is never set back.
 
+use std::collections::BTreeMap;
+
 use super::Unit;
 use super::bodies::{Bodies, Body};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::front::Front;
 use crate::ir::walk::{self, Visitor};
 use crate::ir::{
-    Binary, ElementaryType, Expr, ExprKind, Place, PlaceUse, Statement, StatementKind, Storage, Type, Value, place_uses,
+    Binary, ElementaryType, Expr, ExprKind, Place, PlaceUse, Statement, StatementKind, Storage, Type, TypeId, Value,
+    place_uses,
 };
 use crate::syntax::ast::PouKind;
 use crate::task_plan::TaskPlan;
@@ -24,12 +27,14 @@ pub(super) fn lint(
 ) {
     for body in bodies.iter().filter(|body| is_plain_program(body, units)) {
         let Some(interval) = interval_of(&body.pou.name.text, front, plan) else { continue };
+        // All counters of a program are looked up in one walk, which a program without one does not need.
+        let mut counters: Option<Counters> = None;
         for statement in &body.checked.body {
             if leaves(statement) {
                 break;
             }
             if let Some((place, step)) = growth(statement, bodies)
-                && is_for_ever(&body, place, bodies)
+                && counters.get_or_insert_with(|| Counters::of(&body, bodies)).is_for_ever(place)
             {
                 report(place, step, interval, bodies, findings);
             }
@@ -104,34 +109,66 @@ fn bare(expr: &Expr) -> &Expr {
     }
 }
 
-/// True if nothing else writes the variable, and something compares its size or selects by it.
-fn is_for_ever(body: &Body<'_>, counter: &Place, bodies: &Bodies<'_>) -> bool {
-    let mut writes = 0_u32;
-    place_uses(&body.checked.body, bodies.types(), &mut |place, how| {
-        writes += u32::from(how != PlaceUse::Read && place.storage == counter.storage);
-    });
-    let mut compared = Compared { counter, found: false };
-    walk::statements(&body.checked.body, &mut compared);
-    writes == 1 && compared.found
+/// What a program does with the variables of its instance, by their offsets.
+#[derive(Default)]
+struct Counters {
+    /// How often each is written.
+    writes: BTreeMap<u32, u32>,
+    /// The types as which each is compared by its size, or selects by its value.
+    compared: BTreeMap<u32, Vec<TypeId>>,
 }
 
-struct Compared<'a> {
-    counter: &'a Place,
-    found: bool,
+impl Counters {
+    fn of(body: &Body<'_>, bodies: &Bodies<'_>) -> Self {
+        let mut counters = Self::default();
+        walk::statements(&body.checked.body, &mut counters);
+        place_uses(&body.checked.body, bodies.types(), &mut |place, how| {
+            if let (Storage::Instance(offset), PlaceUse::Write | PlaceUse::Share) = (place.storage, how) {
+                *counters.writes.entry(offset).or_default() += 1;
+            }
+        });
+        counters
+    }
+
+    /// True if nothing else writes the variable, and something compares its size or selects by it.
+    fn is_for_ever(&self, counter: &Place) -> bool {
+        let Storage::Instance(offset) = counter.storage else { return false };
+        let is_compared = self.compared.get(&offset).is_some_and(|types| types.contains(&counter.ty));
+        self.writes.get(&offset) == Some(&1) && is_compared
+    }
+
+    /// A whole variable, not one that is in it.
+    fn compare(&mut self, expr: &Expr) {
+        let ExprKind::Load(from) = &bare(expr).kind else { return };
+        if let (Storage::Instance(offset), true) = (from.storage, from.is_surely(&whole(from))) {
+            let types = self.compared.entry(offset).or_default();
+            if !types.contains(&from.ty) {
+                types.push(from.ty);
+            }
+        }
+    }
 }
 
-impl Visitor for Compared<'_> {
+/// The variable that a place is in, seen as the place's type.
+fn whole(place: &Place) -> Place {
+    Place { steps: Vec::new(), part: None, ..place.clone() }
+}
+
+impl Visitor for Counters {
     fn statement(&mut self, statement: &Statement) {
-        let StatementKind::Case(case) = &statement.kind else { return };
-        let is_it = matches!(&bare(&case.selector).kind, ExprKind::Load(from) if from.is_surely(self.counter));
-        self.found |= is_it;
+        if let StatementKind::Case(case) = &statement.kind {
+            self.compare(&case.selector);
+        }
     }
 
     fn expression(&mut self, expr: &Expr) {
-        let ExprKind::Binary(operator, left, right) = &expr.kind else { return };
-        let by_size = matches!(operator, Binary::Less | Binary::LessEqual | Binary::Greater | Binary::GreaterEqual);
-        let is_it = |side: &Expr| matches!(&bare(side).kind, ExprKind::Load(from) if from.is_surely(self.counter));
-        self.found |= by_size && (is_it(left) || is_it(right));
+        let ExprKind::Binary(Binary::Less | Binary::LessEqual | Binary::Greater | Binary::GreaterEqual, left, right) =
+            &expr.kind
+        else {
+            return;
+        };
+        self.compare(left);
+        self.compare(right);
     }
 }
 
