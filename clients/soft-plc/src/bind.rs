@@ -97,31 +97,30 @@ pub fn bind(
     signals: &[SignalDecl],
     paths: &BTreeMap<SignalName, Vec<String>>,
 ) -> Result<Bindings, BindError> {
-    let mut bindings = Bindings::default();
+    let (bindings, errors) = bind_each(application, plc, signals, paths);
+    errors.into_iter().next().map_or(Ok(bindings), Err)
+}
+
+/// The same for each signal by itself, so that one that is wrong hides no other.
+pub fn bind_each(
+    application: &Application,
+    plc: &ClientName,
+    signals: &[SignalDecl],
+    paths: &BTreeMap<SignalName, Vec<String>>,
+) -> (Bindings, Vec<BindError>) {
+    let (mut bindings, mut errors) = (Bindings::default(), Vec::new());
     let own = Own::of(application);
-    for signal in signals {
-        if let SignalType::Bytes(_) = signal.ty {
-            // a port has it, and no variable
-            continue;
-        }
+    // A port has lines of bytes, and no variable.
+    for signal in signals.iter().filter(|signal| !matches!(signal.ty, SignalType::Bytes(_))) {
         let written = signal.writer.as_ref() == Some(plc);
-        let variables = match paths.get(&signal.name) {
-            Some(paths) if written && paths.len() > 1 => return Err(several(&signal.name, paths)),
-            Some(paths) => {
-                paths.iter().map(|path| at_path(application, &signal.name, path)).collect::<Result<_, _>>()?
-            }
-            None if written => vec![own.output(&signal.name)?],
-            None => own.input(&signal.name),
-        };
-        if variables.is_empty() {
-            continue;
+        match own.bound(application, signal, written, paths.get(&signal.name)) {
+            Ok(None) => {}
+            Ok(Some(bound)) if written => bindings.outputs.push(bound),
+            Ok(Some(bound)) => bindings.inputs.push(bound),
+            Err(error) => errors.push(error),
         }
-        let places = variables.iter().map(|variable| checked_place(signal, variable)).collect::<Result<_, _>>()?;
-        let paths = variables.into_iter().map(|variable| variable.path).collect();
-        let bound = Bound { port: Port { name: signal.name.clone(), ty: signal.ty }, places, variables: paths };
-        if written { bindings.outputs.push(bound) } else { bindings.inputs.push(bound) }
     }
-    Ok(bindings)
+    (bindings, errors)
 }
 
 /// A signal has one value, so one variable that gives it.
@@ -163,6 +162,30 @@ impl Own {
             }
         }
         own
+    }
+
+    /// The variables of a signal, which the PLC writes or reads; nothing if it has none that reads it.
+    fn bound(
+        &self,
+        application: &Application,
+        signal: &SignalDecl,
+        written: bool,
+        paths: Option<&Vec<String>>,
+    ) -> Result<Option<Bound>, BindError> {
+        let variables = match paths {
+            Some(paths) if written && paths.len() > 1 => return Err(several(&signal.name, paths)),
+            Some(paths) => {
+                paths.iter().map(|path| at_path(application, &signal.name, path)).collect::<Result<_, _>>()?
+            }
+            None if written => vec![self.output(&signal.name)?],
+            None => self.input(&signal.name),
+        };
+        if variables.is_empty() {
+            return Ok(None);
+        }
+        let places = variables.iter().map(|variable| checked_place(signal, variable)).collect::<Result<_, _>>()?;
+        let variables = variables.into_iter().map(|variable| variable.path).collect();
+        Ok(Some(Bound { port: Port { name: signal.name.clone(), ty: signal.ty }, places, variables }))
     }
 
     fn output(&self, signal: &SignalName) -> Result<Variable, BindError> {

@@ -22,7 +22,7 @@ pub mod undriven;
 mod variables;
 pub mod watch;
 
-pub use bind::{BindError, Bindings, Bound, bind};
+pub use bind::{BindError, Bindings, Bound, bind, bind_each};
 pub use client::{CoverageSink, SoftPlcClient};
 pub use trace::{TraceSink, Traced, Ways, Written};
 pub use variables::VariableError;

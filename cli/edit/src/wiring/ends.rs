@@ -9,7 +9,7 @@ use onescan_plant::scene::model::{Component, Drive, Scene, When, Wire};
 use onescan_scenario::compose::Paths;
 use onescan_scenario::ports_file::PortFile;
 use onescan_server::signal::{ClientName, SignalDecl, SignalName, SignalType};
-use onescan_soft_plc::{BindError, bind};
+use onescan_soft_plc::{BindError, bind_each};
 
 /// A signal at a client: its type there, and what it is there.
 #[derive(Clone, Debug)]
@@ -31,13 +31,64 @@ pub(super) struct Ends {
     pub(super) unbound: Vec<BindError>,
 }
 
+/// The ends of a client, found by their signals.
+#[derive(Debug)]
+pub(super) struct Found {
+    pub(super) ends: Ends,
+    reads: Positions,
+    writes: Positions,
+    unbound: Positions,
+}
+
+/// Where something of a signal is in a list.
+type Positions = BTreeMap<SignalName, Vec<usize>>;
+
+impl Found {
+    pub(super) fn new(ends: Ends) -> Self {
+        let reads = positions(ends.reads.iter().map(|end| &end.signal));
+        let writes = positions(ends.writes.iter().map(|end| &end.signal));
+        let unbound = positions(ends.unbound.iter().map(|error| &error.signal));
+        Self { ends, reads, writes, unbound }
+    }
+
+    /// Where the client reads a signal.
+    pub(super) fn reads(&self, signal: &SignalName) -> impl Iterator<Item = &End> {
+        of(&self.reads, signal, &self.ends.reads)
+    }
+
+    /// Where it writes a signal.
+    pub(super) fn writes(&self, signal: &SignalName) -> impl Iterator<Item = &End> {
+        of(&self.writes, signal, &self.ends.writes)
+    }
+
+    /// Why a signal cannot be bound.
+    pub(super) fn unbound(&self, signal: &SignalName) -> impl Iterator<Item = &BindError> {
+        of(&self.unbound, signal, &self.ends.unbound)
+    }
+}
+
+fn positions<'n>(names: impl Iterator<Item = &'n SignalName>) -> Positions {
+    let mut positions = Positions::new();
+    for (at, name) in names.enumerate() {
+        positions.entry(name.clone()).or_default().push(at);
+    }
+    positions
+}
+
+fn of<'f, T>(positions: &'f Positions, signal: &SignalName, all: &'f [T]) -> impl Iterator<Item = &'f T> {
+    positions.get(signal).into_iter().flatten().filter_map(|at| all.get(*at))
+}
+
 /// The ends of a plant.
 pub(super) fn of_plant(scene: &Scene) -> Ends {
-    let places = places_of(scene);
+    let mut places: BTreeMap<SignalName, Vec<String>> = BTreeMap::new();
+    for (name, place) in places_of(scene) {
+        places.entry(name).or_default().push(place);
+    }
     let end = |port: &onescan_server::signal::Port| End {
         signal: port.name.clone(),
         ty: port.ty,
-        places: places.iter().filter(|(name, _)| *name == port.name).map(|(_, place)| place.clone()).collect(),
+        places: places.get(&port.name).cloned().unwrap_or_default(),
     };
     Ends {
         reads: scene.reads.iter().map(end).collect(),
@@ -113,20 +164,13 @@ pub(super) fn of_ports(ports: &BTreeMap<String, PortFile>, declared: &[SignalDec
 
 /// The ends of a soft PLC, each signal by itself, so that one that is wrong hides no other.
 pub(super) fn of_plc(application: &Application, plc: &ClientName, declared: &[SignalDecl], paths: &Paths) -> Ends {
-    let mut ends = Ends::default();
-    for signal in declared {
-        match bind(application, plc, std::slice::from_ref(signal), paths) {
-            Ok(bound) => {
-                let end = |bound: onescan_soft_plc::Bound| End {
-                    signal: bound.port.name,
-                    ty: bound.port.ty,
-                    places: bound.variables,
-                };
-                ends.reads.extend(bound.inputs.into_iter().map(end));
-                ends.writes.extend(bound.outputs.into_iter().map(end));
-            }
-            Err(error) => ends.unbound.push(error),
-        }
+    let (bound, unbound) = bind_each(application, plc, declared, paths);
+    let end =
+        |bound: onescan_soft_plc::Bound| End { signal: bound.port.name, ty: bound.port.ty, places: bound.variables };
+    Ends {
+        reads: bound.inputs.into_iter().map(end).collect(),
+        writes: bound.outputs.into_iter().map(end).collect(),
+        open: Vec::new(),
+        unbound,
     }
-    ends
 }

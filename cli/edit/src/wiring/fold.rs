@@ -1,24 +1,29 @@
 //! Lines that differ in an index only, as one line with a range.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 /// One line: texts of which some may have an index in common, as in `arm[3].on`.
 pub(super) type Line = Vec<String>;
 
 /// The lines with their runs of indices folded, in the order of their first ones.
 pub(super) fn fold(lines: &[Line]) -> Vec<Line> {
     let mut groups: Vec<(Line, Option<(usize, usize)>)> = Vec::new();
+    // Which groups a line would make longer, by its form and its index; the first of several comes first.
+    let mut growing: BTreeMap<(Line, usize), BTreeSet<usize>> = BTreeMap::new();
     for line in lines {
         let Some(index) = line.iter().find_map(|text| first_index(text)) else {
             groups.push((line.clone(), None));
             continue;
         };
         let form: Line = line.iter().map(|text| text.replace(&format!("[{index}]"), "[#]")).collect();
-        let longer = groups.iter_mut().find_map(|(known, range)| match range {
-            Some((_, last)) if *known == form && *last + 1 == index => Some(last),
-            _ => None,
-        });
-        match longer {
-            Some(last) => *last = index,
-            None => groups.push((form, Some((index, index)))),
+        let longer = growing.get_mut(&(form.clone(), index)).and_then(BTreeSet::pop_first);
+        let group = longer.unwrap_or(groups.len());
+        match groups.get_mut(group) {
+            Some((_, Some((_, last)))) => *last = index,
+            _ => groups.push((form.clone(), Some((index, index)))),
+        }
+        if let Some(next) = index.checked_add(1) {
+            growing.entry((form, next)).or_default().insert(group);
         }
     }
     groups.into_iter().map(|(form, range)| with_range(form, range)).collect()

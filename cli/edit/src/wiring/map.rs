@@ -8,7 +8,7 @@ use onescan_server::signal::{ClientName, SignalName, SignalType, nearest};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::ends::{End, Ends, of_plant, of_plc, of_ports};
+use super::ends::{End, Found, of_plant, of_plc, of_ports};
 
 /// The wiring of a scenario.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
@@ -142,7 +142,7 @@ impl Map {
     /// A scene that is none, sources that do not compile, a `bind` that is wrong in itself.
     pub fn of(scenario: &Scenario) -> Result<Self, ScenarioError> {
         let mut clients = Vec::new();
-        let mut found: Vec<(ClientName, Option<Ends>)> = Vec::new();
+        let mut found: Vec<(ClientName, Option<Found>)> = Vec::new();
         let mut undriven = Vec::new();
         for (name, entry) in &scenario.file().clients {
             let (kind, ends) = match entry.get_ref() {
@@ -165,7 +165,7 @@ impl Map {
                 ClientFile::External { .. } => ("external", None),
             };
             clients.push(Member { name: name.to_string(), kind, known: ends.is_some() });
-            found.push((name.clone(), ends));
+            found.push((name.clone(), ends.map(Found::new)));
         }
         let mut map = Self { clients, signals: Vec::new(), open: open(&found), undriven, troubles: Vec::new() };
         for (name, signal) in &scenario.file().signals {
@@ -198,28 +198,28 @@ impl Map {
         &mut self,
         wired: &Wired,
         (name, ty, writer): (&SignalName, SignalType, &ClientName),
-        found: &[(ClientName, Option<Ends>)],
+        found: &[(ClientName, Option<Found>)],
     ) {
         for (client, ends) in found {
             let Some(ends) = ends else { continue };
-            for error in ends.unbound.iter().filter(|error| error.signal == *name) {
+            for error in ends.unbound(name) {
                 let typed = error.message.contains(&format!("`{name}` is {ty}, but"));
                 let kind = if typed { TroubleKind::UnequalType } else { TroubleKind::Unconnected };
                 let help = error.help.as_ref().map(|help| format!(" ({help})")).unwrap_or_default();
                 self.trouble(kind, name, format!("{client}: {}{help}", error.message));
             }
-            let writes = ends.writes.iter().find(|end| end.signal == *name);
-            if writes.is_some() && client != writer {
+            let writes = ends.writes(name).next().is_some();
+            if writes && client != writer {
                 let message = format!("`{writer}` writes it by declaration, and `{client}` does, too");
                 self.trouble(TroubleKind::WrittenTwice, name, message);
             }
-            let bound = !ends.unbound.iter().any(|error| error.signal == *name);
-            if writes.is_none() && client == writer && bound {
-                let near = nearest(name.as_str(), ends.writes.iter().map(|end| end.signal.as_str()));
+            let bound = ends.unbound(name).next().is_none();
+            if !writes && client == writer && bound {
+                let near = nearest(name.as_str(), ends.ends.writes.iter().map(|end| end.signal.as_str()));
                 let help = near.map(|near| format!(" (did you mean `{near}`?)")).unwrap_or_default();
                 self.trouble(TroubleKind::Unconnected, name, format!("`{writer}` is to write it and does not{help}"));
             }
-            for end in ends.reads.iter().chain(&ends.writes).filter(|end| end.signal == *name && end.ty != ty) {
+            for end in ends.reads(name).chain(ends.writes(name)).filter(|end| end.ty != ty) {
                 let message = format!("declared {ty}, but {} at `{client}`", end.ty);
                 self.trouble(TroubleKind::UnequalType, name, message);
             }
@@ -231,9 +231,9 @@ impl Map {
     }
 
     /// Ends at signals that the scenario does not declare.
-    fn check_undeclared(&mut self, scenario: &Scenario, found: &[(ClientName, Option<Ends>)]) {
+    fn check_undeclared(&mut self, scenario: &Scenario, found: &[(ClientName, Option<Found>)]) {
         let declared = &scenario.file().signals;
-        for (client, ends) in found.iter().filter_map(|(client, ends)| Some((client, ends.as_ref()?))) {
+        for (client, ends) in found.iter().filter_map(|(client, found)| Some((client, &found.as_ref()?.ends))) {
             let reported = |end: &End, does: &str| {
                 let near = nearest(end.signal.as_str(), declared.keys().map(SignalName::as_str));
                 let help = near.map(|near| format!(" (did you mean `{near}`?)")).unwrap_or_default();
@@ -264,10 +264,10 @@ fn undriven_of(
     Ok(inputs.collect())
 }
 
-fn open(found: &[(ClientName, Option<Ends>)]) -> Vec<OpenInput> {
+fn open(found: &[(ClientName, Option<Found>)]) -> Vec<OpenInput> {
     let mut open = Vec::new();
     for (client, ends) in found {
-        for (input, preset) in ends.iter().flat_map(|ends| &ends.open) {
+        for (input, preset) in ends.iter().flat_map(|found| &found.ends.open) {
             open.push(OpenInput { client: client.to_string(), input: input.clone(), preset: *preset });
         }
     }
@@ -280,18 +280,18 @@ enum Side {
     Writes,
 }
 
-fn hook(client: &ClientName, found: &[(ClientName, Option<Ends>)], signal: &SignalName, side: Side) -> Hook {
+fn hook(client: &ClientName, found: &[(ClientName, Option<Found>)], signal: &SignalName, side: Side) -> Hook {
     let ends = found.iter().find(|(known, _)| known == client).and_then(|(_, ends)| ends.as_ref());
-    let at = ends.map(|ends| match side {
-        Side::Reads => &ends.reads,
-        Side::Writes => &ends.writes,
+    let places = |ends: &mut dyn Iterator<Item = &End>| ends.flat_map(|end| end.places.clone()).collect();
+    let at = ends.map_or_else(Vec::new, |ends| match side {
+        Side::Reads => places(&mut ends.reads(signal)),
+        Side::Writes => places(&mut ends.writes(signal)),
     });
-    let at = at.into_iter().flatten().filter(|end| end.signal == *signal).flat_map(|end| end.places.clone());
-    Hook { client: client.to_string(), at: at.collect() }
+    Hook { client: client.to_string(), at }
 }
 
-fn readers(writer: &ClientName, found: &[(ClientName, Option<Ends>)], signal: &SignalName) -> Vec<Hook> {
-    let reads = |ends: &Ends| ends.reads.iter().any(|end| end.signal == *signal);
+fn readers(writer: &ClientName, found: &[(ClientName, Option<Found>)], signal: &SignalName) -> Vec<Hook> {
+    let reads = |found: &Found| found.reads(signal).next().is_some();
     let reading = found.iter().filter(|(client, ends)| client != writer && ends.as_ref().is_some_and(reads));
     reading.map(|(client, _)| hook(client, found, signal, Side::Reads)).collect()
 }
