@@ -11,6 +11,7 @@ pub mod coverage;
 pub mod section;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use sha2::{Digest as _, Sha256};
 
 pub use coverage::CoveredFile;
 pub use section::{Event, Mood, Picture, Section, Shown};
@@ -49,12 +50,15 @@ impl Page {
         let Self { title, totals, wall, sections, coverage, charts } = self;
         let has_data = sections.iter().flat_map(|section| &section.pictures).any(|picture| picture.chart.is_some());
         let charts = charts.filter(|_| has_data);
+        let script = charts.map(|charts| printable(charts.script));
+        let policy = policy(script.as_deref());
         let made = format!("onescan {} {wall}", env!("CARGO_PKG_VERSION"));
         let page = html! {
             (DOCTYPE) (LINE)
             html lang="en" { (LINE)
                 head { (LINE)
                     meta charset="utf-8"; (LINE)
+                    meta http-equiv="Content-Security-Policy" content=(policy); (LINE)
                     meta name="viewport" content="width=device-width, initial-scale=1"; (LINE)
                     meta name="color-scheme" content="light dark"; (LINE)
                     title { (title) } (LINE)
@@ -71,12 +75,33 @@ impl Page {
                         @for (index, section) in sections.iter().enumerate() { (section.markup(index)) (LINE) }
                         @if !coverage.is_empty() { (coverage::markup(coverage)) (LINE) }
                     } (LINE)
-                    @if let Some(charts) = charts { script type="module" { (PreEscaped(charts.script)) } (LINE) }
+                    @if let Some(script) = script { script type="module" { (PreEscaped(script)) } (LINE) }
                 } (LINE)
             } (LINE)
         };
-        printable(page)
+        printable(&page.into_string())
     }
+}
+
+/// What a browser may do with the page: show its own styles and pictures, and run no script but that of the charts.
+fn policy(script: Option<&str>) -> String {
+    let script = script.map(|script| format!("; script-src 'sha256-{}'", base64(&Sha256::digest(script))));
+    let script = script.unwrap_or_default();
+    format!("default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'{script}")
+}
+
+/// Bytes as policies have them (RFC 4648 4).
+fn base64(bytes: &[u8]) -> String {
+    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::new();
+    for three in bytes.chunks(3) {
+        let bits = three.iter().chain([0, 0].iter()).take(3).fold(0_u32, |bits, byte| bits << 8 | u32::from(*byte));
+        for place in 0..4 {
+            let letter = LETTERS[(bits >> (18 - 6 * place) & 63) as usize];
+            text.push(if place <= three.len() { char::from(letter) } else { '=' });
+        }
+    }
+    text
 }
 
 /// A line for each section.
@@ -98,9 +123,9 @@ fn contents(sections: &[Section]) -> Markup {
 
 /// HTML has no place for control characters, which an error's text may bring along. All text of a page goes
 /// through here, so that none is forgotten.
-fn printable(page: Markup) -> String {
+fn printable(text: &str) -> String {
     let strange = |letter: char| letter < ' ' && !matches!(letter, '\n' | '\t');
-    page.into_string().replace(strange, "\u{fffd}")
+    text.replace(strange, "\u{fffd}")
 }
 
 #[cfg(test)]
@@ -111,6 +136,19 @@ mod tests {
     fn text_stays_text() {
         let page = Page { title: "a < b && \"c\"\u{1b}".to_owned(), ..Page::default() };
         assert!(page.to_html().contains("<h1>a &lt; b &amp;&amp; &quot;c&quot;\u{fffd}</h1>"));
+    }
+
+    #[test]
+    fn no_script_but_that_of_the_charts_may_run() {
+        assert_eq!([&b""[..], b"f", b"fo", b"foo", b"foob"].map(base64), ["", "Zg==", "Zm8=", "Zm9v", "Zm9vYg=="]);
+        let none = policy(None);
+        assert!(none.starts_with("default-src 'none'; ") && !none.contains("script-src"), "{none}");
+        assert!(policy(Some("draw()")).ends_with("; script-src 'sha256-jm3FkV4tNIdBUr8jRVVl5n9PUixlaxTWD0pdpFiSH5A='"));
+        assert!(
+            Page::default()
+                .to_html()
+                .contains("<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'")
+        );
     }
 
     #[test]
