@@ -13,9 +13,11 @@
 //! | [`nearest`] | the name that was probably meant |
 //! | [`regular`] | files that are read: regular ones, up to a limit |
 //! | [`notice`] | the target of log events that are for the user |
+//! | [`repeated`] | events that others cause as often as they like, reported a few times |
+//! | [`threads`] | threads, which a system may refuse |
 //! | [`foreign`] | text from outside, made fit to be shown |
 //!
-//! Invariants: plain data and pure functions, except in [`regular`], which reads files. No clock, no random number,
+//! Invariants: plain data and pure functions, except in [`regular`], which reads files, and [`threads`]. No clock, no random number,
 //! no iteration in hash order, and no dependency except serde, thiserror and strsim.
 
 pub mod array;
@@ -27,7 +29,9 @@ pub mod foreign;
 pub mod nearest;
 pub mod notice;
 pub mod regular;
+pub mod repeated;
 pub mod signal_type;
+pub mod threads;
 pub mod time;
 pub mod value;
 
