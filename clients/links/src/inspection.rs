@@ -5,16 +5,19 @@
 //! it, in the order of their names. What one request reads, a sum command too, is of one step boundary.
 
 use std::io::Write;
-use std::net::{Shutdown, SocketAddr, TcpListener, TcpStream};
+use std::net::SocketAddr;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
+use onescan_base::threads;
 use onescan_iec_run::Variable;
 use onescan_server::client::Parts;
 use onescan_server::published::{Published, SessionView};
 use onescan_server::signal::{ClientName, SignalType};
+use onescan_server::transport::connection_limit::Limits;
 
+use crate::accept::{FIRST_REQUEST, Peer, Terms, serve_each};
 use crate::gateway::ads::command::{self, SUM_MAX};
 use crate::gateway::ads::frame::{Bytes, Frame, Kind, MAX_DATA};
 use crate::gateway::ads::symbol::{Form, READ_ONLY, Symbol};
@@ -32,15 +35,13 @@ const DEVICE: &[u8; 20] = b"\x01\x00\x00\x00onescan\0\0\0\0\0\0\0\0\0";
 const NOT_READY: u32 = 0x707;
 /// Handles of one client at most.
 const HANDLES_MAX: usize = 10_000;
-/// Clients at a time: each has a thread.
-const CLIENTS_MAX: usize = 16;
+/// Connections at a time: each has a thread.
+const TERMS: Terms =
+    Terms { what: "ADS", limits: Limits { all: 24, of_address: 16, staying: 16 }, first_request: FIRST_REQUEST };
 /// How often somebody who waits looks.
 const GLANCE: Duration = Duration::from_millis(1);
 /// So many looks are taken for the next step boundary; then the view that there is must do.
 const GLANCES: u32 = 3_000;
-/// A client that says nothing, or takes nothing, for so long is left.
-const IDLE_TIMEOUT: Duration = Duration::from_mins(10);
-const WRITE_TIMEOUT: Duration = Duration::from_secs(3);
 
 /// Finds a variable of a PLC by its path.
 pub type Find = Box<dyn Fn(&str) -> Option<Variable> + Send + Sync>;
@@ -63,12 +64,12 @@ impl Inspection {
     /// Serves the PLCs of a session whose views are published there, in the order of their names.
     ///
     /// # Errors
-    /// The address cannot be listened on.
+    /// The address cannot be listened on, or there is no thread.
     pub fn serve(address: SocketAddr, published: Published, plcs: Vec<Inspected>) -> std::io::Result<Self> {
         let (listener, address) = bind(address)?;
         let over = Arc::new(AtomicBool::new(false));
         let device = Arc::new(Device { published, plcs, over: Arc::clone(&over) });
-        std::thread::spawn(move || accept(&listener, &device));
+        threads::start("readers", move || serve_each(&listener, TERMS, &device, || device.is_over(), Device::attend))?;
         Ok(Self { address, over })
     }
 
@@ -83,42 +84,6 @@ impl Drop for Inspection {
     fn drop(&mut self) {
         self.over.store(true, Ordering::Release);
     }
-}
-
-/// Lets clients in until the session is over, each in a thread of its own.
-fn accept(listener: &TcpListener, device: &Arc<Device>) {
-    let present = Arc::new(AtomicUsize::new(0));
-    while !device.is_over() {
-        match listener.accept() {
-            Ok((stream, peer)) if present.load(Ordering::Acquire) < CLIENTS_MAX => {
-                present.fetch_add(1, Ordering::AcqRel);
-                let (device, present) = (Arc::clone(device), Arc::clone(&present));
-                std::thread::spawn(move || {
-                    let _memories = device.published.want(Parts::MEMORIES);
-                    if let Err(error) = prepare(&stream).and_then(|()| device.attend(&stream)) {
-                        tracing::info!(%peer, %error, "a reader over ADS has gone");
-                    }
-                    // It may be gone already.
-                    let _ = stream.shutdown(Shutdown::Both);
-                    present.fetch_sub(1, Ordering::AcqRel);
-                });
-            }
-            Ok((_, peer)) => tracing::info!(%peer, "refused over ADS: {CLIENTS_MAX} readers are connected"),
-            Err(error) => {
-                if error.kind() != std::io::ErrorKind::WouldBlock {
-                    tracing::warn!(%error, "cannot accept a reader over ADS");
-                }
-                std::thread::sleep(10 * GLANCE);
-            }
-        }
-    }
-}
-
-fn prepare(stream: &TcpStream) -> std::io::Result<()> {
-    stream.set_nonblocking(false)?;
-    stream.set_nodelay(true)?;
-    stream.set_read_timeout(Some(IDLE_TIMEOUT))?;
-    stream.set_write_timeout(Some(WRITE_TIMEOUT))
 }
 
 struct Device {
@@ -138,14 +103,16 @@ impl Device {
     }
 
     /// Answers what a client asks until it goes.
-    fn attend(&self, mut stream: &TcpStream) -> std::io::Result<()> {
+    fn attend(&self, peer: &mut Peer) -> std::io::Result<()> {
+        let _memories = self.published.want(Parts::MEMORIES);
         let mut handles = Vec::new();
-        while let Some(request) = Frame::read(&mut stream)? {
+        while let Some(request) = Frame::read(peer)? {
             if self.is_over() {
                 return Ok(());
             }
+            peer.stay()?;
             if request.kind == Kind::Request {
-                stream.write_all(&self.response(&request, &mut handles).encoded())?;
+                peer.write_all(&self.response(&request, &mut handles).encoded())?;
             }
         }
         Ok(())

@@ -3,6 +3,7 @@
 //! | module | subject |
 //! |---|---|
 //! | `listener` | listening, for every server |
+//! | `accept` | connections that come in, each with a place, a time and a thread |
 //! | [`opcua`] | OPC UA as plain data, and a session served over it |
 //! | [`gateway`] | a real PLC as a client, over the links that it has |
 //! | [`station`] | a soft PLC on a clock of its own, for gateways to be tried on |
@@ -13,6 +14,7 @@
 //!   on it.
 //! - Bad input is an error with a place, never a panic.
 
+mod accept;
 pub mod gateway;
 pub mod inspection;
 pub mod listener;

@@ -9,6 +9,7 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
+use onescan_base::threads;
 use onescan_server::digest::TrajectoryDigest;
 use onescan_server::observer::RecordError;
 
@@ -97,7 +98,7 @@ impl Encoder {
             }
             encoding.sinks.iter_mut().try_for_each(|sink| sink.end())
         };
-        let thread = std::thread::Builder::new().name("recorder".to_owned()).spawn(encode)?;
+        let thread = threads::start("recorder", encode)?;
         Ok(Self { to_encode, emptied, written, thread })
     }
 

@@ -4,6 +4,7 @@
 //! nothing keep nobody out, however many they are: one that comes and speaks has spoken before others push it out.
 
 use std::collections::BTreeMap;
+use std::fmt;
 use std::net::IpAddr;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -41,6 +42,12 @@ struct Connection {
 pub struct Place {
     limit: ConnectionLimit,
     number: u64,
+}
+
+impl fmt::Debug for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("Place").field(&self.number).finish()
+    }
 }
 
 impl ConnectionLimit {

@@ -2,10 +2,12 @@
 //!
 //! | module | subject |
 //! |---|---|
+//! | [`accept`] | connections that come in, each with a place and a time |
 //! | [`connection_limit`] | how many connections a listener keeps, and which gives way to one that comes |
 //! | [`tcp`] | clients and operators over TCP |
 //! | [`tls`] | certificates, and who is trusted |
 
+pub mod accept;
 pub mod connection_limit;
 pub mod tcp;
 pub mod tls;

@@ -8,19 +8,17 @@
 use std::io;
 use std::net::SocketAddr;
 use std::pin::Pin;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::task::{Context, Poll, ready};
+use std::task::{Context, Poll};
 use std::time::Duration;
 
 use axum::extract::connect_info::Connected;
 use axum::serve::{IncomingStream, Listener};
-use onescan_server::transport::connection_limit::{ConnectionLimit, Limits, Place};
+use onescan_server::transport::accept::{self, Admitted, Guarded, Pass};
+use onescan_server::transport::connection_limit::{ConnectionLimit, Limits};
 use onescan_server::transport::tls::Identity;
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::net::{TcpListener, TcpStream};
-use tokio::sync::{mpsc, oneshot};
-use tokio::time::{Instant, Sleep};
+use tokio::sync::mpsc;
 use tokio_rustls::TlsAcceptor;
 use tokio_rustls::server::TlsStream;
 
@@ -28,8 +26,6 @@ use tokio_rustls::server::TlsStream;
 const HANDSHAKE: Duration = Duration::from_secs(5);
 /// How long a connection may be without an answer, or a part of one: idle, with half a request, or not reading.
 const PATIENCE: Duration = Duration::from_secs(30);
-/// How long it is waited after a connection could not be taken, as where there are too many files.
-const PAUSE: Duration = Duration::from_millis(100);
 /// Connections at a time, if there are descriptors enough.
 const CONNECTIONS_MAX: usize = 256;
 /// Connections that there is always room for, however few descriptors there are.
@@ -38,7 +34,7 @@ const CONNECTIONS_MIN: usize = 8;
 /// A listener of which connections come into a page.
 pub struct LimitedListener {
     address: SocketAddr,
-    connections: mpsc::Receiver<(Guarded, SocketAddr)>,
+    connections: mpsc::Receiver<(Guarded<Stream>, SocketAddr)>,
 }
 
 impl LimitedListener {
@@ -78,24 +74,13 @@ async fn take(
     listener: TcpListener,
     limit: ConnectionLimit,
     acceptor: Option<TlsAcceptor>,
-    connections: mpsc::Sender<(Guarded, SocketAddr)>,
+    connections: mpsc::Sender<(Guarded<Stream>, SocketAddr)>,
 ) {
     while !connections.is_closed() {
-        let (stream, from) = match listener.accept().await {
-            Ok(came) => came,
-            Err(error) => {
-                tracing::debug!(%error, "a connection to the page was not taken");
-                tokio::time::sleep(PAUSE).await;
-                continue;
-            }
-        };
-        let Some((place, leaving)) = limit.admit_task(from.ip()) else {
-            tracing::debug!(%from, "refused a connection to the page: all places are taken by viewers");
-            continue;
-        };
-        let (acceptor, connections) = (acceptor.clone(), connections.clone());
+        let admitted = accept::admitted(&listener, &limit, "the page").await;
+        let (acceptor, connections, from) = (acceptor.clone(), connections.clone(), admitted.from);
         tokio::spawn(async move {
-            if let Some(guarded) = received(stream, from, acceptor, place, leaving).await {
+            if let Some(guarded) = received(admitted, acceptor).await {
                 // the page may be over
                 drop(connections.send((guarded, from)).await);
             }
@@ -104,19 +89,14 @@ async fn take(
 }
 
 /// A connection that has come, if it has not gone or had to leave before its handshake was over.
-async fn received(
-    stream: TcpStream,
-    from: SocketAddr,
-    acceptor: Option<TlsAcceptor>,
-    place: Place,
-    mut leaving: oneshot::Receiver<()>,
-) -> Option<Guarded> {
-    let io = match acceptor {
-        None => Io::Plain(stream),
+async fn received(admitted: Admitted, acceptor: Option<TlsAcceptor>) -> Option<Guarded<Stream>> {
+    let Admitted { stream, from, place, mut leaving } = admitted;
+    let stream = match acceptor {
+        None => Stream::Plain(stream),
         Some(acceptor) => tokio::select! {
             _ = &mut leaving => return None,
             shaken = tokio::time::timeout(HANDSHAKE, acceptor.accept(stream)) => match shaken {
-                Ok(Ok(stream)) => Io::Tls(Box::new(stream)),
+                Ok(Ok(stream)) => Stream::Tls(Box::new(stream)),
                 Ok(Err(error)) => {
                     tracing::debug!(%error, %from, "no TLS came of a connection to the page");
                     return None;
@@ -128,12 +108,11 @@ async fn received(
             },
         },
     };
-    let connection = Arc::new(Connection { place, stays: AtomicBool::new(false) });
-    Some(Guarded { io, connection, leaving: Some(leaving), patience: Box::pin(tokio::time::sleep(PATIENCE)) })
+    Some(Guarded::new(stream, place, leaving, PATIENCE))
 }
 
 impl Listener for LimitedListener {
-    type Io = Guarded;
+    type Io = Guarded<Stream>;
     type Addr = SocketAddr;
 
     async fn accept(&mut self) -> (Self::Io, Self::Addr) {
@@ -149,100 +128,59 @@ impl Listener for LimitedListener {
     }
 }
 
-struct Connection {
-    place: Place,
-    stays: AtomicBool,
-}
-
 /// The connection that a request has come by.
 #[derive(Clone)]
-pub(super) struct Visitor(Arc<Connection>);
+pub(super) struct Visitor(Pass);
 
 impl Visitor {
     /// From now on the connection is a viewer's, on which little is said for as long as it likes. False if there are
     /// too many of them.
     pub(super) fn stay(&self) -> bool {
-        let stays = self.0.place.stay();
-        self.0.stays.store(stays, Ordering::Release);
-        stays
+        self.0.stay()
     }
 }
 
 impl Connected<IncomingStream<'_, LimitedListener>> for Visitor {
     fn connect_info(stream: IncomingStream<'_, LimitedListener>) -> Self {
-        Self(Arc::clone(&stream.io().connection))
+        Self(stream.io().pass())
     }
 }
 
-enum Io {
+/// A connection, in plain text or under TLS.
+pub enum Stream {
     Plain(TcpStream),
     Tls(Box<TlsStream<TcpStream>>),
 }
 
-/// A connection with its place and its time.
-pub struct Guarded {
-    io: Io,
-    connection: Arc<Connection>,
-    /// Says that it must leave; nothing once it has been said.
-    leaving: Option<oneshot::Receiver<()>>,
-    patience: Pin<Box<Sleep>>,
-}
-
-impl Guarded {
-    /// Whether the connection may go on.
-    fn check(&mut self, context: &mut Context<'_>) -> io::Result<()> {
-        if self.connection.stays.load(Ordering::Acquire) {
-            return Ok(());
-        }
-        let must_leave = match &mut self.leaving {
-            Some(leaving) => Pin::new(leaving).poll(context).is_ready(),
-            None => true,
-        };
-        if must_leave {
-            self.leaving = None;
-            return Err(io::Error::new(io::ErrorKind::ConnectionAborted, "it has left for one who came later"));
-        }
-        match self.patience.as_mut().poll(context) {
-            Poll::Ready(()) => {
-                Err(io::Error::new(io::ErrorKind::TimedOut, "it has been without an answer for too long"))
-            }
-            Poll::Pending => Ok(()),
-        }
-    }
-
-    fn io(&mut self) -> Pin<&mut (dyn Stream + '_)> {
-        match &mut self.io {
-            Io::Plain(stream) => Pin::new(stream),
-            Io::Tls(stream) => Pin::new(&mut **stream),
+impl Stream {
+    fn inner(&mut self) -> Pin<&mut (dyn Duplex + '_)> {
+        match self {
+            Self::Plain(stream) => Pin::new(stream),
+            Self::Tls(stream) => Pin::new(&mut **stream),
         }
     }
 }
 
-trait Stream: AsyncRead + AsyncWrite + Unpin {}
+trait Duplex: AsyncRead + AsyncWrite + Unpin {}
 
-impl<T: AsyncRead + AsyncWrite + Unpin> Stream for T {}
+impl<T: AsyncRead + AsyncWrite + Unpin> Duplex for T {}
 
-impl AsyncRead for Guarded {
+impl AsyncRead for Stream {
     fn poll_read(mut self: Pin<&mut Self>, context: &mut Context<'_>, into: &mut ReadBuf<'_>) -> Poll<io::Result<()>> {
-        self.check(context)?;
-        self.io().poll_read(context, into)
+        self.inner().poll_read(context, into)
     }
 }
 
-impl AsyncWrite for Guarded {
+impl AsyncWrite for Stream {
     fn poll_write(mut self: Pin<&mut Self>, context: &mut Context<'_>, bytes: &[u8]) -> Poll<io::Result<usize>> {
-        self.check(context)?;
-        let written = ready!(self.io().poll_write(context, bytes))?;
-        self.patience.as_mut().reset(Instant::now() + PATIENCE);
-        Poll::Ready(Ok(written))
+        self.inner().poll_write(context, bytes)
     }
 
     fn poll_flush(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<io::Result<()>> {
-        self.check(context)?;
-        self.io().poll_flush(context)
+        self.inner().poll_flush(context)
     }
 
     fn poll_shutdown(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<io::Result<()>> {
-        self.io().poll_shutdown(context)
+        self.inner().poll_shutdown(context)
     }
 }

@@ -214,6 +214,7 @@ impl Settings {
             "opc.tcp" => links()?.link(&self.url, &self.opcua, exchange, timeout)?,
             "ads" => Box::new(AdsLink::new(address, self.ads.clone(), exchange, timeout)),
             "s7" => Box::new(S7Link::new(address, self.s7, exchange, Layouts::new(&self.layout, exchange)?, timeout)?),
+            _ if self.handshake == HandshakeKind::Words => Box::new(self.blocks(exchange)?.expecting_blocks()),
             _ => Box::new(self.blocks(exchange)?),
         })
     }

@@ -3,11 +3,13 @@
 //! command as one.
 
 use std::io::Write;
-use std::net::{SocketAddr, TcpStream};
+use std::net::SocketAddr;
 use std::sync::Arc;
 
+use onescan_base::threads;
+
 use super::controller::{Controller, Snapshot};
-use super::listen::serve_each;
+use crate::accept::{Peer, Terms, serve_each};
 use crate::gateway::ads::Options;
 use crate::gateway::ads::command::{self, SUM_MAX};
 use crate::gateway::ads::frame::{Bytes, Frame, Kind, MAX_DATA};
@@ -26,11 +28,13 @@ const DEVICE: &[u8; 20] = b"\x01\x00\x00\x00onescan plc\0\0\0\0\0";
 /// the controller.
 ///
 /// # Errors
-/// The address cannot be listened on.
+/// The address cannot be listened on, or there is no thread.
 pub fn serve(address: SocketAddr, controller: &Arc<Controller>, options: &Options) -> std::io::Result<SocketAddr> {
     let (listener, address) = bind(address)?;
     let device = Arc::new(Device::new(Arc::clone(controller), options));
-    std::thread::spawn(move || serve_each(&listener, (&device, &device.controller), "ADS", Device::attend));
+    threads::start("ADS", move || {
+        serve_each(&listener, Terms::of("ADS"), &device, || device.controller.is_over(), Device::attend);
+    })?;
     Ok(address)
 }
 
@@ -77,10 +81,11 @@ impl Device {
     }
 
     /// Answers what a client asks until it goes.
-    fn attend(&self, mut stream: &TcpStream) -> std::io::Result<()> {
-        while let Some(request) = Frame::read(&mut stream)? {
+    fn attend(&self, peer: &mut Peer) -> std::io::Result<()> {
+        while let Some(request) = Frame::read(peer)? {
+            peer.stay()?;
             if request.kind == Kind::Request && !self.controller.is_over() {
-                stream.write_all(&self.response(&request).encoded())?;
+                peer.write_all(&self.response(&request).encoded())?;
             }
         }
         Ok(())

@@ -4,6 +4,8 @@ use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
+use onescan_base::threads;
+
 use super::controller::Controller;
 
 /// What the PLC's own clock goes on by in a cycle that has no interval.
@@ -17,13 +19,16 @@ pub struct Clockwork {
 
 impl Clockwork {
     /// Runs a cycle every `interval`; without one, the next begins when the last has ended.
-    pub fn start(controller: Arc<Controller>, interval: Option<Duration>) -> Self {
+    ///
+    /// # Errors
+    /// There is no thread.
+    pub fn start(controller: Arc<Controller>, interval: Option<Duration>) -> std::io::Result<Self> {
         let driven = Arc::clone(&controller);
-        let thread = std::thread::spawn(move || match interval {
+        let thread = threads::start("PLC", move || match interval {
             Some(interval) => on_grid(&driven, interval),
             None => back_to_back(&driven),
-        });
-        Self { controller, thread: Some(thread) }
+        })?;
+        Ok(Self { controller, thread: Some(thread) })
     }
 }
 

@@ -6,7 +6,6 @@
 //! | [`controller`] | the PLC between its cycles: points, RUN and STOP, starts |
 //! | [`cycle`] | the wall clock that drives it |
 //! | [`ads`] | symbols over ADS |
-//! | `listen` | clients that come one by one |
 //! | [`modbus`] | registers and coils over Modbus TCP |
 //! | [`opcua`] | variables of an OPC UA server, if the program has the protocol |
 //! | [`s7`] | data blocks over ISO-on-TCP |
@@ -16,12 +15,12 @@
 //! - The PLC never waits for its clients: it runs a cycle when its clock says so.
 //! - What one block, one Modbus request or one ADS command writes is in place between two cycles. An OPC UA server takes values one
 //!   by one, in their order.
-//! - A server listens at the address that it is given and nowhere else; of two gateways the newer one has the PLC.
+//! - A server listens at the address that it is given and nowhere else. Of two gateways over raw TCP, the one whose first
+//!   block came last has the PLC: who only connects takes it from nobody.
 
 pub mod ads;
 pub mod controller;
 pub mod cycle;
-mod listen;
 pub mod modbus;
 pub mod opcua;
 pub mod s7;

@@ -4,52 +4,86 @@ use std::future::{Ready, ready};
 use std::net::SocketAddr;
 use std::sync::Arc;
 
-use tokio::net::TcpListener;
+use onescan_base::repeated::Repeated;
+use onescan_base::threads;
+use onescan_server::transport::accept::{Guarded, Pass, refused};
+use onescan_server::transport::connection_limit::ConnectionLimit;
+use tokio::net::{TcpListener, TcpStream};
 use tokio_modbus::prelude::{ExceptionCode, Request, Response};
 use tokio_modbus::server::Service;
-use tokio_modbus::server::tcp::{Server, accept_tcp_connection};
+use tokio_modbus::server::tcp::Server;
 
 use super::controller::Controller;
-use super::listen::GLANCE;
+use crate::accept::{FIRST_REQUEST, GLANCE, LIMITS};
 use crate::gateway::exchange::Direction;
 use crate::gateway::modbus::RegisterMap;
 use crate::gateway::modbus::map::{Entry, Span, Table};
 use crate::gateway::modbus::registers;
 use crate::listener::bind;
 
+static INTERRUPTED: Repeated = Repeated::new();
+
 /// Serves the PLC's registers at `address`; gives the address that it got. The server ends with the controller.
 ///
 /// # Errors
-/// The address cannot be listened on.
+/// The address cannot be listened on, or there is no thread.
 pub fn serve(address: SocketAddr, controller: &Arc<Controller>, map: RegisterMap) -> std::io::Result<SocketAddr> {
     let (listener, address) = bind(address)?;
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
-    let service = Registers(Arc::new(Bank { controller: Arc::clone(controller), map }));
-    std::thread::spawn(move || {
-        if let Err(error) = runtime.block_on(listen(listener, service)) {
-            tracing::warn!(%error, "the Modbus server has ended");
-        }
-    });
+    let bank = Arc::new(Bank { controller: Arc::clone(controller), map });
+    threads::start("Modbus", move || runtime.block_on(listen(&listener, &bank)))?;
     Ok(address)
 }
 
-async fn listen(listener: std::net::TcpListener, service: Registers) -> std::io::Result<()> {
-    let listener = TcpListener::from_std(listener)?;
-    let bank = Arc::clone(&service.0);
+/// Serves until the controller ends. The library's server ends when it cannot take a connection, as where there are no
+/// descriptors; then it is started again.
+async fn listen(listener: &std::net::TcpListener, bank: &Arc<Bank>) {
+    let limit = ConnectionLimit::new(LIMITS);
+    while !bank.controller.is_over() {
+        match serve_until_over(listener, bank, &limit).await {
+            Ok(()) => return,
+            Err(error) => {
+                if let Some(times) = INTERRUPTED.again() {
+                    tracing::warn!("cannot accept a connection to Modbus: {error}{times}");
+                }
+                tokio::time::sleep(GLANCE).await;
+            }
+        }
+    }
+}
+
+async fn serve_until_over(
+    listener: &std::net::TcpListener,
+    bank: &Arc<Bank>,
+    limit: &ConnectionLimit,
+) -> std::io::Result<()> {
+    let listener = TcpListener::from_std(listener.try_clone()?)?;
+    let controller = Arc::clone(&bank.controller);
     let over = async move {
-        while !bank.controller.is_over() {
+        while !controller.is_over() {
             tokio::time::sleep(GLANCE).await;
         }
     };
-    let connected = |stream: tokio::net::TcpStream, peer| {
-        let service = service.clone();
-        async move {
-            stream.set_nodelay(true)?;
-            accept_tcp_connection(stream, peer, |_| Ok(Some(service.clone())))
-        }
+    let connected = |stream: TcpStream, from: SocketAddr| ready(Ok(admitted(stream, from, bank, limit)));
+    let broken = |error: std::io::Error| tracing::debug!(%error, "a Modbus client has gone");
+    Server::new(listener).serve_until(&connected, broken, Box::pin(over)).await.map(drop)
+}
+
+/// A connection and who answers it, if there is room for it.
+fn admitted(
+    stream: TcpStream,
+    from: SocketAddr,
+    bank: &Arc<Bank>,
+    limit: &ConnectionLimit,
+) -> Option<(Registers, Guarded<TcpStream>)> {
+    // It only costs time where it cannot be set.
+    let _ = stream.set_nodelay(true);
+    let Some((place, leaving)) = limit.admit_task(from.ip()) else {
+        refused("Modbus", from);
+        return None;
     };
-    let broken = |error: std::io::Error| tracing::info!(%error, "a Modbus client has gone");
-    Server::new(listener).serve_until(&connected, broken, Box::pin(over)).await.map(|_| ())
+    let guarded = Guarded::new(stream, place, leaving, FIRST_REQUEST);
+    Some((Registers { bank: Arc::clone(bank), pass: guarded.pass() }, guarded))
 }
 
 /// The PLC's four tables.
@@ -58,8 +92,11 @@ struct Bank {
     map: RegisterMap,
 }
 
-#[derive(Clone)]
-struct Registers(Arc<Bank>);
+/// The answers to one client, which stays once it has asked for something.
+struct Registers {
+    bank: Arc<Bank>,
+    pass: Pass,
+}
 
 impl Service for Registers {
     type Request = Request<'static>;
@@ -68,7 +105,8 @@ impl Service for Registers {
     type Future = Ready<Result<Response, ExceptionCode>>;
 
     fn call(&self, request: Request<'static>) -> Self::Future {
-        ready(self.0.answer(&request))
+        // A client that is one too many hears so, and has to leave for the next that comes.
+        ready(if self.pass.stay() { self.bank.answer(&request) } else { Err(ExceptionCode::ServerDeviceBusy) })
     }
 }
 

@@ -2,12 +2,14 @@
 //! asks for is done between two cycles.
 
 use std::io::{Read, Write};
-use std::net::{SocketAddr, TcpStream};
+use std::net::SocketAddr;
 use std::ops::Range;
 use std::sync::Arc;
 
+use onescan_base::threads;
+
 use super::controller::Controller;
-use super::listen::serve_each;
+use crate::accept::{Peer, Terms, serve_each};
 use crate::gateway::exchange::Direction;
 use crate::gateway::s7::Options;
 use crate::gateway::s7::iso::{self, Incoming, Message};
@@ -22,7 +24,7 @@ const READ_BYTES: usize = 4096;
 /// the controller.
 ///
 /// # Errors
-/// The address cannot be listened on.
+/// The address cannot be listened on, or there is no thread.
 pub fn serve(
     address: SocketAddr,
     controller: &Arc<Controller>,
@@ -31,7 +33,9 @@ pub fn serve(
 ) -> std::io::Result<SocketAddr> {
     let (listener, address) = bind(address)?;
     let cpu = Arc::new(Cpu { controller: Arc::clone(controller), options, layouts });
-    std::thread::spawn(move || serve_each(&listener, (&cpu, &cpu.controller), "S7", Cpu::attend));
+    threads::start("S7", move || {
+        serve_each(&listener, Terms::of("S7"), &cpu, || cpu.controller.is_over(), Cpu::attend);
+    })?;
     Ok(address)
 }
 
@@ -43,11 +47,11 @@ struct Cpu {
 
 impl Cpu {
     /// Answers what a client asks until it goes.
-    fn attend(&self, mut stream: &TcpStream) -> std::io::Result<()> {
+    fn attend(&self, peer: &mut Peer) -> std::io::Result<()> {
         let nonsense = |error| std::io::Error::new(std::io::ErrorKind::InvalidData, error);
         let (mut incoming, mut buffer) = (Incoming::default(), [0; READ_BYTES]);
         loop {
-            match stream.read(&mut buffer)? {
+            match peer.read(&mut buffer)? {
                 0 => return Ok(()),
                 count => incoming.take(&buffer[..count]),
             }
@@ -55,6 +59,7 @@ impl Cpu {
                 if self.controller.is_over() {
                     return Ok(());
                 }
+                peer.stay()?;
                 let answer = match message {
                     Message::ConnectRequest(reference) => iso::connect_confirm(reference),
                     Message::Data(message) => match pdu::asked(&message) {
@@ -63,7 +68,7 @@ impl Cpu {
                     },
                     Message::ConnectConfirm | Message::Disconnect => return Ok(()),
                 };
-                stream.write_all(&answer)?;
+                peer.write_all(&answer)?;
             }
         }
     }

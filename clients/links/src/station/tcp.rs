@@ -1,24 +1,35 @@
 //! Data blocks over raw TCP: the PLC's side.
 //!
 //! The PLC sends its block at the end of a cycle in which it has changed, or before which it got one; in STOP
-//! it answers at once. With an interval it sends then, and at no other time. A new connection takes the place of the one
-//! before. The PLC is the TCP server, or the client, and then connects again and again.
+//! it answers at once. With an interval it sends then, and at no other time. Whoever sends a block takes the place of the
+//! gateway before; who only connects and listens takes nobody's. The PLC is the TCP server, or the client, and then connects
+//! again and again.
 
 use std::io::{Read, Write};
 use std::net::{Shutdown, SocketAddr, TcpListener, TcpStream};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError, Weak};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
+use onescan_base::repeated::Repeated;
+use onescan_base::threads;
+use onescan_server::transport::connection_limit::Limits;
+
 use super::controller::Controller;
-use super::listen::{GLANCE, accept, prepare};
+use crate::accept::{GLANCE, IDLE_TIMEOUT, Peer, Terms, accept, not_served};
 use crate::gateway::exchange::Direction;
 use crate::gateway::tcp::{BlockCodec, Layouts};
 use crate::listener::bind;
 
 /// How long a gateway may take to accept a connection.
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(3);
+/// Connections have two threads each. A gateway connects long before its session begins and it has a block to send, so it has
+/// as much time for the first as for any other.
+const TERMS: Terms =
+    Terms { what: "raw TCP", limits: Limits { all: 16, of_address: 8, staying: 8 }, first_request: IDLE_TIMEOUT };
+
+static GARBLED: Repeated = Repeated::new();
 
 /// What is sent and taken, and when.
 #[derive(Clone, Debug)]
@@ -28,109 +39,136 @@ pub struct Blocks {
     pub push: Option<Duration>,
 }
 
+/// The PLC, its blocks, and the gateway that has it.
+struct Server {
+    controller: Arc<Controller>,
+    blocks: Blocks,
+    holding: Mutex<Weak<TcpStream>>,
+}
+
+impl Server {
+    fn new(controller: &Arc<Controller>, blocks: Blocks) -> Arc<Self> {
+        Arc::new(Self { controller: Arc::clone(controller), blocks, holding: Mutex::new(Weak::new()) })
+    }
+
+    /// Gives the PLC to `peer`, whose first block has come, and closes the connection of the gateway before. Gives the number
+    /// by which `peer` may write.
+    fn take_hold(&self, peer: &mut Peer) -> std::io::Result<u64> {
+        peer.stay()?;
+        let stream = peer.stream();
+        // A thread that panicked here left a whole value.
+        let mut holding = self.holding.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(before) = std::mem::replace(&mut *holding, Arc::downgrade(&stream)).upgrade() {
+            // It may be gone already.
+            let _ = before.shutdown(Shutdown::Both);
+        }
+        tracing::info!(peer = %peer.address(), "a gateway has the PLC");
+        Ok(self.controller.take_hold())
+    }
+}
+
 /// Serves the PLC's blocks at `address`; gives the address that it got. The server ends with the controller.
 ///
 /// # Errors
-/// The address cannot be listened on.
+/// The address cannot be listened on, or there is no thread.
 pub fn serve(address: SocketAddr, controller: &Arc<Controller>, blocks: Blocks) -> std::io::Result<SocketAddr> {
     let (listener, address) = bind(address)?;
-    let controller = Arc::clone(controller);
-    std::thread::spawn(move || serve_one_by_one(&listener, &controller, &Arc::new(blocks)));
+    let server = Server::new(controller, blocks);
+    threads::start("raw TCP", move || serve_each(&listener, &server))?;
     Ok(address)
 }
 
 /// Connects to a gateway that listens at `address`, again and again, until the controller ends.
-pub fn connect(address: SocketAddr, controller: &Arc<Controller>, blocks: Blocks) {
-    let (controller, blocks) = (Arc::clone(controller), Arc::new(blocks));
-    std::thread::spawn(move || {
-        while !controller.is_over() {
-            match visit(address, &controller, &blocks) {
+///
+/// # Errors
+/// There is no thread.
+pub fn connect(address: SocketAddr, controller: &Arc<Controller>, blocks: Blocks) -> std::io::Result<()> {
+    let server = Server::new(controller, blocks);
+    let visits = move || {
+        while !server.controller.is_over() {
+            match visit(address, &server) {
                 Ok(()) => tracing::info!(%address, "the gateway has gone"),
                 Err(error) => tracing::debug!(%address, %error, "no gateway yet"),
             }
             std::thread::sleep(GLANCE);
         }
-    });
+    };
+    threads::start("raw TCP", visits).map(drop)
 }
 
 /// One connection to a gateway, from its beginning to its end.
-fn visit(address: SocketAddr, controller: &Arc<Controller>, blocks: &Arc<Blocks>) -> std::io::Result<()> {
-    let stream = TcpStream::connect_timeout(&address, CONNECT_TIMEOUT)?;
-    prepare(&stream)?;
+fn visit(address: SocketAddr, server: &Arc<Server>) -> std::io::Result<()> {
+    let peer = Peer::connected(TcpStream::connect_timeout(&address, CONNECT_TIMEOUT)?, address)?;
     tracing::info!(%address, "connected to a gateway");
-    for half in attend(stream, controller.take_hold(), controller, blocks)? {
+    for half in attend(peer, server)? {
         half.join().map_err(|_| std::io::Error::other("a thread of the link has panicked"))?;
     }
     Ok(())
 }
 
-fn serve_one_by_one(listener: &TcpListener, controller: &Arc<Controller>, blocks: &Arc<Blocks>) {
-    let mut last: Option<TcpStream> = None;
-    accept(listener, controller, |stream, peer| {
-        if let Some(last) = last.take() {
-            // It may be gone already.
-            let _ = last.shutdown(Shutdown::Both);
-        }
-        let holder = controller.take_hold();
-        tracing::info!(%peer, "a gateway has connected");
-        last = stream.try_clone().ok();
-        if let Err(error) = attend(stream, holder, controller, blocks) {
-            tracing::info!(%peer, %error, "a gateway has gone before it was served");
-        }
-    });
+fn serve_each(listener: &TcpListener, server: &Arc<Server>) {
+    accept(
+        listener,
+        TERMS,
+        || server.controller.is_over(),
+        |peer| {
+            if let Err(error) = attend(peer, server) {
+                not_served(TERMS.what, &error);
+            }
+        },
+    );
 }
 
 /// Two threads for one gateway: one that takes its blocks, one that sends the PLC's.
-fn attend(
-    stream: TcpStream,
-    holder: u64,
-    controller: &Arc<Controller>,
-    blocks: &Arc<Blocks>,
-) -> std::io::Result<[JoinHandle<()>; 2]> {
+fn attend(mut peer: Peer, server: &Arc<Server>) -> std::io::Result<[JoinHandle<()>; 2]> {
     let taken = Arc::new(AtomicU64::new(0));
-    let incoming = stream.try_clone()?;
-    let (a, b) = (Arc::clone(controller), Arc::clone(controller));
-    let (ours, theirs) = (Arc::clone(blocks), Arc::clone(blocks));
-    let counted = Arc::clone(&taken);
-    let taking = std::thread::spawn(move || {
-        if let Err(error) = take(&incoming, holder, &a, &ours.layouts, &counted) {
+    let (stream, counted) = (peer.stream(), Arc::clone(&taken));
+    let (a, b) = (Arc::clone(server), Arc::clone(server));
+    let taking = threads::start("blocks in", move || {
+        if let Err(error) = take(&mut peer, &a, &counted) {
             tracing::info!(%error, "a gateway has gone");
         }
-        // Its other half sees that.
-        let _ = incoming.shutdown(Shutdown::Both);
-    });
-    let sending = std::thread::spawn(move || {
+        // With `peer` the connection is closed; its other half sees that.
+    })?;
+    let closing = Arc::clone(&stream);
+    let sending = threads::start("blocks out", move || {
         // The half that reads has reported a gateway that is gone.
-        let _ = match theirs.push {
-            Some(interval) => push(&stream, &b, &theirs.layouts, interval),
-            None => send(&stream, &b, &theirs.layouts, &taken),
+        let _ = match b.blocks.push {
+            Some(interval) => push(&stream, &b.controller, &b.blocks.layouts, interval),
+            None => send(&stream, &b.controller, &b.blocks.layouts, &taken),
         };
         let _ = stream.shutdown(Shutdown::Both);
     });
-    Ok([taking, sending])
+    if sending.is_err() {
+        // The half that reads ends with it.
+        let _ = closing.shutdown(Shutdown::Both);
+    }
+    Ok([taking, sending?])
 }
 
-fn take(
-    mut stream: &TcpStream,
-    holder: u64,
-    controller: &Controller,
-    layouts: &Layouts,
-    taken: &AtomicU64,
-) -> std::io::Result<()> {
+fn take(peer: &mut Peer, server: &Server, taken: &AtomicU64) -> std::io::Result<()> {
     let cut = |fault| {
-        tracing::warn!("what the gateway sends cannot be understood: {fault}");
+        if let Some(times) = GARBLED.again() {
+            tracing::warn!("what the gateway sends cannot be understood: {fault}{times}");
+        }
         std::io::Error::new(std::io::ErrorKind::InvalidData, fault)
     };
-    let mut codec = BlockCodec::new(&layouts.to_plc);
+    let (controller, to_plc) = (&server.controller, &server.blocks.layouts.to_plc);
+    let mut codec = BlockCodec::new(to_plc);
     let mut packed = vec![0; controller.wires().exchange().size(Direction::ToPlc)];
     let mut buffer = vec![0; 16 * 1024];
+    let mut holder = None;
     loop {
-        match stream.read(&mut buffer)? {
+        match peer.read(&mut buffer)? {
             0 => return codec.end().map_err(cut),
             count => codec.take(&buffer[..count]),
         }
         if let Some(block) = codec.newest().map_err(cut)? {
-            layouts.to_plc.decode(&block, &mut packed);
+            let holder = match holder {
+                Some(holder) => holder,
+                None => *holder.insert(server.take_hold(peer)?),
+            };
+            to_plc.decode(&block, &mut packed);
             taken.fetch_add(1, Ordering::SeqCst);
             if !controller.write_held(holder, &packed) {
                 return Ok(());

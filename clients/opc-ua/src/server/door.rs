@@ -11,6 +11,7 @@ use std::net::SocketAddr;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+use onescan_server::transport::accept::{self, Admitted};
 use onescan_server::transport::connection_limit::{ConnectionLimit, Limits, Place};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::tcp::{OwnedReadHalf, OwnedWriteHalf};
@@ -24,8 +25,6 @@ const HELLO_TIMEOUT: Duration = Duration::from_secs(5);
 const PIECE: usize = 64 * 1024;
 /// Connections at a time.
 const LIMITS: Limits = Limits { all: 64, of_address: 32, staying: 48 };
-/// How long it is waited after a connection could not be taken, as where there are too many files.
-const PAUSE: Duration = Duration::from_millis(100);
 
 /// The secure channels whose connections are there.
 #[derive(Clone, Debug, Default)]
@@ -46,18 +45,7 @@ impl Channels {
 pub(super) async fn let_in(outside: TcpListener, server: SocketAddr, channels: Channels) {
     let limit = ConnectionLimit::new(LIMITS);
     loop {
-        let (stream, from) = match outside.accept().await {
-            Ok(accepted) => accepted,
-            Err(error) => {
-                tracing::debug!(%error, "an OPC UA client could not be let in");
-                tokio::time::sleep(PAUSE).await;
-                continue;
-            }
-        };
-        let Some((place, leaving)) = limit.admit_task(from.ip()) else {
-            tracing::debug!(%from, "refused an OPC UA client: all places are taken");
-            continue;
-        };
+        let Admitted { stream, from, place, leaving } = accept::admitted(&outside, &limit, "OPC UA").await;
         let channels = channels.clone();
         tokio::spawn(async move {
             let ended = tokio::select! {

@@ -15,11 +15,16 @@ use tokio::net::TcpListener;
 use super::authenticator::Authenticator;
 use super::door::{self, Channels};
 use super::pki::Pki;
+use onescan_base::threads;
 use onescan_links::listener::bind;
 use onescan_links::opcua::{Access, Refusals, ServeError};
 
 /// Shortest publishing interval, and how often subscriptions are looked at.
 const SUBSCRIPTIONS_MS: u64 = 1;
+
+/// Sessions at a time. One whose connection is gone stays for a minute, as OPC UA has it, so that there must be many more of
+/// them than connections.
+const SESSIONS_MAX: usize = 512;
 
 /// A server that runs until this is dropped.
 pub struct Running {
@@ -67,7 +72,7 @@ pub(crate) fn start(
     };
     fill(&handle)?;
     let (entered, channels) = (handle.clone(), channels.clone());
-    let thread = std::thread::spawn(move || {
+    let thread = threads::start("OPC UA", move || {
         let _kept = pki;
         let ended = runtime.block_on(async {
             let outside = TcpListener::from_std(listener).map_err(|error| error.to_string())?;
@@ -84,7 +89,7 @@ pub(crate) fn start(
         }
         // Connections of clients that stay are not a reason to.
         runtime.shutdown_background();
-    });
+    })?;
     Ok(Running { address, handle, thread: Some(thread) })
 }
 
@@ -112,6 +117,7 @@ fn builder(address: SocketAddr, name: &str, access: &Access, refusals: &Refusals
         .create_sample_keypair(access.pki.is_some() || access.user.is_some() || access.register.is_some())
         .pki_dir(pki.path())
         .trust_client_certs(access.trust_clients)
+        .max_sessions(SESSIONS_MAX)
         .subscription_poll_interval_ms(SUBSCRIPTIONS_MS);
     let limits = &mut builder.limits_mut().subscriptions;
     limits.min_publishing_interval_ms = SUBSCRIPTIONS_MS as f64;

@@ -6,6 +6,7 @@ use std::sync::mpsc::{Receiver, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
+use onescan_base::threads;
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::Notify;
 use tokio_rustls::TlsAcceptor;
@@ -21,6 +22,7 @@ use crate::lobby::acceptor::CLOSE_TIMEOUT;
 use crate::lobby::{Acceptor, Terms, Visitor};
 use crate::mailbox::Mailbox;
 use crate::plan::SessionPlan;
+use crate::transport::accept;
 use crate::transport::tls::Identity;
 use crate::wire::{FRAME_BYTES_MAX, ServerMessage, VERSIONS};
 
@@ -72,9 +74,8 @@ impl Lobby {
         let host = Arc::new(Host::new(terms(plan, house.register)?, pending_clients, mailbox, tls_acceptor));
         let close = Arc::new(Notify::new());
         let (hosting, closing) = (Arc::clone(&host), Arc::clone(&close));
-        let thread = std::thread::Builder::new()
-            .name("lobby".to_owned())
-            .spawn(move || runtime.block_on(receive_connections(listener, hosting, closing)))?;
+        let thread =
+            threads::start("lobby", move || runtime.block_on(receive_connections(listener, hosting, closing)))?;
         Ok(Self { address, pending_clients: Mutex::new(Some(receiver)), host, close, thread: Some(thread) })
     }
 
@@ -128,16 +129,10 @@ async fn receive_connections(listener: std::net::TcpListener, host: Arc<Host>, c
     };
     let tasks = TaskTracker::new();
     for number in 0.. {
-        let accepted = tokio::select! {
+        tokio::select! {
             () = closing.notified() => return part_from_all(&host, &tasks).await,
-            accepted = listener.accept() => accepted,
-        };
-        match accepted {
-            Ok((stream, peer)) => come(Visitor(number), stream, peer, &host, &tasks),
-            Err(error) => {
-                // Out of descriptors, mostly: others may leave meanwhile.
-                tracing::warn!(%error, "cannot accept a connection");
-                tokio::time::sleep(Duration::from_millis(100)).await;
+            (stream, peer) = accept::next(&listener, "the session") => {
+                come(Visitor(number), stream, peer, &host, &tasks);
             }
         }
     }

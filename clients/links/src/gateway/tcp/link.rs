@@ -35,6 +35,10 @@ pub struct TcpLink {
     patience: Option<Duration>,
     /// True if nothing came when it was last waited for.
     is_silent: bool,
+    /// True once something has come over this connection.
+    has_spoken: bool,
+    /// True if the PLC is to speak first, so that one which says nothing is none.
+    must_speak: bool,
     /// For the connection to come about, and for a block to be taken.
     timeout: Duration,
 }
@@ -60,8 +64,16 @@ impl TcpLink {
             buffer: vec![0; READ_BYTES],
             patience: None,
             is_silent: false,
+            has_spoken: false,
+            must_speak: false,
             timeout,
         }
+    }
+
+    /// The same for a PLC that sends its block by itself: whoever connects in its place and says nothing for as long as a
+    /// connection may take is left, and the next one is let in.
+    pub fn expecting_blocks(self) -> Self {
+        Self { must_speak: matches!(self.way, Way::FromPlc(..)), ..self }
     }
 
     /// The next block, in the order in which they come; false if none comes for as long as `patience`.
@@ -125,6 +137,9 @@ impl TcpLink {
                 Ok(count) => {
                     self.codec.take(&self.buffer[..count]);
                     self.is_silent = false;
+                    if !std::mem::replace(&mut self.has_spoken, true) {
+                        self.way.heard();
+                    }
                     return Ok(true);
                 }
                 Err(error) if error.kind() == ErrorKind::Interrupted => {}
@@ -151,6 +166,13 @@ fn link_fault(fault: StreamFault) -> LinkFault {
 }
 
 impl Way {
+    /// Something has come from the PLC.
+    fn heard(&self) {
+        if let Self::FromPlc(_, Some(plc_listener)) = self {
+            plc_listener.heard();
+        }
+    }
+
     fn connect(&mut self, timeout: Duration) -> Result<TcpStream, LinkFault> {
         let (address, plc_listener) = match self {
             Self::ToPlc(address) => {
@@ -182,8 +204,13 @@ impl Link for TcpLink {
         // The old connection goes first: a PLC may have room for one.
         self.stream = None;
         self.codec.clear();
-        (self.patience, self.is_silent) = (None, false);
+        (self.patience, self.is_silent, self.has_spoken) = (None, false, false);
         self.stream = Some(self.way.connect(self.timeout)?);
+        if self.must_speak && !self.receive(self.timeout)? {
+            self.stream = None;
+            let reason = format!("who connected said nothing in {:?}; the next one is let in", self.timeout);
+            return Err(LinkFault::Lost(reason));
+        }
         Ok(())
     }
 

@@ -1,8 +1,11 @@
-//! Where a PLC connects that is the TCP client: one at a time.
+//! Where a PLC connects that is the TCP client: one at a time. Until it has sent something it may be anybody, and gives way to
+//! one who comes.
 
 use onescan_base::notice::NOTICE;
+use onescan_base::repeated::Repeated;
+use onescan_base::threads;
 use std::collections::BTreeSet;
-use std::net::{IpAddr, SocketAddr, TcpListener, TcpStream};
+use std::net::{IpAddr, Shutdown, SocketAddr, TcpListener, TcpStream};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
@@ -25,13 +28,22 @@ struct Shared {
     came: Condvar,
 }
 
+static NOT_TAKEN: Repeated = Repeated::new();
+
 #[derive(Default)]
 struct State {
     /// Has connected and is not served yet.
     waiting: Option<TcpStream>,
-    inside: Option<SocketAddr>,
+    inside: Option<Inside>,
     strangers: BTreeSet<IpAddr>,
     is_closed: bool,
+}
+
+/// Whose connection is served, or waits for it.
+struct Inside {
+    peer: SocketAddr,
+    /// The connection, to close it; nothing once it has sent something.
+    silent: Option<TcpStream>,
 }
 
 impl Shared {
@@ -45,12 +57,12 @@ impl PlcListener {
     /// Listens at `address`.
     ///
     /// # Errors
-    /// It cannot be listened on.
+    /// It cannot be listened on, or there is no thread.
     pub fn open(address: SocketAddr) -> std::io::Result<Self> {
         let (listener, address) = bind(address)?;
         let shared = Arc::new(Shared::default());
         let doorkeeper = Arc::clone(&shared);
-        std::thread::spawn(move || attend(&listener, address, &doorkeeper));
+        threads::start("tcp-listen", move || attend(&listener, address, &doorkeeper))?;
         tracing::info!(target: NOTICE, "listening on tcp-listen://{address} for the PLC");
         Ok(Self { address, shared })
     }
@@ -65,6 +77,13 @@ impl PlcListener {
         let state = self.shared.lock();
         let waited = self.shared.came.wait_timeout_while(state, patience, |state| state.waiting.is_none());
         waited.unwrap_or_else(PoisonError::into_inner).0.waiting.take()
+    }
+
+    /// Something has come over the connection that [`PlcListener::enter`] gave: it keeps its place until it is over.
+    pub fn heard(&self) {
+        if let Some(inside) = &mut self.shared.lock().inside {
+            inside.silent = None;
+        }
     }
 
     /// The connection that [`PlcListener::enter`] gave is over: the next one is let in.
@@ -90,7 +109,9 @@ fn attend(listener: &TcpListener, address: SocketAddr, shared: &Shared) {
             Ok((stream, peer)) => admit(stream, peer, address, shared),
             Err(error) if error.kind() == std::io::ErrorKind::WouldBlock => std::thread::sleep(GLANCE),
             Err(error) => {
-                tracing::warn!(%error, "cannot accept a connection at tcp-listen://{address}");
+                if let Some(times) = NOT_TAKEN.again() {
+                    tracing::warn!("cannot accept a connection at tcp-listen://{address}: {error}{times}");
+                }
                 std::thread::sleep(GLANCE);
             }
         }
@@ -99,15 +120,27 @@ fn attend(listener: &TcpListener, address: SocketAddr, shared: &Shared) {
 
 fn admit(stream: TcpStream, peer: SocketAddr, address: SocketAddr, shared: &Shared) {
     let mut state = shared.lock();
-    if let Some(plc) = state.inside {
-        // The connection is closed when it is dropped.
-        if state.strangers.len() < STRANGERS_MAX && state.strangers.insert(peer.ip()) {
-            tracing::info!(target: NOTICE, "a second connection to tcp-listen://{address}, from {peer}, is closed: the PLC is connected from {plc}");
+    match &state.inside {
+        Some(Inside { peer: plc, silent: None }) => {
+            // The connection is closed when it is dropped.
+            let plc = *plc;
+            if state.strangers.len() < STRANGERS_MAX && state.strangers.insert(peer.ip()) {
+                tracing::info!(target: NOTICE, "a second connection to tcp-listen://{address}, from {peer}, is closed: the PLC is connected from {plc}");
+            }
+            return;
         }
-        return;
+        Some(Inside { silent: Some(silent), .. }) => {
+            // It may be gone already.
+            let _ = silent.shutdown(Shutdown::Both);
+        }
+        None => {}
     }
+    let Ok(silent) = stream.try_clone() else {
+        tracing::debug!(%peer, "a connection at tcp-listen://{address} is closed: there is no descriptor for it");
+        return;
+    };
     tracing::info!(%peer, "a PLC has connected");
-    (state.waiting, state.inside) = (Some(stream), Some(peer));
+    (state.waiting, state.inside) = (Some(stream), Some(Inside { peer, silent: Some(silent) }));
     shared.came.notify_all();
 }
 
@@ -124,6 +157,7 @@ mod tests {
         let plc = TcpStream::connect(plc_listener.address()).unwrap();
         let inside = plc_listener.enter(Duration::from_mins(1)).unwrap();
         assert_eq!(inside.peer_addr().unwrap(), plc.local_addr().unwrap());
+        plc_listener.heard();
         let mut second = TcpStream::connect(plc_listener.address()).unwrap();
         assert_eq!(second.read(&mut [0]).unwrap_or(0), 0, "it is closed");
         plc_listener.leave();
@@ -132,6 +166,17 @@ mod tests {
             plc_listener.enter(Duration::from_mins(1)).unwrap().peer_addr().unwrap(),
             back.local_addr().unwrap()
         );
+    }
+
+    #[test]
+    fn who_has_said_nothing_gives_way() {
+        let plc_listener = PlcListener::open(SocketAddr::from(([127, 0, 0, 1], 0))).unwrap();
+        let mut stranger = TcpStream::connect(plc_listener.address()).unwrap();
+        let _silent = plc_listener.enter(Duration::from_mins(1)).unwrap();
+        let plc = TcpStream::connect(plc_listener.address()).unwrap();
+        let inside = plc_listener.enter(Duration::from_mins(1)).unwrap();
+        assert_eq!(inside.peer_addr().unwrap(), plc.local_addr().unwrap());
+        assert_eq!(stranger.read(&mut [0]).unwrap_or(0), 0, "it is closed");
     }
 
     #[test]
