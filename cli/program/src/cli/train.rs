@@ -9,6 +9,7 @@ use onescan_server::pacing::Pace;
 use super::error::CommandError;
 use super::run::pace;
 use super::value::FormatArg;
+use onescan_runner::access::admission::Admission;
 use onescan_runner::error::ExitCode;
 use onescan_runner::interrupt::Interrupt;
 use onescan_runner::train::config::Served;
@@ -24,13 +25,17 @@ pub struct TrainArgs {
     /// Who takes it, as it stands in reports
     #[arg(long, default_value = "trainee", value_name = "NAME")]
     pub trainee: String,
-    /// Serve the trainee's page to browsers of this machine, and beside it the trainer's, each at an address of its own
+    /// Serve the trainee's page, to browsers of this machine unless there is `--access`, and beside it the trainer's, each at an address of its own
     /// [default ADDRESS: a free port]
     #[arg(long, value_name = "ADDRESS:PORT", num_args = 0..=1, require_equals = true, default_missing_value = "127.0.0.1:0", conflicts_with = "replay_operator")]
     pub web: Option<SocketAddr>,
     /// Where the trainer's page is [default: a free port]
     #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:0", hide_default_value = true)]
     pub trainer: SocketAddr,
+    /// Let in whoever shows a token of this folder, under TLS if it has a certificate: operators and viewers to the trainee's
+    /// page, trainers to both
+    #[arg(long, value_name = "DIR", requires = "web")]
+    pub access: Option<PathBuf>,
     /// How fast virtual time may run on the pages: `max`, or a factor of real time
     #[arg(long, default_value = "1", value_name = "max|FACTOR", value_parser = pace)]
     pub pace: Pace,
@@ -67,11 +72,12 @@ pub fn train(args: TrainArgs) -> Result<ExitCode, CommandError> {
     if let Some(folder) = &args.table {
         return Ok(train::table(&args.scenario, folder, args.format.into(), &mut out)?);
     }
+    let admission = args.access.map_or(Admission::ThisMachine, Admission::Holders);
     let config = TrainConfig {
         scenario: args.scenario,
         lesson: args.lesson,
         trainee: args.trainee,
-        served: args.web.map(|trainee| Served { trainee, trainer: args.trainer, pace: args.pace }),
+        served: args.web.map(|trainee| Served { trainee, trainer: args.trainer, admission, pace: args.pace }),
         replay_operator: args.replay_operator,
         record: args.record,
         overwrite: args.overwrite,

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use onescan_server::pacing::Pace;
 
+use crate::access::admission::Admission;
 use crate::format::Format;
 
 /// All options of a lesson.
@@ -32,12 +33,14 @@ pub struct TrainConfig {
 }
 
 /// The pages of a lesson.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Served {
     /// Where the trainee's page is.
     pub trainee: SocketAddr,
     /// Where the trainer's is.
     pub trainer: SocketAddr,
+    /// Who is let in to both; with tokens, trainers alone to the trainer's.
+    pub admission: Admission,
     /// How fast virtual time may run.
     pub pace: Pace,
 }

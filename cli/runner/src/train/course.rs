@@ -21,7 +21,6 @@ use super::examination::Examination;
 use super::moments::{Moment, Moments};
 use super::record::{AttemptRecord, FILE_NAME, Fork, SessionRecord, run_folder};
 use super::starts::Starts;
-use crate::access::admission::Admission;
 use crate::error::Usage;
 use crate::interrupt::Interrupt;
 use crate::run::operator_inputs;
@@ -106,7 +105,8 @@ impl Classroom<'_> {
     fn prepare(&self, name: &str) -> Result<Prepared, TrainError> {
         let start = self.start(name)?;
         let scenario = self.book.applied(self.scenario, self.lesson, start)?;
-        let checkpoint = Starts::new(self.scenario, self.book, self.config.starts.as_deref()).prepare(start)?;
+        let checkpoint =
+            Starts::new(self.scenario, self.book, self.config.starts.as_deref()).prepare(start, self.interrupt)?;
         Ok(Prepared { scenario, checkpoint })
     }
 
@@ -164,11 +164,12 @@ impl Classroom<'_> {
 
     /// The lesson on two pages, for as long as the trainer wants it.
     fn live(&self, served: &Served) -> Result<Vec<AttemptRecord>, TrainError> {
-        self.interrupt.watch();
         let mailbox = self.interrupt.mailbox();
         let stage = Stage { keeps: true, ..self.stage(served.pace, mailbox.clone()) };
         let turns = TurnQueue::new(mailbox);
         let mut at = Rc::new(self.prepare(&self.lesson.start)?);
+        // Until there is a page, a signal ends the program at once: a start may take long to be made.
+        self.interrupt.watch();
         let mut prepared = BTreeMap::from([(self.lesson.start.clone(), Rc::clone(&at))]);
         let _pages = self.pages(served, &at.scenario, &stage, &turns)?;
         let mut next = self.begins(&self.lesson.start, &at);
@@ -192,7 +193,10 @@ impl Classroom<'_> {
                 Some(Turn::Jump(name)) => {
                     at = match prepared.get(&name) {
                         Some(known) => Rc::clone(known),
-                        None => Rc::new(self.prepare(&name)?),
+                        None => match self.prepare(&name) {
+                            Err(_) if self.interrupt.is_raised() => return Ok(attempts),
+                            made => Rc::new(made?),
+                        },
                     };
                     prepared.insert(name.clone(), Rc::clone(&at));
                     self.begins(&name, &at)
@@ -240,8 +244,8 @@ impl Classroom<'_> {
             }),
             ..web::Source::new(scenario, stage.published.clone(), stage.mailbox.clone(), pace.clone())
         };
-        let trainee = Page::serve(served.trainee, &Admission::ThisMachine, source(Role::Trainee))?;
-        let trainer = trainee.beside(served.trainer, &Admission::ThisMachine, source(Role::Trainer))?;
+        let trainee = Page::serve(served.trainee, &served.admission, source(Role::Trainee))?;
+        let trainer = trainee.beside(served.trainer, &served.admission, source(Role::Trainer))?;
         if let Some(how) = Page::is_absent() {
             tracing::warn!(target: NOTICE, "no pages: {how}");
         }

@@ -19,6 +19,9 @@ pub enum StartError {
     /// The run that makes a prepared state ends before it.
     #[error("there is no start `{name}`: the run that makes it ended at t_v = {ended}")]
     Ended { name: String, ended: onescan_server::time::VirtualTime },
+    /// The program was asked to end while the run that makes it was under way.
+    #[error("start `{name}` was not made: the program was asked to end")]
+    Interrupted { name: String },
     /// A client cannot be saved, or not be taken up.
     #[error("start `{name}`: {source}")]
     Checkpoint { name: String, source: CheckpointError },
@@ -28,7 +31,7 @@ impl Exit for StartError {
     fn exit_code(&self) -> ExitCode {
         match self {
             Self::Ended { .. } => ExitCode::WrongInput,
-            Self::Checkpoint { .. } => ExitCode::Fault,
+            Self::Interrupted { .. } | Self::Checkpoint { .. } => ExitCode::Fault,
         }
     }
 }

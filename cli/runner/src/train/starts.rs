@@ -8,10 +8,12 @@ use onescan_scenario::Scenario;
 use onescan_scenario::lesson::{Book, Start};
 use onescan_server::checkpoint::Checkpoint;
 use onescan_server::lockstep::Reached;
+use onescan_server::time::VirtualTime;
 
 use super::attempt::elsewhere;
 use super::error::{StartError, TrainError};
 use crate::error::Unreadable;
+use crate::interrupt::Interrupt;
 use crate::run::in_process::in_process;
 
 /// Where prepared states are kept, unless somebody says otherwise: below the user's cache, else below the temporary folder.
@@ -21,6 +23,9 @@ fn usual_folder() -> PathBuf {
     let cache = cache.filter(|path| path.is_absolute()).or_else(home).unwrap_or_else(std::env::temp_dir);
     cache.join("onescan").join("starts")
 }
+
+/// Steps after which it is looked whether somebody wants the program to end.
+const STEPS_AT_A_TIME: u64 = 64;
 
 /// The prepared states of a scenario.
 pub(super) struct Starts<'a> {
@@ -38,13 +43,13 @@ impl<'a> Starts<'a> {
     ///
     /// # Errors
     /// The run that makes it cannot be formed or ends too early.
-    pub(super) fn prepare(&self, start: &Start) -> Result<Checkpoint, TrainError> {
+    pub(super) fn prepare(&self, start: &Start, interrupt: &Interrupt) -> Result<Checkpoint, TrainError> {
         let scenario = self.book.prepared(self.scenario, start)?;
         let path = self.folder.join(format!("{}.ckpt", self.identity(&scenario, start)?));
         if let Some(kept) = kept(&path) {
             return Ok(kept);
         }
-        let checkpoint = make(&scenario, start)?;
+        let checkpoint = make(&scenario, start, interrupt)?;
         let failed = |source| StartError::Checkpoint { name: start.name.clone(), source };
         let bytes = checkpoint.to_bytes().map_err(failed)?;
         // Without a file the state is made again next time: that costs time and nothing else.
@@ -81,13 +86,24 @@ fn kept(path: &Path) -> Option<Checkpoint> {
     Checkpoint::from_bytes(&bytes).inspect_err(|error| tracing::warn!(%error, "{} is made again", path.display())).ok()
 }
 
-/// Runs up to the state.
-fn make(scenario: &Scenario, start: &Start) -> Result<Checkpoint, TrainError> {
+/// Runs up to the state, unless the program is asked to end.
+fn make(scenario: &Scenario, start: &Start, interrupt: &Interrupt) -> Result<Checkpoint, TrainError> {
     let until = start.at + scenario.plan().step();
     let mut lockstep = in_process(scenario, until, [], elsewhere)?;
     lockstep.set_settings(scenario.session_settings());
-    if lockstep.run_to(start.at)? == Reached::End {
-        return Err(StartError::Ended { name: start.name.clone(), ended: lockstep.session().t_v() }.into());
+    let mut at = VirtualTime::ZERO;
+    loop {
+        if interrupt.is_raised() {
+            return Err(StartError::Interrupted { name: start.name.clone() }.into());
+        }
+        let next = scenario.plan().step().times(STEPS_AT_A_TIME).and_then(|some| at.checked_add(some));
+        at = next.map_or(start.at, |next| next.min(start.at));
+        if lockstep.run_to(at)? == Reached::End {
+            return Err(StartError::Ended { name: start.name.clone(), ended: lockstep.session().t_v() }.into());
+        }
+        if at == start.at {
+            break;
+        }
     }
     let taken = lockstep.checkpoint();
     Ok(taken.map_err(|source| StartError::Checkpoint { name: start.name.clone(), source })?)

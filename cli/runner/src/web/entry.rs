@@ -35,6 +35,8 @@ pub(super) enum AuthError {
     Token(#[from] TokenRefusal),
     #[error("token `{0}` is for a client of a session: the page is for operators, trainers and viewers")]
     Client(String),
+    #[error("token `{0}` is not a trainer's, and this is the trainer's page")]
+    NotTrainers(String),
     #[error(transparent)]
     NoRandomness(#[from] BadToken),
 }
@@ -49,6 +51,8 @@ pub(super) enum Entry {
         known: Mutex<VecDeque<Known>>,
         cookie: String,
         is_tls: bool,
+        /// Whether trainers alone are let in.
+        is_trainers: bool,
     },
 }
 
@@ -67,17 +71,26 @@ impl Entry {
         match register {
             None => Self::Open,
             Some(register) => {
-                Self::Tokens { register, known: Mutex::default(), cookie: format!("onescan_{port}"), is_tls }
+                let cookie = format!("onescan_{port}");
+                Self::Tokens { register, known: Mutex::default(), cookie, is_tls, is_trainers: false }
             }
         }
     }
 
+    /// The same for trainers alone: others would see what the trainee may not.
+    pub(super) fn for_trainers(mut self) -> Self {
+        if let Self::Tokens { is_trainers, .. } = &mut self {
+            *is_trainers = true;
+        }
+        self
+    }
+
     /// What whoever asks with these headers may do.
     pub(super) fn admit(&self, headers: &HeaderMap) -> Result<Rank, AuthError> {
-        let Self::Tokens { register, known, cookie, .. } = self else { return Ok(Rank::Trains) };
+        let Self::Tokens { register, known, cookie, is_trainers, .. } = self else { return Ok(Rank::Trains) };
         let bearer = headers.get(AUTHORIZATION).and_then(|value| value.to_str().ok()?.strip_prefix("Bearer "));
         if let Some(token) = bearer {
-            return rank(register.holder(Some(token), today())?);
+            return rank(register.holder(Some(token), today())?, *is_trainers);
         }
         let shown = headers.get_all(COOKIE).iter().filter_map(|value| value.to_str().ok());
         let mut pairs = shown.flat_map(|all| all.split(';')).filter_map(|pair| pair.trim().split_once('='));
@@ -95,10 +108,10 @@ impl Entry {
 
     /// Takes a token that somebody has typed; gives the cookie for the browser.
     pub(super) fn log_in(&self, token: &str) -> Result<String, AuthError> {
-        let Self::Tokens { register, known, cookie, is_tls } = self else { return Ok(String::new()) };
+        let Self::Tokens { register, known, cookie, is_tls, is_trainers } = self else { return Ok(String::new()) };
         let holder = register.holder(Some(token.trim()), today())?;
         let token = holder.name.clone();
-        let rank = rank(holder)?;
+        let rank = rank(holder, *is_trainers)?;
         let secret = Token::generate()?;
         let mut known = known.lock().unwrap_or_else(PoisonError::into_inner);
         if known.iter().filter(|each| each.token == token).count() >= KNOWN_OF_TOKEN_MAX {
@@ -113,8 +126,9 @@ impl Entry {
     }
 }
 
-fn rank(holder: Holder) -> Result<Rank, AuthError> {
+fn rank(holder: Holder, is_trainers: bool) -> Result<Rank, AuthError> {
     match holder.role {
+        Role::Viewer | Role::Operator if is_trainers => Err(AuthError::NotTrainers(holder.name)),
         Role::Viewer => Ok(Rank::Looks),
         Role::Operator => Ok(Rank::Operates),
         Role::Trainer => Ok(Rank::Trains),
@@ -178,6 +192,17 @@ mod tests {
         assert!(matches!(admit(&Token::generate().unwrap()), Err(AuthError::Token(TokenRefusal::Unknown))));
         assert!(matches!(door.admit(&HeaderMap::new()), Err(AuthError::Token(TokenRefusal::Missing))));
         assert_eq!(Entry::new(None, 1, false).admit(&HeaderMap::new()).unwrap(), Rank::Trains);
+    }
+
+    #[test]
+    fn the_trainers_page_is_for_trainers() {
+        let (door, tokens) = door(&[("wall", "viewer"), ("anna", "operator"), ("tom", "trainer")]);
+        let door = door.for_trainers();
+        let admit = |token: &Token| door.admit(&showing("authorization", &format!("Bearer {}", token.reveal())));
+        assert!(matches!(admit(&tokens[0]), Err(AuthError::NotTrainers(name)) if name == "wall"));
+        assert!(matches!(admit(&tokens[1]), Err(AuthError::NotTrainers(name)) if name == "anna"));
+        assert_eq!(admit(&tokens[2]).unwrap(), Rank::Trains);
+        assert!(door.log_in(tokens[1].reveal()).is_err() && door.log_in(tokens[2].reveal()).is_ok());
     }
 
     #[test]

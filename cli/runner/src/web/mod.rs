@@ -72,6 +72,7 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use miette::Diagnostic;
+use onescan_base::threads;
 use onescan_scenario::{Scenario, ScenarioError};
 use onescan_server::layout::ImageLayout;
 use onescan_server::mailbox::Mailbox;
@@ -359,12 +360,14 @@ impl Page {
         listener.set_nonblocking(true).map_err(&listen)?;
         let address = listener.local_addr().map_err(&listen)?;
         let entry = Entry::new(register, address.port(), identity.is_some());
+        let is_trainers = source.training.as_ref().is_some_and(|training| training.role == Role::Trainer);
+        let entry = if is_trainers { entry.for_trainers() } else { entry };
         let scheme = if identity.is_some() { "https" } else { "http" };
         let session = Arc::new(Session::new(source, entry, scheme, shared)?);
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(&listen)?;
         let stop = Arc::new(Notify::new());
         let (router, stopped) = (router(Arc::clone(&session)), Arc::clone(&stop));
-        let thread = std::thread::Builder::new().name("web".to_owned()).spawn(move || {
+        let thread = threads::start("web", move || {
             runtime.block_on(async move {
                 let served = async {
                     let listener = tokio::net::TcpListener::from_std(listener)?;

@@ -48,8 +48,8 @@ async fn guarded(State(session): State<Arc<Session>>, mut request: Request, next
             next.run(request).await
         }
         Ok(Err(_)) if is_login => next.run(request).await,
-        Ok(Err(AuthError::Client(name))) => {
-            (StatusCode::FORBIDDEN, format!("{}\n", AuthError::Client(name))).into_response()
+        Ok(Err(barred @ (AuthError::Client(_) | AuthError::NotTrainers(_)))) => {
+            (StatusCode::FORBIDDEN, format!("{barred}\n")).into_response()
         }
         Ok(Err(_)) if request.uri().path() == "/" => {
             (StatusCode::UNAUTHORIZED, Html(entry::form(None))).into_response()
