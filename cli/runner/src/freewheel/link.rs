@@ -11,6 +11,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use super::item::Items;
+use super::sleep;
 
 /// An item of the source and the places it goes to.
 pub(super) struct Route {
@@ -27,23 +28,23 @@ pub(super) struct OpcLink {
 }
 
 impl OpcLink {
-    /// Exchanges until `stop`.
-    pub(super) fn run(&self, stop: &AtomicBool) {
+    /// Exchanges until one of `stops` is set.
+    pub(super) fn run(&self, stops: [&AtomicBool; 2]) {
         let mut taken: Vec<Vec<u8>> = self.routes.iter().map(|route| self.source.get(route.source)).collect();
         // A subscription begins with the value that each item has.
         let mut queue: VecDeque<usize> = (0..self.routes.len()).collect();
         let mut next_update = Instant::now();
-        while !stop.load(Ordering::Relaxed) {
+        while !stops.iter().any(|stop| stop.load(Ordering::Relaxed)) {
             if Instant::now() >= next_update {
                 self.look(&mut taken, &mut queue);
-                next_update = Instant::now() + self.update_rate;
+                next_update = sleep::after(Instant::now(), self.update_rate);
             }
             match queue.pop_front() {
                 Some(route) => {
-                    std::thread::sleep(self.item_transfer);
+                    sleep::until(sleep::after(Instant::now(), self.item_transfer), stops);
                     deliver(&self.routes[route], &taken[route]);
                 }
-                None => std::thread::sleep(next_update.saturating_duration_since(Instant::now())),
+                None => sleep::until(next_update, stops),
             }
         }
     }

@@ -9,6 +9,7 @@
 //! | [`synchronizer`] | a plant that follows a PLC's clock |
 //! | `timeline` | what a case does to one client, by its own clock |
 //! | [`wheel`] | a client that runs on its own clock |
+//! | `sleep` | sleep that a stop ends |
 //! | [`run`] | all of them for some time, and what came of it |
 //!
 //! Nothing here is deterministic and nothing here is random: all that differs between two runs comes
@@ -17,6 +18,7 @@
 mod item;
 mod link;
 pub mod run;
+mod sleep;
 pub mod synchronizer;
 mod timeline;
 mod wheel;

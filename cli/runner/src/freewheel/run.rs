@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Duration;
 
+use onescan_base::threads;
 use onescan_operator::replay::Replay;
 use onescan_scenario::file::FreewheelFile;
 use onescan_server::client::{Client, ClientFault, JoinRequest};
@@ -84,25 +85,33 @@ fn spin(
     let (links_stop, halted) = (AtomicBool::new(false), AtomicBool::new(false));
     let halted = &halted;
     std::thread::scope(|scope| {
-        for link in links {
-            scope.spawn(|| link.run(&links_stop));
-        }
-        let running: Vec<_> = wheels
-            .iter_mut()
-            .zip(requests)
-            .map(|(wheel, request)| {
-                let input_bytes = PortLayout::new(request.reads.clone()).size();
-                scope.spawn(move || {
-                    let result = wheel.run(input_bytes, until, [stop, halted]);
-                    if result.is_err() {
-                        halted.store(true, Ordering::Relaxed);
-                    }
-                    result
-                })
-            })
-            .collect();
         let mut failed = None;
-        for (thread, request) in running.into_iter().zip(requests) {
+        let mut refused = |request: &JoinRequest, error: &std::io::Error| {
+            halted.store(true, Ordering::Relaxed);
+            let fault = ClientFault::new(error.to_string());
+            failed.get_or_insert_with(|| end_of(request, ClientState::Setup, VirtualTime::ZERO, fault));
+        };
+        for (link, request) in links.iter().zip(requests) {
+            if let Err(error) = threads::start_in(scope, "link", || link.run([stop, &links_stop])) {
+                refused(request, &error);
+            }
+        }
+        let mut running = Vec::new();
+        for (wheel, request) in wheels.iter_mut().zip(requests) {
+            let input_bytes = PortLayout::new(request.reads.clone()).size();
+            let turning = threads::start_in(scope, "client", move || {
+                let result = wheel.run(input_bytes, until, [stop, halted]);
+                if result.is_err() {
+                    halted.store(true, Ordering::Relaxed);
+                }
+                result
+            });
+            match turning {
+                Ok(thread) => running.push((thread, request)),
+                Err(error) => refused(request, &error),
+            }
+        }
+        for (thread, request) in running {
             let halt = match thread.join() {
                 Ok(Ok(())) => continue,
                 Ok(Err(halt)) => halt,

@@ -8,6 +8,7 @@ use onescan_server::client::{Client, ClientFault};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
 use super::item::Items;
+use super::sleep;
 use super::synchronizer::Synchronizer;
 use super::timeline::OwnTimeline;
 
@@ -77,23 +78,26 @@ impl Wheel {
             Clock::Follow { gain_pct, .. } => Synchronizer::new(gain_pct),
             Clock::Grid | Clock::Halt | Clock::Pause => Synchronizer::default(),
         };
-        let mut due = Instant::now() + period;
+        let mut due = sleep::after(Instant::now(), period);
         while t < until && !stops.iter().any(|stop| stop.load(Ordering::Relaxed)) {
             match self.clock {
                 Clock::Grid => {
-                    std::thread::sleep(due.saturating_duration_since(Instant::now()));
-                    due += period;
+                    sleep::until(due, stops);
+                    due = sleep::after(due, period);
                 }
                 Clock::Halt => {
-                    wait_precisely(due);
-                    due += period;
+                    sleep::precisely_until(due, stops);
+                    due = sleep::after(due, period);
                 }
-                Clock::Pause => std::thread::sleep(period),
+                Clock::Pause => sleep::until(sleep::after(Instant::now(), period), stops),
                 Clock::Follow { rate, .. } => {
                     if !self.wait_for_plc(&mut synchronizer, t, rate, stops) {
                         break;
                     }
                 }
+            }
+            if stops.iter().any(|stop| stop.load(Ordering::Relaxed)) {
+                break;
             }
             t = t + self.period;
             self.inputs.copy_to(&mut inputs);
@@ -123,20 +127,11 @@ impl Wheel {
             if stops.iter().any(|stop| stop.load(Ordering::Relaxed)) {
                 return false;
             }
-            std::thread::sleep(Duration::from_nanos(rate.as_nanos()));
+            sleep::until(sleep::after(Instant::now(), Duration::from_nanos(rate.as_nanos())), stops);
             let plc_ns = self.plc_clock.load(Ordering::Relaxed);
             self.errors_ns.push(plc_ns.cast_signed() - t.as_nanos().cast_signed());
             synchronizer.observe(plc_ns, t.as_nanos());
         }
         true
-    }
-}
-
-/// Sleeps most of the time and spins for the rest.
-fn wait_precisely(due: Instant) {
-    const SPIN: Duration = Duration::from_millis(1);
-    std::thread::sleep(due.saturating_duration_since(Instant::now()).saturating_sub(SPIN));
-    while Instant::now() < due {
-        std::hint::spin_loop();
     }
 }

@@ -4,6 +4,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use onescan_base::threads;
 use onescan_scenario::compose::Member;
 use onescan_scenario::{Mode, Scenario};
 use onescan_server::end::SessionEnd;
@@ -78,7 +79,7 @@ fn spin(
     std::thread::scope(|scope| {
         if config.reports.progress {
             let (label, done) = (format!("run {number}/{}", config.runs), &done);
-            scope.spawn(move || {
+            let shown = threads::start_in(scope, "progress", move || {
                 let bar = Progress::new(end, label);
                 while !done.load(Ordering::Relaxed) {
                     bar.show(started.elapsed());
@@ -86,6 +87,9 @@ fn spin(
                 }
                 bar.clear();
             });
+            if let Err(error) = shown {
+                tracing::warn!("there is no progress bar: {error}");
+            }
         }
         let stop = interrupt.flag();
         let trace = crate::freewheel::run::run(
