@@ -1,5 +1,8 @@
 //! What is logged, and where.
 
+use std::io::Write;
+
+use super::log_writer::LogWriter;
 use onescan_base::notice::NOTICE;
 use tracing_subscriber::filter::{LevelFilter, Targets};
 
@@ -11,8 +14,15 @@ pub(super) fn start(verbose: u8) {
     let asked = std::env::var("ONESCAN_LOG").ok().map(|text| text.parse::<Targets>()).transpose();
     let (asked, wrong) = asked.map_or_else(|wrong| (None, Some(wrong)), |asked| (asked, None));
     let targets = asked.unwrap_or_else(|| targets_of(verbose));
+    let log = LogWriter::to(std::io::stderr());
     let lines = tracing_subscriber::fmt::layer()
-        .with_writer(std::io::stderr)
+        .with_writer(move || -> Box<dyn Write> {
+            match &log {
+                Ok(log) => Box::new(log.clone()),
+                // Then each thread writes its own lines, and waits for whoever reads them.
+                Err(_) => Box::new(std::io::stderr()),
+            }
+        })
         .with_ansi(std::io::IsTerminal::is_terminal(&std::io::stderr()))
         .without_time()
         .with_target(verbose > 1);

@@ -29,6 +29,7 @@ pub mod compare;
 mod error;
 pub mod explore;
 pub mod falsify;
+mod log_writer;
 mod logging;
 pub mod minimise;
 pub mod model;

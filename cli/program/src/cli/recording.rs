@@ -9,7 +9,7 @@ use onescan_server::signal::pattern::SignalPattern;
 use onescan_server::time::VirtualTime;
 
 use super::error::CommandError;
-use super::value::FormatArg;
+use super::value::{FORKS, FormatArg};
 use crate::export::ExportConfig;
 use onescan_regress::bisect::BisectConfig;
 use onescan_regress::diff::DiffConfig;
@@ -145,6 +145,9 @@ pub struct ViewArgs {
     /// How much memory moments of the re-run may take, as in `256MiB`
     #[arg(long, default_value_t, value_name = "MEMORY")]
     pub past_memory: Budget,
+    /// How many sessions may go on from moments of this one at a time, each in a process of its own
+    #[arg(long, default_value_t = FORKS, value_name = "COUNT")]
+    pub forks: u32,
 }
 
 /// Shows a recording as a page.
@@ -154,9 +157,9 @@ pub struct ViewArgs {
 pub fn view(args: ViewArgs) -> Result<ExitCode, CommandError> {
     let interrupt = Interrupt::new();
     interrupt.on_signals();
-    let ViewArgs { recording, access, web, past_memory: past } = args;
+    let ViewArgs { recording, access, web, past_memory: past, forks } = args;
     let admission = access.map_or(Admission::ThisMachine, Admission::Holders);
-    let config = ViewConfig { recording, web, admission, past };
+    let config = ViewConfig { recording, web, admission, past, forks };
     Ok(onescan_runner::view::view(&config, &interrupt, &mut std::io::stdout().lock())?)
 }
 

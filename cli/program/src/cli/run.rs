@@ -18,7 +18,7 @@ use onescan_server::time::{TimeSpan, VirtualTime};
 
 use super::error::CommandError;
 use super::opcua::AccessArgs;
-use super::value::{FormatArg, client_name, part, plane, signal_name};
+use super::value::{FORKS, FormatArg, client_name, part, plane, signal_name};
 use onescan_regress::check::collect::Reading;
 use onescan_regress::check::stubs;
 use onescan_runner::access::admission::Admission;
@@ -143,6 +143,9 @@ pub struct RunArgs {
     /// How much memory the past may take that the page of `--web` shows, as in `256MiB`; `0` for none
     #[arg(long, default_value_t, requires = "web", value_name = "MEMORY")]
     pub past_memory: Budget,
+    /// How many sessions may go on from moments of this one at a time, each in a process of its own
+    #[arg(long, default_value_t = FORKS, requires = "web", value_name = "COUNT")]
+    pub forks: u32,
     /// Let people stand in for this client: its signals are operated, on the page, by `onescan control` or over OPC UA; may be
     /// given several times
     #[arg(long = "operator", value_name = "CLIENT", value_parser = client_name)]
@@ -326,6 +329,7 @@ fn config(args: RunArgs) -> Result<RunConfig, CommandError> {
             web: args.web,
             awaits_viewer: args.await_viewer,
             past: args.past_memory,
+            forks: args.forks,
             ads: args.ads,
             opcua: args.opcua,
             access,

@@ -7,6 +7,9 @@ use onescan_server::time::VirtualTime;
 
 use onescan_runner::format::Format;
 
+/// Sessions that may go on from moments of another at a time, if nobody says how many.
+pub const FORKS: u32 = 8;
+
 /// See [`Format`].
 #[derive(Clone, Copy, Debug, Default, ValueEnum)]
 pub enum FormatArg {

@@ -95,6 +95,8 @@ pub struct Doors {
     pub awaits_viewer: bool,
     /// How much memory the past takes that the page shows.
     pub past: Budget,
+    /// How many sessions may go on from moments of that past at a time.
+    pub forks: u32,
     /// Where variables of the soft PLCs are served over ADS.
     pub ads: Option<SocketAddr>,
     /// Where the session is served over OPC UA.

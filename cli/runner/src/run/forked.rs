@@ -20,6 +20,7 @@ use crate::error::Usage;
 use crate::past::Form;
 use crate::web::Launch;
 use onescan_base::notice::NOTICE;
+use onescan_base::threads;
 
 /// Why the past of a run of `scenario` cannot be shown: a client of it that cannot be saved and run again.
 pub(crate) fn fork_blocker(scenario: &Scenario, config: Option<&RunConfig>) -> Option<String> {
@@ -63,13 +64,15 @@ pub(super) const PAGE_AT: &str = "the session is at ";
 /// What a session is given that goes on from another.
 #[derive(Clone, Debug)]
 pub(crate) struct ForkSettings {
+    /// How many may run at a time.
+    limit: u32,
     /// The scenario, its case, when the session is complete, who is operated, what the page is: as they are typed.
     pub(crate) words: Vec<OsString>,
 }
 
 impl ForkSettings {
     /// What is typed beside where the page is, and who is let in there: at the same address, at a port of its own.
-    pub(crate) fn at(mut words: Vec<OsString>, web: Option<SocketAddr>, admission: &Admission) -> Self {
+    pub(crate) fn at(mut words: Vec<OsString>, web: Option<SocketAddr>, admission: &Admission, limit: u32) -> Self {
         let web = web.map_or(IpAddr::V4(Ipv4Addr::LOCALHOST), |address| address.ip());
         words.push(format!("--web={}", SocketAddr::new(web, 0)).into());
         // It may be short, and its viewer has yet to come.
@@ -77,7 +80,9 @@ impl ForkSettings {
         if let Admission::Holders(folder) = admission {
             words.extend(["--access".into(), folder.clone().into()]);
         }
-        Self { words }
+        // A fork may be forked, too, but not so often: all that come of one session are a few.
+        words.extend(["--forks".into(), (limit / FORKS_OF_FORK).to_string().into()]);
+        Self { words, limit }
     }
 
     /// As a run of `config`.
@@ -99,9 +104,12 @@ impl ForkSettings {
         };
         add("--pace", pace);
         add("--past-memory", config.doors.past.to_string());
-        Self::at(words, config.doors.web, &config.doors.admission)
+        Self::at(words, config.doors.web, &config.doors.admission, config.doors.forks)
     }
 }
+
+/// Of so many forks that a session may have, each of them may have one.
+const FORKS_OF_FORK: u32 = 4;
 
 /// Sessions that went on from this one, each in a process of its own. They end with it.
 #[derive(Debug, Default)]
@@ -116,13 +124,21 @@ pub(crate) fn launcher(fork_settings: ForkSettings) -> Launch {
     Arc::new(move |checkpoint| {
         // a thread that panicked under the lock has left whole values
         let mut child_sessions = child_sessions.lock().unwrap_or_else(PoisonError::into_inner);
-        child_sessions.begin(checkpoint, &fork_settings.words).map_err(|error| error.to_string())
+        child_sessions.begin(checkpoint, &fork_settings).map_err(|error| error.to_string())
     })
 }
 
 impl ChildSessions {
     /// Begins a session of a process of its own, and waits until it says where its page is.
-    fn begin(&mut self, checkpoint: &[u8], words: &[OsString]) -> std::io::Result<String> {
+    fn begin(&mut self, checkpoint: &[u8], ForkSettings { words, limit }: &ForkSettings) -> std::io::Result<String> {
+        self.children.retain_mut(|child| !matches!(child.try_wait(), Ok(Some(_))));
+        if self.children.len() >= *limit as usize {
+            let running = self.children.len();
+            return Err(std::io::Error::other(match limit {
+                0 => "a fork of a fork has no forks of its own: fork the first session, or allow more there with `--forks`".to_owned(),
+                _ => format!("{running} forks of this session run already: end one of them, or allow more with `--forks`"),
+            }));
+        }
         let mut file = tempfile::Builder::new().prefix("onescan-fork-").suffix(".checkpoint").tempfile()?;
         file.write_all(checkpoint)?;
         file.flush()?;
@@ -157,7 +173,7 @@ fn address(mut said: BufReader<std::process::ChildStderr>) -> std::io::Result<St
             let pass_on = move || {
                 said.lines().map_while(Result::ok).for_each(|line| tracing::info!(target: NOTICE, "fork: {line}"));
             };
-            std::thread::Builder::new().name("fork".to_owned()).spawn(pass_on)?;
+            threads::start("fork", pass_on)?;
             return Ok(url);
         }
         before += &line;

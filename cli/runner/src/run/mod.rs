@@ -132,6 +132,7 @@ pub fn execute(config: &RunConfig, interrupt: &Interrupt, out: &mut dyn Write) -
         scenario.watch(&config.watch.variables, config.watch.on == WatchOn::Change)?;
     }
     notices::warn(&scenario)?;
+    notices::warn_of_length(&scenario, config.subject.end(&scenario));
     let mut reports: Vec<RunReport> = Vec::new();
     let (mut samples, mut unsaved, mut last) = (Vec::new(), None, ClientView::default());
     for number in 1..=config.runs {

@@ -3,8 +3,26 @@
 use onescan_base::notice::NOTICE;
 use onescan_plant::Excess;
 use onescan_scenario::Scenario;
+use onescan_server::time::VirtualTime;
 
 use super::error::RunError;
+
+/// Steps that take days: whoever has more of them may have meant another step.
+const STEPS_MANY: u64 = 1_000_000_000;
+
+/// Says how many steps a run has that is to end at `end`, if they are very many.
+pub(super) fn warn_of_length(scenario: &Scenario, end: VirtualTime) {
+    let step = scenario.plan().step();
+    let steps = end.as_nanos() / step.as_nanos();
+    // A run without an end is stopped by whoever began it.
+    if steps >= STEPS_MANY && end != VirtualTime::MAX {
+        tracing::warn!(
+            target: NOTICE,
+            "this run has {steps} steps of {step} up to t_v = {end}, which takes days: choose a longer `step`, or an earlier \
+             end with `--until`"
+        );
+    }
+}
 
 /// Says which bodies are in each other, what scenes ask for beyond what they can carry, and which inputs of PLCs
 /// nobody drives.

@@ -31,6 +31,7 @@ use crate::run::forked::{self, ForkSettings};
 use crate::web::{self, News, Page, VerdictBoard, WebError};
 use check::Checked;
 use onescan_base::notice::NOTICE;
+use onescan_base::threads;
 use recorded::Recorded;
 
 /// How often it is looked whether somebody has seen enough.
@@ -46,6 +47,8 @@ pub struct ViewConfig {
     pub admission: Admission,
     /// How much memory moments of the re-run may take.
     pub past: Budget,
+    /// How many sessions may go on from its moments at a time.
+    pub forks: u32,
 }
 
 /// Serves the recording as a page until Ctrl-C, or a viewer ends it. Says in `out` whether the re-run is what was recorded.
@@ -66,7 +69,8 @@ pub fn view(config: &ViewConfig, interrupt: &Interrupt, out: &mut dyn Write) -> 
     let enough = AtomicBool::new(false);
     let verdict_board = &verdict_board;
     std::thread::scope(|scope| {
-        let mut checking = Some(scope.spawn(|| check::check(&recorded, &kept, verdict_board, &enough)));
+        let check = || check::check(&recorded, &kept, verdict_board, &enough);
+        let mut checking = Some(threads::start_in(scope, "check", check).map_err(WebError::Thread)?);
         let mut code = ExitCode::Ok;
         loop {
             let is_over = interrupt.is_raised() || page.is_left();
@@ -90,7 +94,7 @@ pub fn view(config: &ViewConfig, interrupt: &Interrupt, out: &mut dyn Write) -> 
 fn serve(config: &ViewConfig, recorded: &Recorded, kept: Kept, verdict_board: VerdictBoard) -> Result<Page, ViewError> {
     let scenario = &recorded.scenario;
     let rewinder = Rewinder::new(kept, forked::former(scenario)).map_err(WebError::Thread)?;
-    let fork_settings = ForkSettings::at(recorded.words(), Some(config.web), &config.admission);
+    let fork_settings = ForkSettings::at(recorded.words(), Some(config.web), &config.admission, config.forks);
     // Nothing is published: a recording has no live edge.
     let unpublished = Published::new(0);
     let source = web::Source {
