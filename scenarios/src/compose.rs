@@ -317,7 +317,7 @@ impl Scenario {
         let plan = self.task_plan(name, application, tasks)?;
         self.fits_step(name, &plan)?;
         let mut client = SoftPlcClient::new(name.clone(), application, &plan, &bindings, self.file().step)
-            .map_err(|error| self.wrong_client(name, error.to_string(), None))?;
+            .map_err(|error| self.not_set_up(name, &error))?;
         client.accept_states_of(self.code_policy(name));
         client = self.connected(name, client)?;
         self.preset(&mut client, name, inputs)?;

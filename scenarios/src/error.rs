@@ -1,5 +1,6 @@
 //! What can be wrong with a scenario: one error, with file and line where there is one.
 
+use std::fmt;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -65,6 +66,10 @@ pub enum ScenarioError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Plc(#[from] Box<PlcReport>),
+    /// The system does not give the memory for a soft PLC.
+    #[error("client `{client}`: {message}")]
+    #[diagnostic(code(scenario::memory))]
+    Memory { client: ClientName, message: String },
     /// The link to a real PLC does not come about.
     #[error("client `{client}`: {fault}")]
     #[diagnostic(code(gateway::link))]
@@ -103,6 +108,9 @@ pub(crate) struct Wrong {
     pub(crate) help: Option<String>,
 }
 
+/// Errors of sources that are shown with their places. Each takes a look at all of its source, and nobody reads thousands.
+const ERRORS_SHOWN: usize = 100;
+
 /// What was found in a PLC's sources, each with its place.
 #[derive(Debug, Error)]
 #[error("the sources of client `{client}` do not compile")]
@@ -113,7 +121,12 @@ pub struct PlcReport {
 
 impl Diagnostic for PlcReport {
     fn related<'a>(&'a self) -> Option<Box<dyn Iterator<Item = &'a dyn Diagnostic> + 'a>> {
-        Some(Box::new(self.findings.errors()))
+        Some(Box::new(self.findings.errors().take(ERRORS_SHOWN)))
+    }
+
+    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        let more = self.findings.errors().count().saturating_sub(ERRORS_SHOWN);
+        (more > 0).then(|| Box::new(format!("{more} more errors are not shown: `onescan check` lists them")) as Box<_>)
     }
 }
 

@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use onescan_iec_run::CodePolicy;
+use onescan_iec_run::{CodePolicy, RunError};
 use onescan_links::gateway::Settings;
 use onescan_server::plan::{Coupling, PlanError, SessionPlan};
 use onescan_server::signal::{ClientName, SignalDecl, SignalName, did_you_mean};
@@ -375,6 +375,15 @@ impl Scenario {
     pub fn wrong_client(&self, name: &ClientName, message: String, help: Option<String>) -> ScenarioError {
         let place = self.file.clients.get(name).map(toml::Spanned::span);
         self.chain.texts().wrong(message, place, help)
+    }
+
+    /// Why the soft PLC `name` cannot be set up, at its entry if that is wrong.
+    pub fn not_set_up(&self, name: &ClientName, error: &RunError) -> ScenarioError {
+        let message = error.to_string();
+        match error {
+            RunError::Memory(_) => ScenarioError::Memory { client: name.clone(), message },
+            _ => self.wrong_client(name, message, None),
+        }
     }
 
     /// An error at the line of `key` in the mapping of client `name`: in the file of its link, or in the scenario. Nothing if

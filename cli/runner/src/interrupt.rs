@@ -91,12 +91,13 @@ impl Interrupt {
 /// Calls `handler` with the number of each signal that asks to end, in a thread of its own.
 #[cfg(unix)]
 fn on_each(mut handler: impl FnMut(i32) + Send + 'static) -> std::io::Result<()> {
+    use onescan_base::threads;
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 
     debug_assert_eq!(SIGINT, INTERRUPT, "as POSIX has it");
     let mut signals = signal_hook::iterator::Signals::new([SIGHUP, SIGINT, SIGTERM])?;
     let watch = move || signals.forever().for_each(&mut handler);
-    std::thread::Builder::new().name("signals".to_owned()).spawn(watch).map(drop)
+    threads::start("signals", watch).map(drop)
 }
 
 /// There all are as Ctrl-C.

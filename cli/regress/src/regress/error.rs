@@ -8,7 +8,7 @@ use thiserror::Error;
 use crate::check::CheckError;
 use crate::repository::RepositoryError;
 use crate::snapshot::StoreError;
-use onescan_runner::error::{Exit, ExitCode, SpawnError, Unreadable, Usage, sum_of_errors};
+use onescan_runner::error::{Exit, ExitCode, SpawnError, ThreadError, Unreadable, Usage, sum_of_errors};
 use onescan_runner::run::RunError;
 
 sum_of_errors! {
@@ -39,6 +39,8 @@ sum_of_errors! {
         Repository(RepositoryError),
         /// A process cannot be started.
         Spawn(SpawnError),
+        /// There is no thread.
+        Thread(ThreadError),
         /// A file cannot be written.
         File(FileError),
         /// The report cannot be written.

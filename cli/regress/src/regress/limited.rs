@@ -5,6 +5,9 @@ use std::process::{Child, Command, Output, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
+use onescan_base::threads;
+use onescan_runner::error::ThreadError;
+
 /// How long to wait before checking again whether a process that has closed its output has ended; it usually has at once.
 const LOOK: Duration = Duration::from_millis(1);
 
@@ -19,8 +22,15 @@ impl Limited {
     /// Starts it. Its input stays open for as long as this process lives, so that it can notice its end.
     pub(super) fn start(command: &mut Command) -> io::Result<Self> {
         let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn()?;
-        let (out, err) = (taken(child.stdout.take()), taken(child.stderr.take()));
-        Ok(Self { child, out, err })
+        let taken = (taken(child.stdout.take()), taken(child.stderr.take()));
+        match taken {
+            (Ok(out), Ok(err)) => Ok(Self { child, out, err }),
+            (Err(error), _) | (_, Err(error)) => {
+                child.kill()?;
+                child.wait()?;
+                Err(error)
+            }
+        }
     }
 
     /// What it said and how it ended; nothing if it was not done within `limit` and was ended.
@@ -59,28 +69,32 @@ impl Limited {
 }
 
 /// All that comes, when it has come.
-fn taken(pipe: Option<impl Read + Send + 'static>) -> Receiver<Vec<u8>> {
+fn taken(pipe: Option<impl Read + Send + 'static>) -> io::Result<Receiver<Vec<u8>>> {
     let (done, all) = channel();
     if let Some(mut pipe) = pipe {
-        std::thread::spawn(move || {
+        threads::start("output", move || {
             let mut bytes = Vec::new();
             // What came before a pipe broke is what there is; that there is not all of it, the report shows, which is JSON.
             let _ = pipe.read_to_end(&mut bytes);
             // Nobody waits for it any more if the time was over.
             let _ = done.send(bytes);
-        });
+        })?;
     }
-    all
+    Ok(all)
 }
 
 /// Ends this process when the one that started it has ended, whose pipe is the standard input.
-pub fn end_with_parent() {
-    std::thread::spawn(|| {
+///
+/// # Errors
+/// There is no thread.
+pub fn end_with_parent() -> Result<(), ThreadError> {
+    let watch = || {
         let mut rest = Vec::new();
         // Nothing is ever written to it. That it ends, or breaks, says that the other process has.
         let _ = io::stdin().lock().read_to_end(&mut rest);
         std::process::exit(1);
-    });
+    };
+    threads::start("parent", watch).map(drop).map_err(ThreadError)
 }
 
 #[cfg(all(test, unix))]

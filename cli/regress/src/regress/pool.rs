@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use onescan_base::threads;
 use onescan_server::time::TimeSpan;
 use serde::de::DeserializeOwned;
 
@@ -43,9 +44,13 @@ pub fn spread<T: Send>(jobs: NonZeroUsize, count: usize, bar: &ProgressBar, one:
         }
     };
     let mut done: Vec<(usize, T)> = std::thread::scope(|scope| {
-        let workers: Vec<_> = (0..jobs.get().min(count)).map(|_| scope.spawn(worker)).collect();
+        // This thread works, too: where the system has no more, it does all that there is.
+        let others = 1..jobs.get().min(count);
+        let workers: Vec<_> = others.map_while(|_| threads::start_in(scope, "worker", worker).ok()).collect();
+        let own = worker();
         let joined = workers.into_iter().map(std::thread::ScopedJoinHandle::join);
-        joined.flat_map(|done| done.unwrap_or_else(|panic| std::panic::resume_unwind(panic))).collect()
+        let theirs = joined.flat_map(|done| done.unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
+        own.into_iter().chain(theirs).collect()
     });
     bar.finish_and_clear();
     done.sort_by_key(|(index, _)| *index);

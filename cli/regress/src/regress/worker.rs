@@ -25,7 +25,7 @@ use onescan_runner::run::{RunConfig, watched};
 /// # Errors
 /// The input is wrong.
 pub fn work(config: &WorkerConfig, out: &mut dyn Write) -> Result<(), TestError> {
-    end_with_parent();
+    end_with_parent()?;
     let worked = match &config.scenario {
         Some(scenario) => case(config, scenario)?,
         None => unit_test::run(config)?,

@@ -2,8 +2,9 @@
 
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::mpsc::{Receiver, sync_channel};
-use std::thread;
+use std::{io, thread};
 
+use onescan_base::threads;
 use onescan_iec_run::Act;
 use onescan_scenario::Scenario;
 use onescan_server::operation::OperatorInput;
@@ -33,11 +34,14 @@ pub(super) fn traced(scenario: &Scenario) -> Scenario {
 }
 
 /// The first scan after which the memory of a PLC differs in what both runs have.
+///
+/// # Errors
+/// There is no thread for a run.
 pub(super) fn first_scan(
     sides: [&Side<'_>; 2],
     until: VirtualTime,
     parts: [BTreeMap<ClientName, Vec<Part>>; 2],
-) -> Option<VirtualTime> {
+) -> io::Result<Option<VirtualTime>> {
     let [a, b] = parts;
     let mut first: Option<VirtualTime> = None;
     abreast(sides, until, [Wanted::Digests(a), Wanted::Digests(b)], |pair| {
@@ -50,8 +54,8 @@ pub(super) fn first_scan(
             first = Some(first.map_or(at, |first| first.min(at)));
         }
         first.is_none()
-    });
-    first
+    })?;
+    Ok(first)
 }
 
 fn digest(scan: &Scan) -> Option<[u8; 32]> {
@@ -69,7 +73,15 @@ pub(super) struct Pair {
 }
 
 /// Gives `look` what both runs do from `from` on, until it says that it has seen enough.
-pub(super) fn acts(sides: [&Side<'_>; 2], from: VirtualTime, until: VirtualTime, mut look: impl FnMut(&Pair) -> bool) {
+///
+/// # Errors
+/// There is no thread for a run.
+pub(super) fn acts(
+    sides: [&Side<'_>; 2],
+    from: VirtualTime,
+    until: VirtualTime,
+    mut look: impl FnMut(&Pair) -> bool,
+) -> io::Result<()> {
     abreast(sides, until, [Wanted::Acts(from), Wanted::Acts(from)], |pair| {
         let Some(first) = pair.iter().flatten().min_by_key(|scan| scan.t_v) else { return true };
         let (client, t_v) = (first.client.clone(), first.t_v);
@@ -78,7 +90,7 @@ pub(super) fn acts(sides: [&Side<'_>; 2], from: VirtualTime, until: VirtualTime,
             _ => Vec::new(),
         });
         look(&Pair { client, t_v, acts })
-    });
+    })
 }
 
 /// Runs both and gives `look` the scans of each PLC in pairs, until it says that it has seen enough. A run that fails
@@ -88,38 +100,40 @@ fn abreast(
     until: VirtualTime,
     wanted: [Wanted; 2],
     mut look: impl FnMut([Option<Scan>; 2]) -> bool,
-) {
+) -> io::Result<()> {
     thread::scope(|scope| {
         let [first, second] = wanted;
-        let listening = [(sides[0], first), (sides[1], second)].map(|(side, wanted)| {
+        let listen_to = |side: &Side<'_>, wanted| {
             let (scans, listening) = sync_channel(AHEAD);
             let mut scenario = side.scenario.clone();
             scenario.journal(Journalling { wanted, scans });
             let inputs = side.inputs.clone();
-            scope.spawn(move || {
+            threads::start_in(scope, "run", move || {
                 // What it did up to its end is what counts here; the run itself has been judged already.
                 if let Err(error) = rerun(&scenario, until, inputs) {
                     tracing::debug!(%error, "a run that is looked at ends");
                 }
-            });
-            listening
-        });
+            })?;
+            io::Result::Ok(listening)
+        };
+        let listening = [listen_to(sides[0], first)?, listen_to(sides[1], second)?];
         let mut waiting: BTreeMap<ClientName, [VecDeque<Scan>; 2]> = BTreeMap::new();
         while let Some(both) = take(&listening, &mut waiting) {
             while !both[0].is_empty() && !both[1].is_empty() {
                 if !look(paired(both)) {
-                    return;
+                    return Ok(());
                 }
             }
         }
         for (_, mut both) in waiting {
             while both.iter().any(|scans| !scans.is_empty()) {
                 if !look(paired(&mut both)) {
-                    return;
+                    return Ok(());
                 }
             }
         }
-    });
+        Ok(())
+    })
 }
 
 /// Takes the next scan of the run of which fewer wait, and gives those of its PLC; nothing once both have ended.

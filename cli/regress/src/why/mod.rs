@@ -75,7 +75,11 @@ pub fn explain(
         let of = |(name, both): (&ClientName, &Both)| (name.clone(), Leaves::of(&both.applications).parts(side));
         plcs.iter().map(of).collect()
     });
-    let Some(from) = abreast::first_scan(sides, until, parts) else { return Ok(None) };
+    let from = match abreast::first_scan(sides, until, parts) {
+        Ok(Some(from)) => from,
+        Ok(None) => return Ok(None),
+        Err(error) => return not_looked_for(&error),
+    };
     let mut flows: BTreeMap<ClientName, Flow> = plcs
         .iter()
         .map(|(name, both)| {
@@ -85,7 +89,7 @@ pub fn explain(
         .collect();
     let mut records = Vec::new();
     let mut found: Option<(SignalName, usize)> = None;
-    abreast::acts(sides, from, until, |pair| {
+    let looked = abreast::acts(sides, from, until, |pair| {
         let (Some(flow), Some(both)) = (flows.get_mut(&pair.client), plcs.get(&pair.client)) else { return true };
         if pair.acts.iter().any(|acts| acts.len() >= ACTS_MAX) {
             // The rest of the scan is not known, so nothing after it can be explained.
@@ -102,12 +106,21 @@ pub fn explain(
         found = asked.cloned().or_else(|| found.take()).or_else(|| differing.first().cloned());
         asked.is_none()
     });
+    if let Err(error) = looked {
+        return not_looked_for(&error);
+    }
     let (signal, record) = match found {
         Some((signal, record)) => (Some(signal), record),
         None if records.is_empty() => return Ok(None),
         None => (None, 0),
     };
     Ok(Some(Why { signal, links: way_back(&records, record) }))
+}
+
+/// What differs is known without the reason for it.
+fn not_looked_for(error: &std::io::Error) -> Result<Option<Why>, ScenarioError> {
+    tracing::warn!("it is not looked for why the runs differ: {error}");
+    Ok(None)
 }
 
 /// The soft PLCs that both scenarios have, compiled so that their statements report what they do.

@@ -10,7 +10,7 @@ use onescan_server::formation::FormationError;
 use onescan_server::observer::RecordError;
 use onescan_server::transport::tcp::participant::ParticipantError;
 
-use super::{ListenError, SpawnError, Unreadable, Usage};
+use super::{ListenError, SpawnError, ThreadError, Unreadable, Usage};
 
 /// The exit code of the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,13 +38,19 @@ impl Exit for Usage {
 
 impl Exit for Unreadable {
     fn exit_code(&self) -> ExitCode {
-        ExitCode::WrongInput
+        of_reading(&self.source)
     }
 }
 
 impl Exit for ListenError {
     fn exit_code(&self) -> ExitCode {
-        ExitCode::WrongInput
+        of_reading(&self.source)
+    }
+}
+
+impl Exit for ThreadError {
+    fn exit_code(&self) -> ExitCode {
+        ExitCode::Fault
     }
 }
 
@@ -86,6 +92,22 @@ impl Exit for RecordingError {
     }
 }
 
+/// A path or an address that cannot be is a mistake of who typed it; that the system has no more descriptors, memory or
+/// threads to give is not.
+fn of_reading(source: &io::Error) -> ExitCode {
+    use io::ErrorKind as Kind;
+    let is_short = matches!(source.kind(), Kind::OutOfMemory | Kind::WouldBlock | Kind::QuotaExceeded);
+    if is_short || source.raw_os_error().is_some_and(|code| TOO_MANY_FILES.contains(&code)) {
+        ExitCode::Fault
+    } else {
+        ExitCode::WrongInput
+    }
+}
+
+/// The system's codes for too many open files, of which the standard library has no kind: `ENFILE` and `EMFILE`, or
+/// `ERROR_TOO_MANY_OPEN_FILES` and `WSAEMFILE`.
+const TOO_MANY_FILES: [i32; 2] = if cfg!(windows) { [4, 10024] } else { [23, 24] };
+
 /// A path that cannot be is a mistake of who typed it; a disk that is full or broken is not.
 fn of_writing(source: &io::Error) -> ExitCode {
     use io::ErrorKind as Kind;
@@ -105,13 +127,11 @@ fn of_writing(source: &io::Error) -> ExitCode {
 impl Exit for ScenarioError {
     fn exit_code(&self) -> ExitCode {
         match self {
-            Self::Link { .. } => ExitCode::Fault,
-            Self::Unreadable { .. }
-            | Self::Outside { .. }
-            | Self::Wrong { .. }
-            | Self::UnknownCase { .. }
-            | Self::Scene(_)
-            | Self::Plc(_) => ExitCode::WrongInput,
+            Self::Link { .. } | Self::Memory { .. } => ExitCode::Fault,
+            Self::Unreadable { source, .. } => of_reading(source),
+            Self::Outside { .. } | Self::Wrong { .. } | Self::UnknownCase { .. } | Self::Scene(_) | Self::Plc(_) => {
+                ExitCode::WrongInput
+            }
         }
     }
 }
@@ -155,6 +175,14 @@ mod tests {
     use std::path::PathBuf;
 
     use super::*;
+
+    #[test]
+    fn what_the_system_has_no_more_of_is_a_fault() {
+        let listening = |source: io::Error| ListenError { address: ([127, 0, 0, 1], 1).into(), source }.exit_code();
+        assert_eq!(listening(io::Error::from_raw_os_error(TOO_MANY_FILES[1])), ExitCode::Fault);
+        assert_eq!(listening(io::ErrorKind::WouldBlock.into()), ExitCode::Fault);
+        assert_eq!(listening(io::ErrorKind::AddrInUse.into()), ExitCode::WrongInput);
+    }
 
     #[test]
     fn a_full_disk_is_a_fault_and_a_wrong_path_is_not() {

@@ -8,6 +8,7 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
+use onescan_base::threads;
 use onescan_server::checkpoint::{Checkpoint, CheckpointError};
 use onescan_server::digest::TrajectoryDigest;
 use onescan_server::lockstep::{Lockstep, Reached};
@@ -43,7 +44,7 @@ impl Keeper {
     pub(crate) fn new(kept: Kept) -> std::io::Result<Self> {
         let (sender, receiver) = sync_channel(1);
         let writing = kept.clone();
-        let thread = std::thread::Builder::new().name("past".to_owned()).spawn(move || write(&writing, &receiver))?;
+        let thread = threads::start("past", move || write(&writing, &receiver))?;
         Ok(Self { kept, life: 0, sender: Some(sender), thread: Some(thread), next: VirtualTime::ZERO })
     }
 

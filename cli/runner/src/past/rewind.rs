@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 
+use onescan_base::threads;
 use onescan_server::checkpoint::Checkpoint;
 use onescan_server::client::Parts;
 use onescan_server::lockstep::{Lockstep, Reached};
@@ -116,7 +117,7 @@ impl Rewinder {
         let queue = Arc::new(RequestQueue::default());
         let (asked, past) = (Arc::clone(&queue), kept.clone());
         let work = move || Worker { queue: asked, kept: past, form, runs: BTreeMap::new() }.work();
-        let thread = std::thread::Builder::new().name("rewind".to_owned()).spawn(work)?;
+        let thread = threads::start("rewind", work)?;
         Ok(Self { queue, kept, thread: Some(thread) })
     }
 

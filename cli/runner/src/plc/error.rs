@@ -3,7 +3,7 @@
 use onescan_report::OutputError;
 use onescan_scenario::ScenarioError;
 
-use crate::error::{ListenError, Usage, sum_of_errors};
+use crate::error::{ListenError, ThreadError, Usage, sum_of_errors};
 
 sum_of_errors! {
     /// Why a PLC does not run.
@@ -16,6 +16,8 @@ sum_of_errors! {
         Usage(Usage),
         /// An address cannot be listened on.
         Listen(ListenError),
+        /// There is no thread.
+        Thread(ThreadError),
         /// The report cannot be written.
         Output(OutputError),
     }

@@ -29,7 +29,7 @@ use onescan_server::signal::ClientName;
 pub use config::{Cycle, PlcConfig};
 pub use error::PlcError;
 
-use crate::error::{ListenError, Usage};
+use crate::error::{ListenError, ThreadError, Usage};
 
 use crate::error::ExitCode;
 use crate::interrupt::Interrupt;
@@ -51,7 +51,7 @@ pub fn run(config: &PlcConfig, interrupt: &Interrupt, out: &mut dyn Write) -> Re
         .into());
     }
     let wrong = |text: String| PlcError::Scenario(scenario.wrong_client(&name, text, None));
-    let plc = SoftPlc::new(&program.application, &program.plan).map_err(|error| wrong(error.to_string()))?;
+    let plc = SoftPlc::new(&program.application, &program.plan).map_err(|error| scenario.not_set_up(&name, &error))?;
     let wires = Wires::new(&program.exchange, &program.application, &program.bindings);
     let wires = wires.map_err(|error| wrong(error.to_string()))?;
     let mut controller = Controller::new(plc, wires);
@@ -61,7 +61,7 @@ pub fn run(config: &PlcConfig, interrupt: &Interrupt, out: &mut dyn Write) -> Re
     }
     let controller = Arc::new(controller);
     let (urls, _served) = serve(config, &scenario, &name, &program, &controller)?;
-    let clockwork = Clockwork::start(Arc::clone(&controller), config.cycle.interval());
+    let clockwork = Clockwork::start(Arc::clone(&controller), config.cycle.interval()).map_err(ThreadError)?;
     for url in &urls {
         writeln!(out, "serving {url}").map_err(OutputError)?;
     }
@@ -110,7 +110,7 @@ fn serve(
         Ok(tcp::Blocks { layouts, push })
     };
     if let Some(address) = config.tcp_connect {
-        tcp::connect(address, controller, blocks()?);
+        tcp::connect(address, controller, blocks()?).map_err(ThreadError)?;
     }
     if let Some(address) = config.tcp {
         let address = tcp::serve(address, controller, blocks()?).map_err(ListenError::on(address))?;

@@ -4,12 +4,13 @@ use std::io::{BufRead, Write};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::Duration;
 
+use onescan_base::threads;
 use onescan_links::station::{Controller, Status};
 use onescan_report::OutputError;
 use onescan_server::signal::did_you_mean;
 
 use super::error::PlcError;
-use crate::error::ExitCode;
+use crate::error::{ExitCode, ThreadError};
 use crate::interrupt::Interrupt;
 
 /// How often Ctrl-C is looked for.
@@ -21,9 +22,9 @@ const COMMANDS: [&str; 6] = ["run", "stop", "cold", "warm", "status", "quit"];
 /// Does what is typed on standard input until `quit` or Ctrl-C; the end of the input is not the PLC's.
 ///
 /// # Errors
-/// The answers cannot be written.
+/// The answers cannot be written, or there is no thread.
 pub fn attend(controller: &Controller, interrupt: &Interrupt, out: &mut dyn Write) -> Result<ExitCode, PlcError> {
-    let mut lines = Some(typed());
+    let mut lines = Some(typed().map_err(ThreadError)?);
     interrupt.watch();
     while !interrupt.is_raised() {
         let Some(typed) = &lines else {
@@ -43,17 +44,17 @@ pub fn attend(controller: &Controller, interrupt: &Interrupt, out: &mut dyn Writ
 }
 
 /// Lines of standard input, read in a thread that ends with the process.
-fn typed() -> Receiver<String> {
+fn typed() -> std::io::Result<Receiver<String>> {
     let (sender, receiver) = channel();
-    std::thread::spawn(move || {
+    threads::start("operator", move || {
         let lines = std::io::stdin().lock().lines();
         for line in lines.map_while(Result::ok) {
             if sender.send(line).is_err() {
                 return;
             }
         }
-    });
-    receiver
+    })?;
+    Ok(receiver)
 }
 
 /// What is said of a command; nothing for the one that ends it all.

@@ -6,7 +6,7 @@ use onescan_scenario::ScenarioError;
 use thiserror::Error;
 
 use crate::forest::JournalError;
-use onescan_runner::error::{Exit, ExitCode, SpawnError, Unreadable, Usage, sum_of_errors};
+use onescan_runner::error::{Exit, ExitCode, SpawnError, ThreadError, Unreadable, Usage, sum_of_errors};
 use onescan_runner::run::RunError;
 
 sum_of_errors! {
@@ -26,6 +26,8 @@ sum_of_errors! {
         Ended(Ended),
         /// A process cannot be started.
         Spawn(SpawnError),
+        /// There is no thread.
+        Thread(ThreadError),
         /// The journal of the work cannot be used.
         #[diagnostic(transparent)]
         Journal(JournalError),

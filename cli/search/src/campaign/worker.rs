@@ -37,7 +37,7 @@ use onescan_runner::run::{ForkRequest, Ran, RunConfig, RunStatus, one_run};
 /// # Errors
 /// The input is wrong.
 pub fn work(config: &WorkerConfig, out: &mut dyn Write) -> Result<(), CampaignError> {
-    end_with_parent();
+    end_with_parent()?;
     let scenario = Scenario::load(&config.scenario)?;
     let catalogue = scenario.catalogue()?;
     let gone = |name: &str| Usage::new(format!("the scenario has no `{name}` any more"), None);

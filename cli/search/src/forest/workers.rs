@@ -1,7 +1,9 @@
 //! Several trials at a time. What comes of them does not depend on how many there are.
 
 use std::num::NonZeroUsize;
+use std::sync::{Mutex, PoisonError};
 
+use onescan_base::threads;
 use onescan_regress::regress::pool::{bar, spread};
 
 /// So many runs in a process at most, so that little is lost if it is killed.
@@ -74,12 +76,22 @@ impl<W: Send> Workers<W> {
         if let ([task], [worker, ..]) = (tasks, &mut self.workers[..]) {
             return vec![work(worker, task)];
         }
-        std::thread::scope(|scope| {
-            let pairs = self.workers.iter_mut().zip(tasks);
-            let threads: Vec<_> = pairs.map(|(worker, task)| scope.spawn(move || work(worker, task))).collect();
-            let ended = threads.into_iter().map(std::thread::ScopedJoinHandle::join);
-            ended.map(|ended| ended.unwrap_or_else(|panic| std::panic::resume_unwind(panic))).collect()
-        })
+        let waiting = Mutex::new(self.workers.iter_mut().zip(tasks).enumerate());
+        let worker = || {
+            let next = || waiting.lock().unwrap_or_else(PoisonError::into_inner).next();
+            std::iter::from_fn(next).map(|(at, (worker, task))| (at, work(worker, task))).collect::<Vec<_>>()
+        };
+        let mut done: Vec<(usize, Result<O, E>)> = std::thread::scope(|scope| {
+            // This thread works, too: where the system has no more, it does all that there is.
+            let others: Vec<_> =
+                (1..tasks.len()).map_while(|_| threads::start_in(scope, "worker", worker).ok()).collect();
+            let own = worker();
+            let joined = others.into_iter().map(std::thread::ScopedJoinHandle::join);
+            let theirs = joined.flat_map(|done| done.unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
+            own.into_iter().chain(theirs).collect()
+        });
+        done.sort_by_key(|(at, _)| *at);
+        done.into_iter().map(|(_, outcome)| outcome).collect()
     }
 }
 

@@ -66,7 +66,8 @@ impl Machine {
         let mut store = Store::new(module.engine(), HostState::default());
         let linker = linker(module.engine()).map_err(|error| module_error(&error))?;
         let instance = linker.instantiate(&mut store, &module);
-        let instance = instance.map_err(|error| module_error(&error))?;
+        // The linker has all that the module wants, so only memory can be missing.
+        let instance = instance.map_err(|error| RunError::Memory(format!("{error:#}")))?;
         let memory = instance.get_memory(&mut store, MEMORY_EXPORT);
         let memory = memory.ok_or_else(|| RunError::Module("memory is missing".to_owned()))?;
         let notes = instance.get_memory(&mut store, NOTES_EXPORT);

@@ -67,6 +67,9 @@ pub enum RunError {
     /// The module was refused, most often because a unit is too large.
     #[error("the program cannot be made to run: {0}")]
     Module(String),
+    /// The system does not give the memory.
+    #[error("there is no memory for the program: {0}")]
+    Memory(String),
 }
 
 fn suffix(help: Option<&String>) -> String {
