@@ -68,7 +68,7 @@ fn station() -> Station {
         request,
         urls,
         _opcua: opcua,
-        _clockwork: Clockwork::start(controller, None),
+        _clockwork: Clockwork::start(controller, None).expect("a thread"),
     }
 }
 

@@ -153,6 +153,7 @@ const CLOCKS: &[(&str, &str)] = &[
     ("server/src/formation.rs", "how long clients are waited for"),
     ("server/recording/src/flush_policy.rs", "when steps reach the disk, never what they are"),
     ("server/src/transport", "how long an answer is waited for"),
+    ("clients/links/src/accept.rs", "how long somebody who connects may say nothing"),
     ("clients/links/src/gateway", "how long a PLC is waited for"),
     ("clients/links/src/station", "a PLC on a clock of its own"),
     ("clients/opc-ua/src/information_model/board.rs", "time stamps of OPC UA"),
@@ -178,6 +179,13 @@ const READS: &[(&str, &str)] = &[
     ("tests/published/src", "what is published, compared by tests"),
     ("tests/xtask/src/workspace.rs", "sources of the repository"),
     ("web/codegen/src/published.rs", "what is published, compared by tests"),
+];
+
+/// Where a thread is started otherwise than by `onescan_base::threads`, whose errors are to be handled.
+const THREADS: &[(&str, &str)] = &[
+    ("base/src/threads.rs", "it is this one"),
+    ("tests/fuzzing/src", "a tool of the repository"),
+    ("tests/src", "sessions of the tests"),
 ];
 
 /// Where the largest number of a width stands, as a number.
@@ -309,6 +317,13 @@ fn numbers_do_not_stand_for_something_else() {
     }
     places.retain(|_, lines| !lines.is_empty());
     let found = against(&places, LARGEST);
+    assert!(found.is_empty(), "\n{found}");
+}
+
+/// Ways to start a thread that panic, or say nothing of which one it was, where the system has none to give.
+#[test]
+fn threads_are_started_in_one_way() {
+    let found = against(&calls_of(&["thread::spawn(", "scope.spawn(", "thread::Builder"]), THREADS);
     assert!(found.is_empty(), "\n{found}");
 }
 

@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use serde_json::json;
 
-use crate::typed::{onescan, scenario, typed};
+use crate::typed::{digests, onescan, run_shear, scenario, typed};
 use crate::web::{Served, ask, received};
 
 /// `onescan` with so few descriptors that strangers could take them all.
@@ -123,4 +123,200 @@ fn open_opc_ua_beyond_this_machine_is_said() {
     assert!(said.code == Some(0) && said.err.contains("is open to anybody who reaches this machine"), "{said:?}");
     let own = typed(&scenario("shear"), &["run", ".", "--until", "20ms", "--opcua", "127.0.0.1:0"]);
     assert!(own.code == Some(0) && !own.err.contains("is open to anybody"), "{own:?}");
+}
+
+/// `onescan plc` whose standard error nobody reads, and where it serves.
+struct Unread {
+    plc: std::process::Child,
+    urls: Vec<String>,
+}
+
+impl Unread {
+    fn start(words: &[&str]) -> Self {
+        let mut command = onescan(&scenario("shear"));
+        command.args(["plc", "."]).args(words);
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut plc = command.spawn().expect("the program starts");
+        let said = std::io::BufReader::new(plc.stdout.as_mut().expect("piped"));
+        let lines = std::io::BufRead::lines(said).map(|line| line.expect("it speaks"));
+        let urls = lines.map_while(|line| line.strip_prefix("serving ").map(str::to_owned)).collect();
+        Self { plc, urls }
+    }
+
+    fn url(&self, scheme: &str) -> &str {
+        self.urls.iter().find(|url| url.starts_with(scheme)).expect("it serves this")
+    }
+
+    fn address(&self, scheme: &str) -> &str {
+        self.url(scheme).rsplit("://").next().expect("an address")
+    }
+
+    /// The digest of a run of a second with this PLC.
+    fn digest(&self, scheme: &str) -> String {
+        let gateway = format!("plc={}", self.url(scheme));
+        let (reports, said) = run_shear(&["--until", "1s", "--gateway", &gateway]);
+        assert_eq!(said.code, Some(0), "{scheme} {said:?}");
+        digests(&reports).remove(0)
+    }
+
+    /// Ends it and gives what it said of those who came.
+    fn log(mut self) -> String {
+        self.plc.kill().expect("it runs");
+        let mut log = String::new();
+        self.plc.stderr.take().expect("piped").read_to_string(&mut log).expect("text");
+        self.plc.wait().expect("it ends");
+        log
+    }
+}
+
+/// However many connect to a PLC and say nothing, the gateway has it, also while it drives the PLC.
+#[test]
+fn strangers_do_not_keep_a_gateway_from_its_plc() {
+    let expected = digests(&run_shear(&["--until", "1s"]).0).remove(0);
+    let plc = Unread::start(&[]);
+    for scheme in ["tcp://", "s7://", "modbus://", "ads://"] {
+        let address = plc.address(scheme).to_owned();
+        let before = strangers(&address, 100, b"");
+        let during = std::thread::spawn(move || strangers(&address, 200, b""));
+        assert_eq!(plc.digest(scheme), expected, "{scheme}");
+        drop((before, during.join().expect("strangers")));
+    }
+    drop(plc.log());
+}
+
+/// Nobody reads its log, which each connection would fill with a line.
+#[test]
+fn a_log_that_nobody_reads_does_not_end_a_plc() {
+    let plc = Unread::start(&["--tcp", "127.0.0.1:0"]);
+    for _ in 0..1_500 {
+        drop(strangers(plc.address("tcp://"), 1, b"x"));
+    }
+    plc.digest("tcp://");
+    let log = plc.log();
+    assert!(log.lines().count() < 30, "{log}");
+    assert!(log.contains("closed after 1 of the") && log.contains("reported again after"), "{log}");
+}
+
+/// The system has no thread to give: an error says so, and what the exit code is. A stack of this size can be had nowhere.
+#[test]
+fn where_there_are_no_threads_an_error_names_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let record = folder.path().join("out");
+    let commands: [&[&str]; 5] = [
+        &["plc", ".", "--s7", "127.0.0.1:0"],
+        &["test", "."],
+        &["run", ".", "--until", "20ms", "--record", record.to_str().unwrap()],
+        &["run", ".", "--until", "20ms", "--listen", "127.0.0.1:0"],
+        &["run", ".", "--until", "20ms", "--web"],
+    ];
+    for words in commands {
+        let mut command = onescan(&scenario("shear"));
+        let said = command.args(words).env("RUST_MIN_STACK", (1_u64 << 60).to_string()).output().unwrap();
+        let said = crate::typed::Said::from(said);
+        assert_eq!(said.code, Some(3), "{words:?} {said:?}");
+        let all = format!("{}{}", said.out, said.err);
+        assert!(all.contains("cannot start the thread `") && !all.contains("panicked"), "{words:?} {said:?}");
+    }
+}
+
+/// What the system has no more of is not the mistake of who typed the command.
+#[test]
+fn too_many_open_files_are_a_fault() {
+    let folder = scenario("shear");
+    let program = onescan(&folder);
+    let mut codes = std::collections::BTreeSet::new();
+    for descriptors in 4..24 {
+        let mut command = Command::new("sh");
+        let limited = format!("ulimit -n {descriptors} && exec \"$0\" \"$@\"");
+        command.args(["-c", &limited]).arg(program.get_program()).args(["run", ".", "--until", "20ms"]);
+        command.args(["--listen", "127.0.0.1:0", "--web", "--join-timeout", "1s"]).current_dir(&folder);
+        let said = crate::typed::Said::from(command.env("NO_COLOR", "1").output().unwrap());
+        let all = format!("{}{}", said.out, said.err);
+        assert!(!all.contains("panicked"), "{descriptors}: {said:?}");
+        if all.contains("Too many open files") && said.code != Some(0) {
+            assert_eq!(said.code, Some(3), "{descriptors}: {said:?}");
+            codes.insert(said.code);
+        }
+    }
+    assert!(!codes.is_empty(), "none of them was short of descriptors");
+}
+
+/// A task of a long interval sleeps, and hears that the program is to end.
+#[test]
+fn a_long_sleep_of_a_free_wheeling_plc_hears_a_signal() {
+    let folder = crate::typed::copied_shear();
+    crate::typed::edit(folder.path(), "scenario.toml", "interval = \"10ms\"", "interval = \"1000000000s\"");
+    let mut run = crate::typed::begun(folder.path(), &["run", ".", "--mode", "freewheel", "--until", "20ms"]);
+    std::thread::sleep(Duration::from_secs(2));
+    assert!(run.try_wait().unwrap().is_none(), "it sleeps");
+    assert!(Command::new("kill").args(["-TERM", &run.id().to_string()]).status().unwrap().success());
+    let began = std::time::Instant::now();
+    let said = crate::typed::Said::from(run.wait_with_output().unwrap());
+    assert_eq!(said.code, Some(143), "{said:?}");
+    assert!(began.elapsed() < Duration::from_secs(30), "it has heard it");
+}
+
+/// Who connects where a PLC is expected and says nothing gives its seat to the PLC.
+#[test]
+fn a_silent_stranger_does_not_keep_a_plc_out() {
+    let listening = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = listening.local_addr().unwrap().to_string();
+    drop(listening);
+    let gateway = format!("plc=tcp-listen://{address}");
+    let words = ["run", ".", "--format", "json", "--until", "1s", "--gateway", &gateway];
+    let run = crate::typed::begun(&scenario("shear"), &words);
+    let began = std::time::Instant::now();
+    let stranger = loop {
+        if let Ok(stranger) = TcpStream::connect(&address) {
+            break stranger;
+        }
+        assert!(began.elapsed() < Duration::from_mins(1), "it listens");
+        std::thread::sleep(Duration::from_millis(20));
+    };
+    let plc = crate::plc::Plc::start(&scenario("shear"), &["--tcp-connect", &address]);
+    let said = crate::typed::Said::from(run.wait_with_output().unwrap());
+    assert_eq!(said.code, Some(0), "{said:?}");
+    drop((stranger, plc));
+}
+
+/// Each fork is a process of its own.
+#[test]
+fn a_viewer_has_so_many_forks_and_no_more() {
+    let served = Served::begin("shear", &["--until", "1h", "--pace", "50", "--forks", "2"]);
+    let mut viewer = served.view();
+    let mut answers = Vec::new();
+    while answers.len() < 3 {
+        ask(&mut viewer, &json!({"type": "fork", "t_ns": 500_000_000}));
+        let answer = loop {
+            let Ok(tungstenite::Message::Text(text)) = viewer.read() else { continue };
+            let answer: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+            if answer["type"] == "forked" || answer["type"] == "error" {
+                break answer.to_string();
+            }
+        };
+        // The session may not have come so far yet.
+        if !answer.contains("not a moment of the past") {
+            answers.push(answer);
+        }
+    }
+    assert!(answers[..2].iter().all(|answer| answer.contains("forked")), "{answers:?}");
+    assert!(answers[2].contains("2 forks of this session run already"), "{answers:?}");
+    ask(&mut viewer, &json!({"type": "operate", "operation": "stop"}));
+    assert_eq!(served.report()["status"], "stopped");
+}
+
+/// A step that somebody mistyped would run for days without a word.
+#[test]
+fn a_run_of_days_is_announced() {
+    let folder = crate::typed::copied_shear();
+    crate::typed::edit(folder.path(), "scenario.toml", "step = \"10ms\"", "step = \"1ns\"");
+    let mut run = crate::typed::begun(folder.path(), &["run", ".", "--until", "1h"]);
+    let mut said = std::io::BufReader::new(run.stderr.take().expect("piped"));
+    let mut line = String::new();
+    while !line.contains("this run has 3600000000000 steps of 1ns") {
+        line.clear();
+        assert_ne!(std::io::BufRead::read_line(&mut said, &mut line).expect("text"), 0, "it is not said");
+    }
+    run.kill().expect("it runs");
+    run.wait().expect("it ends");
 }

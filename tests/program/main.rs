@@ -21,6 +21,7 @@ mod edit;
 mod errors;
 mod expectations;
 mod explore;
+mod extremes;
 mod falsify;
 mod faults;
 mod files_named;

@@ -1,5 +1,6 @@
 //! `run --web --access`: nobody gets in without a token, from another origin, or beyond what a token is good for.
 
+use std::io::{Read, Write};
 use std::net::TcpStream;
 use std::path::Path;
 
@@ -7,7 +8,8 @@ use serde_json::json;
 use tungstenite::WebSocket;
 use tungstenite::client::IntoClientRequest;
 
-use crate::typed::{scenario, typed};
+use crate::training::Lesson;
+use crate::typed::{scenario, typed, utf8};
 use crate::web::{LIVE, Served, ask, received};
 
 /// A folder with a token of each role; gives the tokens.
@@ -27,8 +29,12 @@ fn begin(folder: &Path) -> Served {
 }
 
 fn view_with(served: &Served, header: (&'static str, &str)) -> WebSocket<TcpStream> {
-    let stream = TcpStream::connect(&served.address).expect("served");
-    let mut request = format!("ws://{}/api/live", served.address).into_client_request().expect("a request");
+    view_at(&served.address, header)
+}
+
+fn view_at(address: &str, header: (&'static str, &str)) -> WebSocket<TcpStream> {
+    let stream = TcpStream::connect(address).expect("served");
+    let mut request = format!("ws://{address}/api/live").into_client_request().expect("a request");
     request.headers_mut().insert(header.0, header.1.parse().expect("a header"));
     tungstenite::client(request, stream).expect("a viewer").0
 }
@@ -136,4 +142,31 @@ fn beyond_this_machine_a_certificate_is_needed_too() {
     let access = folder.path().to_str().expect("UTF-8");
     let said = typed(&scenario("shear"), &["run", ".", "--web=0.0.0.0:0", "--access", access]);
     assert!(said.code == Some(2) && said.err.contains("there is no certificate"), "{said:?}");
+}
+
+/// The trainee has an operator's token, with which he does not come into the trainer's page.
+#[test]
+fn a_trainee_does_not_see_the_trainers_page() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let made = tokens(folder.path(), &["operator", "trainer"]);
+    let starts = folder.path().join("starts");
+    let words = ["three-malfunctions", "--starts", utf8(&starts), "--pace", "20", "--access", utf8(folder.path())];
+    let lesson = Lesson::begin(&words);
+    let bearer: Vec<String> = made.iter().map(|token| format!("Bearer {token}")).collect();
+    let status = |page: usize, token: Option<&String>| {
+        let mut stream = TcpStream::connect(&lesson.pages[page]).expect("served");
+        let head = format!("GET /api/session HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n", lesson.pages[page]);
+        let shown = token.map(|token| format!("Authorization: {token}\r\n")).unwrap_or_default();
+        stream.write_all(format!("{head}{shown}\r\n").as_bytes()).expect("sent");
+        let mut answer = String::new();
+        stream.read_to_string(&mut answer).expect("an answer");
+        answer.split(' ').nth(1).expect("a status").to_owned()
+    };
+    let (operator, trainer) = (Some(&bearer[0]), Some(&bearer[1]));
+    assert_eq!([0, 1].map(|page| status(page, None)), ["401", "401"]);
+    assert_eq!([0, 1].map(|page| status(page, operator)), ["200", "403"]);
+    assert_eq!([0, 1].map(|page| status(page, trainer)), ["200", "200"]);
+    let mut viewer = view_at(&lesson.pages[1], ("authorization", &bearer[1]));
+    ask(&mut viewer, &json!({"type": "operate", "operation": "stop"}));
+    assert_eq!(lesson.record()["attempts"][0]["end"], "stopped");
 }
