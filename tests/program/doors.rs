@@ -233,12 +233,10 @@ fn too_many_open_files_are_a_fault() {
         let said = crate::typed::Said::from(command.env("NO_COLOR", "1").output().unwrap());
         let all = format!("{}{}", said.out, said.err);
         assert!(!all.contains("panicked"), "{descriptors}: {said:?}");
-        if all.contains("Too many open files") && said.code != Some(0) {
-            assert_eq!(said.code, Some(3), "{descriptors}: {said:?}");
-            codes.insert(said.code);
-        }
+        assert!(!all.contains("Too many open files") || said.code != Some(2), "{descriptors}: {said:?}");
+        codes.insert(said.code);
     }
-    assert!(!codes.is_empty(), "none of them was short of descriptors");
+    assert!(codes.contains(&Some(3)), "none of them was short of descriptors: {codes:?}");
 }
 
 /// A task of a long interval sleeps, and hears that the program is to end.

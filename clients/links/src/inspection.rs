@@ -104,13 +104,14 @@ impl Device {
 
     /// Answers what a client asks until it goes.
     fn attend(&self, peer: &mut Peer) -> std::io::Result<()> {
-        let _memories = self.published.want(Parts::MEMORIES);
-        let mut handles = Vec::new();
+        let (mut handles, mut memories) = (Vec::new(), None);
         while let Some(request) = Frame::read(peer)? {
             if self.is_over() {
                 return Ok(());
             }
             peer.stay()?;
+            // Nothing is published for who only connects.
+            memories.get_or_insert_with(|| self.published.want(Parts::MEMORIES));
             if request.kind == Kind::Request {
                 peer.write_all(&self.response(&request, &mut handles).encoded())?;
             }
