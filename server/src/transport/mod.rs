@@ -4,10 +4,12 @@
 //! |---|---|
 //! | [`accept`] | connections that come in, each with a place and a time |
 //! | [`connection_limit`] | how many connections a listener keeps, and which gives way to one that comes |
+//! | [`runtime`] | what listeners and links run on |
 //! | [`tcp`] | clients and operators over TCP |
 //! | [`tls`] | certificates, and who is trusted |
 
 pub mod accept;
 pub mod connection_limit;
+pub mod runtime;
 pub mod tcp;
 pub mod tls;

@@ -199,7 +199,7 @@ impl Editor {
     /// Serves until the program is ended.
     pub(super) fn serve(self) -> Result<(), EditorError> {
         let listen = ListenError::on(self.address);
-        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(&listen)?;
+        let runtime = onescan_server::transport::runtime::of_this_thread().map_err(&listen)?;
         let served = async {
             let listener = tokio::net::TcpListener::from_std(self.listener)?;
             axum::serve(LimitedListener::new(listener, None)?, self.router).await

@@ -80,6 +80,7 @@ use onescan_server::plan::SessionPlan;
 use onescan_server::published::Published;
 use onescan_server::signal::SignalDecl;
 use onescan_server::time::VirtualTime;
+use onescan_server::transport::runtime;
 use onescan_server::transport::tcp::House;
 use thiserror::Error;
 use tokio::sync::Notify;
@@ -364,7 +365,7 @@ impl Page {
         let entry = if is_trainers { entry.for_trainers() } else { entry };
         let scheme = if identity.is_some() { "https" } else { "http" };
         let session = Arc::new(Session::new(source, entry, scheme, shared)?);
-        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(&listen)?;
+        let runtime = runtime::of_this_thread().map_err(&listen)?;
         let stop = Arc::new(Notify::new());
         let (router, stopped) = (router(Arc::clone(&session)), Arc::clone(&stop));
         let thread = threads::start("web", move || {

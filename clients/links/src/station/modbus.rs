@@ -8,6 +8,7 @@ use onescan_base::repeated::Repeated;
 use onescan_base::threads;
 use onescan_server::transport::accept::{Guarded, Pass, refused};
 use onescan_server::transport::connection_limit::ConnectionLimit;
+use onescan_server::transport::runtime;
 use tokio::net::{TcpListener, TcpStream};
 use tokio_modbus::prelude::{ExceptionCode, Request, Response};
 use tokio_modbus::server::Service;
@@ -29,7 +30,7 @@ static INTERRUPTED: Repeated = Repeated::new();
 /// The address cannot be listened on, or there is no thread.
 pub fn serve(address: SocketAddr, controller: &Arc<Controller>, map: RegisterMap) -> std::io::Result<SocketAddr> {
     let (listener, address) = bind(address)?;
-    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
+    let runtime = runtime::of_this_thread()?;
     let bank = Arc::new(Bank { controller: Arc::clone(controller), map });
     threads::start("Modbus", move || runtime.block_on(listen(&listener, &bank)))?;
     Ok(address)

@@ -35,7 +35,7 @@ impl OpcUaLink {
     /// There is no runtime, or the options are wrong.
     pub fn new(url: &str, options: Options, exchange: &Exchange, timeout: Duration) -> Result<Self, LinkFault> {
         super::identity::security(&options)?;
-        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
+        let runtime = onescan_server::transport::runtime::of_this_thread();
         let runtime = runtime.map_err(|error| LinkFault::Setting(format!("no runtime: {error}")))?;
         let pki = Pki::new(options.pki.as_deref());
         let pki = pki.map_err(|error| LinkFault::Setting(format!("no folder for certificates: {error}")))?;

@@ -65,7 +65,7 @@ pub(crate) fn start(
 ) -> Result<Running, ServeError> {
     let (listener, address) = bind(address)?;
     let pki = Pki::new(access.pki.as_deref())?;
-    let runtime = tokio::runtime::Builder::new_multi_thread().worker_threads(1).enable_all().build()?;
+    let runtime = onescan_server::transport::runtime::with_a_thread()?;
     let (server, handle) = {
         let _inside = runtime.enter();
         builder(address, name, access, refusals, &pki).with_node_manager(manager).build().map_err(ServeError::Setup)?

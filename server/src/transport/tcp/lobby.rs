@@ -22,8 +22,8 @@ use crate::lobby::acceptor::CLOSE_TIMEOUT;
 use crate::lobby::{Acceptor, Terms, Visitor};
 use crate::mailbox::Mailbox;
 use crate::plan::SessionPlan;
-use crate::transport::accept;
 use crate::transport::tls::Identity;
+use crate::transport::{accept, runtime};
 use crate::wire::{FRAME_BYTES_MAX, ServerMessage, VERSIONS};
 
 /// What a session asks of those who come.
@@ -69,7 +69,7 @@ impl Lobby {
         listener.set_nonblocking(true)?;
         let address = listener.local_addr()?;
         let (pending_clients, receiver) = channel();
-        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
+        let runtime = runtime::of_this_thread()?;
         let tls_acceptor = house.identity.map(|identity| TlsAcceptor::from(identity.0));
         let host = Arc::new(Host::new(terms(plan, house.register)?, pending_clients, mailbox, tls_acceptor));
         let close = Arc::new(Notify::new());

@@ -46,7 +46,7 @@ impl ModbusLink {
     /// A point without a place.
     pub fn new(address: &str, options: Options, exchange: &Exchange, timeout: Duration) -> Result<Self, LinkFault> {
         let map = RegisterMap::new(&options, exchange)?;
-        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
+        let runtime = onescan_server::transport::runtime::of_this_thread();
         let runtime = runtime.map_err(|error| LinkFault::Lost(format!("no runtime: {error}")))?;
         let (writes, reads) = (map.writes(), map.reads());
         let address = if address.contains(':') { address.to_owned() } else { format!("{address}:502") };
