@@ -1,7 +1,7 @@
 //! The report format of `JUnit`, as CI servers read it: a suite for each scenario, a case for each test.
 //!
-//! `time` of a case is virtual time, so that equal runs give equal reports; only the root says how
-//! long it all took.
+//! `time` of a case is what it took where that was measured, since CI servers share out tests by it; virtual time is a
+//! property then. Else it is virtual time, so that equal runs give equal reports.
 
 use std::fmt::{self, Write as _};
 use std::time::Duration;
@@ -31,6 +31,8 @@ pub struct Case {
     pub name: String,
     /// Virtual time at its end.
     pub virtual_time_ns: u64,
+    /// How long it took, wall clock, if reports are to say so.
+    pub wall_time: Option<Duration>,
     /// File and line that it leads to.
     pub place: Option<(String, u32)>,
     pub ended: Ended,
@@ -79,7 +81,7 @@ impl Tests {
 impl Suite {
     fn write(&self, text: &mut String) -> fmt::Result {
         let cases: Vec<&Case> = self.cases.iter().collect();
-        let time = cases.iter().map(|case| case.virtual_time_ns).sum::<u64>() as f64 / 1e9;
+        let time: f64 = cases.iter().map(|case| case.time_s()).sum();
         let (name, counts) = (escaped(&self.name), counts(&cases));
         let skipped = cases.iter().filter(|case| matches!(case.ended, Ended::Skipped)).count();
         writeln!(text, "  <testsuite name=\"{name}\" {counts} skipped=\"{skipped}\" time=\"{time:.3}\">")?;
@@ -89,24 +91,42 @@ impl Suite {
 }
 
 impl Case {
+    fn time_s(&self) -> f64 {
+        self.wall_time.map_or(self.virtual_time_ns as f64 / 1e9, |time| time.as_secs_f64())
+    }
+
+    /// What stands before the failure.
+    fn properties(&self) -> String {
+        if self.wall_time.is_none() {
+            return String::new();
+        }
+        let time = self.virtual_time_ns as f64 / 1e9;
+        format!("\n      <properties><property name=\"virtual_time_s\" value=\"{time:.3}\"/></properties>")
+    }
+
     /// `suite` is escaped already.
     fn write(&self, suite: &str, text: &mut String) -> fmt::Result {
         let class = self.class.as_ref().map_or_else(|| suite.to_owned(), |class| escaped(class));
         let name = escaped(if self.name.is_empty() { "(all)" } else { &self.name });
-        let time = self.virtual_time_ns as f64 / 1e9;
+        let time = self.time_s();
         write!(text, "    <testcase name=\"{name}\" classname=\"{class}\" time=\"{time:.3}\"")?;
         if let Some((file, line)) = &self.place {
             write!(text, " file=\"{}\" line=\"{line}\"", escaped(file))?;
         }
         let (kind, Trouble { word, lines }) = match &self.ended {
-            Ended::Well => return writeln!(text, "/>"),
+            Ended::Well if self.wall_time.is_none() => return writeln!(text, "/>"),
+            Ended::Well => return writeln!(text, ">{}\n    </testcase>", self.properties()),
             Ended::Skipped => return writeln!(text, ">\n      <skipped/>\n    </testcase>"),
             Ended::Failure(trouble) => ("failure", trouble),
             Ended::Error(trouble) => ("error", trouble),
         };
         let first = escaped(lines.first().map_or(*word, String::as_str));
         let all = escaped(&lines.join("\n"));
-        writeln!(text, ">\n      <{kind} message=\"{first}\" type=\"{word}\">{all}</{kind}>\n    </testcase>")
+        let properties = self.properties();
+        writeln!(
+            text,
+            ">{properties}\n      <{kind} message=\"{first}\" type=\"{word}\">{all}</{kind}>\n    </testcase>"
+        )
     }
 }
 

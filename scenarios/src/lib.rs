@@ -43,6 +43,7 @@
 //! | [`expect`] | what a run must show: signal temporal logic |
 //! | [`report`] | what a run produced, and what held it up |
 //! | [`mode`] | in lockstep or not |
+//! | [`template`] | scenarios to begin with, as texts |
 //! | [`error`] | what can be wrong with it, and where |
 //!
 //! Invariants. This is the only crate that reads scenario files. It starts no process, runs no session
@@ -89,6 +90,7 @@ pub mod report;
 pub mod report_file;
 pub mod schema;
 mod structure;
+pub mod template;
 mod texts;
 mod timed;
 pub mod timing;

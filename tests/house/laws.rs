@@ -15,7 +15,8 @@ const DEPENDS_ON: &[(&str, &[&str])] = &[
     ("server/recording", &["onescan-base", "onescan-server"]),
     ("clients/stream", &["onescan-base", "onescan-server"]),
     ("clients/operator", &["onescan-server"]),
-    ("plc-shim/iec", &["onescan-base", "onescan-xml"]),
+    ("plc-shim/docs", &[]),
+    ("plc-shim/iec", &["onescan-base", "onescan-iec-docs", "onescan-xml"]),
     ("plc-shim/iec-run", &["onescan-base", "onescan-iec"]),
     (
         "clients/plant",
@@ -41,6 +42,7 @@ const DEPENDS_ON: &[(&str, &[&str])] = &[
         ],
     ),
     ("report", &[]),
+    ("web", &[]),
     (
         "cli/runner",
         &[
@@ -49,6 +51,7 @@ const DEPENDS_ON: &[(&str, &[&str])] = &[
             "onescan-iec-run",
             "onescan-links",
             "onescan-operator",
+            "onescan-page",
             "onescan-plant",
             "onescan-recording",
             "onescan-report",

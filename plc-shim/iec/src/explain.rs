@@ -7,7 +7,7 @@ use crate::diagnostic::Code;
 
 macro_rules! pages {
     ($($code:literal),* $(,)?) => {
-        &[$(($code, include_str!(concat!("../../docs/codes/", $code, ".md")))),*]
+        &[$(($code, onescan_iec_docs::page($code).expect(concat!($code, " has no page in plc-shim/docs/codes")))),*]
     };
 }
 

@@ -111,6 +111,14 @@ pub(crate) const SCRIPTS: &[Script] = &[
         not_on_windows: None,
     },
     Script {
+        name: "dist",
+        file: "tests/dist/make",
+        language: Language::Python,
+        about: "the files of a release: wheel, archive, Debian package, crates; `--try` uses them where there is no Rust",
+        time: "a build; packing: 1 min",
+        not_on_windows: Some("it builds for Windows on Linux"),
+    },
+    Script {
         name: "platforms",
         file: "tests/platforms",
         language: Language::Bash,

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{ArgAction, Parser, Subcommand};
+use clap::{ArgAction, CommandFactory, FromArgMatches as _, Parser, Subcommand};
 
 use onescan_scenario::permission::Permission;
 
@@ -12,6 +12,7 @@ use super::compare::CompareArgs;
 use super::error::CommandError;
 use super::explore::ExploreArgs;
 use super::falsify::FalsifyArgs;
+use super::manual::{CompletionsArgs, HelpArgs, ManArgs};
 use super::minimise::MinimiseArgs;
 use super::model::ModelArgs;
 use super::mutate::MutateArgs;
@@ -25,8 +26,8 @@ use super::source::{CheckArgs, ExplainArgs, InstrumentArgs};
 use super::test::{ReviewArgs, TestArgs, WorkerArgs};
 use super::train::TrainArgs;
 use super::{
-    access, campaign, compare, explore, falsify, minimise, model, mutate, plant, plc, recording, run, session, shot,
-    source, test, train,
+    access, campaign, compare, explore, falsify, groups, manual, minimise, model, mutate, plant, plc, recording, run,
+    session, shot, source, test, train,
 };
 use onescan_runner::error::ExitCode;
 
@@ -35,7 +36,7 @@ use onescan_runner::error::ExitCode;
 /// A PLC program and the model of its machine run against each other on one virtual clock: every scan
 /// sees exactly one simulation step, and every run of a scenario gives the same bits.
 #[derive(Debug, Parser)]
-#[command(name = "onescan", bin_name = "onescan", version, after_help = EXIT_CODES)]
+#[command(name = "onescan", bin_name = "onescan", version, after_help = EXIT_CODES, disable_help_subcommand = true)]
 pub struct Args {
     /// What to do.
     #[command(subcommand)]
@@ -53,6 +54,17 @@ pub struct Args {
 
 /// Between the paths of a variable.
 const PATHS: char = if cfg!(windows) { ';' } else { ':' };
+
+/// What may be typed, with its help in groups.
+pub fn command() -> clap::Command {
+    Args::command().help_template(groups::template())
+}
+
+/// What was typed; ends the process where that is wrong, or only asks for help.
+pub fn parsed() -> Args {
+    let matches = command().get_matches();
+    Args::from_arg_matches(&matches).unwrap_or_else(|error| error.format(&mut command()).exit())
+}
 
 impl Args {
     /// What scenarios may do.
@@ -156,6 +168,12 @@ pub enum Command {
     Model(ModelArgs),
     /// Explain a code of `check`, with an example that is wrong and one that is right
     Explain(ExplainArgs),
+    /// Print the help of a command, or what holds for all of them: exit codes, environment, files
+    Help(HelpArgs),
+    /// Print what a shell needs to complete commands and options
+    Completions(CompletionsArgs),
+    /// Write the manual pages, `onescan.1` and one for each command
+    Man(ManArgs),
 }
 
 /// Does what was typed.
@@ -200,5 +218,8 @@ pub fn dispatch(command: Command) -> Result<ExitCode, CommandError> {
         Command::New(args) => plant::new(args),
         Command::Model(args) => model::model(args),
         Command::Explain(args) => source::explain(&args),
+        Command::Help(args) => manual::help(&args),
+        Command::Completions(args) => manual::completions(&args),
+        Command::Man(args) => manual::man(&args),
     }
 }

@@ -1,6 +1,6 @@
 //! Why nothing came of what was typed.
 
-use onescan_report::OutputError;
+use onescan_report::{FileError, OutputError};
 
 use crate::browse::BrowseError;
 use crate::export::ExportError;
@@ -109,6 +109,8 @@ sum_of_errors! {
         /// What was typed is wrong.
         #[diagnostic(transparent)]
         Usage(Usage),
+        /// A file cannot be written.
+        File(FileError),
         /// The report cannot be written.
         Output(OutputError),
     }

@@ -20,6 +20,8 @@
 //! | [`opcua`] | who is let in over OPC UA |
 //! | [`plant`] | scenes |
 //! | [`model`] | the states of a session |
+//! | [`manual`] | help, completions, manual pages |
+//! | `groups`, `topics` | the commands by what they are for; what holds for all of them |
 //! | [`value`] | words that several commands know |
 
 pub mod access;
@@ -29,8 +31,10 @@ pub mod compare;
 mod error;
 pub mod explore;
 pub mod falsify;
+mod groups;
 mod log_writer;
 mod logging;
+pub mod manual;
 pub mod minimise;
 pub mod model;
 pub mod mutate;
@@ -43,12 +47,12 @@ pub mod session;
 pub mod shot;
 pub mod source;
 pub mod test;
+mod topics;
 pub mod train;
 pub mod value;
 
 use std::io::Write;
 
-use clap::Parser;
 use onescan_base::foreign::for_terminal;
 use onescan_report::OutputError;
 
@@ -59,7 +63,7 @@ use onescan_runner::interrupt;
 
 /// Runs the program with the process's arguments.
 pub fn main() -> std::process::ExitCode {
-    let args = args::Args::parse();
+    let args = args::parsed();
     logging::start(args.verbose);
     onescan_scenario::permission::grant(args.permission());
     #[cfg(feature = "opcua")]

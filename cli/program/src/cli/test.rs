@@ -3,19 +3,17 @@
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
-use clap::Args as ClapArgs;
+use clap::{Args as ClapArgs, ValueEnum};
 use onescan_iec::{Dialect, MemoryLimit, WordSize};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
 use super::error::CommandError;
 use super::run::CoverageArg;
-use super::value::FormatArg;
 use onescan_regress::check::collect::Reading;
 use onescan_regress::regress::config::WorkerConfig;
-use onescan_regress::regress::{Policy, Selection, TestConfig};
+use onescan_regress::regress::{Policy, Progress, Selection, TestConfig, TestFormat};
 use onescan_regress::review::{Choice, ReviewConfig};
 use onescan_runner::error::ExitCode;
-use onescan_runner::format::Format;
 use onescan_runner::run::coverage::CoverageRequest;
 
 /// Options of `test`.
@@ -50,9 +48,9 @@ pub struct TestArgs {
     /// else the commit that last changed the snapshot]
     #[arg(long, value_name = "COMMIT")]
     pub against: Option<String>,
-    /// For people; or a JSON object a test, and one for all
+    /// For people; a JSON object a test, and one for all; or for a job of GitHub
     #[arg(long, value_enum, default_value_t)]
-    pub format: FormatArg,
+    pub format: TestFormatArg,
     /// Write a report in the format of `JUnit`
     #[arg(long, value_name = "FILE")]
     pub junit: Option<PathBuf>,
@@ -93,10 +91,46 @@ pub struct TestArgs {
     pub libraries: Vec<PathBuf>,
 }
 
+/// See [`TestFormat`].
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+pub enum TestFormatArg {
+    /// For people
+    #[default]
+    Human,
+    /// For machines
+    Json,
+    /// As for people, with marks at the lines of a pull request, and a table on the page of the job, which
+    /// `GITHUB_STEP_SUMMARY` names
+    Github,
+}
+
+impl From<TestFormatArg> for TestFormat {
+    fn from(arg: TestFormatArg) -> Self {
+        match arg {
+            TestFormatArg::Human => Self::Human,
+            TestFormatArg::Json => Self::Json,
+            TestFormatArg::Github => Self::Github,
+        }
+    }
+}
+
+/// A bar where somebody sees it, lines where a CI server takes them down: all set `CI`.
+fn progress(format: TestFormat) -> Progress {
+    if format == TestFormat::Json {
+        Progress::None
+    } else if std::io::IsTerminal::is_terminal(&std::io::stderr()) {
+        Progress::Bar
+    } else if format == TestFormat::Github || std::env::var_os("CI").is_some() {
+        Progress::Lines
+    } else {
+        Progress::None
+    }
+}
+
 impl TestArgs {
     fn config(self) -> TestConfig {
         let one = NonZeroUsize::MIN;
-        let format: Format = self.format.into();
+        let format: TestFormat = self.format.into();
         TestConfig {
             paths: self.paths,
             selection: Selection { filters: self.filters, tags: self.tags, skipped_tags: self.skipped_tags },
@@ -107,7 +141,10 @@ impl TestArgs {
                 (_, true) => Policy::Check,
                 _ => Policy::Pending,
             },
-            progress: format == Format::Human && std::io::IsTerminal::is_terminal(&std::io::stderr()),
+            progress: progress(format),
+            job_summary: std::env::var_os("GITHUB_STEP_SUMMARY")
+                .filter(|_| format == TestFormat::Github)
+                .map(PathBuf::from),
             format,
             against: self.against,
             scan: self.scan,

@@ -20,6 +20,7 @@ use std::path::Path;
 
 use onescan_report::OutputError;
 use onescan_report::file::{Write as Output, write_all_whole};
+use onescan_scenario::template;
 use onescan_server::signal::BadName;
 use onescan_server::signal::ClientName;
 
@@ -41,26 +42,14 @@ pub enum Template {
     Blank,
 }
 
-macro_rules! files {
-    ($folder:literal: $($file:literal),+) => {
-        &[ $( ($file, include_str!(concat!("../../../../scenarios/templates/", $folder, "/", $file))) ),+ ]
-    };
-}
-
 impl Template {
     /// Files and what is in them.
     fn files(self) -> &'static [(&'static str, &'static str)] {
         match self {
-            Self::Cell => files!("cell": "scenario.toml", "plant.toml", "plc/main.st", "README.md"),
-            Self::Tank => files!("tank": "scenario.toml", "plant.toml", "plc/main.st", "README.md"),
-            Self::Blank => files!("blank": "scenario.toml", "plant.toml", "plc/main.st", "README.md"),
-            // the plant is the package's own example
-            Self::Python => &[
-                ("scenario.toml", include_str!("../../../../scenarios/templates/python/scenario.toml")),
-                ("plant.py", include_str!("../../../../clients/python/examples/tank.py")),
-                ("plc/main.st", include_str!("../../../../scenarios/templates/python/plc/main.st")),
-                ("README.md", include_str!("../../../../scenarios/templates/python/README.md")),
-            ],
+            Self::Cell => template::CELL,
+            Self::Tank => template::TANK,
+            Self::Blank => template::BLANK,
+            Self::Python => template::PYTHON,
         }
     }
 }
@@ -80,6 +69,10 @@ pub fn write(folder: &Path, template: Template, out: &mut dyn Write) -> Result<(
     write_all_whole(&written.collect::<Vec<_>>())?;
     for (file, _) in template.files() {
         writeln!(out, "{}", folder.join(file).display()).map_err(OutputError)?;
+    }
+    if template == Template::Python {
+        let package = "plant.py needs Python's package onescan_client: `pip install onescan` brings it";
+        writeln!(out, "\n{package}").map_err(OutputError)?;
     }
     Ok(writeln!(out, "\nnext: onescan run {place}").map_err(OutputError)?)
 }

@@ -8,7 +8,6 @@ use onescan_server::time::{TimeSpan, VirtualTime};
 
 use super::selection::Selection;
 use crate::check::collect::Reading;
-use onescan_runner::format::Format;
 use onescan_runner::run::coverage::CoverageRequest;
 
 /// What becomes of snapshots that are new or have changed.
@@ -21,6 +20,29 @@ pub enum Policy {
     Bless,
     /// Nothing is written; one that is missing is a failure.
     Check,
+}
+
+/// For whom the output is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TestFormat {
+    #[default]
+    Human,
+    /// Machines: a JSON object a test, and one for all.
+    Json,
+    /// People who read it in a job of GitHub.
+    Github,
+}
+
+/// What is said while tests run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Progress {
+    /// Nothing: what is said depends on the tests alone.
+    #[default]
+    None,
+    /// A bar on a terminal, and at the end how long it took.
+    Bar,
+    /// A line a test, and one now and then while none ends: CI servers stop jobs that say nothing.
+    Lines,
 }
 
 /// All options of a test run.
@@ -39,7 +61,7 @@ pub struct TestConfig {
     /// The commit with the reviewed program; found in the repository if absent.
     pub against: Option<String>,
     /// For whom the output is.
-    pub format: Format,
+    pub format: TestFormat,
     /// The cycle of test programs.
     pub scan: TimeSpan,
     /// When a test program that is not done has failed.
@@ -57,8 +79,10 @@ pub struct TestConfig {
     pub sarif: Option<PathBuf>,
     pub html: Option<PathBuf>,
     pub coverage: Option<CoverageRequest>,
-    /// True where a progress bar would be seen.
-    pub progress: bool,
+    /// Markdown for people is added to this file.
+    pub job_summary: Option<PathBuf>,
+    /// What is said on standard error meanwhile.
+    pub progress: Progress,
 }
 
 impl TestConfig {

@@ -24,6 +24,7 @@ fn case(outcome: &Outcome) -> Case {
         class: outcome.class.clone(),
         name: own.unwrap_or(&outcome.name).to_owned(),
         virtual_time_ns: outcome.virtual_time_ns,
+        wall_time: outcome.wall_time,
         place: place.map(|place| (place.file.clone(), place.line)),
         ended: match outcome.status {
             Status::Passed | Status::New | Status::Blessed => Ended::Well,

@@ -17,7 +17,8 @@
 //! | [`ran`] | what a process says of its unit |
 //! | [`outcome`] | passed, changed, failed: what came of each test |
 //! | [`summary`] | for people and as JSON |
-//! | [`junit`], [`sarif`], [`page`] | reports for others |
+//! | [`junit`], [`sarif`], [`page`], [`github`] | reports for others |
+//! | `live` | what is said while tests run |
 //! | [`coverage`] | what all tests executed together |
 //!
 //! **Invariants.** The order of tests, and all that is said of them, depends on their names alone, not on
@@ -30,8 +31,10 @@ pub mod coverage;
 mod declared;
 pub mod discover;
 mod error;
+pub mod github;
 pub mod junit;
 pub mod limited;
+mod live;
 mod memory_text;
 pub mod outcome;
 pub mod page;
@@ -53,7 +56,7 @@ use std::path::PathBuf;
 use onescan_report::OutputError;
 use onescan_report::file;
 
-pub use config::{Policy, TestConfig};
+pub use config::{Policy, Progress, TestConfig, TestFormat};
 pub use error::TestError;
 pub use selection::Selection;
 
@@ -61,7 +64,6 @@ use crate::check::collect::Reading;
 use crate::check::stubs;
 use discover::Found;
 use onescan_runner::error::ExitCode;
-use onescan_runner::format::Format;
 use outcome::Outcome;
 
 /// Refuses tests whose sources call stubs.
@@ -103,10 +105,14 @@ pub fn test(config: &TestConfig, out: &mut dyn Write) -> Result<ExitCode, TestEr
     let report = outcome::Report { outcomes, orphans, coverage, wall_time: started.elapsed() };
     write_reports(config, &report, &executed)?;
     match config.format {
-        Format::Human => summary::write_human(config, &report, out),
-        Format::Json => summary::write_json(&report, out),
+        TestFormat::Human => summary::write_human(config, &report, out),
+        TestFormat::Json => summary::write_json(&report, out),
+        TestFormat::Github => summary::write_human(config, &report, out)
+            .and_then(|()| write!(out, "{}", github::annotations(&report)))
+            .and_then(|()| out.flush()),
     }
     .map_err(OutputError)?;
+    live::end(config.progress, &report);
     Ok(report.exit_code())
 }
 
@@ -123,6 +129,9 @@ fn write_reports(
     }
     if let Some(path) = &config.sarif {
         file::write_whole(path, sarif::text(report).as_bytes())?;
+    }
+    if let Some(path) = &config.job_summary {
+        github::append(path, report)?;
     }
     if let Some(path) = &config.html {
         file::write_whole(path, page::of_tests(report, coverage).to_html().as_bytes())?;

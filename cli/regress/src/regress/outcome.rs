@@ -132,6 +132,9 @@ pub struct Outcome {
     pub place: Option<SourcePlace>,
     /// The step or cycle.
     pub step_ns: u64,
+    /// How long it took, where it was measured by itself; no part of reports that are equal for equal runs.
+    #[serde(skip)]
+    pub wall_time: Option<Duration>,
     #[serde(skip)]
     pub shown: Picture,
 }
@@ -232,6 +235,7 @@ fn outcome(suite: &str, ran: &Ran, folder: &str, status: Status) -> Outcome {
         error: ran.error.clone(),
         place: ran.place.as_ref().map(found),
         step_ns: ran.step_ns,
+        wall_time: ran.wall_ns.map(Duration::from_nanos),
         shown: Picture {
             svg: ran.picture.clone(),
             chart: ran.chart.clone(),

@@ -3,7 +3,7 @@
 use std::num::NonZeroUsize;
 use std::process::Command;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use onescan_base::threads;
@@ -11,9 +11,10 @@ use onescan_server::time::TimeSpan;
 use serde::de::DeserializeOwned;
 
 use super::Selection;
-use super::config::TestConfig;
+use super::config::{Progress, TestConfig};
 use super::error::TestError;
 use super::limited::Limited;
+use super::live::{self, Live};
 use super::plan::Unit;
 use super::ran::Worked;
 use onescan_runner::error::ExitCode;
@@ -24,8 +25,31 @@ use onescan_runner::error::SpawnError;
 /// # Errors
 /// A process cannot be started.
 pub fn work(config: &TestConfig, units: &[Unit]) -> Result<Vec<Worked>, TestError> {
-    let bar = bar(config.progress, units.len(), "tests");
-    spread(config.jobs, units.len(), &bar, |index| one(config, &units[index])).into_iter().collect()
+    let bar = bar(config.progress == Progress::Bar, units.len(), "tests");
+    let work = |live: &Live| {
+        let done = spread(config.jobs, units.len(), &bar, |index| {
+            let worked = timed(config, &units[index]);
+            live.ended(&units[index]);
+            worked
+        });
+        done.into_iter().collect()
+    };
+    live::during(config.progress, units.len(), work)
+}
+
+/// Works on a unit, and says how long that took where it is one test.
+fn timed(config: &TestConfig, unit: &Unit) -> Result<Worked, TestError> {
+    let started = Instant::now();
+    let mut worked = one(config, unit)?;
+    if let (Unit::Case(_), [ran]) = (unit, &mut worked.tests[..]) {
+        ran.wall_ns = Some(wall_ns(started));
+    }
+    Ok(worked)
+}
+
+/// The time since then, as reports hold it.
+pub(super) fn wall_ns(started: Instant) -> u64 {
+    u64::try_from(started.elapsed().as_nanos()).unwrap_or(u64::MAX)
 }
 
 /// Does `count` pieces of work, so many at a time; the results are in their order.

@@ -41,6 +41,9 @@ pub struct Ran {
     pub virtual_time_ns: u64,
     /// The step or cycle.
     pub step_ns: u64,
+    /// How long it took, where it was measured by itself.
+    #[serde(default)]
+    pub wall_ns: Option<u64>,
     pub error: Option<String>,
     /// Where in the PLC's sources.
     pub place: Option<SourcePlace>,
@@ -161,6 +164,7 @@ impl Ran {
             steps: 0,
             virtual_time_ns: 0,
             step_ns: 0,
+            wall_ns: None,
             error: None,
             place: None,
             expectations: Vec::new(),

@@ -1,11 +1,12 @@
 //! The report for people, and as JSON.
 
 use std::io::{self, Write};
+use std::time::Duration;
 
 use onescan_server::time::VirtualTime;
 use serde_json::json;
 
-use super::config::{Policy, TestConfig};
+use super::config::{Policy, TestConfig, TestFormat};
 use super::outcome::{Outcome, Report, Status};
 use super::plan::shown;
 use super::ran::{FailedAssert, Shown};
@@ -13,6 +14,9 @@ use onescan_runner::run::coverage::share;
 
 /// So many differences of one test are shown; who has more begins with these.
 const SHOWN: usize = 5;
+
+/// So many tests are named that took longest.
+const SLOWEST: usize = 5;
 
 /// Writes the report for people.
 ///
@@ -40,10 +44,41 @@ pub fn write_human(config: &TestConfig, report: &Report, out: &mut dyn Write) ->
         let noun = if pending == 1 { "snapshot waits" } else { "snapshots wait" };
         writeln!(out, "{pending} {noun} for a review: onescan review")?;
     }
-    if report.count(Status::Missing) > 0 {
-        writeln!(out, "a missing snapshot is made by `onescan test`, then `onescan review`")?;
+    if config.policy == Policy::Check {
+        next(report).iter().try_for_each(|line| writeln!(out, "{line}"))?;
+    }
+    if config.format == TestFormat::Github {
+        slowest(report).iter().try_for_each(|line| writeln!(out, "{line}"))?;
     }
     out.flush()
+}
+
+/// What to type next where snapshots are missing or differ and none was written.
+pub fn next(report: &Report) -> Vec<String> {
+    let mut lines = Vec::new();
+    if report.count(Status::Changed) > 0 {
+        let what = "a change that you meant: type `onescan test` without --check, then `onescan review`, and commit";
+        lines.push(what.to_owned());
+    }
+    if report.count(Status::Missing) > 0 {
+        lines.push("a missing snapshot is made by `onescan test`, then `onescan review`".to_owned());
+    }
+    lines
+}
+
+/// How long it all took, and the tests that took longest.
+pub fn slowest(report: &Report) -> Vec<String> {
+    let mut timed: Vec<(Duration, String)> = Vec::new();
+    for outcome in &report.outcomes {
+        timed.extend(outcome.wall_time.map(|time| (time, format!("{}/{}", outcome.suite, outcome.name))));
+    }
+    timed.sort_by(|one, other| other.cmp(one));
+    let mut lines = vec![format!("in {:.1} s", report.wall_time.as_secs_f64())];
+    if timed.len() > SLOWEST {
+        let named = timed.iter().take(SLOWEST).map(|(time, name)| format!("{name} {:.1} s", time.as_secs_f64()));
+        lines.push(format!("slowest: {}", named.collect::<Vec<_>>().join(", ")));
+    }
+    lines
 }
 
 fn write_outcome(outcome: &Outcome, width: usize, out: &mut dyn Write) -> io::Result<()> {

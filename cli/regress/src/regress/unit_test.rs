@@ -17,6 +17,7 @@ use super::config::WorkerConfig;
 use super::declared::{self, Manager, PREFIX, Test};
 use super::error::{SourcesReport, TestError};
 use super::memory_text;
+use super::pool::wall_ns;
 use super::ran::{Covered, FailedAssert, Ran, Worked, fault_place};
 use super::tcunit;
 use super::tcunit::sources::Sources;
@@ -46,7 +47,9 @@ pub fn run(config: &WorkerConfig) -> Result<Worked, TestError> {
     let mut worked = Worked::default();
     let mut coverage = Coverage::default();
     for test in tests.iter().filter(|test| config.selection.has_tags(&test.tags)) {
-        worked.tests.push(one(config, &application, test, &mut coverage)?);
+        let started = std::time::Instant::now();
+        let ran = one(config, &application, test, &mut coverage)?;
+        worked.tests.push(Ran { wall_ns: Some(wall_ns(started)), ..ran });
     }
     match tcunit::run(config, &application, &sources, &mut coverage)? {
         Some(ran) => worked.tests.extend(ran),

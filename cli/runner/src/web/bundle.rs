@@ -1,11 +1,7 @@
 //! The page itself: what `web/` makes, as a part of the program.
 
+use onescan_page::{File, files};
 use onescan_report::page::ChartScript;
-
-/// A file of the page: its name, its media type, what it is.
-pub(super) type File = (&'static str, &'static str, &'static [u8]);
-
-include!(concat!(env!("OUT_DIR"), "/page.rs"));
 
 /// The answer of a program that was built without the page.
 pub(super) const ABSENT: &str =
@@ -14,7 +10,7 @@ pub(super) const ABSENT: &str =
 /// The file of this path.
 pub(super) fn file(path: &str) -> Option<File> {
     let name = if path == "/" { "index.html" } else { path.trim_start_matches('/') };
-    PAGE.iter().copied().find(|(known, ..)| *known == name)
+    files().iter().copied().find(|(known, ..)| *known == name)
 }
 
 /// What draws the charts of reports, as the page draws trends; nothing in a program that was built without its page.
@@ -25,5 +21,5 @@ pub fn charts() -> Option<ChartScript> {
 
 /// Whether there is a page.
 pub(super) fn is_there() -> bool {
-    !PAGE.is_empty()
+    !files().is_empty()
 }

@@ -108,6 +108,7 @@ pub(super) fn junit(tables: &[Table]) -> String {
         class: None,
         name: row.case.clone(),
         virtual_time_ns: row.virtual_time_ns,
+        wall_time: None,
         place: row.failure.as_ref().and_then(|failure| failure.place.as_ref()).map(|at| (at.file.clone(), at.line)),
         ended: if table.is_accepted(row) {
             Ended::Well

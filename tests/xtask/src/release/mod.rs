@@ -3,9 +3,7 @@
 //! | module | subject |
 //! |---|---|
 //! | `check` | what must hold, read from the repository |
-//! | `artefact` | the archive of the program and its checksum |
 
-mod artefact;
 mod check;
 
 use std::ffi::OsString;
@@ -40,14 +38,10 @@ pub(crate) fn release(root: &Path, dry_run: bool, out: &mut impl Write) -> Resul
     }
     out.flush()?;
     run(Command::new("cargo").args(["deny", "--locked", "check"]).current_dir(root))?;
-    // The other tests need a Unix shell and signals; RELEASING.md asks for them on Linux first.
-    let lane: &[&str] = if cfg!(windows) { &["run", "quick"] } else { &["run"] };
-    let words: Vec<OsString> = lane.iter().map(OsString::from).collect();
-    if scripts::run(root, &words)? != 0 {
-        return Err(TaskError::Failed(format!("tests/{}", lane.join(" "))));
-    }
-    for file in artefact::build(root, &found.version)? {
-        writeln!(out, "{}", file.display())?;
+    for script in ["run", "dist"] {
+        if scripts::run(root, &[OsString::from(script)])? != 0 {
+            return Err(TaskError::Failed(format!("cargo xtask {script}")));
+        }
     }
     Ok(())
 }

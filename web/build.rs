@@ -1,11 +1,11 @@
-//! Makes the page in `web/dist`, if it was built, a part of the program. Without it the program says how to get it.
+//! Makes the page in `dist`, if it was built, a part of the program. Without it the program says how to get it.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
 fn main() {
-    let web = Path::new(&env::var_os("CARGO_MANIFEST_DIR").expect("cargo sets it")).join("../../web");
+    let web = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").expect("cargo sets it"));
     let page = web.join("dist");
     // cargo runs this at every build while what it is to watch is not there
     if let Some(watched) = [&page, &web].into_iter().find(|folder| folder.is_dir()) {

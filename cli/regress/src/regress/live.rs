@@ -1,0 +1,72 @@
+//! What is said while tests run, on standard error: what is written to standard output depends on the tests alone.
+
+use std::io::Write as _;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::time::{Duration, Instant};
+
+use super::config::Progress;
+use super::outcome::Report;
+use super::plan::Unit;
+use super::summary::slowest;
+
+/// CI servers end jobs that say nothing for minutes, and people wonder sooner.
+const SILENCE_MAX: Duration = Duration::from_secs(10);
+
+/// Where tests report that they have ended; nowhere if nobody reads it.
+pub(super) struct Live(Option<Sender<String>>);
+
+impl Live {
+    /// A unit has ended.
+    pub(super) fn ended(&self, unit: &Unit) {
+        if let Some(sender) = &self.0 {
+            let name = match unit {
+                Unit::Case(case) => format!("{}/{}", unit.suite(), case.place.case),
+                Unit::Sources(_) | Unit::Unreadable { .. } => unit.suite(),
+            };
+            // The thread that writes lives as long as this.
+            drop(sender.send(name));
+        }
+    }
+}
+
+/// Does `work` over `count` units, and says meanwhile what `progress` asks for.
+pub(super) fn during<T>(progress: Progress, count: usize, work: impl FnOnce(&Live) -> T) -> T {
+    if progress != Progress::Lines {
+        return work(&Live(None));
+    }
+    std::thread::scope(|scope| {
+        let (sender, receiver) = channel();
+        scope.spawn(move || write(&receiver, count));
+        work(&Live(Some(sender)))
+    })
+}
+
+/// A line for each name that comes in, and one if none does for long.
+fn write(receiver: &Receiver<String>, count: usize) {
+    let started = Instant::now();
+    let mut done = 0;
+    loop {
+        let said = match receiver.recv_timeout(SILENCE_MAX) {
+            Ok(name) => {
+                done += 1;
+                name
+            }
+            Err(RecvTimeoutError::Timeout) => "...".to_owned(),
+            Err(RecvTimeoutError::Disconnected) => return,
+        };
+        let seconds = started.elapsed().as_secs_f64();
+        say(&format!("{done:>4} / {count}  {seconds:>6.1} s  {said}"));
+    }
+}
+
+/// How long it took, where time is shown.
+pub(super) fn end(progress: Progress, report: &Report) {
+    if progress == Progress::Bar {
+        slowest(report).iter().for_each(|line| say(line));
+    }
+}
+
+fn say(line: &str) {
+    // Where standard error takes nothing, there is nowhere to say so.
+    drop(writeln!(std::io::stderr(), "{line}"));
+}

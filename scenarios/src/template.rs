@@ -1,0 +1,36 @@
+//! Scenarios to begin with, as texts: `{name}` stands for the name that a scenario gets.
+//!
+//! They are in this crate, because a crate is packed with the files of its own folder only.
+
+/// Name and text of a file.
+pub type File = (&'static str, &'static str);
+
+macro_rules! files {
+    ($folder:literal: $($file:literal),+) => {
+        &[ $( ($file, include_str!(concat!("../templates/", $folder, "/", $file))) ),+ ]
+    };
+}
+
+/// Bodies, a conveyor, a sensor, pneumatics.
+pub const CELL: &[File] = files!("cell": "scenario.toml", "plant.toml", "plc/main.st", "README.md");
+
+/// Process engineering, no bodies.
+pub const TANK: &[File] = files!("tank": "scenario.toml", "plant.toml", "plc/main.st", "README.md");
+
+/// A program, and no machine yet.
+pub const BLANK: &[File] = files!("blank": "scenario.toml", "plant.toml", "plc/main.st", "README.md");
+
+/// A plant in Python.
+pub const PYTHON: &[File] = files!("python": "scenario.toml", "plant.py", "plc/main.st", "README.md");
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_plant_in_python_is_the_example_of_the_package() {
+        let example = include_str!("../../clients/python/examples/tank.py");
+        let plant = PYTHON.iter().find(|(file, _)| *file == "plant.py").map(|(_, text)| *text);
+        assert_eq!(plant, Some(example), "copy clients/python/examples/tank.py over it");
+    }
+}
