@@ -61,7 +61,7 @@ def _info(path: str, epoch: int, mode: int, kind: bytes) -> tarfile.TarInfo:
     return info
 
 
-def gzipped(data: bytes, level: int = 9) -> bytes:
+def gzipped(data: bytes, level: int = 6) -> bytes:
     """Without the name and the time that gzip keeps."""
     out = io.BytesIO()
     with gzip.GzipFile("", "wb", level, out, mtime=0) as packed:

@@ -96,7 +96,7 @@ def _control(of: Product, machine: str, entries: list[Entry]) -> str:
     libraries = "" if of.needs.is_static else f"Depends: libc6 (>= 2.{of.needs.glibc}), libgcc-s1\n"
     kib = sum(-(-len(entry.data) // 1024) for entry in entries)
     return (f"Package: onescan\nVersion: {of.version}\nArchitecture: {machine}\nSection: science\nPriority: optional\n"
-            f"Maintainer: The maintainers of onescan <maintainers@localhost>\nInstalled-Size: {kib}\n{libraries}"
+            f"Maintainer: The maintainers of onescan <maintainers@onescan.invalid>\nInstalled-Size: {kib}\n{libraries}"
             f"Recommends: python3\nDescription: deterministic lockstep virtual commissioning\n"
             f" {product.project()['description']}.\n")
 

@@ -97,7 +97,7 @@ def walk(venv: Place, files: Path, servers: list[str] | None = None) -> None:
 def _run(job: Job, venv: Place, files: Path) -> None:
     folder = venv.folder / job.server.split()[0].lower()
     shutil.copytree(PROJECT, folder)
-    subprocess.run([venv.prefix / "bin/pip", "uninstall", "--quiet", "--yes", "onescan"], check=True)
+    subprocess.run([venv.prefix / "bin/pip", "uninstall", "--quiet", "--yes", "onescan"], check=True, capture_output=True)
     summary = folder / "summary.md"
     given = {**job.variables, "PIP_NO_INDEX": "1", "PIP_FIND_LINKS": str(files), "CI": "true",
              "PIP_DISABLE_PIP_VERSION_CHECK": "1", "PIP_ROOT_USER_ACTION": "ignore",
