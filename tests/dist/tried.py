@@ -166,7 +166,10 @@ def _in_root(folder: Path, base: Path, name: str, files: Path, steps: list[str],
     shutil.copytree(files, folder / "files", ignore=lambda _, names: [name for name in names if name == "crates"])
     work = folder / "work"
     work.mkdir()
-    enter = [*bare("/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin", Path("/work")), "chroot", str(folder)]
+    # With /proc, as every system and container has it; it is unmounted with the process.
+    mounted = 'mount -t proc proc "$0/proc" && exec chroot "$0" "$@"'
+    enter = [*bare("/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin", Path("/work")),
+             "unshare", "--mount", "--propagation", "private", "sh", "-c", mounted, str(folder)]
     place = Place(name, enter, work, folder / ("usr/local" if name == "archive" else "usr"))
     for step in steps:
         place.command(["sh", "-c", f"cd / && {step}"])
