@@ -30,6 +30,7 @@ mod forks;
 mod formats;
 mod freewheel;
 mod gantry_robot;
+mod github;
 mod help;
 mod instrument;
 mod large;
