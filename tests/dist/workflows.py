@@ -7,11 +7,12 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from product import ROOT
+from product import ROOT, project
 from tried import PATH, Failed, Place, bare
 
 PROJECT = Path(__file__).resolve().parent / "dosing"
 SERVERS = ["GitHub Actions", "GitLab CI", "Azure Pipelines", "Jenkins", "Any other server"]
+VERSION = re.compile(r"(?:==|@v|ref: v|ersion: \"|default: \"|onescan[-_])(\d+\.\d+\.\d+)\b")
 # What the test programs of the project are, as a report for CI servers has them.
 PASSED = 'tests="2" failures="0" errors="0"'
 
@@ -30,6 +31,10 @@ class Job:
 def jobs() -> list[Job]:
     """The job of each server, from the document and the files that it takes in."""
     text = (ROOT / "docs/ci.md").read_text(encoding="utf-8")
+    for file in ("docs/ci.md", "ci/gitlab.yml", "action.yml", "README.md"):
+        named = set(VERSION.findall((ROOT / file).read_text(encoding="utf-8")))
+        if not named <= {project()["version"]}:
+            raise Failed(f"{file} names {', '.join(sorted(named))}, and this is {project()['version']}")
     return [_job(server, _block(text, server)) for server in SERVERS]
 
 
