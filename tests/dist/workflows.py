@@ -12,7 +12,7 @@ from tried import PATH, Failed, Place, bare
 
 PROJECT = Path(__file__).resolve().parent / "dosing"
 SERVERS = ["GitHub Actions", "GitLab CI", "Azure Pipelines", "Jenkins", "Any other server"]
-VERSION = re.compile(r"(?:==|@v|ref: v|ersion: \"|default: \"|onescan[-_])(\d+\.\d+\.\d+)\b")
+VERSION = re.compile(r"(?:==|@v|ref: v|(?:ersion|ERSION): \"|default: \"|onescan[-_])(\d+\.\d+\.\d+)\b")
 # What the test programs of the project are, as a report for CI servers has them.
 PASSED = 'tests="2" failures="0" errors="0"'
 
