@@ -41,6 +41,8 @@ const TOPICS: &[Topic] = &[
             ("ONESCAN_TLS_CERT, ONESCAN_TLS_KEY", "your own certificate and its key"),
             ("ONESCAN_OPCUA_PASSWORD", "the password of a user of OPC UA"),
             ("CHROMIUM", "the browser that draws for `onescan shot`"),
+            ("CI", "CI servers set it: `onescan test` then says on standard error when each test ends"),
+            ("GITHUB_STEP_SUMMARY", "the page of a job, to which `onescan test --format github` adds a table"),
             ("NO_COLOR", "no colours on a terminal"),
         ],
     },
