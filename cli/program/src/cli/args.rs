@@ -218,8 +218,8 @@ pub fn dispatch(command: Command) -> Result<ExitCode, CommandError> {
         Command::New(args) => plant::new(args),
         Command::Model(args) => model::model(args),
         Command::Explain(args) => source::explain(&args),
-        Command::Help(args) => manual::help(&args),
-        Command::Completions(args) => manual::completions(&args),
-        Command::Man(args) => manual::man(&args),
+        Command::Help(args) => manual::help(&args, command()),
+        Command::Completions(args) => manual::completions(&args, command()),
+        Command::Man(args) => manual::man(&args, command()),
     }
 }

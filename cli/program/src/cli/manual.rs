@@ -10,7 +10,6 @@ use clap_mangen::Man;
 use onescan_report::OutputError;
 use onescan_report::file::{Write, write_all_whole};
 
-use super::args;
 use super::error::CommandError;
 use super::topics::{self, Topic};
 use onescan_runner::error::{ExitCode, Usage};
@@ -70,8 +69,7 @@ pub struct ManArgs {
 ///
 /// # Errors
 /// There is neither a command nor a topic of this name.
-pub fn help(args: &HelpArgs) -> Result<ExitCode, CommandError> {
-    let mut program = args::command();
+pub fn help(args: &HelpArgs, mut program: Command) -> Result<ExitCode, CommandError> {
     program.build();
     let Some(name) = &args.about else { return print(&program.render_long_help()) };
     if let Some(command) = program.find_subcommand_mut(name) {
@@ -89,9 +87,9 @@ pub fn help(args: &HelpArgs) -> Result<ExitCode, CommandError> {
 ///
 /// # Errors
 /// It cannot be written.
-pub fn completions(args: &CompletionsArgs) -> Result<ExitCode, CommandError> {
+pub fn completions(args: &CompletionsArgs, mut program: Command) -> Result<ExitCode, CommandError> {
     let mut text = Vec::new();
-    clap_complete::generate(Shell::from(args.shell), &mut args::command(), "onescan", &mut text);
+    clap_complete::generate(Shell::from(args.shell), &mut program, "onescan", &mut text);
     write(&text)
 }
 
@@ -99,8 +97,7 @@ pub fn completions(args: &CompletionsArgs) -> Result<ExitCode, CommandError> {
 ///
 /// # Errors
 /// A file cannot be written.
-pub fn man(args: &ManArgs) -> Result<ExitCode, CommandError> {
-    let mut program = args::command();
+pub fn man(args: &ManArgs, mut program: Command) -> Result<ExitCode, CommandError> {
     program.build();
     let commands = program.get_subcommands().filter(|command| !command.is_hide_set());
     let mut pages = Vec::new();
@@ -142,6 +139,7 @@ fn write(text: &[u8]) -> Result<ExitCode, CommandError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cli::args;
 
     #[test]
     fn completions_know_each_command_of_the_help() {
@@ -158,7 +156,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let written = |name: &str| {
             let output = folder.path().join(name);
-            man(&ManArgs { output: output.clone() }).unwrap();
+            man(&ManArgs { output: output.clone() }, args::command()).unwrap();
             let text = |file: &str| std::fs::read_to_string(output.join(file)).unwrap();
             (text("onescan.1"), text("onescan-run.1"))
         };
