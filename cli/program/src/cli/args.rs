@@ -56,14 +56,14 @@ pub struct Args {
 const PATHS: char = if cfg!(windows) { ';' } else { ':' };
 
 /// What may be typed, with its help in groups.
-pub fn command() -> clap::Command {
+pub fn program() -> clap::Command {
     Args::command().help_template(groups::template())
 }
 
 /// What was typed; ends the process where that is wrong, or only asks for help.
 pub fn parsed() -> Args {
-    let matches = command().get_matches();
-    Args::from_arg_matches(&matches).unwrap_or_else(|error| error.format(&mut command()).exit())
+    let matches = program().get_matches();
+    Args::from_arg_matches(&matches).unwrap_or_else(|error| error.format(&mut program()).exit())
 }
 
 impl Args {
@@ -218,8 +218,8 @@ pub fn dispatch(command: Command) -> Result<ExitCode, CommandError> {
         Command::New(args) => plant::new(args),
         Command::Model(args) => model::model(args),
         Command::Explain(args) => source::explain(&args),
-        Command::Help(args) => manual::help(&args, command()),
-        Command::Completions(args) => manual::completions(&args, command()),
-        Command::Man(args) => manual::man(&args, command()),
+        Command::Help(args) => manual::help(&args, program()),
+        Command::Completions(args) => manual::completions(&args, program()),
+        Command::Man(args) => manual::man(&args, program()),
     }
 }

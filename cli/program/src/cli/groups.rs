@@ -100,7 +100,7 @@ mod tests {
 
     #[test]
     fn each_command_is_in_one_group_on_one_line() {
-        let program = args::command();
+        let program = args::program();
         let commands = program.get_subcommands().filter(|command| !command.is_hide_set());
         let wanted: BTreeSet<&str> = commands.map(clap::Command::get_name).collect();
         let listed: Vec<&str> = GROUPS.iter().flat_map(|(_, commands)| *commands).map(|(name, _)| *name).collect();

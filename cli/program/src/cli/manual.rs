@@ -144,9 +144,9 @@ mod tests {
     #[test]
     fn completions_know_each_command_of_the_help() {
         let mut text = Vec::new();
-        clap_complete::generate(Shell::Bash, &mut args::command(), "onescan", &mut text);
+        clap_complete::generate(Shell::Bash, &mut args::program(), "onescan", &mut text);
         let text = String::from_utf8(text).unwrap();
-        for command in args::command().get_subcommands().filter(|command| !command.is_hide_set()) {
+        for command in args::program().get_subcommands().filter(|command| !command.is_hide_set()) {
             assert!(text.contains(&format!("onescan,{})", command.get_name())), "{}", command.get_name());
         }
     }
@@ -156,7 +156,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let written = |name: &str| {
             let output = folder.path().join(name);
-            man(&ManArgs { output: output.clone() }, args::command()).unwrap();
+            man(&ManArgs { output: output.clone() }, args::program()).unwrap();
             let text = |file: &str| std::fs::read_to_string(output.join(file)).unwrap();
             (text("onescan.1"), text("onescan-run.1"))
         };
