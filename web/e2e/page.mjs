@@ -3,6 +3,7 @@
 
 import assert from "node:assert/strict";
 import { chromium } from "playwright-core";
+import { SIZES, sees_whole } from "./sight.mjs";
 import { place, serve } from "./stand-in.mjs";
 
 const folder = process.argv[2] ?? null;
@@ -85,6 +86,40 @@ async function operate_the_desk() {
   await session.close();
 }
 
+/** The opening picture and *Whole* show the machine without its floor, at every size and as the pane changes. */
+async function frame_the_machine() {
+  const session = await serve({ more: { views: [] } });
+  for (const [width, height] of SIZES) {
+    const { page, errors } = await open(session, { viewport: { width, height } });
+    await sees_whole(page, `opened at ${width}x${height}`);
+    const floor = await page.evaluate(() => window.onescan.sight().bodies.find((one) => one.name === "floor"));
+    assert.equal(floor.isFramed, false);
+    assert.deepEqual(errors, []);
+    await page.close();
+  }
+  const { page } = await open(session, {});
+  for (const [width, height] of SIZES) {
+    await page.setViewportSize({ width, height });
+    await sees_whole(page, `turned to ${width}x${height}`);
+  }
+  await page.setViewportSize({ width: 1280, height: 720 });
+  await page.mouse.move(300, 300);
+  await page.mouse.wheel(0, -600);
+  await page.waitForTimeout(100);
+  await assert.rejects(sees_whole(page, "near"), /cut|behind/);
+  await page.getByRole("button", { name: "Whole" }).click();
+  await sees_whole(page, "Whole");
+  await shoot(page, "whole");
+  await page.close();
+  await session.close();
+  // A scenario's first view is the opening one.
+  const viewed = await serve();
+  const { page: other } = await open(viewed, {});
+  assert.equal(await other.getByRole("button", { name: "front", exact: true }).getAttribute("aria-pressed"), "true");
+  await other.close();
+  await viewed.close();
+}
+
 async function draw_many() {
   const session = await serve({ packages: 300 });
   const { page, errors } = await open(session, {});
@@ -103,6 +138,7 @@ async function draw_many() {
 
 try {
   await operate_the_desk();
+  await frame_the_machine();
   await draw_many();
   console.log("page: ok");
 } finally {

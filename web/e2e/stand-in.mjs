@@ -13,10 +13,11 @@ const SIGNALS = [
 ];
 
 /** A structure with `packages` packages on a belt of 4 m. */
-export function structure(packages) {
+export function structure(packages, more = {}) {
   const box = (name, kind, size_m, position_m, colour) =>
     ({ name, kind, shape: { kind: "box", size_m }, colour, position_m, rotation: [0, 0, 0, 1] });
   const bodies = [
+    box("floor", "fixed", [14, 9, 0.1], [0, 0, -0.05], null),
     box("belt", "kinematic", [4, 0.5, 0.08], [0, 0, 0.8], "#5c656c"),
     ...[-1.8, 1.8].flatMap((x, side) => [-0.2, 0.2].map((y, at) => box(`leg[${2 * side + at}]`, "fixed", [0.06, 0.06, 0.76], [x, y, 0.38], null))),
     { name: "eye", kind: "fixed", shape: { kind: "cylinder", radius_m: 0.04, length_m: 0.3 }, colour: "#39424a", position_m: [0.8, -0.32, 0.98], rotation: [0, 0, 0, 1] },
@@ -45,6 +46,7 @@ export function structure(packages) {
       path: "plc/belt.st", text: "PROGRAM Belt\n  IF Start THEN\n    Belt_On := TRUE;\n  END_IF;\n  IF Eye THEN Count := Count + 1; END_IF;\nEND_PROGRAM\n",
       lines: [{ line: 2, variables: ["Start"] }, { line: 3, variables: ["Belt_On"] }, { line: 5, variables: ["Eye", "Count"] }],
     }],
+    ...more,
   };
 }
 
@@ -76,9 +78,9 @@ export function picture(step, { packages, first, values, isPast, isHeld }) {
   return data;
 }
 
-/** Serves the page in `dist` and a session; `asked` holds what pages asked, `say` speaks to all of them. */
-export async function serve({ packages = 8 } = {}) {
-  const session = structure(packages);
+/** Serves the page in `dist` and a session, its structure with `more`; `asked` holds what pages asked, `say` speaks to all of them. */
+export async function serve({ packages = 8, more = {} } = {}) {
+  const session = structure(packages, more);
   const asked = [];
   const state = { step: 0, isHeld: false, seat: false, shown: null, subscribed: [], start: 0, setpoint: 0.5 };
   const http = createServer(async (request, answer) => {

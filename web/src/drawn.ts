@@ -4,6 +4,7 @@ import {
   Box3, BufferGeometry, CanvasTexture, Color, DoubleSide, DynamicDrawUsage, FrontSide, Group, InstancedMesh, Matrix4, Mesh,
   MeshLambertMaterial, Quaternion, RepeatWrapping, Vector3, type Object3D,
 } from "three";
+import { corners } from "./framing";
 import type { Style } from "./looks";
 import type { Body, Quaternion as Turn, Vec3 } from "./session";
 import { is_open } from "./shapes";
@@ -26,7 +27,8 @@ export interface Drawn {
   run(way_m: number): void;
   /** Where it is in the world, m. */
   where(): Vector3;
-  box(): Box3;
+  /** The corners of the box about it, in the world, m. */
+  corners_m(): readonly Vec3[];
 }
 
 /** A belt's stripes are this far apart. */
@@ -104,8 +106,9 @@ export class Single implements Drawn {
     return this.node.getWorldPosition(new Vector3());
   }
 
-  box(): Box3 {
-    return new Box3().setFromObject(this.mesh);
+  corners_m(): readonly Vec3[] {
+    this.mesh.updateWorldMatrix(true, false);
+    return corners_of(this.mesh.geometry, this.mesh.matrixWorld);
   }
 
   /** Stripes along the longest side of a belt. */
@@ -130,6 +133,15 @@ export class Single implements Drawn {
     this.mesh.material.needsUpdate = true;
     return texture;
   }
+}
+
+/** The corners of the box about a shape, where `matrix` puts it. */
+function corners_of(geometry: BufferGeometry, matrix: Matrix4): readonly Vec3[] {
+  const { min, max } = geometry.boundingBox ?? new Box3();
+  return corners({ low: [min.x, min.y, min.z], high: [max.x, max.y, max.z] }).map((corner) => {
+    const { x, y, z } = new Vector3(...corner).applyMatrix4(matrix);
+    return [x, y, z];
+  });
 }
 
 const BLACK = new Color("#000000");
@@ -222,9 +234,8 @@ export class Member implements Drawn {
     return this.at.clone();
   }
 
-  box(): Box3 {
-    const box = this.crowd.mesh.geometry.boundingBox ?? new Box3();
-    return box.clone().applyMatrix4(new Matrix4().compose(this.at, this.turned, ONE));
+  corners_m(): readonly Vec3[] {
+    return corners_of(this.crowd.mesh.geometry, new Matrix4().compose(this.at, this.turned, ONE));
   }
 
   private put(): void {

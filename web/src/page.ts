@@ -21,6 +21,8 @@ import { TrainingView } from "./training";
 import { TrendsView } from "./trends";
 
 const ALARMS = 50;
+/** Between the buttons over the machine and the machine, CSS pixels. */
+const BAR_PX = 4;
 const LANES_AT_FIRST = 3;
 
 export class Page {
@@ -51,7 +53,10 @@ export class Page {
     frame("title").textContent = session.title;
     document.title = `${session.title} · onescan`;
     const again = (): void => this.subscribe();
-    this.machine = new MachineView(frame("canvas"), session, (body) => this.choose(body));
+    const bar = frame("view-tools");
+    // What lies over the machine from above is no room for it.
+    const covered_px = (): number => bar.offsetTop + bar.offsetHeight + BAR_PX;
+    this.machine = new MachineView(frame("canvas"), session, (body) => this.choose(body), false, covered_px);
     this.panels = session.panels.map((panel) => ({
       name: panel.name,
       view: new PanelView(panel, session, {
@@ -92,6 +97,9 @@ export class Page {
     });
     this.fill_sheets(sheets, code);
     this.fill_tools(readout);
+    const first = session.views[0];
+    if (first === undefined) this.machine.home();
+    else this.see(first.name);
     this.paint();
     window.addEventListener("themechange", () => this.paint());
     this.expose();
@@ -164,7 +172,7 @@ export class Page {
       this.machine.cut(share === 0 ? null : front + share * (back - front));
     });
     frame("view-tools").append(
-      button("Whole", () => this.machine.home()), ...views,
+      button("Whole", () => this.see(null), "Shows the whole machine"), ...views,
       button("Show all", () => this.machine.show_all()), make("label", {}, "Section", cut),
     );
     frame("trend-tools").append(make("h2", {}, "Trends"), readout, button("Latest", () => this.trends.follow()));
@@ -283,13 +291,14 @@ export class Page {
     cell.className = `value verdict-${verdict}`;
   }
 
-  /** Sees the machine from a view of the scenario. */
-  private see(name: string): void {
+  /** Sees the machine from a view of the scenario, or the whole of it. */
+  private see(name: string | null): void {
     const view = this.session.views.find((one) => one.name === name);
-    if (view === undefined) return;
+    if (view === undefined && name !== null) return;
     this.seen = name;
     for (const [other, key] of this.views) key.setAttribute("aria-pressed", String(other === name));
-    this.machine.see(view);
+    if (view === undefined) this.machine.home();
+    else this.machine.see(view);
   }
 
   private show_link(state: LinkState): void {
@@ -322,6 +331,7 @@ export class Page {
       map: (name: string) => this.maps.read(name),
       map_pixel: (name: string, x: number, y: number) => this.maps.pixel(name, x, y),
       drawn: () => this.machine.drawn,
+      sight: () => this.machine.sight(),
       drawn_m: (name: string) => this.machine.drawn_m(this.session.bodies.findIndex((one) => one.name === name)),
       style: (name: string) => {
         const style = this.machine.style(this.session.bodies.findIndex((one) => one.name === name));

@@ -1,11 +1,12 @@
 // The machine in 3D: bodies where the session has them, at the step that is shown.
 
 import {
-  AmbientLight, Box3, BufferGeometry, Color, DirectionalLight, GridHelper, HemisphereLight, PerspectiveCamera, Plane,
+  AmbientLight, BufferGeometry, Color, DirectionalLight, GridHelper, HemisphereLight, Plane,
   Raycaster, Scene, Vector2, Vector3, WebGLRenderer, type Object3D,
 } from "three";
-import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { Crowd, Single, type Drawn, type Glow, type Member } from "./drawn";
+import { Eye, type Seen, type Sight } from "./eye";
+import { framed, together } from "./framing";
 import { Tracks } from "./interpolation";
 import { Looks, type Style } from "./looks";
 import type { Pose } from "./picture";
@@ -36,8 +37,7 @@ interface Part {
 export class MachineView {
   private readonly renderer: WebGLRenderer;
   private readonly scene = new Scene();
-  private readonly camera = new PerspectiveCamera(45, 1, 0.01, 500);
-  private readonly controls: OrbitControls;
+  private readonly eye: Eye;
   private readonly parts: (Part | null)[];
   private readonly tracks = new Tracks();
   private readonly section = new Plane(new Vector3(0, -1, 0), 0);
@@ -47,6 +47,10 @@ export class MachineView {
   private readonly sharpness = new Sharpness();
   private readonly looks: Looks;
   private readonly bodies: readonly Body[];
+  /** The bodies of components. */
+  private readonly fitted: ReadonlySet<string>;
+  /** Whether bodies are where the session has them; before, they are where the scene puts them. */
+  private hasArrived = false;
   private readonly crowds: Crowd[] = [];
   private t_ns: number | null = null;
   private isStale = true;
@@ -60,6 +64,8 @@ export class MachineView {
     session: Session,
     choose: (body: number | null) => void,
     isForPicture = false,
+    /** How much of the place something covers from above, CSS pixels. */
+    covered_px: () => number = () => 0,
   ) {
     // Smooth edges cost four samples a pixel where there is no graphics card.
     this.renderer = new WebGLRenderer({ antialias: isForPicture || session.bodies.length <= SMOOTH_BODIES, powerPreference: "low-power" });
@@ -67,20 +73,21 @@ export class MachineView {
     this.renderer.domElement.setAttribute("role", "img");
     this.renderer.domElement.tabIndex = 0;
     place.append(this.renderer.domElement);
-    this.camera.up.set(0, 0, 1);
-    this.controls = new OrbitControls(this.camera, this.renderer.domElement);
-    this.controls.listenToKeyEvents(this.renderer.domElement);
-    this.controls.addEventListener("change", () => (this.isStale = true));
+    this.eye = new Eye(this.renderer.domElement, covered_px, () => this.seen(), () => (this.isStale = true));
     this.light();
     this.looks = new Looks(session);
     this.bodies = session.bodies;
+    this.fitted = new Set(session.components.flatMap(({ body }) => (body === null ? [] : [body])));
     this.parts = this.parts_of(session.bodies);
     this.advance(0);
     this.t_ns = null;
     this.floor();
-    this.home();
     this.listen(choose);
-    new ResizeObserver(() => this.fit()).observe(place);
+    new ResizeObserver(() => {
+      this.fit();
+      // Otherwise the pane is empty until the next picture.
+      if (!isForPicture) this.draw();
+    }).observe(place);
     this.fit();
     if (!isForPicture) this.renderer.setAnimationLoop(() => this.draw());
   }
@@ -91,6 +98,11 @@ export class MachineView {
     const now_ms = performance.now();
     for (const pose of poses) this.tracks.arrive(pose, now_ms);
     this.moving_until_ms = now_ms + 600;
+    if (this.hasArrived) return;
+    this.hasArrived = true;
+    this.settle(now_ms);
+    this.floor();
+    if (this.eye.isWhole) this.eye.whole();
   }
 
   /** Forgets where bodies were: the next picture is of another time. */
@@ -185,36 +197,29 @@ export class MachineView {
 
   /** How far the machine reaches along y, in metres. */
   depth_m(): readonly [number, number] {
-    const { low, high } = this.reach();
-    return [low.y, high.y];
+    const { low, high } = this.eye.reach();
+    return [low[1], high[1]];
   }
 
   see(view: View): void {
-    this.camera.position.set(...view.position_m);
-    this.controls.target.set(...view.target_m);
-    this.controls.update();
-    this.isStale = true;
+    this.eye.see(view);
   }
 
-  /** Sees the whole machine from the front, to the right and above. */
+  /** Sees the whole machine. */
   home(): void {
-    const { low, high } = this.reach();
-    const middle = low.clone().add(high).multiplyScalar(0.5);
-    const size_m = Math.max(0.5, high.distanceTo(low));
-    const away = new Vector3(0.55, -0.95, 0.65).normalize().multiplyScalar(size_m * 0.9);
-    this.controls.target.copy(middle);
-    this.camera.position.copy(middle).add(away);
-    this.controls.update();
-    this.isStale = true;
+    this.eye.whole();
+  }
+
+  /** Where bodies are in the pane, for tests. */
+  sight(): Sight {
+    return this.eye.sight();
   }
 
   /** The machine as it is now, a PNG. */
   async picture(width: number, height: number): Promise<Blob> {
     this.renderer.setPixelRatio(1);
     this.renderer.setSize(width, height);
-    this.camera.aspect = width / height;
-    this.camera.updateProjectionMatrix();
-    this.isStale = true;
+    this.eye.fit(width, height);
     this.draw();
     // What is drawn is kept until the task is over.
     return new Promise((done, failed) => {
@@ -229,20 +234,18 @@ export class MachineView {
     this.isStale = true;
   }
 
-  /** The room of the machine: without floors and halls, which are larger than all that moves. */
-  private reach(): { low: Vector3; high: Vector3 } {
-    const boxes = this.parts
-      .filter((part) => part !== null)
-      .map((part) => ({ box: part.drawn.box(), moves: this.moves(part.body) }))
-      .filter(({ box }) => !box.isEmpty() && [...box.min.toArray(), ...box.max.toArray()].every(Number.isFinite));
-    const room = (of: readonly { box: Box3 }[]): Box3 => of.reduce((all, { box }) => all.union(box), new Box3());
-    const moving = room(boxes.filter(({ moves }) => moves));
-    const size_m = (box: Box3): number => box.getSize(new Vector3()).length();
-    const machine = moving.isEmpty()
-      ? room(boxes)
-      : room(boxes.filter(({ box, moves }) => moves || size_m(box) <= size_m(moving)));
-    if (machine.isEmpty()) return { low: new Vector3(-1, -1, 0), high: new Vector3(1, 1, 1) };
-    return { low: machine.min, high: machine.max };
+  /** What is seen of the machine, and what of it is framed. */
+  private seen(): readonly Seen[] {
+    const all = this.parts.flatMap((part, index) => {
+      if (part === null || !this.isVisible(part, index)) return [];
+      const points = part.drawn.corners_m();
+      const room = together(points.map((point) => ({ low: point, high: point })));
+      if (room === null || ![...room.low, ...room.high].every(Number.isFinite)) return [];
+      const works = this.moves(part.body) || this.fitted.has(part.body.name);
+      return [{ name: part.body.name, room, points, works }];
+    });
+    const machine = new Set(framed(all.map(({ room, works }) => ({ ...room, works }))));
+    return all.map((one, index) => ({ ...one, isFramed: machine.has(index) }));
   }
 
   private moves(body: Body): boolean {
@@ -260,18 +263,24 @@ export class MachineView {
   }
 
   private floor(): void {
-    const { low, high } = this.reach();
-    const metres = Math.min(200, Math.max(4, Math.ceil(2 * Math.max(high.x - low.x, high.y - low.y))));
+    const { low, high } = this.eye.reach();
+    const metres = Math.min(200, Math.max(4, Math.ceil(2 * Math.max(high[0] - low[0], high[1] - low[1]))));
     const cells = metres <= 20 ? metres * 2 : Math.ceil(metres / (metres <= 60 ? 2 : 5));
     const grid = new GridHelper(metres, cells, "#888888", "#888888");
     grid.name = "grid";
     // The helper's floor is x z; the session's is x y.
     grid.rotation.x = Math.PI / 2;
-    grid.position.set((low.x + high.x) / 2, (low.y + high.y) / 2, Math.min(0, low.z));
+    grid.position.set((low[0] + high[0]) / 2, (low[1] + high[1]) / 2, Math.min(0, low[2]));
     if (!Array.isArray(grid.material)) {
       grid.material.vertexColors = false;
       grid.material.transparent = true;
       grid.material.opacity = 0.6;
+    }
+    const before = this.scene.getObjectByName("grid");
+    if (before instanceof GridHelper && !Array.isArray(before.material) && !Array.isArray(grid.material)) {
+      grid.material.color.copy(before.material.color);
+      before.removeFromParent();
+      before.dispose();
     }
     this.scene.add(grid);
   }
@@ -340,7 +349,7 @@ export class MachineView {
     const box = this.renderer.domElement.getBoundingClientRect();
     const at = new Vector2(((event.clientX - box.left) / box.width) * 2 - 1, 1 - ((event.clientY - box.top) / box.height) * 2);
     const ray = new Raycaster();
-    ray.setFromCamera(at, this.camera);
+    ray.setFromCamera(at, this.eye.camera);
     const hit = ray.intersectObjects(this.scene.children, true).find((one) => one.object.visible && one.object.name !== "grid");
     if (hit === undefined) return null;
     const body = this.parts.findIndex((part) => part?.drawn.is(hit.object, hit.instanceId ?? -1) ?? false);
@@ -352,8 +361,7 @@ export class MachineView {
     if (width === 0 || height === 0) return;
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2) * this.sharpness.share);
     this.renderer.setSize(width, height);
-    this.camera.aspect = width / height;
-    this.camera.updateProjectionMatrix();
+    this.eye.fit(width, height);
     this.isStale = true;
   }
 
@@ -380,6 +388,20 @@ export class MachineView {
   private draw(): void {
     const now_ms = performance.now();
     if (!this.isStale && now_ms > this.moving_until_ms) return;
+    this.settle(now_ms);
+    for (const crowd of this.crowds) crowd.settle();
+    this.stay_with_followed();
+    this.isStale = false;
+    this.renderer.render(this.scene, this.eye.camera);
+    this.drawn += 1;
+    if (now_ms <= this.moving_until_ms && this.sharpness.drawn(now_ms)) this.fit();
+    // Another size empties the picture.
+    if (this.isStale) this.renderer.render(this.scene, this.eye.camera);
+    this.isStale = false;
+  }
+
+  /** Puts bodies where they are at `now_ms`. */
+  private settle(now_ms: number): void {
     for (const body of this.tracks.bodies()) {
       const part = this.parts[body];
       const place = this.tracks.drawn(body, now_ms);
@@ -387,20 +409,10 @@ export class MachineView {
       part.drawn.show(this.isVisible(part, body));
       if (place !== null) part.drawn.place(place.position_m, place.rotation);
     }
-    for (const crowd of this.crowds) crowd.settle();
-    this.stay_with_followed();
-    this.isStale = false;
-    this.renderer.render(this.scene, this.camera);
-    this.drawn += 1;
-    if (now_ms <= this.moving_until_ms && this.sharpness.drawn(now_ms)) this.fit();
   }
 
   private stay_with_followed(): void {
     const part = this.followed === null ? null : this.parts[this.followed];
-    if (!part) return;
-    const way = part.drawn.where().sub(this.controls.target);
-    this.controls.target.add(way);
-    this.camera.position.add(way);
-    this.camera.lookAt(this.controls.target);
+    if (part) this.eye.follow(part.drawn.where());
   }
 }
