@@ -32,15 +32,20 @@ async function operate_the_desk() {
   const session = await serve();
   const { page, errors } = await open(session, { colorScheme: "light" });
   const start = page.getByRole("button", { name: "Start", exact: true });
-  assert.ok(await start.isDisabled(), "without the seat nothing is written");
-  await page.getByRole("button", { name: "Take seat" }).click();
-  await page.getByRole("button", { name: "Leave seat" }).waitFor();
+  // The first press takes the free seat, and is not lost however short it is.
+  assert.match(await start.getAttribute("title"), /first press takes it/);
   await start.focus();
+  await page.keyboard.press("Space", { delay: 0 });
+  await page.getByRole("button", { name: "Leave seat" }).waitFor();
+  await page.waitForFunction(() => window.onescan.value("Start") === 0);
+  await until(() => writes(session).length === 2);
+  assert.deepEqual(writes(session), [1, 0]);
+  assert.equal(await start.getAttribute("title"), "");
   await page.keyboard.down("Space");
   await page.waitForFunction(() => window.onescan.value("Start") === 1);
   await page.keyboard.up("Space");
   await page.waitForFunction(() => window.onescan.value("Start") === 0);
-  assert.deepEqual(session.asked.filter((ask) => ask.type === "write").map((ask) => ask.value), [1, 0]);
+  assert.deepEqual(writes(session), [1, 0, 1, 0]);
   await shoot(page, "light-1280x720");
 
   // Positions that the page has are those of the step that it shows.
@@ -55,8 +60,15 @@ async function operate_the_desk() {
   const timeline = page.getByRole("slider", { name: "Time that is shown" });
   await timeline.fill("3");
   await page.waitForFunction(() => window.onescan.picture().isPast && window.onescan.picture().step === 3);
-  await page.getByRole("button", { name: "Live" }).click();
+  // The past looks like it: a banner with its time, and keys that say why they are at rest.
+  await page.getByText("You see the past: 0.030 s").waitFor();
+  assert.ok(await start.isDisabled());
+  assert.match(await start.getAttribute("title"), /past/);
+  await page.getByText("This is the past").waitFor();
+  await shoot(page, "past");
+  await page.getByRole("button", { name: "Back to now" }).click();
   await page.waitForFunction(() => !window.onescan.picture().isPast);
+  assert.ok(await page.locator("#past").isHidden());
 
   // Garbage is reported, and the page goes on; so it does after a loss.
   session.say("{");
@@ -120,6 +132,108 @@ async function frame_the_machine() {
   await viewed.close();
 }
 
+const writes = (session) => session.asked.filter((ask) => ask.type === "write").map((ask) => ask.value);
+
+async function until(holds) {
+  for (let turn = 0; !holds(); turn += 1) {
+    assert.ok(turn < 200, `not so: ${holds}`);
+    await new Promise((done) => setTimeout(done, 25));
+  }
+}
+
+/** Trends begin with what the scenario plots, and with what was before the page; without signals they say what to do. */
+async function follow_the_plot() {
+  const session = await serve({ more: { plot: [3, 4, 1] } });
+  session.state.step = 3000;
+  const { page, errors } = await open(session, {});
+  assert.deepEqual(await page.evaluate(() => window.onescan.trends()), ["Speed", "Count", "Belt_On"]);
+  // The value of the moment before 12 s that was asked for: one of 240.
+  const before = 0.5 + 0.05 * Math.sin(1200 / 30);
+  await page.waitForFunction((value) => Math.abs(window.onescan.trend("Speed", 12) - value) < 0.025, before);
+  assert.ok(await page.evaluate(() => window.onescan.picture().step >= 3000 && !window.onescan.picture().isPast), "the page itself stays at the live edge");
+  // Three lanes are seen at once.
+  const seen = await page.evaluate(() => {
+    const room = document.getElementById("lanes").getBoundingClientRect();
+    return [...document.querySelectorAll(".lane:not(.times)")].filter((lane) => lane.getBoundingClientRect().bottom <= room.bottom + 1).length;
+  });
+  assert.equal(seen, 3);
+  await shoot(page, "trends");
+  for (const name of ["Speed", "Count", "Belt_On"]) await page.getByRole("button", { name: `Remove ${name}` }).click();
+  await page.getByText("No signal is shown here").waitFor();
+  await page.getByRole("button", { name: "Choose signals" }).click();
+  await page.getByRole("button", { name: "Trend of Eye" }).click();
+  assert.deepEqual(await page.evaluate(() => window.onescan.trends()), ["Eye"]);
+  assert.deepEqual(errors, []);
+  await page.close();
+  await session.close();
+}
+
+/** A signal is forced in the page's own dialogue while the page goes on; all forces are in one list. */
+async function force() {
+  const session = await serve();
+  const { page, errors } = await open(session, {});
+  await page.getByRole("tab", { name: "Signals" }).click();
+  await page.getByRole("button", { name: "Force Eye", exact: true }).click();
+  const before = session.state.step;
+  await page.waitForFunction((step) => window.onescan.picture().step > step, before);
+  await page.getByRole("dialog").getByRole("button", { name: "TRUE" }).click();
+  await page.getByRole("button", { name: "1 forced" }).waitFor();
+  await page.getByRole("button", { name: "Force Count", exact: true }).click();
+  await page.getByLabel("Value of Count").fill("1.5");
+  await page.getByRole("dialog").getByRole("button", { name: "Force", exact: true }).click();
+  await page.getByText("Enter a whole number").waitFor();
+  await shoot(page, "force");
+  await page.getByLabel("Value of Count").fill("77");
+  await page.keyboard.press("Enter");
+  await page.waitForFunction(() => window.onescan.value("Count") === 77);
+  await page.getByRole("button", { name: "2 forced" }).click();
+  await page.getByRole("dialog").getByRole("cell", { name: "77", exact: true }).waitFor();
+  await shoot(page, "forces");
+  await page.getByRole("button", { name: "Release all" }).click();
+  await page.getByRole("button", { name: /forced$/ }).waitFor({ state: "hidden" });
+  assert.equal(session.state.forced.size, 0);
+  assert.deepEqual(errors, []);
+  await page.close();
+  await session.close();
+}
+
+/** A scene without bodies is drawn as its components. */
+async function draw_components() {
+  const part = (name, kind, signals, parameters) => ({ name, kind, body: null, signals, senses: null, parameters, failures: [] });
+  const more = {
+    bodies: [], views: [], looks: [], plcs: [{ client: "plc", variables: [] }],
+    components: [part("slide", "command_axis", ["Position", "Eye"], [{ name: "lower", value: "0", unit: "m" }, { name: "upper", value: "2", unit: "m" }])],
+  };
+  const session = await serve({ more });
+  session.session.signals[3].name = "Position";
+  const { page, errors } = await open(session, {});
+  const axis = page.getByRole("meter", { name: "slide, m/s" });
+  await page.waitForFunction(() => Number(document.querySelector(".way").getAttribute("aria-valuenow")) > 0.4);
+  assert.deepEqual([await axis.getAttribute("aria-valuemin"), await axis.getAttribute("aria-valuemax")], ["0", "2"]);
+  await shoot(page, "components");
+  assert.deepEqual(errors, []);
+  await page.close();
+  await session.close();
+}
+
+/** The theme is that of the system, also when it changes, until the viewer chooses another. */
+async function follow_the_system() {
+  const session = await serve();
+  const { page } = await open(session, { colorScheme: "light" });
+  const is = (theme) => page.waitForFunction((wanted) => document.documentElement.dataset.theme === wanted, theme);
+  await is("light");
+  await page.emulateMedia({ colorScheme: "dark" });
+  await is("dark");
+  await page.getByRole("button", { name: "Dark or light" }).click();
+  await is("light");
+  await page.emulateMedia({ colorScheme: "light" });
+  await page.emulateMedia({ colorScheme: "dark" });
+  await page.waitForTimeout(100);
+  assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), "light", "what the viewer chose stays");
+  await page.close();
+  await session.close();
+}
+
 async function draw_many() {
   const session = await serve({ packages: 300 });
   const { page, errors } = await open(session, {});
@@ -139,6 +253,10 @@ async function draw_many() {
 try {
   await operate_the_desk();
   await frame_the_machine();
+  await follow_the_plot();
+  await force();
+  await draw_components();
+  await follow_the_system();
   await draw_many();
   console.log("page: ok");
 } finally {

@@ -75,9 +75,9 @@ async function operate_the_filling_machine() {
     await panel(name).getByRole("button", { name: "Take seat" }).click();
     await panel(name).getByRole("button", { name: "Leave seat" }).waitFor();
   }
-  await page.getByRole("tab", { name: "Signals" }).click();
-  for (const name of ["Packages_In", "Packages_Dropped", "SW_ANGLE"]) await page.getByRole("button", { name: `Trend of ${name}`, exact: true }).click();
-  await page.getByRole("tab", { name: "Panels" }).click();
+  // The trends begin with what the scenario plots.
+  const trends = await page.evaluate(() => window.onescan.trends());
+  for (const name of ["Packages_In", "Packages_Dropped", "SW_ANGLE"]) assert.ok(trends.includes(name), `${name} is not among ${trends}`);
   await panel("monitor").getByRole("switch", { name: /^Skip set-up/ }).click();
   const key = panel("main menu").getByRole("button", { name: "Start", exact: true });
   await key.focus();
@@ -156,13 +156,14 @@ async function look_back_at_the_shear() {
   await page.getByRole("button", { name: "Live" }).click();
   await page.waitForFunction((step) => !window.onescan.picture().isPast && window.onescan.picture().step > step, 500);
   // Forced and released from the table, marked as long as it is forced.
-  page.on("dialog", (dialog) => dialog.accept(dialog.message().includes("is forced") ? "" : "TRUE"));
   const force = page.getByRole("button", { name: "Force Sensor_1", exact: true });
   const cell = page.getByRole("row").filter({ has: force }).locator("td.value");
   await force.click();
+  await page.getByRole("dialog").getByRole("button", { name: "TRUE", exact: true }).click();
   await cell.filter({ hasText: "TRUE (forced)" }).waitFor();
   await page.waitForFunction(() => window.onescan.value("Sensor_1") === 1);
   await force.click();
+  await page.getByRole("dialog").getByRole("button", { name: "Release", exact: true }).click();
   await cell.filter({ hasNotText: "forced" }).waitFor();
   assert.deepEqual(errors, []);
   await stop(session.url);

@@ -82,7 +82,9 @@ export function picture(step, { packages, first, values, isPast, isHeld }) {
 export async function serve({ packages = 8, more = {} } = {}) {
   const session = structure(packages, more);
   const asked = [];
-  const state = { step: 0, isHeld: false, seat: false, shown: null, subscribed: [], start: 0, setpoint: 0.5 };
+  const state = { step: 0, isHeld: false, seat: false, start: 0, setpoint: 0.5, forced: new Map() };
+  // What each viewer looks at.
+  const viewers = new Map();
   const http = createServer(async (request, answer) => {
     const name = request.url === "/" ? "index.html" : request.url.slice(1);
     if (name === "api/session") return answer.setHeader("content-type", "application/json").end(JSON.stringify(session));
@@ -92,27 +94,29 @@ export async function serve({ packages = 8, more = {} } = {}) {
   });
   const sockets = new WebSocketServer({ server: http, path: "/api/live" });
   const say = (what) => sockets.clients.forEach((one) => one.send(what));
-  const status = () => say(JSON.stringify({
+  const status = () => viewers.forEach(({ shown }, socket) => socket.send(JSON.stringify({
     type: "status", state: state.isHeld ? "hold" : "run", digest: null, pace: "1", seat: { desk: state.seat ? "mine" : "free" },
-    shown_ns: state.shown === null ? null : state.shown * STEP_NS, past_ns: [0, state.step * STEP_NS],
-  }));
-  const show = () => {
-    const step = state.shown ?? state.step;
+    shown_ns: shown === null ? null : shown * STEP_NS, past_ns: [0, state.step * STEP_NS], forced: [...state.forced.keys()],
+  })));
+  const show = ({ shown, subscribed }, socket) => {
+    const step = shown ?? state.step;
     const eye = Number(Array.from({ length: packages }, (_, index) => place(index, step, packages)[0]).some((x) => Math.abs(x - 0.8) < 0.1));
     const all = [state.start, 1, eye, 0.5 + 0.05 * Math.sin(step / 30), Math.floor(step / 76), state.setpoint];
-    const values = state.subscribed.map((signal) => [signal, all[signal]]);
-    say(picture(step, { packages, first: session.bodies.length - packages, values, isPast: state.shown !== null, isHeld: state.isHeld }));
+    const values = subscribed.map((signal) => [signal, state.forced.get(signal) ?? all[signal]]);
+    const many = session.bodies.length === 0 ? 0 : packages;
+    socket.send(picture(step, { packages: many, first: session.bodies.length - many, values, isPast: shown !== null, isHeld: state.isHeld }));
   };
   const handle = {
-    subscribe: (ask) => (state.subscribed = ask.signals),
+    subscribe: (ask, viewer) => (viewer.subscribed = ask.signals),
     seat: (ask) => (state.seat = ask.take),
     write: (ask) => (ask.signal === 0 ? (state.start = ask.value) : (state.setpoint = ask.value)),
     operate: (ask) => {
       state.isHeld = ask.operation !== "go";
       if (ask.operation === "step") state.step += 1;
     },
-    show: (ask) => (state.shown = Math.round(ask.t_ns / STEP_NS)),
-    live: () => (state.shown = null),
+    show: (ask, viewer) => (viewer.shown = Math.round(ask.t_ns / STEP_NS)),
+    live: (_, viewer) => (viewer.shown = null),
+    force: (ask) => (ask.value === null ? state.forced.delete(ask.signal) : state.forced.set(ask.signal, ask.value === "TRUE" ? 1 : Number(ask.value))),
     watch: () => {},
     fail: () => {},
     fork: (ask) => say(JSON.stringify({ type: "forked", t_ns: ask.t_ns, url: "http://127.0.0.1:9/" })),
@@ -121,16 +125,19 @@ export async function serve({ packages = 8, more = {} } = {}) {
     socket.on("message", (data) => {
       const ask = JSON.parse(String(data));
       asked.push(ask);
-      handle[ask.type](ask);
+      handle[ask.type](ask, viewer);
       status();
-      show();
+      show(viewer, socket);
     });
+    const viewer = { shown: null, subscribed: [] };
+    viewers.set(socket, viewer);
+    socket.on("close", () => viewers.delete(socket));
     status();
-    show();
+    show(viewer, socket);
   });
   const ticker = setInterval(() => {
     if (!state.isHeld) state.step += 2;
-    show();
+    viewers.forEach(show);
   }, 20);
   await new Promise((ready) => http.listen(0, "127.0.0.1", ready));
   const close = async () => {

@@ -1,5 +1,7 @@
 // Elements of the page.
 
+import { breakable } from "./format";
+
 type Attributes = Readonly<Record<string, string | boolean>>;
 
 /** An element with attributes and what is in it; `true` sets an attribute without a value, `false` leaves it out. */
@@ -15,6 +17,11 @@ export function make<K extends keyof HTMLElementTagNameMap>(
   }
   element.append(...inside);
   return element;
+}
+
+/** A name that is broken between its parts only. */
+export function broken(name: string): readonly (Node | string)[] {
+  return breakable(name).flatMap((part, at) => (at === 0 ? [part] : [document.createElement("wbr"), part]));
 }
 
 /** The element of the page's frame with this id. */

@@ -30,6 +30,16 @@ export class History {
     this.value.push(value);
   }
 
+  /** Adds a value of an earlier moment, beside what is known: nothing is dropped. */
+  insert(t_s: number, value: number): void {
+    const place = this.after(t_s, false);
+    if (this.t_s[place] === t_s) this.value[place] = value;
+    else if (this.t_s.length < this.capacity) {
+      this.t_s.splice(place, 0, t_s);
+      this.value.splice(place, 0, value);
+    }
+  }
+
   /** The value that holds at `t_s`; nothing before the first. */
   at(t_s: number): number | null {
     return this.value[this.after(t_s, true) - 1] ?? null;

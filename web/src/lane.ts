@@ -26,6 +26,8 @@ export interface Lane {
   readonly group: string;
   readonly hooks: uPlot.Hooks.Arrays;
   readonly height_px: number;
+  /** Without times below it, for a lane above others. */
+  readonly isBare?: boolean;
   /** How values are written at the axis; numbers if absent. */
   readonly values?: (value: number) => string;
 }
@@ -45,7 +47,7 @@ export function lane_options(lane: Lane): uPlot.Options {
     cursor: { sync: { key: lane.group }, drag: { x: true, y: false, setScale: false }, y: false },
     scales: { x: { time: false }, y: lane.isBool ? { range: [-0.1, 1.1] } : {} },
     axes: [
-      { ...axis, size: 22, space: 60 },
+      { ...axis, space: 60, ...(lane.isBare === true ? { size: 2, values: (_, all) => all.map(() => "") } : { size: 22 }) },
       { ...axis, size: 48, space: 22, ...(lane.isBool ? { splits: [0, 1] } : {}), ...(write === undefined ? {} : { values: (_, all) => all.map(write) }) },
     ],
     series: [{}, ...series],
@@ -54,12 +56,13 @@ export function lane_options(lane: Lane): uPlot.Options {
 }
 
 /** A line from bottom to top at a time. */
-export function upright(plot: uPlot, t_s: number, stroke: string, dash: number[]): void {
+export function upright(plot: uPlot, t_s: number, stroke: string, dash: number[], width = 1): void {
   const { ctx, bbox } = plot;
   const x = plot.valToPos(t_s, "x", true);
   if (x < bbox.left || x > bbox.left + bbox.width) return;
   ctx.save();
   ctx.strokeStyle = stroke;
+  ctx.lineWidth = width * devicePixelRatio;
   ctx.setLineDash(dash);
   ctx.beginPath();
   ctx.moveTo(x, bbox.top);

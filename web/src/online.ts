@@ -1,6 +1,7 @@
 // The PLC online: a tree of its variables, a list of those that are watched, and what is written and forced.
 
-import { button, make } from "./dom";
+import { broken, button, make } from "./dom";
+import type { Forced, Target } from "./forces";
 import type { Ask, Variables } from "./message";
 import type { Session } from "./session";
 
@@ -45,6 +46,7 @@ export class OnlineView {
     session: Session,
     private readonly ask: (ask: Ask) => void,
     private readonly changed: () => void,
+    private readonly enter: (target: Target) => void,
   ) {
     this.variables = session.plcs.flatMap((plc) => plc.variables);
     if (this.variables.length === 0) return;
@@ -77,6 +79,14 @@ export class OnlineView {
     }
     this.executed = executed;
     for (const [number, cell] of this.cells) this.fill(number, cell);
+  }
+
+  /** What is forced of the variables. */
+  forces(): readonly Forced[] {
+    return [...this.forced].map((variable) => ({
+      name: this.variables[variable]?.path ?? "", value: this.values.get(variable) ?? "–",
+      release: () => this.ask({ type: "variable", variable, action: "release", value: "" }),
+    }));
   }
 
   /** A variable as it stands beside a line. */
@@ -120,29 +130,31 @@ export class OnlineView {
     this.watched.push(number);
     const path = this.variables[number]?.path ?? "";
     const value = make("td", { class: "value" });
-    const entry = make("input", { type: "text", size: "8", "aria-label": `New value of ${path}` });
-    const row = make("tr", {}, make("td", { class: "name" }, path), value);
+    const row = make("tr", {}, make("td", { class: "name" }, ...broken(path)), value);
     const away = button("×", () => {
       this.watched.splice(this.watched.indexOf(number), 1);
       this.cells.delete(number);
       row.remove();
       this.changed();
     }, `Watch ${path} no more`);
-    row.append(make("td", {}, entry,
-      button("Write", () => this.operate(number, "write", entry.value), `Write ${path} once`),
-      button("Force", () => this.operate(number, "force", entry.value), `Force ${path}`),
-      button("Release", () => this.operate(number, "release", ""), `Release ${path}`), away));
+    row.append(make("td", { class: "deeds" }, button("Write or force", () => this.operate(number), `Write or force ${path}`), away));
     this.list.append(row);
     this.cells.set(number, value);
     this.fill(number, value);
     this.changed();
   }
 
-  /** Writes or forces, once whoever wants it has said so twice: the machine moves by it. */
-  private operate(variable: number, action: "write" | "force" | "release", value: string): void {
-    const path = this.variables[variable]?.path ?? "";
-    const question = action === "release" ? `Release ${path}?` : `${action === "write" ? "Write" : "Force"} ${path} to ${value}?`;
-    if (window.confirm(question)) this.ask({ type: "variable", variable, action, value });
+  /** Asks for a value that is written or forced: the machine moves by it. */
+  private operate(variable: number): void {
+    const about = this.variables[variable];
+    if (about === undefined) return;
+    const deed = (action: "write" | "force" | "release") => (value = ""): void => this.ask({ type: "variable", variable, action, value });
+    this.enter({
+      name: about.path, type: about.type, unit: null, names: new Map(),
+      value: () => this.values.get(variable) ?? "–",
+      isForced: this.forced.has(variable),
+      force: deed("force"), write: deed("write"), release: deed("release"),
+    });
   }
 
   private fill(number: number, cell: HTMLElement): void {

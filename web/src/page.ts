@@ -1,8 +1,10 @@
 // All views of one session, fed from one connection.
 
 import { button, frame, make } from "./dom";
+import { Backfill } from "./backfill";
 import { Drawings } from "./drawings";
-import { seconds } from "./format";
+import { ForceDialog, Forces, type Forced } from "./forces";
+import { seconds, shown } from "./format";
 import { Link, live_address, type LinkState } from "./link";
 import { Maps } from "./maps";
 import { OnlineView } from "./online";
@@ -12,6 +14,7 @@ import type { Ask, Message } from "./message";
 import type { Picture } from "./picture";
 import type { Session } from "./session";
 import { MachineView } from "./scene";
+import { Schematic } from "./schematic";
 import { Sheets } from "./sheets";
 import { SignalTable } from "./signals";
 import { SourceView } from "./source";
@@ -37,6 +40,12 @@ export class Page {
   private readonly maps: Maps;
   private readonly online: OnlineView;
   private readonly trends: TrendsView;
+  private readonly backfill: Backfill;
+  private readonly dialog = new ForceDialog();
+  private readonly forces: Forces;
+  private forced: ReadonlySet<number> = new Set();
+  /** What is drawn where there are no bodies. */
+  private readonly schematic: Schematic | null;
   private readonly timeline: Timeline;
   private readonly link: Link | null = null;
   private readonly sensors: readonly { signal: number; body: number }[];
@@ -57,6 +66,10 @@ export class Page {
     // What lies over the machine from above is no room for it.
     const covered_px = (): number => bar.offsetTop + bar.offsetHeight + BAR_PX;
     this.machine = new MachineView(frame("canvas"), session, (body) => this.choose(body), false, covered_px);
+    this.schematic = session.bodies.some((body) => body.shape.kind !== "none") ? null : new Schematic(session);
+    if (this.schematic !== null) frame("canvas").replaceWith(this.schematic.root);
+    this.forces = new Forces(this.mayForce);
+    frame("controls").after(this.forces.key);
     this.panels = session.panels.map((panel) => ({
       name: panel.name,
       view: new PanelView(panel, session, {
@@ -70,10 +83,11 @@ export class Page {
     }));
     this.part = new PartSheet(session, this.values, this.machine, (ask) => this.ask(ask), again);
     const readout = make("span", { id: "readout", role: "status" });
-    this.trends = new TrendsView(frame("lanes"), readout, session, again);
-    this.table = new SignalTable(session, this.values, { trend: (signal) => this.trends.toggle(signal), changed: again, force: (signal, value) => this.ask({ type: "force", signal, value }) });
+    this.backfill = new Backfill(live_address(), session, (signal, t_ns, value) => this.trends.insert(signal, t_ns, value));
+    this.trends = new TrendsView(frame("lanes"), readout, session, { changed: again, choose: () => this.choose_signals() });
+    this.table = new SignalTable(session, this.values, { trend: (signal) => this.trends.toggle(signal), changed: again, force: (signal) => this.force(signal) });
     const code = make("div", { class: "code" });
-    this.online = new OnlineView(session, (ask) => this.ask(ask), again);
+    this.online = new OnlineView(session, (ask) => this.ask(ask), again, (target) => this.dialog.ask(target));
     this.source = new SourceView(code, session, this.values, this.online);
     // Values of a drawing are asked for where there is a connection.
     this.drawings = new Drawings(session, (ask) => void this.link?.ask(ask));
@@ -114,7 +128,9 @@ export class Page {
     if (this.session.maps.length > 0) sheets.add("Maps", this.maps.root);
     sheets.add("Checks", this.checks());
     this.tabs = sheets;
-    const shown = this.panels.flatMap((one) => one.view.signals()).slice(0, LANES_AT_FIRST);
+    // What the scenario plots is what its author looks at.
+    const { plot } = this.session;
+    const shown = plot.length > 0 ? plot : this.panels.flatMap((one) => one.view.signals()).slice(0, LANES_AT_FIRST);
     for (const signal of shown) this.trends.toggle(signal);
   }
 
@@ -154,6 +170,9 @@ export class Page {
   }
 
   private fill_tools(readout: HTMLElement): void {
+    frame("past").append(
+      make("span", {}, "You see the past: ", make("b", { id: "past-time" })),
+      button("Back to now", () => this.ask({ type: "live" }), "Shows the live edge again"));
     const operate = (operation: "hold" | "go" | "step", label: string): HTMLButtonElement =>
       button(label, () => this.ask({ type: "operate", operation }));
     const is_ours = this.session.training?.role !== "trainee";
@@ -171,6 +190,8 @@ export class Page {
       const share = Number(cut.value);
       this.machine.cut(share === 0 ? null : front + share * (back - front));
     });
+    // A schematic has no camera.
+    frame("view-tools").hidden = this.schematic !== null;
     frame("view-tools").append(
       button("Whole", () => this.see(null), "Shows the whole machine"), ...views,
       button("Show all", () => this.machine.show_all()), make("label", {}, "Section", cut),
@@ -196,17 +217,62 @@ export class Page {
       ...this.panels.flatMap((one) => one.view.signals()),
       ...this.sensors.map((one) => one.signal),
       ...this.machine.signals(),
+      ...(this.schematic?.signals() ?? []),
+      ...this.forced,
       ...this.trends.signals(),
       ...(this.sheet === "Part" ? this.part.signals() : []),
       ...(this.sheet === "Signals" ? this.table.signals() : []),
       ...(this.sheet === "PLC" ? this.source.signals() : []),
     ]);
     this.link.subscribe([...wanted].sort((a, b) => a - b));
+    if (this.last !== null) this.backfill.want(this.trends.signals());
     this.link.map(this.sheet === "Maps" ? this.maps.wanted() : []);
     this.link.watch(this.sheet === "PLC" ? this.online.wanted(this.source.variables()) : []);
   }
 
+  /** Whether this viewer may force: a recording cannot be changed, and in a lesson it is the trainer's. */
+  private get mayForce(): boolean {
+    return this.session.live && this.session.training?.role !== "trainee";
+  }
+
+  /** Asks for the value of a signal that is to be forced. */
+  private force(signal: number): void {
+    const about = this.session.signals[signal];
+    if (about === undefined) return;
+    const { name, type, unit, names } = about;
+    this.dialog.ask({
+      name, type, unit, names,
+      value: () => shown(about, this.values.get(signal)),
+      isForced: this.forced.has(signal),
+      force: (value) => this.ask({ type: "force", signal, value }),
+      release: () => this.ask({ type: "force", signal, value: null }),
+    });
+  }
+
+  private note_forced(forced: ReadonlySet<number>): void {
+    const isOther = [...forced].some((signal) => !this.forced.has(signal));
+    this.forced = forced;
+    // The list shows values, too.
+    if (isOther) this.subscribe();
+    this.list_forces();
+  }
+
+  private list_forces(): void {
+    const signals = [...this.forced].flatMap((signal): Forced[] => {
+      const about = this.session.signals[signal];
+      if (about === undefined) return [];
+      return [{ name: about.name, value: shown(about, this.values.get(signal)), release: () => this.ask({ type: "force", signal, value: null }) }];
+    });
+    this.forces.show([...signals, ...this.online.forces()]);
+  }
+
+  private choose_signals(): void {
+    this.tabs?.open("Signals");
+    this.table.focus();
+  }
+
   private show(picture: Picture): void {
+    const isFirst = this.last === null;
     if (picture.isPast !== this.wasPast || (this.last !== null && picture.t_ns < this.last.t_ns)) this.machine.jump();
     this.wasPast = picture.isPast;
     this.last = picture;
@@ -216,9 +282,11 @@ export class Page {
       this.values.set(signal, value);
       for (const one of this.panels) one.view.show(signal, value);
       this.machine.value(signal, value);
+      this.schematic?.show(signal, value);
       this.table.show(signal);
       this.part.show(signal);
-      if (!picture.isPast || !this.session.live) this.trends.push(signal, picture.t_ns, value);
+      if (!this.session.live) this.trends.insert(signal, picture.t_ns, value);
+      else if (!picture.isPast) this.trends.push(signal, picture.t_ns, value);
     }
     this.machine.advance(picture.t_ns);
     this.machine.arrive(picture.poses);
@@ -228,7 +296,19 @@ export class Page {
     }
     for (const one of this.panels) one.view.at(picture.t_ns);
     if (!picture.isPast || !this.session.live) this.trends.at(picture.t_ns);
+    this.show_past(picture);
     this.timeline.at(picture);
+    if (isFirst) this.backfill.want(this.trends.signals());
+  }
+
+  /** The past looks like the past: a recording is nothing else, and says so itself. */
+  private show_past(picture: Picture): void {
+    const isPast = picture.isPast && this.session.live;
+    this.trends.see_past(picture.isPast ? picture.t_ns : null);
+    document.body.classList.toggle("past", isPast);
+    frame("past").hidden = !isPast;
+    if (isPast) frame("past-time").textContent = seconds(picture.t_ns);
+    for (const one of this.panels) one.view.rest(isPast);
   }
 
   private handle(message: Message): void {
@@ -238,10 +318,12 @@ export class Page {
         frame("pace").textContent = message.pace;
         for (const one of this.panels) {
           one.view.sit(message.seat.get(one.name) ?? "taken");
+          one.view.hold(message.state === "hold");
           one.view.show_failed(message.failed, message.disturbed);
           one.view.show_forced(message.forced);
         }
         this.table.show_forced(message.forced);
+        this.note_forced(message.forced);
         return this.timeline.reach(message.past_ns, message.shown_ns);
       case "event":
         this.ring(message.t_ns, message.kind, message.text);
@@ -258,6 +340,7 @@ export class Page {
         return this.maps.lay(message.map, message);
       case "variables":
         this.online.show(message);
+        this.list_forces();
         return this.source.show();
       case "forked":
         return this.timeline.forked(message.t_ns, message.url);
@@ -328,6 +411,8 @@ export class Page {
       picture: () => ({ step: this.last?.step ?? null, t_ns: this.last?.t_ns ?? null, isPast: this.last?.isPast ?? false, isHeld: this.last?.isHeld ?? false }),
       position_m: (name: string) => this.machine.position_m(this.session.bodies.findIndex((one) => one.name === name)),
       value: (name: string) => this.values.get(this.session.signals.findIndex((one) => one.name === name)) ?? null,
+      trends: () => this.trends.signals().map((signal) => this.session.signals[signal]?.name ?? ""),
+      trend: (name: string, t_s: number) => this.trends.known(this.session.signals.findIndex((one) => one.name === name), t_s),
       map: (name: string) => this.maps.read(name),
       map_pixel: (name: string, x: number, y: number) => this.maps.pixel(name, x, y),
       drawn: () => this.machine.drawn,

@@ -1,6 +1,7 @@
 // The panels of the machine: what an operator presses and reads.
 
-import { button, make } from "./dom";
+import { broken, button, make } from "./dom";
+import { Press } from "./press";
 import { shown } from "./format";
 import type { SeatState } from "./message";
 import type { Panel, PanelElement, Session } from "./session";
@@ -40,6 +41,11 @@ export class PanelView {
   private readonly failures = new Map<string, Show[]>();
   private readonly disturbances = new Map<number, Show[]>();
   private readonly inputs: (HTMLButtonElement | HTMLInputElement | HTMLSelectElement)[] = [];
+  /** What is done as soon as this viewer sits here. */
+  private waiting: (() => void)[] = [];
+  private isPast = false;
+  private isHeld = false;
+  private readonly why = make("p", { class: "why" });
   private readonly lines: Sparkline[] = [];
   private readonly lists: (() => void)[] = [];
   private readonly seat_text = make("span", { class: "seat-text", role: "status" });
@@ -60,7 +66,9 @@ export class PanelView {
       grid.style.backgroundImage = `url(${JSON.stringify(panel.picture)})`;
     }
     const head = make("div", { class: "panel-head" }, make("h3", {}, panel.name), this.seat_text, this.seat_button);
-    this.root = make("section", { class: "panel", "aria-label": `Panel ${panel.name}` }, head, grid);
+    this.why.id = `why-${panel.name.replace(/\W/g, "-")}`;
+    this.root = make("section", { class: "panel", "aria-label": `Panel ${panel.name}` }, head, this.why, grid);
+    for (const input of this.inputs) input.setAttribute("aria-describedby", this.why.id);
     this.turn(panel);
     this.sit("free");
   }
@@ -104,15 +112,53 @@ export class PanelView {
     for (const line of this.lines) line.at(t_ns / 1e9);
   }
 
-  /** Who sits here: inputs work for the one who does. */
+  /** Whether time stands: what is pressed has not arrived yet. */
+  hold(isHeld: boolean): void {
+    this.isHeld = isHeld;
+  }
+
+  /** Whether the past is shown: then nothing is operated. */
+  rest(isPast: boolean): void {
+    if (this.isPast === isPast) return;
+    this.isPast = isPast;
+    this.say_why();
+  }
+
+  /** Who sits here: inputs work for the one who does, and the first press takes a seat that is free. */
   sit(seat: SeatState): void {
     this.seat = seat;
+    const waiting = this.waiting;
+    if (seat !== "free") this.waiting = [];
+    if (seat === "mine") for (const one of waiting) one();
     const words: Record<SeatState, string> = { free: "free", mine: "you sit here", taken: "taken by another viewer" };
     this.seat_text.textContent = `${this.panel.seat}: ${words[seat]}`;
     this.seat_button.textContent = seat === "mine" ? "Leave seat" : "Take seat";
     this.seat_button.disabled = seat === "taken";
-    for (const input of this.inputs) input.disabled = seat !== "mine";
     this.root?.classList.toggle("mine", seat === "mine");
+    this.say_why();
+  }
+
+  /** Says why nothing can be pressed, or what a press does first. */
+  private say_why(): void {
+    const why = why_not(this.panel.seat, this.seat, this.isPast);
+    const isDead = this.isPast || this.seat === "taken";
+    this.why.textContent = this.inputs.length === 0 ? "" : why;
+    this.why.hidden = this.why.textContent === "";
+    this.root.classList.toggle("resting", this.isPast);
+    for (const input of this.inputs) {
+      input.disabled = isDead;
+      input.title = why;
+    }
+  }
+
+  /** Does it from the seat, which is taken if it is free. */
+  private seated(deed: () => void): void {
+    if (this.isPast) return;
+    if (this.seat === "mine") deed();
+    else if (this.seat === "free") {
+      this.waiting.push(deed);
+      this.actions.take(this.panel.name, true);
+    }
   }
 
   private place(element: PanelElement): HTMLElement {
@@ -175,7 +221,7 @@ export class PanelView {
   }
 
   private write(signal: number | null, value: number): void {
-    if (signal !== null && this.seat === "mine") this.actions.write(signal, value);
+    if (signal !== null) this.seated(() => this.actions.write(signal, value));
   }
 
   /** Shows the signal, the failure or the disturbance of an element; what it gives writes it. */
@@ -183,9 +229,7 @@ export class PanelView {
     const { disturbance } = element;
     if (disturbance !== null) {
       this.listen(this.disturbances, disturbance, show);
-      return (value) => {
-        if (this.seat === "mine") this.actions.disturb(disturbance, value !== 0);
-      };
+      return (value) => this.seated(() => this.actions.disturb(disturbance, value !== 0));
     }
     if (element.failure === null) {
       const signal = this.bound(element.signal, show);
@@ -193,19 +237,19 @@ export class PanelView {
     }
     const [component, mode] = element.failure;
     this.listen(this.failures, `${component}.${mode}`, show);
-    return (value) => {
-      if (this.seat === "mine") this.actions.fail(component, mode, value !== 0);
-    };
+    return (value) => this.seated(() => this.actions.fail(component, mode, value !== 0));
   }
 
   private fill_button(cell: HTMLElement, element: PanelElement): void {
-    const key = make("button", { type: "button", class: "push", "aria-pressed": "false" }, element.label);
-    const write = this.wire(element, (value) => key.setAttribute("aria-pressed", String(value !== 0)));
-    let isDown = false;
+    const key = make("button", { type: "button", class: "push", "aria-pressed": "false" }, ...broken(element.label));
+    let say = (_value: number): void => {};
+    const held = new Press((value) => say(value), (deed, ms) => void window.setTimeout(deed, ms), () => this.isHeld);
+    say = this.wire(element, (value) => {
+      key.setAttribute("aria-pressed", String(value !== 0));
+      held.seen(value !== 0);
+    });
     const press = (down: boolean): void => {
-      if (down === isDown || key.disabled) return;
-      isDown = down;
-      write(down ? 1 : 0);
+      if (!key.disabled || !down) held.press(down);
     };
     key.addEventListener("pointerdown", (event) => {
       key.setPointerCapture(event.pointerId);
@@ -225,7 +269,7 @@ export class PanelView {
   }
 
   private fill_switch(cell: HTMLElement, element: PanelElement): void {
-    const key = make("button", { type: "button", class: "toggle", role: "switch", "aria-checked": "false" }, element.label);
+    const key = make("button", { type: "button", class: "toggle", role: "switch", "aria-checked": "false" }, ...broken(element.label));
     const write = this.wire(element, (value) => key.setAttribute("aria-checked", String(value !== 0)));
     key.addEventListener("click", () => write(key.getAttribute("aria-checked") === "true" ? 0 : 1));
     this.inputs.push(key);
@@ -269,7 +313,7 @@ export class PanelView {
       bulb.classList.toggle("on", value !== 0);
       state.textContent = value !== 0 ? "on" : "off";
     });
-    cell.append(bulb, make("span", { class: "lamp-label" }, element.label), state);
+    cell.append(bulb, make("span", { class: "lamp-label" }, ...broken(element.label)), state);
   }
 
   private fill_number(cell: HTMLElement, element: PanelElement): void {
@@ -330,4 +374,11 @@ export class PanelView {
     const signal = this.session.signals.find((one) => one.name === name);
     return signal === undefined ? "no such signal" : shown(signal, value);
   }
+}
+
+/** Why nothing can be pressed at a panel, or what the first press does; nothing where all is well. */
+export function why_not(seat: string, state: SeatState, isPast: boolean): string {
+  if (isPast) return "This is the past: go back to now to operate the machine.";
+  if (state === "taken") return `Another viewer has the seat ${seat}: you can operate when it is free.`;
+  return state === "free" ? `Nobody has the seat ${seat}: the first press takes it.` : "";
 }

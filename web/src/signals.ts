@@ -1,7 +1,7 @@
 // A table of signals with their values, any of which can be put on a trend.
 
-import { button, make } from "./dom";
-import { shown } from "./format";
+import { broken, button, make } from "./dom";
+import { exact, shown } from "./format";
 import type { Session } from "./session";
 
 /** Rows shown at once; a filter finds the others. */
@@ -12,12 +12,13 @@ export interface SignalDeeds {
   readonly trend: (signal: number) => void;
   /** Other signals are in the table now. */
   readonly changed: () => void;
-  /** Holds a signal at a value, or releases it. */
-  readonly force: (signal: number, value: string | null) => void;
+  /** Asks for a value at which a signal is held. */
+  readonly force: (signal: number) => void;
 }
 
 export class SignalTable {
   readonly root: HTMLElement;
+  private readonly input: HTMLInputElement;
   private readonly body = make("tbody");
   private readonly cells = new Map<number, HTMLElement>();
   private filter = "";
@@ -35,6 +36,7 @@ export class SignalTable {
       this.does.changed();
     });
     const head = make("thead", {}, make("tr", {}, ...["Signal", "Writer", "Value", ""].map((one) => make("th", { scope: "col" }, one))));
+    this.input = input;
     this.root = make("div", {}, input, make("table", {}, head, this.body));
     this.fill();
   }
@@ -44,12 +46,18 @@ export class SignalTable {
     return [...this.cells.keys()];
   }
 
+  /** Lets the viewer type what is looked for. */
+  focus(): void {
+    this.input.focus();
+  }
+
   show(signal: number): void {
     const cell = this.cells.get(signal);
     const about = this.session.signals[signal];
     if (cell === undefined || about === undefined) return;
     const isForced = this.forced.has(signal);
     cell.textContent = `${shown(about, this.values.get(signal))}${isForced ? " (forced)" : ""}`;
+    cell.title = exact(about, this.values.get(signal));
     cell.classList.toggle("forced", isForced);
   }
 
@@ -73,31 +81,14 @@ export class SignalTable {
     const cell = make("td", { class: "value" });
     this.cells.set(signal, cell);
     const name = about?.name ?? "";
-    const key = button("＋", () => this.does.trend(signal), `Trend of ${name}`);
+    const key = button("+", () => this.does.trend(signal), `Trend of ${name}`);
     key.setAttribute("aria-label", `Trend of ${name}`);
     const keys = make("td", { class: "deeds" }, key);
     if (this.session.live && this.session.training?.role !== "trainee") {
-      const force = button("Force", () => this.force(signal, name), `Force ${name}, or release it`);
+      const force = button("Force", () => this.does.force(signal), `Force ${name}, or release it`);
       force.setAttribute("aria-label", `Force ${name}`);
       keys.append(force);
     }
-    return make("tr", {}, make("td", { class: "name", title: about?.about ?? "" }, name), make("td", {}, about?.writer ?? ""), cell, keys);
-  }
-
-  /** The value as it is typed. */
-  private typed(signal: number): string {
-    const value = this.values.get(signal);
-    if (value === undefined) return "";
-    return this.session.signals[signal]?.type === "BOOL" ? (value === 0 ? "FALSE" : "TRUE") : String(value);
-  }
-
-  /** Asks for a value first: the machine moves by it. */
-  private force(signal: number, name: string): void {
-    const isForced = this.forced.has(signal);
-    const question = isForced ? `${name} is forced. Another value, or nothing to release it:` : `Force ${name} to:`;
-    const value = window.prompt(question, isForced ? "" : this.typed(signal));
-    if (value === null) return;
-    if (value.trim() !== "") this.does.force(signal, value.trim());
-    else if (isForced) this.does.force(signal, null);
+    return make("tr", {}, make("td", { class: "name", title: about?.about ?? "" }, ...broken(name)), make("td", {}, about?.writer ?? ""), cell, keys);
   }
 }

@@ -1,14 +1,17 @@
-// Trends: signals over virtual time, two cursors and their difference, events and verdicts.
+// Trends: signals over virtual time, two cursors and their difference, events and verdicts, the moment that is shown.
 
 import uPlot from "uplot";
-import { button, make } from "./dom";
-import { shown } from "./format";
+import { broken, button, make } from "./dom";
+import { form_for, form_of, in_form, is_whole, shown } from "./format";
 import { History } from "./history";
 import { curve, lane_options, style, upright } from "./lane";
 import type { Session, Signal } from "./session";
 
 const WINDOW_S = 20;
-const LANE_PX = 62;
+/** Lanes share the pane, and get no lower and no higher than this. */
+const LANE_PX = [42, 110] as const;
+/** The times below all lanes. */
+const TIMES_PX = 24;
 
 interface Lane {
   readonly signal: number;
@@ -22,21 +25,38 @@ export interface Mark {
   readonly text: string;
 }
 
+export interface TrendDeeds {
+  /** Other signals are shown now. */
+  readonly changed: () => void;
+  /** Lets the viewer choose signals. */
+  readonly choose: () => void;
+}
+
 export class TrendsView {
   private readonly lanes: Lane[] = [];
   private readonly histories = new Map<number, History>();
+  private readonly empty: HTMLElement;
+  private readonly times: { readonly root: HTMLElement; readonly plot: uPlot };
   private range_s: readonly [number, number] | null = null;
   private cursors_s: readonly number[] = [];
   private marks: Mark[] = [];
   private now_s = 0;
+  /** The moment of the past that is shown; nothing at the live edge. */
+  private past_s: number | null = null;
   private isStale = true;
 
   constructor(
     private readonly place: HTMLElement,
     private readonly readout: HTMLElement,
     private readonly session: Session,
-    private readonly changed: () => void,
+    private readonly does: TrendDeeds,
   ) {
+    this.empty = make("p", { class: "empty" }, "No signal is shown here. Choose signals, and press + beside those that you want to follow. ", button("Choose signals", does.choose));
+    const chart = make("div", { class: "lane-chart" });
+    const options = lane_options({ isBool: true, isBare: false, holds: true, isFilled: false, strokes: ["transparent"], group: "trends", height_px: TIMES_PX, values: () => "", hooks: {} });
+    this.times = { root: make("div", { class: "lane times" }, make("div"), chart), plot: new uPlot(options, [[], []], chart) };
+    place.append(this.empty, this.times.root);
+    this.times.root.hidden = true;
     new ResizeObserver(() => this.fit()).observe(place);
     const tick = (): void => {
       if (this.isStale) this.draw();
@@ -50,13 +70,29 @@ export class TrendsView {
   }
 
   push(signal: number, t_ns: number, value: number): void {
-    let history = this.histories.get(signal);
-    if (history === undefined) this.histories.set(signal, (history = new History()));
-    history.push(t_ns / 1e9, value);
+    this.history(signal).push(t_ns / 1e9, value);
   }
 
+  /** Adds a value of the past. */
+  insert(signal: number, t_ns: number, value: number): void {
+    this.history(signal).insert(t_ns / 1e9, value);
+    this.isStale = true;
+  }
+
+  /** What is known of a signal at a time, for tests. */
+  known(signal: number, t_s: number): number | null {
+    return this.histories.get(signal)?.at(t_s) ?? null;
+  }
+
+  /** The live edge is at this time. */
   at(t_ns: number): void {
-    this.now_s = t_ns / 1e9;
+    this.now_s = Math.max(this.past_s === null ? 0 : this.now_s, t_ns / 1e9);
+    this.isStale = true;
+  }
+
+  /** A moment of the past is shown, or the live edge. */
+  see_past(t_ns: number | null): void {
+    this.past_s = t_ns === null ? null : t_ns / 1e9;
     this.isStale = true;
   }
 
@@ -73,13 +109,15 @@ export class TrendsView {
       lane.plot.destroy();
       lane.root.remove();
     } else this.add(signal);
-    this.changed();
-    this.isStale = true;
+    this.empty.hidden = this.lanes.length > 0;
+    this.times.root.hidden = this.lanes.length === 0;
+    this.fit();
+    this.does.changed();
   }
 
   /** Draws all again in the colours of the theme. */
   repaint(): void {
-    for (const lane of this.lanes) lane.plot.redraw(false, true);
+    for (const { plot } of [...this.lanes, this.times]) plot.redraw(false, true);
   }
 
   /** Shows the last seconds again. */
@@ -89,16 +127,26 @@ export class TrendsView {
     this.isStale = true;
   }
 
+  private history(signal: number): History {
+    let history = this.histories.get(signal);
+    if (history === undefined) this.histories.set(signal, (history = new History()));
+    return history;
+  }
+
   private add(signal: number): void {
     const about = this.session.signals[signal];
     if (about === undefined) return;
     const reading = make("output", {}, "–");
     const away = button("×", () => this.toggle(signal), `Remove ${about.name}`);
-    const head = make("div", { class: "lane-head" }, make("span", { title: about.about }, about.name), reading, away);
+    away.setAttribute("aria-label", `Remove ${about.name}`);
+    const number = this.lanes.length;
+    const name = make("span", { class: "lane-name", title: about.about === "" ? about.name : `${about.name}: ${about.about}` }, ...broken(about.name));
+    const head = make("div", { class: "lane-head" }, name, reading, away);
+    head.style.borderLeftColor = curve(number);
     const chart = make("div", { class: "lane-chart" });
     const root = make("div", { class: "lane" }, head, chart);
-    this.place.append(root);
-    const plot = new uPlot(this.options(about, this.lanes.length), [[], []], chart);
+    this.times.root.before(root);
+    const plot = new uPlot(this.options(about, number), [[], []], chart);
     plot.over.addEventListener("click", (event) => {
       const t_s = plot.posToVal(event.offsetX, "x");
       this.cursors_s = this.cursors_s.length >= 2 ? [t_s] : [...this.cursors_s, t_s];
@@ -109,14 +157,19 @@ export class TrendsView {
       this.zoom(plot.posToVal(event.offsetX, "x"), event.deltaY > 0 ? 1.25 : 0.8);
     });
     this.lanes.push({ signal, root, reading, plot });
-    this.fit();
   }
 
   private options(about: Signal, lane: number): uPlot.Options {
     const isBool = about.type === "BOOL";
+    const write = (value: number): string => {
+      if (about.names.size > 0) return about.names.get(value) ?? "";
+      // An axis has the prefix of what is read beside it, and as many places as its marks need.
+      const form = form_of(about, 0);
+      return form.by === 1 ? String(Number(value.toPrecision(4))) : String(Number((value / form.by).toPrecision(4)));
+    };
     return lane_options({
-      isBool, holds: true, isFilled: isBool || about.names.size > 0, strokes: [curve(lane)], group: "trends", height_px: LANE_PX,
-      hooks: { setSelect: [(plot) => this.select(plot)], draw: [(plot) => this.draw_marks(plot)] },
+      isBool, isBare: true, holds: true, isFilled: isBool || about.names.size > 0, strokes: [curve(lane)], group: "trends", height_px: LANE_PX[0],
+      hooks: { setSelect: [(plot) => this.select(plot)], draw: [(plot) => this.draw_marks(plot)] }, ...(isBool ? {} : { values: write }),
     });
   }
 
@@ -137,16 +190,24 @@ export class TrendsView {
   }
 
   private shown_s(): readonly [number, number] {
-    return this.range_s ?? [Math.max(0, this.now_s - WINDOW_S), Math.max(WINDOW_S, this.now_s)];
+    return this.range_s ?? span_s(this.now_s, this.past_s);
   }
 
   private draw_marks(plot: uPlot): void {
     for (const mark of this.marks) upright(plot, mark.t_ns / 1e9, style("--warn"), [2, 3]);
     for (const cursor of this.cursors_s) upright(plot, cursor, style("--text"), []);
+    if (this.past_s !== null) upright(plot, this.past_s, style("--past"), [], 3);
   }
 
   private fit(): void {
-    for (const lane of this.lanes) lane.plot.setSize({ width: Math.max(120, lane.root.clientWidth - 4), height: LANE_PX });
+    const room = (this.place.clientHeight - TIMES_PX - 4) / Math.max(1, this.lanes.length);
+    const height = Math.floor(Math.min(LANE_PX[1], Math.max(LANE_PX[0], room)));
+    for (const { plot, root } of this.lanes) {
+      root.style.height = `${height}px`;
+      plot.setSize({ width: Math.max(120, plot.root.parentElement?.clientWidth ?? 0), height });
+    }
+    const [first] = this.lanes;
+    if (first !== undefined) this.times.plot.setSize({ width: first.plot.width, height: TIMES_PX });
     this.isStale = true;
   }
 
@@ -164,16 +225,21 @@ export class TrendsView {
         part.t_s.push(until_s);
         part.value.push(held);
       }
+      const at_s = this.cursors_s[this.cursors_s.length - 1] ?? this.past_s ?? this.now_s;
+      lane.reading.textContent = this.reading(about, history, at_s);
       lane.plot.batch(() => {
         lane.plot.setData([part.t_s, part.value], about.type !== "BOOL");
         lane.plot.setScale("x", { min: from, max: to });
       });
-      const at_s = this.cursors_s[this.cursors_s.length - 1] ?? this.now_s;
-      lane.reading.textContent = this.reading(about, history, at_s);
     }
+    this.times.plot.batch(() => {
+      this.times.plot.setData([[from, to], [0, 0]], false);
+      this.times.plot.setScale("x", { min: from, max: to });
+    });
     const [one, two] = this.cursors_s;
+    const past = this.past_s === null ? "" : `past ${this.past_s.toFixed(3)} s`;
     this.readout.textContent =
-      one === undefined ? "" : two === undefined ? `cursor ${one.toFixed(3)} s` : `${one.toFixed(3)} s to ${two.toFixed(3)} s: Δ ${(two - one).toFixed(3)} s`;
+      one === undefined ? past : two === undefined ? `cursor ${one.toFixed(3)} s` : `${one.toFixed(3)} s to ${two.toFixed(3)} s: Δ ${(two - one).toFixed(3)} s`;
   }
 
   private reading(about: Signal, history: History | undefined, at_s: number): string {
@@ -182,6 +248,14 @@ export class TrendsView {
     if (one === undefined || two === undefined || about.type === "BOOL" || history === undefined) return shown(about, value);
     const from = history.at(one);
     const to = history.at(two);
-    return from === null || to === null ? shown(about, value) : `${shown(about, to)} (Δ ${Number((to - from).toPrecision(5))})`;
+    if (from === null || to === null) return shown(about, value);
+    const way = to - from;
+    return `${shown(about, to)} (Δ ${in_form(way, form_for(about.unit, is_whole(about.type), way))})`;
   }
+}
+
+/** The part of time that trends show: the last seconds, or what is about the moment of the past. */
+export function span_s(now_s: number, past_s: number | null): readonly [number, number] {
+  const end_s = past_s === null || past_s > now_s - WINDOW_S ? now_s : Math.min(now_s, past_s + WINDOW_S / 2);
+  return [Math.max(0, end_s - WINDOW_S), Math.max(WINDOW_S, end_s)];
 }

@@ -12,6 +12,15 @@ test("a spike of one sample survives decimation", () => {
   for (let index = 1; index < t_s.length; index += 1) assert.ok((t_s[index] as number) >= (t_s[index - 1] as number));
 });
 
+test("a past that comes later stands before what is known", () => {
+  const history = new History();
+  history.push(5, 50);
+  history.push(6, 60);
+  for (const [t_s, value] of [[1, 10], [2, 20], [5, 51], [5.5, 55]] as const) history.insert(t_s, value);
+  assert.deepEqual([0.5, 1, 2.5, 5, 5.7, 6].map((t_s) => history.at(t_s)), [null, 10, 20, 51, 55, 60]);
+  assert.equal(history.length, 5);
+});
+
 test("a value holds until the next and before the part that is shown", () => {
   const history = new History();
   history.push(1, 5);

@@ -2,6 +2,8 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
 
+import { chosen } from "../src/theme";
+
 const css = readFileSync("src/page.css", "utf8");
 
 /** The colours of a theme; what the dark one does not set is that of the light one. */
@@ -27,7 +29,7 @@ function contrast(one: string, other: string): number {
 const light = colours(":root");
 const themes = { light, dark: new Map([...light, ...colours(':root[data-theme="dark"]')]) };
 /** What stands on what: text (WCAG 2.2, 1.4.3 AA: 4.5), and marks that carry meaning (1.4.11: 3). */
-const TEXT = ["text", "text-2", "accent", "warn", "bad", "good"];
+const TEXT = ["text", "text-2", "accent", "warn", "bad", "good", "past"];
 const GROUNDS = ["ground", "sheet", "raised"];
 
 test("the contrast of black on white is known", () => {
@@ -45,6 +47,7 @@ for (const [name, theme] of Object.entries(themes)) {
       }
     }
     assert.ok(contrast(of("on-accent"), of("accent")) >= 4.5, "text on what is chosen");
+    assert.ok(contrast(of("on-past"), of("past")) >= 4.5, "the banner of the past");
     assert.ok(contrast(of("sheet"), of("good")) >= 4.5, "the name of a step that is active");
   });
   test(`lamps are distinguished in the ${name} theme`, () => {
@@ -52,3 +55,8 @@ for (const [name, theme] of Object.entries(themes)) {
     assert.ok(contrast(of("text-2"), of("raised")) >= 3, "the rim of a lamp");
   });
 }
+
+test("a theme that is the system's follows the system again", () => {
+  assert.deepEqual(chosen("light", "light"), { theme: "dark", kept: "dark" });
+  assert.deepEqual(chosen("dark", "light"), { theme: "light", kept: null });
+});

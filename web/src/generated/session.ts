@@ -563,6 +563,8 @@ export interface Session {
   readonly maps: readonly MapInfo[];
   readonly panels: readonly Panel[];
   readonly plcs: readonly Plc[];
+  /** The signals of `[plot]`: the trends that the page begins with. */
+  readonly plot: readonly number[];
   readonly sources: readonly Source[];
   readonly training: Lesson | null;
   readonly until_ns: number | null;
@@ -585,6 +587,7 @@ export function readSession(field: Field): Session {
     maps: list(readMapInfo)(field.at("maps", [])),
     panels: list(readPanel)(field.at("panels", [])),
     plcs: list(readPlc)(field.at("plcs", [])),
+    plot: list(whole)(field.at("plot", [])),
     sources: list(readSource)(field.at("sources", [])),
     training: nullable(readLesson)(field.at("training")),
     until_ns: nullable(whole)(field.at("until_ns")),

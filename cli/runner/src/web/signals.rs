@@ -29,6 +29,13 @@ pub(super) fn of(scenario: &Scenario) -> Vec<Signal> {
     scenario.plan().signals().iter().map(|declared| signal(declared, scenario)).collect()
 }
 
+/// The signals that the scenario plots, by their places, from top to bottom.
+pub(super) fn plotted(scenario: &Scenario) -> Vec<usize> {
+    let declared = scenario.plan().signals();
+    let place = |name| declared.iter().position(|signal| signal.name == *name);
+    scenario.file().plot.signals.iter().filter_map(|name| place(name.get_ref())).collect()
+}
+
 /// A signal as the scenario declares it.
 pub(super) fn written(scenario: &Scenario, declared: &SignalDecl) -> Option<SignalFile> {
     scenario.file().signals.get(&declared.name).map(|signal| signal.get_ref().clone())

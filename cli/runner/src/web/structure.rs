@@ -56,6 +56,9 @@ pub(super) struct Structure {
     plcs: Vec<online::Plc>,
     #[schemars(default)]
     maps: Vec<Map>,
+    /// The signals of `[plot]`: the trends that the page begins with.
+    #[schemars(default)]
+    plot: Vec<usize>,
 }
 
 /// The lesson that a session is, on the page of one of its two people.
@@ -153,6 +156,7 @@ pub(super) fn of(scenario: &Scenario, training: Option<&Training>) -> Result<(St
         sources: sources::of(scenario, &known.online),
         plcs,
         maps: maps::of(scenario),
+        plot: signals::plotted(scenario),
         drawings,
     };
     Ok((structure, known))
