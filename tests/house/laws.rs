@@ -326,7 +326,8 @@ fn numbers_do_not_stand_for_something_else() {
 /// Ways to start a thread that panic, or say nothing of which one it was, where the system has none to give.
 #[test]
 fn threads_are_started_in_one_way() {
-    let found = against(&calls_of(&["thread::spawn(", "scope.spawn(", "thread::Builder", "Builder::new().name("]), THREADS);
+    let found =
+        against(&calls_of(&["thread::spawn(", "scope.spawn(", "thread::Builder", "Builder::new().name("]), THREADS);
     assert!(found.is_empty(), "\n{found}");
 }
 
