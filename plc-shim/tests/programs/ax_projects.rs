@@ -2,9 +2,11 @@
 //! enumerations share, parts of integers.
 
 use onescan_iec::Dialect::{Iec2, Iec3, SiemensScl};
-use onescan_iec::{Code, Severity};
+use onescan_iec::input::kind::SourceKind;
+use onescan_iec::{Code, Input, Severity, inspect};
+use onescan_iec_run::Application;
 
-use crate::rig::{Rig, findings_in};
+use crate::rig::{Rig, application_in, findings_in};
 
 #[test]
 fn assertions_are_stubs_that_take_any_value() {
@@ -231,7 +233,13 @@ fn an_empty_list_leaves_every_input_at_its_initial_value() {
         |name: &str| (Severity::Warning, format!("parameter `{name}` is missing: it is what its type begins with"));
     assert_eq!(said, [message("a"), message("t")]);
     let some = text.replace("F()", "F(1)");
-    assert!(findings_in(Iec3, &some).iter().any(|found| found.code == Code::MissingArgument));
+    let mut rig = Rig::in_dialect(Iec3, &some);
+    rig.scan().expect("no fault");
+    assert_eq!(rig.int("P.n"), 14, "an input with a value of its own may be left out behind others");
+    let others = text.replace("F()", "F(b := 1)").replace("c.M()", "c.M(T#1ms)");
+    assert!(!findings_in(Iec3, &others).has_errors());
+    let needed = text.replace("b : INT := 4", "b : INT").replace("F()", "F(1)");
+    assert!(findings_in(Iec3, &needed).iter().any(|found| found.code == Code::MissingArgument));
 }
 
 #[test]
@@ -279,4 +287,124 @@ fn a_reference_to_a_base_refers_to_what_is_derived() {
     assert_eq!(["a", "b", "c"].map(|name| rig.int(&format!("P.{name}"))), [2, 1, 2]);
     let wrong = text.replace("r := s;", "s := r;");
     assert!(findings_in(Iec3, &wrong).iter().any(|found| found.code == Code::TypeMismatch));
+}
+
+#[test]
+fn a_task_without_an_interval_is_the_program_cycle() {
+    let text = "PROGRAM P VAR n : INT; END_VAR n := n + 1; END_PROGRAM PROGRAM Q VAR n : INT; END_VAR n := n + 1; END_PROGRAM
+        CONFIGURATION C TASK Main (PRIORITY := 2); TASK First (PRIORITY := 1); TASK Fast (INTERVAL := T#20ms, PRIORITY := 3);
+          PROGRAM p1 WITH Main : P; PROGRAM p2 WITH First : P; PROGRAM q1 WITH Fast : Q; END_CONFIGURATION";
+    let application = application_in(Iec3, text);
+    let plan = application.configured_tasks().expect("a configuration");
+    assert_eq!((plan.tasks.len(), plan.background.as_slice()), (1, ["p2".to_owned(), "p1".to_owned()].as_slice()));
+    let mut rig = Rig::with_plan(&application, &plan);
+    rig.step_ns = 10 * crate::rig::MS;
+    for _ in 0..4 {
+        rig.scan().expect("no fault");
+    }
+    assert_eq!([rig.int("p1.n"), rig.int("p2.n"), rig.int("q1.n")], [4, 4, 2]);
+    let findings = findings_in(Iec3, text);
+    let said = findings.iter().filter(|found| found.code == Code::TaskNeverRuns && found.severity == Severity::Warning);
+    assert_eq!(said.count(), 2, "{findings}");
+    let wrong = text.replace("Main (PRIORITY := 2)", "Main (INTERVAL := T#0s)");
+    assert!(
+        findings_in(Iec3, &wrong).iter().any(|found| found.severity == Severity::Error),
+        "an interval of 0 is none"
+    );
+}
+
+#[test]
+fn timers_take_an_ltime() {
+    let text = "PROGRAM P VAR CONSTANT short : LTIME := LTIME#25ms; END_VAR VAR t : TON; q : BOOL; l : LTIME; END_VAR
+          t(IN := TRUE, PT := short); q := t.Q; l := t.ET; END_PROGRAM";
+    let mut rig = Rig::in_dialect(Iec3, text);
+    let found: Vec<bool> = (0..4)
+        .map(|_| {
+            rig.scan().expect("no fault");
+            rig.bool("P.q")
+        })
+        .collect();
+    assert_eq!(found, [false, false, false, true]);
+    let own = "FUNCTION_BLOCK F VAR_INPUT PT : TIME; END_VAR END_FUNCTION_BLOCK
+        PROGRAM P VAR f1 : F; l : LTIME; END_VAR f1(PT := l); END_PROGRAM";
+    assert!(
+        findings_in(Iec3, own).iter().any(|found| found.code == Code::TypeMismatch),
+        "of the standard's timers alone"
+    );
+}
+
+#[test]
+fn a_count_begins_with_a_wider_number_and_a_value_stands_behind_blanks() {
+    let text = "TYPE Colour : (Red, Green, Blue); END_TYPE
+        PROGRAM P VAR c : Colour; d : DINT := 2; i, n : INT; w, v : WSTRING; END_VAR
+          FOR i := d TO 4 DO n := n + i; END_FOR; c := Colour# Blue; IF c = Colour#@Blue THEN n := n + 100; END_IF;
+          w := WSTRING#'so'; v := WSTRING#''; END_PROGRAM"
+        .replace('@', "\t");
+    let mut rig = Rig::in_dialect(Iec3, &text);
+    rig.scan().expect("no fault");
+    assert_eq!(
+        (rig.int("P.n"), rig.int("P.c"), rig.text("P.w").as_str(), rig.text("P.v").as_str()),
+        (109, 2, "so", "")
+    );
+    let findings = findings_in(Iec3, &text);
+    assert!(findings.iter().any(|found| found.code == Code::TypeMismatch && found.severity == Severity::Warning));
+    for wrong in
+        [text.replace("TO 4", "TO d"), text.replace("d : DINT", "d : UDINT"), text.replace("WSTRING#''", "STRING#\"\"")]
+    {
+        assert!(findings_in(Iec3, &wrong).has_errors(), "{wrong}");
+    }
+}
+
+#[test]
+fn global_variables_have_configurations_of_their_own() {
+    let file = |name: &str, text: &str| Input::from_text(name, SourceKind::Text, text).in_dialect(Iec3);
+    let files = |second: &str| {
+        [
+            file("ids.st", "CONFIGURATION Identifiers VAR_GLOBAL CONSTANT id : UINT := 265; END_VAR END_CONFIGURATION"),
+            file(
+                "main.st",
+                "CONFIGURATION C TASK T (INTERVAL := T#10ms); PROGRAM P1 WITH T : P; VAR_GLOBAL m : UINT; END_VAR END_CONFIGURATION",
+            ),
+            file("addresses.st", second),
+            file(
+                "p.st",
+                "PROGRAM P VAR_EXTERNAL CONSTANT id : UINT; END_VAR VAR_EXTERNAL m, n : UINT; END_VAR m := id; n := m; END_PROGRAM",
+            ),
+        ]
+    };
+    let application =
+        Application::from_inputs(files("CONFIGURATION Addresses VAR_GLOBAL n : UINT; END_VAR END_CONFIGURATION"))
+            .expect("it compiles");
+    let mut rig = Rig::with_plan(&application, &application.configured_tasks().expect("a configuration"));
+    rig.scan().expect("no fault");
+    assert_eq!((rig.int("m"), rig.int("n")), (265, 265));
+    let two = "CONFIGURATION D TASK U (INTERVAL := T#10ms); PROGRAM P2 WITH U : P; VAR_GLOBAL n : UINT; END_VAR END_CONFIGURATION";
+    assert!(inspect(files(two), None).iter().any(|found| found.code == Code::SecondConfiguration));
+}
+
+#[test]
+fn an_instance_is_copied_with_a_warning() {
+    let text = "CLASS Box VAR PUBLIC n : INT; END_VAR METHOD PUBLIC Kind : INT Kind := n; END_METHOD END_CLASS
+        PROGRAM P VAR b : ARRAY [0..1] OF Box; x : INT; END_VAR b[1].n := 5; b[0] := b[1]; b[1].n := 6; x := b[0].Kind(); END_PROGRAM";
+    let mut rig = Rig::in_dialect(Iec3, text);
+    rig.scan().expect("no fault");
+    assert_eq!(rig.int("P.x"), 5);
+    let findings = findings_in(Iec3, text);
+    let said: Vec<_> = findings.iter().filter(|found| found.code == Code::NotAssignable).collect();
+    assert!(said.len() == 1 && said[0].severity == Severity::Warning, "{findings}");
+}
+
+#[test]
+fn instances_begin_with_one_another() {
+    let text = "INTERFACE INode METHOD Number : INT END_METHOD END_INTERFACE
+        CLASS Node IMPLEMENTS INode VAR PUBLIC next : INode; n : INT; END_VAR
+          METHOD PUBLIC Number : INT Number := n; END_METHOD METHOD PUBLIC After : INT After := next.Number(); END_METHOD END_CLASS
+        PROGRAM P VAR_EXTERNAL a, b : Node; END_VAR VAR x, y : INT; END_VAR x := a.After(); y := b.After(); END_PROGRAM
+        CONFIGURATION C TASK T (INTERVAL := T#10ms); PROGRAM P1 WITH T : P;
+          VAR_GLOBAL a : Node := (next := b, n := 1); b : Node := (next := a, n := 2); END_VAR END_CONFIGURATION";
+    let mut rig = Rig::in_dialect(Iec3, text);
+    rig.scan().expect("no fault");
+    assert_eq!((rig.int("P1.x"), rig.int("P1.y")), (2, 1));
+    let wrong = text.replace("CLASS Node IMPLEMENTS INode", "CLASS Node").replace("next.Number()", "n");
+    assert!(findings_in(Iec3, &wrong).has_errors(), "what implements nothing is not referred to");
 }

@@ -80,3 +80,41 @@ fn an_interface_has_a_base() {
     rig.scan().expect("no fault");
     assert_eq!(rig.int("P.r"), 9);
 }
+
+#[test]
+fn of_several_devices_the_first_is_read() {
+    let device = |name: &str, task: &str, program: &str, value: u32| {
+        let unit = format!(
+            "<pou name=\"{program}\" pouType=\"program\"><interface><localVars><variable name=\"n\"><type><INT/></type></variable>\
+             </localVars></interface><body><ST><xhtml xmlns=\"http://www.w3.org/1999/xhtml\">n := n + List.step;</xhtml></ST></body></pou>"
+        );
+        format!(
+            "<configuration name=\"{name}\"><resource name=\"App\"><task name=\"Main\" {task} priority=\"1\"><pouInstance \
+             name=\"{program}\" typeName=\"\"/></task><globalVars name=\"List\"><variable name=\"step\"><type><INT/></type>\
+             <initialValue><simpleValue value=\"{value}\"/></initialValue></variable></globalVars>\
+             <addData>{}</addData></resource></configuration>",
+            data("pou", &unit)
+        )
+    };
+    let file = |task: &str| {
+        let devices = [device("Lab", task, "PRG", 3), device("Virtual", "interval=\"PT0.2S\"", "PRG", 5)].concat();
+        let text = format!(
+            "<project xmlns=\"http://www.plcopen.org/xml/tc6_0200\"><fileHeader productName=\"CODESYS\"/><types><dataTypes/><pous/>\
+             </types><instances><configurations>{devices}</configurations></instances></project>"
+        );
+        Input::from_text("plc.xml", SourceKind::PlcOpen, text)
+    };
+    // A freewheeling task has no interval: it runs in each scan.
+    for (task, tasks) in [("interval=\"PT0.01S\"", 1), ("", 0)] {
+        let application = Application::from_inputs([file(task)]).expect("it compiles");
+        let plan = application.configured_tasks().expect("a configuration");
+        assert_eq!((plan.tasks.len(), plan.background.len()), (tasks, 1 - tasks));
+        let mut rig = Rig::with_plan(&application, &plan);
+        rig.step_ns = 10 * crate::rig::MS;
+        rig.scan().expect("no fault");
+        rig.scan().expect("no fault");
+        assert_eq!(rig.int("PRG.n"), 6);
+        let said = application.warnings().to_string();
+        assert!(said.contains("`Virtual` is another device beside `Lab`: it is left out"), "{said}");
+    }
+}

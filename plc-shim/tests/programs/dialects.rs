@@ -245,6 +245,45 @@ fn use_in_released_projects(feature: Feature) -> &'static str {
         Feature::LiteralAddresses => {
             "PROGRAM P VAR p : POINTER TO BYTE; b : BYTE; END_VAR p := ADR('text'); b := p^; END_PROGRAM"
         }
+        other => use_of_each_kind(other),
+    }
+}
+
+/// And of tasks, timers, pointers and literals.
+fn use_of_each_kind(feature: Feature) -> &'static str {
+    match feature {
+        Feature::FreeTasks => {
+            "PROGRAM P END_PROGRAM
+             CONFIGURATION C TASK T (PRIORITY := 1); PROGRAM P1 WITH T : P; END_CONFIGURATION"
+        }
+        Feature::GlobalConfigurations => {
+            "PROGRAM P VAR_EXTERNAL n : INT; END_VAR n := 1; END_PROGRAM
+             CONFIGURATION Addresses VAR_GLOBAL n : INT; END_VAR END_CONFIGURATION
+             CONFIGURATION C TASK T (INTERVAL := T#10ms, PRIORITY := 1); PROGRAM P1 WITH T : P; END_CONFIGURATION"
+        }
+        Feature::PointersInOut => {
+            "FUNCTION F : BOOL VAR_IN_OUT p : POINTER TO BYTE; END_VAR p := 0; F := TRUE; END_FUNCTION
+             PROGRAM P VAR q : POINTER TO WORD; b : BOOL; END_VAR b := F(p := q); END_PROGRAM"
+        }
+        Feature::OpenInputsHandedOn => {
+            "FUNCTION G : INT VAR_IN_OUT a : ARRAY [*] OF INT; END_VAR a[1] := 7; G := 1; END_FUNCTION
+             FUNCTION F : INT VAR_INPUT a : ARRAY [*] OF INT; END_VAR F := G(a := a); END_FUNCTION
+             PROGRAM P VAR x : ARRAY [1..2] OF INT; n : INT; END_VAR n := F(a := x); END_PROGRAM"
+        }
+        Feature::ImplicitInit => {
+            "FUNCTION_BLOCK F VAR n : INT; END_VAR n := n + 1; END_FUNCTION_BLOCK
+             PROGRAM P VAR f1 : F; END_VAR f1(); f1.FB_init(FALSE, FALSE); END_PROGRAM"
+        }
+        Feature::LongTimers => {
+            "PROGRAM P VAR t : TON; l : LTIME; b : BOOL; END_VAR t(IN := TRUE, PT := l); b := t.Q; END_PROGRAM"
+        }
+        Feature::WideStarts => {
+            "PROGRAM P VAR i, n : INT; d : DINT; END_VAR FOR i := d TO 3 DO n := n + 1; END_FOR; END_PROGRAM"
+        }
+        Feature::SpacedValues => {
+            "TYPE C : (Red, Green); END_TYPE PROGRAM P VAR c1 : C; END_VAR c1 := C# Green; END_PROGRAM"
+        }
+        Feature::NarrowQuotes => "PROGRAM P VAR w : WSTRING; END_VAR w := WSTRING#'a'; END_PROGRAM",
         other => panic!("{other:?} has no program"),
     }
 }
@@ -265,7 +304,16 @@ fn every_construct_is_for_its_dialects_alone() {
 }
 
 /// Constructs whose absence is not a syntax of its own: another error says it.
-const REPORTED_OTHERWISE: [Feature; 60] = [
+const REPORTED_OTHERWISE: [Feature; 69] = [
+    Feature::FreeTasks,
+    Feature::GlobalConfigurations,
+    Feature::PointersInOut,
+    Feature::OpenInputsHandedOn,
+    Feature::ImplicitInit,
+    Feature::LongTimers,
+    Feature::WideStarts,
+    Feature::SpacedValues,
+    Feature::NarrowQuotes,
     Feature::TimesBesideNumbers,
     Feature::PositionalOutputs,
     Feature::CharactersSelect,

@@ -263,3 +263,118 @@ fn a_reference_begins_as_what_it_refers_to() {
         assert_eq!(errors, 2, "{findings}");
     }
 }
+
+#[test]
+fn a_called_fb_init_begins_the_instance_again() {
+    let text = "
+        FUNCTION_BLOCK Inner VAR k : INT := 4; count : INT; END_VAR
+          METHOD FB_init : BOOL VAR_INPUT bInitRetains, bInCopyCode : BOOL; END_VAR count := count + 1; END_METHOD
+          METHOD Work : INT k := 99; count := 70; END_METHOD END_FUNCTION_BLOCK
+        FUNCTION_BLOCK A VAR n : INT := 3; i : Inner; END_VAR VAR RETAIN r : INT := 1; END_VAR VAR_IN_OUT used : INT; END_VAR
+          METHOD Work : INT n := 50; r := 60; i.Work(); END_METHOD
+          METHOD Reset : BOOL VAR_INPUT all : BOOL; END_VAR
+            IF all THEN Reset := THIS^.FB_init(TRUE, FALSE); ELSE Reset := THIS^.FB_init(bInCopyCode := FALSE, bInitRetains := FALSE); END_IF
+          END_METHOD
+          used := used + 1; Reset(FALSE); used := used + 1; END_FUNCTION_BLOCK
+        FUNCTION_BLOCK B VAR n : INT := 5; END_VAR
+          METHOD FB_init : BOOL VAR_INPUT bInitRetains, bInCopyCode : BOOL; m : INT; END_VAR n := n + m; FB_init := TRUE; END_METHOD
+        END_FUNCTION_BLOCK
+        PROGRAM P VAR a1, a2 : A; b1 : B(m := 1); used : INT; b : BOOL; END_VAR
+          a1.Work(); a1(used := used); a2.Work(); a2.Reset(TRUE);
+          b1.FB_init(FALSE, FALSE, 10); b := b1.FB_init(FALSE, FALSE, 10); END_PROGRAM";
+    for dialect in VENDORS {
+        let names = ["a1.n", "a1.r", "a1.i.k", "a1.i.count", "a2.n", "a2.r", "used", "b1.n", "b"];
+        assert_eq!(values(dialect, text, 1, names), [3, 60, 4, 1, 3, 1, 2, 15, 1], "{dialect}");
+        for (call, code) in
+            [("FB_init()", "C0302"), ("FB_init(TRUE, FALSE, 3)", "C0303"), ("FB_init(1.5, FALSE)", "T0201")]
+        {
+            let wrong = text.replace("a2.Reset(TRUE)", &format!("a2.{call}"));
+            let findings = findings_in(dialect, &wrong);
+            assert!(findings.iter().any(|found| found.code.text() == code), "{call} in {dialect}: {findings}");
+        }
+    }
+}
+
+#[test]
+fn initial_values_name_the_instance() {
+    let text = "
+        FUNCTION_BLOCK S VAR CONSTANT base : INT := 40; END_VAR
+          VAR k : INT := THIS^.base; m : INT := THIS^.Twice(THIS^.Next); p : POINTER TO INT := ADR(THIS^.k); END_VAR
+          PROPERTY Next : INT GET Next := k + 1; END_GET END_PROPERTY
+          METHOD Twice : INT VAR_INPUT n : INT; END_VAR Twice := 2 * n; END_METHOD
+          METHOD Kept : INT VAR_INST c : INT := THIS^.k; END_VAR c := c + 1; Kept := c; END_METHOD
+          METHOD Held : INT VAR_INST h : Holder := (other := THIS^.inner); END_VAR Held := h.Number(); END_METHOD
+          VAR inner : Numbered; END_VAR END_FUNCTION_BLOCK
+        INTERFACE INumbered METHOD Number : INT END_METHOD END_INTERFACE
+        FUNCTION_BLOCK Numbered IMPLEMENTS INumbered METHOD Number : INT Number := 8; END_METHOD END_FUNCTION_BLOCK
+        FUNCTION_BLOCK Holder VAR_INPUT other : INumbered; END_VAR METHOD Number : INT Number := other.Number(); END_METHOD END_FUNCTION_BLOCK
+        PROGRAM P VAR s1, s2 : S; x, y, z : INT; END_VAR x := s1.m + s1.p^; y := s2.Kept(); z := s2.Held(); END_PROGRAM";
+    for dialect in VENDORS {
+        assert_eq!(values(dialect, text, 2, ["x", "y", "z"]), [122, 42, 8], "{dialect}");
+        let findings = findings_in(dialect, &text.replace("k : INT := THIS^.base", "k : BOOL := THIS^.base"));
+        let wrong = findings.iter().filter(|found| found.message == "BOOL is wanted, this is INT").count();
+        assert_eq!(wrong, 1, "{dialect}: {findings}");
+        let constant = text.replace("base : INT := 40;", "base : INT := 40; other : INT := THIS^.base;");
+        assert!(findings_in(dialect, &constant).iter().any(|found| found.code.text() == "T0204"), "{dialect}");
+    }
+}
+
+#[test]
+fn what_is_declared_behind_a_reference_is_checked() {
+    let text = "FUNCTION_BLOCK F VAR r : REFERENCE TO INT := x; x : REAL; END_VAR r := 1; END_FUNCTION_BLOCK
+        PROGRAM P VAR f1, f2 : F; END_VAR f1(); f2(); END_PROGRAM";
+    for dialect in VENDORS {
+        let findings = findings_in(dialect, text);
+        let wrong = findings.iter().filter(|found| found.message == "INT is wanted, this is REAL").count();
+        assert_eq!(wrong, 1, "{dialect}: {findings}");
+        assert!(!findings_in(dialect, &text.replace("x : REAL", "x : INT")).has_errors(), "{dialect}");
+    }
+}
+
+#[test]
+fn what_an_instance_is_declared_with_comes_behind_its_fb_init_computed_or_not() {
+    let text = "TYPE Pair : STRUCT a, b : INT; END_STRUCT END_TYPE
+        FUNCTION_BLOCK F VAR_INPUT a : INT; p : Pair; END_VAR
+          METHOD FB_init : BOOL VAR_INPUT bInitRetains, bInCopyCode : BOOL; END_VAR a := 7; p.a := 7; p.b := 7; END_METHOD
+        END_FUNCTION_BLOCK
+        PROGRAM P VAR g : INT := 4; f1 : F := (a := g + 1, p := (a := g + 2, b := 9)); x : INT; END_VAR x := f1.a; END_PROGRAM";
+    for dialect in VENDORS {
+        assert_eq!(values(dialect, text, 1, ["x", "f1.p.a", "f1.p.b"]), [5, 6, 9], "{dialect}");
+    }
+}
+
+#[test]
+fn pointers_and_arrays_without_bounds_are_handed_on() {
+    let text = "FUNCTION Next : BOOL VAR_IN_OUT p : POINTER TO BYTE; END_VAR p := p + 2; Next := TRUE; END_FUNCTION
+        FUNCTION Again : BOOL VAR_INPUT p : REFERENCE TO POINTER TO BYTE; END_VAR p := p + 2; Again := TRUE; END_FUNCTION
+        FUNCTION Fill : INT VAR_IN_OUT a : ARRAY [*] OF INT; END_VAR a[2] := 30; Fill := a[1]; END_FUNCTION
+        FUNCTION Outer : INT VAR_INPUT a : ARRAY [*] OF INT; END_VAR Outer := Fill(a) + a[2]; END_FUNCTION
+        PROGRAM P VAR w : ARRAY [0..2] OF WORD := [1, 7, 9]; q : POINTER TO WORD; x, y, z : INT; a : ARRAY [1..2] OF INT := [5, 6]; END_VAR
+          q := ADR(w); Next(p := q); x := q^; Again(p := q); y := q^; z := Outer(a); END_PROGRAM";
+    for dialect in VENDORS {
+        assert_eq!(values(dialect, text, 1, ["x", "y", "z", "a[2]"]), [7, 9, 35, 30], "{dialect}");
+        let said = findings_in(dialect, text).iter().filter(|found| found.code.text() == "R0906").count();
+        assert_eq!(said, 2, "{dialect}");
+        let constant = text.replace("FUNCTION Outer : INT VAR_INPUT a", "FUNCTION Outer : INT VAR_IN_OUT CONSTANT a");
+        assert!(findings_in(dialect, &constant).has_errors(), "{dialect}");
+    }
+}
+
+#[test]
+fn a_constant_reference_takes_constants_and_any_stands_for_what_it_is() {
+    let text = "INTERFACE ICheck METHOD Verify : DINT VAR_INPUT arg : ANY; END_VAR END_METHOD END_INTERFACE
+        FUNCTION_BLOCK Check IMPLEMENTS ICheck
+          METHOD Verify : DINT VAR_INPUT arg : __SYSTEM.AnyType; END_VAR Verify := arg.diSize; END_METHOD
+          METHOD Length : INT VAR_INPUT CONSTANT name : REFERENCE TO STRING; END_VAR Length := LEN(name); END_METHOD
+          METHOD Given : INT VAR_INPUT CONSTANT name : STRING; END_VAR Given := Length(name) + Length(fixed); END_METHOD
+        END_FUNCTION_BLOCK
+        VAR_GLOBAL CONSTANT fixed : STRING := 'four'; END_VAR
+        PROGRAM P VAR c : Check; i : ICheck := c; d : LREAL; x : DINT; n : INT; END_VAR x := i.Verify(d); n := c.Given('two'); END_PROGRAM";
+    for dialect in VENDORS {
+        assert_eq!(values(dialect, text, 1, ["x", "n"]), [8, 7], "{dialect}");
+        let written = text.replace("VAR_INPUT CONSTANT name : REFERENCE", "VAR_INPUT name : REFERENCE");
+        assert!(findings_in(dialect, &written).iter().any(|found| found.code.text() == "R0904"), "{dialect}");
+        let other = text.replace("arg : __SYSTEM.AnyType", "arg : LREAL").replace("arg.diSize", "1");
+        assert!(findings_in(dialect, &other).iter().any(|found| found.code.text() == "O0804"), "{dialect}");
+    }
+}

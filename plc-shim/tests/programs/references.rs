@@ -245,10 +245,7 @@ END_VAR VAR_TEMP tmp : INT; END_VAR VAR CONSTANT k : INT := 1;";
         ("MEMSET(x, 0);", "test.st:3:1: error[C0302]: MEMSET takes 3 arguments, not 2"),
         ("MEMSET(ADR(x), 0, 1, 2);", "test.st:3:22: error[C0301]: MEMSET has no such parameter here"),
         ("MEMSET(ADR(x), 0, 1.5);", "test.st:3:19: error[T0201]: UDINT is wanted, this is a real number"),
-        (
-            "t := NULL;",
-            "test.st:3:1: error[D0403]: instances are not assigned to one another (it is part of codesys and twincat: --dialect chooses)",
-        ),
+        ("t := NULL;", "test.st:3:6: error[T0201]: TON is wanted, this is NULL"),
         ("NULL := r;", "test.st:3:1: error[N0106]: `NULL` is not a variable"),
     ] {
         assert_eq!(reported(statement), expected, "{statement}");

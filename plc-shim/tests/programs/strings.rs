@@ -191,7 +191,7 @@ VAR s : STRING[5]; w : WSTRING; n : INT; a : STRING[0]; c : STRING := w; d : STR
   IF s = w OR s = 1 THEN ; END_IF;
   s := '$z';
   s := LEFT(s, 1.5);
-  s := WSTRING#'x';
+  s := STRING#\"x\";
 END_PROGRAM"
     ));
 }

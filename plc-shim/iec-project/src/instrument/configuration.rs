@@ -54,6 +54,12 @@ pub(super) fn tasks(configuration: &Configuration, constants: &Constants<'_>) ->
                 None => background.push(name),
             }
         }
+        // One that says nothing of when it is due runs all the time.
+        let (mut free, rest): (Vec<_>, Vec<_>) =
+            tasks.split_off(first).into_iter().partition(|task| task.interval.is_none() && task.single.is_none());
+        tasks.extend(rest);
+        free.sort_by_key(|task| task.priority);
+        background.extend(free.into_iter().flat_map(|task| task.programs));
     }
     if !background.is_empty() {
         let priority = tasks.iter().map(|task| task.priority).max().unwrap_or(0).saturating_add(1);
@@ -78,10 +84,6 @@ fn task(declared: &TaskDeclaration, constants: &Constants<'_>) -> Result<Task, D
             ("SINGLE", _) => return Err(unsupported(input, "SINGLE other than a variable")),
             (name, _) => return Err(unsupported(input, &format!("{name} other than a constant"))),
         }
-    }
-    let is_triggered = declared.inputs.iter().any(|(input, _)| input.key() == "SINGLE");
-    if task.interval.is_none() && !is_triggered {
-        return Err(unsupported(&declared.name, "a task without INTERVAL and SINGLE"));
     }
     Ok(task)
 }

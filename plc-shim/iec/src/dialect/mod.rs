@@ -426,6 +426,15 @@ features! {
     LiteralAddresses "the address of a literal, `ADR('text')`",
     TimesBesideNumbers "a TIME compared with a number of milliseconds",
     TimesAsDates "durations, dates and times of day from one another, `TIME_TO_DT`, `BOOL_TO_DATE`",
+    FreeTasks "a task with neither SINGLE nor INTERVAL: it runs in each scan, behind the others",
+    PointersInOut "a variable that is a pointer to another type for a `VAR_IN_OUT` or `REFERENCE TO` that is a pointer",
+    OpenInputsHandedOn "an `ARRAY [*]` of `VAR_INPUT` handed on as `VAR_IN_OUT`",
+    LongTimers "an LTIME for PT of `TON`, `TOF` and `TP`",
+    WideStarts "a FOR that begins with an integer wider than its variable, which is cut",
+    SpacedValues "blanks behind `#` of an enumeration's value, `Colour# Red`",
+    NarrowQuotes "a WSTRING between single quotes, `WSTRING#'a'`",
+    GlobalConfigurations "several CONFIGURATIONs, of which one alone has tasks and programs",
+    ImplicitInit "`FB_init` called where nobody declares it: the instance begins again",
 }
 
 impl Feature {

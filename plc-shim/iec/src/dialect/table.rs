@@ -95,7 +95,11 @@ pub const FEATURES: &[FeatureRow] = &[
         "CODESYS and TwinCAT: calling a function block, as its editor completes it",
     ),
     row(Feature::WindowsCharacters, &[Codesys, TwinCat], "CODESYS and TwinCAT: data type STRING"),
-    row(Feature::LeftOutInputs, &[Codesys, TwinCat], "CODESYS and TwinCAT: FUNCTION, optional inputs"),
+    row(
+        Feature::LeftOutInputs,
+        &[Iec3, Codesys, TwinCat],
+        "CODESYS and TwinCAT: FUNCTION, optional inputs; SIMATIC AX: accepts it, as public projects show",
+    ),
     row(Feature::LooseStrings, &[Codesys, TwinCat], "CODESYS and TwinCAT: VAR_IN_OUT, strings"),
     row(Feature::DoubleQuotes, &[Matiec], "OpenPLC's editor, initial values"),
     row(
@@ -108,7 +112,11 @@ pub const FEATURES: &[FeatureRow] = &[
         &[Codesys, TwinCat, Matiec],
         "CODESYS and TwinCAT: rules for identifiers, keywords alone; MatIEC: overloaded functions",
     ),
-    row(Feature::InstanceCopies, &[Codesys, TwinCat], "CODESYS and TwinCAT: assignment of instances, a copy"),
+    row(
+        Feature::InstanceCopies,
+        &[Iec3, Codesys, TwinCat],
+        "CODESYS and TwinCAT: assignment of instances, a copy; SIMATIC AX: accepts it, as public projects show, here with a warning",
+    ),
     row(
         Feature::ReadableInternals,
         &[Codesys, TwinCat, SiemensScl, Matiec],
@@ -212,6 +220,27 @@ pub const FEATURES: &[FeatureRow] = &[
         Feature::TimesAsDates,
         &[Codesys, TwinCat],
         "CODESYS: operators TIME_TO, DATE_TO, BOOL_TO; TwinCAT: conversions of TIME, DATE, BOOL",
+    ),
+    row(
+        Feature::FreeTasks,
+        &[Iec3, Codesys, TwinCat],
+        "CODESYS: object Task, freewheeling; SIMATIC AX: the program cycle, as public projects show, here with a warning",
+    ),
+    row(Feature::PointersInOut, &[Codesys, TwinCat], "TwinCAT: accepts it, as public projects show"),
+    row(Feature::OpenInputsHandedOn, &[Codesys, TwinCat], "CODESYS: accepts it, as public projects show"),
+    row(Feature::LongTimers, &[Iec3], "3rd ed. Table 46: TP, TON and TOF are overloaded for TIME and LTIME"),
+    row(Feature::WideStarts, &[Iec3], "SIMATIC AX: accepts it, as public projects show, here with a warning"),
+    row(Feature::SpacedValues, &[Iec3], "SIMATIC AX: accepts it, as public projects show"),
+    row(Feature::NarrowQuotes, &[Iec3], "SIMATIC AX: accepts it, as public projects show"),
+    row(
+        Feature::GlobalConfigurations,
+        &[Iec3],
+        "SIMATIC AX: hardware identifiers and addresses have files of their own",
+    ),
+    row(
+        Feature::ImplicitInit,
+        &[Codesys, TwinCat],
+        "CODESYS and TwinCAT: FB_init, \"is always implicitly available\", the standard initialization",
     ),
 ];
 

@@ -22,10 +22,11 @@ use std::collections::BTreeSet;
 
 use crate::check::{Checked, check};
 use crate::diagnostic::{Diagnostic, Severity};
+use crate::dialect::Feature;
 use crate::input::Input;
 use crate::ir::MemoryLimit;
 use crate::syntax::ast::{CompilationUnit, Configuration, Declaration};
-use crate::syntax::{FileId, SourceMap, parse_source};
+use crate::syntax::{FileId, SourceFile, SourceMap, parse_source};
 
 use constant::is_declared;
 pub use constant::{ConstantError, Constants, Setting};
@@ -106,7 +107,7 @@ impl Parsed {
             findings.extend(parsed.diagnostics);
             units.push((id, parsed.unit));
         }
-        join_configurations(&mut units);
+        join_configurations(&mut units, &sources);
         Self { sources, units, library, findings }
     }
 
@@ -131,24 +132,37 @@ impl Parsed {
     }
 }
 
-/// Makes one of the parts of a configuration that stand in several files: TwinCAT has a file a task.
-fn join_configurations(units: &mut [(FileId, CompilationUnit)]) {
+/// True for another part of a configuration of which there are these.
+fn is_part(next: &Configuration, parts: &[Configuration], takes_globals: bool) -> bool {
+    let Some(first) = parts.first() else { return true };
+    let is_elsewhere = parts.iter().all(|part| part.name.span.file != next.name.span.file);
+    let is_globals = next.has_only_globals() || parts.iter().all(Configuration::has_only_globals);
+    is_elsewhere && next.name.key() == first.name.key() || takes_globals && is_globals
+}
+
+/// Makes one of the parts of a configuration that stand in several files: TwinCAT has a file a task, SIMATIC AX files of
+/// global variables with names of their own.
+fn join_configurations(units: &mut [(FileId, CompilationUnit)], sources: &SourceMap) {
     let mut parts: Vec<Configuration> = Vec::new();
     for (file, unit) in &mut *units {
-        let first = parts.first().map(|first| (first.name.key(), first.name.span.file));
-        let is_part = |declared: &Configuration| match &first {
-            Some((name, home)) => declared.name.key() == *name && *home != *file,
-            None => true,
+        let dialect = sources.get(*file).map(SourceFile::dialect);
+        let takes_globals = dialect.is_some_and(|dialect| dialect.has(Feature::GlobalConfigurations));
+        let next = |unit: &CompilationUnit, parts: &[Configuration]| {
+            let is_next = |it: &Configuration| is_part(it, parts, takes_globals);
+            unit.declarations.iter().position(|each| matches!(each, Declaration::Configuration(it) if is_next(it)))
         };
-        let at =
-            unit.declarations.iter().position(|each| matches!(each, Declaration::Configuration(it) if is_part(it)));
-        if let Some(Declaration::Configuration(part)) = at.map(|at| unit.declarations.remove(at)) {
+        while let Some(at) = next(unit, &parts) {
+            let Declaration::Configuration(part) = unit.declarations.remove(at) else { break };
             parts.push(part);
         }
     }
-    let mut parts = parts.into_iter();
-    let Some(mut whole) = parts.next() else { return };
-    parts.for_each(|part| whole.absorb(part));
+    if parts.is_empty() {
+        return;
+    }
+    // What has the tasks gives the name.
+    let first = parts.iter().position(|part| !part.has_only_globals()).unwrap_or(0);
+    let mut whole = parts.remove(first);
+    parts.into_iter().for_each(|part| whole.absorb(part));
     let home = units.iter_mut().find(|(file, _)| *file == whole.name.span.file);
     if let Some((_, unit)) = home {
         unit.declarations.insert(0, Declaration::Configuration(whole));

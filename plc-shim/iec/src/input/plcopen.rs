@@ -32,9 +32,11 @@ pub(super) fn extract(file: &str) -> Result<Taken, XmlError> {
             writer.pou(pou);
         }
     }
-    writer.vendor_objects(&root);
     let configurations = root.child("instances").and_then(|instances| instances.child("configurations"));
-    for configuration in configurations.into_iter().flat_map(Element::elements) {
+    let configurations: Vec<&Element> = configurations.into_iter().flat_map(Element::elements).collect();
+    writer.leave_out_devices(&configurations);
+    writer.vendor_objects(&root);
+    for configuration in configurations.into_iter().filter(|each| !writer.is_left_out(each)).collect::<Vec<_>>() {
         writer.configuration(configuration);
     }
     Ok(writer.taken)
@@ -91,6 +93,8 @@ pub(super) struct Writer<'a> {
     pub(super) transition: Option<(String, String)>,
     /// The file's own types of strings, as keys, and what their values stand between.
     strings: BTreeMap<String, char>,
+    /// Where the configurations begin that are not read.
+    pub(super) left_out: BTreeSet<u32>,
 }
 
 /// Sections of an interface and their keywords (TC6 2.01, `interface`).
@@ -111,8 +115,8 @@ const QUALIFIERS: [(&str, &str); 4] =
 impl<'a> Writer<'a> {
     fn new(file: &'a str, tool: Tool, programs: BTreeSet<String>) -> Self {
         let taken = Taken { dialect: tool.dialect(), ..Taken::default() };
-        let (triggers, strings) = (BTreeMap::new(), BTreeMap::new());
-        Self { taken, file, tool, programs, triggers, bodies: 0, transition: None, strings }
+        let (triggers, strings, left_out) = (BTreeMap::new(), BTreeMap::new(), BTreeSet::new());
+        Self { taken, file, tool, programs, triggers, bodies: 0, transition: None, strings, left_out }
     }
 }
 

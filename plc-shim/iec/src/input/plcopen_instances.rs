@@ -4,18 +4,37 @@ use onescan_base::duration::XmlDuration;
 use onescan_xml::{Attribute, Element};
 
 use super::plcopen::Writer;
+use crate::diagnostic::Code;
+use crate::dialect::Dialect;
 
 /// What an element of a configuration or resource may hold beside what is read.
 const REMARKS: [&str; 2] = ["documentation", "addData"];
 
 impl Writer<'_> {
+    /// Of several devices of a CODESYS project, each with an application of its own, the first is read: the others are
+    /// other PLCs.
+    pub(super) fn leave_out_devices(&mut self, configurations: &[&Element]) {
+        let is_of_vendor = matches!(self.tool.dialect(), Dialect::Codesys | Dialect::TwinCat);
+        let mut devices = configurations.iter().filter(|each| is_of_vendor && runs(each));
+        let Some(first) = devices.next().and_then(|first| first.attribute("name")) else { return };
+        for device in devices {
+            let name = device.attribute("name").map_or("", |name| name.value.as_str());
+            let message = format!("`{name}` is another device beside `{}`: it is left out", first.value);
+            let help = "to check it, export it to a file of its own";
+            self.taken.warn(device.open.clone(), Code::SecondConfiguration, &message, Some(help));
+            self.left_out.insert(device.open.start);
+        }
+    }
+
+    pub(super) fn is_left_out(&self, element: &Element) -> bool {
+        self.left_out.contains(&element.open.start)
+    }
+
     /// A configuration; one without tasks and programs is its global variables alone.
     pub(super) fn configuration(&mut self, element: &Element) {
-        let runs = |inner: &Element| matches!(inner.name.as_str(), "task" | "pouInstance");
-        let resources = || element.elements().filter(|inner| inner.name == "resource");
-        if !resources().any(|resource| resource.elements().any(runs)) {
+        if !runs(element) {
             self.globals(element);
-            resources().for_each(|resource| self.globals(resource));
+            resources(element).for_each(|resource| self.globals_of_resource(resource));
             return;
         }
         self.write("CONFIGURATION ", &element.open);
@@ -32,6 +51,14 @@ impl Writer<'_> {
             }
         }
         self.write("END_CONFIGURATION\n", &element.close);
+    }
+
+    fn globals_of_resource(&mut self, resource: &Element) {
+        for section in resource.elements().filter(|inner| inner.name == "globalVars") {
+            if !self.is_list(section) {
+                self.section(section);
+            }
+        }
     }
 
     fn unread(&mut self, element: &Element) {
@@ -59,6 +86,8 @@ impl Writer<'_> {
         self.write(" ON PLC\n", &element.open);
         for inner in element.elements() {
             match inner.name.as_str() {
+                // A list stands outside: it has a name of its own.
+                "globalVars" if self.is_list(inner) => {}
                 "globalVars" => self.section(inner),
                 "task" => self.task(inner),
                 "pouInstance" => self.program_instance(inner, None),
@@ -122,6 +151,16 @@ impl Writer<'_> {
         self.attribute(element, "instancePathAndName");
         self.address_and_type(element);
     }
+}
+
+fn resources(configuration: &Element) -> impl Iterator<Item = &Element> {
+    configuration.elements().filter(|inner| inner.name == "resource")
+}
+
+/// True for a configuration with tasks or programs.
+fn runs(configuration: &Element) -> bool {
+    let runs = |inner: &Element| matches!(inner.name.as_str(), "task" | "pouInstance");
+    resources(configuration).any(|resource| resource.elements().any(runs))
 }
 
 /// What an element is called in program text.

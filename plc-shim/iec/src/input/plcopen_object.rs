@@ -5,6 +5,7 @@ use onescan_xml::{Element, Node};
 
 use super::plcopen::Writer;
 use super::plcopen_addition::additions;
+use crate::dialect::Feature;
 
 /// The text of an element without markup.
 pub fn inner_text(file: &str, element: &Element) -> String {
@@ -34,8 +35,19 @@ impl Writer<'_> {
         for list in additions(element, "globalvars") {
             self.global_list(list);
         }
+        if element.name == "resource" {
+            element
+                .elements()
+                .filter(|inner| self.is_list(inner))
+                .collect::<Vec<_>>()
+                .into_iter()
+                .for_each(|list| self.global_list(list));
+        }
         let places = ["instances", "configurations", "configuration", "resource"];
         for inner in element.elements().filter(|inner| places.contains(&inner.name.as_str())) {
+            if self.is_left_out(inner) {
+                continue;
+            }
             self.vendor_objects(inner);
         }
         for application in additions(element, "application") {
@@ -228,6 +240,12 @@ impl Writer<'_> {
         }
         self.members(interface);
         self.write("END_INTERFACE\n", &interface.close);
+    }
+
+    /// True for a list of global variables, which CODESYS and TwinCAT have in resources, too.
+    pub(super) fn is_list(&self, element: &Element) -> bool {
+        let has_name = element.attribute("name").is_some_and(|name| !name.value.is_empty());
+        element.name == "globalVars" && has_name && self.taken.dialect.has(Feature::StaticSection)
     }
 
     /// A list's variables are known with and without its name.

@@ -220,6 +220,11 @@ impl<'a> Lexer<'a> {
             self.at += 1;
             return self.string(char::from(self.peek(0)), TokenKind::Typed);
         }
+        if let Some(blanks) = self.blanks_before_value() {
+            self.at += 1 + blanks;
+            self.typed_value();
+            return TokenKind::Typed;
+        }
         let after_sign = usize::from(matches!(self.peek(1), b'+' | b'-'));
         if self.peek(0) == b'#'
             && (self.peek(1 + after_sign).is_ascii_alphanumeric() || self.peek(1 + after_sign) == b'_')
@@ -235,6 +240,14 @@ impl<'a> Lexer<'a> {
         let keyword = Keyword::find(text)
             .filter(|keyword| keyword.is_in(self.dialect) && !keyword.is_soft() && !keyword.is_of_chart());
         keyword.map_or(TokenKind::Identifier, TokenKind::Keyword)
+    }
+
+    /// How many blanks stand between `#` and a name, where they may.
+    fn blanks_before_value(&self) -> Option<usize> {
+        let rest = self.rest().strip_prefix('#').filter(|_| self.dialect.has(Feature::SpacedValues))?;
+        let name = rest.trim_start_matches([' ', '\t']);
+        let blanks = rest.len() - name.len();
+        (blanks > 0 && name.starts_with(|first: char| first.is_ascii_alphabetic() || first == '_')).then_some(blanks)
     }
 
     /// What follows `INT#`: digits with a base, a fraction, an exponent, a duration or a name.

@@ -42,6 +42,7 @@ pub fn parse_real(text: &str) -> Result<f64, String> {
 /// A sentence that says what is wrong.
 pub fn parse_typed(text: &str) -> Result<Literal, String> {
     let (prefix, body) = text.split_once('#').ok_or("`#` is missing")?;
+    let body = body.trim_start();
     // `D#Red` is a value of a user's own enumeration.
     let calendar = calendar_prefix(prefix).filter(|_| body.starts_with(|first: char| first.is_ascii_digit()));
     if let Some((kind, long)) = calendar {

@@ -225,3 +225,18 @@ pub fn root(place: &Expr) -> Option<&crate::syntax::ast::Ident> {
         _ => None,
     }
 }
+
+/// True if the expression, or a part of it, is the name, which is in capitals.
+pub fn names(expr: &Expr, key: &str) -> bool {
+    struct Search<'k>(&'k str, bool);
+
+    impl Visitor for Search<'_> {
+        fn expression(&mut self, expr: &Expr) {
+            self.1 |= matches!(&expr.kind, ExprKind::Name(name) if name.key() == self.0);
+        }
+    }
+
+    let mut search = Search(key, false);
+    expression(expr, &mut search);
+    search.1
+}

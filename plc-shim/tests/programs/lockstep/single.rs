@@ -179,7 +179,6 @@ fn what_no_edge_can_start_is_refused() {
             RESOURCE R ON X {task} PROGRAM p WITH t : P; END_RESOURCE END_CONFIGURATION"
         )
     };
-    insta::assert_snapshot!(refused(&of("TASK t (PRIORITY := 1);"), Target::Iec, None), @"c.st:2:34: error[L0501]: a task without INTERVAL and SINGLE is not instrumented yet");
     insta::assert_snapshot!(refused(&of("TASK t (SINGLE := g AND g);"), Target::Iec, None), @"c.st:2:37: error[L0501]: SINGLE other than a variable is not instrumented yet");
     let given = Some(vec![task("t", 10, 1, &["p"])]);
     insta::assert_snapshot!(refused(&of("TASK t (SINGLE := g);"), Target::Iec, given), @"c.st:2:34: error[L0501]: a task with SINGLE is not instrumented where other tasks are given (leave it to the configuration which tasks there are)");
@@ -191,4 +190,17 @@ fn what_no_edge_can_start_is_refused() {
     let mut none = edges();
     none[0].single = None;
     insta::assert_snapshot!(refused(EDGES, Target::Iec, Some(none)), @"task `on_b` has neither an interval nor a trigger");
+}
+
+#[test]
+fn a_task_without_an_interval_is_scheduled_as_programs_without_a_task_are() {
+    let project = |task: &str| {
+        let text = format!(
+            "PROGRAM P VAR n : INT; END_VAR n := n + 1; END_PROGRAM
+            CONFIGURATION C TASK fast (INTERVAL := T#10ms, PRIORITY := 2); TASK t (PRIORITY := 1);
+            PROGRAM q WITH fast : P; PROGRAM p{task} : P; END_CONFIGURATION"
+        );
+        instrumented(&text).into_iter().map(|(_, text)| text.replace(" WITH t :", " :")).collect::<Vec<_>>()
+    };
+    assert_eq!(project(" WITH t"), project(""));
 }

@@ -71,6 +71,9 @@ impl<'d, 'a> Configurer<'d, 'a> {
             self.access_paths(&ast.access);
         }
         self.make_entries();
+        if let Some(ast) = self.declarations.configuration() {
+            self.free_tasks(ast);
+        }
     }
 
     /// What can be said only when every unit's body is known.

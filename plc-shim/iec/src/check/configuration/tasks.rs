@@ -5,6 +5,7 @@ use onescan_base::TimeSpan;
 use super::Configurer;
 use crate::check::body::Body;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
+use crate::dialect::{Dialect, Feature};
 use crate::ir::{ElementaryType, Task, Value};
 use crate::syntax::ast::{self, Expr, ExprKind, Ident, Literal, TaskDeclaration};
 
@@ -50,10 +51,35 @@ impl<'a> Configurer<'_, 'a> {
         }
         let is_triggered = ast.inputs.iter().any(|(name, _)| name.key() == "SINGLE");
         if task.interval.is_none() && !is_triggered && self.declarations.mark() == known {
-            let message = format!("task `{}` has neither SINGLE nor an INTERVAL, so it never runs", ast.name.text);
-            self.declarations.report(Diagnostic::error(Code::TaskNeverRuns, ast.name.span, message));
+            self.report_never_due(ast);
         }
         task
+    }
+
+    /// The standard never runs such a task; tools that run it all the time have their own word for it.
+    fn report_never_due(&mut self, ast: &TaskDeclaration) {
+        let (name, dialect) = (&ast.name, self.declarations.dialect(ast.name.span));
+        if !is_free(ast, dialect) {
+            let message = format!("task `{}` has neither SINGLE nor an INTERVAL, so it never runs", name.text);
+            self.declarations.report(Diagnostic::error(Code::TaskNeverRuns, name.span, message));
+        } else if dialect == Dialect::Iec3 {
+            let message = format!("task `{}` has neither SINGLE nor an INTERVAL, so it runs in each scan", name.text);
+            let help = "this is SIMATIC AX's program cycle; by the standard it never runs";
+            self.declarations.report(Diagnostic::warning(Code::TaskNeverRuns, name.span, message).with_help(help));
+        }
+    }
+
+    /// What a task without an interval runs, where tools run that all the time, is run as what has no task: behind the
+    /// tasks, in the order of the priorities.
+    pub(super) fn free_tasks(&mut self, ast: &ast::Configuration) {
+        for (resource, made) in ast.resources.iter().zip(&mut self.configured.resources) {
+            let is_free = |task: &TaskDeclaration| is_free(task, self.declarations.dialect(task.name.span));
+            let tasks = resource.tasks.iter().zip(std::mem::take(&mut made.tasks));
+            let (mut free, rest): (Vec<_>, Vec<_>) = tasks.partition(|(task, _)| is_free(task));
+            free.sort_by_key(|(_, task)| task.priority);
+            made.background.extend(free.into_iter().flat_map(|(_, task)| task.entries));
+            made.tasks = rest.into_iter().map(|(_, task)| task).collect();
+        }
     }
 
     /// Nothing for an interval of 0, which is as good as none.
@@ -117,4 +143,10 @@ impl<'a> Configurer<'_, 'a> {
         }
         found
     }
+}
+
+/// True for a task that says neither when it is due nor what triggers it, where that means all the time.
+fn is_free(task: &TaskDeclaration, dialect: Dialect) -> bool {
+    let says_when = |(name, _): &(Ident, Expr)| matches!(name.key().as_str(), "INTERVAL" | "SINGLE");
+    dialect.has(Feature::FreeTasks) && !task.inputs.iter().any(says_when)
 }

@@ -158,6 +158,12 @@ impl Declarations<'_> {
         variable
     }
 
+    /// True for a global variable whose initial value is being worked out.
+    pub(in crate::check) fn is_being_placed(&self, name: &str) -> bool {
+        let key = self.global_key(name);
+        key.and_then(|key| self.globals.get(&key)).is_some_and(|entry| entry.progress == Progress::Running)
+    }
+
     /// Resolves a unit's variables and, for what has instances, their layout. Nothing, with a
     /// report, if the unit contains itself.
     pub(in crate::check) fn declare(&mut self, id: PouId, used: Option<Span>) -> Option<()> {

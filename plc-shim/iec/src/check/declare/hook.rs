@@ -29,6 +29,11 @@ const HOOKS: [Hook; 3] = [
     Hook { name: "FB_EXIT", inputs: &EXIT_INPUTS, open: false },
 ];
 
+/// True for the name of the method that initialises an instance.
+pub(in crate::check) fn is_init(name: &str) -> bool {
+    INIT.name.eq_ignore_ascii_case(name)
+}
+
 /// True for a method that runs without a call.
 pub(in crate::check) fn is_hook(name: &str) -> bool {
     HOOKS.iter().any(|hook| hook.name.eq_ignore_ascii_case(name))

@@ -3,6 +3,7 @@
 use super::Declarations;
 use super::class::Role;
 use super::hook::{INIT, is_hook};
+use crate::check::types::generic::Generic;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Feature;
 use crate::ir::{PouId, Variable};
@@ -92,7 +93,10 @@ impl Declarations<'_> {
         let parameter =
             |each: &&Variable| matches!(each.section, SectionKind::Input | SectionKind::InOut | SectionKind::Output);
         let result = |place: Option<&crate::ir::Place>| place.map(|place| place.ty);
-        let shape = |each: &Variable| (each.section, each.ty, each.name.to_ascii_uppercase());
+        // An input of type ANY is, inside of its unit, what vendors let be written instead.
+        let seen = self.type_names.get("__SYSTEM.ANYTYPE").and_then(|entry| Some(entry.resolved.as_ref()?.ty));
+        let seen = |ty| seen.filter(|_| self.generic(ty) == Some(Generic::Any)).unwrap_or(ty);
+        let shape = |each: &Variable| (each.section, seen(each.ty), each.name.to_ascii_uppercase());
         let same = own.variables().iter().filter(parameter).map(shape).eq(above
             .variables()
             .iter()

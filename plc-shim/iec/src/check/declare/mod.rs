@@ -55,7 +55,7 @@ use crate::syntax::{FileId, Span, ast};
 pub(super) use self::class::{Membership, Occasion, Role};
 pub(super) use self::demand::{Need, Resolve};
 pub(super) use self::entry::{Declared, Enumerator, Rank, TypedImage};
-pub(super) use self::hook::{EXIT_INPUTS, INIT_INPUTS, is_hook, suits_init};
+pub(super) use self::hook::{EXIT_INPUTS, INIT_INPUTS, is_hook, is_init, suits_init};
 pub use self::kept::Kept;
 pub(super) use self::kept::place_of;
 pub use self::layout::{CALL_DEPTH_OFFSET, INIT_RETAINS_OFFSET, VIRTUAL_TIME_NAME, VIRTUAL_TIME_OFFSET};

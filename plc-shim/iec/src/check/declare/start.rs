@@ -48,6 +48,8 @@ pub(in crate::check) enum StartKind<'a> {
     Each { count: u32, stride: u32, starts: Starts<'a> },
     /// Assigns an initial value that is not a constant.
     Value(TypeId, &'a ast::Expr),
+    /// The same of one that is checked then only: what it needs is not known where it is declared.
+    Later(TypeId, &'a ast::Expr),
     /// Gives what `FB_init` may have written the value that its instance is declared with.
     Bytes(TypeId, Arc<[u8]>),
     /// Sets a property of an instance.

@@ -11,9 +11,9 @@ use crate::dialect::Feature;
 use crate::ir::{self, Dimension, Field, PouId, Storage, Type, TypeId};
 use crate::syntax::Span;
 use crate::syntax::ast::{
-    Argument, ElementInit, Expr, ExprKind, Ident, Initialiser, InitialiserKind, ReferenceKind, StructureInit,
+    Argument, ElementInit, Expr, ExprKind, Ident, Initialiser, InitialiserKind, PouKind, ReferenceKind, StructureInit,
 };
-use crate::syntax::walk::root;
+use crate::syntax::walk::{names, root};
 
 /// A variable's initial value while it is made.
 struct Making<'a> {
@@ -80,6 +80,9 @@ impl<'a> Written<'_, 'a> {
     }
 
     fn fill_value(&mut self, spot: Spot, expr: &'a Expr, making: &mut Making<'a>) -> Option<()> {
+        if self.needs_instance(expr) {
+            return self.begins_later(spot, expr, making);
+        }
         match self.declarations().types().get(spot.ty).clone() {
             Type::Text(_) if !self.is_constant_text(expr) => {
                 self.begins_with(spot, expr, making);
@@ -137,18 +140,13 @@ impl<'a> Written<'_, 'a> {
 
     fn fill_elementary(&mut self, spot: Spot, expr: &'a Expr, making: &mut Making<'a>) -> Option<()> {
         if self.refers_to_later(spot.ty, expr) {
-            self.begins_with(spot, expr, making);
-            return Some(());
+            return self.begins_later(spot, expr, making);
         }
         let typed = self.body.beginning(expr, spot.ty)?;
         if matches!(fold(self.declarations().types(), &typed), Err(NoValue::NotConstant(_)))
             && self.may_be_computed(&typed)
         {
-            if spot.bit.is_some() {
-                let message = "a member that is one bit of a byte begins with a constant";
-                self.report(Diagnostic::error(Code::InvalidInitialiser, expr.span, message));
-                return None;
-            }
+            self.require_byte(spot, expr)?;
             self.begins_with(spot, expr, making);
             return Some(());
         }
@@ -163,12 +161,35 @@ impl<'a> Written<'_, 'a> {
         Some(())
     }
 
-    /// True for a reference to a variable of the unit that is declared behind it, as vendors have it: where that lies is
-    /// known at the start, when the value is checked and made.
+    fn require_byte(&mut self, spot: Spot, expr: &Expr) -> Option<()> {
+        if spot.bit.is_none() {
+            return Some(());
+        }
+        let message = "a member that is one bit of a byte begins with a constant";
+        self.report(Diagnostic::error(Code::InvalidInitialiser, expr.span, message));
+        None
+    }
+
+    fn begins_later(&mut self, spot: Spot, expr: &'a Expr, making: &mut Making<'a>) -> Option<()> {
+        self.require_byte(spot, expr)?;
+        making.starts.push(self.start(spot.offset, StartKind::Later(spot.ty, expr), expr.span));
+        Some(())
+    }
+
+    /// True for what names the instance whose variables are being declared, as vendors let `THIS^` do.
+    fn needs_instance(&self, expr: &Expr) -> bool {
+        let unit = self.body.unit().map(|unit| self.declarations().pou(unit).ast().kind);
+        let computed = || self.declarations().dialect(expr.span).has(Feature::ComputedInitialValues);
+        unit.is_some_and(PouKind::has_instances) && computed() && names(expr, "THIS")
+    }
+
+    /// True for a reference to a variable of the unit that is declared behind it, as vendors have it, and to a global
+    /// variable that needs this one in its turn: where that lies is known at the start, when the value is checked and made.
     fn refers_to_later(&self, ty: TypeId, expr: &Expr) -> bool {
         let types = self.declarations().types();
-        let refers = matches!(types.get(ty), Type::Reference { .. } | Type::Interface { .. });
-        let Some(unit) = self.body.unit().filter(|_| refers) else { return false };
+        if !matches!(types.get(ty), Type::Reference { .. } | Type::Interface { .. }) {
+            return false;
+        }
         let place = match &expr.kind {
             ExprKind::Call(call) => match &call.arguments[..] {
                 [Argument::Positional(place)] => place,
@@ -179,6 +200,7 @@ impl<'a> Written<'_, 'a> {
         let Some(name) = root(place).map(Ident::key).filter(|name| !self.body.scope().declares(name)) else {
             return false;
         };
+        let Some(unit) = self.body.unit() else { return self.declarations().is_being_placed(&name) };
         let declared = self.declarations().pou(unit).ast().sections.iter().flat_map(|section| &section.variables);
         let is_later = declared.flat_map(|variable| &variable.names).any(|each| each.key() == name);
         is_later && self.declarations().dialect(expr.span).has(Feature::ComputedInitialValues)
@@ -365,11 +387,13 @@ impl<'a> Written<'_, 'a> {
                 making.starts.push(self.start(spot.offset, kind, member.name.span));
                 continue;
             }
+            let known = making.starts.len();
             let filled = self.fill_member(spot, &fields, member, making)?;
             if overwritten {
                 let bytes = making.image.get(self.range(filled))?.into();
-                let kind = StartKind::Bytes(filled.ty, bytes);
-                making.starts.push(self.start(filled.offset, kind, member.name.span));
+                let start = self.start(filled.offset, StartKind::Bytes(filled.ty, bytes), member.name.span);
+                // What is computed comes behind the bytes around it.
+                making.starts.insert(known, start);
             }
         }
         Some(())

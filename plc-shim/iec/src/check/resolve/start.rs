@@ -19,7 +19,8 @@ impl<'a> Written<'_, 'a> {
 
     /// Reports a variable that may begin with a constant only.
     pub(super) fn require_constant(&mut self, starts: &[Start<'a>], why: &str) {
-        if let Some(start) = starts.iter().find(|start| matches!(start.kind, StartKind::Value(..))) {
+        let is_computed = |start: &&Start<'a>| matches!(start.kind, StartKind::Value(..) | StartKind::Later(..));
+        if let Some(start) = starts.iter().find(is_computed) {
             let message = format!("a constant is wanted here: {why}");
             self.report(Diagnostic::error(Code::NotConstant, start.span, message));
         }

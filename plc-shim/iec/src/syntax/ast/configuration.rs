@@ -20,6 +20,13 @@ impl Configuration {
         self.sections.iter().chain(self.resources.iter().flat_map(|resource| &resource.sections))
     }
 
+    /// True if it declares global variables, and nothing that runs.
+    pub(crate) fn has_only_globals(&self) -> bool {
+        let has_paths = !self.access.is_empty() || !self.instances.is_empty();
+        let runs = self.resources.iter().any(|each| !each.tasks.is_empty() || !each.programs.is_empty());
+        self.all_sections().next().is_some() && !has_paths && !runs
+    }
+
     /// Takes over what another part of the same configuration declares.
     pub(crate) fn absorb(&mut self, part: Self) {
         self.sections.extend(part.sections);

@@ -5,11 +5,14 @@ use crate::check::body::place::Access;
 use crate::check::body::{Body, Meant};
 use crate::check::types::constant::decode;
 use crate::check::types::number::as_number;
-use crate::check::types::operand::{Operand, constant};
+use crate::check::types::operand::{Operand, constant, converted};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::dialect::{Feature, StringMemory};
+use crate::dialect::{Dialect, Feature, StringMemory};
 use crate::ir::text::TextShape;
-use crate::ir::{Argument, Expr, ExprKind, Field, Place, Statement, StatementKind, Storage, Type, TypeId, Variable};
+use crate::ir::{
+    Argument, ElementaryType, Expr, ExprKind, Field, Place, Rounding, Statement, StatementKind, Storage, Type, TypeId,
+    Variable,
+};
 use crate::syntax::Span;
 use crate::syntax::ast::{self, SectionKind};
 
@@ -109,12 +112,37 @@ impl Body<'_, '_> {
             return self.reference(parameter, expr, passing).map(Argument::Reference);
         }
         if self.is_reference_to(parameter.ty) {
-            return self.referring_argument(parameter.ty, expr, passing).map(Argument::Value);
+            return self.reference_argument(parameter, expr, passing).map(Argument::Value);
         }
-        if self.is_instance_type(parameter.ty) && self.declarations.dialect(expr.span).has(Feature::InstanceCopies) {
+        let dialect = self.declarations.dialect(expr.span);
+        // SIMATIC AX copies in assignments, which says nothing of inputs.
+        let is_copied = dialect.has(Feature::InstanceCopies) && dialect != Dialect::Iec3;
+        if self.is_instance_type(parameter.ty) && is_copied {
             return self.instance_argument(parameter.ty, expr, passing).map(Argument::Value);
         }
+        if self.may_be_long(parameter, expr.span) {
+            return self.duration(expr, parameter.ty).map(Argument::Value);
+        }
         self.expression_for(expr, parameter.ty).map(Argument::Value)
+    }
+
+    /// True for PT of a standard timer, which is a TIME or an LTIME (3rd ed. Table 46).
+    fn may_be_long(&self, parameter: &Variable, span: Span) -> bool {
+        let Some(owner) = parameter.owner.filter(|owner| self.declarations.is_library(*owner)) else { return false };
+        let name = self.declarations.pou(owner).ast().name.key();
+        let is_timer = matches!(name.as_str(), "TON" | "TOF" | "TP") && parameter.name == "PT";
+        is_timer && self.declarations.dialect(span).has(Feature::LongTimers)
+    }
+
+    /// A TIME, or an LTIME, which counts as many nanoseconds where there is this choice.
+    fn duration(&mut self, expr: &ast::Expr, wanted: TypeId) -> Option<Expr> {
+        let context = self.elementary(wanted);
+        match self.within(context, |body| body.expression(expr))? {
+            Operand::Typed(value) if value.ty == ElementaryType::Ltime.into() => {
+                Some(converted(value, ElementaryType::Time, Rounding::NearestEven))
+            }
+            other => self.coerce(other, wanted),
+        }
     }
 
     /// An instance for an input, which is a copy: of one that is derived, what the base has of it.
@@ -142,7 +170,8 @@ impl Body<'_, '_> {
             || self.derives(place.ty, parameter.ty)
             || self.begins_as(place.ty, parameter.ty)
             || self.is_number_of(place.ty, parameter.ty, expr.span)
-            || self.has_bits_of(place.ty, parameter.ty, expr.span);
+            || self.has_bits_of(place.ty, parameter.ty, expr.span)
+            || self.is_other_pointer(place.ty, parameter.ty, expr.span);
         if !is_alike {
             let (wanted, found) = (self.type_name(parameter.ty), self.type_name(place.ty));
             let message = format!("VAR_IN_OUT `{}` is {wanted}, this is {found}", parameter.name);
@@ -277,6 +306,16 @@ impl Body<'_, '_> {
         passing: &mut Passing,
     ) -> Option<Expr> {
         let value = self.referring(ty, expr)?;
+        self.with_address(value, passing)
+    }
+
+    /// The same for an input, which may be CONSTANT: then constants are given for it, too (CODESYS, TwinCAT).
+    fn reference_argument(&mut self, parameter: &Variable, expr: &ast::Expr, passing: &mut Passing) -> Option<Expr> {
+        let value = self.referring_to(parameter.ty, expr, parameter.is_constant)?;
+        self.with_address(value, passing)
+    }
+
+    fn with_address(&mut self, value: Expr, passing: &mut Passing) -> Option<Expr> {
         match value.kind {
             ExprKind::Address(place) => {
                 let kind = ExprKind::Address(self.through_memory(place, passing)?);

@@ -4,7 +4,7 @@ use crate::check::body::Body;
 use crate::check::types::build::{assign, load};
 use crate::check::types::operand::{Operand, constant};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::dialect::Feature;
+use crate::dialect::{Dialect, Feature};
 use crate::ir::{
     ElementaryType, Expr, ExprKind, Place, Statement, StatementKind, Storage, Type, TypeId, TypeTable, Value,
 };
@@ -32,6 +32,10 @@ impl Body<'_, '_> {
                 return self.mismatch(&wanted, &found, other.span());
             }
         };
+        if dialect == Dialect::Iec3 {
+            let message = "this copies all variables of an instance, as SIMATIC AX does; the standard assigns none";
+            self.report(Diagnostic::warning(Code::NotAssignable, span, message));
+        }
         let value = Expr { ty: target.ty, ..value };
         Some(self.copied_instance(target, value, span))
     }

@@ -55,7 +55,7 @@ impl Body<'_, '_> {
                 (self.this_object(class, name.span), name)
             }
             ast::ExprKind::Member(base, name) => {
-                if !self.is_super(base) && !self.declarations.has_method_named(&name.key()) {
+                if !self.is_super(base) && !self.declarations.has_method_named(&name.key()) && !self.is_init(name) {
                     return None;
                 }
                 match self.object(base)? {
@@ -67,6 +67,9 @@ impl Body<'_, '_> {
         };
         let methods = self.declarations.methods_named(object.class, &name.text);
         if methods.is_empty() {
+            if self.is_init(name) && object.known != Known::Interface && !self.declarations.may_inherit(object.class) {
+                return Some(self.implicit_init(&object, call, span));
+            }
             // A variable of the name may be an instance to call.
             let is_variable = |scope: std::sync::Arc<Scope>| scope.find(&name.key()).is_some();
             let is_unknown = object.known == Known::Super
@@ -93,7 +96,10 @@ impl Body<'_, '_> {
         let scope = self.declarations.interface(method, span)?;
         let formal = is_formal(call);
         let make = |body: &mut Self, call: &Call| {
-            let (arguments, passing) = body.method_arguments(&scope, &name.text, call, formal, span)?;
+            let (arguments, mut passing) = body.method_arguments(&scope, &name.text, call, formal, span)?;
+            if body.is_init(name) && object.known != Known::Super {
+                passing.before.extend(body.begun_again(&object, call, span));
+            }
             body.on_object(object, Role::Method, method, arguments, passing, span)
         };
         if !enable::is_controlled(call) {

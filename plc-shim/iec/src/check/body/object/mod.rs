@@ -2,6 +2,7 @@
 //! (3rd ed. 6.6.5.5 to 6.6.5.10).
 
 pub(super) mod copy;
+mod init_call;
 pub(super) mod interface_value;
 pub(super) mod method_call;
 pub(super) mod property;

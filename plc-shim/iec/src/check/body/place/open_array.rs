@@ -8,6 +8,7 @@ use crate::check::body::Body;
 use crate::check::standard::place::PlaceFunction;
 use crate::check::types::operand::Operand;
 use crate::diagnostic::{Code, Diagnostic};
+use crate::dialect::Feature;
 use crate::ir::types::OPEN_BOUNDS;
 use crate::ir::{
     Dimension, ElementaryType, Expr, ExprKind, Place, Statement, StatementKind, Step, Type, TypeId, Value, Variable,
@@ -56,7 +57,7 @@ impl Body<'_, '_> {
         before: &mut Vec<Statement>,
     ) -> Option<Place> {
         let written = matches!(parameter.section, SectionKind::InOut | SectionKind::Output);
-        let place = if written { self.target(expr)? } else { self.place(expr)?.place };
+        let place = if written && !self.is_open_input(expr) { self.target(expr)? } else { self.place(expr)?.place };
         if place.ty == parameter.ty {
             return Some(place);
         }
@@ -79,6 +80,15 @@ impl Body<'_, '_> {
             return None;
         };
         self.description(parameter.ty, &dimensions, place, before)
+    }
+
+    /// True for an input without bounds, which vendors let be handed on to what writes it: it is the caller's own array.
+    fn is_open_input(&self, expr: &ast::Expr) -> bool {
+        let ast::ExprKind::Name(name) = &expr.kind else { return false };
+        let is_handed_on = self.declarations.dialect(expr.span).has(Feature::OpenInputsHandedOn);
+        let variable = self.scope.find(&name.key()).filter(|_| is_handed_on);
+        variable
+            .is_some_and(|found| self.is_open(found.ty) && found.section == SectionKind::Input && !found.is_constant)
     }
 
     pub(in crate::check) fn is_open(&self, ty: TypeId) -> bool {

@@ -7,6 +7,7 @@ use super::{Body, Meant};
 use crate::check::types::operand::{Operand, constant, converted};
 use crate::check::types::reference::target_of;
 use crate::diagnostic::{Code, Diagnostic};
+use crate::dialect::Feature;
 use crate::ir::{
     Binary, ElementaryType, Expr, ExprKind, Place, Rounding, Statement, StatementKind, Step, Storage, Type, TypeId,
     TypeTable, Value,
@@ -159,9 +160,7 @@ impl Body<'_, '_> {
                     Some(Expr { ty: wanted, ..expr })
                 }
                 Type::Reference { kind: ReferenceKind::Pointer, target: other } => {
-                    let (target, other) = (self.type_name(target), self.type_name(other));
-                    let message = format!("a pointer to {target} is made of one to {other}");
-                    self.report(Diagnostic::warning(Code::PointerOfOtherType, expr.span, message));
+                    self.report_other_pointer(other, target, expr.span);
                     Some(Expr { ty: wanted, ..expr })
                 }
                 Type::Elementary(ty) if holds_address(ty) => {
@@ -322,6 +321,11 @@ impl Body<'_, '_> {
     /// A reference of type `wanted`, a `REFERENCE TO`, to the variable `value`; NULL and 0 take it back.
     /// Vendors let it refer to what does not outlive the call.
     pub(super) fn referring(&mut self, wanted: TypeId, value: &ast::Expr) -> Option<Expr> {
+        self.referring_to(wanted, value, false)
+    }
+
+    /// The same; where nothing is written by it, to a constant, too.
+    pub(super) fn referring_to(&mut self, wanted: TypeId, value: &ast::Expr, reads: bool) -> Option<Expr> {
         let (_, target) = target_of(self.declarations.types(), wanted)?;
         let is_null = match &value.kind {
             ast::ExprKind::Literal(ast::Literal::Integer(0)) => true,
@@ -339,13 +343,34 @@ impl Body<'_, '_> {
             return Some(Expr { kind: ExprKind::Load(source), ty: wanted, span: value.span });
         }
         let located = self.place(value)?;
-        self.reject_constant(&located, value.span)?;
+        if !reads {
+            self.reject_constant(&located, value.span)?;
+        }
         let place = located.place;
-        if place.ty != target && !self.derives(place.ty, target) && !self.begins_as(place.ty, target) {
+        let is_alike = place.ty == target || self.derives(place.ty, target) || self.begins_as(place.ty, target);
+        if !is_alike && !self.is_other_pointer(place.ty, target, value.span) {
             let (target, found) = (self.type_name(target), self.type_name(place.ty));
             return self.mismatch(&target, &found, value.span);
         }
         Some(Expr { kind: ExprKind::Address(place), ty: wanted, span: value.span })
+    }
+
+    /// True for a pointer where one to another type is wanted, as vendors have it, with a warning.
+    pub(super) fn is_other_pointer(&mut self, found: TypeId, wanted: TypeId, span: Span) -> bool {
+        let types = self.declarations.types();
+        let target = |ty| target_of(types, ty).filter(|(kind, _)| *kind == ReferenceKind::Pointer).map(|(_, to)| to);
+        let (Some(found), Some(wanted)) = (target(found), target(wanted)) else { return false };
+        if !self.declarations.dialect(span).has(Feature::PointersInOut) {
+            return false;
+        }
+        self.report_other_pointer(found, wanted, span);
+        true
+    }
+
+    fn report_other_pointer(&mut self, found: TypeId, wanted: TypeId, span: Span) {
+        let (wanted, found) = (self.type_name(wanted), self.type_name(found));
+        let message = format!("a pointer to {wanted} is made of one to {found}");
+        self.report(Diagnostic::warning(Code::PointerOfOtherType, span, message));
     }
 
     /// What a variable of type `ty` begins with. A `REFERENCE TO` begins as what it refers to, be it written with `:=`

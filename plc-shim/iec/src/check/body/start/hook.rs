@@ -140,6 +140,10 @@ impl Body<'_, '_> {
 
     /// Reports inputs that are given nothing and have no initial value.
     fn all_given(&mut self, scope: &Arc<Scope>, pou: PouId, init: PouId, named: &[Named], span: Span) -> Option<()> {
+        // What a stub holds was guessed by what is done with it.
+        if self.own_class().is_some_and(|own| self.declarations.is_external(own)) {
+            return Some(());
+        }
         // A name that is wrong is reported instead.
         if named.iter().any(|(name, _)| scope.own(&name.key()).is_none()) {
             return Some(());
@@ -171,8 +175,16 @@ impl Body<'_, '_> {
     /// Runs what a unit's variables do at an occasion, on the instance at a place.
     pub(in crate::check::body) fn stage_call(&mut self, place: &Place, stage: PouId, span: Span) -> Option<Statement> {
         let owner = self.declarations.owner_of(stage);
-        let called =
-            self.on_object(instance_at(place, owner), Role::Method, stage, Vec::new(), Passing::default(), span)?;
+        self.stage_call_on(instance_at(place, owner), stage, span)
+    }
+
+    pub(in crate::check::body) fn stage_call_on(
+        &mut self,
+        object: Object,
+        stage: PouId,
+        span: Span,
+    ) -> Option<Statement> {
+        let called = self.on_object(object, Role::Method, stage, Vec::new(), Passing::default(), span)?;
         Some(Statement { kind: StatementKind::Evaluate(called), span })
     }
 

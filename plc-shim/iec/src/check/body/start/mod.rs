@@ -91,6 +91,10 @@ impl<'a> Body<'_, 'a> {
                 self.declarations.forget_since(known);
                 value.map(|value| self.assignment(at(*ty), value, span)).into_iter().collect()
             }
+            StartKind::Later(ty, expr) => {
+                let value = self.beginning(expr, *ty);
+                value.map(|value| self.assignment(at(*ty), value, span)).into_iter().collect()
+            }
             StartKind::Bytes(ty, bytes) => vec![self.given_bytes(at(*ty), bytes)],
             StartKind::Property(pou, name, value) => {
                 let place = at(self.instance_type(*pou));

@@ -13,12 +13,12 @@ use super::Body;
 use super::place::{Access, Located};
 use crate::check::types::constant::fold;
 use crate::check::types::number::as_number;
-use crate::check::types::operand::{Operand, constant};
+use crate::check::types::operand::{Operand, constant, converted};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::{Feature, IntegerWidth};
 use crate::ir::{
-    CaseArm, CaseStatement, ElementaryType, Expr, ForStatement, IfBranch, Place, Statement, StatementKind, Type,
-    TypeId, Value,
+    CaseArm, CaseStatement, ElementaryType, Expr, ForStatement, IfBranch, Place, Rounding, Statement, StatementKind,
+    Type, TypeId, Value,
 };
 use crate::syntax::{Span, ast};
 
@@ -328,7 +328,7 @@ impl Body<'_, '_> {
     fn for_statement(&mut self, inner: &ast::ForStatement) -> Option<StatementKind> {
         let variable = self.target(&inner.variable).and_then(|place| self.control_variable(place));
         let header = variable.and_then(|(place, ty)| {
-            let from = self.expression_of(&inner.from, ty);
+            let from = self.start_of_count(&inner.from, ty);
             let to = self.expression_of(&inner.to, ty);
             let by = match &inner.by {
                 Some(by) => self.expression_of(by, self.step_type(ty, by.span)),
@@ -344,6 +344,24 @@ impl Body<'_, '_> {
         let step = self.scope.register(ElementaryType::Lint);
         let inner = ForStatement { variable, from, to, by, last, step, body };
         Some(StatementKind::For(Box::new(inner)))
+    }
+
+    /// What a FOR begins with. SIMATIC AX takes a wider integer there, as project texts show.
+    fn start_of_count(&mut self, expr: &ast::Expr, ty: ElementaryType) -> Option<Expr> {
+        if !self.declarations.dialect(expr.span).has(Feature::WideStarts) {
+            return self.expression_of(expr, ty);
+        }
+        let operand = self.within(Some(ty), |body| body.expression(expr))?;
+        match operand {
+            Operand::Typed(value) if self.plain_elementary(&value).is_some_and(|found| is_wider(found, ty)) => {
+                let message =
+                    format!("{} is wider than {ty}, so the loop may begin elsewhere", self.type_name(value.ty));
+                let found = Diagnostic::warning(Code::TypeMismatch, expr.span, message);
+                self.report(found.with_help("convert it, or count with a variable of its type"));
+                Some(converted(value, ty, Rounding::NearestEven))
+            }
+            other => self.coerce(other, ty.into()),
+        }
     }
 
     /// The standard has no loop that stays where it is; at run time it stops the PLC.
@@ -409,4 +427,9 @@ impl Body<'_, '_> {
             }
         }
     }
+}
+
+/// True for a signed integer where a narrower one is wanted, or the same of unsigned ones.
+fn is_wider(found: ElementaryType, wanted: ElementaryType) -> bool {
+    found.is_integer() && found.is_signed() == wanted.is_signed() && found.size() > wanted.size()
 }

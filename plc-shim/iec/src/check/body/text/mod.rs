@@ -50,6 +50,10 @@ impl Body<'_, '_> {
         };
         match literal {
             Operand::Text { text, .. } if text.wide == wide => Some(Operand::Text { text, span }),
+            // The units of a narrow text are those of the first 256 characters.
+            Operand::Text { text, .. } if wide && self.declarations.dialect(span).has(Feature::NarrowQuotes) => {
+                Some(Operand::Text { text: Text { wide, ..text }, span })
+            }
             _ => self.malformed_literal(prefix, text, span),
         }
     }
@@ -293,10 +297,12 @@ impl Body<'_, '_> {
 
     /// The characters of a `CONSTANT` string.
     pub(in crate::check) fn constant_text(&mut self, expr: &ast::Expr) -> Option<Text> {
-        let ast::ExprKind::Name(name) = &expr.kind else {
-            return None;
+        let name = match &expr.kind {
+            ast::ExprKind::Name(name) => name.clone(),
+            ast::ExprKind::Member(..) => self.qualified_name(expr)?,
+            _ => return None,
         };
-        let variable = self.variable_named(name)?.ok()?;
+        let variable = self.variable_named(&name)?.ok()?;
         let shape = self.shape(variable.ty).filter(|_| variable.is_constant)?;
         Some(Text { wide: shape.wide, units: shape.decode(&variable.image) })
     }
