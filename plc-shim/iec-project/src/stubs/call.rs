@@ -29,6 +29,9 @@ impl<'a> Collector<'a> {
         }
         let key = name.key();
         let own = scope.local.is_some_and(|local| local.name.key() == key);
+        if let Some(found) = self.call_of_namesake(name, own, call, is_used, scope) {
+            return found;
+        }
         if !own {
             if let Some(class) = &scope.class
                 && let Some(Found::Method(method, home)) = self.find(class, &key)
@@ -93,7 +96,7 @@ impl<'a> Collector<'a> {
         local || scope.class.clone().is_some_and(|class| matches!(self.find(&class, &key), Some(Found::Variable(_))))
     }
 
-    fn function_call(&mut self, name: &str, call: &Call, is_used: bool, scope: &Scope<'a>) -> Ty {
+    pub(super) fn function_call(&mut self, name: &str, call: &Call, is_used: bool, scope: &Scope<'a>) -> Ty {
         let types = self.given(&call.arguments, scope);
         let found = self.function(name);
         let (result, mut signature) = (found.result, found.signature.clone());
@@ -337,7 +340,7 @@ impl<'a> Collector<'a> {
     }
 
     /// A call of a function or method that is declared.
-    fn declared_call(&mut self, pou: &'a Pou, home: &Home, call: &Call, scope: &Scope<'a>) -> Ty {
+    pub(super) fn declared_call(&mut self, pou: &'a Pou, home: &Home, call: &Call, scope: &Scope<'a>) -> Ty {
         let inputs = inputs(pou);
         let all = pou.sections.iter().flat_map(|section| &section.variables);
         let all: Vec<_> = all.flat_map(|each| each.names.iter().map(move |name| (name.key(), &each.spec))).collect();
@@ -387,7 +390,7 @@ impl<'a> Collector<'a> {
     }
 
     /// A function of the language.
-    fn standard_call(&mut self, key: &str, call: &Call, scope: &Scope<'a>) -> Ty {
+    pub(super) fn standard_call(&mut self, key: &str, call: &Call, scope: &Scope<'a>) -> Ty {
         if key == "__NEW" {
             return self.made(call, scope);
         }

@@ -25,6 +25,8 @@ pub(super) struct Collector<'a> {
     pub(super) known: Option<std::collections::BTreeMap<String, super::foreign::Head>>,
     /// The members of structures without names, by the places where these stand.
     pub(super) nameless: std::collections::BTreeMap<(FileId, u32), (Vec<Field>, Home)>,
+    /// Functions of one name may take other parameters.
+    pub(super) has_overloads: bool,
 }
 
 /// Where a body stands.

@@ -88,6 +88,8 @@ pub(super) struct Foreign {
     /// The members' keys, in the order in which they were found.
     pub(super) order: Vec<String>,
     pub(super) called: bool,
+    /// A variable of it, not its value, is what a member begins with.
+    pub(super) is_held: bool,
     /// So many constants are given to it, as a generic block.
     pub(super) constants: usize,
     /// So many inputs are given without names.

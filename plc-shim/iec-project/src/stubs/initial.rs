@@ -4,11 +4,11 @@ use super::class::Found;
 use super::collect::{Collector, Scope};
 use super::names::Access;
 use super::ty::Ty;
-use onescan_iec::ElementaryType;
 use onescan_iec::syntax::ast::{
-    Argument, Expr, InitArguments, Initialiser, InitialiserKind, Qualifier, Section, SectionKind, TypeSpec,
+    Argument, Expr, ExprKind, InitArguments, Initialiser, InitialiserKind, Qualifier, Section, SectionKind, TypeSpec,
     TypeSpecKind,
 };
+use onescan_iec::{Dialect, ElementaryType};
 
 impl<'a> Collector<'a> {
     pub(super) fn initials(&mut self, section: &Section, scope: &Scope<'a>) {
@@ -129,6 +129,17 @@ impl<'a> Collector<'a> {
         found
     }
 
+    /// Notes a variable that a member begins with: in SIMATIC AX an instance for an interface, never a copy.
+    fn held(&mut self, initial: &Initialiser, scope: &Scope<'a>) {
+        let InitialiserKind::Value(Expr { kind: ExprKind::Name(name), span, .. }) = &initial.kind else { return };
+        if self.world.dialect(*span) != Dialect::Iec3 {
+            return;
+        }
+        if let Some(Ty::Foreign(key)) = self.seen(name, scope) {
+            self.foreign(&key).is_held = true;
+        }
+    }
+
     fn initial(&mut self, ty: &Ty, initial: &Initialiser, scope: &Scope<'a>) {
         match &initial.kind {
             InitialiserKind::Value(value) => self.wanted(value, ty, scope),
@@ -148,6 +159,7 @@ impl<'a> Collector<'a> {
                 for each in values {
                     let member = self.member(ty, &each.name, Access::Initial, false);
                     self.initial(&member, &each.value, scope);
+                    self.held(&each.value, scope);
                 }
             }
             InitialiserKind::Elements(elements) => {

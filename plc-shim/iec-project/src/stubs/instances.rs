@@ -68,7 +68,7 @@ impl Collector<'_> {
             Ty::Declared(_) => self.instance(ty).is_some(),
             Ty::Foreign(key) => {
                 let found = self.needs.types.get(key);
-                found.is_some_and(|found| found.base_of_block || found.called || found.init.is_some())
+                found.is_some_and(|found| found.base_of_block || found.called || found.init.is_some() || found.is_held)
             }
             _ => false,
         }

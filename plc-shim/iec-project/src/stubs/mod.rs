@@ -6,7 +6,7 @@
 //! | [`ty`], [`slots`] | types, slots for those that are not known, and what was wanted of them |
 //! | [`hint`] | what a name says where its use does not |
 //! | [`foreign`] | what is named and not declared, and how it is used |
-//! | [`names`] | what a name stands for |
+//! | [`names`], [`namesake`] | what a name stands for |
 //! | [`class`] | members of classes and structures |
 //! | [`heirs`] | what classes of the project show of their bases and interfaces |
 //! | [`instances`] | where instances go |
@@ -31,6 +31,7 @@ mod hint;
 mod initial;
 mod instances;
 mod names;
+mod namesake;
 mod print;
 mod shape;
 mod signature;
@@ -46,7 +47,7 @@ use self::foreign::{Foreign, Needs};
 use self::slots::Slots;
 use self::ty::Ty;
 use self::world::World;
-use onescan_iec::dialect::Dialect;
+use onescan_iec::dialect::{Dialect, Feature};
 use onescan_iec::front::{Parsed, with_room};
 use onescan_iec::input::Input;
 use onescan_iec::input::kind::SourceKind;
@@ -91,14 +92,19 @@ pub fn write(inputs: &[Input], present: Option<&str>) -> Stubs {
     stubs
 }
 
-/// Stubs are read in the dialect of the project, which says what a STRING is; what most of its files have is that.
+/// Stubs are read in the dialect of the project, which says what a STRING is.
 fn pragma(inputs: &[Input]) -> String {
+    match dialect_of(inputs) {
+        dialect if dialect == Dialect::default() => String::new(),
+        dialect => format!("{{dialect '{dialect}'}}\n"),
+    }
+}
+
+/// What most files have is the dialect of the project.
+fn dialect_of(inputs: &[Input]) -> Dialect {
     let count = |dialect: Dialect| inputs.iter().filter(|input| input.file().dialect() == dialect).count();
     let most = Dialect::ALL.into_iter().max_by_key(|dialect| (count(*dialect), *dialect == Dialect::default()));
-    match most {
-        Some(dialect) if dialect != Dialect::default() => format!("{{dialect '{dialect}'}}\n"),
-        _ => String::new(),
-    }
+    most.unwrap_or_default()
 }
 
 /// The text with what is still missing.
@@ -114,6 +120,7 @@ fn completed(inputs: &[Input], text: &str) -> Stubs {
         needs: Needs::default(),
         known: None,
         nameless: std::collections::BTreeMap::new(),
+        has_overloads: dialect_of(inputs).has(Feature::Overloads),
     };
     infer(&mut collector);
     print::completed(&mut collector, text, file)

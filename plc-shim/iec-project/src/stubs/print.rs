@@ -360,6 +360,12 @@ impl Printer<'_, '_> {
             let is_number = matches!(&ty, Ty::Elementary(found) if found.is_number() || found.is_bits() && *found != ElementaryType::Bool);
             // A label that the project's own enumeration does not have stands for a number.
             let is_label = global.is_constant && self.is_own_enumeration(&ty);
+            if let Some(empty) = self.collector.empty_text(&ty).filter(|_| global.is_constant && !global.written) {
+                let lines = sections.entry((list.to_owned(), true)).or_default();
+                let _ = writeln!(lines, "    {name} : {} := {empty};", self.type_text(&ty, name));
+                *added += 1;
+                continue;
+            }
             let is_constant = global.is_constant && (is_number || is_label) && !global.written;
             let narrow = if is_label { ElementaryType::Int } else { self.collector.slots.narrowest(global.slot) };
             let value = if is_constant { format!(" := {}", value_of(narrow, constants)) } else { String::new() };

@@ -5,6 +5,7 @@ use super::foreign::Foreign;
 use super::hint::{self, TypeHint};
 use super::ty::Ty;
 use onescan_iec::ElementaryType;
+use onescan_iec::syntax::ast::TypeSpecKind;
 
 /// What a stub of a type is.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,7 +23,8 @@ impl Collector<'_> {
         if found.implemented || found.base_of_interface {
             return Shape::Interface;
         }
-        if found.base_of_block || found.called || found.init.is_some() || found.constants > 0 {
+        let is_held = found.is_held && found.values.is_empty();
+        if found.base_of_block || found.called || found.init.is_some() || found.constants > 0 || is_held {
             return Shape::Block;
         }
         if found.base_of_structure {
@@ -53,6 +55,19 @@ impl Collector<'_> {
             None => {}
         }
         self.by_value(found)
+    }
+
+    /// An empty string as a value of a type of strings.
+    pub(super) fn empty_text(&self, ty: &Ty) -> Option<&'static str> {
+        let wide = match ty {
+            Ty::Text(wide) => *wide,
+            Ty::Declared(key) => match &self.world.types.get(key)?.ast.spec.kind {
+                TypeSpecKind::String(word, _) => word.key() == "WSTRING",
+                _ => return None,
+            },
+            _ => return None,
+        };
+        Some(if wide { "\"\"" } else { "''" })
     }
 
     /// The type of an enumeration's numbers, where an INT would not hold what goes into it.

@@ -25,6 +25,12 @@ impl<'c> Printer<'c, '_> {
             (None, None) => return String::new(),
         };
         signature.named.retain(|named| !INIT_INPUTS.iter().any(|known| known.eq_ignore_ascii_case(&named.name)));
+        // Global variables of other stubs are declared without arguments.
+        let globals = self.collector.needs.globals.values();
+        let types = globals.map(|global| self.collector.slots.last_choice(global.slot));
+        if types.into_iter().any(|ty| ty == Ty::Foreign(key.to_owned())) {
+            signature.fewest = Some(0);
+        }
         let count = signature.named.len().max(signature.positional.len());
         let inputs = |method: &Pou| {
             let sections = method.sections.iter().filter(|section| section.kind == SectionKind::Input);
@@ -88,7 +94,8 @@ impl<'c> Printer<'c, '_> {
 
     pub(super) fn method(&self, name: &str, signature: &Signature, result: Slot) -> String {
         let ty = self.result(signature, result, name);
-        format!("METHOD {name}{ty}\n{}END_METHOD\n", self.parameters(signature))
+        let each = self.overloads(signature).into_iter();
+        each.map(|parameters| format!("METHOD {name}{ty}\n{parameters}END_METHOD\n")).collect()
     }
 
     pub(super) fn result(&self, signature: &Signature, result: Slot, name: &str) -> String {
@@ -103,24 +110,51 @@ impl<'c> Printer<'c, '_> {
         let (list, name) = function.name.rsplit_once('.').unwrap_or(("", &function.name));
         // What is called as a statement may be a function without a result as well; one that has a result may be lost.
         let result = self.result(&function.signature, function.result, name);
-        let parameters = if name.starts_with("__") {
+        let each = if name.starts_with("__") {
             // Operators of the compiler take whatever there is.
-            any_parameters(&function.signature)
+            vec![any_parameters(&function.signature)]
         } else {
-            self.parameters(&function.signature)
+            self.overloads(&function.signature)
         };
-        let text = format!("{{external}}\nFUNCTION {name}{result}\n{parameters}END_FUNCTION\n");
-        (list.to_owned(), text)
+        let texts = each
+            .into_iter()
+            .map(|parameters| format!("{{external}}\nFUNCTION {name}{result}\n{parameters}END_FUNCTION\n"));
+        (list.to_owned(), texts.collect())
+    }
+
+    /// The parameters; where functions may be overloaded, those for each type that calls give for one of them.
+    fn overloads(&self, signature: &Signature) -> Vec<String> {
+        let varied = |(index, (_, argument)): (usize, &(String, Argument))| {
+            let slots = std::iter::once(argument).chain(signature.positional.get(index)).map(|each| each.slot);
+            let types = self.collector.slots.types_given(slots);
+            (!types.is_empty()).then_some((index, types))
+        };
+        let given = signature.in_order();
+        let varied: Vec<_> = given.iter().enumerate().filter_map(varied).collect();
+        match varied.as_slice() {
+            [(index, types)] if self.collector.has_overloads => {
+                types.iter().map(|ty| self.parameters_with(signature, Some((*index, *ty)))).collect()
+            }
+            _ => vec![self.parameters(signature)],
+        }
     }
 
     pub(super) fn parameters(&self, signature: &Signature) -> String {
+        self.parameters_with(signature, None)
+    }
+
+    /// The same, with a type for the one at an index.
+    fn parameters_with(&self, signature: &Signature, chosen: Option<(usize, ElementaryType)>) -> String {
         let mut text = String::new();
         let given = signature.in_order();
         let mut section = "";
         for (index, (name, argument)) in given.iter().enumerate() {
             let mut all = vec![*argument];
             all.extend(signature.positional.get(index));
-            let (word, ty) = self.parameter(&all, name);
+            let (word, ty) = match chosen.filter(|(chosen, _)| *chosen == index) {
+                Some((_, ty)) => ("VAR_INPUT", ty.name().to_owned()),
+                None => self.parameter(&all, name),
+            };
             if word != section {
                 if !section.is_empty() {
                     text.push_str("    END_VAR\n");

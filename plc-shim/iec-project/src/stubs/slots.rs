@@ -266,6 +266,21 @@ impl Slots {
         (differ && alike).then(|| Ty::Array(vec![OPEN_BOUNDS.to_owned(); first.len()], element.clone()))
     }
 
+    /// The plain types that are given for a parameter, if none of them takes all.
+    pub(super) fn types_given(&self, parameter: impl Iterator<Item = Slot>) -> Vec<ElementaryType> {
+        let given = parameter.filter_map(|slot| self.all.get(slot.0)).flat_map(|each| &each.from);
+        let plain =
+            given.filter_map(|ty| if let Ty::Elementary(found) = self.resolved(ty) { Some(found) } else { None });
+        let mut types: Vec<ElementaryType> = Vec::new();
+        for ty in plain {
+            if !types.contains(&ty) {
+                types.push(ty);
+            }
+        }
+        let takes_all = |one: &ElementaryType| types.iter().all(|other| other == one || other.widens_to(*one));
+        if types.iter().any(takes_all) { Vec::new() } else { types }
+    }
+
     /// True if what is given for a parameter has no type in common.
     pub(super) fn is_mixed(&self, slot: Slot) -> bool {
         let Some(each) = self.all.get(slot.0) else { return false };

@@ -536,3 +536,63 @@ PROGRAM P VAR t : ITask; o : Own; n : INT; END_VAR t := o; n := Parts(t.Size); E
     );
     assert!(text.contains("p1 : ULINT;"), "{text}");
 }
+
+#[test]
+fn a_function_of_ax_has_an_overload_for_each_type_that_fits_no_other() {
+    let text = stubs_in_iec3(
+        "USING System.Serialization;
+PROGRAM P VAR b : BYTE; u : UINT; s : SINT; i : INT; n : UDINT; a : ARRAY [0..7] OF BYTE; END_VAR
+  n := SerializeBig(offset := n, value := b, buffer := a); n := SerializeBig(offset := n, value := u, buffer := a);
+  n := Rank(s) + Rank(i);
+END_PROGRAM",
+    );
+    assert_eq!(text.matches("FUNCTION SerializeBig : UDINT").count(), 2, "{text}");
+    assert!(text.contains("value : BYTE;") && text.contains("value : UINT;"), "{text}");
+    assert_eq!(text.matches("FUNCTION Rank : UDINT").count(), 1, "SINT becomes INT: {text}");
+}
+
+#[test]
+fn a_method_of_ax_calls_the_function_of_its_name() {
+    let text = stubs_in_iec3(
+        "USING System.Strings;
+NAMESPACE Own
+  CLASS Builder VAR text : STRING; END_VAR
+    METHOD PUBLIC Insert : INT VAR_INPUT t : STRING; at : INT; END_VAR text := Insert(text, at, t); Insert := at; END_METHOD
+    METHOD PUBLIC Left : INT VAR_INPUT n : INT; END_VAR text := Left(text, n); Left := n; END_METHOD
+    METHOD PUBLIC StartOf : INT VAR_INPUT n : INT; END_VAR text := StartOf(text, n); StartOf := n; END_METHOD
+  END_CLASS
+END_NAMESPACE
+PROGRAM P VAR b : Own.Builder; n : INT; END_VAR n := b.Insert('a', 1) + b.StartOf(2) + b.Left(1); END_PROGRAM",
+    );
+    let (before, library) = text.split_once("NAMESPACE System.Strings\n").expect("a namespace of the library");
+    assert!(library.contains("FUNCTION Insert : STRING") && library.contains("p2 : INT;"), "{text}");
+    assert!(before.contains("FUNCTION StartOf : STRING") && !text.contains("FUNCTION Left"), "{text}");
+}
+
+#[test]
+fn a_member_of_ax_that_begins_with_an_instance_is_an_interface() {
+    let text = stubs_in_iec3(
+        "PROGRAM P VAR_EXTERNAL stack : LightStack; END_VAR stack.SwitchOn(); END_PROGRAM
+CONFIGURATION C TASK T (INTERVAL := T#10ms); PROGRAM P1 WITH T : P;
+  VAR_GLOBAL stack : LightStack := (red := lamp); lamp : BinOutput; limit : Guard := (time := T#3s); next : Transition := (when := limit); END_VAR
+END_CONFIGURATION",
+    );
+    for line in [
+        "red : I_LightStack_red;",
+        "FUNCTION_BLOCK BinOutput IMPLEMENTS I_LightStack_red",
+        "INTERFACE I_LightStack_red",
+    ] {
+        assert!(text.contains(line), "{line} {text}");
+    }
+    assert!(text.contains("FUNCTION_BLOCK Guard IMPLEMENTS I_Transition_when"), "{text}");
+}
+
+#[test]
+fn a_constant_that_is_a_string_has_a_value() {
+    let text = stubs(
+        "TYPE T_Id : STRING(23); END_TYPE
+VAR_GLOBAL CONSTANT own : T_Id := GCL.cLocalId; shown : STRING := GCL.cName; END_VAR
+PROGRAM P VAR s : STRING; END_VAR s := own; s := shown; END_PROGRAM",
+    );
+    assert!(text.contains("cLocalId : T_Id := '';") && text.contains("cName : STRING(255) := '';"), "{text}");
+}

@@ -280,6 +280,11 @@ impl<'a> World<'a> {
         is_standard_library(key) || self.libraries.contains(key)
     }
 
+    /// A namespace that `USING` names, as it is written there.
+    pub(super) fn shown_namespace(&self, key: &str) -> Option<&str> {
+        self.using.get(key).map(String::as_str)
+    }
+
     pub(super) fn function(&self, home: &Home, key: &str) -> Option<&Unit<'a>> {
         let unit = self.units.get(&self.unit_key(home, key)?)?;
         (unit.pou.kind == PouKind::Function).then_some(unit)
