@@ -24,6 +24,7 @@
 //! | [`plcopen_chart`], [`plcopen_gate`], [`plcopen_drawing`] | the same of charts that are drawn, in PLCopen XML |
 //! | [`port`], [`codesys`] | a project in text for a tool that takes another form |
 //! | [`matiec`], [`taken_over`] | a project in text for MatIEC, with all that the gateway exchanges at addresses |
+//! | [`left_out`] | files that the target's build leaves out |
 //! | [`address`], [`located`] | direct addresses, and what lies there |
 //! | [`verify`] | what has been written is checked |
 //! | [`target`], [`sources`], [`twincat`] | the shim's sources as a vendor's tool takes them |
@@ -44,6 +45,7 @@ mod controller;
 pub mod diff;
 mod exchanged;
 mod foreign;
+mod left_out;
 mod located;
 mod marks;
 mod matiec;
@@ -222,6 +224,7 @@ pub fn instrument(inputs: &[Input], options: &Options) -> Result<Project, Instru
     if let Some(refused) = plain.without_inputs(options) {
         return Err(InstrumentError::Text(Diagnostics::new(vec![refused], &plain.sources)));
     }
+    plain.left_out = left_out::names(inputs, &plain.sources);
     port::with_conversions(&mut plain, inputs, options.target)?;
     let project = match port::ported(&plain, options) {
         Some(ported) => ported?,
@@ -242,6 +245,10 @@ fn attach(plain: &Plain, options: &Options) -> Result<Attached, InstrumentError>
     let mut findings = plain.findings.clone();
     for (id, file) in plain.sources.iter() {
         let parsed = parse_source(id, file);
+        if let Some(warning) = left_out::warning(&parsed.diagnostics).filter(|_| plain.may_stay(id)) {
+            findings.push(warning);
+            continue;
+        }
         findings.extend(parsed.diagnostics);
         units.push((id, parsed.unit));
     }

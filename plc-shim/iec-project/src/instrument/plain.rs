@@ -1,6 +1,6 @@
 //! A project as it is without the shim, and the changes that make it one with it.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -36,6 +36,8 @@ pub(super) struct Plain {
     /// TwinCAT projects, and what they are without the shim.
     manifests: Vec<(Given, Arc<str>)>,
     pub(super) findings: Vec<Diagnostic>,
+    /// Names of files that hold what no task uses; those whose text is broken stay as they are.
+    pub(super) left_out: BTreeSet<String>,
 }
 
 pub(super) struct Given {
@@ -54,6 +56,7 @@ impl Plain {
             own: Vec::new(),
             manifests: Vec::new(),
             findings: Vec::new(),
+            left_out: BTreeSet::new(),
         };
         for input in inputs {
             plain.add(input);
@@ -112,6 +115,12 @@ impl Plain {
     /// True for text that was taken out of an object of TwinCAT.
     pub(super) fn is_object(&self, place: Span) -> bool {
         self.sources.get(place.file).is_some_and(|file| file.origin().is_some())
+    }
+
+    /// True for an object of TwinCAT that no task uses.
+    pub(super) fn may_stay(&self, id: FileId) -> bool {
+        let is_object = self.kinds.get(id.0 as usize) == Some(&SourceKind::TwinCat);
+        is_object && self.sources.get(id).is_some_and(|file| self.left_out.contains(file.name()))
     }
 
     /// A target that does not take the project's kind of file.
