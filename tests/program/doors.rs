@@ -312,7 +312,7 @@ fn a_run_of_days_is_announced() {
     let mut run = crate::typed::begun(folder.path(), &["run", ".", "--until", "1h"]);
     let mut said = std::io::BufReader::new(run.stderr.take().expect("piped"));
     let mut line = String::new();
-    while !line.contains("this run has 3600000000000 steps of 1ns") {
+    while !line.contains("this run has 3600000000000 steps of 1 ns") {
         line.clear();
         assert_ne!(std::io::BufRead::read_line(&mut said, &mut line).expect("text"), 0, "it is not said");
     }

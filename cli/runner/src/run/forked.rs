@@ -82,7 +82,7 @@ impl ForkSettings {
         }
         // A fork may be forked, too, but not so often: all that come of one session are a few.
         words.extend(["--forks".into(), (limit / FORKS_OF_FORK).to_string().into()]);
-        Self { words, limit }
+        Self { limit, words }
     }
 
     /// As a run of `config`.
