@@ -37,9 +37,10 @@ fn the_wiring_of_thirty_thousand_signals() {
 #[test]
 fn the_check_of_fifty_thousand_statements() {
     let folder = tempfile::tempdir().unwrap();
-    let declared: String = (0..1_000).map(|number| format!("o{number} : DINT; n{number} : DINT;\n")).collect();
+    let declared: Vec<String> = (0..1_000).map(|number| format!("o{number} : DINT; n{number} : DINT;\n")).collect();
     let counts = |number| format!("o{number} := b;\nn{number} := n{number} + 1;\n");
-    let body: String = (0..25_000).map(|number| counts(number % 1_000)).collect();
+    let body: Vec<String> = (0..25_000).map(|number| counts(number % 1_000)).collect();
+    let (declared, body) = (declared.concat(), body.concat());
     let text = format!("PROGRAM Main\nVAR_INPUT b : DINT; END_VAR\nVAR\n{declared}END_VAR\n{body}END_PROGRAM\n");
     std::fs::write(folder.path().join("main.st"), text).unwrap();
     let said = typed(folder.path(), &["check", "main.st"]);

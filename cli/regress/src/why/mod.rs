@@ -78,7 +78,10 @@ pub fn explain(
     let from = match abreast::first_scan(sides, until, parts) {
         Ok(Some(from)) => from,
         Ok(None) => return Ok(None),
-        Err(error) => return not_looked_for(&error),
+        Err(error) => {
+            not_looked_for(&error);
+            return Ok(None);
+        }
     };
     let mut flows: BTreeMap<ClientName, Flow> = plcs
         .iter()
@@ -107,7 +110,8 @@ pub fn explain(
         asked.is_none()
     });
     if let Err(error) = looked {
-        return not_looked_for(&error);
+        not_looked_for(&error);
+        return Ok(None);
     }
     let (signal, record) = match found {
         Some((signal, record)) => (Some(signal), record),
@@ -118,9 +122,8 @@ pub fn explain(
 }
 
 /// What differs is known without the reason for it.
-fn not_looked_for(error: &std::io::Error) -> Result<Option<Why>, ScenarioError> {
+fn not_looked_for(error: &std::io::Error) {
     tracing::warn!("it is not looked for why the runs differ: {error}");
-    Ok(None)
 }
 
 /// The soft PLCs that both scenarios have, compiled so that their statements report what they do.

@@ -182,7 +182,7 @@ impl<'a> Index<'a> {
 
     pub(super) fn global(&self, key: &str) -> Option<&'a Variable> {
         let all = self.globals.iter().flat_map(|section| &section.variables);
-        all.into_iter().find(|variable| variable.names.iter().any(|name| name.key() == key))
+        all.into_iter().find(|variable| variable.names.iter().any(|name| name.has_key(key)))
     }
 
     /// True for a place that begins with the name of a namespace.
@@ -252,5 +252,5 @@ pub(super) fn variables(pou: &Pou, kind: SectionKind) -> impl Iterator<Item = &V
 pub(super) fn declared<'a>(pou: &'a Pou, key: &str) -> Option<(&'a Section, &'a Variable)> {
     let all = pou.sections.iter().flat_map(|section| section.variables.iter().map(move |variable| (section, variable)));
     let mut all = all.into_iter();
-    all.find(|(_, variable)| variable.names.iter().any(|name| name.key() == key))
+    all.find(|(_, variable)| variable.names.iter().any(|name| name.has_key(key)))
 }

@@ -42,7 +42,16 @@ pub struct Ident {
 impl Ident {
     /// The form in which names are compared.
     pub fn key(&self) -> String {
-        self.text.trim_start_matches('.').trim_matches('"').to_ascii_uppercase()
+        self.bare().to_ascii_uppercase()
+    }
+
+    /// True if this is the form of the name, which it need not make for that.
+    pub fn has_key(&self, key: &str) -> bool {
+        self.bare().eq_ignore_ascii_case(key)
+    }
+
+    fn bare(&self) -> &str {
+        self.text.trim_start_matches('.').trim_matches('"')
     }
 
     /// True for `"name"` of SCL and `.name` of CODESYS, which is never a local one.
