@@ -2,6 +2,7 @@
 // `node e2e/page.mjs [FOLDER]` writes its pictures to FOLDER.
 
 import assert from "node:assert/strict";
+import axe from "axe-core";
 import { chromium } from "playwright-core";
 import { SIZES, sees_whole } from "./sight.mjs";
 import { place, serve } from "./stand-in.mjs";
@@ -47,6 +48,11 @@ async function operate_the_desk() {
   await page.waitForFunction(() => window.onescan.value("Start") === 0);
   assert.deepEqual(writes(session), [1, 0, 1, 0]);
   await shoot(page, "light-1280x720");
+
+  // A screen reader presses by a click alone.
+  await start.evaluate((key) => key.click());
+  await until(() => writes(session).length === 6);
+  assert.deepEqual(writes(session), [1, 0, 1, 0, 1, 0]);
 
   // Positions that the page has are those of the step that it shows.
   await page.getByRole("button", { name: "Hold" }).click();
@@ -216,6 +222,67 @@ async function draw_components() {
   await session.close();
 }
 
+const TABS = ["Panels", "Part", "Signals", "PLC", "Checks"];
+
+/** axe finds nothing on any sheet, in both themes, nor in the dialogues. */
+async function read_by_all() {
+  const session = await serve({ more: { plot: [3, 4] } });
+  for (const colorScheme of ["light", "dark"]) {
+    const { page, errors } = await open(session, { colorScheme });
+    await page.evaluate(axe.source);
+    const look = async (where) => {
+      const { violations } = await page.evaluate(() => window.axe.run(document, { runOnly: ["wcag2a", "wcag2aa", "wcag21aa", "wcag22aa"] }));
+      assert.deepEqual(violations.map((one) => `${where}, ${colorScheme}: ${one.id}: ${one.nodes.map((node) => node.html).join(" ")}`), []);
+    };
+    for (const name of TABS) {
+      await page.getByRole("tab", { name }).click();
+      await look(name);
+    }
+    await page.getByRole("tab", { name: "Signals" }).click();
+    await page.getByRole("button", { name: "Force Count", exact: true }).click();
+    await look("force");
+    await page.getByRole("button", { name: "Cancel" }).click();
+    await page.getByRole("slider", { name: "Time that is shown" }).fill("3");
+    await page.getByText("You see the past").waitFor();
+    await look("past");
+    assert.deepEqual(errors, []);
+    await page.close();
+  }
+  await session.close();
+}
+
+/** The panes are as wide as one draws them, also the next time; a phone scrolls up and down only. */
+async function divide() {
+  const session = await serve();
+  const { page } = await open(session, {});
+  const width = () => page.evaluate(() => document.querySelector("aside").offsetWidth);
+  const before = await width();
+  const line = page.getByRole("separator", { name: "Width of the sheets" });
+  const box = await line.boundingBox();
+  await page.mouse.move(box.x + 3, box.y + 200);
+  await page.mouse.down();
+  await page.mouse.move(box.x - 120, box.y + 200, { steps: 4 });
+  await page.mouse.up();
+  assert.ok(Math.abs((await width()) - before - 120) < 12, `${before} to ${await width()}`);
+  await line.focus();
+  const drawn = await width();
+  await page.keyboard.press("ArrowRight");
+  assert.ok((await width()) < drawn);
+  const left = await width();
+  await page.reload();
+  await page.waitForFunction(() => window.onescan?.picture().step > 5);
+  assert.equal(await width(), left);
+  await page.setViewportSize({ width: 390, height: 844 });
+  for (const name of TABS) {
+    await page.getByRole("tab", { name }).click();
+    const reach = await page.evaluate(() => document.documentElement.scrollWidth);
+    assert.ok(reach <= 390, `${name}: ${reach} px wide`);
+  }
+  await shoot(page, "phone");
+  await page.close();
+  await session.close();
+}
+
 /** The theme is that of the system, also when it changes, until the viewer chooses another. */
 async function follow_the_system() {
   const session = await serve();
@@ -243,6 +310,9 @@ async function draw_many() {
     await new Promise((done) => setTimeout(done, 3000));
     return ((window.onescan.drawn() - from) * 1000) / (performance.now() - start);
   });
+  // Without a graphics card shadows are left out, and the page says so.
+  assert.ok(await page.evaluate(() => window.onescan.is_plain()));
+  await page.getByText("Plain picture").waitFor();
   console.log(`300 bodies: ${rate.toFixed(1)} pictures a second`);
   await shoot(page, "many");
   assert.deepEqual(errors, []);
@@ -257,6 +327,8 @@ try {
   await force();
   await draw_components();
   await follow_the_system();
+  await divide();
+  await read_by_all();
   await draw_many();
   console.log("page: ok");
 } finally {

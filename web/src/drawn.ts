@@ -4,6 +4,7 @@ import {
   Box3, BufferGeometry, CanvasTexture, Color, DoubleSide, DynamicDrawUsage, FrontSide, Group, InstancedMesh, Matrix4, Mesh,
   MeshLambertMaterial, Quaternion, RepeatWrapping, Vector3, type Object3D,
 } from "three";
+import { crowd_edges, edges } from "./edges";
 import { corners } from "./framing";
 import type { Style } from "./looks";
 import type { Body, Quaternion as Turn, Vec3 } from "./session";
@@ -44,6 +45,9 @@ export class Single implements Drawn {
   constructor(private readonly body: Body, geometry: BufferGeometry, parent: Object3D, isBent: boolean) {
     const side = is_open(body.shape) ? DoubleSide : FrontSide;
     this.mesh = new Mesh(geometry, new MeshLambertMaterial({ side }));
+    this.mesh.castShadow = true;
+    this.mesh.receiveShadow = true;
+    this.mesh.add(edges(geometry));
     this.node = isBent ? new Group().add(this.mesh) : this.mesh;
     parent.add(this.node);
     this.place(body.position_m, body.rotation);
@@ -65,6 +69,8 @@ export class Single implements Drawn {
       material.needsUpdate = true;
     }
     material.opacity = 1 - transparent;
+    // What one sees through hides nothing from the sun.
+    this.mesh.castShadow = transparent === 0;
   }
 
   show(isVisible: boolean): void {
@@ -158,7 +164,9 @@ export class Crowd {
     this.mesh.instanceMatrix.setUsage(DynamicDrawUsage);
     // Its members may be anywhere.
     this.mesh.frustumCulled = false;
-    parent.add(this.mesh);
+    this.mesh.castShadow = true;
+    this.mesh.receiveShadow = true;
+    parent.add(this.mesh, crowd_edges(this.mesh));
   }
 
   add(body: Body): Member {

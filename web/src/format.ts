@@ -43,6 +43,8 @@ export function form_for(unit: string | null, isWhole: boolean, size: number): F
   const large = Math.abs(size) / by;
   // Places before the point; where there are none, zeros behind it count for nothing.
   const places = large > 0 ? Math.floor(Math.log10(large)) + 1 : 1;
+  // Nothing is known yet of a value that was never but zero.
+  if (large === 0) return { by, decimals: 0, unit: written };
   const most = isOwn && unit !== null ? DECIMALS[unit] ?? MOST_DECIMALS : MOST_DECIMALS;
   return { by, decimals: Math.max(0, Math.min(most, (isOwn ? DIGITS : PREFIXED_DIGITS) - 1 - Math.min(0, places) - Math.max(0, places - 1))), unit: written };
 }

@@ -8,6 +8,7 @@ import { Page } from "./page";
 import { ProtocolError } from "./field";
 import { decodeSession } from "./session";
 import { fail, shoot, wanted } from "./shot";
+import { begin_split } from "./split";
 import { begin_theme } from "./theme";
 
 async function begin(): Promise<void> {
@@ -15,7 +16,10 @@ async function begin(): Promise<void> {
   const answer = await fetch("api/session");
   if (!answer.ok) throw new ProtocolError("api/session", `the server answers ${answer.status} ${answer.statusText}`);
   const session = decodeSession(await answer.json());
-  if (picture === null) new Page(session);
+  if (picture === null) {
+    begin_split();
+    new Page(session);
+  }
   else shoot(session, live_address(), picture);
 }
 

@@ -5,6 +5,7 @@ import { Backfill } from "./backfill";
 import { Drawings } from "./drawings";
 import { ForceDialog, Forces, type Forced } from "./forces";
 import { seconds, shown } from "./format";
+import { main_source } from "./highlight";
 import { Link, live_address, type LinkState } from "./link";
 import { Maps } from "./maps";
 import { OnlineView } from "./online";
@@ -41,6 +42,7 @@ export class Page {
   private readonly online: OnlineView;
   private readonly trends: TrendsView;
   private readonly backfill: Backfill;
+  private readonly plain: HTMLElement;
   private readonly dialog = new ForceDialog();
   private readonly forces: Forces;
   private forced: ReadonlySet<number> = new Set();
@@ -65,7 +67,12 @@ export class Page {
     const bar = frame("view-tools");
     // What lies over the machine from above is no room for it.
     const covered_px = (): number => bar.offsetTop + bar.offsetHeight + BAR_PX;
-    this.machine = new MachineView(frame("canvas"), session, (body) => this.choose(body), false, covered_px);
+    const plain = make("span", { class: "plain", role: "status", title: "The graphics of this computer are slow: shadows are left out" });
+    this.plain = plain;
+    this.machine = new MachineView(frame("canvas"), session, (body) => this.choose(body), false, covered_px, (isPlain) => {
+      plain.textContent = isPlain ? "Plain picture: slow graphics" : "";
+      plain.hidden = !isPlain;
+    });
     this.schematic = session.bodies.some((body) => body.shape.kind !== "none") ? null : new Schematic(session);
     if (this.schematic !== null) frame("canvas").replaceWith(this.schematic.root);
     this.forces = new Forces(this.mayForce);
@@ -155,6 +162,7 @@ export class Page {
       this.subscribe();
     };
     files.addEventListener("change", open);
+    files.selectedIndex = main_source(sources, this.session.plcs.flatMap((plc) => plc.variables.map((one) => one.path)));
     open();
     return make("div", {}, files, code, this.drawings.root, this.online.root);
   }
@@ -194,7 +202,7 @@ export class Page {
     frame("view-tools").hidden = this.schematic !== null;
     frame("view-tools").append(
       button("Whole", () => this.see(null), "Shows the whole machine"), ...views,
-      button("Show all", () => this.machine.show_all()), make("label", {}, "Section", cut),
+      button("Show all", () => this.machine.show_all()), make("label", {}, "Section", cut), this.plain,
     );
     frame("trend-tools").append(make("h2", {}, "Trends"), readout, button("Latest", () => this.trends.follow()));
   }
@@ -417,6 +425,7 @@ export class Page {
       map_pixel: (name: string, x: number, y: number) => this.maps.pixel(name, x, y),
       drawn: () => this.machine.drawn,
       sight: () => this.machine.sight(),
+      is_plain: () => this.plain.textContent !== "",
       drawn_m: (name: string) => this.machine.drawn_m(this.session.bodies.findIndex((one) => one.name === name)),
       style: (name: string) => {
         const style = this.machine.style(this.session.bodies.findIndex((one) => one.name === name));

@@ -262,7 +262,15 @@ export class PanelView {
       press(true);
     });
     key.addEventListener("keyup", (event) => {
-      if (event.key === " " || event.key === "Enter") press(false);
+      if (event.key !== " " && event.key !== "Enter") return;
+      event.preventDefault();
+      press(false);
+    });
+    // A screen reader or a voice presses in no time, by a click alone.
+    key.addEventListener("click", (event) => {
+      if (event.detail > 0) return;
+      press(true);
+      press(false);
     });
     this.inputs.push(key);
     cell.append(key);

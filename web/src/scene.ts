@@ -1,13 +1,13 @@
 // The machine in 3D: bodies where the session has them, at the step that is shown.
 
 import {
-  AmbientLight, BufferGeometry, Color, DirectionalLight, GridHelper, HemisphereLight, Plane,
-  Raycaster, Scene, Vector2, Vector3, WebGLRenderer, type Object3D,
+  BufferGeometry, Color, GridHelper, Plane, Raycaster, Scene, Vector2, Vector3, WebGLRenderer, type Object3D,
 } from "three";
 import { Crowd, Single, type Drawn, type Glow, type Member } from "./drawn";
 import { Eye, type Seen, type Sight } from "./eye";
 import { framed, together } from "./framing";
 import { Tracks } from "./interpolation";
+import { Light } from "./light";
 import { Looks, type Style } from "./looks";
 import type { Pose } from "./picture";
 import type { Body, Session, View } from "./session";
@@ -44,7 +44,8 @@ export class MachineView {
   private followed: number | null = null;
   private chosen: number | null = null;
   private lit: ReadonlySet<number> = new Set();
-  private readonly sharpness = new Sharpness();
+  private readonly sharpness: Sharpness;
+  private readonly light: Light;
   private readonly looks: Looks;
   private readonly bodies: readonly Body[];
   /** The bodies of components. */
@@ -66,6 +67,8 @@ export class MachineView {
     isForPicture = false,
     /** How much of the place something covers from above, CSS pixels. */
     covered_px: () => number = () => 0,
+    /** Called with whether the machine is drawn without shadows. */
+    private readonly graded: (isPlain: boolean) => void = () => {},
   ) {
     // Smooth edges cost four samples a pixel where there is no graphics card.
     this.renderer = new WebGLRenderer({ antialias: isForPicture || session.bodies.length <= SMOOTH_BODIES, powerPreference: "low-power" });
@@ -74,7 +77,8 @@ export class MachineView {
     this.renderer.domElement.tabIndex = 0;
     place.append(this.renderer.domElement);
     this.eye = new Eye(this.renderer.domElement, covered_px, () => this.seen(), () => (this.isStale = true));
-    this.light();
+    this.sharpness = new Sharpness(!isForPicture && session.bodies.length > SMOOTH_BODIES);
+    this.light = new Light(this.renderer, this.scene);
     this.looks = new Looks(session);
     this.bodies = session.bodies;
     this.fitted = new Set(session.components.flatMap(({ body }) => (body === null ? [] : [body])));
@@ -97,6 +101,7 @@ export class MachineView {
     if (poses.length === 0) return;
     const now_ms = performance.now();
     for (const pose of poses) this.tracks.arrive(pose, now_ms);
+    if (now_ms > this.moving_until_ms) this.sharpness.rest();
     this.moving_until_ms = now_ms + 600;
     if (this.hasArrived) return;
     this.hasArrived = true;
@@ -228,7 +233,9 @@ export class MachineView {
   }
 
   theme(background: string, line: string): void {
-    this.scene.background = new Color(background);
+    const ground = new Color(background);
+    this.scene.background = ground;
+    this.light.theme(ground);
     const grid = this.scene.getObjectByName("grid");
     if (grid instanceof GridHelper && !Array.isArray(grid.material)) grid.material.color.set(line);
     this.isStale = true;
@@ -252,16 +259,6 @@ export class MachineView {
     return body.kind === "figure" ? body.on !== null || this.looks.bends(this.bodies.indexOf(body)) : body.kind !== "fixed";
   }
 
-  private light(): void {
-    const sun = new DirectionalLight("#ffffff", 1.9);
-    sun.position.set(3, -4, 8);
-    const fill = new DirectionalLight("#dfe8ff", 0.6);
-    fill.position.set(-5, 3, 3);
-    const sky = new HemisphereLight("#ffffff", "#6d7378", 1.1);
-    sky.position.set(0, 0, 1);
-    this.scene.add(sun, fill, sky, new AmbientLight("#ffffff", 0.25));
-  }
-
   private floor(): void {
     const { low, high } = this.eye.reach();
     const metres = Math.min(200, Math.max(4, Math.ceil(2 * Math.max(high[0] - low[0], high[1] - low[1]))));
@@ -276,6 +273,7 @@ export class MachineView {
       grid.material.transparent = true;
       grid.material.opacity = 0.6;
     }
+    this.light.aim({ low, high }, grid.position.z);
     const before = this.scene.getObjectByName("grid");
     if (before instanceof GridHelper && !Array.isArray(before.material) && !Array.isArray(grid.material)) {
       grid.material.color.copy(before.material.color);
@@ -361,6 +359,8 @@ export class MachineView {
     if (width === 0 || height === 0) return;
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2) * this.sharpness.share);
     this.renderer.setSize(width, height);
+    this.light.cast(!this.sharpness.isPlain);
+    this.graded(this.sharpness.isPlain);
     this.eye.fit(width, height);
     this.isStale = true;
   }

@@ -1,4 +1,4 @@
-// How sharp the machine is drawn: where there is no graphics card, fewer pixels keep what moves smooth.
+// How finely the machine is drawn: where there is no graphics card, no shadows, then fewer pixels, keep what moves smooth.
 
 /** Pictures that come further apart than this are too few, ms: fewer than 22 a second. */
 const SLOW_MS = 45;
@@ -6,9 +6,10 @@ const SLOW_MS = 45;
 const FAST_MS = 22;
 /** So many pictures are looked at before anything is changed. */
 const PICTURES = 12;
-/** A longer rest is not a slow picture, ms. */
-const REST_MS = 400;
-const STEPS = [1, 0.75, 0.55] as const;
+/** A page that was hidden for longer has drawn nothing, ms. */
+const REST_MS = 2500;
+/** The share of pixels, and whether shadows are left out. */
+const STEPS = [{ share: 1, isPlain: false }, { share: 1, isPlain: true }, { share: 0.75, isPlain: true }, { share: 0.55, isPlain: true }] as const;
 
 export class Sharpness {
   private step = 0;
@@ -17,12 +18,27 @@ export class Sharpness {
   /** How often it was too sharp: what has failed twice is not tried again. */
   private failed = 0;
 
-  /** The share of the screen's pixels along a side that are drawn. */
-  get share(): number {
-    return STEPS[this.step] ?? 1;
+  /** Many bodies are drawn plainly from the beginning. */
+  constructor(beginsPlain = false) {
+    if (beginsPlain) this.step = 1;
   }
 
-  /** Takes the time of a picture of something that moves; true if the share is another one from now on. */
+  /** The share of the screen's pixels along a side that are drawn. */
+  get share(): number {
+    return STEPS[this.step]?.share ?? 1;
+  }
+
+  /** Without shadows. */
+  get isPlain(): boolean {
+    return STEPS[this.step]?.isPlain ?? true;
+  }
+
+  /** Nothing has moved for a while: the next picture has not taken that long. */
+  rest(): void {
+    this.last_ms = null;
+  }
+
+  /** Takes the time of a picture of something that moves; true if it is drawn more or less finely from now on. */
   drawn(now_ms: number): boolean {
     const span_ms = this.last_ms === null ? null : now_ms - this.last_ms;
     this.last_ms = now_ms;

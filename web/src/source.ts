@@ -2,26 +2,36 @@
 
 import { EditorState, StateEffect, StateField } from "@codemirror/state";
 import { Decoration, EditorView, WidgetType, keymap, lineNumbers, type DecorationSet } from "@codemirror/view";
+import { make } from "./dom";
 import { shown } from "./format";
+import { words, type WordKind } from "./highlight";
 import type { Session, Source } from "./session";
 
+/** Values beside a line; what is true or false has its own colour and form. */
 class Values extends WidgetType {
-  constructor(private readonly text: string) {
+  constructor(private readonly all: readonly string[]) {
     super();
   }
 
   override eq(other: Values): boolean {
-    return other.text === this.text;
+    return other.all.join("\n") === this.all.join("\n");
   }
 
   override toDOM(): HTMLElement {
     const element = document.createElement("span");
     element.className = "line-values";
-    element.textContent = this.text;
+    for (const one of this.all) {
+      const kind = / = TRUE\b/.test(one) ? " true" : / = FALSE\b/.test(one) ? " false" : "";
+      element.append(make("span", { class: `line-value${kind}` }, one));
+    }
     return element;
   }
 }
 
+const COLOURED: Readonly<Record<WordKind, Decoration>> = {
+  key: Decoration.mark({ class: "word-key" }), say: Decoration.mark({ class: "word-say" }),
+  text: Decoration.mark({ class: "word-text" }), number: Decoration.mark({ class: "word-number" }),
+};
 const executed_line = Decoration.line({ class: "executed" });
 const set_values = StateEffect.define<DecorationSet>();
 const values_field = StateField.define<DecorationSet>({
@@ -50,6 +60,11 @@ export class SourceView {
     private readonly inner: Inner,
   ) {
     this.editor = new EditorView({ parent: place, state: this.state("") });
+    // Arrow keys scroll it.
+    const { scrollDOM } = this.editor;
+    scrollDOM.tabIndex = 0;
+    scrollDOM.setAttribute("role", "group");
+    scrollDOM.setAttribute("aria-label", "Source, scrolled by arrow keys");
   }
 
   open(source: Source): void {
@@ -75,9 +90,9 @@ export class SourceView {
     const lines = this.editor.state.doc.lines;
     const marks = source.lines.flatMap((line) => {
       const all = [...line.variables.map((name) => this.reading(name)), ...line.inner.map((one) => this.inner.reading(one))];
-      const text = all.filter((one) => one !== null).join("   ");
-      if (line.line < 1 || line.line > lines || text === "") return [];
-      return [Decoration.widget({ widget: new Values(text), side: 1 }).range(this.editor.state.doc.line(line.line).to)];
+      const known = all.filter((one) => one !== null);
+      if (line.line < 1 || line.line > lines || known.length === 0) return [];
+      return [Decoration.widget({ widget: new Values(known), side: 1 }).range(this.editor.state.doc.line(line.line).to)];
     });
     const executed = Array.from({ length: lines }, (_, index) => index + 1).flatMap((line) =>
       this.inner.was_executed(source.path, line) === true ? [executed_line.range(this.editor.state.doc.line(line).from)] : []);
@@ -92,9 +107,10 @@ export class SourceView {
 
   private state(text: string): EditorState {
     const label = EditorView.contentAttributes.of({ "aria-label": "Source of the PLC, read only" });
+    const coloured = words(text).map(({ from, to, kind }) => COLOURED[kind].range(from, to));
     return EditorState.create({
       doc: text,
-      extensions: [EditorState.readOnly.of(true), lineNumbers(), keymap.of([]), label, values_field],
+      extensions: [EditorState.readOnly.of(true), lineNumbers(), keymap.of([]), label, values_field, EditorView.decorations.of(Decoration.set(coloured))],
     });
   }
 }

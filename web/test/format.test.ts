@@ -17,7 +17,7 @@ test("large values get a prefix of their unit, and no more digits than one reads
   assert.equal(shown(signal("V"), 0.0042), "4.20 mV");
   assert.equal(shown(signal("m"), 0.00042), "0.000420 m");
   assert.equal(shown(signal("m"), -1.05), "−1.050 m");
-  assert.equal(shown(signal("W"), 0), "0.000 W");
+  assert.equal(shown(signal("W"), 0), "0 W");
   assert.equal(shown(signal(null), Number.NaN), "not a number");
   assert.equal(shown(signal("m"), undefined), "–");
 });

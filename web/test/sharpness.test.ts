@@ -8,21 +8,39 @@ function pictures(sharpness: Sharpness, span_ms: number, count: number, from_ms 
   return sharpness.share;
 }
 
-test("what is drawn too slowly is drawn with fewer pixels, and no fewer than half", () => {
+test("what is drawn too slowly is drawn plainly, then with fewer pixels, and no fewer than half", () => {
   const sharpness = new Sharpness();
   assert.equal(pictures(sharpness, 16, 100), 1);
-  assert.equal(pictures(sharpness, 80, 14, 10_000), 0.75);
-  assert.equal(pictures(sharpness, 80, 100, 20_000), 0.55);
+  assert.equal(sharpness.isPlain, false);
+  assert.equal(pictures(sharpness, 80, 14, 10_000), 1);
+  assert.equal(sharpness.isPlain, true);
+  assert.equal(pictures(sharpness, 600, 14, 20_000), 0.75);
+  assert.equal(pictures(sharpness, 80, 100, 40_000), 0.55);
+});
+
+test("many bodies are drawn plainly at once", () => {
+  assert.equal(new Sharpness(true).isPlain, true);
+  assert.equal(new Sharpness(true).share, 1);
 });
 
 test("it gets sharp again once, and does not flicker", () => {
   const sharpness = new Sharpness();
   pictures(sharpness, 60, 14);
-  assert.equal(pictures(sharpness, 16, 14, 10_000), 1);
-  assert.equal(pictures(sharpness, 60, 14, 20_000), 0.75);
-  assert.equal(pictures(sharpness, 16, 100, 30_000), 0.75);
+  assert.equal(sharpness.isPlain, true);
+  pictures(sharpness, 16, 14, 10_000);
+  assert.equal(sharpness.isPlain, false);
+  pictures(sharpness, 60, 14, 20_000);
+  assert.equal(sharpness.isPlain, true);
+  pictures(sharpness, 16, 100, 30_000);
+  assert.equal(sharpness.isPlain, true);
 });
 
 test("a rest is not a slow picture", () => {
-  assert.equal(pictures(new Sharpness(), 1000, 100), 1);
+  assert.equal(pictures(new Sharpness(), 4000, 100), 1);
+  const sharpness = new Sharpness();
+  for (let index = 0; index < 100; index += 1) {
+    sharpness.rest();
+    sharpness.drawn(index * 1000);
+  }
+  assert.equal(sharpness.isPlain, false);
 });

@@ -29,7 +29,7 @@ function contrast(one: string, other: string): number {
 const light = colours(":root");
 const themes = { light, dark: new Map([...light, ...colours(':root[data-theme="dark"]')]) };
 /** What stands on what: text (WCAG 2.2, 1.4.3 AA: 4.5), and marks that carry meaning (1.4.11: 3). */
-const TEXT = ["text", "text-2", "accent", "warn", "bad", "good", "past"];
+const TEXT = ["text", "text-2", "accent", "warn", "bad", "good", "past", "true", "code-key", "code-say", "code-text"];
 const GROUNDS = ["ground", "sheet", "raised"];
 
 test("the contrast of black on white is known", () => {

@@ -32,8 +32,8 @@ pub(super) fn of(scenario: &Scenario) -> Vec<Signal> {
 /// The signals that the scenario plots, by their places, from top to bottom.
 pub(super) fn plotted(scenario: &Scenario) -> Vec<usize> {
     let declared = scenario.plan().signals();
-    let shown = scenario.file().plot.signals.iter();
-    shown.filter_map(|name| declared.iter().position(|signal| signal.name == *name.get_ref())).collect()
+    let plotted = scenario.file().plot.signals.iter();
+    plotted.filter_map(|name| declared.iter().position(|signal| signal.name == *name.get_ref())).collect()
 }
 
 /// A signal as the scenario declares it.
