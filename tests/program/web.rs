@@ -139,6 +139,12 @@ fn whoever_comes_from_elsewhere_is_refused_at_every_endpoint() {
     let session: Value = serde_json::from_str(&session).expect("JSON");
     assert_eq!((&session["protocol"], &session["scenario"]), (&json!(1), &json!("shear")));
     assert!(session["bodies"].as_array().is_some_and(|bodies| bodies.len() > 3));
+    // The trends begin with what the scenario plots.
+    let plotted = session["plot"].as_array().expect("a list").iter().map(|place| {
+        let place = usize::try_from(place.as_u64().expect("a place")).expect("few signals");
+        session["signals"][place]["name"].clone()
+    });
+    assert_eq!(plotted.collect::<Vec<_>>(), [json!("Position_1"), json!("Aligned"), json!("AlignedCount")]);
     // without an upgrade there is nothing to be seen
     assert!(served.get("/api/live", &[]).0.contains("400"));
     let mut viewer = served.view();
