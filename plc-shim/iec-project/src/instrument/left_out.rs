@@ -48,7 +48,7 @@ mod tests {
             "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<TcPlcObject>\n<POU Name=\"{name}\" Id=\"{{1}}\">\n<Declaration><![CDATA[{declaration}]]>\
              </Declaration>\n<Implementation>\n<ST><![CDATA[{body}]]></ST>\n</Implementation>\n</POU>\n</TcPlcObject>\n"
         );
-        Input::from_text(format!("{name}.TcPOU"), SourceKind::TwinCat, text)
+        Input::from_text(&format!("{name}.TcPOU"), SourceKind::TwinCat, text)
     }
 
     #[test]
