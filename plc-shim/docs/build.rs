@@ -15,7 +15,8 @@ fn main() {
     let mut table = "const CODES: &[(&str, &str)] = &[\n".to_owned();
     for file in &files {
         let code = file.file_stem().and_then(|stem| stem.to_str()).expect("codes are plain names");
-        writeln!(table, "    ({code:?}, include_str!({file:?})),").expect("a string takes all");
+        let path = file.display().to_string();
+        writeln!(table, "    ({code:?}, include_str!({path:?})),").expect("a string takes all");
     }
     table.push_str("];\n");
     let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets it"));
