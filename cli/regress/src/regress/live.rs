@@ -62,7 +62,9 @@ fn write(receiver: &Receiver<String>, count: usize) {
 /// How long it took, where time is shown.
 pub(super) fn end(progress: Progress, report: &Report) {
     if progress == Progress::Bar {
-        slowest(report).iter().for_each(|line| say(line));
+        for line in slowest(report) {
+            say(&line);
+        }
     }
 }
 
