@@ -62,7 +62,7 @@ for name in sorted(report.files()):
     insta::assert_snapshot!(reported);
 }
 
-/// All but what says how long it took: a line of the page, and times of the wall clock in JUnit.
+/// All but what says how long it took: a line of the page, and times of the wall clock in `JUnit`.
 fn without_times(text: &str) -> String {
     let lines = text.lines().filter(|line| !line.contains("class=\"made\""));
     let untimed = |line: &str| {
