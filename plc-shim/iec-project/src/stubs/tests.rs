@@ -557,7 +557,7 @@ fn a_method_of_ax_calls_the_function_of_its_name() {
         "USING System.Strings;
 NAMESPACE Own
   CLASS Builder VAR text : STRING; END_VAR
-    METHOD PUBLIC Insert : INT VAR_INPUT t : STRING; at : INT; END_VAR text := Insert(text, at, t); Insert := at; END_METHOD
+    METHOD PUBLIC Insert : INT VAR_INPUT t : STRING; pos : INT; END_VAR text := Insert(text, pos, t); Insert := pos; END_METHOD
     METHOD PUBLIC Left : INT VAR_INPUT n : INT; END_VAR text := Left(text, n); Left := n; END_METHOD
     METHOD PUBLIC StartOf : INT VAR_INPUT n : INT; END_VAR text := StartOf(text, n); StartOf := n; END_METHOD
   END_CLASS
@@ -594,5 +594,5 @@ fn a_constant_that_is_a_string_has_a_value() {
 VAR_GLOBAL CONSTANT own : T_Id := GCL.cLocalId; shown : STRING := GCL.cName; END_VAR
 PROGRAM P VAR s : STRING; END_VAR s := own; s := shown; END_PROGRAM",
     );
-    assert!(text.contains("cLocalId : T_Id := '';") && text.contains("cName : STRING(255) := '';"), "{text}");
+    assert!(text.contains("cLocalId : STRING(255) := '';") && text.contains("cName : STRING(255) := '';"), "{text}");
 }
