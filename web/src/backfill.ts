@@ -9,7 +9,7 @@ import type { Session } from "./session";
 /** So many moments of the past are asked for. */
 const MOMENTS = 240;
 /** The session runs at most so many steps again. */
-const STEPS_MOST = 20_000;
+const STEPS_MOST = 6_000;
 /** The machine is to be seen first, ms. */
 const LATER_MS = 400;
 

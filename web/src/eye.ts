@@ -34,6 +34,8 @@ export class Eye {
   private readonly controls: OrbitControls;
   /** What stays in sight when the pane changes: nothing once the viewer has turned it. */
   private kept: "whole" | View | null = "whole";
+  /** Whether the viewer is turning it. */
+  isTurning = false;
   /** The part of the pane that nothing covers, CSS pixels. */
   private room = { width: 1, top: 0, height: 1 };
 
@@ -48,7 +50,8 @@ export class Eye {
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.listenToKeyEvents(canvas);
     this.controls.addEventListener("change", changed);
-    this.controls.addEventListener("start", () => (this.kept = null));
+    this.controls.addEventListener("start", () => [this.kept, this.isTurning] = [null, true]);
+    this.controls.addEventListener("end", () => (this.isTurning = false));
     canvas.addEventListener("keydown", () => (this.kept = null));
   }
 

@@ -21,6 +21,10 @@ const CHOSEN = new Color("#1f6fbf");
 
 /** Machines with more bodies are drawn without smooth edges. */
 const SMOOTH_BODIES = 100;
+/** Nothing has moved for so long in what rests, ms. */
+const REST_MS = 700;
+/** For so long the page has other things to do than to draw well, ms. */
+const FIRST_MS = 1500;
 /** So many bodies of one shape are drawn together. */
 const CROWD_BODIES = 8;
 
@@ -55,7 +59,10 @@ export class MachineView {
   private readonly crowds: Crowd[] = [];
   private t_ns: number | null = null;
   private isStale = true;
-  private moving_until_ms = 0;
+  /** What is drawn first is drawn soon. */
+  private moving_until_ms = performance.now() + FIRST_MS;
+  private resting_from_ms = performance.now();
+  private isAtRest = false;
   /** Pictures drawn since the page was opened. */
   drawn = 0;
 
@@ -77,7 +84,7 @@ export class MachineView {
     this.renderer.domElement.tabIndex = 0;
     place.append(this.renderer.domElement);
     this.eye = new Eye(this.renderer.domElement, covered_px, () => this.seen(), () => (this.isStale = true));
-    this.sharpness = new Sharpness(!isForPicture && session.bodies.length > SMOOTH_BODIES);
+    this.sharpness = new Sharpness(!isForPicture && (session.bodies.length > SMOOTH_BODIES || is_software(this.renderer)));
     this.light = new Light(this.renderer, this.scene);
     this.looks = new Looks(session);
     this.bodies = session.bodies;
@@ -102,7 +109,7 @@ export class MachineView {
     const now_ms = performance.now();
     for (const pose of poses) this.tracks.arrive(pose, now_ms);
     if (now_ms > this.moving_until_ms) this.sharpness.rest();
-    this.moving_until_ms = now_ms + 600;
+    this.moving_until_ms = Math.max(this.moving_until_ms, now_ms + 600);
     if (this.hasArrived) return;
     this.hasArrived = true;
     this.settle(now_ms);
@@ -357,9 +364,9 @@ export class MachineView {
   private fit(): void {
     const { clientWidth: width, clientHeight: height } = this.place;
     if (width === 0 || height === 0) return;
-    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2) * this.sharpness.share);
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2) * (this.isAtRest ? 1 : this.sharpness.share));
     this.renderer.setSize(width, height);
-    this.light.cast(!this.sharpness.isPlain);
+    this.light.cast(this.isAtRest || !this.sharpness.isPlain);
     this.graded(this.sharpness.isPlain);
     this.eye.fit(width, height);
     this.isStale = true;
@@ -387,7 +394,16 @@ export class MachineView {
 
   private draw(): void {
     const now_ms = performance.now();
-    if (!this.isStale && now_ms > this.moving_until_ms) return;
+    const isMoving = now_ms <= this.moving_until_ms || this.eye.isTurning;
+    if (isMoving) this.resting_from_ms = now_ms;
+    // After a slow picture the next poses may wait to be read.
+    const isAtRest = now_ms - this.resting_from_ms > REST_MS;
+    if (!this.isStale && !isMoving && isAtRest === this.isAtRest) return;
+    if (isAtRest !== this.isAtRest) {
+      this.isAtRest = isAtRest;
+      // What rests is drawn as well as can be, however long that takes.
+      if (this.sharpness.isPlain) this.fit();
+    }
     this.settle(now_ms);
     for (const crowd of this.crowds) crowd.settle();
     this.stay_with_followed();
@@ -415,4 +431,12 @@ export class MachineView {
     const part = this.followed === null ? null : this.parts[this.followed];
     if (part) this.eye.follow(part.drawn.where());
   }
+}
+
+/** Whether pictures are computed by the processor: there is no graphics card, or none that the browser uses. */
+function is_software(renderer: WebGLRenderer): boolean {
+  const gl = renderer.getContext();
+  const about = gl.getExtension("WEBGL_debug_renderer_info");
+  const name: unknown = about === null ? "" : gl.getParameter(about.UNMASKED_RENDERER_WEBGL);
+  return typeof name === "string" && /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
 }

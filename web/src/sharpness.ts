@@ -4,8 +4,10 @@
 const SLOW_MS = 45;
 /** Pictures that come this close have time to spare, ms. */
 const FAST_MS = 22;
-/** So many pictures are looked at before anything is changed. */
+/** So many pictures are looked at before anything is changed, or as many as come in this time, ms. */
 const PICTURES = 12;
+const LONG_MS = 1200;
+const LEAST_PICTURES = 3;
 /** A page that was hidden for longer has drawn nothing, ms. */
 const REST_MS = 2500;
 /** The share of pixels, and whether shadows are left out. */
@@ -18,7 +20,7 @@ export class Sharpness {
   /** How often it was too sharp: what has failed twice is not tried again. */
   private failed = 0;
 
-  /** Many bodies are drawn plainly from the beginning. */
+  /** Many bodies are drawn plainly from the beginning, and so is all without a graphics card. */
   constructor(beginsPlain = false) {
     if (beginsPlain) this.step = 1;
   }
@@ -44,8 +46,9 @@ export class Sharpness {
     this.last_ms = now_ms;
     if (span_ms === null || span_ms > REST_MS) return false;
     this.spans_ms.push(span_ms);
-    if (this.spans_ms.length < PICTURES) return false;
-    const middle_ms = this.spans_ms.sort((a, b) => a - b)[PICTURES / 2] ?? SLOW_MS;
+    const isLong = this.spans_ms.length >= LEAST_PICTURES && this.spans_ms.reduce((all, one) => all + one, 0) > LONG_MS;
+    if (this.spans_ms.length < PICTURES && !isLong) return false;
+    const middle_ms = this.spans_ms.sort((a, b) => a - b)[this.spans_ms.length >> 1] ?? SLOW_MS;
     this.spans_ms = [];
     if (middle_ms > SLOW_MS && this.step < STEPS.length - 1) {
       this.step += 1;

@@ -14,8 +14,14 @@ test("what is drawn too slowly is drawn plainly, then with fewer pixels, and no 
   assert.equal(sharpness.isPlain, false);
   assert.equal(pictures(sharpness, 80, 14, 10_000), 1);
   assert.equal(sharpness.isPlain, true);
-  assert.equal(pictures(sharpness, 600, 14, 20_000), 0.75);
+  assert.equal(pictures(sharpness, 80, 14, 20_000), 0.75);
   assert.equal(pictures(sharpness, 80, 100, 40_000), 0.55);
+});
+
+test("what is very slow is seen after three pictures", () => {
+  const sharpness = new Sharpness();
+  pictures(sharpness, 600, 4);
+  assert.equal(sharpness.isPlain, true);
 });
 
 test("many bodies are drawn plainly at once", () => {
