@@ -21,6 +21,8 @@ const CHOSEN = new Color("#1f6fbf");
 
 /** Machines with more bodies are drawn without smooth edges. */
 const SMOOTH_BODIES = 100;
+/** After a picture of the session, bodies are on their way for so long, ms. */
+const MOVES_MS = 600;
 /** Nothing has moved for so long in what rests, ms. */
 const REST_MS = 700;
 /** For so long the page has other things to do than to draw well, ms. */
@@ -108,13 +110,18 @@ export class MachineView {
     if (poses.length === 0) return;
     const now_ms = performance.now();
     for (const pose of poses) this.tracks.arrive(pose, now_ms);
-    if (now_ms > this.moving_until_ms) this.sharpness.rest();
-    this.moving_until_ms = Math.max(this.moving_until_ms, now_ms + 600);
+    this.moves_on(now_ms);
     if (this.hasArrived) return;
     this.hasArrived = true;
     this.settle(now_ms);
     this.floor();
     if (this.eye.isWhole) this.eye.whole();
+  }
+
+  /** Something moves, by poses or by looks. */
+  private moves_on(now_ms: number): void {
+    if (now_ms > this.moving_until_ms) this.sharpness.rest();
+    this.moving_until_ms = Math.max(this.moving_until_ms, now_ms + MOVES_MS);
   }
 
   /** Forgets where bodies were: the next picture is of another time. */
@@ -149,6 +156,7 @@ export class MachineView {
       this.paint_one(part, body);
     }
     this.isStale = true;
+    if (step_s > 0) this.moves_on(performance.now());
   }
 
   /** The position of a body in the last picture, in metres; nothing while it is away. */
