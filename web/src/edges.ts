@@ -52,6 +52,11 @@ export function crowd_edges(mesh: InstancedMesh): LineSegments {
   return drawn;
 }
 
+/** Draws them, or none: lines are dear where the processor draws them. */
+export function show_edges(areShown: boolean): void {
+  [material.visible, crowd_material.visible] = [areShown, areShown];
+}
+
 /** A click goes through a line to the body. */
 function quiet(drawn: LineSegments): LineSegments {
   drawn.raycast = () => {};

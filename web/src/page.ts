@@ -67,7 +67,7 @@ export class Page {
     const bar = frame("view-tools");
     // What lies over the machine from above is no room for it.
     const covered_px = (): number => bar.offsetTop + bar.offsetHeight + BAR_PX;
-    const plain = make("span", { class: "plain", role: "status", title: "The graphics of this computer are slow: what moves is drawn without shadows" });
+    const plain = make("span", { class: "plain", role: "status", title: "The graphics of this computer are slow: what moves is drawn without shadows and edges" });
     this.plain = plain;
     this.machine = new MachineView(frame("canvas"), session, (body) => this.choose(body), false, covered_px, (isPlain) => {
       plain.textContent = isPlain ? "Plain picture: slow graphics" : "";

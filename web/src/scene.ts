@@ -4,6 +4,7 @@ import {
   BufferGeometry, Color, GridHelper, Plane, Raycaster, Scene, Vector2, Vector3, WebGLRenderer, type Object3D,
 } from "three";
 import { Crowd, Single, type Drawn, type Glow, type Member } from "./drawn";
+import { show_edges } from "./edges";
 import { Eye, type Seen, type Sight } from "./eye";
 import { framed, together } from "./framing";
 import { Tracks } from "./interpolation";
@@ -76,7 +77,7 @@ export class MachineView {
     isForPicture = false,
     /** How much of the place something covers from above, CSS pixels. */
     covered_px: () => number = () => 0,
-    /** Called with whether the machine is drawn without shadows. */
+    /** Called with whether the machine is drawn without shadows and edges. */
     private readonly graded: (isPlain: boolean) => void = () => {},
   ) {
     // Smooth edges cost four samples a pixel where there is no graphics card.
@@ -374,7 +375,9 @@ export class MachineView {
     if (width === 0 || height === 0) return;
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2) * (this.isAtRest ? 1 : this.sharpness.share));
     this.renderer.setSize(width, height);
-    this.light.cast(this.isAtRest || !this.sharpness.isPlain);
+    const isFull = this.isAtRest || !this.sharpness.isPlain;
+    this.light.cast(isFull);
+    show_edges(isFull);
     this.graded(this.sharpness.isPlain);
     this.eye.fit(width, height);
     this.isStale = true;

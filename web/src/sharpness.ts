@@ -1,4 +1,5 @@
-// How finely the machine is drawn: where there is no graphics card, no shadows, then fewer pixels, keep what moves smooth.
+// How finely the machine is drawn: where there is no graphics card, no shadows and edges, then fewer pixels,
+// keep what moves smooth.
 
 /** Pictures that come further apart than this are too few, ms: fewer than 22 a second. */
 const SLOW_MS = 45;
@@ -10,7 +11,7 @@ const LONG_MS = 1200;
 const LEAST_PICTURES = 3;
 /** A page that was hidden for longer has drawn nothing, ms. */
 const REST_MS = 2500;
-/** The share of pixels, and whether shadows are left out. */
+/** The share of pixels, and whether shadows and edges are left out. */
 const STEPS = [{ share: 1, isPlain: false }, { share: 1, isPlain: true }, { share: 0.75, isPlain: true }, { share: 0.55, isPlain: true }] as const;
 
 export class Sharpness {
@@ -30,7 +31,7 @@ export class Sharpness {
     return STEPS[this.step]?.share ?? 1;
   }
 
-  /** Without shadows. */
+  /** Without shadows and edges. */
   get isPlain(): boolean {
     return STEPS[this.step]?.isPlain ?? true;
   }
