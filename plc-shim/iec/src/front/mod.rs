@@ -162,7 +162,9 @@ fn join_configurations(units: &mut [(FileId, CompilationUnit)], sources: &Source
     // What has the tasks gives the name.
     let first = parts.iter().position(|part| !part.has_only_globals()).unwrap_or(0);
     let mut whole = parts.remove(first);
-    parts.into_iter().for_each(|part| whole.absorb(part));
+    for part in parts {
+        whole.absorb(part);
+    }
     let home = units.iter_mut().find(|(file, _)| *file == whole.name.span.file);
     if let Some((_, unit)) = home {
         unit.declarations.insert(0, Declaration::Configuration(whole));
