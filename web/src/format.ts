@@ -1,4 +1,4 @@
-// Values as they are read: as many digits as can be told apart, which do not jump while the value moves.
+// Values as they are read: with the digits that one can distinguish, which do not jump while the value moves.
 
 import type { Signal } from "./session";
 
