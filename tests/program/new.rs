@@ -167,7 +167,7 @@ fn sources_that_a_list_was_read_from_run() {
     let text = std::fs::read_to_string(&file).unwrap();
     assert!(text.contains("press.xml\"") && text.contains("step = \"4ms\""), "{text}");
     let expect = "[[expect]]\nname = \"speed\"\nformula = \"always[20ms,90ms] Press.Speed == 7\"\n";
-    let plant = "kind = \"operator\"\ninitial = { \"Application.Guard\" = true }";
+    let plant = "kind = \"operator\"\ninitial = { \"GVL.Guard\" = true }";
     let text =
         text.replace("kind = \"operator\"", plant).replace("[clients.plant]", &format!("{expect}\n[clients.plant]"));
     std::fs::write(&file, text).unwrap();

@@ -4,6 +4,8 @@ use std::io::Write as _;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
 
+use onescan_base::threads;
+
 use super::config::Progress;
 use super::outcome::Report;
 use super::plan::Unit;
@@ -36,8 +38,14 @@ pub(super) fn during<T>(progress: Progress, count: usize, work: impl FnOnce(&Liv
     }
     std::thread::scope(|scope| {
         let (sender, receiver) = channel();
-        scope.spawn(move || write(&receiver, count));
-        work(&Live(Some(sender)))
+        let live = match threads::start_in(scope, "lines", move || write(&receiver, count)) {
+            Ok(_) => Live(Some(sender)),
+            Err(error) => {
+                say(&format!("no line per test: {error}"));
+                Live(None)
+            }
+        };
+        work(&live)
     })
 }
 

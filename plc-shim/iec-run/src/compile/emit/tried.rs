@@ -1,5 +1,5 @@
 //! Statements that a fault ends (`__TRY` of CODESYS and TwinCAT): a function of their own, which the host calls. A trap
-//! in it comes to the host, which tells it from what must stop the PLC, and goes on in the caller.
+//! in it comes to the host, which knows what must stop the PLC; after all else it goes on in the caller.
 //!
 //! The function knows the registers of its unit by globals. It changes none of them: all variables of such a unit lie
 //! in memory.
