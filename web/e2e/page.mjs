@@ -16,9 +16,10 @@ const browser = await chromium.launch({
   ],
 });
 
-async function open(session, options) {
+async function open(session, options, before = null) {
   const page = await browser.newPage({ viewport: { width: 1280, height: 720 }, ...options });
   const errors = [];
+  if (before !== null) await page.addInitScript(before);
   page.on("pageerror", (error) => errors.push(String(error)));
   await page.goto(session.url);
   await page.waitForFunction(() => window.onescan?.picture().step > 5);
@@ -303,16 +304,20 @@ async function follow_the_system() {
 
 async function draw_many() {
   const session = await serve({ packages: 300 });
-  const { page, errors } = await open(session, {});
+  const { page, errors } = await open(session, {}, () => {
+    window.notes = [];
+    const look = () => window.notes.push(document.querySelector(".plain")?.textContent ?? "");
+    new MutationObserver(look).observe(document, { subtree: true, childList: true, characterData: true, attributes: true });
+  });
   const rate = await page.evaluate(async () => {
     const from = window.onescan.drawn();
     const start = performance.now();
     await new Promise((done) => setTimeout(done, 3000));
     return ((window.onescan.drawn() - from) * 1000) / (performance.now() - start);
   });
-  // Without a graphics card shadows are left out, and the page says so.
-  assert.ok(await page.evaluate(() => window.onescan.is_plain()));
-  await page.getByText("Plain picture").waitFor();
+  // Without a graphics card shadows are left out at first, and the page says so; a fast processor draws them after all.
+  const notes = new Set(await page.evaluate(() => window.notes));
+  assert.ok(notes.has("Plain picture: slow graphics"), [...notes].join(", "));
   console.log(`300 bodies: ${rate.toFixed(1)} pictures a second`);
   await shoot(page, "many");
   assert.deepEqual(errors, []);
