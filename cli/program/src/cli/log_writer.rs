@@ -39,7 +39,7 @@ impl LogWriter {
     /// Writes to `out`.
     ///
     /// # Errors
-    /// There is no thread.
+    /// The system has no thread to give.
     pub(super) fn to(out: impl Write + Send + 'static) -> io::Result<Self> {
         Self::patient(out, PATIENCE)
     }
@@ -92,14 +92,20 @@ impl Shared {
         drop(self.wait(state, |state| state.lines_written < own));
     }
 
+    /// The line that is to be written; it stands in the state until it has been.
+    fn next_line(&self) -> Vec<u8> {
+        let mut state = self.lock();
+        loop {
+            if let Some(line) = &state.line {
+                return line.clone();
+            }
+            state = self.given.wait(state).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+
     fn write_each(&self, out: &mut impl Write) {
         loop {
-            let mut state = self.lock();
-            while state.line.is_none() {
-                state = self.given.wait(state).unwrap_or_else(PoisonError::into_inner);
-            }
-            let line = state.line.clone().unwrap_or_default();
-            drop(state);
+            let line = self.next_line();
             // Nobody is left to report to if it cannot be written.
             let _ = out.write_all(&line).and_then(|()| out.flush());
             let mut state = self.lock();
@@ -109,6 +115,7 @@ impl Shared {
             self.written.notify_all();
             drop(state);
             if lost > 0 {
+                // Nor if this cannot.
                 let _ = writeln!(out, " WARN {lost} lines of this log are missing: nobody read it");
             }
         }
