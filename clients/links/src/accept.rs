@@ -47,7 +47,7 @@ impl Peer {
         Ok(Self { stream: Arc::new(stream), address, place: None, deadline: None })
     }
 
-    /// Where it is.
+    /// Address and port of the other side.
     pub(crate) fn address(&self) -> SocketAddr {
         self.address
     }
@@ -114,7 +114,7 @@ pub(crate) struct Terms {
 }
 
 impl Terms {
-    /// The usual ones.
+    /// Those of a server that answers requests: [`LIMITS`] and [`FIRST_REQUEST`].
     pub(crate) const fn of(what: &'static str) -> Self {
         Self { what, limits: LIMITS, first_request: FIRST_REQUEST }
     }

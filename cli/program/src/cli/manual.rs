@@ -11,7 +11,7 @@ use onescan_report::OutputError;
 use onescan_report::file::{Write, write_all_whole};
 
 use super::error::CommandError;
-use super::topics::{self, Topic};
+use super::topics::{TOPICS, Topic};
 use onescan_runner::error::{ExitCode, Usage};
 
 /// Options of `help`.
@@ -75,8 +75,8 @@ pub fn help(args: &HelpArgs, mut program: Command) -> Result<ExitCode, CommandEr
     if let Some(command) = program.find_subcommand_mut(name) {
         return print(&command.render_long_help());
     }
-    let Some(topic) = topics::all().iter().find(|topic| topic.name == name.as_str()) else {
-        let names: Vec<&str> = topics::all().iter().map(|topic| topic.name).collect();
+    let Some(topic) = TOPICS.iter().find(|topic| topic.name == name.as_str()) else {
+        let names: Vec<&str> = TOPICS.iter().map(|topic| topic.name).collect();
         let help = format!("the topics are {}; `onescan help` lists the commands", names.join(", "));
         return Err(Usage::new(format!("`{name}` is not a command or topic"), Some(help)).into());
     };
@@ -105,7 +105,7 @@ pub fn man(args: &ManArgs, mut program: Command) -> Result<ExitCode, CommandErro
         let name = format!("onescan-{}", command.get_name());
         pages.push((format!("{name}.1"), page(command.clone(), &[])?));
     }
-    pages.insert(0, ("onescan.1".to_owned(), page(program, topics::all())?));
+    pages.insert(0, ("onescan.1".to_owned(), page(program, TOPICS)?));
     let files: Vec<Write> =
         pages.into_iter().map(|(file, page)| Write { path: args.output.join(file), bytes: Some(page) }).collect();
     write_all_whole(&files)?;

@@ -5,15 +5,16 @@ use std::fmt::Write as _;
 /// A topic of the help.
 #[derive(Debug)]
 pub(super) struct Topic {
-    /// What is typed.
+    /// The word behind `onescan help`.
     pub(super) name: &'static str,
-    /// Its heading.
+    /// Over the entries, in capitals on the manual page.
     title: &'static str,
     /// Each with what it means.
     entries: &'static [(&'static str, &'static str)],
 }
 
-const TOPICS: &[Topic] = &[
+/// All topics, in the order of the manual page.
+pub(super) const TOPICS: &[Topic] = &[
     Topic {
         name: "exit-codes",
         title: "Exit codes",
@@ -61,11 +62,6 @@ const TOPICS: &[Topic] = &[
     },
 ];
 
-/// All topics.
-pub(super) const fn all() -> &'static [Topic] {
-    TOPICS
-}
-
 impl Topic {
     /// For a terminal of 80 columns.
     pub(super) fn text(&self) -> String {
@@ -104,7 +100,7 @@ mod tests {
 
     #[test]
     fn lines_fit_a_terminal() {
-        for topic in all() {
+        for topic in TOPICS {
             let text = topic.text();
             assert!(text.lines().all(|line| line.len() <= 80 && line.trim_end() == line), "{text}");
         }

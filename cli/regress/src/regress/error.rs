@@ -39,7 +39,7 @@ sum_of_errors! {
         Repository(RepositoryError),
         /// A process cannot be started.
         Spawn(SpawnError),
-        /// There is no thread.
+        /// The system has no thread to give.
         Thread(ThreadError),
         /// A file cannot be written.
         File(FileError),

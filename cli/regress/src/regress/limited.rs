@@ -86,7 +86,7 @@ fn taken(pipe: Option<impl Read + Send + 'static>) -> io::Result<Receiver<Vec<u8
 /// Ends this process when the one that started it has ended, whose pipe is the standard input.
 ///
 /// # Errors
-/// There is no thread.
+/// The system has no thread to give.
 pub fn end_with_parent() -> Result<(), ThreadError> {
     let watch = || {
         let mut rest = Vec::new();

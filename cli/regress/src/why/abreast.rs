@@ -36,7 +36,7 @@ pub(super) fn traced(scenario: &Scenario) -> Scenario {
 /// The first scan after which the memory of a PLC differs in what both runs have.
 ///
 /// # Errors
-/// There is no thread for a run.
+/// The system has no thread to give for a run.
 pub(super) fn first_scan(
     sides: [&Side<'_>; 2],
     until: VirtualTime,
@@ -75,7 +75,7 @@ pub(super) struct Pair {
 /// Gives `look` what both runs do from `from` on, until it says that it has seen enough.
 ///
 /// # Errors
-/// There is no thread for a run.
+/// The system has no thread to give for a run.
 pub(super) fn acts(
     sides: [&Side<'_>; 2],
     from: VirtualTime,
