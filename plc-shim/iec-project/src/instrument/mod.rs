@@ -24,6 +24,7 @@
 //! | [`plcopen_chart`], [`plcopen_gate`], [`plcopen_drawing`] | the same of charts that are drawn, in PLCopen XML |
 //! | [`port`], [`codesys`] | a project in text for a tool that takes another form |
 //! | [`matiec`], [`taken_over`] | a project in text for MatIEC, with all that the gateway exchanges at addresses |
+//! | [`long_duration`] | an LTIME for a timer of TIME |
 //! | [`left_out`] | files that the target's build leaves out |
 //! | [`address`], [`located`] | direct addresses, and what lies there |
 //! | [`verify`] | what has been written is checked |
@@ -47,6 +48,7 @@ mod exchanged;
 mod foreign;
 mod left_out;
 mod located;
+mod long_duration;
 mod marks;
 mod matiec;
 mod motion;
@@ -258,6 +260,7 @@ fn attach(plain: &Plain, options: &Options) -> Result<Attached, InstrumentError>
         return Err(InstrumentError::Text(Diagnostics::new(vec![refused], &plain.sources)));
     }
     findings.append(&mut survey.findings);
+    survey.long_durations = long_duration::given(plain, options.target, &survey);
     let exchange = (options.target == Target::Scl).then(|| scl_exchange::text(&options.exchanged)).flatten();
     if options.target == Target::Scl {
         findings.extend(scl_exchange::refused(&options.exchanged));

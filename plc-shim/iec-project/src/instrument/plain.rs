@@ -12,7 +12,9 @@ use super::motion_use::Motion;
 use super::survey::Survey;
 use super::target::{self, Target};
 use super::tasks::TaskTable;
-use super::{File, Inputs, InstrumentError, Options, chart, configuration, controller, scl, single, twincat};
+use super::{
+    File, Inputs, InstrumentError, Options, chart, configuration, controller, long_duration, scl, single, twincat,
+};
 use onescan_iec::diagnostic::{Code, Diagnostic, Diagnostics};
 use onescan_iec::input::Input;
 use onescan_iec::input::encoding::Encoding;
@@ -180,6 +182,10 @@ impl Plain {
             single::check_given(tasks, |name| survey.is_global(name), (options.target, self.is_xml()))?;
             return Ok(tasks.clone());
         }
+        // A task of a library names a program that its users have.
+        if survey.programs.is_empty() {
+            return Err(InstrumentError::NoPrograms);
+        }
         if !survey.configurations.is_empty() {
             if options.target != Target::Iec || self.is_xml() {
                 self.refuse_singles(survey)?;
@@ -262,6 +268,9 @@ impl Plain {
         }
         for (name, new) in &motion.renames {
             changes(name.span.file, &mut |file, edits| rename(name, new, file, edits));
+        }
+        for span in &survey.long_durations {
+            changes(span.file, &mut |file, edits| long_duration::convert(*span, file, edits));
         }
         for span in &survey.cuts {
             changes(span.file, &mut |file, edits| scl::cut(*span, file, edits));

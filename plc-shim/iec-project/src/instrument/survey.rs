@@ -44,6 +44,8 @@ pub(super) struct Survey<'a> {
     pub(super) inputs: RealInputs<'a>,
     /// Names to be replaced.
     pub(super) renames: Vec<(Ident, &'static Form)>,
+    /// What is an LTIME, where the shim's timers have a TIME.
+    pub(super) long_durations: BTreeSet<Span>,
     /// Names of blocks and types of motion control.
     pub(super) motion: Vec<(Ident, Role)>,
     /// Calls of timers by what they are, in SCL.

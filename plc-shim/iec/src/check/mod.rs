@@ -72,6 +72,8 @@ pub struct Checked {
     pub image: Vec<u8>,
     /// The steps and transitions of charts: where they stand, and what they are called.
     pub chart_parts: Vec<(Span, String)>,
+    /// Where a standard timer is given an LTIME for its TIME (3rd ed. Table 46).
+    pub long_durations: BTreeSet<Span>,
 }
 
 /// The value of an expression that is constant.
@@ -118,7 +120,8 @@ pub fn check(
     declarations.explain_too_large();
     let (image, globals) = (declarations.memory_image(), declarations.shared_globals());
     let (interfaces, kept) = (declarations.interfaces(), declarations.kept_by_methods());
-    let Outcome { types, programs, rows, areas, address_unit, chart_parts, findings } = declarations.into_outcome();
+    let Outcome { types, programs, rows, areas, address_unit, chart_parts, long_durations, findings } =
+        declarations.into_outcome();
     let checked = Checked {
         types,
         pous,
@@ -135,6 +138,7 @@ pub fn check(
         end,
         image,
         chart_parts,
+        long_durations,
     };
     (checked, findings)
 }

@@ -129,6 +129,7 @@ pub(super) struct Declarations<'a> {
     generics: BTreeMap<TypeId, Generic>,
     depth: u32,
     chart_parts: Vec<(Span, String)>,
+    long_durations: BTreeSet<Span>,
     stubs: Stubs,
     findings: Findings,
 }
@@ -194,6 +195,7 @@ impl<'a> Declarations<'a> {
             calls: Calls::default(),
             depth: 0,
             chart_parts: Vec::new(),
+            long_durations: BTreeSet::new(),
             stubs: Stubs::default(),
             findings: Findings::default(),
         }

@@ -1,6 +1,6 @@
 //! What bodies and the configuration ask of the declarations.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::Declarations;
@@ -22,6 +22,7 @@ pub(in crate::check) struct Outcome {
     pub(in crate::check) areas: Areas,
     pub(in crate::check) address_unit: AddressUnit,
     pub(in crate::check) chart_parts: Vec<(Span, String)>,
+    pub(in crate::check) long_durations: BTreeSet<Span>,
     pub(in crate::check) findings: Vec<Diagnostic>,
 }
 
@@ -133,6 +134,11 @@ impl<'a> Declarations<'a> {
         self.generics.insert(ty, generic);
     }
 
+    /// An LTIME was given for a TIME here.
+    pub(in crate::check) fn note_long_duration(&mut self, at: Span) {
+        self.long_durations.insert(at);
+    }
+
     pub(in crate::check) fn note_chart_parts(&mut self, parts: impl IntoIterator<Item = (Span, String)>) {
         self.chart_parts.extend(parts);
     }
@@ -179,6 +185,7 @@ impl<'a> Declarations<'a> {
             areas: self.areas,
             address_unit: self.address_unit,
             chart_parts: self.chart_parts,
+            long_durations: self.long_durations,
             findings: self.findings.into_list(),
         }
     }

@@ -112,6 +112,8 @@ fn seen_by_methods(scope: &Scope, owner: PouId) -> Scope {
         let lasting = match variable.storage {
             Storage::Instance(_) | Storage::InstancePointer(_) | Storage::Located(_) => true,
             Storage::Register(_) | Storage::RegisterPointer(_) => false,
+            // A hierarchical address, as `%IW0.1`, has a fixed place.
+            Storage::Absolute(_) if variable.section == SectionKind::Local => true,
             _ => matches!(variable.section, SectionKind::External | SectionKind::Static),
         };
         let hidden = variable.visibility == Visibility::Private && variable.owner != Some(owner);

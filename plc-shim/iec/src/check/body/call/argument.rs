@@ -139,6 +139,7 @@ impl Body<'_, '_> {
         let context = self.elementary(wanted);
         match self.within(context, |body| body.expression(expr))? {
             Operand::Typed(value) if value.ty == ElementaryType::Ltime.into() => {
+                self.declarations.note_long_duration(expr.span);
                 Some(converted(value, ElementaryType::Time, Rounding::NearestEven))
             }
             other => self.coerce(other, wanted),
