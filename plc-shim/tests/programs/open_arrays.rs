@@ -124,3 +124,18 @@ fn wrong_arrays_are_reported() {
         assert!(found.contains(expected), "{unit}: {found}");
     }
 }
+
+/// 3rd ed. 6.5.3: the dimension is an ANY_INT, so a variable, too.
+#[test]
+fn a_dimension_is_chosen_when_the_program_runs() {
+    let text = "
+        FUNCTION Extent : DINT VAR_IN_OUT m : ARRAY [*, *] OF INT; END_VAR VAR_INPUT d : INT; END_VAR
+        Extent := UPPER_BOUND(m, d) - LOWER_BOUND(m, d) + 1; END_FUNCTION
+        PROGRAM P VAR m : ARRAY [2..3, -5..7] OF INT; d : USINT := 2; x, y, low : DINT; END_VAR
+        x := Extent(m, 1); y := Extent(m, 2); low := LOWER_BOUND(m, d); d := d + 1; END_PROGRAM";
+    let mut rig = Rig::new(text);
+    rig.scan().expect("no fault");
+    assert_eq!((rig.int("P.x"), rig.int("P.y"), rig.int("P.low")), (2, 13, -5));
+    let fault = rig.scan().expect_err("there is no third dimension").to_string();
+    assert!(fault.starts_with("selector out of range at test.st:5"), "{fault}");
+}

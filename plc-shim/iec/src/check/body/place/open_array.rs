@@ -5,13 +5,15 @@
 
 use super::{Access, Located};
 use crate::check::body::Body;
+use crate::check::constant_value;
 use crate::check::standard::place::PlaceFunction;
 use crate::check::types::operand::Operand;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::Feature;
 use crate::ir::types::OPEN_BOUNDS;
 use crate::ir::{
-    Dimension, ElementaryType, Expr, ExprKind, Place, Statement, StatementKind, Step, Type, TypeId, Value, Variable,
+    Binary, Dimension, ElementaryType, Expr, ExprKind, Intrinsic, Place, Statement, StatementKind, Step, Type, TypeId,
+    Value, Variable,
 };
 use crate::syntax::Span;
 use crate::syntax::ast::{self, SectionKind};
@@ -120,7 +122,8 @@ impl Body<'_, '_> {
         Some(place)
     }
 
-    /// `LOWER_BOUND(a, 1)`, `UPPER_BOUND(a, 1)`: a constant unless the array comes with its bounds.
+    /// `LOWER_BOUND(a, 1)`, `UPPER_BOUND(a, 1)`: a constant unless the array comes with its bounds, or the dimension is
+    /// known when it runs.
     pub(in crate::check::body) fn bound(
         &mut self,
         function: PlaceFunction,
@@ -129,31 +132,60 @@ impl Body<'_, '_> {
         span: Span,
     ) -> Option<Operand> {
         let place = self.place(array)?.place;
-        let upper = function == PlaceFunction::UpperBound;
-        let count = match self.declarations.types().get(place.ty) {
-            Type::Array { dimensions, .. } => dimensions.len(),
-            Type::OpenArray { dimensions, .. } => *dimensions as usize,
-            _ => {
-                let message = format!("{} is not an array", self.type_name(place.ty));
-                self.report(Diagnostic::error(Code::NotIndexable, array.span, message));
-                return None;
-            }
-        };
-        let dimension = self.constant_integer(number)?;
-        let Some(index) = usize::try_from(dimension - 1).ok().filter(|index| *index < count) else {
-            let message = format!("the array has the dimensions 1 to {count}, not {dimension}");
-            self.report(Diagnostic::error(Code::WrongDimensions, number.span, message));
+        let bounds = self.array_bounds(&place, function == PlaceFunction::UpperBound, span);
+        if bounds.is_empty() {
+            let message = format!("{} is not an array", self.type_name(place.ty));
+            self.report(Diagnostic::error(Code::NotIndexable, array.span, message));
             return None;
+        }
+        let (given, number) = (number.span, self.expression(number)?);
+        let dimension = match &number {
+            Operand::Integer { value, .. } => Some(*value),
+            Operand::Typed(typed) => constant_value(self.declarations.types(), typed).and_then(|value| value.as_int()),
+            Operand::Real { .. } | Operand::Text { .. } => None,
         };
+        match dimension {
+            Some(dimension) => self.bound_of(bounds, dimension, given).map(Operand::Typed),
+            None => self.bound_chosen(bounds, number, span).map(Operand::Typed),
+        }
+    }
+
+    /// The bounds of an array, by its dimensions; none of what is not an array.
+    fn array_bounds(&self, array: &Place, upper: bool, span: Span) -> Vec<Expr> {
         let dint: TypeId = ElementaryType::Dint.into();
-        let kind = match self.declarations.types().get(place.ty) {
+        let each = |kind| Expr { kind, ty: dint, span };
+        match self.declarations.types().get(array.ty) {
             Type::Array { dimensions, .. } => {
-                let bounds = dimensions.get(index)?;
-                ExprKind::Constant(Value::Int(i128::from(if upper { bounds.high } else { bounds.low })))
+                let bound = |of: &Dimension| i128::from(if upper { of.high } else { of.low });
+                dimensions.iter().map(|of| each(ExprKind::Constant(Value::Int(bound(of))))).collect()
             }
-            _ => ExprKind::Load(place.member(4 + index as u32 * OPEN_BOUNDS + if upper { 4 } else { 0 }, dint)),
-        };
-        Some(Operand::Typed(Expr { kind, ty: dint, span }))
+            Type::OpenArray { dimensions, .. } => {
+                let offset = |index| 4 + index * OPEN_BOUNDS + if upper { 4 } else { 0 };
+                (0..*dimensions).map(|index| each(ExprKind::Load(array.clone().member(offset(index), dint)))).collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    fn bound_of(&mut self, mut bounds: Vec<Expr>, dimension: i128, span: Span) -> Option<Expr> {
+        match usize::try_from(dimension - 1).ok().filter(|index| *index < bounds.len()) {
+            Some(index) => Some(bounds.swap_remove(index)),
+            None => {
+                let message = format!("the array has the dimensions 1 to {}, not {dimension}", bounds.len());
+                self.report(Diagnostic::error(Code::WrongDimensions, span, message));
+                None
+            }
+        }
+    }
+
+    /// A dimension that the program computes chooses among the bounds; one that the array does not have is a fault.
+    fn bound_chosen(&mut self, bounds: Vec<Expr>, number: Operand, span: Span) -> Option<Expr> {
+        let number = self.integer_as_lint(number)?;
+        let ty = number.ty;
+        let one = Expr { kind: ExprKind::Constant(Value::Int(1)), ty, span };
+        let selector = Expr { kind: ExprKind::Binary(Binary::Subtract, Box::new(number), Box::new(one)), ty, span };
+        let operands = std::iter::once(selector).chain(bounds).collect();
+        Some(Expr { kind: ExprKind::Intrinsic(Intrinsic::Multiplex, operands), ty: ElementaryType::Dint.into(), span })
     }
 
     /// Reports an array that would be copied without knowing how much.
