@@ -99,5 +99,6 @@ mod web_access;
 mod web_maps;
 mod web_past;
 mod web_plc;
+mod web_stay;
 mod web_tls;
 mod wiring;

@@ -26,6 +26,11 @@ pub fn exit_code() -> Option<u8> {
     u8::try_from(128 + signal).ok().filter(|_| signal != 0)
 }
 
+/// A signal ended no work: what there was to do was done before it came.
+pub(super) fn set_answered() {
+    SIGNAL.store(0, Ordering::SeqCst);
+}
+
 /// A wish to stop, seen by all runs of a process.
 #[derive(Clone, Debug, Default)]
 pub struct Interrupt {

@@ -66,23 +66,30 @@ pub(super) const PAGE_AT: &str = "the session is at ";
 pub(crate) struct ForkSettings {
     /// How many may run at a time.
     limit: u32,
-    /// The scenario, its case, when the session is complete, who is operated, what the page is: as they are typed.
+    /// The scenario, its case, who is operated, what the page is: as they are typed.
     pub(crate) words: Vec<OsString>,
+    /// When such a session is complete, unless the scenario says it.
+    until: Option<VirtualTime>,
 }
 
 impl ForkSettings {
     /// What is typed beside where the page is, and who is let in there: at the same address, at a port of its own.
-    pub(crate) fn at(mut words: Vec<OsString>, web: Option<SocketAddr>, admission: &Admission, limit: u32) -> Self {
+    pub(crate) fn at(
+        (mut words, until): (Vec<OsString>, Option<VirtualTime>),
+        web: Option<SocketAddr>,
+        admission: &Admission,
+        limit: u32,
+    ) -> Self {
         let web = web.map_or(IpAddr::V4(Ipv4Addr::LOCALHOST), |address| address.ip());
         words.push(format!("--web={}", SocketAddr::new(web, 0)).into());
-        // It may be short, and its viewer has yet to come.
-        words.push("--await-viewer".into());
+        // It may be short, its viewer has yet to come, and may look back.
+        words.extend(["--await-viewer".into(), "--stay".into()]);
         if let Admission::Holders(folder) = admission {
             words.extend(["--access".into(), folder.clone().into()]);
         }
         // A fork may be forked, too, but not so often: all that come of one session are a few.
         words.extend(["--forks".into(), (limit / FORKS_OF_FORK).to_string().into()]);
-        Self { limit, words }
+        Self { limit, words, until }
     }
 
     /// As a run of `config`.
@@ -91,9 +98,6 @@ impl ForkSettings {
         let mut add = |option: &str, value: String| words.extend([option.into(), value.into()]);
         if let Some(case) = &config.subject.case {
             add("--case", case.clone());
-        }
-        if let Some(until) = config.subject.until {
-            add("--until", format!("{}ns", until.as_nanos()));
         }
         for client in &config.reach.operated {
             add("--operator", client.to_string());
@@ -104,7 +108,7 @@ impl ForkSettings {
         };
         add("--pace", pace);
         add("--past-memory", config.doors.past.to_string());
-        Self::at(words, config.doors.web, &config.doors.admission, config.doors.forks)
+        Self::at((words, config.subject.until), config.doors.web, &config.doors.admission, config.doors.forks)
     }
 }
 
@@ -121,16 +125,21 @@ struct ChildSessions {
 /// Lets sessions go on from checkpoints, as `fork_settings` says.
 pub(crate) fn launcher(fork_settings: ForkSettings) -> Launch {
     let child_sessions = Mutex::new(ChildSessions::default());
-    Arc::new(move |checkpoint| {
+    Arc::new(move |checkpoint, until| {
         // a thread that panicked under the lock has left whole values
         let mut child_sessions = child_sessions.lock().unwrap_or_else(PoisonError::into_inner);
-        child_sessions.begin(checkpoint, &fork_settings).map_err(|error| error.to_string())
+        child_sessions.begin(checkpoint, &fork_settings, until).map_err(|error| error.to_string())
     })
 }
 
 impl ChildSessions {
     /// Begins a session of a process of its own, and waits until it says where its page is.
-    fn begin(&mut self, checkpoint: &[u8], ForkSettings { words, limit }: &ForkSettings) -> std::io::Result<String> {
+    fn begin(
+        &mut self,
+        checkpoint: &[u8],
+        ForkSettings { words, limit, until }: &ForkSettings,
+        other_end: Option<VirtualTime>,
+    ) -> std::io::Result<String> {
         self.children.retain_mut(|child| !matches!(child.try_wait(), Ok(Some(_))));
         if self.children.len() >= *limit as usize {
             let running = self.children.len();
@@ -148,6 +157,9 @@ impl ChildSessions {
         }
         let mut command = Command::new(std::env::current_exe()?);
         command.arg("run").args(words).arg("--resume").arg(&path);
+        if let Some(until) = other_end.or(*until) {
+            command.arg("--until").arg(format!("{}ns", until.as_nanos()));
+        }
         command.envs(permission::granted().variables());
         command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped());
         #[cfg(unix)]

@@ -29,6 +29,7 @@ use super::processes::{Passed, Processes};
 use super::progress::Progress;
 use super::seats::{OpcUaSeats, Seats};
 use super::session_log::SessionLog;
+use super::staying::Staying;
 use crate::access::admission::{GuardedListener, Shown, from_here};
 use crate::error::{ListenError, Unreadable, Usage};
 use crate::interrupt::Interrupt;
@@ -49,11 +50,13 @@ pub(super) struct Driven {
     pub(super) state: Option<StateHash>,
     /// How far a plant that follows was behind the PLC at each communication, ns.
     pub(super) errors_ns: Vec<i64>,
+    /// Its page, if that is to stay.
+    pub(super) staying: Option<Staying>,
 }
 
 impl From<(Outcome, Vec<i64>)> for Driven {
     fn from((outcome, errors_ns): (Outcome, Vec<i64>)) -> Self {
-        Self { outcome, unsaved: None, taken: Taken::default(), joined: None, state: None, errors_ns }
+        Self { outcome, unsaved: None, taken: Taken::default(), joined: None, state: None, errors_ns, staying: None }
     }
 }
 
@@ -105,6 +108,7 @@ pub(super) fn run(
         resume(&mut lockstep, checkpoint, scenario, config.course.accept_code)?;
     }
     if let (Some(page), true) = (&page, config.doors.awaits_viewer) {
+        tracing::info!(target: NOTICE, "it begins when the page is opened");
         page.await_viewer(|| interrupt.is_raised());
     }
     let saved = match &config.course.save {
@@ -134,7 +138,9 @@ pub(super) fn run(
     } else {
         None
     };
-    Ok(Driven { outcome: lockstep.run()?, unsaved, taken, joined, state, errors_ns: Vec::new() })
+    let outcome = lockstep.run()?;
+    let staying = Staying::of(page, config, interrupt);
+    Ok(Driven { outcome, unsaved, taken, joined, state, errors_ns: Vec::new(), staying })
 }
 
 /// What the scenario does by itself, and what is looked out for on behalf of others.

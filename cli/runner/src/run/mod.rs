@@ -30,6 +30,7 @@
 //! | [`page`] | all runs as a page |
 //! | [`report`] | what came of a run, for people and machines |
 //! | `seats` | clients that take part over OPC UA |
+//! | `staying` | the page of a run that is over |
 //! | [`session_log`] | which client a session waited for |
 
 mod check;
@@ -60,6 +61,7 @@ pub mod sampler;
 mod search;
 mod seats;
 pub mod session_log;
+mod staying;
 pub mod watch;
 
 use std::cell::RefCell;
@@ -97,6 +99,7 @@ use production::Metered;
 use recorded::{Recorded, refuse_to_overwrite};
 use sampler::{Sampler, Samples};
 use session_log::SessionLog;
+use staying::Staying;
 use watch::WatchReport;
 
 /// Runs a scenario as `config` asks, and writes a report of each run to `out`.
@@ -135,12 +138,14 @@ pub fn execute(config: &RunConfig, interrupt: &Interrupt, out: &mut dyn Write) -
     notices::warn_of_length(&scenario, config.subject.end(&scenario));
     let mut reports: Vec<RunReport> = Vec::new();
     let (mut samples, mut unsaved, mut last) = (Vec::new(), None, ClientView::default());
+    let mut staying = None;
     for number in 1..=config.runs {
         let ran = one_run(config, &scenario, number, interrupt, Vec::new())?;
         ran.report.write(config.reports.format, config.runs, reports.last(), out).map_err(OutputError)?;
         reports.push(ran.report);
         samples.push(ran.samples);
         last = ran.last;
+        staying = ran.staying;
         unsaved = unsaved.or(ran.unsaved);
         if interrupt.is_raised() || reports.iter().any(RunReport::is_failed) {
             break;
@@ -165,7 +170,10 @@ pub fn execute(config: &RunConfig, interrupt: &Interrupt, out: &mut dyn Write) -
         file::write_whole(path, page_of(&scenario, &reports, &plot, &last.tables).as_bytes())?;
     }
     let verdict = Verdict::of(config.mode, &reports);
-    verdict.write(config.reports.format, &reports, out).map_err(OutputError)?;
+    verdict.write(config.reports.format, &reports, out).and_then(|()| out.flush()).map_err(OutputError)?;
+    if let Some(staying) = staying {
+        staying.last(interrupt);
+    }
     unsaved.map_or(Ok(verdict), Err)
 }
 
@@ -217,6 +225,8 @@ pub struct Ran {
     pub(crate) errors_ns: Vec<i64>,
     /// What its clients showed at the end, if that is asked for.
     pub(crate) last: ClientView,
+    /// Its page, if that is to stay.
+    staying: Option<Staying>,
 }
 
 /// One run.
@@ -270,8 +280,8 @@ pub fn one_run(
             freewheel::run(config, scenario, number, interrupt, watch).map(Driven::from)
         }
     };
-    let Driven { outcome, unsaved, taken: Taken { forks, states }, joined, state, errors_ns } =
-        outcome.map_err(|error| match (&recorded, error) {
+    let Driven { outcome, unsaved, taken: Taken { forks, states }, joined, state, errors_ns, staying } = outcome
+        .map_err(|error| match (&recorded, error) {
             (Some(recorded), RunError::Record(source)) => RunError::RecordCut { source, kept: recorded.kept() },
             (_, error) => error,
         })?;
@@ -297,5 +307,6 @@ pub fn one_run(
         state,
         errors_ns,
         last,
+        staying,
     })
 }

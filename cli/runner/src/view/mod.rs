@@ -94,7 +94,8 @@ pub fn view(config: &ViewConfig, interrupt: &Interrupt, out: &mut dyn Write) -> 
 fn serve(config: &ViewConfig, recorded: &Recorded, kept: Kept, verdict_board: VerdictBoard) -> Result<Page, ViewError> {
     let scenario = &recorded.scenario;
     let rewinder = Rewinder::new(kept, forked::former(scenario)).map_err(WebError::Thread)?;
-    let fork_settings = ForkSettings::at(recorded.words(), Some(config.web), &config.admission, config.forks);
+    let typed = (recorded.words(), Some(recorded.until()));
+    let fork_settings = ForkSettings::at(typed, Some(config.web), &config.admission, config.forks);
     // Nothing is published: a recording has no live edge.
     let unpublished = Published::new(0);
     let source = web::Source {

@@ -66,6 +66,11 @@ impl Recorded {
         self.inputs.iter().for_each(|input| kept.note(input));
     }
 
+    /// When the recorded run was to be complete.
+    pub(super) fn until(&self) -> VirtualTime {
+        self.recording.header().provenance.until
+    }
+
     /// What is typed to run the recorded scenario.
     pub(super) fn words(&self) -> Vec<OsString> {
         let provenance = &self.recording.header().provenance;
@@ -74,7 +79,6 @@ impl Recorded {
         if let Some(case) = &provenance.case {
             add("--case", case.clone());
         }
-        add("--until", format!("{}ns", provenance.until.as_nanos()));
         for client in &provenance.operated {
             add("--operator", client.to_string());
         }

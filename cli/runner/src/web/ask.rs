@@ -47,8 +47,12 @@ pub(super) enum Ask {
     Force { signal: usize, value: Option<String> },
     /// Shows this viewer the live edge again.
     Live,
-    /// Starts a session from a moment of the past, beside this one.
-    Fork { t_ns: f64 },
+    /// Starts a session from a moment of the past, beside this one; it ends as this one does, or at `until_ns`.
+    Fork {
+        t_ns: f64,
+        #[serde(default)]
+        until_ns: Option<f64>,
+    },
 }
 
 /// How a lesson continues.

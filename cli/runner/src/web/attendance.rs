@@ -6,6 +6,9 @@ use std::time::Duration;
 /// How often whoever waits for a viewer looks whether that is over.
 const GLANCE: Duration = Duration::from_millis(100);
 
+/// How long a viewer is gone at most that only loads the page again.
+const RELOAD: Duration = Duration::from_secs(3);
+
 /// The viewers of a page.
 #[derive(Debug, Default)]
 pub(super) struct Attendance {
@@ -49,6 +52,16 @@ impl Attendance {
         }
     }
 
+    /// Waits until the last viewer has left for longer than a page takes to load again, or until `is_over`.
+    pub(super) fn await_departure(&self, is_over: impl Fn() -> bool) {
+        let mut viewers = self.lock();
+        let mut absent = Duration::ZERO;
+        while absent < RELOAD && !is_over() {
+            viewers = self.changed.wait_timeout(viewers, GLANCE).unwrap_or_else(PoisonError::into_inner).0;
+            absent = if viewers.began && viewers.present == 0 { absent + GLANCE } else { Duration::ZERO };
+        }
+    }
+
     /// Waits until all viewers have left, but no longer than that.
     pub(super) fn await_last(&self, at_most: Duration) {
         let looks = |viewers: &mut Viewers| viewers.present > 0;
@@ -81,6 +94,7 @@ mod tests {
             last.join().unwrap();
         });
         attendance.await_first(|| false);
+        attendance.await_departure(|| false);
         let slow = attendance.enter();
         attendance.await_last(Duration::ZERO);
         assert_eq!(slow.attendance.lock().present, 1, "one that does not read is left after the time");

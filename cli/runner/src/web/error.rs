@@ -43,6 +43,10 @@ pub(super) enum Refused {
     NoMoment { t_ns: String, end: VirtualTime },
     #[error("a recording is looked at: nobody operates it; `Go on from here` makes a session of it")]
     Recorded,
+    #[error("a session that goes on from {t_v} cannot end at {until_ns} ns")]
+    NoEnd { until_ns: String, t_v: VirtualTime },
+    #[error("the session is over: look back, or let another go on from one of its moments")]
+    Over,
     #[error("a viewer's token lets its holder look, and change nothing")]
     LooksOnly,
     #[error("panel `{0}` is a trainer's, and an operator's token does not let its holder sit there")]

@@ -106,6 +106,21 @@ pub(crate) use verdicts::VerdictBoard;
 /// How long viewers have to take the end, at most.
 const FAREWELL: Duration = Duration::from_millis(500);
 
+/// How often whoever keeps a page for those who look back looks whether that is over.
+const LOOK: Duration = Duration::from_millis(100);
+
+/// How long a page stays when its session is over.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Stay {
+    /// Viewers get the end, and that is all.
+    #[default]
+    No,
+    /// Until the last viewer has left.
+    ForViewers,
+    /// Until Ctrl-C or the like.
+    UntilInterrupted,
+}
+
 /// What a session's page needs of it.
 pub(crate) struct Source<'s> {
     pub(crate) scenario: &'s Scenario,
@@ -141,16 +156,16 @@ impl<'s> Source<'s> {
             training: None,
             pictures: None,
             past: Err("it keeps none".to_owned()),
-            launch: Arc::new(|_| Err("it keeps no past".to_owned())),
+            launch: Arc::new(|_, _| Err("it keeps no past".to_owned())),
             verdict_board: VerdictBoard::default(),
             recorded_to: None,
         }
     }
 }
 
-/// Begins a session that goes on from a checkpoint, given as a file's bytes; gives where its page is, or says in words why
-/// there is none.
-pub(crate) type Launch = Arc<dyn Fn(&[u8]) -> Result<String, String> + Send + Sync>;
+/// Begins a session that goes on from a checkpoint, given as a file's bytes, and ends as this one does or then; gives where
+/// its page is, or says in words why there is none.
+pub(crate) type Launch = Arc<dyn Fn(&[u8], Option<VirtualTime>) -> Result<String, String> + Send + Sync>;
 
 /// A picture that the page has drawn, a PNG, or why it has not.
 pub(crate) type Drawn = Result<Vec<u8>, String>;
@@ -180,7 +195,7 @@ struct Session {
     expected: Vec<String>,
     recorded_to: Option<VirtualTime>,
     over: AtomicBool,
-    /// A viewer of a recording has seen enough.
+    /// A viewer of a recording, or of what is over, has seen enough.
     left: AtomicBool,
     attendance: Attendance,
     /// What all viewers are notified of, in its order.
@@ -253,6 +268,11 @@ impl Session {
     /// The newest moment that there is.
     fn edge(&self) -> VirtualTime {
         self.recorded_to.unwrap_or_else(|| self.published.latest().t_v)
+    }
+
+    /// True for a session that has come to its end, though its page may stay.
+    fn is_complete(&self) -> bool {
+        self.published.latest().end.is_some()
     }
 
     fn ended(&self) -> bool {
@@ -403,7 +423,22 @@ impl Page {
         self.session.attendance.await_first(is_over);
     }
 
-    /// Whether a viewer of a recording has seen enough.
+    /// Waits, after the session, until a viewer has seen enough or `is_over`; or until the last one has left, if nobody else
+    /// could end it.
+    pub(crate) fn await_departure(&self, stay: Stay, is_over: impl Fn() -> bool) {
+        let is_over = || is_over() || self.is_left();
+        match stay {
+            Stay::No => {}
+            Stay::ForViewers => self.session.attendance.await_departure(is_over),
+            Stay::UntilInterrupted => {
+                while !is_over() {
+                    std::thread::sleep(LOOK);
+                }
+            }
+        }
+    }
+
+    /// Whether a viewer of a recording, or of what is over, has seen enough.
     pub(crate) fn is_left(&self) -> bool {
         self.session.left.load(Ordering::Acquire)
     }

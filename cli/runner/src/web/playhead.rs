@@ -104,6 +104,13 @@ pub(super) fn moment(t_ns: f64, session: &Session) -> Result<VirtualTime, Refuse
     Ok(VirtualTime::from_nanos(asked - asked % step))
 }
 
+/// When a session is to end that goes on from `t_v`.
+pub(super) fn end(until_ns: f64, t_v: VirtualTime) -> Result<VirtualTime, Refused> {
+    let until = VirtualTime::from_nanos(until_ns as u64);
+    // Put this way, NaN is refused, too.
+    if until_ns >= 0.0 && until > t_v { Ok(until) } else { Err(Refused::NoEnd { until_ns: until_ns.to_string(), t_v }) }
+}
+
 /// The past that can be shown, ns; nothing if there is none.
 pub(super) fn past_ns(session: &Session) -> Option<[u64; 2]> {
     let first = session.past.as_ref().ok()?.first()?;

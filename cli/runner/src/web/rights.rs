@@ -64,7 +64,9 @@ pub(super) fn check(right: Right<'_>, session: &Session, (viewer, rank): (Viewer
     match right {
         Right::Look => Ok(()),
         Right::Fork => is_not_trainee(session),
+        // What is over is closed by it.
         Right::Stop if session.recorded_to.is_some() => Ok(()),
+        Right::Stop if session.is_complete() => is_not_trainee(session),
         Right::Stop | Right::Control => is_live(session).and_then(|()| is_not_trainee(session)),
         Right::Sit(panel) => may_sit(panel, session, rank),
         Right::Write(signal) => is_live(session).and_then(|()| may_write(signal, session, viewer)),
@@ -85,9 +87,15 @@ fn role(session: &Session) -> Option<Role> {
     session.training.as_ref().map(|training| training.role)
 }
 
-/// Nobody operates a recording.
+/// Nobody operates a recording, or what is over.
 fn is_live(session: &Session) -> Result<(), Refused> {
-    if session.recorded_to.is_some() { Err(Refused::Recorded) } else { Ok(()) }
+    if session.recorded_to.is_some() {
+        Err(Refused::Recorded)
+    } else if session.is_complete() {
+        Err(Refused::Over)
+    } else {
+        Ok(())
+    }
 }
 
 fn is_not_trainee(session: &Session) -> Result<(), Refused> {

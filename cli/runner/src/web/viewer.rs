@@ -407,11 +407,11 @@ fn perform(
             }
             if has_turned { Next::Picture } else { Next::Nothing }
         }
-        Ask::Fork { t_ns } => {
-            fork(t_ns, session, &subscription.playhead, outcomes)?;
+        Ask::Fork { t_ns, until_ns } => {
+            fork((t_ns, until_ns), session, &subscription.playhead, outcomes)?;
             Next::Nothing
         }
-        Ask::Operate { operation: Verb::Stop } if session.recorded_to.is_some() => {
+        Ask::Operate { operation: Verb::Stop } if session.recorded_to.is_some() || session.is_complete() => {
             session.left.store(true, Ordering::Release);
             Next::Nothing
         }
@@ -443,12 +443,13 @@ fn perform(
 
 /// Starts a session from a moment of the past, beside this one, and reports its address to the viewer.
 fn fork(
-    t_ns: f64,
+    (t_ns, until_ns): (f64, Option<f64>),
     session: &Session,
     playhead: &Playhead,
     outcomes: &mpsc::UnboundedSender<Response>,
 ) -> Result<(), Refused> {
     let t_v = playhead::moment(t_ns, session)?;
+    let until = until_ns.map(|until_ns| playhead::end(until_ns, t_v)).transpose()?;
     let saved = playhead.past_reader(session)?.save(t_v);
     let (outcomes, launch) = (outcomes.clone(), Arc::clone(&session.launch));
     tokio::spawn(async move {
@@ -456,7 +457,7 @@ fn fork(
         let forked = match saved {
             // it takes as long as the other session takes to begin
             Ok(bytes) => {
-                tokio::task::spawn_blocking(move || launch(&bytes)).await.unwrap_or_else(|e| Err(e.to_string()))
+                tokio::task::spawn_blocking(move || launch(&bytes, until)).await.unwrap_or_else(|e| Err(e.to_string()))
             }
             Err(why) => Err(why),
         };
