@@ -307,6 +307,31 @@ pub struct FreewheelFile {
     #[serde(deserialize_with = "percent")]
     #[schemars(range(min = 0, max = 100))]
     pub synchronizer_gain_pct: u8,
+    /// The clocks of a run with `--seed`, whose time is computed.
+    pub model: ClockModelFile,
+}
+
+/// The clocks of a PLC and of the PC with plant and link, as they are drawn by a seed in a run that takes no real time.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct ClockModelFile {
+    /// How much faster the PLC's clock is than the PC's, parts per million.
+    #[serde(deserialize_with = "skew")]
+    #[schemars(range(min = -1000, max = 1000))]
+    pub clock_skew_ppm: i16,
+    /// The granularity of the PC's timer, microseconds: sleeps end at a multiple of it. 0 for none.
+    pub timer_us: u32,
+    /// How late the PC wakes on average, microseconds.
+    pub late_mean_us: u32,
+    /// The standard deviation of that; it never wakes early.
+    pub late_sigma_us: u32,
+}
+
+impl Default for ClockModelFile {
+    /// An ordinary PC: two quartz clocks, a timer of 1 ms, a scheduler that is a few tenths of a millisecond late.
+    fn default() -> Self {
+        Self { clock_skew_ppm: 30, timer_us: 1_000, late_mean_us: 200, late_sigma_us: 300 }
+    }
 }
 
 impl ScenarioFile {
@@ -324,7 +349,12 @@ impl Default for FreewheelFile {
     /// The update rate of `[SDSP]` sec. III-C, and a gateway that moves a thousand items a second.
     fn default() -> Self {
         const MILLISECOND: TimeSpan = TimeSpan::from_millis(1).expect("not zero");
-        Self { update_rate: MILLISECOND, item_transfer: MILLISECOND, synchronizer_gain_pct: 100 }
+        Self {
+            update_rate: MILLISECOND,
+            item_transfer: MILLISECOND,
+            synchronizer_gain_pct: 100,
+            model: ClockModelFile::default(),
+        }
     }
 }
 
@@ -343,6 +373,14 @@ fn percent<'de, D: Deserializer<'de>>(from: D) -> Result<u8, D::Error> {
     match u8::deserialize(from)? {
         percent @ 0..=100 => Ok(percent),
         more => Err(serde::de::Error::custom(format!("{more} is more than 100 %"))),
+    }
+}
+
+/// The skew of two clocks that anybody would call clocks.
+fn skew<'de, D: Deserializer<'de>>(from: D) -> Result<i16, D::Error> {
+    match i16::deserialize(from)? {
+        ppm @ -1000..=1000 => Ok(ppm),
+        more => Err(serde::de::Error::custom(format!("{more} is not from -1000 to 1000 parts per million"))),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::typed::{ROUNDS, digests, run_shear};
+use crate::typed::{ROUNDS, digests, run_shear, scenario, typed};
 
 /// Alignments seen and levellings made in the recording of a run.
 fn alignments(csv: &str) -> (u64, usize) {
@@ -39,6 +39,44 @@ fn free_wheeling_runs_differ_and_lose_alignments() {
         }
     }
     panic!("runs without lockstep: {} different, an alignment was lost: {lost}", distinct.len());
+}
+
+/// [SDSP] Fig. 4: six runs, six trajectories; by a seed the same six on every machine, and none is that of lockstep.
+#[test]
+fn runs_of_a_seed_differ_from_each_other_and_are_the_same_everywhere() {
+    let lockstep = digests(&run_shear(&[]).0);
+    let mut all = String::new();
+    for mode in ["freewheel", "halt", "follow"] {
+        let words = ["--mode", mode, "--runs", "6", "--seed", "1"];
+        let found = digests(&run_shear(&words).0);
+        assert_eq!(found, digests(&run_shear(&words).0), "{mode}");
+        let distinct: BTreeSet<&String> = found.iter().chain(&lockstep).collect();
+        assert_eq!(distinct.len(), 7, "{mode}: {found:?}");
+        let other = digests(&run_shear(&["--mode", mode, "--seed", "2"]).0);
+        assert_ne!(found[0], other[0], "{mode}");
+        all += &format!("{mode}: {}\n", found[0]);
+    }
+    // Pinned: whoever runs this elsewhere has these.
+    insta::assert_snapshot!(all);
+}
+
+/// Fig. 6: of one seed's runs, some see the alignment and some do not.
+#[test]
+fn the_race_is_won_and_lost_by_seed() {
+    let words = ["run", "race.toml", "--mode", "freewheel", "--runs", "8", "--seed", "1", "--format", "json"];
+    let said = typed(&scenario("shear"), &words);
+    let met = said.out.matches(r#""verdict":"met""#).count();
+    assert!((1..8).contains(&met), "{met} of 8: {said:?}");
+}
+
+#[test]
+fn a_seed_is_for_computed_clocks_only() {
+    let (_, said) = run_shear(&["--seed", "1"]);
+    assert_eq!(said.code, Some(2), "{said:?}");
+    assert!(said.err.contains("--seed means nothing with --mode lockstep"), "{said:?}");
+    let (_, said) = run_shear(&["--mode", "halt", "--seed", "1", "--gateway", "plc=tcp://127.0.0.1:1"]);
+    assert_eq!(said.code, Some(2), "{said:?}");
+    assert!(said.err.contains("--seed means nothing with --gateway plc"), "{said:?}");
 }
 
 #[test]

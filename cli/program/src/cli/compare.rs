@@ -28,6 +28,10 @@ pub struct CompareArgs {
     /// Runs of each way
     #[arg(long, default_value_t = 3, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000))]
     pub runs: u32,
+    /// Compute the clocks of the ways without lockstep from this seed, the same on every machine, and take no real time
+    /// (`docs/freewheel.md`)
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
     /// Count how often this signal comes true in each way, as one that reports that the PLC's checks fail
     #[arg(long, value_name = "SIGNAL", value_parser = signal_name)]
     pub count: Option<SignalName>,
@@ -55,6 +59,7 @@ pub fn compare(args: CompareArgs) -> Result<ExitCode, CommandError> {
     let mut run = RunConfig::headless(args.scenario, args.case);
     run.subject.until = args.until;
     run.runs = args.runs;
+    run.seed = args.seed;
     run.picture.plane = args.xy;
     run.picture.enlarged = args.enlarge;
     let config = CompareConfig { run, count: args.count, plot: args.plot, format: args.format.into() };

@@ -31,6 +31,7 @@ use onescan_runner::run::config::{
 };
 use onescan_runner::run::coverage::{CoverageFormat, CoverageRequest};
 use onescan_runner::run::{RunConfig, Transport, execute};
+use onescan_runner::web::Stay;
 
 /// Options of `run`.
 #[derive(Debug, ClapArgs)]
@@ -54,6 +55,10 @@ pub struct RunArgs {
     /// own clock, with an OPC-like link between them
     #[arg(long, value_enum, default_value_t)]
     pub mode: ModeArg,
+    /// Without lockstep: compute the clocks from this seed, each run with others, the same on every machine, and take no real
+    /// time (`docs/freewheel.md`)
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
     /// Run so many times, and compare the digests
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub runs: u32,
@@ -137,9 +142,19 @@ pub struct RunArgs {
     /// time unless `--pace` says otherwise [default ADDRESS: a free port]
     #[arg(long, value_name = "ADDRESS:PORT", num_args = 0..=1, require_equals = true, default_missing_value = "127.0.0.1:0")]
     pub web: Option<SocketAddr>,
-    /// Begin when the first viewer of the page looks
-    #[arg(long, requires = "web")]
+    /// Begin when the first viewer of the page looks [default: on a terminal]
+    #[arg(long, requires = "web", overrides_with = "no_await_viewer")]
     pub await_viewer: bool,
+    /// Begin at once, whether somebody looks at the page or not [default: without a terminal]
+    #[arg(long, requires = "web")]
+    pub no_await_viewer: bool,
+    /// Keep the page when the run is over, to look back and go on from there: until Ctrl-C, or without a terminal until its last
+    /// viewer has left [default: on a terminal]
+    #[arg(long, requires = "web", overrides_with = "no_stay")]
+    pub stay: bool,
+    /// End the page with the run [default: without a terminal]
+    #[arg(long, requires = "web")]
+    pub no_stay: bool,
     /// How much memory the past may take that the page of `--web` shows, as in `256MiB`; `0` for none
     #[arg(long, default_value_t, requires = "web", value_name = "MEMORY")]
     pub past_memory: Budget,
@@ -290,7 +305,18 @@ pub fn run(args: RunArgs) -> Result<ExitCode, CommandError> {
     Ok(verdict.exit_code())
 }
 
+/// True where somebody sits who opens the page: on a terminal, unless a machine reads the report, or an operator's inputs are
+/// repeated from a recording.
+fn is_watched(args: &RunArgs) -> bool {
+    on_terminal() && matches!(args.format, FormatArg::Human) && args.replay_operator.is_none()
+}
+
+fn on_terminal() -> bool {
+    std::io::stdin().is_terminal() && std::io::stderr().is_terminal()
+}
+
 fn config(args: RunArgs) -> Result<RunConfig, CommandError> {
+    let is_watched = is_watched(&args);
     let access = match &args.access {
         Some(folder) if args.opcua.is_some() => args.opcua_access.access_with_tokens(folder)?,
         _ => args.opcua_access.access()?,
@@ -313,6 +339,7 @@ fn config(args: RunArgs) -> Result<RunConfig, CommandError> {
     Ok(RunConfig {
         subject: Subject { scenario: args.scenario, case: args.case, until: args.until },
         mode: args.mode.into(),
+        seed: args.seed,
         runs: args.runs,
         reach: Reach {
             transport: args.transport.into(),
@@ -327,7 +354,12 @@ fn config(args: RunArgs) -> Result<RunConfig, CommandError> {
             listen: args.listen,
             admission,
             web: args.web,
-            awaits_viewer: args.await_viewer,
+            awaits_viewer: args.await_viewer || is_watched && !args.no_await_viewer,
+            stay: match (args.stay || is_watched && !args.no_stay, on_terminal()) {
+                (false, _) => Stay::No,
+                (true, false) => Stay::ForViewers,
+                (true, true) => Stay::UntilInterrupted,
+            },
             past: args.past_memory,
             forks: args.forks,
             ads: args.ads,

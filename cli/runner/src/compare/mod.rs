@@ -117,6 +117,7 @@ pub fn compare(config: &CompareConfig, interrupt: &Interrupt, out: &mut dyn Writ
         }
         let run = RunConfig {
             mode,
+            seed: config.run.seed.filter(|_| mode != Mode::Lockstep),
             picture: Picture { drawing: Drawing::Kept, signals: names.clone(), ..config.run.picture.clone() },
             ..config.run.clone()
         };

@@ -30,42 +30,62 @@ pub(super) struct OpcLink {
 impl OpcLink {
     /// Exchanges until one of `stops` is set.
     pub(super) fn run(&self, stops: [&AtomicBool; 2]) {
-        let mut taken: Vec<Vec<u8>> = self.routes.iter().map(|route| self.source.get(route.source)).collect();
-        // A subscription begins with the value that each item has.
-        let mut queue: VecDeque<usize> = (0..self.routes.len()).collect();
+        let mut exchange = Exchange::begin(self);
         let mut next_update = Instant::now();
         while !stops.iter().any(|stop| stop.load(Ordering::Relaxed)) {
             if Instant::now() >= next_update {
-                self.look(&mut taken, &mut queue);
+                exchange.look(self);
                 next_update = sleep::after(Instant::now(), self.update_rate);
             }
-            match queue.pop_front() {
-                Some(route) => {
-                    sleep::until(sleep::after(Instant::now(), self.item_transfer), stops);
-                    deliver(&self.routes[route], &taken[route]);
-                }
-                None => sleep::until(next_update, stops),
-            }
-        }
-    }
-
-    /// Takes the items that changed. One that still waits in the queue keeps its place and loses its
-    /// old value.
-    fn look(&self, taken: &mut [Vec<u8>], queue: &mut VecDeque<usize>) {
-        for (index, route) in self.routes.iter().enumerate() {
-            let value = self.source.get(route.source);
-            if value != taken[index] {
-                taken[index] = value;
-                if !queue.contains(&index) {
-                    queue.push_back(index);
-                }
+            if exchange.carry() {
+                sleep::until(sleep::after(Instant::now(), self.item_transfer), stops);
+                exchange.deliver(self);
+            } else {
+                sleep::until(next_update, stops);
             }
         }
     }
 }
 
-fn deliver(route: &Route, value: &[u8]) {
-    for (items, index) in &route.targets {
-        items.put(*index, value);
+/// What a link has seen, and what of it is under way.
+pub(super) struct Exchange {
+    taken: Vec<Vec<u8>>,
+    queue: VecDeque<usize>,
+    carried: Option<usize>,
+}
+
+impl Exchange {
+    /// A subscription begins with the value that each item has.
+    pub(super) fn begin(link: &OpcLink) -> Self {
+        let taken = link.routes.iter().map(|route| link.source.get(route.source)).collect();
+        Self { taken, queue: (0..link.routes.len()).collect(), carried: None }
+    }
+
+    /// Takes the items that changed. One that still waits in the queue keeps its place and loses its
+    /// old value.
+    pub(super) fn look(&mut self, link: &OpcLink) {
+        for (index, route) in link.routes.iter().enumerate() {
+            let value = link.source.get(route.source);
+            if value != self.taken[index] {
+                self.taken[index] = value;
+                if !self.queue.contains(&index) {
+                    self.queue.push_back(index);
+                }
+            }
+        }
+    }
+
+    /// Takes the next item from the queue; false if there is none.
+    pub(super) fn carry(&mut self) -> bool {
+        self.carried = self.queue.pop_front();
+        self.carried.is_some()
+    }
+
+    /// The item that was carried arrives, with the newest value that was seen of it.
+    pub(super) fn deliver(&mut self, link: &OpcLink) {
+        let Some(route) = self.carried.take() else { return };
+        for (items, index) in &link.routes[route].targets {
+            items.put(*index, &self.taken[route]);
+        }
     }
 }

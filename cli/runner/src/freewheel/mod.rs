@@ -9,14 +9,16 @@
 //! | [`synchronizer`] | a plant that follows a PLC's clock |
 //! | `timeline` | what a case does to one client, by its own clock |
 //! | [`wheel`] | a client that runs on its own clock |
+//! | [`model`] | the same in computed time, with clocks drawn by a seed |
 //! | `sleep` | sleep that a stop ends |
 //! | [`run`] | all of them for some time, and what came of it |
 //!
-//! Nothing here is deterministic and nothing here is random: all that differs between two runs comes
-//! from the clocks and the scheduler of the machine.
+//! In real time nothing is random and nothing deterministic: all that differs between two runs comes from the clocks and the
+//! scheduler of the machine. In computed time both are drawn, and a seed gives the same run everywhere.
 
 mod item;
 mod link;
+pub mod model;
 pub mod run;
 mod sleep;
 pub mod synchronizer;

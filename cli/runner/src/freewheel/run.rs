@@ -20,6 +20,7 @@ use onescan_server::timeline::Scheduled;
 
 use super::item::Items;
 use super::link::{OpcLink, Route};
+use super::model::{self, Clocks, Halted};
 use super::timeline::OwnTimeline;
 use super::wheel::{Halt, Wheel};
 
@@ -45,7 +46,8 @@ pub struct Trace {
     pub errors_ns: Vec<i64>,
 }
 
-/// Runs `clients` free-wheeling until each one's own clock has come to `until`, or until `stop`.
+/// Runs `clients` free-wheeling until each one's own clock has come to `until`, or until `stop`: in real time, or in computed
+/// time with `clocks`.
 ///
 /// # Errors
 /// The clients do not fit the plan.
@@ -53,7 +55,7 @@ pub fn run(
     plan: &SessionPlan,
     clients: Vec<Freewheeler>,
     (link, timeline): (&FreewheelFile, &[Scheduled]),
-    until: VirtualTime,
+    (until, clocks): (VirtualTime, Option<Clocks>),
     stop: &AtomicBool,
 ) -> Result<Trace, FormationError> {
     let requests: Vec<JoinRequest> = clients.iter().map(|client| client.client.join()).collect();
@@ -66,12 +68,28 @@ pub fn run(
         }
     }
     if failed.is_none() {
-        failed = spin(&mut wheels, &links, &requests, until, stop);
+        failed = match clocks {
+            None => spin(&mut wheels, &links, &requests, until, stop),
+            Some(clocks) => computed(&mut wheels, &links, &requests, (until, clocks), stop),
+        };
     }
     let reached = wheels.iter().map(|wheel| wheel.reached).min().unwrap_or_default();
     let errors_ns = wheels.iter_mut().flat_map(|wheel| std::mem::take(&mut wheel.errors_ns)).collect();
     let recorded = requests.into_iter().zip(wheels.into_iter().map(|wheel| wheel.recorded));
     Ok(Trace { replay: replayed(plan, recorded)?, reached, failed, errors_ns })
+}
+
+/// Lets all clients and links run in computed time.
+fn computed(
+    wheels: &mut [Wheel],
+    links: &[OpcLink],
+    requests: &[JoinRequest],
+    times: (VirtualTime, Clocks),
+    stop: &AtomicBool,
+) -> Option<SessionEnd> {
+    let joined: Vec<_> = requests.iter().map(|each| (each, PortLayout::new(each.reads.clone()).size())).collect();
+    let Halted { client, halt } = model::spin(wheels, links, &joined, times, stop)?;
+    requests.get(client).map(|request| end_of(request, ClientState::Run, halt.t, halt.fault))
 }
 
 /// Lets all clients and links run beside each other, each in a thread of its own.

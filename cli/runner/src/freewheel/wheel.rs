@@ -51,6 +51,13 @@ pub(super) struct Wheel {
     pub(super) plc_clock: Arc<AtomicU64>,
 }
 
+/// What goes in and comes out of a client's cycles, and how far its clock has come.
+pub(super) struct Cycle {
+    pub(super) t: VirtualTime,
+    inputs: Vec<u8>,
+    outputs: Vec<u8>,
+}
+
 /// Why a free-wheeling client stopped before its time.
 pub(super) struct Halt {
     pub(super) t: VirtualTime,
@@ -68,18 +75,51 @@ impl Wheel {
         Ok(())
     }
 
+    /// A cycle that has not begun: what goes in and comes out.
+    pub(super) fn cycle(&self, input_bytes: usize) -> Cycle {
+        Cycle { t: VirtualTime::ZERO, inputs: vec![0; input_bytes], outputs: self.own.clone() }
+    }
+
+    /// Runs the next cycle.
+    pub(super) fn turn(&mut self, cycle: &mut Cycle) -> Result<(), Halt> {
+        let Cycle { t, inputs, outputs } = cycle;
+        *t = *t + self.period;
+        self.inputs.copy_to(inputs);
+        let asked = self.timeline.before(*t, self.client.as_mut());
+        let turned = asked.and_then(|()| self.client.turn(*t, inputs, outputs));
+        turned.map_err(|fault| Halt { t: *t, fault })?;
+        let seen = self.timeline.seen(outputs);
+        self.outputs.copy_from(&seen);
+        self.recorded.push(seen);
+        self.reached = *t;
+        if self.clock == Clock::Grid {
+            self.plc_clock.store(t.as_nanos(), Ordering::Relaxed);
+        }
+        Ok(())
+    }
+
+    /// Who follows a PLC, if this client does.
+    pub(super) fn synchronizer(&self) -> Synchronizer {
+        match self.clock {
+            Clock::Follow { gain_pct, .. } => Synchronizer::new(gain_pct),
+            Clock::Grid | Clock::Halt | Clock::Pause => Synchronizer::default(),
+        }
+    }
+
+    /// A communication of the plant, at `t`, with the PLC that it follows.
+    pub(super) fn communicate(&mut self, synchronizer: &mut Synchronizer, t: VirtualTime) {
+        let plc_ns = self.plc_clock.load(Ordering::Relaxed);
+        self.errors_ns.push(plc_ns.cast_signed() - t.as_nanos().cast_signed());
+        synchronizer.observe(plc_ns, t.as_nanos());
+    }
+
     /// Runs cycles until its own clock has come to `until`, or until one of `stops` is set.
     pub(super) fn run(&mut self, input_bytes: usize, until: VirtualTime, stops: [&AtomicBool; 2]) -> Result<(), Halt> {
         let period = Duration::from_nanos(self.period.as_nanos());
-        let mut inputs = vec![0; input_bytes];
-        let mut outputs = self.own.clone();
-        let mut t = VirtualTime::ZERO;
-        let mut synchronizer = match self.clock {
-            Clock::Follow { gain_pct, .. } => Synchronizer::new(gain_pct),
-            Clock::Grid | Clock::Halt | Clock::Pause => Synchronizer::default(),
-        };
+        let mut cycle = self.cycle(input_bytes);
+        let mut synchronizer = self.synchronizer();
         let mut due = sleep::after(Instant::now(), period);
-        while t < until && !stops.iter().any(|stop| stop.load(Ordering::Relaxed)) {
+        while cycle.t < until && !stops.iter().any(|stop| stop.load(Ordering::Relaxed)) {
             match self.clock {
                 Clock::Grid => {
                     sleep::until(due, stops);
@@ -91,7 +131,7 @@ impl Wheel {
                 }
                 Clock::Pause => sleep::until(sleep::after(Instant::now(), period), stops),
                 Clock::Follow { rate, .. } => {
-                    if !self.wait_for_plc(&mut synchronizer, t, rate, stops) {
+                    if !self.wait_for_plc(&mut synchronizer, cycle.t, rate, stops) {
                         break;
                     }
                 }
@@ -99,18 +139,7 @@ impl Wheel {
             if stops.iter().any(|stop| stop.load(Ordering::Relaxed)) {
                 break;
             }
-            t = t + self.period;
-            self.inputs.copy_to(&mut inputs);
-            let asked = self.timeline.before(t, self.client.as_mut());
-            let turned = asked.and_then(|()| self.client.turn(t, &inputs, &mut outputs));
-            turned.map_err(|fault| Halt { t, fault })?;
-            let seen = self.timeline.seen(&outputs);
-            self.outputs.copy_from(&seen);
-            self.recorded.push(seen);
-            self.reached = t;
-            if self.clock == Clock::Grid {
-                self.plc_clock.store(t.as_nanos(), Ordering::Relaxed);
-            }
+            self.turn(&mut cycle)?;
         }
         Ok(())
     }
@@ -128,9 +157,7 @@ impl Wheel {
                 return false;
             }
             sleep::until(sleep::after(Instant::now(), Duration::from_nanos(rate.as_nanos())), stops);
-            let plc_ns = self.plc_clock.load(Ordering::Relaxed);
-            self.errors_ns.push(plc_ns.cast_signed() - t.as_nanos().cast_signed());
-            synchronizer.observe(plc_ns, t.as_nanos());
+            self.communicate(synchronizer, t);
         }
         true
     }

@@ -51,6 +51,10 @@ impl RunConfig {
         }
         self.check_opcua(scenario)?;
         match self.mode {
+            Mode::Lockstep if self.seed.is_some() => {
+                let help = "in lockstep nothing is drawn but what the scenario's `seed` says; see `--mode`".to_owned();
+                Err(Usage::new("--seed means nothing with --mode lockstep", Some(help)).into())
+            }
             Mode::Lockstep => Ok(()),
             Mode::Freewheel | Mode::Halt | Mode::Follow => self.check_freewheel(scenario),
         }
@@ -138,6 +142,11 @@ impl RunConfig {
             let help = "free-wheeling clients run in real time in this process, each on its own clock".to_owned();
             let mode = self.mode.name();
             return Err(Usage::new(format!("{option} means nothing with --mode {mode}"), Some(help)).into());
+        }
+        if let (Some(_), Some((gateway, _))) = (self.seed, self.reach.gateways.first()) {
+            let help = "a real PLC keeps its own clock; leave out --seed, or the gateway".to_owned();
+            let message = format!("--seed means nothing with --gateway {gateway}");
+            return Err(Usage::new(message, Some(help)).into());
         }
         let external = |client: &toml::Spanned<ClientFile>| {
             matches!(client.get_ref(), ClientFile::External { .. } | ClientFile::OpcUa { .. })

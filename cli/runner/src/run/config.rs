@@ -21,6 +21,7 @@ use super::coverage::CoverageRequest;
 use crate::access::admission::Admission;
 use crate::format::Format;
 use crate::past::Budget;
+use crate::web::Stay;
 
 /// All options of a run.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,6 +29,8 @@ pub struct RunConfig {
     pub subject: Subject,
     /// In lockstep or not.
     pub mode: Mode,
+    /// Without lockstep: the seed of the clocks, if they are computed.
+    pub seed: Option<u64>,
     pub runs: u32,
     /// How the scenario's clients are reached.
     pub reach: Reach,
@@ -93,6 +96,8 @@ pub struct Doors {
     pub web: Option<SocketAddr>,
     /// Whether the session begins only when somebody looks at the page.
     pub awaits_viewer: bool,
+    /// How long the page stays when the session is over.
+    pub stay: Stay,
     /// How much memory the past takes that the page shows.
     pub past: Budget,
     /// How many sessions may go on from moments of that past at a time.
@@ -242,6 +247,7 @@ impl RunConfig {
         Self {
             subject: Subject { scenario, case, until: None },
             mode: Mode::Lockstep,
+            seed: None,
             runs: 1,
             reach: Reach {
                 transport: Transport::Inproc,

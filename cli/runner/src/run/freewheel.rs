@@ -1,4 +1,4 @@
-//! One run without lockstep: in real time, then replayed so that it is digested and recorded like
+//! One run without lockstep: in real time, or in computed time by a seed, then replayed so that it is digested and recorded like
 //! any other.
 
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -9,11 +9,13 @@ use onescan_scenario::compose::Member;
 use onescan_scenario::{Mode, Scenario};
 use onescan_server::end::SessionEnd;
 use onescan_server::lockstep::{Lockstep, Outcome};
+use onescan_server::random::seed_for;
 
 use super::config::RunConfig;
 use super::error::RunError;
 use super::progress::Progress;
 use crate::error::Usage;
+use crate::freewheel::model::Clocks;
 use crate::freewheel::run::{Clock, Freewheeler, Trace};
 use crate::interrupt::Interrupt;
 
@@ -41,7 +43,12 @@ pub(super) fn run(
         }
     }
     interrupt.watch();
-    let Trace { mut replay, reached, failed, errors_ns } = spin(config, scenario, number, interrupt, clients)?;
+    let clocks = config.seed.map(|seed| Clocks {
+        model: scenario.file().freewheel.model,
+        seed: seed_for(seed, "run", &number.to_string()),
+    });
+    let Trace { mut replay, reached, failed, errors_ns } =
+        spin(config, scenario, (number, clocks), interrupt, clients)?;
     replay.set_until(Some(reached));
     watch(&mut replay);
     let outcome = replay.run()?;
@@ -69,7 +76,7 @@ fn plant_clock(mode: Mode, scenario: &Scenario) -> Clock {
 fn spin(
     config: &RunConfig,
     scenario: &Scenario,
-    number: u32,
+    (number, clocks): (u32, Option<Clocks>),
     interrupt: &Interrupt,
     clients: Vec<Freewheeler>,
 ) -> Result<Trace, RunError> {
@@ -77,7 +84,7 @@ fn spin(
     let done = AtomicBool::new(false);
     let started = Instant::now();
     std::thread::scope(|scope| {
-        if config.reports.progress {
+        if config.reports.progress && clocks.is_none() {
             let (label, done) = (format!("run {number}/{}", config.runs), &done);
             let shown = threads::start_in(scope, "progress", move || {
                 let bar = Progress::new(end, label);
@@ -96,7 +103,7 @@ fn spin(
             scenario.plan(),
             clients,
             (&scenario.file().freewheel, scenario.timeline()),
-            end,
+            (end, clocks),
             stop,
         );
         done.store(true, Ordering::Relaxed);

@@ -30,6 +30,9 @@ pub struct RunReport {
     pub run: u32,
     /// In lockstep or not.
     pub mode: Mode,
+    /// Of the clocks of a run without lockstep, if they were computed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub seed: Option<u64>,
     /// How clients were reached.
     pub transport: Transport,
     pub status: RunStatus,
@@ -106,6 +109,7 @@ impl RunReport {
             case: scenario.case().map(|case| case.name.clone()),
             run,
             mode: config.mode,
+            seed: config.seed,
             transport: config.reach.transport,
             status,
             digest: outcome.digest,
