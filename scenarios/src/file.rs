@@ -328,9 +328,9 @@ pub struct ClockModelFile {
 }
 
 impl Default for ClockModelFile {
-    /// An ordinary PC: two quartz clocks, a timer of 1 ms, a scheduler that is a few tenths of a millisecond late.
+    /// A PC of the office: two quartz clocks, a timer of 1 ms, and whoever sleeps gets the processor half a millisecond late.
     fn default() -> Self {
-        Self { clock_skew_ppm: 30, timer_us: 1_000, late_mean_us: 200, late_sigma_us: 300 }
+        Self { clock_skew_ppm: 30, timer_us: 1_000, late_mean_us: 500, late_sigma_us: 1_000 }
     }
 }
 

@@ -63,10 +63,10 @@ fn runs_of_a_seed_differ_from_each_other_and_are_the_same_everywhere() {
 /// Fig. 6: of one seed's runs, some see the alignment and some do not.
 #[test]
 fn the_race_is_won_and_lost_by_seed() {
-    let words = ["run", "race.toml", "--mode", "freewheel", "--runs", "8", "--seed", "1", "--format", "json"];
+    let words = ["run", "race.toml", "--mode", "freewheel", "--runs", "4", "--seed", "2", "--format", "json"];
     let said = typed(&scenario("shear"), &words);
     let met = said.out.matches(r#""verdict":"met""#).count();
-    assert!((1..8).contains(&met), "{met} of 8: {said:?}");
+    assert!((1..4).contains(&met), "{met} of 4: {said:?}");
 }
 
 #[test]

@@ -43,7 +43,7 @@ fn what_is_over_is_looked_back_at_and_gone_on_from() {
 
     ask(&mut viewer, &json!({"type": "fork", "t_ns": 1_000_000_000, "until_ns": 1_000_000_000}));
     let refused = received(&mut viewer, "error");
-    assert_eq!(refused["message"], "a session that goes on from 1s cannot end at 1000000000 ns");
+    assert_eq!(refused["message"], "a session that goes on from 1.000 s cannot end at 1000000000 ns");
     ask(&mut viewer, &json!({"type": "fork", "t_ns": 1_000_000_000, "until_ns": 2_000_000_000_u64}));
     let url = received(&mut viewer, "forked")["url"].as_str().expect("a link").to_owned();
     let mut fork = view(url.trim_start_matches("http://").trim_end_matches('/'));
