@@ -1,0 +1,84 @@
+"""Runs a scene in both engines and says what came of it."""
+
+import coulomb
+import bound
+import known
+import laws
+import ours
+import theirs
+
+import numpy as np
+
+EVERY_US = 20_000
+# MuJoCo's coarsest step; with contacts it is finer.
+THEIRS_US = 200
+THEIRS_IN_TOUCH_US = 100
+
+EQUAL, APART, LOOSE, LEFT_OUT, KNOWN, FINDING = "equal", "MuJoCo apart", "loose", "left out", "known", "finding"
+
+
+class Verdict:
+    """What came of a scene: a kind, what it is about, a line of text, and how large the bound is beside what moves."""
+
+    def __init__(self, kind, what="", text="", row=None):
+        self.kind, self.what, self.text, self.row = kind, what, text, row
+
+
+def verdict(program, scene, other=None):
+    """Of a scene; `other` is what MuJoCo is given in its place, for the canary."""
+    try:
+        mine = [ours.run(program, scene, scene["step_us"] // part, EVERY_US) for part in (1, 2, 4)]
+    except ours.Refused as refused:
+        return settled(scene, "refused", 1.0, str(refused))
+    for name, amount, limit in laws.broken(scene, mine, EVERY_US):
+        if not amount <= limit:
+            return settled(scene, name, amount, f"law of {name}: broken by {amount:.3g}, allowed {limit:.3g}")
+    truth = law_of_coulomb(scene)
+    if truth:
+        against = bound.compare(mine, truth)
+        if against.differs:
+            return settled(scene, "law", against.difference, f"the closed form: {described(against)}")
+    try:
+        coarsest = THEIRS_IN_TOUCH_US if any(one["collides"] for one in scene["bodies"]) else THEIRS_US
+        yours = [theirs.run(other or scene, coarsest // part, EVERY_US) for part in (1, 2, 4)]
+    except theirs.Unfit as unfit:
+        return Verdict(LEFT_OUT, "unfit", str(unfit))
+    against = bound.compare(mine, yours)
+    if against.differs:
+        if truth:
+            return Verdict(APART, against.name, f"MuJoCo, and the closed form agrees with onescan: {described(against)}")
+        return settled(scene, "apart", against.difference, f"MuJoCo: {described(against)}")
+    return Verdict(LOOSE if against.loose else EQUAL, against.name, described(against))
+
+
+def settled(scene, what, amount, text):
+    """A difference: known, with its reason, or a finding."""
+    row = known.row(scene, what, amount)
+    return Verdict(KNOWN, what, text, row.name) if row else Verdict(FINDING, what, text)
+
+
+def law_of_coulomb(scene):
+    """The closed form where there is one, as runs at three steps that do not differ."""
+    found = coulomb.path(scene, EVERY_US)
+    if found is None:
+        return None
+    name, places = found
+    run = {f"{name}.{axis}": places[:, number] for number, axis in enumerate("xyz") if number < places.shape[1]}
+    return [run] * 3
+
+
+def described(against):
+    return (f"{against.name} at {against.sample * EVERY_US // 1000} ms is {against.difference:.3g} off, "
+            f"allowed {against.bound:.3g}")
+
+
+def canary(program):
+    """A spring whose mass is 1 % larger for MuJoCo: true if that is found."""
+    import scene as scenes
+    one = scenes.empty("canary", 0)
+    scenes.body(one, "mass", shape="box", size_m=[0.1, 0.1, 0.1], position_m=[0.0, 0.0, 0.0], mass_kg=2.0)
+    scenes.joint(one, "guide", "prismatic", "ground", "mass", axis=[1.0, 0.0, 0.0])
+    one["fittings"].append({"joint": "guide", "spring": 200.0, "rest": 0.1})
+    other = scenes.changed(one)
+    other["bodies"][0]["mass_kg"] *= 1.01
+    return verdict(program, one).kind == EQUAL and verdict(program, one, other).kind == FINDING
