@@ -11,6 +11,13 @@ import numpy as np
 SAFETY = 3.0
 # What numbers in double precision and a solver's tolerance leave, per metre or radian.
 FLOOR = 1e-6
+# Error of a method of order one half beside its last change: MuJoCo's friction in contacts (theirs.py) goes with the root of
+# the step.
+HALF_ORDER = 1 / (2 ** 0.5 - 1)
+# The change of extrapolated results beside that of plain ones below which a result is smooth in the step.
+SMOOTH = 0.3
+# No extrapolation is trusted to take away more than all but this share of an error.
+SMALLEST = 0.02
 # A bound beyond this share of what moves says nothing.
 LOOSE = 0.1
 
@@ -23,9 +30,22 @@ def error(runs, name):
     return np.maximum.accumulate(each)
 
 
-def allowed(names, ours, theirs):
-    """The bound of each quantity. All share in the largest error of an engine: what moves in one place moves others."""
-    return {name: SAFETY * (error(ours, name) + error(theirs, name)) + FLOOR * (1 + np.abs(theirs[-1][name])) for name in names}
+def best(runs, name, is_smooth):
+    """What an engine says of a quantity, and its error.
+
+    Where nothing meets, stops or sticks, the result is smooth in the step: twice that of h/4 less that of h/2 has no first order
+    left, and what is left is less than its change from the coarser pair. The runs decide whether it is so.
+    """
+    coarse, middle, fine = (one[name] for one in runs)
+    plain = error(runs, name)
+    if not is_smooth:
+        return fine, plain
+    rest = np.abs(2 * fine - middle - (2 * middle - coarse))
+    rest[:-1] = np.maximum(rest[:-1], rest[1:])
+    rest = np.maximum.accumulate(rest)
+    if rest[-1] < SMOOTH * plain[-1]:
+        return 2 * fine - middle, np.maximum(rest, SMALLEST * plain)
+    return fine, plain
 
 
 class Outcome:
@@ -43,14 +63,17 @@ class Outcome:
         return self.difference / self.bound
 
 
-def compare(ours, theirs):
-    """Of three runs each, from the coarsest step to the finest."""
+def compare(ours, theirs, is_smooth, factor=1.0):
+    """Of three runs each, from the coarsest step to the finest; `factor` is of the second engine's error."""
     names = sorted(set(theirs[-1]) & set(ours[-1]))
     worst, spans, bounds = None, [], []
-    limits = allowed(names, ours, theirs)
     for name in names:
-        difference = np.abs(ours[-1][name] - theirs[-1][name])
-        limit = limits[name]
+        (mine, my_error), (yours, your_error) = best(ours, name, is_smooth), best(theirs, name, is_smooth)
+        # a closed form may end before the runs do
+        count = min(len(mine), len(yours))
+        mine, my_error, yours, your_error = (one[:count] for one in (mine, my_error, yours, your_error))
+        difference = np.abs(mine - yours)
+        limit = SAFETY * (my_error + factor * your_error) + FLOOR * (1 + np.abs(yours))
         sample = int(np.argmax(difference / limit))
         found = Outcome(name, sample, float(difference[sample]), float(limit[sample]), False)
         spans.append(float(np.ptp(theirs[-1][name])))

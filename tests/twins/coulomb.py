@@ -14,13 +14,14 @@ STEP_S = 1e-4
 
 
 def path(scene, every_us):
-    """Positions of the one moving body at all samples, and its quantity's name; None where this law does not apply."""
+    """Positions of the one moving body at all samples; None where this law does not apply."""
     moving = [one for one in scene["bodies"] if one["kind"] == "dynamic"]
     under = [one for one in scene["bodies"] if one["kind"] == "fixed"]
     if len(moving) != 1 or len(under) != 1 or scene["joints"] or len(scenes.touching(scene)) != 1:
         return None
     fine, coarse = (integrated(scene, moving[0], under[0], every_us, step) for step in (STEP_S, 2 * STEP_S))
-    return f"{moving[0]['name']}.p0", 2 * fine - coarse
+    places = 2 * fine - coarse
+    return {f"{moving[0]['name']}.p0.{axis}": places[:, number] for number, axis in enumerate("xyz")}
 
 
 def inertia_share(body):

@@ -1,13 +1,14 @@
 """Runs a scene in both engines and says what came of it."""
 
-import coulomb
 import bound
+import closed
+import coulomb
 import known
 import laws
+import layers
 import ours
+import scene as scenes
 import theirs
-
-import numpy as np
 
 EVERY_US = 20_000
 # MuJoCo's coarsest step; with contacts it is finer.
@@ -35,7 +36,7 @@ def verdict(program, scene, other=None):
             return settled(scene, name, amount, f"law of {name}: broken by {amount:.3g}, allowed {limit:.3g}")
     truth = law_of_coulomb(scene)
     if truth:
-        against = bound.compare(mine, truth)
+        against = bound.compare(mine, truth, False)
         if against.differs:
             return settled(scene, "law", against.difference, f"the closed form: {described(against)}")
     try:
@@ -43,7 +44,8 @@ def verdict(program, scene, other=None):
         yours = [theirs.run(other or scene, coarsest // part, EVERY_US) for part in (1, 2, 4)]
     except theirs.Unfit as unfit:
         return Verdict(LEFT_OUT, "unfit", str(unfit))
-    against = bound.compare(mine, yours)
+    factor = bound.HALF_ORDER if scenes.touching(scene) else 1.0
+    against = bound.compare(mine, yours, scenes.is_smooth(scene), factor)
     if against.differs:
         if truth:
             return Verdict(APART, against.name, f"MuJoCo, and the closed form agrees with onescan: {described(against)}")
@@ -59,12 +61,8 @@ def settled(scene, what, amount, text):
 
 def law_of_coulomb(scene):
     """The closed form where there is one, as runs at three steps that do not differ."""
-    found = coulomb.path(scene, EVERY_US)
-    if found is None:
-        return None
-    name, places = found
-    run = {f"{name}.{axis}": places[:, number] for number, axis in enumerate("xyz") if number < places.shape[1]}
-    return [run] * 3
+    run = coulomb.path(scene, EVERY_US) or layers.path(scene, EVERY_US) or closed.path(scene, EVERY_US)
+    return run and [run] * 3
 
 
 def described(against):
@@ -74,7 +72,6 @@ def described(against):
 
 def canary(program):
     """A spring whose mass is 1 % larger for MuJoCo: true if that is found."""
-    import scene as scenes
     one = scenes.empty("canary", 0)
     scenes.body(one, "mass", shape="box", size_m=[0.1, 0.1, 0.1], position_m=[0.0, 0.0, 0.0], mass_kg=2.0)
     scenes.joint(one, "guide", "prismatic", "ground", "mass", axis=[1.0, 0.0, 0.0])

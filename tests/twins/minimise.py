@@ -45,11 +45,18 @@ def with_(scene, **keys):
 def without_bodies(scene):
     """Without a dynamic body that nothing hangs on."""
     parents = {one["parent"] for one in scene["joints"]}
-    moving = [one["name"] for one in scene["bodies"] if one["kind"] == "dynamic"]
+    moving = [one["name"] for one in dynamic(scene)]
+    if scenes.touching(scene):
+        # what lies under others stays there
+        moving = moving[-1:]
     for name in reversed(moving):
         closes = any(one["loop"] for one in scene["joints"] if name in (one["child"], one["parent"]))
-        if name not in parents and len(moving) > 1 and not closes:
+        if name not in parents and len(dynamic(scene)) > 1 and not closes:
             yield cut(scene, name)
+
+
+def dynamic(scene):
+    return [one for one in scene["bodies"] if one["kind"] == "dynamic"]
 
 
 def cut(scene, name):

@@ -12,6 +12,8 @@ import space
 
 # Time constant of all constraints, in steps: MuJoCo wants at least 2.
 SOFT = 4
+# Damping of stops and contacts, by the critical one: at 1 a step leaves something of an impact, so that it bounces.
+DAMPED = 2
 # The same of friction in contacts, per root of a step: what slides at v is lifted off at 2 mu v step/constant, so this must be
 # long beside a step, and go to zero with it.
 SLIDING = 1.0
@@ -35,10 +37,11 @@ class Writer:
         self.scene = scene
         self.step = step_us * 1e-6
         reference = f"{SOFT * self.step!r} 1"
+        self.stopping = f"{SOFT * self.step!r} {DAMPED}"
         self.soft = f'solref="{reference}" solimp="{IMPEDANCE}"'
-        self.of_joint = (f'solreflimit="{reference}" solimplimit="{IMPEDANCE}" '
+        self.of_joint = (f'solreflimit="{self.stopping}" solimplimit="{IMPEDANCE}" '
                          f'solreffriction="{reference}" solimpfriction="{IMPEDANCE}"')
-        self.of_contact = f'{self.soft} solreffriction="{SLIDING * self.step ** 0.5!r} 1"'
+        self.of_contact = f'solref="{self.stopping}" solimp="{IMPEDANCE}" solreffriction="{SLIDING * self.step ** 0.5!r} 1"'
         self.belts = {one["body"]: one for one in scene["belts"]}
 
     def text(self):
@@ -136,7 +139,7 @@ class Writer:
                 continue
             play = one["backlash"] / 2
             limit = (f'range="{length - play!r} {length + play!r}" '
-                     f'solreflimit="{SOFT * self.step!r} 1" solimplimit="{IMPEDANCE}"' if play else "")
+                     f'solreflimit="{self.stopping}" solimplimit="{IMPEDANCE}"' if play else "")
             shares = [f'<joint joint="{one["joint"]}" coef="1"/>']
             shares += [f'<joint joint="{of}" coef="{-share!r}"/>' for share, of in zip(one["ratio"], one["of"])]
             tendons.append(f'<fixed name="{name}" {limit}>{"".join(shares)}</fixed>')

@@ -215,6 +215,10 @@ impl Mechanism {
     ///
     /// What is driven or stopped goes on with its new velocity, by which it comes to where it is to be;
     /// the rest with the mean of old and new, which is of second order.
+    ///
+    /// A rounding beyond a stop is taken back. The velocity that is left at the stop goes in the next sub-step, by
+    /// the row of that stop, so that all that hangs on the joint feels it go; where nothing else moves, it goes at
+    /// once.
     fn go(&mut self, dt_s: f64, fittings: &[Fitting]) {
         for k in 0..self.tree.velocities {
             let [before, after] = [self.now.v[k], self.room.v[k]];
@@ -232,14 +236,15 @@ impl Mechanism {
         }
         normalise(lumps, &mut now.q);
         now.v.copy_from_slice(&room.v);
+        let is_alone = now.v.len() == 1;
         for ((position, joint), v) in axes.iter().zip(&mut now.v) {
             let Some(fitting) = joint.map(|joint| &fittings[joint]) else { continue };
             let q = &mut now.q[*position];
             let inside = q.clamp(fitting.lower, fitting.upper);
-            if inside != *q {
+            if inside != *q && is_alone {
                 *v = if *q < inside { v.max(0.0) } else { v.min(0.0) };
-                *q = inside;
             }
+            *q = inside;
         }
     }
 }

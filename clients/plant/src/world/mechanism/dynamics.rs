@@ -41,8 +41,8 @@ impl Equations {
             motions: vec![Twist::default(); members],
             accelerations: vec![Twist::default(); members],
             forces: vec![Wrench::default(); members],
-            inertias: vec![Inertia::default(); members],
-            composites: vec![Inertia::default(); members],
+            inertias: vec![Inertia::NONE; members],
+            composites: vec![Inertia::NONE; members],
             mass: vec![0.0; n * n],
             bias: vec![0.0; n],
             about: tree.members.first().map_or(Vector::ZERO, |root| root.place.translation),
@@ -102,7 +102,7 @@ impl Equations {
                 let tensor = turned * member.tensor * turned.transpose();
                 Inertia::of(member.mass, pose * member.centre - self.about, tensor)
             } else {
-                Inertia::default()
+                Inertia::NONE
             };
         }
     }

@@ -76,7 +76,7 @@ impl Wrench {
 }
 
 /// The inertia of a body about the reference point.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Inertia {
     mass: f64,
     /// Mass times the centre of mass.
@@ -85,6 +85,9 @@ pub(super) struct Inertia {
 }
 
 impl Inertia {
+    /// Of nothing. A derived default would have the matrix's own, which is the identity.
+    pub(super) const NONE: Self = Self { mass: 0.0, first: Vector::ZERO, about: DMat3::ZERO };
+
     /// Of a mass with its centre, and its tensor about that centre.
     #[inline]
     pub(super) fn of(mass: f64, centre: Vector, tensor: DMat3) -> Self {
