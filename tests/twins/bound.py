@@ -1,13 +1,17 @@
 """How far two engines may be apart, from how far each is from itself at other steps.
 
 Each engine runs at the steps h, h/2 and h/4. For a method of first order, or a higher one, the result at h/4 is off by no more
-than its difference to that at h/2, and half of the difference of those at h and h/2. The larger of the two, at this sample or a
-sample before, is the engine's error; the bound is `SAFETY` times the sum of both errors, plus `FLOOR`. What is soft in MuJoCo
-becomes stiff with the step, so this error has that in it.
+than its difference to that at h/2, and half of the difference of those at h and h/2. The larger of the two, or the sum of both
+differences where something meets, stops or sticks, at this sample or a sample before, is the engine's error; the bound is `SAFETY` times the sum of both errors, plus `FLOOR`. What is soft in MuJoCo
+becomes stiff with the step, so this error has that in it. One thing it has not: MuJoCo's stops give way by a speed times some
+steps, by how much depends on the phase of the step in which they are hit, and so does what a mechanism does from there on. That
+way is added.
 """
 
 import numpy as np
 
+# Time between two samples, s.
+EVERY_S = 0.02
 SAFETY = 3.0
 # What numbers in double precision and a solver's tolerance leave, per metre or radian.
 FLOOR = 1e-6
@@ -22,9 +26,12 @@ SMALLEST = 0.02
 LOOSE = 0.1
 
 
-def error(runs, name):
+def error(runs, name, is_smooth):
+    """Of a quantity at h/4. When something meets, stops or sticks depends on the phase of a step, so that each change may be small
+    by chance: there both count."""
     coarse, middle, fine = (one[name] for one in runs)
-    each = np.maximum(np.abs(fine - middle), np.abs(middle - coarse) / 2)
+    last, before = np.abs(fine - middle), np.abs(middle - coarse)
+    each = np.maximum(last, before / 2) if is_smooth else last + before
     # an event between two samples shows in the next one first
     each[:-1] = np.maximum(each[:-1], each[1:])
     return np.maximum.accumulate(each)
@@ -37,7 +44,7 @@ def best(runs, name, is_smooth):
     left, and what is left is less than its change from the coarser pair. The runs decide whether it is so.
     """
     coarse, middle, fine = (one[name] for one in runs)
-    plain = error(runs, name)
+    plain = error(runs, name, is_smooth)
     if not is_smooth:
         return fine, plain
     rest = np.abs(2 * fine - middle - (2 * middle - coarse))
@@ -63,12 +70,16 @@ class Outcome:
         return self.difference / self.bound
 
 
-def compare(ours, theirs, is_smooth, factor=1.0):
-    """Of three runs each, from the coarsest step to the finest; `factor` is of the second engine's error."""
+def compare(ours, theirs, is_smooth, factor=1.0, gives_s=0.0):
+    """Of three runs each, from the coarsest step to the finest; `factor` is of the second engine's error, and its stops give way
+    for `gives_s`."""
     names = sorted(set(theirs[-1]) & set(ours[-1]))
     worst, spans, bounds = None, [], []
     for name in names:
         (mine, my_error), (yours, your_error) = best(ours, name, is_smooth), best(theirs, name, is_smooth)
+        if gives_s:
+            speed = np.abs(np.gradient(yours))
+            limit = limit + gives_s / EVERY_S * np.maximum.accumulate(np.maximum(speed, np.append(speed[1:], speed[-1])))
         # a closed form may end before the runs do
         count = min(len(mine), len(yours))
         mine, my_error, yours, your_error = (one[:count] for one in (mine, my_error, yours, your_error))

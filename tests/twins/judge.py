@@ -10,7 +10,7 @@ import ours
 import scene as scenes
 import theirs
 
-EVERY_US = 20_000
+EVERY_US = round(bound.EVERY_S * 1e6)
 # MuJoCo's coarsest step; with contacts it is finer.
 THEIRS_US = 200
 THEIRS_IN_TOUCH_US = 100
@@ -45,7 +45,8 @@ def verdict(program, scene, other=None):
     except theirs.Unfit as unfit:
         return Verdict(LEFT_OUT, "unfit", str(unfit))
     factor = bound.HALF_ORDER if scenes.touching(scene) else 1.0
-    against = bound.compare(mine, yours, scenes.is_smooth(scene), factor)
+    gives_s = 2 * theirs.SOFT * coarsest / 4e6 if scenes.has_stops(scene) else 0.0
+    against = bound.compare(mine, yours, scenes.is_smooth(scene), factor, gives_s)
     if against.differs:
         if truth:
             return Verdict(APART, against.name, f"MuJoCo, and the closed form agrees with onescan: {described(against)}")

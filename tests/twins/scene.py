@@ -85,12 +85,16 @@ def loose(scene):
     return [one for one in scene["bodies"] if one["kind"] == "dynamic" and one["name"] not in hung]
 
 
+def has_stops(scene):
+    """Something comes to an end: of its way, or of its play."""
+    stops = any(one["lower"] is not None or one["upper"] is not None for one in scene["joints"])
+    return stops or any(one["backlash"] for one in scene["couplings"])
+
+
 def is_smooth(scene):
     """Nothing meets, stops or sticks."""
-    stops = any(one["lower"] is not None or one["upper"] is not None for one in scene["joints"])
     sticks = any(one.get("friction") or one.get("brake") for one in scene["fittings"])
-    play = any(one["backlash"] for one in scene["couplings"])
-    return not (stops or sticks or play or touching(scene) and scene["family"] != "throw")
+    return not (has_stops(scene) or sticks or touching(scene) and scene["family"] != "throw")
 
 
 def changed(scene):

@@ -111,6 +111,14 @@ pub(crate) const SCRIPTS: &[Script] = &[
         not_on_windows: None,
     },
     Script {
+        name: "twins",
+        file: "tests/twins/compare",
+        language: Language::Python,
+        about: "random scenes run by onescan and MuJoCo and compared; what differs is made small",
+        time: "1 s per scene",
+        not_on_windows: Some("it expects the environment of Python in `bin`"),
+    },
+    Script {
         name: "dist",
         file: "tests/dist/make",
         language: Language::Python,
