@@ -2,10 +2,10 @@
 
 Each engine runs at the steps h, h/2 and h/4. For a method of first order, or a higher one, the result at h/4 is off by no more
 than its difference to that at h/2, and half of the difference of those at h and h/2. The larger of the two, or the sum of both
-differences where something meets, stops or sticks, at this sample or a sample before, is the engine's error; the bound is `SAFETY` times the sum of both errors, plus `FLOOR`. What is soft in MuJoCo
-becomes stiff with the step, so this error has that in it. One thing it has not: MuJoCo's stops give way by a speed times some
-steps, by how much depends on the phase of the step in which they are hit, and so does what a mechanism does from there on. That
-way is added.
+differences where something meets, stops or sticks, at this sample or a sample before, is the engine's error; the bound is `SAFETY`
+times the sum of both errors, plus `FLOOR`. What is soft in MuJoCo becomes stiff with the step, so this error has that in it. One
+thing it has not: MuJoCo's stops give way by a speed times some steps, by how much depends on the phase of the step in which they
+are hit, and so does what a mechanism does from there on. That way is added.
 """
 
 import numpy as np
@@ -77,14 +77,14 @@ def compare(ours, theirs, is_smooth, factor=1.0, gives_s=0.0):
     worst, spans, bounds = None, [], []
     for name in names:
         (mine, my_error), (yours, your_error) = best(ours, name, is_smooth), best(theirs, name, is_smooth)
-        if gives_s:
-            speed = np.abs(np.gradient(yours))
-            limit = limit + gives_s / EVERY_S * np.maximum.accumulate(np.maximum(speed, np.append(speed[1:], speed[-1])))
         # a closed form may end before the runs do
         count = min(len(mine), len(yours))
         mine, my_error, yours, your_error = (one[:count] for one in (mine, my_error, yours, your_error))
         difference = np.abs(mine - yours)
         limit = SAFETY * (my_error + factor * your_error) + FLOOR * (1 + np.abs(yours))
+        if gives_s:
+            speed = np.abs(np.gradient(yours))
+            limit = limit + gives_s / EVERY_S * np.maximum.accumulate(np.maximum(speed, np.append(speed[1:], speed[-1])))
         sample = int(np.argmax(difference / limit))
         found = Outcome(name, sample, float(difference[sample]), float(limit[sample]), False)
         spans.append(float(np.ptp(theirs[-1][name])))

@@ -62,7 +62,7 @@ class Draw:
             keys["length_m"] = self.number(0.05, 0.4)
         return keys
 
-    def clock(self, scene, until=(4, 9)):
+    def clock(self, scene, until=(3, 6)):
         """How long a scene is, and its coarsest step."""
         scene["until_ms"] = 100 * self.whole(*until)
         scene["step_us"] = 200 if scene["drives"] else self.one_of([200, 400, 1000])
