@@ -101,7 +101,8 @@ def sensors(scene):
         for place, point in enumerate(space.marks(one)):
             name = f"{one['name']}.p{place}"
             keys = {f"{axis}_m_signal": f"{name}.{axis}" for axis in "xyz"}
-            keys.update({f"{axis}_m_s_signal": f"{name}.v{axis}" for axis in "xyz"})
+            if place == 0:
+                keys.update({f"{axis}_m_s_signal": f"{name}.v{axis}" for axis in "xyz"})
             signals += keys.values()
             tables.append(table("component", name=f"pose_{one['name']}_{place}", kind="pose_sensor", body=one["name"],
                                 point_m=point, **keys))
