@@ -118,14 +118,7 @@ impl Actuator {
         drives: &dyn Drives,
         joints: &mut ImpulseJointSet,
     ) -> f64 {
-        let line = match self.acts {
-            Acts::Along(path) => {
-                let missing = path.at(from) - motion.position;
-                let velocity = (path.at(to) - path.at(from)) / dt_s + CORRECTED_A_TURN * missing / path.turn_s;
-                Line { velocity, slope: f64::INFINITY, most: self.most, dry: 0.0 }
-            }
-            Acts::Law { drive } => Line::of(|motion| drives.foresee(drive, motion, dt_s), motion),
-        };
+        let line = self.line(motion, [from, to], dt_s, drives);
         if let Some(joint) = joints.get_mut(self.handle, false) {
             let rigid = line.slope == f64::INFINITY;
             let (model, gain) =
@@ -135,6 +128,18 @@ impl Actuator {
             joint.data.set_motor_max_force(self.along, line.most.min(Real::MAX));
         }
         line.dry
+    }
+
+    /// Its force over the velocity at the end of a step, whose part of the turn this is, from where the joint is.
+    pub(super) fn line(&self, motion: Motion, [from, to]: [f64; 2], dt_s: f64, drives: &dyn Drives) -> Line {
+        match self.acts {
+            Acts::Along(path) => {
+                let missing = path.at(from) - motion.position;
+                let velocity = (path.at(to) - path.at(from)) / dt_s + CORRECTED_A_TURN * missing / path.turn_s;
+                Line { velocity, slope: f64::INFINITY, most: self.most, dry: 0.0 }
+            }
+            Acts::Law { drive } => Line::of(|motion| drives.foresee(drive, motion, dt_s), motion),
+        }
     }
 
     /// What the engine's motor exerted in its last iteration, of which there are so many in a step; it counts
@@ -147,12 +152,12 @@ impl Actuator {
 }
 
 /// A force that falls in a straight line over the velocity, and dry friction beside it.
-struct Line {
+pub(super) struct Line {
     /// Where the force is 0.
-    velocity: f64,
-    slope: f64,
-    most: f64,
-    dry: f64,
+    pub(super) velocity: f64,
+    pub(super) slope: f64,
+    pub(super) most: f64,
+    pub(super) dry: f64,
 }
 
 impl Line {

@@ -1,20 +1,22 @@
 //! Mechanisms and the engine: who moves which bodies in a step.
 //!
 //! In every step the engine moves all bodies, with the joints and motors that it has for them. Then, of
-//! each mechanism none of whose bodies touched another in that step, the engine's result is put aside
-//! and the mechanism's own, exact to a high order, takes its place. Where a body touched, the engine's
-//! result stands, for it alone knows of contacts; the mechanism takes its coordinates from there.
+//! each mechanism on which nothing pressed in that step, the engine's result is put aside and the mechanism's own,
+//! exact to a high order, takes its place. Where it touches others, what all of these do to each other is solved again
+//! (see [`super::contact`]). Only where joints of the engine's own or very many points take part, or that search does
+//! not end, the engine's result stands; the mechanism takes its coordinates from there.
 //!
 //! A mechanism with nothing near has no joints in the engine, which then has little to do for it. They are
-//! back in the step after a body has come near. Should one touch in its first step there, the engine has
+//! back in the step after a body has come near. Should the engine have to move one in its first step there, it has
 //! the contacts of single bodies; what they changed in the bodies' momenta goes into the mechanism.
 //!
-//! Which of the two applies follows from the contacts of the step alone, so that it is the same in
+//! Which of these applies follows from the contacts of the step alone, so that it is the same in
 //! every run, and after a restore.
 
 use rapier3d::prelude::*;
 
 use super::actuator::{Acts, Actuator};
+use super::contact::{Before, Island, Part};
 use super::coordinate::Gauge;
 use super::mechanism::{Coordinates, Guided, Link, Mechanism, Surroundings, guided, mechanisms};
 use super::turning::Turning;
@@ -41,6 +43,19 @@ pub(crate) struct Articulation {
     guided: Vec<Guided>,
     /// Whether each of the scene's joints is of one of these.
     is_guided: Vec<bool>,
+    /// All bodies as the step began, if a mechanism can touch any.
+    before: Before,
+}
+
+/// How a mechanism goes through a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Way {
+    /// By its own equations: nothing presses on it.
+    Alone,
+    /// It has gone, with what it touches.
+    Together,
+    /// As the engine moves it.
+    Engine,
 }
 
 /// A mechanism and the shapes of its bodies that collide.
@@ -67,6 +82,7 @@ impl Articulation {
             couplings: Vec::new(),
             guided: Vec::new(),
             is_guided: Vec::new(),
+            before: Before::default(),
         }
     }
 
@@ -166,6 +182,20 @@ impl Member {
     }
 }
 
+impl Part for Member {
+    fn colliders(&self) -> &[ColliderHandle] {
+        &self.colliders
+    }
+
+    fn mechanism(&mut self) -> &mut Mechanism {
+        &mut self.mechanism
+    }
+
+    fn seen(&self) -> &Mechanism {
+        &self.mechanism
+    }
+}
+
 impl World {
     /// Finds the mechanisms of the joints that there are now.
     pub(crate) fn find_mechanisms(&mut self) {
@@ -239,59 +269,100 @@ impl World {
         let dt_s = self.physics.integration_parameters.dt;
         self.arm(part, dt_s, drives);
         self.guide(part[1], dt_s);
+        if self.articulation.mechanisms.iter().any(|member| !member.colliders.is_empty()) {
+            self.articulation.before.note(&self.physics.bodies);
+        }
         self.physics.step_with_events(&Turning { dt_s }, &());
+        let ways = self.meet(part, drives);
+        self.put_guided();
         let Self { physics, actuators, articulation, .. } = self;
-        let Articulation { mechanisms, others, fittings, gauges, motions, guided, .. } = articulation;
+        let Articulation { mechanisms, fittings, motions, .. } = articulation;
+        let (gravity, iterations) = (physics.gravity, physics.integration_parameters.num_solver_iterations);
+        for (member, way) in mechanisms.iter_mut().zip(ways) {
+            // without its joints the engine let its bodies go their own ways for this step
+            let loose = way == Way::Engine && member.attached == Some(false);
+            if loose {
+                member.mechanism.take_blow(dt_s, gravity, &physics.bodies);
+            }
+            let mut around = Surroundings { gravity, fittings, actuators, drives, part };
+            let alone = (way == Way::Alone || loose) && member.mechanism.advance(dt_s, &mut around);
+            let measured = !alone && way != Way::Together;
+            let reconciled = measured && member.mechanism.measure(&physics.bodies, dt_s);
+            for (joint, position, velocity) in member.mechanism.joints() {
+                let now = Mark { position: fittings[joint].initial + position, velocity };
+                let before = std::mem::replace(&mut motions[joint], now);
+                let own = member.actuators.iter().copied().find(|index| actuators[*index].joint == joint);
+                if let Some(index) = own.filter(|_| !alone) {
+                    if measured {
+                        actuators[index].read(&physics.impulse_joints, dt_s, iterations);
+                    }
+                    follow(&actuators[index], [before, now], drives, dt_s);
+                }
+            }
+            // what the engine moved without joints must not come apart
+            if !measured || reconciled || member.attached == Some(false) {
+                member.mechanism.put(&mut physics.bodies);
+            }
+        }
+        self.measure_others(drives);
+    }
+
+    /// Puts the bodies of robots without dynamics where their joints are.
+    fn put_guided(&mut self) {
+        let Self { physics, articulation, .. } = self;
+        let Articulation { fittings, motions, guided, .. } = articulation;
         for robot in guided {
             robot.put(&mut physics.bodies);
             for (joint, position, velocity) in robot.joints() {
                 motions[joint] = Mark { position: fittings[joint].initial + position, velocity };
             }
         }
-        let iterations = physics.integration_parameters.num_solver_iterations;
-        let follow = |index: usize, to: Mark, from: Mark, actuators: &mut [Actuator], drives: &mut dyn Drives| {
-            let actuator = &mut actuators[index];
-            actuator.read(&physics.impulse_joints, dt_s, iterations);
-            if let Acts::Law { drive } = actuator.acts {
-                let velocity = (to.position - from.position) / dt_s;
-                let motion =
-                    Motion { position: from.position, velocity, mass: f64::INFINITY, exerted: actuator.exerted };
-                advance(drives, drive, motion, dt_s);
-            }
-        };
-        for member in mechanisms.iter_mut() {
-            let touched = member.meets(&physics.narrow_phase, ContactPair::has_any_active_contact);
-            let gravity = physics.gravity;
-            // without its joints the engine let its bodies go their own ways for this step
-            let loose = touched && member.attached == Some(false);
-            if loose {
-                member.mechanism.take_blow(dt_s, gravity, &physics.bodies);
-            }
-            let mut around = Surroundings { gravity, fittings, actuators, drives, part };
-            let alone = (!touched || loose) && member.mechanism.advance(dt_s, &mut around);
-            let reconciled = !alone && member.mechanism.measure(&physics.bodies, dt_s);
-            for (joint, position, velocity) in member.mechanism.joints() {
-                let now = Mark { position: fittings[joint].initial + position, velocity };
-                let before = std::mem::replace(&mut motions[joint], now);
-                let own = member.actuators.iter().find(|index| actuators[**index].joint == joint);
-                if let Some(index) = own.filter(|_| !alone) {
-                    follow(*index, now, before, actuators, drives);
-                }
-            }
-            // what the engine moved without joints must not come apart
-            if alone || reconciled || member.attached == Some(false) {
-                member.mechanism.put(&mut physics.bodies);
-            }
-        }
+    }
+
+    /// Measures the joints that are in no mechanism; their drives follow.
+    fn measure_others(&mut self, drives: &mut dyn Drives) {
+        let Self { physics, actuators, articulation, .. } = self;
+        let Articulation { others, gauges, motions, .. } = articulation;
+        let parameters = &physics.integration_parameters;
         for joint in others.iter().copied() {
             let (bodies, gauge) = (&physics.bodies, &gauges[joint]);
             let now =
                 Mark { position: gauge.position(bodies, motions[joint].position), velocity: gauge.velocity(bodies) };
             let before = std::mem::replace(&mut motions[joint], now);
-            if let Some(index) = actuators.iter().position(|actuator| actuator.joint == joint) {
-                follow(index, now, before, actuators, drives);
+            if let Some(actuator) = actuators.iter_mut().find(|actuator| actuator.joint == joint) {
+                actuator.read(&physics.impulse_joints, parameters.dt, parameters.num_solver_iterations);
+                follow(actuator, [before, now], drives, parameters.dt);
             }
         }
+    }
+
+    /// Moves mechanisms that touch others, and these, through the step that the engine has gone through; how each
+    /// mechanism goes.
+    fn meet(&mut self, part: [f64; 2], drives: &mut dyn Drives) -> Vec<Way> {
+        let Self { physics, actuators, articulation, .. } = self;
+        let Articulation { mechanisms, fittings, before, .. } = articulation;
+        let (dt_s, gravity) = (physics.integration_parameters.dt, physics.gravity);
+        let mut ways = vec![None; mechanisms.len()];
+        for index in 0..mechanisms.len() {
+            if ways[index].is_some() {
+                continue;
+            }
+            if !mechanisms[index].meets(&physics.narrow_phase, ContactPair::has_any_active_contact) {
+                ways[index] = Some(Way::Alone);
+                continue;
+            }
+            let Some(island) = Island::around(index, mechanisms, physics) else {
+                ways[index] = Some(Way::Engine);
+                continue;
+            };
+            let mut around = Surroundings { gravity, fittings, actuators, drives, part };
+            let pressed = island.step(dt_s, mechanisms, physics, before, &mut around);
+            for member in &island.members {
+                let goes = |pressed: &Vec<usize>| if pressed.contains(member) { Way::Together } else { Way::Alone };
+                ways[*member] = Some(pressed.as_ref().map_or(Way::Engine, goes));
+            }
+        }
+        ways.into_iter().map(|way| way.unwrap_or(Way::Alone)).collect()
     }
 
     /// Sends robots without dynamics on their way.
@@ -407,6 +478,15 @@ pub(crate) struct ArticulationMemory {
     motions: Vec<Mark>,
     mechanisms: Vec<Coordinates>,
     exerted: Vec<f64>,
+}
+
+/// Moves the state of an actuator's drive through a step in which its joint went this way.
+fn follow(actuator: &Actuator, [from, to]: [Mark; 2], drives: &mut dyn Drives, dt_s: f64) {
+    if let Acts::Law { drive } = actuator.acts {
+        let velocity = (to.position - from.position) / dt_s;
+        let motion = Motion { position: from.position, velocity, mass: f64::INFINITY, exerted: actuator.exerted };
+        advance(drives, drive, motion, dt_s);
+    }
 }
 
 /// Moves a drive's state by a step of constant velocity, in sub-steps as short as it wants them.

@@ -8,10 +8,12 @@
 //! | `coordinate` | where a joint stands, measured from the poses of its bodies |
 //! | `actuator` | what drives a joint: along a path, or by a component's equations |
 //! | `mechanism` | bodies on joints, moved by the joints' coordinates |
+//! | `contact` | contacts in which mechanisms take part |
 //! | `articulation` | mechanisms and the engine: who moves which bodies |
 
 pub(crate) mod actuator;
 pub(crate) mod articulation;
+mod contact;
 pub(crate) mod coordinate;
 mod mechanism;
 mod reach;

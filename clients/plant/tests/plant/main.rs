@@ -7,6 +7,7 @@ mod bench;
 mod components;
 mod constants;
 mod contacts;
+mod coulomb;
 mod couplings;
 mod drives;
 mod excesses;

@@ -9,7 +9,7 @@
 
 use super::dynamics::{normalise, rates};
 use super::rows::Row;
-use super::{Mechanism, Surroundings, matrix};
+use super::{Coordinates, Mechanism, Surroundings, matrix};
 use crate::effort::Motion;
 use crate::effort::substeps;
 use crate::fitting::Fitting;
@@ -64,14 +64,14 @@ impl Mechanism {
     }
 
     /// Its axes that have actuators, and these.
-    fn own_actuators(&self, actuators: &[Actuator]) -> Vec<(usize, usize)> {
+    pub(super) fn own_actuators(&self, actuators: &[Actuator]) -> Vec<(usize, usize)> {
         let axis = |joint: usize| self.axes.iter().position(|(_, own)| *own == Some(joint));
         let each = actuators.iter().enumerate();
         each.filter_map(|(index, actuator)| axis(actuator.joint).map(|axis| (axis, index))).collect()
     }
 
     /// The equations half way through a part, and the inverse of their matrix.
-    fn prepare(&mut self, part_s: f64, around: &Surroundings<'_>) -> bool {
+    pub(super) fn prepare(&mut self, part_s: f64, around: &Surroundings<'_>) -> bool {
         let n = self.tree.velocities;
         let room = &mut self.room;
         room.q.clone_from(&self.now.q);
@@ -124,7 +124,7 @@ impl Mechanism {
     }
 
     /// The velocities that all forces together lead to, before the rows hold what they hold.
-    fn push(&mut self, dt_s: f64, fittings: &[Fitting]) {
+    pub(super) fn push(&mut self, dt_s: f64, fittings: &[Fitting]) {
         let n = self.tree.velocities;
         self.stiffen(dt_s, fittings);
         self.room.v.clone_from(&self.now.v);
@@ -136,7 +136,7 @@ impl Mechanism {
     }
 
     /// Dry and viscous friction of an axis.
-    fn resist(&mut self, axis: usize, dry: f64, viscous: f64, dt_s: f64) {
+    pub(super) fn resist(&mut self, axis: usize, dry: f64, viscous: f64, dt_s: f64) {
         if dry > 0.0 {
             self.rows.all.push(Row::rigid(axis, 0.0, dry * dt_s));
         }
@@ -189,7 +189,7 @@ impl Mechanism {
     }
 
     /// The rows of the stops that axes may come to in a sub-step; true if an axis with a spring comes near.
-    fn stop(&mut self, dt_s: f64, fittings: &[Fitting]) -> bool {
+    pub(super) fn stop(&mut self, dt_s: f64, fittings: &[Fitting]) -> bool {
         let mut sprung = false;
         for (axis, (position, joint)) in self.axes.iter().enumerate() {
             let Some(fitting) = joint.map(|joint| &fittings[joint]) else { continue };
@@ -236,15 +236,21 @@ impl Mechanism {
         }
         normalise(lumps, &mut now.q);
         now.v.copy_from_slice(&room.v);
-        let is_alone = now.v.len() == 1;
-        for ((position, joint), v) in axes.iter().zip(&mut now.v) {
-            let Some(fitting) = joint.map(|joint| &fittings[joint]) else { continue };
-            let q = &mut now.q[*position];
-            let inside = q.clamp(fitting.lower, fitting.upper);
-            if inside != *q && is_alone {
-                *v = if *q < inside { v.max(0.0) } else { v.min(0.0) };
-            }
-            *q = inside;
+        keep_within(now, axes, fittings);
+    }
+}
+
+/// Takes coordinates back to the stops that they went beyond. Their velocity is left to the row of the stop, which shows it to
+/// all that hangs on the joint; where nothing else moves, it goes at once.
+pub(super) fn keep_within(now: &mut Coordinates, axes: &[(usize, Option<usize>)], fittings: &[Fitting]) {
+    let is_alone = now.v.len() == 1;
+    for ((position, joint), v) in axes.iter().zip(&mut now.v) {
+        let Some(fitting) = joint.map(|joint| &fittings[joint]) else { continue };
+        let q = &mut now.q[*position];
+        let inside = q.clamp(fitting.lower, fitting.upper);
+        if inside != *q && is_alone {
+            *v = if *q < inside { v.max(0.0) } else { v.min(0.0) };
         }
+        *q = inside;
     }
 }

@@ -19,7 +19,7 @@ pub(super) struct Equations {
     /// Where the members' joints and bodies are.
     pub(super) poses: Vec<Pose>,
     /// The motion that one unit of each velocity is.
-    axes: Vec<Twist>,
+    pub(super) axes: Vec<Twist>,
     pub(super) motions: Vec<Twist>,
     accelerations: Vec<Twist>,
     forces: Vec<Wrench>,

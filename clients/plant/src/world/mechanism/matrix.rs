@@ -7,7 +7,7 @@
 /// Factors a symmetric positive definite matrix of `n` rows into `L Lᵀ`, in its lower triangle; false
 /// if it is not positive definite.
 #[must_use]
-pub(super) fn factor(matrix: &mut [f64], n: usize) -> bool {
+pub(in crate::world) fn factor(matrix: &mut [f64], n: usize) -> bool {
     for column in 0..n {
         for row in column..n {
             let mut sum = matrix[row * n + column];
@@ -27,7 +27,7 @@ pub(super) fn factor(matrix: &mut [f64], n: usize) -> bool {
 }
 
 /// Solves `L Lᵀ x = b` in place of `b`.
-pub(super) fn solve(lower: &[f64], n: usize, b: &mut [f64]) {
+pub(in crate::world) fn solve(lower: &[f64], n: usize, b: &mut [f64]) {
     for row in 0..n {
         let sum = (0..row).fold(b[row], |sum, k| sum - lower[row * n + k] * b[k]);
         b[row] = sum / lower[row * n + row];
@@ -39,7 +39,7 @@ pub(super) fn solve(lower: &[f64], n: usize, b: &mut [f64]) {
 }
 
 /// The whole inverse of `L Lᵀ`.
-pub(super) fn inverse(lower: &[f64], n: usize, inverse: &mut [f64]) {
+pub(in crate::world) fn inverse(lower: &[f64], n: usize, inverse: &mut [f64]) {
     inverse.fill(0.0);
     for row in 0..n {
         // the inverse is symmetric, so that its rows are its columns

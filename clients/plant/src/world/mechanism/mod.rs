@@ -19,6 +19,7 @@
 //! | `driven` | steps with drives, friction, stops |
 //! | `sprung` | springs and dampers in these |
 //! | `apparent` | what each joint has to move |
+//! | `touched` | what a mechanism is to others that it touches |
 //!
 //! # Invariants
 //! - What is computed follows from positions, velocities and the drives' states; how often, too.
@@ -31,10 +32,11 @@ mod dynamics;
 mod free;
 mod guided;
 mod lump;
-mod matrix;
+pub(super) mod matrix;
 mod rows;
 mod spatial;
 mod sprung;
+mod touched;
 mod tree;
 
 use rapier3d::prelude::*;

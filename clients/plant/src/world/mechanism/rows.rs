@@ -41,7 +41,7 @@ impl Row {
     }
 
     /// The coordinates that it acts on, with their factors.
-    fn parts(&self) -> impl Iterator<Item = (usize, f64)> {
+    pub(super) fn parts(&self) -> impl Iterator<Item = (usize, f64)> {
         [Some((self.on, 1.0)), self.with[0], self.with[1]].into_iter().flatten()
     }
 

@@ -160,7 +160,7 @@ fn carries() -> Vec<Line> {
             pushed("friction = 0.0\nfriction_rule = \"least\""),
         ),
         Line::new(
-            "the same by a face with friction 0.5, which carries a part of the weight",
+            "the same by a face with friction 0.5",
             (0.5 * (1158.0 - 100.0 * G) / 205.0, "m/s"),
             COULOMB,
             pushed(""),

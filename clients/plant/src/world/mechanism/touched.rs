@@ -1,0 +1,150 @@
+//! What a mechanism is to others that it touches: velocities, what holds at its joints, and what moves a point of it.
+//!
+//! In such a step it moves with the velocities at its end, as all that touches. Drives are lines of force over velocity,
+//! as for the engine (see [`crate::world::actuator`]); their own state follows afterwards.
+
+use rapier3d::prelude::*;
+
+use super::driven::keep_within;
+use super::dynamics::{normalise, rates};
+use super::rows::Row;
+use super::{Mechanism, Surroundings};
+use crate::effort::Motion;
+use crate::world::actuator::Acts;
+
+/// What a drive that follows its path whatever it takes gives way, as a part of what it moves: a wall that it
+/// presses upon gives way less.
+const YIELDS: f64 = 1e-6;
+
+/// What holds at a joint, as a row over the mechanism's coordinates.
+pub(in crate::world) struct Tie {
+    pub(in crate::world) parts: Vec<(usize, f64)>,
+    pub(in crate::world) wanted: f64,
+    pub(in crate::world) softness: f64,
+    pub(in crate::world) least: f64,
+    pub(in crate::world) most: f64,
+}
+
+impl Mechanism {
+    /// Finds its velocities after a step of `dt_s` under all forces, and what holds at its joints; false if its
+    /// equations cannot be solved.
+    pub(crate) fn aim(&mut self, dt_s: f64, around: &mut Surroundings<'_>) -> bool {
+        let n = self.tree.velocities;
+        self.find_springs(around.fittings);
+        if !self.prepare(dt_s, around) {
+            return false;
+        }
+        self.equations.place(&self.tree, &self.now.q);
+        self.rows.all.clear();
+        // all goes on with its new velocity
+        self.room.exact.clear();
+        self.room.exact.resize(n, true);
+        self.room.viscous.clear();
+        self.room.viscous.resize(n, 0.0);
+        self.room.force.clear();
+        self.room.force.extend(self.moving.bias.iter().map(|bias| -bias));
+        for k in 0..n {
+            if let Some(fitting) = self.axes[k].1.map(|joint| &around.fittings[joint]) {
+                self.room.force[k] += fitting.force(self.spring_at(k, dt_s));
+                self.resist(k, fitting.dry(self.now.v[k]), fitting.damping, dt_s);
+            }
+        }
+        for (axis, index) in self.own_actuators(around.actuators) {
+            self.drive(axis, index, dt_s, around);
+        }
+        self.couple(dt_s);
+        self.push(dt_s, around.fittings);
+        self.stop(dt_s, around.fittings);
+        true
+    }
+
+    /// The row of an actuator.
+    fn drive(&mut self, axis: usize, index: usize, dt_s: f64, around: &Surroundings<'_>) {
+        let position = self.now.q[self.axes[axis].0];
+        let actuator = &around.actuators[index];
+        let fitting = &around.fittings[actuator.joint];
+        let coordinate = fitting.initial + position;
+        let (velocity, exerted) = (self.now.v[axis], actuator.exerted);
+        let motion = Motion { position: coordinate, velocity, mass: f64::INFINITY, exerted };
+        let line = actuator.line(motion, around.part, dt_s, around.drives);
+        let wanted = match actuator.acts {
+            Acts::Along(_) => line.velocity.clamp((fitting.lower - position) / dt_s, (fitting.upper - position) / dt_s),
+            Acts::Law { .. } => line.velocity,
+        };
+        let moves = self.room.inverse[axis * self.tree.velocities + axis];
+        let softness = if line.slope.is_finite() { 1.0 / (line.slope * dt_s) } else { YIELDS * moves };
+        self.resist(axis, line.dry, 0.0, dt_s);
+        self.rows.all.push(Row { softness, actuator: Some(index), ..Row::rigid(axis, wanted, line.most * dt_s) });
+    }
+
+    /// The velocities that it aims at without what holds and touches.
+    pub(crate) fn aimed(&self) -> &[f64] {
+        &self.room.v
+    }
+
+    /// What holds at its joints.
+    pub(in crate::world) fn ties(&self) -> impl Iterator<Item = Tie> {
+        self.rows.all.iter().map(|row| {
+            let Row { wanted, softness, least, most, .. } = *row;
+            Tie { parts: row.parts().collect(), wanted, softness, least, most }
+        })
+    }
+
+    /// What an impulse along each coordinate adds to its velocities.
+    pub(crate) fn answers(&self, along: &[f64], answer: &mut [f64]) {
+        for (answer, line) in answer.iter_mut().zip(self.room.stiff.chunks_exact(along.len().max(1))) {
+            *answer = line.iter().zip(along).map(|(inverse, along)| inverse * along).sum();
+        }
+    }
+
+    /// Adds how fast a point of a body moves in a direction with each velocity.
+    pub(crate) fn lever(&self, body: RigidBodyHandle, point: Vector, direction: Vector, along: &mut [f64]) {
+        let mut at = self.tree.members.iter().position(|member| member.body == Some(body));
+        let arm = point - self.equations.about;
+        while let Some(member) = at.map(|index| &self.tree.members[index]) {
+            let first = member.first[1];
+            for k in first..first + member.freedom.velocities() {
+                let axis = self.equations.axes[k];
+                along[k] += (axis.linear + axis.angular.cross(arm)).dot(direction);
+            }
+            at = member.on;
+        }
+    }
+
+    /// How fast a point of a body moves in a direction now.
+    pub(crate) fn approach(&self, body: RigidBodyHandle, point: Vector, direction: Vector) -> f64 {
+        let mut along = vec![0.0; self.tree.velocities];
+        self.lever(body, point, direction, &mut along);
+        along.iter().zip(&self.now.v).map(|(along, v)| along * v).sum()
+    }
+
+    /// Goes through a step of `dt_s` with these velocities at its end and those that correct its position, and what
+    /// held at its joints.
+    pub(crate) fn arrive(
+        &mut self,
+        dt_s: f64,
+        [velocities, corrections]: [&[f64]; 2],
+        impulses: impl Iterator<Item = f64>,
+        around: &mut Surroundings<'_>,
+    ) {
+        for (row, impulse) in self.rows.all.iter_mut().zip(impulses) {
+            row.impulse = impulse;
+            if let Some(actuator) = row.actuator.and_then(|index| around.actuators.get_mut(index)) {
+                actuator.exerted = impulse / dt_s;
+                actuator.effort = actuator.exerted;
+            }
+        }
+        for ((v, velocity), correction) in self.now.v.iter_mut().zip(velocities).zip(corrections) {
+            *v = velocity + correction;
+        }
+        let Self { lumps, now, axes, room, .. } = self;
+        room.rates[0].resize(lumps.positions, 0.0);
+        rates(lumps, &now.q, &now.v, &mut room.rates[0]);
+        for (q, rate) in now.q.iter_mut().zip(&room.rates[0]) {
+            *q += dt_s * rate;
+        }
+        normalise(lumps, &mut now.q);
+        now.v.copy_from_slice(velocities);
+        keep_within(now, axes, around.fittings);
+    }
+}
