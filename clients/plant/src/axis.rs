@@ -101,6 +101,9 @@ impl Axis {
                 let Mark { position, velocity } = measured.motions[joint];
                 let velocity = || velocity.clamp(-speed, speed);
                 let from = setpoint.near(position, speed * dt_s, velocity);
+                // what has come to a stop against something holds where it is, and does not go on to press
+                let holds = from.velocity == 0.0 && self.command.stands(inputs) && motor.is_at_its_limit(world);
+                let from = if holds { Setpoint { position, ..from } } else { from };
                 let to = self.command.advance(name, from, &self.bounds, dt_s, inputs)?;
                 motor.follow(Path { from, to, turn_s: dt_s }, None, world)?;
                 *setpoint = to;

@@ -63,6 +63,15 @@ impl Command {
         })
     }
 
+    /// Whether the drive is to stand, wherever it is.
+    pub(super) fn stands(&self, inputs: &[u8]) -> bool {
+        match self {
+            Self::Bidirectional { forward, reverse } => forward.get(inputs) == reverse.get(inputs),
+            Self::Velocity(slot) => slot.get(inputs) == 0.0,
+            Self::Position(_) => false,
+        }
+    }
+
     /// The setpoint a period after `from`, as the command in `inputs` wants it.
     ///
     /// # Errors

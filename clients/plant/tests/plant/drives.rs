@@ -289,3 +289,35 @@ fn what_lies_on_a_lift_is_lifted_and_reported() {
         assert!((way_m - 0.3).abs() < 1e-5 && !bench.read::<bool>("Limit"), "{period_us}: {way_m}");
     }
 }
+
+/// A carriage with 50 N runs to the stop of its joint, or to a post, and its switch is let go.
+#[test]
+fn a_drive_that_is_to_stand_does_not_press_on_what_stopped_it() {
+    let post = "[[body]]\nname = \"post\"\nkind = \"fixed\"\nshape = \"box\"\nsize_m = [0.1, 0.3, 0.3]\n\
+                position_m = [0.4, 0.0, 0.0]\n";
+    for (upper_m, more, end_m) in [(0.2, "", 0.2), (1.0, post, 0.25)] {
+        let scene = format!(
+            "version = 1\n[[body]]\nname = \"car\"\nkind = \"dynamic\"\nshape = \"box\"\nsize_m = [0.2, 0.2, 0.2]\n\
+             mass_kg = 5.0\n[[joint]]\nname = \"j\"\nkind = \"prismatic\"\nparent = \"ground\"\nchild = \"car\"\n\
+             axis = [1.0, 0.0, 0.0]\nlower_m = 0.0\nupper_m = {upper_m:?}\n[[axis]]\nname = \"a\"\njoint = \"j\"\n\
+             drive = \"bidirectional\"\nforward_signal = \"On\"\nreverse_signal = \"Back\"\nspeed_m_s = 0.5\n\
+             acceleration_m_s2 = 2.0\nforce_max_n = 50.0\nposition_signal = \"Way\"\nforce_signal = \"Force\"\n\
+             limit_signal = \"Limit\"\n{more}"
+        );
+        for period_us in PERIODS_US {
+            let mut bench = Bench::at_us(&scene, period_us);
+            let seen = |bench: &Bench| (bench.read::<f64>("Force"), bench.read::<bool>("Limit"));
+            bench.command("On", true);
+            bench.run_us(1_000_000);
+            let way_m: f64 = bench.read("Way");
+            assert!((way_m - end_m).abs() < 1e-6, "{period_us}: {way_m}");
+            println!("{period_us} {end_m} {:?}", seen(&bench));
+            bench.command("On", false);
+            bench.run_us(300_000);
+            let (force_n, limit) = seen(&bench);
+            assert!(force_n.abs() < 1e-3 && !limit, "{period_us}, {end_m} m: {force_n} {limit}");
+            let way_m: f64 = bench.read("Way");
+            assert!((way_m - end_m).abs() < 1e-6, "{period_us}: {way_m}");
+        }
+    }
+}
