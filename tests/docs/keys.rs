@@ -11,7 +11,7 @@ use crate::repository;
 
 /// Manuals that describe a part of another format.
 const FURTHER: &[(&str, &str)] =
-    &[("cases", "campaigns.md"), ("scenario", "gateway.md"), ("scenario", "report.md"), ("training", "cases.md")];
+    &[("cases", "campaigns.md"), ("scenario", "gateway-links.md"), ("scenario", "report.md"), ("training", "cases.md")];
 
 /// Keys that a manual describes as a group: the parameters and signals of each component are in the library's pages.
 const GROUPED: &[&str] = &["component"];
