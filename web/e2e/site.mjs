@@ -87,11 +87,11 @@ try {
   const narrow = await open("/docs/tutorials/cell.html", 390, "dark");
   await fits(narrow, "a tutorial on a phone");
   await shoot(narrow, "site-narrow");
-  await narrow.locator("main img").nth(1).scrollIntoViewIfNeeded();
+  await narrow.locator("main img:visible").nth(1).scrollIntoViewIfNeeded();
   await shoot(narrow, "site-narrow-picture");
   assert.deepEqual(narrow.wrong, []);
   const light = await open("/docs/tutorials/cell.html", 1280, "light");
-  await light.locator("main img").nth(1).scrollIntoViewIfNeeded();
+  await light.locator("main img:visible").nth(1).scrollIntoViewIfNeeded();
   await shoot(light, "site-picture");
   assert.deepEqual(light.wrong, []);
   console.log("site: searched, followed, read at two widths");
