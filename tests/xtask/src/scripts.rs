@@ -119,6 +119,22 @@ pub(crate) const SCRIPTS: &[Script] = &[
         not_on_windows: Some("it expects the environment of Python in `bin`"),
     },
     Script {
+        name: "tutorials",
+        file: "tests/tutorials",
+        language: Language::Python,
+        about: "docs/tutorials typed in empty folders; `--update` puts what came into the documents",
+        time: "1 min",
+        not_on_windows: Some("it types into bash"),
+    },
+    Script {
+        name: "site",
+        file: "docs/site/make",
+        language: Language::Python,
+        about: "the documents as a site in target/site/book, every link followed",
+        time: "seconds",
+        not_on_windows: Some("it expects the environment of Python in `bin`"),
+    },
+    Script {
         name: "dist",
         file: "tests/dist/make",
         language: Language::Python,
