@@ -5,6 +5,7 @@ import assert from "node:assert/strict";
 import { createServer } from "node:http";
 import { readFile } from "node:fs/promises";
 import { extname, join, normalize } from "node:path";
+import axe from "axe-core";
 import { chromium } from "playwright-core";
 
 const [book, folder = null] = process.argv.slice(2);
@@ -66,12 +67,21 @@ async function fits(page, what) {
   assert.ok(over <= 0, `${what} is ${over} px too wide`);
 }
 
+/** What is written can be read, and links are seen to be links. mdBook's own frame has findings of other kinds. */
+async function can_be_read(page, what) {
+  await page.evaluate(axe.source);
+  const rules = ["color-contrast", "link-in-text-block", "image-alt", "heading-order", "document-title", "html-has-lang"];
+  const { violations } = await page.evaluate((only) => window.axe.run(document, { runOnly: only }), rules);
+  assert.deepEqual(violations.map((rule) => `${rule.id}: ${rule.nodes[0].html}`), [], what);
+}
+
 try {
   const wide = await open("/docs/index.html", 1280, "light");
   const parts = await wide.locator("nav .part-title").allInnerTexts();
   assert.deepEqual(parts.slice(0, 4), ["Tutorials", "How-to guides", "Reference", "Explanation"]);
   await fits(wide, "the index");
   await shoot(wide, "site-wide");
+  await can_be_read(wide, "the index, light");
   for (const [words, wanted] of [["minimise", /docs\/minimise\.html/], ["twincat ci tutorial", /tutorials\/ci\.html/],
     ["light_barrier", /component\/index\.html/], ["N0101", /codes\/N0101\.html/]]) {
     const found = (await searched(wide, words)).slice(0, 10);
@@ -87,6 +97,7 @@ try {
   const narrow = await open("/docs/tutorials/cell.html", 390, "dark");
   await fits(narrow, "a tutorial on a phone");
   await shoot(narrow, "site-narrow");
+  await can_be_read(narrow, "a tutorial, dark");
   await narrow.locator("main img:visible").nth(1).scrollIntoViewIfNeeded();
   await shoot(narrow, "site-narrow-picture");
   assert.deepEqual(narrow.wrong, []);
