@@ -77,22 +77,32 @@ impl Friction {
 }
 
 /// Puts spring, damper and counterweight beside a joint of the scene, for the engine.
-pub(crate) fn spring_beside(
+///
+/// A counterweight beside a spring is a place of rest further up. Not so of an angle: beyond half a turn it is another
+/// angle for the engine, so there the counterweight is a motor of its own.
+pub(crate) fn springs_beside(
     joint: ImpulseJointHandle,
     along: JointAxis,
     fitting: &Fitting,
     physics: &mut PhysicsWorld,
-) -> Option<ImpulseJointHandle> {
-    let (mut spring, [one, other]) = free_beside(joint, physics)?;
+) -> Vec<ImpulseJointHandle> {
+    let Some((mut spring, [one, other])) = free_beside(joint, physics) else { return Vec::new() };
     spring.set_motor_model(along, MotorModel::ForceBased);
+    let mut weight = spring;
+    let is_apart = fitting.spring > 0.0 && fitting.balance != 0.0 && along == JointAxis::AngX;
     if fitting.spring > 0.0 {
-        let rest = fitting.rest + fitting.balance / fitting.spring;
-        spring.set_motor(along, rest, 0.0, fitting.spring, fitting.damping);
+        let further = if is_apart { 0.0 } else { fitting.balance / fitting.spring };
+        spring.set_motor(along, fitting.rest + further, 0.0, fitting.spring, fitting.damping);
     } else {
         let slope = fitting.damping.max(FLAT);
         spring.set_motor_velocity(along, fitting.balance / slope, slope);
     }
-    Some(physics.insert_impulse_joint(one, other, spring))
+    let mut put = vec![physics.insert_impulse_joint(one, other, spring)];
+    if is_apart {
+        weight.set_motor_velocity(along, fitting.balance / FLAT, FLAT);
+        put.push(physics.insert_impulse_joint(one, other, weight));
+    }
+    put
 }
 
 /// A joint between the bodies of another that leaves all free.

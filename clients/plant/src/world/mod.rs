@@ -25,7 +25,7 @@ use onescan_server::time::TimeSpan;
 use rapier3d::parry::bounding_volume::{BoundingSphere, BoundingVolume};
 use rapier3d::prelude::*;
 
-use self::actuator::{Actuator, Friction, spring_beside};
+use self::actuator::{Actuator, Friction, springs_beside};
 use self::articulation::Articulation;
 use self::reach::Reach;
 use self::solid::{attach, insert_body, leave_alone};
@@ -120,8 +120,8 @@ impl World {
             let fitting = world.articulation.fittings[index];
             let along = measured_axis(scene.joints[index].kind);
             if fitting.pushes() {
-                let spring = spring_beside(world.joints[index], along, &fitting, &mut world.physics);
-                world.springs.extend(spring.map(|spring| (index, spring)));
+                let springs = springs_beside(world.joints[index], along, &fitting, &mut world.physics);
+                world.springs.extend(springs.into_iter().map(|spring| (index, spring)));
             }
             if !fitting.is_smooth() {
                 world.add_friction(index);
