@@ -58,13 +58,23 @@ struct Free {
 /// A point at which two sides touch.
 struct Point {
     sides: [Mover; 2],
-    point: Vector,
+    place: Vector,
     normal: Vector,
     apart: f64,
     friction: f64,
     restitution: f64,
     /// The velocity along the surface that friction seeks.
     along: Vector,
+}
+
+impl Point {
+    /// How fast sides that no force moves go away from each other in a direction.
+    fn given(&self, direction: Vector) -> f64 {
+        let each = self.sides.into_iter().zip([-1.0, 1.0]);
+        let speed =
+            |(mover, sign)| if let Mover::Given(velocity) = mover { velocity.dot(direction) * sign } else { 0.0 };
+        each.map(speed).sum()
+    }
 }
 
 impl Island {
@@ -169,7 +179,7 @@ impl Island {
                     let point = 0.5 * (ends[0] + ends[1]);
                     points.push(Point {
                         sides: [mover(*one, point), mover(*other, point)],
-                        point,
+                        place: point,
                         normal: data.normal,
                         apart: (ends[1] - ends[0]).dot(data.normal),
                         friction: data.friction,
@@ -290,7 +300,7 @@ impl Built {
                 continue;
             }
             let approach = self.approach(point, island, parts);
-            let given = self.given(point, point.normal);
+            let given = point.given(point.normal);
             let bounces = point.restitution > 0.0 && approach < 0.0 && point.apart + approach * dt_s <= 0.0;
             let wanted = if bounces {
                 -point.restitution * approach
@@ -315,7 +325,7 @@ impl Built {
             let first = self.problem.rows.len();
             for direction in surface(point.normal) {
                 let along = self.along(point, direction, island, parts);
-                let wanted = point.along.dot(direction) - self.given(point, direction);
+                let wanted = point.along.dot(direction) - point.given(direction);
                 self.push(Row::rigid(self.spans_of(point), wanted), &along, island, parts);
             }
             self.problem.frictions.push(Friction { normal, first, coefficient: point.friction });
@@ -358,11 +368,11 @@ impl Built {
                 Mover::Member(place, body) => {
                     let (from, to) = self.spans[place];
                     let mechanism = parts[island.members[place]].seen();
-                    mechanism.lever(body, point.point, direction, &mut along[from..to]);
+                    mechanism.lever(body, point.place, direction, &mut along[from..to]);
                 }
                 Mover::Body(place) => {
                     let (from, _) = self.spans[self.members + place];
-                    let turning = (point.point - self.free[place].centre).cross(direction);
+                    let turning = (point.place - self.free[place].centre).cross(direction);
                     for (k, value) in direction.to_array().into_iter().chain(turning.to_array()).enumerate() {
                         along[from + k] += value;
                     }
@@ -373,20 +383,13 @@ impl Built {
         along
     }
 
-    /// How fast sides that no force moves go away from each other in a direction.
-    fn given(&self, point: &Point, direction: Vector) -> f64 {
-        let each = point.sides.into_iter().zip([-1.0, 1.0]);
-        each.map(|(mover, sign)| if let Mover::Given(velocity) = mover { velocity.dot(direction) * sign } else { 0.0 })
-            .sum()
-    }
-
     /// How fast both sides go away from each other as the step begins.
     fn approach<P: Part>(&self, point: &Point, island: &Island, parts: &[P]) -> f64 {
         let speed = |mover: Mover| match mover {
-            Mover::Member(place, body) => parts[island.members[place]].seen().approach(body, point.point, point.normal),
+            Mover::Member(place, body) => parts[island.members[place]].seen().approach(body, point.place, point.normal),
             Mover::Body(place) => {
                 let free = &self.free[place];
-                free.before.at(point.point, free.centre).dot(point.normal)
+                free.before.at(point.place, free.centre).dot(point.normal)
             }
             Mover::Given(velocity) => velocity.dot(point.normal),
         };

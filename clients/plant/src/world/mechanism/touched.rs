@@ -102,10 +102,9 @@ impl Mechanism {
         let mut at = self.tree.members.iter().position(|member| member.body == Some(body));
         let arm = point - self.equations.about;
         while let Some(member) = at.map(|index| &self.tree.members[index]) {
-            let first = member.first[1];
-            for k in first..first + member.freedom.velocities() {
-                let axis = self.equations.axes[k];
-                along[k] += (axis.linear + axis.angular.cross(arm)).dot(direction);
+            let span = member.first[1]..member.first[1] + member.freedom.velocities();
+            for (along, axis) in along[span.clone()].iter_mut().zip(&self.equations.axes[span]) {
+                *along += (axis.linear + axis.angular.cross(arm)).dot(direction);
             }
             at = member.on;
         }
