@@ -89,6 +89,9 @@ pub struct ScenarioFile {
     /// What people see and operate on the page.
     #[serde(default)]
     pub panel: Vec<PanelFile>,
+    /// Texts of the scenario in other languages, for the page: by language, as in `de`, what each text is there.
+    #[serde(default)]
+    pub translations: BTreeMap<String, BTreeMap<String, String>>,
     /// From where the machine is seen on the page.
     #[serde(default)]
     pub view: Vec<ViewFile>,

@@ -186,6 +186,7 @@ fn misfit(kind: ElementKind, signal: &SignalFile) -> Option<&'static str> {
         ElementKind::Button | ElementKind::Switch | ElementKind::Lamp => {
             (!is_bool).then_some("a button, a switch and a lamp need BOOL")
         }
+        ElementKind::EmergencyStop => (!is_bool).then_some("an emergency stop is BOOL"),
         ElementKind::Alarms => (!is_bool).then_some("what acknowledges alarms is BOOL"),
         ElementKind::Selector if signal.names.pairs().is_empty() => {
             Some("a selector needs a signal with `names` for its values")
@@ -270,6 +271,7 @@ name = "desk"
             element("joystick", "signal = \"Speed\"\nsignal_y = \"Speed\"\nat = [2, 1]"),
             element("switch", "failure = \"wall.leak\"\nat = [3, 1]"),
             element("switch", "disturbance = { signal = \"Speed\", kind = \"stuck\" }\nat = [4, 1]"),
+            element("emergency-stop", "signal = \"Start\"\nat = [5, 1]"),
             element("alarms", "at = [0, 2]\nspan = [6, 3]"),
             element("alarms", "signal = \"Start\"\nat = [0, 5]"),
         ];
@@ -293,6 +295,7 @@ name = "desk"
         assert!(wrong("button", "at = [0, 0]").0.contains("needs a `signal`"));
         assert!(wrong("lamp", "signal = \"Start\"\nsignal_y = \"Start\"\nat = [0, 0]").0.contains("only a joystick"));
         assert!(wrong("alarms", "signal = \"Speed\"\nat = [0, 0]").0.contains("is BOOL"));
+        assert!(wrong("emergency-stop", "signal = \"Speed\"\nat = [0, 0]").0.contains("an emergency stop is BOOL"));
         assert!(wrong("alarms", "signal = \"Seen\"\nat = [0, 0]").0.contains("is written by the plant"));
         assert!(wrong("bar", "signal = \"Speed\"\nat = [0, 0]\nmin = 1.0\nmax = 1.0").0.contains("not below"));
         assert!(wrong("lamp", "signal = \"Start\"\nat = [0, 0]\ncolour = \"url(x)\"").0.contains("is not a colour"));

@@ -110,6 +110,9 @@ impl FailureName {
 pub enum ElementKind {
     /// Is TRUE while it is pressed.
     Button,
+    /// An emergency stop: latches when it is struck, and is turned to be released. Its signal is TRUE until then.
+    #[serde(rename = "emergency-stop")]
+    EmergencyStop,
     /// Is on or off.
     Switch,
     /// One of the names of the signal's values.
@@ -133,7 +136,10 @@ pub enum ElementKind {
 impl ElementKind {
     /// Whether people write with it.
     pub fn writes(self) -> bool {
-        matches!(self, Self::Button | Self::Switch | Self::Selector | Self::Slider | Self::Joystick)
+        matches!(
+            self,
+            Self::Button | Self::EmergencyStop | Self::Switch | Self::Selector | Self::Slider | Self::Joystick
+        )
     }
 }
 

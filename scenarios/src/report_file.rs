@@ -114,4 +114,30 @@ pub struct AlarmFile {
     /// A formula of the present; the alarm is active while it holds.
     #[schemars(with = "String")]
     pub when: Spanned<String>,
+    /// How urgent it is.
+    #[serde(default)]
+    pub priority: Priority,
+    /// How long the formula holds before the alarm comes, as in `"5s"`; it comes at once if absent.
+    #[serde(default, deserialize_with = "from_optional_text")]
+    #[schemars(with = "Option<Time>")]
+    pub on_delay: Option<TimeSpan>,
+    /// How long the formula no longer holds before the alarm goes; it goes at once if absent.
+    #[serde(default, deserialize_with = "from_optional_text")]
+    #[schemars(with = "Option<Time>")]
+    pub off_delay: Option<TimeSpan>,
+}
+
+/// How urgent an alarm is (ISA-18.2): how soon somebody has to do something.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Priority {
+    /// Something will have to be done.
+    Low,
+    /// Something has to be done soon.
+    #[default]
+    Medium,
+    /// Something has to be done at once.
+    High,
+    /// People or the machine are in danger.
+    Critical,
 }

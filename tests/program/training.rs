@@ -87,6 +87,34 @@ fn who_does_nothing_does_not_pass() {
     assert!(said.out.contains("not passed") && said.out.contains("never"), "{said:?}");
 }
 
+/// Who acknowledges over and over, whether there is an alarm or not, does not pass: ten false acknowledgements are eight too
+/// many. Two are forgiven.
+#[test]
+fn who_acknowledges_everything_does_not_pass() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let expert = fs::read_to_string(scenario("arc-furnace").join(EXPERT)).expect("an expert");
+    for (often, code) in [(10, 1), (2, 0)] {
+        let press = |number: u64| {
+            ["TRUE", "FALSE"].into_iter().zip(0..).map(move |(value, half)| {
+                let step = 39_200 + number * 40 + half * 20;
+                let t_v_ns = (step - 1) * STEP_NS;
+                let (event, action, signal) = ("operator", "write", "Acknowledge");
+                format!("{}\n", json!({ "step": step, "t_v_ns": t_v_ns, "event": event, "action": action, "signal": signal, "value": value }))
+            })
+        };
+        let pressed: String = (0..often).flat_map(press).collect();
+        let inputs = folder.path().join(format!("{often}.jsonl"));
+        fs::write(&inputs, pressed + &expert).expect("writable");
+        let said = train(folder.path(), &["three-malfunctions", "--replay-operator", utf8(&inputs)]);
+        assert_eq!(said.code, Some(code), "{said:?}");
+        let score = &record(&said)["attempts"][0]["score"];
+        assert_eq!(score["mistakes"][0]["count"], json!(often), "{score}");
+        let are_mastered =
+            score["malfunctions"].as_array().expect("a list").iter().all(|one| !one["identified"].is_null());
+        assert!(are_mastered && score["mistakes"][0]["first_ns"].is_u64(), "{score}");
+    }
+}
+
 /// Lessons and starts are listed; what is wrong is reported at its place.
 #[test]
 fn lessons_are_listed_and_checked() {

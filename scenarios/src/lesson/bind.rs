@@ -7,7 +7,7 @@ use onescan_server::signal::{SignalName, did_you_mean};
 use onescan_server::time::TimeSpan;
 use toml::Spanned;
 
-use super::file::{CostFile, CostKind, LessonFile, MalfunctionFile};
+use super::file::{CostFile, CostKind, LessonFile, MalfunctionFile, MistakeFile};
 use super::sheet::Sheet;
 use crate::arrays;
 use crate::error::ScenarioError;
@@ -29,6 +29,7 @@ pub struct Lesson {
     /// It is over as soon as this holds on these signals.
     pub done: Option<(Present, Vec<SignalName>)>,
     pub malfunctions: Vec<Malfunction>,
+    pub mistakes: Vec<Mistake>,
     pub costs: Vec<Cost>,
     /// The file or recording of what an expert did, relative to the scenario's folder.
     pub expert: Option<PathBuf>,
@@ -60,6 +61,19 @@ impl Malfunction {
             (begin, operation) => begin == operation,
         }
     }
+}
+
+/// Something that the trainee must not do more often than is forgiven.
+#[derive(Clone, Debug)]
+pub struct Mistake {
+    pub name: String,
+    /// It is made each time this becomes true.
+    pub when: Present,
+    /// It is none if this holds then or held in the image before.
+    pub unless: Option<Present>,
+    /// The signals of both, in the order of their columns.
+    pub signals: Vec<SignalName>,
+    pub at_most: u32,
 }
 
 /// A formula whose first time is looked for.
@@ -125,6 +139,15 @@ pub(super) fn lesson(
         }
         malfunctions.push(malfunction(sheet, scenario, &known, file, begin)?);
     }
+    let mut mistakes: Vec<Mistake> = Vec::new();
+    for file in &file.mistakes {
+        let file = file.get_ref();
+        if mistakes.iter().any(|other| other.name == *file.name.get_ref()) {
+            let message = format!("two mistakes are called `{}`", file.name.get_ref());
+            return Err(sheet.wrong(message, file.name.span(), None));
+        }
+        mistakes.push(mistake(sheet, &known, file)?);
+    }
     let mut costs: Vec<Cost> = Vec::new();
     for file in &file.costs {
         let file = file.get_ref();
@@ -141,6 +164,7 @@ pub(super) fn lesson(
         lasts: file.lasts,
         done: done.transpose()?,
         malfunctions,
+        mistakes,
         costs,
         expert: file.expert.as_ref().map(|path| path.get_ref().clone()),
     })
@@ -185,6 +209,16 @@ fn malfunction(
         act: sought(&file.act, file.act_within, "act", false)?,
         act_within: file.act_within,
     })
+}
+
+fn mistake(sheet: &Sheet, known: &[KnownSignal], file: &MistakeFile) -> Result<Mistake, ScenarioError> {
+    let mut columns = Vec::new();
+    let mut present = |text: &Spanned<String>| {
+        Present::parse(text.get_ref(), known, &mut columns).map_err(|error| sheet.wrong_formula(text, error))
+    };
+    let when = present(&file.when)?;
+    let unless = file.unless.as_ref().map(present).transpose()?;
+    Ok(Mistake { name: file.name.get_ref().clone(), when, unless, signals: names(columns), at_most: file.at_most })
 }
 
 /// A view that the scenario has.

@@ -86,6 +86,10 @@ pub struct LessonFile {
     /// What counts in addition. Formulas begin at the start of the lesson.
     #[serde(default)]
     pub expect: Vec<ExpectFile>,
+    /// What the trainee must not do, or not often.
+    #[serde(default, rename = "mistake")]
+    #[schemars(with = "Vec<MistakeFile>")]
+    pub mistakes: Vec<Spanned<MistakeFile>>,
     /// What it costs.
     #[serde(default, rename = "cost")]
     #[schemars(with = "Vec<CostFile>")]
@@ -93,6 +97,24 @@ pub struct LessonFile {
     /// What an expert did: a recording, or a file of its events, within the scenario's folder.
     #[schemars(with = "Option<PathBuf>")]
     pub expert: Option<Spanned<PathBuf>>,
+}
+
+/// Something that the trainee must not do, as an acknowledgement without an alarm.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MistakeFile {
+    /// Its name; unique in its lesson.
+    #[schemars(with = "String")]
+    pub name: Spanned<String>,
+    /// A formula on one image; a mistake is made each time it becomes true.
+    #[schemars(with = "String")]
+    pub when: Spanned<String>,
+    /// It is none if this formula holds then, or held in the image before.
+    #[schemars(with = "Option<String>")]
+    pub unless: Option<Spanned<String>>,
+    /// How many are forgiven.
+    #[serde(default)]
+    pub at_most: u32,
 }
 
 /// Something that goes wrong: `fault`, `disturbance` or `force`, as in a case.

@@ -20,7 +20,7 @@ mod sheet;
 mod shift;
 pub mod start;
 
-pub use bind::{Cost, Lesson, Malfunction, Sought};
+pub use bind::{Cost, Lesson, Malfunction, Mistake, Sought};
 pub use book::Book;
 pub use start::Start;
 

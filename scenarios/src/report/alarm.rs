@@ -5,18 +5,11 @@ use std::collections::VecDeque;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::spell::{Change, Spells};
-use crate::expect::Present;
+use super::annunciator::{Alarm, Annunciator, Passage};
+use super::spell::Spells;
 
 /// So many occurrences are listed from the first on, and as many up to the last.
 const LISTED_MAX: usize = 50;
-
-/// What is listed when it comes.
-#[derive(Clone, Debug)]
-pub(super) struct Alarm {
-    pub(super) name: String,
-    pub(super) when: Present,
-}
 
 /// All alarms. Its JSON form is a contract: fields are added, never changed.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, JsonSchema)]
@@ -71,7 +64,8 @@ struct Came {
 /// Alarms while the run goes.
 #[derive(Clone, Debug)]
 pub(super) struct Alarms {
-    all: Vec<(Alarm, Spells)>,
+    annunciator: Annunciator,
+    spells: Vec<Spells>,
     first: Vec<Came>,
     last: VecDeque<Came>,
     left_out: u64,
@@ -79,18 +73,34 @@ pub(super) struct Alarms {
 
 impl Alarms {
     pub(super) fn new(alarms: &[Alarm]) -> Self {
-        let all = alarms.iter().map(|alarm| (alarm.clone(), Spells::default())).collect();
-        Self { all, first: Vec::new(), last: VecDeque::new(), left_out: 0 }
+        Self {
+            annunciator: Annunciator::new(alarms),
+            spells: vec![Spells::default(); alarms.len()],
+            first: Vec::new(),
+            last: VecDeque::new(),
+            left_out: 0,
+        }
     }
 
-    /// Takes the image of `t_ns`. Those that come at one time come in the order of the scenario.
+    /// Takes the image of `t_ns`.
     pub(super) fn push(&mut self, t_ns: u64, values: &[f64]) {
-        for index in 0..self.all.len() {
-            let (alarm, spells) = &mut self.all[index];
-            match spells.push(t_ns, alarm.when.holds(values)) {
-                Some(Change::Began) => self.came(Came { alarm: index, from_ns: t_ns, to_ns: None }),
-                Some(Change::Ended) => self.went(index, t_ns),
-                None => {}
+        let passages = self.annunciator.push(t_ns, values);
+        self.list(&passages);
+    }
+
+    /// Time passes up to `t_ns` without another image.
+    pub(super) fn pass(&mut self, t_ns: u64) {
+        let passages = self.annunciator.pass(t_ns);
+        self.list(&passages);
+    }
+
+    fn list(&mut self, passages: &[Passage]) {
+        for Passage { alarm, t_ns, has_come } in passages {
+            self.spells[*alarm].push(*t_ns, *has_come);
+            if *has_come {
+                self.came(Came { alarm: *alarm, from_ns: *t_ns, to_ns: None });
+            } else {
+                self.went(*alarm, *t_ns);
             }
         }
     }
@@ -117,18 +127,19 @@ impl Alarms {
 
     /// Nothing if no alarm is asked for.
     pub(super) fn until(&self, end_ns: u64) -> Option<AlarmReport> {
-        let total = |(alarm, spells): &(Alarm, Spells)| {
+        let total = |(alarm, spells): (&Alarm, &Spells)| {
             let Spells { count, total_ns, longest_ns, .. } = spells.until(end_ns);
             AlarmTotal { name: alarm.name.clone(), count, total_ns, longest_ns, active: spells.is_on() }
         };
+        let names: Vec<&str> = self.annunciator.alarms().map(Alarm::name).collect();
         let occurrence = |came: &Came| Occurrence {
-            name: self.all[came.alarm].0.name.clone(),
+            name: names.get(came.alarm).map_or_else(String::new, |name| (*name).to_owned()),
             from_ns: came.from_ns,
             to_ns: came.to_ns,
             duration_ns: came.to_ns.unwrap_or(end_ns).saturating_sub(came.from_ns),
         };
-        (!self.all.is_empty()).then(|| AlarmReport {
-            totals: self.all.iter().map(total).collect(),
+        (!self.spells.is_empty()).then(|| AlarmReport {
+            totals: self.annunciator.alarms().zip(&self.spells).map(total).collect(),
             first: self.first.iter().map(occurrence).collect(),
             left_out: self.left_out,
             last: self.last.iter().map(occurrence).collect(),

@@ -4,7 +4,7 @@ use onescan_server::signal::{SignalName, SignalType, did_you_mean};
 use onescan_server::time::TimeSpan;
 use toml::Spanned;
 
-use super::alarm::Alarm;
+use super::annunciator::Alarm;
 use super::count::{Counted, What};
 use super::cycle::Timed;
 use super::down_time::{Cause, Down, UNKNOWN};
@@ -28,9 +28,9 @@ pub struct Measures {
 }
 
 impl Measures {
-    /// The alarms by name, each with its condition.
-    pub fn alarms(&self) -> impl Iterator<Item = (&str, &Present)> {
-        self.alarms.iter().map(|alarm| (alarm.name.as_str(), &alarm.when))
+    /// The alarms, in the order of the scenario.
+    pub fn alarms(&self) -> &[Alarm] {
+        &self.alarms
     }
 
     /// What `file` asks for, whose text is `text`; nothing if it asks for no report.
@@ -150,8 +150,14 @@ impl<'a> Binder<'a> {
     }
 
     fn alarm(&mut self, entry: &AlarmFile) -> Result<Alarm, Wrong> {
-        let AlarmFile { name, when } = entry;
-        Ok(Alarm { name: name.get_ref().clone(), when: self.formula(when)? })
+        let AlarmFile { name, when, priority, on_delay, off_delay } = entry;
+        Ok(Alarm {
+            name: name.get_ref().clone(),
+            priority: *priority,
+            when: self.formula(when)?,
+            on_delay_ns: on_delay.map_or(0, TimeSpan::as_nanos),
+            off_delay_ns: off_delay.map_or(0, TimeSpan::as_nanos),
+        })
     }
 
     fn formula(&mut self, formula: &Spanned<String>) -> Result<Present, Wrong> {

@@ -5,6 +5,7 @@ use super::count::Count;
 use super::cycle::Cycles;
 use super::down_time::DownTime;
 use super::measures::Measures;
+use super::numbers::Numbers;
 use super::result::{Outcome, Report};
 use super::throughput::Windows;
 
@@ -12,10 +13,7 @@ use super::throughput::Windows;
 #[derive(Clone, Debug)]
 pub struct Meter {
     measures: Measures,
-    /// The bytes of the signals, one behind the other, as they were last.
-    image: Vec<u8>,
-    /// The same as numbers.
-    values: Vec<f64>,
+    numbers: Numbers,
     /// From the first image to the last.
     span_ns: Option<(u64, u64)>,
     counts: Vec<Count>,
@@ -28,8 +26,7 @@ impl Meter {
     /// A meter of a run that has not begun.
     pub fn new(measures: &Measures) -> Self {
         Self {
-            image: vec![0; measures.signals.iter().map(|(_, ty)| ty.size()).sum()],
-            values: vec![f64::NAN; measures.signals.len()],
+            numbers: Numbers::new(&measures.signals),
             span_ns: None,
             counts: Vec::new(),
             cycles: measures.cycles.iter().map(|timed| Cycles::new(timed.clone(), measures.step)).collect(),
@@ -51,35 +48,17 @@ impl Meter {
             self.counts = self.measures.counts.iter().map(count).collect();
         }
         // Most images show nothing new, and all measures are of what changes.
-        if self.take(bytes) || is_first {
+        if self.numbers.take(bytes) || is_first {
             self.measure(t_ns);
+        } else {
+            self.alarms.pass(t_ns);
         }
-    }
-
-    /// Takes the bytes; true if they have changed.
-    fn take<'b>(&mut self, bytes: impl Iterator<Item = &'b [u8]>) -> bool {
-        let (mut changed, mut rest) = (false, self.image.as_mut_slice());
-        for (((_, ty), value), bytes) in self.measures.signals.iter().zip(&mut self.values).zip(bytes) {
-            let (own, others) = rest.split_at_mut(ty.size());
-            rest = others;
-            let bytes = &bytes[..ty.size()];
-            // A signal whose bytes are 0 from the start on must be read once.
-            if own != bytes || value.is_nan() {
-                own.copy_from_slice(bytes);
-                *value = ty.as_f64(bytes).unwrap_or(f64::NAN);
-                changed = true;
-            }
-        }
-        changed
     }
 
     fn measure(&mut self, t_ns: u64) {
-        let Self { measures, image, values, counts, cycles, down, alarms, .. } = self;
-        let whole = |column: usize| {
-            let offset: usize = measures.signals.iter().take(column).map(|(_, ty)| ty.size()).sum();
-            let (_, ty) = measures.signals.get(column)?;
-            ty.integer(image.get(offset..)?)
-        };
+        let Self { numbers, counts, cycles, down, alarms, .. } = self;
+        let values = numbers.values();
+        let whole = |column: usize| numbers.whole(column);
         for count in counts {
             count.push(t_ns, values, whole);
         }

@@ -10,9 +10,12 @@
 //! | [`throughput`] | how many in equal windows of time |
 //! | [`distribution`] | times by their length: mean, quantiles, histogram |
 //! | [`count`], [`cycle`], [`down_time`], [`alarm`] | the measures, each with what it reports |
+//! | [`annunciator`] | alarms as they come and go, with their delays |
+//! | [`numbers`] | the signals as numbers |
 //! | [`measures`] | what a scenario asks for, bound to its signals |
 //! | [`result`] | the report |
 //! | [`meter`] | all measures of a run, image by image |
+//! | [`bell`] | its alarms alone, for those who watch it |
 //!
 //! Semantics. A signal holds its value from one image to the next, as in expectations. A condition that holds in the
 //! first image has no edge there, and its spell begins there. One that holds in the last image has its spell up to that
@@ -22,6 +25,8 @@
 //! ends. The tests hold all of it against `offline`, which looks at a whole run.
 
 mod alarm;
+mod annunciator;
+mod bell;
 mod count;
 mod cycle;
 mod distribution;
@@ -29,6 +34,7 @@ mod down_time;
 mod edge;
 mod measures;
 mod meter;
+mod numbers;
 #[cfg(test)]
 mod offline;
 mod result;
@@ -36,6 +42,8 @@ mod spell;
 mod throughput;
 
 pub use alarm::{AlarmReport, AlarmTotal, Occurrence};
+pub use annunciator::{Alarm, Passage};
+pub use bell::Bell;
 pub use count::CountReport;
 pub use cycle::CycleReport;
 pub use distribution::{Histogram, Times};
@@ -45,4 +53,4 @@ pub use meter::Meter;
 pub use result::{OeeReport, QualityReport, Report};
 pub use throughput::Throughput;
 
-pub use crate::report_file::Quality;
+pub use crate::report_file::{Priority, Quality};

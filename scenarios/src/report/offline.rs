@@ -59,6 +59,11 @@ const MEASURES: &str = r#"
     [[report.alarm]]
     name = "far"
     when = "X > 50 cm"
+    [[report.alarm]]
+    name = "lasting"
+    when = "B"
+    on_delay = "30ms"
+    off_delay = "20ms"
 "#;
 
 /// What `[report]` of a scenario with these signals asks for.
@@ -239,9 +244,27 @@ fn check_down_time(run: &Run<'_>, report: &Report) {
     assert_eq!(down.availability, (planned_to_run > 0).then(|| down.run_ns as f64 / planned_to_run as f64));
 }
 
+/// Spells with a delay at their beginning and at their end: gaps that are no longer than the second one are none.
+fn delayed(spells: &[(u64, Option<u64>)], (on_ns, off_ns): (u64, u64), end_ns: u64) -> Vec<(u64, Option<u64>)> {
+    let mut found: Vec<(u64, Option<u64>)> = Vec::new();
+    for (from, to) in spells {
+        let lasts = |from: u64| to.map_or(end_ns >= from + on_ns, |to| to > from + on_ns);
+        let gone = |to: u64| to + off_ns;
+        match found.last_mut() {
+            // it has not gone yet, or goes at the very time at which it holds again
+            Some((_, last)) if last.is_none_or(|last| last >= *from) => *last = to.map(gone),
+            _ if lasts(*from) => found.push((from + on_ns, to.map(gone))),
+            _ => {}
+        }
+    }
+    found.into_iter().map(|(from, to)| (from, to.filter(|to| *to <= end_ns))).collect()
+}
+
 fn check_alarms(run: &Run<'_>, report: &Report) {
     let alarms = report.alarms.as_ref().expect("asked for");
-    let all = [("B", run.spells(|image| image.1)), ("far", run.spells(|image| image.4 > 0.5))];
+    let b = run.spells(|image| image.1);
+    let lasting = delayed(&b, (30_000_000, 20_000_000), run.end_ns());
+    let all = [("B", b), ("far", run.spells(|image| image.4 > 0.5)), ("lasting", lasting)];
     let mut listed: Vec<Occurrence> = Vec::new();
     for ((name, spells), total) in all.iter().zip(&alarms.totals) {
         let lengths = run.lengths(spells);

@@ -8,6 +8,33 @@ export const PROTOCOL = 1;
 /** What is done with a variable. */
 export type Action = "write" | "force" | "release";
 
+/** An alarm of the scenario. */
+export interface Alarm {
+  readonly name: string;
+  readonly priority: Priority;
+}
+
+export function readAlarm(field: Field): Alarm {
+  return { name: text(field.at("name")), priority: readPriority(field.at("priority")) };
+}
+
+/** A change of an alarm. */
+export interface AlarmChange {
+  readonly alarm: number;
+  readonly t_ns: number;
+  readonly fate: Fate;
+  readonly until_ns: number | null;
+}
+
+export function readAlarmChange(field: Field): AlarmChange {
+  return {
+    alarm: whole(field.at("alarm")),
+    t_ns: whole(field.at("t_ns")),
+    fate: readFate(field.at("fate")),
+    until_ns: nullable(whole)(field.at("until_ns")),
+  };
+}
+
 /** What the page asks. */
 export type Ask =
   /** The signals that pictures have from now on; the next picture has all of them. */
@@ -38,6 +65,10 @@ export type Ask =
   | { readonly type: "variable"; readonly variable: number; readonly action: Action; readonly value: string }
   /** Forces a signal; releases it without a value. */
   | { readonly type: "force"; readonly signal: number; readonly value?: string | null }
+  /** Acknowledges these alarms, for all viewers. */
+  | { readonly type: "acknowledge"; readonly alarms: readonly number[] }
+  /** Puts an alarm aside for so long in virtual time, for all viewers; takes it back without a time. */
+  | { readonly type: "shelve"; readonly alarm: number; readonly for_s?: number | null }
   /** Shows this viewer the live edge again. */
   | { readonly type: "live" }
   /** Starts a session from a moment of the past, beside this one. */
@@ -105,6 +136,10 @@ export interface Component {
   readonly body: string | null;
   readonly failures: readonly Failure[];
   readonly parameters: readonly Parameter[];
+  /** Its inputs and outputs that have a signal: the key, and the signal's name. */
+  readonly pins: readonly (readonly [string, string])[];
+  /** Where it is in the scene, for its shape. */
+  readonly place: Place | null;
   /** The signal that is true while a sensor sees something; its body is lit then. */
   readonly senses: string | null;
   /** The names of the signals that it reads and writes. */
@@ -118,6 +153,8 @@ export function readComponent(field: Field): Component {
     body: nullable(text)(field.at("body")),
     failures: list(readFailure)(field.at("failures", [])),
     parameters: list(readParameter)(field.at("parameters", [])),
+    pins: list(tuple(text, text))(field.at("pins", [])),
+    place: nullable(readPlace)(field.at("place")),
     senses: nullable(text)(field.at("senses")),
     signals: list(text)(field.at("signals", [])),
   };
@@ -222,11 +259,35 @@ export function readDrawingWire(field: Field): DrawingWire {
   };
 }
 
+/** A joint that a component drives. */
+export interface DrivenJoint {
+  /** Whether it turns; it slides if not. */
+  readonly turns: boolean;
+  readonly anchor_m: readonly [number, number, number];
+  readonly axis: readonly [number, number, number];
+  readonly ahead: number | null;
+  /** How far it may go from where the scene has it, m or rad; nothing where it has no end. */
+  readonly back: number | null;
+  /** The body in whose frame it is; the ground's without one. */
+  readonly parent: string | null;
+}
+
+export function readDrivenJoint(field: Field): DrivenJoint {
+  return {
+    turns: flag(field.at("turns")),
+    anchor_m: tuple(number, number, number)(field.at("anchor_m")),
+    axis: tuple(number, number, number)(field.at("axis")),
+    ahead: nullable(number)(field.at("ahead")),
+    back: nullable(number)(field.at("back")),
+    parent: nullable(text)(field.at("parent")),
+  };
+}
+
 /** What an element is. */
-export type ElementKind = "button" | "switch" | "selector" | "slider" | "joystick" | "lamp" | "number" | "bar" | "trend" | "alarms";
+export type ElementKind = "button" | "emergency-stop" | "switch" | "selector" | "slider" | "joystick" | "lamp" | "number" | "bar" | "trend" | "alarms";
 
 export function readElementKind(field: Field): ElementKind {
-  return one_of("button", "switch", "selector", "slider", "joystick", "lamp", "number", "bar", "trend", "alarms")(field);
+  return one_of("button", "emergency-stop", "switch", "selector", "slider", "joystick", "lamp", "number", "bar", "trend", "alarms")(field);
 }
 
 /** An expectation of the scenario. */
@@ -248,6 +309,23 @@ export function readFailure(field: Field): Failure {
   return { name: text(field.at("name")) };
 }
 
+/** What has become of an alarm. */
+export type Fate = "on" | "off" | "acknowledged" | "shelved" | "unshelved";
+
+export function readFate(field: Field): Fate {
+  return one_of("on", "off", "acknowledged", "shelved", "unshelved")(field);
+}
+
+/** A mistake, and how many are forgiven. */
+export interface Forgiven {
+  readonly name: string;
+  readonly at_most: number;
+}
+
+export function readForgiven(field: Field): Forgiven {
+  return { name: text(field.at("name")), at_most: whole(field.at("at_most")) };
+}
+
 export interface Instance {
   readonly client: string;
   readonly path: string;
@@ -257,11 +335,31 @@ export function readInstance(field: Field): Instance {
   return { client: text(field.at("client")), path: text(field.at("path")) };
 }
 
+/** What must hold, and whether it did. */
+export interface Kept {
+  readonly name: string;
+  readonly met: boolean;
+  /** When it was first violated. */
+  readonly at_ns: number | null;
+}
+
+export function readKept(field: Field): Kept {
+  return {
+    name: text(field.at("name")),
+    met: flag(field.at("met")),
+    at_ns: nullable(whole)(field.at("at_ns")),
+  };
+}
+
 /** The lesson that a session is, on the page of one of its two people. */
 export interface Lesson {
   readonly role: Role;
   readonly lesson: string;
   readonly about: string | null;
+  /** What must hold to pass it, by the names of its expectations. */
+  readonly asked: readonly string[];
+  /** What must not be done more often than so. */
+  readonly mistakes: readonly Forgiven[];
   /** Prepared states to jump to; none on the trainee's page. */
   readonly starts: readonly string[];
 }
@@ -271,7 +369,48 @@ export function readLesson(field: Field): Lesson {
     role: readRole(field.at("role")),
     lesson: text(field.at("lesson")),
     about: nullable(text)(field.at("about")),
+    asked: list(text)(field.at("asked", [])),
+    mistakes: list(readForgiven)(field.at("mistakes", [])),
     starts: list(text)(field.at("starts", [])),
+  };
+}
+
+/** What it cost. */
+export interface LessonCost {
+  readonly name: string;
+  readonly value: number;
+  readonly unit: string | null;
+}
+
+export function readLessonCost(field: Field): LessonCost {
+  return {
+    name: text(field.at("name")),
+    value: number(field.at("value")),
+    unit: nullable(text)(field.at("unit")),
+  };
+}
+
+/** What came of an attempt. */
+export interface LessonResult {
+  readonly passed: boolean;
+  readonly lasted_ns: number;
+  readonly malfunctions: readonly Met[];
+  readonly expectations: readonly Kept[];
+  readonly mistakes: readonly Slip[];
+  readonly costs: readonly LessonCost[];
+  /** Whether it was brought to its end, if it has one. */
+  readonly done: boolean | null;
+}
+
+export function readLessonResult(field: Field): LessonResult {
+  return {
+    passed: flag(field.at("passed")),
+    lasted_ns: whole(field.at("lasted_ns")),
+    malfunctions: list(readMet)(field.at("malfunctions")),
+    expectations: list(readKept)(field.at("expectations")),
+    mistakes: list(readSlip)(field.at("mistakes")),
+    costs: list(readLessonCost)(field.at("costs")),
+    done: nullable(flag)(field.at("done")),
   };
 }
 
@@ -362,7 +501,11 @@ export type Message =
   | { readonly type: "verdict"; readonly name: string; readonly verdict: string; readonly t_ns: number; readonly robustness: number | null }
   /** Where the page is of a session that goes on from a moment of the past. */
   | { readonly type: "forked"; readonly t_ns: number; readonly url: string }
-  /** Marked in the trends and listed in the panels' alarms; of kind `gone`, the alarm of this text is over. */
+  /** Changes of alarms, in the order of virtual time; `all` says that none came before these. */
+  | { readonly type: "alarms"; readonly all: boolean; readonly changes: readonly AlarmChange[] }
+  /** How the attempt at a lesson goes: `result` comes when it is over. */
+  | { readonly type: "lesson"; readonly number: number; readonly ends_ns: number; readonly result: LessonResult | null }
+  /** Marked in the trends, and listed below the alarms. */
   | { readonly type: "event"; readonly t_ns: number; readonly kind: string; readonly text: string }
   /** Shown to the viewer. */
   | { readonly type: "error"; readonly message: string };
@@ -418,6 +561,15 @@ export function readMessage(field: Field): Message {
       };
     case "forked":
       return { type, t_ns: whole(field.at("t_ns")), url: matching(/^https?:\/\/[^\s"'<>]+$/)(field.at("url")) };
+    case "alarms":
+      return { type, all: flag(field.at("all")), changes: list(readAlarmChange)(field.at("changes")) };
+    case "lesson":
+      return {
+        type,
+        number: whole(field.at("number")),
+        ends_ns: whole(field.at("ends_ns")),
+        result: nullable(readLessonResult)(field.at("result")),
+      };
     case "event":
       return { type, t_ns: whole(field.at("t_ns")), kind: text(field.at("kind")), text: text(field.at("text")) };
     case "error":
@@ -425,6 +577,24 @@ export function readMessage(field: Field): Message {
     default:
       return field.unknown("type", type);
   }
+}
+
+/** A malfunction, and what the trainee made of it. */
+export interface Met {
+  readonly name: string;
+  /** Whether it came. */
+  readonly came: boolean;
+  readonly acted: Timing | null;
+  readonly identified: Timing | null;
+}
+
+export function readMet(field: Field): Met {
+  return {
+    name: text(field.at("name")),
+    came: flag(field.at("came")),
+    acted: nullable(readTiming)(field.at("acted")),
+    identified: nullable(readTiming)(field.at("identified")),
+  };
 }
 
 /** A panel of the page. */
@@ -515,6 +685,27 @@ export function readParameter(field: Field): Parameter {
   };
 }
 
+/** Where a component is in the scene's pose, in the world, as far as it is anywhere. */
+export interface Place {
+  /** Unit vector along which it points or runs. */
+  readonly direction: readonly [number, number, number] | null;
+  /** The joint that it drives. */
+  readonly joint: DrivenJoint | null;
+  /** The body that it moves: a belt, or what a joint lets move. */
+  readonly moves: string | null;
+  /** Where it begins, as a beam does. */
+  readonly point_m: readonly [number, number, number] | null;
+}
+
+export function readPlace(field: Field): Place {
+  return {
+    direction: nullable(tuple(number, number, number))(field.at("direction")),
+    joint: nullable(readDrivenJoint)(field.at("joint")),
+    moves: nullable(text)(field.at("moves")),
+    point_m: nullable(tuple(number, number, number))(field.at("point_m")),
+  };
+}
+
 /** A PLC whose variables can be looked at. Variables of all PLCs are numbered through. */
 export interface Plc {
   readonly client: string;
@@ -523,6 +714,13 @@ export interface Plc {
 
 export function readPlc(field: Field): Plc {
   return { client: text(field.at("client")), variables: list(readVariable)(field.at("variables")) };
+}
+
+/** How urgent an alarm is (ISA-18.2): how soon somebody has to do something. */
+export type Priority = "low" | "medium" | "high" | "critical";
+
+export function readPriority(field: Field): Priority {
+  return one_of("low", "medium", "high", "critical")(field);
 }
 
 /** Whose page it is. */
@@ -553,6 +751,8 @@ export interface Session {
   readonly scenario: string;
   readonly step_ns: number;
   readonly signals: readonly Signal[];
+  /** The alarms of `[[report.alarm]]`. */
+  readonly alarms: readonly Alarm[];
   readonly bodies: readonly Body[];
   readonly components: readonly Component[];
   readonly drawings: readonly Drawing[];
@@ -567,6 +767,8 @@ export interface Session {
   readonly plot: readonly number[];
   readonly sources: readonly Source[];
   readonly training: Lesson | null;
+  /** The scenario's own texts in other languages: by language, what each text is there. */
+  readonly translations: ReadonlyMap<string, ReadonlyMap<string, string>>;
   readonly until_ns: number | null;
   readonly views: readonly View[];
 }
@@ -578,6 +780,7 @@ export function readSession(field: Field): Session {
     scenario: text(field.at("scenario")),
     step_ns: whole(field.at("step_ns")),
     signals: list(readSignal)(field.at("signals")),
+    alarms: list(readAlarm)(field.at("alarms", [])),
     bodies: list(readBody)(field.at("bodies", [])),
     components: list(readComponent)(field.at("components", [])),
     drawings: list(readDrawing)(field.at("drawings", [])),
@@ -590,6 +793,7 @@ export function readSession(field: Field): Session {
     plot: list(whole)(field.at("plot", [])),
     sources: list(readSource)(field.at("sources", [])),
     training: nullable(readLesson)(field.at("training")),
+    translations: map(map(text))(field.at("translations", {})),
     until_ns: nullable(whole)(field.at("until_ns")),
     views: list(readView)(field.at("views", [])),
   };
@@ -668,6 +872,22 @@ export function readSignal(field: Field): Signal {
   };
 }
 
+/** A mistake, and how often it was made. */
+export interface Slip {
+  readonly name: string;
+  readonly count: number;
+  /** How many are forgiven. */
+  readonly at_most: number;
+}
+
+export function readSlip(field: Field): Slip {
+  return {
+    name: text(field.at("name")),
+    count: whole(field.at("count")),
+    at_most: whole(field.at("at_most")),
+  };
+}
+
 /** A program of a PLC as text. */
 export interface Source {
   readonly path: string;
@@ -698,6 +918,22 @@ export function readSourceLine(field: Field): SourceLine {
     line: whole(field.at("line")),
     variables: list(text)(field.at("variables")),
     inner: list(whole)(field.at("inner", [])),
+  };
+}
+
+/** How long something took. */
+export interface Timing {
+  readonly timely: boolean;
+  /** Nothing if it was not done. */
+  readonly after_ns: number | null;
+  readonly within_ns: number | null;
+}
+
+export function readTiming(field: Field): Timing {
+  return {
+    timely: flag(field.at("timely")),
+    after_ns: nullable(whole)(field.at("after_ns")),
+    within_ns: nullable(whole)(field.at("within_ns")),
   };
 }
 

@@ -21,6 +21,7 @@ use onescan_server::time::VirtualTime;
 use onescan_server::timeline::Timeline;
 use onescan_server::transport::tcp::Lobby;
 
+use super::alarms;
 use super::config::{Reach, RunConfig, SaveRequest, Transport};
 use super::error::RunError;
 use super::fork::{self, Joined, Taken};
@@ -208,10 +209,20 @@ fn serve_page(
     };
     let failing = web::Failing::default();
     lockstep.observe(failing.observer());
+    let alarm_log = web::AlarmLog::default();
+    if let Some(observer) = alarms::observer(&alarm_log, scenario) {
+        lockstep.observe(observer);
+    }
     let (published, mailbox) = (lockstep.published(), interrupt.mailbox());
     let launch = forked::launcher(ForkSettings::of(config));
-    let source =
-        web::Source { failing, past, launch, verdict_board, ..web::Source::new(scenario, published, mailbox, pace) };
+    let source = web::Source {
+        failing,
+        past,
+        launch,
+        verdict_board,
+        alarm_log,
+        ..web::Source::new(scenario, published, mailbox, pace)
+    };
     let page = Page::serve(address, &config.doors.admission, source)?;
     // Sessions that go on from this one wait for this line, whether the program has its page or not.
     tracing::info!(target: NOTICE, "{}{}", PAGE_AT, page.url());

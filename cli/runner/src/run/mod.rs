@@ -3,6 +3,7 @@
 //! | module | subject |
 //! |---|---|
 //! | [`config`] | what is asked for |
+//! | `alarms` | alarms noted for a page as they come and go |
 //! | `check` | options that contradict each other |
 //! | [`coverage`] | which statements and branches were executed |
 //! | [`error`] | why nothing came of it |
@@ -33,6 +34,7 @@
 //! | `staying` | the page of a run that is over |
 //! | [`session_log`] | which client a session waited for |
 
+pub(crate) mod alarms;
 mod check;
 pub mod chosen;
 pub mod config;

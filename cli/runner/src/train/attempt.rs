@@ -23,10 +23,11 @@ use super::examination::Examiner;
 use super::moments::{Moment, Moments};
 use super::score::Score;
 use crate::error::Usage;
+use crate::run::alarms;
 use crate::run::config::{RecordRequest, Subject};
 use crate::run::in_process::in_process;
 use crate::run::recorded::Recorded;
-use crate::web::Failing;
+use crate::web::{AlarmLog, Failing, LessonBoard};
 
 /// A lesson needs its clients here: the states of others cannot be kept.
 pub(super) fn elsewhere(name: &ClientName, member: &Member) -> Usage {
@@ -41,6 +42,10 @@ pub(super) struct Stage {
     pub(super) published: Published,
     /// What has failed, as pages show it.
     pub(super) failing: Failing,
+    /// How alarms come and go, as pages show it.
+    pub(super) alarm_log: AlarmLog,
+    /// How the lesson goes, as pages show it.
+    pub(super) board: LessonBoard,
     pub(super) pace: Pace,
     /// Whether moments are kept to go back to.
     pub(super) keeps: bool,
@@ -84,6 +89,9 @@ pub(super) fn drive(course: Course<'_>, stage: &Stage, moments: &mut Moments) ->
     lockstep.observe(Box::new(Examiner { examination: Rc::clone(&examination), inputs: Rc::clone(&heard) }));
     stage.failing.begin_with(from.at_work);
     lockstep.observe(stage.failing.observer());
+    if let Some(observer) = alarms::observer(&stage.alarm_log, scenario) {
+        lockstep.observe(observer);
+    }
     // Nobody else records into the attempt's folder until it is over.
     let mut kept = None;
     if let Some((folder, number, path)) = record {

@@ -20,11 +20,12 @@ use super::error::TrainError;
 use super::examination::Examination;
 use super::moments::{Moment, Moments};
 use super::record::{AttemptRecord, FILE_NAME, Fork, SessionRecord, run_folder};
+use super::report;
 use super::starts::Starts;
 use crate::error::Usage;
 use crate::interrupt::Interrupt;
 use crate::run::operator_inputs;
-use crate::web::{self, AtWork, Failing, Page, Role, Training, Turn, TurnQueue};
+use crate::web::{self, AlarmLog, AtWork, Failing, Forgiven, LessonBoard, Page, Role, Training, Turn, TurnQueue};
 use onescan_base::notice::NOTICE;
 
 /// A lesson, and all that is needed to hold it.
@@ -112,7 +113,15 @@ impl Classroom<'_> {
 
     fn stage(&self, pace: Pace, mailbox: Mailbox) -> Stage {
         let image_bytes = ImageLayout::new(self.scenario.plan().signals()).size();
-        Stage { mailbox, published: Published::new(image_bytes), failing: Failing::default(), pace, keeps: false }
+        Stage {
+            mailbox,
+            published: Published::new(image_bytes),
+            failing: Failing::default(),
+            alarm_log: AlarmLog::default(),
+            board: LessonBoard::default(),
+            pace,
+            keeps: false,
+        }
     }
 
     /// One attempt in which nobody takes part.
@@ -142,7 +151,9 @@ impl Classroom<'_> {
         let record = self.config.record.as_deref().map(|folder| (folder, number, self.config.scenario.as_path()));
         let hold_at = fork.map(|fork| VirtualTime::from_nanos(fork.t_v_ns));
         let course = Course { scenario, from: moment, start: &start, inputs, hold_at, record };
+        stage.board.begin(number, scenario.until().as_nanos());
         let Ended { outcome, began, score, inputs } = drive(course, stage, &mut moments)?;
+        stage.board.end(report::result(&score));
         let (end, failure) = match &outcome.end {
             SessionEnd::Completed { .. } => ("completed", None),
             SessionEnd::Stopped { .. } => ("stopped", None),
@@ -234,6 +245,7 @@ impl Classroom<'_> {
         };
         let source = |role| web::Source {
             failing: stage.failing.clone(),
+            alarm_log: stage.alarm_log.clone(),
             training: Some(Training {
                 role,
                 turns: turns.clone(),
@@ -241,6 +253,14 @@ impl Classroom<'_> {
                 about: self.lesson.about.clone(),
                 view: self.lesson.view.clone(),
                 starts: self.book.starts().iter().map(|start| start.name.clone()).collect(),
+                asked: scenario.expectations().named.iter().map(|(name, _)| name.clone()).collect(),
+                mistakes: self
+                    .lesson
+                    .mistakes
+                    .iter()
+                    .map(|mistake| Forgiven { name: mistake.name.clone(), at_most: mistake.at_most })
+                    .collect(),
+                board: stage.board.clone(),
             }),
             ..web::Source::new(scenario, stage.published.clone(), stage.mailbox.clone(), pace.clone())
         };

@@ -7,13 +7,13 @@ use std::rc::Rc;
 use onescan_scenario::Scenario;
 use onescan_scenario::expect::{Judge, TraceEnd, Verdict};
 use onescan_scenario::lesson::file::CostKind;
-use onescan_scenario::lesson::{Cost, Lesson, Malfunction, Sought};
+use onescan_scenario::lesson::{Cost, Lesson, Malfunction, Mistake, Sought};
 use onescan_server::digest::TrajectoryDigest;
 use onescan_server::observer::{Observer, RecordError};
 use onescan_server::operation::OperatorInput;
 use onescan_server::session::Session;
 
-use super::score::{Expected, Handled, Response, Score, Spent};
+use super::score::{Expected, Handled, Made, Response, Score, Spent};
 use crate::run::chosen::Chosen;
 use crate::run::expectation;
 
@@ -24,6 +24,7 @@ pub(super) struct Examination {
     judge: Judge,
     judged: Chosen,
     trials: Vec<Trial>,
+    slips: Vec<Slips>,
     meters: Vec<Meter>,
     done: Option<Chosen>,
     is_done: bool,
@@ -39,6 +40,17 @@ struct Trial {
     begun_ns: Option<u64>,
     identify: Option<Search>,
     act: Option<Search>,
+}
+
+/// How often a mistake has been made.
+#[derive(Clone)]
+struct Slips {
+    signals: Chosen,
+    /// Whether its formula held in the last image; nothing before the first.
+    held: Option<bool>,
+    was_excused: bool,
+    count: u32,
+    first_ns: Option<u64>,
 }
 
 /// A formula whose first time is looked for.
@@ -86,6 +98,25 @@ impl Trial {
     }
 }
 
+impl Slips {
+    fn new(mistake: &Mistake) -> Self {
+        let signals = Chosen::new(&mistake.signals);
+        Self { signals, held: None, was_excused: false, count: 0, first_ns: None }
+    }
+
+    /// Takes an image. What held from the beginning on is nobody's mistake.
+    fn see(&mut self, mistake: &Mistake, session: &Session, t_ns: u64) {
+        let values: Vec<f64> = self.signals.numbers(session).collect();
+        let holds = mistake.when.holds(&values);
+        let is_excused = mistake.unless.as_ref().is_some_and(|unless| unless.holds(&values));
+        if holds && self.held == Some(false) && !is_excused && !self.was_excused {
+            self.count = self.count.saturating_add(1);
+            self.first_ns.get_or_insert(t_ns);
+        }
+        (self.held, self.was_excused) = (Some(holds), is_excused);
+    }
+}
+
 impl Meter {
     fn new(cost: &Cost) -> Self {
         Self {
@@ -126,6 +157,7 @@ impl Examination {
             judge: expectation::judge(scenario),
             judged: Chosen::new(&scenario.expectations().signals),
             trials: lesson.malfunctions.iter().map(Trial::new).collect(),
+            slips: lesson.mistakes.iter().map(Slips::new).collect(),
             meters: lesson.costs.iter().map(Meter::new).collect(),
             done: lesson.done.as_ref().map(|(_, signals)| Chosen::new(signals)),
             is_done: false,
@@ -144,7 +176,8 @@ impl Examination {
         let trials = self.trials.iter_mut().flat_map(|trial| trial.identify.iter_mut().chain(&mut trial.act));
         let searched = trials.map(|search| &mut search.signals);
         let metered = self.meters.iter_mut().map(|meter| &mut meter.signals);
-        for chosen in searched.chain(metered).chain(&mut self.done).chain([&mut self.judged]) {
+        let slips = self.slips.iter_mut().map(|slips| &mut slips.signals);
+        for chosen in searched.chain(slips).chain(metered).chain(&mut self.done).chain([&mut self.judged]) {
             chosen.find(session);
         }
     }
@@ -165,6 +198,9 @@ impl Examination {
                     search.judge.push(t_ns, search.signals.numbers(session));
                 }
             }
+        }
+        for (slips, mistake) in self.slips.iter_mut().zip(&self.lesson.mistakes) {
+            slips.see(mistake, session, t_ns);
         }
         self.meters.iter_mut().for_each(|meter| meter.see(session, since_s));
         if let (Some((present, _)), Some(signals)) = (&self.lesson.done, &self.done) {
@@ -201,6 +237,12 @@ impl Examination {
             margin: report.margin,
             unit: report.margin_unit,
         };
+        let made = |(slips, mistake): (&Slips, &Mistake)| Made {
+            name: mistake.name.clone(),
+            count: slips.count,
+            at_most: mistake.at_most,
+            first_ns: slips.first_ns,
+        };
         let spent = |(meter, cost): (&Meter, &Cost)| Spent {
             name: cost.name.clone(),
             value: meter.value(cost.of),
@@ -212,6 +254,7 @@ impl Examination {
             done: self.done.is_some().then_some(self.is_done),
             malfunctions: self.trials.into_iter().zip(&self.lesson.malfunctions).map(handled).collect(),
             expectations: expectation::reports(scenario, self.judge, end).into_iter().map(expected).collect(),
+            mistakes: self.slips.iter().zip(&self.lesson.mistakes).map(made).collect(),
             costs: self.meters.iter().zip(&self.lesson.costs).map(spent).collect(),
         }
     }

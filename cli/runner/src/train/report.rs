@@ -2,13 +2,14 @@
 
 use std::io::{self, Write};
 
-use onescan_report::Table;
 use onescan_report::number::short;
 use onescan_report::page::{Event, Mood, Page, Section, Shown};
+use onescan_report::{Table, Verdict};
 use onescan_scenario::lesson::Lesson;
 
 use super::record::{AttemptRecord, SessionRecord, to_text};
-use super::score::{Handled, Response, Score, Spent};
+use super::score::{Expected, Handled, Made, Response, Score, Spent};
+use crate::web::{Kept, LessonCost, LessonResult, Met, Slip, Timing};
 
 /// Nothing to be said.
 const NOTHING: &str = "–";
@@ -68,6 +69,48 @@ fn costs(score: &Score, expert: Option<&Score>) -> Table {
     Table { title: "cost", head, rows, remarks: Vec::new(), is_folded: false }
 }
 
+/// What must not be done, and how often it was.
+fn mistakes(score: &Score) -> Table {
+    let row = |made: &Made| {
+        let first = made.first_ns.map_or(NOTHING.to_owned(), to_text);
+        vec![made.name.clone(), made.count.to_string(), made.at_most.to_string(), first]
+    };
+    let head = ["made", "forgiven", "first"].into_iter().map(Into::into).collect();
+    let rows = score.mistakes.iter().map(row).collect();
+    Table { title: "mistake", head, rows, remarks: Vec::new(), is_folded: false }
+}
+
+/// What came of an attempt, for its pages.
+pub(super) fn result(score: &Score) -> LessonResult {
+    let timing = |response: Response| Timing {
+        after_ns: response.after_ns,
+        within_ns: response.within_ns,
+        timely: response.is_timely(),
+    };
+    let met = |handled: &Handled| Met {
+        name: handled.name.clone(),
+        came: handled.begun_ns.is_some(),
+        identified: handled.identified.map(timing),
+        acted: handled.acted.map(timing),
+    };
+    let kept = |expected: &Expected| Kept {
+        name: expected.name.clone(),
+        met: expected.verdict != Verdict::Violated,
+        at_ns: expected.at_ns,
+    };
+    let slip = |made: &Made| Slip { name: made.name.clone(), count: made.count, at_most: made.at_most };
+    let cost = |spent: &Spent| LessonCost { name: spent.name.clone(), value: spent.value, unit: spent.unit.clone() };
+    LessonResult {
+        passed: score.is_passed(),
+        done: score.done,
+        lasted_ns: score.lasted_ns(),
+        malfunctions: score.malfunctions.iter().map(met).collect(),
+        expectations: score.expectations.iter().map(kept).collect(),
+        mistakes: score.mistakes.iter().map(slip).collect(),
+        costs: score.costs.iter().map(cost).collect(),
+    }
+}
+
 /// Where an attempt begins, in words.
 fn origin(attempt: &AttemptRecord) -> String {
     match attempt.fork {
@@ -106,6 +149,9 @@ pub(super) fn write(record: &SessionRecord, unequal: &[String], out: &mut dyn Wr
         if !score.malfunctions.is_empty() {
             malfunctions(score, expert).write(out)?;
         }
+        if !score.mistakes.is_empty() {
+            mistakes(score).write(out)?;
+        }
         for expected in &score.expectations {
             let at = expected.at_ns.map(|at_ns| format!(" at {}", to_text(at_ns))).unwrap_or_default();
             let unit = expected.unit.as_ref().map(|unit| format!(" {unit}")).unwrap_or_default();
@@ -132,7 +178,7 @@ pub(super) fn page(record: &SessionRecord, lesson: &Lesson) -> Page {
 fn section(attempt: &AttemptRecord, expert: Option<&Score>) -> Section {
     let score = &attempt.score;
     let passed = score.is_passed() && attempt.failure.is_none();
-    let shown = |expected: &super::score::Expected| Shown {
+    let shown = |expected: &Expected| Shown {
         name: expected.name.clone(),
         verdict: expected.verdict,
         at: expected.at_ns.map(to_text).unwrap_or_default(),
@@ -153,7 +199,7 @@ fn section(attempt: &AttemptRecord, expert: Option<&Score>) -> Section {
         ],
         lines: attempt.failure.iter().cloned().collect(),
         expectations: score.expectations.iter().map(shown).collect(),
-        tables: vec![malfunctions(score, expert), costs(score, expert)],
+        tables: vec![malfunctions(score, expert), mistakes(score), costs(score, expert)],
         events: events(score),
         pictures: Vec::new(),
     }

@@ -15,6 +15,9 @@ pub struct Score {
     /// What went wrong, in the order of the lesson.
     pub malfunctions: Vec<Handled>,
     pub expectations: Vec<Expected>,
+    /// What the trainee must not do.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub mistakes: Vec<Made>,
     pub costs: Vec<Spent>,
 }
 
@@ -64,6 +67,18 @@ pub struct Expected {
     pub unit: Option<String>,
 }
 
+/// A mistake, and how often it was made.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Made {
+    pub name: String,
+    pub count: u32,
+    /// How many are forgiven.
+    pub at_most: u32,
+    /// When it was made first.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub first_ns: Option<u64>,
+}
+
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Spent {
     pub name: String,
@@ -88,11 +103,20 @@ impl Handled {
     }
 }
 
+impl Made {
+    /// Whether it was made no more often than is forgiven.
+    pub fn is_forgiven(&self) -> bool {
+        self.count <= self.at_most
+    }
+}
+
 impl Score {
-    /// Whether the lesson is passed: every malfunction mastered, nothing expected violated, and done if it can be.
+    /// Whether the lesson is passed: every malfunction mastered, nothing expected violated, all mistakes forgiven, and done if
+    /// it can be.
     pub fn is_passed(&self) -> bool {
         self.done != Some(false)
             && self.malfunctions.iter().all(Handled::is_mastered)
+            && self.mistakes.iter().all(Made::is_forgiven)
             && self.expectations.iter().all(|expected| expected.verdict != Verdict::Violated)
     }
 

@@ -13,8 +13,8 @@ use super::recorded::Recorded;
 use crate::error::Usage;
 use crate::past::{Keeper, Kept};
 use crate::run::chosen::Chosen;
-use crate::run::{expectation, forked};
-use crate::web::{VerdictBoard, WebError};
+use crate::run::{alarms, expectation, forked};
+use crate::web::{AlarmLog, VerdictBoard, WebError};
 
 /// Steps that are read of the recording at once.
 const BLOCK_STEPS: u64 = 4_096;
@@ -64,11 +64,14 @@ impl fmt::Display for Checked {
 pub(super) fn check(
     recorded: &Recorded,
     kept: &Kept,
-    verdict_board: &VerdictBoard,
+    (verdict_board, alarm_log): (&VerdictBoard, &AlarmLog),
     enough: &AtomicBool,
 ) -> Result<Checked, ViewError> {
     let mut lockstep = forked::former(&recorded.scenario)().map_err(|why| Usage::new(why, None))?;
     lockstep.replay(recorded.inputs.clone());
+    if let Some(observer) = alarms::observer(alarm_log, &recorded.scenario) {
+        lockstep.observe(observer);
+    }
     let mut keeper = Keeper::new(kept.clone()).map_err(WebError::Thread)?;
     let none = || Usage::new("the recording has no step", None);
     let steps = recorded.recording.steps().ok_or_else(none)?;

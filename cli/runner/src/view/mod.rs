@@ -28,7 +28,7 @@ use crate::error::ExitCode;
 use crate::interrupt::Interrupt;
 use crate::past::{Budget, Kept, Rewinder};
 use crate::run::forked::{self, ForkSettings};
-use crate::web::{self, News, Page, VerdictBoard, WebError};
+use crate::web::{self, AlarmLog, News, Page, VerdictBoard, WebError};
 use check::Checked;
 use onescan_base::notice::NOTICE;
 use onescan_base::threads;
@@ -60,16 +60,16 @@ pub fn view(config: &ViewConfig, interrupt: &Interrupt, out: &mut dyn Write) -> 
     interrupt.watch();
     let kept = Kept::within(config.past.bytes);
     recorded.leave_inputs(&kept);
-    let verdict_board = VerdictBoard::default();
-    let page = serve(config, &recorded, kept.clone(), verdict_board.clone())?;
+    let (verdict_board, alarm_log) = (VerdictBoard::default(), AlarmLog::default());
+    let page = serve(config, &recorded, kept.clone(), (verdict_board.clone(), alarm_log.clone()))?;
     match Page::is_absent() {
         None => tracing::info!(target: NOTICE, "the recording is at {}", page.url()),
         Some(how) => tracing::warn!(target: NOTICE, "no page at {}: {how}", page.url()),
     }
     let enough = AtomicBool::new(false);
-    let verdict_board = &verdict_board;
+    let boards = (&verdict_board, &alarm_log);
     std::thread::scope(|scope| {
-        let check = || check::check(&recorded, &kept, verdict_board, &enough);
+        let check = || check::check(&recorded, &kept, boards, &enough);
         let mut checking = Some(threads::start_in(scope, "check", check).map_err(WebError::Thread)?);
         let mut code = ExitCode::Ok;
         loop {
@@ -91,7 +91,12 @@ pub fn view(config: &ViewConfig, interrupt: &Interrupt, out: &mut dyn Write) -> 
     })
 }
 
-fn serve(config: &ViewConfig, recorded: &Recorded, kept: Kept, verdict_board: VerdictBoard) -> Result<Page, ViewError> {
+fn serve(
+    config: &ViewConfig,
+    recorded: &Recorded,
+    kept: Kept,
+    (verdict_board, alarm_log): (VerdictBoard, AlarmLog),
+) -> Result<Page, ViewError> {
     let scenario = &recorded.scenario;
     let rewinder = Rewinder::new(kept, forked::former(scenario)).map_err(WebError::Thread)?;
     let typed = (recorded.words(), Some(recorded.until()));
@@ -102,6 +107,7 @@ fn serve(config: &ViewConfig, recorded: &Recorded, kept: Kept, verdict_board: Ve
         past: Ok(rewinder),
         launch: forked::launcher(fork_settings),
         verdict_board,
+        alarm_log,
         recorded_to: Some(recorded.end),
         ..web::Source::new(scenario, unpublished, Mailbox::new(), String::new())
     };

@@ -1,70 +1,193 @@
-//! The alarms of `[[report.alarm]]` as they come and go in what a session publishes.
+//! The alarms of `[[report.alarm]]`: how they come and go, and what people do about them, on virtual time.
+//!
+//! The session's thread notes every change at its step, so nothing is missed between two pictures, and whoever looks at the past
+//! sees the alarms of that moment. An acknowledgement by a page is noted here alone; one by a panel's signal is an input of the
+//! session, and is noted where the signal rises: also in a recording that is run again.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use onescan_scenario::Scenario;
-use onescan_scenario::expect::Present;
-use onescan_server::layout::ImageLayout;
-use onescan_server::published::SessionView;
-use onescan_server::signal::SignalId;
+use onescan_scenario::report::{Measures, Passage, Priority};
+use schemars::JsonSchema;
+use serde::Serialize;
 
-/// Judges which alarms are on.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Bell {
-    alarms: Vec<(String, Present)>,
-    signals: Vec<SignalId>,
+/// So many changes are kept; after that, of the older half only the last ones of each alarm.
+const CHANGES_MAX: usize = 4_000;
+/// So many are sent in one message.
+const SENT_MAX: usize = 500;
+
+/// An alarm of the scenario.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(super) struct Alarm {
+    name: String,
+    priority: Priority,
 }
 
-/// The alarms that one viewer knows to be on.
-#[derive(Clone, Debug, Default)]
-pub(super) struct ReportedAlarms(BTreeSet<usize>);
-
-/// An alarm that has come or gone.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Change<'b> {
-    pub(super) kind: &'static str,
-    pub(super) name: &'b str,
+/// The alarms of a scenario, in its order.
+pub(super) fn of(scenario: &Scenario) -> Vec<Alarm> {
+    let alarms = scenario.measures().map(Measures::alarms).unwrap_or_default();
+    alarms.iter().map(|alarm| Alarm { name: alarm.name().to_owned(), priority: alarm.priority() }).collect()
 }
 
-impl Bell {
-    /// Of the alarms of a scenario.
-    pub(super) fn of(scenario: &Scenario) -> Self {
-        let Some(measures) = scenario.measures() else { return Self::default() };
-        let signals = scenario.plan().signals();
-        let layout = ImageLayout::new(signals);
-        let ids: BTreeMap<&str, SignalId> =
-            layout.signals().zip(signals).map(|(id, signal)| (signal.name.as_str(), id)).collect();
-        Self {
-            alarms: measures.alarms().map(|(name, when)| (name.to_owned(), when.clone())).collect(),
-            // conditions are on signals of the plan
-            signals: measures.signals().filter_map(|(signal, _)| ids.get(signal.as_str()).copied()).collect(),
+/// What has become of an alarm.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum Fate {
+    /// It has come.
+    On,
+    /// It has gone.
+    Off,
+    /// Somebody has acknowledged it.
+    Acknowledged,
+    /// Somebody has put it aside until `until_ns`.
+    Shelved,
+    /// Somebody has taken it back.
+    Unshelved,
+}
+
+/// A change of an alarm.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[schemars(rename = "AlarmChange")]
+pub(super) struct Change {
+    pub(super) alarm: usize,
+    pub(super) t_ns: u64,
+    pub(super) fate: Fate,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) until_ns: Option<u64>,
+}
+
+#[derive(Debug, Default)]
+struct Log {
+    /// How often it has begun again.
+    epoch: u64,
+    changes: Vec<Change>,
+}
+
+impl Log {
+    fn push(&mut self, change: Change) {
+        // Somebody who acts has seen an older picture: the order is that in which it is noted.
+        let t_ns = self.changes.last().map_or(change.t_ns, |last| last.t_ns.max(change.t_ns));
+        self.changes.push(Change { t_ns, ..change });
+        if self.changes.len() > CHANGES_MAX {
+            self.forget();
         }
     }
 
-    /// What has changed for a viewer since the last report.
-    pub(super) fn changes(
-        &self,
-        reported: &mut ReportedAlarms,
-        view: &SessionView,
-        layout: &ImageLayout,
-    ) -> Vec<Change<'_>> {
-        let value =
-            |signal: &SignalId| layout.ty(*signal).as_f64(layout.bytes(*signal, &view.image)).unwrap_or(f64::NAN);
-        let values: Vec<f64> = self.signals.iter().map(value).collect();
-        let mut changes = Vec::new();
-        for (number, (name, when)) in self.alarms.iter().enumerate() {
-            match (when.holds(&values), reported.0.contains(&number)) {
-                (true, false) => {
-                    reported.0.insert(number);
-                    changes.push(Change { kind: "alarm", name });
-                }
-                (false, true) => {
-                    reported.0.remove(&number);
-                    changes.push(Change { kind: "gone", name });
-                }
-                (true, true) | (false, false) => {}
-            }
+    /// Keeps of the older half what decides how each alarm was then.
+    fn forget(&mut self) {
+        let recent = self.changes.split_off(self.changes.len() / 2);
+        let old = std::mem::take(&mut self.changes);
+        let is_last = |at: usize, one: &Change| {
+            let is_same = |other: &Change| other.alarm == one.alarm && kind(other.fate) == kind(one.fate);
+            !old.get(at + 1..).unwrap_or_default().iter().any(is_same)
+        };
+        self.changes = old.iter().enumerate().filter(|(at, one)| is_last(*at, one)).map(|(_, one)| *one).collect();
+        self.changes.extend(recent);
+        self.epoch += 1;
+    }
+}
+
+/// Fates of which the last one counts.
+fn kind(fate: Fate) -> u8 {
+    match fate {
+        Fate::On => 0,
+        Fate::Off => 1,
+        Fate::Acknowledged => 2,
+        Fate::Shelved | Fate::Unshelved => 3,
+    }
+}
+
+/// Where changes of alarms are noted; clones share it.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct AlarmLog(Arc<Mutex<Log>>);
+
+/// How far a viewer has read.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Read {
+    epoch: u64,
+    changes: usize,
+}
+
+impl AlarmLog {
+    /// A thread that panicked under the lock has left a whole log.
+    fn lock(&self) -> MutexGuard<'_, Log> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// A session begins: it has no alarms yet.
+    pub(crate) fn begin(&self) {
+        let mut log = self.lock();
+        *log = Log { epoch: log.epoch + 1, changes: Vec::new() };
+    }
+
+    /// Notes alarms that have come or gone.
+    pub(crate) fn take(&self, passages: &[Passage]) {
+        let mut log = self.lock();
+        for Passage { alarm, t_ns, has_come } in passages {
+            let fate = if *has_come { Fate::On } else { Fate::Off };
+            log.push(Change { alarm: *alarm, t_ns: *t_ns, fate, until_ns: None });
         }
-        changes
+    }
+
+    /// Notes that the first `count` alarms were acknowledged.
+    pub(crate) fn acknowledge(&self, count: usize, t_ns: u64) {
+        let all: Vec<usize> = (0..count).collect();
+        self.note(&all, t_ns, Fate::Acknowledged, None);
+    }
+
+    /// Notes what somebody does about alarms at `t_ns`.
+    pub(super) fn note(&self, alarms: &[usize], t_ns: u64, fate: Fate, until_ns: Option<u64>) {
+        let mut log = self.lock();
+        for alarm in alarms {
+            log.push(Change { alarm: *alarm, t_ns, fate, until_ns });
+        }
+    }
+
+    /// What is new to a viewer, and whether it is all there is.
+    pub(super) fn news(&self, read: &mut Read) -> Option<(bool, Vec<Change>)> {
+        let log = self.lock();
+        let is_all = read.epoch != log.epoch;
+        if is_all {
+            *read = Read { epoch: log.epoch, changes: 0 };
+        }
+        let rest = log.changes.get(read.changes..).unwrap_or_default();
+        let sent = rest.get(..SENT_MAX).unwrap_or(rest);
+        read.changes += sent.len();
+        (is_all || !sent.is_empty()).then(|| (is_all, sent.to_vec()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn change(alarm: usize, t_ns: u64, fate: Fate) -> Change {
+        Change { alarm, t_ns, fate, until_ns: None }
+    }
+
+    #[test]
+    fn a_viewer_reads_each_change_once() {
+        let (log, mut read) = (AlarmLog::default(), Read::default());
+        assert_eq!(log.news(&mut read), None);
+        log.note(&[0, 1], 20, Fate::Acknowledged, None);
+        log.note(&[0], 10, Fate::Shelved, Some(90));
+        let shelved = Change { until_ns: Some(90), ..change(0, 20, Fate::Shelved) };
+        let all = vec![change(0, 20, Fate::Acknowledged), change(1, 20, Fate::Acknowledged), shelved];
+        assert_eq!(log.news(&mut read), Some((false, all)));
+        assert_eq!(log.news(&mut read), None);
+        log.begin();
+        assert_eq!(log.news(&mut read), Some((true, Vec::new())), "a session that begins again has no alarms yet");
+    }
+
+    #[test]
+    fn an_old_log_keeps_how_each_alarm_was() {
+        let (log, mut read) = (AlarmLog::default(), Read::default());
+        log.lock().push(change(7, 1, Fate::On));
+        for t_ns in 2..=CHANGES_MAX as u64 + 1 {
+            log.lock().push(change(0, t_ns, if t_ns % 2 == 0 { Fate::On } else { Fate::Off }));
+        }
+        let (is_all, first) = log.news(&mut read).expect("it has begun again");
+        assert!(is_all && first.first() == Some(&change(7, 1, Fate::On)));
+        assert!(log.lock().changes.len() <= CHANGES_MAX / 2 + 4);
     }
 }

@@ -12,6 +12,9 @@ use super::known::Known;
 use super::online::Action;
 use super::training::{AtWork, Training, Turn};
 
+/// The longest time for which an alarm may be put aside, s.
+const SHELF_S_MAX: f64 = 86_400.0;
+
 /// What the page asks.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(tag = "type", rename_all = "lowercase", deny_unknown_fields)]
@@ -45,6 +48,10 @@ pub(super) enum Ask {
     Variable { variable: usize, action: Action, value: String },
     /// Forces a signal; releases it without a value.
     Force { signal: usize, value: Option<String> },
+    /// Acknowledges these alarms, for all viewers.
+    Acknowledge { alarms: Vec<usize> },
+    /// Puts an alarm aside for so long in virtual time, for all viewers; takes it back without a time.
+    Shelve { alarm: usize, for_s: Option<f64> },
     /// Shows this viewer the live edge again.
     Live,
     /// Starts a session from a moment of the past, beside this one; it ends as this one does, or at `until_ns`.
@@ -127,6 +134,23 @@ pub(super) fn disturb(number: usize, active: bool, known: &Known, now: &AtWork) 
         if active { Operation::Disturb { signal, fault } } else { Operation::Mend { signal } }
     };
     Ok(begun.map(operation).collect())
+}
+
+/// Alarms that there are.
+pub(super) fn alarms(alarms: Vec<usize>, known: &Known) -> Result<Vec<usize>, Refused> {
+    match alarms.iter().find(|alarm| **alarm >= known.alarms) {
+        Some(unknown) => Err(Refused::NoAlarm(*unknown)),
+        None => Ok(alarms),
+    }
+}
+
+/// How long an alarm is put aside, in nanoseconds.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most a day, and positive")]
+pub(super) fn shelf_ns(for_s: f64) -> Result<u64, Refused> {
+    if !(for_s > 0.0 && for_s <= SHELF_S_MAX) {
+        return Err(Refused::NoShelf(for_s.to_string()));
+    }
+    Ok((for_s * 1e9) as u64)
 }
 
 /// How the lesson goes on.

@@ -21,6 +21,10 @@ pub(super) enum Refused {
     NoComponent(String),
     #[error("there is no disturbance {0}")]
     NoDisturbance(usize),
+    #[error("there is no alarm {0}")]
+    NoAlarm(usize),
+    #[error("an alarm is put aside for more than 0 s and at most a day, not for {0} s")]
+    NoShelf(String),
     #[error("that is the trainer's business")]
     Trainee,
     #[error("this session is not a lesson")]

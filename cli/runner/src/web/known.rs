@@ -7,7 +7,6 @@ use onescan_scenario::panel_picture::PanelPicture;
 use onescan_server::operation::SignalFault;
 use onescan_server::signal::{ClientName, SignalName};
 
-use super::alarms::Bell;
 use super::drawings::States;
 use super::looks::Judge;
 use super::online::Online;
@@ -29,8 +28,8 @@ pub(super) struct Known {
     pub(super) hidden: BTreeSet<String>,
     /// Where the states of drawings are.
     pub(super) states: States,
-    /// Which alarms are on.
-    pub(super) bell: Bell,
+    /// How many alarms there are.
+    pub(super) alarms: usize,
     /// Which looks are on.
     pub(super) looks: Judge,
     /// The panels, each with the signals that it writes.

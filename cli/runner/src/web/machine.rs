@@ -1,7 +1,7 @@
 //! The machine: the bodies and components of a scene, as the page draws and lists them.
 
 use onescan_plant::component::kind::{self, unit};
-use onescan_plant::scene::model::{BodyKind, Component, Wire};
+use onescan_plant::scene::model::{BodyKind, Bound, Component, Driven, Joint, JointKind, Wire};
 use onescan_plant::{Form, Frame, Geometry, Scene};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -80,6 +80,12 @@ pub(super) struct Part {
     pub(super) name: String,
     kind: String,
     pub(super) body: Option<String>,
+    /// Where it is in the scene, for its shape.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    place: Option<Place>,
+    /// Its inputs and outputs that have a signal: the key, and the signal's name.
+    #[schemars(default)]
+    pins: Vec<[String; 2]>,
     /// The names of the signals that it reads and writes.
     #[schemars(default)]
     signals: Vec<String>,
@@ -89,6 +95,40 @@ pub(super) struct Part {
     parameters: Vec<Parameter>,
     #[schemars(default)]
     pub(super) failures: Vec<Failure>,
+}
+
+/// Where a component is in the scene's pose, in the world, as far as it is anywhere.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Place {
+    /// Where it begins, as a beam does.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    point_m: Option<[f64; 3]>,
+    /// Unit vector along which it points or runs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    direction: Option<[f64; 3]>,
+    /// The body that it moves: a belt, or what a joint lets move.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    moves: Option<String>,
+    /// The joint that it drives.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    joint: Option<DrivenJoint>,
+}
+
+/// A joint that a component drives.
+#[derive(Debug, Serialize, JsonSchema)]
+struct DrivenJoint {
+    /// Whether it turns; it slides if not.
+    turns: bool,
+    /// The body in whose frame it is; the ground's without one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    parent: Option<String>,
+    anchor_m: [f64; 3],
+    axis: [f64; 3],
+    /// How far it may go from where the scene has it, m or rad; nothing where it has no end.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    back: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ahead: Option<f64>,
 }
 
 /// A parameter of a component, as it is shown.
@@ -168,11 +208,52 @@ pub(super) fn part(component: &Component, scene: &Scene) -> Part {
         name: component.name.clone(),
         kind: component.kind.name.to_string(),
         body: component.bound.body.and_then(|body| scene.bodies.get(body)).map(|body| body.name.clone()),
+        place: place(component, scene),
+        pins: pins(component),
         senses: senses(component),
         signals: taken.chain(given.iter().cloned()).collect(),
         parameters: component.kind.parameters.iter().zip(&component.settings).map(parameter).collect(),
         failures: component.kind.failures.iter().map(|mode| Failure { name: mode.mode.to_string() }).collect(),
     }
+}
+
+/// Its inputs and outputs with their signals.
+fn pins(component: &Component) -> Vec<[String; 2]> {
+    let inputs = component.kind.inputs.iter().zip(&component.inputs).filter_map(|(pin, wire)| match wire {
+        Wire::Signal(name) => Some([pin.key.to_string(), name.to_string()]),
+        Wire::Open | Wire::Constant(_) | Wire::Output { .. } => None,
+    });
+    let outputs = component.kind.outputs.iter().zip(&component.outputs);
+    let outputs = outputs.filter_map(|(pin, name)| Some([pin.key.to_string(), name.as_ref()?.to_string()]));
+    inputs.chain(outputs).collect()
+}
+
+/// Where it is; nothing of a component that is nowhere.
+fn place(component: &Component, scene: &Scene) -> Option<Place> {
+    let Bound { drives, point_m, direction, .. } = component.bound;
+    let body = |index: usize| scene.bodies.get(index).map(|body| body.name.clone());
+    let (moves, joint) = match drives {
+        Some(Driven::Belt(belt)) => (body(belt), None),
+        Some(Driven::Joint(joint)) => {
+            let joint = scene.joints.get(joint)?;
+            (body(joint.child), driven(joint, joint.parent.and_then(body)))
+        }
+        None => (None, None),
+    };
+    let is_somewhere = point_m.is_some() || direction.is_some() || moves.is_some();
+    is_somewhere.then_some(Place { point_m, direction, moves, joint })
+}
+
+/// A joint as a drive's shape needs it; nothing of one that neither slides nor turns about one axis.
+fn driven(joint: &Joint, parent: Option<String>) -> Option<DrivenJoint> {
+    let turns = match joint.kind {
+        JointKind::Revolute => true,
+        JointKind::Prismatic => false,
+        JointKind::Fixed | JointKind::Slot | JointKind::Ball => return None,
+    };
+    let from = |end: Option<f64>| end.map(|end| end - joint.initial);
+    let (back, ahead) = (from(joint.lower), from(joint.upper));
+    Some(DrivenJoint { turns, parent, anchor_m: joint.anchor_m, axis: joint.axis, back, ahead })
 }
 
 /// The signal that is true while a sensor sees something.

@@ -15,7 +15,7 @@
 //! | [`online`] | variables of PLCs that are not signals |
 //! | [`panel`] | what operators see and write with |
 //! | [`drawings`] | ladders, function blocks and charts as they are laid out, with their states |
-//! | [`alarms`] | alarms as they come and go |
+//! | [`alarms`] | alarms as they come and go, and what people do about them |
 //! | [`looks`] | figures, views, and what bodies look like while something holds |
 //! | [`maps`] | tables of values that no signal has |
 //! | [`picture`] | what of a step is shown |
@@ -27,6 +27,7 @@
 //! | [`playhead`] | where a viewer looks: live, or at the past |
 //! | [`seats`] | who operates |
 //! | [`training`] | a lesson on two pages |
+//! | `lesson` | how it goes, and what came of it |
 //! | [`verdicts`] | what becomes of expectations while it runs |
 //! | [`response`] | the texts that a viewer is sent |
 //! | [`viewer`] | one viewer |
@@ -45,6 +46,7 @@ mod error;
 mod frames;
 mod guard;
 mod known;
+mod lesson;
 pub mod listener;
 mod looks;
 pub mod machine;
@@ -89,18 +91,20 @@ use crate::access::AccessError;
 use crate::access::admission::{Admission, GuardedListener};
 use crate::error::{Exit, ExitCode, ListenError, Usage};
 use crate::past::Rewinder;
+pub(crate) use alarms::AlarmLog;
 use attendance::Attendance;
 pub use bundle::charts;
 use entry::Entry;
 use error::Refused;
 use frames::Frames;
 use known::Known;
+pub(crate) use lesson::{Cost as LessonCost, Kept, LessonBoard, LessonResult, Met, Slip, Timing};
 use listener::{LimitedListener, Visitor};
 use looks::Called;
 use routes::router;
 pub use routes::{asset, guarded_here};
 use seats::Seats;
-pub(crate) use training::{AtWork, Failing, Role, Training, Turn, TurnQueue};
+pub(crate) use training::{AtWork, Failing, Forgiven, Role, Training, Turn, TurnQueue};
 pub(crate) use verdicts::VerdictBoard;
 
 /// How long viewers have to take the end, at most.
@@ -140,6 +144,8 @@ pub(crate) struct Source<'s> {
     pub(crate) launch: Launch,
     /// Where it is seen what becomes of expectations.
     pub(crate) verdict_board: VerdictBoard,
+    /// Where it is seen how alarms come and go.
+    pub(crate) alarm_log: AlarmLog,
     /// Where a recording ends; nothing for a session that runs.
     pub(crate) recorded_to: Option<VirtualTime>,
 }
@@ -158,6 +164,7 @@ impl<'s> Source<'s> {
             past: Err("it keeps none".to_owned()),
             launch: Arc::new(|_, _| Err("it keeps no past".to_owned())),
             verdict_board: VerdictBoard::default(),
+            alarm_log: AlarmLog::default(),
             recorded_to: None,
         }
     }
@@ -191,6 +198,7 @@ struct Session {
     past: Result<Rewinder, String>,
     launch: Launch,
     verdict_board: VerdictBoard,
+    alarm_log: AlarmLog,
     /// The names of the expectations.
     expected: Vec<String>,
     recorded_to: Option<VirtualTime>,
@@ -245,6 +253,7 @@ impl Session {
             past: source.past,
             launch: source.launch,
             verdict_board: source.verdict_board,
+            alarm_log: source.alarm_log,
             expected: source.scenario.expectations().named.iter().map(|(name, _)| name.clone()).collect(),
             recorded_to: source.recorded_to,
             over: AtomicBool::new(false),

@@ -190,10 +190,11 @@ fn choices(names: Vec<(i64, String)>) -> Vec<Choice> {
     names.into_iter().map(|(value, label)| Choice { value, label }).collect()
 }
 
-/// A panel of all that operators write, in the order of the file.
+/// A panel of all that operators write, in the order of the file, and of the alarms.
 fn pulpit(scenario: &Scenario) -> Option<Panel> {
     const COLUMNS: u32 = 6;
     const SPAN: u32 = 2;
+    const ALARM_ROWS: u32 = 3;
     let file = scenario.file();
     let is_operator = |name: &ClientName| {
         matches!(file.clients.get(name).map(toml::Spanned::get_ref), Some(ClientFile::Operator { .. }))
@@ -205,7 +206,11 @@ fn pulpit(scenario: &Scenario) -> Option<Panel> {
         let at = [number % (COLUMNS / SPAN) * SPAN, number / (COLUMNS / SPAN)];
         elements.extend(element(declared, scenario, at, SPAN));
     }
-    let rows = u32::try_from(elements.len()).unwrap_or(u32::MAX).div_ceil(COLUMNS / SPAN);
+    let mut rows = u32::try_from(elements.len()).unwrap_or(u32::MAX).div_ceil(COLUMNS / SPAN);
+    if scenario.measures().is_some_and(|measures| !measures.alarms().is_empty()) {
+        elements.push(Element { label: String::new(), ..bare(ElementKind::Alarms, [0, rows], [COLUMNS, ALARM_ROWS]) });
+        rows += ALARM_ROWS;
+    }
     (!elements.is_empty()).then(|| Panel {
         name: "operator".to_owned(),
         seat: Seat::Operator,
@@ -222,23 +227,32 @@ fn label(name: &str) -> String {
     name.rsplit('.').next().unwrap_or(name).replace('_', " ")
 }
 
-/// What a signal is written with: a switch, a choice of its names, a slider. A text has none.
-fn element(declared: &SignalDecl, scenario: &Scenario, at: [u32; 2], span: u32) -> Option<Element> {
-    let names = written(scenario, declared).map(|file| file.names.pairs()).unwrap_or_default();
-    let plain = |kind| Element {
+/// An element with a place and nothing else.
+fn bare(kind: ElementKind, at: [u32; 2], span: [u32; 2]) -> Element {
+    Element {
         kind,
-        label: label(&declared.name.to_string()),
-        signal: Some(declared.name.to_string()),
+        label: String::new(),
+        signal: None,
         signal_y: None,
         failure: None,
         disturbance: None,
         at,
-        span: [span, 1],
+        span,
         mode: None,
         min: None,
         max: None,
         colour: None,
         choices: Vec::new(),
+    }
+}
+
+/// What a signal is written with: a switch, a choice of its names, a slider. A text has none.
+fn element(declared: &SignalDecl, scenario: &Scenario, at: [u32; 2], span: u32) -> Option<Element> {
+    let names = written(scenario, declared).map(|file| file.names.pairs()).unwrap_or_default();
+    let plain = |kind| Element {
+        label: label(&declared.name.to_string()),
+        signal: Some(declared.name.to_string()),
+        ..bare(kind, at, [span, 1])
     };
     if declared.ty == SignalType::BOOL {
         return Some(Element { mode: Some(ButtonMode::Toggle), ..plain(ElementKind::Switch) });

@@ -8,6 +8,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use tokio::time::timeout;
 
+use super::alarms::Change;
+use super::lesson::Attempt;
 use super::maps::Cells;
 use super::online::Seen;
 use super::seats::SeatView;
@@ -72,7 +74,14 @@ pub(super) enum Response {
         #[schemars(regex(pattern = r#"^https?://[^\s"'<>]+$"#))]
         url: String,
     },
-    /// Marked in the trends and listed in the panels' alarms; of kind `gone`, the alarm of this text is over.
+    /// Changes of alarms, in the order of virtual time; `all` says that none came before these.
+    Alarms { all: bool, changes: Vec<Change> },
+    /// How the attempt at a lesson goes: `result` comes when it is over.
+    Lesson {
+        #[serde(flatten)]
+        attempt: Attempt,
+    },
+    /// Marked in the trends, and listed below the alarms.
     Event { t_ns: u64, kind: &'static str, text: String },
     /// Shown to the viewer.
     Error { message: String },

@@ -18,6 +18,8 @@ pub(super) enum Right<'a> {
     Fork,
     /// End the session, or close a recording.
     Stop,
+    /// Acknowledge alarms, or put them aside.
+    Attend,
     /// Take or leave the seat of this panel.
     Sit(&'a str),
     /// Write the signal of this number, as the panels do.
@@ -42,6 +44,7 @@ impl Ask {
             | Self::Live => Right::Look,
             Self::Fork { .. } => Right::Fork,
             Self::Operate { operation: Verb::Stop } => Right::Stop,
+            Self::Acknowledge { .. } | Self::Shelve { .. } => Right::Attend,
             Self::Seat { panel, .. } => Right::Sit(panel),
             Self::Write { signal, .. } => Right::Write(*signal),
             Self::Operate { operation: Verb::Hold | Verb::Go | Verb::Step }
@@ -63,6 +66,7 @@ pub(super) fn check(right: Right<'_>, session: &Session, (viewer, rank): (Viewer
     }
     match right {
         Right::Look => Ok(()),
+        Right::Attend => is_live(session),
         Right::Fork => is_not_trainee(session),
         // What is over is closed by it.
         Right::Stop if session.recorded_to.is_some() => Ok(()),

@@ -1,11 +1,13 @@
 //! What of a session does not change while it runs, as the page reads it.
 
+use std::collections::BTreeMap;
+
 use onescan_scenario::file::ClientFile;
 use onescan_scenario::{Scenario, ScenarioError};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::alarms::Bell;
+use super::alarms::{self, Alarm};
 use super::drawings::{self, Drawing};
 use super::known::Known;
 use super::looks::{self, Judge, Look, View};
@@ -15,7 +17,7 @@ use super::online::{self, Online};
 use super::panel::{self, Panel};
 use super::signals::{self, Signal};
 use super::sources::{self, Source};
-use super::training::{Role, Training};
+use super::training::{Forgiven, Role, Training};
 
 /// The version of the protocol, `web/PROTOCOL.md`.
 const PROTOCOL: u32 = 1;
@@ -48,6 +50,9 @@ pub(super) struct Structure {
     panels: Vec<Panel>,
     #[schemars(default)]
     expectations: Vec<Expectation>,
+    /// The alarms of `[[report.alarm]]`.
+    #[schemars(default)]
+    alarms: Vec<Alarm>,
     #[schemars(default)]
     sources: Vec<Source>,
     #[schemars(default)]
@@ -56,6 +61,9 @@ pub(super) struct Structure {
     plcs: Vec<online::Plc>,
     #[schemars(default)]
     maps: Vec<Map>,
+    /// The scenario's own texts in other languages: by language, what each text is there.
+    #[schemars(default)]
+    translations: BTreeMap<String, BTreeMap<String, String>>,
     /// The signals of `[plot]`: the trends that the page begins with.
     #[schemars(default)]
     plot: Vec<usize>,
@@ -71,6 +79,12 @@ struct Lesson {
     /// Prepared states to jump to; none on the trainee's page.
     #[schemars(default)]
     starts: Vec<String>,
+    /// What must hold to pass it, by the names of its expectations.
+    #[schemars(default)]
+    asked: Vec<String>,
+    /// What must not be done more often than so.
+    #[schemars(default)]
+    mistakes: Vec<Forgiven>,
 }
 
 /// A session is live where it does not say otherwise.
@@ -81,7 +95,14 @@ fn yes() -> bool {
 impl Lesson {
     fn of(training: &Training) -> Self {
         let starts = if training.role == Role::Trainer { training.starts.clone() } else { Vec::new() };
-        Self { role: training.role, name: training.lesson.clone(), about: training.about.clone(), starts }
+        Self {
+            role: training.role,
+            name: training.lesson.clone(),
+            about: training.about.clone(),
+            starts,
+            asked: training.asked.clone(),
+            mistakes: training.mistakes.clone(),
+        }
     }
 }
 
@@ -117,7 +138,9 @@ pub(super) fn of(scenario: &Scenario, training: Option<&Training>) -> Result<(St
     let (drawings, states) = drawings::of(scenario)?;
     known.states = states;
     let looks = looks::of(scenario, &mut bodies, &components)?;
-    (known.looks, known.bell) = (Judge::of(scenario), Bell::of(scenario));
+    known.looks = Judge::of(scenario);
+    let alarms = alarms::of(scenario);
+    known.alarms = alarms.len();
     known.disturbances = scenario.panel_disturbances()?;
     let (mut panels, pictures) = panel::of(scenario)?;
     known.pictures = pictures;
@@ -153,9 +176,11 @@ pub(super) fn of(scenario: &Scenario, training: Option<&Training>) -> Result<(St
             .iter()
             .map(|expect| Expectation { name: expect.name.get_ref().clone(), text: expect.formula.get_ref().clone() })
             .collect(),
+        alarms,
         sources: sources::of(scenario, &known.online),
         plcs,
         maps: maps::of(scenario),
+        translations: file.translations.clone(),
         plot: signals::plotted(scenario),
         drawings,
     };

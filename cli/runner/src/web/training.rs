@@ -11,6 +11,10 @@ use onescan_server::operation::{Control, Operation, OperatorInput, SignalFault};
 use onescan_server::session::Session;
 use onescan_server::signal::SignalName;
 use onescan_server::time::VirtualTime;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::lesson::LessonBoard;
 
 /// What a page needs of a lesson.
 #[derive(Clone, Debug)]
@@ -27,6 +31,19 @@ pub(crate) struct Training {
     pub(crate) view: Option<String>,
     /// The prepared states by name.
     pub(crate) starts: Vec<String>,
+    /// What must hold to pass it.
+    pub(crate) asked: Vec<String>,
+    /// What must not be done more often than is forgiven.
+    pub(crate) mistakes: Vec<Forgiven>,
+    /// How it goes.
+    pub(crate) board: LessonBoard,
+}
+
+/// A mistake, and how many are forgiven.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub(crate) struct Forgiven {
+    pub(crate) name: String,
+    pub(crate) at_most: u32,
 }
 
 /// Whose page it is.

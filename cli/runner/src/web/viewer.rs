@@ -14,10 +14,11 @@ use onescan_server::published::{SessionView, Wants};
 use onescan_server::wire::message::Status as Taken;
 use tokio::sync::{mpsc, oneshot};
 
-use super::alarms::{Change, ReportedAlarms};
+use super::alarms::{Fate, Read};
 use super::ask::{self, Ask, Verb};
 use super::entry::Rank;
 use super::error::Refused;
+use super::lesson::Attempt;
 use super::maps::{Mapped, New};
 use super::online::Watching;
 use super::picture::{FLAGS, PAST, Shown};
@@ -74,7 +75,10 @@ struct Subscription {
     drawn: Option<(usize, usize)>,
     /// The values of the drawing as they were reported last.
     states: Option<States>,
-    alarms: ReportedAlarms,
+    /// How far the alarms have been reported.
+    rung: Read,
+    /// How the lesson went when it was reported last.
+    attempt: Option<Attempt>,
 }
 
 /// A drawing with its instance, and the values of its states.
@@ -97,7 +101,8 @@ impl Subscription {
             looks: None,
             drawn: None,
             states: None,
-            alarms: ReportedAlarms::default(),
+            rung: Read::default(),
+            attempt: None,
         }
     }
 
@@ -206,9 +211,22 @@ async fn notify_news(
         notify_verdicts(socket, session, subscription).await?;
     }
     subscription.turns = subscription.turns.wrapping_add(1);
+    notify_alarms(socket, session, subscription).await?;
     for News { t_v, kind, text } in session.news_after(subscription.reported) {
         subscription.reported += 1;
         notify(socket, &Response::Event { t_ns: t_v.as_nanos(), kind, text }).await?;
+    }
+    Ok(())
+}
+
+/// Reports how alarms come and go, and how a lesson goes.
+async fn notify_alarms(socket: &mut WebSocket, session: &Session, subscription: &mut Subscription) -> Result<(), Gone> {
+    if let Some((all, changes)) = session.alarm_log.news(&mut subscription.rung) {
+        notify(socket, &Response::Alarms { all, changes }).await?;
+    }
+    let board = session.training.as_ref().map(|training| &training.board);
+    if let Some(attempt) = board.and_then(|board| board.news(&mut subscription.attempt)) {
+        notify(socket, &Response::Lesson { attempt }).await?;
     }
     Ok(())
 }
@@ -251,6 +269,7 @@ async fn part(
     subscription: &mut Subscription,
 ) -> Result<(), Gone> {
     notify_verdicts(socket, session, subscription).await?;
+    notify_alarms(socket, session, subscription).await?;
     if !subscription.playhead.is_past() {
         notify_clients(socket, view, session, subscription).await?;
     }
@@ -308,7 +327,7 @@ async fn picture(
     notify_drawn(socket, view, session, subscription).await
 }
 
-/// Reports what a picture goes with: the looks that are on, alarms, and the values of a drawing.
+/// Reports what a picture goes with: the looks that are on, and the values of a drawing.
 async fn notify_drawn(
     socket: &mut WebSocket,
     view: &SessionView,
@@ -319,13 +338,6 @@ async fn notify_drawn(
     if subscription.looks.as_ref() != Some(&active) {
         subscription.looks = Some(active.clone());
         notify(socket, &Response::Looks { active }).await?;
-    }
-    // Alarms are those of the live edge: whoever looks at the past has seen them come.
-    if !subscription.playhead.is_past() {
-        let t_ns = view.t_v.as_nanos();
-        for Change { kind, name } in session.known.bell.changes(&mut subscription.alarms, view, &session.layout) {
-            notify(socket, &Response::Event { t_ns, kind, text: name.to_owned() }).await?;
-        }
     }
     let drawn = subscription.drawn.filter(|_| view.clients.parts.memories);
     let now = drawn.map(|drawn| (drawn, session.known.states.values(drawn, view)));
@@ -432,6 +444,18 @@ fn perform(
         Ask::Train(asked) => {
             let training = session.training.as_ref().ok_or(Refused::NoLesson)?;
             training.turns.push(ask::turn(asked, training)?);
+            Next::Nothing
+        }
+        Ask::Acknowledge { alarms } => {
+            let t_ns = session.edge().as_nanos();
+            session.alarm_log.note(&ask::alarms(alarms, known)?, t_ns, Fate::Acknowledged, None);
+            Next::Nothing
+        }
+        Ask::Shelve { alarm, for_s } => {
+            let (alarms, t_ns) = (ask::alarms(vec![alarm], known)?, session.edge().as_nanos());
+            let until_ns = for_s.map(ask::shelf_ns).transpose()?.map(|for_ns| t_ns.saturating_add(for_ns));
+            let fate = if until_ns.is_some() { Fate::Shelved } else { Fate::Unshelved };
+            session.alarm_log.note(&alarms, t_ns, fate, until_ns);
             Next::Nothing
         }
         Ask::View { view } => {

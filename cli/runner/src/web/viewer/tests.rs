@@ -11,6 +11,7 @@ use tempfile::TempDir;
 
 use super::*;
 use crate::web::entry::Entry;
+use crate::web::lesson::LessonBoard;
 use crate::web::training::{Role, Training, TurnQueue};
 use crate::web::{Session, Source};
 
@@ -32,6 +33,11 @@ element = [
     { kind = "switch", label = "leaks", failure = "cylinder.leaking", at = [0, 0] },
     { kind = "switch", label = "sticks", disturbance = { signal = "Box_There", kind = "stuck" }, at = [1, 0] },
 ]
+
+[report]
+[[report.alarm]]
+name = "started"
+when = "Start"
 
 [[view]]
 name = "front"
@@ -88,7 +94,7 @@ const EVERYBODY: [Who; 11] = [
 
 /// Every message, some of them more than once where it depends on what is in it who may send it. `START` stands for
 /// the number of the operator's signal, `PUSH` for that of a PLC's.
-const EVERY: [&str; 26] = [
+const EVERY: [&str; 30] = [
     r#"{"type":"subscribe","signals":[START]}"#,
     r#"{"type":"watch","variables":[0]}"#,
     r#"{"type":"draw","drawing":null,"instance":0}"#,
@@ -113,12 +119,16 @@ const EVERY: [&str; 26] = [
     r#"{"type":"train","turn":"repeat"}"#,
     r#"{"type":"train","turn":"back","t_ns":0}"#,
     r#"{"type":"train","turn":"jump","start":"melting"}"#,
+    r#"{"type":"acknowledge","alarms":[0]}"#,
+    r#"{"type":"acknowledge","alarms":[9]}"#,
+    r#"{"type":"shelve","alarm":0,"for_s":60}"#,
+    r#"{"type":"shelve","alarm":0,"for_s":0}"#,
     r#"{"type":"view","view":"front"}"#,
     r#"{"type":"view","view":"nowhere"}"#,
 ];
 
 /// The place of each kind of message; one that is added does not compile before it has one.
-const KINDS: usize = 16;
+const KINDS: usize = 18;
 fn kind(ask: &Ask) -> usize {
     match ask {
         Ask::Subscribe { .. } => 0,
@@ -137,6 +147,8 @@ fn kind(ask: &Ask) -> usize {
         Ask::Force { .. } => 13,
         Ask::Live => 14,
         Ask::Fork { .. } => 15,
+        Ask::Acknowledge { .. } => 16,
+        Ask::Shelve { .. } => 17,
     }
 }
 
@@ -152,6 +164,9 @@ fn session(scenario: &Scenario, of: Of) -> Session {
             about: None,
             view: None,
             starts: vec!["melting".to_owned()],
+            asked: Vec::new(),
+            mistakes: Vec::new(),
+            board: LessonBoard::default(),
         }),
         Of::Session | Of::Recording => None,
     };
@@ -234,6 +249,10 @@ fn everybody_may_do_what_is_theirs() {
     train,turn:repeat                          LooksOnly  NoLesson   NoLesson   NoLesson   Trainee    Trainee    yes        yes        LooksOnly  Recorded   LooksOnly
     train,turn:back,t_ns:0                     LooksOnly  NoLesson   NoLesson   NoLesson   Trainee    Trainee    yes        yes        LooksOnly  Recorded   LooksOnly
     train,turn:jump,start:melting              LooksOnly  NoLesson   NoLesson   NoLesson   Trainee    Trainee    yes        yes        LooksOnly  Recorded   LooksOnly
+    acknowledge,alarms:[0]                     LooksOnly  yes        yes        yes        yes        yes        yes        yes        LooksOnly  Recorded   LooksOnly
+    acknowledge,alarms:[9]                     LooksOnly  NoAlarm    NoAlarm    NoAlarm    NoAlarm    NoAlarm    NoAlarm    NoAlarm    LooksOnly  Recorded   LooksOnly
+    shelve,alarm:0,for_s:60                    LooksOnly  yes        yes        yes        yes        yes        yes        yes        LooksOnly  Recorded   LooksOnly
+    shelve,alarm:0,for_s:0                     LooksOnly  NoShelf    NoShelf    NoShelf    NoShelf    NoShelf    NoShelf    NoShelf    LooksOnly  Recorded   LooksOnly
     view,view:front                            LooksOnly  NoTrainer  NoTrainer  yes        Trainee    Trainee    yes        yes        LooksOnly  Recorded   LooksOnly
     view,view:nowhere                          LooksOnly  NoView     NoView     NoView     NoView     NoView     NoView     NoView     LooksOnly  Recorded   LooksOnly
     ");
