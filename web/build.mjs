@@ -13,7 +13,7 @@ if (process.argv.includes("--tests")) {
     format: "esm",
     platform: "node",
     target: "node20",
-    external: ["node:*"],
+    external: ["node:*", "typescript"],
   });
 } else {
   await rm("dist", { recursive: true, force: true });

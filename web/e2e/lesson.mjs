@@ -20,6 +20,10 @@ const words = [
 ];
 const { child, said, over, urls } = await begin(program, words, ["trainee's page", "trainer's page"]);
 
+/** Until an alarm is on, or none. */
+const rings = (page, name) => page.waitForFunction(
+  (name) => (name === null ? window.onescan.alarms().every((one) => !one.isOn) : window.onescan.alarms().some((one) => one.isOn && one.name === name)), name, { timeout: 120_000 });
+
 try {
   const [trainee, trainer] = [await open(browser, urls[0]), await open(browser, urls[1])];
   // What is the trainer's is on the trainer's page alone.
@@ -54,27 +58,44 @@ try {
   const { page } = trainee;
   await sit(page, "pulpit");
   const pulpit = panel(page, "pulpit");
+  // What is asked, and how much time is left.
+  const sheet = page.getByRole("region", { name: "Lesson" });
+  await sheet.getByText("at most 2 times: acknowledgement without an alarm").waitFor();
+  await sheet.getByRole("listitem").filter({ hasText: "the walls stay below 150 °C" }).waitFor();
+  await sheet.getByText(/^[0-6]:[0-5][0-9]$/).waitFor();
   // A leak: acknowledged, taken by hand, and given back when the water is there again.
-  await until(page, ["Alarm", "=", 2]);
-  await press(page, "Acknowledge", "Acknowledge");
+  await rings(page, "water of the walls");
+  // The banner names it, and its key is the pulpit's: the program knows.
+  const banner = page.getByRole("region", { name: "Most urgent alarm" });
+  await banner.getByText("water of the walls").waitFor();
+  assert.deepEqual(await page.evaluate(() => window.onescan.alarms()), [{ name: "water of the walls", isOn: true, isSeen: false, isAside: false }]);
+  await banner.getByRole("button", { name: "Acknowledge" }).click();
+  await page.waitForFunction(() => window.onescan.alarms().every((one) => one.isSeen));
+  await until(page, ["Acknowledge", "=", 0]);
   await pulpit.getByRole("switch", { name: /^Automatic/ }).click();
   if (folder !== null) await page.screenshot({ path: `${folder}/lesson.png` });
   if (folder !== null) await trainer.page.screenshot({ path: `${folder}/lesson-trainer.png` });
   await trainer.page.getByRole("switch", { name: /^Water leak, walls/ }).and(trainer.page.locator("[aria-checked=true]")).waitFor();
   await until(page, ["Wall_pressure", ">", 2.5]);
   await press(page, "Acknowledge", "Acknowledge");
-  await until(page, ["Alarm", "=", 0]);
+  await rings(page, null);
   await pulpit.getByRole("switch", { name: /^Automatic/ }).click();
   // No suction: acknowledged, and again when it is back.
-  await until(page, ["Alarm", "=", 5]);
+  await rings(page, "pressure in the vessel");
   await press(page, "Acknowledge", "Acknowledge");
   await until(page, ["Vessel_pressure", "<", 10]);
   await press(page, "Acknowledge", "Acknowledge");
-  await until(page, ["Alarm", "=", 0], ["Breaker_closed", "=", 1]);
+  await rings(page, null);
+  await until(page, ["Breaker_closed", "=", 1]);
   // An electrode breaks: a new piece.
   await until(page, ["Electrode_broken[1]", "=", 1]);
   await press(page, "New electrode", "Join_electrode");
   const code = await over;
+  // What came of it, on the trainee's own page.
+  await sheet.getByRole("heading", { name: "Passed", exact: true }).waitFor();
+  await sheet.getByRole("cell", { name: "water leak" }).waitFor();
+  assert.equal(await page.locator("#link").textContent(), "over");
+  if (folder !== null) await page.screenshot({ path: `${folder}/lesson-result.png` });
   assert.deepEqual([...trainee.errors, ...trainer.errors], []);
   assert.equal(code, 0, `${said.out}${said.err}`);
   const record = JSON.parse(said.out);
@@ -121,6 +142,8 @@ try {
   console.log(`a lesson is taken at the pulpit: ok; jump to the flat bath ${jumped_ms.toFixed(0)} ms`);
 } finally {
   child.kill();
+  // It writes until it has ended.
+  await over;
   await browser.close();
   await rm(room, { recursive: true, force: true });
 }

@@ -19,6 +19,8 @@ const browser = await chromium.launch({
 async function open(session, options, before = null) {
   const page = await browser.newPage({ viewport: { width: 1280, height: 720 }, ...options });
   const errors = [];
+  // A machine that others use, too, draws slowly.
+  page.setDefaultTimeout(120_000);
   if (before !== null) await page.addInitScript(before);
   page.on("pageerror", (error) => errors.push(String(error)));
   await page.goto(session.url);
@@ -223,11 +225,13 @@ async function draw_components() {
   await session.close();
 }
 
-const TABS = ["Panels", "Part", "Signals", "PLC", "Checks"];
+const TABS = ["Panels", "Part", "Alarms", "Signals", "PLC", "Checks"];
 
 /** axe finds nothing on any sheet, in both themes, nor in the dialogues. */
 async function read_by_all() {
-  const session = await serve({ more: { plot: [3, 4] } });
+  const session = await serve({ more: { plot: [3, 4], alarms: ALARMS } });
+  ALARMS.forEach((_, alarm) => session.ring({ alarm, fate: "on" }));
+  session.session.panels[0].elements.push({ kind: "alarms", label: "Alarms", at: [0, 3], span: [6, 2] }, { kind: "emergency-stop", label: "Emergency stop", signal: "Start", at: [0, 5], span: [2, 2] });
   for (const colorScheme of ["light", "dark"]) {
     const { page, errors } = await open(session, { colorScheme });
     await page.evaluate(axe.source);
@@ -254,7 +258,7 @@ async function read_by_all() {
 
 /** The panes are as wide as one draws them, also the next time; a phone scrolls up and down only. */
 async function divide() {
-  const session = await serve();
+  const session = await serve({ more: { alarms: ALARMS } });
   const { page } = await open(session, {});
   const width = () => page.evaluate(() => document.querySelector("aside").offsetWidth);
   const before = await width();
@@ -302,6 +306,118 @@ async function follow_the_system() {
   await session.close();
 }
 
+const ALARMS = [
+  { name: "door open", priority: "low" }, { name: "water of the walls", priority: "critical" },
+  { name: "oil is warm", priority: "medium" }, { name: "belt slips", priority: "high" },
+];
+
+/** Alarms: the banner names the most urgent one, the list has them all; they are acknowledged, put aside, heard, and seen in the past. */
+async function attend_to_alarms() {
+  const session = await serve({ more: { alarms: ALARMS } });
+  const list = { kind: "alarms", label: "Alarms", at: [0, 3], span: [6, 2] };
+  session.session.panels[0].elements.push(list, { kind: "emergency-stop", label: "Emergency stop", signal: "Start", at: [0, 5], span: [2, 2] });
+  const { page, errors } = await open(session, { colorScheme: "light" });
+  const banner = page.getByRole("region", { name: "Most urgent alarm" });
+  await banner.getByText("No alarm.").waitFor();
+  session.ring({ alarm: 0, fate: "on" });
+  await banner.getByText("door open").waitFor();
+  session.ring({ alarm: 1, fate: "on" });
+  session.ring({ alarm: 2, fate: "on" });
+  session.ring({ alarm: 3, fate: "on" });
+  await banner.getByText("water of the walls").waitFor();
+  await banner.getByText("others: 3").waitFor();
+  const before_ns = await page.evaluate(() => window.onescan.picture().t_ns);
+  await page.getByRole("tab", { name: "Alarms" }).click();
+  const names = () => page.locator("#alarms-sheet .alarm-name").evaluateAll((all) => all.map((one) => one.firstChild.textContent));
+  assert.deepEqual(await names(), ["water of the walls", "belt slips", "oil is warm", "door open"]);
+  // Each priority has a shape of its own, not only a colour.
+  const shapes = await page.locator("#alarms-sheet .sign path").evaluateAll((all) => all.map((one) => one.getAttribute("d")));
+  assert.equal(new Set(shapes).size, 4);
+  await shoot(page, "alarms");
+  await page.setViewportSize({ width: 390, height: 844 });
+  assert.ok((await page.evaluate(() => document.documentElement.scrollWidth)) <= 390);
+  await shoot(page, "alarms-phone");
+  await page.setViewportSize({ width: 1280, height: 720 });
+  // Acknowledged: the next one is the most urgent, and it asks for nobody any more.
+  await banner.getByRole("button", { name: "Acknowledge" }).click();
+  await banner.getByText("belt slips").waitFor();
+  assert.deepEqual(session.asked.findLast((ask) => ask.type === "acknowledge").alarms, [1]);
+  session.ring({ alarm: 3, fate: "off" });
+  await banner.getByText("gone, not acknowledged").waitFor();
+  await page.getByRole("button", { name: "Acknowledge belt slips" }).click();
+  await banner.getByText("oil is warm").waitFor();
+  await page.getByLabel("Put oil is warm aside").selectOption("60");
+  await banner.getByText("door open").waitFor();
+  await page.locator("#alarms-sheet").getByText("put aside until").waitFor();
+  await page.getByRole("button", { name: "Take back oil is warm" }).click();
+  await banner.getByText("oil is warm").waitFor();
+  // The sound is chosen, and comes again until somebody acknowledges.
+  assert.equal(await page.evaluate(() => window.onescan.sounds()), 0);
+  await banner.getByRole("button", { name: "Sound" }).click();
+  await page.waitForFunction(() => window.onescan.sounds() > 0);
+  // The past has the alarms of its moment.
+  await page.getByRole("slider", { name: "Time that is shown" }).fill(String(before_ns / 1e7));
+  await page.waitForFunction(() => window.onescan.alarms().length === 4 && window.onescan.alarms().every((one) => one.isOn && !one.isSeen));
+  assert.ok(await banner.getByRole("button", { name: "Acknowledge" }).isDisabled());
+  await page.getByRole("slider", { name: "Time that is shown" }).fill("1");
+  await banner.getByText("No alarm.").waitFor();
+  await page.getByRole("button", { name: "Back to now" }).click();
+  await banner.getByText("oil is warm").waitFor();
+  // A panel acknowledges all of them; its emergency stop latches.
+  await page.getByRole("tab", { name: "Panels" }).click();
+  await page.locator(".element.alarms").getByRole("button", { name: "Acknowledge" }).click();
+  await banner.getByText("still on: 3").waitFor();
+  const stop = page.getByRole("button", { name: "Emergency stop" });
+  await stop.click();
+  await page.waitForFunction(() => window.onescan.value("Start") === 1);
+  await page.getByText("struck: press to turn and release").waitFor();
+  await shoot(page, "emergency-stop");
+  await stop.click();
+  await page.waitForFunction(() => window.onescan.value("Start") === 0);
+  // A page that is opened later knows them, too, and so does one after a loss.
+  session.ring({ alarm: 1, fate: "off" });
+  session.cut();
+  await page.locator("#link.lost, #link.connecting").waitFor();
+  await page.locator("#link.connected").waitFor();
+  await banner.getByText("still on: 2").waitFor();
+  assert.deepEqual(errors, []);
+  await page.close();
+  await session.close();
+}
+
+/** The page speaks the language of the browser, or the one that was chosen, also the next time; numbers are written as there. */
+async function speak() {
+  const session = await serve({ more: { alarms: ALARMS, translations: { de: { "door open": "Tür offen", Start: "Anlauf" } } } });
+  const { page, errors } = await open(session, { locale: "de-DE", colorScheme: "light" });
+  await page.getByRole("tab", { name: "Pulte" }).waitFor();
+  assert.equal(await page.evaluate(() => document.documentElement.lang), "de");
+  await page.getByRole("button", { name: "Anlauf" }).waitFor();
+  session.ring({ alarm: 0, fate: "on" });
+  await page.getByRole("region", { name: "Dringendster Alarm" }).getByText("Tür offen").waitFor();
+  await page.waitForFunction(() => /^\d+,\d{3} s$/.test(document.getElementById("time").textContent));
+  await page.waitForFunction(() => /0,\d+ m\/s/.test(document.querySelector("#panels-sheet").textContent));
+  // Somebody who types a comma has typed a number.
+  await page.getByRole("tab", { name: "Signale" }).click();
+  await page.getByRole("button", { name: "Speed erzwingen", exact: true }).click();
+  await page.getByLabel("Wert von Speed").fill("0,75");
+  await page.keyboard.press("Enter");
+  await page.waitForFunction(() => window.onescan.value("Speed") === 0.75);
+  await page.getByRole("tab", { name: "Pulte" }).click();
+  await shoot(page, "german");
+  await page.setViewportSize({ width: 390, height: 844 });
+  assert.ok((await page.evaluate(() => document.documentElement.scrollWidth)) <= 390);
+  await shoot(page, "german-phone");
+  await page.setViewportSize({ width: 1280, height: 720 });
+  await page.getByLabel("Sprache").selectOption("English");
+  await page.getByRole("tab", { name: "Panels" }).waitFor();
+  await page.reload();
+  await page.getByRole("tab", { name: "Panels" }).waitFor();
+  assert.equal(await page.evaluate(() => document.documentElement.lang), "en");
+  assert.deepEqual(errors, []);
+  await page.close();
+  await session.close();
+}
+
 async function draw_many() {
   const session = await serve({ packages: 300 });
   const { page, errors } = await open(session, {}, () => {
@@ -331,6 +447,8 @@ try {
   await follow_the_plot();
   await force();
   await draw_components();
+  await attend_to_alarms();
+  await speak();
   await follow_the_system();
   await divide();
   await read_by_all();

@@ -29,8 +29,12 @@ export function structure(packages, more = {}) {
     signals: SIGNALS.map(([name, type, writer, unit]) => ({ name, type, writer, unit, about: "" })),
     bodies,
     components: [{
-      name: "barrier", kind: "light-barrier", body: "eye", signals: ["Eye"], senses: "Eye",
+      name: "barrier", kind: "light_barrier", body: "eye", signals: ["Eye"], senses: "Eye",
       parameters: [{ name: "range", value: "0.6", unit: "m" }], failures: [{ name: "stuck" }],
+      place: { point_m: [0.8, -0.3, 0.93], direction: [0, 1, 0] },
+    }, {
+      name: "conveyor", kind: "conveyor", body: null, signals: ["Belt_On", "Speed"], pins: [["run", "Belt_On"], ["velocity_m_s", "Speed"]], senses: null,
+      parameters: [{ name: "speed", value: "0.5", unit: "m/s" }], failures: [], place: { direction: [1, 0, 0], moves: "belt" },
     }],
     looks: [], views: [{ name: "front", position_m: [0, -4, 1.6], target_m: [0, 0, 0.8] }],
     panels: [{
@@ -106,6 +110,12 @@ export async function serve({ packages = 8, more = {} } = {}) {
     const many = session.bodies.length === 0 ? 0 : packages;
     socket.send(picture(step, { packages: many, first: session.bodies.length - many, values, isPast: shown !== null, isHeld: state.isHeld }));
   };
+  // The alarms so far; a viewer that comes later reads all of them.
+  const changes = [];
+  const ring = (change) => {
+    changes.push({ t_ns: state.step * STEP_NS, until_ns: null, ...change });
+    say(JSON.stringify({ type: "alarms", all: false, changes: changes.slice(-1) }));
+  };
   const handle = {
     subscribe: (ask, viewer) => (viewer.subscribed = ask.signals),
     seat: (ask) => (state.seat = ask.take),
@@ -117,6 +127,8 @@ export async function serve({ packages = 8, more = {} } = {}) {
     show: (ask, viewer) => (viewer.shown = Math.round(ask.t_ns / STEP_NS)),
     live: (_, viewer) => (viewer.shown = null),
     force: (ask) => (ask.value === null ? state.forced.delete(ask.signal) : state.forced.set(ask.signal, ask.value === "TRUE" ? 1 : Number(ask.value))),
+    acknowledge: (ask) => ask.alarms.forEach((alarm) => ring({ alarm, fate: "acknowledged" })),
+    shelve: (ask) => ring({ alarm: ask.alarm, fate: ask.for_s === null ? "unshelved" : "shelved", until_ns: ask.for_s === null ? null : state.step * STEP_NS + ask.for_s * 1e9 }),
     watch: () => {},
     fail: () => {},
     fork: (ask) => say(JSON.stringify({ type: "forked", t_ns: ask.t_ns, url: "http://127.0.0.1:9/" })),
@@ -131,6 +143,7 @@ export async function serve({ packages = 8, more = {} } = {}) {
     });
     const viewer = { shown: null, subscribed: [] };
     viewers.set(socket, viewer);
+    if (changes.length > 0) socket.send(JSON.stringify({ type: "alarms", all: true, changes }));
     socket.on("close", () => viewers.delete(socket));
     status();
     show(viewer, socket);
@@ -145,5 +158,5 @@ export async function serve({ packages = 8, more = {} } = {}) {
     sockets.clients.forEach((one) => one.terminate());
     await new Promise((closed) => http.close(closed));
   };
-  return { url: `http://127.0.0.1:${http.address().port}/`, session, asked, state, say, cut: () => sockets.clients.forEach((one) => one.terminate()), close };
+  return { url: `http://127.0.0.1:${http.address().port}/`, session, asked, state, say, ring, cut: () => sockets.clients.forEach((one) => one.terminate()), close };
 }

@@ -2,6 +2,8 @@
 
 import { breakable } from "./format";
 
+const SVG = "http://www.w3.org/2000/svg";
+
 type Attributes = Readonly<Record<string, string | boolean>>;
 
 /** An element with attributes and what is in it; `true` sets an attribute without a value, `false` leaves it out. */
@@ -15,6 +17,18 @@ export function make<K extends keyof HTMLElementTagNameMap>(
     if (value === true) element.setAttribute(name, "");
     else if (value !== false) element.setAttribute(name, value);
   }
+  element.append(...inside);
+  return element;
+}
+
+/** An element of a drawing. */
+export function draw<K extends keyof SVGElementTagNameMap>(
+  tag: K,
+  attributes: Readonly<Record<string, string | number>>,
+  ...inside: readonly (Node | string)[]
+): SVGElementTagNameMap[K] {
+  const element = document.createElementNS(SVG, tag);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, String(value));
   element.append(...inside);
   return element;
 }

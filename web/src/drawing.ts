@@ -1,25 +1,16 @@
 // Ladders, function blocks and charts as they are laid out, with the power that flows and the steps that are active.
 
+import { draw } from "./dom";
+import { local } from "./format";
+import { say } from "./say";
 import { FlowOf, type Flow } from "./flow";
 import type { Drawing, DrawingElement, DrawingWire } from "./session";
 
-const SVG = "http://www.w3.org/2000/svg";
 const MARGIN = 30;
 /** How far a wire goes straight on before it turns. */
 const STUB = 14;
 
 type Point = readonly [number, number];
-
-function draw<K extends keyof SVGElementTagNameMap>(
-  tag: K,
-  attributes: Readonly<Record<string, string | number>>,
-  ...inside: readonly (Node | string)[]
-): SVGElementTagNameMap[K] {
-  const element = document.createElementNS(SVG, tag);
-  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, String(value));
-  element.append(...inside);
-  return element;
-}
 
 /** The corners of a wire: those of the file, or a way with right angles. */
 export function corners(wire: DrawingWire, isChart: boolean, left: number): readonly Point[] {
@@ -36,7 +27,7 @@ export function corners(wire: DrawingWire, isChart: boolean, left: number): read
 /** A value as it stands beside what has it. */
 export function reading(value: Flow): string {
   if (value === null || !Number.isFinite(value)) return "";
-  return Number.isInteger(value) ? String(value) : String(Number(value.toPrecision(5)));
+  return Number.isInteger(value) ? String(value) : local(String(Number(value.toPrecision(5))));
 }
 
 export class DrawingView {
@@ -57,7 +48,7 @@ export class DrawingView {
       const points = corners(wire, isChart, box[0] + MARGIN / 2).map((point) => point.join(",")).join(" ");
       const [from, to] = [drawing.elements[wire.from[0]], drawing.elements[wire.to[0]]];
       const line = draw("polyline", { class: "wire", points, "data-from": from?.id ?? "", "data-to": to?.id ?? "" });
-      line.append(draw("title", {}, `line ${wire.line}`));
+      line.append(draw("title", {}, say("line {line}", { line: wire.line })));
       this.wires.push(line);
       this.root.append(line);
     }
@@ -93,7 +84,7 @@ export class DrawingView {
 
   private element(element: DrawingElement): SVGGElement {
     const group = draw("g", { class: `element ${element.kind}`, "data-id": element.id });
-    group.append(draw("title", {}, `${element.instance ?? element.text}\nline ${element.line}`));
+    group.append(draw("title", {}, say("{text}\nline {line}", { text: element.instance ?? element.text, line: element.line })));
     group.append(...this.shape(element));
     const hasReading = element.state !== null && element.kind !== "step" && element.kind !== "transition";
     const below = element.kind === "contact" || element.kind === "coil";

@@ -1,5 +1,6 @@
 // The drawings of a session's PLCs: which one is shown, of which instance, with the values that come for it.
 
+import { say } from "./say";
 import { make } from "./dom";
 import { DrawingView } from "./drawing";
 import type { Ask } from "./message";
@@ -7,8 +8,8 @@ import type { Session } from "./session";
 
 export class Drawings {
   readonly root = make("div", { class: "drawings" });
-  private readonly sheet = make("div", { class: "sheet", tabindex: "0", role: "region", "aria-label": "Drawing" });
-  private readonly instances = make("select", { "aria-label": "Instance" });
+  private readonly sheet = make("div", { class: "sheet", tabindex: "0", role: "region", "aria-label": say("Drawing") });
+  private readonly instances = make("select", { "aria-label": say("Instance") });
   private view: DrawingView | null = null;
   private open: { drawing: number; instance: number } | null = null;
 

@@ -1,7 +1,8 @@
 // What is forced: one list of all of it, and the page's own dialogue for a value, typed by its type. The page goes on meanwhile.
 
+import { say } from "./say";
 import { broken, button, make } from "./dom";
-import { is_whole } from "./format";
+import { is_whole, neutral } from "./format";
 
 /** What can be forced or written: a signal, or a variable of a PLC. */
 export interface Target {
@@ -29,16 +30,16 @@ export function entry_of(type: string, names: ReadonlyMap<number, string>): Entr
 
 /** Why a text is no value of the type; nothing if it is one. */
 export function wrong_value(type: string, text: string): string | null {
-  if (text.trim() === "") return "Enter a value.";
+  if (text.trim() === "") return say("Enter a value.");
   if (entry_of(type, new Map()) !== "number") return null;
   const value = Number(text);
-  if (!Number.isFinite(value)) return "Enter a number.";
+  if (!Number.isFinite(value)) return say("Enter a number.");
   if (!is_whole(type)) return null;
-  if (!Number.isInteger(value)) return `Enter a whole number: the type is ${type}.`;
+  if (!Number.isInteger(value)) return say("Enter a whole number: the type is {type}.", { type });
   const bits = /^U?SINT$|^BYTE$/.test(type) ? 8 : /^U?INT$|^WORD$/.test(type) ? 16 : /^U?DINT$|^DWORD$/.test(type) ? 32 : 64;
   const isSigned = /^[SDL]?INT$/.test(type);
   const [low, high] = isSigned ? [-(2 ** (bits - 1)), 2 ** (bits - 1) - 1] : [0, 2 ** bits - 1];
-  return value < low || value > high ? `${type} goes from ${low} to ${high}.` : null;
+  return value < low || value > high ? say("{type} goes from {low} to {high}.", { type, low, high }) : null;
 }
 
 export class ForceDialog {
@@ -57,44 +58,45 @@ export class ForceDialog {
   ask(target: Target): void {
     const now = make("output", {}, target.value());
     const fault = make("p", { class: "fault", role: "alert" });
-    const enter = (deed: (value: string) => void, text: string): void => {
+    const enter = (deed: (value: string) => void, typed: string): void => {
+      const text = entry_of(target.type, target.names) === "number" ? neutral(typed) : typed;
       const wrong = wrong_value(target.type, text);
       fault.textContent = wrong ?? "";
       if (wrong !== null) return;
       deed(text.trim());
       this.dialog.close();
     };
-    const title = make("h2", { id: "force-title" }, `${target.write === undefined ? "Force" : "Write or force"} `, ...broken(target.name));
-    const about = make("p", {}, target.type, ", now ", now, target.isForced ? ", forced" : "");
-    const release = button("Release", () => {
+    const title = make("h2", { id: "force-title" }, `${target.write === undefined ? say("Force") : say("Write or force")} `, ...broken(target.name));
+    const about = make("p", {}, target.type, ", ", say("now"), " ", now, target.isForced ? `, ${say("forced")}` : "");
+    const release = button(say("Release"), () => {
       target.release();
       this.dialog.close();
-    }, "Lets the value go on by itself");
+    }, say("Lets the value go on by itself"));
     release.hidden = !target.isForced;
     this.dialog.replaceChildren(title, about, this.entry(target, enter), fault,
-      make("div", { class: "toolbar" }, release, button("Cancel", () => this.dialog.close())));
+      make("div", { class: "toolbar" }, release, button(say("Cancel"), () => this.dialog.close())));
     this.dialog.showModal();
     this.ticker = window.setInterval(() => (now.textContent = target.value()), 100);
   }
 
   private entry(target: Target, enter: (deed: (value: string) => void, text: string) => void): HTMLElement {
     const deeds = (value: () => string): readonly HTMLElement[] => [
-      ...(target.write === undefined ? [] : [button("Write once", () => enter(target.write as (value: string) => void, value()))]),
-      button("Force", () => enter(target.force, value()), `Holds ${target.name} until it is released`),
+      ...(target.write === undefined ? [] : [button(say("Write once"), () => enter(target.write as (value: string) => void, value()))]),
+      button(say("Force"), () => enter(target.force, value()), say("Holds {name} until it is released", { name: target.name })),
     ];
     switch (entry_of(target.type, target.names)) {
       case "two":
         return make("div", { class: "two" }, ...["FALSE", "TRUE"].map((text) => make("div", {},
-          button(text, () => enter(target.force, text), `Forces ${target.name} to ${text}`),
-          ...(target.write === undefined ? [] : [button(`Write ${text} once`, () => enter(target.write as (value: string) => void, text))]))));
+          button(text, () => enter(target.force, text), say("Forces {name} to {text}", { name: target.name, text })),
+          ...(target.write === undefined ? [] : [button(say("Write {text} once", { text }), () => enter(target.write as (value: string) => void, text))]))));
       case "list": {
-        const list = make("select", { "aria-label": `Value of ${target.name}` }, ...[...target.names].map(([value, name]) => make("option", { value: String(value) }, name)));
+        const list = make("select", { "aria-label": say("Value of {name}", { name: target.name }) }, ...[...target.names].map(([value, name]) => make("option", { value: String(value) }, name)));
         return make("div", { class: "toolbar" }, list, ...deeds(() => list.value));
       }
       case "number":
       case "text": {
         const isNumber = entry_of(target.type, target.names) === "number";
-        const field = make("input", { type: "text", inputmode: isNumber ? "decimal" : "text", "aria-label": `Value of ${target.name}`, autocomplete: "off" });
+        const field = make("input", { type: "text", inputmode: isNumber ? "decimal" : "text", "aria-label": say("Value of {name}", { name: target.name }), autocomplete: "off" });
         field.addEventListener("keydown", (event) => {
           if (event.key !== "Enter") return;
           // Otherwise it would press the key that opened the dialogue, which has the focus again.
@@ -122,23 +124,23 @@ export class Forces {
   private all: readonly Forced[] = [];
 
   constructor(private readonly mayRelease: boolean) {
-    this.key = button("Forced", () => this.open(), "Shows what is forced");
+    this.key = button(say("Forced"), () => this.open(), say("Shows what is forced"));
     this.key.classList.add("forces");
     this.key.hidden = true;
-    const release = button("Release all", () => {
+    const release = button(say("Release all"), () => {
       for (const one of this.all) one.release();
       this.dialog.close();
-    }, "Lets all values go on by themselves");
+    }, say("Lets all values go on by themselves"));
     release.hidden = !mayRelease;
-    this.dialog.append(make("h2", { id: "forces-title" }, "What is forced"), make("table", {}, this.rows),
-      make("div", { class: "toolbar" }, release, button("Close", () => this.dialog.close())));
+    this.dialog.append(make("h2", { id: "forces-title" }, say("What is forced")), make("table", {}, this.rows),
+      make("div", { class: "toolbar" }, release, button(say("Close"), () => this.dialog.close())));
     document.body.append(this.dialog);
   }
 
   show(all: readonly Forced[]): void {
     this.all = all;
     this.key.hidden = all.length === 0;
-    this.key.textContent = `${all.length} forced`;
+    this.key.textContent = say("{length} forced", { length: all.length });
     if (all.length === 0 && this.dialog.open) this.dialog.close();
     if (this.dialog.open) this.fill();
   }
@@ -151,7 +153,7 @@ export class Forces {
   private fill(): void {
     this.rows.replaceChildren(...this.all.map((one) => make("tr", {},
       make("td", { class: "name" }, ...broken(one.name)), make("td", { class: "value" }, one.value),
-      make("td", {}, ...(this.mayRelease ? [button("Release", one.release, `Release ${one.name}`)] : [])))));
+      make("td", {}, ...(this.mayRelease ? [button(say("Release"), one.release, say("Release {name}", { name: one.name }))] : [])))));
   }
 }
 

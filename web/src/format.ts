@@ -1,10 +1,35 @@
 // Values as they are read: with the digits that one can distinguish, which do not jump while the value moves.
 
+import { language, say } from "./say";
 import type { Signal } from "./session";
+
+/** What stands between the whole part of a number and the rest. */
+const POINT = new Intl.NumberFormat(language).formatToParts(0.5).find((part) => part.type === "decimal")?.value ?? ".";
+
+/** The text of a number as it is written here. */
+export function local(text: string): string {
+  return text.replace(".", POINT);
+}
+
+/** What somebody has typed, as a number has it everywhere. */
+export function neutral(text: string): string {
+  return POINT === "." ? text : text.replace(POINT, ".");
+}
 
 /** Virtual time as seconds with three places. */
 export function seconds(t_ns: number): string {
-  return `${(t_ns / 1e9).toFixed(3)} s`;
+  return `${local((t_ns / 1e9).toFixed(3))} s`;
+}
+
+/** The same of seconds. */
+export function seconds_of(t_s: number): string {
+  return seconds(t_s * 1e9);
+}
+
+/** A time that is left, as minutes and seconds. */
+export function minutes(t_ns: number): string {
+  const whole = Math.max(0, Math.ceil(t_ns / 1e9));
+  return `${Math.floor(whole / 60)}:${String(whole % 60).padStart(2, "0")}`;
 }
 
 /** Digits that a value of its greatest size has, and one with a prefix that we chose. */
@@ -51,12 +76,12 @@ export function form_for(unit: string | null, isWhole: boolean, size: number): F
 
 /** A number in a form, with digits of equal width and a true minus. */
 export function in_form(value: number, { by, decimals, unit }: Form): string {
-  if (Number.isNaN(value)) return "not a number";
+  if (Number.isNaN(value)) return say("not a number");
   if (!Number.isFinite(value)) return value > 0 ? "∞" : "−∞";
   const text = Math.abs(value / by) >= 1e12 ? (value / by).toExponential(DIGITS - 1) : (value / by).toFixed(decimals);
   // What rounds to zero has no sign.
   const digits = Number(text) === 0 ? text.replace("-", "") : text.replace("-", "−");
-  return unit === null ? digits : `${digits} ${unit}`;
+  return unit === null ? local(digits) : `${local(digits)} ${unit}`;
 }
 
 /** What of a signal's values has been seen: the greatest, from which the form follows. */
@@ -90,7 +115,7 @@ export function shown(signal: Signal, value: number | undefined): string {
 /** A value in full, for those who must know all of it. */
 export function exact(signal: Signal, value: number | undefined): string {
   if (value === undefined) return "";
-  return signal.unit === null ? String(value) : `${value} ${signal.unit}`;
+  return signal.unit === null ? local(String(value)) : `${local(String(value))} ${signal.unit}`;
 }
 
 /** The parts of a name between which it may be broken: after an underscore or a point, never within a word. */

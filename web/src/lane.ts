@@ -10,6 +10,31 @@ export function curve(number: number): string {
   return CURVES[number % CURVES.length] ?? CURVES[0];
 }
 
+const FONT = "11px system-ui";
+/** The room for the marks of the axis of values, and between them and the curve. */
+const AXIS_PX = 56;
+const GAP_PX = 3;
+
+let canvas: CanvasRenderingContext2D | null = null;
+
+/** How wide a mark of an axis is. */
+function measured(text: string): number {
+  canvas ??= document.createElement("canvas").getContext("2d");
+  if (canvas === null) return 0;
+  canvas.font = FONT;
+  return canvas.measureText(text).width;
+}
+
+/** A text that is no wider than its room: the end of one that is too wide is left out, and shown to be. */
+export function fitted(text: string, room_px: number, width: (text: string) => number): string {
+  if (width(text) <= room_px) return text;
+  for (let length = text.length - 1; length > 0; length -= 1) {
+    const part = `${text.slice(0, length)}…`;
+    if (width(part) <= room_px) return part;
+  }
+  return "…";
+}
+
 /** A property of the page's style. */
 export function style(name: string): string {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
@@ -33,7 +58,7 @@ export interface Lane {
 }
 
 export function lane_options(lane: Lane): uPlot.Options {
-  const axis: uPlot.Axis = { stroke: () => style("--text-2"), grid: { stroke: () => style("--line"), width: 1 }, ticks: { show: false }, gap: 3, font: "11px system-ui" };
+  const axis: uPlot.Axis = { stroke: () => style("--text-2"), grid: { stroke: () => style("--line"), width: 1 }, ticks: { show: false }, gap: GAP_PX, font: FONT };
   const stepped = uPlot.paths.stepped?.({ align: 1 });
   const write = lane.values;
   const series = lane.strokes.map<uPlot.Series>((stroke) => ({
@@ -42,13 +67,14 @@ export function lane_options(lane: Lane): uPlot.Options {
   return {
     width: 300,
     height: lane.height_px,
-    padding: [6, 10, 0, 0],
+    // The marks of an axis at its ends reach beyond the curve's room.
+    padding: [6, 18, lane.isBare === true ? 6 : 0, 0],
     legend: { show: false },
     cursor: { sync: { key: lane.group }, drag: { x: true, y: false, setScale: false }, y: false },
     scales: { x: { time: false }, y: lane.isBool ? { range: [-0.1, 1.1] } : {} },
     axes: [
       { ...axis, space: 60, ...(lane.isBare === true ? { size: 2, values: (_, all) => all.map(() => "") } : { size: 22 }) },
-      { ...axis, size: 48, space: 22, ...(lane.isBool ? { splits: [0, 1] } : {}), ...(write === undefined ? {} : { values: (_, all) => all.map(write) }) },
+      { ...axis, size: AXIS_PX, space: 22, ...(lane.isBool ? { splits: [0, 1] } : {}), ...(write === undefined ? {} : { values: (_, all) => all.map((value) => fitted(write(value), AXIS_PX - GAP_PX - 2, measured)) }) },
     ],
     series: [{}, ...series],
     hooks: lane.hooks,

@@ -1,5 +1,7 @@
 // The maps of a session: tables of values as colours, as they are now or at the moment of the past that is shown.
 
+import { local } from "./format";
+import { say } from "./say";
 import { make } from "./dom";
 import { count, ends, extremes, greatest_in, level, middle, named, strips, ticks, type Axis, type Cell, type Cells, type Table } from "./map";
 import type { MapValues } from "./picture";
@@ -15,7 +17,7 @@ class MapView {
   private readonly down = make("div", { class: "down" });
   private readonly across = make("div", { class: "across" });
   private readonly scale = make("div", { class: "scale" });
-  private readonly about = make("p", { class: "about" }, "Nothing of it is to be seen yet.");
+  private readonly about = make("p", { class: "about" }, say("Nothing of it is to be seen yet."));
   private readonly readout = make("p", { class: "readout", role: "status" });
   private readonly colours: readonly (readonly [number, number, number])[];
   private cells: Cells | null = null;
@@ -25,7 +27,7 @@ class MapView {
 
   constructor(private readonly info: MapInfo) {
     this.colours = info.colours.map((text) => [1, 3, 5].map((at) => parseInt(text.slice(at, at + 2), 16)) as [number, number, number]);
-    this.canvas.setAttribute("aria-label", `${info.title}: nothing yet`);
+    this.canvas.setAttribute("aria-label", say("{title}: nothing yet", { title: info.title }));
     this.canvas.addEventListener("pointermove", (event) => this.point(event));
     this.canvas.addEventListener("pointerleave", () => this.describe(null));
     this.canvas.addEventListener("keydown", (event) => this.walk(event));
@@ -50,8 +52,8 @@ class MapView {
     const found = extremes(table);
     this.draw(table, this.range(found));
     const [least, greatest] = found ?? [null, null];
-    const text = least === null || greatest === null ? "It has no values."
-      : `From ${this.number(least.value)} to ${this.number(greatest.value)}, which is at ${this.place(greatest)}.`;
+    const text = least === null || greatest === null ? say("It has no values.")
+      : say("From {least} to {greatest}, which is at {place}.", { least: this.number(least.value), greatest: this.number(greatest.value), place: this.place(greatest) });
     this.about.textContent = text;
     this.canvas.setAttribute("aria-label", `${this.info.title}: ${text}`);
     this.describe(this.cursor);
@@ -103,7 +105,7 @@ class MapView {
   }
 
   private number(value: number): string {
-    const text = String(Number(value.toPrecision(4)));
+    const text = local(String(Number(value.toPrecision(4))));
     return this.info.unit === "" ? text : `${text} ${this.info.unit}`;
   }
 
@@ -142,7 +144,7 @@ class MapView {
     this.cursor = cursor;
     const value = cursor === null || this.table === null ? undefined : this.table.values[cursor[1] * count(this.table.across) + cursor[0]];
     if (cursor === null || value === undefined) this.readout.textContent = "";
-    else this.readout.textContent = `${this.place({ column: cursor[0], row: cursor[1] })}: ${Number.isFinite(value) ? this.number(value) : "no value"}`;
+    else this.readout.textContent = `${this.place({ column: cursor[0], row: cursor[1] })}: ${Number.isFinite(value) ? this.number(value) : say("no value")}`;
   }
 }
 

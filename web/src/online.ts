@@ -1,5 +1,6 @@
 // The PLC online: a tree of its variables, a list of those that are watched, and what is written and forced.
 
+import { say } from "./say";
 import { broken, button, make } from "./dom";
 import type { Forced, Target } from "./forces";
 import type { Ask, Variables } from "./message";
@@ -50,7 +51,7 @@ export class OnlineView {
   ) {
     this.variables = session.plcs.flatMap((plc) => plc.variables);
     if (this.variables.length === 0) return;
-    const filter = make("input", { type: "search", placeholder: "Find a variable", "aria-label": "Find a variable" });
+    const filter = make("input", { type: "search", placeholder: say("Find a variable"), "aria-label": say("Find a variable") });
     const found = make("div", { class: "tree" });
     const all = tree(session.plcs);
     const fill = (): void => {
@@ -59,9 +60,9 @@ export class OnlineView {
     };
     filter.addEventListener("input", fill);
     fill();
-    const head = make("tr", {}, ...["Variable", "Value", ""].map((text) => make("th", { scope: "col" }, text)));
-    const table = make("table", { "aria-label": "Watched variables" }, make("thead", {}, head), this.list);
-    this.root.append(make("h3", {}, "Watch list"), table, filter, found);
+    const head = make("tr", {}, ...[say("Variable"), say("Value"), ""].map((text) => make("th", { scope: "col" }, text)));
+    const table = make("table", { "aria-label": say("Watched variables") }, make("thead", {}, head), this.list);
+    this.root.append(make("h3", {}, say("Watch list")), table, filter, found);
   }
 
   /** The variables whose values are wanted, with those beside `lines`. */
@@ -121,7 +122,7 @@ export class OnlineView {
 
   private leaf(number: number, name: string): HTMLElement {
     const variable = this.variables[number];
-    const watch = button("Watch", () => this.watch(number), `Watch ${variable?.path ?? name}`);
+    const watch = button(say("Watch"), () => this.watch(number), say("Watch {name}", { name: variable?.path ?? name }));
     return make("div", { class: "leaf" }, make("span", { title: variable?.type ?? "" }, name), watch);
   }
 
@@ -136,8 +137,8 @@ export class OnlineView {
       this.cells.delete(number);
       row.remove();
       this.changed();
-    }, `Watch ${path} no more`);
-    row.append(make("td", { class: "deeds" }, button("Write or force", () => this.operate(number), `Write or force ${path}`), away));
+    }, say("Watch {path} no more", { path }));
+    row.append(make("td", { class: "deeds" }, button(say("Write or force"), () => this.operate(number), say("Write or force {path}", { path })), away));
     this.list.append(row);
     this.cells.set(number, value);
     this.fill(number, value);

@@ -1,19 +1,23 @@
 // All views of one session, fed from one connection.
 
+import { own, say, say_word, type Text } from "./say";
 import { button, frame, make } from "./dom";
+import { AlarmBanner, AlarmList, type AlarmActions } from "./alarm-list";
+import { AlarmSound } from "./alarm-sound";
+import { AlarmBook, most_urgent, type Standing } from "./alarms";
 import { Backfill } from "./backfill";
 import { Drawings } from "./drawings";
 import { ForceDialog, Forces, type Forced } from "./forces";
-import { seconds, shown } from "./format";
+import { local, seconds, shown } from "./format";
 import { main_source } from "./highlight";
 import { Link, live_address, type LinkState } from "./link";
 import { Maps } from "./maps";
 import { OnlineView } from "./online";
-import { PanelView, type Alarm } from "./panels";
+import { PanelView } from "./panels";
 import { PartSheet } from "./part";
 import type { Ask, Message } from "./message";
 import type { Picture } from "./picture";
-import type { Session } from "./session";
+import type { AlarmChange, Session } from "./session";
 import { MachineView } from "./scene";
 import { Schematic } from "./schematic";
 import { Sheets } from "./sheets";
@@ -24,14 +28,28 @@ import { Timeline } from "./timeline";
 import { TrainingView } from "./training";
 import { TrendsView } from "./trends";
 
-const ALARMS = 50;
+/** How many messages of the session are listed. */
+const NEWS = 50;
+/** How often alarms are looked at while virtual time goes on: one that was put aside comes back. */
+const ALARMS_EACH_NS = 250e6;
 /** Between the buttons over the machine and the machine, CSS pixels. */
 const BAR_PX = 4;
 const LANES_AT_FIRST = 3;
 
+const STATES: Readonly<Record<"run" | "hold" | "end" | "recorded", Text>> = { run: "running", hold: "held", end: "over", recorded: "recorded" };
+
 export class Page {
   private readonly values = new Map<number, number>();
-  private alarms: readonly Alarm[] = [];
+  private readonly book: AlarmBook;
+  private readonly banner: AlarmBanner;
+  private readonly alarm_list: AlarmList;
+  private readonly sound = new AlarmSound();
+  /** The time for which alarms were shown last. */
+  private alarms_ns = Number.NEGATIVE_INFINITY;
+  private standing: readonly Standing[] = [];
+  private readonly news = make("ul", { class: "news", "aria-label": say("Messages") });
+  private readonly lesson: TrainingView | null;
+  private isOver = false;
   private readonly machine: MachineView;
   private readonly panels: readonly { name: string; view: PanelView }[];
   private readonly part: PartSheet;
@@ -61,16 +79,28 @@ export class Page {
   private wasPast = false;
 
   constructor(private readonly session: Session) {
-    frame("title").textContent = session.title;
-    document.title = `${session.title} · onescan`;
+    frame("title").textContent = own(session.title);
+    document.title = `${own(session.title)} · onescan`;
+    const attend: AlarmActions = {
+      acknowledge: (alarms) => this.acknowledge(alarms),
+      shelve: (alarm, for_s) => this.ask({ type: "shelve", alarm, for_s }),
+      open: () => this.tabs?.open("Alarms"),
+    };
+    this.book = new AlarmBook(session.alarms);
+    this.banner = new AlarmBanner(attend, this.sound.key);
+    const isByPanel = session.panels.some((panel) => panel.elements.some((one) => one.kind === "alarms" && one.signal !== null));
+    this.alarm_list = new AlarmList(say("Alarms"), attend, !isByPanel);
+    this.banner.root.hidden = session.alarms.length === 0;
+    frame("notice").after(this.banner.root);
+    this.lesson = session.training === null ? null : new TrainingView(session.training, session.views, () => this.last?.t_ns ?? 0, (ask) => this.ask(ask));
     const again = (): void => this.subscribe();
     const bar = frame("view-tools");
     // What lies over the machine from above is no room for it.
     const covered_px = (): number => bar.offsetTop + bar.offsetHeight + BAR_PX;
-    const plain = make("span", { class: "plain", role: "status", title: "The graphics of this computer are slow: what moves is drawn without shadows and edges" });
+    const plain = make("span", { class: "plain", role: "status", title: say("The graphics of this computer are slow: what moves is drawn without shadows and edges") });
     this.plain = plain;
     this.machine = new MachineView(frame("canvas"), session, (body) => this.choose(body), false, covered_px, (isPlain) => {
-      plain.textContent = isPlain ? "Plain picture: slow graphics" : "";
+      plain.textContent = isPlain ? say("Plain picture: slow graphics") : "";
       plain.hidden = !isPlain;
     });
     this.schematic = session.bodies.some((body) => body.shape.kind !== "none") ? null : new Schematic(session);
@@ -84,8 +114,7 @@ export class Page {
         take: (name, take) => this.ask({ type: "seat", panel: name, take }),
         fail: (component, failure, active) => this.ask({ type: "fail", component, failure, active }),
         disturb: (disturbance, active) => this.ask({ type: "disturb", disturbance, active }),
-        alarms: () => this.alarms,
-        acknowledge: () => this.acknowledge(),
+        acknowledge: () => this.acknowledge(session.alarms.map((_, alarm) => alarm)),
       }),
     }));
     this.part = new PartSheet(session, this.values, this.machine, (ask) => this.ask(ask), again);
@@ -114,7 +143,7 @@ export class Page {
       picture: (picture) => this.show(picture),
       map: (values) => this.maps.show(values),
       state: (state) => this.show_link(state),
-      garbage: (error) => this.notice(`Something that arrived cannot be read and is left out: ${error.message}.`),
+      garbage: (error) => this.notice(say("Something that arrived cannot be read and is left out: {message}.", { message: error.message })),
     });
     this.fill_sheets(sheets, code);
     this.fill_tools(readout);
@@ -127,9 +156,10 @@ export class Page {
   }
 
   private fill_sheets(sheets: Sheets, code: HTMLElement): void {
-    const none = make("p", { class: "empty" }, "This scenario has no panel. Add [[panel]] to it.");
-    sheets.add("Panels", make("div", {}, ...this.lesson(), ...(this.panels.length === 0 ? [none] : this.panels.map((one) => one.view.root))));
+    const none = make("p", { class: "empty" }, say("This scenario has no panel. Add [[panel]] to it."));
+    sheets.add("Panels", make("div", {}, ...(this.lesson === null ? [] : [this.lesson.root]), ...(this.panels.length === 0 ? [none] : this.panels.map((one) => one.view.root))));
     sheets.add("Part", this.part.root);
+    if (this.session.alarms.length > 0) sheets.add("Alarms", this.alarm_sheet());
     sheets.add("Signals", this.table.root);
     sheets.add("PLC", this.plc(code));
     if (this.session.maps.length > 0) sheets.add("Maps", this.maps.root);
@@ -141,16 +171,16 @@ export class Page {
     for (const signal of shown) this.trends.toggle(signal);
   }
 
-  private lesson(): readonly HTMLElement[] {
-    const lesson = this.session.training;
-    return lesson === null ? [] : [new TrainingView(lesson, this.session.views, () => this.last?.t_ns ?? 0, (ask) => this.ask(ask)).root];
+  private alarm_sheet(): HTMLElement {
+    const all = button(say("Acknowledge all"), () => this.acknowledge(this.session.alarms.map((_, alarm) => alarm)), say("Acknowledges all alarms"));
+    return make("div", { class: "alarms" }, make("div", { class: "toolbar" }, all), this.alarm_list.root);
   }
 
   private plc(code: HTMLElement): HTMLElement {
     const [sources, drawings] = [this.session.sources, this.drawings.names()];
-    if (sources.length + drawings.length === 0) return make("div", {}, make("p", { class: "empty" }, "No source of a PLC is part of this session."), this.online.root);
+    if (sources.length + drawings.length === 0) return make("div", {}, make("p", { class: "empty" }, say("No source of a PLC is part of this session.")), this.online.root);
     const options = [...sources.map((one) => one.path), ...drawings].map((name) => make("option", {}, name));
-    const files = make("select", { "aria-label": "Source file" }, ...options);
+    const files = make("select", { "aria-label": say("Source file") }, ...options);
     const open = (): void => {
       const source = sources[files.selectedIndex];
       [code.hidden, this.drawings.root.hidden] = [source === undefined, source !== undefined];
@@ -168,32 +198,35 @@ export class Page {
   }
 
   private checks(): HTMLElement {
-    if (this.session.expectations.length === 0) return make("div", {}, make("p", { class: "empty" }, "This scenario expects nothing."));
+    if (this.session.expectations.length === 0) return make("div", {}, make("p", { class: "empty" }, say("This scenario expects nothing.")), this.news);
     const rows = this.session.expectations.map((one) => {
-      const cell = make("td", { class: "value" }, "open");
+      const cell = make("td", { class: "value" }, say("open"));
       this.verdicts.set(one.name, cell);
-      return make("tr", {}, make("td", { class: "name", title: one.text }, one.name), cell);
+      return make("tr", {}, make("td", { class: "name", title: one.text }, own(one.name)), cell);
     });
-    return make("div", {}, make("table", {}, make("tbody", {}, ...rows)));
+    return make("div", {}, make("table", {}, make("tbody", {}, ...rows)), this.news);
   }
 
   private fill_tools(readout: HTMLElement): void {
     frame("past").append(
-      make("span", {}, "You see the past: ", make("b", { id: "past-time" })),
-      button("Back to now", () => this.ask({ type: "live" }), "Shows the live edge again"));
-    const operate = (operation: "hold" | "go" | "step", label: string): HTMLButtonElement =>
-      button(label, () => this.ask({ type: "operate", operation }));
+      make("span", {}, say("You see the past:"), " ", make("b", { id: "past-time" })),
+      button(say("Back to now"), () => this.ask({ type: "live" }), say("Shows the live edge again")));
+    const operate = (operation: "hold" | "go" | "step", label: string, title: string): HTMLButtonElement =>
+      button(label, () => this.ask({ type: "operate", operation }), title);
     const is_ours = this.session.training?.role !== "trainee";
-    if (this.session.live && is_ours) frame("controls").append(operate("hold", "Hold"), operate("step", "Step"), operate("go", "Go"));
-    for (const { name } of this.session.views) this.views.set(name, button(name, () => this.see(name)));
+    if (this.session.live && is_ours) frame("controls").append(
+      operate("hold", say("Hold"), say("The machine stands still: virtual time stops")),
+      operate("step", say("Step"), say("The machine does one step, and stands still again")),
+      operate("go", say("Go"), say("The machine goes on")));
+    for (const { name } of this.session.views) this.views.set(name, button(own(name), () => this.see(name), say("Shows the machine from here")));
     const views = [...this.views.values()];
     const call = (): void => {
       const name = this.session.views.find((one) => one.name === this.seen)?.name;
       if (name !== undefined) this.ask({ type: "view", view: name });
     };
-    if (views.length > 0 && is_ours) views.push(button("For all", call, "Shows the view that was chosen last to all viewers"));
+    if (views.length > 0 && is_ours) views.push(button(say("For all"), call, say("Shows the view that was chosen last to all viewers")));
     const [front, back] = this.machine.depth_m();
-    const cut = make("input", { type: "range", min: "0", max: "1", step: "0.01", value: "0", "aria-label": "Section from the front" });
+    const cut = make("input", { type: "range", min: "0", max: "1", step: "0.01", value: "0", "aria-label": say("Section from the front") });
     cut.addEventListener("input", () => {
       const share = Number(cut.value);
       this.machine.cut(share === 0 ? null : front + share * (back - front));
@@ -201,14 +234,14 @@ export class Page {
     // A schematic has no camera.
     frame("view-tools").hidden = this.schematic !== null;
     frame("view-tools").append(
-      button("Whole", () => this.see(null), "Shows the whole machine"), ...views,
-      button("Show all", () => this.machine.show_all()), make("label", {}, "Section", cut), this.plain,
+      button(say("Whole"), () => this.see(null), say("Shows the whole machine")), ...views,
+      button(say("Show all"), () => this.machine.show_all(), say("Shows the parts again that are hidden")), make("label", { title: say("Cuts off what is in front") }, say("Section"), cut), this.plain,
     );
-    frame("trend-tools").append(make("h2", {}, "Trends"), readout, button("Latest", () => this.trends.follow()));
+    frame("trend-tools").append(make("h2", {}, say("Trends")), readout, button(say("Latest"), () => this.trends.follow(), say("Shows what is happening now")));
   }
 
   private ask(ask: Ask): void {
-    if (!(this.link?.ask(ask) ?? false)) this.notice("There is no connection to the session: nothing was sent.");
+    if (!(this.link?.ask(ask) ?? false)) this.notice(say("There is no connection to the session: nothing was sent."));
   }
 
   private choose(body: number | null): void {
@@ -303,6 +336,8 @@ export class Page {
       this.machine.light_up(new Set(this.sensors.filter((one) => this.values.get(one.signal) !== 0).map((one) => one.body)));
     }
     for (const one of this.panels) one.view.at(picture.t_ns);
+    this.lesson?.at(picture.t_ns);
+    this.show_alarms(picture.t_ns, false);
     if (!picture.isPast || !this.session.live) this.trends.at(picture.t_ns);
     this.show_past(picture);
     this.timeline.at(picture);
@@ -322,8 +357,10 @@ export class Page {
   private handle(message: Message): void {
     switch (message.type) {
       case "status":
-        frame("state").textContent = message.state;
-        frame("pace").textContent = message.pace;
+        frame("state").textContent = say(STATES[message.state]);
+        document.body.classList.toggle("held", message.state === "hold");
+        if (message.state === "end") this.isOver = true;
+        frame("pace").textContent = message.pace === "max" ? say("as fast as it can") : message.pace === "" ? "–" : `${local(message.pace)}×`;
         for (const one of this.panels) {
           one.view.sit(message.seat.get(one.name) ?? "taken");
           one.view.hold(message.state === "hold");
@@ -334,8 +371,15 @@ export class Page {
         this.note_forced(message.forced);
         return this.timeline.reach(message.past_ns, message.shown_ns);
       case "event":
-        this.ring(message.t_ns, message.kind, message.text);
+        if (message.kind === "end") this.isOver = true;
+        this.list_news(`${seconds(message.t_ns)} ${message.text}`);
         return this.trends.mark({ t_ns: message.t_ns, text: message.text });
+      case "alarms":
+        return this.ring(message.all, message.changes);
+      case "lesson":
+        this.isOver = message.result !== null;
+        if (message.result !== null) this.tabs?.open("Panels");
+        return this.lesson?.show(message);
       case "verdict":
         return this.judge(message.name, message.verdict, message.robustness, message.t_ns);
       case "looks":
@@ -357,28 +401,39 @@ export class Page {
     }
   }
 
-  /** Something has come, or is gone. */
-  private ring(t_ns: number, kind: string, text: string): void {
-    if (kind === "gone") {
-      const gone = this.alarms.map((one) => (one.text.endsWith(` ${text}`) ? { ...one, isGone: true } : one));
-      this.alarms = gone.filter((one) => !one.isGone || !one.isSeen);
-    } else {
-      this.alarms = [{ text: `${seconds(t_ns)} ${text}`, isGone: kind !== "alarm", isSeen: false }, ...this.alarms].slice(0, ALARMS);
+  /** Alarms have come or gone, or somebody has done something about them. */
+  private ring(isAll: boolean, changes: readonly AlarmChange[]): void {
+    for (const { t_ns, alarm, fate } of this.book.take(isAll, changes)) {
+      if (fate === "on") this.trends.mark({ t_ns, text: own(this.session.alarms[alarm]?.name ?? "") });
     }
-    for (const one of this.panels) one.view.alarms();
+    this.show_alarms(this.last?.t_ns ?? 0, true);
   }
 
-  private acknowledge(): void {
-    this.alarms = this.alarms.filter((one) => !one.isGone).map((one) => ({ ...one, isSeen: true }));
-    for (const one of this.panels) one.view.alarms();
+  /** Shows the alarms of the moment that is shown. */
+  private show_alarms(t_ns: number, isDue: boolean): void {
+    const isPast = this.last?.isPast ?? false;
+    if (!isPast) this.sound.ring(most_urgent(this.standing), performance.now());
+    if (!isDue && Math.abs(t_ns - this.alarms_ns) < (isPast ? 1 : ALARMS_EACH_NS)) return;
+    this.alarms_ns = t_ns;
+    this.standing = this.book.at(t_ns, !isPast);
+    const isResting = isPast || !this.session.live;
+    this.banner.show(this.standing, isResting);
+    this.alarm_list.show(this.standing, isResting);
+    for (const one of this.panels) one.view.alarms(this.standing, isResting);
+  }
+
+  /** Acknowledges alarms: by the key of a panel where one of them has one, as its program needs it. */
+  private acknowledge(alarms: readonly number[]): void {
+    if (!this.panels.some((one) => one.view.acknowledge())) this.ask({ type: "acknowledge", alarms });
   }
 
   private judge(name: string, verdict: string, robustness: number | null, t_ns: number): void {
     const cell = this.verdicts.get(name);
     if (cell === undefined) return;
     const was_met = !cell.classList.contains("verdict-fail");
-    if (verdict === "fail" && was_met) this.trends.mark({ t_ns, text: `not met: ${name}` });
-    cell.textContent = robustness === null ? verdict : `${verdict} (${Number(robustness.toPrecision(4))})`;
+    if (verdict === "fail" && was_met) this.trends.mark({ t_ns, text: say("not met: {name}", { name: own(name) }) });
+    const word = say_word(verdict);
+    cell.textContent = robustness === null ? word : `${word} (${local(String(Number(robustness.toPrecision(4))))})`;
     cell.className = `value verdict-${verdict}`;
   }
 
@@ -394,13 +449,20 @@ export class Page {
 
   private show_link(state: LinkState): void {
     const link = frame("link");
-    link.textContent = { connecting: "connecting…", connected: "connected", lost: "connection lost" }[state];
-    link.className = state;
-    if (state === "lost") this.notice("The connection to the session is lost. The page shows the last picture and connects again by itself.");
+    link.textContent = { connecting: say("connecting…"), connected: say("connected"), lost: say("connection lost") }[state];
+    link.className = state === "lost" && this.isOver ? "over" : state;
+    if (state === "lost" && this.isOver) link.textContent = say("over");
+    else if (state === "lost") this.notice(say("The connection to the session is lost. The page shows the last picture and connects again by itself."));
     if (state === "connected") {
       frame("notice").hidden = true;
       this.drawings.again();
     }
+  }
+
+  /** Lists something that the session has reported. */
+  private list_news(text: string): void {
+    this.news.prepend(make("li", {}, text));
+    while (this.news.children.length > NEWS) this.news.lastChild?.remove();
   }
 
   private notice(text: string): void {
@@ -425,6 +487,8 @@ export class Page {
       map_pixel: (name: string, x: number, y: number) => this.maps.pixel(name, x, y),
       drawn: () => this.machine.drawn,
       sight: () => this.machine.sight(),
+      alarms: () => this.standing.map((one) => ({ name: one.about.name, isOn: one.gone_ns === null, isSeen: one.isSeen, isAside: one.aside_ns !== null })),
+      sounds: () => this.sound.count,
       is_plain: () => this.plain.textContent !== "",
       drawn_m: (name: string) => this.machine.drawn_m(this.session.bodies.findIndex((one) => one.name === name)),
       style: (name: string) => {

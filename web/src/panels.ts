@@ -1,18 +1,14 @@
 // The panels of the machine: what an operator presses and reads.
 
+import { own, say, say_word } from "./say";
+import { AlarmList } from "./alarm-list";
+import type { Standing } from "./alarms";
 import { broken, button, make } from "./dom";
 import { Press } from "./press";
 import { shown } from "./format";
 import type { SeatState } from "./message";
 import type { Panel, PanelElement, Session } from "./session";
 import { Sparkline } from "./sparkline";
-
-/** Something that was reported: it is listed until it is gone and has been acknowledged. */
-export interface Alarm {
-  readonly text: string;
-  readonly isGone: boolean;
-  readonly isSeen: boolean;
-}
 
 export interface PanelActions {
   /** Writes a value of a signal, as an operator's input at the next step boundary. */
@@ -22,14 +18,9 @@ export interface PanelActions {
   readonly fail: (component: string, failure: string, active: boolean) => void;
   /** Puts a fault on the way of signals, or takes it away. */
   readonly disturb: (disturbance: number, active: boolean) => void;
-  /** What was reported, newest first. */
-  readonly alarms: () => readonly Alarm[];
-  /** All of it has been seen. */
+  /** All alarms have been seen. */
   readonly acknowledge: () => void;
 }
-
-/** How long an acknowledgement is pressed. */
-const PRESSED_MS = 500;
 
 /** Shows the value of a signal that has changed. */
 type Show = (value: number) => void;
@@ -47,7 +38,9 @@ export class PanelView {
   private isHeld = false;
   private readonly why = make("p", { class: "why" });
   private readonly lines: Sparkline[] = [];
-  private readonly lists: (() => void)[] = [];
+  private readonly lists: AlarmList[] = [];
+  /** Presses the key that acknowledges, if this panel has one. */
+  private press_acknowledge: (() => void) | null = null;
   private readonly seat_text = make("span", { class: "seat-text", role: "status" });
   private readonly seat_button: HTMLButtonElement;
   private seat: SeatState = "free";
@@ -57,7 +50,7 @@ export class PanelView {
     private readonly session: Session,
     private readonly actions: PanelActions,
   ) {
-    this.seat_button = button("Take seat", () => actions.take(panel.name, this.seat !== "mine"));
+    this.seat_button = button(say("Take seat"), () => actions.take(panel.name, this.seat !== "mine"), say("Who has the seat operates this panel; others look on"));
     const grid = make("div", { class: "panel-grid" }, ...panel.elements.map((element) => this.place(element)));
     grid.style.gridTemplateColumns = `repeat(${panel.columns}, minmax(0, 1fr))`;
     if (panel.picture !== null) {
@@ -65,10 +58,12 @@ export class PanelView {
       grid.style.gridTemplateRows = `repeat(${panel.rows}, minmax(44px, auto))`;
       grid.style.backgroundImage = `url(${JSON.stringify(panel.picture)})`;
     }
-    const head = make("div", { class: "panel-head" }, make("h3", {}, panel.name), this.seat_text, this.seat_button);
+    const head = make("div", { class: "panel-head" }, make("h3", {}, own(panel.name)), this.seat_text, this.seat_button);
     this.why.id = `why-${panel.name.replace(/\W/g, "-")}`;
-    this.root = make("section", { class: "panel", "aria-label": `Panel ${panel.name}` }, head, this.why, grid);
+    this.root = make("section", { class: "panel", "aria-label": say("Panel {name}", { name: own(panel.name) }) }, head, this.why, grid);
     for (const input of this.inputs) input.setAttribute("aria-describedby", this.why.id);
+    // Where nothing is written, nobody needs to sit.
+    if (this.inputs.length === 0) [this.seat_button.hidden, this.seat_text.hidden] = [true, true];
     this.turn(panel);
     this.sit("free");
   }
@@ -88,13 +83,12 @@ export class PanelView {
     for (const [number, shows] of this.disturbances) for (const one of shows) one(disturbed.has(number) ? 1 : 0);
   }
 
-  /** A page is there while its signal says so. Where nothing is written, nobody needs to sit. */
+  /** A page is there while its signal says so. */
   private turn(panel: Panel): void {
     const page = panel.page;
     if (page === null) return;
     this.root.hidden = true;
     this.bound(page.signal, (value) => (this.root.hidden = value !== page.value));
-    if (this.inputs.length === 0) [this.seat_button.hidden, this.seat_text.hidden] = [true, true];
   }
 
   /** Marks what is forced: a press or a turn of it changes nothing. */
@@ -102,9 +96,15 @@ export class PanelView {
     for (const [signal, cells] of this.cells) for (const cell of cells) cell.classList.toggle("forced", forced.has(signal));
   }
 
-  /** Shows the alarms that there are now. */
-  alarms(): void {
-    for (const list of this.lists) list();
+  /** Shows the alarms that there are. */
+  alarms(all: readonly Standing[], isResting: boolean): void {
+    for (const list of this.lists) list.show(all, isResting);
+  }
+
+  /** Acknowledges with this panel's own signal; false if it has none. */
+  acknowledge(): boolean {
+    this.press_acknowledge?.();
+    return this.press_acknowledge !== null;
   }
 
   /** The time of a picture whose values have been shown. */
@@ -130,9 +130,9 @@ export class PanelView {
     const waiting = this.waiting;
     if (seat !== "free") this.waiting = [];
     if (seat === "mine") for (const one of waiting) one();
-    const words: Record<SeatState, string> = { free: "free", mine: "you sit here", taken: "taken by another viewer" };
-    this.seat_text.textContent = `${this.panel.seat}: ${words[seat]}`;
-    this.seat_button.textContent = seat === "mine" ? "Leave seat" : "Take seat";
+    const words: Record<SeatState, string> = { free: say("free"), mine: say("you sit here"), taken: say("taken by another viewer") };
+    this.seat_text.textContent = say("{seat}: {state}", { seat: say_word(this.panel.seat), state: words[seat] });
+    this.seat_button.textContent = seat === "mine" ? say("Leave seat") : say("Take seat");
     this.seat_button.disabled = seat === "taken";
     this.root?.classList.toggle("mine", seat === "mine");
     this.say_why();
@@ -140,7 +140,7 @@ export class PanelView {
 
   /** Says why nothing can be pressed, or what a press does first. */
   private say_why(): void {
-    const why = why_not(this.panel.seat, this.seat, this.isPast);
+    const why = why_not(say_word(this.panel.seat), this.seat, this.isPast);
     const isDead = this.isPast || this.seat === "taken";
     this.why.textContent = this.inputs.length === 0 ? "" : why;
     this.why.hidden = this.why.textContent === "";
@@ -161,8 +161,9 @@ export class PanelView {
     }
   }
 
-  private place(element: PanelElement): HTMLElement {
-    const cell = make("div", { class: `element ${element.kind}` });
+  private place(raw: PanelElement): HTMLElement {
+    const element = { ...raw, label: own(raw.label), choices: raw.choices.map((one) => ({ ...one, label: own(one.label) })) };
+    const cell = make("div", { class: `element ${element.kind}`, "data-forced": say("forced") });
     cell.style.gridColumn = `${element.at[0] + 1} / span ${element.span[0]}`;
     cell.style.gridRow = `${element.at[1] + 1} / span ${element.span[1]}`;
     if (element.colour !== null) cell.style.setProperty("--own", element.colour);
@@ -178,6 +179,8 @@ export class PanelView {
     switch (element.kind) {
       case "button":
         return element.mode === "toggle" ? this.fill_switch(cell, element) : this.fill_button(cell, element);
+      case "emergency-stop":
+        return this.fill_emergency_stop(cell, element);
       case "switch":
         return this.fill_switch(cell, element);
       case "selector":
@@ -242,9 +245,15 @@ export class PanelView {
 
   private fill_button(cell: HTMLElement, element: PanelElement): void {
     const key = make("button", { type: "button", class: "push", "aria-pressed": "false" }, ...broken(element.label));
-    let say = (_value: number): void => {};
-    const held = new Press((value) => say(value), (deed, ms) => void window.setTimeout(deed, ms), () => this.isHeld);
-    say = this.wire(element, (value) => {
+    this.hold_down(key, element);
+    cell.append(key);
+  }
+
+  /** Makes a key of an element that is down while somebody presses it, by mouse, touch, keyboard or voice. */
+  private hold_down(key: HTMLButtonElement, element: PanelElement): Press {
+    let give = (_value: number): void => {};
+    const held = new Press((value) => give(value), (deed, ms) => void window.setTimeout(deed, ms), () => this.isHeld);
+    give = this.wire(element, (value) => {
       key.setAttribute("aria-pressed", String(value !== 0));
       held.seen(value !== 0);
     });
@@ -273,12 +282,29 @@ export class PanelView {
       press(false);
     });
     this.inputs.push(key);
-    cell.append(key);
+    return held;
+  }
+
+  /** A mushroom on yellow: it latches when it is struck, and is turned to be released (ISO 13850). */
+  private fill_emergency_stop(cell: HTMLElement, element: PanelElement): void {
+    const state = make("span", { class: "stop-state" });
+    const key = make("button", { type: "button", class: "stop", "aria-pressed": "false", "aria-label": element.label }, make("span", { class: "mushroom", "aria-hidden": "true" }));
+    const write = this.wire(element, (value) => {
+      key.setAttribute("aria-pressed", String(value !== 0));
+      state.textContent = value !== 0 ? say("struck: press to turn and release") : say("ready");
+    });
+    key.addEventListener("click", () => write(key.getAttribute("aria-pressed") === "true" ? 0 : 1));
+    this.inputs.push(key);
+    cell.append(key, make("span", { class: "stop-label" }, ...broken(element.label)), state);
   }
 
   private fill_switch(cell: HTMLElement, element: PanelElement): void {
     const key = make("button", { type: "button", class: "toggle", role: "switch", "aria-checked": "false" }, ...broken(element.label));
-    const write = this.wire(element, (value) => key.setAttribute("aria-checked", String(value !== 0)));
+    const write = this.wire(element, (value) => {
+      key.setAttribute("aria-checked", String(value !== 0));
+      key.dataset.state = value !== 0 ? say("on") : say("off");
+    });
+    key.dataset.state = say("off");
     key.addEventListener("click", () => write(key.getAttribute("aria-checked") === "true" ? 0 : 1));
     this.inputs.push(key);
     cell.append(key);
@@ -315,13 +341,13 @@ export class PanelView {
   }
 
   private fill_lamp(cell: HTMLElement, element: PanelElement): void {
-    const state = make("span", { class: "visually-hidden" }, "off");
+    const state = make("span", { class: "lamp-state" }, say("off"));
     const bulb = make("span", { class: "bulb" });
     this.wire(element, (value) => {
       bulb.classList.toggle("on", value !== 0);
-      state.textContent = value !== 0 ? "on" : "off";
+      state.textContent = value !== 0 ? say("on") : say("off");
     });
-    cell.append(bulb, make("span", { class: "lamp-label" }, ...broken(element.label)), state);
+    cell.append(bulb, make("span", { class: "lamp-label" }, ...broken(element.label), state));
   }
 
   private fill_number(cell: HTMLElement, element: PanelElement): void {
@@ -353,23 +379,20 @@ export class PanelView {
   }
 
   private fill_alarms(cell: HTMLElement, element: PanelElement): void {
-    const list = make("ul", { "aria-label": element.label === "" ? "Alarms" : element.label, "aria-live": "polite" });
-    this.lists.push(() => {
-      list.replaceChildren(...this.actions.alarms().map((one) => {
-        const state = one.isGone ? "gone" : "on";
-        return make("li", { class: `${state} ${one.isSeen ? "seen" : "new"}` }, one.text, make("span", {}, one.isSeen ? state : `${state}, new`));
-      }));
-    });
-    const key = make("button", { type: "button" }, "Acknowledge");
-    const signal = this.bound(element.signal, () => {});
-    key.addEventListener("click", () => {
-      this.actions.acknowledge();
-      this.write(signal, 1);
-      if (signal !== null) window.setTimeout(() => this.write(signal, 0), PRESSED_MS);
-    });
-    // What only this page remembers needs no seat.
-    if (signal !== null) this.inputs.push(key);
-    cell.append(make("span", { class: "caption" }, element.label), list, key);
+    const list = new AlarmList(element.label === "" ? say("Alarms") : element.label, null, false);
+    list.root.tabIndex = 0;
+    list.show([], false);
+    this.lists.push(list);
+    const key = make("button", { type: "button" }, say("Acknowledge"));
+    if (element.signal === null) key.addEventListener("click", () => this.actions.acknowledge());
+    else {
+      const held = this.hold_down(key, element);
+      this.press_acknowledge = () => {
+        held.press(true);
+        held.press(false);
+      };
+    }
+    cell.append(make("span", { class: "caption" }, element.label), list.root, key);
   }
 
   /** How fine a slider is: that of a whole number has no values in between. */
@@ -380,13 +403,13 @@ export class PanelView {
 
   private text(name: string | null, value: number): string {
     const signal = this.session.signals.find((one) => one.name === name);
-    return signal === undefined ? "no such signal" : shown(signal, value);
+    return signal === undefined ? say("no such signal") : shown(signal, value);
   }
 }
 
 /** Why nothing can be pressed at a panel, or what the first press does; nothing where all is well. */
 export function why_not(seat: string, state: SeatState, isPast: boolean): string {
-  if (isPast) return "This is the past: go back to now to operate the machine.";
-  if (state === "taken") return `Another viewer has the seat ${seat}: you can operate when it is free.`;
-  return state === "free" ? `Nobody has the seat ${seat}: the first press takes it.` : "";
+  if (isPast) return say("This is the past: go back to now to operate the machine.");
+  if (state === "taken") return say("Another viewer has the seat {seat}: you can operate when it is free.", { seat });
+  return state === "free" ? say("Nobody has the seat {seat}: the first press takes it.", { seat }) : "";
 }

@@ -1,5 +1,6 @@
 // What is known of the part that was clicked: its signals, its parameters, its failure modes.
 
+import { say } from "./say";
 import { button, make } from "./dom";
 import { shown } from "./format";
 import type { Ask } from "./message";
@@ -41,9 +42,9 @@ export class PartSheet {
       return;
     }
     const tools = make("div", { class: "toolbar" },
-      button("Follow", () => this.machine.follow(body)),
-      button("Stay", () => this.machine.follow(null)),
-      button("Hide", () => this.machine.hide(body)));
+      button(say("Follow"), () => this.machine.follow(body), say("Keeps this part in the middle of the picture")),
+      button(say("Stay"), () => this.machine.follow(null), say("Lets the picture stay where it is")),
+      button(say("Hide"), () => this.machine.hide(body), say("Shows what is behind this part")));
     const components = this.session.components.filter((one) => one.body === about.name);
     this.root.replaceChildren(
       make("h2", {}, about.name), make("p", { class: "empty" }, `${about.kind}, ${about.shape.kind}`), tools,
@@ -53,16 +54,16 @@ export class PartSheet {
   /** All parts by name, for those who do not use a mouse. */
   private list(): HTMLElement {
     const options = this.session.bodies.map((one, index) => make("option", { value: String(index) }, one.name));
-    const select = make("select", { "aria-label": "Part", size: "12", class: "filter" }, ...options);
+    const select = make("select", { "aria-label": say("Part"), size: "12", class: "filter" }, ...options);
     select.addEventListener("change", () => {
       this.open(Number(select.value));
       this.changed();
     });
-    return make("div", {}, make("p", { class: "empty" }, "Click a part of the machine, or choose one here."), select);
+    return make("div", {}, make("p", { class: "empty" }, say("Click a part of the machine, or choose one here.")), select);
   }
 
   private back(): HTMLElement {
-    return button("All parts", () => {
+    return button(say("All parts"), () => {
       this.open(null);
       this.changed();
     });
@@ -81,8 +82,8 @@ export class PartSheet {
       make("td", { class: "name" }, parameter.name),
       make("td", { class: "value" }, parameter.unit === null ? parameter.value : `${parameter.value} ${parameter.unit}`)));
     const failures = one.failures.map(({ name: failure }) => make("tr", {}, make("td", { class: "name" }, failure), make("td", { class: "value" },
-      button("Fail", () => this.ask({ type: "fail", component: one.name, failure, active: true }), `Fail ${one.name}: ${failure}`),
-      button("Repair", () => this.ask({ type: "fail", component: one.name, failure, active: false }), `Repair ${one.name}: ${failure}`))));
+      button(say("Fail"), () => this.ask({ type: "fail", component: one.name, failure, active: true }), say("Fail {name}: {failure}", { name: one.name, failure })),
+      button(say("Repair"), () => this.ask({ type: "fail", component: one.name, failure, active: false }), say("Repair {name}: {failure}", { name: one.name, failure })))));
     return [make("h3", {}, `${one.name} (${one.kind})`), make("table", {}, make("tbody", {}, ...signals, ...parameters, ...failures))];
   }
 }

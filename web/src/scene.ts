@@ -1,11 +1,13 @@
 // The machine in 3D: bodies where the session has them, at the step that is shown.
 
+import { say } from "./say";
 import {
-  BufferGeometry, Color, GridHelper, Plane, Raycaster, Scene, Vector2, Vector3, WebGLRenderer, type Object3D,
+  Box3, BufferGeometry, Color, GridHelper, Plane, Raycaster, Scene, Vector2, Vector3, WebGLRenderer, type Object3D,
 } from "three";
 import { Crowd, Single, type Drawn, type Glow, type Member } from "./drawn";
 import { show_edges } from "./edges";
 import { Eye, type Seen, type Sight } from "./eye";
+import { Fittings, type Carrier } from "./fittings";
 import { framed, together } from "./framing";
 import { Tracks } from "./interpolation";
 import { Light } from "./light";
@@ -54,6 +56,7 @@ export class MachineView {
   private readonly sharpness: Sharpness;
   private readonly light: Light;
   private readonly looks: Looks;
+  private readonly fittings: Fittings;
   private readonly bodies: readonly Body[];
   /** The bodies of components. */
   private readonly fitted: ReadonlySet<string>;
@@ -82,7 +85,7 @@ export class MachineView {
   ) {
     // Smooth edges cost four samples a pixel where there is no graphics card.
     this.renderer = new WebGLRenderer({ antialias: isForPicture || session.bodies.length <= SMOOTH_BODIES, powerPreference: "low-power" });
-    this.renderer.domElement.setAttribute("aria-label", "Machine in 3D; drag to turn, wheel to zoom, arrow keys to pan");
+    this.renderer.domElement.setAttribute("aria-label", say("Machine in 3D; drag to turn, wheel to zoom, arrow keys to pan"));
     this.renderer.domElement.setAttribute("role", "img");
     this.renderer.domElement.tabIndex = 0;
     place.append(this.renderer.domElement);
@@ -93,6 +96,7 @@ export class MachineView {
     this.bodies = session.bodies;
     this.fitted = new Set(session.components.flatMap(({ body }) => (body === null ? [] : [body])));
     this.parts = this.parts_of(session.bodies);
+    this.fittings = new Fittings(session, this.scene, (body) => this.carrier(body), (body, way_m) => this.parts[this.number_of(body)]?.drawn.run(way_m));
     this.advance(0);
     this.t_ns = null;
     this.floor();
@@ -134,11 +138,12 @@ export class MachineView {
 
   /** The signals that looks follow. */
   signals(): readonly number[] {
-    return this.looks.signals();
+    return [...this.looks.signals(), ...this.fittings.signals()];
   }
 
   value(signal: number, value: number): void {
     this.looks.value(signal, value);
+    this.fittings.value(signal, value);
   }
 
   /** Lets looks go on to the time of a picture. */
@@ -146,6 +151,7 @@ export class MachineView {
     const step_s = this.t_ns === null ? 0 : Math.max(0, t_ns - this.t_ns) / 1e9;
     this.t_ns = t_ns;
     this.looks.advance(t_ns);
+    if (this.fittings.advance(step_s)) this.isStale = true;
     if (this.looks.are_none) return;
     for (const body of this.looks.bodies()) {
       const part = this.parts[body];
@@ -271,6 +277,20 @@ export class MachineView {
     return all.map((one, index) => ({ ...one, isFramed: machine.has(index) }));
   }
 
+  /** The number of a body that is drawn: the body's own shape, or its first. */
+  private number_of(name: string): number {
+    const own = this.bodies.findIndex((body) => body.name === name && body.shape.kind !== "none");
+    return own >= 0 ? own : this.bodies.findIndex((body) => body.name.startsWith(`${name}/`));
+  }
+
+  /** A body that components are fitted to, if it is drawn by itself. */
+  private carrier(name: string): Carrier | null {
+    const drawn = this.parts[this.number_of(name)]?.drawn;
+    if (!(drawn instanceof Single)) return null;
+    const { min, max } = drawn.mesh.geometry.boundingBox ?? new Box3();
+    return { node: drawn.node, low: min, high: max };
+  }
+
   private moves(body: Body): boolean {
     return body.kind === "figure" ? body.on !== null || this.looks.bends(this.bodies.indexOf(body)) : body.kind !== "fixed";
   }
@@ -366,8 +386,13 @@ export class MachineView {
     ray.setFromCamera(at, this.eye.camera);
     const hit = ray.intersectObjects(this.scene.children, true).find((one) => one.object.visible && one.object.name !== "grid");
     if (hit === undefined) return null;
-    const body = this.parts.findIndex((part) => part?.drawn.is(hit.object, hit.instanceId ?? -1) ?? false);
-    return body < 0 ? null : body;
+    // What is fitted to a body stands for it.
+    for (let object: Object3D | null = hit.object; object !== null; object = object.parent) {
+      const at = object;
+      const body = this.parts.findIndex((part) => part?.drawn.is(at, hit.instanceId ?? -1) ?? false);
+      if (body >= 0) return body;
+    }
+    return null;
   }
 
   private fit(): void {

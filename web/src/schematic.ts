@@ -1,6 +1,7 @@
 // A machine without bodies, drawn as what it is made of: axes with their ways and limits, tanks with their levels, the rest
 // with what it says.
 
+import { say } from "./say";
 import { broken, make } from "./dom";
 import { form_for, in_form, is_whole, shown } from "./format";
 import type { Component, Session, Signal } from "./session";
@@ -86,7 +87,7 @@ export class Schematic {
       const rows = all.filter((one) => one.form === form).map((one) => this.row(one));
       if (rows.length > 0) this.root.append(make("div", { class: `strips ${form}` }, ...rows));
     }
-    if (all.length === 0) this.root.append(make("p", { class: "empty" }, "This scenario has no bodies to draw and no components: see its signals in the sheet Signals, and put them on trends by +."));
+    if (all.length === 0) this.root.append(make("p", { class: "empty" }, say("This scenario has no bodies to draw and no components: see its signals in the sheet Signals, and put them on trends by +.")));
   }
 
   signals(): readonly number[] {
@@ -144,7 +145,7 @@ export class Schematic {
 
   private reading(signal: number, target: number | null): HTMLElement {
     const output = make("output", {}, "–");
-    const error = make("span", { class: "strip-error", title: "What is left to where it is to go" });
+    const error = make("span", { class: "strip-error", title: say("What is left to where it is to go") });
     let [at, to]: [number | null, number | null] = [null, null];
     const lag = (): void => {
       const about = this.about(signal);

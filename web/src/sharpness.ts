@@ -1,8 +1,8 @@
 // How finely the machine is drawn: where there is no graphics card, no shadows and edges, then fewer pixels,
 // keep what moves smooth.
 
-/** Pictures that come further apart than this are too few, ms: fewer than 22 a second. */
-const SLOW_MS = 45;
+/** Pictures that come further apart than this are too few, ms: fewer than 30 a second. */
+const SLOW_MS = 33.3;
 /** Pictures that come this close have time to spare, ms. */
 const FAST_MS = 22;
 /** So many pictures are looked at before anything is changed, or as many as come in this time, ms. */

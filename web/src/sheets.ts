@@ -1,6 +1,7 @@
 // The sheets beside the machine, one at a time, as tabs (WAI-ARIA Authoring Practices, tabs).
 
 import { frame, make } from "./dom";
+import { say, type Text } from "./say";
 
 export class Sheets {
   private readonly all: { name: string; tab: HTMLButtonElement; sheet: HTMLElement }[] = [];
@@ -16,9 +17,9 @@ export class Sheets {
     });
   }
 
-  add(name: string, sheet: HTMLElement): void {
+  add(name: Text, sheet: HTMLElement): void {
     const id = `${name.toLowerCase()}-sheet`;
-    const tab = make("button", { type: "button", role: "tab", id: `${id}-tab`, "aria-controls": id }, name);
+    const tab = make("button", { type: "button", role: "tab", id: `${id}-tab`, "aria-controls": id }, say(name));
     tab.addEventListener("click", () => this.open(name));
     sheet.id = id;
     sheet.setAttribute("role", "tabpanel");

@@ -1,5 +1,6 @@
 // A table of signals with their values, any of which can be put on a trend.
 
+import { say } from "./say";
 import { broken, button, make } from "./dom";
 import { exact, shown } from "./format";
 import type { Session } from "./session";
@@ -29,13 +30,13 @@ export class SignalTable {
     private readonly values: ReadonlyMap<number, number>,
     private readonly does: SignalDeeds,
   ) {
-    const input = make("input", { type: "search", class: "filter", placeholder: "Filter signals", "aria-label": "Filter signals" });
+    const input = make("input", { type: "search", class: "filter", placeholder: say("Filter signals"), "aria-label": say("Filter signals") });
     input.addEventListener("input", () => {
       this.filter = input.value.toLowerCase();
       this.fill();
       this.does.changed();
     });
-    const head = make("thead", {}, make("tr", {}, ...["Signal", "Writer", "Value", ""].map((one) => make("th", { scope: "col" }, one))));
+    const head = make("thead", {}, make("tr", {}, ...[say("Signal"), say("Writer"), say("Value"), ""].map((one) => make("th", { scope: "col" }, one))));
     this.input = input;
     this.root = make("div", {}, input, make("table", {}, head, this.body));
     this.fill();
@@ -81,12 +82,12 @@ export class SignalTable {
     const cell = make("td", { class: "value" });
     this.cells.set(signal, cell);
     const name = about?.name ?? "";
-    const key = button("+", () => this.does.trend(signal), `Trend of ${name}`);
-    key.setAttribute("aria-label", `Trend of ${name}`);
+    const key = button("+", () => this.does.trend(signal), say("Trend of {name}", { name }));
+    key.setAttribute("aria-label", say("Trend of {name}", { name }));
     const keys = make("td", { class: "deeds" }, key);
     if (this.session.live && this.session.training?.role !== "trainee") {
-      const force = button("Force", () => this.does.force(signal), `Force ${name}, or release it`);
-      force.setAttribute("aria-label", `Force ${name}`);
+      const force = button(say("Force"), () => this.does.force(signal), say("Force {name}, or release it", { name }));
+      force.setAttribute("aria-label", say("Force {name}", { name }));
       keys.append(force);
     }
     return make("tr", {}, make("td", { class: "name", title: about?.about ?? "" }, ...broken(name)), make("td", {}, about?.writer ?? ""), cell, keys);

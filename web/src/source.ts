@@ -1,5 +1,6 @@
 // The sources of the PLC with the values of their variables at the end of each line.
 
+import { say } from "./say";
 import { EditorState, StateEffect, StateField } from "@codemirror/state";
 import { Decoration, EditorView, WidgetType, keymap, lineNumbers, type DecorationSet } from "@codemirror/view";
 import { make } from "./dom";
@@ -64,7 +65,7 @@ export class SourceView {
     const { scrollDOM } = this.editor;
     scrollDOM.tabIndex = 0;
     scrollDOM.setAttribute("role", "group");
-    scrollDOM.setAttribute("aria-label", "Source, scrolled by arrow keys");
+    scrollDOM.setAttribute("aria-label", say("Source, scrolled by arrow keys"));
   }
 
   open(source: Source): void {
@@ -106,7 +107,7 @@ export class SourceView {
   }
 
   private state(text: string): EditorState {
-    const label = EditorView.contentAttributes.of({ "aria-label": "Source of the PLC, read only" });
+    const label = EditorView.contentAttributes.of({ "aria-label": say("Source of the PLC, read only") });
     const coloured = words(text).map(({ from, to, kind }) => COLOURED[kind].range(from, to));
     return EditorState.create({
       doc: text,

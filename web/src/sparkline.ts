@@ -1,5 +1,6 @@
 // The last minute of a value on a panel, as a line.
 
+import { say } from "./say";
 import { History } from "./history";
 
 const SVG = "http://www.w3.org/2000/svg";
@@ -23,7 +24,7 @@ export class Sparkline {
     this.root.setAttribute("preserveAspectRatio", "none");
     this.root.setAttribute("class", "sparkline");
     this.root.setAttribute("role", "img");
-    this.root.setAttribute("aria-label", `${label}, the last ${WINDOW_S} s`);
+    this.root.setAttribute("aria-label", say("{label}, the last {WINDOW_S} s", { label, WINDOW_S }));
     this.line = document.createElementNS(SVG, "polyline");
     this.root.append(this.line);
   }

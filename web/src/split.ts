@@ -1,5 +1,6 @@
 // The lines between the panes: drawn by the pointer or moved by arrow keys, kept for the next time.
 
+import { say } from "./say";
 import { frame, make } from "./dom";
 
 const KEY = "onescan-panes";
@@ -52,7 +53,7 @@ export function begin_split(): void {
   const line = (key: keyof Panes, label: string): HTMLElement => {
     const isUpright = key === "side";
     const element = make("div", {
-      class: `split ${key}`, role: "separator", tabindex: "0", "aria-label": label, title: "Drag, or use the arrow keys; twice for the size at first",
+      class: `split ${key}`, role: "separator", tabindex: "0", "aria-label": label, title: say("Drag, or use the arrow keys; twice for the size at first"),
       "aria-orientation": isUpright ? "vertical" : "horizontal", "aria-valuemin": String(LEAST), "aria-valuemax": String(MOST),
     });
     const move = (event: PointerEvent): void => {
@@ -77,6 +78,6 @@ export function begin_split(): void {
     lines.set(key, element);
     return element;
   };
-  main.append(line("side", "Width of the sheets"), line("low", "Height of the trends"));
+  main.append(line("side", say("Width of the sheets")), line("low", say("Height of the trends")));
   put(panes);
 }

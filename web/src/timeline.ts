@@ -1,5 +1,6 @@
 // The time that is shown: the live edge, or a moment of the past. A recording can be played.
 
+import { say } from "./say";
 import { button, make } from "./dom";
 import { seconds } from "./format";
 import type { Ask } from "./message";
@@ -10,8 +11,8 @@ import type { Session } from "./session";
 const PLAY_MS = 50;
 
 export class Timeline {
-  private readonly slider = make("input", { type: "range", min: "0", max: "0", step: "1", "aria-label": "Time that is shown" });
-  private readonly output = make("output", {}, "live");
+  private readonly slider = make("input", { type: "range", min: "0", max: "0", step: "1", "aria-label": say("Time that is shown") });
+  private readonly output = make("output", {}, say("live"));
   private readonly link = make("a", { target: "_blank", rel: "noopener" });
   private readonly live: HTMLButtonElement;
   private readonly fork: HTMLButtonElement;
@@ -26,11 +27,11 @@ export class Timeline {
     private readonly session: Session,
     private readonly ask: (ask: Ask) => void,
   ) {
-    this.live = button("Live", () => this.ask({ type: "live" }), "Back to the live edge");
-    this.play = button("Play", () => this.toggle(), "Play from here in real time");
-    this.fork = button("Go on from here", () => {
+    this.live = button(say("Live"), () => this.ask({ type: "live" }), say("Back to the live edge"));
+    this.play = button(say("Play"), () => this.toggle(), say("Play from here in real time"));
+    this.fork = button(say("Go on from here"), () => {
       if (this.shown_ns !== null) this.ask({ type: "fork", t_ns: this.shown_ns });
-    });
+    }, say("Starts another session from this moment"));
     this.slider.addEventListener("input", () => {
       this.output.textContent = seconds(this.chosen_ns());
       this.show(Number(this.slider.value));
@@ -52,7 +53,7 @@ export class Timeline {
       this.slider.max = String(Math.floor(past_ns[1] / this.session.step_ns));
     }
     if (shown_ns === null) this.slider.value = this.slider.max;
-    this.output.textContent = shown_ns === null ? "live" : seconds(shown_ns);
+    this.output.textContent = shown_ns === null ? say("live") : seconds(shown_ns);
     this.slider.setAttribute("aria-valuetext", this.output.textContent);
   }
 
@@ -73,7 +74,7 @@ export class Timeline {
     // A session that listens everywhere is found where this one was.
     if (to.hostname === "0.0.0.0" || to.hostname === "[::]") to.hostname = window.location.hostname;
     this.link.href = to.href;
-    this.link.textContent = `Session from ${seconds(t_ns)}`;
+    this.link.textContent = say("Session from {t_ns}", { t_ns: seconds(t_ns) });
     this.link.hidden = false;
   }
 
@@ -84,7 +85,7 @@ export class Timeline {
 
   private toggle(): void {
     if (this.playing !== null) return this.pause();
-    this.play.textContent = "Pause";
+    this.play.textContent = say("Pause");
     let before_ms = performance.now();
     let ahead_ns = 0;
     this.playing = window.setInterval(() => {
@@ -105,7 +106,7 @@ export class Timeline {
   private pause(): void {
     if (this.playing !== null) window.clearInterval(this.playing);
     this.playing = null;
-    this.play.textContent = "Play";
+    this.play.textContent = say("Play");
   }
 
   private chosen_ns(): number {

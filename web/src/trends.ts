@@ -1,8 +1,9 @@
 // Trends: signals over virtual time, two cursors and their difference, events and verdicts, the moment that is shown.
 
+import { say } from "./say";
 import uPlot from "uplot";
 import { broken, button, make } from "./dom";
-import { form_for, form_of, in_form, is_whole, shown } from "./format";
+import { form_for, form_of, in_form, is_whole, local, seconds_of, shown } from "./format";
 import { History } from "./history";
 import { curve, lane_options, style, upright } from "./lane";
 import type { Session, Signal } from "./session";
@@ -51,7 +52,7 @@ export class TrendsView {
     private readonly session: Session,
     private readonly does: TrendDeeds,
   ) {
-    this.empty = make("p", { class: "empty" }, "No signal is shown here. Choose signals, and press + beside those that you want to follow. ", button("Choose signals", does.choose));
+    this.empty = make("p", { class: "empty" }, say("No signal is shown here. Choose signals, and press + beside those that you want to follow."), " ", button(say("Choose signals"), does.choose));
     const chart = make("div", { class: "lane-chart" });
     const options = lane_options({ isBool: true, isBare: false, holds: true, isFilled: false, strokes: ["transparent"], group: "trends", height_px: TIMES_PX, values: () => "", hooks: {} });
     this.times = { root: make("div", { class: "lane times" }, make("div"), chart), plot: new uPlot(options, [[], []], chart) };
@@ -137,8 +138,8 @@ export class TrendsView {
     const about = this.session.signals[signal];
     if (about === undefined) return;
     const reading = make("output", {}, "–");
-    const away = button("×", () => this.toggle(signal), `Remove ${about.name}`);
-    away.setAttribute("aria-label", `Remove ${about.name}`);
+    const away = button("×", () => this.toggle(signal), say("Remove {name}", { name: about.name }));
+    away.setAttribute("aria-label", say("Remove {name}", { name: about.name }));
     const number = this.lanes.length;
     const name = make("span", { class: "lane-name", title: about.about === "" ? about.name : `${about.name}: ${about.about}` }, ...broken(about.name));
     const head = make("div", { class: "lane-head" }, name, reading, away);
@@ -165,7 +166,7 @@ export class TrendsView {
       if (about.names.size > 0) return about.names.get(value) ?? "";
       // An axis has the prefix of what is read beside it, and as many places as its marks need.
       const form = form_of(about, 0);
-      return form.by === 1 ? String(Number(value.toPrecision(4))) : String(Number((value / form.by).toPrecision(4)));
+      return local(String(Number((value / form.by).toPrecision(4))));
     };
     return lane_options({
       isBool, isBare: true, holds: true, isFilled: isBool || about.names.size > 0, strokes: [curve(lane)], group: "trends", height_px: LANE_PX[0],
@@ -237,9 +238,9 @@ export class TrendsView {
       this.times.plot.setScale("x", { min: from, max: to });
     });
     const [one, two] = this.cursors_s;
-    const past = this.past_s === null ? "" : `past ${this.past_s.toFixed(3)} s`;
+    const past = this.past_s === null ? "" : say("past {at}", { at: seconds_of(this.past_s) });
     this.readout.textContent =
-      one === undefined ? past : two === undefined ? `cursor ${one.toFixed(3)} s` : `${one.toFixed(3)} s to ${two.toFixed(3)} s: Δ ${(two - one).toFixed(3)} s`;
+      one === undefined ? past : two === undefined ? say("cursor {at}", { at: seconds_of(one) }) : say("{from} to {to}: Δ {time}", { from: seconds_of(one), to: seconds_of(two), time: seconds_of(two - one) });
   }
 
   private reading(about: Signal, history: History | undefined, at_s: number): string {

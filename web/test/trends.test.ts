@@ -1,6 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { moments } from "../src/backfill";
+import { fitted } from "../src/lane";
 import { span_s } from "../src/trends";
 
 test("the past is asked for at whole steps, at most some hundred times, and not further back than can be run again", () => {
@@ -18,4 +19,11 @@ test("trends show the last seconds, and the moment of the past within what surro
   assert.deepEqual(span_s(48, 40), [28, 48]);
   assert.deepEqual(span_s(48, 18.76), [8.760000000000002, 28.76]);
   assert.deepEqual(span_s(48, 2), [0, 20]);
+});
+
+test("a mark of an axis is no wider than its room", () => {
+  const width = (text: string): number => text.length * 6;
+  assert.equal(fitted("Idle", 48, width), "Idle");
+  assert.equal(fitted("Program_Init", 48, width), "Program…");
+  assert.equal(fitted("Program_Init", 2, width), "…");
 });

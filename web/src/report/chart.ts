@@ -2,6 +2,8 @@
 
 import uPlot from "uplot";
 import { button, make } from "../dom";
+import { seconds } from "../format";
+import { say } from "../say";
 import { curve, lane_options, style, upright } from "../lane";
 import { aligned, value_at, written, type Chart, type ChartPanel } from "./data";
 
@@ -31,7 +33,7 @@ export class ChartView {
     this.whole_s = [from_s, to_s > from_s ? to_s : from_s + 1];
     this.shown_s = this.whole_s;
     const runs = chart.runs.length > 1 ? chart.runs.map((name, run) => legend(name, run)) : [];
-    const tools = make("div", { class: "chart-tools" }, button("Whole", () => this.show(this.whole_s)), ...runs, this.readout);
+    const tools = make("div", { class: "chart-tools" }, button(say("Whole"), () => this.show(this.whole_s)), ...runs, this.readout);
     this.root = make("div", { class: "chart" }, tools);
     for (const panel of chart.panels) this.add(panel);
     new ResizeObserver(() => this.fit()).observe(this.root);
@@ -90,7 +92,7 @@ export class ChartView {
     const left = plot.cursor.left ?? -1;
     const t_s = left < 0 ? null : plot.posToVal(left, "x");
     const mark = t_s === null ? undefined : this.chart.marks.find((one) => Math.abs(plot.valToPos(one.t_ns / 1e9, "x") - left) < 4);
-    this.readout.textContent = t_s === null ? "" : `${t_s.toFixed(3)} s${mark === undefined ? "" : `: ${mark.label}`}`;
+    this.readout.textContent = t_s === null ? "" : `${seconds(t_s * 1e9)}${mark === undefined ? "" : `: ${mark.label}`}`;
     for (const { panel, reading } of this.lanes) {
       const values = t_s === null ? [] : panel.runs.map((_, run) => written(panel, value_at(panel, run, t_s)));
       reading.textContent = (new Set(values).size > 1 ? values : values.slice(0, 1)).join(" | ");

@@ -1,5 +1,7 @@
 // The data of a chart, as a report brings it along.
 
+import { local } from "../format";
+
 export interface Chart {
   readonly runs: readonly string[];
   readonly panels: readonly ChartPanel[];
@@ -51,5 +53,5 @@ export function written(panel: ChartPanel, value: number | null): string {
   if (value === null) return "–";
   const name = panel.names.find(([known]) => known === value)?.[1];
   if (name !== undefined) return name;
-  return `${Number(value.toPrecision(6))}${panel.unit === null ? "" : ` ${panel.unit}`}`;
+  return `${local(String(Number(value.toPrecision(6))))}${panel.unit === null ? "" : ` ${panel.unit}`}`;
 }
