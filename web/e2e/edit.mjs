@@ -6,6 +6,7 @@ import { spawn, spawnSync } from "node:child_process";
 import { mkdtemp, readFile, rm, writeFile } from "node:fs/promises";
 import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
+import axe from "axe-core";
 import { chromium } from "playwright-core";
 
 const [named, folder = null] = process.argv.slice(2);
@@ -144,6 +145,54 @@ async function place(page, change, ware, name, fill) {
   await change(() => form.getByRole("button", { name: "Add" }).click());
 }
 
+/** The library is in sight: so many things at once, all of them in groups, found by a word; what is wrong is marked where it is. */
+async function see_the_library() {
+  const { page, errors, change, name } = await edit("seen", "cell");
+  await page.getByRole("tab", { name: "Machine" }).click();
+  const in_sight = () => page.evaluate(() => {
+    const room = document.querySelector(".shelf").getBoundingClientRect();
+    return [...document.querySelectorAll(".ware")].filter((one) => one.getBoundingClientRect().bottom <= room.bottom).length;
+  });
+  await page.waitForTimeout(300);
+  await shoot(page, "edit-library");
+  assert.ok((await in_sight()) >= 20, `${await in_sight()} things in sight`);
+  assert.equal(await page.getByRole("heading", { name: "Your own" }).count(), 0, "each kind of the library has its group and its picture");
+  const pictures = await page.locator(".ware").evaluateAll((all) => all.map((one) => one.querySelector("path").getAttribute("d").length));
+  assert.ok(pictures.length > 45 && pictures.every((length) => length > 8));
+  await page.waitForTimeout(300);
+  await shoot(page, "edit-library");
+  // Nothing of the machine is cut off, and it takes much of the stage.
+  const [stage, spots] = await page.evaluate(() => {
+    const { left, top, right, bottom } = document.querySelector(".stage").getBoundingClientRect();
+    return [{ left, top, right, bottom }, window.onescanEdit.corners()];
+  });
+  assert.ok(spots.every(({ x, y }) => x > stage.left && x < stage.right && y > stage.top + 40 && y < stage.bottom), JSON.stringify([stage, spots]));
+  const [width, height] = ["x", "y"].map((axis) => Math.max(...spots.map((one) => one[axis])) - Math.min(...spots.map((one) => one[axis])));
+  assert.ok(width > 0.6 * (stage.right - stage.left) || height > 0.6 * (stage.bottom - stage.top - 44), `${width} by ${height}`);
+  await page.getByRole("button", { name: "Dark or light" }).click();
+  await page.waitForTimeout(200);
+  await shoot(page, "edit-library-dark");
+  await page.getByLabel("Filter what can be placed").fill("beam");
+  assert.deepEqual(await page.locator(".ware span").allTextContents(), ["light barrier", "laser distance"]);
+  await page.getByLabel("Filter what can be placed").fill("");
+  // A finding stands where it is: at the thing in the list and in its form.
+  await page.getByRole("button", { name: /^barrier/ }).click();
+  await change(() => page.getByRole("region", { name: "What is chosen" }).getByLabel("detected_signal", { exact: true }).fill("Nowhere").then(() => page.keyboard.press("Tab")));
+  await page.locator(".inspector .found").getByText("Nowhere read by nobody").waitFor();
+  await page.locator(".item", { hasText: "barrier" }).locator(".mark").waitFor();
+  await page.locator("#check").getByText("1 wrong").waitFor();
+  await shoot(page, "edit-finding");
+  // axe finds nothing, with a form and a finding open.
+  await page.evaluate(axe.source);
+  const { violations } = await page.evaluate(() => window.axe.run(document, { runOnly: ["wcag2a", "wcag2aa", "wcag21aa", "wcag22aa"] }));
+  assert.deepEqual(violations.map((one) => `${one.id}: ${one.nodes.map((node) => node.html).join(" ")}`), []);
+  await page.setViewportSize({ width: 390, height: 844 });
+  assert.ok((await page.evaluate(() => document.documentElement.scrollWidth)) <= 390);
+  await shoot(page, "edit-phone");
+  assert.deepEqual(errors, []);
+  assert.ok(name);
+}
+
 async function build_a_machine() {
   const { page, errors, text, change, name } = await edit("built", "blank");
   await page.getByRole("tab", { name: "Machine" }).click();
@@ -227,6 +276,7 @@ async function build_a_machine() {
 
 try {
   await draw_a_connection();
+  await see_the_library();
   await build_a_machine();
   console.log("the page edits a scenario: ok");
 } finally {

@@ -1,5 +1,6 @@
 // The machine that is built, in 3D: bodies are chosen and moved, beams and axes are shown.
 
+import { say } from "../say";
 import {
   ArrowHelper, BufferGeometry, Color, DirectionalLight, EdgesGeometry, GridHelper, Group, HemisphereLight, Box3, Line,
   LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial, PerspectiveCamera, Plane, Raycaster, Scene, Vector2, Vector3,
@@ -10,12 +11,22 @@ import type { Body } from "../session";
 import { geometry_of } from "../shapes";
 import { colour } from "../theme";
 import type { Json, SceneState, Table } from "./protocol";
+import { camera_for, corners, framed, gaze_from, together, type Room, type Standing } from "../framing";
 import { base, snap } from "./snap";
 
 const BY_KIND: Readonly<Record<string, string>> = { fixed: "#8a949b", kinematic: "#6f8ea6", dynamic: "#c2a878" };
 const BEAM = new Color("#e0a000");
 const AXIS = 0x1d8a42;
 const DARK = new Color("#000000");
+const WRONG = new Color("#c4161c");
+/** A scene without bodies is as large as this. */
+const EMPTY: Room = { low: [-0.8, -0.6, 0], high: [0.8, 0.6, 0.6] };
+/** Where the machine is seen from at first: the front, to the right and above. */
+const FROM = [0.4, -0.95, 0.7] as const;
+/** What the keys over the stage cover, CSS pixels. */
+const TOOLS_PX = 44;
+/** How much of the free part a machine takes. */
+const SHARE = 0.86;
 
 interface Part {
   readonly body: Body;
@@ -42,9 +53,11 @@ export class Bench {
   private parts: Part[] = [];
   private tables: readonly Table[] = [];
   private chosen: string | null = null;
+  private warned: ReadonlySet<string> = new Set();
   private drag: Drag | null = null;
   private isStale = true;
   private isSeen = false;
+  /** Whether somebody has turned it: until then the whole machine stays in sight. */
   private isTurned = false;
   grid_m = 0.05;
 
@@ -57,16 +70,17 @@ export class Bench {
     const canvas = this.renderer.domElement;
     canvas.tabIndex = 0;
     canvas.setAttribute("role", "img");
-    canvas.setAttribute("aria-label", "Machine in 3D; drag a body to move it, with Shift up and down; arrow keys and Page up, Page down move the chosen one");
+    canvas.setAttribute("aria-label", say("Machine in 3D; drag a body to move it, with Shift up and down; arrow keys and Page up, Page down move the chosen one"));
     place.append(canvas);
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.addEventListener("start", () => (this.isTurned = true));
     this.controls.addEventListener("change", () => (this.isStale = true));
     const sun = new DirectionalLight("#ffffff", 1.9);
     sun.position.set(3, -4, 8);
     const fill = new DirectionalLight("#dfe8ff", 0.6);
     fill.position.set(-5, 3, 3);
-    const sky = new HemisphereLight("#ffffff", "#6d7378", 1.3);
+    const sky = new HemisphereLight("#ffffff", "#8d9398", 1.7);
     sky.position.set(0, 0, 1);
     this.scene.add(sun, fill, sky, this.things);
     const floor = new GridHelper(8, 32, "#888888", "#888888");
@@ -106,23 +120,52 @@ export class Bench {
     this.paint();
   }
 
+  /** Marks the bodies of which something is wrong. */
+  warn(bodies: ReadonlySet<string>): void {
+    this.warned = bodies;
+  }
+
   /** Sees the whole machine. */
   home(): void {
-    const box = this.parts.reduce((all, part) => all.union(new Box3().setFromObject(part.mesh)), new Box3());
-    if (box.isEmpty()) box.set(new Vector3(-0.8, -0.6, 0), new Vector3(0.8, 0.6, 0.6));
-    const middle = box.getCenter(new Vector3());
-    const size_m = Math.max(0.6, box.getSize(new Vector3()).length());
-    this.controls.target.copy(middle);
-    this.camera.position.copy(middle).add(new Vector3(0.35, -0.95, 0.7).normalize().multiplyScalar((size_m * 1.15) / Math.min(1, this.camera.aspect)));
+    // As on the page: all but floors, as large as the part of the stage allows that no key covers.
+    const seen = this.framed();
+    const room: Room = together(seen) ?? EMPTY;
+    const { clientWidth: width, clientHeight: height } = this.place;
+    const free = Math.max(1, height - TOOLS_PX);
+    const half = Math.tan((this.camera.fov * Math.PI) / 360);
+    const gaze = gaze_from(FROM);
+    const [x, y, z] = camera_for(seen.length === 0 ? corners(room) : seen.flatMap(corners), gaze, half * (free / Math.max(1, height)), Math.max(0.2, width / free), SHARE);
+    const middle = room.low.map((low, axis) => (low + (room.high[axis] ?? low)) / 2);
+    this.camera.position.set(x, y, z);
+    const depth_m = Math.max(0.1, gaze.ahead.reduce((sum, way, axis) => sum + way * ((middle[axis] ?? 0) - ([x, y, z][axis] ?? 0)), 0));
+    this.controls.target.copy(this.camera.position).addScaledVector(new Vector3(...gaze.ahead), depth_m);
     this.controls.update();
     this.isStale = true;
+  }
+
+  /** The rooms of all bodies but floors. */
+  private framed(): readonly Room[] {
+    const rooms = this.parts.map((part): Standing => {
+      const { min, max } = new Box3().setFromObject(part.mesh);
+      return { low: [min.x, min.y, min.z], high: [max.x, max.y, max.z], works: part.body.kind !== "fixed" };
+    });
+    return framed(rooms).flatMap((index) => rooms[index] ?? []);
+  }
+
+  /** Where the corners of what is framed are on the screen, for tests. */
+  corners(): readonly { readonly x: number; readonly y: number }[] {
+    return this.framed().flatMap(corners).map((point) => this.on_screen(new Vector3(...point)));
   }
 
   /** Where a body is on the screen, for tests. */
   screen(body: string): { readonly x: number; readonly y: number } | null {
     const part = this.parts.find((one) => one.body.name === body);
     if (part === undefined) return null;
-    const at = part.mesh.getWorldPosition(new Vector3()).project(this.camera);
+    return this.on_screen(part.mesh.getWorldPosition(new Vector3()));
+  }
+
+  private on_screen(point: Vector3): { readonly x: number; readonly y: number } {
+    const at = point.project(this.camera);
     const box = this.renderer.domElement.getBoundingClientRect();
     return { x: box.left + ((at.x + 1) / 2) * box.width, y: box.top + ((1 - at.y) / 2) * box.height };
   }
@@ -250,7 +293,8 @@ export class Bench {
   private paint(): void {
     for (const part of this.parts) {
       const isChosen = part.table !== null && part.table.name === this.chosen;
-      part.mesh.material.emissive.copy(isChosen ? new Color("#1f6fbf") : DARK);
+      const isWrong = part.table !== null && this.warned.has(part.table.name);
+      part.mesh.material.emissive.copy(isChosen ? new Color("#1f6fbf") : isWrong ? WRONG : DARK);
       part.mesh.material.emissiveIntensity = 0.55;
     }
     this.isStale = true;
@@ -262,10 +306,9 @@ export class Bench {
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     this.renderer.setSize(width, height);
     this.camera.aspect = width / height;
-    this.camera.updateProjectionMatrix();
-    // until it was seen once, nobody has turned it
+    // The keys are above: the free part lies below the middle of the stage. This brings the projection up to date, too.
+    this.camera.setViewOffset(width, height, 0, -TOOLS_PX / 2, width, height);
     if (!this.isTurned) this.home();
-    this.isTurned = true;
     this.isStale = true;
   }
 }

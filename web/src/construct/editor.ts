@@ -1,5 +1,6 @@
 // The scenario as the server has it: what it is, and what is wanted of it.
 
+import { say } from "../say";
 import { decodeAnswer, decodeLibrary, decodeState, type Answer, type EditState, type Library, type Refusal, type Want } from "./protocol";
 
 export class Editor {
@@ -28,7 +29,7 @@ export class Editor {
       const response = await fetch("api/edit", { method: "POST", body: JSON.stringify(body) });
       answer = decodeAnswer(await response.json());
     } catch (error) {
-      this.refuse({ message: `the editor does not answer: ${describe(error)}`, file: null, line: null, references: [] });
+      this.refuse({ message: say("the editor does not answer: {error}", { error: describe(error) }), file: null, line: null, references: [] });
       return false;
     }
     this.refuse(answer.error);

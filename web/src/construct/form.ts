@@ -1,5 +1,6 @@
 // A form of the keys of a table: units, ranges and presets as the library has them.
 
+import { say } from "../say";
 import { make } from "../dom";
 import type { FieldInfo, Given, Json } from "./protocol";
 
@@ -13,16 +14,16 @@ export interface Surroundings {
 export type Changed = (key: string, value: Given | null) => void;
 
 const PART_TITLES: readonly (readonly [readonly string[], string, boolean])[] = [
-  [["binding"], "Where", true],
-  [["parameter"], "Parameters", true],
-  [["input", "output"], "Signals", true],
-  [["wire"], "Constants and wires", false],
+  [["binding"], say("Where"), true],
+  [["parameter"], say("Parameters"), true],
+  [["input", "output"], say("Signals"), true],
+  [["wire"], say("Constants and wires"), false],
 ];
 
 function bounds(field: FieldInfo): string {
   if (field.form.kind !== "number" && field.form.kind !== "whole") return "";
   const { least, most } = field.form;
-  return least === null || most === null ? "" : `, ${least} to ${most}`;
+  return least === null || most === null ? "" : say(", {least} to {most}", { least, most });
 }
 
 /** The form; with `keys` each is shown as it is, `main` names those that are not hidden away. */
@@ -36,7 +37,7 @@ export function fieldset(fields: readonly FieldInfo[], keys: ReadonlyMap<string,
     const section = make("details", { class: "part", open: is_open && first.length > 0 }, make("summary", {}, title));
     section.append(...first.map((field) => row(field, keys.get(field.key), around, changed)));
     if (rest.length > 0) {
-      section.append(make("details", { class: "more" }, make("summary", {}, "more"), ...rest.map((field) => row(field, keys.get(field.key), around, changed))));
+      section.append(make("details", { class: "more" }, make("summary", {}, say("more")), ...rest.map((field) => row(field, keys.get(field.key), around, changed))));
     }
     form.append(section);
   }
@@ -45,14 +46,14 @@ export function fieldset(fields: readonly FieldInfo[], keys: ReadonlyMap<string,
 
 function row(field: FieldInfo, value: Json | undefined, around: Surroundings, changed: Changed): HTMLElement {
   const label = make("span", { class: "field-name" }, field.part === "output" ? `${field.name} →` : field.part === "input" ? `→ ${field.name}` : field.name);
-  if (field.needed) label.append(make("abbr", { title: "needed" }, " *"));
+  if (field.needed) label.append(make("abbr", { title: say("needed") }, " *"));
   const about = [field.about, bounds(field).slice(2)].filter((text) => text !== "").join("; ");
   const group = make("div", { class: "field", title: about }, label, control(field, value, around, changed));
   return group;
 }
 
 function control(field: FieldInfo, value: Json | undefined, around: Surroundings, changed: Changed): HTMLElement {
-  const name = `${field.key}${field.unit === null ? "" : ` in ${field.unit}`}`;
+  const name = `${field.key}${field.unit === null ? "" : say(" in {unit}", { unit: field.unit })}`;
   const unit = field.unit === null || field.part === "input" || field.part === "output" ? [] : [make("span", { class: "unit" }, field.unit)];
   const preset = field.preset === null ? "" : String(field.preset);
   const { form, key } = field;
@@ -80,7 +81,7 @@ function control(field: FieldInfo, value: Json | undefined, around: Surroundings
       const inputs = Array.from({ length: form.count }, (_, index) => {
         const axis = form.count === 3 ? ["x", "y", "z"][index] ?? "" : String(index + 1);
         const known = numbers[index];
-        return make("input", { type: "number", step: "any", "aria-label": `${axis} of ${name}`, placeholder: axis, value: typeof known === "number" ? String(known) : "" });
+        return make("input", { type: "number", step: "any", "aria-label": say("{axis} of {name}", { axis, name }), placeholder: axis, value: typeof known === "number" ? String(known) : "" });
       });
       for (const input of inputs) {
         input.addEventListener("change", () => {
@@ -114,7 +115,7 @@ function control(field: FieldInfo, value: Json | undefined, around: Surroundings
         return choice(name, known === "" || names.includes(known) ? names : [known, ...names], known, preset, notify);
       }
       const is_signal = field.part === "input" || field.part === "output";
-      const input = make("input", { type: "text", "aria-label": name, placeholder: is_signal ? "no signal" : "", value: typeof value === "string" ? value : "", ...(is_signal ? { list: "signals" } : {}) });
+      const input = make("input", { type: "text", "aria-label": name, placeholder: is_signal ? say("no signal") : "", value: typeof value === "string" ? value : "", ...(is_signal ? { list: "signals" } : {}) });
       input.addEventListener("change", () => notify(input.value.trim() === "" ? null : input.value.trim()));
       return make("span", { class: "control" }, input);
     }

@@ -1,9 +1,11 @@
 // The editor of a scenario: connections are drawn, a machine is built, and the server writes both.
 
+import { say } from "../say";
 import "../page.css";
 import "./edit.css";
 import { button, frame, make } from "../dom";
 import { begin_theme } from "../theme";
+import { begin_words } from "../header";
 import { Builder } from "./builder";
 import { Editor } from "./editor";
 import type { EditState, Finding, Refusal } from "./protocol";
@@ -11,6 +13,8 @@ import { WiringView } from "./wiring";
 
 interface Seen {
   readonly revision: () => number;
+  /** The corners of what is framed, on the screen. */
+  readonly corners: () => readonly { readonly x: number; readonly y: number }[];
   readonly screen: (body: string) => { readonly x: number; readonly y: number } | null;
 }
 
@@ -22,7 +26,7 @@ declare global {
 }
 
 function findings(all: readonly Finding[]): readonly HTMLElement[] {
-  if (all.length === 0) return [make("p", { class: "empty" }, "Nothing is wrong.")];
+  if (all.length === 0) return [make("p", { class: "empty" }, say("Nothing is wrong."))];
   return all.map((finding) => {
     const where = finding.file === null ? "" : `${finding.file}${finding.line === null ? "" : `:${finding.line}`}`;
     const row = make("li", { class: finding.is_error ? "finding error" : "finding" }, make("span", { class: "where" }, where), make("span", {}, finding.message));
@@ -32,6 +36,7 @@ function findings(all: readonly Finding[]): readonly HTMLElement[] {
 }
 
 async function begin(): Promise<void> {
+  begin_words();
   begin_theme();
   const parts: { wiring?: WiringView; builder?: Builder } = {};
   const notice = frame("notice");
@@ -39,30 +44,30 @@ async function begin(): Promise<void> {
     notice.hidden = refusal === null;
     if (refusal === null) return;
     const where = refusal.references.map((one) => ` ${one.file}:${one.line}`).join(",");
-    notice.replaceChildren(`${refusal.message}${where === "" ? "" : ` (${where.trim()})`} `, ...(is_theirs ? [button("Read again", () => void editor.want({ want: "reload" }))] : []));
+    notice.replaceChildren(`${refusal.message}${where === "" ? "" : ` (${where.trim()})`} `, ...(is_theirs ? [button(say("Read again"), () => void editor.want({ want: "reload" }))] : []));
   };
   const show = (state: EditState): void => {
     frame("title").textContent = state.scenario;
-    document.title = `${state.scenario} · onescan edit`;
+    document.title = say("{scenario} · onescan edit", { scenario: state.scenario });
     undo.disabled = state.undo === null;
     redo.disabled = state.redo === null;
-    undo.title = state.undo === null ? "Nothing to take back" : `Take back: ${state.undo}`;
-    redo.title = state.redo === null ? "Nothing to do again" : `Do again: ${state.redo}`;
+    undo.title = state.undo === null ? say("Nothing to take back") : say("Take back: {undo}", { undo: state.undo });
+    redo.title = state.redo === null ? say("Nothing to do again") : say("Do again: {redo}", { redo: state.redo });
     const errors = state.findings.filter((finding) => finding.is_error).length;
     const status = frame("check");
-    status.textContent = state.changed.length > 0 ? "changed by somebody else" : errors === 0 ? "sound" : `${errors} wrong`;
+    status.textContent = state.changed.length > 0 ? say("changed by somebody else") : errors === 0 ? say("sound") : say("{errors} wrong", { errors });
     status.className = errors === 0 && state.changed.length === 0 ? "sound" : "wrong";
     frame("findings-list").replaceChildren(...findings(state.findings));
     if (state.changed.length > 0) {
-      refuse({ message: `Somebody else has changed ${state.changed.join(" and ")}: read the files again before you change anything.`, file: null, line: null, references: [] }, true);
+      refuse({ message: say("Somebody else has changed {state}: read the files again before you change anything.", { state: state.changed.join(", ") }), file: null, line: null, references: [] }, true);
     }
     parts.wiring?.show(state);
     parts.builder?.show(state);
   };
   const editor = await Editor.open(show, refuse);
-  const undo = button("Undo", () => void editor.want({ want: "undo" }));
-  const redo = button("Redo", () => void editor.want({ want: "redo" }));
-  frame("controls").append(undo, redo, button("Read again", () => void editor.want({ want: "reload" }), "Read the files again"));
+  const undo = button(say("Undo"), () => void editor.want({ want: "undo" }));
+  const redo = button(say("Redo"), () => void editor.want({ want: "redo" }));
+  frame("controls").append(undo, redo, button(say("Read again"), () => void editor.want({ want: "reload" }), say("Read the files again")));
   window.addEventListener("keydown", (event) => {
     const is_field = event.target instanceof HTMLInputElement || event.target instanceof HTMLSelectElement;
     if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "z" || is_field) return;
@@ -74,7 +79,7 @@ async function begin(): Promise<void> {
   parts.wiring = new WiringView(frame("wiring"), (one, other) => void editor.want({ want: "join", one, other }), (tip) => void editor.want({ want: "part", tip }));
   show(editor.state);
   const bench = parts.builder.bench;
-  window.onescanEdit = { revision: () => editor.state.revision, screen: (body) => bench.screen(body) };
+  window.onescanEdit = { revision: () => editor.state.revision, corners: () => bench.corners(), screen: (body) => bench.screen(body) };
 }
 
 /** The two sheets, by mouse and arrow keys. */
@@ -101,6 +106,6 @@ function tabs(): void {
 
 begin().catch((error: unknown) => {
   const notice = frame("notice");
-  notice.replaceChildren(`The scenario cannot be shown: ${error instanceof Error ? error.message : String(error)}. `, button("Try again", () => window.location.reload()));
+  notice.replaceChildren(say("The scenario cannot be shown: {error}.", { error: error instanceof Error ? error.message : String(error) }), " ", button(say("Try again"), () => window.location.reload()));
   notice.hidden = false;
 });

@@ -1,5 +1,6 @@
 // The rows of the wiring: a line for each signal, then the ends that have none.
 
+import { say } from "../say";
 import type { EditState, End, Tip, Wired } from "./protocol";
 
 /** A tip of a line, in the column of its client. */
@@ -30,7 +31,7 @@ export function columns(state: EditState): readonly { readonly name: string; rea
 }
 
 function shown(at: readonly string[]): string {
-  return at.length <= 2 ? at.join(", ") : `${at[0]} and ${at.length - 1} more`;
+  return at.length <= 2 ? at.join(", ") : say("{first} and {count} more", { first: at[0] ?? "", count: at.length - 1 });
 }
 
 export function rows(state: EditState, filter: string): readonly Row[] {
@@ -88,5 +89,5 @@ export function fits(one: Dot, other: Dot): boolean {
 
 /** The name of a tip, by which a drop finds it again. */
 export function key(tip: Tip): string {
-  return "signal" in tip ? `signal ${tip.signal}` : `end ${tip.client} ${tip.at}`;
+  return "signal" in tip ? say("signal {name}", { name: tip.signal }) : say("end {client} {at}", { client: tip.client, at: tip.at });
 }

@@ -1,25 +1,16 @@
 // The wiring as a picture that can be changed: draw from an end to another, by mouse, touch or keyboard.
 
-import { make } from "../dom";
+import { say } from "../say";
+import { draw, make } from "../dom";
 import type { EditState, Tip } from "./protocol";
 import { columns, fits, key, rows, type Dot, type Row } from "./rows";
 
-const SVG = "http://www.w3.org/2000/svg";
 const [SIDE, MIDDLE, TOP, ROW, BOX] = [230, 330, 64, 30, 44];
 /** More rows than this are asked to be filtered. */
 const ROWS_MAX = 400;
 
-type Attributes = Readonly<Record<string, string | number>>;
-
-function draw<K extends keyof SVGElementTagNameMap>(tag: K, attributes: Attributes, ...inside: readonly (Node | string)[]): SVGElementTagNameMap[K] {
-  const element = document.createElementNS(SVG, tag);
-  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, String(value));
-  element.append(...inside);
-  return element;
-}
-
 export class WiringView {
-  private readonly filter = make("input", { type: "search", class: "filter", placeholder: "Filter signals and ends", "aria-label": "Filter signals and ends" });
+  private readonly filter = make("input", { type: "search", class: "filter", placeholder: say("Filter signals and ends"), "aria-label": say("Filter signals and ends") });
   private readonly hint = make("p", { class: "hint", role: "status" });
   private readonly picture = make("div", { class: "picture" });
   private state: EditState | null = null;
@@ -48,8 +39,8 @@ export class WiringView {
   private say(): void {
     const from = this.chosen === null ? null : this.dots.get(this.chosen);
     this.hint.textContent = from === undefined || from === null
-      ? "Drag an end to another, or press Enter on one and on the other. Delete lets an end go."
-      : `${named(from)}: choose the other end, or press Escape.`;
+      ? say("Drag an end to another, or press Enter on one and on the other. Delete lets an end go.")
+      : say("{from}: choose the other end, or press Escape.", { from: named(from) });
   }
 
   private paint(): void {
@@ -57,7 +48,7 @@ export class WiringView {
     if (state === null) return;
     const focused = document.activeElement?.getAttribute("data-key") ?? null;
     if (state.map === null) {
-      this.picture.replaceChildren(make("p", { class: "empty" }, "The wiring is known once what is listed below is put right."));
+      this.picture.replaceChildren(make("p", { class: "empty" }, say("The wiring is known once what is listed below is put right.")));
       return;
     }
     const clients = columns(state);
@@ -65,12 +56,12 @@ export class WiringView {
     const shown = all.slice(0, ROWS_MAX);
     const width = 2 * SIDE + Math.max(0, clients.length - 1) * MIDDLE;
     const height = TOP + ROW * (shown.length + 1);
-    const svg = draw("svg", { viewBox: `0 0 ${width} ${height}`, width, height, role: "group", "aria-label": "Wiring" });
+    const svg = draw("svg", { viewBox: `0 0 ${width} ${height}`, width, height, role: "group", "aria-label": say("Wiring") });
     this.svg = svg;
     this.dots.clear();
     clients.forEach((client, column) => svg.append(...head(client, column, height)));
     shown.forEach((row, index) => svg.append(this.row(row, TOP + ROW * (index + 0.75), clients.length)));
-    const more = all.length > shown.length ? [make("p", { class: "empty" }, `${all.length - shown.length} more: filter them.`)] : [];
+    const more = all.length > shown.length ? [make("p", { class: "empty" }, say("{length} more: filter them.", { length: all.length - shown.length }))] : [];
     this.picture.replaceChildren(svg, ...more);
     if (focused !== null) this.tip(focused)?.focus();
     this.mark();
@@ -89,15 +80,15 @@ export class WiringView {
       if (targets.length === 0) {
         group.append(draw("line", { class: "wire stub", x1: x, y1: y, x2: nearest, y2: y }));
         const tip = { signal: row.signal };
-        group.append(this.dot({ column: from.column, label: "", tip, type: row.type, gives: true, isOpen: true }, nearest, y, 0, `signal ${row.label}, read by nobody`));
+        group.append(this.dot({ column: from.column, label: "", tip, type: row.type, gives: true, isOpen: true }, nearest, y, 0, say("signal {label}, read by nobody", { label: row.label })));
       }
       const text = draw("text", { class: "name", x: (x + nearest) / 2, y: y - 6, "text-anchor": "middle" }, row.label);
       group.append(text);
     }
     for (const dot of row.dots) {
       const side = dot.column === 0 ? -1 : 1;
-      const what = row.signal === null ? "connected to nothing" : `${dot.gives ? "writes" : "reads"} ${row.signal}`;
-      group.append(this.dot(dot, x_of(dot.column), y, side, `${dot.label === "" ? "an end" : dot.label}, ${dot.type}, ${what}`));
+      const what = row.signal === null ? say("connected to nothing") : (dot.gives ? say("writes {signal}", { signal: row.signal }) : say("reads {signal}", { signal: row.signal }));
+      group.append(this.dot(dot, x_of(dot.column), y, side, `${dot.label === "" ? say("an end") : dot.label}, ${dot.type}, ${what}`));
     }
     return group;
   }
