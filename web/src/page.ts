@@ -18,6 +18,7 @@ import { PartSheet } from "./part";
 import type { Ask, Message } from "./message";
 import type { Picture } from "./picture";
 import type { AlarmChange, Session } from "./session";
+import { Ending } from "./ending";
 import { MachineView } from "./scene";
 import { Schematic } from "./schematic";
 import { Sheets } from "./sheets";
@@ -67,6 +68,7 @@ export class Page {
   /** What is drawn where there are no bodies. */
   private readonly schematic: Schematic | null;
   private readonly timeline: Timeline;
+  private readonly ending = new Ending((ask) => this.ask(ask));
   private readonly link: Link | null = null;
   private readonly sensors: readonly { signal: number; body: number }[];
   private readonly verdicts = new Map<string, HTMLElement>();
@@ -129,6 +131,7 @@ export class Page {
     this.drawings = new Drawings(session, (ask) => void this.link?.ask(ask));
     this.maps = new Maps(session);
     this.timeline = new Timeline(frame("timeline"), session, (ask) => this.ask(ask));
+    frame("notice").after(this.ending.root);
     this.sensors = session.components.flatMap((one) => {
       const signal = session.signals.findIndex((candidate) => candidate.name === one.senses);
       const body = session.bodies.findIndex((candidate) => candidate.name === one.body);
@@ -351,7 +354,7 @@ export class Page {
     document.body.classList.toggle("past", isPast);
     frame("past").hidden = !isPast;
     if (isPast) frame("past-time").textContent = seconds(picture.t_ns);
-    for (const one of this.panels) one.view.rest(isPast);
+    for (const one of this.panels) one.view.rest(isPast || this.isOver);
   }
 
   private handle(message: Message): void {
@@ -359,7 +362,7 @@ export class Page {
       case "status":
         frame("state").textContent = say(STATES[message.state]);
         document.body.classList.toggle("held", message.state === "hold");
-        if (message.state === "end") this.isOver = true;
+        this.end(message.state === "end", message.past_ns);
         frame("pace").textContent = message.pace === "max" ? say("as fast as it can") : message.pace === "" ? "–" : `${local(message.pace)}×`;
         for (const one of this.panels) {
           one.view.sit(message.seat.get(one.name) ?? "taken");
@@ -399,6 +402,15 @@ export class Page {
       case "error":
         return this.notice(message.message);
     }
+  }
+
+  /** The session has come to its end, or not yet. */
+  private end(isOver: boolean, past_ns: readonly [number, number] | null): void {
+    if (!isOver) return;
+    this.isOver = true;
+    for (const one of frame("controls").querySelectorAll<HTMLButtonElement>("button")) one.disabled = true;
+    for (const one of this.panels) one.view.rest(true);
+    this.ending.show(this.last === null || this.last.isPast ? past_ns?.[1] ?? 0 : this.last.t_ns, past_ns);
   }
 
   /** Alarms have come or gone, or somebody has done something about them. */
@@ -451,6 +463,7 @@ export class Page {
     const link = frame("link");
     link.textContent = { connecting: say("connecting…"), connected: say("connected"), lost: say("connection lost") }[state];
     link.className = state === "lost" && this.isOver ? "over" : state;
+    if (state === "lost") this.ending.hide();
     if (state === "lost" && this.isOver) link.textContent = say("over");
     else if (state === "lost") this.notice(say("The connection to the session is lost. The page shows the last picture and connects again by itself."));
     if (state === "connected") {
