@@ -75,16 +75,16 @@ def compare(ours, theirs, is_smooth, factor=1.0, gives_s=0.0):
     for `gives_s`."""
     names = sorted(set(theirs[-1]) & set(ours[-1]))
     worst, spans, bounds = None, [], []
+    # what hits a stop in one place moves all others
+    fastest = np.max([np.abs(np.diff(theirs[-1][name], append=theirs[-1][name][-1])) for name in names], axis=0)
+    gives = gives_s / EVERY_S * np.maximum.accumulate(fastest)
     for name in names:
         (mine, my_error), (yours, your_error) = best(ours, name, is_smooth), best(theirs, name, is_smooth)
         # a closed form may end before the runs do
         count = min(len(mine), len(yours))
         mine, my_error, yours, your_error = (one[:count] for one in (mine, my_error, yours, your_error))
         difference = np.abs(mine - yours)
-        limit = SAFETY * (my_error + factor * your_error) + FLOOR * (1 + np.abs(yours))
-        if gives_s:
-            speed = np.abs(np.gradient(yours))
-            limit = limit + gives_s / EVERY_S * np.maximum.accumulate(np.maximum(speed, np.append(speed[1:], speed[-1])))
+        limit = SAFETY * (my_error + factor * your_error) + gives[:count] + FLOOR * (1 + np.abs(yours))
         sample = int(np.argmax(difference / limit))
         found = Outcome(name, sample, float(difference[sample]), float(limit[sample]), False)
         spans.append(float(np.ptp(theirs[-1][name])))

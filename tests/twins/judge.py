@@ -61,8 +61,11 @@ def settled(scene, what, amount, text):
 
 
 def law_of_coulomb(scene):
-    """The closed form where there is one, as runs at three steps that do not differ."""
-    run = coulomb.path(scene, EVERY_US) or layers.path(scene, EVERY_US) or closed.path(scene, EVERY_US)
+    """The closed form where there is one, as runs at three steps."""
+    found = coulomb.path(scene, EVERY_US)
+    if found:
+        return found
+    run = layers.path(scene, EVERY_US) or closed.path(scene, EVERY_US)
     return run and [run] * 3
 
 
