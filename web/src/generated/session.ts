@@ -71,8 +71,8 @@ export type Ask =
   | { readonly type: "shelve"; readonly alarm: number; readonly for_s?: number | null }
   /** Shows this viewer the live edge again. */
   | { readonly type: "live" }
-  /** Starts a session from a moment of the past, beside this one. */
-  | { readonly type: "fork"; readonly t_ns: number };
+  /** Starts a session from a moment of the past, beside this one; it ends as this one does, or at `until_ns`. */
+  | { readonly type: "fork"; readonly t_ns: number; readonly until_ns?: number | null };
 
 /** An axis of a map: where each of its cells begins, and where the last one ends, in rising order. */
 export interface Axis {

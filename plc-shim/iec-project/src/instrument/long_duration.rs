@@ -4,21 +4,21 @@
 use std::collections::BTreeSet;
 
 use super::marks;
-use super::plain::Plain;
 use super::survey::Survey;
 use super::target::Target;
 use onescan_iec::dialect::Feature;
 use onescan_iec::front::{Front, with_room};
+use onescan_iec::input::Input;
 use onescan_iec::source::edits::Edits;
 use onescan_iec::syntax::{SourceFile, Span};
 
-/// Where an LTIME is given. Only checked text says what is one, so a project without timers is not checked for it.
-pub(super) fn given(plain: &Plain, target: Target, survey: &Survey<'_>) -> BTreeSet<Span> {
-    let takes_both = plain.sources.iter().any(|(_, file)| file.dialect().has(Feature::LongTimers));
-    if target != Target::Iec || !plain.is_text() || !takes_both || survey.renames.is_empty() {
+/// Where an LTIME is given in a project of these texts. Only checked text says what is one, so a project without timers is not
+/// checked for it.
+pub(super) fn given(texts: Vec<Input>, target: Target, survey: &Survey<'_>) -> BTreeSet<Span> {
+    let takes_both = texts.iter().any(|text| text.file().dialect().has(Feature::LongTimers));
+    if target != Target::Iec || !takes_both || survey.renames.is_empty() {
         return BTreeSet::new();
     }
-    let texts: Vec<_> = plain.texts().collect();
     with_room(|| Front::new(texts).checked.long_durations)
 }
 

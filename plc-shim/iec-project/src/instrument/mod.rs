@@ -260,7 +260,8 @@ fn attach(plain: &Plain, options: &Options) -> Result<Attached, InstrumentError>
         return Err(InstrumentError::Text(Diagnostics::new(vec![refused], &plain.sources)));
     }
     findings.append(&mut survey.findings);
-    survey.long_durations = long_duration::given(plain, options.target, &survey);
+    let texts = if plain.is_text() { plain.texts().collect() } else { Vec::new() };
+    survey.long_durations = long_duration::given(texts, options.target, &survey);
     let exchange = (options.target == Target::Scl).then(|| scl_exchange::text(&options.exchanged)).flatten();
     if options.target == Target::Scl {
         findings.extend(scl_exchange::refused(&options.exchanged));

@@ -68,7 +68,7 @@ pub const FEATURES: &[FeatureRow] = &[
     row(
         Feature::GenericInputs,
         &[Codesys, TwinCat, SiemensScl],
-        "CODESYS and TwinCAT: data types ANY and ANY_<type>; S7-SCL V5.3: parameter type ANY, of VAR_INPUT here",
+        "CODESYS and TwinCAT: data types ANY and `ANY_<type>`; S7-SCL V5.3: parameter type ANY, of VAR_INPUT here",
     ),
     row(Feature::IntegerShifts, &[Codesys, TwinCat, SiemensScl], "CODESYS V2.3, TwinCAT 2: SHR; TIA Portal: SHR, ROR"),
     row(Feature::ClockFunctions, &[Codesys, TwinCat], "CODESYS and TwinCAT: operators TIME, LTIME"),
