@@ -311,7 +311,6 @@ fn a_drive_that_is_to_stand_does_not_press_on_what_stopped_it() {
             bench.run_us(1_000_000);
             let way_m: f64 = bench.read("Way");
             assert!((way_m - end_m).abs() < 1e-6, "{period_us}: {way_m}");
-            println!("{period_us} {end_m} {:?}", seen(&bench));
             bench.command("On", false);
             bench.run_us(300_000);
             let (force_n, limit) = seen(&bench);
