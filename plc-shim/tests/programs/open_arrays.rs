@@ -99,7 +99,7 @@ fn wrong_arrays_are_reported() {
         ("Make(n := 1);", "test.st:6:1: error[C0302]: parameter `a` is missing"),
         ("Make(n := 1, a => d);", "test.st:6:19: error[C0305]: `a` is ARRAY [*] OF INT, this is ARRAY [1..4] OF DINT"),
         ("Make(n := 1, NOT a => a);", "test.st:6:23: error[T0201]: BOOL is wanted, this is ARRAY [*] OF INT"),
-        ("x := UPPER_BOUND(a, x);", "test.st:6:21: error[T0204]: a constant is wanted here"),
+        ("x := UPPER_BOUND(a, 1.5);", "test.st:6:21: error[T0201]: an integer is wanted, this is LREAL"),
     ] {
         assert_eq!(reported(statement), expected, "{statement}");
     }
@@ -125,7 +125,7 @@ fn wrong_arrays_are_reported() {
     }
 }
 
-/// 3rd ed. 6.5.3: the dimension is an ANY_INT, so a variable, too.
+/// 3rd ed. 6.5.3: the dimension is an `ANY_INT`, so a variable, too.
 #[test]
 fn a_dimension_is_chosen_when_the_program_runs() {
     let text = "

@@ -279,9 +279,9 @@ impl Session {
         self.recorded_to.unwrap_or_else(|| self.published.latest().t_v)
     }
 
-    /// True for a session that has come to its end, though its page may stay.
+    /// True for a session that has come to its end, though its page may stay. After an attempt at a lesson the next one comes.
     fn is_complete(&self) -> bool {
-        self.published.latest().end.is_some()
+        self.training.is_none() && self.published.latest().end.is_some()
     }
 
     fn ended(&self) -> bool {

@@ -141,7 +141,7 @@ impl Body<'_, '_> {
         let (given, number) = (number.span, self.expression(number)?);
         let dimension = match &number {
             Operand::Integer { value, .. } => Some(*value),
-            Operand::Typed(typed) => constant_value(self.declarations.types(), typed).and_then(|value| value.as_int()),
+            Operand::Typed(typed) => constant_value(self.declarations.types(), typed).and_then(Value::as_int),
             Operand::Real { .. } | Operand::Text { .. } => None,
         };
         match dimension {
@@ -168,14 +168,12 @@ impl Body<'_, '_> {
     }
 
     fn bound_of(&mut self, mut bounds: Vec<Expr>, dimension: i128, span: Span) -> Option<Expr> {
-        match usize::try_from(dimension - 1).ok().filter(|index| *index < bounds.len()) {
-            Some(index) => Some(bounds.swap_remove(index)),
-            None => {
-                let message = format!("the array has the dimensions 1 to {}, not {dimension}", bounds.len());
-                self.report(Diagnostic::error(Code::WrongDimensions, span, message));
-                None
-            }
-        }
+        let Some(index) = usize::try_from(dimension - 1).ok().filter(|index| *index < bounds.len()) else {
+            let message = format!("the array has the dimensions 1 to {}, not {dimension}", bounds.len());
+            self.report(Diagnostic::error(Code::WrongDimensions, span, message));
+            return None;
+        };
+        Some(bounds.swap_remove(index))
     }
 
     /// A dimension that the program computes chooses among the bounds; one that the array does not have is a fault.
