@@ -12,8 +12,6 @@ ROWS = [
         "a box that slides at an angle to its edges goes off its way by up to 2 % of what friction takes"),
     Row("rolling on an edge", ["roll"], ["law", "friction", "sinking"], 0.02,
         "the engine keeps the contact points of cylinders and capsules for up to 1 mm or 1 degree, so that weight turns them"),
-    Row("pusher", ["pusher"], ["law", "apart", "sinking", "momentum"], 1.0,
-        "the face of a guided pusher with friction carries a part of the weight of what it pushes (decision 017)"),
     Row("slipping on a turntable", ["table"], ["apart"], 0.2,
         "rigid bodies leave open how four corners share a weight, and what slips and turns goes by it; the engine's turned friction, "
         "too"),

@@ -51,6 +51,8 @@ export class Page {
   private readonly news = make("ul", { class: "news", "aria-label": say("Messages") });
   private readonly lesson: TrainingView | null;
   private isOver = false;
+  /** Nothing comes after it. */
+  private isComplete = false;
   private readonly machine: MachineView;
   private readonly panels: readonly { name: string; view: PanelView }[];
   private readonly part: PartSheet;
@@ -354,7 +356,7 @@ export class Page {
     document.body.classList.toggle("past", isPast);
     frame("past").hidden = !isPast;
     if (isPast) frame("past-time").textContent = seconds(picture.t_ns);
-    for (const one of this.panels) one.view.rest(isPast || this.isOver);
+    for (const one of this.panels) one.view.rest(isPast || this.isComplete);
   }
 
   private handle(message: Message): void {
@@ -408,6 +410,9 @@ export class Page {
   private end(isOver: boolean, past_ns: readonly [number, number] | null): void {
     if (!isOver) return;
     this.isOver = true;
+    // After an attempt at a lesson the next one comes.
+    if (this.session.training !== null) return;
+    this.isComplete = true;
     for (const one of frame("controls").querySelectorAll<HTMLButtonElement>("button")) one.disabled = true;
     for (const one of this.panels) one.view.rest(true);
     this.ending.show(this.last === null || this.last.isPast ? past_ns?.[1] ?? 0 : this.last.t_ns, past_ns);

@@ -23,7 +23,7 @@ impl Staying {
     /// Waits for whoever looks at it. The run has ended by itself, so its own exit code counts, not the signal.
     pub(super) fn last(self, interrupt: &Interrupt) {
         let until = match self.stay {
-            Stay::UntilInterrupted => "Ctrl-C, or *Close* on the page, ends it",
+            Stay::UntilInterrupted => "Ctrl-C, or `Close` on the page, ends it",
             Stay::No | Stay::ForViewers => "it ends with its last viewer",
         };
         tracing::info!(target: NOTICE, "the run is over; its page stays at {}: {until}", self.page.url());
