@@ -467,9 +467,11 @@ export class Page {
   private show_link(state: LinkState): void {
     const link = frame("link");
     link.textContent = { connecting: say("connecting…"), connected: say("connected"), lost: say("connection lost") }[state];
-    link.className = state === "lost" && this.isOver ? "over" : state;
+    // It tries again now and then, in case another session has the address.
+    const isLeft = state !== "connected" && this.isOver;
+    link.className = isLeft ? "over" : state;
     if (state === "lost") this.ending.hide();
-    if (state === "lost" && this.isOver) link.textContent = say("over");
+    if (isLeft) link.textContent = say("over");
     else if (state === "lost") this.notice(say("The connection to the session is lost. The page shows the last picture and connects again by itself."));
     if (state === "connected") {
       frame("notice").hidden = true;
