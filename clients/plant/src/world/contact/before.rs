@@ -24,15 +24,14 @@ impl Before {
         for (handle, body) in bodies.iter() {
             let place = place(handle);
             self.motions.resize(self.motions.len().max(place + 1), None);
-            let motion = Motion { pose: *body.position(), linear: body.linvel(), angular: body.angvel() };
-            self.motions[place] = Some(motion);
+            self.motions[place] = Some(Motion::of(body));
         }
     }
 
     /// How a body was; as it is if it was not noted.
     pub(super) fn of(&self, handle: RigidBodyHandle, body: &RigidBody) -> Motion {
         let noted = self.motions.get(place(handle)).copied().flatten();
-        noted.unwrap_or_else(|| Motion { pose: *body.position(), linear: body.linvel(), angular: body.angvel() })
+        noted.unwrap_or_else(|| Motion::of(body))
     }
 }
 
@@ -41,6 +40,11 @@ fn place(handle: RigidBodyHandle) -> usize {
 }
 
 impl Motion {
+    /// How a body is now.
+    fn of(body: &RigidBody) -> Self {
+        Self { pose: *body.position(), linear: body.linvel(), angular: body.angvel() }
+    }
+
     /// How fast a point of the body moves.
     pub(super) fn at(&self, point: Vector, centre: Vector) -> Vector {
         self.linear + self.angular.cross(point - centre)

@@ -281,9 +281,7 @@ impl Built {
                     most: tie.most,
                     ..Row::rigid([(from, to), (0, 0)], tie.wanted)
                 };
-                let answer =
-                    |along: &[f64], answer: &mut [f64]| mechanism.answers(&along[from..to], &mut answer[from..to]);
-                self.problem.push(row, &along, answer);
+                self.push(row, &along, island, parts);
             }
             self.ties.push(first..self.problem.rows.len());
         }

@@ -58,7 +58,7 @@ impl Problem {
             let settled = if rubs {
                 search.slide()
             } else {
-                search.hold();
+                search.take(search.smooth());
                 true
             };
             if search.revise(2 * round > rounds) {
@@ -144,10 +144,15 @@ impl<'p> Search<'p> {
         self.start[row] - held.map(|other| line[other] * self.impulses[other]).sum::<f64>()
     }
 
-    /// Finds what the free rows take without friction.
-    fn hold(&mut self) {
+    /// What the free rows take without friction.
+    fn smooth(&self) -> Vec<f64> {
         let mut answer: Vec<f64> = self.free.iter().map(|row| self.short(*row)).collect();
         matrix::solve(&self.lower, self.free.len(), &mut answer);
+        answer
+    }
+
+    /// Gives the free rows these impulses.
+    fn take(&mut self, answer: Vec<f64>) {
         for (row, impulse) in self.free.iter().zip(answer) {
             self.impulses[*row] = impulse;
         }
@@ -155,9 +160,7 @@ impl<'p> Search<'p> {
 
     /// Finds the friction of all contacts that press, with the free rows answering; false if it does not settle.
     fn slide(&mut self) -> bool {
-        let size = self.free.len();
-        let mut answer: Vec<f64> = self.free.iter().map(|row| self.short(*row)).collect();
-        matrix::solve(&self.lower, size, &mut answer);
+        let answer = self.smooth();
         let pressed = |friction: &&Friction| self.held[friction.normal] == Held::Free && friction.coefficient > 0.0;
         let pressed: Vec<Friction> = self.problem.frictions.iter().filter(pressed).copied().collect();
         for row in &mut self.impulses[self.problem.bounded..] {
@@ -170,9 +173,7 @@ impl<'p> Search<'p> {
         for (friction, impulse) in pressed.iter().zip(impulses.chunks_exact(2)) {
             self.impulses[friction.first..friction.first + 2].copy_from_slice(impulse);
         }
-        for (row, impulse) in self.free.iter().zip(answer) {
-            self.impulses[*row] = impulse;
-        }
+        self.take(answer);
         settled
     }
 

@@ -229,14 +229,20 @@ impl Mechanism {
                 None => 0.5 * (before + after),
             };
         }
-        let Self { lumps, now, axes, room, .. } = self;
+        self.travel(dt_s);
+        self.now.v.copy_from_slice(&self.room.v);
+        keep_within(&mut self.now, &self.axes, fittings);
+    }
+
+    /// Goes by the velocities that it has.
+    pub(super) fn travel(&mut self, dt_s: f64) {
+        let Self { lumps, now, room, .. } = self;
+        room.rates[0].resize(lumps.positions, 0.0);
         rates(lumps, &now.q, &now.v, &mut room.rates[0]);
         for (q, rate) in now.q.iter_mut().zip(&room.rates[0]) {
             *q += dt_s * rate;
         }
         normalise(lumps, &mut now.q);
-        now.v.copy_from_slice(&room.v);
-        keep_within(now, axes, fittings);
     }
 }
 

@@ -6,7 +6,6 @@
 use rapier3d::prelude::*;
 
 use super::driven::keep_within;
-use super::dynamics::{normalise, rates};
 use super::rows::Row;
 use super::{Mechanism, Surroundings};
 use crate::effort::Motion;
@@ -136,14 +135,8 @@ impl Mechanism {
         for ((v, velocity), correction) in self.now.v.iter_mut().zip(velocities).zip(corrections) {
             *v = velocity + correction;
         }
-        let Self { lumps, now, axes, room, .. } = self;
-        room.rates[0].resize(lumps.positions, 0.0);
-        rates(lumps, &now.q, &now.v, &mut room.rates[0]);
-        for (q, rate) in now.q.iter_mut().zip(&room.rates[0]) {
-            *q += dt_s * rate;
-        }
-        normalise(lumps, &mut now.q);
-        now.v.copy_from_slice(velocities);
-        keep_within(now, axes, around.fittings);
+        self.travel(dt_s);
+        self.now.v.copy_from_slice(velocities);
+        keep_within(&mut self.now, &self.axes, around.fittings);
     }
 }
