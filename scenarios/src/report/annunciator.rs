@@ -101,7 +101,7 @@ impl Annunciator {
 
     /// Takes the image of `t_ns`, which is not as the one before it.
     pub(super) fn push(&mut self, t_ns: u64, values: &[f64]) -> Vec<Passage> {
-        // What is due at this very time depends on this image.
+        // What is due at this very time depends on this image; nothing is due before the beginning of time.
         let mut passages = t_ns.checked_sub(1).map(|before_ns| self.pass(before_ns)).unwrap_or_default();
         for (alarm, phase) in &mut self.alarms {
             *phase = phase.turned(t_ns, alarm.when.holds(values), alarm);

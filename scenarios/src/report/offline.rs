@@ -254,6 +254,7 @@ fn delayed(spells: &[(u64, Option<u64>)], (on_ns, off_ns): (u64, u64), end_ns: u
             // it has not gone yet, or goes at the very time at which it holds again
             Some((_, last)) if last.is_none_or(|last| last >= *from) => *last = to.map(gone),
             _ if lasts(*from) => found.push((from + on_ns, to.map(gone))),
+            // too short for its on-delay: it never came
             _ => {}
         }
     }

@@ -375,7 +375,7 @@ export function readLesson(field: Field): Lesson {
   };
 }
 
-/** What it cost. */
+/** A cost of the lesson, in its unit. */
 export interface LessonCost {
   readonly name: string;
   readonly value: number;
@@ -582,7 +582,7 @@ export function readMessage(field: Field): Message {
 /** A malfunction, and what the trainee made of it. */
 export interface Met {
   readonly name: string;
-  /** Whether it came. */
+  /** Whether it had begun before the attempt was over. */
   readonly came: boolean;
   readonly acted: Timing | null;
   readonly identified: Timing | null;

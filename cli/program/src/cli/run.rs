@@ -355,11 +355,8 @@ fn config(args: RunArgs) -> Result<RunConfig, CommandError> {
             admission,
             web: args.web,
             awaits_viewer: args.await_viewer || is_watched && !args.no_await_viewer,
-            stay: match (args.stay || is_watched && !args.no_stay, on_terminal()) {
-                (false, _) => Stay::No,
-                (true, false) => Stay::ForViewers,
-                (true, true) => Stay::UntilInterrupted,
-            },
+            stay: (args.stay || is_watched && !args.no_stay)
+                .then(|| if on_terminal() { Stay::UntilInterrupted } else { Stay::ForViewers }),
             past: args.past_memory,
             forks: args.forks,
             ads: args.ads,

@@ -30,6 +30,11 @@ impl Items {
         self.lock()[self.places[index].clone()].copy_from_slice(value);
     }
 
+    /// All items.
+    pub(super) fn all(&self) -> Vec<u8> {
+        self.lock().clone()
+    }
+
     /// Copies all items out.
     pub(super) fn copy_to(&self, port: &mut [u8]) {
         port.copy_from_slice(&self.lock());

@@ -54,8 +54,7 @@ impl Sleeper {
     /// When a sleep ends that is to end at `due_ns`.
     fn wakes_ns(&mut self, due_ns: u64) -> u64 {
         let tick_ns = u64::from(self.model.timer_us) * 1_000;
-        let tick = if tick_ns == 0 { due_ns } else { due_ns.div_ceil(tick_ns).saturating_mul(tick_ns) };
-        tick.saturating_add(self.late_ns())
+        self.notices_ns(if tick_ns == 0 { due_ns } else { due_ns.div_ceil(tick_ns).saturating_mul(tick_ns) })
     }
 
     /// When somebody notices `due_ns` who polls the clock.
@@ -77,13 +76,13 @@ struct Spinning<'w> {
 }
 
 impl<'w> Spinning<'w> {
-    fn new(wheel: &'w mut Wheel, request: &JoinRequest, clocks: Clocks, input_bytes: usize) -> Self {
+    fn new(wheel: &'w mut Wheel, request: &JoinRequest, clocks: Clocks) -> Self {
         let mut sleeper = Sleeper::new(clocks, "client", request.name.as_str());
         let begin_ns = match wheel.clock {
             Clock::Grid => sleeper.phase_ns(wheel.period.as_nanos()),
             Clock::Halt | Clock::Pause | Clock::Follow { .. } => 0,
         };
-        let (cycle, synchronizer) = (wheel.cycle(input_bytes), wheel.synchronizer());
+        let (cycle, synchronizer) = (wheel.cycle(), wheel.synchronizer());
         Self { wheel, cycle, synchronizer, sleeper, begin_ns, next: 1 }
     }
 
@@ -165,15 +164,15 @@ pub(super) struct Halted {
 pub(super) fn spin(
     wheels: &mut [Wheel],
     links: &[OpcLink],
-    requests: &[(&JoinRequest, usize)],
+    requests: &[JoinRequest],
     (until, clocks): (VirtualTime, Clocks),
     stop: &AtomicBool,
 ) -> Option<Halted> {
     let clients = wheels.iter_mut().zip(requests);
     let mut spinning: Vec<Spinning<'_>> =
-        clients.map(|(wheel, (request, bytes))| Spinning::new(wheel, request, clocks, *bytes)).collect();
+        clients.map(|(wheel, request)| Spinning::new(wheel, request, clocks)).collect();
     let mut carrying: Vec<Carrying<'_>> =
-        links.iter().zip(requests).map(|(link, (request, _))| Carrying::new(link, request, clocks)).collect();
+        links.iter().zip(requests).map(|(link, request)| Carrying::new(link, request, clocks)).collect();
     // By time, and what comes at one time by number, clients before links.
     let mut events: BTreeSet<(u64, usize)> = BTreeSet::new();
     for (number, client) in spinning.iter_mut().enumerate() {

@@ -63,7 +63,7 @@ pub fn run(
     let (mut wheels, links) = connect(clients, &requests, link, timeline);
     let mut failed = None;
     for (wheel, request) in wheels.iter_mut().zip(&requests) {
-        if let Err(fault) = wheel.set_up(PortLayout::new(request.writes.clone()).size()) {
+        if let Err(fault) = wheel.set_up() {
             failed.get_or_insert_with(|| end_of(request, ClientState::Setup, VirtualTime::ZERO, fault));
         }
     }
@@ -87,8 +87,7 @@ fn computed(
     times: (VirtualTime, Clocks),
     stop: &AtomicBool,
 ) -> Option<SessionEnd> {
-    let joined: Vec<_> = requests.iter().map(|each| (each, PortLayout::new(each.reads.clone()).size())).collect();
-    let Halted { client, halt } = model::spin(wheels, links, &joined, times, stop)?;
+    let Halted { client, halt } = model::spin(wheels, links, requests, times, stop)?;
     requests.get(client).map(|request| end_of(request, ClientState::Run, halt.t, halt.fault))
 }
 
@@ -116,9 +115,8 @@ fn spin(
         }
         let mut running = Vec::new();
         for (wheel, request) in wheels.iter_mut().zip(requests) {
-            let input_bytes = PortLayout::new(request.reads.clone()).size();
             let turning = threads::start_in(scope, "client", move || {
-                let result = wheel.run(input_bytes, until, [stop, halted]);
+                let result = wheel.run(until, [stop, halted]);
                 if result.is_err() {
                     halted.store(true, Ordering::Relaxed);
                 }

@@ -66,8 +66,8 @@ pub(super) struct Halt {
 
 impl Wheel {
     /// Initialises the client and shows its initial outputs.
-    pub(super) fn set_up(&mut self, output_bytes: usize) -> Result<(), ClientFault> {
-        let mut outputs = vec![0; output_bytes];
+    pub(super) fn set_up(&mut self) -> Result<(), ClientFault> {
+        let mut outputs = self.outputs.all();
         self.timeline.set_up(self.client.as_mut(), &mut outputs)?;
         let seen = self.timeline.seen(&outputs);
         self.outputs.copy_from(&seen);
@@ -76,8 +76,8 @@ impl Wheel {
     }
 
     /// A cycle that has not begun: what goes in and comes out.
-    pub(super) fn cycle(&self, input_bytes: usize) -> Cycle {
-        Cycle { t: VirtualTime::ZERO, inputs: vec![0; input_bytes], outputs: self.own.clone() }
+    pub(super) fn cycle(&self) -> Cycle {
+        Cycle { t: VirtualTime::ZERO, inputs: self.inputs.all(), outputs: self.own.clone() }
     }
 
     /// Runs the next cycle.
@@ -114,9 +114,9 @@ impl Wheel {
     }
 
     /// Runs cycles until its own clock has come to `until`, or until one of `stops` is set.
-    pub(super) fn run(&mut self, input_bytes: usize, until: VirtualTime, stops: [&AtomicBool; 2]) -> Result<(), Halt> {
+    pub(super) fn run(&mut self, until: VirtualTime, stops: [&AtomicBool; 2]) -> Result<(), Halt> {
         let period = Duration::from_nanos(self.period.as_nanos());
-        let mut cycle = self.cycle(input_bytes);
+        let mut cycle = self.cycle();
         let mut synchronizer = self.synchronizer();
         let mut due = sleep::after(Instant::now(), period);
         while cycle.t < until && !stops.iter().any(|stop| stop.load(Ordering::Relaxed)) {

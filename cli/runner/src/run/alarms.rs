@@ -4,6 +4,7 @@ use onescan_scenario::Scenario;
 use onescan_scenario::panel_file::ElementKind;
 use onescan_scenario::report::{Bell, Measures};
 use onescan_server::digest::TrajectoryDigest;
+use onescan_server::lockstep::Lockstep;
 use onescan_server::observer::{Observer, RecordError};
 use onescan_server::session::Session;
 use onescan_server::signal::SignalName;
@@ -22,9 +23,9 @@ struct Ringer {
     is_pressed: bool,
 }
 
-/// What notes the alarms of a session; nothing if its scenario has none.
-pub(crate) fn observer(log: &AlarmLog, scenario: &Scenario) -> Option<Box<dyn Observer>> {
-    let measures = scenario.measures().filter(|measures| !measures.alarms().is_empty())?;
+/// Notes in a log the alarms of a session that is about to begin, if its scenario has any.
+pub(crate) fn note(log: &AlarmLog, scenario: &Scenario, lockstep: &mut Lockstep) {
+    let Some(measures) = scenario.measures().filter(|measures| !measures.alarms().is_empty()) else { return };
     let names: Vec<SignalName> = measures.signals().map(|(name, _)| name.clone()).collect();
     let elements = scenario.file().panel.iter().flat_map(|panel| &panel.element);
     let alarms = elements.map(toml::Spanned::get_ref).filter(|element| element.kind == ElementKind::Alarms);
@@ -32,14 +33,14 @@ pub(crate) fn observer(log: &AlarmLog, scenario: &Scenario) -> Option<Box<dyn Ob
         alarms.filter_map(|element| Some(element.signal.as_ref()?.get_ref().clone())).collect();
     keys.sort();
     keys.dedup();
-    Some(Box::new(Ringer {
+    lockstep.observe(Box::new(Ringer {
         log: log.clone(),
         bell: Bell::new(measures),
         measures: measures.clone(),
         signals: Chosen::new(&names),
         keys: Chosen::new(&keys),
         is_pressed: false,
-    }))
+    }));
 }
 
 impl Ringer {
@@ -51,7 +52,7 @@ impl Ringer {
         }
         let is_pressed = self.keys.numbers(session).any(|value| value != 0.0);
         if is_pressed && !self.is_pressed {
-            self.log.acknowledge(self.measures.alarms().len(), t_ns);
+            self.log.acknowledge(0..self.measures.alarms().len(), t_ns);
         }
         self.is_pressed = is_pressed;
     }

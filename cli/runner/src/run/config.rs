@@ -96,8 +96,8 @@ pub struct Doors {
     pub web: Option<SocketAddr>,
     /// Whether the session begins only when somebody looks at the page.
     pub awaits_viewer: bool,
-    /// How long the page stays when the session is over.
-    pub stay: Stay,
+    /// How long the page stays when the session is over; without, viewers get the end, and that is all.
+    pub stay: Option<Stay>,
     /// How much memory the past takes that the page shows.
     pub past: Budget,
     /// How many sessions may go on from moments of that past at a time.

@@ -210,9 +210,7 @@ fn serve_page(
     let failing = web::Failing::default();
     lockstep.observe(failing.observer());
     let alarm_log = web::AlarmLog::default();
-    if let Some(observer) = alarms::observer(&alarm_log, scenario) {
-        lockstep.observe(observer);
-    }
+    alarms::note(&alarm_log, scenario, lockstep);
     let (published, mailbox) = (lockstep.published(), interrupt.mailbox());
     let launch = forked::launcher(ForkSettings::of(config));
     let source = web::Source {

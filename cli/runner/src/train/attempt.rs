@@ -89,9 +89,7 @@ pub(super) fn drive(course: Course<'_>, stage: &Stage, moments: &mut Moments) ->
     lockstep.observe(Box::new(Examiner { examination: Rc::clone(&examination), inputs: Rc::clone(&heard) }));
     stage.failing.begin_with(from.at_work);
     lockstep.observe(stage.failing.observer());
-    if let Some(observer) = alarms::observer(&stage.alarm_log, scenario) {
-        lockstep.observe(observer);
-    }
+    alarms::note(&stage.alarm_log, scenario, &mut lockstep);
     // Nobody else records into the attempt's folder until it is over.
     let mut kept = None;
     if let Some((folder, number, path)) = record {

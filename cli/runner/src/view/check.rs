@@ -69,9 +69,7 @@ pub(super) fn check(
 ) -> Result<Checked, ViewError> {
     let mut lockstep = forked::former(&recorded.scenario)().map_err(|why| Usage::new(why, None))?;
     lockstep.replay(recorded.inputs.clone());
-    if let Some(observer) = alarms::observer(alarm_log, &recorded.scenario) {
-        lockstep.observe(observer);
-    }
+    alarms::note(alarm_log, &recorded.scenario, &mut lockstep);
     let mut keeper = Keeper::new(kept.clone()).map_err(WebError::Thread)?;
     let none = || Usage::new("the recording has no step", None);
     let steps = recorded.recording.steps().ok_or_else(none)?;

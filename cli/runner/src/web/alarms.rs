@@ -4,6 +4,7 @@
 //! sees the alarms of that moment. An acknowledgement by a page is noted here alone; one by a panel's signal is an input of the
 //! session, and is noted where the signal rises: also in a recording that is run again.
 
+use std::collections::BTreeSet;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use onescan_scenario::Scenario;
@@ -23,9 +24,9 @@ pub(super) struct Alarm {
     priority: Priority,
 }
 
-/// The alarms of a scenario, in its order.
+/// The alarms of a scenario, in its order; without a `[report]` it has none.
 pub(super) fn of(scenario: &Scenario) -> Vec<Alarm> {
-    let alarms = scenario.measures().map(Measures::alarms).unwrap_or_default();
+    let alarms = scenario.measures().map_or(&[][..], Measures::alarms);
     alarms.iter().map(|alarm| Alarm { name: alarm.name().to_owned(), priority: alarm.priority() }).collect()
 }
 
@@ -33,9 +34,9 @@ pub(super) fn of(scenario: &Scenario) -> Vec<Alarm> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum Fate {
-    /// It has come.
+    /// Its condition has held for its on-delay.
     On,
-    /// It has gone.
+    /// Its condition has not held for its off-delay.
     Off,
     /// Somebody has acknowledged it.
     Acknowledged,
@@ -76,13 +77,11 @@ impl Log {
     /// Keeps of the older half what decides how each alarm was then.
     fn forget(&mut self) {
         let recent = self.changes.split_off(self.changes.len() / 2);
-        let old = std::mem::take(&mut self.changes);
-        let is_last = |at: usize, one: &Change| {
-            let is_same = |other: &Change| other.alarm == one.alarm && kind(other.fate) == kind(one.fate);
-            !old.get(at + 1..).unwrap_or_default().iter().any(is_same)
-        };
-        self.changes = old.iter().enumerate().filter(|(at, one)| is_last(*at, one)).map(|(_, one)| *one).collect();
-        self.changes.extend(recent);
+        // From the end on, so that the first of a kind is the last of its alarm.
+        let mut seen = BTreeSet::new();
+        let mut kept: Vec<Change> = self.changes.drain(..).rev().collect();
+        kept.retain(|one| seen.insert((one.alarm, kind(one.fate))));
+        self.changes.extend(kept.into_iter().rev().chain(recent));
         self.epoch += 1;
     }
 }
@@ -129,17 +128,16 @@ impl AlarmLog {
         }
     }
 
-    /// Notes that the first `count` alarms were acknowledged.
-    pub(crate) fn acknowledge(&self, count: usize, t_ns: u64) {
-        let all: Vec<usize> = (0..count).collect();
-        self.note(&all, t_ns, Fate::Acknowledged, None);
+    /// Notes that these alarms were acknowledged.
+    pub(crate) fn acknowledge(&self, alarms: impl IntoIterator<Item = usize>, t_ns: u64) {
+        self.note(alarms, t_ns, Fate::Acknowledged, None);
     }
 
     /// Notes what somebody does about alarms at `t_ns`.
-    pub(super) fn note(&self, alarms: &[usize], t_ns: u64, fate: Fate, until_ns: Option<u64>) {
+    pub(super) fn note(&self, alarms: impl IntoIterator<Item = usize>, t_ns: u64, fate: Fate, until_ns: Option<u64>) {
         let mut log = self.lock();
         for alarm in alarms {
-            log.push(Change { alarm: *alarm, t_ns, fate, until_ns });
+            log.push(Change { alarm, t_ns, fate, until_ns });
         }
     }
 
@@ -150,6 +148,7 @@ impl AlarmLog {
         if is_all {
             *read = Read { epoch: log.epoch, changes: 0 };
         }
+        // A log only grows within an epoch, so nobody has read more than there is.
         let rest = log.changes.get(read.changes..).unwrap_or_default();
         let sent = rest.get(..SENT_MAX).unwrap_or(rest);
         read.changes += sent.len();
@@ -169,8 +168,8 @@ mod tests {
     fn a_viewer_reads_each_change_once() {
         let (log, mut read) = (AlarmLog::default(), Read::default());
         assert_eq!(log.news(&mut read), None);
-        log.note(&[0, 1], 20, Fate::Acknowledged, None);
-        log.note(&[0], 10, Fate::Shelved, Some(90));
+        log.note([0, 1], 20, Fate::Acknowledged, None);
+        log.note([0], 10, Fate::Shelved, Some(90));
         let shelved = Change { until_ns: Some(90), ..change(0, 20, Fate::Shelved) };
         let all = vec![change(0, 20, Fate::Acknowledged), change(1, 20, Fate::Acknowledged), shelved];
         assert_eq!(log.news(&mut read), Some((false, all)));

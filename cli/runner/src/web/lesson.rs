@@ -34,7 +34,7 @@ pub(crate) struct LessonResult {
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub(crate) struct Met {
     pub(crate) name: String,
-    /// Whether it came.
+    /// Whether it had begun before the attempt was over.
     pub(crate) came: bool,
     pub(crate) identified: Option<Timing>,
     pub(crate) acted: Option<Timing>,
@@ -67,7 +67,7 @@ pub(crate) struct Slip {
     pub(crate) at_most: u32,
 }
 
-/// What it cost.
+/// A cost of the lesson, in its unit.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 #[schemars(rename = "LessonCost")]
 pub(crate) struct Cost {
@@ -86,12 +86,12 @@ impl LessonBoard {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// An attempt begins.
+    /// Notes that the attempt of this number begins, whose time is up at `ends_ns`.
     pub(crate) fn begin(&self, number: u32, ends_ns: u64) {
         *self.lock() = Some(Attempt { number, ends_ns, result: None });
     }
 
-    /// It is over.
+    /// Notes what came of the attempt that was begun last.
     pub(crate) fn end(&self, result: LessonResult) {
         if let Some(attempt) = &mut *self.lock() {
             attempt.result = Some(result);

@@ -113,12 +113,9 @@ const FAREWELL: Duration = Duration::from_millis(500);
 /// How often whoever keeps a page for those who look back looks whether that is over.
 const LOOK: Duration = Duration::from_millis(100);
 
-/// How long a page stays when its session is over.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// How long a page stays that outlasts its session.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stay {
-    /// Viewers get the end, and that is all.
-    #[default]
-    No,
     /// Until the last viewer has left.
     ForViewers,
     /// Until Ctrl-C or the like.
@@ -284,6 +281,11 @@ impl Session {
         self.training.is_none() && self.published.latest().end.is_some()
     }
 
+    /// True for what is only looked at, and closed by who has seen enough: a recording, or what has come to its end.
+    fn is_looked_back_at(&self) -> bool {
+        self.recorded_to.is_some() || self.is_complete()
+    }
+
     fn ended(&self) -> bool {
         self.over.load(Ordering::Acquire)
     }
@@ -432,12 +434,10 @@ impl Page {
         self.session.attendance.await_first(is_over);
     }
 
-    /// Waits, after the session, until a viewer has seen enough or `is_over`; or until the last one has left, if nobody else
-    /// could end it.
+    /// Keeps the page after its session, as long as `stay` says; a viewer who closes it, or `is_over`, ends that earlier.
     pub(crate) fn await_departure(&self, stay: Stay, is_over: impl Fn() -> bool) {
         let is_over = || is_over() || self.is_left();
         match stay {
-            Stay::No => {}
             Stay::ForViewers => self.session.attendance.await_departure(is_over),
             Stay::UntilInterrupted => {
                 while !is_over() {

@@ -68,9 +68,7 @@ pub(super) fn check(right: Right<'_>, session: &Session, (viewer, rank): (Viewer
         Right::Look => Ok(()),
         Right::Attend => is_live(session),
         Right::Fork => is_not_trainee(session),
-        // What is over is closed by it.
-        Right::Stop if session.recorded_to.is_some() => Ok(()),
-        Right::Stop if session.is_complete() => is_not_trainee(session),
+        Right::Stop if session.is_looked_back_at() => Ok(()),
         Right::Stop | Right::Control => is_live(session).and_then(|()| is_not_trainee(session)),
         Right::Sit(panel) => may_sit(panel, session, rank),
         Right::Write(signal) => is_live(session).and_then(|()| may_write(signal, session, viewer)),

@@ -423,7 +423,7 @@ fn perform(
             fork((t_ns, until_ns), session, &subscription.playhead, outcomes)?;
             Next::Nothing
         }
-        Ask::Operate { operation: Verb::Stop } if session.recorded_to.is_some() || session.is_complete() => {
+        Ask::Operate { operation: Verb::Stop } if session.is_looked_back_at() => {
             session.left.store(true, Ordering::Release);
             Next::Nothing
         }
@@ -448,14 +448,14 @@ fn perform(
         }
         Ask::Acknowledge { alarms } => {
             let t_ns = session.edge().as_nanos();
-            session.alarm_log.note(&ask::alarms(alarms, known)?, t_ns, Fate::Acknowledged, None);
+            session.alarm_log.acknowledge(ask::alarms(alarms, known)?, t_ns);
             Next::Nothing
         }
         Ask::Shelve { alarm, for_s } => {
             let (alarms, t_ns) = (ask::alarms(vec![alarm], known)?, session.edge().as_nanos());
             let until_ns = for_s.map(ask::shelf_ns).transpose()?.map(|for_ns| t_ns.saturating_add(for_ns));
             let fate = if until_ns.is_some() { Fate::Shelved } else { Fate::Unshelved };
-            session.alarm_log.note(&alarms, t_ns, fate, until_ns);
+            session.alarm_log.note(alarms, t_ns, fate, until_ns);
             Next::Nothing
         }
         Ask::View { view } => {
