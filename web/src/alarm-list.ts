@@ -4,6 +4,7 @@ import { most_urgent, PRIORITIES, type Standing } from "./alarms";
 import { button, draw, make } from "./dom";
 import { seconds } from "./format";
 import { own, say, type Text } from "./say";
+import type { Priority } from "./session";
 
 /** What people do about alarms. */
 export interface AlarmActions {
@@ -18,20 +19,18 @@ export interface AlarmActions {
 const SHELVES: readonly (readonly [number, Text])[] = [[60, "1 min"], [300, "5 min"], [1800, "30 min"], [7200, "2 h"]];
 
 /** The outlines of the priorities, on a square of 20: an octagon, a triangle, a square on its corner, a circle. */
-const OUTLINES: Readonly<Record<string, string>> = {
+const OUTLINES: Readonly<Record<Priority, string>> = {
   critical: "M6 1H14L19 6V14L14 19H6L1 14V6Z",
   high: "M10 1L19.5 18.5H0.5Z",
   medium: "M10 0.5L19.5 10L10 19.5L0.5 10Z",
   low: "M10 1A9 9 0 1 1 9.99 1Z",
 };
 
-const NAMES: Readonly<Record<string, Text>> = { critical: "critical", high: "high", medium: "medium", low: "low" };
-
 /** The sign of a priority: its shape, and its number from 1 for the most urgent. */
-export function sign(priority: Standing["about"]["priority"]): SVGElement {
+export function sign(priority: Priority): SVGElement {
   const number = String(PRIORITIES.indexOf(priority) + 1);
   const digit = draw("text", { x: 10, y: priority === "high" ? 16.5 : 14.5, "text-anchor": "middle" }, number);
-  return draw("svg", { viewBox: "0 0 20 20", class: `sign ${priority}`, "aria-hidden": "true" }, draw("path", { d: OUTLINES[priority] ?? "" }), digit);
+  return draw("svg", { viewBox: "0 0 20 20", class: `sign ${priority}`, "aria-hidden": "true" }, draw("path", { d: OUTLINES[priority] }), digit);
 }
 
 /** How an alarm stands, in words. */
@@ -79,7 +78,7 @@ export class AlarmList {
     const when = one.gone_ns === null ? seconds(one.came_ns) : say("{from} to {to}", { from: seconds(one.came_ns), to: seconds(one.gone_ns) });
     known.root.replaceChildren(
       sign(one.about.priority),
-      make("span", { class: "alarm-name" }, name, make("span", { class: "alarm-about" }, `${say(NAMES[one.about.priority] ?? "low")}, ${stand(one)}`)),
+      make("span", { class: "alarm-name" }, name, make("span", { class: "alarm-about" }, `${say(one.about.priority)}, ${stand(one)}`)),
       make("span", { class: "alarm-time" }, when),
       ...this.deeds(one, name));
     return known.root;
@@ -141,6 +140,6 @@ export class AlarmBanner {
     }
     const more = others === 0 ? "" : ` · ${say("others: {count}", { count: others })}`;
     this.text.replaceChildren(make("b", {}, own(urgent.about.name)),
-      ` ${say(NAMES[urgent.about.priority] ?? "low")}, ${stand(urgent)} · ${seconds(urgent.came_ns)}${more}`);
+      ` ${say(urgent.about.priority)}, ${stand(urgent)} · ${seconds(urgent.came_ns)}${more}`);
   }
 }

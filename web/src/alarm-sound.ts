@@ -3,11 +3,12 @@
 import { button } from "./dom";
 import { say } from "./say";
 import type { Standing } from "./alarms";
+import type { Priority } from "./session";
 
 const KEY = "onescan-alarm-sound";
 
 /** Per priority: the pitch, how many tones, and after how long they come again. */
-const TUNES: Readonly<Record<string, { readonly pitch_hz: number; readonly tones: number; readonly each_ms: number }>> = {
+const TUNES: Readonly<Record<Priority, { readonly pitch_hz: number; readonly tones: number; readonly each_ms: number }>> = {
   critical: { pitch_hz: 988, tones: 3, each_ms: 2_000 },
   high: { pitch_hz: 784, tones: 2, each_ms: 4_000 },
   medium: { pitch_hz: 659, tones: 1, each_ms: 8_000 },
@@ -37,8 +38,8 @@ export class AlarmSound {
 
   /** Sounds for the most urgent alarm, again and again until it is acknowledged. */
   ring(urgent: Standing | null, now_ms: number): void {
-    const tune = urgent === null ? undefined : TUNES[urgent.about.priority];
-    if (!this.isOn || urgent === null || tune === undefined) return;
+    if (!this.isOn || urgent === null) return;
+    const tune = TUNES[urgent.about.priority];
     const which = `${urgent.alarm} ${urgent.came_ns}`;
     if (which === this.last && now_ms - this.last_ms < tune.each_ms) return;
     [this.last, this.last_ms] = [which, now_ms];
