@@ -53,6 +53,25 @@ pub(crate) trait Drives {
     fn foresee(&self, drive: usize, motion: Motion, dt_s: f64) -> Effort;
 }
 
+/// A plant without drives, for tests of what moves by itself.
+#[cfg(test)]
+pub(crate) struct Nobody;
+
+#[cfg(test)]
+impl Drives for Nobody {
+    fn longest_s(&self, _: usize) -> f64 {
+        f64::INFINITY
+    }
+
+    fn advance(&mut self, _: usize, _: Motion, _: f64) -> Effort {
+        Effort::of(0.0)
+    }
+
+    fn foresee(&self, _: usize, _: Motion, _: f64) -> Effort {
+        Effort::of(0.0)
+    }
+}
+
 /// Where a joint was measured, and how fast.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Mark {

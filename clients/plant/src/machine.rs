@@ -75,14 +75,20 @@ impl Machine {
             .iter()
             .map(|axis| Axis::build(axis, scene, &mut world, [&reads, &writes]))
             .collect::<Result<Vec<_>, _>>()?;
-        let sensors =
-            scene.sensors.iter().map(|sensor| Sensor::build(sensor, &world, &writes)).collect::<Result<Vec<_>, _>>()?;
+        let sensors = scene
+            .sensors
+            .iter()
+            .map(|sensor| Sensor::build(sensor, &mut world, &writes))
+            .collect::<Result<Vec<_>, _>>()?;
         let mut parts = Vec::with_capacity(scene.components.len());
         for described in &scene.components {
             parts.push(Part::build(described, scene, (seed, period), &mut world, [&reads, &writes])?);
         }
         // now that all drives are known
         world.find_mechanisms();
+        if scene.sleeping {
+            world.let_sleep();
+        }
         let channels = (!scene.conditions.is_empty()).then(|| Channels::pair(scene, seed));
         Ok(Self {
             motions: (0..scene.joints.len()).map(|joint| world.motion(joint)).collect(),
@@ -292,6 +298,7 @@ impl Machine {
         for (axis, setpoint) in axes.iter().zip(setpoints) {
             axis.feed_back(*setpoint, measured, world, outputs);
         }
+        world.look_around();
         for (sensor, detected) in sensors.iter().zip(detected) {
             *detected = sensor.detects(world, motions, *detected);
             sensor.write(*detected, outputs);

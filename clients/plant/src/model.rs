@@ -22,6 +22,9 @@ pub struct Mechanics {
     pub substeps: u32,
     /// Solver iterations a world step.
     pub solver_iterations: u32,
+    /// Whether what rests on a floor or rides on a belt may sleep.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub sleeping: bool,
     /// Bodies in the file's order, which is the order of their insertion.
     pub bodies: Vec<Body>,
     /// More shapes of bodies in the file's order, which is the order of their insertion.

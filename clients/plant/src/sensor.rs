@@ -6,7 +6,7 @@ use rapier3d::prelude::{Ray, RigidBodyHandle};
 
 use super::effort::Mark;
 use super::model;
-use super::world::World;
+use super::world::{Sought, World};
 
 /// A sensor, bound to what it detects and to its signal.
 pub(super) struct Sensor {
@@ -41,33 +41,35 @@ struct Proximity {
     point: Vector,
     direction: Vector,
     range_m: f64,
-    targets: Vec<RigidBodyHandle>,
+    targets: Sought,
 }
 
 impl Proximity {
     fn detects(&self, world: &World) -> bool {
         let pose = *world.body(self.body).position();
         let ray = Ray::new(pose * self.point, pose.rotation * self.direction);
-        self.targets.iter().any(|target| world.ray_meets(&ray, self.range_m, *target))
+        world.any_hit(&ray, self.range_m, &self.targets)
     }
 }
 
 impl Sensor {
     /// Binds a sensor in a world that still stands in the scene's pose.
-    pub(super) fn build(sensor: &model::Sensor, world: &World, writes: &PortLayout) -> Result<Self, SlotError> {
+    pub(super) fn build(sensor: &model::Sensor, world: &mut World, writes: &PortLayout) -> Result<Self, SlotError> {
         let sensing = match &sensor.sensing {
             model::Sensing::EndPosition { joint, from, to, hysteresis } => {
                 Sensing::EndPosition(EndPosition { joint: *joint, from: *from, to: *to, hysteresis: *hysteresis })
             }
             model::Sensing::Proximity { body, point_m, direction, range_m, targets } => {
                 let body = world.handle(*body);
+                let targets = targets.iter().map(|index| world.handle(Some(*index))).collect();
+                let targets = world.seek(targets);
                 let pose = world.body(body).position();
                 Sensing::Proximity(Proximity {
                     body,
                     point: pose.inverse_transform_point(Vector::from_array(*point_m)),
                     direction: pose.inverse_transform_vector(Vector::from_array(*direction)),
                     range_m: *range_m,
-                    targets: targets.iter().map(|index| world.handle(Some(*index))).collect(),
+                    targets,
                 })
             }
         };

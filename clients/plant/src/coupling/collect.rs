@@ -1,18 +1,17 @@
 //! A body that takes out of the world what touches it and is not held.
 
 use onescan_server::client::ClientFault;
-use rapier3d::prelude::RigidBodyHandle;
 
 use super::{BindingKey, Names, Targets, Tie, Unbound, Which, handles, needed, optional, target, wanted};
 use crate::model::Bound;
 use crate::model::Mechanics;
 use crate::world::coordinate::Measured;
-use crate::world::{Surface, World};
+use crate::world::{Sought, Surface, World};
 
 /// A body, and what it may take; what hangs on a joint is not seen, since somebody still holds it.
 pub(crate) struct Collect {
     surface: Surface,
-    targets: Vec<RigidBodyHandle>,
+    targets: Sought,
 }
 
 /// Takes a target out of the world, by its place among the targets.
@@ -35,19 +34,18 @@ impl Tie for Collect {
 
     fn bind(bound: &Bound, _: &Mechanics, world: &mut World) -> Result<Self, Unbound> {
         let body = world.handle(Some(wanted(bound.body, "body")?));
-        Ok(Self { surface: world.surface(body, None), targets: handles(world, &bound.targets) })
+        let targets = handles(world, &bound.targets);
+        Ok(Self { surface: world.surface(body, None), targets: world.seek(targets) })
     }
 
     fn see(&self, _: Measured<'_>, world: &World) -> Targets {
-        let Some(ball) = world.ball_around(self.surface) else { return Targets::default() };
-        let touches = |target| world.is_near_ball(&ball, target) && world.touch(self.surface, target);
-        Targets::see(&self.targets, |target| touches(target) && !world.hangs(target))
+        Targets::touching(world, self.surface, &self.targets, |target| !world.hangs(target))
     }
 
     fn apply(&mut self, Remove(taken): Remove, _: Measured<'_>, _: f64, world: &mut World) -> Result<(), ClientFault> {
         match taken {
             None => Ok(()),
-            Some(place) => world.take_out(target(&self.targets, place)?),
+            Some(place) => world.take_out(target(self.targets.handles(), place)?),
         }
     }
 

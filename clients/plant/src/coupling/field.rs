@@ -35,7 +35,7 @@ impl Tie for Field {
 
     fn see(&self, _: Measured<'_>, world: &World) -> InField {
         let targets = self.0.see(world);
-        let Some(Ok(first)) = targets.first.map(|first| target(&self.0.targets, first)) else {
+        let Some(Ok(first)) = targets.first.map(|first| target(self.0.targets.handles(), first)) else {
             return InField { targets, ..InField::default() };
         };
         let between = world.body(self.0.surface.body).position().inv_mul(world.body(first).position());

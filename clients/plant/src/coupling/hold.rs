@@ -93,7 +93,7 @@ impl Held {
 
 impl Holds {
     fn load(&self, place: u32, acceleration: Vector, world: &World) -> Load {
-        let Ok(handle) = target(&self.touched.targets, place) else { return Load::default() };
+        let Ok(handle) = target(self.touched.targets.handles(), place) else { return Load::default() };
         let (body, holder) = (world.body(handle), world.body(self.touched.surface.body));
         let force = (acceleration - world.gravity()) * body.mass();
         let Some(direction) = self.direction.map(|direction| holder.rotation() * direction) else {
@@ -136,7 +136,7 @@ impl Tie for Holds {
 
     fn see(&self, _: Measured<'_>, world: &World) -> Grasp {
         if let Some(held) = self.held {
-            let body = target(&self.touched.targets, held.target);
+            let body = target(self.touched.targets.handles(), held.target);
             let acceleration = body.map_or(Vector::ZERO, |body| held.acceleration(world, body));
             let targets = Targets { first: Some(held.target), count: 1 };
             return Grasp { targets, load: self.load(held.target, acceleration, world) };
@@ -152,7 +152,7 @@ impl Tie for Holds {
             world.let_go(held.joint)?;
         }
         let Some(place) = wanted else { return Ok(()) };
-        let body = target(&self.touched.targets, place)?;
+        let body = target(self.touched.targets.handles(), place)?;
         let velocity_m_s = world.body(body).linvel().to_array();
         let holder = world.body(self.touched.surface.body);
         // what is caught is at rest on its holder at once, and is not lost by that

@@ -29,6 +29,9 @@ impl Tie for Meet {
         let mut targets = handles(world, &bound.targets);
         targets.sort_unstable_by_key(|target| target.0);
         targets.dedup();
+        if !targets.iter().all(|target| world.body(*target).is_dynamic()) {
+            world.watch(&targets);
+        }
         Ok(Self { targets })
     }
 

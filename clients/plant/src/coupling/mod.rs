@@ -31,8 +31,8 @@ use thiserror::Error;
 
 use super::model::Mechanics;
 use super::model::{Bound, JointKind};
-use super::world::World;
 use super::world::coordinate::Measured;
+use super::world::{Sought, Surface, World};
 
 mod belt;
 mod collect;
@@ -288,15 +288,22 @@ pub(crate) struct Targets {
 }
 
 impl Targets {
-    fn see(targets: &[RigidBodyHandle], applies: impl Fn(RigidBodyHandle) -> bool) -> Self {
+    /// Those that touch a surface and for which something more applies.
+    fn touching(world: &World, surface: Surface, sought: &Sought, more: impl Fn(RigidBodyHandle) -> bool) -> Self {
         let mut seen = Self::default();
-        for (index, target) in (0_u32..).zip(targets) {
-            if applies(*target) {
-                seen.count += 1;
-                seen.first = seen.first.or(Some(index));
+        let Some(ball) = world.ball_around(surface) else { return seen };
+        world.each_near(&ball, sought, |place, target| {
+            if world.touch(surface, target) && more(target) {
+                seen.note(place);
             }
-        }
+        });
         seen
+    }
+
+    /// It applies to one more, in whatever order they are found.
+    fn note(&mut self, place: u32) {
+        self.count += 1;
+        self.first = Some(self.first.map_or(place, |first| first.min(place)));
     }
 }
 

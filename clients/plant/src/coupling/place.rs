@@ -1,19 +1,18 @@
 //! A body at whose place other bodies appear.
 
 use onescan_server::client::ClientFault;
-use rapier3d::prelude::RigidBodyHandle;
 
 use super::{BindingKey, Names, Targets, Tie, Unbound, Which, handles, needed, target, wanted};
 use crate::model::Bound;
 use crate::model::Mechanics;
 use crate::world::coordinate::Measured;
-use crate::world::{Surface, World};
+use crate::world::{Sought, Surface, World};
 
 /// A body, and what appears at its place. What is seen is how many wait out of the world; the first
 /// of them only while no target is in the way.
 pub(crate) struct Place {
     surface: Surface,
-    targets: Vec<RigidBodyHandle>,
+    targets: Sought,
 }
 
 /// Puts a target into the world, by its place among the targets.
@@ -45,21 +44,24 @@ impl Tie for Place {
         for target in &targets {
             world.take_out(*target).map_err(|_| Unbound("target in the world"))?;
         }
-        Ok(Self { surface: world.surface(body, None), targets })
+        Ok(Self { surface: world.surface(body, None), targets: world.seek(targets) })
     }
 
     fn see(&self, _: Measured<'_>, world: &World) -> Targets {
-        let seen = Targets::see(&self.targets, |target| !world.body(target).is_enabled());
-        let ball = world.ball_around(self.surface);
-        let near = |target| ball.as_ref().is_some_and(|ball| world.is_near_ball(ball, target));
-        let free = !self.targets.iter().any(|target| near(*target) && world.touch(self.surface, *target));
-        Targets { first: seen.first.filter(|_| free), ..seen }
+        let mut seen = Targets::default();
+        for (place, target) in (0_u32..).zip(self.targets.handles()) {
+            if !world.body(*target).is_enabled() {
+                seen.note(place);
+            }
+        }
+        let in_the_way = Targets::touching(world, self.surface, &self.targets, |_| true);
+        Targets { first: seen.first.filter(|_| in_the_way.count == 0), ..seen }
     }
 
     fn apply(&mut self, Put(placed): Put, _: Measured<'_>, _: f64, world: &mut World) -> Result<(), ClientFault> {
         match placed {
             None => Ok(()),
-            Some(place) => world.put_in(target(&self.targets, place)?, self.surface.body),
+            Some(place) => world.put_in(target(self.targets.handles(), place)?, self.surface.body),
         }
     }
 

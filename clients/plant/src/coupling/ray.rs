@@ -7,15 +7,15 @@ use rapier3d::prelude::RigidBodyHandle;
 use super::{BindingKey, Names, Tie, Unbound, Which, handles, needed, optional, wanted, without_effect};
 use crate::model::Bound;
 use crate::model::Mechanics;
-use crate::world::World;
 use crate::world::coordinate::Measured;
+use crate::world::{Sought, World};
 
 /// A ray as its carrier sees it.
 pub(crate) struct Ray {
     carrier: RigidBodyHandle,
     point: Vector,
     direction: Vector,
-    targets: Vec<RigidBodyHandle>,
+    targets: Sought,
 }
 
 /// What the ray meets first.
@@ -42,21 +42,22 @@ impl Tie for Ray {
 
     fn bind(bound: &Bound, _: &Mechanics, world: &mut World) -> Result<Self, Unbound> {
         let carrier = world.handle(bound.body);
+        let targets = handles(world, &bound.targets);
+        let targets = world.seek(targets);
         let (point, direction) = (wanted(bound.point_m, "point")?, wanted(bound.direction, "direction")?);
         let pose = world.body(carrier).position();
         Ok(Self {
             carrier,
             point: pose.inverse_transform_point(Vector::from_array(point)),
             direction: pose.inverse_transform_vector(Vector::from_array(direction)),
-            targets: handles(world, &bound.targets),
+            targets,
         })
     }
 
     fn see(&self, _: Measured<'_>, world: &World) -> Hit {
         let pose = *world.body(self.carrier).position();
         let ray = rapier3d::prelude::Ray::new(pose * self.point, pose.rotation * self.direction);
-        let hits = self.targets.iter().filter_map(|target| world.ray_distance(&ray, *target));
-        Hit { hit_m: hits.reduce(f64::min) }
+        Hit { hit_m: world.first_hit(&ray, &self.targets) }
     }
 
     fn in_words(bound: &Bound, _: &Mechanics) -> String {

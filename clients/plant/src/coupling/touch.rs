@@ -1,13 +1,12 @@
 //! A body, or one shape of it, that other bodies touch.
 
 use onescan_server::client::ClientFault;
-use rapier3d::prelude::RigidBodyHandle;
 
 use super::{BindingKey, Names, Targets, Tie, Unbound, Which, handles, needed, optional, wanted, without_effect};
 use crate::model::Bound;
 use crate::model::Mechanics;
 use crate::world::coordinate::Measured;
-use crate::world::{Surface, World};
+use crate::world::{Sought, Surface, World};
 
 pub(super) const fn keys(named: Which) -> [BindingKey; 3] {
     [
@@ -27,19 +26,19 @@ const ANY: [BindingKey; 3] = keys(Which::Any);
 /// What is touched, and by what.
 pub(super) struct Touched {
     pub(super) surface: Surface,
-    pub(super) targets: Vec<RigidBodyHandle>,
+    pub(super) targets: Sought,
 }
 
 impl Touched {
-    pub(super) fn bind(bound: &Bound, world: &World) -> Result<Self, Unbound> {
+    pub(super) fn bind(bound: &Bound, world: &mut World) -> Result<Self, Unbound> {
         let body = world.handle(Some(wanted(bound.body, "body")?));
         let surface = world.surface(body, bound.shape.map(|shape| world.shape(shape)));
-        Ok(Self { surface, targets: handles(world, &bound.targets) })
+        let targets = handles(world, &bound.targets);
+        Ok(Self { surface, targets: world.seek(targets) })
     }
 
     pub(super) fn see(&self, world: &World) -> Targets {
-        let Some(ball) = world.ball_around(self.surface) else { return Targets::default() };
-        Targets::see(&self.targets, |target| world.is_near_ball(&ball, target) && world.touch(self.surface, target))
+        Targets::touching(world, self.surface, &self.targets, |_| true)
     }
 }
 

@@ -22,6 +22,7 @@ pub(super) struct SceneFile {
     pub(super) substeps: Option<Placed<i64>>,
     pub(super) solver_iterations: Option<Placed<i64>>,
     pub(super) friction_rule: Option<FrictionRule>,
+    pub(super) sleeping: Option<bool>,
     #[serde(default)]
     pub(super) libraries: Vec<Placed<String>>,
     #[serde(default)]

@@ -12,6 +12,7 @@
 //! | `substeps` | world steps in a turn, 1 if absent |
 //! | `solver_iterations` | in a world step, 8 if absent |
 //! | `friction_rule` | of bodies that have none of their own, `mean` if absent |
+//! | `sleeping` | whether bodies that rest on a floor or a belt sleep, `false` if absent |
 //! | `libraries` | folders with kinds of component of the user's own, beside the file of the scene |
 //!
 //! | `[[body]]` | meaning |
@@ -279,6 +280,7 @@ fn check(written: &SceneFile, kinds: &Kinds, aliases: Aliases, faults: &mut Faul
             solver_iterations: faults
                 .count("solver_iterations", written.solver_iterations.as_ref(), SOLVER_ITERATIONS_MAX)
                 .unwrap_or(SOLVER_ITERATIONS),
+            sleeping: written.sleeping.unwrap_or(false),
             bodies: scene_bodies,
             shapes: scene_shapes,
             joints: scene_joints,

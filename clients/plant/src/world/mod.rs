@@ -4,6 +4,8 @@
 //! |---|---|
 //! | `solid` | the bodies of a scene and their shapes, as the engine has them |
 //! | `reach` | which bodies are too far away to be looked at |
+//! | `nearby` | which of many bodies a sensor has to look at |
+//! | `sleeping` | bodies at rest on what carries them, which cost nothing |
 //! | `turning` | friction with what turns |
 //! | `coordinate` | where a joint stands, measured from the poses of its bodies |
 //! | `actuator` | what drives a joint: along a path, or by a component's equations |
@@ -16,7 +18,9 @@ pub(crate) mod articulation;
 mod contact;
 pub(crate) mod coordinate;
 mod mechanism;
+mod nearby;
 mod reach;
+mod sleeping;
 pub(crate) mod solid;
 mod turning;
 
@@ -27,7 +31,10 @@ use rapier3d::prelude::*;
 
 use self::actuator::{Actuator, Friction, springs_beside};
 use self::articulation::Articulation;
+use self::nearby::Nearby;
+pub(crate) use self::nearby::Sought;
 use self::reach::Reach;
+use self::sleeping::Sleeper;
 use self::solid::{attach, insert_body, leave_alone};
 use crate::effort::Drives;
 use crate::layout_mismatch::LayoutMismatch;
@@ -75,6 +82,12 @@ pub(crate) struct World {
     /// so this is not a state of its own.
     heated: Vec<(usize, TemperatureField)>,
     reach: Reach,
+    /// None before a sensor looks for many bodies.
+    nearby: Option<Nearby>,
+    /// Bodies that may sleep; none in a scene without `sleeping`.
+    sleepers: Vec<Sleeper>,
+    /// Bodies that may not.
+    watched: Vec<RigidBodyHandle>,
     substeps: u32,
     extent_m: f64,
 }
@@ -101,6 +114,9 @@ impl World {
             .collect();
         let mut world = Self {
             reach: Reach::of(&physics),
+            nearby: None,
+            sleepers: Vec::new(),
+            watched: Vec::new(),
             physics,
             ground,
             bodies,
@@ -144,8 +160,10 @@ impl World {
         }
         for index in 0..self.substeps {
             let part = [index, index + 1].map(|step| f64::from(step) / f64::from(self.substeps));
+            self.rouse();
             self.substep(part, drives);
             self.put_belts_back()?;
+            self.settle();
             if let Some(lost) = self.physics.quarantine().bodies().first() {
                 return Err(self.fault(scene, *lost, "its position or velocity is no longer a finite number"));
             }
@@ -263,13 +281,13 @@ impl World {
     }
 
     /// True if a ray meets the shape of a body within its range.
-    pub(crate) fn ray_meets(&self, ray: &Ray, range_m: f64, handle: RigidBodyHandle) -> bool {
+    fn ray_meets(&self, ray: &Ray, range_m: f64, handle: RigidBodyHandle) -> bool {
         self.is_near_ray(ray, handle)
             && self.shapes(handle).any(|(pose, shape)| shape.intersects_ray(&pose, ray, range_m))
     }
 
     /// How far along a ray it meets the shape of a body.
-    pub(crate) fn ray_distance(&self, ray: &Ray, handle: RigidBodyHandle) -> Option<f64> {
+    fn ray_distance(&self, ray: &Ray, handle: RigidBodyHandle) -> Option<f64> {
         if !self.is_near_ray(ray, handle) {
             return None;
         }
@@ -298,7 +316,7 @@ impl World {
     }
 
     /// False only if a body cannot touch anything in a ball.
-    pub(crate) fn is_near_ball(&self, ball: &BoundingSphere, handle: RigidBodyHandle) -> bool {
+    fn is_near_ball(&self, ball: &BoundingSphere, handle: RigidBodyHandle) -> bool {
         self.reach.meets_ball(handle, self.body(handle).translation(), ball.center, ball.radius)
     }
 
@@ -348,6 +366,7 @@ impl World {
     /// # Errors
     /// A body that there is not, as in all that follow.
     pub(crate) fn take_out(&mut self, handle: RigidBodyHandle) -> Result<(), ClientFault> {
+        self.awaken(handle);
         self.body_mut(handle)?.set_enabled(false);
         self.find_mechanisms_of(handle);
         Ok(())
@@ -372,6 +391,7 @@ impl World {
     /// Puts a body into the world, at rest where another one is.
     pub(crate) fn put_in(&mut self, handle: RigidBodyHandle, place: RigidBodyHandle) -> Result<(), ClientFault> {
         let pose = *self.body(place).position();
+        self.awaken(handle);
         let body = self.body_mut(handle)?;
         body.set_enabled(true);
         body.set_position(pose, true);
@@ -419,6 +439,8 @@ impl World {
 
     /// Holds a body fast where it is in relation to another, until the joint is removed.
     pub(crate) fn hold(&mut self, holder: RigidBodyHandle, held: RigidBodyHandle) -> ImpulseJointHandle {
+        self.awaken(holder);
+        self.awaken(held);
         let between = self.body(holder).position().inv_mul(self.body(held).position());
         let joint = FixedJointBuilder::new().local_frame1(between).contacts_enabled(false);
         let joint = self.physics.insert_impulse_joint(holder, held, joint);

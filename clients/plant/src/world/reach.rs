@@ -33,7 +33,7 @@ impl Reach {
 
     /// How far a body reaches; without end if it is not known.
     #[inline]
-    fn radius_m(&self, handle: RigidBodyHandle) -> f64 {
+    pub(super) fn radius_m(&self, handle: RigidBodyHandle) -> f64 {
         self.radii_m.get(handle.0.into_raw_parts().0 as usize).copied().unwrap_or(f64::INFINITY)
     }
 

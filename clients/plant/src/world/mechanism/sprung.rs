@@ -78,7 +78,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::effort::{Drives, Effort, Mark, Motion};
+    use crate::effort::{Mark, Nobody};
     use crate::scene::Scene;
     use crate::world::World;
 
@@ -89,22 +89,6 @@ mod tests {
         add_mass(&mut inverse, 1, &[-0.2, 0.4], 4.0);
         for (entry, exact) in inverse.into_iter().zip([7.0, -1.0, -1.0, 2.0]) {
             assert!((entry - exact / 13.0).abs() < 1e-15, "{inverse:?}");
-        }
-    }
-
-    struct Nobody;
-
-    impl Drives for Nobody {
-        fn longest_s(&self, _: usize) -> f64 {
-            f64::INFINITY
-        }
-
-        fn advance(&mut self, _: usize, _: Motion, _: f64) -> Effort {
-            Effort::of(0.0)
-        }
-
-        fn foresee(&self, _: usize, _: Motion, _: f64) -> Effort {
-            Effort::of(0.0)
         }
     }
 

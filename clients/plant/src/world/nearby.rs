@@ -1,0 +1,233 @@
+//! Where bodies are, as a tree of boxes: of a thousand bodies a sensor looks at the few whose boxes it meets. What the
+//! tree leaves over is looked at exactly, so that the tree decides nothing.
+
+use rapier3d::parry::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
+use rapier3d::parry::partitioning::{Bvh, BvhWorkspace};
+use rapier3d::prelude::*;
+
+use super::World;
+
+/// Added to every box, for numbers are rounded.
+const MARGIN_M: f64 = 1e-3;
+/// How far a body may move before its box is drawn anew.
+const SKIN_M: f64 = 0.02;
+/// From so many bodies on, a search in the tree is faster than a look at each.
+const MANY: usize = 16;
+
+/// The boxes of all bodies that have a shape.
+pub(super) struct Nearby {
+    tree: Bvh,
+    workspace: BvhWorkspace,
+    /// Each with its box as the body sees it; a leaf of the tree is a place in here.
+    bodies: Vec<(RigidBodyHandle, Aabb)>,
+}
+
+impl Nearby {
+    pub(super) fn of(physics: &PhysicsWorld) -> Self {
+        let boxed = |(handle, body): (RigidBodyHandle, &RigidBody)| {
+            let colliders = body.colliders().iter().filter_map(|collider| physics.colliders.get(*collider));
+            let boxes = colliders.map(|collider| {
+                let local = collider.position_wrt_parent().copied().unwrap_or(Pose::IDENTITY);
+                collider.shape().compute_aabb(&local)
+            });
+            boxes.reduce(|one, other| one.merged(&other)).map(|all| (handle, all))
+        };
+        let bodies = physics.bodies.iter().filter_map(boxed).collect();
+        let mut nearby = Self { tree: Bvh::new(), workspace: BvhWorkspace::default(), bodies };
+        nearby.follow(physics);
+        nearby
+    }
+
+    /// Bodies whose boxes meet another one, in no order.
+    pub(super) fn bodies_in<'a>(&'a self, around: &'a Aabb) -> impl Iterator<Item = RigidBodyHandle> + 'a {
+        let leaves = self.tree.intersect_aabb(around);
+        leaves.filter_map(|leaf| self.bodies.get(leaf as usize)).map(|(handle, _)| *handle)
+    }
+
+    /// Draws the boxes of bodies that have moved.
+    fn follow(&mut self, physics: &PhysicsWorld) {
+        for (leaf, (handle, local)) in (0_u32..).zip(&self.bodies) {
+            let here = local.transform_by(physics.bodies[*handle].position()).loosened(MARGIN_M);
+            self.tree.insert_or_update_partially(here, leaf, SKIN_M);
+        }
+        self.tree.refit(&mut self.workspace);
+        self.tree.optimize_incremental(&mut self.workspace);
+    }
+}
+
+/// The bodies that a sensor looks for, in the order in which its scene names them.
+pub(crate) struct Sought {
+    handles: Vec<RigidBodyHandle>,
+    /// Of many bodies the place of each among them, by its leaf; none for leaves of others.
+    places: Option<Vec<Option<u32>>>,
+}
+
+impl Sought {
+    /// All of them.
+    pub(crate) fn handles(&self) -> &[RigidBodyHandle] {
+        &self.handles
+    }
+}
+
+impl World {
+    /// Notes that a sensor looks for these bodies.
+    pub(crate) fn seek(&mut self, handles: Vec<RigidBodyHandle>) -> Sought {
+        if handles.len() < MANY {
+            return Sought { handles, places: None };
+        }
+        let nearby = self.nearby.get_or_insert_with(|| Nearby::of(&self.physics));
+        let mut places = vec![None; nearby.bodies.len()];
+        for (place, handle) in (0_u32..).zip(&handles) {
+            // The bodies are in the order of their handles, as the engine gives them.
+            let leaf =
+                nearby.bodies.binary_search_by_key(&handle.0.into_raw_parts().0, |(body, _)| body.0.into_raw_parts().0);
+            let Ok(leaf) = leaf else { continue };
+            if places[leaf].replace(place).is_some() {
+                // One that is named twice counts twice, which a place in the tree cannot tell.
+                return Sought { handles, places: None };
+            }
+        }
+        Sought { handles, places: Some(places) }
+    }
+
+    /// Takes notice of where the bodies are now, before sensors look.
+    pub(crate) fn look_around(&mut self) {
+        if let Some(nearby) = &mut self.nearby {
+            nearby.follow(&self.physics);
+        }
+    }
+
+    /// The shortest way along a ray to one of these bodies.
+    pub(crate) fn first_hit(&self, ray: &Ray, sought: &Sought) -> Option<f64> {
+        let Some((nearby, places)) = self.nearby.as_ref().zip(sought.places.as_ref()) else {
+            return sought.handles.iter().filter_map(|handle| self.ray_distance(ray, *handle)).reduce(f64::min);
+        };
+        let met = |leaf: u32, _: f64| {
+            let (handle, _) = nearby.bodies.get(leaf as usize)?;
+            (*places.get(leaf as usize)?)?;
+            self.ray_distance(ray, *handle)
+        };
+        nearby.tree.cast_ray(ray, self.extent_m, met).map(|(_, distance_m)| distance_m)
+    }
+
+    /// True if a ray meets the shape of one of these bodies within its range.
+    pub(crate) fn any_hit(&self, ray: &Ray, range_m: f64, sought: &Sought) -> bool {
+        let Some((nearby, places)) = self.nearby.as_ref().zip(sought.places.as_ref()) else {
+            return sought.handles.iter().any(|handle| self.ray_meets(ray, range_m, *handle));
+        };
+        let mut leaves = nearby.tree.leaves(|node| node.cast_ray(ray, range_m) <= range_m);
+        leaves.any(|leaf| {
+            let wanted = places.get(leaf as usize).copied().flatten().and_then(|_| nearby.bodies.get(leaf as usize));
+            wanted.is_some_and(|(handle, _)| self.ray_meets(ray, range_m, *handle))
+        })
+    }
+
+    /// Calls `look` with those of these bodies that may touch something in a ball, each with its place among them, in
+    /// no order.
+    pub(crate) fn each_near(&self, ball: &BoundingSphere, sought: &Sought, mut look: impl FnMut(u32, RigidBodyHandle)) {
+        let Some((nearby, places)) = self.nearby.as_ref().zip(sought.places.as_ref()) else {
+            for (place, handle) in (0_u32..).zip(&sought.handles) {
+                if self.is_near_ball(ball, *handle) {
+                    look(place, *handle);
+                }
+            }
+            return;
+        };
+        let around = Aabb::from_half_extents(ball.center, Vector::splat(ball.radius));
+        for leaf in nearby.tree.intersect_aabb(&around) {
+            let (found, place) = (nearby.bodies.get(leaf as usize), places.get(leaf as usize).copied().flatten());
+            let Some(((handle, _), place)) = found.zip(place) else { continue };
+            if self.is_near_ball(ball, *handle) {
+                look(place, *handle);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fmt::Write as _;
+
+    use onescan_server::time::TimeSpan;
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::effort::Nobody;
+    use crate::scene::Scene;
+
+    /// Boxes that fly through each other, each with its place and its velocity, and a long one among them.
+    fn flying(boxes: &[([f64; 3], [f64; 3])]) -> Scene {
+        let mut scene = "version = 1\ngravity_m_s2 = [0, 0, 0]\n".to_owned();
+        for (index, (place, velocity)) in boxes.iter().enumerate() {
+            let length_m = if index == 0 { 5.0 } else { 0.2 };
+            write!(
+                scene,
+                "[[body]]\nname = \"box_{index}\"\nkind = \"dynamic\"\nshape = \"box\"\nsize_m = [{length_m}, 0.2, 0.1]\n\
+                 mass_kg = 1.0\ncollides = false\nposition_m = {place:?}\nvelocity_m_s = {velocity:?}\n"
+            )
+            .expect("a string takes all");
+        }
+        Scene::parse(&scene, "flying.toml").unwrap_or_else(|error| panic!("{error}"))
+    }
+
+    fn triple(range: std::ops::Range<f64>) -> impl Strategy<Value = [f64; 3]> {
+        proptest::array::uniform3(range)
+    }
+
+    fn near(world: &World, ball: &BoundingSphere, sought: &Sought) -> Vec<u32> {
+        let mut places = Vec::new();
+        world.each_near(ball, sought, |place, handle| {
+            let exactly = world.surface(handle, None);
+            if world.ball_around(exactly).is_some_and(|other| other.intersects(ball)) {
+                places.push(place);
+            }
+        });
+        places.sort_unstable();
+        places
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(60))]
+
+        #[test]
+        fn a_search_finds_what_a_look_at_each_finds(
+            boxes in proptest::collection::vec((triple(-2.0..2.0), triple(-3.0..3.0)), MANY..4 * MANY),
+            rays in proptest::collection::vec((triple(-3.0..3.0), triple(-1.0..1.0), 0.1..5.0_f64), 20),
+            out in any::<prop::sample::Index>(),
+        ) {
+            let scene = flying(&boxes);
+            let mut world = World::build(&scene, TimeSpan::from_millis(10).expect("not zero"));
+            world.find_mechanisms();
+            // the last first, so that a place is not a number of the engine
+            let handles: Vec<_> = (0..boxes.len()).rev().map(|body| world.handle(Some(body))).collect();
+            let sought = world.seek(handles.clone());
+            let plain = Sought { handles: handles.clone(), places: None };
+            prop_assert!(sought.places.is_some());
+            for _ in 0..10 {
+                world.step(&scene, &mut Nobody).expect("they stay in the world");
+                world.look_around();
+                for (from, to, range_m) in &rays {
+                    let ray = Ray::new(Vector::from_array(*from), Vector::from_array(*to).normalize_or(Vector::X));
+                    prop_assert_eq!(world.first_hit(&ray, &sought), world.first_hit(&ray, &plain));
+                    prop_assert_eq!(world.any_hit(&ray, *range_m, &sought), world.any_hit(&ray, *range_m, &plain));
+                    let ball = BoundingSphere::new(Vector::from_array(*from), *range_m * 0.2);
+                    prop_assert_eq!(near(&world, &ball, &sought), near(&world, &ball, &plain));
+                }
+                world.take_out(handles[out.index(handles.len())]).expect("it is there");
+            }
+        }
+
+        #[test]
+        fn what_is_named_twice_counts_twice(boxes in proptest::collection::vec((triple(-2.0..2.0), Just([0.0; 3])), MANY)) {
+            let scene = flying(&boxes);
+            let mut world = World::build(&scene, TimeSpan::from_millis(10).expect("not zero"));
+            let first = world.handle(Some(0));
+            let handles = (0..boxes.len()).map(|body| world.handle(Some(body))).chain([first]).collect();
+            let sought = world.seek(handles);
+            let ball = world.ball_around(world.surface(first, None)).expect("it has a shape");
+            let mut found = 0;
+            world.each_near(&ball, &sought, |_, handle| found += u32::from(handle == first));
+            prop_assert_eq!(found, 2);
+        }
+    }
+}
