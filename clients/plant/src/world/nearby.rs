@@ -2,7 +2,7 @@
 //! tree leaves over is looked at exactly, so that the tree decides nothing.
 
 use rapier3d::parry::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
-use rapier3d::parry::partitioning::{Bvh, BvhWorkspace};
+use rapier3d::parry::partitioning::{Bvh, BvhNode, BvhWorkspace};
 use rapier3d::prelude::*;
 
 use super::World;
@@ -52,6 +52,39 @@ impl Nearby {
         }
         self.tree.refit(&mut self.workspace);
         self.tree.optimize_incremental(&mut self.workspace);
+    }
+}
+
+/// A ray, made ready for many boxes.
+struct Path {
+    from: [f64; 3],
+    /// One over each part of its direction; none across which it never goes.
+    inverse: [Option<f64>; 3],
+}
+
+impl Path {
+    fn of(ray: &Ray) -> Self {
+        let inverse = ray.dir.to_array().map(|part| (part != 0.0).then(|| part.recip()));
+        Self { from: ray.origin.to_array(), inverse }
+    }
+
+    /// How far along the ray it enters a box; `f64::MAX`, as the tree has it, if it never does or not before `nearest_m`.
+    fn enters_m(&self, around: &Aabb, nearest_m: f64) -> f64 {
+        let (mins, maxs) = (around.mins.to_array(), around.maxs.to_array());
+        let (mut enters_m, mut leaves_m) = (0.0_f64, nearest_m);
+        for axis in 0..3 {
+            let (from, [near, far]) = (self.from[axis], [mins[axis], maxs[axis]]);
+            match self.inverse[axis] {
+                None if from < near || from > far => return f64::MAX,
+                None => {}
+                Some(inverse) => {
+                    let ways = [(near - from) * inverse, (far - from) * inverse];
+                    enters_m = enters_m.max(ways[0].min(ways[1]));
+                    leaves_m = leaves_m.min(ways[0].max(ways[1]));
+                }
+            }
+        }
+        if enters_m <= leaves_m { enters_m } else { f64::MAX }
     }
 }
 
@@ -107,7 +140,9 @@ impl World {
             (*places.get(leaf as usize)?)?;
             self.ray_distance(ray, *handle)
         };
-        nearby.tree.cast_ray(ray, self.extent_m, met).map(|(_, distance_m)| distance_m)
+        let path = Path::of(ray);
+        let enters_m = |node: &BvhNode, nearest_m: f64| path.enters_m(&node.aabb(), nearest_m);
+        nearby.tree.find_best(self.extent_m, enters_m, met).map(|(_, distance_m)| distance_m)
     }
 
     /// True if a ray meets the shape of one of these bodies within its range.
@@ -115,7 +150,8 @@ impl World {
         let Some((nearby, places)) = self.nearby.as_ref().zip(sought.places.as_ref()) else {
             return sought.handles.iter().any(|handle| self.ray_meets(ray, range_m, *handle));
         };
-        let mut leaves = nearby.tree.leaves(|node| node.cast_ray(ray, range_m) <= range_m);
+        let path = Path::of(ray);
+        let mut leaves = nearby.tree.leaves(|node| path.enters_m(&node.aabb(), range_m) <= range_m);
         leaves.any(|leaf| {
             let wanted = places.get(leaf as usize).copied().flatten().and_then(|_| nearby.bodies.get(leaf as usize));
             wanted.is_some_and(|(handle, _)| self.ray_meets(ray, range_m, *handle))
@@ -174,11 +210,13 @@ mod tests {
         proptest::array::uniform3(range)
     }
 
-    fn near(world: &World, ball: &BoundingSphere, sought: &Sought) -> Vec<u32> {
+    /// Those that touch a body, by their places.
+    fn touching(world: &World, body: RigidBodyHandle, sought: &Sought) -> Vec<u32> {
+        let surface = world.surface(body, None);
         let mut places = Vec::new();
-        world.each_near(ball, sought, |place, handle| {
-            let exactly = world.surface(handle, None);
-            if world.ball_around(exactly).is_some_and(|other| other.intersects(ball)) {
+        let Some(ball) = world.ball_around(surface) else { return places };
+        world.each_near(&ball, sought, |place, handle| {
+            if world.touch(surface, handle) {
                 places.push(place);
             }
         });
@@ -210,8 +248,9 @@ mod tests {
                     let ray = Ray::new(Vector::from_array(*from), Vector::from_array(*to).normalize_or(Vector::X));
                     prop_assert_eq!(world.first_hit(&ray, &sought), world.first_hit(&ray, &plain));
                     prop_assert_eq!(world.any_hit(&ray, *range_m, &sought), world.any_hit(&ray, *range_m, &plain));
-                    let ball = BoundingSphere::new(Vector::from_array(*from), *range_m * 0.2);
-                    prop_assert_eq!(near(&world, &ball, &sought), near(&world, &ball, &plain));
+                }
+                for handle in &handles {
+                    prop_assert_eq!(touching(&world, *handle, &sought), touching(&world, *handle, &plain));
                 }
                 world.take_out(handles[out.index(handles.len())]).expect("it is there");
             }

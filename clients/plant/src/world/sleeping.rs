@@ -249,3 +249,111 @@ impl World {
         awake.map(speed).fold(0.0, f64::max)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use onescan_server::time::TimeSpan;
+
+    use super::*;
+    use crate::effort::Nobody;
+    use crate::scene::Scene;
+
+    const SCENE: &str = r#"
+        version = 1
+        sleeping = true
+        [[body]]
+        name = "belt"
+        kind = "kinematic"
+        shape = "box"
+        size_m = [4.0, 0.5, 0.1]
+        position_m = [0.0, 0.0, -0.05]
+        [[body]]
+        name = "box"
+        kind = "dynamic"
+        shape = "box"
+        size_m = [0.2, 0.2, 0.2]
+        position_m = [0.0, 0.0, 0.1]
+        mass_kg = 1.0
+        [[body]]
+        name = "hand"
+        kind = "fixed"
+        shape = "box"
+        size_m = [0.1, 0.1, 0.1]
+        position_m = [0.0, 0.0, 0.5]
+    "#;
+
+    fn world() -> (Scene, World) {
+        let scene = Scene::parse(SCENE, "belt.toml").unwrap_or_else(|error| panic!("{error}"));
+        let mut world = World::build(&scene, TimeSpan::from_millis(10).expect("not zero"));
+        world.keep_in_place(world.handle(Some(0)));
+        world.find_mechanisms();
+        (scene, world)
+    }
+
+    fn steps(world: &mut World, scene: &Scene, count: u32) {
+        for _ in 0..count {
+            world.step(scene, &mut Nobody).expect("a step");
+        }
+    }
+
+    fn is_asleep(world: &World) -> bool {
+        sleeps(world.body(world.handle(Some(1))))
+    }
+
+    #[test]
+    fn it_sleeps_on_a_belt_that_runs_evenly_and_wakes_when_that_runs_otherwise() {
+        let (scene, mut world) = world();
+        world.let_sleep();
+        let belt = world.handle(Some(0));
+        world.run(belt, Vector::X * 0.2).expect("a belt");
+        steps(&mut world, &scene, 60);
+        assert!(is_asleep(&world));
+        let before_m = world.body(world.handle(Some(1))).translation().x;
+        steps(&mut world, &scene, 10);
+        let after_m = world.body(world.handle(Some(1))).translation().x;
+        assert!((after_m - before_m - 0.02).abs() < 1e-12, "{before_m} {after_m}");
+        world.run(belt, Vector::X * 0.1).expect("a belt");
+        steps(&mut world, &scene, 1);
+        assert!(!is_asleep(&world));
+    }
+
+    #[test]
+    fn what_is_held_or_taken_out_is_awake() {
+        let (scene, mut world) = world();
+        world.let_sleep();
+        steps(&mut world, &scene, 30);
+        assert!(is_asleep(&world));
+        let (hand, held) = (world.handle(Some(2)), world.handle(Some(1)));
+        let joint = world.hold(hand, held);
+        assert!(!is_asleep(&world));
+        steps(&mut world, &scene, 30);
+        assert!(!is_asleep(&world), "what is held never sleeps");
+        world.let_go(joint).expect("it holds");
+        steps(&mut world, &scene, 30);
+        assert!(is_asleep(&world));
+        world.take_out(held).expect("it is there");
+        assert!(!is_asleep(&world));
+    }
+
+    #[test]
+    fn what_somebody_counts_the_contacts_of_does_not_sleep() {
+        let (scene, mut world) = world();
+        world.watch(&[world.handle(Some(1))]);
+        world.let_sleep();
+        steps(&mut world, &scene, 60);
+        assert!(!is_asleep(&world));
+    }
+
+    #[test]
+    fn a_note_of_a_carrier_that_there_is_not_wakes_a_body() {
+        let (scene, mut world) = world();
+        world.let_sleep();
+        steps(&mut world, &scene, 30);
+        let held = world.handle(Some(1));
+        let nowhere = Rest { carrier: RigidBodyHandle::from_raw_parts(99, 7), steps: STEADY_STEPS };
+        world.physics.bodies[held].user_data = Rest::note(Some(nowhere));
+        assert_eq!(Rest::of(world.body(held)), Some(nowhere));
+        steps(&mut world, &scene, 1);
+        assert!(!is_asleep(&world));
+    }
+}

@@ -32,4 +32,5 @@ mod robots;
 mod robustness;
 mod sensors;
 mod shear;
+mod sleeping;
 mod state;
