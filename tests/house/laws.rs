@@ -242,7 +242,7 @@ fn places_of(words: &[&str]) -> BTreeMap<String, Vec<String>> {
 }
 
 /// What stands in files that are not among the allowed, and the allowed in which nothing stands.
-fn against(places: &BTreeMap<String, Vec<String>>, allowed: &[(&str, &str)]) -> String {
+pub fn against(places: &BTreeMap<String, Vec<String>>, allowed: &[(&str, &str)]) -> String {
     let mut used = BTreeSet::new();
     let mut found = String::new();
     for (file, lines) in places {

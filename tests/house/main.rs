@@ -11,6 +11,7 @@ mod graph;
 mod laws;
 mod old_words;
 mod processes;
+mod products;
 mod source;
 mod tokens;
 mod workspace;

@@ -1,5 +1,6 @@
 //! Bodies as a step began.
 
+use nalgebra::Matrix3;
 use rapier3d::glamx::{DMat3, DQuat};
 use rapier3d::prelude::*;
 
@@ -66,8 +67,8 @@ impl Motion {
 }
 
 /// What turns a body with this rotation under a moment: the inverse of its inertia, in the world's axes.
-pub(super) fn inverse_inertia(body: &RigidBody, rotation: DQuat) -> DMat3 {
+pub(super) fn inverse_inertia(body: &RigidBody, rotation: DQuat) -> Matrix3<f64> {
     let properties = body.mass_properties().local_mprops;
-    let turned = DMat3::from_quat(rotation * properties.principal_inertia_local_frame);
-    turned * DMat3::from_diagonal(properties.inv_principal_inertia) * turned.transpose()
+    let turned = Matrix3::from(DMat3::from_quat(rotation * properties.principal_inertia_local_frame));
+    turned * Matrix3::from_diagonal(&properties.inv_principal_inertia.into()) * turned.transpose()
 }

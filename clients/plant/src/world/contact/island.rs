@@ -1,6 +1,6 @@
 //! What touches each other, from a mechanism on.
 
-use rapier3d::glamx::DMat3;
+use nalgebra::{Matrix3, Vector3};
 use rapier3d::prelude::*;
 
 use super::before::{Before, Motion, inverse_inertia};
@@ -52,7 +52,7 @@ struct Free {
     before: Motion,
     centre: Vector,
     inverse_mass: f64,
-    inverse_inertia: DMat3,
+    inverse_inertia: Matrix3<f64>,
 }
 
 /// A point at which two sides touch.
@@ -146,7 +146,8 @@ impl Island {
             // the bodies are not in touch with a mechanism: they go on as the engine moves them
             return Some(pressed);
         }
-        built.go(&corrections, physics, dt_s);
+        let corrections = corrections.as_slice();
+        built.go(corrections, physics, dt_s);
         for place in &pressed {
             let (from, to) = built.spans[*place];
             let velocities = [&built.problem.velocities[from..to], &corrections[from..to]];
@@ -420,11 +421,11 @@ impl Built {
 impl Free {
     /// What an impulse and its moment add to its velocities.
     fn answers(&self, along: &[f64], answer: &mut [f64]) {
-        let turned = self.inverse_inertia * Vector::new(along[3], along[4], along[5]);
+        let turned = self.inverse_inertia * Vector3::new(along[3], along[4], along[5]);
         for (answer, along) in answer.iter_mut().zip(&along[..3]) {
             *answer = along * self.inverse_mass;
         }
-        answer[3..6].copy_from_slice(&turned.to_array());
+        answer[3..6].copy_from_slice(turned.as_slice());
     }
 }
 

@@ -4,6 +4,8 @@
 //! the normal of a contact, a drive, a stop, the friction of a joint, a coupling. Two rows in the surface of each
 //! contact come after all of these.
 
+use nalgebra::{DMatrix, DMatrixView, DVector, DVectorView};
+
 /// One motion, over the coordinates of one or two movers.
 #[derive(Clone, Debug)]
 pub(super) struct Row {
@@ -43,7 +45,7 @@ pub(super) struct Problem {
     /// How many of the rows are bounded.
     pub(super) bounded: usize,
     pub(super) frictions: Vec<Friction>,
-    /// `J` of all rows, and `M⁻¹ Jᵀ`, a line of all coordinates each.
+    /// `J` of all rows, and `M⁻¹ Jᵀ`: all coordinates of each row, one row after the other.
     pub(super) along: Vec<f64>,
     pub(super) answers: Vec<f64>,
 }
@@ -63,20 +65,23 @@ impl Problem {
     fn between(&self, row: usize, other: usize) -> f64 {
         let n = self.velocities.len();
         let (along, answer) = (&self.along[row * n..], &self.answers[other * n..]);
-        let span = |(from, to): (usize, usize)| -> f64 { (from..to).map(|k| along[k] * answer[k]).sum() };
+        let span = |(from, to): (usize, usize)| {
+            let [along, answer] = [along, answer].map(|of| DVectorView::from_slice(&of[from..to], to - from));
+            along.dot(&answer)
+        };
         let [one, two] = self.rows[row].spans;
         span(one) + span(two)
     }
 
     /// What one unit of impulse of each row adds to the velocity of each.
-    pub(super) fn matrix(&self) -> Vec<f64> {
+    pub(super) fn matrix(&self) -> DMatrix<f64> {
         let count = self.rows.len();
-        let mut matrix = vec![0.0; count * count];
+        let mut matrix = DMatrix::zeros(count, count);
         for row in 0..count {
             for other in 0..=row {
                 let entry = self.between(row, other);
-                matrix[row * count + other] = entry;
-                matrix[other * count + row] = entry;
+                matrix[(row, other)] = entry;
+                matrix[(other, row)] = entry;
             }
         }
         matrix
@@ -90,14 +95,11 @@ impl Problem {
     }
 
     /// What impulses of the rows add to the velocities.
-    pub(super) fn answer(&self, impulses: &[f64]) -> Vec<f64> {
+    pub(super) fn answer(&self, impulses: &DVector<f64>) -> DVector<f64> {
         let n = self.velocities.len();
-        let mut sum = vec![0.0; n];
-        for (row, impulse) in impulses.iter().enumerate().filter(|(_, impulse)| **impulse != 0.0) {
-            for (sum, answer) in sum.iter_mut().zip(&self.answers[row * n..(row + 1) * n]) {
-                *sum += answer * impulse;
-            }
-        }
+        let answers = DMatrixView::from_slice(&self.answers, n, impulses.len());
+        let mut sum = DVector::zeros(n);
+        sum.gemv(1.0, &answers, impulses, 0.0);
         sum
     }
 }

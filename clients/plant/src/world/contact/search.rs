@@ -10,9 +10,11 @@
 //! side could carry some of it. Coulomb's law leaves that open, as nothing slips there; friction that was taken
 //! before the normals are right, or kept from a former step, would carry what it came to carry by chance.
 
+use nalgebra::{DMatrix, DVector};
+
 use super::cone;
 use super::problem::{Friction, Problem};
-use crate::world::mechanism::matrix;
+use crate::world::mechanism::matrix::Factor;
 
 /// Added to each diagonal, as a part of it: rows that say the same share their impulse.
 const REGULAR: f64 = 1e-11;
@@ -32,21 +34,21 @@ enum Held {
 
 struct Search<'p> {
     problem: &'p Problem,
-    count: usize,
-    matrix: Vec<f64>,
+    matrix: DMatrix<f64>,
     /// What each row is short of its velocity without any impulse.
     start: Vec<f64>,
     scale: f64,
     held: Vec<Held>,
     free: Vec<usize>,
-    lower: Vec<f64>,
-    impulses: Vec<f64>,
+    /// Of the free rows.
+    factor: Factor,
+    impulses: DVector<f64>,
 }
 
 impl Problem {
     /// Finds all impulses and adds what they do to the velocities; gives the velocities that correct positions. None,
     /// and all unchanged, if the search does not come to an end.
-    pub(super) fn solve(&mut self) -> Option<Vec<f64>> {
+    pub(super) fn solve(&mut self) -> Option<DVector<f64>> {
         let mut search = Search::new(self);
         let rounds = 4 * self.bounded + 8;
         let mut rubs = false;
@@ -58,7 +60,7 @@ impl Problem {
             let settled = if rubs {
                 search.slide()
             } else {
-                search.take(search.smooth());
+                search.take(&search.smooth());
                 true
             };
             if search.revise(2 * round > rounds) {
@@ -74,11 +76,11 @@ impl Problem {
             let corrected = self.answer(&search.corrections());
             let impulses = search.impulses;
             let changes = self.answer(&impulses);
-            for (v, change) in self.velocities.iter_mut().zip(changes) {
+            for (v, change) in self.velocities.iter_mut().zip(&changes) {
                 *v += change;
             }
-            for (row, impulse) in self.rows.iter_mut().zip(impulses) {
-                row.impulse = impulse;
+            for (row, impulse) in self.rows.iter_mut().zip(&impulses) {
+                row.impulse = *impulse;
             }
             return Some(corrected);
         }
@@ -93,8 +95,8 @@ impl<'p> Search<'p> {
         let start: Vec<f64> =
             problem.rows.iter().enumerate().map(|(index, row)| row.wanted - problem.velocity(index)).collect();
         for (index, row) in problem.rows.iter().enumerate().take(problem.bounded) {
-            matrix[index * count + index] *= 1.0 + REGULAR;
-            matrix[index * count + index] += row.softness;
+            matrix[(index, index)] *= 1.0 + REGULAR;
+            matrix[(index, index)] += row.softness;
         }
         let held = problem.rows.iter().zip(&start).take(problem.bounded).map(|(row, start)| {
             // what is not reached without an impulse needs none
@@ -106,13 +108,12 @@ impl<'p> Search<'p> {
         });
         let scale = problem.velocities.iter().fold(0.0, |scale: f64, v| scale.max(v.abs()));
         Self {
-            count,
             matrix,
             scale,
             held: held.collect(),
             free: Vec::new(),
-            lower: Vec::new(),
-            impulses: vec![0.0; count],
+            factor: Factor::default(),
+            impulses: DVector::zeros(count),
             start,
             problem,
         }
@@ -130,31 +131,27 @@ impl<'p> Search<'p> {
         let held = &self.held;
         self.free.clear();
         self.free.extend((0..held.len()).filter(|index| held[*index] == Held::Free));
-        self.lower.clear();
-        for row in &self.free {
-            self.lower.extend(self.free.iter().map(|other| self.matrix[row * self.count + other]));
-        }
-        matrix::factor(&mut self.lower, self.free.len())
+        let (free, matrix) = (&self.free, &self.matrix);
+        self.factor.take(free.len(), |row, column| matrix[(free[row], free[column])])
     }
 
     /// What a row is short of with all impulses of rows at their bounds.
     fn short(&self, row: usize) -> f64 {
-        let line = &self.matrix[row * self.count..];
         let held = (0..self.held.len()).filter(|other| self.held[*other] != Held::Free);
-        self.start[row] - held.map(|other| line[other] * self.impulses[other]).sum::<f64>()
+        self.start[row] - held.map(|other| self.matrix[(row, other)] * self.impulses[other]).sum::<f64>()
     }
 
     /// What the free rows take without friction.
-    fn smooth(&self) -> Vec<f64> {
-        let mut answer: Vec<f64> = self.free.iter().map(|row| self.short(*row)).collect();
-        matrix::solve(&self.lower, self.free.len(), &mut answer);
+    fn smooth(&self) -> DVector<f64> {
+        let mut answer = DVector::from_iterator(self.free.len(), self.free.iter().map(|row| self.short(*row)));
+        self.factor.solve(&mut answer);
         answer
     }
 
     /// Gives the free rows these impulses.
-    fn take(&mut self, answer: Vec<f64>) {
+    fn take(&mut self, answer: &DVector<f64>) {
         for (row, impulse) in self.free.iter().zip(answer) {
-            self.impulses[*row] = impulse;
+            self.impulses[*row] = *impulse;
         }
     }
 
@@ -163,7 +160,7 @@ impl<'p> Search<'p> {
         let answer = self.smooth();
         let pressed = |friction: &&Friction| self.held[friction.normal] == Held::Free && friction.coefficient > 0.0;
         let pressed: Vec<Friction> = self.problem.frictions.iter().filter(pressed).copied().collect();
-        for row in &mut self.impulses[self.problem.bounded..] {
+        for row in self.impulses.iter_mut().skip(self.problem.bounded) {
             // what a former set of rows gave is not taken over, nor what a former step did
             *row = 0.0;
         }
@@ -171,9 +168,9 @@ impl<'p> Search<'p> {
         let settled = sliding.settle(self.scale);
         let Sliding { impulses, answer, .. } = sliding;
         for (friction, impulse) in pressed.iter().zip(impulses.chunks_exact(2)) {
-            self.impulses[friction.first..friction.first + 2].copy_from_slice(impulse);
+            self.impulses.as_mut_slice()[friction.first..friction.first + 2].copy_from_slice(impulse);
         }
-        self.take(answer);
+        self.take(&answer);
         settled
     }
 
@@ -190,7 +187,7 @@ impl<'p> Search<'p> {
                 Held::Free if impulse > row.most + slack => Held::Most,
                 Held::Free => continue,
                 held => {
-                    let line = &self.matrix[index * self.count..(index + 1) * self.count];
+                    let line = self.matrix.column(index);
                     let reached: f64 = line.iter().zip(&self.impulses).map(|(entry, impulse)| entry * impulse).sum();
                     let missing = self.start[index] - reached;
                     let slack = 1e-9 * (self.start[index].abs() + reached.abs()) + 1e-12 * self.scale;
@@ -211,13 +208,14 @@ impl<'p> Search<'p> {
     }
 
     /// Impulses that give the free rows the velocities by which positions are corrected, and no friction.
-    fn corrections(&self) -> Vec<f64> {
-        let mut each: Vec<f64> = self.free.iter().map(|row| self.problem.rows[*row].correction).collect();
-        let mut impulses = vec![0.0; self.count];
+    fn corrections(&self) -> DVector<f64> {
+        let wanted = self.free.iter().map(|row| self.problem.rows[*row].correction);
+        let mut each = DVector::from_iterator(self.free.len(), wanted);
+        let mut impulses = DVector::zeros(self.impulses.len());
         if each.iter().any(|correction| *correction != 0.0) {
-            matrix::solve(&self.lower, self.free.len(), &mut each);
-            for (row, impulse) in self.free.iter().zip(each) {
-                impulses[*row] = impulse;
+            self.factor.solve(&mut each);
+            for (row, impulse) in self.free.iter().zip(&each) {
+                impulses[*row] = *impulse;
             }
         }
         impulses
@@ -227,41 +225,36 @@ impl<'p> Search<'p> {
 /// The friction of contacts that press, among what the free rows leave.
 struct Sliding {
     frictions: Vec<(Friction, usize)>,
-    /// What the free rows answer to one unit of impulse in each row of friction, a line each.
-    gives: Vec<f64>,
+    /// What the free rows answer to one unit of impulse in each row of friction, a column each.
+    gives: DMatrix<f64>,
     /// What one unit of impulse of each adds to the velocity of each.
-    schur: Vec<f64>,
+    schur: DMatrix<f64>,
     /// What each contact would move alone, with nothing held.
     alone: Vec<f64>,
     impulses: Vec<f64>,
     /// What each is short of.
     left: Vec<f64>,
     /// The impulses of the free rows.
-    answer: Vec<f64>,
+    answer: DVector<f64>,
 }
 
 impl Sliding {
-    fn new(search: &Search<'_>, pressed: &[Friction], answer: Vec<f64>) -> Self {
-        let (count, size) = (search.count, search.free.len());
+    fn new(search: &Search<'_>, pressed: &[Friction], answer: DVector<f64>) -> Self {
         let rows: Vec<usize> = pressed.iter().flat_map(|friction| [friction.first, friction.first + 1]).collect();
-        let entry = |row: usize, other: usize| search.matrix[row * count + other];
-        let mut gives = Vec::with_capacity(rows.len() * size);
-        for row in &rows {
-            let first = gives.len();
-            gives.extend(search.free.iter().map(|free| entry(*free, *row)));
-            matrix::solve(&search.lower, size, &mut gives[first..]);
-        }
+        let entry = |row: usize, other: usize| search.matrix[(row, other)];
+        let mut gives = DMatrix::from_fn(search.free.len(), rows.len(), |k, of| entry(search.free[k], rows[of]));
+        search.factor.solve(&mut gives);
         let answered = |row: usize, of: &[f64]| -> f64 {
             search.free.iter().zip(of).map(|(free, answer)| entry(row, *free) * answer).sum()
         };
-        let mut schur = vec![0.0; rows.len() * rows.len()];
+        let mut schur = DMatrix::zeros(rows.len(), rows.len());
         for (a, row) in rows.iter().enumerate() {
             for (b, other) in rows.iter().enumerate().take(a + 1) {
-                let moved = entry(*row, *other) - answered(*row, &gives[b * size..(b + 1) * size]);
-                (schur[a * rows.len() + b], schur[b * rows.len() + a]) = (moved, moved);
+                let moved = entry(*row, *other) - answered(*row, gives.column(b).as_slice());
+                (schur[(a, b)], schur[(b, a)]) = (moved, moved);
             }
         }
-        let left = rows.iter().map(|row| search.short(*row) - answered(*row, &answer)).collect();
+        let left = rows.iter().map(|row| search.short(*row) - answered(*row, answer.as_slice())).collect();
         let place = |normal: usize| search.free.iter().position(|free| *free == normal);
         let frictions = pressed.iter().filter_map(|friction| Some((*friction, place(friction.normal)?))).collect();
         let alone = pressed
@@ -287,10 +280,9 @@ impl Sliding {
 
     /// Finds the friction of one contact; by how much its velocity changed.
     fn settle_one(&mut self, index: usize) -> f64 {
-        let (count, size) = (self.impulses.len(), self.answer.len());
         let (friction, normal) = self.frictions[index];
         let [x, y] = [2 * index, 2 * index + 1];
-        let [xx, xy, yy] = [self.schur[x * count + x], self.schur[x * count + y], self.schur[y * count + y]];
+        let [xx, xy, yy] = [self.schur[(x, x)], self.schur[(x, y)], self.schur[(y, y)]];
         let before = [self.impulses[x], self.impulses[y]];
         let wanted = [self.left[x] + xx * before[0] + xy * before[1], self.left[y] + xy * before[0] + yy * before[1]];
         let radius = friction.coefficient * self.answer[normal].max(0.0);
@@ -301,10 +293,10 @@ impl Sliding {
         }
         (self.impulses[x], self.impulses[y]) = (after[0], after[1]);
         for (row, left) in self.left.iter_mut().enumerate() {
-            *left -= self.schur[row * count + x] * change[0] + self.schur[row * count + y] * change[1];
+            *left -= self.schur[(row, x)] * change[0] + self.schur[(row, y)] * change[1];
         }
         for (k, answer) in self.answer.iter_mut().enumerate() {
-            *answer -= self.gives[x * size + k] * change[0] + self.gives[y * size + k] * change[1];
+            *answer -= self.gives[(k, x)] * change[0] + self.gives[(k, y)] * change[1];
         }
         let moved = [xx * change[0] + xy * change[1], xy * change[0] + yy * change[1]];
         (moved[0] * moved[0] + moved[1] * moved[1]).sqrt()
@@ -400,7 +392,7 @@ mod tests {
         let mut problem = point([0.0, 0.0, -0.1]);
         push(&mut problem, 2, Row { least: 0.0, ..row(-0.5) });
         problem.bounded = 1;
-        assert_eq!(problem.solve(), Some(vec![0.0; 3]));
+        assert_eq!(problem.solve(), Some(DVector::zeros(3)));
         assert_eq!((problem.velocities[2], problem.rows[0].impulse), (-0.1, 0.0));
     }
 }

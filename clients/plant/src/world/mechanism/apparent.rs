@@ -1,7 +1,9 @@
 //! What each joint of a mechanism has to move: its apparent mass, with couplings kept and driven joints held.
 
-use super::{Mechanism, matrix};
+use nalgebra::{DMatrix, DVector};
 use rapier3d::math::Vector;
+
+use super::Mechanism;
 
 impl Mechanism {
     /// Each joint of the scene with the inverse of what it moves, 1/kg or 1/(kg·m²), in the pose that it has; all other
@@ -12,10 +14,10 @@ impl Mechanism {
         if !self.moving.factor(&self.lumps) {
             return None;
         }
-        let mut inverse = vec![0.0; n * n];
-        matrix::inverse(&self.moving.mass, n, &mut inverse);
+        let mut inverse = DMatrix::zeros(n, n);
+        self.moving.factored.inverse(&mut inverse);
         let mut tie = |on: usize, with: [Option<(usize, f64)>; 2]| {
-            let mut row = vec![0.0; n];
+            let mut row = DVector::zeros(n);
             row[on] = 1.0;
             for (axis, slope) in with.into_iter().flatten() {
                 row[axis] += slope;
@@ -32,24 +34,20 @@ impl Mechanism {
             tie(on, with);
         }
         let each = self.axes.iter().enumerate();
-        Some(each.filter_map(|(axis, (_, joint))| joint.map(|joint| (joint, inverse[axis * n + axis]))).collect())
+        Some(each.filter_map(|(axis, (_, joint))| joint.map(|joint| (joint, inverse[(axis, axis)]))).collect())
     }
 }
 
 /// Takes from the inverse of a matrix of masses the motion along a row, which is held from now on.
-fn keep(inverse: &mut [f64], row: &[f64]) {
-    let n = row.len();
-    let column: Vec<f64> = inverse.chunks_exact(n).map(|line| line.iter().zip(row).map(|(a, b)| a * b).sum()).collect();
-    let along: f64 = column.iter().zip(row).map(|(a, b)| a * b).sum();
+fn keep(inverse: &mut DMatrix<f64>, row: &DVector<f64>) {
+    let mut moved = DVector::zeros(row.len());
+    moved.gemv(1.0, inverse, row, 0.0);
+    let along = moved.dot(row);
     if along <= 0.0 {
         // it is held already
         return;
     }
-    for (line, left) in inverse.chunks_exact_mut(n).zip(&column) {
-        for (entry, right) in line.iter_mut().zip(&column) {
-            *entry -= left * right / along;
-        }
-    }
+    inverse.ger(-1.0 / along, &moved, &moved, 1.0);
 }
 
 #[cfg(test)]
@@ -59,12 +57,13 @@ mod tests {
     #[test]
     fn what_is_held_no_longer_gives_way() {
         // two masses of 1 and 2 kg, with the second counted from the first: [[3, 2], [2, 2]]
-        let mut inverse = [1.0, -1.0, -1.0, 1.5];
-        keep(&mut inverse, &[1.0, 0.0]);
-        for (entry, exact) in inverse.into_iter().zip([0.0, 0.0, 0.0, 0.5]) {
+        let mut inverse = DMatrix::from_row_slice(2, 2, &[1.0, -1.0, -1.0, 1.5]);
+        let first = DVector::from_vec(vec![1.0, 0.0]);
+        keep(&mut inverse, &first);
+        for (entry, exact) in inverse.iter().zip([0.0, 0.0, 0.0, 0.5]) {
             assert!((entry - exact).abs() < 1e-15, "{inverse:?}");
         }
-        keep(&mut inverse, &[1.0, 0.0]);
+        keep(&mut inverse, &first);
         assert!(inverse.iter().all(|entry| entry.is_finite()), "{inverse:?}");
     }
 }

@@ -94,8 +94,7 @@ impl Mechanism {
         if self.bonds.is_empty() {
             return false;
         }
-        self.room.inverse.resize(n * n, 0.0);
-        super::matrix::inverse(&self.equations.mass, n, &mut self.room.inverse);
+        self.equations.factored.inverse(&mut self.room.inverse);
         // first the way back, as a velocity of one second, then what is left of the velocity
         self.room.v.clear();
         self.room.v.resize(n, 0.0);

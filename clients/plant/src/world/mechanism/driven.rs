@@ -7,9 +7,11 @@
 //! velocities follow from momentum with all rows within their bounds ([`super::rows`]). So a stiff drive
 //! meets the real mass of its joint, and a stop or a friction holds exactly.
 
+use nalgebra::DVectorViewMut;
+
 use super::dynamics::{normalise, rates};
 use super::rows::Row;
-use super::{Coordinates, Mechanism, Surroundings, matrix};
+use super::{Coordinates, Mechanism, Room, Surroundings};
 use crate::effort::Motion;
 use crate::effort::substeps;
 use crate::fitting::Fitting;
@@ -72,7 +74,6 @@ impl Mechanism {
 
     /// The equations half way through a part, and the inverse of their matrix.
     pub(super) fn prepare(&mut self, part_s: f64, around: &Surroundings<'_>) -> bool {
-        let n = self.tree.velocities;
         let room = &mut self.room;
         room.q.clone_from(&self.now.q);
         room.rates[0].resize(self.tree.positions, 0.0);
@@ -85,8 +86,7 @@ impl Mechanism {
         if !self.moving.factor(&self.lumps) {
             return false;
         }
-        room.inverse.resize(n * n, 0.0);
-        matrix::inverse(&self.moving.mass, n, &mut room.inverse);
+        self.moving.factored.inverse(&mut room.inverse);
         true
     }
 
@@ -94,11 +94,11 @@ impl Mechanism {
         let n = self.tree.velocities;
         self.rows.all.clear();
         self.room.exact.clone_from(&self.room.driven);
-        self.room.force.resize(n, 0.0);
+        self.room.force.copy_from(&self.moving.bias);
+        self.room.force.neg_mut();
         self.room.viscous.clear();
         self.room.viscous.resize(n, 0.0);
         for k in 0..n {
-            self.room.force[k] = -self.moving.bias[k];
             if let Some(fitting) = self.axes[k].1.map(|joint| &around.fittings[joint]) {
                 self.room.force[k] += fitting.force(self.spring_at(k, dt_s));
                 self.resist(k, fitting.dry(self.now.v[k]), fitting.damping, dt_s);
@@ -127,12 +127,9 @@ impl Mechanism {
     pub(super) fn push(&mut self, dt_s: f64, fittings: &[Fitting]) {
         let n = self.tree.velocities;
         self.stiffen(dt_s, fittings);
-        self.room.v.clone_from(&self.now.v);
-        for k in 0..n {
-            let line = &self.room.stiff[k * n..(k + 1) * n];
-            let acceleration: f64 = line.iter().zip(&self.room.force).map(|(inverse, force)| inverse * force).sum();
-            self.room.v[k] += dt_s * acceleration;
-        }
+        let Room { v, stiff, force, .. } = &mut self.room;
+        v.clone_from(&self.now.v);
+        DVectorViewMut::from_slice(v, n).gemv_tr(dt_s, stiff, force, 1.0);
     }
 
     /// Dry and viscous friction of an axis.
@@ -140,7 +137,7 @@ impl Mechanism {
         if dry > 0.0 {
             self.rows.all.push(Row::rigid(axis, 0.0, dry * dt_s));
         }
-        let part = viscous * dt_s * self.room.inverse[axis * self.tree.velocities + axis];
+        let part = viscous * dt_s * self.room.inverse[(axis, axis)];
         if part > EXPLICIT_MAX {
             self.rows.all.push(Row { softness: 1.0 / (viscous * dt_s), ..Row::rigid(axis, 0.0, f64::INFINITY) });
         } else if part > 0.0 {
@@ -164,7 +161,7 @@ impl Mechanism {
             }
             Acts::Law { drive } => {
                 let velocity = self.now.v[axis];
-                let mass = 1.0 / self.room.inverse[axis * self.tree.velocities + axis];
+                let mass = 1.0 / self.room.inverse[(axis, axis)];
                 let motion = Motion { position: coordinate, velocity, mass, exerted: actuator.exerted };
                 let effort = around.drives.advance(drive, motion, dt_s);
                 self.resist(axis, effort.dry, effort.viscous, dt_s);

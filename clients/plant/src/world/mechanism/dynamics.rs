@@ -6,10 +6,13 @@
 //!
 //! Source: R. Featherstone, *Rigid Body Dynamics Algorithms*, Springer 2008, ch. 5 and 6.
 
+use std::ops::Add;
+
+use nalgebra::{DMatrix, DVector, DVectorViewMut, Matrix3, Quaternion, UnitQuaternion, Vector3};
 use rapier3d::glamx::{DMat3, DQuat};
 use rapier3d::math::{Pose, Vector};
 
-use super::matrix;
+use super::matrix::Factor;
 use super::spatial::{Inertia, Twist, Wrench};
 use super::tree::{Freedom, Tree};
 
@@ -25,9 +28,10 @@ pub(super) struct Equations {
     forces: Vec<Wrench>,
     inertias: Vec<Inertia>,
     composites: Vec<Inertia>,
-    /// `H`, or its factor once [`factor`](Self::factor) has run.
-    pub(super) mass: Vec<f64>,
-    pub(super) bias: Vec<f64>,
+    /// `H`, and its factor once [`factor`](Self::factor) has run.
+    pub(super) mass: DMatrix<f64>,
+    pub(super) factored: Factor,
+    pub(super) bias: DVector<f64>,
     /// The point that all is taken about.
     pub(super) about: Vector,
 }
@@ -41,10 +45,11 @@ impl Equations {
             motions: vec![Twist::default(); members],
             accelerations: vec![Twist::default(); members],
             forces: vec![Wrench::default(); members],
-            inertias: vec![Inertia::NONE; members],
-            composites: vec![Inertia::NONE; members],
-            mass: vec![0.0; n * n],
-            bias: vec![0.0; n],
+            inertias: vec![Inertia::none(); members],
+            composites: vec![Inertia::none(); members],
+            mass: DMatrix::zeros(n, n),
+            factored: Factor::default(),
+            bias: DVector::zeros(n),
             about: tree.members.first().map_or(Vector::ZERO, |root| root.place.translation),
         }
     }
@@ -58,21 +63,21 @@ impl Equations {
             };
             let [position, velocity] = member.first;
             let about = self.about;
-            let through = frame.translation - about;
+            let through = Vector3::from(frame.translation - about);
             let moved = match member.freedom {
                 Freedom::Weld => frame,
                 Freedom::Slide(axis) => {
-                    self.axes[velocity] = Twist::sliding(frame.rotation * axis);
+                    self.axes[velocity] = Twist::sliding((frame.rotation * axis).into());
                     frame * Pose::from_translation(axis * q[position])
                 }
                 Freedom::Turn(axis) => {
-                    self.axes[velocity] = Twist::turning(frame.rotation * axis, through);
+                    self.axes[velocity] = Twist::turning((frame.rotation * axis).into(), through);
                     frame * Pose::from_rotation(turn(axis, q[position]))
                 }
                 Freedom::Ball => {
-                    let rotation = frame.rotation * quaternion(&q[position..position + 4]);
+                    let rotation = frame.rotation * DQuat::from(quaternion(&q[position..position + 4]));
                     for (k, axis) in [Vector::X, Vector::Y, Vector::Z].into_iter().enumerate() {
-                        self.axes[velocity + k] = Twist::turning(rotation * axis, through);
+                        self.axes[velocity + k] = Twist::turning((rotation * axis).into(), through);
                     }
                     Pose::from_parts(frame.translation, rotation)
                 }
@@ -85,24 +90,24 @@ impl Equations {
     pub(super) fn moves(&mut self, tree: &Tree, v: &[f64]) {
         for (index, member) in tree.members.iter().enumerate() {
             let base = member.on.map_or_else(Twist::default, |on| self.motions[on]);
-            self.motions[index] = base.plus(self.own(member.first[1], member.freedom, v));
+            self.motions[index] = base + self.own(member.first[1], member.freedom, v);
         }
     }
 
     fn own(&self, first: usize, freedom: Freedom, v: &[f64]) -> Twist {
-        let each = (first..first + freedom.velocities()).map(|k| self.axes[k].times(v[k]));
-        each.fold(Twist::default(), Twist::plus)
+        let each = (first..first + freedom.velocities()).map(|k| self.axes[k] * v[k]);
+        each.fold(Twist::default(), Twist::add)
     }
 
     fn weigh(&mut self, tree: &Tree) {
         for (index, member) in tree.members.iter().enumerate() {
             self.inertias[index] = if member.mass > 0.0 {
                 let pose = self.poses[index];
-                let turned = DMat3::from_quat(pose.rotation);
+                let turned = Matrix3::from(DMat3::from_quat(pose.rotation));
                 let tensor = turned * member.tensor * turned.transpose();
-                Inertia::of(member.mass, pose * member.centre - self.about, tensor)
+                Inertia::of(member.mass, (pose * member.centre - self.about).into(), tensor)
             } else {
-                Inertia::NONE
+                Inertia::none()
             };
         }
     }
@@ -117,14 +122,14 @@ impl Equations {
 
     fn newton_euler(&mut self, tree: &Tree, v: &[f64], gravity: Vector) {
         // what stands still in a field of gravity is as what is accelerated against it
-        let ground = (Twist::default(), Twist::sliding(-gravity));
+        let ground = (Twist::default(), Twist::sliding((-gravity).into()));
         for (index, member) in tree.members.iter().enumerate() {
             let (motion, acceleration) = member.on.map_or(ground, |on| (self.motions[on], self.accelerations[on]));
             let own = self.own(member.first[1], member.freedom, v);
-            let motion = motion.plus(own);
-            let acceleration = acceleration.plus(motion.carries(own));
+            let motion = motion + own;
+            let acceleration = acceleration + motion.carries(&own);
             let inertia = &self.inertias[index];
-            self.forces[index] = inertia.times(acceleration).plus(motion.carries_force(inertia.times(motion)));
+            self.forces[index] = inertia.times(&acceleration) + motion.carries_force(&inertia.times(&motion));
             (self.motions[index], self.accelerations[index]) = (motion, acceleration);
         }
         self.gather(tree);
@@ -136,37 +141,36 @@ impl Equations {
             let force = self.forces[index];
             let first = member.first[1];
             for k in first..first + member.freedom.velocities() {
-                self.bias[k] = self.axes[k].power(force);
+                self.bias[k] = self.axes[k].power(&force);
             }
             if let Some(on) = member.on {
-                self.forces[on] = self.forces[on].plus(force);
+                self.forces[on] = self.forces[on] + force;
             }
         }
     }
 
     fn composite(&mut self, tree: &Tree) {
-        let n = tree.velocities;
         self.composites.copy_from_slice(&self.inertias);
         self.mass.fill(0.0);
         for (index, member) in tree.members.iter().enumerate().rev() {
             let composite = self.composites[index];
             let first = member.first[1];
             for k in first..first + member.freedom.velocities() {
-                let force = composite.times(self.axes[k]);
+                let force = composite.times(&self.axes[k]);
                 let mut below = Some(index);
                 while let Some(other) = below {
                     let member = &tree.members[other];
                     let start = member.first[1];
                     for j in start..start + member.freedom.velocities() {
-                        let entry = self.axes[j].power(force);
-                        self.mass[k * n + j] = entry;
-                        self.mass[j * n + k] = entry;
+                        let entry = self.axes[j].power(&force);
+                        self.mass[(k, j)] = entry;
+                        self.mass[(j, k)] = entry;
                     }
                     below = member.on;
                 }
             }
             if let Some(on) = member.on {
-                self.composites[on] = self.composites[on].plus(composite);
+                self.composites[on] = self.composites[on] + composite;
             }
         }
     }
@@ -174,7 +178,8 @@ impl Equations {
     /// Factors `H`; false where the masses are so far apart that it cannot be.
     #[must_use]
     pub(super) fn factor(&mut self, tree: &Tree) -> bool {
-        matrix::factor(&mut self.mass, tree.velocities)
+        let Self { mass, factored, .. } = self;
+        factored.take(tree.velocities, |row, column| mass[(row, column)])
     }
 
     /// The velocities that have the momentum of the bodies' own motions: of all that the joints allow,
@@ -184,22 +189,22 @@ impl Equations {
         self.place(tree, q);
         self.weigh(tree);
         for (index, inertia) in self.inertias.iter().enumerate() {
-            self.forces[index] = inertia.times(own(index));
+            self.forces[index] = inertia.times(&own(index));
         }
         self.gather(tree);
         self.composite(tree);
-        v.copy_from_slice(&self.bias);
+        v.copy_from_slice(self.bias.as_slice());
         let factored = self.factor(tree);
         if factored {
-            matrix::solve(&self.mass, tree.velocities, v);
+            self.factored.solve(&mut DVectorViewMut::from_slice(v, tree.velocities));
         }
         factored
     }
 }
 
-/// A quaternion as it stands among the positions.
-pub(super) fn quaternion(q: &[f64]) -> DQuat {
-    DQuat::from_xyzw(q[0], q[1], q[2], q[3])
+/// A quaternion as it stands among the positions, of unit length but for the rounding of a step.
+fn quaternion(q: &[f64]) -> UnitQuaternion<f64> {
+    UnitQuaternion::new_unchecked(Quaternion::new(q[3], q[0], q[1], q[2]))
 }
 
 fn turn(axis: Vector, angle: f64) -> DQuat {
@@ -215,9 +220,9 @@ pub(super) fn rates(tree: &Tree, q: &[f64], v: &[f64], rates: &mut [f64]) {
             Freedom::Weld => {}
             Freedom::Slide(_) | Freedom::Turn(_) => rates[position] = v[velocity],
             Freedom::Ball => {
-                let turning = DQuat::from_xyzw(0.5 * v[velocity], 0.5 * v[velocity + 1], 0.5 * v[velocity + 2], 0.0);
-                let rate = quaternion(&q[position..position + 4]) * turning;
-                rates[position..position + 4].copy_from_slice(&rate.to_array());
+                let turning = Quaternion::new(0.0, 0.5 * v[velocity], 0.5 * v[velocity + 1], 0.5 * v[velocity + 2]);
+                let rate = quaternion(&q[position..position + 4]).into_inner() * turning;
+                rates[position..position + 4].copy_from_slice(rate.coords.as_slice());
             }
         }
     }
@@ -228,8 +233,8 @@ pub(super) fn normalise(tree: &Tree, q: &mut [f64]) {
     for member in &tree.members {
         if member.freedom == Freedom::Ball {
             let [position, _] = member.first;
-            let unit = quaternion(&q[position..position + 4]).normalize();
-            q[position..position + 4].copy_from_slice(&unit.to_array());
+            let unit = UnitQuaternion::new_normalize(quaternion(&q[position..position + 4]).into_inner());
+            q[position..position + 4].copy_from_slice(unit.coords.as_slice());
         }
     }
 }

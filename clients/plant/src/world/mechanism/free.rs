@@ -5,7 +5,7 @@
 //! [`driven`](super::driven), which is stable at any step and less exact.
 
 use super::dynamics::{normalise, rates};
-use super::{Mechanism, Surroundings, matrix};
+use super::{Mechanism, Surroundings};
 use crate::fitting::Fitting;
 
 /// The longest part, in radians of the fastest swing: it takes 2e-6 of an amplitude.
@@ -36,7 +36,6 @@ impl Mechanism {
     /// No mode of its springs and dampers is faster than this, 1/s: `√ tr(M⁻¹K) + tr(M⁻¹C)`. None if its
     /// equations cannot be solved.
     fn stiffness(&mut self, around: &Surroundings<'_>) -> Option<f64> {
-        let n = self.tree.velocities;
         let fitted = |joint: Option<usize>| joint.map(|joint| &around.fittings[joint]);
         let gives = |fitting: &Fitting| fitting.spring != 0.0 || fitting.damping != 0.0;
         if !self.axes.iter().any(|(_, joint)| fitted(*joint).is_some_and(gives)) {
@@ -46,12 +45,11 @@ impl Mechanism {
         if !self.moving.factor(&self.lumps) {
             return None;
         }
-        self.room.inverse.resize(n * n, 0.0);
-        matrix::inverse(&self.moving.mass, n, &mut self.room.inverse);
+        self.moving.factored.inverse(&mut self.room.inverse);
         let (mut swings, mut fades) = (0.0, 0.0);
         for (axis, (_, joint)) in self.axes.iter().enumerate() {
             let Some(fitting) = fitted(*joint) else { continue };
-            let light = self.room.inverse[axis * n + axis];
+            let light = self.room.inverse[(axis, axis)];
             swings += light * fitting.spring;
             fades += light * fitting.damping;
         }
@@ -63,7 +61,6 @@ impl Mechanism {
         let n = self.tree.velocities;
         let positions = self.tree.positions;
         let room = &mut self.room;
-        room.force.resize(n, 0.0);
         for stage in 0..4 {
             room.rates[stage].resize(positions, 0.0);
             room.accelerations[stage].resize(n, 0.0);
@@ -91,8 +88,8 @@ impl Mechanism {
                 });
                 room.force[k] = fitted - self.moving.bias[k];
             }
-            matrix::solve(&self.moving.mass, n, &mut room.force);
-            room.accelerations[stage].copy_from_slice(&room.force);
+            self.moving.factored.solve(&mut room.force);
+            room.accelerations[stage].copy_from_slice(room.force.as_slice());
         }
         room.q.clone_from(&self.now.q);
         room.v.clone_from(&self.now.v);

@@ -1,7 +1,8 @@
 //! A tree whose welded bodies are one body each, which has the same coordinates and the same equations.
 
+use nalgebra::{Matrix3, Vector3};
 use rapier3d::glamx::DMat3;
-use rapier3d::math::{Pose, Vector};
+use rapier3d::math::Pose;
 
 use super::tree::{Freedom, Member, Tree};
 
@@ -40,29 +41,27 @@ impl Member {
         }
         let theirs = place * other.centre;
         let centre = (self.centre * self.mass + theirs * other.mass) / mass;
-        let turned = DMat3::from_quat(place.rotation);
+        let turned = Matrix3::from(DMat3::from_quat(place.rotation));
         self.tensor = self.tensor
-            + about(self.mass, self.centre - centre)
+            + about(self.mass, (self.centre - centre).into())
             + turned * other.tensor * turned.transpose()
-            + about(other.mass, theirs - centre);
+            + about(other.mass, (theirs - centre).into());
         (self.mass, self.centre) = (mass, centre);
     }
 }
 
 /// The inertia of a point of mass about a place that is so far away.
-fn about(mass: f64, away: Vector) -> DMat3 {
-    let [x, y, z] = away.to_array();
-    let columns = DMat3::from_cols(
-        Vector::new(y * y + z * z, -x * y, -x * z),
-        Vector::new(-x * y, x * x + z * z, -y * z),
-        Vector::new(-x * z, -y * z, x * x + y * y),
-    );
-    columns * mass
+fn about(mass: f64, away: Vector3<f64>) -> Matrix3<f64> {
+    let [x, y, z] = away.into();
+    let unit =
+        Matrix3::new(y * y + z * z, -x * y, -x * z, -x * y, x * x + z * z, -y * z, -x * z, -y * z, x * x + y * y);
+    unit * mass
 }
 
 #[cfg(test)]
 mod tests {
     use rapier3d::glamx::DQuat;
+    use rapier3d::math::Vector;
 
     use super::super::dynamics::Equations;
     use super::*;
@@ -70,8 +69,7 @@ mod tests {
     fn member(on: Option<usize>, freedom: Freedom, first: usize, mass: f64) -> Member {
         let place = Pose::from_parts(Vector::new(0.3, -0.2, 0.5), DQuat::from_xyzw(0.6, 0.0, 0.8, 0.0));
         let tip = Pose::from_parts(Vector::new(0.1, 0.4, -0.2), DQuat::from_xyzw(0.0, 0.28, 0.0, 0.96));
-        let tensor =
-            DMat3::from_cols(Vector::new(0.3, 0.01, 0.0), Vector::new(0.01, 0.2, 0.02), Vector::new(0.0, 0.02, 0.4));
+        let tensor = Matrix3::new(0.3, 0.01, 0.0, 0.01, 0.2, 0.02, 0.0, 0.02, 0.4);
         let centre = Vector::new(0.05, 0.1, -0.15);
         Member { on, place, freedom, first: [first; 2], tip, body: None, mass, centre, tensor }
     }
@@ -93,7 +91,7 @@ mod tests {
         let equations = |tree: &Tree| {
             let mut equations = Equations::new(tree);
             equations.evaluate(tree, &[0.4, -1.1], &[2.0, 3.0], Vector::new(0.5, 1.0, -9.81));
-            [equations.mass, equations.bias].concat()
+            [equations.mass.as_slice(), equations.bias.as_slice()].concat()
         };
         for (one, other) in equations(&tree).iter().zip(&equations(&lumped)) {
             // forces of some 100 N at 1 m, rounded to 2^-53, in some dozen operations

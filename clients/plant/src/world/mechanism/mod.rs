@@ -8,7 +8,7 @@
 //! | module | subject |
 //! |---|---|
 //! | `spatial` | motions, forces and inertias as vectors of six |
-//! | `matrix` | symmetric matrices of a few rows |
+//! | `matrix` | symmetric matrices of any number of rows |
 //! | `tree` | which bodies hang together |
 //! | `lump` | what is welded together as one body |
 //! | `dynamics` | the equations of motion of a tree |
@@ -39,6 +39,7 @@ mod sprung;
 mod touched;
 mod tree;
 
+use nalgebra::{DMatrix, DVector};
 use rapier3d::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -86,11 +87,11 @@ struct Room {
     v: Vec<f64>,
     rates: [Vec<f64>; 4],
     accelerations: [Vec<f64>; 4],
-    force: Vec<f64>,
-    inverse: Vec<f64>,
+    force: DVector<f64>,
+    inverse: DMatrix<f64>,
     /// The same with what springs and dampers add in a sub-step.
-    stiff: Vec<f64>,
-    column: Vec<f64>,
+    stiff: DMatrix<f64>,
+    column: DVector<f64>,
     driven: Vec<bool>,
     /// Axes with springs, and what of viscous friction these take with them.
     sprung: Vec<bool>,
@@ -152,6 +153,9 @@ impl Mechanism {
         }
         let now = Coordinates { q: vec![0.0; tree.positions], v: vec![0.0; tree.velocities] };
         let lumps = tree.lumped();
+        let n = tree.velocities;
+        let (force, inverse) = (DVector::zeros(n), DMatrix::zeros(n, n));
+        let room = Room { column: force.clone(), stiff: inverse.clone(), force, inverse, ..Room::default() };
         Self {
             now,
             equations: Equations::new(&tree),
@@ -161,7 +165,7 @@ impl Mechanism {
             axes,
             bonds: Vec::new(),
             rows: Rows::default(),
-            room: Room::default(),
+            room,
         }
     }
 
@@ -242,8 +246,8 @@ impl Mechanism {
         if equations.factor(tree) {
             // the bias at rest is what would hold it against gravity
             let mut held = equations.bias.clone();
-            matrix::solve(&equations.mass, tree.velocities, &mut held);
-            for ((v, moved), held) in now.v.iter_mut().zip(moved).zip(held) {
+            equations.factored.solve(&mut held);
+            for ((v, moved), held) in now.v.iter_mut().zip(moved).zip(&held) {
                 *v = moved + dt_s * held;
             }
         }
@@ -258,8 +262,8 @@ impl Mechanism {
             let (pose, motion) = (self.equations.poses[index], self.equations.motions[index]);
             let centre = pose * member.centre - self.equations.about;
             body.set_position(pose, false);
-            body.set_linvel(motion.linear + motion.angular.cross(centre), false);
-            body.set_angvel(motion.angular, false);
+            body.set_linvel(motion.at(centre.into()).into(), false);
+            body.set_angvel(motion.angular().into(), false);
         }
     }
 
@@ -286,7 +290,7 @@ fn own_motion<'b>(tree: &'b Tree, about: Vector, bodies: &'b RigidBodySet) -> im
         body.map_or_else(Twist::default, |body| {
             let angular = body.angvel();
             let lever = about - body.mass_properties().world_com;
-            Twist { angular, linear: body.linvel() + angular.cross(lever) }
+            Twist::of(angular.into(), (body.linvel() + angular.cross(lever)).into())
         })
     }
 }

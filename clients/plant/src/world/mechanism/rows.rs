@@ -12,7 +12,9 @@
 //! over the rows one by one (projected Gauss-Seidel) go on from there. Both count, neither looks at a
 //! clock.
 
-use super::matrix;
+use nalgebra::{DMatrix, DVectorViewMut};
+
+use super::matrix::Factor;
 
 /// Added to each diagonal, as a part of it: two rigid rows of one joint share their impulse.
 const REGULAR: f64 = 1e-11;
@@ -50,13 +52,14 @@ impl Row {
     }
 
     /// What one unit of its impulse adds to a velocity.
-    fn adds(&self, axis: usize, inverse: &[f64], n: usize) -> f64 {
-        self.parts().map(|(other, factor)| factor * inverse[axis * n + other]).sum()
+    fn adds(&self, axis: usize, inverse: &DMatrix<f64>) -> f64 {
+        let column = inverse.column(axis);
+        self.parts().map(|(other, factor)| factor * column[other]).sum()
     }
 
     /// `J M⁻¹ J'ᵀ` of two rows.
-    fn between(&self, other: &Self, inverse: &[f64], n: usize) -> f64 {
-        self.parts().map(|(axis, factor)| factor * other.adds(axis, inverse, n)).sum()
+    fn between(&self, other: &Self, inverse: &DMatrix<f64>) -> f64 {
+        self.parts().map(|(axis, factor)| factor * other.adds(axis, inverse)).sum()
     }
 }
 
@@ -72,43 +75,44 @@ enum Held {
 #[derive(Default)]
 pub(super) struct Rows {
     pub(super) all: Vec<Row>,
-    between: Vec<f64>,
+    between: DMatrix<f64>,
     held: Vec<Held>,
     free: Vec<usize>,
-    reduced: Vec<f64>,
+    reduced: Factor,
     right: Vec<f64>,
     start: Vec<f64>,
 }
 
 impl Rows {
     /// Finds all impulses and gives the velocities `v` that they lead to; `inverse` is `M⁻¹`.
-    pub(super) fn solve(&mut self, inverse: &[f64], v: &mut [f64]) {
-        let n = v.len();
+    pub(super) fn solve(&mut self, inverse: &DMatrix<f64>, v: &mut [f64]) {
         match self.all.as_mut_slice() {
             [] => return,
             [only] => {
-                let stiffness = only.between(only, inverse, n) + only.softness;
+                let stiffness = only.between(only, inverse) + only.softness;
                 only.impulse = ((only.wanted - only.velocity(v)) / stiffness).clamp(only.least, only.most);
             }
             _ => self.search(inverse, v),
         }
         for row in &self.all {
             for (axis, v) in v.iter_mut().enumerate() {
-                *v += row.adds(axis, inverse, n) * row.impulse;
+                *v += row.adds(axis, inverse) * row.impulse;
             }
         }
     }
 
-    fn search(&mut self, inverse: &[f64], v: &[f64]) {
-        let (n, count) = (v.len(), self.all.len());
-        self.between.clear();
+    fn search(&mut self, inverse: &DMatrix<f64>, v: &[f64]) {
+        let count = self.all.len();
+        if self.between.nrows() != count {
+            self.between.resize_mut(count, count, 0.0);
+        }
         for (r, row) in self.all.iter().enumerate() {
             for (s, other) in self.all.iter().enumerate() {
-                let mut entry = row.between(other, inverse, n);
+                let mut entry = row.between(other, inverse);
                 if r == s {
                     entry += row.softness + REGULAR * entry;
                 }
-                self.between.push(entry);
+                self.between[(r, s)] = entry;
             }
         }
         self.start.clear();
@@ -139,17 +143,15 @@ impl Rows {
         let Self { all: rows, between, held, free, reduced, right, start } = self;
         free.clear();
         free.extend((0..count).filter(|index| held[*index] == Held::Free));
-        reduced.clear();
         right.clear();
         for r in free.iter() {
             let fixed = (0..count).filter(|s| held[*s] != Held::Free);
-            right.push(start[*r] - fixed.map(|s| between[r * count + s] * rows[s].impulse).sum::<f64>());
-            reduced.extend(free.iter().map(|s| between[r * count + s]));
+            right.push(start[*r] - fixed.map(|s| between[(*r, s)] * rows[s].impulse).sum::<f64>());
         }
-        if !matrix::factor(reduced, free.len()) {
+        if !reduced.take(free.len(), |row, column| between[(free[row], free[column])]) {
             return false;
         }
-        matrix::solve(reduced, free.len(), right);
+        reduced.solve(&mut DVectorViewMut::from_slice(right, free.len()));
         for (index, impulse) in free.iter().zip(right.iter()) {
             rows[*index].impulse = *impulse;
         }
@@ -175,7 +177,7 @@ impl Rows {
             if held == Held::Free {
                 continue;
             }
-            let reached: f64 = (0..count).map(|s| self.between[r * count + s] * self.all[s].impulse).sum();
+            let reached: f64 = (0..count).map(|s| self.between[(r, s)] * self.all[s].impulse).sum();
             let missing = self.start[r] - reached;
             // less than what rounding leaves of the largest term is nothing
             let slack = 1e-12 * (self.start[r].abs() + reached.abs());
@@ -196,9 +198,9 @@ impl Rows {
         }
         for _ in 0..SWEEPS {
             for r in 0..count {
-                let reached: f64 = (0..count).map(|s| self.between[r * count + s] * self.all[s].impulse).sum();
+                let reached: f64 = (0..count).map(|s| self.between[(r, s)] * self.all[s].impulse).sum();
                 let row = &mut self.all[r];
-                let change = (self.start[r] - reached) / self.between[r * count + r];
+                let change = (self.start[r] - reached) / self.between[(r, r)];
                 row.impulse = (row.impulse + change).clamp(row.least, row.most);
             }
         }
@@ -212,7 +214,7 @@ mod tests {
     fn solved(rows: &[Row], inverse: &[f64], v: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let mut problem = Rows { all: rows.to_vec(), ..Rows::default() };
         let mut v = v.to_vec();
-        problem.solve(inverse, &mut v);
+        problem.solve(&DMatrix::from_row_slice(v.len(), v.len(), inverse), &mut v);
         (v, problem.all.iter().map(|row| row.impulse).collect())
     }
 

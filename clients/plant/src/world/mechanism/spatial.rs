@@ -1,117 +1,162 @@
-//! Spatial vectors: motion and force of rigid bodies, all taken about one point in the world's axes.
+//! Spatial vectors: motion and force of rigid bodies as vectors of six, all taken about one point in the world's axes.
 //!
 //! Source: R. Featherstone, *Rigid Body Dynamics Algorithms*, Springer 2008, ch. 2.
 
-use rapier3d::glamx::DMat3;
-use rapier3d::math::Vector;
+use std::ops::{Add, Mul};
 
-/// A velocity or an acceleration of a body: of its turning, and of the point of it that is now at the
+use nalgebra::{Matrix3, Vector3, Vector6};
+
+/// A velocity or an acceleration of a body: of its turning, over that of the point of it that is now at the
 /// reference point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Twist {
-    pub(super) angular: Vector,
-    pub(super) linear: Vector,
+pub(super) struct Twist(Vector6<f64>);
+
+/// A force's moment about the reference point over the force itself; or a momentum.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Wrench(Vector6<f64>);
+
+#[inline]
+fn upper(six: &Vector6<f64>) -> Vector3<f64> {
+    Vector3::new(six.x, six.y, six.z)
+}
+
+#[inline]
+fn lower(six: &Vector6<f64>) -> Vector3<f64> {
+    Vector3::new(six.w, six.a, six.b)
+}
+
+#[inline]
+fn over(upper: Vector3<f64>, lower: Vector3<f64>) -> Vector6<f64> {
+    Vector6::new(upper.x, upper.y, upper.z, lower.x, lower.y, lower.z)
 }
 
 impl Twist {
+    /// Of a body that turns so, and whose point at the reference point moves so.
+    #[inline]
+    pub(super) fn of(angular: Vector3<f64>, linear: Vector3<f64>) -> Self {
+        Self(over(angular, linear))
+    }
+
     /// Of a turn about an axis through a point.
     #[inline]
-    pub(super) fn turning(axis: Vector, through: Vector) -> Self {
-        Self { angular: axis, linear: through.cross(axis) }
+    pub(super) fn turning(axis: Vector3<f64>, through: Vector3<f64>) -> Self {
+        Self::of(axis, through.cross(&axis))
     }
 
     /// Of a translation.
     #[inline]
-    pub(super) fn sliding(axis: Vector) -> Self {
-        Self { angular: Vector::ZERO, linear: axis }
+    pub(super) fn sliding(axis: Vector3<f64>) -> Self {
+        Self::of(Vector3::zeros(), axis)
     }
 
     #[inline]
-    pub(super) fn plus(self, other: Self) -> Self {
-        Self { angular: self.angular + other.angular, linear: self.linear + other.linear }
+    pub(super) fn angular(&self) -> Vector3<f64> {
+        upper(&self.0)
     }
 
+    /// How fast the point of the body that is at `arm` from the reference point moves.
     #[inline]
-    pub(super) fn times(self, factor: f64) -> Self {
-        Self { angular: self.angular * factor, linear: self.linear * factor }
+    pub(super) fn at(&self, arm: Vector3<f64>) -> Vector3<f64> {
+        lower(&self.0) + self.angular().cross(&arm)
     }
 
     /// How `moved` changes as it is carried along by this motion.
     #[inline]
-    pub(super) fn carries(self, moved: Self) -> Self {
-        Self {
-            angular: self.angular.cross(moved.angular),
-            linear: self.angular.cross(moved.linear) + self.linear.cross(moved.angular),
-        }
+    pub(super) fn carries(&self, moved: &Self) -> Self {
+        let (angular, linear) = (self.angular(), lower(&self.0));
+        let turned = moved.angular();
+        Self::of(angular.cross(&turned), angular.cross(&lower(&moved.0)) + linear.cross(&turned))
     }
 
     /// How a force or a momentum changes as it is carried along by this motion.
     #[inline]
-    pub(super) fn carries_force(self, force: Wrench) -> Wrench {
-        Wrench {
-            moment: self.angular.cross(force.moment) + self.linear.cross(force.force),
-            force: self.angular.cross(force.force),
-        }
+    pub(super) fn carries_force(&self, force: &Wrench) -> Wrench {
+        let (angular, linear) = (self.angular(), lower(&self.0));
+        let (moment, force) = (upper(&force.0), lower(&force.0));
+        Wrench(over(angular.cross(&moment) + linear.cross(&force), angular.cross(&force)))
     }
 
     /// The power of a force in this motion.
     #[inline]
-    pub(super) fn power(self, force: Wrench) -> f64 {
-        self.angular.dot(force.moment) + self.linear.dot(force.force)
+    pub(super) fn power(&self, force: &Wrench) -> f64 {
+        self.angular().dot(&upper(&force.0)) + lower(&self.0).dot(&lower(&force.0))
     }
 }
 
-/// A force and its moment about the reference point; or a momentum.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Wrench {
-    pub(super) moment: Vector,
-    pub(super) force: Vector,
-}
+impl Add for Twist {
+    type Output = Self;
 
-impl Wrench {
     #[inline]
-    pub(super) fn plus(self, other: Self) -> Self {
-        Self { moment: self.moment + other.moment, force: self.force + other.force }
+    fn add(self, other: Self) -> Self {
+        Self(self.0 + other.0)
     }
 }
 
-/// The inertia of a body about the reference point.
+impl Mul<f64> for Twist {
+    type Output = Self;
+
+    #[inline]
+    fn mul(self, factor: f64) -> Self {
+        Self(self.0 * factor)
+    }
+}
+
+impl Add for Wrench {
+    type Output = Self;
+
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        Self(self.0 + other.0)
+    }
+}
+
+/// The inertia of a body about the reference point: ten numbers, of which a matrix of six rows would have 36.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Inertia {
     mass: f64,
     /// Mass times the centre of mass.
-    first: Vector,
-    about: DMat3,
+    first: Vector3<f64>,
+    about: Matrix3<f64>,
 }
 
 impl Inertia {
-    /// Of nothing. A derived default would have the matrix's own, which is the identity.
-    pub(super) const NONE: Self = Self { mass: 0.0, first: Vector::ZERO, about: DMat3::ZERO };
+    /// Of nothing.
+    pub(super) fn none() -> Self {
+        Self { mass: 0.0, first: Vector3::zeros(), about: Matrix3::zeros() }
+    }
 
     /// Of a mass with its centre, and its tensor about that centre.
     #[inline]
-    pub(super) fn of(mass: f64, centre: Vector, tensor: DMat3) -> Self {
-        let [x, y, z] = centre.to_array();
-        let square = centre.length_squared();
-        let offset = DMat3::from_cols(
-            Vector::new(square - x * x, -x * y, -x * z),
-            Vector::new(-x * y, square - y * y, -y * z),
-            Vector::new(-x * z, -y * z, square - z * z),
+    pub(super) fn of(mass: f64, centre: Vector3<f64>, tensor: Matrix3<f64>) -> Self {
+        let [x, y, z] = centre.into();
+        let square = x * x + y * y + z * z;
+        let offset = Matrix3::new(
+            square - x * x,
+            -x * y,
+            -x * z,
+            -x * y,
+            square - y * y,
+            -y * z,
+            -x * z,
+            -y * z,
+            square - z * z,
         );
         Self { mass, first: centre * mass, about: tensor + offset * mass }
     }
 
-    #[inline]
-    pub(super) fn plus(self, other: Self) -> Self {
-        Self { mass: self.mass + other.mass, first: self.first + other.first, about: self.about + other.about }
-    }
-
     /// The momentum in a motion, or the force for an acceleration.
     #[inline]
-    pub(super) fn times(&self, motion: Twist) -> Wrench {
-        Wrench {
-            moment: self.about * motion.angular + self.first.cross(motion.linear),
-            force: motion.linear * self.mass + motion.angular.cross(self.first),
-        }
+    pub(super) fn times(&self, motion: &Twist) -> Wrench {
+        let (angular, linear) = (motion.angular(), lower(&motion.0));
+        Wrench(over(self.about * angular + self.first.cross(&linear), linear * self.mass + angular.cross(&self.first)))
+    }
+}
+
+impl Add for Inertia {
+    type Output = Self;
+
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        Self { mass: self.mass + other.mass, first: self.first + other.first, about: self.about + other.about }
     }
 }

@@ -11,6 +11,8 @@
 //! A joint that goes on with its new velocity alone (it is driven along a path, coupled, or near a stop)
 //! has the spring half way along that, `-k (q + h v'/2)`. It loses energy, `½ m (v' - v)²` a sub-step.
 
+use nalgebra::{DMatrix, DVector};
+
 use super::Mechanism;
 use crate::fitting::Fitting;
 
@@ -30,15 +32,13 @@ impl Mechanism {
 
     /// The inverse of the matrix of a sub-step: masses, and what springs and dampers add to them.
     pub(super) fn stiffen(&mut self, dt_s: f64, fittings: &[Fitting]) {
-        let n = self.tree.velocities;
         let Self { room, axes, .. } = self;
-        room.stiff.clone_from(&room.inverse);
+        room.stiff.copy_from(&room.inverse);
         for (axis, (_, joint)) in axes.iter().enumerate() {
             let Some(joint) = joint.filter(|_| room.sprung[axis]) else { continue };
             let share = if room.exact[axis] { 1.0 } else { 0.5 };
             let added = share * dt_s * (0.5 * dt_s * fittings[joint].spring + room.viscous[axis]);
-            room.column.clear();
-            room.column.extend_from_slice(&room.stiff[axis * n..(axis + 1) * n]);
+            room.column.copy_from(&room.stiff.column(axis));
             add_mass(&mut room.stiff, axis, &room.column, added);
         }
     }
@@ -63,13 +63,9 @@ impl Mechanism {
 
 /// Adds a mass to one coordinate, in the inverse of the matrix, of which its column is given (Sherman and
 /// Morrison).
-fn add_mass(inverse: &mut [f64], axis: usize, column: &[f64], added: f64) {
+fn add_mass(inverse: &mut DMatrix<f64>, axis: usize, column: &DVector<f64>, added: f64) {
     let factor = added / (1.0 + added * column[axis]);
-    for (line, left) in inverse.chunks_exact_mut(column.len()).zip(column) {
-        for (entry, right) in line.iter_mut().zip(column) {
-            *entry -= factor * left * right;
-        }
-    }
+    inverse.ger(-factor, column, column, 1.0);
 }
 
 #[cfg(test)]
@@ -85,9 +81,9 @@ mod tests {
     #[test]
     fn a_mass_that_is_added_is_in_the_inverse() {
         // [[2, 1], [1, 3]] and 4 more on the second: [[2, 1], [1, 7]]
-        let mut inverse = [0.6, -0.2, -0.2, 0.4];
-        add_mass(&mut inverse, 1, &[-0.2, 0.4], 4.0);
-        for (entry, exact) in inverse.into_iter().zip([7.0, -1.0, -1.0, 2.0]) {
+        let mut inverse = DMatrix::from_row_slice(2, 2, &[0.6, -0.2, -0.2, 0.4]);
+        add_mass(&mut inverse, 1, &DVector::from_vec(vec![-0.2, 0.4]), 4.0);
+        for (entry, exact) in inverse.iter().zip([7.0, -1.0, -1.0, 2.0]) {
             assert!((entry - exact / 13.0).abs() < 1e-15, "{inverse:?}");
         }
     }

@@ -3,6 +3,7 @@
 //! In such a step it moves with the velocities at its end, as all that touches. Drives are lines of force over velocity,
 //! as for the engine (see [`crate::world::actuator`]); their own state follows afterwards.
 
+use nalgebra::{DVectorView, DVectorViewMut, Vector3};
 use rapier3d::prelude::*;
 
 use super::driven::keep_within;
@@ -40,8 +41,8 @@ impl Mechanism {
         self.room.exact.resize(n, true);
         self.room.viscous.clear();
         self.room.viscous.resize(n, 0.0);
-        self.room.force.clear();
-        self.room.force.extend(self.moving.bias.iter().map(|bias| -bias));
+        self.room.force.copy_from(&self.moving.bias);
+        self.room.force.neg_mut();
         for k in 0..n {
             if let Some(fitting) = self.axes[k].1.map(|joint| &around.fittings[joint]) {
                 self.room.force[k] += fitting.force(self.spring_at(k, dt_s));
@@ -70,7 +71,7 @@ impl Mechanism {
             Acts::Along(_) => line.velocity.clamp((fitting.lower - position) / dt_s, (fitting.upper - position) / dt_s),
             Acts::Law { .. } => line.velocity,
         };
-        let moves = self.room.inverse[axis * self.tree.velocities + axis];
+        let moves = self.room.inverse[(axis, axis)];
         let softness = if line.slope.is_finite() { 1.0 / (line.slope * dt_s) } else { YIELDS * moves };
         self.resist(axis, line.dry, 0.0, dt_s);
         self.rows.all.push(Row { softness, actuator: Some(index), ..Row::rigid(axis, wanted, line.most * dt_s) });
@@ -91,19 +92,19 @@ impl Mechanism {
 
     /// What an impulse along each coordinate adds to its velocities.
     pub(crate) fn answers(&self, along: &[f64], answer: &mut [f64]) {
-        for (answer, line) in answer.iter_mut().zip(self.room.stiff.chunks_exact(along.len().max(1))) {
-            *answer = line.iter().zip(along).map(|(inverse, along)| inverse * along).sum();
-        }
+        let n = self.tree.velocities;
+        let along = DVectorView::from_slice(along, n);
+        DVectorViewMut::from_slice(answer, n).gemv_tr(1.0, &self.room.stiff, &along, 0.0);
     }
 
     /// Adds how fast a point of a body moves in a direction with each velocity.
     pub(crate) fn lever(&self, body: RigidBodyHandle, point: Vector, direction: Vector, along: &mut [f64]) {
         let mut at = self.tree.members.iter().position(|member| member.body == Some(body));
-        let arm = point - self.equations.about;
+        let (arm, direction) = (Vector3::from(point - self.equations.about), Vector3::from(direction));
         while let Some(member) = at.map(|index| &self.tree.members[index]) {
             let span = member.first[1]..member.first[1] + member.freedom.velocities();
             for (along, axis) in along[span.clone()].iter_mut().zip(&self.equations.axes[span]) {
-                *along += (axis.linear + axis.angular.cross(arm)).dot(direction);
+                *along += axis.at(arm).dot(&direction);
             }
             at = member.on;
         }

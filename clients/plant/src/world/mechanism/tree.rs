@@ -1,6 +1,7 @@
 //! Which bodies hang together on joints, and in which order: trees that stand on what no force moves.
 
-use rapier3d::glamx::{DMat3, DQuat};
+use nalgebra::Matrix3;
+use rapier3d::glamx::DQuat;
 use rapier3d::prelude::*;
 
 use crate::coupled::Coupled;
@@ -65,7 +66,7 @@ pub(super) struct Member {
     /// Centre of mass in the body's frame.
     pub(super) centre: Vector,
     /// Inertia about the centre in the body's frame.
-    pub(super) tensor: DMat3,
+    pub(super) tensor: Matrix3<f64>,
 }
 
 /// How a joint of the scene is measured in a tree: where its first coordinates are.
@@ -115,7 +116,7 @@ impl Tree {
             body: None,
             mass: 0.0,
             centre: Vector::ZERO,
-            tensor: DMat3::ZERO,
+            tensor: Matrix3::zeros(),
         };
         let properties = bodies[link.bodies[far]].mass_properties().local_mprops;
         let outer = Member {
@@ -123,7 +124,7 @@ impl Tree {
             body: Some(link.bodies[far]),
             mass: properties.mass(),
             centre: properties.local_com,
-            tensor: properties.reconstruct_inertia_matrix(),
+            tensor: properties.reconstruct_inertia_matrix().into(),
             ..inner.clone()
         };
         let (slide, turn) = (Freedom::Slide(Vector::Y * sign), Freedom::Turn(Vector::X * sign));
