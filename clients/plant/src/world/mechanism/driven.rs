@@ -19,6 +19,9 @@ use crate::world::actuator::{Acts, Actuator, CORRECTED_A_TURN};
 
 /// Longest part of a step with one mass matrix, s.
 const PART_S: f64 = 1e-3;
+/// The most that anything turns in a part, rad, and the most parts that each of the longest is cut in for that.
+const PART_RAD: f64 = 0.02;
+const PARTS: f64 = 64.0;
 /// Viscous friction that takes less than this part of a velocity in a sub-step is taken as a force.
 const EXPLICIT_MAX: f64 = 0.05;
 /// A stop is looked at from this near on, m or rad.
@@ -44,12 +47,13 @@ impl Mechanism {
             Acts::Along(_) => PART_S,
         });
         let longest_s = longest.fold(PART_S, f64::min);
-        let (count, part_s) = substeps(dt_s, PART_S);
+        let (count, part_s) = substeps(dt_s, self.longest_part_s());
         let (finer, finer_s) = substeps(part_s, longest_s);
         for index in 0..count {
             if !self.prepare(part_s, around) {
                 return false;
             }
+            self.foresee(part_s, around);
             for inner in 0..finer {
                 let whole = f64::from(count * finer);
                 let [from, to] = around.part;
@@ -72,6 +76,30 @@ impl Mechanism {
         each.filter_map(|(index, actuator)| axis(actuator.joint).map(|axis| (axis, index))).collect()
     }
 
+    /// The longest part of a step: one in which nothing turns far, where what turns moves what hangs on it, too, and is
+    /// not driven.
+    fn longest_part_s(&self) -> f64 {
+        if !self.is_foreseen() {
+            return PART_S;
+        }
+        (PART_RAD / self.turning()).clamp(PART_S / PARTS, PART_S)
+    }
+
+    /// Whether centrifugal and Coriolis forces act on it that do not follow from its drives.
+    fn is_foreseen(&self) -> bool {
+        self.tree.velocities > 1 && self.lumps.turns() && !self.room.driven.iter().all(|driven| *driven)
+    }
+
+    /// No body of it turns faster than this, rad/s.
+    pub(super) fn turning(&self) -> f64 {
+        let each = self.lumps.members.iter().filter(|member| member.freedom.turns());
+        let speeds = each.flat_map(|member| {
+            let first = member.first[1];
+            self.now.v[first..first + member.freedom.velocities()].iter().map(|v| v.abs())
+        });
+        speeds.sum()
+    }
+
     /// The equations half way through a part, and the inverse of their matrix.
     pub(super) fn prepare(&mut self, part_s: f64, around: &Surroundings<'_>) -> bool {
         let room = &mut self.room;
@@ -90,7 +118,33 @@ impl Mechanism {
         true
     }
 
-    fn substep(&mut self, dt_s: f64, part: [f64; 2], own: &[(usize, usize)], around: &mut Surroundings<'_>) {
+    /// Takes the bias at the velocities half way through a part, as far as they can be known without its drives: what is
+    /// driven goes on as it goes. At those of its beginning, centrifugal and Coriolis forces would do
+    /// work that is wrong by the change of velocity, and give the mechanism energy.
+    fn foresee(&mut self, part_s: f64, around: &Surroundings<'_>) {
+        if !self.is_foreseen() {
+            return;
+        }
+        self.begin(part_s, around.fittings);
+        for axis in 0..self.tree.velocities {
+            if self.room.driven[axis] {
+                self.rows.all.push(Row::rigid(axis, self.now.v[axis], f64::INFINITY));
+            }
+        }
+        self.couple(part_s);
+        self.push(part_s, around.fittings);
+        if self.stop(part_s, around.fittings) {
+            self.push(part_s, around.fittings);
+        }
+        self.rows.solve(&self.room.stiff, &mut self.room.v);
+        for (v, before) in self.room.v.iter_mut().zip(&self.now.v) {
+            *v = 0.5 * (*v + before);
+        }
+        self.moving.bias_at(&self.lumps, &self.room.v, around.gravity);
+    }
+
+    /// Begins a sub-step: the forces on all axes, and the rows of their friction.
+    fn begin(&mut self, dt_s: f64, fittings: &[Fitting]) {
         let n = self.tree.velocities;
         self.rows.all.clear();
         self.room.exact.clone_from(&self.room.driven);
@@ -99,11 +153,15 @@ impl Mechanism {
         self.room.viscous.clear();
         self.room.viscous.resize(n, 0.0);
         for k in 0..n {
-            if let Some(fitting) = self.axes[k].1.map(|joint| &around.fittings[joint]) {
+            if let Some(fitting) = self.axes[k].1.map(|joint| &fittings[joint]) {
                 self.room.force[k] += fitting.force(self.spring_at(k, dt_s));
                 self.resist(k, fitting.dry(self.now.v[k]), fitting.damping, dt_s);
             }
         }
+    }
+
+    fn substep(&mut self, dt_s: f64, part: [f64; 2], own: &[(usize, usize)], around: &mut Surroundings<'_>) {
+        self.begin(dt_s, around.fittings);
         for (axis, index) in own {
             self.act(*axis, *index, dt_s, part, around);
         }

@@ -120,6 +120,11 @@ impl Equations {
         self.composite(tree);
     }
 
+    /// The bias at other velocities, where it was evaluated.
+    pub(super) fn bias_at(&mut self, tree: &Tree, v: &[f64], gravity: Vector) {
+        self.newton_euler(tree, v, gravity);
+    }
+
     fn newton_euler(&mut self, tree: &Tree, v: &[f64], gravity: Vector) {
         // what stands still in a field of gravity is as what is accelerated against it
         let ground = (Twist::default(), Twist::sliding((-gravity).into()));

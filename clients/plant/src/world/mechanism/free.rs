@@ -17,7 +17,8 @@ impl Mechanism {
     /// Moves by a step; false, and unmoved, if it comes to a stop, is too stiff or its equations cannot be
     /// solved.
     pub(super) fn step_freely(&mut self, dt_s: f64, around: &Surroundings<'_>) -> bool {
-        let Some(rate) = self.stiffness(around) else { return false };
+        let Some(stiffness) = self.stiffness(around) else { return false };
+        let rate = stiffness + if self.tree.velocities > 1 { self.turning() } else { 0.0 };
         // a whole number of parts is not one more for a rounding
         let count = (dt_s * rate / PART_RAD - 1e-9).ceil().max(1.0);
         if count > PARTS {

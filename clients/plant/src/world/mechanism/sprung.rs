@@ -47,7 +47,7 @@ impl Mechanism {
     ///
     /// In a sub-step in which it turns round, friction brakes the way back, and its impulse does work on the way that
     /// the mean still goes on: the spring would gain that. There the axis goes less far. Along its way the energy of
-    /// the spring is convex, so a part of the way takes no more than that part of it.
+    /// spring and weight is convex, so a part of the way takes no more than that part of it.
     pub(super) fn through(&self, axis: usize, [before, after]: [f64; 2], dt_s: f64, fitting: &Fitting) -> f64 {
         let mean = 0.5 * (before + after);
         let braked: f64 = self.rows.all.iter().filter(|row| row.on == axis).map(|row| row.impulse).sum();
@@ -56,7 +56,9 @@ impl Mechanism {
             return mean;
         }
         let half_way = self.now.q[self.axes[axis].0] - fitting.rest + 0.5 * dt_s * mean;
-        let taken = fitting.spring * half_way * dt_s * mean;
+        // weight and counterweight take their part of it, too
+        let steady = self.moving.bias[axis] - fitting.balance;
+        let taken = (fitting.spring * half_way + steady) * dt_s * mean;
         if gained < taken { mean * (1.0 - gained / taken) } else { 0.0 }
     }
 }

@@ -39,6 +39,10 @@ impl Freedom {
         }
     }
 
+    pub(super) const fn turns(self) -> bool {
+        matches!(self, Self::Turn(_) | Self::Ball)
+    }
+
     /// A ball's position is a quaternion.
     pub(super) const fn positions(self) -> usize {
         match self {
@@ -90,6 +94,11 @@ pub(super) struct Tree {
 }
 
 impl Tree {
+    /// Whether anything in it turns.
+    pub(super) fn turns(&self) -> bool {
+        self.members.iter().any(|member| member.freedom.turns())
+    }
+
     fn add(&mut self, member: Member) -> usize {
         let mut member = member;
         member.first = [self.positions, self.velocities];
