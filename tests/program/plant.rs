@@ -205,3 +205,29 @@ spring_n_m = 400000.0
     let run = typed(folder.path(), &["run", ".", "--until", "20ms", "--runs", "2"]);
     assert_eq!(run.err.replace('\n', " ").matches("100.7 Hz").count(), 1, "{}", run.err);
 }
+
+/// What a drive has to hold and to move, in the pose of the scene.
+#[test]
+fn a_mechanism_is_described_with_its_mass_matrix_if_that_is_wanted() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let arm = r#"<robot name="arm"><link name="base"/>
+<link name="beam"><inertial><origin xyz="0.5 0 0"/><mass value="4"/><inertia ixx="0.1" iyy="0.3" izz="0.3"/></inertial></link>
+<joint name="tilt" type="continuous"><parent link="base"/><child link="beam"/><axis xyz="0 -1 0"/></joint></robot>"#;
+    std::fs::write(folder.path().join("arm.urdf"), arm).expect("it is written");
+    let scene = "version = 1\n[[urdf]]\nname = \"arm\"\nfile = \"arm.urdf\"\n";
+    std::fs::write(folder.path().join("plant.toml"), scene).expect("it is written");
+    let plain = typed(folder.path(), &["describe", "plant.toml"]);
+    assert!(!plain.out.contains("mechanism"), "{}", plain.out);
+    let described = typed(folder.path(), &["describe", "plant.toml", "--dynamics"]);
+    let last: Vec<_> = described.out.lines().rev().take(2).collect();
+    assert_eq!(
+        last,
+        [
+            "  arm.tilt: 19.620000 Nm; 1.300000",
+            "mechanism at rest: what holds each joint against gravity, and its row of the mass matrix"
+        ]
+    );
+    let json = typed(folder.path(), &["describe", "plant.toml", "--dynamics", "--format", "json"]);
+    let json: serde_json::Value = serde_json::from_str(&json.out).expect("JSON");
+    assert_eq!(json["dynamics"][0]["joints"], serde_json::json!(["arm.tilt"]), "{json}");
+}

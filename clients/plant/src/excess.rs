@@ -114,12 +114,7 @@ impl Scene {
     /// What it asks for beyond what the plant can carry in turns of one `period`: springs and dampers in the order of
     /// its fittings, then masses, then shapes.
     pub fn excesses(&self, period: TimeSpan) -> Vec<Excess> {
-        let mut world = World::build(self, period);
-        let waits = self.components.iter().filter(|component| component.kind.coupling.targets_wait());
-        for body in waits.flat_map(|component| &component.bound.targets) {
-            world.leave_out(*body);
-        }
-        world.find_mechanisms();
+        let mut world = World::at_the_start(self, period);
         let step_s = period.as_secs_f64() / f64::from(self.substeps);
         let mut found = fast_fittings(self, &mut world, step_s);
         found.extend(world.uneven_masses(self));
@@ -190,6 +185,17 @@ fn round(time_s: f64) -> f64 {
 }
 
 impl World {
+    /// The world as a scene begins, with its mechanisms.
+    pub(crate) fn at_the_start(scene: &Scene, period: TimeSpan) -> Self {
+        let mut world = Self::build(scene, period);
+        let waits = scene.components.iter().filter(|component| component.kind.coupling.targets_wait());
+        for body in waits.flat_map(|component| &component.bound.targets) {
+            world.leave_out(*body);
+        }
+        world.find_mechanisms();
+        world
+    }
+
     /// The joints of the scene that have a coordinate, with the inverse of what each moves; those that no mechanism has
     /// as if their bodies hung on nothing else.
     fn apparent(&mut self, held: &dyn Fn(usize) -> bool) -> Vec<(usize, f64)> {

@@ -28,6 +28,7 @@
 //! | `machine` | all of these, one turn at a time |
 //! | `overlap` | bodies that are in each other at the start |
 //! | `excess` | what a scene asks for beyond what the plant can carry at its step |
+//! | `dynamics` | mass matrix and gravity forces of mechanisms |
 //! | `layout_mismatch` | why a saved state does not belong to this plant |
 //! | `lateness` | how late a value arrives: a constant, an even part, a normal part |
 //! | `channel` | what happens to signals between the plant and the PLC |
@@ -55,6 +56,7 @@ mod command;
 pub mod component;
 mod coupled;
 pub mod coupling;
+mod dynamics;
 mod effort;
 mod excess;
 mod failure;
@@ -83,6 +85,7 @@ mod temperature_field;
 mod world;
 
 pub use client::Plant;
+pub use dynamics::Dynamics;
 pub use excess::{Excess, HULL_POINTS_MAX, MASS_RATIO_MAX, STEPS_A_SWING, TRIANGLES_MAX};
 pub use failure::FailureRefused;
 pub use file_place::{Place, Source};

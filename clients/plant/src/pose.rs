@@ -16,16 +16,15 @@ pub(super) fn from_rpy_deg(position_m: [f64; 3], rpy_deg: [f64; 3]) -> Pose {
 /// The angles that [`from_rpy_deg`] takes for a rotation; with the pitch at a quarter turn, where roll
 /// and yaw are one, the roll is 0.
 pub(super) fn to_rpy_deg(rotation: DQuat) -> [f64; 3] {
-    let DQuat { x, y, z, w } = rotation;
-    let sine = (2.0 * (w * y - z * x)).clamp(-1.0, 1.0);
-    let upright = sine.abs() > 1.0 - 1e-12;
-    let (roll, yaw) = if upright {
-        (0.0, libm::atan2(-2.0 * (x * y - w * z), 1.0 - 2.0 * (x * x + z * z)))
-    } else {
-        let roll = libm::atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y));
-        (roll, libm::atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)))
-    };
-    [roll, libm::asin(sine), yaw].map(f64::to_degrees)
+    let turned = DMat3::from_quat(rotation);
+    let [x, y, z] = [turned.x_axis, turned.y_axis, turned.z_axis];
+    // an arc sine would lose half of the digits near a quarter turn
+    let level = (y.z * y.z + z.z * z.z).sqrt();
+    let roll = if level < 1e-14 { 0.0 } else { libm::atan2(y.z, z.z) };
+    let (sine, cosine) = libm::sincos(roll);
+    // what yaw is left once the roll is taken back, so that both together are exact where each alone is not
+    let yaw = libm::atan2(sine * z.x - cosine * y.x, cosine * y.y - sine * z.y);
+    [roll, libm::atan2(-x.z, level), yaw].map(f64::to_degrees)
 }
 
 /// The frame of a joint in the world: x along `axis`, y along `across`.
@@ -67,13 +66,17 @@ mod tests {
 
     #[test]
     fn angles_come_back() {
-        for rpy in [[10.0, 20.0, 30.0], [-170.0, -80.0, 100.0], [0.0, 90.0, 40.0], [0.0, -90.0, -25.0], [0.0; 3]] {
+        let beside_upright = [[10.0, 89.999_999, 30.0], [-60.0, -90.000_01, 5.0], [3.0, 90.0 - 1e-9, 1.0]];
+        let upright = [[0.0, 90.0, 40.0], [0.0, -90.0, -25.0], [25.0, 90.0, 0.0]];
+        let usual = [[10.0, 20.0, 30.0], [-170.0, -80.0, 100.0], [0.0; 3]];
+        for rpy in [usual, upright, beside_upright].concat() {
             let pose = from_rpy_deg([0.0; 3], rpy);
             let again = from_rpy_deg([0.0; 3], to_rpy_deg(pose.rotation));
             for axis in [Vector::X, Vector::Y, Vector::Z] {
-                assert!((pose * axis - again * axis).length() < 1e-7, "{rpy:?}");
+                assert!((pose * axis - again * axis).length() < 2e-15, "{rpy:?}");
             }
         }
+        assert_eq!(to_rpy_deg(from_rpy_deg([0.0; 3], [25.0, 90.0, 0.0]).rotation)[0], 0.0);
     }
 
     #[test]

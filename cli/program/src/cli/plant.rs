@@ -57,6 +57,9 @@ pub struct DescribeArgs {
     /// From where the picture shows it
     #[arg(long, value_enum, default_value_t, requires = "svg")]
     pub view: ViewArg,
+    /// With mass matrix and gravity forces of each mechanism in the scene's pose
+    #[arg(long)]
+    pub dynamics: bool,
 }
 
 /// A side of a scene; x goes to the right of one who looks from the front, z is up.
@@ -100,6 +103,7 @@ pub fn describe(args: &DescribeArgs) -> Result<ExitCode, CommandError> {
         format: args.format.into(),
         svg: args.svg.clone(),
         side: args.view.into(),
+        dynamics: args.dynamics,
     };
     describe::write(&config, &mut std::io::stdout().lock())?;
     Ok(ExitCode::Ok)

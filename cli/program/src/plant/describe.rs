@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use onescan_base::regular::Within;
 use onescan_plant::component::open_inputs;
-use onescan_plant::scene::model::{Body, BodyKind, Component, Mass, Moved, Scene, Sensing, Shape, Wire};
-use onescan_plant::{Excess, Overlap};
+use onescan_plant::scene::model::{Body, BodyKind, Component, JointKind, Mass, Moved, Scene, Sensing, Shape, Wire};
+use onescan_plant::{Dynamics, Excess, Overlap};
 use onescan_report::OutputError;
 use onescan_report::file::write_whole;
 use onescan_report::view::Side;
@@ -33,6 +33,8 @@ pub struct DescribeConfig {
     pub svg: Option<PathBuf>,
     /// From where it is seen.
     pub side: Side,
+    /// Mass matrices and gravity forces, too.
+    pub dynamics: bool,
 }
 
 /// A scene for machines.
@@ -44,6 +46,8 @@ struct Described<'s> {
     overlaps: Vec<Overlap>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     excesses: Vec<Excess>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    dynamics: Option<Vec<Dynamics>>,
 }
 
 /// A scene that stands alone is looked at as in turns of this period, that of a new scenario.
@@ -55,7 +59,7 @@ const USUAL_PERIOD: TimeSpan = TimeSpan::from_millis(10).expect("not zero");
 /// A file that cannot be read or is not a scene, a scenario without one; a picture that cannot be written; those of
 /// `out`.
 pub fn write(config: &DescribeConfig, out: &mut dyn Write) -> Result<(), PlantError> {
-    let DescribeConfig { path, format, svg, side } = config;
+    let DescribeConfig { path, format, svg, side, .. } = config;
     let (scenes, within) = scenes(path)?;
     if let (Some(_), [_, (other, _), ..]) = (svg, &scenes[..]) {
         let help = format!("give the scene to draw, as `onescan describe {} --svg FILE`", other.display());
@@ -72,11 +76,17 @@ pub fn write(config: &DescribeConfig, out: &mut dyn Write) -> Result<(), PlantEr
         match format {
             Format::Json => {
                 let excesses = scene.excesses(*period);
-                let whole = Described { scene: &scene, overlaps: scene.overlaps(), excesses };
+                let dynamics = config.dynamics.then(|| scene.dynamics());
+                let whole = Described { scene: &scene, overlaps: scene.overlaps(), excesses, dynamics };
                 serde_json::to_writer_pretty(&mut *out, &whole).map_err(io::Error::from).map_err(OutputError)?;
                 writeln!(out).map_err(OutputError)?;
             }
-            Format::Human => tree(&scene, *period, out).map_err(OutputError)?,
+            Format::Human => {
+                tree(&scene, *period, out).map_err(OutputError)?;
+                if config.dynamics {
+                    at_rest(&scene, out).map_err(OutputError)?;
+                }
+            }
         }
     }
     Ok(())
@@ -154,6 +164,20 @@ fn tree(scene: &Scene, period: TimeSpan, out: &mut dyn Write) -> io::Result<()> 
         substeps => format!("beyond what a plant can carry in turns of {period} with {substeps} physics steps"),
     };
     section(out, &title, scene.excesses(period).iter().map(ToString::to_string))
+}
+
+/// The mechanisms as they rest: a line for each joint, with its row of the mass matrix.
+fn at_rest(scene: &Scene, out: &mut dyn Write) -> io::Result<()> {
+    for Dynamics { joints, gravity, mass_matrix } in scene.dynamics() {
+        writeln!(out, "mechanism at rest: what holds each joint against gravity, and its row of the mass matrix")?;
+        for ((name, holds), row) in joints.iter().zip(gravity).zip(mass_matrix) {
+            let slides = scene.joints.iter().any(|joint| joint.name == *name && joint.kind != JointKind::Revolute);
+            let unit = if slides { "N" } else { "Nm" };
+            let row: Vec<_> = row.iter().map(|entry| format!("{entry:.6}")).collect();
+            writeln!(out, "  {name}: {holds:.6} {unit}; {}", row.join(" "))?;
+        }
+    }
+    Ok(())
 }
 
 fn section(out: &mut dyn Write, title: &str, lines: impl Iterator<Item = String>) -> io::Result<()> {

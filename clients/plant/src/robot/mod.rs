@@ -139,8 +139,10 @@ pub struct Joint {
     pub parent: usize,
     /// Index of the link that it carries.
     pub child: usize,
-    /// The child's frame on the parent, when the coordinate is 0.
+    /// The child's frame on the parent, when the coordinate is `reference`.
     pub origin: Origin,
+    /// m or rad.
+    pub reference: f64,
     /// Where the joint is in the child's frame.
     pub anchor_m: [f64; 3],
     /// Its axis in the child's frame, of any length.
@@ -184,7 +186,7 @@ impl Robot {
         let root = xml::parse(&source).map_err(|fault| vec![fault])?;
         let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
         match root.name.as_str() {
-            "mujoco" => mjcf::robot(&root),
+            "mujoco" => mjcf::robot(&root, path, reading),
             _ if ending.as_deref() == Some("xacro") => {
                 let expanded = xacro::expand(&root, path, reading).map_err(|fault| vec![fault])?;
                 urdf::robot(&expanded)

@@ -36,7 +36,7 @@ pub(super) fn robot(root: &Element) -> Result<Robot, Vec<RobotFault>> {
     let named: Vec<String> = root.all("link").filter_map(|link| link.get("name")).map(str::to_owned).collect();
     let mut joints: Vec<Joint> = Vec::new();
     for element in root.all("joint") {
-        match joint(element, &links, &named) {
+        match joint(element, &links, &named, &mut remarks) {
             Ok(Some(joint)) if joints.iter().any(|known| known.name == joint.name) => {
                 faults.push(element.wrong(format!("joint `{}` is there twice", joint.name)));
             }
@@ -133,7 +133,12 @@ fn collision(element: &Element) -> Result<Collision, RobotFault> {
 }
 
 /// A joint; none if the link of one of its ends is at fault itself.
-fn joint(element: &Element, links: &[Link], named: &[String]) -> Result<Option<Joint>, RobotFault> {
+fn joint(
+    element: &Element,
+    links: &[Link],
+    named: &[String],
+    remarks: &mut Vec<String>,
+) -> Result<Option<Joint>, RobotFault> {
     let name = element.text("name")?.to_owned();
     let end = |which: &str| {
         let end = element.needed(which)?;
@@ -171,13 +176,30 @@ fn joint(element: &Element, links: &[Link], named: &[String]) -> Result<Option<J
     }
     let (parent, child, origin) = (end("parent")?, end("child")?, origin(element)?);
     let mimic = mimic(element)?.filter(|_| moves);
-    let limits = limits(element, kind, &name)?;
+    let limits = limits(element, kind, &name, remarks)?;
     let place = element.place.clone();
     let Some((parent, child)) = parent.zip(child) else { return Ok(None) };
-    Ok(Some(Joint { name, freedom, parent, child, origin, anchor_m: [0.0; 3], axis, limits, mimic, place }))
+    Ok(Some(Joint {
+        name,
+        freedom,
+        parent,
+        child,
+        origin,
+        reference: 0.0,
+        anchor_m: [0.0; 3],
+        axis,
+        limits,
+        mimic,
+        place,
+    }))
 }
 
-fn limits(element: &Element, kind: &str, name: &str) -> Result<Option<[f64; 2]>, RobotFault> {
+fn limits(
+    element: &Element,
+    kind: &str,
+    name: &str,
+    remarks: &mut Vec<String>,
+) -> Result<Option<[f64; 2]>, RobotFault> {
     if !matches!(kind, "revolute" | "prismatic") {
         return Ok(None);
     }
@@ -185,9 +207,9 @@ fn limits(element: &Element, kind: &str, name: &str) -> Result<Option<[f64; 2]>,
     let limit = limit.ok_or_else(|| element.wrong(format!("{kind} joint `{name}` needs a <limit>")))?;
     let [lower, upper] = [limit.number_or("lower", 0.0)?, limit.number_or("upper", 0.0)?];
     if lower > upper {
-        return Err(limit.wrong(format!("joint `{name}` has its lower limit above its upper one")));
+        remarks.push(format!("joint `{name}` has its lower limit above its upper one: they change places"));
     }
-    Ok(Some([lower, upper]))
+    Ok(Some([lower.min(upper), lower.max(upper)]))
 }
 
 fn mimic(element: &Element) -> Result<Option<Mimic>, RobotFault> {
@@ -269,6 +291,13 @@ mod tests {
         assert_eq!((robot.links[1].inertial.unwrap().mass_kg, robot.remarks.len()), (1e-6, 0));
         let robot = parsed(&ARM.replace("ixx=\"0.2\"", "ixx=\"0\"")).unwrap();
         assert_eq!(robot.links[1].inertial.unwrap().inertia_kg_m2, None);
+    }
+
+    #[test]
+    fn limits_that_are_written_the_wrong_way_round_change_places() {
+        let robot = parsed(&ARM.replace("lower=\"-1.5\" upper=\"1.5\"", "lower=\"1\" upper=\"-0.5\"")).unwrap();
+        assert_eq!(robot.joints[0].limits, Some([-0.5, 1.0]));
+        assert_eq!(robot.remarks, ["joint `shoulder` has its lower limit above its upper one: they change places"]);
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! Gathers the faults of one file and finds their lines.
 
+use std::cell::RefCell;
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -11,6 +13,7 @@ use onescan_server::client::SourcePlace;
 
 use super::error::{Inside, SceneError, SceneFault, SceneFaultKind, Thing};
 use crate::file_place::{Place, Source};
+use crate::mesh::{Mesh, MeshError};
 
 /// The faults found so far in one file.
 pub(super) struct Faults<'t> {
@@ -23,6 +26,8 @@ pub(super) struct Faults<'t> {
     lost: Vec<String>,
     /// Files whose tables are read as if they stood in the scene.
     attached: Vec<Attached>,
+    /// Meshes that were read: a robot names many of them more than once.
+    meshes: RefCell<BTreeMap<PathBuf, Arc<Mesh>>>,
 }
 
 /// A file whose places are those of the scene behind all of its own.
@@ -41,7 +46,15 @@ const ATTACHED: usize = 1 << 31;
 
 impl<'t> Faults<'t> {
     pub(super) fn new(text: &'t str, file: &'t str, within: &'t Within) -> Self {
-        Self { text, file, within, found: Vec::new(), lost: Vec::new(), attached: Vec::new() }
+        Self {
+            text,
+            file,
+            within,
+            found: Vec::new(),
+            lost: Vec::new(),
+            attached: Vec::new(),
+            meshes: RefCell::default(),
+        }
     }
 
     /// The file's text.
@@ -80,6 +93,16 @@ impl<'t> Faults<'t> {
     /// A file that the scene names, found beside its own.
     pub(super) fn beside(&self, name: &str) -> PathBuf {
         Path::new(self.file).parent().unwrap_or_else(|| Path::new("")).join(name)
+    }
+
+    /// The mesh of a file, which is read once.
+    pub(super) fn mesh(&self, path: &Path) -> Result<Arc<Mesh>, MeshError> {
+        if let Some(known) = self.meshes.borrow().get(path) {
+            return Ok(Arc::clone(known));
+        }
+        let mesh = Arc::new(Mesh::read_within(path, self.within)?);
+        self.meshes.borrow_mut().insert(path.to_path_buf(), Arc::clone(&mesh));
+        Ok(mesh)
     }
 
     pub(super) fn add(&mut self, span: Range<usize>, kind: SceneFaultKind) {

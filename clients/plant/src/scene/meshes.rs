@@ -8,7 +8,6 @@ use super::model::Shape;
 use super::number::{Allowed, Entry};
 use super::placed::Placed;
 use super::shapes::{Measures, MeshKeys};
-use crate::mesh::Mesh;
 use crate::mesh::flat::{hull_is_flat, stretched};
 
 /// What a file's unit may be: from micrometres to kilometres.
@@ -38,7 +37,7 @@ impl MeshKeys<'_> {
             faults.add(written.span(), SceneFaultKind::OpenSurface(of.whose()));
         }
         let file = name.get_ref().clone();
-        let mesh = match Mesh::read_within(&faults.beside(&file), faults.within()) {
+        let mesh = match faults.mesh(&faults.beside(&file)) {
             Ok(mesh) => mesh,
             Err(cause) => {
                 faults.add(name.span(), SceneFaultKind::Mesh { file, cause: cause.to_string() });
@@ -51,7 +50,7 @@ impl MeshKeys<'_> {
             faults.add(name.span(), SceneFaultKind::Mesh { file, cause });
             return None;
         }
-        let triangles = mesh.triangles;
+        let triangles = mesh.triangles.clone();
         Some(if hull { Shape::Hull { file, corners_m } } else { Shape::Surface { file, corners_m, triangles } })
     }
 }

@@ -141,7 +141,9 @@ impl Faults<'_> {
 
 // What the engine computes with for certain: beyond, products of several such numbers leave the
 // range in which a double is precise, long before it overflows.
-pub(super) const LENGTH_M: Allowed = Allowed::Within(1e-4, 1e4);
+pub(super) const LENGTH_M: Allowed = Allowed::Within(LENGTH_MIN_M, 1e4);
+/// Least size of a shape, m.
+pub(super) const LENGTH_MIN_M: f64 = 1e-4;
 pub(super) const MASS_KG: Allowed = Allowed::Within(MASS_MIN_KG, 1e9);
 pub(super) const DENSITY_KG_M3: Allowed = Allowed::Within(1e-2, 1e5);
 pub(super) const FRICTION: f64 = 0.5;

@@ -6,6 +6,7 @@ use rapier3d::glamx::{DQuat, DVec3};
 use rapier3d::math::Pose;
 
 use super::format::{BodyTable, FollowTable, JointTable, SceneFile, ShapeKind, ShapeTable, UrdfTable};
+use super::number::LENGTH_MIN_M;
 use super::placed::Placed;
 use crate::model::{BodyKind, JointKind};
 use crate::pose::{from_rpy_deg, to_rpy_deg, turned_tensor};
@@ -61,7 +62,8 @@ impl Tables<'_> {
             let (shapes, mark) = self.shapes_of(index, parts[body]);
             for (k, shape) in shapes.iter().enumerate() {
                 if is_nothing(&shape.geometry) {
-                    remarks.push(format!("a shape of link `{}` has no size: it is left out", link.name));
+                    let size = "has no size or less than 0.1 mm";
+                    remarks.push(format!("a shape of link `{}` {size}: it is left out", link.name));
                     continue;
                 }
                 let place = poses[index] * pose(&shape.origin);
@@ -344,12 +346,13 @@ impl Tables<'_> {
     }
 }
 
-/// Whether a shape has no size, as placeholders in robots' files.
+/// Whether a shape has no size, or less than a body can have, as placeholders in robots' files.
 fn is_nothing(geometry: &Geometry) -> bool {
+    let none = |size_m: f64| (0.0..LENGTH_MIN_M).contains(&size_m);
     match geometry {
-        Geometry::Box(size_m) => size_m.contains(&0.0),
-        Geometry::Sphere(radius_m) | Geometry::Capsule(radius_m, _) => *radius_m == 0.0,
-        Geometry::Cylinder(radius_m, length_m) => *radius_m == 0.0 || *length_m == 0.0,
+        Geometry::Box(size_m) => size_m.iter().any(|size_m| none(*size_m)),
+        Geometry::Sphere(radius_m) | Geometry::Capsule(radius_m, _) => none(*radius_m),
+        Geometry::Cylinder(radius_m, length_m) => none(*radius_m) || none(*length_m),
         Geometry::Mesh(_, stretch) => stretch.contains(&0.0),
     }
 }
@@ -361,6 +364,7 @@ fn axis(joint: &Joint) -> DVec3 {
 
 /// What a joint's coordinate does to the child's frame, seen in that frame.
 fn motion(joint: &Joint, coordinate: f64) -> Pose {
+    let coordinate = coordinate - joint.reference;
     match joint.freedom {
         Freedom::Slides => Pose::from_parts(axis(joint) * coordinate, DQuat::IDENTITY),
         Freedom::Turns => {

@@ -6,6 +6,7 @@
 //! otherwise; what hangs on it by fixed joints only stays in place with it.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use onescan_base::did_you_mean;
 
@@ -62,8 +63,10 @@ fn one(table: &UrdfTable, written: &mut SceneFile, faults: &mut Faults<'_>) -> O
             return None;
         }
     };
-    let mesh = |named: &str| Mesh::read_within(&packages.file(named, &path).ok()?, faults.within()).ok();
-    leave_out_pictures(&mut robot, table.density_kg_m3.is_some(), &mesh);
+    // by the name under which the scene reads it again
+    let beside = |named: &str| Some(faults.beside(&named_from(&packages.file(named, &path).ok()?, &faults.beside(""))));
+    let mesh = |named: &str| faults.mesh(&beside(named)?).ok();
+    leave_out_flat(&mut robot, table.density_kg_m3.is_some(), &mesh);
     // reported as the link's or the joint's, so that one of a hundred joints is found
     let coordinates = coordinates(table, &mut robot, faults)?;
     let density = Entry::new("density_kg_m3", table.density_kg_m3.as_ref());
@@ -85,26 +88,23 @@ fn one(table: &UrdfTable, written: &mut SceneFile, faults: &mut Faults<'_>) -> O
     Some(robot.remarks)
 }
 
-/// Takes out flat meshes that nothing collides with: they show a label or the edge of a colour, and are no bodies. Where
-/// links without mass are to be weighed, what is shown of one that does not collide counts, too.
-fn leave_out_pictures(robot: &mut Robot, weighs: bool, mesh: &dyn Fn(&str) -> Option<Mesh>) {
+/// Takes out flat meshes: they show a label or the edge of a colour, and are no bodies, also where the file lets them
+/// collide. Where links without mass are to be weighed, what is shown of one that does not collide counts, too.
+fn leave_out_flat(robot: &mut Robot, weighs: bool, mesh: &dyn Fn(&str) -> Option<Arc<Mesh>>) {
     for link in &mut robot.links {
-        let mut is_picture = |shape: &Collision| {
+        let mut is_flat = |shape: &Collision| {
             let Geometry::Mesh(file, stretch) = &shape.geometry else { return false };
             // what cannot be read is reported with the shapes that are kept
             let flat = mesh(file).is_some_and(|mesh| crate::mesh::flat::is_flat(&mesh, *stretch));
             if flat {
-                robot.remarks.push(format!(
-                    "the mesh `{file}` of link `{}` is flat and does not collide: it is left out",
-                    link.name
-                ));
+                robot.remarks.push(format!("the mesh `{file}` of link `{}` is flat: it is left out", link.name));
             }
             flat
         };
         let seen = weighs && link.collisions.is_empty() && link.inertial.is_none();
-        link.collisions.retain(|shape| shape.collides || !is_picture(shape));
+        link.collisions.retain(|shape| !is_flat(shape));
         if seen {
-            link.visuals.retain(|shape| !is_picture(shape));
+            link.visuals.retain(|shape| !is_flat(shape));
         }
     }
 }
@@ -158,8 +158,8 @@ fn arguments(table: &UrdfTable, faults: &mut Faults<'_>) -> Option<Vec<(String, 
     Some(arguments)
 }
 
-/// Where every joint stands in the scene's pose: as the scene says, at 0, or in the middle of limits that
-/// do not have 0 between them. A joint that follows another stands where that one takes it.
+/// Where every joint stands in the scene's pose: as the scene says, as the file does (at 0, if it does not), or in the
+/// middle of limits that do not have that between them. A joint that follows another stands where that one takes it.
 fn coordinates(table: &UrdfTable, robot: &mut Robot, faults: &mut Faults<'_>) -> Option<Vec<f64>> {
     let mut given: Vec<Option<f64>> = vec![None; robot.joints.len()];
     let mut right = true;
@@ -183,12 +183,13 @@ fn coordinates(table: &UrdfTable, robot: &mut Robot, faults: &mut Faults<'_>) ->
     let mut remarks = Vec::new();
     for (joint, given) in robot.joints.iter().zip(&given) {
         coordinates.push(given.unwrap_or_else(|| match joint.limits {
-            Some([lower, upper]) if lower > 0.0 || upper < 0.0 => {
+            Some([lower, upper]) if !(lower..=upper).contains(&joint.reference) => {
                 let middle = 0.5 * (lower + upper);
-                remarks.push(format!("joint `{}` cannot stand at 0: it begins at {middle}", joint.name));
+                let (name, stands) = (&joint.name, joint.reference);
+                remarks.push(format!("joint `{name}` cannot stand at {stands}: it begins at {middle}"));
                 middle
             }
-            _ => 0.0,
+            Some(_) | None => joint.reference,
         }));
     }
     robot.remarks.extend(remarks);

@@ -18,7 +18,7 @@ use rapier3d::prelude::*;
 use super::actuator::{Acts, Actuator};
 use super::contact::{Before, Island, Part};
 use super::coordinate::Gauge;
-use super::mechanism::{Coordinates, Guided, Link, Mechanism, Surroundings, guided, mechanisms};
+use super::mechanism::{AtRest, Coordinates, Guided, Link, Mechanism, Surroundings, guided, mechanisms};
 use super::turning::Turning;
 use super::{SWEEPS_WITH_JOINTS, World, local_frames, measured_axis};
 use crate::coupled::Coupled;
@@ -128,6 +128,11 @@ impl Articulation {
     pub(crate) fn apparent(&mut self, gravity: Vector, held: &dyn Fn(usize) -> bool) -> Vec<(usize, f64)> {
         let each = self.mechanisms.iter_mut().filter_map(|member| member.mechanism.apparent(gravity, held));
         each.flatten().collect()
+    }
+
+    /// The equations of all mechanisms at rest.
+    pub(crate) fn at_rest(&mut self, gravity: Vector) -> Vec<AtRest> {
+        self.mechanisms.iter_mut().map(|member| member.mechanism.at_rest(gravity)).collect()
     }
 
     /// The joints that are in no mechanism, with their kinds, their bodies and where they are.

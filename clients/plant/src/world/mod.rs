@@ -3,6 +3,7 @@
 //! | module | subject |
 //! |---|---|
 //! | `solid` | the bodies of a scene and their shapes, as the engine has them |
+//! | `principal` | the principal moments of a tensor of inertia |
 //! | `reach` | which bodies are too far away to be looked at |
 //! | `nearby` | which of many bodies a sensor has to look at |
 //! | `sleeping` | bodies at rest on what carries them, which cost nothing |
@@ -19,6 +20,7 @@ mod contact;
 pub(crate) mod coordinate;
 mod mechanism;
 mod nearby;
+mod principal;
 mod reach;
 mod sleeping;
 pub(crate) mod solid;

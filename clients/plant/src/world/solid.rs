@@ -5,6 +5,7 @@ use std::f64::consts::FRAC_1_SQRT_2;
 use rapier3d::glamx::{DMat3, DQuat};
 use rapier3d::prelude::*;
 
+use super::principal::principal;
 use crate::model::{Attached, Body, BodyKind, Collisions, FrictionRule, Mass, Mechanics, Shape};
 use crate::pose;
 
@@ -37,7 +38,8 @@ fn stated(body: &Body) -> MassProperties {
     let world = DMat3::from_cols(Vector::new(xx, xy, xz), Vector::new(xy, yy, yz), Vector::new(xz, yz, zz));
     let turned = DMat3::from_quat(place.rotation);
     let centre = place.inverse_transform_point(Vector::from_array(centre_m));
-    MassProperties::with_inertia_matrix(centre, kg, turned.transpose() * world * turned)
+    let (moments, frame) = principal(turned.transpose() * world * turned);
+    MassProperties::with_principal_inertia_frame(centre, kg, moments, frame)
 }
 
 /// Attaches a shape to its body, which still stands in the scene's pose.

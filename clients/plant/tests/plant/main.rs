@@ -10,6 +10,7 @@ mod contacts;
 mod coulomb;
 mod couplings;
 mod drives;
+mod dynamics;
 mod excesses;
 mod failures;
 mod faults;

@@ -107,17 +107,43 @@ const LABELLED: &str = r#"<mujoco>
 </mujoco>"#;
 
 #[test]
-fn a_flat_mesh_is_left_out_only_where_it_does_not_collide() {
+fn a_flat_mesh_is_left_out() {
     let read = |mjcf: &str, mesh: &str| scene(folder(&[("arm.xml", mjcf), ("label.obj", mesh)]).path(), "arm.xml", "");
-    let labelled = read(LABELLED, LABEL).expect("a scene");
-    assert_eq!(
-        labelled.remarks,
-        ["r: the mesh `label.obj` of link `arm` is flat and does not collide: it is left out"]
-    );
-    assert_eq!(labelled.shapes.len(), 1);
+    for mjcf in [LABELLED, &LABELLED.replace(" contype=\"0\"", "")] {
+        let labelled = read(mjcf, LABEL).expect("a scene");
+        assert_eq!(labelled.remarks, ["r: the mesh `label.obj` of link `arm` is flat: it is left out"]);
+        assert_eq!(labelled.shapes.len(), 1);
+    }
     assert_eq!(read(LABELLED, CUBE).expect("a scene").shapes.len(), 2);
-    let said = reported(read(&LABELLED.replace(" contype=\"0\"", ""), LABEL));
-    assert!(said.contains("mesh `label.obj` is flat, and no body"), "{said}");
+}
+
+#[test]
+fn an_included_file_leads_nowhere_that_may_not_be_read() {
+    let other = folder(&[("hand.xml", "<mujocoinclude><body name='hand'/></mujocoinclude>")]);
+    let named = format!("{}/hand.xml", other.path().display());
+    let model = "<mujoco><worldbody><include file='HAND'/></worldbody></mujoco>";
+    let files = folder(&[
+        ("arm.xml", &model.replace("HAND", &named)),
+        ("own.xml", &model.replace("HAND", "hand.xml")),
+        ("hand.xml", "<mujocoinclude><body name='hand'/></mujocoinclude>"),
+    ]);
+    let said = reported(scene(files.path(), "arm.xml", ""));
+    assert!(said.contains("outside of the scenario's folder"), "{said}");
+    let own = scene(files.path(), "own.xml", "").expect("a scene");
+    assert!(own.bodies.iter().any(|body| body.name == "r.hand"));
+}
+
+const SPECK: &str = r#"<robot name="speck"><link name="base"/>
+  <link name="rod"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>
+    <collision><geometry><cylinder length="1" radius="0.00000001"/></geometry></collision>
+    <collision><geometry><sphere radius="0.1"/></geometry></collision></link>
+  <joint name="turn" type="continuous"><parent link="base"/><child link="rod"/></joint></robot>"#;
+
+#[test]
+fn a_shape_that_is_too_small_for_a_body_is_left_out() {
+    let speck = scene(folder(&[("arm.urdf", SPECK)]).path(), "arm.urdf", "").expect("a scene");
+    assert_eq!(speck.remarks, ["r: a shape of link `rod` has no size or less than 0.1 mm: it is left out"]);
+    assert_eq!(speck.shapes.len(), 1);
 }
 
 /// A base that turns, and slides along where it has turned to.

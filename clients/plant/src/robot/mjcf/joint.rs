@@ -3,8 +3,8 @@
 //! Joints of one body act in the file's order, each in the frame that those before it have turned and moved. So each
 //! but the last carries a frame without mass that has the body's place, and the last one the body.
 
-use super::Reader;
 use super::pose::origin;
+use super::{Placed, Reader};
 use crate::robot::xml::{Element, RobotFault};
 use crate::robot::{Freedom, Joint, Link, Mimic, Origin};
 
@@ -12,16 +12,18 @@ impl Reader<'_> {
     /// The joints of a body, which is fixed to its parent without one.
     pub(super) fn joints(
         &mut self,
-        body: &Element,
+        placed: Placed<'_>,
         [parent, child]: [usize; 2],
         class: &str,
     ) -> Result<(), RobotFault> {
+        let body = placed.element;
         let base = Joint {
             name: self.links[child].name.clone(),
             freedom: Freedom::Fixed,
             parent,
             child,
-            origin: origin(&self.pose(body)?),
+            origin: origin(&(placed.at * self.pose(body)?)),
+            reference: 0.0,
             anchor_m: [0.0; 3],
             axis: [0.0, 0.0, 1.0],
             limits: None,
@@ -85,14 +87,16 @@ impl Reader<'_> {
         if axis.iter().all(|part| *part == 0.0) {
             return Err(joint.wrong_at("axis", "an axis of no length"));
         }
-        let limited = joint.get("limited").is_none_or(|limited| limited != "false");
         let turns = freedom == Freedom::Turns && self.compiler.degrees;
+        let limited = joint.get("limited").is_none_or(|limited| limited != "false");
         let range = joint.numbers::<2>("range")?.filter(|[lower, upper]| limited && lower < upper);
         let limits = range.map(|range| if turns { range.map(f64::to_radians) } else { range });
         let limits = limits.filter(|_| matches!(freedom, Freedom::Turns | Freedom::Slides));
+        let stands = joint.number_or("ref", 0.0)?;
+        let reference = if turns { stands.to_radians() } else { stands };
         let name = joint.get("name").map_or(base.name, str::to_owned);
         let (anchor_m, place) = (joint.triple("pos", [0.0; 3])?, joint.place.clone());
-        Ok(Joint { name, freedom, anchor_m, axis, limits, place, ..base })
+        Ok(Joint { name, freedom, reference, anchor_m, axis, limits, place, ..base })
     }
 
     /// The joints of `<equality>` that follow others in a straight line.
@@ -109,7 +113,11 @@ impl Reader<'_> {
                 self.faults.push(element.wrong_at("polycoef", "`polycoef` must be numbers"));
                 continue;
             };
-            let mimic = Mimic { joint: leader.to_owned(), factor: *factor, offset: *offset };
+            // both count from where the file has them
+            let reference =
+                |name: &str| self.joints.iter().find(|joint| joint.name == name).map_or(0.0, |joint| joint.reference);
+            let offset = offset + reference(follower) - factor * reference(leader);
+            let mimic = Mimic { joint: leader.to_owned(), factor: *factor, offset };
             if curved.iter().any(|coefficient| *coefficient != 0.0) {
                 self.faults.push(element.wrong_at("polycoef", "a joint that follows another otherwise than straight"));
             } else if let Some(joint) = self.joints.iter_mut().find(|joint| joint.name == follower) {

@@ -8,13 +8,17 @@
 //!
 //! | module | subject |
 //! |---|---|
+//! | `include` | models in several files |
 //! | `joint` | the joints of a body, and those that follow others |
 //! | `pose` | where a body, a geom or a mass is |
 //!
 //! Source: MuJoCo documentation, XML reference (3.3).
 
+mod include;
 mod joint;
 mod pose;
+
+use std::path::Path;
 
 use rapier3d::glamx::DVec3;
 use rapier3d::math::Pose;
@@ -22,7 +26,7 @@ use rapier3d::math::Pose;
 use super::inertial::{self, is_tensor};
 use super::tree::sorted;
 use super::xml::{Element, RobotFault};
-use super::{Collision, Geometry, Inertial, Joint, Link, Robot, Weight};
+use super::{Collision, Geometry, Inertial, Joint, Link, Reading, Robot, Weight};
 use pose::{along, origin};
 
 /// What MuJoCo takes where a geom says nothing.
@@ -49,6 +53,14 @@ struct Asset {
     scale: [f64; 3],
 }
 
+/// An element of a body, and what the frames around it do to it.
+#[derive(Clone, Copy)]
+struct Placed<'b> {
+    element: &'b Element,
+    at: Pose,
+    class: &'b str,
+}
+
 struct Reader<'e> {
     compiler: Compiler,
     classes: Vec<Class<'e>>,
@@ -63,9 +75,10 @@ struct Reader<'e> {
 ///
 /// # Errors
 /// Every fault that was found.
-pub(super) fn robot(root: &Element) -> Result<Robot, Vec<RobotFault>> {
-    let compiler = root.child("compiler");
-    let get = |key: &str| compiler.and_then(|compiler| compiler.get(key));
+pub(super) fn robot(root: &Element, path: &Path, reading: &Reading<'_>) -> Result<Robot, Vec<RobotFault>> {
+    let root = &include::whole(root, path, reading).map_err(|fault| vec![fault])?;
+    // what several files say, the last one says
+    let get = |key: &str| root.all("compiler").filter_map(|compiler| compiler.get(key)).last();
     let mut reader = Reader {
         compiler: Compiler {
             degrees: get("angle") != Some("radian"),
@@ -79,16 +92,13 @@ pub(super) fn robot(root: &Element) -> Result<Robot, Vec<RobotFault>> {
         faults: Vec::new(),
         remarks: Vec::new(),
     };
-    for include in root.all("include") {
-        reader.faults.push(include.wrong("<include> is not read: give the robot's own file"));
-    }
     root.all("default").for_each(|element| reader.class(element, None));
     for mesh in root.all("asset").flat_map(|asset| asset.all("mesh")) {
         let read = reader.asset(mesh);
         reader.keep(read);
     }
     let world = root.needed("worldbody").map_err(|fault| vec![fault])?;
-    reader.body(world, None, "main");
+    reader.body(Placed { element: world, at: Pose::IDENTITY, class: "main" }, None);
     reader.follow(root);
     for (section, what) in
         [("actuator", "actuators"), ("tendon", "tendons"), ("sensor", "sensors"), ("contact", "contacts")]
@@ -147,9 +157,24 @@ impl<'e> Reader<'e> {
         Ok(())
     }
 
+    /// What a body has, that of its frames too, with where these are and the class that they give.
+    fn contents<'b>(&self, of: Placed<'b>, into: &mut Vec<Placed<'b>>) -> Result<(), RobotFault> {
+        for element in &of.element.children {
+            if element.name == "frame" {
+                let at = of.at * self.pose(element)?;
+                let class = element.get("childclass").unwrap_or(of.class);
+                self.contents(Placed { element, at, class }, into)?;
+            } else {
+                into.push(Placed { element, ..of });
+            }
+        }
+        Ok(())
+    }
+
     /// A body with all that is in it; the world is the root.
-    fn body(&mut self, element: &Element, parent: Option<usize>, class: &str) {
-        let class = element.get("childclass").unwrap_or(class);
+    fn body(&mut self, placed: Placed<'_>, parent: Option<usize>) {
+        let element = placed.element;
+        let class = element.get("childclass").unwrap_or(placed.class);
         let index = self.links.len();
         let name = match (parent, element.get("name")) {
             (None, _) => "world".to_owned(),
@@ -173,13 +198,15 @@ impl<'e> Reader<'e> {
             }
         }
         if let Some(parent) = parent {
-            let joints = self.joints(element, [parent, index], class);
+            let joints = self.joints(placed, [parent, index], class);
             self.keep(joints);
         }
         let is_weighed = element.child("inertial").is_some();
-        for geom in element.all("geom") {
-            let geom = self.complete(geom, class);
-            match self.geom(&geom) {
+        let mut contents = Vec::new();
+        let read = self.contents(Placed { element, at: Pose::IDENTITY, class }, &mut contents);
+        self.keep(read);
+        for geom in contents.iter().filter(|inner| inner.element.name == "geom") {
+            match self.geom(&self.complete(geom.element, geom.class), geom.at) {
                 // what a geom weighs counts only where nothing else says what the body does
                 Ok(Some(shape)) if is_weighed => {
                     self.links[index].collisions.push(Collision { weight: None, ..shape });
@@ -189,7 +216,9 @@ impl<'e> Reader<'e> {
                 Err(fault) => self.faults.push(fault),
             }
         }
-        element.all("body").for_each(|inner| self.body(inner, Some(index), class));
+        for inner in contents.into_iter().filter(|inner| inner.element.name == "body") {
+            self.body(inner, Some(index));
+        }
     }
 
     fn inertial(&self, element: &Element) -> Result<Inertial, RobotFault> {
@@ -205,17 +234,17 @@ impl<'e> Reader<'e> {
     }
 
     /// A shape; none for what is only shown, and for planes, of which a robot has none.
-    fn geom(&mut self, geom: &Element) -> Result<Option<Collision>, RobotFault> {
+    fn geom(&mut self, geom: &Element, at: Pose) -> Result<Option<Collision>, RobotFault> {
         // 32 bits each; MuJoCo's groups and classes do not say who collides
         let collides = geom.number_or("contype", 1.0)? != 0.0 || geom.number_or("conaffinity", 1.0)? != 0.0;
-        let mut place = self.pose(geom)?;
+        let mut place = at * self.pose(geom)?;
         let sizes: Vec<f64> = geom
             .get("size")
             .map_or_else(Vec::new, |text| text.split_whitespace().filter_map(|word| word.parse().ok()).collect());
         let ends = geom.numbers::<6>("fromto")?;
         let half = ends.map(|[x, y, z, u, v, w]| {
             let (from, to) = (DVec3::new(x, y, z), DVec3::new(u, v, w));
-            place = Pose::from_parts((from + to) * 0.5, along(to - from));
+            place = at * Pose::from_parts((from + to) * 0.5, along(to - from));
             0.5 * (to - from).length()
         });
         let kind = geom.get("type").unwrap_or(if geom.attribute("mesh").is_some() { "mesh" } else { "sphere" });
@@ -299,7 +328,7 @@ mod tests {
         );
         assert_eq!(shoulder.limits, Some([-std::f64::consts::FRAC_PI_2, std::f64::consts::FRAC_PI_2]));
         assert_eq!((elbow.freedom, elbow.limits), (Freedom::Slides, Some([0.0, 0.2])));
-        assert!((elbow.origin.rpy_rad[1] - std::f64::consts::FRAC_PI_2).abs() < 1e-7, "{:?}", elbow.origin);
+        assert!((elbow.origin.rpy_rad[1] - std::f64::consts::FRAC_PI_2).abs() < 1e-15, "{:?}", elbow.origin);
         assert!((shoulder.origin.rpy_rad[0].abs() - std::f64::consts::PI).abs() < 1e-12, "{:?}", shoulder.origin);
         let [capsule, mesh] = &robot.links[1].collisions[..] else { panic!("two shapes") };
         assert_eq!((&capsule.geometry, capsule.weight), (&Geometry::Capsule(0.05, 0.5), Some(Weight::Density(1000.0))));
@@ -328,6 +357,34 @@ mod tests {
         let anchors: Vec<_> = robot.joints.iter().map(|joint| joint.anchor_m[2]).collect();
         assert_eq!(anchors, [0.1, 0.0, 0.2, 0.0]);
         assert!(robot.links[1..3].iter().all(|frame| frame.inertial.is_none() && frame.collisions.is_empty()));
+    }
+
+    #[test]
+    fn a_frame_places_what_it_has() {
+        let frames = "<frame pos=\"0 0 1\" euler=\"0 90 0\" childclass=\"visual\"><frame pos=\"1 0 0\">\
+            <geom type=\"box\" size=\"1 1 1\"/><body name=\"post\" pos=\"1 0 0\"/></frame></frame><body name=\"upper\"";
+        let robot = read(&ARM.replace("<body name=\"upper\"", frames)).unwrap();
+        let [shape] = &robot.links[0].collisions[..] else { panic!("a shape") };
+        assert!(!shape.collides && (shape.origin.rpy_rad[1] - std::f64::consts::FRAC_PI_2).abs() < 1e-15);
+        // x of the outer frame is down
+        let post = robot.joints.iter().find(|joint| joint.name == "post").expect("there");
+        for (z, wanted) in [(shape.origin.xyz_m[2], 0.0), (post.origin.xyz_m[2], -1.0)] {
+            assert!((z - wanted).abs() < 1e-15, "{z}");
+        }
+    }
+
+    #[test]
+    fn a_joint_may_stand_elsewhere_than_at_0() {
+        let stands = ARM
+            .replace("type=\"slide\"", "type=\"slide\" ref=\"0.1\"")
+            .replace("class=\"hinge\" pos", "class=\"hinge\" ref=\"45\" pos");
+        let equality = "<equality><joint joint1=\"elbow\" joint2=\"shoulder\" polycoef=\"0.01 2 0 0 0\"/></equality>";
+        let robot = read(&stands.replace("<actuator>", &format!("{equality}<actuator>"))).unwrap();
+        let quarter = std::f64::consts::FRAC_PI_4;
+        assert_eq!([robot.joints[0].reference, robot.joints[1].reference], [quarter, 0.1]);
+        let mimic = robot.joints[1].mimic.clone().expect("it follows");
+        // both are counted from where they stand
+        assert!((mimic.offset - (0.1 + 0.01 - 2.0 * quarter)).abs() < 1e-15, "{mimic:?}");
     }
 
     #[test]

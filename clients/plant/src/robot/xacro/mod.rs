@@ -172,7 +172,7 @@ impl Expander<'_> {
     fn property(&mut self, element: &Element) -> Result<(), RobotFault> {
         let name = self.needed(element, "name")?.to_string();
         let reach = match element.get("scope") {
-            None => Reach::Here,
+            None | Some("local") => Reach::Here,
             Some("parent") => Reach::Parent,
             Some("global") => Reach::Global,
             Some(other) => {
@@ -418,6 +418,11 @@ mod tests {
                 "yes",
             ),
             (r#"<link name="a$${b}"/>"#, "a${b}"),
+            (
+                r#"<xacro:property name="a" value="1"/><xacro:macro name="m" params=""><xacro:property name="a" value="2" scope="local"/></xacro:macro>
+                <xacro:m/><link name="l${a}"/>"#,
+                "l1",
+            ),
             // what nobody asks for may be wrong
             (
                 r#"<xacro:property name="given" value="${arg given}"/><xacro:property name="b" value="${c}"/><link name="l"/>"#,

@@ -1,11 +1,36 @@
-//! What each joint of a mechanism has to move: its apparent mass, with couplings kept and driven joints held.
+//! What the joints of a mechanism have to move: its equations at rest, and the apparent mass of each joint, with
+//! couplings kept and driven joints held.
 
 use nalgebra::{DMatrix, DVector};
 use rapier3d::math::Vector;
 
 use super::Mechanism;
 
+/// The equations of a mechanism that rests in its pose, for those of its coordinates that are joints of the scene.
+pub(crate) struct AtRest {
+    /// These joints.
+    pub(crate) joints: Vec<usize>,
+    /// What holds each of them against gravity, N or Nm.
+    pub(crate) holding: Vec<f64>,
+    /// A row for each of them.
+    pub(crate) mass: Vec<Vec<f64>>,
+}
+
 impl Mechanism {
+    /// Its equations at rest, without fittings and couplings.
+    pub(crate) fn at_rest(&mut self, gravity: Vector) -> AtRest {
+        let n = self.tree.velocities;
+        self.moving.evaluate(&self.lumps, &self.now.q, &vec![0.0; n], gravity);
+        let named = self.axes.iter().enumerate().filter_map(|(axis, (_, joint))| joint.map(|joint| (axis, joint)));
+        let named: Vec<_> = named.collect();
+        let row = |axis: usize| named.iter().map(|(other, _)| self.moving.mass[(axis, *other)]).collect();
+        AtRest {
+            joints: named.iter().map(|(_, joint)| *joint).collect(),
+            holding: named.iter().map(|(axis, _)| self.moving.bias[*axis]).collect(),
+            mass: named.iter().map(|(axis, _)| row(*axis)).collect(),
+        }
+    }
+
     /// Each joint of the scene with the inverse of what it moves, 1/kg or 1/(kg·m²), in the pose that it has; all other
     /// joints are free but for those that are `held`. None if its equations cannot be solved.
     pub(crate) fn apparent(&mut self, gravity: Vector, held: &dyn Fn(usize) -> bool) -> Option<Vec<(usize, f64)>> {

@@ -18,7 +18,7 @@
 //! | `free` | steps of what only smooth forces move: Runge-Kutta of order 4 |
 //! | `driven` | steps with drives, friction, stops |
 //! | `sprung` | springs and dampers in these |
-//! | `apparent` | what each joint has to move |
+//! | `apparent` | what joints have to move, and hold at rest |
 //! | `touched` | what a mechanism is to others that it touches |
 //!
 //! # Invariants
@@ -48,6 +48,7 @@ use crate::coupled::Coupled;
 use crate::effort::Drives;
 use crate::fitting::Fitting;
 use crate::model::JointKind;
+pub(crate) use apparent::AtRest;
 use coupled::Bond;
 use dynamics::Equations;
 pub(crate) use guided::{Guided, guided};
