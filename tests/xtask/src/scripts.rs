@@ -119,6 +119,14 @@ pub(crate) const SCRIPTS: &[Script] = &[
         not_on_windows: Some("it expects the environment of Python in `bin`"),
     },
     Script {
+        name: "robots",
+        file: "tests/robots/compare",
+        language: Language::Python,
+        about: "robots' files of publishers, from a folder that you fetched, compared with Pinocchio and MuJoCo",
+        time: "1 s per file",
+        not_on_windows: Some("it expects the environment of Python in `bin`"),
+    },
+    Script {
         name: "tutorials",
         file: "tests/tutorials",
         language: Language::Python,

@@ -1,7 +1,7 @@
 //! The robot of a MuJoCo model: bodies, joints, geoms.
 //!
-//! Read are `<compiler>`, `<default>` classes, `<asset>` meshes, and of `<worldbody>` the bodies with
-//! `<inertial>`, hinges, slides, balls, free joints and geoms; of `<equality>` the joints that follow others. What
+//! Read are `<include>`, `<compiler>`, `<default>` classes, `<asset>` meshes, and of `<worldbody>` the bodies and frames
+//! with `<inertial>`, hinges, slides, balls, free joints and geoms; of `<equality>` the joints that follow others. What
 //! a geom weighs is taken where a body has no `<inertial>`, as MuJoCo does. Actuators, tendons, sensors and
 //! contacts are left aside, with a remark. A scene has a body between any two joints, so a body with several has
 //! frames without mass between them.
