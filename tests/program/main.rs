@@ -74,6 +74,7 @@ mod robot_cell;
 mod rotary_kiln;
 mod rotary_kiln_scanner;
 mod rotary_kiln_server;
+mod rotary_kiln_thesis;
 mod run;
 mod shear;
 mod shift;
