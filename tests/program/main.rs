@@ -50,6 +50,7 @@ mod own_kinds;
 mod papers;
 mod parameters;
 mod peeling_line;
+mod peeling_line_lessons;
 mod plant;
 mod plc;
 mod plc_ads;
