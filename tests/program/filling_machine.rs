@@ -81,6 +81,70 @@ fn the_drawn_chart_gives_the_same_digest() {
     assert_eq!(std::fs::read(&drawn).unwrap(), before);
 }
 
+/// 5.3 and A11: the controller in ladder, with thirteen equal blocks of one type, is the program in Structured Text to the bit,
+/// whatever buttons are pressed; so is the one with the shim that is not simulated.
+#[test]
+fn the_ladder_gives_the_same_digest() {
+    let machine = copied("filling-machine");
+    std::fs::copy(machine.path().join("cases.toml"), machine.path().join("ladder.cases.toml")).expect("a file");
+    let digest = |file: &str, case: &[&str]| {
+        let (reports, said) = run(machine.path(), file, &[&["--until", "15s"], case].concat());
+        assert!(matches!(said.code, Some(0 | 1)), "{said:?}");
+        digests(&reports)
+    };
+    for case in [&[][..], &["--case", "reset"], &["--case", "stop-and-start"], &["--case", "skip-setup"]] {
+        assert_eq!(digest("ladder.toml", case), digest(".", case), "{case:?}");
+    }
+    let text = digest(".", &[]);
+    let drawn = machine.path().join("plc-ld/machine.xml");
+    let before = std::fs::read_to_string(&drawn).unwrap();
+    assert_eq!(before.matches("typeName=\"GripArm\"").count(), 13);
+    assert!(before.contains("<LD>") && !before.contains("<ST>"), "all of it is ladder");
+    let said = typed(machine.path(), &["instrument", "plc-ld/machine.xml", "--in-place"]);
+    assert_eq!((said.code, said.err.as_str()), (Some(0), ""), "{said:?}");
+    let simulated = "<variable name=\"SDSP_Simulated\"><type><BOOL/></type><initialValue><simpleValue value=\"TRUE\"/>";
+    edit(machine.path(), "plc-ld/machine.xml", simulated, &simulated.replace("TRUE", "FALSE"));
+    assert_eq!(digest("ladder.toml", &[]), text);
+    let said = typed(machine.path(), &["instrument", "plc-ld/machine.xml", "--in-place", "--remove"]);
+    assert_eq!(said.code, Some(0), "{said:?}");
+    assert_eq!(std::fs::read_to_string(&drawn).unwrap(), before);
+}
+
+/// Fig. 5.3: the monitor shows all signals between controller and machine, a column for each arm.
+#[test]
+fn the_monitor_shows_every_signal() {
+    let text = std::fs::read_to_string(scenario("filling-machine").join("scenario.toml")).expect("the scenario");
+    let file: toml::Table = text.parse().expect("TOML");
+    let panels = file["panel"].as_array().expect("panels");
+    let monitor = panels.iter().find(|panel| panel["name"].as_str() == Some("monitor")).expect("a monitor");
+    let elements = monitor["element"].as_array().expect("elements");
+    let column = |signal: &str| {
+        let element = elements.iter().find(|element| element["signal"].as_str() == Some(signal));
+        element.unwrap_or_else(|| panic!("{signal} is not there"))["at"][0].as_integer().expect("a column")
+    };
+    for name in file["signals"].as_table().expect("signals").keys().filter(|name| !name.contains("..")) {
+        if name.starts_with("IN_")
+            || name.starts_with("OUT_")
+            || name.starts_with("Packages_") && name != "Packages_Outside"
+        {
+            column(name);
+        }
+    }
+    for (arms, of, signals) in [
+        (3, "SW_ARM", &["IN_ARM_AT_INPUT", "IN_ARM_AT_OUTPUT", "IN_EMERGENCY_DROP", "OUT_HOLD_CONTAINER"][..]),
+        (10, "LW_ARM", &["IN_ARM_AT_INPUT", "IN_ARM_AT_OUTPUT", "OUT_HOLD_CONTAINER"][..]),
+    ] {
+        for arm in 0..arms {
+            let columns: Vec<i64> = signals.iter().map(|signal| column(&format!("{of}[{arm}].{signal}"))).collect();
+            assert!(columns.iter().all(|at| *at == columns[0]), "{of}[{arm}]: {columns:?}");
+        }
+    }
+    let beneath = elements.iter().filter_map(|element| element["at"][1].as_integer()).max();
+    let distortion =
+        elements.iter().find(|element| element["signal"].as_str() == Some("Distortion")).expect("a button");
+    assert_eq!(distortion["at"][1].as_integer(), beneath, "the button is beneath");
+}
+
 /// `[Sivtoft]` 4.2.5: one scan in 250 ms, and 50 ms at least. The machine in slow motion carries as many packages in as
 /// many scans.
 #[test]
