@@ -1,11 +1,12 @@
 //! `docs/papers.md`, row by row: each command does what it says, each test is there, no figure is missing.
 
+use std::io::{BufRead as _, BufReader};
 use std::path::{Path, PathBuf};
 
-use crate::typed::{copied, scenario, typed};
+use crate::typed::{begun, copied, scenario, typed};
 
 /// What must have a row of its own.
-const FIGURES: [(&str, &[&str]); 2] = [
+const FIGURES: [(&str, &[&str]); 5] = [
     (
         "## [SDSP]",
         &[
@@ -62,6 +63,23 @@ const FIGURES: [(&str, &[&str]); 2] = [
             "Sec. 6.3",
         ],
     ),
+    (
+        "## [Nyyssönen]",
+        &[
+            "Ch. 2.1",
+            "Sec. 2.3",
+            "Sec. 3.1.1",
+            "Secs. 3.1.1 to 3.1.4",
+            "Sec. 3.2",
+            "Sec. 3.3",
+            "Table 4",
+            "Figs. 13, 17 and 18",
+            "Figs. 19 to 21",
+            "Figs. 22 to 24",
+        ],
+    ),
+    ("## [Vergnano]", &["Fig. 5", "Sec. 4", "Sec. 4.1", "Sec. 4.2", "Sec. 5"]),
+    ("## [Jacket]", &["Ch. 7.2", "Ch. 11", "Ch. 13", "Ch. 14", "Ch. 14.1", "Ch. 14.2", "Appendix 1", "Appendix 2"]),
 ];
 
 /// A row of one of the page's tables.
@@ -129,6 +147,9 @@ fn each_row_has_a_command_and_a_test_or_says_why_not() {
 
 /// Long runs end early: what is looked at here is that the row can be typed.
 fn shortened(words: &mut Vec<&str>) {
+    if words[1] == "campaign" {
+        words.extend(["--keep", "out/keep", "--partition", "1/19"]);
+    }
     let runs = ["run", "compare"].contains(&words[1]) && !words.contains(&"--help");
     if !runs {
         return;
@@ -140,6 +161,26 @@ fn shortened(words: &mut Vec<&str>) {
     // the part that is enlarged comes later
     if let Some(at) = words.iter().position(|word| *word == "--enlarge") {
         words.drain(at..at + 2);
+    }
+}
+
+/// A command that ends when its user ends it: its page is there.
+fn serves(folder: &Path, words: &[&str]) {
+    let mut child = begun(folder, words);
+    let mut line = String::new();
+    let errors = child.stderr.take().expect("a pipe");
+    BufReader::new(errors).read_line(&mut line).expect("text");
+    child.kill().expect("it runs");
+    child.wait().expect("it ends");
+    assert!(line.contains("http://127.0.0.1:"), "{words:?}: {line}");
+}
+
+/// What a row says is to be seen: the help of a command and the description of a kind show nothing.
+#[test]
+fn each_command_shows_something() {
+    for Row { paper, command, .. } in rows(&page()) {
+        let is_shown = !command.contains("--help") && !command.starts_with("onescan components ");
+        assert!(is_shown, "{paper}: {command}");
     }
 }
 
@@ -159,9 +200,14 @@ fn each_command_can_be_typed() {
     for command in commands {
         let mut words: Vec<&str> = command.split_whitespace().collect();
         shortened(&mut words);
+        if words[1] == "edit" {
+            serves(folder.path(), &words[1..]);
+            continue;
+        }
         let said = typed(folder.path(), &words[1..]);
         // a run that is cut short, or that free-wheels, need not meet what is expected
-        let fine = if words[1] == "run" { matches!(said.code, Some(0 | 1)) } else { said.code == Some(0) };
+        let judges = ["run", "falsify", "explore", "campaign"].contains(&words[1]);
+        let fine = if judges { matches!(said.code, Some(0 | 1)) } else { said.code == Some(0) };
         assert!(fine, "{command}: {said:?}");
         let _ = std::fs::remove_dir_all(folder.path().join("out"));
     }
