@@ -210,9 +210,6 @@ pub enum SceneFaultKind {
         /// Key of the upper bound.
         upper: &'static str,
     },
-    /// Limits of a revolute joint that leave it a whole turn or more, which bodies cannot enforce.
-    #[error("the limits of revolute joint `{0}` are a turn or more apart, and such limits limit nothing")]
-    FullTurn(String),
     /// An axis on a joint that cannot be driven.
     #[error("`{joint}` is a {kind} joint and cannot be driven")]
     Undrivable { joint: String, kind: &'static str },

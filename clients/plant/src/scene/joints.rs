@@ -1,7 +1,5 @@
 //! Second pass over `[[joint]]`: bodies, directions, coordinate and limits.
 
-use std::f64::consts::TAU;
-
 use super::placed::Placed;
 
 use super::bodies::GROUND;
@@ -215,7 +213,6 @@ fn coordinate(written: &JointTable, faults: &mut Faults<'_>) -> Coordinate {
         upper: faults.number(upper, Allowed::Finite),
     };
     refuse_disorder(&coordinate, [initial, lower, upper], faults);
-    refuse_full_turn(written, &coordinate, [lower, upper], faults);
     coordinate
 }
 
@@ -235,21 +232,5 @@ fn refuse_disorder(coordinate: &Coordinate, entries: [Entry<'_>; 3], faults: &mu
     };
     if let Some(value) = at.value {
         faults.add(value.span(), SceneFaultKind::Order { lower: low.key, upper: high.key });
-    }
-}
-
-/// A revolute joint has both limits, less than a turn apart, or none.
-fn refuse_full_turn(
-    written: &JointTable,
-    coordinate: &Coordinate,
-    [lower, upper]: [Entry<'_>; 2],
-    faults: &mut Faults<'_>,
-) {
-    let Some(value) = upper.value.or(lower.value) else { return };
-    let least = coordinate.lower.unwrap_or(f64::NEG_INFINITY);
-    let most = coordinate.upper.unwrap_or(f64::INFINITY);
-    if *written.kind.get_ref() == JointKind::Revolute && most - least >= TAU {
-        let hint = "give both limits, less than 6.28 rad apart, or none".to_owned();
-        faults.add_hinted(value.span(), SceneFaultKind::FullTurn(text(&written.name).to_owned()), Some(hint));
     }
 }

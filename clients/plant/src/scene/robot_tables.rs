@@ -1,7 +1,5 @@
 //! The tables that a robot's file stands for.
 
-use std::f64::consts::TAU;
-
 use rapier3d::glamx::{DQuat, DVec3};
 use rapier3d::math::Pose;
 
@@ -310,8 +308,8 @@ impl Tables<'_> {
         let place = poses[joint.child];
         let moves = matches!(joint.freedom, Freedom::Turns | Freedom::Slides);
         let turns = joint.freedom == Freedom::Turns;
-        // bodies cannot keep limits that are a turn or more apart; a follower's are its leader's
-        let limits = joint.limits.filter(|[lower, upper]| (!turns || upper - lower < TAU) && joint.mimic.is_none());
+        // a follower's are its leader's
+        let limits = joint.limits.filter(|_| joint.mimic.is_none());
         let bound =
             |which: usize, wanted: bool| limits.filter(|_| turns == wanted).map(|limits| self.at(limits[which]));
         let initial = |wanted: bool| (moves && turns == wanted).then(|| self.at(self.coordinates[index]));

@@ -20,6 +20,7 @@ use super::contact::{Before, Island, Part};
 use super::coordinate::Gauge;
 use super::mechanism::{AtRest, Coordinates, Guided, Link, Mechanism, Surroundings, guided, mechanisms};
 use super::turning::Turning;
+use super::turns;
 use super::{SWEEPS_WITH_JOINTS, World, local_frames, measured_axis};
 use crate::coupled::Coupled;
 use crate::effort::{Drives, Mark, Motion};
@@ -272,6 +273,8 @@ impl World {
     /// One step of the engine and of all mechanisms, which is this part of the turn.
     pub(crate) fn substep(&mut self, part: [f64; 2], drives: &mut dyn Drives) {
         let dt_s = self.physics.integration_parameters.dt;
+        let Articulation { links, fittings, motions, .. } = &self.articulation;
+        turns::limit(links, fittings, motions, &mut self.physics.impulse_joints);
         self.arm(part, dt_s, drives);
         self.guide(part[1], dt_s);
         if self.articulation.mechanisms.iter().any(|member| !member.colliders.is_empty()) {

@@ -8,6 +8,7 @@
 //! | `nearby` | which of many bodies a sensor has to look at |
 //! | `sleeping` | bodies at rest on what carries them, which cost nothing |
 //! | `turning` | friction with what turns |
+//! | `turns` | stops that are a turn or more apart |
 //! | `coordinate` | where a joint stands, measured from the poses of its bodies |
 //! | `actuator` | what drives a joint: along a path, or by a component's equations |
 //! | `mechanism` | bodies on joints, moved by the joints' coordinates |
@@ -25,6 +26,7 @@ mod reach;
 mod sleeping;
 pub(crate) mod solid;
 mod turning;
+mod turns;
 
 use onescan_server::client::ClientFault;
 use onescan_server::time::TimeSpan;

@@ -85,11 +85,6 @@ const CASES: &[(&str, &str, &str)] = &[
     ("an oblique slot", "kind = \"prismatic\"", "kind = \"slot\"\nslide = [1.0, 1.0, 0.0]"),
     ("limits upside down", "upper_m = 1.0", "upper_m = -2.0"),
     ("a start outside of the limits", "upper_m = 1.0", "upper_m = 1.0\ninitial_m = 3.0"),
-    (
-        "limits a turn apart",
-        "kind = \"prismatic\"\nparent = \"base\"\nchild = \"cart\"\naxis = [1.0, 0.0, 0.0]\nlower_m = -1.0\nupper_m = 1.0",
-        "kind = \"revolute\"\nparent = \"base\"\nchild = \"cart\"\naxis = [1.0, 0.0, 0.0]\nlower_rad = -4\nupper_rad = 4.0",
-    ),
     ("a joint with itself", "parent = \"base\"", "parent = \"cart\""),
     ("an immovable joint", "kind = \"dynamic\"", "kind = \"kinematic\""),
     ("the wrong unit", "speed_m_s", "speed_rad_s"),

@@ -35,3 +35,4 @@ mod sensors;
 mod shear;
 mod sleeping;
 mod state;
+mod turns;
