@@ -1,10 +1,11 @@
 //! Bodies that touch.
 
-use super::{G, Line, bench, cube, joint, place, when};
+use super::Line;
+use super::scenes::{G, bench, cube, joint, place, when};
 
 const COULOMB: &str = "Coulomb";
 
-const FLOOR: &str = "[[body]]\nname = \"floor\"\nkind = \"fixed\"\nshape = \"box\"\nsize_m = [40.0, 4.0, 0.2]\n\
+pub(super) const FLOOR: &str = "[[body]]\nname = \"floor\"\nkind = \"fixed\"\nshape = \"box\"\nsize_m = [40.0, 4.0, 0.2]\n\
                      position_m = [0.0, 0.0, -0.1]\n";
 
 pub(super) fn lines() -> Vec<Line> {
@@ -13,11 +14,13 @@ pub(super) fn lines() -> Vec<Line> {
     lines
 }
 
-/// A floor that slopes by an angle down along x, with something on it, 0.05 m above, after a second: its way.
-fn slope(angle_deg: f64, keys: &'static str, body: &'static str) -> impl Fn(u64) -> f64 {
+/// A floor that slopes by an angle down along x, with something on it, 0.05 m above, which may lie on its side, after a
+/// second: its way.
+pub(super) fn slope(angle_deg: f64, keys: &'static str, body: &'static str, lies: bool) -> impl Fn(u64) -> f64 {
     move |step_us| {
         let (sin, cos) = libm::sincos(angle_deg.to_radians());
         let tilt = format!("rpy_deg = [0.0, {angle_deg:?}, 0.0]");
+        let own = if lies { tilt.replace("[0.0,", "[90.0,") } else { tilt.clone() };
         let floor = format!(
             "[[body]]\nname = \"floor\"\nkind = \"fixed\"\nshape = \"box\"\nsize_m = [40.0, 4.0, 0.2]\n\
              position_m = [{:?}, 0.0, {:?}]\n{tilt}\n{keys}\n",
@@ -25,7 +28,7 @@ fn slope(angle_deg: f64, keys: &'static str, body: &'static str) -> impl Fn(u64)
             -0.15 * cos
         );
         let mut bench =
-            bench(&format!("{floor}[[body]]\nname = \"a\"\nkind = \"dynamic\"\n{body}\n{tilt}\n{keys}\n"), step_us);
+            bench(&format!("{floor}[[body]]\nname = \"a\"\nkind = \"dynamic\"\n{body}\n{own}\n{keys}\n"), step_us);
         bench.run_us(1_000_000);
         let [x, _, z] = place(&bench, "a");
         x * cos - z * sin
@@ -73,13 +76,13 @@ fn slides() -> Vec<Line> {
             "box down a ramp of 20°, friction 0.2, way in 1 s",
             (0.5 * G * (sin - 0.2 * cos), "m"),
             COULOMB,
-            slope(20.0, "friction = 0.2", "shape = \"box\"\nsize_m = [0.1, 0.1, 0.1]\nmass_kg = 1.0"),
+            slope(20.0, "friction = 0.2", "shape = \"box\"\nsize_m = [0.1, 0.1, 0.1]\nmass_kg = 1.0", false),
         ),
         Line::new(
             "ball that rolls down a ramp of 20°, way in 1 s",
             (0.5 * 5.0 / 7.0 * G * sin, "m"),
             "5/7 g sin α",
-            slope(20.0, "friction = 0.8", "shape = \"sphere\"\nradius_m = 0.05\nmass_kg = 1.0"),
+            slope(20.0, "friction = 0.8", "shape = \"sphere\"\nradius_m = 0.05\nmass_kg = 1.0", false),
         ),
         Line::new("ball from 1 m, restitution 0.8: height after the bounce", (0.64, "m"), "e² h", bounces),
         Line::new(
@@ -92,10 +95,10 @@ fn slides() -> Vec<Line> {
 }
 
 /// The speed of a box of so many kilograms that a guided face with 1158 N has pushed for 0.5 s.
-fn pushed(face: &'static str) -> impl Fn(u64) -> f64 {
+pub(super) fn pushed(kg: f64, face: &'static str) -> impl Fn(u64) -> f64 {
     move |step_us| {
         let parts = format!(
-            "{FLOOR}[[body]]\nname = \"load\"\nkind = \"dynamic\"\nshape = \"box\"\nsize_m = [0.4, 0.4, 0.4]\nmass_kg = 200.0\n\
+            "{FLOOR}[[body]]\nname = \"load\"\nkind = \"dynamic\"\nshape = \"box\"\nsize_m = [0.4, 0.4, 0.4]\nmass_kg = {kg:?}\n\
              position_m = [0.25, 0.0, 0.2]\n{}{}[[fitting]]\nname = \"f\"\njoint = \"j\"\nbalance_n = 1158.0\n",
             cube("face", [0.0, 0.0, 0.2], 5.0, face),
             joint("j", "prismatic", "face", "[1, 0, 0]", "")
@@ -157,13 +160,13 @@ fn carries() -> Vec<Line> {
             "1158 N push 200 kg on a floor by a face without friction: speed after 0.5 s",
             (0.5 * (1158.0 - 100.0 * G) / 205.0, "m/s"),
             COULOMB,
-            pushed("friction = 0.0\nfriction_rule = \"least\""),
+            pushed(200.0, "friction = 0.0\nfriction_rule = \"least\""),
         ),
         Line::new(
             "the same by a face with friction 0.5",
             (0.5 * (1158.0 - 100.0 * G) / 205.0, "m/s"),
             COULOMB,
-            pushed(""),
+            pushed(200.0, ""),
         ),
     ]
 }

@@ -2,7 +2,8 @@
 
 use std::f64::consts::FRAC_PI_4;
 
-use super::{G, Line, bench, cube, joint};
+use super::Line;
+use super::scenes::{G, bench, cube, joint, out_after};
 
 const JELALI: &str = "Jelali, Kroll, *Hydraulic Servo-systems*, ch. 4";
 
@@ -14,21 +15,8 @@ fn slides(kg: f64, component: &'static str, time_us: u64) -> impl Fn(u64) -> f64
             cube("a", [0.0; 3], kg, ""),
             joint("j", "prismatic", "a", "[1, 0, 0]", "")
         );
-        after(&parts, time_us, step_us)
+        out_after(&parts, time_us, step_us)
     }
-}
-
-fn after(parts: &str, time_us: u64, step_us: u64) -> f64 {
-    let mut bench = bench(parts, step_us);
-    bench.run_us(time_us);
-    bench.read("Out")
-}
-
-pub(super) fn lines() -> Vec<Line> {
-    let mut lines = electric();
-    lines.extend(oil());
-    lines.extend(air_and_water());
-    lines
 }
 
 fn wheel(step_us: u64) -> f64 {
@@ -38,7 +26,7 @@ fn wheel(step_us: u64) -> f64 {
          velocity_rad_s_signal = \"Out\"\n",
         joint("j", "revolute", "w", "[0, 0, 1]", "")
     );
-    after(&parts, 1_000_000, step_us)
+    out_after(&parts, 1_000_000, step_us)
 }
 
 fn holds(step_us: u64) -> f64 {
@@ -48,7 +36,7 @@ fn holds(step_us: u64) -> f64 {
         cube("a", [0.0; 3], 2.0, ""),
         joint("j", "prismatic", "a", "[0, 0, 1]", "")
     );
-    after(&parts, 500_000, step_us)
+    out_after(&parts, 500_000, step_us)
 }
 
 fn servo(step_us: u64) -> f64 {
@@ -70,7 +58,7 @@ fn servo(step_us: u64) -> f64 {
     f64::from(turns) * 1e-6 * step_us as f64
 }
 
-fn electric() -> Vec<Line> {
+pub(super) fn electric() -> Vec<Line> {
     vec![
         Line::new(
             "50 N on 5 kg (`force_drive`), velocity after 0.5 s",
@@ -106,7 +94,7 @@ fn electric() -> Vec<Line> {
 const STEADY: &str = "kind = \"hydraulic_cylinder\"\nstroke_m = 2.0\nfriction_n = 0.0\nviscous_n_s_m = 0.0\nmoving_kg = 1.0\n\
                       command_constant = 0.4\nvelocity_m_s_signal = \"Out\"";
 
-fn oil() -> Vec<Line> {
+pub(super) fn oil() -> Vec<Line> {
     let (cap_m2, ring_m2) = (FRAC_PI_4 * 0.063 * 0.063, FRAC_PI_4 * (0.063 * 0.063 - 0.036 * 0.036));
     let phi = cap_m2 / ring_m2;
     let gain = 40.0 / 60_000.0 / 35e5_f64.sqrt();
@@ -114,14 +102,14 @@ fn oil() -> Vec<Line> {
     let unit = |step_us: u64| {
         let parts = "[[component]]\nname = \"u\"\nkind = \"hydraulic_unit\"\npump = false\ninitial_bar = 150.0\n\
                      line_l = 0.01\ndrawn_l_min = 60.0\npressure_bar_signal = \"Out\"\n";
-        after(parts, 2_000_000, step_us)
+        out_after(parts, 2_000_000, step_us)
     };
     let gas = |bar: f64| 10.0 * libm::pow(101.013_25 / (bar + 1.013_25), 1.0 / 1.2);
     let expanded = 101.013_25 * libm::pow(10.0 / (gas(150.0) + 2.0), 1.2) - 1.013_25;
     let relief = |step_us: u64| {
         let parts = "[[component]]\nname = \"u\"\nkind = \"hydraulic_unit\"\npump = true\naccumulator_l = 0.0\n\
                      pressure_bar_signal = \"Out\"\n";
-        after(parts, 3_000_000, step_us)
+        out_after(parts, 3_000_000, step_us)
     };
     vec![
         Line::new(
@@ -156,15 +144,9 @@ fn oil() -> Vec<Line> {
     ]
 }
 
-fn air_and_water() -> Vec<Line> {
+pub(super) fn air() -> Vec<Line> {
     let ring_m2 = FRAC_PI_4 * (0.05 * 0.05 - 0.02 * 0.02);
     let choked = 0.2e-8 * 1.185 * 287.05 * 293.15 / ring_m2;
-    let tank = |step_us: u64| {
-        let parts = "[[component]]\nname = \"t\"\nkind = \"tank\"\nvalve = 1.0\nstroke_s = 0.0\ninitial_m = 1.0\narea_m2 = 0.02\n\
-                     level_m_signal = \"Out\"\n";
-        after(parts, 10_000_000, step_us)
-    };
-    let rate = 0.62 * 0.001 * (2.0 * 9.806_65_f64).sqrt() / (2.0 * 0.02);
     let force = |step_us: u64| FRAC_PI_4 * 0.032 * 0.032 * 1e5 * stalled(step_us);
     vec![
         Line::new(
@@ -184,13 +166,22 @@ fn air_and_water() -> Vec<Line> {
             "catalogues (ISO 15552)",
             force,
         ),
-        Line::new(
-            "tank of 0.02 m² that empties from 1 m: level after 10 s",
-            ((1.0 - 10.0 * rate).powi(2), "m"),
-            "Torricelli",
-            tank,
-        ),
     ]
+}
+
+pub(super) fn water() -> Vec<Line> {
+    let tank = |step_us: u64| {
+        let parts = "[[component]]\nname = \"t\"\nkind = \"tank\"\nvalve = 1.0\nstroke_s = 0.0\ninitial_m = 1.0\narea_m2 = 0.02\n\
+                     level_m_signal = \"Out\"\n";
+        out_after(parts, 10_000_000, step_us)
+    };
+    let rate = 0.62 * 0.001 * (2.0 * 9.806_65_f64).sqrt() / (2.0 * 0.02);
+    vec![Line::new(
+        "tank of 0.02 m² that empties from 1 m: level after 10 s",
+        ((1.0 - 10.0 * rate).powi(2), "m"),
+        "Torricelli",
+        tank,
+    )]
 }
 
 /// The pressure of a cylinder that a wall has stopped.
@@ -202,5 +193,5 @@ fn stalled(step_us: u64) -> f64 {
         cube("a", [0.0; 3], 5.0, ""),
         joint("j", "prismatic", "a", "[1, 0, 0]", "")
     );
-    after(&parts, 1_500_000, step_us)
+    out_after(&parts, 1_500_000, step_us)
 }

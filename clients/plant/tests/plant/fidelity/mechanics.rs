@@ -2,7 +2,8 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::{G, Line, bench, crossings, cube, joint, place, turned, when};
+use super::Line;
+use super::scenes::{G, bench, crossings, cube, joint, pendulum_s, place, turned, when};
 
 const HIBBELER: &str = "Hibbeler, *Dynamics*";
 const MESSAGE: &str = "d'Alembert";
@@ -10,14 +11,7 @@ const MESSAGE: &str = "d'Alembert";
 /// Ten periods of 2 π/20 s, to the nearest 10 ms.
 const TEN_PERIODS_US: u64 = 3_140_000;
 
-pub(super) fn lines() -> Vec<Line> {
-    let mut lines = falls();
-    lines.extend(swings());
-    lines.extend(couplings());
-    lines
-}
-
-fn falls() -> Vec<Line> {
+pub(super) fn falls() -> Vec<Line> {
     let guided = |step_us| {
         let mut bench = bench(
             &format!("{}{}", cube("a", [0.0; 3], 2.0, ""), joint("j", "prismatic", "a", "[0, 0, -1]", "")),
@@ -61,15 +55,6 @@ fn falls() -> Vec<Line> {
     ]
 }
 
-/// The period of a pendulum from an amplitude, by the mean of arithmetic and geometric means.
-fn pendulum_s(small_s: f64, amplitude_rad: f64) -> f64 {
-    let (mut a, mut b) = (1.0, libm::cos(0.5 * amplitude_rad));
-    for _ in 0..20 {
-        (a, b) = (0.5 * (a + b), (a * b).sqrt());
-    }
-    small_s / a
-}
-
 fn two_masses(step_us: u64) -> f64 {
     let parts = format!(
         "{}{}{}[[joint]]\nname = \"k\"\nkind = \"prismatic\"\nparent = \"a\"\nchild = \"b\"\naxis = [1, 0, 0]\ninitial_m = 0.01\n\
@@ -83,7 +68,7 @@ fn two_masses(step_us: u64) -> f64 {
     20.0 / crossings(&mut bench, step_us, 21, apart)
 }
 
-fn swings() -> Vec<Line> {
+pub(super) fn swings() -> Vec<Line> {
     // a thin bob at 1 m: the cube's own inertia counts
     let arm = 1.0 + 0.01 / 6.0;
     let period = |amplitude_rad: f64| {
@@ -231,7 +216,7 @@ fn crank(step_us: u64) -> f64 {
     place(&bench, "slider")[0] - (0.1 * cos + (0.09 - 0.01 * sin * sin).sqrt()) + 0.3
 }
 
-fn couplings() -> Vec<Line> {
+pub(super) fn couplings() -> Vec<Line> {
     let wheel_kg_m2 = 0.5 * 2.0 * 0.01;
     vec![
         Line::new("Atwood machine of 3 and 2 kg, way in 1 s", (0.5 * G / 5.0, "m"), MESSAGE, atwood),
