@@ -35,7 +35,7 @@ fn limits(position: f64, [lower, upper]: [f64; 2]) -> Option<[Real; 2]> {
     if !stops || upper - lower < TAU {
         return None;
     }
-    // half a turn beyond is room enough to be told from the far side, whatever moves in a step
+    // half a turn beyond keeps it apart from the far side, whatever moves in a step
     Some(if position - lower <= PI {
         [lower, lower + 1.5 * PI]
     } else if upper - position <= PI {
