@@ -166,6 +166,35 @@ position_m = [50.0, 0.0, 0.0499]
     assert_eq!(warned.matches("overlap by 0.100 mm").count(), 1, "{}", run.err);
 }
 
+/// What hangs on joints beside bodies, and what closes a loop.
+#[test]
+fn fittings_couplings_and_loops_are_listed() {
+    let body = |name: &str, x: u32| {
+        format!(
+            "[[body]]\nname = \"{name}\"\nkind = \"dynamic\"\nshape = \"sphere\"\nradius_m = 0.1\nmass_kg = 1.0\n\
+             position_m = [{x}, 0, 0]\n"
+        )
+    };
+    let joint = |name: &str, parent: &str, child: &str| {
+        format!(
+            "[[joint]]\nname = \"{name}\"\nkind = \"revolute\"\nparent = \"{parent}\"\nchild = \"{child}\"\naxis = [0, 1, 0]\n"
+        )
+    };
+    let mut scene = "version = 1\n".to_owned() + &body("a", 0) + &body("b", 1) + &body("c", 2) + &body("d", 3);
+    scene += &(joint("p", "ground", "a") + &joint("q", "ground", "b") + &joint("r", "ground", "c"));
+    scene += &(joint("s", "c", "d") + &joint("t", "ground", "d"));
+    scene += "[[fitting]]\nname = \"hub\"\njoint = \"p\"\nspring_nm_rad = 4.0\nrest_rad = 0.5\nfriction_nm = 0.1\nbrake_nm = 3.0\n\
+              release_signal = \"Go\"\n[[coupling]]\nname = \"gear\"\njoint = \"q\"\nof = [\"p\"]\nratio = [-3.0]\nbacklash_rad = 0.01\n\
+              slip_nm = 20.0\n";
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("plant.toml"), scene).expect("it is written");
+    let described = typed(folder.path(), &["describe", "plant.toml"]);
+    let listed = "fittings\n  hub: joint p, spring 4 N·m/rad, at rest at 0.5 rad, friction 0.1 N·m, brake 3 N·m released by Go\n\
+                  couplings\n  gear: joint q = -3 x p, with a play of 0.01 rad, slips beyond 20 N·m\n";
+    assert!(described.out.contains(listed), "{described:?}");
+    assert!(described.out.contains("loops\n  joint `t` closes a loop with `r`, `s`\n"), "{described:?}");
+}
+
 /// A spring that is too fast for the step: `describe` names it at its end, and so does a run, once.
 #[test]
 fn what_a_plant_cannot_carry_is_named() {
@@ -202,6 +231,14 @@ spring_n_m = 400000.0
     let json = typed(folder.path(), &["describe", "plant.toml", "--format", "json"]);
     let json: serde_json::Value = serde_json::from_str(&json.out).expect("JSON");
     assert_eq!(json["excesses"][0]["kind"], "swing", "{json}");
+    let wired = typed(folder.path(), &["wiring", "."]);
+    assert!(wired.out.contains("  plant: the spring of `leaf` on joint `wag` swings with 100.7 Hz"), "{}", wired.out);
+    let json = typed(folder.path(), &["wiring", ".", "--format", "json"]);
+    let json: serde_json::Value = serde_json::from_str(&json.out).expect("JSON");
+    let plants = json["plants"].as_array().expect("a list");
+    let said =
+        |text: &str| plants.iter().any(|plant| plant["message"].as_str().is_some_and(|said| said.contains(text)));
+    assert!(said("closes a loop with") && said("100.7 Hz"), "{json}");
     let run = typed(folder.path(), &["run", ".", "--until", "20ms", "--runs", "2"]);
     assert_eq!(run.err.replace('\n', " ").matches("100.7 Hz").count(), 1, "{}", run.err);
 }

@@ -27,6 +27,7 @@
 //! | `part` | a component of the scene, bound to signals, other components and the world |
 //! | `machine` | all of these, one turn at a time |
 //! | `overlap` | bodies that are in each other at the start |
+//! | `closure` | joints that close a loop |
 //! | `excess` | what a scene asks for beyond what the plant can carry at its step |
 //! | `dynamics` | mass matrix and gravity forces of mechanisms |
 //! | `layout_mismatch` | why a saved state does not belong to this plant |
@@ -52,6 +53,7 @@
 mod axis;
 mod channel;
 mod client;
+mod closure;
 mod command;
 pub mod component;
 mod coupled;
@@ -85,6 +87,7 @@ mod temperature_field;
 mod world;
 
 pub use client::Plant;
+pub use closure::Loop;
 pub use dynamics::Dynamics;
 pub use excess::{Excess, HULL_POINTS_MAX, MASS_RATIO_MAX, STEPS_A_SWING, TRIANGLES_MAX};
 pub use failure::FailureRefused;

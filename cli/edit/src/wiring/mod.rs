@@ -6,6 +6,7 @@
 //! |---|---|
 //! | `ends` | where signals begin and end inside of a client |
 //! | `map` | the map: writers, readers, troubles |
+//! | `strain` | what scenes ask of plants beyond what these carry |
 //! | `fold` | many lines that differ in an index as one |
 //! | `text` | the map for people |
 //! | `drawing` | the map as SVG |
@@ -15,16 +16,20 @@ mod ends;
 mod error;
 mod fold;
 mod map;
+mod strain;
 mod text;
 
-use std::io::Write;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use onescan_report::OutputError;
 use onescan_report::file::write_whole;
 use onescan_scenario::Scenario;
+use serde::Serialize;
 
 use onescan_runner::format::Format;
+
+use strain::Strain;
 
 pub use error::WiringError;
 pub use map::{Map, OpenInput, Trouble, TroubleKind, UndrivenInput};
@@ -40,6 +45,15 @@ pub struct WiringConfig {
     pub svg: Option<PathBuf>,
 }
 
+/// The map for machines, with what it does not need where it is made again at every change.
+#[derive(Serialize)]
+struct Whole<'m> {
+    #[serde(flatten)]
+    map: &'m Map,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    plants: Vec<Strain>,
+}
+
 /// Writes the wiring of a scenario; true if nothing is wrong with it.
 ///
 /// # Errors
@@ -52,10 +66,14 @@ pub fn write(config: &WiringConfig, out: &mut dyn Write) -> Result<bool, WiringE
     }
     match config.format {
         Format::Json => {
-            serde_json::to_writer_pretty(&mut *out, &map).map_err(std::io::Error::from).map_err(OutputError)?;
+            let whole = Whole { map: &map, plants: strain::of(&scenario)? };
+            serde_json::to_writer_pretty(&mut *out, &whole).map_err(io::Error::from).map_err(OutputError)?;
             writeln!(out).map_err(OutputError)?;
         }
-        Format::Human => text::write(&map, out).map_err(OutputError)?,
+        Format::Human => {
+            text::write(&map, out).map_err(OutputError)?;
+            strain::write(&strain::of(&scenario)?, out).map_err(OutputError)?;
+        }
     }
     Ok(map.is_sound())
 }

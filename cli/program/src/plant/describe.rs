@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use onescan_base::regular::Within;
 use onescan_plant::component::open_inputs;
 use onescan_plant::scene::model::{Body, BodyKind, Component, JointKind, Mass, Moved, Scene, Sensing, Shape, Wire};
-use onescan_plant::{Dynamics, Excess, Overlap};
+use onescan_plant::{Dynamics, Excess, Loop, Overlap};
 use onescan_report::OutputError;
 use onescan_report::file::write_whole;
 use onescan_report::view::Side;
@@ -21,6 +21,8 @@ use super::error::PlantError;
 use onescan_runner::error::Usage;
 use onescan_runner::format::Format;
 use onescan_runner::scene_drawing as drawing;
+
+use super::attached::{coupled, fitted};
 
 /// What to make of a scene.
 #[derive(Clone, Debug)]
@@ -42,6 +44,8 @@ pub struct DescribeConfig {
 struct Described<'s> {
     #[serde(flatten)]
     scene: &'s Scene,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    loops: Vec<Loop>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     overlaps: Vec<Overlap>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -77,7 +81,8 @@ pub fn write(config: &DescribeConfig, out: &mut dyn Write) -> Result<(), PlantEr
             Format::Json => {
                 let excesses = scene.excesses(*period);
                 let dynamics = config.dynamics.then(|| scene.dynamics());
-                let whole = Described { scene: &scene, overlaps: scene.overlaps(), excesses, dynamics };
+                let whole =
+                    Described { scene: &scene, loops: scene.loops(), overlaps: scene.overlaps(), excesses, dynamics };
                 serde_json::to_writer_pretty(&mut *out, &whole).map_err(io::Error::from).map_err(OutputError)?;
                 writeln!(out).map_err(OutputError)?;
             }
@@ -131,6 +136,8 @@ fn tree(scene: &Scene, period: TimeSpan, out: &mut dyn Write) -> io::Result<()> 
         writeln!(out, "  {}", body(&scene.bodies[index]))?;
         hanging(scene, Some(index), 2, out)?;
     }
+    section(out, "fittings", scene.fittings.iter().map(|fitting| fitted(fitting, scene)))?;
+    section(out, "couplings", scene.couplings.iter().map(|coupling| coupled(coupling, scene)))?;
     section(
         out,
         "axes",
@@ -158,6 +165,7 @@ fn tree(scene: &Scene, period: TimeSpan, out: &mut dyn Write) -> io::Result<()> 
     section(out, "reads", scene.reads.iter().map(|port| format!("{} : {}", port.name, port.ty)))?;
     section(out, "writes", scene.writes.iter().map(|port| format!("{} : {}", port.name, port.ty)))?;
     section(out, "remarks", scene.remarks.iter().cloned())?;
+    section(out, "loops", scene.loops().iter().map(ToString::to_string))?;
     section(out, "overlaps", scene.overlaps().iter().map(ToString::to_string))?;
     let title = match scene.substeps {
         1 => format!("beyond what a plant can carry in turns of {period}"),

@@ -2,9 +2,11 @@
 //!
 //! | module | subject |
 //! |---|---|
+//! | `attached` | what is attached to joints, in words: fittings, couplings |
 //! | [`components`] | the kinds of component |
 //! | [`describe`] | a scene as a tree: bodies, joints, what moves and senses, signals |
 
+mod attached;
 pub mod components;
 pub mod describe;
 mod error;

@@ -21,6 +21,7 @@ mod guided;
 mod handling;
 mod holding;
 mod kiln_scanner;
+mod loops;
 mod measuring;
 mod mechanism;
 mod meshes;

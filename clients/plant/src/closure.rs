@@ -1,0 +1,75 @@
+//! Joints that close a loop.
+//!
+//! A loop is moved by the engine and not by the coordinates of its joints: they give by micrometres, and drives follow
+//! their paths to the first order of the step only.
+
+use std::collections::VecDeque;
+
+use serde::Serialize;
+
+use crate::model::{BodyKind, Joint, Mechanics};
+
+/// A loop of joints.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Loop {
+    /// The joint that closes it: the last one of it in the scene.
+    pub closing: String,
+    /// The others, from one body of that joint to the other.
+    pub joints: Vec<String>,
+}
+
+impl std::fmt::Display for Loop {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let joints: Vec<_> = self.joints.iter().map(|joint| format!("`{joint}`")).collect();
+        write!(f, "joint `{}` closes a loop with {}", self.closing, joints.join(", "))
+    }
+}
+
+/// A place where joints meet: a body that moves, or all that stands.
+type Node = Option<usize>;
+
+impl Mechanics {
+    /// The loops of its joints, each with the joint that closes it, in the scene's order; those of robots without dynamics
+    /// are none.
+    pub fn loops(&self) -> Vec<Loop> {
+        let mut tree: Vec<(usize, [Node; 2])> = Vec::new();
+        let mut found = Vec::new();
+        for (index, joint) in self.joints.iter().enumerate().filter(|(_, joint)| !joint.guided) {
+            let ends = self.ends(joint);
+            match way(&tree, ends) {
+                Some(way) => {
+                    let joints = way.into_iter().map(|index| self.joints[index].name.clone()).collect();
+                    found.push(Loop { closing: joint.name.clone(), joints });
+                }
+                None => tree.push((index, ends)),
+            }
+        }
+        found
+    }
+
+    fn ends(&self, joint: &Joint) -> [Node; 2] {
+        let moves = |body: &usize| self.bodies[*body].kind != BodyKind::Fixed;
+        [joint.parent.filter(moves), Some(joint.child).filter(moves)]
+    }
+}
+
+/// The joints of a tree from one place to another, if they are in one.
+fn way(tree: &[(usize, [Node; 2])], [from, to]: [Node; 2]) -> Option<Vec<usize>> {
+    let mut reached: Vec<(Node, Vec<usize>)> = vec![(from, Vec::new())];
+    let mut next = VecDeque::from([0]);
+    while let Some(at) = next.pop_front() {
+        let (node, way) = reached[at].clone();
+        if node == to {
+            return Some(way);
+        }
+        for (joint, [one, other]) in tree {
+            let beyond = if *one == node { *other } else { *one };
+            let meets = (*one == node) != (*other == node);
+            if meets && reached.iter().all(|(known, _)| *known != beyond) {
+                reached.push((beyond, [&way[..], &[*joint]].concat()));
+                next.push_back(reached.len() - 1);
+            }
+        }
+    }
+    None
+}
