@@ -20,7 +20,7 @@ pub(super) fn principal(tensor: DMat3) -> (Vector, DQuat) {
             let (one, other) = (seen.col(row)[row], seen.col(column)[column]);
             let beside = seen.col(column)[row];
             if beside.abs() > 1e-18 * (one.abs() + other.abs()) {
-                frame = frame * step(one, other, beside, turn);
+                frame *= step(one, other, beside, turn);
             }
         }
         frame = frame.normalize();

@@ -77,7 +77,10 @@ pub(crate) fn leave_alone(physics: &mut PhysicsWorld, body: &Body, handle: Rigid
     for shape in shapes {
         let Some(shape) = physics.colliders.get_mut(shape).filter(|shape| alone(shape)) else { continue };
         let local = shape.position_wrt_parent().copied().unwrap_or(Pose::IDENTITY);
-        mass += shape.mass_properties().transform_by(&local);
+        let own = shape.mass_properties();
+        if own.mass() > 0.0 {
+            mass += own.transform_by(&local);
+        }
         shape.set_enabled(false);
     }
     physics.bodies[handle].set_additional_mass_properties(mass, false);

@@ -64,3 +64,21 @@ fn a_joint_that_stands_elsewhere_than_at_0_begins_there() {
     let turned = dynamics(rod, "xml", "initial_rad = { swing = 1.0 }");
     close(turned.gravity[0], -2.0 * G * 0.5 * 0.3_f64.sin());
 }
+
+/// A finger with a tensor of its own, and a shape beside its origin that weighs nothing.
+#[test]
+fn a_shape_without_mass_changes_no_tensor() {
+    let finger = |collision: &str| {
+        let robot = format!(
+            r#"<robot name="hand"><link name="base"/><link name="finger"><inertial><origin xyz="0 0.001 0.002"/><mass value="0.01"/>
+            <inertia ixx="2e-7" iyy="3e-7" izz="4e-7" ixy="3e-8" ixz="-2e-8" iyz="1e-8"/></inertial>{collision}</link>
+            <joint name="bend" type="continuous"><parent link="base"/><child link="finger"/><axis xyz="0 0 1"/></joint></robot>"#
+        );
+        dynamics(&robot, "urdf", "").mass_matrix[0][0]
+    };
+    let exact = 4e-7 + 0.01 * 1e-6;
+    let shape = r#"<collision><origin xyz="0.01 0.02 0" rpy="0.3 0.2 0.1"/><geometry><sphere radius="0.01"/></geometry></collision>"#;
+    for found in [finger(""), finger(shape)] {
+        assert!((found / exact - 1.0).abs() < 1e-14, "{found} in place of {exact}");
+    }
+}

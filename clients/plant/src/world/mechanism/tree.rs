@@ -1,6 +1,7 @@
 //! Which bodies hang together on joints, and in which order: trees that stand on what no force moves.
 
 use nalgebra::Matrix3;
+use rapier3d::dynamics::RigidBodyAdditionalMassProps;
 use rapier3d::glamx::DQuat;
 use rapier3d::prelude::*;
 
@@ -127,7 +128,7 @@ impl Tree {
             centre: Vector::ZERO,
             tensor: Matrix3::zeros(),
         };
-        let properties = bodies[link.bodies[far]].mass_properties().local_mprops;
+        let properties = properties(&bodies[link.bodies[far]]);
         let outer = Member {
             tip: link.frames[far].inverse(),
             body: Some(link.bodies[far]),
@@ -259,4 +260,17 @@ pub(super) fn between(link: &Link, bodies: &RigidBodySet) -> (Vector, f64, DQuat
     let [parent, child] = [0, 1].map(|end| *bodies[link.bodies[end]].position() * link.frames[end]);
     let between = parent.inv_mul(&child);
     (between.translation, 2.0 * libm::atan2(between.rotation.x, between.rotation.w), between.rotation)
+}
+/// What a body weighs. The engine adds up its shapes by way of principal axes, which loses digits, and all but three of
+/// them for a light finger; where none of them has a mass, what the scene says is exact.
+fn properties(body: &RigidBody) -> MassProperties {
+    let whole = body.mass_properties();
+    match whole.additional_local_mprops.as_deref() {
+        Some(RigidBodyAdditionalMassProps::MassProps(stated))
+            if (stated.mass() - whole.local_mprops.mass()).abs() < 1e-14 * stated.mass() =>
+        {
+            *stated
+        }
+        Some(_) | None => whole.local_mprops,
+    }
 }
