@@ -19,6 +19,8 @@ pub(crate) mod actuator;
 pub(crate) mod articulation;
 mod contact;
 pub(crate) mod coordinate;
+#[cfg(test)]
+mod energy;
 mod mechanism;
 mod nearby;
 mod principal;

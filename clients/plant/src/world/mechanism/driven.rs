@@ -277,8 +277,7 @@ impl Mechanism {
     fn go(&mut self, dt_s: f64, fittings: &[Fitting]) {
         for k in 0..self.tree.velocities {
             let [before, after] = [self.now.v[k], self.room.v[k]];
-            let sprung = self.axes[k].1.filter(|_| self.room.sprung[k]);
-            self.now.v[k] = match sprung {
+            self.now.v[k] = match self.axes[k].1 {
                 _ if self.room.exact[k] => after,
                 Some(joint) => self.through(k, [before, after], dt_s, &fittings[joint]),
                 None => 0.5 * (before + after),

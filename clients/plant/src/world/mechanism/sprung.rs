@@ -43,11 +43,11 @@ impl Mechanism {
         }
     }
 
-    /// How fast a sprung axis goes through a sub-step, of which it has these velocities at both ends: by their mean.
+    /// How fast an axis goes through a sub-step, of which it has these velocities at both ends: by their mean.
     ///
-    /// In a sub-step in which it turns round, friction brakes the way back, and its impulse does work on the way that
-    /// the mean still goes on: the spring would gain that. There the axis goes less far. Along its way the energy of
-    /// spring and weight is convex, so a part of the way takes no more than that part of it.
+    /// In a sub-step in which it turns round or stops, friction brakes the way back, and its impulse does work on the way
+    /// that the mean still goes on: spring and weight would gain that. There the axis goes less far. Along its way the
+    /// energy of both is convex, so a part of the way takes no more than that part of it.
     pub(super) fn through(&self, axis: usize, [before, after]: [f64; 2], dt_s: f64, fitting: &Fitting) -> f64 {
         let mean = 0.5 * (before + after);
         let braked: f64 = self.rows.all.iter().filter(|row| row.on == axis).map(|row| row.impulse).sum();
