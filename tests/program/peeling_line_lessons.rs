@@ -36,13 +36,14 @@ fn experts_pass_all_lessons_and_whoever_does_nothing_passes_none() {
 fn a_block_is_seen_at_each_place_of_its_way() {
     let folder = copied("peeling-line");
     let places = ["Block_on_loader", "Block_in_centring", "Block_in_arms", "Block_in_lathe"];
-    let mut case = "version = 1\n[[case]]\nname = \"seen\"\nuntil = \"13s\"\n".to_owned();
-    for pair in places.windows(2) {
+    let way = places.windows(2).map(|pair| {
         let (here, next) = (pair[0], pair[1]);
         let formula = format!("eventually (fell({here}) and {next})");
-        case.push_str(&format!("[[case.expect]]\nname = \"from {here} to {next}\"\nformula = \"{formula}\"\n"));
-    }
-    case.push_str("[[case.expect]]\nname = \"a radius\"\nformula = \"always (Radius > 0 implies Block_in_lathe)\"\n");
+        format!("[[case.expect]]\nname = \"from {here} to {next}\"\nformula = \"{formula}\"\n")
+    });
+    let way: String = way.collect();
+    let radius = "[[case.expect]]\nname = \"a radius\"\nformula = \"always (Radius > 0 implies Block_in_lathe)\"\n";
+    let case = format!("version = 1\n[[case]]\nname = \"seen\"\nuntil = \"13s\"\n{way}{radius}");
     fs::write(folder.path().join("cases.toml"), case).expect("a file");
     let said = typed(folder.path(), &["run", ".", "--case", "seen"]);
     assert_eq!(said.code, Some(0), "{said:?}");
