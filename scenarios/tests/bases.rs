@@ -44,6 +44,13 @@ fn every_variant_can_be_written_out() {
     for path in found {
         let scenario = Scenario::load(&path).expect("a scenario");
         let folder = tempfile::tempdir().expect("a folder");
+        // Pictures lie beside the file that names them.
+        for entry in std::fs::read_dir(path.parent().expect("in a folder")).expect("readable") {
+            let picture = entry.expect("readable").path();
+            if picture.extension().is_some_and(|extension| extension == "svg") {
+                std::fs::copy(&picture, folder.path().join(picture.file_name().expect("a name"))).expect("copied");
+            }
+        }
         let file = folder.path().join("whole.toml");
         std::fs::write(&file, scenario.to_toml().expect("it was read")).expect("written");
         let whole = Scenario::load(&file).unwrap_or_else(|error| panic!("{}: {error}", path.display()));

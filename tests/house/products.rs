@@ -27,6 +27,7 @@ const READ: &[(&str, &str)] = &[
     ("clients/plant/src/world/contact/problem.rs", "rows of an island; entries are sums over two spans"),
     ("clients/plant/src/world/contact/search.rs", "rows of an island, entry by entry"),
     ("clients/plant/src/world/mechanism/apparent.rs", "an inverse, changed by the product of two vectors"),
+    ("clients/plant/src/world/mechanism/closure.rs", "an inverse, changed by the products of two vectors"),
     ("clients/plant/src/world/mechanism/dynamics.rs", "the matrix of masses; what is multiplied has 3 or 6 rows"),
     ("clients/plant/src/world/mechanism/matrix.rs", "Cholesky's factor and its solves"),
     ("clients/plant/src/world/mechanism/mod.rs", "room for matrices"),

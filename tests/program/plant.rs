@@ -184,13 +184,13 @@ fn fittings_couplings_and_loops_are_listed() {
     scene += &(joint("p", "ground", "a") + &joint("q", "ground", "b") + &joint("r", "ground", "c"));
     scene += &(joint("s", "c", "d") + &joint("t", "ground", "d"));
     scene += "[[fitting]]\nname = \"hub\"\njoint = \"p\"\nspring_nm_rad = 4.0\nrest_rad = 0.5\nfriction_nm = 0.1\nbrake_nm = 3.0\n\
-              release_signal = \"Go\"\n[[coupling]]\nname = \"gear\"\njoint = \"q\"\nof = [\"p\"]\nratio = [-3.0]\nbacklash_rad = 0.01\n\
+              release_signal = \"Go\"\n[[coupling]]\nname = \"gear\"\njoint = \"q\"\nof = [\"p\"]\nratio = [-3.0]\n\
               slip_nm = 20.0\n";
     let folder = tempfile::tempdir().expect("a folder");
     std::fs::write(folder.path().join("plant.toml"), scene).expect("it is written");
     let described = typed(folder.path(), &["describe", "plant.toml"]);
     let listed = "fittings\n  hub: joint p, spring 4 N·m/rad, at rest at 0.5 rad, friction 0.1 N·m, brake 3 N·m released by Go\n\
-                  couplings\n  gear: joint q = -3 x p, with a play of 0.01 rad, slips beyond 20 N·m\n";
+                  couplings\n  gear: joint q = -3 x p, slips beyond 20 N·m\n";
     assert!(described.out.contains(listed), "{described:?}");
     assert!(described.out.contains("loops\n  joint `t` closes a loop with `r`, `s`\n"), "{described:?}");
 }

@@ -1,13 +1,19 @@
 //! Joints that close a loop.
 //!
-//! A loop is moved by the engine and not by the coordinates of its joints: they give by micrometres, and drives follow
-//! their paths to the first order of the step only.
+//! A loop that has a joint to which nothing is fitted is moved by the coordinates of its other joints, as exactly as a tree.
+//! The engine moves any other: joints give by micrometres, and all is of the first order of the step only.
 
 use std::collections::VecDeque;
 
+use onescan_server::time::TimeSpan;
 use serde::Serialize;
 
-use crate::model::{BodyKind, Joint, Mechanics};
+use crate::model::{BodyKind, Joint};
+use crate::scene::Scene;
+use crate::world::World;
+
+/// Who moves a loop does not depend on it.
+const ANY_PERIOD: TimeSpan = TimeSpan::from_millis(1).expect("not zero");
 
 /// A loop of joints.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -16,22 +22,30 @@ pub struct Loop {
     pub closing: String,
     /// The others, from one body of that joint to the other.
     pub joints: Vec<String>,
+    /// Whether the engine moves it.
+    pub by_engine: bool,
 }
 
 impl std::fmt::Display for Loop {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let joints: Vec<_> = self.joints.iter().map(|joint| format!("`{joint}`")).collect();
-        write!(f, "joint `{}` closes a loop with {}", self.closing, joints.join(", "))
+        write!(f, "joint `{}` closes a loop with {}", self.closing, joints.join(", "))?;
+        if self.by_engine {
+            let why = "a drive, fitting, limit or coupling is on each of them, or they stand on nothing";
+            write!(f, ", exact only to the first order of the step: {why}")?;
+        }
+        Ok(())
     }
 }
 
 /// A place where joints meet: a body that moves, or all that stands.
 type Node = Option<usize>;
 
-impl Mechanics {
+impl Scene {
     /// The loops of its joints, each with the joint that closes it, in the scene's order; those of robots without dynamics
     /// are none.
     pub fn loops(&self) -> Vec<Loop> {
+        let world = World::at_the_start(self, ANY_PERIOD);
         let mut tree: Vec<(usize, [Node; 2])> = Vec::new();
         let mut found = Vec::new();
         for (index, joint) in self.joints.iter().enumerate().filter(|(_, joint)| !joint.guided) {
@@ -39,7 +53,11 @@ impl Mechanics {
             match way(&tree, ends) {
                 Some(way) => {
                     let joints = way.into_iter().map(|index| self.joints[index].name.clone()).collect();
-                    found.push(Loop { closing: joint.name.clone(), joints });
+                    found.push(Loop {
+                        closing: joint.name.clone(),
+                        joints,
+                        by_engine: world.articulation.leaves(index),
+                    });
                 }
                 None => tree.push((index, ends)),
             }

@@ -66,6 +66,12 @@ impl Fitting {
         self.friction + self.breakaway + self.brake_most == 0.0
     }
 
+    /// True if nothing is fitted to the joint, not even a stop.
+    pub(crate) fn is_plain(&self) -> bool {
+        let stops = self.lower.is_finite() || self.upper.is_finite();
+        self.is_smooth() && !self.pushes() && !stops
+    }
+
     /// True if it has forces other than dry friction.
     pub(crate) fn pushes(&self) -> bool {
         self.damping != 0.0 || self.spring != 0.0 || self.balance != 0.0

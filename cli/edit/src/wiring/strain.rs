@@ -1,4 +1,4 @@
-//! What scenes ask of plants: bodies that overlap at the start, loops, and what is beyond a plant at its step.
+//! What scenes ask of plants: bodies that overlap at the start, loops that the engine moves, and what is beyond a plant at its step.
 
 use std::io::{self, Write};
 
@@ -23,7 +23,11 @@ pub(super) fn of(scenario: &Scenario) -> Result<Vec<Strain>, ScenarioError> {
         let scene = scenario.scene_of(name, scene)?;
         let (loops, overlaps) = (scene.loops(), scene.overlaps());
         let excesses = scene.excesses(period.unwrap_or(scenario.file().step));
-        let texts = loops.iter().map(ToString::to_string).chain(overlaps.iter().map(ToString::to_string));
+        let texts = loops
+            .iter()
+            .filter(|one| one.by_engine)
+            .map(ToString::to_string)
+            .chain(overlaps.iter().map(ToString::to_string));
         let texts = texts.chain(excesses.iter().map(ToString::to_string));
         found.extend(texts.map(|message| Strain { client: name.to_string(), message }));
     }

@@ -34,6 +34,8 @@ pub(crate) struct Articulation {
     mechanisms: Vec<Member>,
     /// Joints that are in no mechanism, which the engine moves always.
     others: Vec<usize>,
+    /// Joints that close loops of mechanisms, which are measured from their bodies.
+    closing: Vec<usize>,
     pub(crate) fittings: Vec<Fitting>,
     gauges: Vec<Gauge>,
     /// All joints of the scene, with their coordinates.
@@ -76,6 +78,7 @@ impl Articulation {
         Self {
             mechanisms: Vec::new(),
             others: Vec::new(),
+            closing: Vec::new(),
             fittings: Vec::new(),
             gauges: Vec::new(),
             motions: Vec::new(),
@@ -136,6 +139,11 @@ impl Articulation {
         self.mechanisms.iter_mut().map(|member| member.mechanism.at_rest(gravity)).collect()
     }
 
+    /// Whether a joint is in no mechanism, so that the engine moves it.
+    pub(crate) fn leaves(&self, joint: usize) -> bool {
+        self.others.contains(&joint)
+    }
+
     /// The joints that are in no mechanism, with their kinds, their bodies and where they are.
     pub(crate) fn unmoved<'a>(
         &'a self,
@@ -158,8 +166,14 @@ impl Articulation {
         let moved = self.links.iter().zip(&self.is_guided).filter(|(_, guided)| !**guided).map(|(link, _)| link);
         let links: Vec<_> = moved.chain(holds).copied().collect();
         let last = |joint: usize| self.motions[joint].position - self.fittings[joint].initial;
-        let (found, others) = mechanisms(&links, &self.couplings, &physics.bodies, last);
+        let plain = |joint: usize| {
+            let driven = actuators.iter().any(|actuator| actuator.joint == joint);
+            let coupled = self.couplings.iter().any(|coupled| coupled.joins(joint));
+            self.fittings[joint].is_plain() && !driven && !coupled
+        };
+        let (found, others) = mechanisms(&links, &self.couplings, &physics.bodies, plain, last);
         self.others = others;
+        self.closing = found.iter().flat_map(Mechanism::closing).collect();
         self.mechanisms = found
             .into_iter()
             .map(|mechanism| {
@@ -327,12 +341,12 @@ impl World {
         }
     }
 
-    /// Measures the joints that are in no mechanism; their drives follow.
+    /// Measures the joints that are in no mechanism or close a loop of one; their drives follow.
     fn measure_others(&mut self, drives: &mut dyn Drives) {
         let Self { physics, actuators, articulation, .. } = self;
-        let Articulation { others, gauges, motions, .. } = articulation;
+        let Articulation { others, closing, gauges, motions, .. } = articulation;
         let parameters = &physics.integration_parameters;
-        for joint in others.iter().copied() {
+        for joint in others.iter().chain(&*closing).copied() {
             let (bodies, gauge) = (&physics.bodies, &gauges[joint]);
             let now =
                 Mark { position: gauge.position(bodies, motions[joint].position), velocity: gauge.velocity(bodies) };

@@ -160,8 +160,9 @@ impl World {
         if let Some(index) = self.uncoupled(scene) {
             let name = &scene.couplings[index].name;
             return Err(ClientFault::new(format!(
-                "coupling `{name}`: its joints must be in trees that stand on the ground or on fixed bodies; \
-                 here they close a loop, or stand on nothing"
+                "coupling `{name}`: its joints must be in trees that stand on the ground or on fixed bodies, or in loops \
+                 of these that a joint closes to which nothing is fitted; here something is fitted to each joint of a \
+                 loop, or they stand on nothing"
             )));
         }
         for index in 0..self.substeps {

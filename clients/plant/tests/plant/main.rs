@@ -21,6 +21,7 @@ mod guided;
 mod handling;
 mod holding;
 mod kiln_scanner;
+mod linkages;
 mod loops;
 mod measuring;
 mod mechanism;

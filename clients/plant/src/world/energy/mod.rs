@@ -6,7 +6,8 @@ mod drawn;
 use onescan_server::time::TimeSpan;
 
 use super::World;
-use crate::effort::{Drives, Effort, Motion};
+use crate::effort::Nobody;
+use crate::fitting::Fitting;
 use crate::scene::Scene;
 use drawn::drawn;
 
@@ -16,22 +17,6 @@ const STEPS: u32 = 200;
 const PERIODS_US: [u64; 4] = [100, 1_000, 5_000, 10_000];
 /// What rounding leaves of the energy in all steps.
 const ROUNDING: f64 = 1e-12;
-
-struct Nobody;
-
-impl Drives for Nobody {
-    fn longest_s(&self, _: usize) -> f64 {
-        f64::INFINITY
-    }
-
-    fn advance(&mut self, _: usize, _: Motion, _: f64) -> Effort {
-        Effort::of(0.0)
-    }
-
-    fn foresee(&self, _: usize, _: Motion, _: f64) -> Effort {
-        Effort::of(0.0)
-    }
-}
 
 /// By which method a mechanism is moved, and so what it may gain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -92,7 +77,7 @@ impl Run {
         let scene = Scene::parse(&drawn.text, "drawn.toml").unwrap_or_else(|error| panic!("seed {seed}: {error}"));
         let mut world = World::build(&scene, TimeSpan::from_micros(drawn.period_us).expect("not zero"));
         world.find_mechanisms();
-        let smooth = world.articulation.fittings.iter().all(|fitting| fitting.is_smooth());
+        let smooth = world.articulation.fittings.iter().all(Fitting::is_smooth);
         let method = if world.articulation.unmoved(&world.physics.bodies).next().is_some() {
             Method::Engine
         } else if drawn.steady {

@@ -41,6 +41,10 @@ impl Mechanism {
         }
         let mut inverse = DMatrix::zeros(n, n);
         self.moving.factored.inverse(&mut inverse);
+        self.find_loops(gravity);
+        for row in self.basis.rows() {
+            keep(&mut inverse, row);
+        }
         let mut tie = |on: usize, with: [Option<(usize, f64)>; 2]| {
             let mut row = DVector::zeros(n);
             row[on] = 1.0;

@@ -61,6 +61,9 @@ impl Mechanism {
                 let step = index * finer + inner;
                 self.substep(finer_s, [at(step), at(step + 1)], &own, around);
             }
+            if !self.close(around.gravity) {
+                return false;
+            }
         }
         for (_, actuator) in &own {
             let actuator = &mut around.actuators[*actuator];
@@ -115,6 +118,7 @@ impl Mechanism {
             return false;
         }
         self.moving.factored.inverse(&mut room.inverse);
+        self.hold_loops(around.gravity);
         true
     }
 
@@ -141,6 +145,7 @@ impl Mechanism {
             *v = 0.5 * (*v + before);
         }
         self.moving.bias_at(&self.lumps, &self.room.v, around.gravity);
+        self.bend_loops(around.gravity);
     }
 
     /// Begins a sub-step: the forces on all axes, and the rows of their friction.
@@ -185,9 +190,18 @@ impl Mechanism {
     pub(super) fn push(&mut self, dt_s: f64, fittings: &[Fitting]) {
         let n = self.tree.velocities;
         self.stiffen(dt_s, fittings);
-        let Room { v, stiff, force, .. } = &mut self.room;
+        let Room { v, stiff, force, bends, added, .. } = &mut self.room;
         v.clone_from(&self.now.v);
-        DVectorViewMut::from_slice(v, n).gemv_tr(dt_s, stiff, force, 1.0);
+        let mut v = DVectorViewMut::from_slice(v, n);
+        v.gemv_tr(dt_s, stiff, force, 1.0);
+        if bends.is_empty() {
+            return;
+        }
+        v.axpy(dt_s, bends, 1.0);
+        for (axis, added) in added.iter().enumerate().filter(|(_, added)| **added != 0.0) {
+            // a spring resists what its loop asks of it, too
+            v.axpy(-dt_s * added * bends[axis], &stiff.column(axis), 1.0);
+        }
     }
 
     /// Dry and viscous friction of an axis.

@@ -24,7 +24,7 @@ pub(super) struct Equations {
     /// The motion that one unit of each velocity is.
     pub(super) axes: Vec<Twist>,
     pub(super) motions: Vec<Twist>,
-    accelerations: Vec<Twist>,
+    pub(super) accelerations: Vec<Twist>,
     forces: Vec<Wrench>,
     inertias: Vec<Inertia>,
     composites: Vec<Inertia>,

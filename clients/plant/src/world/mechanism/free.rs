@@ -90,6 +90,10 @@ impl Mechanism {
                 room.force[k] = fitted - self.moving.bias[k];
             }
             self.moving.factored.solve(&mut room.force);
+            if !self.lumps.closures.is_empty() {
+                self.basis.find(&self.lumps, &self.moving, around.gravity);
+                self.basis.bend(&mut room.force);
+            }
             room.accelerations[stage].copy_from_slice(room.force.as_slice());
         }
         room.q.clone_from(&self.now.q);
@@ -107,7 +111,7 @@ impl Mechanism {
         }
         std::mem::swap(&mut self.now.q, &mut room.q);
         std::mem::swap(&mut self.now.v, &mut room.v);
-        true
+        self.close(around.gravity)
     }
 }
 

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 use rapier3d::glamx::DMat3;
 use rapier3d::math::Pose;
 
-use super::tree::{Freedom, Member, Tree};
+use super::tree::{Closure, End, Freedom, Member, Tree};
 
 /// What a member has become: a part of a lump, or of the ground, and where it is in that.
 type Place = (Option<usize>, Pose);
@@ -28,7 +28,12 @@ impl Tree {
                 lumps.push(Member { on, place, ..member.clone() });
             }
         }
-        Self { members: lumps, joints: Vec::new(), positions: self.positions, velocities: self.velocities }
+        let moved = |end: End| {
+            let (member, place) = end.member.map_or((None, Pose::IDENTITY), |member| places[member]);
+            End { member, frame: place * end.frame }
+        };
+        let closures = self.closures.iter().map(|one| Closure { link: one.link, ends: one.ends.map(moved) }).collect();
+        Self { members: lumps, joints: Vec::new(), closures, ..*self }
     }
 }
 
@@ -85,7 +90,7 @@ mod tests {
             member(Some(2), turn, 1, 0.4),
             member(Some(4), Freedom::Weld, 2, 3.0),
         ];
-        let tree = Tree { members, joints: Vec::new(), positions: 2, velocities: 2 };
+        let tree = Tree { members, positions: 2, velocities: 2, ..Tree::default() };
         let lumped = tree.lumped();
         assert_eq!(lumped.members.len(), 2);
         let equations = |tree: &Tree| {

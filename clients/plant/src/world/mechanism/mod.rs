@@ -10,6 +10,7 @@
 //! | `spatial` | motions, forces and inertias as vectors of six |
 //! | `matrix` | symmetric matrices of any number of rows |
 //! | `tree` | which bodies hang together |
+//! | `closure` | loops: joints between what hangs together already |
 //! | `lump` | what is welded together as one body |
 //! | `dynamics` | the equations of motion of a tree |
 //! | `rows` | drives, friction and stops within their bounds |
@@ -26,6 +27,7 @@
 //! - Only operations of IEC 60559 and `libm`.
 
 mod apparent;
+mod closure;
 mod coupled;
 mod driven;
 mod dynamics;
@@ -49,6 +51,7 @@ use crate::effort::Drives;
 use crate::fitting::Fitting;
 use crate::model::JointKind;
 pub(crate) use apparent::AtRest;
+use closure::Basis;
 use coupled::Bond;
 use dynamics::Equations;
 pub(crate) use guided::{Guided, guided};
@@ -75,6 +78,8 @@ pub(crate) struct Mechanism {
     /// For each velocity: its position and the joint of the scene that it is the coordinate of.
     axes: Vec<(usize, Option<usize>)>,
     bonds: Vec<Bond>,
+    /// What its loops hold.
+    basis: Basis,
     rows: Rows,
     room: Room,
 }
@@ -90,9 +95,13 @@ struct Room {
     accelerations: [Vec<f64>; 4],
     force: DVector<f64>,
     inverse: DMatrix<f64>,
+    /// Accelerations that loops ask for by themselves.
+    bends: DVector<f64>,
     /// The same with what springs and dampers add in a sub-step.
     stiff: DMatrix<f64>,
     column: DVector<f64>,
+    /// What springs and dampers add to each axis, as a mass.
+    added: Vec<f64>,
     driven: Vec<bool>,
     /// Axes with springs, and what of viscous friction these take with them.
     sprung: Vec<bool>,
@@ -114,14 +123,17 @@ pub(crate) struct Surroundings<'s> {
 }
 
 /// The mechanisms that joints make of bodies, and the joints, by their index in the scene, of what
-/// cannot be one.
+/// cannot be one; joints that are `plain` may close loops. What holds a
+/// body fast never closes one: two that hold one body give way, as grippers do.
 pub(crate) fn mechanisms(
     links: &[Link],
     couplings: &[Coupled],
     bodies: &RigidBodySet,
+    plain: impl Fn(usize) -> bool,
     last: impl Fn(usize) -> f64,
 ) -> (Vec<Mechanism>, Vec<usize>) {
-    let forest = tree::forest(links, couplings, bodies, &|handle| bodies[handle].is_dynamic());
+    let moved = |handle: RigidBodyHandle| bodies[handle].is_dynamic();
+    let forest = tree::forest(links, couplings, bodies, &moved, &|link| link.joint.is_some_and(&plain));
     let mechanisms = forest.trees.into_iter().map(|tree| {
         let mut mechanism = Mechanism::new(tree);
         mechanism.bind(couplings);
@@ -165,6 +177,7 @@ impl Mechanism {
             tree,
             axes,
             bonds: Vec::new(),
+            basis: Basis::default(),
             rows: Rows::default(),
             room,
         }
@@ -177,7 +190,13 @@ impl Mechanism {
 
     /// The engine's joints between its bodies.
     pub(crate) fn links(&self) -> impl Iterator<Item = &Link> {
-        self.tree.joints.iter().map(|jointed| &jointed.link)
+        let closures = self.tree.closures.iter().map(|closure| &closure.link);
+        self.tree.joints.iter().map(|jointed| &jointed.link).chain(closures)
+    }
+
+    /// The joints of the scene that close its loops.
+    pub(crate) fn closing(&self) -> impl Iterator<Item = usize> {
+        self.tree.closures.iter().filter_map(|closure| closure.link.joint)
     }
 
     /// The joints of the scene whose coordinates it has, each with coordinate, from the scene's pose, and
@@ -202,8 +221,8 @@ impl Mechanism {
         self.now = memory;
     }
 
-    /// Takes its coordinates from where its bodies are and how they move after a step of `dt_s`; true if couplings
-    /// have changed them.
+    /// Takes its coordinates from where its bodies are and how they move after a step of `dt_s`; true if couplings or
+    /// loops have changed them.
     pub(crate) fn measure(&mut self, bodies: &RigidBodySet, dt_s: f64) -> bool {
         for jointed in &self.tree.joints {
             let (slid, turned, rotation) = tree::between(&jointed.link, bodies);
@@ -226,7 +245,8 @@ impl Mechanism {
         let Coordinates { q, v } = &mut self.now;
         let own = own_motion(&self.tree, self.equations.about, bodies);
         if self.equations.project(&self.tree, q, own, v) {
-            return self.reconcile(dt_s);
+            let reconciled = self.reconcile(dt_s);
+            return (self.has_loops() && self.close(Vector::ZERO)) || reconciled;
         }
         v.fill(0.0);
         false
@@ -251,6 +271,8 @@ impl Mechanism {
             for ((v, moved), held) in now.v.iter_mut().zip(moved).zip(&held) {
                 *v = moved + dt_s * held;
             }
+            // what cannot be solved here cannot be in its own step either, which says so
+            self.close(gravity);
         }
     }
 

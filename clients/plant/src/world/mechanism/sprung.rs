@@ -34,11 +34,14 @@ impl Mechanism {
     pub(super) fn stiffen(&mut self, dt_s: f64, fittings: &[Fitting]) {
         let Self { room, axes, .. } = self;
         room.stiff.copy_from(&room.inverse);
+        room.added.clear();
+        room.added.resize(axes.len(), 0.0);
         for (axis, (_, joint)) in axes.iter().enumerate() {
             let Some(joint) = joint.filter(|_| room.sprung[axis]) else { continue };
             let share = if room.exact[axis] { 1.0 } else { 0.5 };
             let added = share * dt_s * (0.5 * dt_s * fittings[joint].spring + room.viscous[axis]);
             room.column.copy_from(&room.stiff.column(axis));
+            room.added[axis] = added;
             add_mass(&mut room.stiff, axis, &room.column, added);
         }
     }

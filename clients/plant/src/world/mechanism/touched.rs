@@ -138,6 +138,7 @@ impl Mechanism {
         }
         self.travel(dt_s);
         self.now.v.copy_from_slice(velocities);
+        self.close(around.gravity);
         keep_within(&mut self.now, &self.axes, around.fittings);
     }
 }

@@ -85,11 +85,28 @@ pub(super) struct Jointed {
     pub(super) second: usize,
 }
 
+/// A joint that closes a loop.
+#[derive(Clone, Debug)]
+pub(super) struct Closure {
+    pub(super) link: Link,
+    /// The joint's frames on its parent and on its child.
+    pub(super) ends: [End; 2],
+}
+
+/// A frame on a member of the tree, or in the world.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct End {
+    pub(super) member: Option<usize>,
+    pub(super) frame: Pose,
+}
+
 /// A tree of bodies.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tree {
     pub(super) members: Vec<Member>,
     pub(super) joints: Vec<Jointed>,
+    /// Joints that close loops, whose coordinates the tree does not have.
+    pub(super) closures: Vec<Closure>,
     pub(super) positions: usize,
     pub(super) velocities: usize,
 }
@@ -161,17 +178,19 @@ impl Tree {
 /// What joints make of the bodies.
 pub(super) struct Forest {
     pub(super) trees: Vec<Tree>,
-    /// The joints, by their index in the scene, of what is not a tree: it closes a loop, or it stands on
-    /// nothing or on what moves by itself.
+    /// The joints, by their index in the scene, of what is not a tree: it stands on nothing or on what moves by itself, or
+    /// all joints of a loop have something fitted to them.
     pub(super) others: Vec<usize>,
 }
 
-/// The forest of these joints, of bodies that are `moved`.
+/// The forest of these joints, of bodies that are `moved`; a loop is closed by a joint that is `plain`: nothing drives
+/// it, brakes it, stops it or asks for its coordinate in a coupling.
 pub(super) fn forest(
     links: &[Link],
     couplings: &[Coupled],
     bodies: &RigidBodySet,
     moved: &impl Fn(RigidBodyHandle) -> bool,
+    plain: &impl Fn(&Link) -> bool,
 ) -> Forest {
     let mut forest = Forest { trees: Vec::new(), others: Vec::new() };
     let mut done = vec![false; links.len()];
@@ -183,7 +202,11 @@ pub(super) fn forest(
         for index in &together {
             done[*index] = true;
         }
-        match grown(links, &together, bodies, moved) {
+        // in the scene's order if that will do; else what is plain comes last, so that it closes the loops
+        let mut others_first = together.clone();
+        others_first.sort_by_key(|index| plain(&links[*index]));
+        let grown = |order: &[usize]| grown(links, order, bodies, moved, plain);
+        match grown(&together).or_else(|| grown(&others_first)) {
             Some(tree) => forest.trees.push(tree),
             None => forest.others.extend(together.iter().filter_map(|index| links[*index].joint)),
         }
@@ -218,12 +241,13 @@ fn together(
     found
 }
 
-/// The tree of joints that hang together, if they are one.
+/// The tree of joints that hang together, if they are one but for plain joints that close loops.
 fn grown(
     links: &[Link],
     together: &[usize],
     bodies: &RigidBodySet,
     moved: &impl Fn(RigidBodyHandle) -> bool,
+    plain: &impl Fn(&Link) -> bool,
 ) -> Option<Tree> {
     let mut tree = Tree::default();
     let mut left = together.to_vec();
@@ -241,7 +265,16 @@ fn grown(
         let reversed = match known {
             [true, false] => false,
             [false, true] => true,
-            // both are known: a loop
+            // both are known: a loop, if they are not both of the ground
+            _ if plain(link) && !tree.members.is_empty() && link.bodies.into_iter().all(whole) => {
+                let end = |at: usize| {
+                    let (body, frame) = (link.bodies[at], link.frames[at]);
+                    let member = find(body, &place);
+                    End { member, frame: if member.is_none() { *bodies[body].position() * frame } else { frame } }
+                };
+                tree.closures.push(Closure { link: *link, ends: [end(0), end(1)] });
+                continue;
+            }
             _ => return None,
         };
         let [near, far] = if reversed { [link.bodies[1], link.bodies[0]] } else { link.bodies };

@@ -4,9 +4,6 @@ use super::scenes::{G, bench, cube, joint, place, turned};
 use super::{Line, curves};
 use crate::fidelity::mechanisms::drive;
 
-/// Why linkages are inexact in long steps.
-const LOOPS: &str = "at 10 ms, since loops are moved by the engine, to the first order of the step";
-
 /// The pivots of a four-bar: both on the ground, both ends of the coupler at the start.
 const GROUND: [[f64; 2]; 2] = [[0.0, 0.0], [0.4, 0.0]];
 const CRANK_M: f64 = 0.15;
@@ -160,14 +157,12 @@ pub(super) fn lines() -> Vec<Line> {
             (four_bar_ode(0.3), "rad"),
             "one freedom, own integration",
             four_bar(300_000),
-        )
-        .because(LOOPS),
+        ),
         Line::new(
             "the same after 0.6 s",
             (four_bar_ode(0.6), "rad"),
             "one freedom, own integration",
             four_bar(600_000),
-        )
-        .because(LOOPS),
+        ),
     ]
 }
