@@ -27,7 +27,7 @@ enum Method {
     Smooth,
     /// Momentum.
     Driven,
-    /// A loop.
+    /// By the engine: a loop of which each joint has something fitted.
     Engine,
 }
 
