@@ -90,8 +90,7 @@ fn filling_hour_s() -> f64 {
     let mut formation = Formation::new(scenario.plan().clone());
     for name in scenario.plan().clients() {
         match scenario.member(name).expect("it compiles") {
-            Member::Plc(client) => formation.join(client).expect("a place"),
-            Member::Plant(client) => formation.join(client).expect("a place"),
+            Member::Plc(client) | Member::Plant(client) => formation.join(client).expect("a place"),
             _ => panic!("the filling machine has a plant and a soft PLC"),
         };
     }

@@ -1,6 +1,7 @@
 //! Joints that close a loop.
 //!
-//! A loop that has a joint to which nothing is fitted is moved by the coordinates of its other joints, as exactly as a tree.
+//! A loop that no drive moves and that has a joint to which nothing is fitted is moved by the coordinates of its other joints,
+//! as exactly as a tree.
 //! The engine moves any other: joints give by micrometres, and all is of the first order of the step only.
 
 use std::collections::VecDeque;
@@ -8,7 +9,7 @@ use std::collections::VecDeque;
 use onescan_server::time::TimeSpan;
 use serde::Serialize;
 
-use crate::model::{BodyKind, Joint};
+use crate::model::{BodyKind, Driven, Joint, Moved};
 use crate::scene::Scene;
 use crate::world::World;
 
@@ -31,7 +32,7 @@ impl std::fmt::Display for Loop {
         let joints: Vec<_> = self.joints.iter().map(|joint| format!("`{joint}`")).collect();
         write!(f, "joint `{}` closes a loop with {}", self.closing, joints.join(", "))?;
         if self.by_engine {
-            let why = "a drive, fitting, limit or coupling is on each of them, or they stand on nothing";
+            let why = "it is driven, a fitting, limit or coupling is on each of them, or they stand on nothing";
             write!(f, ", exact only to the first order of the step: {why}")?;
         }
         Ok(())
@@ -56,13 +57,40 @@ impl Scene {
                     found.push(Loop {
                         closing: joint.name.clone(),
                         joints,
-                        by_engine: world.articulation.leaves(index),
+                        by_engine: world.articulation.leaves(index) || self.is_driven_with(index),
                     });
                 }
                 None => tree.push((index, ends)),
             }
         }
         found
+    }
+
+    /// Whether a drive moves a joint, or another one that hangs together with it.
+    fn is_driven_with(&self, joint: usize) -> bool {
+        let shares = |one: usize, other: usize| {
+            let ends = [one, other].map(|joint| self.ends(&self.joints[joint]));
+            ends[0].iter().flatten().any(|body| ends[1].contains(&Some(*body)))
+        };
+        let mut together = vec![joint];
+        let mut next = 0;
+        while let Some(one) = together.get(next).copied() {
+            next += 1;
+            for other in 0..self.joints.len() {
+                if !together.contains(&other) && shares(one, other) {
+                    together.push(other);
+                }
+            }
+        }
+        let axes = self.axes.iter().filter_map(|axis| match axis.moved {
+            Moved::Joint(joint) => Some(joint),
+            Moved::Belt { .. } => None,
+        });
+        let components = self.components.iter().filter_map(|component| match component.bound.drives {
+            Some(Driven::Joint(joint)) => Some(joint),
+            Some(Driven::Belt(_)) | None => None,
+        });
+        axes.chain(components).any(|joint| together.contains(&joint))
     }
 
     fn ends(&self, joint: &Joint) -> [Node; 2] {

@@ -167,11 +167,11 @@ impl Articulation {
         let links: Vec<_> = moved.chain(holds).copied().collect();
         let last = |joint: usize| self.motions[joint].position - self.fittings[joint].initial;
         let plain = |joint: usize| {
-            let driven = actuators.iter().any(|actuator| actuator.joint == joint);
             let coupled = self.couplings.iter().any(|coupled| coupled.joins(joint));
-            self.fittings[joint].is_plain() && !driven && !coupled
+            self.fittings[joint].is_plain() && !coupled
         };
-        let (found, others) = mechanisms(&links, &self.couplings, &physics.bodies, plain, last);
+        let driven = |joint: usize| actuators.iter().any(|actuator| actuator.joint == joint);
+        let (found, others) = mechanisms(&links, &self.couplings, &physics.bodies, plain, driven, last);
         self.others = others;
         self.closing = found.iter().flat_map(Mechanism::closing).collect();
         self.mechanisms = found

@@ -97,8 +97,11 @@ fn number(value: f64) -> String {
     format!("{value:.decimals$}")
 }
 
+/// What draws up the lines of a section.
+type Lines = fn() -> Vec<Line>;
+
 /// The sections of the page.
-const SECTIONS: [(&str, fn() -> Vec<Line>); 10] = [
+const SECTIONS: [(&str, Lines); 10] = [
     ("Joints", mechanics::falls),
     ("Springs, friction, brakes, stops", || [mechanics::swings(), springs::lines()].into_iter().flatten().collect()),
     ("Mechanisms", || [mechanics::couplings(), mechanisms::lines()].into_iter().flatten().collect()),

@@ -3,19 +3,21 @@
 use onescan_plant::Scene;
 
 fn loops(joints: &[[&str; 3]]) -> Vec<String> {
-    let mut text = "version = 1\n".to_owned();
-    for (index, name) in ["a", "b", "c"].into_iter().enumerate() {
-        text += &format!(
+    let body = |(index, name): (usize, &str)| {
+        format!(
             "[[body]]\nname = \"{name}\"\nkind = \"dynamic\"\nshape = \"box\"\nsize_m = [0.1, 0.1, 0.1]\nmass_kg = 1.0\n\
              position_m = [{index}, 0, 0]\n"
-        );
-    }
-    text += "[[body]]\nname = \"frame\"\nkind = \"fixed\"\nshape = \"box\"\nsize_m = [0.1, 0.1, 0.1]\nposition_m = [9, 0, 0]\n";
-    for [name, parent, child] in joints {
-        text += &format!(
+        )
+    };
+    let joint = |[name, parent, child]: &[&str; 3]| {
+        format!(
             "[[joint]]\nname = \"{name}\"\nkind = \"revolute\"\nparent = \"{parent}\"\nchild = \"{child}\"\naxis = [0, 1, 0]\n"
-        );
-    }
+        )
+    };
+    let frame = "[[body]]\nname = \"frame\"\nkind = \"fixed\"\nshape = \"box\"\nsize_m = [0.1, 0.1, 0.1]\n\
+                 position_m = [9, 0, 0]\n";
+    let bodies: String = ["a", "b", "c"].into_iter().enumerate().map(body).collect();
+    let text = format!("version = 1\n{bodies}{frame}{}", joints.iter().map(joint).collect::<String>());
     let scene = Scene::parse(&text, "plant.toml").unwrap_or_else(|error| panic!("{error}"));
     scene.loops().iter().map(ToString::to_string).collect()
 }
@@ -27,5 +29,5 @@ fn a_loop_is_named_by_the_joint_that_closes_it() {
     let four_bar = [chain[0], chain[1], ["s", "frame", "b"]];
     assert_eq!(loops(&four_bar), ["joint `s` closes a loop with `p`, `q`"], "what stands is one place");
     let ring = [chain[1], chain[2], ["s", "c", "a"]];
-    insta::assert_snapshot!(loops(&ring).join("\n"), @"joint `s` closes a loop with `r`, `q`, exact only to the first order of the step: a drive, fitting, limit or coupling is on each of them, or they stand on nothing");
+    insta::assert_snapshot!(loops(&ring).join("\n"), @"joint `s` closes a loop with `r`, `q`, exact only to the first order of the step: it is driven, a fitting, limit or coupling is on each of them, or they stand on nothing");
 }

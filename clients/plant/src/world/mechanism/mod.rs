@@ -123,17 +123,18 @@ pub(crate) struct Surroundings<'s> {
 }
 
 /// The mechanisms that joints make of bodies, and the joints, by their index in the scene, of what
-/// cannot be one; joints that are `plain` may close loops. What holds a
+/// cannot be one; joints that are `plain` may close loops of which none is `driven`. What holds a
 /// body fast never closes one: two that hold one body give way, as grippers do.
 pub(crate) fn mechanisms(
     links: &[Link],
     couplings: &[Coupled],
     bodies: &RigidBodySet,
     plain: impl Fn(usize) -> bool,
+    driven: impl Fn(usize) -> bool,
     last: impl Fn(usize) -> f64,
 ) -> (Vec<Mechanism>, Vec<usize>) {
     let moved = |handle: RigidBodyHandle| bodies[handle].is_dynamic();
-    let forest = tree::forest(links, couplings, bodies, &moved, &|link| link.joint.is_some_and(&plain));
+    let forest = tree::forest(links, couplings, bodies, &moved, &|link| link.joint.is_some_and(&plain), &driven);
     let mechanisms = forest.trees.into_iter().map(|tree| {
         let mut mechanism = Mechanism::new(tree);
         mechanism.bind(couplings);

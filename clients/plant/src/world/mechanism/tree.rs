@@ -183,14 +183,16 @@ pub(super) struct Forest {
     pub(super) others: Vec<usize>,
 }
 
-/// The forest of these joints, of bodies that are `moved`; a loop is closed by a joint that is `plain`: nothing drives
-/// it, brakes it, stops it or asks for its coordinate in a coupling.
+/// The forest of these joints, of bodies that are `moved`. A loop is closed by a joint that is `plain`: nothing brakes it,
+/// stops it or asks for its coordinate in a coupling; and only where no joint of all that hangs together is `driven`, for
+/// what closes a loop moves all of its joints, and a drive goes exactly where it is to go.
 pub(super) fn forest(
     links: &[Link],
     couplings: &[Coupled],
     bodies: &RigidBodySet,
     moved: &impl Fn(RigidBodyHandle) -> bool,
     plain: &impl Fn(&Link) -> bool,
+    driven: &impl Fn(usize) -> bool,
 ) -> Forest {
     let mut forest = Forest { trees: Vec::new(), others: Vec::new() };
     let mut done = vec![false; links.len()];
@@ -205,7 +207,9 @@ pub(super) fn forest(
         // in the scene's order if that will do; else what is plain comes last, so that it closes the loops
         let mut others_first = together.clone();
         others_first.sort_by_key(|index| plain(&links[*index]));
-        let grown = |order: &[usize]| grown(links, order, bodies, moved, plain);
+        let passive = !together.iter().any(|index| links[*index].joint.is_some_and(driven));
+        let closes = |link: &Link| passive && plain(link);
+        let grown = |order: &[usize]| grown(links, order, bodies, moved, &closes);
         match grown(&together).or_else(|| grown(&others_first)) {
             Some(tree) => forest.trees.push(tree),
             None => forest.others.extend(together.iter().filter_map(|index| links[*index].joint)),

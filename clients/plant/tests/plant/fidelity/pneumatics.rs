@@ -111,7 +111,7 @@ fn chambers() -> Vec<Line> {
 struct Stroke {
     bore_m: f64,
     rod_m: f64,
-    stroke_m: f64,
+    length_m: f64,
     kg: f64,
     /// Up to where its way is timed.
     to_m: f64,
@@ -138,9 +138,9 @@ impl Stroke {
             if t < delay_s {
                 return [cap, rod, x, v];
             }
-            let narrow = self.cushion.filter(|(length_m, _)| self.stroke_m - x < *length_m);
+            let narrow = self.cushion.filter(|(before_m, _)| self.length_m - x < *before_m);
             let out = narrow.map_or(wide, |(_, conductance)| conductance);
-            let (cap_m3, rod_m3) = (20e-6 + cap_m2 * x, 20e-6 + ring_m2 * (self.stroke_m - x));
+            let (cap_m3, rod_m3) = (20e-6 + cap_m2 * x, 20e-6 + ring_m2 * (self.length_m - x));
             let fills = 1.2 / cap_m3 * (heat * flow_kg_s(wide, supply_pa, cap) - cap * cap_m2 * v);
             let empties = 1.2 / rod_m3 * (heat * flow_kg_s(out, ATMOSPHERE_PA, rod) + rod * ring_m2 * v);
             let push = cap * cap_m2 - rod * ring_m2 - ATMOSPHERE_PA * (cap_m2 - ring_m2) - 50.0 * v;
@@ -160,7 +160,7 @@ impl Stroke {
              position_m_signal = \"Out\"",
             self.bore_m,
             self.rod_m,
-            self.stroke_m,
+            self.length_m,
             1e8 * screw
         );
         let (parts, most_m) = (cylinder(2.0, self.kg, &keys), self.to_m);
@@ -172,8 +172,8 @@ impl Stroke {
 }
 
 fn strokes() -> Vec<Line> {
-    let small = Stroke { bore_m: 0.032, rod_m: 0.012, stroke_m: 0.1, kg: 2.0, to_m: 0.099, cushion: None };
-    let large = Stroke { bore_m: 0.063, rod_m: 0.02, stroke_m: 0.2, kg: 20.0, to_m: 0.199, cushion: None };
+    let small = Stroke { bore_m: 0.032, rod_m: 0.012, length_m: 0.1, kg: 2.0, to_m: 0.099, cushion: None };
+    let large = Stroke { bore_m: 0.063, rod_m: 0.02, length_m: 0.2, kg: 20.0, to_m: 0.199, cushion: None };
     let cushioned = Stroke { cushion: Some((0.02, 0.1e-8)), to_m: 0.19, ..large };
     let source = "ISO 6358-1, Beater ch. 5, own integration";
     vec![
