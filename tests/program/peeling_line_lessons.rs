@@ -59,7 +59,7 @@ fn the_line_has_its_views_and_figures() {
         let tables = file[key].as_array().unwrap_or_else(|| panic!("{key}"));
         tables.iter().filter_map(|table| table["name"].as_str().map(str::to_owned)).collect()
     };
-    assert_eq!(names("view"), ["whole", "charger", "lathe", "veneer"]);
+    assert_eq!(names("view"), ["line", "charger", "lathe", "veneer"]);
     let figures = names("figure");
     for figure in ["block", "knife", "ribbon", "nosebar", "arms", "loader", "roll_top", "core"] {
         assert!(figures.iter().any(|name| name == figure), "{figure}: {figures:?}");
