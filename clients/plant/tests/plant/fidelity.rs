@@ -3,7 +3,7 @@
 //! `UPDATE_DOCS=1 cargo test -p onescan-plant --test plant fidelity` rewrites the page.
 
 mod contacts;
-mod curves;
+pub(crate) mod curves;
 mod drives;
 mod electric;
 mod handling;

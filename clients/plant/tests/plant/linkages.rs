@@ -3,88 +3,14 @@
 use onescan_server::client::Client;
 
 use crate::bench::Bench;
+use crate::four_bar::{FourBar, within_half_a_turn};
 use crate::mechanism::{bar, pin};
 
-/// A four-bar linkage whose crank goes all the way round: where its pins are in the scene's pose, x and z, m.
-const CRANK: [f64; 2] = [0.0, 0.0];
-const ROCKER: [f64; 2] = [1.0, 0.0];
-const CRANK_M: f64 = 0.3;
-const COUPLER_M: f64 = 0.9;
-const ROCKER_M: f64 = 0.6;
-/// Masses of crank, coupler and rocker.
-const KG: [f64; 3] = [1.0, 2.0, 1.5];
-/// Where the crank stands at the start.
-const START_RAD: f64 = 1.0;
-/// What a bar of square section adds to the inertia of a thin one, m².
-const THICK_M2: f64 = 0.05 * 0.05 / 12.0;
-
-/// The pins at the ends of the coupler, from the crank's angle, counted from x towards z.
-fn pins(crank_rad: f64) -> [[f64; 2]; 2] {
-    let (sine, cosine) = crank_rad.sin_cos();
-    let a = [CRANK_M * cosine, CRANK_M * sine];
-    let (dx, dz) = (ROCKER[0] - a[0], ROCKER[1] - a[1]);
-    let apart = dx.hypot(dz);
-    let along = (COUPLER_M * COUPLER_M - ROCKER_M * ROCKER_M + apart * apart) / (2.0 * apart);
-    let beside = (COUPLER_M * COUPLER_M - along * along).sqrt();
-    let b = [a[0] + (along * dx - beside * dz) / apart, a[1] + (along * dz + beside * dx) / apart];
-    [a, b]
-}
+/// A linkage whose crank goes all the way round.
+const LINKAGE: FourBar = FourBar { crank_m: 0.3, coupler_m: 0.9, rocker_m: 0.6, apart_m: 1.0, start_rad: 1.0 };
 
 fn four_bar(more: &str) -> String {
-    let [a, b] = pins(START_RAD);
-    let bars = bar("crank", CRANK, a, KG[0]) + &bar("coupler", a, b, KG[1]) + &bar("rocker", b, ROCKER, KG[2]);
-    let pins = pin("drive", "ground", "crank", CRANK) + &pin("left", "crank", "coupler", a);
-    let pins = pins + &pin("right", "coupler", "rocker", b) + &pin("foot", "ground", "rocker", ROCKER);
-    format!("version = 1\n{bars}{pins}{more}")
-}
-
-/// What the linkage's motion costs, `½ I(φ) φ'²`, and its height: `I` and the potential energy at a crank's angle, both
-/// from how its pins move with the angle.
-fn energies(crank_rad: f64) -> [f64; 2] {
-    const BY: f64 = 1e-5;
-    let middles = |rad: f64| {
-        let [a, b] = pins(rad);
-        let half = |one: [f64; 2], other: [f64; 2]| [0.5 * (one[0] + other[0]), 0.5 * (one[1] + other[1])];
-        let turned = |one: [f64; 2], other: [f64; 2]| (other[1] - one[1]).atan2(other[0] - one[0]);
-        [(half(CRANK, a), turned(CRANK, a)), (half(a, b), turned(a, b)), (half(b, ROCKER), turned(b, ROCKER))]
-    };
-    let inertia = |kg: f64, length_m: f64| kg * (length_m * length_m / 12.0 + THICK_M2);
-    let lengths = [CRANK_M, COUPLER_M, ROCKER_M];
-    let (before, now, after) = (middles(crank_rad - BY), middles(crank_rad), middles(crank_rad + BY));
-    let (mut moved, mut lifted) = (0.0, 0.0);
-    for index in 0..3 {
-        let ([x0, z0], turn0) = before[index];
-        let ([x1, z1], turn1) = after[index];
-        let turn = (turn1 - turn0 + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU) - std::f64::consts::PI;
-        let [dx, dz, turn] = [x1 - x0, z1 - z0, turn].map(|change| change / (2.0 * BY));
-        moved += KG[index] * (dx * dx + dz * dz) + inertia(KG[index], lengths[index]) * turn * turn;
-        lifted += KG[index] * 9.81 * now[index].0[1];
-    }
-    [moved, lifted]
-}
-
-/// The crank's angle after a time from rest, by `I φ'' = -½ I' φ'² - V'` in steps of 0.1 ms.
-fn exact(time_s: f64) -> f64 {
-    const STEP_S: f64 = 1e-4;
-    const BY: f64 = 1e-4;
-    let acceleration = |rad: f64, rad_s: f64| {
-        let ([before, low], [after, high]) = (energies(rad - BY), energies(rad + BY));
-        let [inertia, _] = energies(rad);
-        -(0.5 * (after - before) * rad_s * rad_s + (high - low)) / (2.0 * BY * inertia)
-    };
-    let (mut rad, mut rad_s) = (START_RAD, 0.0);
-    for _ in 0..(time_s / STEP_S).round() as u32 {
-        let mut slopes = [[0.0; 2]; 4];
-        for stage in 0..4 {
-            let way = if stage == 3 { STEP_S } else { 0.5 * STEP_S };
-            let [dr, dv] = if stage == 0 { [0.0; 2] } else { slopes[stage - 1] };
-            let (r, v) = (rad + way * dr, rad_s + way * dv);
-            slopes[stage] = [v, acceleration(r, v)];
-        }
-        let sum = |k: usize| slopes[0][k] + 2.0 * (slopes[1][k] + slopes[2][k]) + slopes[3][k];
-        (rad, rad_s) = (rad + STEP_S / 6.0 * sum(0), rad_s + STEP_S / 6.0 * sum(1));
-    }
-    rad
+    format!("version = 1\n{}{more}", LINKAGE.parts())
 }
 
 /// Where the crank's far end is, as an angle, and how far the coupler is from its pins.
@@ -98,21 +24,21 @@ fn seen(bench: &Bench) -> [f64; 2] {
         let at = [pose.position_m[0], pose.position_m[2]];
         [-half, half].map(|along| [at[0] + along * axis[0], at[1] + along * axis[1]])
     };
-    let ([_, a], [from, to], [b, foot]) = (ends(0, CRANK_M), ends(1, COUPLER_M), ends(2, ROCKER_M));
+    let ([_, a], [from, to], [b, foot]) =
+        (ends(0, LINKAGE.crank_m), ends(1, LINKAGE.coupler_m), ends(2, LINKAGE.rocker_m));
     let apart = |one: [f64; 2], other: [f64; 2]| (one[0] - other[0]).hypot(one[1] - other[1]);
-    [a[1].atan2(a[0]), apart(a, from).max(apart(to, b)).max(apart(foot, ROCKER))]
+    [a[1].atan2(a[0]), apart(a, from).max(apart(to, b)).max(apart(foot, [LINKAGE.apart_m, 0.0]))]
 }
 
 #[test]
 fn a_four_bar_linkage_falls_as_its_own_equation_says() {
     for time_us in [300_000, 700_000] {
-        let wanted = exact(time_us as f64 * 1e-6);
+        let wanted = LINKAGE.falls(time_us as f64 * 1e-6);
         for (period_us, off) in [(100, 1e-7), (1_000, 1e-7), (10_000, 1e-4)] {
             let mut bench = Bench::at_us(&four_bar(""), period_us);
             bench.run_us(time_us);
             let [crank_rad, open_m] = seen(&bench);
-            let missing = (crank_rad - wanted + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU);
-            let missing = missing - std::f64::consts::PI;
+            let missing = within_half_a_turn(crank_rad - wanted);
             assert!(missing.abs() < off, "{time_us} us at {period_us} us: {crank_rad} {wanted}");
             assert!(open_m < 1e-11, "{period_us}: {open_m}");
         }
@@ -155,7 +81,7 @@ fn a_spring_in_a_loop_keeps_its_energy_beside_a_brake_that_is_released() {
             for _ in 0..2_000_000 / period_us {
                 bench.turn();
                 let [crank_rad, open_m] = seen(&bench);
-                *widest = widest.max((crank_rad - START_RAD).abs());
+                *widest = widest.max((crank_rad - LINKAGE.start_rad).abs());
                 assert!(open_m < 1e-11, "{period_us} us, half {half}: {open_m}");
             }
         }

@@ -16,6 +16,7 @@ mod failures;
 mod faults;
 mod fidelity;
 mod fittings;
+mod four_bar;
 mod friction;
 mod guided;
 mod handling;

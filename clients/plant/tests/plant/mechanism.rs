@@ -116,12 +116,15 @@ fn a_pendulum_stops_at_its_limit_and_stays() {
     }
 }
 
+/// How thick bars are.
+pub(crate) const THICK_M: f64 = 0.05;
+
 /// A bar between two joints, with a mass; turned about y.
 pub(crate) fn bar(name: &str, [x0, z0]: [f64; 2], [x1, z1]: [f64; 2], kg: f64) -> String {
     let (dx, dz) = (x1 - x0, z1 - z0);
     let (length_m, pitch_deg) = (dx.hypot(dz), -dz.atan2(dx).to_degrees());
     format!(
-        "[[body]]\nname = \"{name}\"\nkind = \"dynamic\"\nshape = \"box\"\nsize_m = [{length_m:?}, 0.05, 0.05]\n\
+        "[[body]]\nname = \"{name}\"\nkind = \"dynamic\"\nshape = \"box\"\nsize_m = [{length_m:?}, {THICK_M}, {THICK_M}]\n\
          mass_kg = {kg:?}\nposition_m = [{:?}, 0.0, {:?}]\nrpy_deg = [0.0, {pitch_deg:?}, 0.0]\ngroup = \"bars\"\n",
         0.5 * (x0 + x1),
         0.5 * (z0 + z1)

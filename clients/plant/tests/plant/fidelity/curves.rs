@@ -1,7 +1,7 @@
 //! What differential equations give, integrated here and not by the plant.
 
 /// The values of `y' = rates(t, y)` after a time, by Runge-Kutta of order 4.
-pub(super) fn runge_kutta<const N: usize>(
+pub(crate) fn runge_kutta<const N: usize>(
     start: [f64; N],
     time_s: f64,
     steps: u32,

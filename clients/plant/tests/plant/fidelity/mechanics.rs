@@ -55,7 +55,8 @@ pub(super) fn falls() -> Vec<Line> {
     ]
 }
 
-fn two_masses(step_us: u64) -> f64 {
+/// Masses of 1 and 3 kg on a spring between them, 10 mm from where it is at rest.
+pub(super) fn masses_on_a_spring(step_us: u64) -> crate::bench::Bench {
     let parts = format!(
         "{}{}{}[[joint]]\nname = \"k\"\nkind = \"prismatic\"\nparent = \"a\"\nchild = \"b\"\naxis = [1, 0, 0]\ninitial_m = 0.01\n\
          [[fitting]]\nname = \"f\"\njoint = \"k\"\nspring_n_m = 18000.0\n",
@@ -63,7 +64,11 @@ fn two_masses(step_us: u64) -> f64 {
         cube("b", [1.0, 0.0, 0.0], 3.0, ""),
         joint("j", "prismatic", "a", "[1, 0, 0]", ""),
     );
-    let mut bench = bench(&format!("gravity_m_s2 = [0, 0, 0]\n{parts}"), step_us);
+    bench(&format!("gravity_m_s2 = [0, 0, 0]\n{parts}"), step_us)
+}
+
+fn two_masses(step_us: u64) -> f64 {
+    let mut bench = masses_on_a_spring(step_us);
     let apart = |bench: &crate::bench::Bench| place(bench, "b")[0] - place(bench, "a")[0] - 0.99;
     20.0 / crossings(&mut bench, step_us, 21, apart)
 }

@@ -46,14 +46,7 @@ fn stiff(step_us: u64) -> f64 {
 
 /// The greatest distance of two masses from where their spring is at rest, in the last tenth of two seconds, from 10 mm.
 fn two_masses(step_us: u64) -> f64 {
-    let parts = format!(
-        "{}{}{}[[joint]]\nname = \"k\"\nkind = \"prismatic\"\nparent = \"a\"\nchild = \"b\"\naxis = [1, 0, 0]\ninitial_m = 0.01\n\
-         [[fitting]]\nname = \"f\"\njoint = \"k\"\nspring_n_m = 18000.0\n",
-        cube("a", [0.0, 0.0, 0.0], 1.0, ""),
-        cube("b", [1.0, 0.0, 0.0], 3.0, ""),
-        joint("j", "prismatic", "a", "[1, 0, 0]", ""),
-    );
-    let mut bench = bench(&format!("gravity_m_s2 = [0, 0, 0]\n{parts}"), step_us);
+    let mut bench = super::mechanics::masses_on_a_spring(step_us);
     bench.run_us(1_500_000);
     let mut most: f64 = 0.0;
     for _ in 0..500_000 / step_us {
