@@ -1,20 +1,17 @@
 //! Joints that close a loop.
 //!
-//! A loop that no drive moves and that has a joint to which nothing is fitted is moved by the coordinates of its other joints,
-//! as exactly as a tree.
-//! The engine moves any other: joints give by micrometres, and all is of the first order of the step only.
+//! A loop that no drive moves and that has a joint to which nothing is fitted is moved by the coordinates of its other
+//! joints, as exactly as a tree. The engine moves any other: joints give by micrometres, and all is of the first order of
+//! the step only.
 
 use std::collections::VecDeque;
 
-use onescan_server::time::TimeSpan;
 use serde::Serialize;
 
-use crate::model::{BodyKind, Driven, Joint, Moved};
+use crate::model::{BodyKind, Joint};
 use crate::scene::Scene;
+use crate::start::ANY_PERIOD;
 use crate::world::World;
-
-/// Who moves a loop does not depend on it.
-const ANY_PERIOD: TimeSpan = TimeSpan::from_millis(1).expect("not zero");
 
 /// A loop of joints.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -43,8 +40,8 @@ impl std::fmt::Display for Loop {
 type Node = Option<usize>;
 
 impl Scene {
-    /// The loops of its joints, each with the joint that closes it, in the scene's order; those of robots without dynamics
-    /// are none.
+    /// The loops of its joints, each with the joint that closes it, in the scene's order. Robots without dynamics have
+    /// none.
     pub fn loops(&self) -> Vec<Loop> {
         let world = World::at_the_start(self, ANY_PERIOD);
         let mut tree: Vec<(usize, [Node; 2])> = Vec::new();
@@ -57,40 +54,13 @@ impl Scene {
                     found.push(Loop {
                         closing: joint.name.clone(),
                         joints,
-                        by_engine: world.articulation.leaves(index) || self.is_driven_with(index),
+                        by_engine: world.articulation.leaves(index),
                     });
                 }
                 None => tree.push((index, ends)),
             }
         }
         found
-    }
-
-    /// Whether a drive moves a joint, or another one that hangs together with it.
-    fn is_driven_with(&self, joint: usize) -> bool {
-        let shares = |one: usize, other: usize| {
-            let ends = [one, other].map(|joint| self.ends(&self.joints[joint]));
-            ends[0].iter().flatten().any(|body| ends[1].contains(&Some(*body)))
-        };
-        let mut together = vec![joint];
-        let mut next = 0;
-        while let Some(one) = together.get(next).copied() {
-            next += 1;
-            for other in 0..self.joints.len() {
-                if !together.contains(&other) && shares(one, other) {
-                    together.push(other);
-                }
-            }
-        }
-        let axes = self.axes.iter().filter_map(|axis| match axis.moved {
-            Moved::Joint(joint) => Some(joint),
-            Moved::Belt { .. } => None,
-        });
-        let components = self.components.iter().filter_map(|component| match component.bound.drives {
-            Some(Driven::Joint(joint)) => Some(joint),
-            Some(Driven::Belt(_)) | None => None,
-        });
-        axes.chain(components).any(|joint| together.contains(&joint))
     }
 
     fn ends(&self, joint: &Joint) -> [Node; 2] {

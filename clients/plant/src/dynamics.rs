@@ -2,10 +2,10 @@
 //!
 //! They are those that the plant computes with, so they can be laid beside a drive's sizing or another program's.
 
-use onescan_server::time::TimeSpan;
 use serde::Serialize;
 
 use crate::scene::Scene;
+use crate::start::ANY_PERIOD;
 use crate::world::World;
 
 /// A mechanism at rest: `M a + g = f`, for accelerations `a` and forces `f` of its joints.
@@ -19,14 +19,11 @@ pub struct Dynamics {
     pub mass_matrix: Vec<Vec<f64>>,
 }
 
-/// Nothing here depends on how long a turn is.
-const PERIOD: TimeSpan = TimeSpan::from_millis(1).expect("not zero");
-
 impl Scene {
     /// The mechanisms in their first pose, without what is fitted to joints or couples them. Joints whose loop the
     /// engine closes, and robots that are `kinematic`, have none.
     pub fn dynamics(&self) -> Vec<Dynamics> {
-        let mut world = World::at_the_start(self, PERIOD);
+        let mut world = World::at_the_start(self, ANY_PERIOD);
         let gravity = world.gravity();
         let found = world.articulation.at_rest(gravity).into_iter().filter(|rests| !rests.joints.is_empty());
         let named = found.map(|rests| Dynamics {

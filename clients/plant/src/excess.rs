@@ -185,17 +185,6 @@ fn round(time_s: f64) -> f64 {
 }
 
 impl World {
-    /// The world as a scene begins, with its mechanisms.
-    pub(crate) fn at_the_start(scene: &Scene, period: TimeSpan) -> Self {
-        let mut world = Self::build(scene, period);
-        let waits = scene.components.iter().filter(|component| component.kind.coupling.targets_wait());
-        for body in waits.flat_map(|component| &component.bound.targets) {
-            world.leave_out(*body);
-        }
-        world.find_mechanisms();
-        world
-    }
-
     /// The joints of the scene that have a coordinate, with the inverse of what each moves; those that no mechanism has
     /// as if their bodies hung on nothing else.
     fn apparent(&mut self, held: &dyn Fn(usize) -> bool) -> Vec<(usize, f64)> {

@@ -26,6 +26,7 @@
 //! | [`coupling`] | what ties a component to the world of rigid bodies |
 //! | `part` | a component of the scene, bound to signals, other components and the world |
 //! | `machine` | all of these, one turn at a time |
+//! | `start` | the world as a scene begins |
 //! | `overlap` | bodies that are in each other at the start |
 //! | `closure` | joints that close a loop |
 //! | `excess` | what a scene asks for beyond what the plant can carry at its step |
@@ -82,6 +83,7 @@ pub mod scanner;
 pub mod scene;
 mod sensor;
 mod setpoint;
+mod start;
 mod state;
 mod temperature_field;
 mod world;

@@ -3,16 +3,14 @@
 //! The world pushes them apart from the first step on, with a force that has no bound: a carriage that is 0.1 mm in
 //! its rail is pressed with more than a meganewton, and its drive feels the friction of that.
 
-use onescan_server::time::TimeSpan;
 use serde::Serialize;
 
 use crate::scene::Scene;
+use crate::start::ANY_PERIOD;
 use crate::world::World;
 
 /// Bodies that are no deeper in each other are taken to touch: sums of a scene's numbers end so far from another.
 pub const OVERLAP_MIN_M: f64 = 1e-6;
-/// Where bodies are at the start does not depend on it.
-const ANY_PERIOD: TimeSpan = TimeSpan::from_millis(1).expect("not zero");
 
 /// Two bodies that are in each other in the scene's pose.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -35,12 +33,10 @@ impl Scene {
     /// world would push apart. Two that no force moves, or that do not collide, are none of them; nor are workpieces
     /// that still wait to be put into the world.
     pub fn overlaps(&self) -> Vec<Overlap> {
-        let mut world = World::build(self, ANY_PERIOD);
-        let waits = self.components.iter().filter(|component| component.kind.coupling.targets_wait());
-        for body in waits.flat_map(|component| &component.bound.targets) {
-            world.leave_out(*body);
-        }
-        let found = world.overlaps().into_iter().filter(|(_, depth_m)| *depth_m > OVERLAP_MIN_M);
+        let found = World::at_the_start(self, ANY_PERIOD)
+            .overlaps()
+            .into_iter()
+            .filter(|(_, depth_m)| *depth_m > OVERLAP_MIN_M);
         let name = |body: usize| self.bodies[body].name.clone();
         found.map(|(bodies, depth_m)| Overlap { bodies: bodies.map(name), depth_m }).collect()
     }

@@ -1,4 +1,5 @@
-//! What scenes ask of plants: bodies that overlap at the start, loops that the engine moves, and what is beyond a plant at its step.
+//! What scenes ask of plants: bodies that overlap at the start, loops that the engine moves, and what is beyond a plant
+//! at its step.
 
 use std::io::{self, Write};
 
@@ -9,9 +10,9 @@ use serde::Serialize;
 /// Something of a plant's scene that the plant shows otherwise than the machine does.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Strain {
-    /// The plant.
+    /// The name of the plant among the scenario's clients.
     client: String,
-    /// What it is.
+    /// What it is, with names and figures, for people.
     message: String,
 }
 

@@ -30,7 +30,7 @@ impl Items {
         self.lock()[self.places[index].clone()].copy_from_slice(value);
     }
 
-    /// All items.
+    /// The bytes of all items, as one picture of them.
     pub(super) fn all(&self) -> Vec<u8> {
         self.lock().clone()
     }

@@ -2,7 +2,7 @@
 
 use onescan_server::client::ClientFault;
 
-use super::{BindingKey, Names, Targets, Tie, Unbound, Which, handles, needed, optional, target, wanted};
+use super::{BindingKey, Names, Targets, Tie, Unbound, Which, needed, optional, sought, target, wanted};
 use crate::model::Bound;
 use crate::model::Mechanics;
 use crate::world::coordinate::Measured;
@@ -34,8 +34,7 @@ impl Tie for Collect {
 
     fn bind(bound: &Bound, _: &Mechanics, world: &mut World) -> Result<Self, Unbound> {
         let body = world.handle(Some(wanted(bound.body, "body")?));
-        let targets = handles(world, &bound.targets);
-        Ok(Self { surface: world.surface(body, None), targets: world.seek(targets) })
+        Ok(Self { surface: world.surface(body, None), targets: sought(world, &bound.targets) })
     }
 
     fn see(&self, _: Measured<'_>, world: &World) -> Targets {

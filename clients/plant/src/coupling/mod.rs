@@ -307,6 +307,12 @@ impl Targets {
     }
 }
 
+/// The targets of a binding, as a sensor looks for them.
+fn sought(world: &mut World, indices: &[usize]) -> Sought {
+    let handles = handles(world, indices);
+    world.seek(handles)
+}
+
 fn handles(world: &World, indices: &[usize]) -> Vec<RigidBodyHandle> {
     indices.iter().map(|index| world.handle(Some(*index))).collect()
 }

@@ -2,7 +2,7 @@
 
 use onescan_server::client::ClientFault;
 
-use super::{BindingKey, Names, Targets, Tie, Unbound, Which, handles, needed, target, wanted};
+use super::{BindingKey, Names, Targets, Tie, Unbound, Which, needed, sought, target, wanted};
 use crate::model::Bound;
 use crate::model::Mechanics;
 use crate::world::coordinate::Measured;
@@ -40,11 +40,11 @@ impl Tie for Place {
 
     fn bind(bound: &Bound, _: &Mechanics, world: &mut World) -> Result<Self, Unbound> {
         let body = world.handle(Some(wanted(bound.body, "body")?));
-        let targets = handles(world, &bound.targets);
-        for target in &targets {
+        let targets = sought(world, &bound.targets);
+        for target in targets.handles() {
             world.take_out(*target).map_err(|_| Unbound("target in the world"))?;
         }
-        Ok(Self { surface: world.surface(body, None), targets: world.seek(targets) })
+        Ok(Self { surface: world.surface(body, None), targets })
     }
 
     fn see(&self, _: Measured<'_>, world: &World) -> Targets {

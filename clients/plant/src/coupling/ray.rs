@@ -4,7 +4,7 @@ use onescan_server::client::ClientFault;
 use rapier3d::math::Vector;
 use rapier3d::prelude::RigidBodyHandle;
 
-use super::{BindingKey, Names, Tie, Unbound, Which, handles, needed, optional, wanted, without_effect};
+use super::{BindingKey, Names, Tie, Unbound, Which, needed, optional, sought, wanted, without_effect};
 use crate::model::Bound;
 use crate::model::Mechanics;
 use crate::world::coordinate::Measured;
@@ -42,8 +42,7 @@ impl Tie for Ray {
 
     fn bind(bound: &Bound, _: &Mechanics, world: &mut World) -> Result<Self, Unbound> {
         let carrier = world.handle(bound.body);
-        let targets = handles(world, &bound.targets);
-        let targets = world.seek(targets);
+        let targets = sought(world, &bound.targets);
         let (point, direction) = (wanted(bound.point_m, "point")?, wanted(bound.direction, "direction")?);
         let pose = world.body(carrier).position();
         Ok(Self {

@@ -2,7 +2,7 @@
 
 use onescan_server::client::ClientFault;
 
-use super::{BindingKey, Names, Targets, Tie, Unbound, Which, handles, needed, optional, wanted, without_effect};
+use super::{BindingKey, Names, Targets, Tie, Unbound, Which, needed, optional, sought, wanted, without_effect};
 use crate::model::Bound;
 use crate::model::Mechanics;
 use crate::world::coordinate::Measured;
@@ -33,8 +33,7 @@ impl Touched {
     pub(super) fn bind(bound: &Bound, world: &mut World) -> Result<Self, Unbound> {
         let body = world.handle(Some(wanted(bound.body, "body")?));
         let surface = world.surface(body, bound.shape.map(|shape| world.shape(shape)));
-        let targets = handles(world, &bound.targets);
-        Ok(Self { surface, targets: world.seek(targets) })
+        Ok(Self { surface, targets: sought(world, &bound.targets) })
     }
 
     pub(super) fn see(&self, world: &World) -> Targets {

@@ -141,7 +141,7 @@ pub struct Joint {
     pub child: usize,
     /// The child's frame on the parent, when the coordinate is `reference`.
     pub origin: Origin,
-    /// m or rad.
+    /// The coordinate in the pose of the file, m or rad: MJCF's `ref`, 0 in URDF.
     pub reference: f64,
     /// Where the joint is in the child's frame.
     pub anchor_m: [f64; 3],

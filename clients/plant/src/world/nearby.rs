@@ -24,14 +24,7 @@ pub(super) struct Nearby {
 
 impl Nearby {
     pub(super) fn of(physics: &PhysicsWorld) -> Self {
-        let boxed = |(handle, body): (RigidBodyHandle, &RigidBody)| {
-            let colliders = body.colliders().iter().filter_map(|collider| physics.colliders.get(*collider));
-            let boxes = colliders.map(|collider| {
-                let local = collider.position_wrt_parent().copied().unwrap_or(Pose::IDENTITY);
-                collider.shape().compute_aabb(&local)
-            });
-            boxes.reduce(|one, other| one.merged(&other)).map(|all| (handle, all))
-        };
+        let boxed = |(handle, body)| own_box(body, &physics.colliders).map(|own| (handle, own));
         let bodies = physics.bodies.iter().filter_map(boxed).collect();
         let mut nearby = Self { tree: Bvh::new(), workspace: BvhWorkspace::default(), bodies };
         nearby.follow(physics);
@@ -53,6 +46,16 @@ impl Nearby {
         self.tree.refit(&mut self.workspace);
         self.tree.optimize_incremental(&mut self.workspace);
     }
+}
+
+/// The box around the shapes of a body as the body sees it; none of one without a shape.
+pub(super) fn own_box(body: &RigidBody, colliders: &ColliderSet) -> Option<Aabb> {
+    let shapes = body.colliders().iter().filter_map(|collider| colliders.get(*collider));
+    let boxes = shapes.map(|collider| {
+        let local = collider.position_wrt_parent().copied().unwrap_or(Pose::IDENTITY);
+        collider.shape().compute_aabb(&local)
+    });
+    boxes.reduce(|one, other| one.merged(&other))
 }
 
 /// A ray, made ready for many boxes.
@@ -91,8 +94,8 @@ impl Path {
 /// The bodies that a sensor looks for, in the order in which its scene names them.
 pub(crate) struct Sought {
     handles: Vec<RigidBodyHandle>,
-    /// Of many bodies the place of each among them, by its leaf; none for leaves of others.
-    places: Option<Vec<Option<u32>>>,
+    /// Of many bodies each by its leaf of the tree, with its place among them; none for leaves of others.
+    by_leaf: Option<Vec<Option<(u32, RigidBodyHandle)>>>,
 }
 
 impl Sought {
@@ -102,26 +105,44 @@ impl Sought {
     }
 }
 
+/// Bodies that a sensor looks for, and the tree in which it searches.
+struct Search<'w> {
+    nearby: &'w Nearby,
+    by_leaf: &'w [Option<(u32, RigidBodyHandle)>],
+}
+
+impl Search<'_> {
+    /// The body of a leaf with its place, if it is one of those.
+    fn found(&self, leaf: u32) -> Option<(u32, RigidBodyHandle)> {
+        self.by_leaf.get(leaf as usize).copied().flatten()
+    }
+}
+
 impl World {
     /// Notes that a sensor looks for these bodies.
     pub(crate) fn seek(&mut self, handles: Vec<RigidBodyHandle>) -> Sought {
-        if handles.len() < MANY { Sought { handles, places: None } } else { self.seek_in_tree(handles) }
+        if handles.len() < MANY { Sought { handles, by_leaf: None } } else { self.seek_in_tree(handles) }
     }
 
     fn seek_in_tree(&mut self, handles: Vec<RigidBodyHandle>) -> Sought {
         let nearby = self.nearby.get_or_insert_with(|| Nearby::of(&self.physics));
-        let mut places = vec![None; nearby.bodies.len()];
+        let mut by_leaf = vec![None; nearby.bodies.len()];
         for (place, handle) in (0_u32..).zip(&handles) {
             // The bodies are in the order of their handles, as the engine gives them.
             let leaf =
-                nearby.bodies.binary_search_by_key(&handle.0.into_raw_parts().0, |(body, _)| body.0.into_raw_parts().0);
+                nearby.bodies.binary_search_by_key(&handle.into_raw_parts().0, |(body, _)| body.into_raw_parts().0);
             let Ok(leaf) = leaf else { continue };
-            if places[leaf].replace(place).is_some() {
-                // One that is named twice counts twice, which a place in the tree cannot tell.
-                return Sought { handles, places: None };
+            if by_leaf[leaf].replace((place, *handle)).is_some() {
+                // One that is named twice counts twice, which a leaf cannot tell.
+                return Sought { handles, by_leaf: None };
             }
         }
-        Sought { handles, places: Some(places) }
+        Sought { handles, by_leaf: Some(by_leaf) }
+    }
+
+    /// How to search for bodies of which there are many; none if each is looked at.
+    fn search<'w>(&'w self, sought: &'w Sought) -> Option<Search<'w>> {
+        Some(Search { nearby: self.nearby.as_ref()?, by_leaf: sought.by_leaf.as_deref()? })
     }
 
     /// Takes notice of where the bodies are now, before sensors look.
@@ -133,51 +154,39 @@ impl World {
 
     /// The shortest way along a ray to one of these bodies.
     pub(crate) fn first_hit(&self, ray: &Ray, sought: &Sought) -> Option<f64> {
-        let Some((nearby, places)) = self.nearby.as_ref().zip(sought.places.as_ref()) else {
+        let Some(search) = self.search(sought) else {
             return sought.handles.iter().filter_map(|handle| self.ray_distance(ray, *handle)).reduce(f64::min);
         };
-        let met = |leaf: u32, _: f64| {
-            let (handle, _) = nearby.bodies.get(leaf as usize)?;
-            (*places.get(leaf as usize)?)?;
-            self.ray_distance(ray, *handle)
-        };
+        let met = |leaf: u32, _: f64| search.found(leaf).and_then(|(_, handle)| self.ray_distance(ray, handle));
         let path = Path::of(ray);
         let enters_m = |node: &BvhNode, nearest_m: f64| path.enters_m(&node.aabb(), nearest_m);
-        nearby.tree.find_best(self.extent_m, enters_m, met).map(|(_, distance_m)| distance_m)
+        search.nearby.tree.find_best(self.extent_m, enters_m, met).map(|(_, distance_m)| distance_m)
     }
 
     /// True if a ray meets the shape of one of these bodies within its range.
     pub(crate) fn any_hit(&self, ray: &Ray, range_m: f64, sought: &Sought) -> bool {
-        let Some((nearby, places)) = self.nearby.as_ref().zip(sought.places.as_ref()) else {
+        let Some(search) = self.search(sought) else {
             return sought.handles.iter().any(|handle| self.ray_meets(ray, range_m, *handle));
         };
         let path = Path::of(ray);
-        let mut leaves = nearby.tree.leaves(|node| path.enters_m(&node.aabb(), range_m) <= range_m);
-        leaves.any(|leaf| {
-            let wanted = places.get(leaf as usize).copied().flatten().and_then(|_| nearby.bodies.get(leaf as usize));
-            wanted.is_some_and(|(handle, _)| self.ray_meets(ray, range_m, *handle))
-        })
+        let mut leaves = search.nearby.tree.leaves(|node| path.enters_m(&node.aabb(), range_m) <= range_m);
+        leaves.any(|leaf| search.found(leaf).is_some_and(|(_, handle)| self.ray_meets(ray, range_m, handle)))
     }
 
     /// Calls `look` with those of these bodies that may touch something in a ball, each with its place among them, in
     /// no order.
     pub(crate) fn each_near(&self, ball: &BoundingSphere, sought: &Sought, mut look: impl FnMut(u32, RigidBodyHandle)) {
-        let Some((nearby, places)) = self.nearby.as_ref().zip(sought.places.as_ref()) else {
-            for (place, handle) in (0_u32..).zip(&sought.handles) {
-                if self.is_near_ball(ball, *handle) {
-                    look(place, *handle);
-                }
+        let mut look_near = |(place, handle): (u32, RigidBodyHandle)| {
+            if self.is_near_ball(ball, handle) {
+                look(place, handle);
             }
+        };
+        let Some(search) = self.search(sought) else {
+            (0_u32..).zip(sought.handles.iter().copied()).for_each(look_near);
             return;
         };
         let around = Aabb::from_half_extents(ball.center, Vector::splat(ball.radius));
-        for leaf in nearby.tree.intersect_aabb(&around) {
-            let (found, place) = (nearby.bodies.get(leaf as usize), places.get(leaf as usize).copied().flatten());
-            let Some(((handle, _), place)) = found.zip(place) else { continue };
-            if self.is_near_ball(ball, *handle) {
-                look(place, *handle);
-            }
-        }
+        search.nearby.tree.intersect_aabb(&around).filter_map(|leaf| search.found(leaf)).for_each(&mut look_near);
     }
 }
 
@@ -240,8 +249,8 @@ mod tests {
             // the last first, so that a place is not a number of the engine
             let handles: Vec<_> = (0..boxes.len()).rev().map(|body| world.handle(Some(body))).collect();
             let sought = world.seek_in_tree(handles.clone());
-            let plain = Sought { handles: handles.clone(), places: None };
-            prop_assert!(sought.places.is_some());
+            let plain = Sought { handles: handles.clone(), by_leaf: None };
+            prop_assert!(sought.by_leaf.is_some());
             for _ in 0..10 {
                 world.step(&scene, &mut Nobody).expect("they stay in the world");
                 world.look_around();

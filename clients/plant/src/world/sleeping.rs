@@ -12,7 +12,7 @@ use rapier3d::parry::bounding_volume::{Aabb, BoundingVolume};
 use rapier3d::prelude::*;
 
 use super::World;
-use super::nearby::Nearby;
+use super::nearby::{Nearby, own_box};
 
 /// For so many steps on end a body must have been at rest.
 const STEADY_STEPS: u32 = 10;
@@ -99,10 +99,10 @@ impl World {
     }
 
     fn sleeper(&self, handle: RigidBodyHandle) -> Option<Sleeper> {
-        let collider = *self.body(handle).colliders().first()?;
-        let shape = self.physics.colliders.get(collider).filter(|shape| shape.is_enabled())?;
-        let local = shape.position_wrt_parent().copied().unwrap_or(Pose::IDENTITY);
-        Some(Sleeper { handle, collider, local: shape.shape().compute_aabb(&local) })
+        let body = self.body(handle);
+        let collider = *body.colliders().first()?;
+        self.physics.colliders.get(collider).filter(|shape| shape.is_enabled())?;
+        Some(Sleeper { handle, collider, local: own_box(body, &self.physics.colliders)? })
     }
 
     /// Wakes those that something could meet in the step that begins, or that could fall.
@@ -133,7 +133,10 @@ impl World {
 
     /// Counts the steps for which bodies have been at rest, and lets those sleep that have been for long enough.
     pub(super) fn settle(&mut self) {
-        let fastest_m_s = if self.sleepers.is_empty() { 0.0 } else { self.fastest_m_s() };
+        if self.sleepers.is_empty() {
+            return;
+        }
+        let fastest_m_s = self.fastest_m_s();
         for index in 0..self.sleepers.len() {
             let sleeper = &self.sleepers[index];
             let body = self.body(sleeper.handle);

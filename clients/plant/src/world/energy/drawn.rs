@@ -90,8 +90,7 @@ impl Draws {
     }
 
     fn line(&mut self, line: std::fmt::Arguments<'_>) {
-        // a text takes all that is written to it
-        let _ = self.text.write_fmt(line);
+        self.text.write_fmt(line).expect("a text takes all that is written to it");
         self.text.push('\n');
     }
 

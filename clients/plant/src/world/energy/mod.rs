@@ -25,7 +25,7 @@ enum Method {
     Steady,
     /// Runge-Kutta.
     Smooth,
-    /// Momentum.
+    /// By momentum, in sub-steps with friction and stops.
     Driven,
     /// By the engine: a loop of which each joint has something fitted.
     Engine,

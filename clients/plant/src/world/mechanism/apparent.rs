@@ -8,7 +8,7 @@ use super::Mechanism;
 
 /// The equations of a mechanism that rests in its pose, for those of its coordinates that are joints of the scene.
 pub(crate) struct AtRest {
-    /// These joints.
+    /// Indices of these joints in the scene.
     pub(crate) joints: Vec<usize>,
     /// What holds each of them against gravity, N or Nm.
     pub(crate) holding: Vec<f64>,

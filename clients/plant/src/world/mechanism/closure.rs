@@ -137,7 +137,7 @@ impl Basis {
         }
     }
 
-    /// The rows themselves.
+    /// The rows `J`, each a factor for each velocity.
     pub(super) fn rows(&self) -> impl Iterator<Item = &DVector<f64>> {
         self.directions.iter().map(|held| &held.along)
     }
@@ -160,10 +160,7 @@ impl Closure {
         let [parent, child] = self.ends.map(|end| seen(end, equations, gravity));
         let axes = [Vector::X, Vector::Y, Vector::Z].map(|axis| Vector3::from(parent.pose.rotation * axis));
         let [along, about] = held(self.link.kind);
-        let [(from_m_s, from_m_s2), (to_m_s, to_m_s2)] = [&parent, &child].map(|end| {
-            let [velocity, acceleration] = end.moves();
-            (velocity, acceleration)
-        });
+        let [[from_m_s, from_m_s2], [to_m_s, to_m_s2]] = [&parent, &child].map(Seen::moves);
         let [turning, angular] = [parent.motion.angular(), parent.acceleration.angular()];
         let away = child.arm - parent.arm;
         let slides = to_m_s - from_m_s - turning.cross(&away);

@@ -207,7 +207,7 @@ impl Equations {
     }
 }
 
-/// A quaternion as it stands among the positions, of unit length but for the rounding of a step.
+/// A quaternion as it stands among the positions, of unit length except for the rounding of a step.
 fn quaternion(q: &[f64]) -> UnitQuaternion<f64> {
     UnitQuaternion::new_unchecked(Quaternion::new(q[3], q[0], q[1], q[2]))
 }

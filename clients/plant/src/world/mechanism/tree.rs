@@ -179,7 +179,7 @@ impl Tree {
 pub(super) struct Forest {
     pub(super) trees: Vec<Tree>,
     /// The joints, by their index in the scene, of what is not a tree: it stands on nothing or on what moves by itself, or
-    /// all joints of a loop have something fitted to them.
+    /// it has a loop that is driven or of which each joint has something fitted.
     pub(super) others: Vec<usize>,
 }
 
@@ -204,13 +204,16 @@ pub(super) fn forest(
         for index in &together {
             done[*index] = true;
         }
-        // in the scene's order if that will do; else what is plain comes last, so that it closes the loops
-        let mut others_first = together.clone();
-        others_first.sort_by_key(|index| plain(&links[*index]));
         let passive = !together.iter().any(|index| links[*index].joint.is_some_and(driven));
         let closes = |link: &Link| passive && plain(link);
         let grown = |order: &[usize]| grown(links, order, bodies, moved, &closes);
-        match grown(&together).or_else(|| grown(&others_first)) {
+        // in the scene's order if that will do; else what is plain comes last, so that it closes the loops
+        let plain_last = || {
+            let mut order = together.clone();
+            order.sort_by_key(|index| plain(&links[*index]));
+            order
+        };
+        match grown(&together).or_else(|| if passive { grown(&plain_last()) } else { None }) {
             Some(tree) => forest.trees.push(tree),
             None => forest.others.extend(together.iter().filter_map(|index| links[*index].joint)),
         }
@@ -245,7 +248,7 @@ fn together(
     found
 }
 
-/// The tree of joints that hang together, if they are one but for plain joints that close loops.
+/// The tree of joints that hang together, if they are one; joints that are `plain` may close loops of it.
 fn grown(
     links: &[Link],
     together: &[usize],
