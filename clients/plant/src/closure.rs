@@ -1,8 +1,7 @@
 //! Joints that close a loop.
 //!
-//! A loop that no drive moves and that has a joint to which nothing is fitted is moved by the coordinates of its other
-//! joints, as exactly as a tree. The engine moves any other: joints give by micrometres, and all is of the first order of
-//! the step only.
+//! A loop that stands on the ground is moved by the coordinates of its joints, as exactly as a tree. The engine moves any
+//! other: joints give by micrometres, and all is of the first order of the step only.
 
 use std::collections::VecDeque;
 
@@ -29,8 +28,7 @@ impl std::fmt::Display for Loop {
         let joints: Vec<_> = self.joints.iter().map(|joint| format!("`{joint}`")).collect();
         write!(f, "joint `{}` closes a loop with {}", self.closing, joints.join(", "))?;
         if self.by_engine {
-            let why = "it is driven, a fitting, limit or coupling is on each of them, or they stand on nothing";
-            write!(f, ", exact only to the first order of the step: {why}")?;
+            write!(f, ", exact only to the first order of the step: nothing of it stands on what is fixed")?;
         }
         Ok(())
     }

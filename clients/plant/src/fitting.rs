@@ -77,6 +77,13 @@ impl Fitting {
         self.damping != 0.0 || self.spring != 0.0 || self.balance != 0.0
     }
 
+    /// The energy of spring and counterweight at a coordinate, from the scene's pose: what the one has, and what the other
+    /// has given.
+    pub(crate) fn energy(&self, position: f64) -> (f64, f64) {
+        let stretched = position - self.rest;
+        (0.5 * self.spring * stretched * stretched, self.balance * position)
+    }
+
     /// The force of spring and counterweight at a coordinate.
     pub(crate) fn force(&self, position: f64) -> f64 {
         self.balance - self.spring * (position - self.rest)

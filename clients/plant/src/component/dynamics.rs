@@ -39,6 +39,13 @@ impl OnDelay {
         // a rounding less than the delay is not a reason to wait for another period
         condition && self.lasted_s >= delay_s * (1.0 - 1e-12)
     }
+
+    /// True if `condition`, which holds for this period or not, has held for `delay_s` as it begins.
+    pub(crate) fn has_held(&mut self, condition: bool, delay_s: f64, dt_s: f64) -> bool {
+        let over = condition && self.lasted_s >= delay_s * (1.0 - 1e-12);
+        self.lasted_s = if condition { self.lasted_s + dt_s } else { 0.0 };
+        over
+    }
 }
 
 /// A mass on a line, or about an axis.
@@ -167,5 +174,8 @@ mod tests {
         let on: Vec<_> = (0..5).map(|_| delay.holds(true, 0.03, 0.01)).collect();
         assert_eq!(on, [false, false, true, true, true]);
         assert!(!delay.holds(false, 0.03, 0.01));
+        let begun: Vec<_> = (0..5).map(|_| delay.has_held(true, 0.03, 0.01)).collect();
+        assert_eq!(begun, [false, false, false, true, true]);
+        assert!(!delay.has_held(false, 0.03, 0.01) && delay.has_held(true, 0.0, 0.01));
     }
 }

@@ -168,10 +168,10 @@ impl Articulation {
         let last = |joint: usize| self.motions[joint].position - self.fittings[joint].initial;
         let plain = |joint: usize| {
             let coupled = self.couplings.iter().any(|coupled| coupled.joins(joint));
-            self.fittings[joint].is_plain() && !coupled
+            let driven = actuators.iter().any(|actuator| actuator.joint == joint);
+            self.fittings[joint].is_plain() && !coupled && !driven
         };
-        let driven = |joint: usize| actuators.iter().any(|actuator| actuator.joint == joint);
-        let (found, others) = mechanisms(&links, &self.couplings, &physics.bodies, plain, driven, last);
+        let (found, others) = mechanisms(&links, &self.couplings, &physics.bodies, plain, last);
         self.others = others;
         self.closing = found.iter().flat_map(Mechanism::closing).collect();
         self.mechanisms = found

@@ -4,7 +4,7 @@ use onescan_server::client::Client;
 
 use crate::bench::Bench;
 use crate::four_bar::{FourBar, within_half_a_turn};
-use crate::mechanism::{bar, pin};
+use crate::mechanism::{THICK_M, bar, pin};
 
 /// A linkage whose crank goes all the way round.
 const LINKAGE: FourBar = FourBar { crank_m: 0.3, coupler_m: 0.9, rocker_m: 0.6, apart_m: 1.0, start_rad: 1.0 };
@@ -88,6 +88,74 @@ fn a_spring_in_a_loop_keeps_its_energy_beside_a_brake_that_is_released() {
         // a sub-step of a loop with friction in it is of second order; the widest place falls between two turns
         assert!(widest[1] <= widest[0] * (1.0 + 1e-3), "{period_us} us: {widest:?}");
         assert!(widest[1] > widest[0] * 0.99, "{period_us} us: {widest:?}");
+    }
+}
+
+#[test]
+fn a_linkage_with_friction_at_each_pin_speeds_up_as_its_closed_form_says() {
+    // two equal cranks carry a beam that stays level: all pins turn as fast as the cranks
+    let [a, b, c, d] = [[0.0, 0.0], [0.0, 0.5], [1.0, 0.5], [1.0, 0.0]];
+    let bars = bar("crank", a, b, 1.0) + &bar("beam", b, c, 2.0) + &bar("rocker", d, c, 1.0);
+    let pins = pin("drive", "ground", "crank", a) + &pin("left", "crank", "beam", b);
+    let pins = pins + &pin("right", "beam", "rocker", c) + &pin("foot", "ground", "rocker", d);
+    let rub = |name: &str, more: &str| {
+        format!("[[fitting]]\nname = \"rub_{name}\"\njoint = \"{name}\"\nfriction_nm = 0.1\n{more}")
+    };
+    let fittings = rub("drive", "balance_nm = 1.2\n") + &rub("left", "") + &rub("right", "") + &rub("foot", "");
+    let scene = format!("version = 1\ngravity_m_s2 = [0, 0, 0]\n{bars}{pins}{fittings}");
+    // each crank about its pin, and the beam, which only slides
+    let inertia = 2.0 * (1.0 / 12.0 * (0.25 + THICK_M * THICK_M) + 0.25 * 0.25) + 2.0 * 0.25;
+    let wanted_rad = 0.5 * (1.2 - 4.0 * 0.1) / inertia;
+    for period_us in [100, 1_000, 10_000] {
+        let mut bench = Bench::at_us(&scene, period_us);
+        bench.run_us(1_000_000);
+        let pose = bench.plant.poses().nth(1).expect("a beam");
+        let [x, _, z] = pose.position_m;
+        let crank_rad = (x - 0.5).atan2(z);
+        assert!((crank_rad - wanted_rad).abs() < 1e-5, "{period_us} us: {crank_rad} {wanted_rad}");
+        assert!(((x - 0.5).hypot(z) - 0.5).abs() < 1e-11, "{period_us} us: the beam is off its cranks");
+        assert!(pose.rotation_xyzw[..3].iter().all(|part| part.abs() < 1e-11), "{period_us} us: {pose:?}");
+    }
+}
+
+/// A slider on x that a position drive moves, a rod and a crank; they stretch at 0.4 m.
+fn slider_crank() -> String {
+    let (crank, rod) = ([[0.0, 0.0], [0.0, 0.3]], [[0.0, 0.3], [0.4, 0.0]]);
+    let bars = bar("crank", crank[0], crank[1], 1.0) + &bar("rod", rod[0], rod[1], 1.0);
+    let slider = "[[body]]\nname = \"slider\"\nkind = \"dynamic\"\nshape = \"box\"\nsize_m = [0.1, 0.1, 0.1]\n\
+                  mass_kg = 2.0\nposition_m = [0.4, 0.0, 0.0]\ngroup = \"bars\"\n";
+    let guide = "[[joint]]\nname = \"guide\"\nkind = \"prismatic\"\nparent = \"ground\"\nchild = \"slider\"\n\
+                 anchor_m = [0.4, 0.0, 0.0]\naxis = [1.0, 0.0, 0.0]\n";
+    let pins = pin("foot", "ground", "crank", crank[0]) + &pin("knee", "crank", "rod", crank[1]);
+    format!(
+        "version = 1\n{bars}{slider}{guide}{pins}{}[[axis]]\nname = \"drive\"\njoint = \"guide\"\ndrive = \"position\"\n\
+         command_signal = \"To\"\nposition_signal = \"Is\"\nspeed_m_s = 0.2\nacceleration_m_s2 = 1.0\n",
+        pin("head", "rod", "slider", rod[1])
+    )
+}
+
+#[test]
+fn a_slider_that_is_driven_moves_its_crank_to_a_dead_centre_and_no_farther() {
+    let scene = slider_crank();
+    for period_us in [100, 1_000, 10_000] {
+        // beyond it, the drive is stuck where it was when a millisecond more was too much
+        for (to_m, reached_m, off_m) in [(0.3, 0.3, 1e-9), (0.4 - 1e-9, 0.4, 1e-6), (0.45, 0.4, 2.1e-4)] {
+            let mut bench = Bench::at_us(&scene, period_us);
+            bench.command("To", to_m);
+            bench.run_us(3_000_000);
+            let is_m = bench.read::<f64>("Is");
+            assert!((is_m - reached_m).abs() < off_m, "{period_us} us: to {to_m}, at {is_m}");
+            let [crank, rod] = [0, 1].map(|index| bench.plant.poses().nth(index).expect("a bar"));
+            let knee_m = [2.0 * crank.position_m[0], 2.0 * crank.position_m[2]];
+            let [from_m, head_m] = [knee_m, [0.4 + is_m, 0.0]];
+            let middle = [0.5 * (from_m[0] + head_m[0]), 0.5 * (from_m[1] + head_m[1])];
+            let open_m = (rod.position_m[0] - middle[0]).hypot(rod.position_m[2] - middle[1]);
+            assert!(open_m < 1e-9, "{period_us} us: to {to_m}, open by {open_m} m");
+            bench.command("To", 0.2);
+            bench.run_us(3_000_000);
+            let back_m = bench.read::<f64>("Is");
+            assert!((back_m - 0.2).abs() < 1e-9, "{period_us} us: back from {to_m}, at {back_m}");
+        }
     }
 }
 

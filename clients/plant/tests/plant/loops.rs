@@ -29,5 +29,5 @@ fn a_loop_is_named_by_the_joint_that_closes_it() {
     let four_bar = [chain[0], chain[1], ["s", "frame", "b"]];
     assert_eq!(loops(&four_bar), ["joint `s` closes a loop with `p`, `q`"], "what stands is one place");
     let ring = [chain[1], chain[2], ["s", "c", "a"]];
-    insta::assert_snapshot!(loops(&ring).join("\n"), @"joint `s` closes a loop with `r`, `q`, exact only to the first order of the step: it is driven, a fitting, limit or coupling is on each of them, or they stand on nothing");
+    insta::assert_snapshot!(loops(&ring).join("\n"), @"joint `s` closes a loop with `r`, `q`, exact only to the first order of the step: nothing of it stands on what is fixed");
 }

@@ -148,8 +148,7 @@ fn a_position_drive_of_a_closed_loop_rests_on_its_target() {
         "version = 1\n{bars}{pins}[[axis]]\nname = \"drive\"\njoint = \"drive\"\ndrive = \"position\"\n\
          command_signal = \"To\"\nposition_signal = \"Is\"\nspeed_rad_s = 1.0\nacceleration_rad_s2 = 4.0\n"
     );
-    // what an engine's step leaves over, moving and at rest, rad: it grows with the square of the step
-    for (period_us, moving, resting) in [(100, 4e-7, 3e-7), (1_000, 4e-5, 3e-5), (10_000, 4e-3, 3e-3)] {
+    for period_us in [100, 1_000, 10_000] {
         let mut bench = Bench::at_us(&scene, period_us);
         bench.command("To", 0.8);
         let mut worst = 0.0_f64;
@@ -163,7 +162,7 @@ fn a_position_drive_of_a_closed_loop_rests_on_its_target() {
         }
         bench.run_us(1_000_000);
         let rest = (bench.read::<f64>("Is") - 0.8).abs();
-        assert!(worst < moving && rest < resting, "{period_us}: {worst} {rest}");
+        assert!(worst < 1e-11 && rest < 1e-11, "{period_us}: {worst} {rest}");
     }
 }
 
@@ -274,7 +273,7 @@ fn what_stops_a_joint_moves_what_it_hangs_on() {
 
 #[test]
 fn a_counterweight_beside_a_weak_spring_turns_a_closed_loop() {
-    // two joints on one axis are a loop; as both have something fitted, it is the engine that moves it
+    // two joints on one axis are a loop; as both have something fitted, the ball is halved
     let hinge = |name: &str, z_m: f64| {
         format!(
             "[[joint]]\nname = \"{name}\"\nkind = \"revolute\"\nparent = \"ground\"\nchild = \"ball\"\n\
@@ -287,7 +286,7 @@ fn a_counterweight_beside_a_weak_spring_turns_a_closed_loop() {
                 mass_kg = 1.0\nposition_m = [0.5, 0.0, 0.0]\n";
     let scene = [ball.to_owned(), hinge("lower", 0.0), hinge("upper", 0.2), stops, fitting.to_owned()].concat();
     let [_, y, _] = after(&scene, "ball", 100_000, 1_000);
-    // M t^2/2J with J = m (r^2 + 2/5 R^2), of which a step of first order leaves 1 %
+    // M t^2/2J with J = m (r^2 + 2/5 R^2), of which the spring takes less than 1 %
     let exact = 0.5 * 0.5 * 0.01 / (0.25 + 0.004) * 0.5;
     assert!((y / exact - 1.0).abs() < 0.03, "{y} {exact}");
 }

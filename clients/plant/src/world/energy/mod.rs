@@ -27,7 +27,7 @@ enum Method {
     Smooth,
     /// By momentum, in sub-steps with friction and stops.
     Driven,
-    /// By the engine: a loop of which each joint has something fitted.
+    /// By the engine, which none of these is left to.
     Engine,
 }
 
@@ -52,9 +52,7 @@ impl Energy {
             amount += kinetic + local.mass() * world.gravity().length();
         }
         for (joint, fitting) in world.articulation.fittings.iter().enumerate() {
-            let position = world.motion(joint).position - fitting.initial;
-            let stretched = position - fitting.rest;
-            let (spring, balance) = (0.5 * fitting.spring * stretched * stretched, fitting.balance * position);
+            let (spring, balance) = fitting.energy(world.motion(joint).position - fitting.initial);
             all += spring - balance;
             amount += spring + balance.abs();
         }
@@ -111,10 +109,8 @@ fn bound(method: Method, period_us: u64, time_s: f64) -> Option<(f64, f64)> {
         // the few are chains in which friction stops one joint while others go on
         (Method::Steady, _) => Some((1e-9 * time_s + ROUNDING, 0.01)),
         (Method::Smooth | Method::Driven, 100) => Some((1e-4, 0.0)),
-        (Method::Smooth | Method::Driven, 1_000) => Some((1e-2, 0.0)),
-        (Method::Smooth | Method::Driven, _) => Some((1e-2, 0.02)),
-        // joints that give way, and bodies whose spin is kept and not their momentum
-        (Method::Engine, _) => None,
+        (Method::Smooth | Method::Driven, _) => Some((1e-2, 0.0)),
+        (Method::Engine, _) => Some((0.0, 0.0)),
     }
 }
 

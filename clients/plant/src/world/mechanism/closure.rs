@@ -6,7 +6,8 @@
 //! others imply is nothing, and it is left out: three of the five rows of a pin in a planar linkage. With such a basis
 //! accelerations, velocities, positions and the inverse of the masses are brought to what the loop allows by one pass
 //! over its rows, each by its inertia. Accelerations keep to it at each stage of a step, so that loops have the order of
-//! trees; what a step leaves of `φ` is taken back at its end.
+//! trees; what a step leaves of `φ` is taken back at its end. Joints that are led along a path stay where they are in this:
+//! they come first in the basis. Only where the others cannot close a loop, as at a dead centre, do they give way.
 //!
 //! Source: E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, Springer 1996, ch. VII (index reduction
 //! and projection).
@@ -24,10 +25,25 @@ use crate::model::JointKind;
 const IMPLIED: f64 = 1e-10;
 /// A loop is closed within this, m or rad.
 const CLOSED: f64 = 1e-12;
-/// Newton's steps that close a loop; each squares what is open.
-const ROUNDS: usize = 6;
+/// What no motion is left for may be open by this, m or rad: scenes are written with so many digits.
+const STUCK: f64 = 1e-9;
+/// Newton's steps that close a loop; near it, each squares what is open.
+const ROUNDS: usize = 12;
+/// The longest of them in any coordinate, m or rad: at a dead centre they know no end.
+const LONGEST: f64 = 0.1;
 /// What the inverse of the masses keeps of a motion that loops hold, so that nothing is divided by 0.
 const GIVES: f64 = 1e-12;
+
+/// How loops are closed after a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Closed {
+    /// All axes stay that are to.
+    Shut,
+    /// Not without those axes: they gave way.
+    Forced,
+    /// Its equations cannot be solved.
+    Unsolved,
+}
 
 /// What a closure holds along one direction.
 #[derive(Clone, Debug, Default)]
@@ -40,6 +56,8 @@ struct Direction {
     open: f64,
     /// `γ`: what its acceleration is without any of the coordinates'.
     bend: f64,
+    /// `J v` as it is to be.
+    rate: f64,
 }
 
 /// How a frame moves.
@@ -65,13 +83,34 @@ pub(super) struct Basis {
     directions: Vec<Direction>,
     /// The greatest of `φ`, m or rad.
     open: f64,
+    /// The greatest that no motion is left for to close it.
+    stuck: f64,
 }
 
 impl Basis {
     /// The directions of all loops of a tree, from equations that are evaluated and factored.
     pub(super) fn find(&mut self, tree: &Tree, equations: &Equations, gravity: Vector) {
+        self.find_beside([].iter(), tree, equations, gravity);
+    }
+
+    /// The same with axes that are held, each with the velocity that it keeps.
+    fn find_beside<'a>(
+        &mut self,
+        held: impl Iterator<Item = &'a (usize, f64)>,
+        tree: &Tree,
+        equations: &Equations,
+        gravity: Vector,
+    ) {
         self.directions.clear();
-        self.open = 0.0;
+        (self.open, self.stuck) = (0.0, 0.0);
+        for (axis, rate) in held {
+            let mut along = DVector::zeros(tree.velocities);
+            along[*axis] = 1.0;
+            let mut answer = along.clone();
+            equations.factored.solve(&mut answer);
+            let size = answer[*axis];
+            self.take(Direction { along, answer, rate: *rate, ..Direction::default() }, size);
+        }
         for closure in &tree.closures {
             closure.hold(tree, equations, gravity, self);
         }
@@ -86,6 +125,7 @@ impl Basis {
             one.answer.axpy(-share, &held.answer, 1.0);
             one.open -= share * held.open;
             one.bend -= share * held.bend;
+            one.rate -= share * held.rate;
         }
         let square = one.along.dot(&one.answer);
         if square > IMPLIED * size {
@@ -95,7 +135,10 @@ impl Basis {
             one.answer *= factor;
             one.open *= factor;
             one.bend *= factor;
+            one.rate *= factor;
             self.directions.push(one);
+        } else {
+            self.stuck = self.stuck.max(one.open.abs());
         }
     }
 
@@ -103,7 +146,7 @@ impl Basis {
     fn allow(&self, v: &mut [f64]) {
         let n = v.len();
         for held in &self.directions {
-            let lost = held.along.dot(&DVectorView::from_slice(v, n));
+            let lost = held.along.dot(&DVectorView::from_slice(v, n)) - held.rate;
             DVectorViewMut::from_slice(v, n).axpy(-lost, &held.answer, 1.0);
         }
     }
@@ -159,7 +202,7 @@ impl Closure {
     fn hold(&self, tree: &Tree, equations: &Equations, gravity: Vector, basis: &mut Basis) {
         let [parent, child] = self.ends.map(|end| seen(end, equations, gravity));
         let axes = [Vector::X, Vector::Y, Vector::Z].map(|axis| Vector3::from(parent.pose.rotation * axis));
-        let [along, about] = held(self.link.kind);
+        let [along, about] = held(self.kind);
         let [[from_m_s, from_m_s2], [to_m_s, to_m_s2]] = [&parent, &child].map(Seen::moves);
         let [turning, angular] = [parent.motion.angular(), parent.acceleration.angular()];
         let away = child.arm - parent.arm;
@@ -203,7 +246,7 @@ impl Closure {
         }
         let mut answer = along.clone();
         equations.factored.solve(&mut answer);
-        basis.take(Direction { along, answer, open, bend }, size);
+        basis.take(Direction { along, answer, open, bend, rate: 0.0 }, size);
     }
 }
 
@@ -259,24 +302,46 @@ impl Mechanism {
         }
     }
 
-    /// Closes its loops after a step: positions, then velocities; false if its equations cannot be solved.
-    pub(super) fn close(&mut self, gravity: Vector) -> bool {
+    /// Closes its loops after a step: positions, then velocities. The axes that are `held` stay, unless the loops cannot
+    /// be closed without them.
+    pub(super) fn close(&mut self, gravity: Vector, held: &[usize]) -> Closed {
         if !self.has_loops() {
-            return true;
+            return Closed::Shut;
         }
+        let held: Vec<_> = held.iter().map(|axis| (*axis, self.now.v[*axis])).collect();
+        let open = if held.is_empty() { None } else { Some(self.now.q.clone()) };
+        let (mut solved, mut closed) = (self.shut(gravity, &held), Closed::Shut);
+        let is_shut = self.basis.open <= CLOSED && self.basis.stuck <= STUCK;
+        if let Some(open) = open.filter(|_| !(solved && is_shut)) {
+            self.now.q = open;
+            (solved, closed) = (self.shut(gravity, &[]), Closed::Forced);
+        }
+        if !solved {
+            return Closed::Unsolved;
+        }
+        self.basis.allow(&mut self.now.v);
+        closed
+    }
+
+    /// Closes its loops as far as Newton's steps do; false if its equations cannot be solved.
+    fn shut(&mut self, gravity: Vector, held: &[(usize, f64)]) -> bool {
         for _ in 0..ROUNDS {
             self.moving.evaluate(&self.lumps, &self.now.q, &self.now.v, gravity);
             if !self.moving.factor(&self.lumps) {
                 return false;
             }
-            self.find_loops(gravity);
-            if self.basis.open <= CLOSED {
+            let Self { lumps, moving, now, room, basis, .. } = self;
+            basis.find_beside(held.iter(), lumps, moving, gravity);
+            if basis.open <= CLOSED {
                 break;
             }
-            let Self { lumps, now, room, basis, .. } = self;
             let mut way = DVector::zeros(lumps.velocities);
             for held in &basis.directions {
                 way.axpy(-held.open, &held.answer, 1.0);
+            }
+            let most = way.amax();
+            if most > LONGEST {
+                way *= LONGEST / most;
             }
             room.rates[0].resize(lumps.positions, 0.0);
             rates(lumps, &now.q, way.as_slice(), &mut room.rates[0]);
@@ -285,7 +350,6 @@ impl Mechanism {
             }
             normalise(lumps, &mut now.q);
         }
-        self.basis.allow(&mut self.now.v);
         true
     }
 }

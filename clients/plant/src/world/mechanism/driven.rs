@@ -9,6 +9,7 @@
 
 use nalgebra::DVectorViewMut;
 
+use super::closure::Closed;
 use super::dynamics::{normalise, rates};
 use super::rows::Row;
 use super::{Coordinates, Mechanism, Room, Surroundings};
@@ -22,6 +23,10 @@ const PART_S: f64 = 1e-3;
 /// The most that anything turns in a part, rad, and the most parts that each of the longest is cut in for that.
 const PART_RAD: f64 = 0.02;
 const PARTS: f64 = 64.0;
+/// In a part, a loop that a drive leads goes no farther than this, m or rad.
+const FAR: f64 = 0.5;
+/// Parts are cut so often, by halves, where a step gains energy.
+const FINER: f64 = 64.0;
 /// Viscous friction that takes less than this part of a velocity in a sub-step is taken as a force.
 const EXPLICIT_MAX: f64 = 0.05;
 /// A stop is looked at from this near on, m or rad.
@@ -47,9 +52,39 @@ impl Mechanism {
             Acts::Along(_) => PART_S,
         });
         let longest_s = longest.fold(PART_S, f64::min);
-        let (count, part_s) = substeps(dt_s, self.longest_part_s());
+        let before = self.energy(around);
+        let start = before.map(|_| self.now.clone());
+        let mut cut = self.longest_part_s();
+        let mut moved = self.parts(dt_s, [cut, longest_s], &own, around);
+        let finest_s = cut / FINER;
+        while let Some(start) = start.as_ref().filter(|_| moved && cut > finest_s) {
+            if !self.has_gained(before, dt_s, around) {
+                break;
+            }
+            self.now.clone_from(start);
+            cut *= 0.5;
+            moved = self.parts(dt_s, [cut, longest_s], &own, around);
+        }
+        for (_, actuator) in &own {
+            let actuator = &mut around.actuators[*actuator];
+            actuator.effort = actuator.impulse / dt_s;
+        }
+        moved
+    }
+
+    /// Moves by a step, in parts and sub-steps that are no longer than these; false if its equations cannot be solved.
+    fn parts(
+        &mut self,
+        dt_s: f64,
+        [longest_part_s, longest_s]: [f64; 2],
+        own: &[(usize, usize)],
+        around: &mut Surroundings<'_>,
+    ) -> bool {
+        let (count, part_s) = substeps(dt_s, longest_part_s);
         let (finer, finer_s) = substeps(part_s, longest_s);
+        let led = self.led(around.actuators);
         for index in 0..count {
+            let before = if self.has_loops() && !led.is_empty() { Some(self.now.q.clone()) } else { None };
             if !self.prepare(part_s, around) {
                 return false;
             }
@@ -59,15 +94,17 @@ impl Mechanism {
                 let [from, to] = around.part;
                 let at = |step: u32| from + (to - from) * f64::from(step) / whole;
                 let step = index * finer + inner;
-                self.substep(finer_s, [at(step), at(step + 1)], &own, around);
+                self.substep(finer_s, [at(step), at(step + 1)], own, around);
             }
-            if !self.close(around.gravity) {
-                return false;
+            let held = self.held(&led, around.fittings);
+            if let Some(before) = &before {
+                self.begin_near(before, &held);
             }
-        }
-        for (_, actuator) in &own {
-            let actuator = &mut around.actuators[*actuator];
-            actuator.effort = actuator.impulse / dt_s;
+            match self.close(around.gravity, &held) {
+                Closed::Shut => {}
+                Closed::Forced => self.jam(before, &led, own, around),
+                Closed::Unsolved => return false,
+            }
         }
         true
     }
@@ -77,6 +114,53 @@ impl Mechanism {
         let axis = |joint: usize| self.axes.iter().position(|(_, own)| *own == Some(joint));
         let each = actuators.iter().enumerate();
         each.filter_map(|(index, actuator)| axis(actuator.joint).map(|axis| (axis, index))).collect()
+    }
+
+    /// Lets all but what is held begin where it was before a part, for its loops to be closed from there, if it went so far
+    /// as a loop has it do that is driven away from a dead centre.
+    fn begin_near(&mut self, before: &[f64], held: &[usize]) {
+        let far = self.axes.iter().any(|(position, _)| (self.now.q[*position] - before[*position]).abs() > FAR);
+        if far {
+            let kept: Vec<_> = held.iter().map(|axis| (self.axes[*axis].0, self.now.q[self.axes[*axis].0])).collect();
+            self.now.q.copy_from_slice(before);
+            for (position, q) in kept {
+                self.now.q[position] = q;
+            }
+        }
+    }
+
+    /// The axes that stay as loops are closed: those that are led, and those at their stops, else closing takes them over
+    /// these again and again, and lifts what hangs on the loop.
+    pub(super) fn held(&self, led: &[usize], fittings: &[Fitting]) -> Vec<usize> {
+        let stopped = |axis: &usize| {
+            let (position, joint) = self.axes[*axis];
+            joint.is_some_and(|joint| {
+                let [lower, upper] = [fittings[joint].lower, fittings[joint].upper];
+                self.now.q[position] <= lower || self.now.q[position] >= upper
+            })
+        };
+        if !self.has_loops() {
+            return Vec::new();
+        }
+        let others = (0..self.axes.len()).filter(|axis| !led.contains(axis) && stopped(axis));
+        led.iter().copied().chain(others).collect()
+    }
+
+    /// Stops it where it was before a part of a step in which a drive that nothing is too much for would have pushed its
+    /// loops beyond a dead centre: what the loops leave of that way would be any.
+    fn jam(&mut self, before: Option<Vec<f64>>, led: &[usize], own: &[(usize, usize)], around: &Surroundings<'_>) {
+        let endless =
+            |(axis, index): &(usize, usize)| led.contains(axis) && around.actuators[*index].most.is_infinite();
+        if let Some(before) = before.filter(|_| own.iter().any(endless)) {
+            self.now.q = before;
+            self.now.v.fill(0.0);
+        }
+    }
+
+    /// Its axes that go along paths.
+    pub(super) fn led(&self, actuators: &[Actuator]) -> Vec<usize> {
+        let own = self.own_actuators(actuators).into_iter();
+        own.filter(|(_, index)| matches!(actuators[*index].acts, Acts::Along(_))).map(|(axis, _)| axis).collect()
     }
 
     /// The longest part of a step: one in which nothing turns far, where what turns moves what hangs on it, too, and is

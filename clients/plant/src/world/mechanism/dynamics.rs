@@ -180,6 +180,21 @@ impl Equations {
         }
     }
 
+    /// Kinetic energy, that of heights, and that of a metre of height, J, at these positions and velocities.
+    pub(super) fn energy(&mut self, tree: &Tree, [q, v]: [&[f64]; 2], gravity: Vector) -> (f64, f64, f64) {
+        self.place(tree, q);
+        self.weigh(tree);
+        self.moves(tree, v);
+        let (mut kinetic, mut height, mut weight) = (0.0, 0.0, 0.0);
+        for (index, member) in tree.members.iter().enumerate() {
+            let motion = self.motions[index];
+            kinetic += 0.5 * motion.power(&self.inertias[index].times(&motion));
+            height -= member.mass * gravity.dot(self.poses[index] * member.centre - self.about);
+            weight += member.mass * gravity.length();
+        }
+        (kinetic, height, weight)
+    }
+
     /// Factors `H`; false where the masses are so far apart that it cannot be.
     #[must_use]
     pub(super) fn factor(&mut self, tree: &Tree) -> bool {

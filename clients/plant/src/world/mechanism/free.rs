@@ -4,6 +4,7 @@
 //! (`ω h < 2.8`). A step that is not is cut in parts; where that takes too many, it is left to
 //! [`driven`](super::driven), which is stable at any step and less exact.
 
+use super::closure::Closed;
 use super::dynamics::{normalise, rates};
 use super::{Mechanism, Surroundings};
 use crate::fitting::Fitting;
@@ -20,18 +21,22 @@ impl Mechanism {
         let Some(stiffness) = self.stiffness(around) else { return false };
         let rate = stiffness + if self.tree.velocities > 1 { self.turning() } else { 0.0 };
         // a whole number of parts is not one more for a rounding
-        let count = (dt_s * rate / PART_RAD - 1e-9).ceil().max(1.0);
-        if count > PARTS {
-            return false;
-        }
+        let mut count = (dt_s * rate / PART_RAD - 1e-9).ceil().max(1.0);
+        let before = self.energy(around);
         self.room.start.clone_from(&self.now);
-        for _ in 0..count as u32 {
-            if !self.part_freely(dt_s / count, around) {
-                self.now.clone_from(&self.room.start);
+        while count <= PARTS {
+            let moved = (0..count as u32).all(|_| self.part_freely(dt_s / count, around));
+            let is_finest = 2.0 * count > PARTS;
+            if moved && (is_finest || !self.has_gained(before, dt_s, around)) {
+                return true;
+            }
+            self.now.clone_from(&self.room.start);
+            if !moved {
                 return false;
             }
+            count *= 2.0;
         }
-        true
+        false
     }
 
     /// No mode of its springs and dampers is faster than this, 1/s: `√ tr(M⁻¹K) + tr(M⁻¹C)`. None if its
@@ -111,7 +116,7 @@ impl Mechanism {
         }
         std::mem::swap(&mut self.now.q, &mut room.q);
         std::mem::swap(&mut self.now.v, &mut room.v);
-        self.close(around.gravity)
+        self.close(around.gravity, &[]) != Closed::Unsolved
     }
 }
 

@@ -21,7 +21,7 @@ pub(crate) struct Guided {
 /// The robots that these joints make of bodies.
 pub(crate) fn guided(links: &[Link], follows: &[Option<Follows>], bodies: &RigidBodySet) -> Vec<Guided> {
     let moved = |handle: RigidBodyHandle| bodies[handle].is_kinematic();
-    let forest = tree::forest(links, &[], bodies, &moved, &|_| false, &|_| false);
+    let forest = tree::forest(links, &[], bodies, &moved, &|_| false);
     forest.trees.into_iter().map(|tree| Guided::new(Mechanism::new(tree), follows)).collect()
 }
 

@@ -32,7 +32,7 @@ impl Tree {
             let (member, place) = end.member.map_or((None, Pose::IDENTITY), |member| places[member]);
             End { member, frame: place * end.frame }
         };
-        let closures = self.closures.iter().map(|one| Closure { link: one.link, ends: one.ends.map(moved) }).collect();
+        let closures = self.closures.iter().map(|one| Closure { ends: one.ends.map(moved), ..*one }).collect();
         Self { members: lumps, joints: Vec::new(), closures, ..*self }
     }
 }
@@ -76,7 +76,7 @@ mod tests {
         let tip = Pose::from_parts(Vector::new(0.1, 0.4, -0.2), DQuat::from_xyzw(0.0, 0.28, 0.0, 0.96));
         let tensor = Matrix3::new(0.3, 0.01, 0.0, 0.01, 0.2, 0.02, 0.0, 0.02, 0.4);
         let centre = Vector::new(0.05, 0.1, -0.15);
-        Member { on, place, freedom, first: [first; 2], tip, body: None, mass, centre, tensor }
+        Member { on, place, freedom, first: [first; 2], tip, body: None, is_part: false, mass, centre, tensor }
     }
 
     #[test]

@@ -18,6 +18,7 @@
 //! | `guided` | robots without dynamics |
 //! | `free` | steps of what only smooth forces move: Runge-Kutta of order 4 |
 //! | `driven` | steps with drives, friction, stops |
+//! | `gain` | steps that give energy that nothing gave |
 //! | `sprung` | springs and dampers in these |
 //! | `apparent` | what joints have to move, and hold at rest |
 //! | `touched` | what a mechanism is to others that it touches |
@@ -32,6 +33,7 @@ mod coupled;
 mod driven;
 mod dynamics;
 mod free;
+mod gain;
 mod guided;
 mod lump;
 pub(super) mod matrix;
@@ -51,7 +53,7 @@ use crate::effort::Drives;
 use crate::fitting::Fitting;
 use crate::model::JointKind;
 pub(crate) use apparent::AtRest;
-use closure::Basis;
+use closure::{Basis, Closed};
 use coupled::Bond;
 use dynamics::Equations;
 pub(crate) use guided::{Guided, guided};
@@ -123,18 +125,17 @@ pub(crate) struct Surroundings<'s> {
 }
 
 /// The mechanisms that joints make of bodies, and the joints, by their index in the scene, of what
-/// cannot be one; joints that are `plain` may close loops of which none is `driven`. What holds a
-/// body fast never closes one: two that hold one body give way, as grippers do.
+/// cannot be one; joints that are `plain` close loops. What holds a body fast never closes one: two that
+/// hold one body give way, as grippers do.
 pub(crate) fn mechanisms(
     links: &[Link],
     couplings: &[Coupled],
     bodies: &RigidBodySet,
     plain: impl Fn(usize) -> bool,
-    driven: impl Fn(usize) -> bool,
     last: impl Fn(usize) -> f64,
 ) -> (Vec<Mechanism>, Vec<usize>) {
     let moved = |handle: RigidBodyHandle| bodies[handle].is_dynamic();
-    let forest = tree::forest(links, couplings, bodies, &moved, &|link| link.joint.is_some_and(&plain), &driven);
+    let forest = tree::forest(links, couplings, bodies, &moved, &|link| link.joint.is_some_and(&plain));
     let mechanisms = forest.trees.into_iter().map(|tree| {
         let mut mechanism = Mechanism::new(tree);
         mechanism.bind(couplings);
@@ -186,18 +187,18 @@ impl Mechanism {
 
     /// Its bodies.
     pub(crate) fn bodies(&self) -> impl Iterator<Item = RigidBodyHandle> {
-        self.tree.members.iter().filter_map(|member| member.body)
+        self.tree.members.iter().filter(|member| !member.is_part).filter_map(|member| member.body)
     }
 
     /// The engine's joints between its bodies.
     pub(crate) fn links(&self) -> impl Iterator<Item = &Link> {
-        let closures = self.tree.closures.iter().map(|closure| &closure.link);
+        let closures = self.tree.closures.iter().filter_map(|closure| closure.link.as_ref());
         self.tree.joints.iter().map(|jointed| &jointed.link).chain(closures)
     }
 
     /// The joints of the scene that close its loops.
     pub(crate) fn closing(&self) -> impl Iterator<Item = usize> {
-        self.tree.closures.iter().filter_map(|closure| closure.link.joint)
+        self.tree.closures.iter().filter_map(|closure| closure.link?.joint)
     }
 
     /// The joints of the scene whose coordinates it has, each with coordinate, from the scene's pose, and
@@ -247,7 +248,7 @@ impl Mechanism {
         let own = own_motion(&self.tree, self.equations.about, bodies);
         if self.equations.project(&self.tree, q, own, v) {
             let reconciled = self.reconcile(dt_s);
-            return (self.has_loops() && self.close(Vector::ZERO)) || reconciled;
+            return (self.has_loops() && self.close(Vector::ZERO, &[]) != Closed::Unsolved) || reconciled;
         }
         v.fill(0.0);
         false
@@ -273,7 +274,7 @@ impl Mechanism {
                 *v = moved + dt_s * held;
             }
             // what cannot be solved here cannot be in its own step either, which says so
-            self.close(gravity);
+            self.close(gravity, &[]);
         }
     }
 
@@ -281,7 +282,7 @@ impl Mechanism {
     pub(crate) fn put(&mut self, bodies: &mut RigidBodySet) {
         self.equations.place(&self.tree, &self.now.q);
         self.equations.moves(&self.tree, &self.now.v);
-        for (index, member) in self.tree.members.iter().enumerate() {
+        for (index, member) in self.tree.members.iter().enumerate().filter(|(_, member)| !member.is_part) {
             let Some(body) = member.body.and_then(|handle| bodies.get_mut(handle)) else { continue };
             let (pose, motion) = (self.equations.poses[index], self.equations.motions[index]);
             let centre = pose * member.centre - self.equations.about;

@@ -138,7 +138,8 @@ impl Mechanism {
         }
         self.travel(dt_s);
         self.now.v.copy_from_slice(velocities);
-        self.close(around.gravity);
         keep_within(&mut self.now, &self.axes, around.fittings);
+        let held = self.held(&self.led(around.actuators), around.fittings);
+        self.close(around.gravity, &held);
     }
 }

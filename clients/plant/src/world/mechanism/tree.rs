@@ -67,6 +67,8 @@ pub(super) struct Member {
     pub(super) tip: Pose,
     /// None for the inner member of a joint that slides and turns.
     pub(super) body: Option<RigidBodyHandle>,
+    /// Whether another member stands for its body already, of which it has a part of the mass.
+    pub(super) is_part: bool,
     pub(super) mass: f64,
     /// Centre of mass in the body's frame.
     pub(super) centre: Vector,
@@ -85,11 +87,13 @@ pub(super) struct Jointed {
     pub(super) second: usize,
 }
 
-/// A joint that closes a loop.
+/// What closes a loop.
 #[derive(Clone, Debug)]
 pub(super) struct Closure {
-    pub(super) link: Link,
-    /// The joint's frames on its parent and on its child.
+    /// A joint, or none where the two halves of a body hold each other.
+    pub(super) link: Option<Link>,
+    pub(super) kind: JointKind,
+    /// The frames that it holds against each other: of a joint those on its parent and on its child.
     pub(super) ends: [End; 2],
 }
 
@@ -105,7 +109,7 @@ pub(super) struct End {
 pub(super) struct Tree {
     pub(super) members: Vec<Member>,
     pub(super) joints: Vec<Jointed>,
-    /// Joints that close loops, whose coordinates the tree does not have.
+    /// What closes loops: joints whose coordinates the tree does not have, and halves of bodies.
     pub(super) closures: Vec<Closure>,
     pub(super) positions: usize,
     pub(super) velocities: usize,
@@ -141,6 +145,7 @@ impl Tree {
             first: [0; 2],
             tip: Pose::IDENTITY,
             body: None,
+            is_part: false,
             mass: 0.0,
             centre: Vector::ZERO,
             tensor: Matrix3::zeros(),
@@ -173,26 +178,37 @@ impl Tree {
         self.joints.push(Jointed { link: *link, reversed, first, second });
         member
     }
+
+    /// Closes a loop by a joint at which coordinates are needed: it gets half of the body at its far end, of which `half`
+    /// is the other, and both halves hold each other.
+    fn split(&mut self, link: &Link, half: usize, on: Option<usize>, reversed: bool, bodies: &RigidBodySet) {
+        let own = self.grow(link, on, reversed, bodies);
+        let (mass, tensor) = (0.5 * self.members[half].mass, 0.5 * self.members[half].tensor);
+        for member in [half, own] {
+            (self.members[member].mass, self.members[member].tensor) = (mass, tensor);
+        }
+        self.members[own].is_part = true;
+        let ends = [half, own].map(|member| End { member: Some(member), frame: Pose::IDENTITY });
+        self.closures.push(Closure { link: None, kind: JointKind::Fixed, ends });
+    }
 }
 
 /// What joints make of the bodies.
 pub(super) struct Forest {
     pub(super) trees: Vec<Tree>,
     /// The joints, by their index in the scene, of what is not a tree: it stands on nothing or on what moves by itself, or
-    /// it has a loop that is driven or of which each joint has something fitted.
+    /// what holds a body fast closes a loop.
     pub(super) others: Vec<usize>,
 }
 
-/// The forest of these joints, of bodies that are `moved`. A loop is closed by a joint that is `plain`: nothing brakes it,
-/// stops it or asks for its coordinate in a coupling; and only where no joint of all that hangs together is `driven`, for
-/// what closes a loop moves all of its joints, and a drive goes exactly where it is to go.
+/// The forest of these joints, of bodies that are `moved`. A loop is closed by a joint that is `plain`, if it has one:
+/// nothing drives it, brakes it, stops it or asks for its coordinate in a coupling. Else a body of it is halved.
 pub(super) fn forest(
     links: &[Link],
     couplings: &[Coupled],
     bodies: &RigidBodySet,
     moved: &impl Fn(RigidBodyHandle) -> bool,
     plain: &impl Fn(&Link) -> bool,
-    driven: &impl Fn(usize) -> bool,
 ) -> Forest {
     let mut forest = Forest { trees: Vec::new(), others: Vec::new() };
     let mut done = vec![false; links.len()];
@@ -204,16 +220,15 @@ pub(super) fn forest(
         for index in &together {
             done[*index] = true;
         }
-        let passive = !together.iter().any(|index| links[*index].joint.is_some_and(driven));
-        let closes = |link: &Link| passive && plain(link);
-        let grown = |order: &[usize]| grown(links, order, bodies, moved, &closes);
         // in the scene's order if that will do; else what is plain comes last, so that it closes the loops
         let plain_last = || {
             let mut order = together.clone();
             order.sort_by_key(|index| plain(&links[*index]));
             order
         };
-        match grown(&together).or_else(|| if passive { grown(&plain_last()) } else { None }) {
+        let grown = |order: &[usize], may_split: bool| grown(links, order, bodies, moved, plain, may_split);
+        let tree = grown(&together, false).or_else(|| grown(&plain_last(), false));
+        match tree.or_else(|| grown(&plain_last(), true)) {
             Some(tree) => forest.trees.push(tree),
             None => forest.others.extend(together.iter().filter_map(|index| links[*index].joint)),
         }
@@ -248,13 +263,15 @@ fn together(
     found
 }
 
-/// The tree of joints that hang together, if they are one; joints that are `plain` may close loops of it.
+/// The tree of joints that hang together, if they are one; joints that are `plain` may close loops of it, and, if it
+/// `may_split` bodies, all joints of the scene.
 fn grown(
     links: &[Link],
     together: &[usize],
     bodies: &RigidBodySet,
     moved: &impl Fn(RigidBodyHandle) -> bool,
     plain: &impl Fn(&Link) -> bool,
+    may_split: bool,
 ) -> Option<Tree> {
     let mut tree = Tree::default();
     let mut left = together.to_vec();
@@ -279,7 +296,18 @@ fn grown(
                     let member = find(body, &place);
                     End { member, frame: if member.is_none() { *bodies[body].position() * frame } else { frame } }
                 };
-                tree.closures.push(Closure { link: *link, ends: [end(0), end(1)] });
+                tree.closures.push(Closure { link: Some(*link), kind: link.kind, ends: [end(0), end(1)] });
+                continue;
+            }
+            _ if may_split
+                && link.joint.is_some()
+                && !tree.members.is_empty()
+                && link.bodies.into_iter().all(whole) =>
+            {
+                // what is split must be one that forces move
+                let reversed = bodies[link.bodies[1]].is_fixed();
+                let [near, far] = if reversed { [link.bodies[1], link.bodies[0]] } else { link.bodies };
+                tree.split(link, find(far, &place)?, find(near, &place), reversed, bodies);
                 continue;
             }
             _ => return None,

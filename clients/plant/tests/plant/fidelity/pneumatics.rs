@@ -177,8 +177,7 @@ fn strokes() -> Vec<Line> {
     let cushioned = Stroke { cushion: Some((0.02, 0.1e-8)), to_m: 0.19, ..large };
     let source = "ISO 6358-1, Beater ch. 5, own integration";
     vec![
-        Line::new("stroke of 99 of 100 mm, 32 mm, 2 kg, 6 bar: time", (small.time_s(), "s"), source, small.ours())
-            .because("the valve switches at the beginning of the turn in which its delay of 15 ms is over"),
+        Line::new("stroke of 99 of 100 mm, 32 mm, 2 kg, 6 bar: time", (small.time_s(), "s"), source, small.ours()),
         Line::new("stroke of 199 of 200 mm, 63 mm, 20 kg, 6 bar: time", (large.time_s(), "s"), source, large.ours()),
         Line::new(
             "the same with an end cushion of 20 mm and 0.1 l/(s·bar), 190 mm",

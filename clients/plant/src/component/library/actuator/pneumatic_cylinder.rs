@@ -227,9 +227,19 @@ impl PneumaticCylinder {
         self.ports(state.spool, ATMOSPHERE_PA + if lost { 0.0 } else { self.p.supply_bar * BAR_PA })
     }
 
+    /// Moves the spool if its delay is over as a sub-step begins: turns may be longer than that is.
+    fn switch(&self, state: &mut State, inputs: Inputs, turn: &Turn<Option<Coordinate>>, dt_s: f64) {
+        let wanted = self.wanted(inputs, state.spool);
+        let stuck = turn.failed.has(Failure::ValveStuck);
+        if state.switching.has_held(wanted != state.spool && !stuck, self.p.valve_delay_s, dt_s) {
+            state.spool = wanted;
+        }
+    }
+
     /// Moves the pressures by a sub-step in which the rod goes on as it does.
-    fn breathe(&self, state: &mut State, ports: [Option<f64>; 2], turn: &Turn<Option<Coordinate>>, dt_s: f64) {
+    fn breathe(&self, state: &mut State, turn: &Turn<Option<Coordinate>>, dt_s: f64) {
         let p = &self.p;
+        let ports = self.connected(state, turn);
         let (x, v) = (state.rod.position, state.rod.velocity);
         let (cap_left, rod_left) = (x, p.stroke_m - x);
         let dead_m3 = p.dead_cm3 * 1e-6;
@@ -250,9 +260,10 @@ impl PneumaticCylinder {
         });
     }
 
-    fn substep(&self, state: &mut State, ports: [Option<f64>; 2], turn: &Turn<Option<Coordinate>>, dt_s: f64) {
+    fn substep(&self, state: &mut State, inputs: Inputs, turn: &Turn<Option<Coordinate>>, dt_s: f64) {
         let p = &self.p;
-        self.breathe(state, ports, turn, dt_s);
+        self.switch(state, inputs, turn, dt_s);
+        self.breathe(state, turn, dt_s);
         if turn.failed.has(Failure::Jammed) {
             state.rod.velocity = 0.0;
             return;
@@ -298,18 +309,12 @@ impl Component for PneumaticCylinder {
     }
 
     fn drive(&self, state: &mut State, inputs: &Inputs, turn: &Turn<Option<Coordinate>>) {
-        let wanted = self.wanted(*inputs, state.spool);
-        let stuck = turn.failed.has(Failure::ValveStuck);
-        if state.switching.holds(wanted != state.spool && !stuck, self.p.valve_delay_s, turn.dt_s) {
-            state.spool = wanted;
-        }
         if turn.seen.is_some() {
             return;
         }
-        let ports = self.connected(state, turn);
         let (count, dt_s) = substeps(turn.dt_s, self.longest_s);
         for _ in 0..count {
-            self.substep(state, ports, turn, dt_s);
+            self.substep(state, *inputs, turn, dt_s);
         }
     }
 
@@ -324,14 +329,15 @@ impl Component for PneumaticCylinder {
     fn advance(
         &self,
         state: &mut State,
-        _: &Inputs,
+        inputs: &Inputs,
         turn: &Turn<Option<Coordinate>>,
         motion: Motion,
         dt_s: f64,
     ) -> Effort {
         let p = &self.p;
         state.rod = Travel::on_joint(&motion, (0.0, p.stroke_m));
-        self.breathe(state, self.connected(state, turn), turn, dt_s);
+        self.switch(state, *inputs, turn, dt_s);
+        self.breathe(state, turn, dt_s);
         if turn.failed.has(Failure::Jammed) {
             return Effort::BLOCKED;
         }
