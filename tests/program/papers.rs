@@ -82,7 +82,21 @@ const FIGURES: [(&str, &[&str]); 5] = [
         ],
     ),
     ("## [Vergnano]", &["Fig. 5", "Sec. 4", "Sec. 4.1", "Sec. 4.2", "Sec. 5"]),
-    ("## [Jacket]", &["Ch. 7.2", "Ch. 11", "Ch. 13", "Ch. 14", "Ch. 14.1", "Ch. 14.2", "Appendix 1", "Appendix 2"]),
+    (
+        "## [Jacket]",
+        &[
+            "Ch. 2.2",
+            "Chs. 3 and 15",
+            "Ch. 7.2",
+            "Ch. 11",
+            "Ch. 13",
+            "Ch. 14",
+            "Ch. 14.1",
+            "Ch. 14.2",
+            "Appendix 1",
+            "Appendix 2",
+        ],
+    ),
 ];
 
 /// A row of one of the page's tables.

@@ -124,3 +124,44 @@ fn transport_and_checkpoints_do_not_matter() {
     is_the_same_over_tcp_and_resumed("rotary-kiln", "resync.toml", "20s", "17.1s");
     is_the_same_over_tcp_and_resumed("rotary-kiln", "rates.toml", "20s", "17s");
 }
+
+/// A map as a table: its places, and its rows, each with its angle or number in front.
+fn map(path: &Path) -> (Vec<f64>, Vec<Vec<f64>>) {
+    let text = fs::read_to_string(path).expect("a map");
+    let number = |cell: &str| cell.parse::<f64>().expect("a number");
+    let mut lines = text.lines();
+    let places = lines.next().expect("a head").split(',').skip(1).map(number).collect();
+    (places, lines.map(|line| line.split(',').map(number).collect()).collect())
+}
+
+/// What a map of the machine has at a place and an angle, straight between its cells.
+fn between((places, rows): &(Vec<f64>, Vec<Vec<f64>>), at_m: f64, at_deg: f64) -> f64 {
+    let right = places.partition_point(|place| *place < at_m).clamp(1, places.len() - 1);
+    let along = ((at_m - places[right - 1]) / (places[right] - places[right - 1])).clamp(0.0, 1.0);
+    let above = rows.partition_point(|row| row[0] < at_deg);
+    let (above, below) = (&rows[above % rows.len()], &rows[(above + rows.len() - 1) % rows.len()]);
+    let around = (at_deg - below[0]).rem_euclid(360.0) / (above[0] - below[0]).rem_euclid(360.0);
+    // the first cell of a row is its angle
+    let at = |row: &[f64]| row[right] * (1.0 - along) + row[right + 1] * along;
+    at(below) * (1.0 - around) + at(above) * around
+}
+
+/// Ch. 15: the structure is for several scanners. Both maps are the machine's, to a step of a byte.
+#[test]
+fn two_scanners_have_the_shell_as_it_is() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let words = ["run", "scanners.toml", "--until", "132s", "--map", folder.path().to_str().expect("UTF-8")];
+    let said = typed(&scenario("rotary-kiln"), &words);
+    assert_eq!(said.code, Some(0), "{said:?}");
+    let machine = map(&folder.path().join("machine.csv"));
+    for name in ["inlet-half", "outlet-half"] {
+        let (places, rows) = map(&folder.path().join(name).with_extension("csv"));
+        assert_eq!((places.len(), rows.len()), (256, 100), "{name}");
+        let apart = |row: &[f64], column: usize| {
+            let machine = between(&machine, places[column], row[0] * 3.6);
+            (row[column + 1] - machine).abs()
+        };
+        let most = rows.iter().flat_map(|row| (0..256).map(|column| apart(row, column))).fold(0.0, f64::max);
+        assert!(most < 500.0 / 255.0, "{name}: {most} °C");
+    }
+}
