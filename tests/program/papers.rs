@@ -81,7 +81,10 @@ const FIGURES: [(&str, &[&str]); 5] = [
             "Figs. 22 to 24",
         ],
     ),
-    ("## [Vergnano]", &["Fig. 5", "Sec. 4", "Sec. 4.1", "Sec. 4.2", "Sec. 5"]),
+    (
+        "## [Vergnano]",
+        &["Figs. 1 and 7", "Figs. 2, 4 and 6", "Fig. 3", "Fig. 5", "Sec. 4", "Sec. 4.1", "Sec. 4.2", "Sec. 5"],
+    ),
     (
         "## [Jacket]",
         &[
