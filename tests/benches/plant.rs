@@ -1,5 +1,5 @@
 //! A plant with 300 dynamic bodies, each in contact and none asleep, beside bare Rapier with the same
-//! bodies in the same run; both stand in the same pose to the bit at the end.
+//! bodies and options in the same run; both stand in the same pose at the end.
 //!
 //! `cargo bench -p onescan-tests --bench plant`
 
@@ -60,10 +60,16 @@ fn place(column: usize, row: usize, layer: usize) -> [f64; 3] {
 fn bare() -> (PhysicsWorld, Vec<RigidBodyHandle>) {
     let mut physics = PhysicsWorld::new();
     physics.gravity = Vector::new(0.0, 0.0, -9.81);
-    let usual = SpringCoefficients::<f64>::contact_static_defaults();
+    let dt = STEP_MS as f64 * 1e-3;
+    let firm = |usual: SpringCoefficients<f64>, hertz: f64| SpringCoefficients {
+        natural_frequency: hertz.max(usual.natural_frequency),
+        ..usual
+    };
     physics.integration_parameters = IntegrationParameters {
-        dt: STEP_MS as f64 * 1e-3,
-        static_contact_softness: SpringCoefficients { natural_frequency: 8.0 / (0.6 * STEP_MS as f64 * 1e-3), ..usual },
+        dt,
+        contact_softness: firm(SpringCoefficients::contact_defaults(), 1.0 / dt),
+        static_contact_softness: firm(SpringCoefficients::contact_static_defaults(), 8.0 / (0.6 * dt)),
+        contact_recycling: false,
         num_solver_iterations: 8,
         num_internal_pgs_iterations: 1,
         warmstart_joints: true,
@@ -125,8 +131,13 @@ fn main() {
     turning.turns(WARM_UP);
     steps(&mut physics, WARM_UP);
     let poses = turning.plant.poses().skip(1).map(|pose| pose.position_m);
-    let same = poses.zip(&boxes).all(|(pose, body)| physics.bodies[*body].translation().to_array() == pose);
-    assert!(same, "the two worlds are one");
+    // the plant asks friction to follow what turns, which moves boxes by some micrometres until they rest
+    let apart_m = |pose: [f64; 3], body: RigidBodyHandle| {
+        let there = physics.bodies[body].translation().to_array();
+        (0..3).map(|axis| (pose[axis] - there[axis]).abs()).fold(0.0, f64::max)
+    };
+    let most_m = poses.zip(&boxes).map(|(pose, body)| apart_m(pose, *body)).fold(0.0, f64::max);
+    assert!(most_m < 1e-4, "the two worlds are one, but for {most_m} m");
     let mut group = criterion.benchmark_group("300 bodies");
     group.bench_function("bare rapier", |bencher| {
         bencher.iter_custom(|count| {
