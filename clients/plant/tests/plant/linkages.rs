@@ -110,10 +110,10 @@ fn a_linkage_with_friction_at_each_pin_speeds_up_as_its_closed_form_says() {
         let mut bench = Bench::at_us(&scene, period_us);
         bench.run_us(1_000_000);
         let pose = bench.plant.poses().nth(1).expect("a beam");
-        let [x, _, z] = pose.position_m;
-        let crank_rad = (x - 0.5).atan2(z);
+        let out_m = [pose.position_m[0] - 0.5, pose.position_m[2]];
+        let crank_rad = out_m[0].atan2(out_m[1]);
         assert!((crank_rad - wanted_rad).abs() < 1e-5, "{period_us} us: {crank_rad} {wanted_rad}");
-        assert!(((x - 0.5).hypot(z) - 0.5).abs() < 1e-11, "{period_us} us: the beam is off its cranks");
+        assert!((out_m[0].hypot(out_m[1]) - 0.5).abs() < 1e-11, "{period_us} us: the beam is off its cranks");
         assert!(pose.rotation_xyzw[..3].iter().all(|part| part.abs() < 1e-11), "{period_us} us: {pose:?}");
     }
 }

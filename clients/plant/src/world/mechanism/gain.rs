@@ -19,8 +19,9 @@ pub(super) struct Energy {
 impl Energy {
     /// Whether this is more than `before`, a step of `dt_s` ago, for no reason.
     pub(super) fn is_gained(self, before: Self, dt_s: f64) -> bool {
+        let gain = self.all - before.all;
         // what is not a number is nobody's energy
-        !(self.all - before.all <= GAIN_PER_S * dt_s * self.amount.max(before.amount))
+        gain.is_nan() || gain > GAIN_PER_S * dt_s * self.amount.max(before.amount)
     }
 }
 
