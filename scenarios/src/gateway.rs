@@ -14,8 +14,7 @@ use onescan_links::gateway::exchange::{Direction, Words};
 use onescan_links::gateway::layout_number::layout_number;
 use onescan_links::gateway::mapping::{self, Variables};
 use onescan_links::gateway::{
-    CountedGateway, Exchange, FreeGateway, Gateway, HandshakeKind, LinkFault, MappingFault, Point, Settings,
-    SettingsFault,
+    CountedGateway, Exchange, FreeGateway, Gateway, LinkFault, MappingFault, Point, Settings, SettingsFault,
 };
 use onescan_server::client::{Client, JoinRequest};
 use onescan_server::signal::{ClientName, Port, SignalDecl, SignalName, did_you_mean};
@@ -157,14 +156,18 @@ impl Scenario {
         Ok(Box::new(gateway))
     }
 
+    /// True if the client `name` is a real PLC, or one stands in for it.
+    pub fn is_real_plc(&self, name: &ClientName) -> bool {
+        let client = self.file().clients.get(name).map(toml::Spanned::get_ref);
+        matches!(client, Some(ClientFile::Gateway { .. })) || self.gateways.contains_key(name)
+    }
+
     /// The client that exchanges values with a PLC that free-wheels, if a real one stands in for `name`.
     ///
     /// # Errors
     /// As [`Scenario::member`].
     pub fn free_gateway(&self, name: &ClientName) -> Option<Result<Box<dyn Client>, ScenarioError>> {
-        let client = self.file().clients.get(name).map(toml::Spanned::get_ref);
-        let is_real = matches!(client, Some(ClientFile::Gateway { .. })) || self.gateways.contains_key(name);
-        is_real.then(|| {
+        self.is_real_plc(name).then(|| {
             let Agreement { settings, request, exchange, .. } = self.agreement(name)?;
             self.may_listen(name, &settings)?;
             let link = settings.link(&exchange).map_err(|fault| self.wrong_settings(name, fault))?;
@@ -399,7 +402,7 @@ impl Scenario {
             None => self.task_plan(name, &application, tasks)?,
         };
         let settings = gateway.clone().unwrap_or_default();
-        let exchange = self.exchange(name, &settings, served(&settings), &own)?;
+        let exchange = self.exchange(name, &settings, settings.words(), &own)?;
         Ok(Instrumented { application, plan, bindings: named_as(bindings, &own), exchange, settings })
     }
 
@@ -429,12 +432,6 @@ impl Scenario {
             SettingsFault::Link(fault) => ScenarioError::Link { client: name.clone(), fault },
         }
     }
-}
-
-/// The words that a PLC serves: more than it is asked for, unless its blocks have no room for more.
-fn served(settings: &Settings) -> Words {
-    let is_declared = !settings.layout.to_plc.is_empty() || !settings.layout.from_plc.is_empty();
-    if is_declared || settings.handshake == HandshakeKind::Frames { settings.words() } else { Words::WithSystem }
 }
 
 /// A file of the instrumented project as the compiler takes it: one of the program's own in the dialect and

@@ -89,6 +89,7 @@ mod third_party;
 mod timings;
 mod trainer;
 mod training;
+mod training_plc;
 mod twincat;
 mod two_hosts;
 mod typed;

@@ -138,3 +138,30 @@ fn a_plc_that_is_not_there_is_unreachable() {
     let text: Vec<String> = all.into_iter().map(|said| said.err).collect();
     insta::assert_snapshot!(text.join("----\n"));
 }
+
+/// Where the scenario says that the PLC has no words about itself, somebody must start it between two sessions, as a real one.
+#[test]
+fn a_plc_that_nobody_starts_is_waited_for() {
+    let folder = crate::typed::copied_shear();
+    edit(folder.path(), "scenario.toml", "system_words = true", "system_words = false");
+    let mut plc = Plc::start(folder.path(), &[]);
+    let gateway = plc.gateway("s7://");
+    let words = ["run", ".", "--format", "json", "--until", "200ms", "--gateway", &gateway];
+    let first = typed(folder.path(), &words);
+    assert_eq!(first.code, Some(0), "{first:?}");
+    let mut run = onescan(folder.path()).args(words).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut said = BufReader::new(run.stderr.take().expect("piped"));
+    let mut line = String::new();
+    while !line.contains("client `plc`: start the PLC cold, for the session to begin") {
+        line.clear();
+        assert_ne!(said.read_line(&mut line).expect("text"), 0, "it has ended");
+    }
+    assert!(plc.say("status").starts_with("RUN, start 1, "));
+    plc.say("cold");
+    let again = Said::from(run.wait_with_output().unwrap());
+    assert_eq!(again.code, Some(0), "{again:?}");
+    assert_eq!(
+        again.out.split("\"digest\"").nth(1).map(|rest| &rest[..20]),
+        first.out.split("\"digest\"").nth(1).map(|rest| &rest[..20])
+    );
+}

@@ -132,3 +132,30 @@ fn the_shear_without_the_handshake() {
 fn the_gantry_robot_without_the_handshake() {
     without_the_handshake_runs_differ("gantry-robot", "2s");
 }
+
+/// A scenario that says nothing of a link: the PLC and the gateway lay out the same, over every link, and the next session
+/// starts the PLC by itself.
+#[test]
+fn a_scenario_without_a_link_fits_its_plc() {
+    let folder = copied("gantry-robot");
+    let expected = run(folder.path(), "200ms", &[]).0.remove(0);
+    let plc = Plc::start(folder.path(), &["--cycle", "max"]);
+    for scheme in ["s7://", "tcp://", "modbus://", "ads://", "opc.tcp://"] {
+        let (all, said) = run(folder.path(), "200ms", &["--runs", "2", "--gateway", &plc.gateway(scheme)]);
+        assert_eq!(all, [expected.as_str(), expected.as_str()], "{scheme}: {said:?}");
+        assert!(!said.err.contains("start the PLC cold"), "{scheme}: {said:?}");
+    }
+}
+
+/// The same of a PLC that reads signals in several variables and whose scenario has several PLCs.
+#[test]
+fn one_of_two_plcs_without_a_link_fits() {
+    let folder = copied("arc-furnace");
+    let expected = run(folder.path(), "2s", &[]).0.remove(0);
+    let plc = Plc::start(folder.path(), &["--cycle", "max", "--client", "process"]);
+    for scheme in ["s7://", "tcp://", "modbus://"] {
+        let gateway = plc.gateway(scheme).replace("plc=", "process=");
+        let (all, said) = run(folder.path(), "2s", &["--gateway", &gateway]);
+        assert_eq!(all, [expected.as_str()], "{scheme}: {said:?}");
+    }
+}

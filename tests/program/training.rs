@@ -159,8 +159,12 @@ pub(crate) struct Lesson {
 
 impl Lesson {
     pub(crate) fn begin(words: &[&str]) -> Self {
+        Self::begin_in(&scenario("arc-furnace"), words)
+    }
+
+    pub(crate) fn begin_in(folder: &Path, words: &[&str]) -> Self {
         let words = [&["train", ".", "--format", "json", "--web"], words].concat();
-        let mut program = begun(&scenario("arc-furnace"), &words);
+        let mut program = begun(folder, &words);
         let mut said = BufReader::new(program.stderr.take().expect("piped"));
         let pages = ["trainee", "trainer"].map(|whose| {
             let mut line = String::new();
@@ -181,11 +185,16 @@ impl Lesson {
         tungstenite::client(request, stream).expect("a viewer").0
     }
 
-    pub(crate) fn record(mut self) -> Value {
-        let mut rest = String::new();
-        self.said.read_to_string(&mut rest).expect("text");
-        let output = self.program.wait_with_output().expect("it ends");
-        serde_json::from_slice(&output.stdout).unwrap_or_else(|_| panic!("{rest}"))
+    pub(crate) fn record(self) -> Value {
+        let said = self.said();
+        serde_json::from_str(&said.out).unwrap_or_else(|_| panic!("{said:?}"))
+    }
+
+    /// All that it says, to its end.
+    pub(crate) fn said(mut self) -> Said {
+        let mut err = String::new();
+        self.said.read_to_string(&mut err).expect("text");
+        Said { err, ..Said::from(self.program.wait_with_output().expect("it ends")) }
     }
 }
 

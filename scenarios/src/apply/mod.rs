@@ -9,6 +9,7 @@
 //! | `disturbance` | faults on the way of signals |
 //! | [`departure`] | where a case departs from another |
 //! | [`measure`] | what a campaign reads out of its runs |
+//! | `real_plc` | what a case asks of a PLC that a real one does not do |
 //! | `timeline` | what a case does while a session runs, as operations |
 
 mod code;
@@ -16,6 +17,7 @@ pub mod departure;
 mod disturbance;
 pub mod measure;
 mod period;
+mod real_plc;
 mod settings;
 mod timeline;
 

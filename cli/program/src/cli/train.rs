@@ -5,9 +5,10 @@ use std::path::PathBuf;
 
 use clap::Args as ClapArgs;
 use onescan_server::pacing::Pace;
+use onescan_server::signal::ClientName;
 
 use super::error::CommandError;
-use super::run::pace;
+use super::run::{gateway, pace};
 use super::value::FormatArg;
 use onescan_runner::access::admission::Admission;
 use onescan_runner::error::ExitCode;
@@ -25,6 +26,10 @@ pub struct TrainArgs {
     /// Who takes it, as it stands in reports
     #[arg(long, default_value = "trainee", value_name = "NAME")]
     pub trainee: String,
+    /// Let a real PLC stand in for a soft PLC, as in `plc=s7://192.168.0.1`: it is started cold and driven to where the lesson
+    /// begins [default URL: the scenario's]
+    #[arg(long = "gateway", value_name = "CLIENT[=URL]", value_parser = gateway)]
+    pub gateways: Vec<(ClientName, Option<String>)>,
     /// Serve the trainee's page, to browsers of this machine unless there is `--access`, and beside it the trainer's, each at an address of its own
     /// [default ADDRESS: a free port]
     #[arg(long, value_name = "ADDRESS:PORT", num_args = 0..=1, require_equals = true, default_missing_value = "127.0.0.1:0", conflicts_with = "replay_operator")]
@@ -56,7 +61,7 @@ pub struct TrainArgs {
     #[arg(long, value_name = "FILE")]
     pub html: Option<PathBuf>,
     /// Set the sessions recorded in the folders below this one side by side, and do nothing else
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["lesson", "web", "replay_operator", "record", "html"])]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["lesson", "web", "replay_operator", "record", "html", "gateways"])]
     pub table: Option<PathBuf>,
     /// For people, or one JSON object for machines
     #[arg(long, value_enum, default_value_t)]
@@ -77,6 +82,7 @@ pub fn train(args: TrainArgs) -> Result<ExitCode, CommandError> {
         scenario: args.scenario,
         lesson: args.lesson,
         trainee: args.trainee,
+        gateways: args.gateways,
         served: args.web.map(|trainee| Served { trainee, trainer: args.trainer, admission, pace: args.pace }),
         replay_operator: args.replay_operator,
         record: args.record,

@@ -21,7 +21,7 @@ pub fn settings(declared: Settings) -> Settings {
     let url = if declared.url.starts_with("s7://") { declared.url.clone() } else { SOMEWHERE.to_owned() };
     let s7 = Options { db_to_plc: DB_TO_PLC, db_from_plc: DB_FROM_PLC, ..declared.s7 };
     let (map, layout) = (BTreeMap::new(), Declaration::default());
-    Settings { url, system_words: false, map, layout, s7, ..declared }
+    Settings { url, system_words: None, map, layout, s7, ..declared }
 }
 
 /// The mapping; nothing if the shim declares no blocks.

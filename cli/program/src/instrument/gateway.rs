@@ -41,7 +41,7 @@ pub fn mapping(plc: Option<(&Scenario, &ClientName)>, located: &[Located]) -> Re
     };
     let declared = scenario.declared(client);
     let url = if declared.url.starts_with("modbus://") { declared.url.clone() } else { SOMEWHERE.to_owned() };
-    let settings = Settings { url, system_words: false, map: addresses(located), ..declared };
+    let settings = Settings { url, system_words: None, map: addresses(located), ..declared };
     let agreed = scenario.agreement_over(client, settings)?;
     let listing = Listing::new(&agreed.settings, &agreed.exchange);
     let listing = listing.map_err(|fault| scenario.wrong_settings(client, fault))?;

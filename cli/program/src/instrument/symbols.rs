@@ -36,7 +36,7 @@ pub(super) fn settings(target: Target, declared: Settings) -> Settings {
     if declared.url.starts_with(scheme) || !declared.map.is_empty() {
         return declared;
     }
-    Settings { url: somewhere.to_owned(), system_words: false, ..declared }
+    Settings { url: somewhere.to_owned(), system_words: None, ..declared }
 }
 
 /// The mapping; nothing for another target, or another link.

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 use onescan_links::gateway::addresses::ALL;
+use onescan_links::gateway::exchange::Words;
 use onescan_links::gateway::listing::{Listing, Row};
 use onescan_scenario::gateway::Agreement;
 use onescan_server::signal::ClientName;
@@ -65,7 +66,7 @@ impl Fragment {
         Self {
             client: client.to_string(),
             url: agreed.settings.url.clone(),
-            system_words: agreed.settings.system_words,
+            system_words: agreed.exchange.words() == Words::WithSystem,
             entries,
         }
     }

@@ -55,6 +55,10 @@ pub fn run(config: &PlcConfig, interrupt: &Interrupt, out: &mut dyn Write) -> Re
     let wires = Wires::new(&program.exchange, &program.application, &program.bindings);
     let wires = wires.map_err(|error| wrong(error.to_string()))?;
     let mut controller = Controller::new(plc, wires);
+    // A gateway that counts its starts starts it; where a scenario says that nobody does, it is as real as that.
+    if config.mode == Mode::Lockstep && program.settings.system_words.is_none() {
+        controller = controller.starting_itself();
+    }
     if config.mode == Mode::Freewheel {
         let simulated = program.application.variable("SDSP_Simulated").map_err(|error| wrong(error.to_string()))?;
         controller = controller.with_preset(simulated.offset as usize, vec![0]);

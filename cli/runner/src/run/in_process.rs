@@ -2,6 +2,7 @@
 
 use onescan_scenario::Scenario;
 use onescan_scenario::compose::Member;
+use onescan_server::client::Client;
 use onescan_server::formation::Formation;
 use onescan_server::lockstep::Lockstep;
 use onescan_server::signal::ClientName;
@@ -21,8 +22,27 @@ pub(crate) fn in_process(
     more: impl IntoIterator<Item = Scheduled>,
     elsewhere: impl Fn(&ClientName, &Member) -> Usage,
 ) -> Result<Lockstep, RunError> {
+    with_clients(scenario, until, more, |_| None, elsewhere)
+}
+
+/// The same with clients that are here already, which `here` gives.
+///
+/// # Errors
+/// As above.
+pub(crate) fn with_clients(
+    scenario: &Scenario,
+    until: VirtualTime,
+    more: impl IntoIterator<Item = Scheduled>,
+    here: impl Fn(&ClientName) -> Option<Box<dyn Client>>,
+    elsewhere: impl Fn(&ClientName, &Member) -> Usage,
+) -> Result<Lockstep, RunError> {
     let mut formation = Formation::new(scenario.plan().clone());
     for name in scenario.plan().clients() {
+        if let Some(client) = here(name) {
+            let request = client.join();
+            formation.join(client).map_err(|refusal| scenario.refused(&request, &refusal))?;
+            continue;
+        }
         match scenario.member(name)? {
             Member::Plant(client) | Member::Plc(client) => {
                 let request = client.join();

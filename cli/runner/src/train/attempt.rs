@@ -21,11 +21,12 @@ use onescan_server::time::VirtualTime;
 use super::error::{StartError, TrainError};
 use super::examination::Examiner;
 use super::moments::{Moment, Moments};
+use super::real_plc::RealPlcs;
 use super::score::Score;
 use crate::error::Usage;
 use crate::run::alarms;
 use crate::run::config::{RecordRequest, Subject};
-use crate::run::in_process::in_process;
+use crate::run::in_process::with_clients;
 use crate::run::recorded::Recorded;
 use crate::web::{AlarmLog, Failing, LessonBoard};
 
@@ -55,6 +56,8 @@ pub(super) struct Stage {
 pub(super) struct Course<'a> {
     /// The scenario as the lesson wants it from its start on.
     pub(super) scenario: &'a Scenario,
+    /// Its real PLCs, which stand where it begins.
+    pub(super) real: &'a RealPlcs,
     pub(super) from: Moment,
     /// What it begins with is called so.
     pub(super) start: &'a str,
@@ -79,8 +82,8 @@ pub(super) struct Ended {
 /// # Errors
 /// The session cannot be formed or go on, or its recording cannot be written.
 pub(super) fn drive(course: Course<'_>, stage: &Stage, moments: &mut Moments) -> Result<Ended, TrainError> {
-    let Course { scenario, from, start, inputs, hold_at, record } = course;
-    let mut lockstep = in_process(scenario, scenario.until(), [], elsewhere)?;
+    let Course { scenario, real, from, start, inputs, hold_at, record } = course;
+    let mut lockstep = with_clients(scenario, scenario.until(), [], |name| real.client(name), elsewhere)?;
     lockstep.set_settings(scenario.session_settings());
     lockstep.set_published(stage.published.clone());
     lockstep.set_mailbox(stage.mailbox.clone());

@@ -4,6 +4,7 @@ use std::net::SocketAddr;
 use std::path::PathBuf;
 
 use onescan_server::pacing::Pace;
+use onescan_server::signal::ClientName;
 
 use crate::access::admission::Admission;
 use crate::format::Format;
@@ -16,6 +17,8 @@ pub struct TrainConfig {
     /// The lesson; all are listed if absent.
     pub lesson: Option<String>,
     pub trainee: String,
+    /// Real PLCs that stand in for soft ones, and where they are if that is not where the scenario says.
+    pub gateways: Vec<(ClientName, Option<String>)>,
     /// Where it is served as pages, and how fast.
     pub served: Option<Served>,
     /// A recording, a file of events or a session whose operators' inputs are repeated.

@@ -19,9 +19,10 @@ use super::config::{Served, TrainConfig};
 use super::error::TrainError;
 use super::examination::Examination;
 use super::moments::{Moment, Moments};
+use super::real_plc::RealPlcs;
 use super::record::{AttemptRecord, FILE_NAME, Fork, SessionRecord, run_folder};
 use super::report;
-use super::starts::Starts;
+use super::starts::{Starts, driven};
 use crate::error::Usage;
 use crate::interrupt::Interrupt;
 use crate::run::operator_inputs;
@@ -35,6 +36,16 @@ pub(super) struct Classroom<'a> {
     pub(super) book: &'a Book,
     pub(super) lesson: &'a Lesson,
     pub(super) interrupt: &'a Interrupt,
+    /// The real PLCs of the scenario.
+    pub(super) real: &'a RealPlcs,
+}
+
+/// A session that was held.
+pub(super) struct Held {
+    pub(super) record: SessionRecord,
+    pub(super) unequal: Unequal,
+    /// Why it ended before anybody wanted it to.
+    pub(super) broken_off: Option<TrainError>,
 }
 
 /// An attempt whose repetition is another one, in words.
@@ -44,6 +55,16 @@ pub(super) type Unequal = Vec<String>;
 struct Prepared {
     scenario: Scenario,
     checkpoint: Checkpoint,
+}
+
+/// The way on which a session is.
+struct Way {
+    /// The start of the attempt that is under way.
+    at: Rc<Prepared>,
+    /// All starts of the session.
+    prepared: BTreeMap<String, Rc<Prepared>>,
+    /// What operators did since the start, along the way that led here.
+    line: Vec<OperatorInput>,
 }
 
 /// Where the next attempt begins.
@@ -56,15 +77,16 @@ struct Next {
 }
 
 impl Classroom<'_> {
-    /// Holds the lesson, with the expert's score beside it.
+    /// Holds the lesson, with the expert's score beside it, which soft PLCs give where `soft`, the scenario without real ones,
+    /// has them.
     ///
     /// # Errors
     /// See [`TrainError`].
-    pub(super) fn hold(&self) -> Result<(SessionRecord, Unequal), TrainError> {
+    pub(super) fn hold(&self, soft: &Scenario) -> Result<Held, TrainError> {
         let mut record = SessionRecord::new(self.scenario.name(), &self.lesson.name, &self.config.trainee);
-        let mut unequal = Vec::new();
+        let (mut unequal, mut broken_off) = (Vec::new(), None);
         match (&self.config.served, &self.config.replay_operator) {
-            (Some(served), None) => record.attempts = self.live(served)?,
+            (Some(served), None) => (record.attempts, broken_off) = self.live(served)?,
             (None, Some(path)) if path.join(FILE_NAME).is_file() => {
                 let before = SessionRecord::read(path)?;
                 record.trainee.clone_from(&before.trainee);
@@ -92,9 +114,16 @@ impl Classroom<'_> {
         if let Some(expert) = &self.lesson.expert {
             let inputs = operator_inputs(&self.scenario.folder().join(expert))?;
             let quiet = TrainConfig { record: None, ..self.config.clone() };
-            record.expert = Some(Classroom { config: &quiet, ..*self }.repeated(&self.lesson.start, inputs, 1)?);
+            let none = RealPlcs::default();
+            let is_soft = !soft.plan().clients().iter().any(|name| soft.is_real_plc(name));
+            let (scenario, real) = if is_soft { (soft, &none) } else { (self.scenario, self.real) };
+            // Without a PLC that is lost there is no expert's score, and the record stays what it is.
+            if broken_off.is_none() || is_soft {
+                let expert = Classroom { config: &quiet, scenario, real, ..*self };
+                record.expert = Some(expert.repeated(&self.lesson.start, inputs, 1)?);
+            }
         }
-        Ok((record, unequal))
+        Ok(Held { record, unequal, broken_off })
     }
 
     fn start(&self, name: &str) -> Result<&Start, TrainError> {
@@ -106,8 +135,21 @@ impl Classroom<'_> {
     fn prepare(&self, name: &str) -> Result<Prepared, TrainError> {
         let start = self.start(name)?;
         let scenario = self.book.applied(self.scenario, self.lesson, start)?;
-        let checkpoint =
-            Starts::new(self.scenario, self.book, self.config.starts.as_deref()).prepare(start, self.interrupt)?;
+        for client in self.real.names() {
+            if let Some(what) = scenario.beyond_a_real_plc(client) {
+                let lesson = &self.lesson.name;
+                let message = format!(
+                    "lesson `{lesson}` from `{name}` wants of client `{client}` that {what}, and a real PLC does not do that"
+                );
+                let help = format!("take it with the soft PLC: leave out `--gateway {client}`");
+                return Err(Usage::new(message, Some(help)).into());
+            }
+        }
+        let checkpoint = if self.real.is_empty() {
+            Starts::new(self.scenario, self.book, self.config.starts.as_deref()).prepare(start, self.interrupt)?
+        } else {
+            driven(&self.book.prepared(self.scenario, start)?, start, self.real, self.interrupt)?
+        };
         Ok(Prepared { scenario, checkpoint })
     }
 
@@ -150,7 +192,7 @@ impl Classroom<'_> {
         let Next { start, moment, mut moments, inputs, fork } = next;
         let record = self.config.record.as_deref().map(|folder| (folder, number, self.config.scenario.as_path()));
         let hold_at = fork.map(|fork| VirtualTime::from_nanos(fork.t_v_ns));
-        let course = Course { scenario, from: moment, start: &start, inputs, hold_at, record };
+        let course = Course { scenario, real: self.real, from: moment, start: &start, inputs, hold_at, record };
         stage.board.begin(number, scenario.until().as_nanos());
         let Ended { outcome, began, score, inputs } = drive(course, stage, &mut moments)?;
         stage.board.end(report::result(&score));
@@ -174,54 +216,85 @@ impl Classroom<'_> {
     }
 
     /// The lesson on two pages, for as long as the trainer wants it.
-    fn live(&self, served: &Served) -> Result<Vec<AttemptRecord>, TrainError> {
+    fn live(&self, served: &Served) -> Result<(Vec<AttemptRecord>, Option<TrainError>), TrainError> {
         let mailbox = self.interrupt.mailbox();
-        let stage = Stage { keeps: true, ..self.stage(served.pace, mailbox.clone()) };
+        let stage = Stage { keeps: self.real.is_empty(), ..self.stage(served.pace, mailbox.clone()) };
         let turns = TurnQueue::new(mailbox);
-        let mut at = Rc::new(self.prepare(&self.lesson.start)?);
+        let at = Rc::new(self.prepare(&self.lesson.start)?);
         // Until there is a page, a signal ends the program at once: a start may take long to be made.
         self.interrupt.watch();
-        let mut prepared = BTreeMap::from([(self.lesson.start.clone(), Rc::clone(&at))]);
+        let prepared = BTreeMap::from([(self.lesson.start.clone(), Rc::clone(&at))]);
         let _pages = self.pages(served, &at.scenario, &stage, &turns)?;
         let mut next = self.begins(&self.lesson.start, &at);
+        let mut way = Way { at, prepared, line: Vec::new() };
         let mut attempts: Vec<AttemptRecord> = Vec::new();
-        // what operators did since the start, along the way that led here
-        let mut line: Vec<OperatorInput> = Vec::new();
         loop {
             let number = u32::try_from(attempts.len()).unwrap_or(u32::MAX).saturating_add(1);
             let start = next.start.clone();
             let from = next.moment.steps();
-            let (record, mut moments, heard) = self.attempt(next, &at.scenario, &stage, number)?;
-            line.retain(|input| input.step < from);
-            line.extend(heard);
+            let (record, moments, heard) = self.attempt(next, &way.at.scenario, &stage, number)?;
+            way.line.retain(|input| input.step < from);
+            way.line.extend(heard);
             attempts.push(record);
-            if self.interrupt.is_raised() {
-                return Ok(attempts);
-            }
-            next = match turns.take() {
-                None => return Ok(attempts),
-                Some(Turn::Repeat) => self.begins(&start, &at),
-                Some(Turn::Jump(name)) => {
-                    at = match prepared.get(&name) {
-                        Some(known) => Rc::clone(known),
-                        None => match self.prepare(&name) {
-                            Err(_) if self.interrupt.is_raised() => return Ok(attempts),
-                            made => Rc::new(made?),
-                        },
-                    };
-                    prepared.insert(name.clone(), Rc::clone(&at));
-                    self.begins(&name, &at)
-                }
-                Some(Turn::Back(t_v)) => {
-                    let moment = moments.back_to(t_v);
-                    let t_v = t_v.max(moment.t_v());
-                    let inputs = line.iter().filter(|input| input.step >= moment.steps() && input.t_v < t_v);
-                    let inputs = inputs.cloned().collect();
-                    let fork = Fork { attempt: number, step: moment.steps().0, t_v_ns: t_v.as_nanos() };
-                    Next { start, moment, moments, inputs, fork: Some(fork) }
-                }
+            let Some(turn) = turns.take().filter(|_| !self.interrupt.is_raised()) else { return Ok((attempts, None)) };
+            next = match self.next(turn, start, number, moments, &mut way) {
+                Ok(next) => next,
+                Err(_) if self.interrupt.is_raised() => return Ok((attempts, None)),
+                // A real PLC may be lost between two attempts: those that were held have their record.
+                Err(error) if !self.real.is_empty() => return Ok((attempts, Some(error))),
+                Err(error) => return Err(error),
             };
         }
+    }
+
+    /// Where the attempt after attempt `number` begins, which began at `start`.
+    fn next(
+        &self,
+        turn: Turn,
+        start: String,
+        number: u32,
+        mut moments: Moments,
+        way: &mut Way,
+    ) -> Result<Next, TrainError> {
+        match turn {
+            Turn::Repeat => {
+                way.at = self.again(&start, way)?;
+                Ok(self.begins(&start, &way.at))
+            }
+            Turn::Jump(name) => {
+                way.at = self.again(&name, way)?;
+                Ok(self.begins(&name, &way.at))
+            }
+            Turn::Back(t_v) => {
+                if !self.real.is_empty() {
+                    way.at = self.again(&start, way)?;
+                    moments = Moments::since(self.first_moment(&way.at));
+                }
+                let moment = moments.back_to(t_v);
+                let t_v = t_v.max(moment.t_v());
+                let inputs = way.line.iter().filter(|input| input.step >= moment.steps() && input.t_v < t_v);
+                let inputs = inputs.cloned().collect();
+                let fork = Fork { attempt: number, step: moment.steps().0, t_v_ns: t_v.as_nanos() };
+                Ok(Next { start, moment, moments, inputs, fork: Some(fork) })
+            }
+        }
+    }
+
+    /// The start `name`: as it was prepared before, or prepared now, as it always is with real PLCs.
+    fn again(&self, name: &str, way: &mut Way) -> Result<Rc<Prepared>, TrainError> {
+        let before = way.prepared.get(name);
+        if let Some(known) = before.filter(|_| self.real.is_empty()) {
+            return Ok(Rc::clone(known));
+        }
+        let made = Rc::new(self.prepare(name)?);
+        if before.is_some_and(|before| before.checkpoint.digest() != made.checkpoint.digest()) {
+            tracing::warn!(
+                target: NOTICE,
+                "`{name}` is another state than before: a real PLC has run otherwise than it did on the way there"
+            );
+        }
+        way.prepared.insert(name.to_owned(), Rc::clone(&made));
+        Ok(made)
     }
 
     /// An attempt from a start on.

@@ -6,6 +6,7 @@ use miette::Diagnostic;
 use onescan_report::{FileError, OutputError};
 use onescan_scenario::ScenarioError;
 use onescan_server::checkpoint::CheckpointError;
+use onescan_server::end::Failure;
 use onescan_server::observer::RecordError;
 use thiserror::Error;
 
@@ -19,6 +20,9 @@ pub enum StartError {
     /// The run that makes a prepared state ends before it.
     #[error("there is no start `{name}`: the run that makes it ended at t_v = {ended}")]
     Ended { name: String, ended: onescan_server::time::VirtualTime },
+    /// A client failed in the run that makes it.
+    #[error("there is no start `{name}`: {failure}")]
+    Failed { name: String, failure: Failure },
     /// The program was asked to end while the run that makes it was under way.
     #[error("start `{name}` was not made: the program was asked to end")]
     Interrupted { name: String },
@@ -31,7 +35,7 @@ impl Exit for StartError {
     fn exit_code(&self) -> ExitCode {
         match self {
             Self::Ended { .. } => ExitCode::WrongInput,
-            Self::Interrupted { .. } | Self::Checkpoint { .. } => ExitCode::Fault,
+            Self::Failed { .. } | Self::Interrupted { .. } | Self::Checkpoint { .. } => ExitCode::Fault,
         }
     }
 }

@@ -8,6 +8,7 @@
 //! | [`score`] | what is measured |
 //! | `moments` | moments to go back to |
 //! | `attempt` | one attempt, from a moment to its end |
+//! | `real_plc` | real PLCs, from attempt to attempt |
 //! | `course` | a session: attempt after attempt, live or repeated |
 //! | [`record`] | the record of a session |
 //! | `report` | what came of it, for people |
@@ -20,6 +21,7 @@ mod course;
 pub mod error;
 mod examination;
 mod moments;
+mod real_plc;
 pub mod record;
 mod report;
 pub mod score;
@@ -39,7 +41,8 @@ pub use error::TrainError;
 use crate::error::{ExitCode, Usage};
 use crate::format::Format;
 use crate::interrupt::Interrupt;
-use course::Classroom;
+use course::{Classroom, Held};
+use real_plc::RealPlcs;
 
 /// Lets somebody take a lesson, and reports to `out` what came of it.
 ///
@@ -60,8 +63,13 @@ pub fn run(config: &TrainConfig, interrupt: &Interrupt, out: &mut dyn Write) -> 
     if let Some(folder) = &config.record {
         record::begin(folder, config.overwrite)?;
     }
-    let classroom = Classroom { config, scenario: &scenario, book: &book, lesson, interrupt };
-    let (record, unequal) = classroom.hold()?;
+    let mut commissioned = scenario.clone();
+    for (client, url) in &config.gateways {
+        commissioned.commission(client, url.clone())?;
+    }
+    let real = RealPlcs::connect(&commissioned)?;
+    let classroom = Classroom { config, scenario: &commissioned, book: &book, lesson, interrupt, real: &real };
+    let Held { record, unequal, broken_off } = classroom.hold(&scenario)?;
     if let Some(folder) = &config.record {
         record.write(folder)?;
     }
@@ -74,6 +82,9 @@ pub fn run(config: &TrainConfig, interrupt: &Interrupt, out: &mut dyn Write) -> 
             writeln!(out).map_err(OutputError)?;
         }
         Format::Human => report::write(&record, &unequal, out).map_err(OutputError)?,
+    }
+    if let Some(error) = broken_off {
+        return Err(error);
     }
     let failed = record.last().is_some_and(|attempt| attempt.failure.is_some());
     Ok(match (failed, record.passed && unequal.is_empty()) {

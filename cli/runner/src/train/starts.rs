@@ -2,19 +2,22 @@
 
 use std::path::{Path, PathBuf};
 
+use onescan_base::notice::NOTICE;
 use onescan_base::regular::{self, Limit};
 use onescan_report::file;
 use onescan_scenario::Scenario;
 use onescan_scenario::lesson::{Book, Start};
 use onescan_server::checkpoint::Checkpoint;
+use onescan_server::end::SessionEnd;
 use onescan_server::lockstep::Reached;
 use onescan_server::time::VirtualTime;
 
 use super::attempt::elsewhere;
 use super::error::{StartError, TrainError};
+use super::real_plc::RealPlcs;
 use crate::error::Unreadable;
 use crate::interrupt::Interrupt;
-use crate::run::in_process::in_process;
+use crate::run::in_process::with_clients;
 
 /// Where prepared states are kept, unless somebody says otherwise: below the user's cache, else below the temporary folder.
 fn usual_folder() -> PathBuf {
@@ -49,7 +52,7 @@ impl<'a> Starts<'a> {
         if let Some(kept) = kept(&path) {
             return Ok(kept);
         }
-        let checkpoint = make(&scenario, start, interrupt)?;
+        let checkpoint = make(&scenario, start, &RealPlcs::default(), interrupt)?;
         let failed = |source| StartError::Checkpoint { name: start.name.clone(), source };
         let bytes = checkpoint.to_bytes().map_err(failed)?;
         // Without a file the state is made again next time: that costs time and nothing else.
@@ -86,10 +89,26 @@ fn kept(path: &Path) -> Option<Checkpoint> {
     Checkpoint::from_bytes(&bytes).inspect_err(|error| tracing::warn!(%error, "{} is made again", path.display())).ok()
 }
 
+/// Drives the real PLCs, and all else with them, from their cold start to the state; they stand there then.
+///
+/// # Errors
+/// As those of [`Starts::prepare`], or a PLC fails on the way.
+pub(super) fn driven(
+    scenario: &Scenario,
+    start: &Start,
+    real: &RealPlcs,
+    interrupt: &Interrupt,
+) -> Result<Checkpoint, TrainError> {
+    for name in real.names() {
+        tracing::info!(target: NOTICE, "client `{name}`: driven to `{}`, t_v = {}, from its cold start", start.name, start.at);
+    }
+    make(scenario, start, real, interrupt)
+}
+
 /// Runs up to the state, unless the program is asked to end.
-fn make(scenario: &Scenario, start: &Start, interrupt: &Interrupt) -> Result<Checkpoint, TrainError> {
+fn make(scenario: &Scenario, start: &Start, real: &RealPlcs, interrupt: &Interrupt) -> Result<Checkpoint, TrainError> {
     let until = start.at + scenario.plan().step();
-    let mut lockstep = in_process(scenario, until, [], elsewhere)?;
+    let mut lockstep = with_clients(scenario, until, [], |name| real.client(name), elsewhere)?;
     lockstep.set_settings(scenario.session_settings());
     let mut at = VirtualTime::ZERO;
     loop {
@@ -99,6 +118,9 @@ fn make(scenario: &Scenario, start: &Start, interrupt: &Interrupt) -> Result<Che
         let next = scenario.plan().step().times(STEPS_AT_A_TIME).and_then(|some| at.checked_add(some));
         at = next.map_or(start.at, |next| next.min(start.at));
         if lockstep.run_to(at)? == Reached::End {
+            if let Some(SessionEnd::Failed(failure)) = lockstep.session().end() {
+                return Err(StartError::Failed { name: start.name.clone(), failure: failure.clone() }.into());
+            }
             return Err(StartError::Ended { name: start.name.clone(), ended: lockstep.session().t_v() }.into());
         }
         if at == start.at {

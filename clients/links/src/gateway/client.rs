@@ -152,7 +152,7 @@ impl Gateway {
         }
         if wait.written.elapsed() > AGAIN {
             wait.written = Instant::now();
-            self.handshake.quiet();
+            self.handshake.quiet()?;
         }
         if self.link.is_polled() && self.handshake.ask() == Ask::Read {
             pause(wait.begun.elapsed());

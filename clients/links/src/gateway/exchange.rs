@@ -118,13 +118,12 @@ pub const WORDS_TO_PLC: [(&str, SignalType); 4] = [
     ("SDSP_Grant", SignalType::UDINT),
 ];
 
+/// What the scheduler says of the last order.
+pub const ANSWER: (&str, SignalType) = ("SDSP_Answer", SignalType::INT);
+
 /// The words that the gateway reads.
-pub const WORDS_FROM_PLC: [(&str, SignalType); 4] = [
-    ("SDSP_Joined", SignalType::UDINT),
-    ("SDSP_Done", SignalType::UDINT),
-    ("SDSP_Answer", SignalType::INT),
-    ("SDSP_Layout", SignalType::UDINT),
-];
+pub const WORDS_FROM_PLC: [(&str, SignalType); 4] =
+    [("SDSP_Joined", SignalType::UDINT), ("SDSP_Done", SignalType::UDINT), ANSWER, ("SDSP_Layout", SignalType::UDINT)];
 
 /// A number that the gateway writes to have the PLC started cold: one more than `PLC_Boots`.
 pub const START: (&str, SignalType) = ("PLC_Start", SignalType::UDINT);

@@ -192,6 +192,14 @@ pub enum GatewayFault {
         /// The session of this gateway.
         session: u32,
     },
+    /// Somebody else's grants are being run.
+    #[error(
+        "the PLC takes part in session {joined} and runs its grants: another gateway drives it; end that session first"
+    )]
+    InUse {
+        /// The session that it is in.
+        joined: u32,
+    },
     /// The program is not instrumented to be simulated.
     #[error(
         "the PLC free-wheels: SDSP_Simulated is FALSE, so that it runs no grant; set it to TRUE and start the PLC cold, or run with `--mode freewheel`"

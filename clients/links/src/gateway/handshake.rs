@@ -12,6 +12,9 @@
 //! | awaiting | read | the order is answered |
 //! | at rest | nothing | the session wants the next grant |
 //!
+//! A PLC that still takes part in an earlier session, and does not count its starts, is asked to join the new one after it has
+//! stood still for a while: its program answers that the PLC must be started cold, and whoever can do that sees it there.
+//!
 //! A broken connection leads to *unlinked* with the order kept. After it the PLC is surveyed before anything is
 //! written: it has run the grant, or it has not. An order is the same whenever it is written, and the PLC runs
 //! the next number only; so an order that comes twice, or late, is run once.
@@ -90,6 +93,16 @@ enum Goal {
     Grant,
 }
 
+/// A PLC that takes part in a session that is not this gateway's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Leftover {
+    report: Report,
+    /// It has not moved for a while.
+    is_still: bool,
+    /// It has been said that the PLC must be started.
+    is_reported: bool,
+}
+
 /// The gateway's side of the handshake.
 #[derive(Clone, Debug)]
 pub struct Handshake {
@@ -103,6 +116,8 @@ pub struct Handshake {
     last: Report,
     notice: Option<Notice>,
     is_lost: bool,
+    /// How the PLC was found, if an earlier session was left in it.
+    leftover: Option<Leftover>,
     /// The number of the scenario's mapping, if it has one.
     layout: Option<u32>,
     /// It has been said that the PLC shows no number.
@@ -127,6 +142,7 @@ impl Handshake {
             last: Report::default(),
             notice: None,
             is_lost: false,
+            leftover: None,
             layout: None,
             is_layout_reported: false,
         }
@@ -141,7 +157,7 @@ impl Handshake {
     pub fn join(&mut self, t_v: VirtualTime) {
         self.goal = Goal::Join(t_v);
         self.order = Order::default();
-        self.boots = None;
+        (self.boots, self.leftover) = (None, None);
         self.survey();
     }
 
@@ -188,10 +204,31 @@ impl Handshake {
         }
     }
 
-    /// Nothing has come of the order for a while: it is written once more.
-    pub fn quiet(&mut self) {
-        if self.phase == Phase::Awaiting {
-            self.phase = Phase::Writing;
+    /// Nothing has come of the order for a while: it is written once more. A PLC in which an earlier session was left is nobody's
+    /// then, and is asked to join this one.
+    ///
+    /// # Errors
+    /// There is no number left.
+    pub fn quiet(&mut self) -> Result<(), GatewayFault> {
+        match (self.phase, self.goal, &mut self.leftover) {
+            (Phase::Surveying, Goal::Join(t_v), Some(left)) => {
+                let report = left.report;
+                // The first time it may just have been found.
+                if std::mem::replace(&mut left.is_still, true) { self.order_session(t_v, report) } else { Ok(()) }
+            }
+            (Phase::Awaiting, Goal::Join(_), Some(left)) if self.last.joined == left.report.joined => {
+                // In STOP it does not even say that it must be started.
+                if !std::mem::replace(&mut left.is_reported, true) {
+                    self.notice = Some(Notice::StartPlc);
+                }
+                self.phase = Phase::Writing;
+                Ok(())
+            }
+            (Phase::Awaiting, ..) => {
+                self.phase = Phase::Writing;
+                Ok(())
+            }
+            _ => Ok(()),
         }
     }
 
@@ -260,13 +297,30 @@ impl Handshake {
             self.phase = Phase::Writing;
             return Ok(());
         }
+        if report.joined != 0 && report.boots.is_none() && report.answer != Answer::MustBeStarted {
+            return self.wait_for_quiet(report);
+        }
         if report.joined != 0 || report.answer == Answer::MustBeStarted {
             self.want_start(t_v, report);
             return Ok(());
         }
+        self.order_session(t_v, report)
+    }
+
+    /// While somebody else's grants are run nothing may be written: inputs would get between that one's inputs and grant.
+    fn wait_for_quiet(&mut self, report: Report) -> Result<(), GatewayFault> {
+        let moved = |left: &Leftover| (left.report.joined, left.report.done) != (report.joined, report.done);
+        if self.leftover.as_ref().is_some_and(moved) {
+            return Err(GatewayFault::InUse { joined: report.joined });
+        }
+        self.leftover.get_or_insert(Leftover { report, is_still: false, is_reported: false });
+        Ok(())
+    }
+
+    fn order_session(&mut self, t_v: VirtualTime, report: Report) -> Result<(), GatewayFault> {
         // Grants count on from the number of their session, and a session's number is above all that were used: a grant of
         // an earlier session is never the next one. There is no limit, since this gateway gives one grant at a time.
-        let highest = self.highest.max(report.done);
+        let highest = self.highest.max(report.joined).max(report.done);
         let session = highest.checked_add(1).ok_or(GatewayFault::NumbersUsedUp(highest))?;
         self.highest = session;
         self.order = Order { session, limit: u32::MAX, t_v, grant: session, start: report.boots.unwrap_or(0) };
@@ -279,7 +333,8 @@ impl Handshake {
         // The session that follows the start needs a number that is new to this PLC, too.
         self.highest = self.highest.max(report.joined).max(report.done);
         let Some(boots) = report.boots else {
-            if self.goal != Goal::Start(t_v) {
+            let is_reported = self.leftover.is_some_and(|left| left.is_reported);
+            if self.goal != Goal::Start(t_v) && !is_reported {
                 self.notice = Some(Notice::StartPlc);
             }
             self.goal = Goal::Start(t_v);
@@ -297,6 +352,11 @@ impl Handshake {
             (Some(before), Some(now)) => before != now,
             _ => true,
         };
+        // Its words outlast the start where it keeps what was written: then it has joined by itself.
+        if self.order.session != 0 && report.joined == self.order.session {
+            self.goal = Goal::Join(t_v);
+            return self.look_for_join(t_v, report);
+        }
         if is_new && report.joined == 0 && report.answer != Answer::MustBeStarted {
             self.goal = Goal::Join(t_v);
             return self.begin(t_v, report);
@@ -328,7 +388,14 @@ impl Handshake {
                 self.want_start(t_v, report);
                 Ok(())
             }
-            (0, _) => Ok(()),
+            (0, _) => {
+                // It has been started since, and what was written before is gone.
+                if self.leftover.take().is_some() {
+                    self.phase = Phase::Writing;
+                }
+                Ok(())
+            }
+            (joined, _) if self.leftover.is_some_and(|left| left.report.joined == joined) => Ok(()),
             (joined, _) => Err(GatewayFault::OtherSession { joined, session }),
         }
     }

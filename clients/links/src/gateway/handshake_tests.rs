@@ -95,6 +95,8 @@ struct World {
     messages: usize,
     old: Option<(Order, u64)>,
     is_counting: bool,
+    /// Whoever has the PLC starts it when it says that it must be started.
+    is_started: bool,
 }
 
 impl World {
@@ -106,6 +108,15 @@ impl World {
             messages: 0,
             old: None,
             is_counting: false,
+            is_started: false,
+        }
+    }
+
+    fn cycle(&mut self) {
+        self.plc.cycle();
+        if self.is_started && self.plc.answer == 6 {
+            let Plc { layout, boots, ref mut log, .. } = self.plc;
+            self.plc = Plc { layout, boots: boots + 1, log: std::mem::take(log), ..Plc::default() };
         }
     }
 
@@ -126,25 +137,25 @@ impl World {
                     (self.plc.order, self.plc.input) = (order, input);
                     self.handshake.written();
                     if luck != Luck::Slow {
-                        self.plc.cycle();
+                        self.cycle();
                     }
                     if let (Luck::Echo, Some((order, input))) = (luck, self.old) {
                         (self.plc.order, self.plc.input) = (order, input);
-                        self.plc.cycle();
+                        self.cycle();
                     }
                     self.old.get_or_insert((order, input));
                 }
                 Ask::Read => {
                     output = self.plc.output;
                     self.handshake.look(self.plc.report(self.is_counting))?;
-                    self.plc.cycle();
+                    self.cycle();
                 }
             }
             match luck {
                 Luck::After if self.handshake.ask() != Ask::Nothing => self.handshake.lost(),
-                Luck::Quiet => self.handshake.quiet(),
+                Luck::Quiet => self.handshake.quiet()?,
                 // Orders that were overtaken by an old one are written again in the end.
-                _ if self.messages.is_multiple_of(7) => self.handshake.quiet(),
+                _ if self.messages.is_multiple_of(7) => self.handshake.quiet()?,
                 _ => {}
             }
         }
@@ -219,12 +230,24 @@ fn the_next_session_begins_with_a_cold_start() {
         assert_eq!(std::mem::take(&mut world.plc.log), log);
         assert_eq!(world.plc.boots, session - 1);
     }
-    // A PLC that is started by hand is waited for.
+    // A PLC that is started by hand is waited for, once it has said that it must be.
     world.is_counting = false;
     world.handshake.join(VirtualTime::ZERO);
     for _ in 0..10 {
         assert_eq!(world.handshake.ask(), Ask::Read);
         world.handshake.look(world.plc.report(false)).unwrap();
+    }
+    assert_eq!(world.handshake.take_notice(), None);
+    world.handshake.quiet().unwrap();
+    assert_eq!(world.handshake.ask(), Ask::Read, "it may just have been found");
+    world.handshake.quiet().unwrap();
+    let Ask::Write(order) = world.handshake.ask() else { panic!("{:?}", world.handshake) };
+    world.plc.order = order;
+    world.handshake.written();
+    for _ in 0..10 {
+        world.handshake.look(world.plc.report(false)).unwrap();
+        assert_eq!(world.handshake.ask(), Ask::Read);
+        world.plc.cycle();
     }
     assert_eq!(world.handshake.take_notice(), Some(Notice::StartPlc));
     assert_eq!(world.handshake.take_notice(), None);
@@ -232,6 +255,62 @@ fn the_next_session_begins_with_a_cold_start() {
     world.plc = Plc::default();
     world.drive(0).unwrap();
     assert_ne!(world.plc.joined, 0);
+}
+
+/// Without words about itself, too: its program says that it must be started, and whoever has it starts it then.
+#[test]
+fn a_plc_that_is_started_when_it_says_so_takes_part_in_the_next_session() {
+    let (log, outputs) = expected();
+    let mut world = World::new(Vec::new());
+    world.is_started = true;
+    for session in 1..=3 {
+        // Each with another gateway.
+        world.handshake = Handshake::new();
+        assert_eq!(world.session().unwrap(), outputs);
+        assert_eq!(std::mem::take(&mut world.plc.log), log);
+        assert_eq!((world.plc.boots, world.handshake.take_notice()), (session - 1, None));
+    }
+}
+
+/// One that keeps what was written over its start joins by itself.
+#[test]
+fn a_plc_that_keeps_its_words_over_a_start_has_joined() {
+    let mut world = World::new(Vec::new());
+    world.session().unwrap();
+    world.handshake = Handshake::new();
+    world.handshake.join(VirtualTime::ZERO);
+    while world.plc.answer != 6 {
+        match world.handshake.ask() {
+            Ask::Connect => world.handshake.connected(),
+            Ask::Write(order) => {
+                world.plc.order = order;
+                world.handshake.written();
+            }
+            Ask::Read => world.handshake.look(world.plc.report(false)).unwrap(),
+            Ask::Nothing => panic!("{:?}", world.handshake),
+        }
+        world.plc.cycle();
+        world.handshake.quiet().unwrap();
+    }
+    world.plc = Plc { order: world.plc.order, ..Plc::default() };
+    world.drive(0).unwrap();
+    assert_eq!(world.plc.joined, world.plc.order.session);
+}
+
+/// While another gateway's grants are run, nothing is written.
+#[test]
+fn a_plc_that_runs_somebody_elses_grants_is_left_alone() {
+    let mut world = World::new(Vec::new());
+    world.session().unwrap();
+    let mut intruder = Handshake::new();
+    intruder.connected();
+    intruder.join(VirtualTime::ZERO);
+    intruder.look(world.plc.report(false)).unwrap();
+    intruder.quiet().unwrap();
+    world.handshake.grant(VirtualTime::from_nanos(1_000)).unwrap();
+    world.drive(0).unwrap();
+    assert_eq!(intruder.ask(), Ask::Read);
+    assert_eq!(intruder.look(world.plc.report(false)), Err(GatewayFault::InUse { joined: 1 }));
 }
 
 /// A report that cannot be in the middle of a session, and the name of what is wrong.
@@ -323,7 +402,7 @@ proptest! {
             match handshake.ask() {
                 Ask::Connect => handshake.connected(),
                 Ask::Write(_) => handshake.written(),
-                Ask::Read => {}
+                Ask::Read => drop(handshake.quiet()),
                 Ask::Nothing => drop(handshake.grant(VirtualTime::from_nanos(k as u64 + 1))),
             }
             let report = Report { joined, done, answer: answer.into(), layout: 0, boots, running: None };

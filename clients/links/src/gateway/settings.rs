@@ -36,8 +36,9 @@ pub struct Settings {
     pub handshake: HandshakeKind,
     /// Blocks of the PLC that make up a step, with `handshake = "frames"`.
     pub frames_per_step: Option<NonZeroU32>,
-    /// True if the PLC serves `PLC_Start`, `PLC_Boots` and `PLC_Running`.
-    pub system_words: bool,
+    /// True if the PLC serves `PLC_Start`, `PLC_Boots` and `PLC_Running`. A PLC is taken for one that does not unless it is said;
+    /// `onescan plc` starts itself then, and not where it is said that nobody does.
+    pub system_words: Option<bool>,
     /// How long a grant may stay unanswered.
     pub grant_timeout: Option<Text<TimeSpan>>,
     /// How long a lost connection may stay lost.
@@ -145,8 +146,8 @@ impl Settings {
     pub fn words(&self) -> Words {
         match (self.handshake, self.system_words) {
             (HandshakeKind::Frames, _) => Words::Absent,
-            (HandshakeKind::Words, true) => Words::WithSystem,
-            (HandshakeKind::Words, false) => Words::Handshake,
+            (HandshakeKind::Words, Some(true)) => Words::WithSystem,
+            (HandshakeKind::Words, Some(false) | None) => Words::Handshake,
         }
     }
 
@@ -242,7 +243,7 @@ impl Settings {
         if !matches!(scheme, "tcp" | "tcp-listen") {
             return wrong(&format!("counts blocks, and {scheme} has none: use `tcp` or `tcp-listen`"));
         }
-        if self.system_words {
+        if self.system_words == Some(true) {
             return wrong("exchanges no words: leave out `system_words`");
         }
         if exchange.size(Direction::FromPlc) == 0 || exchange.size(Direction::ToPlc) == 0 {

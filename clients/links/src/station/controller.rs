@@ -9,6 +9,7 @@ use onescan_iec_run::SoftPlc;
 use serde::Serialize;
 
 use super::wires::{Source, Wire, Wires};
+use crate::gateway::answer::Answer;
 use crate::gateway::exchange::Direction;
 use onescan_soft_plc::bind::Place;
 
@@ -51,6 +52,8 @@ pub struct Controller {
     wires: Wires,
     /// What is written into memory at every start.
     presets: Vec<(usize, Vec<u8>)>,
+    /// It starts cold by itself as soon as its program says that it must be started.
+    starts_itself: bool,
 }
 
 impl Controller {
@@ -68,7 +71,7 @@ impl Controller {
             is_over: false,
         };
         let (changed, waiting) = (Condvar::new(), AtomicUsize::new(0));
-        Self { state: Mutex::new(state), changed, waiting, wires, presets: Vec::new() }
+        Self { state: Mutex::new(state), changed, waiting, wires, presets: Vec::new(), starts_itself: false }
     }
 
     /// The same with `bytes` at `offset` of the PLC's memory after every start, as its program was downloaded.
@@ -76,6 +79,11 @@ impl Controller {
         preset(&mut self.lock(), offset, &bytes);
         self.presets.push((offset, bytes));
         self
+    }
+
+    /// The same, started cold as soon as its program says that it must be, as if its operator stood beside it.
+    pub fn starting_itself(self) -> Self {
+        Self { starts_itself: true, ..self }
     }
 
     /// Its points.
@@ -113,10 +121,21 @@ impl Controller {
                 tracing::warn!("{text}; the PLC is in STOP");
                 (state.fault, state.is_running) = (Some(text), false);
             }
+            if self.starts_itself && self.must_be_started(&state) {
+                tracing::info!("another session asks for this PLC, which has run: it is started cold");
+                self.start(&mut state, SoftPlc::cold_start);
+            }
             state.version += 1;
             self.changed.notify_all();
         }
         !state.is_over
+    }
+
+    fn must_be_started(&self, state: &State) -> bool {
+        let Some(wire) = &self.wires.answer else { return false };
+        let mut word = [0; 2];
+        get(state, wire, &mut word);
+        Answer::from(i16::from_le_bytes(word)) == Answer::MustBeStarted
     }
 
     /// Writes all points, as one request.

@@ -4,7 +4,7 @@ use onescan_iec_run::{Application, UnknownVariable};
 use onescan_server::signal::SignalName;
 use thiserror::Error;
 
-use crate::gateway::exchange::{BOOTS, Direction, Exchange, Point, RUNNING, START, is_word};
+use crate::gateway::exchange::{ANSWER, BOOTS, Direction, Exchange, Point, RUNNING, START, is_word};
 use onescan_soft_plc::bind::{Bindings, Bound, Place};
 
 /// Where a point's value is.
@@ -29,6 +29,8 @@ pub(super) struct Wire {
 pub struct Wires {
     pub(super) to_plc: Vec<Wire>,
     pub(super) from_plc: Vec<Wire>,
+    /// What the scheduler answers, where there is one.
+    pub(super) answer: Option<Wire>,
     exchange: Exchange,
 }
 
@@ -61,9 +63,11 @@ impl Wires {
             };
             points.iter().map(wire).collect()
         };
+        let from_plc = wires(exchange.from_plc(), &bindings.outputs)?;
         Ok(Self {
             to_plc: wires(exchange.to_plc(), &bindings.inputs)?,
-            from_plc: wires(exchange.from_plc(), &bindings.outputs)?,
+            answer: from_plc.iter().find(|wire| wire.point.name == ANSWER.0).cloned(),
+            from_plc,
             exchange: exchange.clone(),
         })
     }
