@@ -43,6 +43,10 @@ pub struct ScenarioFile {
     #[serde(deserialize_with = "from_text")]
     #[schemars(with = "Time")]
     pub until: VirtualTime,
+    /// What must hold before virtual time runs: a formula on one image.
+    #[serde(default)]
+    #[schemars(with = "Option<String>")]
+    pub start: Option<Spanned<String>>,
     /// Seed of all noise, jitter and other randomness.
     #[serde(default)]
     pub seed: u64,

@@ -21,7 +21,7 @@
 //! | [`load`], `files` | `scenario.toml` read and checked; all files that it is made of |
 //! | `whole` | a scenario as one file, with everything that it takes in |
 //! | `arrays` | signals written as arrays and patterns |
-//! | [`expectations`] | what it expects of every run |
+//! | [`expectations`], [`start`] | what it expects of every run; what must hold before virtual time runs |
 //! | [`case`] | one scenario, tried in many ways |
 //! | [`apply`] | a case put on its scenario |
 //! | [`lesson`] | `lessons.toml`: what operators are trained in |
@@ -89,6 +89,7 @@ mod refusal;
 pub mod report;
 pub mod report_file;
 pub mod schema;
+pub mod start;
 mod structure;
 pub mod template;
 mod texts;

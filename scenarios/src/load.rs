@@ -29,6 +29,7 @@ use super::mistake::Mistake;
 use super::report::Measures;
 use super::timing::Timing;
 use super::watch::{WatchRequest, Watched};
+use super::start::{self, StartLogic};
 use super::{arrays, panel, structure, timing};
 
 /// Where in `folder` the scenario `name` is that was kept there. `file` is its file if that is not called as usual; recordings
@@ -73,6 +74,8 @@ pub struct Scenario {
     /// What soft PLCs hand over of their scans, if that is asked for.
     journalling: Option<Journalling>,
     /// The soft PLCs that a real one stands in for, with its URL where the file's does not count.
+    /// What must hold before virtual time runs.
+    pub start: Option<StartLogic>,
     pub(crate) gateways: BTreeMap<ClientName, Option<String>>,
     /// Their links, where files of their own say them.
     pub(crate) links: BTreeMap<ClientName, LinkSource>,
@@ -138,6 +141,7 @@ impl Scenario {
         map::check(&file).map_err(placed)?;
         let timing = timing::bind(&file).map_err(placed)?;
         let varied = falsify::bind(&file).map_err(placed)?;
+        let start = start::bind(&file, texts.text()).map_err(placed)?;
         let expectations = Expectations::bind(&file, texts.text()).map_err(placed)?;
         let measures = Measures::bind(&file, texts.text()).map_err(placed)?;
         let looks = Looks::bind(&file, texts.text()).map_err(placed)?;
@@ -156,6 +160,7 @@ impl Scenario {
             coverage: None,
             writers: None,
             journalling: None,
+            start,
             gateways: BTreeMap::new(),
             links: BTreeMap::new(),
             watched: None,

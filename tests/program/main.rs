@@ -82,6 +82,7 @@ mod shift;
 mod show;
 mod sitter;
 mod streams;
+mod start;
 mod stubs;
 mod suites;
 mod test_manager;

@@ -168,6 +168,21 @@ fn an_operator_with_an_opc_ua_client_is_data_too() {
     assert_eq!((&again["digest"], &again["steps"]), (&live["digest"], &live["steps"]));
 }
 
+/// The start logic holds once somebody writes over OPC UA; without that, Start alone lets no step come.
+#[test]
+fn a_session_that_waits_for_its_start_is_started() {
+    let folder = copied_shear();
+    edit(folder.path(), "scenario.toml", "version = 1\n", "version = 1\nstart = \"Strokes < 0\"\n");
+    let server = Server::start(folder.path(), &["--until", "100ms", "--record", "live"]);
+    let peer = begun("starter.py", &[&server.url, "Strokes", "-5"]);
+    let said = server.end();
+    assert_eq!(ended(peer), "held, state, steps [True, 1, 0]\nended after 10\n");
+    assert!(said.err.contains("the session starts when this holds: Strokes < 0"), "{said:?}");
+    let live = report(&said);
+    let words = ["run", ".", "--format", "json", "--until", "100ms", "--replay-operator", "live"];
+    assert_eq!(report(&typed(folder.path(), &words))["digest"], live["digest"]);
+}
+
 /// The published node set is taken in by a server of others, and says what a session serves.
 #[test]
 fn the_published_node_set_is_what_is_served() {

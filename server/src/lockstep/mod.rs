@@ -6,6 +6,7 @@
 //! | `operate` | operations of operators, replays and the timeline |
 //! | `rest` | steps in which nobody is due |
 //! | `restore` | checkpoints taken and taken up |
+//! | [`start`] | the logic that lets the first step come |
 //! | `show` | observers and published views |
 //!
 //! All control flow of a running session is here; clients, image and carriers only carry it out. A step
@@ -15,6 +16,7 @@ mod operate;
 mod rest;
 mod restore;
 mod show;
+pub mod start;
 
 use std::collections::{BTreeSet, VecDeque};
 use std::time::Duration;
@@ -35,6 +37,7 @@ use crate::time::{StepCount, VirtualTime};
 use crate::timeline::Timeline;
 
 use show::Shown;
+use start::StartLogic;
 
 /// How long the driver sleeps at a time while virtual time is held, wall clock. A wish wakes it.
 const HOLD: Duration = Duration::from_millis(100);
@@ -71,6 +74,8 @@ pub struct Lockstep {
     may_differ: BTreeSet<String>,
     /// What the timeline did to the initial values, until observers can be notified.
     at_start: Vec<Operation>,
+    start_logic: Option<StartLogic>,
+    could_start: bool,
     shown: Shown,
 }
 
@@ -140,6 +145,8 @@ impl Lockstep {
             settings: SessionSettings::default(),
             may_differ: BTreeSet::new(),
             at_start: Vec::new(),
+            start_logic: None,
+            could_start: true,
             shown,
         }
     }
@@ -259,6 +266,7 @@ impl Lockstep {
                     return Ok(Reached::Boundary);
                 }
                 self.take_wishes()?;
+                self.look_for_start();
                 if self.rest(t_v)? {
                     continue;
                 }

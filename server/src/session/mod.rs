@@ -108,7 +108,8 @@ impl Session {
     }
 
     /// The condition for a start beside those of the clients: `start = AND(start logic, client_i.start)`
-    /// (`[SDSP]` sec. IV). True unless said otherwise; it means nothing once the session has begun.
+    /// (`[SDSP]` sec. IV). True unless said otherwise. While it is false the session stays in `start`, or, once the initial
+    /// values are there, in front of its first step; it means nothing after that.
     pub fn set_start_logic(&mut self, start_logic: bool) {
         self.start_logic = start_logic;
     }
@@ -196,7 +197,7 @@ impl Session {
     /// How many steps follow in which nobody is due and nothing was asked for; 0 within a step, and while something lies
     /// over the writers' values that may change them without a turn.
     pub fn idle_steps(&self) -> u64 {
-        let asked = self.stop || self.reset || self.mode != Mode::Running || self.end.is_some();
+        let asked = self.stop || self.reset || self.waits_to_start() || self.mode != Mode::Running || self.end.is_some();
         if asked || !self.image.signal_overlay().is_empty() {
             return 0;
         }
@@ -255,6 +256,9 @@ impl Session {
         if self.until.is_some_and(|until| t_v >= until) {
             return Some(self.finish(SessionEnd::Completed { t_v }));
         }
+        if self.waits_to_start() {
+            return Some(Progress::Held);
+        }
         match self.mode {
             Mode::Running => None,
             Mode::Held => Some(Progress::Held),
@@ -277,6 +281,7 @@ mod tests {
     use super::*;
     use crate::client::Wake;
     use crate::end::Violation;
+    use crate::operation::Control;
     use crate::plan::Coupling;
     use crate::signal::{Port, SignalDecl, SignalType};
     use crate::time::{StepCount, TimeSpan};
@@ -301,6 +306,29 @@ mod tests {
         assert_eq!(session.advance(), Progress::Waiting);
         session.set_start_logic(true);
         assert_eq!(session.advance(), Progress::Entered(ServerState::InitialWrite));
+    }
+
+    /// Nor does it take its first step, not even a single one that is asked for; and it waits again after a reset.
+    #[test]
+    fn a_session_takes_its_first_step_when_the_start_logic_says_so() {
+        let mut session = formed();
+        for _ in 0..2 {
+            session.set_start_logic(true);
+            session.advance();
+            session.initialise(ClientId(0), &[0]).unwrap();
+            session.set_start_logic(false);
+            session.control(Control::Step);
+            assert_eq!((session.advance(), session.idle_steps(), session.is_held()), (Progress::Held, 0, true));
+            assert!(!session.is_about_to_act(), "who could make it start is listened to");
+            session.control(Control::Reset);
+        }
+        assert_eq!(session.advance(), Progress::Entered(ServerState::InitialWrite));
+        session.initialise(ClientId(0), &[0]).unwrap();
+        session.set_start_logic(true);
+        session.control(Control::Resume);
+        assert_eq!(session.advance(), Progress::Entered(ServerState::PreRead));
+        session.set_start_logic(false);
+        assert!(!session.is_held(), "it has started");
     }
 
     #[test]

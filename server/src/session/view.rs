@@ -11,7 +11,8 @@ use crate::layout::ImageLayout;
 use crate::operation::OperationError;
 use crate::plan::SessionPlan;
 use crate::signal::{ClientName, SignalId, SignalName};
-use crate::time::{TimeSpan, VirtualTime};
+use crate::image::Commit;
+use crate::time::{StepCount, TimeSpan, VirtualTime};
 use crate::wire::message::Status;
 
 impl Session {
@@ -73,7 +74,19 @@ impl Session {
 
     /// True while virtual time is held at a boundary by request.
     pub fn is_held(&self) -> bool {
-        self.mode == Mode::Held && self.cycle.is_at_boundary()
+        self.cycle.is_at_boundary() && (self.mode == Mode::Held || self.waits_to_start())
+    }
+
+    /// True while the initial values are there and the start logic does not let the first step come.
+    pub fn waits_to_start(&self) -> bool {
+        !self.start_logic && self.cycle.steps() == StepCount(0) && self.cycle.is_at_boundary()
+    }
+
+    /// The values that the next step would commit if all clients slept.
+    pub fn coming(&self) -> Vec<u8> {
+        let mut coming = self.image.clone();
+        coming.commit(Commit::EndsStep);
+        coming.committed().to_vec()
     }
 
     /// How the session is.
@@ -97,7 +110,7 @@ impl Session {
 
     /// True if a single step or a reset has been asked for and not been done.
     pub(crate) fn is_about_to_act(&self) -> bool {
-        self.mode == Mode::OneStep || self.reset
+        (self.mode == Mode::OneStep && !self.waits_to_start()) || self.reset
     }
 
     /// Copies the client's own outputs back, as its last turn left them, whatever lies over them.

@@ -10,9 +10,11 @@ use onescan_links::inspection::{Inspected, Inspection};
 use onescan_recording::{Recording, event};
 use onescan_report::file;
 use onescan_scenario::compose::Member;
-use onescan_scenario::{Scenario, permission};
+use onescan_scenario::{Scenario, permission, start};
 use onescan_server::checkpoint::{Checkpoint, StateHash};
 use onescan_server::formation::{Formation, FormationError};
+use onescan_server::layout::ImageLayout;
+use onescan_server::lockstep::start::{Attendance, StartLogic};
 use onescan_server::lockstep::{Lockstep, Outcome, Reached};
 use onescan_server::operation::OperatorInput;
 use onescan_server::pacing::Pace;
@@ -22,6 +24,7 @@ use onescan_server::timeline::Timeline;
 use onescan_server::transport::tcp::Lobby;
 
 use super::alarms;
+use super::chosen::Chosen;
 use super::config::{Reach, RunConfig, SaveRequest, Transport};
 use super::error::RunError;
 use super::fork::{self, Joined, Taken};
@@ -77,6 +80,9 @@ pub(super) fn run(
     lockstep.set_mailbox(interrupt.mailbox());
     lockstep.set_settings(scenario.session_settings());
     lockstep.set_timeline(timeline(config, scenario, &lockstep)?);
+    if let Some(logic) = start_logic(config, scenario, &lockstep) {
+        lockstep.set_start_logic(logic);
+    }
     watch(&mut lockstep);
     if let Some(opcua_seats) = &opcua_seats {
         lockstep.set_published(opcua_seats.published());
@@ -140,6 +146,9 @@ pub(super) fn run(
         None
     };
     let outcome = lockstep.run()?;
+    if let Some(logic) = scenario.start.as_ref().filter(|_| !lockstep.could_start()) {
+        return Err(not_started(logic).into());
+    }
     let staying = Staying::of(page, config, interrupt);
     Ok(Driven { outcome, unsaved, taken, joined, state, errors_ns: Vec::new(), staying })
 }
@@ -150,6 +159,28 @@ fn timeline(config: &RunConfig, scenario: &Scenario, lockstep: &Lockstep) -> Res
     let own = Timeline::new(scenario.timeline().to_vec(), session).map_err(RunError::Timeline)?;
     let Some(forks) = &config.course.forks else { return Ok(own) };
     own.with_lookouts(forks.conditions.clone(), session).map_err(RunError::Timeline)
+}
+
+/// What the scenario wants to hold before the first step.
+fn start_logic(config: &RunConfig, scenario: &Scenario, lockstep: &Lockstep) -> Option<StartLogic> {
+    let logic = scenario.start.as_ref()?;
+    let mut chosen = Chosen::new(&logic.signals);
+    chosen.find(lockstep.session());
+    let (what, present) = (logic.formula.clone(), logic.present.clone());
+    let holds = move |layout: &ImageLayout, image: &[u8]| {
+        present.holds(&chosen.numbers_in(layout, image).collect::<Vec<f64>>())
+    };
+    let doors = &config.doors;
+    let is_open = doors.web.is_some() || doors.listen.is_some() || doors.opcua.is_some();
+    let attendance = if is_open { Attendance::Attended } else { Attendance::Unattended };
+    Some(StartLogic { what, holds: Box::new(holds), attendance })
+}
+
+fn not_started(logic: &start::StartLogic) -> Usage {
+    let message = format!("the session does not start: `{}` does not hold, and nobody can operate it", logic.formula);
+    let help = "let somebody in (`--web`, `--listen`, `--opcua`), repeat what somebody did (`--replay-operator`), or give a \
+                case an input at 0 s";
+    Usage::new(message, Some(help.to_owned()))
 }
 
 /// Lets the session leave its past; gives who shows it, or why nobody can.
