@@ -27,9 +27,9 @@ use super::look::Looks;
 use super::map;
 use super::mistake::Mistake;
 use super::report::Measures;
+use super::start::{self, StartLogic};
 use super::timing::Timing;
 use super::watch::{WatchRequest, Watched};
-use super::start::{self, StartLogic};
 use super::{arrays, panel, structure, timing};
 
 /// Where in `folder` the scenario `name` is that was kept there. `file` is its file if that is not called as usual; recordings

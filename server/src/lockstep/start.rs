@@ -8,12 +8,14 @@ use crate::layout::ImageLayout;
 use crate::operation::Control;
 use crate::time::StepCount;
 
+/// Whether something holds on an image with this layout.
+pub type Holds = Box<dyn Fn(&ImageLayout, &[u8]) -> bool>;
+
 /// What must hold before the first step.
 pub struct StartLogic {
     /// In words.
     pub what: String,
-    /// Whether it holds on an image with this layout.
-    pub holds: Box<dyn Fn(&ImageLayout, &[u8]) -> bool>,
+    pub holds: Holds,
     /// Whether anybody may come and make it hold.
     pub attendance: Attendance,
 }
@@ -48,7 +50,9 @@ impl Lockstep {
         let holds = (logic.holds)(self.session.layout(), &self.session.coming());
         if !holds && !self.session.waits_to_start() {
             match logic.attendance {
-                Attendance::Attended => tracing::info!(target: NOTICE, "the session starts when this holds: {}", logic.what),
+                Attendance::Attended => {
+                    tracing::info!(target: NOTICE, "the session starts when this holds: {}", logic.what);
+                }
                 Attendance::Unattended => {
                     self.could_start = false;
                     self.session.control(Control::Stop);

@@ -197,7 +197,8 @@ impl Session {
     /// How many steps follow in which nobody is due and nothing was asked for; 0 within a step, and while something lies
     /// over the writers' values that may change them without a turn.
     pub fn idle_steps(&self) -> u64 {
-        let asked = self.stop || self.reset || self.waits_to_start() || self.mode != Mode::Running || self.end.is_some();
+        let asked =
+            self.stop || self.reset || self.waits_to_start() || self.mode != Mode::Running || self.end.is_some();
         if asked || !self.image.signal_overlay().is_empty() {
             return 0;
         }

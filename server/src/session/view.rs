@@ -6,12 +6,12 @@ use super::{Mode, Session};
 use crate::client::ClientId;
 use crate::cycle::Cycle;
 use crate::end::SessionEnd;
+use crate::image::Commit;
 use crate::join::Membership;
 use crate::layout::ImageLayout;
 use crate::operation::OperationError;
 use crate::plan::SessionPlan;
 use crate::signal::{ClientName, SignalId, SignalName};
-use crate::image::Commit;
 use crate::time::{StepCount, TimeSpan, VirtualTime};
 use crate::wire::message::Status;
 

@@ -111,19 +111,24 @@ impl Classroom<'_> {
             }
         }
         record.passed = record.last().is_some_and(|attempt| attempt.failure.is_none() && attempt.score.is_passed());
-        if let Some(expert) = &self.lesson.expert {
-            let inputs = operator_inputs(&self.scenario.folder().join(expert))?;
-            let quiet = TrainConfig { record: None, ..self.config.clone() };
-            let none = RealPlcs::default();
-            let is_soft = !soft.plan().clients().iter().any(|name| soft.is_real_plc(name));
-            let (scenario, real) = if is_soft { (soft, &none) } else { (self.scenario, self.real) };
-            // Without a PLC that is lost there is no expert's score, and the record stays what it is.
-            if broken_off.is_none() || is_soft {
-                let expert = Classroom { config: &quiet, scenario, real, ..*self };
-                record.expert = Some(expert.repeated(&self.lesson.start, inputs, 1)?);
-            }
+        match self.expert(soft) {
+            Ok(expert) => record.expert = expert,
+            // What was held has its record, whatever becomes of a real PLC then.
+            Err(error) if !self.real.is_empty() => broken_off = broken_off.or(Some(error)),
+            Err(error) => return Err(error),
         }
         Ok(Held { record, unequal, broken_off })
+    }
+
+    /// What the expert's recording scores: with soft PLCs where `soft` has them for all.
+    fn expert(&self, soft: &Scenario) -> Result<Option<AttemptRecord>, TrainError> {
+        let Some(expert) = &self.lesson.expert else { return Ok(None) };
+        let inputs = operator_inputs(&self.scenario.folder().join(expert))?;
+        let quiet = TrainConfig { record: None, ..self.config.clone() };
+        let none = RealPlcs::default();
+        let is_soft = !soft.plan().clients().iter().any(|name| soft.is_real_plc(name));
+        let (scenario, real) = if is_soft { (soft, &none) } else { (self.scenario, self.real) };
+        Classroom { config: &quiet, scenario, real, ..*self }.repeated(&self.lesson.start, inputs, 1).map(Some)
     }
 
     fn start(&self, name: &str) -> Result<&Start, TrainError> {
@@ -139,7 +144,7 @@ impl Classroom<'_> {
             if let Some(what) = scenario.beyond_a_real_plc(client) {
                 let lesson = &self.lesson.name;
                 let message = format!(
-                    "lesson `{lesson}` from `{name}` wants of client `{client}` that {what}, and a real PLC does not do that"
+                    "lesson `{lesson}` from `{name}` asks more of client `{client}` than a real PLC does: {what}"
                 );
                 let help = format!("take it with the soft PLC: leave out `--gateway {client}`");
                 return Err(Usage::new(message, Some(help)).into());
