@@ -5,7 +5,7 @@ use std::path::Path;
 
 use onescan_base::regular;
 use onescan_iec::input::kind::{FileKind, SourceKind};
-use onescan_iec::{Input, Task, TaskPlan, TimeSpan};
+use onescan_iec::{Dialect, Input, Task, TaskPlan, TimeSpan};
 use onescan_iec_project::instrument::{
     Address as DirectAddress, Exchanged, File, InstrumentError, Options, Project, Target, Way, instrument,
 };
@@ -350,7 +350,19 @@ impl Scenario {
     /// # Errors
     /// The client is not a soft PLC, or its sources or its link are wrong.
     pub fn instrumented(&self, name: &ClientName, mode: Mode) -> Result<Instrumented, ScenarioError> {
-        self.instrumented_for(Target::default(), name, mode)
+        self.instrumented_for(self.own_target(name)?, name, mode)
+    }
+
+    /// The target that takes the sources of the soft PLC `name` as they are.
+    fn own_target(&self, name: &ClientName) -> Result<Target, ScenarioError> {
+        let Some(ClientFile::SoftPlc { sources, dialect, .. }) =
+            self.file().clients.get(name).map(toml::Spanned::get_ref)
+        else {
+            return Ok(Target::default());
+        };
+        let inputs = self.inputs(name, sources, *dialect)?;
+        let is_scl = inputs.iter().any(|input| input.file().dialect() == Dialect::SiemensScl);
+        Ok(if is_scl { Target::Scl } else { Target::default() })
     }
 
     /// The same as another target takes it.

@@ -93,6 +93,7 @@ mod training;
 mod training_plc;
 mod twincat;
 mod two_hosts;
+mod two_plcs;
 mod typed;
 mod undriven;
 mod unit_tests;

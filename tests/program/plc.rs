@@ -49,8 +49,13 @@ impl Plc {
 
     /// Where it serves a protocol, as `--gateway` takes it.
     pub(crate) fn gateway(&self, scheme: &str) -> String {
+        self.gateway_of("plc", scheme)
+    }
+
+    /// The same for a client of another name.
+    pub(crate) fn gateway_of(&self, client: &str, scheme: &str) -> String {
         let url = self.urls.iter().find(|url| url.starts_with(scheme)).expect("it serves this");
-        format!("plc={url}")
+        format!("{client}={url}")
     }
 
     /// Types a command and gives the answer.

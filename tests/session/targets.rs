@@ -17,24 +17,74 @@ use crate::shim::{member, shear_folder};
 
 const TARGETS: [Target; 4] = [Target::Iec, Target::TwinCat, Target::Codesys, Target::Scl];
 
+const LATHE: [&str; 21] = [
+    "lathe/main.xml",
+    "lathe/modes.xml",
+    "lathe/sequence.xml",
+    "lathe/conditions.xml",
+    "lathe/setpoints.xml",
+    "lathe/veneer_watch.xml",
+    "lathe/command_pulses.st",
+    "lathe/commands.st",
+    "lathe/axes.st",
+    "lathe/moving_axis.st",
+    "lathe/torque_axis.st",
+    "lathe/turning_axis.st",
+    "lathe/execute_pulse.st",
+    "lathe/joystick.st",
+    "lathe/supervision.st",
+    "lathe/receive.st",
+    "lathe/send.st",
+    "lathe/position_to_real.st",
+    "lathe/position.st",
+    "lathe/globals.st",
+    "lathe/types.st",
+];
+
 /// A scenario, and the sources of its PLC.
 struct Given {
     folder: PathBuf,
     sources: &'static [&'static str],
-    /// The clients beside the PLC.
+    /// The PLC.
+    plc: &'static str,
+    /// The clients beside it.
     others: &'static [&'static str],
 }
 
 fn scenarios() -> Vec<Given> {
     let folder = |name: &str| Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios").join(name);
     vec![
-        Given { folder: folder("shear"), sources: &["plc/shear.st", "plc/alignment.st"], others: &["plant"] },
+        Given {
+            folder: folder("shear"),
+            sources: &["plc/shear.st", "plc/alignment.st"],
+            plc: "plc",
+            others: &["plant"],
+        },
         Given {
             folder: folder("filling-machine"),
             sources: &["plc/machine.st", "plc/grip_arm.st"],
+            plc: "plc",
             others: &["plant", "panel"],
         },
-        Given { folder: folder("gantry-robot"), sources: &["plc/robot.st", "plc/servo.st"], others: &["plant"] },
+        Given {
+            folder: folder("gantry-robot"),
+            sources: &["plc/robot.st", "plc/servo.st"],
+            plc: "plc",
+            others: &["plant"],
+        },
+        // A chart in PLCopen XML beside text, and networks.
+        Given {
+            folder: folder("arc-furnace"),
+            sources: &["functions/globals.st", "functions/heat.xml", "functions/interlocks.st", "functions/alarms.st"],
+            plc: "functions",
+            others: &["operator", "plant", "process"],
+        },
+        Given {
+            folder: folder("peeling-line"),
+            sources: &LATHE,
+            plc: "lathe",
+            others: &["operator", "plant", "charger"],
+        },
     ]
 }
 
@@ -49,7 +99,7 @@ fn shear_in_scl(folder: &Path) -> Given {
     std::fs::write(folder.join("scenario.toml"), scenario).expect("a file");
     std::fs::write(folder.join("plant.toml"), read("plant.toml")).expect("a file");
     std::fs::write(folder.join("plc/shear.scl"), include_str!("shear.scl")).expect("a file");
-    Given { folder: folder.to_owned(), sources: &["plc/shear.scl"], others: &["plant"] }
+    Given { folder: folder.to_owned(), sources: &["plc/shear.scl"], plc: "plc", others: &["plant"] }
 }
 
 /// Files as they are read.
@@ -91,9 +141,9 @@ fn digests(given: &Given, target: Target, prefix: &'static str) -> [String; 2] {
         let lockstep = in_process(scenario.plan().clone(), others.chain([plc]));
         run(lockstep, at_ms(3_000)).digest.expect("it ran").to_string()
     };
-    let request = member(&scenario, "plc").join();
-    let plain = digest(member(&scenario, "plc"));
-    let emitted = scenario.instrumented_for(target, &client("plc"), Mode::Lockstep);
+    let request = member(&scenario, given.plc).join();
+    let plain = digest(member(&scenario, given.plc));
+    let emitted = scenario.instrumented_for(target, &client(given.plc), Mode::Lockstep);
     let emitted = emitted.unwrap_or_else(|error: ScenarioError| panic!("{target:?}: {error}"));
     let plc = SoftPlc::new(&emitted.application, &emitted.plan).expect("the plan suits");
     [plain, digest(Box::new(Granted::new(plc, emitted.bindings, request, prefix)))]

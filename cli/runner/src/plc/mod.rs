@@ -19,6 +19,7 @@ use onescan_links::gateway::tcp::Layouts;
 use onescan_links::gateway::{HandshakeKind, MappingFault};
 use onescan_links::opcua::ServeError;
 use onescan_links::station::opcua::ServedPlc;
+use onescan_links::station::wires::word;
 use onescan_links::station::{Clockwork, Controller, Wires, ads, modbus, opcua, s7, tcp};
 use onescan_report::OutputError;
 use onescan_scenario::file::ClientFile;
@@ -60,7 +61,7 @@ pub fn run(config: &PlcConfig, interrupt: &Interrupt, out: &mut dyn Write) -> Re
         controller = controller.starting_itself();
     }
     if config.mode == Mode::Freewheel {
-        let simulated = program.application.variable("SDSP_Simulated").map_err(|error| wrong(error.to_string()))?;
+        let simulated = word(&program.application, "SDSP_Simulated").map_err(|error| wrong(error.to_string()))?;
         controller = controller.with_preset(simulated.offset as usize, vec![0]);
     }
     let controller = Arc::new(controller);

@@ -1,6 +1,6 @@
 //! Which point is which place in the PLC's memory.
 
-use onescan_iec_run::{Application, UnknownVariable};
+use onescan_iec_run::{Application, UnknownVariable, Variable};
 use onescan_server::signal::SignalName;
 use thiserror::Error;
 
@@ -86,6 +86,21 @@ impl Wires {
     }
 }
 
+/// The variable of the shim's `name`: in SCL all of them are members of a data block.
+///
+/// # Errors
+/// The program has no shim.
+pub fn word(application: &Application, name: &str) -> Result<Variable, WireError> {
+    let found = application.variable(name).or_else(|cause| {
+        let in_block = application.variable(&format!("{BLOCK}.{name}"));
+        in_block.map_err(|_| cause)
+    });
+    found.map_err(|cause| WireError::NoShim { word: name.to_owned(), cause })
+}
+
+/// The data block of the shim's variables.
+const BLOCK: &str = "SDSP";
+
 fn source(point: &Point, application: &Application, bound: &[Bound]) -> Result<Source, WireError> {
     let name = point.name.as_str();
     if name == START.0 {
@@ -96,8 +111,7 @@ fn source(point: &Point, application: &Application, bound: &[Bound]) -> Result<S
         return Ok(Source::Running);
     }
     if is_word(name) {
-        let found = application.variable(name);
-        let found = found.map_err(|cause| WireError::NoShim { word: name.to_owned(), cause })?;
+        let found = word(application, name)?;
         return Ok(Source::Memory(vec![Place::of(&found)]));
     }
     let unbound = || WireError::Unbound(point.label());

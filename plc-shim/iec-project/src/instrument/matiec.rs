@@ -14,7 +14,7 @@ use super::target::{Source as Own, Target};
 use super::tasks::{Entry, Line, TaskTable, literal};
 use super::{InstrumentError, Options, Project, attach, entries, marks, motion_use};
 use crate::output::matiec::{self, Cycle, Globals, Unsaid};
-use onescan_iec::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
+use onescan_iec::diagnostic::{Code, Diagnostic, Severity};
 use onescan_iec::dialect::Dialect;
 use onescan_iec::input::Input;
 use onescan_iec::input::kind::SourceKind;
@@ -29,7 +29,7 @@ const NAME: &str = "sdsp.st";
 
 /// The project in one text with the shim attached.
 pub(super) fn ported(plain: &Plain, options: &Options) -> Result<Project, InstrumentError> {
-    let wrong = |findings| InstrumentError::Text(Diagnostics::new(findings, &plain.sources));
+    let wrong = |findings| InstrumentError::Text(plain.diagnostics(findings));
     let units: Vec<_> = plain.sources.iter().map(|(id, file)| (id, parse_source(id, file))).collect();
     let mut findings = plain.findings.clone();
     findings.extend(units.iter().flat_map(|(_, parsed)| parsed.diagnostics.clone()));
@@ -61,7 +61,7 @@ pub(super) fn ported(plain: &Plain, options: &Options) -> Result<Project, Instru
     plain.add_own(Own { name: NAME.to_owned(), text: format!("{}\n{whole}", marks::WHOLE) }, &mut files);
     let whole = files.last().map(|file| file.name.clone());
     plain.delete_stale(&mut files);
-    let warnings = Diagnostics::new(findings, &plain.sources);
+    let warnings = plain.diagnostics(findings);
     let task = Task {
         name: "Res0.SDSP_Cycle".to_owned(),
         interval: Some(interval),

@@ -13,13 +13,13 @@
 //! | [`tasks`] | the task table |
 //! | [`single`] | tasks with SINGLE |
 //! | [`configuration`] | a project's CONFIGURATION |
-//! | [`plain`] | a project without the shim, and its changes |
+//! | [`plain`], [`beside`] | a project without the shim, and its changes; PLCopen XML beside other files |
 //! | [`controller`] | execution controllers |
 //! | [`exchanged`] | the variables that a gateway writes and reads |
 //! | [`real_inputs`] | inputs that the PLC's I/O image writes, taken over by name |
 //! | [`scl`], [`scl_timer`] | SCL of TIA Portal: organization blocks, timers |
 //! | [`scl_exchange`] | what a gateway exchanges with it: data blocks and copies |
-//! | [`plcopen_project`], [`plcopen`], [`plcopen_unit`] | projects in PLCopen XML |
+//! | [`plcopen_project`], [`plcopen`], [`plcopen_unit`] | files of PLCopen XML, a project or a part of one |
 //! | [`chart`], [`chart_plan`], [`chart_time`], [`chart_script`], [`chart_action`] | Sequential Function Charts: execution signal, action control, times of steps |
 //! | [`plcopen_chart`], [`plcopen_gate`], [`plcopen_drawing`] | the same of charts that are drawn, in PLCopen XML |
 //! | [`port`], [`codesys`] | a project in text for a tool that takes another form |
@@ -34,6 +34,7 @@
 //! instrumenting twice is instrumenting once; what cannot be replaced is reported.
 
 mod address;
+mod beside;
 mod chart;
 mod chart_action;
 mod chart_plan;
@@ -224,9 +225,10 @@ pub fn instrument(inputs: &[Input], options: &Options) -> Result<Project, Instru
         return Err(InstrumentError::OnlyOwn(own.to_owned()));
     }
     if let Some(refused) = plain.without_inputs(options) {
-        return Err(InstrumentError::Text(Diagnostics::new(vec![refused], &plain.sources)));
+        return Err(InstrumentError::Text(plain.diagnostics(vec![refused])));
     }
     plain.left_out = left_out::names(inputs, &plain.sources);
+    port::in_text(&mut plain, options.target)?;
     port::with_conversions(&mut plain, inputs, options.target)?;
     let project = match port::ported(&plain, options) {
         Some(ported) => ported?,
@@ -257,7 +259,7 @@ fn attach(plain: &Plain, options: &Options) -> Result<Attached, InstrumentError>
     let trees: Vec<_> = units.iter().map(|(id, unit)| (*id, unit)).collect();
     let mut survey = survey(&trees, options.target);
     if let Some(refused) = plain.unsuited(options.target, &survey) {
-        return Err(InstrumentError::Text(Diagnostics::new(vec![refused], &plain.sources)));
+        return Err(InstrumentError::Text(plain.diagnostics(vec![refused])));
     }
     findings.append(&mut survey.findings);
     let texts = if plain.is_text() { plain.texts().collect() } else { Vec::new() };
@@ -274,9 +276,9 @@ fn attach(plain: &Plain, options: &Options) -> Result<Attached, InstrumentError>
     let mut motion = motion_use::motion(options.target, &trees, &survey.motion);
     findings.append(&mut motion.findings);
     if findings.iter().any(|found| found.severity == Severity::Error) {
-        return Err(InstrumentError::Text(Diagnostics::new(findings, &plain.sources)));
+        return Err(InstrumentError::Text(plain.diagnostics(findings)));
     }
-    let is_text = options.target.is_text() && !plain.is_xml();
+    let is_text = options.target.is_text() && !plain.has_xml();
     let line = if is_text { Line::Named } else { Line::InPlace };
     let declared = plain.tasks(&survey, options)?;
     let tasks = TaskTable::new(&declared, &entries(&survey), line)?;
@@ -286,13 +288,15 @@ fn attach(plain: &Plain, options: &Options) -> Result<Attached, InstrumentError>
     forms.dedup();
     let mut sources = Sources::new(options, &tasks, &forms, &motion.blocks, &survey.charts, exchange);
     sources.add(&survey.inputs.additions(&plain.sources));
-    if plain.is_xml() {
+    if plain.is_one_xml() {
         let files = vec![plain.edited_xml(&survey, &motion, &tasks, &sources)?];
-        let project = Project::of(files, Diagnostics::new(findings, &plain.sources));
+        let project = Project::of(files, plain.diagnostics(findings));
         return Ok(Attached { project, tasks: None });
     }
     // CODESYS has global variables in lists of their own.
-    let is_list = |first: &&Configuration| options.target == Target::Codesys || plain.is_object(first.name.span);
+    let is_list = |first: &&Configuration| {
+        options.target == Target::Codesys || plain.is_object(first.name.span) || plain.is_of_tool(first)
+    };
     let globals = match survey.configurations.first() {
         Some(first) if !is_list(first) => Globals::InConfiguration,
         _ => Globals::InFile,
@@ -304,7 +308,7 @@ fn attach(plain: &Plain, options: &Options) -> Result<Attached, InstrumentError>
     }
     plain.delete_stale(&mut files);
     plain.list_own(&mut files)?;
-    let project = Project::of(files, Diagnostics::new(findings, &plain.sources));
+    let project = Project::of(files, plain.diagnostics(findings));
     Ok(Attached { project, tasks: survey.configurations.is_empty().then_some(declared) })
 }
 
@@ -322,7 +326,7 @@ pub fn remove(inputs: &[Input]) -> Result<Project, InstrumentError> {
     let mut files = plain.unchanged();
     plain.delete_own(&mut files);
     plain.list_own(&mut files)?;
-    Ok(Project::of(files, Diagnostics::new(Vec::new(), &plain.sources)))
+    Ok(Project::of(files, plain.diagnostics(Vec::new())))
 }
 
 /// What tasks may run: the instances of a configuration, or else the programs themselves.

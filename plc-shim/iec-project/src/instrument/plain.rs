@@ -27,12 +27,12 @@ use onescan_iec::task_plan::Task;
 /// A project without the shim.
 pub(super) struct Plain {
     pub(super) sources: SourceMap,
-    /// The same as their author has them, where conversions have been written into `sources`.
-    original: Option<SourceMap>,
+    /// The same as their author has them, where `sources` has their program text alone or conversions in it.
+    pub(super) original: Option<SourceMap>,
     /// Of each file in `sources` what it was when it was given.
     pub(super) given: Vec<Given>,
     /// What kind of file each of them is.
-    kinds: Vec<SourceKind>,
+    pub(super) kinds: Vec<SourceKind>,
     /// The shim's own files that were given.
     own: Vec<Given>,
     /// TwinCAT projects, and what they are without the shim.
@@ -88,24 +88,13 @@ impl Plain {
             Err(damaged) => return self.damaged(name, text, &damaged),
         };
         self.given.push(given);
-        let id = FileId(self.sources.iter().count() as u32);
         self.findings.extend(plain.add_to(&mut self.sources));
         self.kinds.push(kind);
-        let mixed = self.kinds.contains(&SourceKind::PlcOpen) && self.kinds.len() > 1;
-        if mixed {
-            let refused = "a project in PLCopen XML is one file, other sources beside it are not instrumented yet";
-            self.findings.push(Diagnostic::error(Code::UnsupportedFeature, Span::new(id, 0, 0), refused));
-        }
     }
 
     /// A file of the shim's own, if there is no other.
     pub(super) fn only_own(&self) -> Option<&str> {
         self.own.first().filter(|_| self.given.is_empty() && self.findings.is_empty()).map(|own| own.name.as_str())
-    }
-
-    /// True for a project in PLCopen XML, which is one file.
-    pub(super) fn is_xml(&self) -> bool {
-        self.kinds.contains(&SourceKind::PlcOpen)
     }
 
     /// True for program text alone, in the standard's language.
@@ -116,13 +105,13 @@ impl Plain {
 
     /// True for text that was taken out of an object of TwinCAT.
     pub(super) fn is_object(&self, place: Span) -> bool {
-        self.sources.get(place.file).is_some_and(|file| file.origin().is_some())
+        self.kinds.get(place.file.0 as usize) == Some(&SourceKind::TwinCat)
     }
 
     /// True for an object of TwinCAT that no task uses.
     pub(super) fn may_stay(&self, id: FileId) -> bool {
-        let is_object = self.kinds.get(id.0 as usize) == Some(&SourceKind::TwinCat);
-        is_object && self.sources.get(id).is_some_and(|file| self.left_out.contains(file.name()))
+        self.is_object(Span::new(id, 0, 0))
+            && self.sources.get(id).is_some_and(|file| self.left_out.contains(file.name()))
     }
 
     /// A target that does not take the project's kind of file.
@@ -132,13 +121,15 @@ impl Plain {
         let foreign = survey.programs.iter().find(foreign).map(|pou| pou.name.span);
         let message = match target {
             Target::Scl if scl.is_some() && foreign.is_some() => "beside SCL there are variables only, not programs",
-            Target::Scl if scl.is_none() => "the target scl takes program text or SCL sources of TIA Portal",
-            Target::OpenPlc | Target::Beremiz if !self.is_text() => "this target takes program text",
+            Target::Scl if scl.is_some() && self.has_xml() => "beside SCL there are variables only, not PLCopen XML",
+            Target::Scl if scl.is_none() => {
+                "the target scl takes program text, PLCopen XML or SCL sources of TIA Portal"
+            }
+            Target::OpenPlc | Target::Beremiz if !self.is_text() => "this target takes program text or PLCopen XML",
             Target::Iec | Target::TwinCat | Target::Codesys if scl.is_some() => "SCL sources take the target scl",
-            Target::Codesys if !self.is_xml() && !self.is_text() => {
+            Target::Codesys if !self.is_portable() => {
                 "the target codesys takes program text or a project in PLCopen XML"
             }
-            Target::TwinCat if self.is_xml() => "the target twincat takes TwinCAT's own files, not PLCopen XML",
             _ => return None,
         };
         let at = foreign.filter(|_| scl.is_some()).unwrap_or(Span::new(scl.unwrap_or(FileId(0)), 0, 0));
@@ -148,7 +139,7 @@ impl Plain {
 
     /// Inputs cannot be taken over in every form of a project.
     pub(super) fn without_inputs(&self, options: &Options) -> Option<Diagnostic> {
-        let is_text = !self.is_xml() && !self.sources.iter().any(|(_, file)| scl::is_scl(file));
+        let is_text = !self.has_xml() && !self.sources.iter().any(|(_, file)| scl::is_scl(file));
         let takes = matches!(options.target, Target::Iec | Target::TwinCat | Target::Codesys);
         if options.inputs == Inputs::Left || (is_text && takes) {
             return None;
@@ -176,10 +167,10 @@ impl Plain {
     }
 
     pub(super) fn tasks(&self, survey: &Survey<'_>, options: &Options) -> Result<Vec<Task>, InstrumentError> {
-        let wrong = |found| InstrumentError::Text(Diagnostics::new(vec![found], &self.sources));
+        let wrong = |found| InstrumentError::Text(self.diagnostics(vec![found]));
         if let Some(tasks) = &options.tasks {
             single::refused_beside(&survey.configurations).map_or(Ok(()), |found| Err(wrong(found)))?;
-            single::check_given(tasks, |name| survey.is_global(name), (options.target, self.is_xml()))?;
+            single::check_given(tasks, |name| survey.is_global(name), (options.target, self.has_xml()))?;
             return Ok(tasks.clone());
         }
         // A task of a library names a program that its users have.
@@ -187,7 +178,7 @@ impl Plain {
             return Err(InstrumentError::NoPrograms);
         }
         if !survey.configurations.is_empty() {
-            if options.target != Target::Iec || self.is_xml() {
+            if options.target != Target::Iec || self.has_xml() {
                 self.refuse_singles(survey)?;
             }
             let parts = survey.configurations.iter().map(|part| configuration::tasks(part, &survey.constants));
@@ -212,7 +203,7 @@ impl Plain {
 
     /// Refuses tasks of a configuration that start at edges.
     pub(super) fn refuse_singles(&self, survey: &Survey<'_>) -> Result<(), InstrumentError> {
-        let refused = |found| InstrumentError::Text(Diagnostics::new(vec![found], &self.sources));
+        let refused = |found| InstrumentError::Text(self.diagnostics(vec![found]));
         single::refused_elsewhere(&survey.configurations).map_or(Ok(()), |found| Err(refused(found)))
     }
 
@@ -226,11 +217,12 @@ impl Plain {
         self.given.iter().zip(texts.iter()).map(same).collect()
     }
 
-    /// The texts of a project in program text, as they are translated.
+    /// The files of a project in program text or PLCopen XML, as they are translated.
     pub(super) fn texts(&self) -> impl Iterator<Item = Input> {
-        let text =
-            |file: &SourceFile| Input::from_text(file.name(), SourceKind::Text, file.text().as_ref()).read_like(file);
-        self.sources.iter().map(move |(_, file)| text(file))
+        let read = |(kind, (_, file)): (&SourceKind, (FileId, &SourceFile))| {
+            Input::from_text(file.name(), *kind, file.shown_text().as_ref()).read_like(file)
+        };
+        self.kinds.iter().zip(self.sources.iter()).map(read)
     }
 
     /// Changes the texts that are translated; the files stay as they are. No change begins a line.
@@ -238,11 +230,15 @@ impl Plain {
         let mut changed = SourceMap::default();
         for (id, file) in self.sources.iter() {
             let conflict = |conflict| InstrumentError::Conflict { file: file.name().to_owned(), conflict };
-            // Most files have no changes.
-            let text = edits.remove(&id).unwrap_or_default().apply(file.text()).map_err(conflict)?.text;
-            changed.add(SourceFile::new(file.name(), text).read_like(file));
+            changed.add(match edits.remove(&id) {
+                Some(edits) => {
+                    SourceFile::new(file.name(), edits.apply(file.text()).map_err(conflict)?.text).read_like(file)
+                }
+                None => file.clone(),
+            });
         }
-        self.original = Some(std::mem::replace(&mut self.sources, changed));
+        let before = std::mem::replace(&mut self.sources, changed);
+        self.original.get_or_insert(before);
         Ok(())
     }
 
@@ -255,9 +251,14 @@ impl Plain {
         globals: &str,
     ) -> Result<Vec<File>, InstrumentError> {
         self.refuse_drawn(survey, tasks)?;
-        let mut edits: Vec<Edits> = self.given.iter().map(|_| Edits::default()).collect();
+        let changed = |id: FileId| {
+            if self.is_xml(id) { self.edits_of_xml(id, survey, motion, tasks, globals) } else { Ok(Edits::default()) }
+        };
+        let mut edits: Vec<Edits> = self.sources.iter().map(|(id, _)| changed(id)).collect::<Result<_, _>>()?;
         let mut changes = |id: FileId, change: &mut dyn FnMut(&SourceFile, &mut Edits)| {
-            if let (Some(file), Some(edits)) = (self.sources.get(id), edits.get_mut(id.0 as usize)) {
+            // Those of PLCopen XML have been changed.
+            let edits = edits.get_mut(id.0 as usize).filter(|_| !self.is_xml(id));
+            if let (Some(file), Some(edits)) = (self.sources.get(id), edits) {
                 change(file, edits);
             }
         };
@@ -333,7 +334,7 @@ impl Plain {
                 (message, "write the chart in PLCopen XML, or as a CASE statement in Structured Text")
             };
             let found = Diagnostic::error(Code::UnsupportedFeature, pou.name.span, message).with_help(help);
-            return Err(InstrumentError::Text(Diagnostics::new(vec![found], &self.sources)));
+            return Err(InstrumentError::Text(self.diagnostics(vec![found])));
         }
         Ok(())
     }

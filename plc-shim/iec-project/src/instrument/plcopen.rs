@@ -217,14 +217,31 @@ pub(super) fn attach(
         append(text, place("dataTypes").ok_or("this project has no `<dataTypes>`")?, &types, edits);
     }
     let globals = &sources.globals;
-    let configuration = all(root, "configuration").into_iter().find(|each| !all(each, "pouInstance").is_empty());
-    let Some(configuration) = configuration else {
-        return alone(root, text, globals, edits).ok_or_else(nothing);
-    };
-    let variables = unit::globals(globals, None).ok_or_else(nothing)?;
+    match configuration(root) {
+        Some(configuration) => configure(configuration, text, tasks, globals, edits),
+        None => alone(root, text, globals, edits).ok_or_else(nothing),
+    }
+}
+
+/// The configuration that runs programs.
+pub(super) fn configuration(root: &Element) -> Option<&Element> {
+    all(root, "configuration").into_iter().find(|each| !all(each, "pouInstance").is_empty())
+}
+
+/// Puts the scheduler's task into a configuration, and variables of the shim's.
+pub(super) fn configure(
+    configuration: &Element,
+    text: &str,
+    tasks: &TaskTable<'_>,
+    globals: &str,
+    edits: &mut Edits,
+) -> Result<(), Refused> {
+    let variables = unit::globals(globals, None).ok_or("a variable of the shim has no form in PLCopen XML")?;
     let behind = configuration.elements().filter(|inner| inner.name == "resource").last();
     let at = behind.map_or(configuration.open.end, |resource| resource.close.end);
-    insert(text, at, &variables, edits);
+    if !variables.is_empty() {
+        insert(text, at, &variables, edits);
+    }
     let resource = configuration.elements().find(|inner| !all(inner, "pouInstance").is_empty());
     if let Some(resource) = resource {
         insert(text, resource.open.end, &cycle(configuration, tasks), edits);

@@ -1,18 +1,20 @@
-//! A project in program text for a tool that takes another form: with the shim attached it becomes one file, which is
-//! wholly the shim's own. The project's files stay as they are.
+//! A project in program text, also with PLCopen XML beside it, for a tool that takes another form: with the shim attached
+//! it becomes one file, which is wholly the shim's own. The project's files stay as they are.
 //!
-//! The shim is attached to the text, as for a tool that takes text; what comes of it is written in the other form.
+//! The shim is attached to the files, as for a tool that takes them; what comes of it is written in the other form.
 
 use super::plain::Plain;
 use super::target::Target;
 use super::{InstrumentError, Options, Project, attach, codesys, matiec, scl_port};
 use crate::output::Refused;
 use crate::output::width::{self, Fronts, Way};
-use onescan_iec::diagnostic::{Code, Diagnostic, Diagnostics};
+use onescan_iec::diagnostic::{Code, Diagnostic};
 use onescan_iec::dialect::{Dialect, IntegerWidth, WordSize};
 use onescan_iec::front::{Front, with_room};
 use onescan_iec::input::Input;
-use onescan_iec::syntax::FileId;
+use onescan_iec::syntax::lexer::tokenize_in;
+use onescan_iec::syntax::token::TokenKind;
+use onescan_iec::syntax::{FileId, SourceFile, Span};
 
 /// The project's text as the tool reads it that takes its port: what is not of its dialect is reported.
 pub(super) fn read_by(target: Target, inputs: &[Input]) -> Vec<Input> {
@@ -24,6 +26,32 @@ pub(super) fn read_by(target: Target, inputs: &[Input]) -> Vec<Input> {
         }
     };
     inputs.iter().map(read).collect()
+}
+
+/// Takes the program text out of PLCopen XML for a target that has nothing to draw in: networks become statements.
+///
+/// # Errors
+/// A network hands on what has no name.
+pub(super) fn in_text(plain: &mut Plain, target: Target) -> Result<(), InstrumentError> {
+    let takes_text = matches!(target, Target::Scl | Target::OpenPlc | Target::Beremiz);
+    if !takes_text || !plain.is_portable() || !plain.has_xml() {
+        return Ok(());
+    }
+    let wires: Vec<Diagnostic> = plain.sources.iter().filter_map(|(id, file)| unnamed(id, file)).collect();
+    if !wires.is_empty() {
+        return Err(InstrumentError::Text(plain.diagnostics(wires)));
+    }
+    plain.take_text();
+    Ok(())
+}
+
+/// The first place at which an element of a network hands on what no variable takes: text would need a variable there.
+fn unnamed(id: FileId, file: &SourceFile) -> Option<Diagnostic> {
+    let tokens = tokenize_in(file.dialect(), file.text());
+    let wire = tokens.iter().find(|token| token.kind == TokenKind::Wire)?;
+    let message = "this target takes text, where what this box hands on would need a variable";
+    let found = Diagnostic::error(Code::UnsupportedFeature, Span::new(id, wire.start, wire.end), message);
+    Some(found.with_help("connect the box's output to a variable, or choose the target iec, codesys or twincat"))
 }
 
 /// Writes the conversions that a port needs whose target computes integers in other bits than the dialect of a file.
@@ -41,7 +69,7 @@ pub(super) fn with_conversions(plain: &mut Plain, inputs: &[Input], target: Targ
         let dialect = names.get(id.0 as usize).and_then(|name| own(name));
         dialect.is_some_and(|dialect| dialect.integers() == from)
     };
-    if !plain.is_text() || !(0..names.len() as u32).any(|id| is_concerned(FileId(id))) {
+    if !plain.is_portable() || plain.is_one_xml() || !(0..names.len() as u32).any(|id| is_concerned(FileId(id))) {
         return Ok(());
     }
     let as_read = |input: Input| match way {
@@ -67,7 +95,15 @@ pub(super) fn with_conversions(plain: &mut Plain, inputs: &[Input], target: Targ
         (!fronts.of_registers(way).has_errors()).then(|| width::explicit(&fronts, way, &is_concerned))
     });
     let Some(found) = found else { return Ok(()) };
-    plain.change(found.map_err(|refused| refused_widths(plain, refused))?)
+    let found = found.map_err(|refused| refused_widths(plain, refused))?;
+    let drawn = found.iter().filter(|(id, _)| plain.is_xml(**id));
+    let drawn = drawn.filter_map(|(id, edits)| Some(Span::new(*id, edits.first()?, edits.first()?)));
+    let drawn: Vec<Refused> =
+        drawn.map(|span| Refused { span, message: "what is computed here in PLCopen XML".to_owned() }).collect();
+    if !drawn.is_empty() {
+        return Err(refused_widths(plain, drawn));
+    }
+    plain.change(found)
 }
 
 fn refused_widths(plain: &Plain, refused: Vec<Refused>) -> InstrumentError {
@@ -76,12 +112,13 @@ fn refused_widths(plain: &Plain, refused: Vec<Refused>) -> InstrumentError {
         let help = "convert the operands yourself, and all targets agree";
         Diagnostic::error(Code::UnsupportedFeature, each.span, message).with_help(help)
     };
-    InstrumentError::Text(Diagnostics::new(refused.into_iter().map(reported).collect(), &plain.sources))
+    InstrumentError::Text(plain.diagnostics(refused.into_iter().map(reported).collect()))
 }
 
 /// The project in the form of a target that does not take its text; nothing for any other.
 pub(super) fn ported(plain: &Plain, options: &Options) -> Option<Result<Project, InstrumentError>> {
-    if !plain.is_text() {
+    // What is in PLCopen XML as a whole stays the file that it is.
+    if !plain.is_portable() || plain.is_one_xml() {
         return None;
     }
     let port = match options.target {

@@ -28,7 +28,7 @@ const NAME: &str = "sdsp.scl";
 /// The project in SCL with the shim attached.
 pub(super) fn ported(plain: &Plain, options: &Options) -> Result<Project, InstrumentError> {
     let inputs: Vec<Input> = plain.texts().collect();
-    let wrong = |findings| InstrumentError::Text(Diagnostics::new(findings, &plain.sources));
+    let wrong = |findings| InstrumentError::Text(plain.diagnostics(findings));
     if plain.findings.iter().any(|found| found.severity == Severity::Error) {
         return Err(wrong(plain.findings.clone()));
     }
@@ -60,7 +60,7 @@ pub(super) fn ported(plain: &Plain, options: &Options) -> Result<Project, Instru
     plain.add_own(Own { name: NAME.to_owned(), text: last.unwrap_or_default() }, &mut files);
     let whole = files.last().map(|file| file.name.clone());
     plain.delete_stale(&mut files);
-    let warnings = Diagnostics::new(warnings, &plain.sources);
+    let warnings = plain.diagnostics(warnings);
     Ok(Project { whole, tasks: Some(called(&tasks)), homes, ..Project::of(files, warnings) })
 }
 
@@ -84,7 +84,7 @@ fn asked(
     // There is nothing in TIA Portal that it could be left to.
     findings.extend(motion.into_iter().map(|found| Diagnostic { severity: Severity::Error, ..found }));
     if findings.iter().any(|found| found.severity == Severity::Error) {
-        return Err(InstrumentError::Text(Diagnostics::new(findings, &plain.sources)));
+        return Err(InstrumentError::Text(plain.diagnostics(findings)));
     }
     let in_text = Options { target: Target::Iec, ..options.clone() };
     plain.refuse_singles(&survey)?;
@@ -143,7 +143,7 @@ fn refused(plain: &Plain, found: &Diagnostics) -> InstrumentError {
         let help = "write it in another way; the translation is not stored";
         Diagnostic::error(Code::UnsupportedFeature, Span::new(FileId(0), 0, 0), message).with_help(help)
     });
-    InstrumentError::Text(Diagnostics::new(findings.collect(), &plain.sources))
+    InstrumentError::Text(plain.diagnostics(findings.collect()))
 }
 
 /// The data blocks that global variables are members of, by the variables' names in capitals.
@@ -164,7 +164,7 @@ fn no_start_values(plain: &Plain, missing: &StartValues) -> InstrumentError {
         let found = Diagnostic::error(Code::UnsupportedFeature, Span::new(FileId(0), 0, 0), message);
         found.with_help("a TIME counts milliseconds there; assign other values in the first scan")
     });
-    InstrumentError::Text(Diagnostics::new(findings.collect(), &plain.sources))
+    InstrumentError::Text(plain.diagnostics(findings.collect()))
 }
 
 /// What the project begins with and the translation does not.

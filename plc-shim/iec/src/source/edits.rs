@@ -63,6 +63,11 @@ impl Edits {
         taken
     }
 
+    /// Where the first change is.
+    pub fn first(&self) -> Option<u32> {
+        self.edits.iter().map(|edit| edit.at.start).min()
+    }
+
     /// True if nothing changes.
     pub fn is_empty(&self) -> bool {
         self.edits.is_empty()

@@ -2,6 +2,7 @@
 //! whatever becomes of the grants.
 
 mod abreast;
+mod beside;
 mod charts;
 mod configurations;
 mod corpus;

@@ -8,6 +8,7 @@
 //! | [`chart`], [`chart_element`] | Sequential Function Charts, drawn |
 //! | [`variables`], [`types`], [`value`] | declarations |
 //! | [`about`] | what comments and pragmas say of a declaration |
+//! | [`taken`] | files that are PLCopen XML already |
 //! | [`markup`] | pieces of XML |
 //!
 //! The namespace is that of version 2.0, which CODESYS writes; what is used of it is the same in 2.01. Declarations are
@@ -22,12 +23,13 @@ pub(crate) mod configuration;
 mod interface;
 pub(crate) mod markup;
 mod object;
+mod taken;
 pub(crate) mod types;
 pub(crate) mod unit;
 mod value;
 pub(crate) mod variables;
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use self::about::About;
@@ -36,24 +38,34 @@ use self::markup::{additions, data};
 use self::types::DataType;
 use super::page::Page;
 use super::{Refused, Written};
-use onescan_iec::syntax::SourceFile;
 use onescan_iec::syntax::ast::{CompilationUnit, Declaration, Namespace, NamespaceKind, Pou, PouKind, Section};
+use onescan_iec::syntax::{FileId, SourceFile};
 
 /// When the file was made: always the same, so that the same project gives the same file.
 const CREATED: &str = "1970-01-01T00:00:00";
+
+/// What a file of a project is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Form {
+    Text,
+    /// PLCopen XML, whose elements are taken over as they are.
+    Xml,
+}
+
+/// A file of a project, and what is declared in it.
+type Part<'p> = (Form, FileId, &'p SourceFile, &'p CompilationUnit);
 
 /// The XML of a project with these files; `cycles` are its tasks if no configuration declares them.
 ///
 /// # Errors
 /// All that has no form.
-pub(crate) fn project(
-    files: &[(&SourceFile, &CompilationUnit)],
-    name: &str,
-    cycles: &[Cycle],
-) -> Result<String, Vec<Refused>> {
+pub(crate) fn project(files: &[Part<'_>], name: &str, cycles: &[Cycle]) -> Result<String, Vec<Refused>> {
     let mut document = Document { taken: declared(files), ..Document::default() };
-    for (file, unit) in files {
-        document.file(file, unit);
+    for (form, id, file, unit) in files {
+        match form {
+            Form::Text => document.file(file, unit),
+            Form::Xml => document.take(*id, file.shown_text()),
+        }
     }
     if !document.refused.is_empty() {
         return Err(document.refused);
@@ -65,8 +77,8 @@ pub(crate) fn project(
 }
 
 /// Names of all units, types and namespaces as keys: no list of variables may be called by one.
-fn declared(files: &[(&SourceFile, &CompilationUnit)]) -> BTreeSet<String> {
-    let declarations = files.iter().flat_map(|(_, unit)| &unit.declarations);
+fn declared(files: &[Part<'_>]) -> BTreeSet<String> {
+    let declarations = files.iter().flat_map(|(_, _, _, unit)| &unit.declarations);
     let key = |declaration: &Declaration| match declaration {
         Declaration::Pou(pou) => Some(pou.name.key()),
         Declaration::Type(named) => Some(named.name.key()),
@@ -84,6 +96,8 @@ struct Document {
     configurations: String,
     /// What is added to the project.
     added: String,
+    /// Prefixes of namespaces that elements of other files have, and what they stand for.
+    prefixes: BTreeMap<String, String>,
     /// Names that lists of variables may not have, as keys.
     taken: BTreeSet<String>,
     refused: Vec<Refused>,
@@ -169,11 +183,13 @@ impl Document {
     }
 
     fn text(self, name: &str) -> String {
-        let Self { types, units, configurations, added, .. } = self;
+        let Self { types, units, configurations, added, prefixes, .. } = self;
+        let prefixes: String =
+            prefixes.iter().map(|(name, stands_for)| format!(" {name}=\"{}\"", markup::escaped(stands_for))).collect();
         let scaling = ["fbd", "ld", "sfc"].map(|kind| format!("<{kind}><scaling x=\"1\" y=\"1\"/></{kind}>")).concat();
         format!(
             "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n\
-             <project xmlns=\"http://www.plcopen.org/xml/tc6_0200\">\n\
+             <project xmlns=\"http://www.plcopen.org/xml/tc6_0200\"{prefixes}>\n\
              <fileHeader companyName=\"\" productName=\"onescan for CODESYS\" productVersion=\"1\" \
              creationDateTime=\"{CREATED}\"/>\n\
              <contentHeader name=\"{}\"><coordinateInfo>{scaling}</coordinateInfo></contentHeader>\n\
@@ -203,7 +219,6 @@ mod tests {
     use super::*;
     use onescan_iec::input::Input;
     use onescan_iec::input::kind::SourceKind;
-    use onescan_iec::syntax::FileId;
     use onescan_iec::syntax::parser::parse_source;
 
     const PRESS: &str = include_str!("../../../../tests/inputs/press.st");
@@ -212,7 +227,7 @@ mod tests {
         let file = SourceFile::new(name, text).in_dialect(onescan_iec::Dialect::Codesys);
         let parsed = parse_source(FileId(0), &file);
         assert_eq!(parsed.diagnostics, [], "{name}");
-        project(&[(&file, &parsed.unit)], name, &[])
+        project(&[(Form::Text, FileId(0), &file, &parsed.unit)], name, &[])
     }
 
     #[test]
