@@ -212,6 +212,10 @@ fn check_looks(element: &Spanned<ElementFile>) -> Result<(), Wrong> {
     if inner.latching && inner.kind != ElementKind::Button {
         return Err(at(element, "only a button can be `latching`".to_owned(), Some("a switch always is")));
     }
+    if let Some(part) = inner.part.as_ref().filter(|_| !inner.kind.is_key()) {
+        let message = "only a button, a switch and an emergency stop lie on a `part`".to_owned();
+        return Err(at(part, message, Some("a click presses it, and gives no number")));
+    }
     inner.colour.as_ref().map_or(Ok(()), |colour| check_colour(colour, element.span()))
 }
 
@@ -276,6 +280,19 @@ name = "desk"
             element("alarms", "signal = \"Start\"\nat = [0, 5]"),
         ];
         assert_eq!(reported(&elements.concat()), Ok(()));
+    }
+
+    #[test]
+    fn a_key_may_lie_on_the_machine_and_nothing_else() {
+        for kind in ["button", "switch", "emergency-stop"] {
+            assert_eq!(reported(&element(kind, "signal = \"Start\"\nat = [0, 0]\npart = \"lid\"")), Ok(()), "{kind}");
+        }
+        let (message, place) =
+            reported(&element("slider", "signal = \"Speed\"\nat = [0, 0]\npart = \"lid\"")).expect_err("no key");
+        assert!(
+            message.starts_with("only a button, a switch and an emergency stop") && place == "\"lid\"",
+            "{message}"
+        );
     }
 
     #[test]

@@ -89,6 +89,9 @@ pub struct ElementFile {
     /// Whether a button stays where it is put.
     #[serde(default)]
     pub latching: bool,
+    /// The part of the machine on which it lies, too: a body, a figure or a component. A click on that presses it.
+    #[schemars(with = "Option<String>")]
+    pub part: Option<Spanned<String>>,
 }
 
 /// A mode of failure of a component, as `component.mode`.
@@ -134,6 +137,11 @@ pub enum ElementKind {
 }
 
 impl ElementKind {
+    /// Whether it is a key, which a click on the machine can press.
+    pub fn is_key(self) -> bool {
+        matches!(self, Self::Button | Self::Switch | Self::EmergencyStop)
+    }
+
     /// Whether people write with it.
     pub fn writes(self) -> bool {
         matches!(

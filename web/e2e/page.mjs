@@ -225,6 +225,49 @@ async function draw_components() {
   await session.close();
 }
 
+/** A click on a part presses the key of a panel that lies on it; so do the sheet of parts and a component's own name. */
+async function press_the_machine() {
+  const session = await serve();
+  const belt = session.session.bodies.findIndex((body) => body.name === "belt");
+  Object.assign(session.session.panels[0].elements[0], { bodies: [belt], components: ["conveyor"] });
+  const { page, errors } = await open(session, {});
+  const canvas = await page.locator("#canvas canvas").boundingBox();
+  const [left, top, right, bottom] = await page.evaluate(() => window.onescan.sight().bodies.find((one) => one.name === "belt").box);
+  const at = [canvas.x + (left + right) / 2, canvas.y + (top + bottom) / 2];
+  await page.mouse.move(...at);
+  await page.waitForFunction(() => document.querySelector("#canvas canvas").style.cursor === "pointer");
+  // The first press takes the free seat, as that of the key does; the sheet of the panels stays open.
+  await page.mouse.click(...at);
+  await page.getByRole("button", { name: "Leave seat" }).waitFor();
+  await until(() => writes(session).length === 2);
+  assert.deepEqual(writes(session), [1, 0]);
+  assert.equal(await page.getByRole("tab", { name: "Panels" }).getAttribute("aria-selected"), "true");
+  // By the keyboard.
+  await page.getByRole("tab", { name: "Part" }).click();
+  await page.locator("#part-sheet").getByRole("button", { name: "Start", exact: true }).focus();
+  await page.keyboard.press("Enter");
+  await until(() => writes(session).length === 4);
+  // Of the past nothing is pressed, and the page says so.
+  await page.getByRole("slider", { name: "Time that is shown" }).fill("3");
+  await page.getByText("You see the past").waitFor();
+  await page.mouse.click(...at);
+  await page.locator("#notice").getByText("past").waitFor();
+  assert.deepEqual(writes(session), [1, 0, 1, 0]);
+  assert.deepEqual(errors, []);
+  await page.close();
+  await session.close();
+  // A component of a machine without bodies.
+  const part = { name: "slide", kind: "command_axis", body: null, signals: ["Position"], senses: null, parameters: [], failures: [] };
+  const flat = await serve({ more: { bodies: [], views: [], looks: [], plcs: [], components: [part] } });
+  flat.session.signals[3].name = "Position";
+  flat.session.panels[0].elements[0].components = ["slide"];
+  const { page: other } = await open(flat, {});
+  await other.getByRole("button", { name: "slide", exact: true }).click();
+  await until(() => writes(flat).length === 2);
+  await other.close();
+  await flat.close();
+}
+
 const TABS = ["Panels", "Part", "Alarms", "Signals", "PLC", "Checks"];
 
 /** axe finds nothing on any sheet, in both themes, nor in the dialogues. */
@@ -447,6 +490,7 @@ try {
   await follow_the_plot();
   await force();
   await draw_components();
+  await press_the_machine();
   await attend_to_alarms();
   await speak();
   await follow_the_system();

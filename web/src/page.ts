@@ -13,7 +13,7 @@ import { main_source } from "./highlight";
 import { Link, live_address, type LinkState } from "./link";
 import { Maps } from "./maps";
 import { OnlineView } from "./online";
-import { PanelView } from "./panels";
+import { PanelView, type Key } from "./panels";
 import { PartSheet } from "./part";
 import type { Ask, Message } from "./message";
 import type { Picture } from "./picture";
@@ -107,7 +107,7 @@ export class Page {
       plain.textContent = isPlain ? say("Plain picture: slow graphics") : "";
       plain.hidden = !isPlain;
     });
-    this.schematic = session.bodies.some((body) => body.shape.kind !== "none") ? null : new Schematic(session);
+    this.schematic = session.bodies.some((body) => body.shape.kind !== "none") ? null : new Schematic(session, (component) => this.press(this.panels.flatMap(({ view }) => view.keys_on_component(component))));
     if (this.schematic !== null) frame("canvas").replaceWith(this.schematic.root);
     this.forces = new Forces(this.mayForce);
     frame("controls").after(this.forces.key);
@@ -121,7 +121,7 @@ export class Page {
         acknowledge: () => this.acknowledge(session.alarms.map((_, alarm) => alarm)),
       }),
     }));
-    this.part = new PartSheet(session, this.values, this.machine, (ask) => this.ask(ask), again);
+    this.part = new PartSheet(session, this.values, this.machine, (ask) => this.ask(ask), again, (body) => this.keys_on(body), (key) => this.press([key]));
     const readout = make("span", { id: "readout", role: "status" });
     this.backfill = new Backfill(live_address(), session, (signal, t_ns, value) => this.trends.insert(signal, t_ns, value));
     this.trends = new TrendsView(frame("lanes"), readout, session, { changed: again, choose: () => this.choose_signals() });
@@ -249,10 +249,25 @@ export class Page {
     if (!(this.link?.ask(ask) ?? false)) this.notice(say("There is no connection to the session: nothing was sent."));
   }
 
+  /** A click on a part presses what lies on it; it opens the sheet of any other. */
   private choose(body: number | null): void {
+    const keys = body === null ? [] : this.keys_on(body);
     this.part.open(body);
-    if (body !== null) this.tabs?.open("Part");
+    this.press(keys);
+    if (body !== null && keys.length === 0) this.tabs?.open("Part");
     this.subscribe();
+  }
+
+  /** The keys of all panels that lie on a body. */
+  private keys_on(body: number): readonly Key[] {
+    return this.panels.flatMap(({ view }) => view.keys_on_body(body));
+  }
+
+  private press(keys: readonly Key[]): void {
+    for (const key of keys) {
+      const why = key.press();
+      if (why !== null) this.notice(why);
+    }
   }
 
   /** Asks for the signals that some view shows. */

@@ -22,6 +22,13 @@ export interface PanelActions {
   readonly acknowledge: () => void;
 }
 
+/** A key that lies on a part of the machine, too. */
+export interface Key {
+  readonly label: string;
+  /** Presses it; why it cannot be pressed, if so. */
+  readonly press: () => string | null;
+}
+
 /** Shows the value of a signal that has changed. */
 type Show = (value: number) => void;
 
@@ -37,6 +44,8 @@ export class PanelView {
   private isPast = false;
   private isHeld = false;
   private readonly why = make("p", { class: "why" });
+  /** The keys that lie on the machine. */
+  private readonly on_machine: { readonly element: PanelElement; readonly key: Key }[] = [];
   private readonly lines: Sparkline[] = [];
   private readonly lists: AlarmList[] = [];
   /** Presses the key that acknowledges, if this panel has one. */
@@ -107,6 +116,16 @@ export class PanelView {
     return this.press_acknowledge !== null;
   }
 
+  /** The keys that lie on a body of the machine. */
+  keys_on_body(body: number): readonly Key[] {
+    return this.on_machine.filter(({ element }) => element.bodies.includes(body)).map(({ key }) => key);
+  }
+
+  /** The keys that lie on a component, with or without a body. */
+  keys_on_component(name: string): readonly Key[] {
+    return this.on_machine.filter(({ element }) => element.components.includes(name)).map(({ key }) => key);
+  }
+
   /** The time of a picture whose values have been shown. */
   at(t_ns: number): void {
     for (const line of this.lines) line.at(t_ns / 1e9);
@@ -168,11 +187,24 @@ export class PanelView {
     cell.style.gridRow = `${element.at[1] + 1} / span ${element.span[1]}`;
     if (element.colour !== null) cell.style.setProperty("--own", element.colour);
     this.fill(cell, element);
+    this.lay_on_machine(cell, element);
     for (const name of [element.signal, element.signal_y]) {
       const signal = this.number_of(name);
       if (signal !== null) this.cells.set(signal, [...(this.cells.get(signal) ?? []), cell]);
     }
     return cell;
+  }
+
+  /** A press of the machine is one of the key, which knows who sits here. */
+  private lay_on_machine(cell: HTMLElement, element: PanelElement): void {
+    const button = cell.querySelector("button");
+    if (button === null || element.bodies.length + element.components.length === 0) return;
+    const press = (): string | null => {
+      if (button.disabled) return button.title;
+      button.click();
+      return null;
+    };
+    this.on_machine.push({ element, key: { label: element.label, press } });
   }
 
   private fill(cell: HTMLElement, element: PanelElement): void {

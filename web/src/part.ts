@@ -4,6 +4,7 @@ import { say } from "./say";
 import { button, make } from "./dom";
 import { shown } from "./format";
 import type { Ask } from "./message";
+import type { Key } from "./panels";
 import type { Component, Session } from "./session";
 import type { MachineView } from "./scene";
 
@@ -17,6 +18,9 @@ export class PartSheet {
     private readonly machine: MachineView,
     private readonly ask: (ask: Ask) => void,
     private readonly changed: () => void,
+    /** The keys that lie on a body. */
+    private readonly keys: (body: number) => readonly Key[],
+    private readonly press: (key: Key) => void,
   ) {
     this.open(null);
   }
@@ -48,6 +52,7 @@ export class PartSheet {
     const components = this.session.components.filter((one) => one.body === about.name);
     this.root.replaceChildren(
       make("h2", {}, about.name), make("p", { class: "empty" }, `${about.kind}, ${about.shape.kind}`), tools,
+      ...this.keys(body).map((key) => button(key.label, () => this.press(key), say("Presses this part, as a click on it does"))),
       ...components.flatMap((one) => this.component(one)), this.back());
   }
 

@@ -24,6 +24,8 @@ const CHOSEN = new Color("#1f6fbf");
 
 /** Machines with more bodies are drawn without smooth edges. */
 const SMOOTH_BODIES = 100;
+/** How often it is looked at what lies under the pointer, ms. */
+const LOOKS_MS = 50;
 /** After a picture of the session, bodies are on their way for so long, ms. */
 const MOVES_MS = 600;
 /** Nothing has moved for so long in what rests, ms. */
@@ -100,7 +102,7 @@ export class MachineView {
     this.advance(0);
     this.t_ns = null;
     this.floor();
-    this.listen(choose);
+    this.listen(choose, new Set(session.panels.flatMap((panel) => panel.elements.flatMap((one) => one.bodies))));
     new ResizeObserver(() => {
       this.fit();
       // Otherwise the pane is empty until the next picture.
@@ -369,13 +371,22 @@ export class MachineView {
     return drawn instanceof Single ? drawn.node : this.scene;
   }
 
-  private listen(choose: (body: number | null) => void): void {
+  /** A body of `keys` is pressed by a click, which the pointer says before. */
+  private listen(choose: (body: number | null) => void, keys: ReadonlySet<number>): void {
     const canvas = this.renderer.domElement;
     let down = { x: 0, y: 0 };
     canvas.addEventListener("pointerdown", (event) => (down = { x: event.clientX, y: event.clientY }));
     canvas.addEventListener("pointerup", (event) => {
       // A drag turns the view and chooses nothing.
       if (Math.hypot(event.clientX - down.x, event.clientY - down.y) < 4) choose(this.under(event));
+    });
+    if (keys.size === 0) return;
+    let looked_ms = 0;
+    canvas.addEventListener("pointermove", (event) => {
+      if (event.buttons !== 0 || event.timeStamp - looked_ms < LOOKS_MS) return;
+      looked_ms = event.timeStamp;
+      const body = this.under(event);
+      canvas.style.cursor = body !== null && keys.has(body) ? "pointer" : "";
     });
   }
 

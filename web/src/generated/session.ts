@@ -627,8 +627,12 @@ export interface PanelElement {
   readonly label: string;
   /** Column and row, from 0. */
   readonly at: readonly [number, number];
+  /** The bodies on which it lies, too: a click on one presses it. */
+  readonly bodies: readonly number[];
   readonly choices: readonly Choice[];
   readonly colour: string | null;
+  /** The components on which it lies. */
+  readonly components: readonly string[];
   /** The fault on the way of signals that it shows and causes, by its number. */
   readonly disturbance: number | null;
   /** The component and the mode of failure that it shows and causes. */
@@ -647,8 +651,10 @@ export function readPanelElement(field: Field): PanelElement {
     kind: readElementKind(field.at("kind")),
     label: text(field.at("label")),
     at: tuple(whole, whole)(field.at("at")),
+    bodies: list(whole)(field.at("bodies", [])),
     choices: list(readChoice)(field.at("choices", [])),
     colour: nullable(text)(field.at("colour")),
+    components: list(text)(field.at("components", [])),
     disturbance: nullable(whole)(field.at("disturbance")),
     failure: nullable(tuple(text, text))(field.at("failure")),
     max: number(field.at("max", 1.0)),

@@ -68,6 +68,7 @@ export const de = {
     "Dieses Szenario hat weder Körper noch Komponenten: Seine Signale stehen auf dem Blatt Signale, mit + kommen sie in die Verläufe.",
   "Keeps this part in the middle of the picture": "Hält diesen Teil in der Mitte des Bildes",
   "Lets the picture stay where it is": "Lässt das Bild, wo es ist",
+  "Presses this part, as a click on it does": "Drückt diesen Teil, wie es ein Klick darauf tut",
   "Shows what is behind this part": "Zeigt, was hinter diesem Teil ist",
   Follow: "Folgen",
   Stay: "Bleiben",

@@ -69,16 +69,20 @@ pub(super) fn views(scenario: &Scenario) -> Vec<View> {
     scenario.file().view.iter().map(view).collect()
 }
 
+/// What there is to be looked at in a scenario's plants.
+pub(super) fn visible(bodies: &[Body], parts: &[Part]) -> Visible {
+    Visible {
+        bodies: bodies.iter().map(|body| body.name.clone()).collect(),
+        parts: parts.iter().map(|part| (part.name.clone(), part.body.clone())).collect(),
+    }
+}
+
 /// The looks of a scenario, and its figures, which come behind the bodies of its plants.
 ///
 /// # Errors
 /// A look of something that is not there.
-pub(super) fn of(scenario: &Scenario, bodies: &mut Vec<Body>, parts: &[Part]) -> Result<Vec<Look>, ScenarioError> {
-    let visible = Visible {
-        bodies: bodies.iter().map(|body| body.name.clone()).collect(),
-        parts: parts.iter().map(|part| (part.name.clone(), part.body.clone())).collect(),
-    };
-    let seen = scenario.seen(&visible)?;
+pub(super) fn of(scenario: &Scenario, bodies: &mut Vec<Body>, visible: &Visible) -> Result<Vec<Look>, ScenarioError> {
+    let seen = scenario.seen(visible)?;
     for figure in &scenario.looks().figures {
         let on = figure.on.as_ref().and_then(|on| bodies.iter().position(|body| body.name == *on));
         bodies.push(drawn(figure, on));

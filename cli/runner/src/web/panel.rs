@@ -6,6 +6,7 @@ use std::ops::RangeFrom;
 use onescan_scenario::file::ClientFile;
 use onescan_scenario::panel_file::{ElementFile, ElementKind, PanelFile, Seat};
 use onescan_scenario::panel_picture::PanelPicture;
+use onescan_scenario::visible::{OnMachine, Visible};
 use onescan_scenario::{Scenario, ScenarioError};
 use onescan_server::signal::{ClientName, SignalDecl, SignalName, SignalType};
 use schemars::JsonSchema;
@@ -70,6 +71,14 @@ struct Element {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schemars(default)]
     choices: Vec<Choice>,
+    /// The bodies on which it lies, too: a click on one presses it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schemars(default)]
+    bodies: Vec<usize>,
+    /// The components on which it lies.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schemars(default)]
+    components: Vec<String>,
 }
 
 fn one_cell() -> [u32; 2] {
@@ -120,15 +129,15 @@ impl Panel {
 /// The panels of a scenario's page, and the pictures behind them.
 ///
 /// # Errors
-/// A picture that cannot be read; it was read before, so it has just changed.
-pub(super) fn of(scenario: &Scenario) -> Result<(Vec<Panel>, Vec<PanelPicture>), ScenarioError> {
+/// A key lies on what is not there, or a picture cannot be read; it was read before, so it has just changed.
+pub(super) fn of(scenario: &Scenario, visible: &Visible) -> Result<(Vec<Panel>, Vec<PanelPicture>), ScenarioError> {
     let laid_out = &scenario.file().panel;
     if laid_out.is_empty() {
         return Ok((pulpit(scenario).into_iter().collect(), Vec::new()));
     }
     let (mut panels, mut pictures, mut disturbances) = (Vec::new(), Vec::new(), 0..);
     for file in laid_out {
-        let mut panel = panel(file, scenario, &mut disturbances);
+        let mut panel = panel(file, (scenario, visible), &mut disturbances)?;
         if let Some(picture) = scenario.picture_behind(file)? {
             panel.picture = Some(format!("api/panel/{}", pictures.len()));
             pictures.push(picture);
@@ -139,9 +148,13 @@ pub(super) fn of(scenario: &Scenario) -> Result<(Vec<Panel>, Vec<PanelPicture>),
 }
 
 /// A panel as the scenario has it; `disturbances` numbers those of all panels.
-fn panel(file: &PanelFile, scenario: &Scenario, disturbances: &mut RangeFrom<usize>) -> Panel {
+fn panel(
+    file: &PanelFile,
+    (scenario, visible): (&Scenario, &Visible),
+    disturbances: &mut RangeFrom<usize>,
+) -> Result<Panel, ScenarioError> {
     let elements: Vec<&ElementFile> = file.element.iter().map(toml::Spanned::get_ref).collect();
-    Panel {
+    Ok(Panel {
         name: file.name.get_ref().clone(),
         seat: file.seat,
         page: file
@@ -151,8 +164,14 @@ fn panel(file: &PanelFile, scenario: &Scenario, disturbances: &mut RangeFrom<usi
         columns: file.columns,
         rows: elements.iter().map(|element| element.at[1] + element.span[1]).max().unwrap_or(1),
         picture: None,
-        elements: elements.into_iter().map(|element| laid_out(element, scenario, disturbances)).collect(),
-    }
+        elements: elements
+            .into_iter()
+            .map(|element| {
+                let OnMachine { bodies, components } = scenario.on_machine(element, visible)?;
+                Ok(Element { bodies, components, ..laid_out(element, scenario, disturbances) })
+            })
+            .collect::<Result<_, ScenarioError>>()?,
+    })
 }
 
 /// An element as the scenario has it, with the names of its signal's values as choices.
@@ -183,6 +202,8 @@ fn laid_out(file: &ElementFile, scenario: &Scenario, disturbances: &mut RangeFro
             .filter(|_| is_selector)
             .map(|signal| choices(signal.get_ref().names.pairs()))
             .unwrap_or_default(),
+        bodies: Vec::new(),
+        components: Vec::new(),
     }
 }
 
@@ -243,6 +264,8 @@ fn bare(kind: ElementKind, at: [u32; 2], span: [u32; 2]) -> Element {
         max: None,
         colour: None,
         choices: Vec::new(),
+        bodies: Vec::new(),
+        components: Vec::new(),
     }
 }
 

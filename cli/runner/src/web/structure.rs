@@ -137,12 +137,13 @@ pub(super) fn of(scenario: &Scenario, training: Option<&Training>) -> Result<(St
     }
     let (drawings, states) = drawings::of(scenario)?;
     known.states = states;
-    let looks = looks::of(scenario, &mut bodies, &components)?;
+    let visible = looks::visible(&bodies, &components);
+    let looks = looks::of(scenario, &mut bodies, &visible)?;
     known.looks = Judge::of(scenario);
     let alarms = alarms::of(scenario);
     known.alarms = alarms.len();
     known.disturbances = scenario.panel_disturbances()?;
-    let (mut panels, pictures) = panel::of(scenario)?;
+    let (mut panels, pictures) = panel::of(scenario, &visible)?;
     known.pictures = pictures;
     known.panels = panels.iter().map(|panel| (panel.name.clone(), panel.written())).collect();
     known.trainers = panels.iter().filter(|panel| panel.is_trainers()).map(|panel| panel.name.clone()).collect();

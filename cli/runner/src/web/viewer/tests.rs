@@ -24,7 +24,7 @@ kind = "operator"
 
 [[panel]]
 name = "operator"
-element = [{ kind = "button", signal = "Start", at = [0, 0] }]
+element = [{ kind = "button", signal = "Start", part = "pusher", at = [0, 0] }]
 
 [[panel]]
 name = "trainer"
@@ -192,6 +192,35 @@ fn outcome(text: &str, session: &Session, who: &Who) -> String {
     };
     session.seats.leave(viewer);
     outcome
+}
+
+/// A click on a part of the machine is a press of the key that lies on it: the page learns where that is, and what it sends
+/// is the key's message, which is for whoever operates the panel.
+#[test]
+fn a_key_on_the_machine_is_a_key_of_its_panel() {
+    let (folder, scenario) = scenario();
+    let (structure, _) = crate::web::structure::of(&scenario, None).expect("a structure");
+    let structure = serde_json::to_value(&structure).expect("JSON");
+    let key = &structure["panels"][0]["elements"][0];
+    let body = key["bodies"][0].as_u64().and_then(|number| usize::try_from(number).ok()).expect("a body");
+    assert_eq!(structure["bodies"][body]["name"], "pusher");
+    assert!(key.get("components").is_none(), "{key}");
+    let start = structure["signals"].as_array().and_then(|all| all.iter().position(|one| one["name"] == key["signal"]));
+    let write = format!(r#"{{"type":"write","signal":{},"value":1}}"#, start.expect("declared"));
+    let runtime = tokio::runtime::Builder::new_current_thread().build().expect("a runtime");
+    let outcomes = runtime.block_on(async {
+        let session = session(&scenario, Of::Session);
+        [&EVERYBODY[0], &EVERYBODY[1], &EVERYBODY[2]].map(|who| outcome(&write, &session, who))
+    });
+    assert_eq!(outcomes, ["LooksOnly", "NoSeat", "yes"]);
+    // What is not there is an error at its place.
+    let path = folder.path().join("scenario.toml");
+    let text = fs::read_to_string(&path).expect("a file").replace("part = \"pusher\"", "part = \"pushre\"");
+    fs::write(&path, text).expect("writable");
+    let scenario = Scenario::load(folder.path()).expect("a scenario");
+    let Err(error) = crate::web::structure::of(&scenario, None) else { panic!("there is no such part") };
+    let error = error.to_string();
+    assert!(error.contains("the element lies on a part `pushre`, which is not there"), "{error}");
 }
 
 #[test]
