@@ -32,15 +32,15 @@ def verdict(program, scene, other=None):
     try:
         mine = our_runs(program, scene, PARTS)
     except ours.Refused as refused:
-        return settled(scene, "refused", 1.0, str(refused))
+        return Verdict(FINDING, "refused", str(refused))
     for name, amount, limit in laws.broken(scene, mine, EVERY_US):
         if not amount <= limit:
-            return settled(scene, name, amount, f"law of {name}: broken by {amount:.3g}, allowed {limit:.3g}")
+            return settled(scene, mine, name, amount, f"law of {name}: broken by {amount:.3g}, allowed {limit:.3g}")
     truth = law_of_coulomb(scene)
     if truth:
         against = bound.compare(mine, truth, False)
         if against.differs:
-            return settled(scene, "law", against.difference, f"the closed form: {described(against)}")
+            return settled(scene, mine, "law", against.difference, f"the closed form: {described(against)}")
     try:
         against = beside(scene, mine, their_runs(other or scene, PARTS), PARTS)
         if against.differs and not truth:
@@ -52,7 +52,7 @@ def verdict(program, scene, other=None):
     if against.differs:
         if truth:
             return Verdict(APART, against.name, f"MuJoCo, and the closed form agrees with onescan: {described(against)}")
-        return settled(scene, "apart", against.difference, f"MuJoCo: {described(against)}")
+        return settled(scene, mine, "apart", against.difference, f"MuJoCo: {described(against)}")
     return Verdict(LOOSE if against.loose else EQUAL, against.name, described(against))
 
 
@@ -75,18 +75,15 @@ def beside(scene, mine, yours, parts):
     return bound.compare(mine, yours, scenes.is_smooth(scene), factor, gives_s)
 
 
-def settled(scene, what, amount, text):
+def settled(scene, mine, what, amount, text):
     """A difference: known, with its reason, or a finding."""
-    row = known.row(scene, what, amount)
+    row = known.row(scene, mine, what, amount)
     return Verdict(KNOWN, what, text, row.name) if row else Verdict(FINDING, what, text)
 
 
 def law_of_coulomb(scene):
-    """The closed form where there is one, as runs at three steps."""
-    found = coulomb.path(scene, EVERY_US)
-    if found:
-        return found
-    run = layers.path(scene, EVERY_US) or closed.path(scene, EVERY_US)
+    """The closed form where there is one, as three runs that are one."""
+    run = coulomb.path(scene, EVERY_US) or layers.path(scene, EVERY_US) or closed.path(scene, EVERY_US)
     return run and [run] * 3
 
 
