@@ -15,13 +15,13 @@ import space
 STEP_S = 1e-4
 
 
-def path(scene, every_us):
-    """Positions of the one moving body at all samples; None where this law does not apply."""
+def path(scene, every_us, late_s=0.0):
+    """Positions of the one moving body at all samples; None where this law does not apply. What falls lands so much later."""
     moving = [one for one in scene["bodies"] if one["kind"] == "dynamic"]
     under = [one for one in scene["bodies"] if one["kind"] == "fixed"]
     if len(moving) != 1 or len(under) != 1 or scene["joints"] or len(scenes.touching(scene)) != 1:
         return None
-    fine, coarse = (integrated(scene, moving[0], under[0], every_us, step) for step in (STEP_S, 2 * STEP_S))
+    fine, coarse = (integrated(scene, moving[0], under[0], every_us, step, late_s) for step in (STEP_S, 2 * STEP_S))
     best = 2 * fine - coarse
     return {f"{moving[0]['name']}.p0.{axis}": best[:, number] for number, axis in enumerate("xyz")}
 
@@ -41,7 +41,7 @@ def inertia_share(body):
     return (barrel + caps) / (barrel / 2 + caps * 2 / 5)
 
 
-def integrated(scene, body, under, every_us, step):
+def integrated(scene, body, under, every_us, step, late_s):
     turn = space.rotation(under["rpy_deg"])
     top = np.array(under["position_m"]) + turn @ [0, 0, under["size_m"][2] / 2]
     gravity = turn.T @ np.array(scene["gravity_m_s2"])
@@ -50,6 +50,7 @@ def integrated(scene, body, under, every_us, step):
     belt = next(iter(scene["belts"]), None)
     contact = Contact(scenes.touching(scene)[0][2], inertia_share(body), belt and turn.T @ np.array(belt["direction"]), belt)
     lands = landing(height - place[2], velocity[2], gravity[2])
+    lands += late_s if lands else 0.0
     rolled, began, now, found = np.zeros(3), (place, velocity), 0.0, []
     for sample in range(scene["until_ms"] * 1000 // every_us + 1):
         time = sample * every_us * 1e-6

@@ -116,7 +116,10 @@ def simpler_bodies(scene):
     for place, one in enumerate(scene["bodies"]):
         for keys in simpler_body(one, in_touch):
             made = scenes.changed(scene)
-            made["bodies"][place].update(keys)
+            # what is joined goes on with one velocity, or its joint would be torn
+            together = made["bodies"] if "velocity_m_s" in keys and scene["joints"] else [made["bodies"][place]]
+            for body in together:
+                body.update(keys)
             yield made
 
 
