@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::plc::Plc;
-use crate::typed::{Said, copied, digests, typed, utf8};
+use crate::typed::{Said, copied, digests, scenario, typed, utf8};
 
 /// The plants, with the PLCs of each.
 const PLANTS: [(&str, [&str; 2]); 2] =
@@ -15,30 +15,17 @@ fn digest(folder: &Path, words: &[&str]) -> (String, Said) {
     (digests(&reports).remove(0), said)
 }
 
-/// A copy of a scenario whose PLCs can be started over their links.
-fn prepared(name: &str, plcs: &[&str]) -> tempfile::TempDir {
-    let folder = copied(name);
-    let path = folder.path().join("scenario.toml");
-    let text = std::fs::read_to_string(&path).unwrap();
-    let bare = plcs.iter().filter(|plc| !text.contains(&format!("[clients.{plc}.gateway]")));
-    let links =
-        bare.map(|plc| format!("\n[clients.{plc}.gateway]\nurl = \"s7://127.0.0.1:102\"\nsystem_words = true\n"));
-    let text = text.clone() + &links.collect::<String>();
-    std::fs::write(&path, text).unwrap();
-    folder
-}
-
 /// Charts and networks in PLCopen XML beside text, text alone, and SCL: each in a process of its own, over S7.
 #[test]
 fn both_plcs_are_real_and_the_digest_is_that_in_one_process() {
     for (name, plcs) in PLANTS {
-        let folder = prepared(name, &plcs);
-        let started = plcs.map(|plc| Plc::start(folder.path(), &["--client", plc, "--s7", "127.0.0.1:0"]));
+        let folder = scenario(name);
+        let started = plcs.map(|plc| Plc::start(&folder, &["--client", plc, "--s7", "127.0.0.1:0"]));
         let gateways: Vec<String> =
             plcs.iter().zip(&started).map(|(plc, real)| real.gateway_of(plc, "s7://")).collect();
         let words: Vec<&str> = gateways.iter().flat_map(|gateway| ["--gateway", gateway]).collect();
-        let (real, said) = digest(folder.path(), &words);
-        assert_eq!(real, digest(folder.path(), &[]).0, "{name}: {said:?}");
+        let (real, said) = digest(&folder, &words);
+        assert_eq!(real, digest(&folder, &[]).0, "{name}: {said:?}");
     }
 }
 
