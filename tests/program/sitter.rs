@@ -32,6 +32,7 @@ pub(crate) struct Sitter {
     texts: Vec<Value>,
     /// The newest status; it comes when it has changed.
     pub(crate) status: Value,
+    /// The connection has ended. An attempt of a lesson may be over and the next one not have begun.
     is_over: bool,
     /// How many values were written.
     pub(crate) written: usize,
@@ -95,7 +96,6 @@ impl Sitter {
             Ok(Message::Binary(bytes)) => self.see(&bytes),
             Ok(Message::Text(text)) => {
                 let received: Value = serde_json::from_str(&text).expect("JSON");
-                self.is_over |= received["type"] == "event" && received["kind"] == "end";
                 if received["type"] == "status" {
                     self.status.clone_from(&received);
                 }
