@@ -72,13 +72,15 @@ pub struct Gateway {
     patience: Patience,
     to_plc: Vec<u8>,
     from_plc: Vec<u8>,
+    /// Whether the PLC has said something over this connection: that is in `from_plc`.
+    heard: bool,
 }
 
 impl Gateway {
     /// A client that speaks over `link` for the PLC, whose points are those of `exchange`.
     pub fn new(request: JoinRequest, exchange: Exchange, link: Box<dyn Link>, patience: Patience) -> Self {
         let (to_plc, from_plc) = (vec![0; exchange.size(Direction::ToPlc)], vec![0; exchange.size(Direction::FromPlc)]);
-        Self { request, exchange, link, handshake: Handshake::new(), patience, to_plc, from_plc }
+        Self { request, exchange, link, handshake: Handshake::new(), patience, to_plc, from_plc, heard: false }
     }
 
     /// The same for a PLC whose program must have been made for the mapping with this number.
@@ -103,7 +105,10 @@ impl Gateway {
         loop {
             let result = match self.handshake.ask() {
                 Ask::Nothing => return Ok(()),
-                Ask::Connect => self.link.connect().map(|()| self.handshake.connected()),
+                Ask::Connect => {
+                    self.heard = false;
+                    self.link.connect().map(|()| self.handshake.connected())
+                }
                 Ask::Write(order) => {
                     self.exchange.put(&order, &mut self.to_plc);
                     self.link.write(&self.to_plc).map(|()| {
@@ -142,6 +147,7 @@ impl Gateway {
             Ok(true) => {
                 // What the outage took is not the PLC's to answer for.
                 wait.deadline += wait.lost.take().map_or(Duration::ZERO, |since| since.elapsed());
+                self.heard = true;
                 self.handshake.look(self.exchange.report(&self.from_plc))?;
             }
             Ok(false) if wait.lost.is_some_and(|since| since.elapsed() > self.patience.reconnect) => {
@@ -152,6 +158,10 @@ impl Gateway {
         }
         if wait.written.elapsed() > AGAIN {
             wait.written = Instant::now();
+            // A PLC that sends its block when that has changed says nothing while it stands: what it said last is so.
+            if self.heard && !self.link.is_polled() {
+                self.handshake.look(self.exchange.report(&self.from_plc))?;
+            }
             self.handshake.quiet()?;
         }
         if self.link.is_polled() && self.handshake.ask() == Ask::Read {
