@@ -13,7 +13,7 @@ pub type Holds = Box<dyn Fn(&ImageLayout, &[u8]) -> bool>;
 
 /// What must hold before the first step.
 pub struct StartLogic {
-    /// In words.
+    /// The formula as it is written, for messages.
     pub what: String,
     pub holds: Holds,
     /// Whether anybody may come and make it hold.

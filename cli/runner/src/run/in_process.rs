@@ -28,7 +28,7 @@ pub(crate) fn in_process(
 /// The same with clients that are here already, which `here` gives.
 ///
 /// # Errors
-/// As above.
+/// As those of [`in_process`]; and a client that is here is refused.
 pub(crate) fn with_clients(
     scenario: &Scenario,
     until: VirtualTime,

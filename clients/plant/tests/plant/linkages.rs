@@ -4,7 +4,7 @@ use onescan_server::client::Client;
 
 use crate::bench::Bench;
 use crate::four_bar::{FourBar, within_half_a_turn};
-use crate::mechanism::{THICK_M, bar, pin};
+use crate::mechanism::{THICK_M, bar, parallelogram, pin};
 
 /// A linkage whose crank goes all the way round.
 const LINKAGE: FourBar = FourBar { crank_m: 0.3, coupler_m: 0.9, rocker_m: 0.6, apart_m: 1.0, start_rad: 1.0 };
@@ -94,15 +94,11 @@ fn a_spring_in_a_loop_keeps_its_energy_beside_a_brake_that_is_released() {
 #[test]
 fn a_linkage_with_friction_at_each_pin_speeds_up_as_its_closed_form_says() {
     // two equal cranks carry a beam that stays level: all pins turn as fast as the cranks
-    let [a, b, c, d] = [[0.0, 0.0], [0.0, 0.5], [1.0, 0.5], [1.0, 0.0]];
-    let bars = bar("crank", a, b, 1.0) + &bar("beam", b, c, 2.0) + &bar("rocker", d, c, 1.0);
-    let pins = pin("drive", "ground", "crank", a) + &pin("left", "crank", "beam", b);
-    let pins = pins + &pin("right", "beam", "rocker", c) + &pin("foot", "ground", "rocker", d);
     let rub = |name: &str, more: &str| {
         format!("[[fitting]]\nname = \"rub_{name}\"\njoint = \"{name}\"\nfriction_nm = 0.1\n{more}")
     };
     let fittings = rub("drive", "balance_nm = 1.2\n") + &rub("left", "") + &rub("right", "") + &rub("foot", "");
-    let scene = format!("version = 1\ngravity_m_s2 = [0, 0, 0]\n{bars}{pins}{fittings}");
+    let scene = format!("version = 1\ngravity_m_s2 = [0, 0, 0]\n{}{fittings}", parallelogram(1.0));
     // each crank about its pin, and the beam, which only slides
     let inertia = 2.0 * (1.0 / 12.0 * (0.25 + THICK_M * THICK_M) + 0.25 * 0.25) + 2.0 * 0.25;
     let wanted_rad = 0.5 * (1.2 - 4.0 * 0.1) / inertia;

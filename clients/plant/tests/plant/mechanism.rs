@@ -138,15 +138,20 @@ pub(crate) fn pin(name: &str, parent: &str, child: &str, [x, z]: [f64; 2]) -> St
     )
 }
 
+/// Two equal cranks of 0.5 m and so many kg, upright 1 m apart, that carry a coupler of twice that mass.
+pub(crate) fn parallelogram(crank_kg: f64) -> String {
+    let [a, b, c, d] = [[0.0, 0.0], [0.0, 0.5], [1.0, 0.5], [1.0, 0.0]];
+    let bars = bar("crank", a, b, crank_kg) + &bar("coupler", b, c, 2.0 * crank_kg) + &bar("rocker", d, c, crank_kg);
+    let pins = pin("drive", "ground", "crank", a) + &pin("left", "crank", "coupler", b);
+    bars + &pins + &pin("right", "coupler", "rocker", c) + &pin("foot", "ground", "rocker", d)
+}
+
 #[test]
 fn a_position_drive_of_a_closed_loop_rests_on_its_target() {
-    let [a, b, c, d] = [[0.0, 0.0], [0.0, 0.5], [1.0, 0.5], [1.0, 0.0]];
-    let bars = bar("crank", a, b, 2.0) + &bar("coupler", b, c, 4.0) + &bar("rocker", d, c, 2.0);
-    let pins = pin("drive", "ground", "crank", a) + &pin("left", "crank", "coupler", b);
-    let pins = pins + &pin("right", "coupler", "rocker", c) + &pin("foot", "ground", "rocker", d);
     let scene = format!(
-        "version = 1\n{bars}{pins}[[axis]]\nname = \"drive\"\njoint = \"drive\"\ndrive = \"position\"\n\
-         command_signal = \"To\"\nposition_signal = \"Is\"\nspeed_rad_s = 1.0\nacceleration_rad_s2 = 4.0\n"
+        "version = 1\n{}[[axis]]\nname = \"drive\"\njoint = \"drive\"\ndrive = \"position\"\n\
+         command_signal = \"To\"\nposition_signal = \"Is\"\nspeed_rad_s = 1.0\nacceleration_rad_s2 = 4.0\n",
+        parallelogram(2.0)
     );
     for period_us in [100, 1_000, 10_000] {
         let mut bench = Bench::at_us(&scene, period_us);

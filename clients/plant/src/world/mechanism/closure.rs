@@ -90,17 +90,11 @@ pub(super) struct Basis {
 impl Basis {
     /// The directions of all loops of a tree, from equations that are evaluated and factored.
     pub(super) fn find(&mut self, tree: &Tree, equations: &Equations, gravity: Vector) {
-        self.find_beside([].iter(), tree, equations, gravity);
+        self.find_beside(&[], tree, equations, gravity);
     }
 
     /// The same with axes that are held, each with the velocity that it keeps.
-    fn find_beside<'a>(
-        &mut self,
-        held: impl Iterator<Item = &'a (usize, f64)>,
-        tree: &Tree,
-        equations: &Equations,
-        gravity: Vector,
-    ) {
+    fn find_beside(&mut self, held: &[(usize, f64)], tree: &Tree, equations: &Equations, gravity: Vector) {
         self.directions.clear();
         (self.open, self.stuck) = (0.0, 0.0);
         for (axis, rate) in held {
@@ -331,7 +325,7 @@ impl Mechanism {
                 return false;
             }
             let Self { lumps, moving, now, room, basis, .. } = self;
-            basis.find_beside(held.iter(), lumps, moving, gravity);
+            basis.find_beside(held, lumps, moving, gravity);
             if basis.open <= CLOSED {
                 break;
             }

@@ -52,16 +52,13 @@ impl Mechanism {
             Acts::Along(_) => PART_S,
         });
         let longest_s = longest.fold(PART_S, f64::min);
-        let before = self.energy(around);
-        let start = before.map(|_| self.now.clone());
+        let before = if own.is_empty() { self.energy(around) } else { None };
+        self.room.start.clone_from(&self.now);
         let mut cut = self.longest_part_s();
         let mut moved = self.parts(dt_s, [cut, longest_s], &own, around);
         let finest_s = cut / FINER;
-        while let Some(start) = start.as_ref().filter(|_| moved && cut > finest_s) {
-            if !self.has_gained(before, dt_s, around) {
-                break;
-            }
-            self.now.clone_from(start);
+        while moved && cut > finest_s && self.has_gained(before, dt_s, around) {
+            self.now.clone_from(&self.room.start);
             cut *= 0.5;
             moved = self.parts(dt_s, [cut, longest_s], &own, around);
         }
@@ -82,7 +79,7 @@ impl Mechanism {
     ) -> bool {
         let (count, part_s) = substeps(dt_s, longest_part_s);
         let (finer, finer_s) = substeps(part_s, longest_s);
-        let led = self.led(around.actuators);
+        let led = led(own, around.actuators);
         for index in 0..count {
             let before = if self.has_loops() && !led.is_empty() { Some(self.now.q.clone()) } else { None };
             if !self.prepare(part_s, around) {
@@ -134,10 +131,7 @@ impl Mechanism {
     pub(super) fn held(&self, led: &[usize], fittings: &[Fitting]) -> Vec<usize> {
         let stopped = |axis: &usize| {
             let (position, joint) = self.axes[*axis];
-            joint.is_some_and(|joint| {
-                let [lower, upper] = [fittings[joint].lower, fittings[joint].upper];
-                self.now.q[position] <= lower || self.now.q[position] >= upper
-            })
+            joint.is_some_and(|joint| fittings[joint].stops(self.now.q[position]))
         };
         if !self.has_loops() {
             return Vec::new();
@@ -155,12 +149,6 @@ impl Mechanism {
             self.now.q = before;
             self.now.v.fill(0.0);
         }
-    }
-
-    /// Its axes that go along paths.
-    pub(super) fn led(&self, actuators: &[Actuator]) -> Vec<usize> {
-        let own = self.own_actuators(actuators).into_iter();
-        own.filter(|(_, index)| matches!(actuators[*index].acts, Acts::Along(_))).map(|(axis, _)| axis).collect()
     }
 
     /// The longest part of a step: one in which nothing turns far, where what turns moves what hangs on it, too, and is
@@ -396,6 +384,11 @@ impl Mechanism {
         }
         normalise(lumps, &mut now.q);
     }
+}
+
+/// Of the axes that have actuators, and these, the axes that go along paths.
+pub(super) fn led(own: &[(usize, usize)], actuators: &[Actuator]) -> Vec<usize> {
+    own.iter().filter(|(_, index)| matches!(actuators[*index].acts, Acts::Along(_))).map(|(axis, _)| *axis).collect()
 }
 
 /// Takes coordinates back to the stops that they went beyond. Their velocity is left to the row of the stop, which shows it to

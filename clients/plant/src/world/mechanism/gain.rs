@@ -26,9 +26,9 @@ impl Energy {
 }
 
 impl Mechanism {
-    /// Its energy, if its masses are others in each pose and no actuator gives it any.
+    /// The energy of one that no actuator moves, if its masses are others in each pose.
     pub(super) fn energy(&mut self, around: &Surroundings<'_>) -> Option<Energy> {
-        if !self.lumps.turns() || !self.own_actuators(around.actuators).is_empty() {
+        if !self.lumps.turns() {
             return None;
         }
         let (kinetic, height, weight) = self.moving.energy(&self.lumps, [&self.now.q, &self.now.v], around.gravity);

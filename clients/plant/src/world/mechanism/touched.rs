@@ -6,7 +6,7 @@
 use nalgebra::{DVectorView, DVectorViewMut, Vector3};
 use rapier3d::prelude::*;
 
-use super::driven::keep_within;
+use super::driven::{keep_within, led};
 use super::rows::Row;
 use super::{Mechanism, Surroundings};
 use crate::effort::Motion;
@@ -139,7 +139,7 @@ impl Mechanism {
         self.travel(dt_s);
         self.now.v.copy_from_slice(velocities);
         keep_within(&mut self.now, &self.axes, around.fittings);
-        let held = self.held(&self.led(around.actuators), around.fittings);
+        let held = self.held(&led(&self.own_actuators(around.actuators), around.actuators), around.fittings);
         self.close(around.gravity, &held);
     }
 }
