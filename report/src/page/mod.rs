@@ -27,6 +27,8 @@ pub struct Page {
     pub title: String,
     /// What came of it, in a line.
     pub totals: String,
+    /// What there is to say of all together, as which cause made which tests fail, a line each.
+    pub summary: Vec<String>,
     /// How long it all took; empty if that is not known.
     pub wall: String,
     pub sections: Vec<Section>,
@@ -47,11 +49,13 @@ pub struct ChartScript {
 impl Page {
     /// The page as HTML.
     pub fn to_html(&self) -> String {
-        let Self { title, totals, wall, sections, coverage, charts } = self;
+        let Self { title, totals, summary, wall, sections, coverage, charts } = self;
         let has_data = sections.iter().flat_map(|section| &section.pictures).any(|picture| picture.chart.is_some());
         let charts = charts.filter(|_| has_data);
         let script = charts.map(|charts| printable(charts.script));
         let policy = policy(script.as_deref());
+        let moods = |wanted: fn(Mood) -> bool| sections.iter().any(|section| wanted(section.mood));
+        let can_choose = moods(|mood| mood == Mood::Bad) && moods(|mood| mood != Mood::Bad);
         let made = format!("onescan {} {wall}", env!("CARGO_PKG_VERSION"));
         let page = html! {
             (DOCTYPE) (LINE)
@@ -68,6 +72,10 @@ impl Page {
                 body { (LINE)
                     header { h1 { (title) } (LINE)
                         p { (totals) } (LINE)
+                        @if !summary.is_empty() {
+                            ul class="summary" { @for line in summary { li { (line) } (LINE) } } (LINE)
+                        }
+                        @if can_choose { (only_bad()) (LINE) }
                         p class="made" { (made) }
                     } (LINE)
                     main { (LINE)
@@ -104,13 +112,20 @@ fn base64(bytes: &[u8]) -> String {
     text
 }
 
+/// A box that hides all that is as it should be; styles do it, as the page may run no script.
+fn only_bad() -> Markup {
+    html! {
+        p class="choice" { label { input type="checkbox" id="only-bad"; " only what is to be looked at" } }
+    }
+}
+
 /// A line for each section.
 fn contents(sections: &[Section]) -> Markup {
     html! {
         table class="contents" {
             thead { tr { th { "test" } th { "result" } th { "virtual time" } th { "steps" } } } (LINE)
             @for (index, section) in sections.iter().enumerate() {
-                tr {
+                tr class=(section.mood.of()) {
                     td { a href=(format!("#t{index}")) { (section.title) } }
                     td class=(section.mood.class()) { (section.status) }
                     td { (section.virtual_time) }

@@ -90,6 +90,11 @@ impl Mood {
             Self::Bad => "bad",
         }
     }
+
+    /// The class of a whole row or section, by which some are hidden.
+    pub(super) fn of(self) -> &'static str {
+        if self == Self::Bad { "of-bad" } else { "of-good" }
+    }
 }
 
 impl From<Verdict> for Mood {
@@ -128,7 +133,7 @@ pub struct Event {
 impl Section {
     pub(super) fn markup(&self, index: usize) -> Markup {
         html! {
-            section id=(format!("t{index}")) {
+            section id=(format!("t{index}")) class=(self.mood.of()) {
                 h2 { (self.title) " " span class=(self.mood.class()) { (self.status) } } (LINE)
                 @if !self.lines.is_empty() { pre { (self.lines.join("\n")) } (LINE) }
                 table {
@@ -154,16 +159,19 @@ fn expectations(all: &[Shown]) -> Markup {
             shown.values.iter().map(|(signal, value)| format!("{signal} = {}", short(*value))).collect();
         values.join(", ")
     };
+    // Where all are met, nothing was seen at a time.
+    let has_times = all.iter().any(|shown| !shown.at.is_empty() || !shown.values.is_empty());
     html! {
         h3 { "expectations" } (LINE)
         table {
-            thead { tr { th { "name" } th { "verdict" } th { "at" } th { "signals" } th { "margin" } } } (LINE)
+            thead { tr {
+                th { "name" } th { "verdict" } @if has_times { th { "at" } th { "signals" } } th { "margin" }
+            } } (LINE)
             @for shown in all {
                 tr {
                     td { (shown.name) }
                     td class=(Mood::from(shown.verdict).class()) { (shown.verdict.word()) }
-                    td { (shown.at) }
-                    td class="value" { (values(shown)) }
+                    @if has_times { td { (shown.at) } td class="value" { (values(shown)) } }
                     td { (margin(shown)) }
                 } (LINE)
             }

@@ -29,7 +29,7 @@ const STEPS: usize = 6;
 pub fn explain(config: &TestConfig, units: &[Unit], outcomes: &mut [Outcome]) -> Result<(), TestError> {
     let mut references = References::new(config.against.clone());
     let mut explained: BTreeMap<String, usize> = BTreeMap::new();
-    for outcome in outcomes {
+    for outcome in outcomes.iter_mut() {
         let is_other = matches!(outcome.status, Status::Changed | Status::Failed | Status::Fault);
         let unit = units.iter().find_map(|unit| match unit {
             Unit::Case(case) if unit.suite() == outcome.suite && case.place.case == outcome.name => Some(case),
@@ -43,7 +43,24 @@ pub fn explain(config: &TestConfig, units: &[Unit], outcomes: &mut [Outcome]) ->
         *count += 1;
         outcome.cause = cause(unit, outcome, &mut references)?;
     }
+    name_alike(outcomes);
     Ok(())
+}
+
+/// Names the first test with the same cause in all others that have it.
+fn name_alike(outcomes: &mut [Outcome]) {
+    let first_of: Vec<Option<usize>> = outcomes
+        .iter()
+        .map(|outcome| {
+            let root = outcome.cause.as_ref()?.root();
+            outcomes.iter().position(|other| other.cause.as_ref().is_some_and(|cause| cause.root() == root))
+        })
+        .collect();
+    for (index, first) in first_of.into_iter().enumerate() {
+        if let Some(first) = first.filter(|first| *first != index) {
+            outcomes[index].cause_as_of = Some(outcomes[first].full_name());
+        }
+    }
 }
 
 fn cause(unit: &CaseUnit, outcome: &Outcome, references: &mut References) -> Result<Option<Cause>, TestError> {
@@ -62,11 +79,11 @@ fn cause(unit: &CaseUnit, outcome: &Outcome, references: &mut References) -> Res
         why = why::explain(sides.each_ref(), &signals, end)?;
     }
     let Some(why) = why else { return Ok(None) };
-    let lines = lines(&why, &commit);
+    let (lines, root) = lines(&why, &commit);
     let folder = shown(unit.place.folder());
     let place = why.root().and_then(|root| root.at[1].as_ref().or(root.at[0].as_ref()));
     let place = place.map(|place| SourcePlace { file: within(&folder, &place.file), line: place.line, column: 1 });
-    Ok(Some(Cause { commit, place, lines, why: why::report::json(&why) }))
+    Ok(Some(Cause { commit, place, lines, why: why::report::json(&why), root }))
 }
 
 /// The signals that differ, and the time of the first difference or violation, if there is one.
@@ -81,8 +98,8 @@ fn asked(outcome: &Outcome) -> (Vec<SignalName>, Option<VirtualTime>) {
     (signals, first.map(VirtualTime::from_nanos))
 }
 
-/// The way back in short: where the runs part, then how it comes to the signal.
-fn lines(why: &Why, commit: &str) -> Vec<String> {
+/// The way back in short: where the runs part, in so many lines, then how it comes to the signal.
+fn lines(why: &Why, commit: &str) -> (Vec<String>, usize) {
     let runs = Runs::since(commit);
     let mut lines = Vec::new();
     if let Some(root) = why.root() {
@@ -91,6 +108,7 @@ fn lines(why: &Why, commit: &str) -> Vec<String> {
             .extend(root.at.iter().zip(&runs.names).filter_map(|(place, name)| Some(statement(name, place.as_ref()?))));
         lines.push(format!("  {}", reason(root, &runs)));
     }
+    let root = lines.len();
     let rest = why.links.iter().rev().skip(1);
     lines.extend(rest.clone().take(STEPS).map(|record| {
         let place = record.at[1].as_ref().or(record.at[0].as_ref());
@@ -100,7 +118,7 @@ fn lines(why: &Why, commit: &str) -> Vec<String> {
     if let Some(more @ 1..) = rest.count().checked_sub(STEPS) {
         lines.push(format!("  ... and {more} more: see `onescan diff`"));
     }
-    lines
+    (lines, root)
 }
 
 fn statement(name: &str, Place { file, line, unit, text }: &Place) -> String {

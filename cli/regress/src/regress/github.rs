@@ -9,7 +9,7 @@ use onescan_report::FileError;
 use onescan_server::client::SourcePlace;
 
 use super::outcome::{Outcome, Report};
-use super::summary::{details, next, slowest, totals};
+use super::summary::{causes, details, next, slowest, totals};
 
 /// GitHub cuts the page of a job at 1 MiB: so many failures are shown in full.
 const IN_FULL: usize = 50;
@@ -18,7 +18,7 @@ const IN_FULL: usize = 50;
 pub fn annotations(report: &Report) -> String {
     let mut text = String::new();
     for outcome in report.outcomes.iter().filter(|outcome| outcome.status.is_bad()) {
-        let title = name(outcome);
+        let title = outcome.full_name();
         for (place, message) in marks(outcome) {
             let place =
                 place.map(|place| format!("file={},line={},col={},", property(&place.file), place.line, place.column));
@@ -30,10 +30,6 @@ pub fn annotations(report: &Report) -> String {
     text
 }
 
-fn name(outcome: &Outcome) -> String {
-    format!("{}/{}", outcome.suite, outcome.name).trim_end_matches('/').to_owned()
-}
-
 /// What went wrong in a test, each with where; at least one.
 fn marks(outcome: &Outcome) -> Vec<(Option<&SourcePlace>, String)> {
     let mut marks: Vec<(Option<&SourcePlace>, String)> = Vec::new();
@@ -41,7 +37,8 @@ fn marks(outcome: &Outcome) -> Vec<(Option<&SourcePlace>, String)> {
         marks.push((outcome.place.as_ref(), error.clone()));
     }
     marks.extend(outcome.asserts.iter().map(|failed| (Some(&failed.place), failed.text.clone())));
-    if let Some(cause) = &outcome.cause {
+    // A cause of several tests is marked once.
+    if let Some(cause) = outcome.cause.as_ref().filter(|_| outcome.cause_as_of.is_none()) {
         marks.push((cause.place.as_ref(), cause.lines.join("\n")));
     }
     if marks.is_empty() {
@@ -65,18 +62,25 @@ fn property(text: &str) -> String {
 pub fn markdown(report: &Report) -> String {
     let mut text = format!("### onescan: {}\n\n", totals(report));
     let bad: Vec<&Outcome> = report.outcomes.iter().filter(|outcome| outcome.status.is_bad()).collect();
+    for line in causes(report) {
+        writeln!(text, "- {}", html(&line)).expect("a string takes all");
+    }
     if !bad.is_empty() {
-        text.push_str("| | test | what is wrong |\n|---|---|---|\n");
+        text.push_str("\n| | test | what is wrong |\n|---|---|---|\n");
     }
     for outcome in &bad {
         let first = details(outcome).into_iter().next().unwrap_or_default();
-        writeln!(text, "| {} | {} | {} |", outcome.status.word(), cell(&name(outcome)), cell(&first))
+        writeln!(text, "| {} | {} | {} |", outcome.status.word(), cell(&outcome.full_name()), cell(&first))
             .expect("a string takes all");
     }
     for outcome in bad.iter().take(IN_FULL) {
         let lines = details(outcome).join("\n").replace("```", "'''");
-        write!(text, "\n<details><summary>{}</summary>\n\n```text\n{lines}\n```\n\n</details>\n", html(&name(outcome)))
-            .expect("a string takes all");
+        write!(
+            text,
+            "\n<details><summary>{}</summary>\n\n```text\n{lines}\n```\n\n</details>\n",
+            html(&outcome.full_name())
+        )
+        .expect("a string takes all");
     }
     if let Some(more @ 1..) = bad.len().checked_sub(IN_FULL) {
         writeln!(text, "\n{more} more in the log of the job.").expect("a string takes all");

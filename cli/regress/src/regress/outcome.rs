@@ -11,6 +11,7 @@ use super::error::TestError;
 use super::plan::{CaseUnit, Unit, shown};
 use super::ran::{FailedAssert, Ran, Shown, Worked, within};
 use crate::snapshot::overlay::overlay;
+use crate::snapshot::store::{Merge, Reviewed};
 use crate::snapshot::{Difference, Snapshot, compare};
 use onescan_runner::error::ExitCode;
 use onescan_runner::run::RunStatus;
@@ -28,6 +29,16 @@ pub struct Cause {
     pub lines: Vec<String>,
     /// The way back, as `onescan diff --format json` has it.
     pub why: serde_json::Value,
+    /// So many of the lines are of the statement in which the runs part; the others are of the way from there.
+    #[serde(skip)]
+    pub root: usize,
+}
+
+impl Cause {
+    /// What two tests have in common whose runs part in the same statement.
+    pub fn root(&self) -> (&str, &[String]) {
+        (&self.commit, self.lines.get(..self.root).unwrap_or(&self.lines))
+    }
 }
 
 /// How a test ended.
@@ -124,6 +135,9 @@ pub struct Outcome {
     /// Why it is not what was reviewed, if the reviewed program is known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cause: Option<Cause>,
+    /// The first test of all whose run parts in the same statement, if that is another one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cause_as_of: Option<String>,
     /// What went wrong, in words.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<String>,
@@ -137,6 +151,13 @@ pub struct Outcome {
     pub wall_time: Option<Duration>,
     #[serde(skip)]
     pub shown: Picture,
+}
+
+impl Outcome {
+    /// Its name among those of all suites.
+    pub fn full_name(&self) -> String {
+        format!("{}/{}", self.suite, self.name).trim_end_matches('/').to_owned()
+    }
 }
 
 /// What only the page shows.
@@ -232,6 +253,7 @@ fn outcome(suite: &str, ran: &Ran, folder: &str, status: Status) -> Outcome {
         asserts_made: None,
         notes: ran.notes.clone(),
         cause: None,
+        cause_as_of: None,
         error: ran.error.clone(),
         place: ran.place.as_ref().map(found),
         step_ns: ran.step_ns,
@@ -267,8 +289,10 @@ fn case(config: &TestConfig, unit: &CaseUnit, suite: &str, ran: &Ran) -> Result<
         return Ok(Outcome { error, ..with(Status::Fault) });
     };
     let violated = ran.expectations.iter().any(Shown::is_violated);
-    let mut judged = match unit.place.read_reviewed() {
-        Ok(reviewed) => held_against(config, unit, reviewed.as_ref(), &taken, with)?,
+    let mut judged = match unit.place.read_merged() {
+        Ok(Reviewed::Nothing) => held_against(config, unit, None, &taken, with)?,
+        Ok(Reviewed::One(reviewed)) => held_against(config, unit, Some(&reviewed), &taken, with)?,
+        Ok(Reviewed::Undecided(merge)) => merged(config, unit, &merge, &taken, with)?,
         Err(error) => Outcome { error: Some(error.to_string()), ..with(Status::Wrong) },
     };
     if violated && judged.status != Status::Wrong {
@@ -276,6 +300,33 @@ fn case(config: &TestConfig, unit: &CaseUnit, suite: &str, ran: &Ran) -> Result<
     }
     judged.shown.snapshot = Some(taken);
     Ok(judged)
+}
+
+/// A snapshot with both sides of a merge: the run waits for a review, whichever side it is equal to.
+fn merged(
+    config: &TestConfig,
+    unit: &CaseUnit,
+    merge: &Merge,
+    taken: &Snapshot,
+    with: impl Fn(Status) -> Outcome,
+) -> Result<Outcome, TestError> {
+    let status = match config.policy {
+        Policy::Bless => {
+            unit.place.accept(taken)?;
+            Status::Blessed
+        }
+        Policy::Pending => {
+            unit.place.keep(taken)?;
+            Status::Changed
+        }
+        Policy::Check => Status::Changed,
+    };
+    let mut outcome = with(status);
+    outcome.notes.push(merge.note(taken));
+    if let Some(side) = merge.nearest(taken) {
+        outcome.differences = compare(side, taken, &unit.choice.tolerances);
+    }
+    Ok(outcome)
 }
 
 /// Compares with the reviewed snapshot, and keeps what is not equal to it.

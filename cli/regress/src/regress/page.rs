@@ -7,7 +7,7 @@ use onescan_server::time::VirtualTime;
 
 use super::outcome::{Outcome, Report, Status};
 use super::ran::Shown;
-use super::summary::{details, totals};
+use super::summary::{causes, details, totals};
 use crate::snapshot::Snapshot;
 use crate::snapshot::value::show;
 use onescan_runner::run::page::{Event, covered, statistics, timeline};
@@ -18,6 +18,7 @@ pub fn of_tests(report: &Report, coverage: &Coverage) -> Page {
     Page {
         title: "onescan test".to_owned(),
         totals: totals(report),
+        summary: causes(report),
         wall: format!("{:.1} s", report.wall_time.as_secs_f64()),
         sections: report.outcomes.iter().map(section).collect(),
         coverage: covered(coverage),

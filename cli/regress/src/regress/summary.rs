@@ -7,9 +7,10 @@ use onescan_server::time::VirtualTime;
 use serde_json::json;
 
 use super::config::{Policy, TestConfig, TestFormat};
-use super::outcome::{Outcome, Report, Status};
+use super::outcome::{Cause, Outcome, Report, Status};
 use super::plan::shown;
 use super::ran::{FailedAssert, Shown};
+use onescan_report::number::counted;
 use onescan_runner::run::coverage::share;
 
 /// So many differences of one test are shown; who has more begins with these.
@@ -35,6 +36,7 @@ pub fn write_human(config: &TestConfig, report: &Report, out: &mut dyn Write) ->
     }
     writeln!(out)?;
     writeln!(out, "{}", totals(report))?;
+    causes(report).iter().try_for_each(|line| writeln!(out, "{line}"))?;
     if let Some([lines, branches]) = report.coverage {
         // CI servers look for this line.
         writeln!(out, "lines: {}, branches: {}", share(lines), share(branches))?;
@@ -70,7 +72,7 @@ pub fn next(report: &Report) -> Vec<String> {
 pub fn slowest(report: &Report) -> Vec<String> {
     let mut timed: Vec<(Duration, String)> = Vec::new();
     for outcome in &report.outcomes {
-        timed.extend(outcome.wall_time.map(|time| (time, format!("{}/{}", outcome.suite, outcome.name))));
+        timed.extend(outcome.wall_time.map(|time| (time, outcome.full_name())));
     }
     timed.sort_by(|one, other| other.cmp(one));
     let mut lines = vec![format!("in {:.1} s", report.wall_time.as_secs_f64())];
@@ -130,7 +132,34 @@ pub fn details(outcome: &Outcome) -> Vec<String> {
     if let Some(more @ 1..) = outcome.differences.len().checked_sub(SHOWN) {
         lines.push(format!("... and {more} more signals"));
     }
-    lines.extend(outcome.cause.iter().flat_map(|cause| cause.lines.iter().cloned()));
+    match (&outcome.cause_as_of, &outcome.cause) {
+        (Some(first), _) => lines.push(format!("the same cause as {first}")),
+        (None, Some(cause)) => lines.extend(cause.lines.iter().cloned()),
+        (None, None) => {}
+    }
+    lines
+}
+
+/// Which cause made how many tests another than the reviewed one, where more than one was; a line each.
+pub fn causes(report: &Report) -> Vec<String> {
+    let traced: Vec<(&Outcome, &Cause)> =
+        report.outcomes.iter().filter_map(|outcome| Some((outcome, outcome.cause.as_ref()?))).collect();
+    let firsts = traced.iter().filter(|(outcome, _)| outcome.cause_as_of.is_none());
+    let mut lines: Vec<String> = firsts
+        .map(|(first, cause)| {
+            let count = traced.iter().filter(|(_, other)| other.root() == cause.root()).count() as u64;
+            let place = cause
+                .place
+                .as_ref()
+                .map_or_else(|| first.full_name(), |place| format!("{}:{}", place.file, place.line));
+            format!("{place} is the cause in {}", counted(count, "test"))
+        })
+        .collect();
+    let changed = report.outcomes.iter().filter(|outcome| matches!(outcome.status, Status::Changed | Status::Failed));
+    let untraced = changed.filter(|outcome| outcome.cause.is_none()).count() as u64;
+    if !lines.is_empty() && untraced > 0 {
+        lines.push(format!("{} not traced to a cause: `onescan test -f NAME` traces one", counted(untraced, "test")));
+    }
     lines
 }
 

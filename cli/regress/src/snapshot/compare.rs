@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use onescan_report::number::short;
+use onescan_report::number::{apart, short};
 use onescan_server::time::VirtualTime;
 use serde::{Deserialize, Serialize};
 
@@ -91,6 +91,7 @@ impl std::fmt::Display for Difference {
             Self::Values { signal, unit, at_ns, expected, found, differing, instants, furthest } => {
                 let unit = unit.as_ref().map(|unit| format!(" ({unit})")).unwrap_or_default();
                 let at = VirtualTime::from_nanos(*at_ns);
+                let [expected, found] = readable(expected, found);
                 write!(f, "{signal}{unit} at {at}: expected {expected}, found {found}")?;
                 if *differing > 1 {
                     write!(f, "; {differing} of {instants} instants differ")?;
@@ -103,6 +104,16 @@ impl std::fmt::Display for Difference {
                 }
             }
         }
+    }
+}
+
+/// Two values as people read them: numbers with a point have no more digits than it takes.
+fn readable(expected: &str, found: &str) -> [String; 2] {
+    // Only REAL and LREAL are written with a point or a power of ten.
+    let number = |text: &str| text.parse::<f64>().ok().filter(|_| text.contains(['.', 'e']));
+    match (number(expected), number(found)) {
+        (Some(expected), Some(found)) => apart(expected, found),
+        _ => [expected.to_owned(), found.to_owned()],
     }
 }
 

@@ -7,6 +7,7 @@
 //! | [`write`] | a snapshot as text |
 //! | [`read`] | text as a snapshot |
 //! | [`compare`] | where two differ |
+//! | [`conflict`] | the two sides of a merge that git left undecided |
 //! | [`overlay`] | a new trajectory over the reviewed one, as a picture |
 //! | [`store`] | the files: reviewed ones, pending ones |
 //!
@@ -36,6 +37,7 @@
 //! **Invariants.** What is written reads back to the bit. No text makes reading panic.
 
 pub mod compare;
+pub mod conflict;
 mod error;
 pub mod overlay;
 pub mod read;

@@ -7,6 +7,7 @@ use onescan_report::{FileError, file};
 use onescan_scenario::permission::granted;
 
 use super::Snapshot;
+use super::conflict::{self, Conflict};
 use super::error::StoreError;
 use onescan_runner::error::{Unreadable, Usage};
 
@@ -21,6 +22,48 @@ pub struct Place {
     /// The scenario's folder; its file, if that is not called as usual.
     pub scenario: PathBuf,
     pub case: String,
+}
+
+/// What was reviewed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Reviewed {
+    /// There is no snapshot.
+    Nothing,
+    One(Snapshot),
+    /// Two branches changed it, and whoever merged them left that to the review.
+    Undecided(Merge),
+}
+
+/// A snapshot with both sides of a merge.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Merge {
+    path: PathBuf,
+    /// The line of the first mark, from 1.
+    line: usize,
+    names: [String; 2],
+    /// Nothing where git put lines of both together that make no snapshot.
+    sides: [Option<Snapshot>; 2],
+}
+
+impl Merge {
+    /// The side to compare a run with: the one that is equal to it, else the first that is a snapshot.
+    pub fn nearest(&self, run: &Snapshot) -> Option<&Snapshot> {
+        let equal = self.sides.iter().flatten().find(|side| *side == run);
+        equal.or_else(|| self.sides.iter().flatten().next())
+    }
+
+    /// Where it is, and whose run it is, in words.
+    pub fn note(&self, run: &Snapshot) -> String {
+        let named = self.names.iter().zip(&self.sides);
+        let equal: Vec<&str> =
+            named.filter(|(_, side)| side.as_ref() == Some(run)).map(|(name, _)| name.as_str()).collect();
+        let whose = match equal[..] {
+            [] => "this run is that of neither side".to_owned(),
+            [one] => format!("this run is that of `{one}`"),
+            [..] => "this run is that of both sides".to_owned(),
+        };
+        format!("{}:{} holds both sides of a merge; {whose}", self.path.display(), self.line)
+    }
 }
 
 impl Place {
@@ -42,9 +85,25 @@ impl Place {
     /// The reviewed snapshot, if there is one.
     ///
     /// # Errors
-    /// It cannot be read, or is none.
+    /// It cannot be read, or is not a snapshot; also where a merge left it undecided.
     pub fn read_reviewed(&self) -> Result<Option<Snapshot>, StoreError> {
         read(&self.reviewed(), &granted().within(self.folder()))
+    }
+
+    /// The reviewed snapshot, or both sides of a merge.
+    ///
+    /// # Errors
+    /// It cannot be read, or is not a snapshot.
+    pub fn read_merged(&self) -> Result<Reviewed, StoreError> {
+        let path = self.reviewed();
+        let Some(text) = text(&path, &granted().within(self.folder()))? else { return Ok(Reviewed::Nothing) };
+        match conflict::sides(&text) {
+            Some(Conflict { line, names, sides }) => {
+                let sides = sides.map(|side| Snapshot::parse(&side).ok());
+                Ok(Reviewed::Undecided(Merge { path, line, names, sides }))
+            }
+            None => Ok(Reviewed::One(parsed(&path, &text)?)),
+        }
     }
 
     /// The pending snapshot, if there is one.
@@ -127,21 +186,33 @@ fn shelf(scenario: &Path) -> PathBuf {
 /// The snapshot in a file, if it is there.
 ///
 /// # Errors
-/// It cannot be read, or is none.
+/// It cannot be read, or is not a snapshot.
 pub fn read(path: &Path, within: &Within) -> Result<Option<Snapshot>, StoreError> {
+    text(path, within)?.map(|text| parsed(path, &text)).transpose()
+}
+
+fn text(path: &Path, within: &Within) -> Result<Option<String>, StoreError> {
     let bytes = match within.read(path, Limit::TEXT) {
         Ok(bytes) => bytes,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
         Err(source) => return Err(Unreadable { path: path.to_owned(), source }.into()),
     };
-    let help = || Some("take it back from version control, or delete it and run `onescan test` again".to_owned());
-    let Ok(text) = String::from_utf8(bytes) else {
-        return Err(Usage::new(format!("{} is not a snapshot: it is not text", path.display()), help()).into());
-    };
-    match Snapshot::parse(&text) {
-        Ok(snapshot) => Ok(Some(snapshot)),
-        Err(error) => Err(Usage::new(format!("{}: {error}", path.display()), help()).into()),
+    let not_text = |_| Usage::new(format!("{} is not a snapshot: it is not text", path.display()), Some(help()));
+    Ok(Some(String::from_utf8(bytes).map_err(not_text)?))
+}
+
+fn parsed(path: &Path, text: &str) -> Result<Snapshot, StoreError> {
+    if let Some(Conflict { line, .. }) = conflict::sides(text) {
+        let help = "type `onescan test`, then `onescan review`: it shows the run beside the sides, and writes the one you accept";
+        let what = format!("{}:{line} holds both sides of a merge", path.display());
+        return Err(Usage::new(what, Some(help.to_owned())).into());
     }
+    Snapshot::parse(text).map_err(|error| Usage::new(format!("{}: {error}", path.display()), Some(help())).into())
+}
+
+/// What to do about a file that is not a snapshot.
+fn help() -> String {
+    "take it back from version control, or delete it and run `onescan test` again".to_owned()
 }
 
 /// The snapshots that wait for a review below a scenario, in the order of their names.

@@ -59,6 +59,7 @@ pub(super) fn of_runs(
         sections: sections.collect(),
         coverage: covered(coverage),
         charts: charts(),
+        ..Page::default()
     }
 }
 
