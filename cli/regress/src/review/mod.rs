@@ -28,7 +28,7 @@ pub use error::ReviewError;
 
 use crate::regress::discover::Found;
 use crate::regress::plan::suite_of;
-use crate::snapshot::store::{Place, pending};
+use crate::snapshot::store::{Place, Reviewed, pending};
 use crate::snapshot::take;
 use crate::snapshot::{Difference, Snapshot, compare};
 
@@ -68,6 +68,8 @@ pub struct Waiting {
     /// The reviewed one, if there is one.
     pub old: Option<Snapshot>,
     pub new: Snapshot,
+    /// What there is to say of the reviewed one, as where it holds both sides of a merge.
+    pub note: Option<String>,
     /// Where the two differ.
     pub differences: Vec<Difference>,
 }
@@ -178,10 +180,14 @@ fn waiting(config: &ReviewConfig) -> Result<Vec<Waiting>, ReviewError> {
     for folder in &Found::behind(&config.paths)?.scenarios {
         for place in pending(folder)? {
             let Some(new) = place.read_pending()? else { continue };
-            let old = place.read_reviewed()?;
+            let (old, note) = match place.read_merged()? {
+                Reviewed::Nothing => (None, None),
+                Reviewed::One(old) => (Some(old), None),
+                Reviewed::Undecided(merge) => (merge.nearest(&new).cloned(), Some(merge.note(&new))),
+            };
             let tolerances = tolerances(&place);
             let differences = old.as_ref().map(|old| compare(old, &new, &tolerances)).unwrap_or_default();
-            all.push(Waiting { place, old, new, differences });
+            all.push(Waiting { place, old, new, note, differences });
         }
     }
     Ok(all)

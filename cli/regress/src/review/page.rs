@@ -14,7 +14,7 @@ pub fn of(waiting: &[Waiting]) -> String {
 }
 
 fn section(waiting: &Waiting) -> Section {
-    let Waiting { old, new, differences, .. } = waiting;
+    let Waiting { old, new, note, differences, .. } = waiting;
     let plot = overlay(&waiting.name(), old.as_ref(), new, differences);
     let title = if old.is_some() { "reviewed and new" } else { "trajectories" };
     Section {
@@ -23,7 +23,7 @@ fn section(waiting: &Waiting) -> Section {
         mood: Mood::Bad,
         steps: Some(new.end.as_nanos() / new.step.as_nanos().max(1)),
         virtual_time: new.end.to_string(),
-        lines: differences.iter().map(ToString::to_string).collect(),
+        lines: note.iter().cloned().chain(differences.iter().map(ToString::to_string)).collect(),
         pictures: vec![Picture::of_plot(title, &plot)],
         ..Section::default()
     }

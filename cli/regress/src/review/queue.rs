@@ -147,6 +147,7 @@ impl<'w> ReviewQueue<'w> {
             lines.push("any key goes back".to_owned());
             return lines;
         }
+        lines.extend(one.note.iter().map(|note| format!("  {note}")));
         lines.extend(one.differences.iter().take(DIFFERENCES_MAX).map(|difference| format!("  {difference}")));
         if let Some(more @ 1..) = one.differences.len().checked_sub(DIFFERENCES_MAX) {
             lines.push(format!("  ... and {more} more"));
@@ -223,6 +224,7 @@ mod tests {
             place: Place { scenario: "cell".into(), case: (*case).to_owned() },
             old: Some(old.clone()),
             new: new.clone(),
+            note: None,
             differences: differences.clone(),
         };
         cases.iter().map(one).collect()

@@ -27,6 +27,9 @@ pub fn text(waiting: &Waiting, width: usize, colours: bool) -> String {
 
 fn write(waiting: &Waiting, width: usize, colours: bool, text: &mut String) -> std::fmt::Result {
     writeln!(text, "{}", bold(&format!("{} {}", waiting.status(), waiting.name()), colours))?;
+    if let Some(note) = &waiting.note {
+        writeln!(text, "  {note}")?;
+    }
     for difference in &waiting.differences {
         writeln!(text, "  {difference}")?;
     }
