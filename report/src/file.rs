@@ -69,12 +69,43 @@ pub fn write_all_whole(files: &[Write]) -> Result<(), FileError> {
     Ok(())
 }
 
+/// Whether `path` can be written, found out before work is done for what it is to hold. Nothing is left of the attempt.
+///
+/// # Errors
+/// It is a folder, or its folder does not take files.
+pub fn check_file(path: &Path) -> Result<(), FileError> {
+    if path.is_dir() {
+        let source = std::io::Error::new(std::io::ErrorKind::IsADirectory, "this is a folder, name a file in it");
+        return Err(FileError { path: path.to_owned(), source });
+    }
+    stage(path, &[]).map(drop)
+}
+
+/// Whether files can be written into the folder `path`, which is made when they are: the next folder above it that is there
+/// must take them.
+///
+/// # Errors
+/// There is a file of that name, or that folder does not take files.
+pub fn check_folder(path: &Path) -> Result<(), FileError> {
+    let there = path.ancestors().find(|above| above.exists()).unwrap_or(Path::new("."));
+    stage(&there.join("file"), &[]).map(drop).map_err(|error| FileError { path: path.to_owned(), ..error })
+}
+
 fn stage(path: &Path, bytes: &[u8]) -> Result<tempfile::NamedTempFile, FileError> {
     let failed = |source| FileError { path: path.to_owned(), source };
     let folder = match path.parent() {
         Some(parent) if parent != Path::new("") => parent,
         _ => Path::new("."),
     };
+    if !folder.is_dir() {
+        // As tempfile says it, there is the name of a temporary file in it.
+        let (kind, what) = if folder.exists() {
+            (std::io::ErrorKind::NotADirectory, "is not a folder")
+        } else {
+            (std::io::ErrorKind::NotFound, "is not there, make this folder first")
+        };
+        return Err(failed(std::io::Error::new(kind, format!("`{}` {what}", folder.display()))));
+    }
     let mut file = tempfile::NamedTempFile::new_in(folder).map_err(failed)?;
     file.write_all(bytes).map_err(failed)?;
     make_readable(file.as_file()).map_err(failed)?;

@@ -55,12 +55,21 @@ export interface Lane {
   readonly isBare?: boolean;
   /** How values are written at the axis; numbers if absent. */
   readonly values?: (value: number) => string;
+  /** The room of the axis of values, the same in all lanes above each other. */
+  readonly axis_px?: number;
+}
+
+/** The room of an axis on which these texts stand whole, but no more than `most_px`. */
+export function axis_room(texts: readonly string[], most_px: number): number {
+  const widest_px = texts.reduce((widest, text) => Math.max(widest, measured(text)), 0);
+  return Math.max(AXIS_PX, Math.min(Math.ceil(widest_px) + GAP_PX + 4, most_px));
 }
 
 export function lane_options(lane: Lane): uPlot.Options {
   const axis: uPlot.Axis = { stroke: () => style("--text-2"), grid: { stroke: () => style("--line"), width: 1 }, ticks: { show: false }, gap: GAP_PX, font: FONT };
   const stepped = uPlot.paths.stepped?.({ align: 1 });
   const write = lane.values;
+  const axis_px = lane.axis_px ?? AXIS_PX;
   const series = lane.strokes.map<uPlot.Series>((stroke) => ({
     stroke, width: 1.5, points: { show: false }, ...(lane.isFilled ? { fill: `${stroke}38` } : {}), ...(lane.holds && stepped ? { paths: stepped } : {}),
   }));
@@ -74,7 +83,7 @@ export function lane_options(lane: Lane): uPlot.Options {
     scales: { x: { time: false }, y: lane.isBool ? { range: [-0.1, 1.1] } : {} },
     axes: [
       { ...axis, space: 60, ...(lane.isBare === true ? { size: 2, values: (_, all) => all.map(() => "") } : { size: 22 }) },
-      { ...axis, size: AXIS_PX, space: 22, ...(lane.isBool ? { splits: [0, 1] } : {}), ...(write === undefined ? {} : { values: (_, all) => all.map((value) => fitted(write(value), AXIS_PX - GAP_PX - 2, measured)) }) },
+      { ...axis, size: axis_px, space: 22, ...(lane.isBool ? { splits: [0, 1] } : {}), ...(write === undefined ? {} : { values: (_, all) => all.map((value) => fitted(write(value), axis_px - GAP_PX - 2, measured)) }) },
     ],
     series: [{}, ...series],
     hooks: lane.hooks,

@@ -4,11 +4,13 @@ import uPlot from "uplot";
 import { button, make } from "../dom";
 import { seconds } from "../format";
 import { say } from "../say";
-import { curve, lane_options, style, upright } from "../lane";
+import { axis_room, curve, lane_options, style, upright } from "../lane";
 import { aligned, value_at, written, type Chart, type ChartPanel } from "./data";
 
 /** A report has more room than the page. */
 const CHART_PX = 110;
+/** Names of values take no more than this of it; no name of the repository's does. */
+const NAMES_PX = 320;
 
 interface Lane {
   readonly panel: ChartPanel;
@@ -22,6 +24,7 @@ export class ChartView {
   private readonly readout = make("output", {});
   private readonly whole_s: readonly [number, number];
   private shown_s: readonly [number, number];
+  private readonly axis_px: number;
 
   constructor(
     private readonly chart: Chart,
@@ -35,6 +38,7 @@ export class ChartView {
     const runs = chart.runs.length > 1 ? chart.runs.map((name, run) => legend(name, run)) : [];
     const tools = make("div", { class: "chart-tools" }, button(say("Whole"), () => this.show(this.whole_s)), ...runs, this.readout);
     this.root = make("div", { class: "chart" }, tools);
+    this.axis_px = axis_room(chart.panels.flatMap((panel) => panel.names).map(([, name]) => name), NAMES_PX);
     for (const panel of chart.panels) this.add(panel);
     new ResizeObserver(() => this.fit()).observe(this.root);
   }
@@ -52,7 +56,7 @@ export class ChartView {
     const isBool = panel.steps && panel.runs.every((run) => run.values.every((value) => value === 0 || value === 1 || value === null));
     const names = panel.names;
     const options = lane_options({
-      isBool: isBool && names.length === 0, holds: panel.steps, isFilled: false, group: this.group, height_px: CHART_PX,
+      isBool: isBool && names.length === 0, holds: panel.steps, isFilled: false, group: this.group, height_px: CHART_PX, axis_px: this.axis_px,
       strokes: panel.runs.map((_, run) => curve(run)),
       hooks: { setSelect: [(plot) => this.select(plot)], draw: [(plot) => this.draw_marks(plot)], setCursor: [(plot) => this.read(plot)] },
       ...(names.length === 0 ? {} : { values: (value: number) => names.find(([known]) => known === value)?.[1] ?? "" }),
