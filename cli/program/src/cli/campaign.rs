@@ -7,6 +7,7 @@ use clap::{Args as ClapArgs, Subcommand};
 use onescan_server::time::TimeSpan;
 
 use super::error::CommandError;
+use super::outputs;
 use super::value::FormatArg;
 use onescan_runner::error::ExitCode;
 use onescan_runner::format::Format;
@@ -146,6 +147,7 @@ impl CampaignArgs {
 /// # Errors
 /// See [`CommandError`].
 pub fn campaign(mut args: CampaignArgs) -> Result<ExitCode, CommandError> {
+    outputs::files([&args.reports.html, &args.reports.junit])?;
     let out = &mut std::io::stdout().lock();
     Ok(match args.command.take() {
         None => onescan_search::campaign::run(&args.config(), out)?,

@@ -8,6 +8,7 @@ use onescan_server::signal::SignalName;
 use onescan_server::time::VirtualTime;
 
 use super::error::CommandError;
+use super::outputs;
 use super::value::{FormatArg, part, plane, signal_name};
 use onescan_runner::compare::CompareConfig;
 use onescan_runner::error::ExitCode;
@@ -18,6 +19,7 @@ use onescan_runner::run::RunConfig;
 #[derive(Debug, ClapArgs)]
 pub struct CompareArgs {
     /// The scenario: a folder with a `scenario.toml`
+    #[arg(default_value = ".")]
     pub scenario: PathBuf,
     /// A case of the scenario's `cases.toml` [default: the scenario as it is]
     #[arg(long, value_name = "NAME")]
@@ -54,6 +56,7 @@ pub struct CompareArgs {
 /// # Errors
 /// See [`CommandError`].
 pub fn compare(args: CompareArgs) -> Result<ExitCode, CommandError> {
+    outputs::files([&args.plot])?;
     let interrupt = Interrupt::new();
     interrupt.on_signals();
     let mut run = RunConfig::headless(args.scenario, args.case);

@@ -7,6 +7,7 @@ use clap::Args as ClapArgs;
 use onescan_server::time::VirtualTime;
 
 use super::error::CommandError;
+use super::outputs;
 use super::value::FormatArg;
 use onescan_runner::error::ExitCode;
 use onescan_search::explore::{self, ExploreConfig};
@@ -57,6 +58,7 @@ pub struct ExploreArgs {
 /// # Errors
 /// See [`CommandError`].
 pub fn explore(args: ExploreArgs) -> Result<ExitCode, CommandError> {
+    outputs::files([&args.cases])?;
     let ExploreArgs { scenario, case, until, bound, all, runs, no_merge, samples, seed, most, cases, format } = args;
     let config = ExploreConfig {
         scenario,

@@ -7,6 +7,7 @@ use clap::{Args as ClapArgs, ValueEnum};
 use onescan_server::time::VirtualTime;
 
 use super::error::CommandError;
+use super::outputs;
 use super::value::FormatArg;
 use onescan_runner::error::ExitCode;
 use onescan_search::falsify::config::{Objective, OptimiserKind};
@@ -85,6 +86,7 @@ pub struct FalsifyArgs {
 /// # Errors
 /// See [`CommandError`].
 pub fn falsify(args: FalsifyArgs) -> Result<ExitCode, CommandError> {
+    outputs::files([&args.cases, &args.plot])?;
     let config = FalsifyConfig {
         scenario: args.scenario,
         case: args.case,

@@ -8,6 +8,7 @@ use onescan_server::signal::ClientName;
 use onescan_server::time::VirtualTime;
 
 use super::error::CommandError;
+use super::outputs;
 use super::value::{FormatArg, client_name};
 use onescan_runner::error::ExitCode;
 use onescan_search::minimise::{self, MinimiseConfig};
@@ -52,6 +53,7 @@ pub struct MinimiseArgs {
 /// # Errors
 /// See [`CommandError`].
 pub fn minimise(args: MinimiseArgs) -> Result<ExitCode, CommandError> {
+    outputs::files([&args.cases])?;
     let MinimiseArgs { scenario, case, replay_operator, operators, expect, until, runs, name, cases, format } = args;
     let config = MinimiseConfig {
         scenario,

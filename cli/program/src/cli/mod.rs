@@ -20,14 +20,17 @@
 //! | [`opcua`] | who is let in over OPC UA |
 //! | [`plant`] | scenes |
 //! | [`model`] | the states of a session |
+//! | [`doctor`] | what there is on this machine |
 //! | [`manual`] | help, completions, manual pages |
 //! | `groups`, `topics` | the commands by what they are for; what holds for all of them |
+//! | `outputs` | what is to be written, looked at before |
 //! | [`value`] | words that several commands know |
 
 pub mod access;
 pub mod args;
 pub mod campaign;
 pub mod compare;
+pub mod doctor;
 mod error;
 pub mod explore;
 pub mod falsify;
@@ -39,6 +42,7 @@ pub mod minimise;
 pub mod model;
 pub mod mutate;
 pub mod opcua;
+mod outputs;
 pub mod plant;
 pub mod plc;
 pub mod recording;

@@ -8,6 +8,7 @@ use onescan_iec_project::mutate::MutantKind;
 use onescan_server::signal::ClientName;
 
 use super::error::CommandError;
+use super::outputs;
 use super::value::{FormatArg, client_name};
 use onescan_runner::error::ExitCode;
 use onescan_search::mutate::{self, MutateConfig};
@@ -46,6 +47,7 @@ pub struct MutateArgs {
 /// # Errors
 /// See [`CommandError`].
 pub fn mutate(args: MutateArgs) -> Result<ExitCode, CommandError> {
+    outputs::files([&args.written])?;
     let MutateArgs { scenario, client, cases, kinds, at_least, written, jobs, format } = args;
     let jobs = jobs.unwrap_or_else(|| std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN));
     let format = format.into();

@@ -9,6 +9,7 @@ use onescan_server::signal::pattern::SignalPattern;
 use onescan_server::time::VirtualTime;
 
 use super::error::CommandError;
+use super::outputs;
 use super::value::{FORKS, FormatArg};
 use crate::export::ExportConfig;
 use onescan_regress::bisect::BisectConfig;
@@ -125,6 +126,7 @@ pub struct ReportArgs {
 /// # Errors
 /// See [`CommandError`].
 pub fn report(args: ReportArgs) -> Result<ExitCode, CommandError> {
+    outputs::files([&args.html])?;
     let ReportArgs { recordings, scenario, format, html } = args;
     let config = ReportConfig { recordings, scenario, format: format.into(), html };
     onescan_runner::report::report(&config, &mut std::io::stdout().lock())?;
@@ -167,6 +169,7 @@ pub fn view(args: ViewArgs) -> Result<ExitCode, CommandError> {
 #[derive(Debug, ClapArgs)]
 pub struct BisectArgs {
     /// The scenario: a folder with a `scenario.toml`, in a working tree of git
+    #[arg(default_value = ".")]
     pub scenario: PathBuf,
     /// A commit whose runs are as they should be
     #[arg(long, value_name = "COMMIT")]

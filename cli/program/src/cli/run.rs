@@ -18,6 +18,7 @@ use onescan_server::time::{TimeSpan, VirtualTime};
 
 use super::error::CommandError;
 use super::opcua::AccessArgs;
+use super::outputs;
 use super::value::{FORKS, FormatArg, client_name, part, plane, signal_name};
 use onescan_regress::check::collect::Reading;
 use onescan_regress::check::stubs;
@@ -33,11 +34,20 @@ use onescan_runner::run::coverage::{CoverageFormat, CoverageRequest};
 use onescan_runner::run::{RunConfig, Transport, execute};
 use onescan_runner::web::Stay;
 
+// The headings under which the help lists the options.
+const RECORDINGS: &str = "Recordings and operators";
+const DRAWINGS: &str = "Plots, reports, watched variables";
+const PAGE: &str = "The page";
+const CLIENTS: &str = "Real PLCs and clients of other processes";
+const OPC_UA: &str = "OPC UA";
+const CHECKPOINTS: &str = "Checkpoints";
+
 /// Options of `run`.
 #[derive(Debug, ClapArgs)]
 #[expect(clippy::struct_excessive_bools, reason = "switches, as they are typed")]
 pub struct RunArgs {
     /// The scenario: a folder with a `scenario.toml`
+    #[arg(default_value = ".")]
     pub scenario: PathBuf,
     /// A case of the scenario's `cases.toml` [default: the scenario as it is]
     #[arg(long, value_name = "NAME")]
@@ -63,141 +73,141 @@ pub struct RunArgs {
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub runs: u32,
     /// `inproc`: all clients in this process; `tcp`: each in a process of its own
-    #[arg(long, value_enum, default_value_t)]
+    #[arg(help_heading = CLIENTS, long, value_enum, default_value_t)]
     pub transport: TransportArg,
     /// Let a real PLC stand in for a soft PLC, as in `plc=tcp://192.168.0.1:2000`; it runs the instrumented
     /// program; `tcp-listen://ADDRESS:PORT` for one that connects to onescan [default URL: the scenario's]
-    #[arg(long = "gateway", value_name = "CLIENT[=URL]", value_parser = gateway)]
+    #[arg(help_heading = CLIENTS, long = "gateway", value_name = "CLIENT[=URL]", value_parser = gateway)]
     pub gateways: Vec<(ClientName, Option<String>)>,
     /// Record each run in a folder `run-N` of this folder: the scenario's files, every signal and digest of
     /// every step as Parquet, events
-    #[arg(long, value_name = "DIR")]
+    #[arg(help_heading = RECORDINGS, long, value_name = "DIR")]
     pub record: Option<PathBuf>,
     /// Record the trajectory as `csv` or `mcap` too; both may be given, as in `csv,mcap`
-    #[arg(long, value_enum, value_name = "FORMAT", requires = "record", value_delimiter = ',')]
+    #[arg(help_heading = RECORDINGS, long, value_enum, value_name = "FORMAT", requires = "record", value_delimiter = ',')]
     pub record_also: Vec<RecordAlso>,
     /// Record these signals only: a name, or a pattern with `*` and `?`; may be given several times
-    #[arg(long = "record-signals", value_name = "PATTERN", requires = "record")]
+    #[arg(help_heading = RECORDINGS, long = "record-signals", value_name = "PATTERN", requires = "record")]
     pub record_signals: Vec<SignalPattern>,
     /// Replace an earlier recording in this folder
-    #[arg(long, requires = "record")]
+    #[arg(help_heading = RECORDINGS, long, requires = "record")]
     pub overwrite: bool,
     /// Repeat what an operator did: a recording, or a file like its `events.jsonl`
-    #[arg(long, value_name = "PATH")]
+    #[arg(help_heading = RECORDINGS, long, value_name = "PATH")]
     pub replay_operator: Option<PathBuf>,
     /// For people, or one JSON object a run for machines
     #[arg(long, value_enum, default_value_t)]
     pub format: FormatArg,
     /// Draw chosen signals of all runs into this SVG file
-    #[arg(long, value_name = "FILE")]
+    #[arg(help_heading = DRAWINGS, long, value_name = "FILE")]
     pub plot: Option<PathBuf>,
     /// A signal to draw; may be given several times [default: the scenario's choice]
-    #[arg(long = "signal", value_name = "NAME", requires = "plot", value_parser = signal_name)]
+    #[arg(help_heading = DRAWINGS, long = "signal", value_name = "NAME", requires = "plot", value_parser = signal_name)]
     pub signals: Vec<SignalName>,
     /// Draw each run in panels of its own, one run beneath the other
-    #[arg(long, requires = "plot", conflicts_with = "xy")]
+    #[arg(help_heading = DRAWINGS, long, requires = "plot", conflicts_with = "xy")]
     pub apart: bool,
     /// Draw two signals against each other, across and up, as `x.position,z.position`: the paths of all runs
-    #[arg(long, value_name = "X,Y", requires = "plot", conflicts_with = "signals", value_parser = plane)]
+    #[arg(help_heading = DRAWINGS, long, value_name = "X,Y", requires = "plot", conflicts_with = "signals", value_parser = plane)]
     pub xy: Option<[SignalName; 2]>,
     /// Draw a part of the plot enlarged beside the whole: `2s..2.5s`, or `0.9..1.2,0.3..0.5`, across and up, with `--xy`
-    #[arg(long, value_name = "RANGE[,RANGE]", requires = "plot", value_parser = part, allow_hyphen_values = true)]
+    #[arg(help_heading = DRAWINGS, long, value_name = "RANGE[,RANGE]", requires = "plot", value_parser = part, allow_hyphen_values = true)]
     pub enlarge: Option<Part>,
     /// Write which statements and branches of the soft PLCs were executed, in all runs together
-    #[arg(long, value_name = "FILE")]
+    #[arg(help_heading = DRAWINGS, long, value_name = "FILE")]
     pub coverage: Option<PathBuf>,
     /// `lcov` or `cobertura` [default: by the file's name: `.xml` is Cobertura]
-    #[arg(long, value_enum, requires = "coverage", value_name = "FORMAT")]
+    #[arg(help_heading = DRAWINGS, long, value_enum, requires = "coverage", value_name = "FORMAT")]
     pub coverage_format: Option<CoverageArg>,
     /// Write a page with trajectories, expectations, events and coverage of all runs, all in one file
-    #[arg(long, value_name = "FILE")]
+    #[arg(help_heading = DRAWINGS, long, value_name = "FILE")]
     pub html: Option<PathBuf>,
     /// Draw the scenario's maps as they are at the end into this folder: each as a picture `NAME.svg` and as text `NAME.csv`;
     /// of several runs, those of the last one
-    #[arg(long, value_name = "DIR")]
+    #[arg(help_heading = DRAWINGS, long, value_name = "DIR")]
     pub map: Option<PathBuf>,
     /// Write the files that the programs of the soft PLCs have at the end into this folder, each in one of its PLC's name; of several
     /// runs, those of the last one
-    #[arg(long, value_name = "DIR")]
+    #[arg(help_heading = DRAWINGS, long, value_name = "DIR")]
     pub files: Option<PathBuf>,
     /// A variable of a soft PLC to look at, as `Main.axis[2].x`, with its PLC in front if there are several, as
     /// `plc2:Main.x`, and with a format for whole numbers behind, as `Main.status=bin`: `hex`, `dec` or `bin`;
     /// may be given several times
-    #[arg(long, value_name = "[PLC:]PATH[=FORMAT]")]
+    #[arg(help_heading = DRAWINGS, long, value_name = "[PLC:]PATH[=FORMAT]")]
     pub watch: Vec<WatchRequest>,
     /// `end`: what watched variables are at the end; `change`: all their changes
-    #[arg(long, value_enum, default_value_t, requires = "watch", value_name = "WHEN")]
+    #[arg(help_heading = DRAWINGS, long, value_enum, default_value_t, requires = "watch", value_name = "WHEN")]
     pub watch_on: WatchOnArg,
     /// Where clients and operators may connect [default: a free port of this machine, if one is needed]
-    #[arg(long, value_name = "ADDRESS:PORT")]
+    #[arg(help_heading = CLIENTS, long, value_name = "ADDRESS:PORT")]
     pub listen: Option<SocketAddr>,
     /// Let in whoever shows a token of this folder, under TLS if it has a certificate (`onescan token`, `onescan
     /// certificate`)
-    #[arg(long, value_name = "DIR", conflicts_with = "listen_insecure")]
+    #[arg(help_heading = CLIENTS, long, value_name = "DIR", conflicts_with = "listen_insecure")]
     pub access: Option<PathBuf>,
     /// Let in whoever reaches the address of `--listen`, also from other machines: without TLS, without a token
-    #[arg(long, requires = "listen")]
+    #[arg(help_heading = CLIENTS, long, requires = "listen")]
     pub listen_insecure: bool,
     /// Serve the session as a page to browsers of this machine: machine, panels, trends, programs (`docs/web.md`); in real
     /// time unless `--pace` says otherwise [default ADDRESS: a free port]
-    #[arg(long, value_name = "ADDRESS:PORT", num_args = 0..=1, require_equals = true, default_missing_value = "127.0.0.1:0")]
+    #[arg(help_heading = PAGE, long, value_name = "ADDRESS:PORT", num_args = 0..=1, require_equals = true, default_missing_value = "127.0.0.1:0")]
     pub web: Option<SocketAddr>,
     /// Begin when the first viewer of the page looks [default: on a terminal]
-    #[arg(long, requires = "web", overrides_with = "no_await_viewer")]
+    #[arg(help_heading = PAGE, long, requires = "web", overrides_with = "no_await_viewer")]
     pub await_viewer: bool,
     /// Begin at once, whether somebody looks at the page or not [default: without a terminal]
-    #[arg(long, requires = "web")]
+    #[arg(help_heading = PAGE, long, requires = "web")]
     pub no_await_viewer: bool,
     /// Keep the page when the run is over, to look back and go on from there: until Ctrl-C, or without a terminal until its last
     /// viewer has left [default: on a terminal]
-    #[arg(long, requires = "web", overrides_with = "no_stay")]
+    #[arg(help_heading = PAGE, long, requires = "web", overrides_with = "no_stay")]
     pub stay: bool,
     /// End the page with the run [default: without a terminal]
-    #[arg(long, requires = "web")]
+    #[arg(help_heading = PAGE, long, requires = "web")]
     pub no_stay: bool,
     /// How much memory the past may take that the page of `--web` shows, as in `256MiB`; `0` for none
-    #[arg(long, default_value_t, requires = "web", value_name = "MEMORY")]
+    #[arg(help_heading = PAGE, long, default_value_t, requires = "web", value_name = "MEMORY")]
     pub past_memory: Budget,
     /// How many sessions may go on from moments of this one at a time, each in a process of its own
-    #[arg(long, default_value_t = FORKS, requires = "web", value_name = "COUNT")]
+    #[arg(help_heading = PAGE, long, default_value_t = FORKS, requires = "web", value_name = "COUNT")]
     pub forks: u32,
     /// Let people stand in for this client: its signals are operated, on the page, by `onescan control` or over OPC UA; may be
     /// given several times
-    #[arg(long = "operator", value_name = "CLIENT", value_parser = client_name)]
+    #[arg(help_heading = CLIENTS, long = "operator", value_name = "CLIENT", value_parser = client_name)]
     pub operators: Vec<ClientName>,
     /// Let others read variables of the soft PLCs over ADS at this address, as they read those of a TwinCAT PLC (`docs/gateway.md`)
-    #[arg(long, value_name = "ADDRESS:PORT")]
+    #[arg(help_heading = CLIENTS, long, value_name = "ADDRESS:PORT")]
     pub ads: Option<SocketAddr>,
     /// Serve the session over OPC UA at this address, for operators and clients (`docs/opcua.md`) [default: a free
     /// port of this machine, if a client needs one]
-    #[arg(long, value_name = "ADDRESS:PORT")]
+    #[arg(help_heading = OPC_UA, long, value_name = "ADDRESS:PORT")]
     pub opcua: Option<SocketAddr>,
     /// Let a program with an OPC UA client stand in for this client; may be given several times
-    #[arg(long = "opcua-client", value_name = "CLIENT", value_parser = client_name)]
+    #[arg(help_heading = OPC_UA, long = "opcua-client", value_name = "CLIENT", value_parser = client_name)]
     pub opcua_clients: Vec<ClientName>,
     /// Who is let in over OPC UA
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = OPC_UA)]
     pub opcua_access: AccessArgs,
     /// How long to wait for clients to join
-    #[arg(long, default_value = "60s", value_name = "TIME")]
+    #[arg(help_heading = CLIENTS, long, default_value = "60s", value_name = "TIME")]
     pub join_timeout: TimeSpan,
     /// How long a client in another process may leave a grant unanswered, wall clock
-    #[arg(long, default_value = "10s", value_name = "TIME")]
+    #[arg(help_heading = CLIENTS, long, default_value = "10s", value_name = "TIME")]
     pub reply_timeout: TimeSpan,
     /// Take a checkpoint at this virtual time
-    #[arg(long, value_name = "TIME", requires = "save")]
+    #[arg(help_heading = CHECKPOINTS, long, value_name = "TIME", requires = "save")]
     pub save_at: Option<VirtualTime>,
     /// The file for the checkpoint
-    #[arg(long, value_name = "FILE", requires = "save_at")]
+    #[arg(help_heading = CHECKPOINTS, long, value_name = "FILE", requires = "save_at")]
     pub save: Option<PathBuf>,
     /// Go on from this checkpoint
-    #[arg(long, value_name = "FILE")]
+    #[arg(help_heading = CHECKPOINTS, long, value_name = "FILE")]
     pub resume: Option<PathBuf>,
     /// Go on from there with other PLC code: sources and constants may differ, variables and tasks may not
-    #[arg(long, requires = "resume")]
+    #[arg(help_heading = CHECKPOINTS, long, requires = "resume")]
     pub accept_code: bool,
     /// Report how long the session waited for each client of this process; always with --gateway
-    #[arg(long)]
+    #[arg(help_heading = CLIENTS, long)]
     pub latency: bool,
 }
 
@@ -299,6 +309,8 @@ pub fn run(args: RunArgs) -> Result<ExitCode, CommandError> {
     if args.deny_stubs {
         stubs::deny(std::slice::from_ref(&args.scenario), Reading::default())?;
     }
+    outputs::files([&args.plot, &args.coverage, &args.html, &args.save])?;
+    outputs::folders([&args.record, &args.map, &args.files])?;
     let interrupt = Interrupt::new();
     interrupt.on_signals();
     let verdict = execute(&config(args)?, &interrupt, &mut std::io::stdout().lock())?;

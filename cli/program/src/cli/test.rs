@@ -8,6 +8,7 @@ use onescan_iec::{Dialect, MemoryLimit, WordSize};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
 use super::error::CommandError;
+use super::outputs;
 use super::run::CoverageArg;
 use onescan_regress::check::collect::Reading;
 use onescan_regress::regress::config::WorkerConfig;
@@ -265,6 +266,7 @@ impl WorkerArgs {
 /// # Errors
 /// See [`CommandError`].
 pub fn test(args: TestArgs) -> Result<ExitCode, CommandError> {
+    outputs::files([&args.junit, &args.sarif, &args.html, &args.coverage])?;
     if args.deny_stubs {
         let reading = Reading { dialect: args.dialect, libraries: &args.libraries, ..Reading::default() };
         onescan_regress::regress::deny_stubs(&args.paths, reading)?;
@@ -277,6 +279,7 @@ pub fn test(args: TestArgs) -> Result<ExitCode, CommandError> {
 /// # Errors
 /// See [`CommandError`].
 pub fn review(args: ReviewArgs) -> Result<ExitCode, CommandError> {
+    outputs::files([&args.html])?;
     Ok(onescan_regress::review::review(&args.config(), &mut std::io::stdout().lock())?)
 }
 

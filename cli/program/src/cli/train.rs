@@ -8,6 +8,7 @@ use onescan_server::pacing::Pace;
 use onescan_server::signal::ClientName;
 
 use super::error::CommandError;
+use super::outputs;
 use super::run::{gateway, pace};
 use super::value::FormatArg;
 use onescan_runner::access::admission::Admission;
@@ -20,6 +21,7 @@ use onescan_runner::train::{self, TrainConfig};
 #[derive(Debug, ClapArgs)]
 pub struct TrainArgs {
     /// The scenario: a folder with a `scenario.toml` and a `lessons.toml`
+    #[arg(default_value = ".")]
     pub scenario: PathBuf,
     /// The lesson [default: list all of them]
     pub lesson: Option<String>,
@@ -73,6 +75,8 @@ pub struct TrainArgs {
 /// # Errors
 /// See [`CommandError`].
 pub fn train(args: TrainArgs) -> Result<ExitCode, CommandError> {
+    outputs::files([&args.html])?;
+    outputs::folders([&args.record])?;
     let mut out = std::io::stdout().lock();
     if let Some(folder) = &args.table {
         return Ok(train::table(&args.scenario, folder, args.format.into(), &mut out)?);

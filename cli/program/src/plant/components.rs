@@ -16,6 +16,7 @@ use onescan_server::signal::did_you_mean;
 use serde::Serialize;
 
 use super::error::PlantError;
+use super::page_text;
 use onescan_runner::error::Usage;
 use onescan_runner::format::Format;
 
@@ -113,7 +114,7 @@ fn one(
     };
     match format {
         Format::Json => json(kind, out),
-        Format::Human => Ok(out.write_all(kind.page().as_bytes()).map_err(OutputError)?),
+        Format::Human => Ok(out.write_all(page_text::of_markdown(&kind.page()).as_bytes()).map_err(OutputError)?),
     }
 }
 
