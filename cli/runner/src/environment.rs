@@ -1,7 +1,8 @@
 //! What programs that are not ours see of this process's environment: what programs need to run, and what a scenario
 //! names for its own. Secrets of whoever runs it, as of a CI server, are not among that.
 
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Variables that are passed on: where programs and libraries are, who and where the user is, how to speak to him.
@@ -52,6 +53,25 @@ pub(crate) fn confine(command: &mut Command, named: &[String]) {
     let passed: Vec<(OsString, OsString)> =
         std::env::vars_os().filter(|(name, _)| passes(name.to_str(), named)).collect();
     command.env_clear().envs(passed);
+}
+
+/// The program of this name in the folders of `PATH`, or the file itself where the name has a folder.
+pub(crate) fn on_path(name: &OsStr) -> Option<PathBuf> {
+    let folders = std::env::var_os("PATH")?;
+    found_in(name, &folders)
+}
+
+/// As [`on_path`], in these folders.
+pub(crate) fn found_in(name: &OsStr, folders: &OsStr) -> Option<PathBuf> {
+    if Path::new(name).components().count() > 1 {
+        return Some(PathBuf::from(name)).filter(|file| file.is_file());
+    }
+    // Windows finds `git.exe` by `git`.
+    let mut file = name.to_owned();
+    if Path::new(name).extension().is_none() {
+        file.push(std::env::consts::EXE_SUFFIX);
+    }
+    std::env::split_paths(folders).map(|folder| folder.join(&file)).find(|file| file.is_file())
 }
 
 fn passes(name: Option<&str>, named: &[String]) -> bool {

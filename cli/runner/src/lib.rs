@@ -4,6 +4,7 @@
 //!
 //! | module | subject |
 //! |---|---|
+//! | [`doctor`] | what this program has, and what it finds on this machine |
 //! | [`train`] | lessons taken at panels, measured on virtual time |
 //! | [`compare`] | lockstep beside the other ways of bringing plant and PLC together |
 //! | [`view`] | a recording as a page |
@@ -27,6 +28,7 @@
 
 pub mod access;
 pub mod compare;
+pub mod doctor;
 mod environment;
 pub mod error;
 pub mod format;

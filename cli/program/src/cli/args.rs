@@ -1,5 +1,7 @@
 //! What may be typed, and who does it.
 
+use std::ffi::OsString;
+use std::net::SocketAddr;
 use std::path::PathBuf;
 
 use clap::{ArgAction, CommandFactory, FromArgMatches as _, Parser, Subcommand};
@@ -9,6 +11,7 @@ use onescan_scenario::permission::Permission;
 use super::access::{CertificateArgs, TokenArgs};
 use super::campaign::{CampaignArgs, CampaignWorkerArgs};
 use super::compare::CompareArgs;
+use super::doctor::DoctorArgs;
 use super::error::CommandError;
 use super::explore::ExploreArgs;
 use super::falsify::FalsifyArgs;
@@ -26,8 +29,8 @@ use super::source::{CheckArgs, ExplainArgs, InstrumentArgs};
 use super::test::{ReviewArgs, TestArgs, WorkerArgs};
 use super::train::TrainArgs;
 use super::{
-    access, campaign, compare, explore, falsify, groups, manual, minimise, model, mutate, plant, plc, recording, run,
-    session, shot, source, test, train,
+    access, campaign, compare, doctor, explore, falsify, groups, manual, minimise, model, mutate, plant, plc,
+    recording, run, session, shot, source, test, train,
 };
 use onescan_runner::error::ExitCode;
 
@@ -42,15 +45,18 @@ pub struct Args {
     #[command(subcommand)]
     pub command: Command,
     /// Say more on standard error: -v what happens, -vv why, -vvv everything
-    #[arg(short, long, action = ArgAction::Count, global = true)]
+    #[arg(short, long, action = ArgAction::Count, global = true, help_heading = ALL)]
     pub verbose: u8,
     /// Let scenarios read this file or folder, too; may be given several times [default: their own folder only]
-    #[arg(long = "allow-path", env = "ONESCAN_ALLOW_PATH", hide_env_values = true, value_name = "PATH", global = true, value_delimiter = PATHS)]
+    #[arg(long = "allow-path", env = "ONESCAN_ALLOW_PATH", hide_env_values = true, value_name = "PATH", global = true, value_delimiter = PATHS, help_heading = ALL)]
     pub allowed_paths: Vec<PathBuf>,
     /// Do not start the programs that scenarios name as `command`
-    #[arg(long, env = "ONESCAN_NO_COMMANDS", hide_env_values = true, global = true, value_parser = clap::builder::FalseyValueParser::new(), action = ArgAction::SetTrue)]
+    #[arg(long, env = "ONESCAN_NO_COMMANDS", hide_env_values = true, global = true, value_parser = clap::builder::FalseyValueParser::new(), action = ArgAction::SetTrue, help_heading = ALL)]
     pub no_commands: bool,
 }
+
+/// The heading of options that each command has.
+const ALL: &str = "All commands";
 
 /// Between the paths of a variable.
 const PATHS: char = if cfg!(windows) { ';' } else { ':' };
@@ -62,8 +68,29 @@ pub fn program() -> clap::Command {
 
 /// What was typed; ends the process where that is wrong, or only asks for help.
 pub fn parsed() -> Args {
-    let matches = program().get_matches();
+    let matches = program().get_matches_from(with_addresses_joined(std::env::args_os()));
     Args::from_arg_matches(&matches).unwrap_or_else(|error| error.format(&mut program()).exit())
+}
+
+/// Joins `--web` and an address behind it: with commands whose `--web` stands alone, too, a word that is an address belongs
+/// to it, and any other is a scenario.
+fn with_addresses_joined(words: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
+    let mut joined: Vec<OsString> = Vec::new();
+    let mut are_options = true;
+    for word in words {
+        let is_address = word.to_str().is_some_and(|word| word.parse::<SocketAddr>().is_ok());
+        match joined.last_mut() {
+            Some(last) if are_options && is_address && last == "--web" => {
+                last.push("=");
+                last.push(&word);
+            }
+            _ => {
+                are_options &= word != "--";
+                joined.push(word);
+            }
+        }
+    }
+    joined
 }
 
 impl Args {
@@ -168,6 +195,8 @@ pub enum Command {
     Model(ModelArgs),
     /// Explain a code of `check`, with an example that is wrong and one that is right
     Explain(ExplainArgs),
+    /// Report what this program has, page and OPC UA, and what it finds on this machine: browser, git, folders, ports
+    Doctor(DoctorArgs),
     /// Print the help of a command, or what holds for all of them: exit codes, environment, files
     Help(HelpArgs),
     /// Print what a shell needs to complete commands and options
@@ -218,8 +247,35 @@ pub fn dispatch(command: Command) -> Result<ExitCode, CommandError> {
         Command::New(args) => plant::new(args),
         Command::Model(args) => model::model(args),
         Command::Explain(args) => source::explain(&args),
+        Command::Doctor(args) => doctor::doctor(&args),
         Command::Help(args) => manual::help(&args, program()),
         Command::Completions(args) => manual::completions(&args, program()),
         Command::Man(args) => manual::man(&args, program()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_address_behind_web_belongs_to_it_and_another_word_does_not() {
+        let joined = |typed: &str| {
+            let words = with_addresses_joined(typed.split(' ').map(OsString::from));
+            words.iter().map(|word| word.to_str().unwrap().to_owned()).collect::<Vec<_>>().join(" ")
+        };
+        assert_eq!(joined("run --web 127.0.0.1:8080 shear"), "run --web=127.0.0.1:8080 shear");
+        assert_eq!(joined("run --web [::1]:80"), "run --web=[::1]:80");
+        for typed in
+            ["run --web shear", "run --web", "run --web=[::1]:80 shear", "run --web --stay", "run -- --web 127.0.0.1:1"]
+        {
+            assert_eq!(joined(typed), typed);
+        }
+    }
+
+    /// clap's own checks of the arguments of each command.
+    #[test]
+    fn arguments_are_consistent() {
+        program().debug_assert();
     }
 }

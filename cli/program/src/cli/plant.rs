@@ -47,6 +47,7 @@ pub fn components(args: &ComponentsArgs) -> Result<ExitCode, CommandError> {
 #[derive(Debug, ClapArgs)]
 pub struct DescribeArgs {
     /// The scene, a `plant.toml`; or a scenario, for the scenes of its plants
+    #[arg(default_value = ".")]
     pub scene: PathBuf,
     /// For people, or JSON for machines
     #[arg(long, value_enum, default_value_t)]
@@ -113,6 +114,7 @@ pub fn describe(args: &DescribeArgs) -> Result<ExitCode, CommandError> {
 #[derive(Debug, ClapArgs)]
 pub struct WiringArgs {
     /// The scenario: a folder with a `scenario.toml`
+    #[arg(default_value = ".")]
     pub scenario: PathBuf,
     /// For people, or JSON for machines
     #[arg(long, value_enum, default_value_t)]
@@ -136,6 +138,7 @@ pub fn wiring(args: WiringArgs) -> Result<ExitCode, CommandError> {
 #[derive(Debug, ClapArgs)]
 pub struct ShowArgs {
     /// The scenario: a folder with a `scenario.toml`, or a file of another name
+    #[arg(default_value = ".")]
     pub scenario: PathBuf,
     /// TOML for people, or JSON for machines
     #[arg(long, value_enum, default_value_t)]
@@ -156,9 +159,10 @@ pub fn show(args: ShowArgs) -> Result<ExitCode, CommandError> {
 #[derive(Debug, ClapArgs)]
 pub struct EditArgs {
     /// The scenario: a folder with a `scenario.toml`
+    #[arg(default_value = ".")]
     pub scenario: PathBuf,
     /// Where browsers of this machine find the page [default: a free port]
-    #[arg(long, value_name = "ADDRESS")]
+    #[arg(long, value_name = "ADDRESS:PORT")]
     pub web: Option<SocketAddr>,
 }
 

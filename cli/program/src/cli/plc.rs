@@ -23,6 +23,7 @@ use onescan_runner::plc::{self, Cycle, PlcConfig};
 #[command(after_help = PLC_COMMANDS)]
 pub struct PlcArgs {
     /// The scenario: a folder with a `scenario.toml`
+    #[arg(default_value = ".")]
     pub scenario: PathBuf,
     /// Which of its soft PLCs [default: the only one]
     #[arg(long, value_name = "CLIENT", value_parser = client_name)]
@@ -149,6 +150,7 @@ pub fn browse(args: BrowseArgs) -> Result<ExitCode, CommandError> {
 #[derive(Debug, ClapArgs)]
 pub struct MapArgs {
     /// The scenario: a folder with a `scenario.toml`
+    #[arg(default_value = ".")]
     pub scenario: PathBuf,
     /// Which of its PLCs [default: the only one]
     #[arg(long, value_name = "CLIENT", value_parser = client_name)]

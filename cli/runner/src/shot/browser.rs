@@ -1,7 +1,7 @@
 //! A Chromium without a window.
 
 use std::ffi::{OsStr, OsString};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::{Duration, Instant};
@@ -37,11 +37,8 @@ impl Drop for Running {
 impl Browser {
     /// The one that `CHROMIUM` names, or the first that is found.
     pub(super) fn installed() -> Result<Self, ShotError> {
-        let named = std::env::var_os(VARIABLE);
-        let path = std::env::var_os("PATH").unwrap_or_default();
-        found(named.as_deref(), &path)
-            .map(|program| Self { program })
-            .ok_or_else(|| ShotError::NoBrowser { named: named.map(|named| named.to_string_lossy().into_owned()) })
+        let named = || std::env::var_os(VARIABLE).map(|named| named.to_string_lossy().into_owned());
+        program().map(|program| Self { program }).ok_or_else(|| ShotError::NoBrowser { named: named() })
     }
 
     /// Opens a page that sends a picture.
@@ -88,17 +85,17 @@ impl Browser {
     }
 }
 
+/// The one that `CHROMIUM` names, or the first that is found; nothing where there is none.
+pub(crate) fn program() -> Option<PathBuf> {
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    found(std::env::var_os(VARIABLE).as_deref(), &path)
+}
+
 /// The browser that is named, or the first of [`NAMES`] in the folders of `path`.
 fn found(named: Option<&OsStr>, path: &OsStr) -> Option<PathBuf> {
-    let here = |name: &OsStr| {
-        if Path::new(name).components().count() > 1 {
-            return Some(PathBuf::from(name)).filter(|file| file.is_file());
-        }
-        std::env::split_paths(path).map(|folder| folder.join(name)).find(|file| file.is_file())
-    };
     match named {
-        Some(named) => here(named),
-        None => NAMES.iter().find_map(|name| here(name.as_ref())),
+        Some(named) => environment::found_in(named, path),
+        None => NAMES.iter().find_map(|name| environment::found_in(name.as_ref(), path)),
     }
 }
 

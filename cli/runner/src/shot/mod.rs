@@ -32,6 +32,7 @@ use crate::error::{ExitCode, Usage};
 use crate::run::in_process::in_process;
 use crate::web::{self, Page};
 use browser::Browser;
+pub(crate) use browser::program as browser;
 pub use config::{ShotConfig, Size, Theme};
 pub use error::ShotError;
 

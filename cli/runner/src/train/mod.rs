@@ -37,6 +37,7 @@ use onescan_scenario::lesson::Book;
 
 pub use config::TrainConfig;
 pub use error::TrainError;
+pub(crate) use starts::usual_folder;
 
 use crate::error::{ExitCode, Usage};
 use crate::format::Format;

@@ -20,7 +20,7 @@ use crate::interrupt::Interrupt;
 use crate::run::in_process::with_clients;
 
 /// Where prepared states are kept, unless somebody says otherwise: below the user's cache, else below the temporary folder.
-fn usual_folder() -> PathBuf {
+pub(crate) fn usual_folder() -> PathBuf {
     let cache = std::env::var_os("XDG_CACHE_HOME").map(PathBuf::from);
     let home = || std::env::var_os("HOME").map(|home| PathBuf::from(home).join(".cache"));
     let cache = cache.filter(|path| path.is_absolute()).or_else(home).unwrap_or_else(std::env::temp_dir);

@@ -23,3 +23,8 @@ pub fn charts() -> Option<ChartScript> {
 pub(super) fn is_there() -> bool {
     !files().is_empty()
 }
+
+/// How many bytes it has as the program holds it.
+pub(super) fn size() -> usize {
+    files().iter().map(|(_, _, bytes)| bytes.len()).sum()
+}

@@ -60,13 +60,13 @@ fn limits() -> Limits {
 
 /// How many this process may have; nothing if that is not limited.
 #[cfg(unix)]
-fn descriptors() -> Option<usize> {
+pub(crate) fn descriptors() -> Option<usize> {
     let limit = rustix::process::getrlimit(rustix::process::Resource::Nofile).current;
     limit.and_then(|limit| usize::try_from(limit).ok())
 }
 
 #[cfg(not(unix))]
-fn descriptors() -> Option<usize> {
+pub(crate) fn descriptors() -> Option<usize> {
     None
 }
 

@@ -452,6 +452,11 @@ impl Page {
         self.session.left.load(Ordering::Acquire)
     }
 
+    /// How many bytes the page has as this program holds it; 0 if it was built without it.
+    pub(crate) fn size() -> usize {
+        bundle::size()
+    }
+
     /// What is missing, if the program was built without its page.
     pub fn is_absent() -> Option<&'static str> {
         (!bundle::is_there()).then_some(bundle::ABSENT)
