@@ -33,6 +33,20 @@ fn the_statement_that_broke_a_case_is_named() {
     assert!(junit.contains("file=\"plc/shear.st\" line=\"40\""), "{junit}");
 }
 
+/// One changed constant breaks many cases: the way to it is shown once.
+#[test]
+fn a_cause_of_several_cases_is_shown_once() {
+    let folder = copied_shear();
+    reviewed(folder.path());
+    edit(folder.path(), "plc/shear.st", "Rest : TIME := T#100ms;", "Rest : TIME := T#110ms;");
+    let said = typed(folder.path(), &["test", ".", "--check", "--html", "tests.html"]);
+    assert_eq!(said.code, Some(1), "{said:?}");
+    let name = folder.path().file_name().unwrap().to_string_lossy().into_owned();
+    insta::assert_snapshot!(said.out.replace(&name, "shear"));
+    let page = std::fs::read_to_string(folder.path().join("tests.html")).unwrap();
+    assert!(page.contains("<li>plc/shear.st:26 is the cause in 4 tests</li>"), "the page begins with causes");
+}
+
 /// What differs may be far from the signal that shows it: behind a variable, a timer, a constant, an array, a block.
 #[test]
 fn the_way_goes_through_variables_timers_and_constants() {

@@ -58,10 +58,26 @@ fn a_picture_that_cannot_be_written_is_a_fault_and_leaves_nothing() {
     assert_eq!(names(), before);
 }
 
+/// Nobody waits for a run whose report has no place: what is to be written is looked at before.
 #[test]
-fn a_path_that_cannot_be_is_wrong_input() {
+fn a_path_that_cannot_be_is_wrong_input_before_anything_runs() {
     let folder = copied_shear();
-    let words = ["run", ".", "--until", "100ms", "--plot", "no/such/folder/plot.svg"];
-    let said = Said::from(onescan(folder.path()).args(words).output().expect("the program starts"));
-    assert_eq!(said.code, Some(2), "{said:?}");
+    std::fs::write(folder.path().join("file"), "").expect("written");
+    for (words, message) in [
+        (
+            &["run", "--plot", "no/such/plot.svg"][..],
+            "no/such/plot.svg: `no/such` is not there, make this folder first",
+        ),
+        (&["run", "--html", "plc"], "plc: this is a folder, name a file in it"),
+        (&["run", "--coverage", "file/x.xml"], "file/x.xml: `file` is not a folder"),
+        (&["run", "--map", "file/maps"], "file/maps: `file` is not a folder"),
+        (&["test", "--junit", "no/junit.xml"], "no/junit.xml: `no` is not there"),
+        (&["compare", "--plot", "no/plot.svg"], "no/plot.svg: `no` is not there"),
+        (&["campaign", "--html", "no/page.html"], "no/page.html: `no` is not there"),
+        (&["falsify", "--cases", "no/cases.toml"], "no/cases.toml: `no` is not there"),
+    ] {
+        let said = Said::from(onescan(folder.path()).args(words).output().expect("the program starts"));
+        assert_eq!((said.code, said.out.as_str()), (Some(2), ""), "{words:?}: {said:?}");
+        assert!(said.err.contains(message), "{words:?}: {said:?}");
+    }
 }

@@ -165,6 +165,30 @@ fn a_garbled_snapshot_is_reported_with_its_line() {
     assert!(said.out.contains("default.traj: line "), "{}", said.out);
 }
 
+/// What git leaves in a snapshot that two branches have changed is named, and the review resolves it.
+#[test]
+fn a_snapshot_with_both_sides_of_a_merge_is_resolved_by_a_review() {
+    let folder = copied_shear_of_snapshots();
+    let file = folder.path().join("snapshots/default.traj");
+    let ours = std::fs::read_to_string(&file).expect("it is there");
+    let (from, to) =
+        ("      0.00  FALSE\n", "<<<<<<< HEAD\n      0.00  FALSE\n=======\n      0.00  TRUE\n>>>>>>> feature\n");
+    std::fs::write(&file, ours.replacen(from, to, 1)).expect("written");
+    let line = 1 + ours.lines().position(|line| line == from.trim_end()).expect("a BOOL");
+
+    let said = typed(folder.path(), &["test", ".", "--check", "-f", "default"]);
+    assert_eq!(said.code, Some(1), "{said:?}");
+    let note = format!("default.traj:{line} holds both sides of a merge; this run is that of `HEAD`");
+    assert!(said.out.contains(&note), "{said:?}");
+    let said = typed(folder.path(), &["test", ".", "-f", "default"]);
+    assert!(said.out.contains("1 snapshot waits for a review"), "{said:?}");
+    let said = typed(folder.path(), &["review", "."]);
+    assert!(said.out.contains(&note), "{said:?}");
+    let said = typed(folder.path(), &["review", ".", "--accept-all"]);
+    assert_eq!((said.code, said.out.contains("accepted")), (Some(0), true), "{said:?}");
+    assert_eq!(std::fs::read_to_string(&file).expect("it is there"), ours);
+}
+
 #[test]
 fn ten_seconds_of_many_axes_are_small_text() {
     let folder = tempfile::tempdir().expect("a folder");
