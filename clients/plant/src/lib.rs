@@ -20,6 +20,7 @@
 //! | `form` | the forms of bodies as they are, for readers that draw by themselves |
 //! | `axis` | a driven axis: command, setpoint, what it moves, feedback |
 //! | `sensor` | end-position and proximity sensors |
+//! | `bend` | a shell that is bent: its run-out, and where a look meets it |
 //! | `temperature_field` | the temperature on the surface of a shell that turns |
 //! | [`scanner`] | an infrared line scanner as a device: protocol and optics |
 //! | [`component`] | the library: cylinders, motors, sensors, … by their equations |
@@ -52,6 +53,7 @@
 //! - A world that is no longer finite or leaves its extent is a fault that names the body.
 
 mod axis;
+mod bend;
 mod channel;
 mod client;
 mod closure;

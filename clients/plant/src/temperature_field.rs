@@ -10,6 +10,8 @@ use onescan_server::client::ValueTable;
 use onescan_server::signal::ClientName;
 use serde::{Deserialize, Serialize};
 
+use crate::bend::{Bend, Standpoint};
+
 /// Zones along a shell.
 pub(crate) const ZONES: usize = 24;
 /// Spots on a shell.
@@ -61,6 +63,8 @@ pub(crate) struct TemperatureField {
     pub(crate) ambient_degc: f64,
     /// The angle of the shell's own that passes who looks at it.
     pub(crate) angle_rad: f64,
+    /// How the shell is bent.
+    pub(crate) bend: Bend,
 }
 
 impl Default for TemperatureField {
@@ -74,6 +78,7 @@ impl Default for TemperatureField {
             radius_m: 1.0,
             ambient_degc,
             angle_rad: 0.0,
+            bend: Bend::default(),
         }
     }
 }
@@ -88,9 +93,15 @@ impl TemperatureField {
         self.zone_degc(x_m) + spots
     }
 
-    /// Where who looks at the shell sees it now, °C.
+    /// Where who looks at the shell straight on sees it now, °C; where the shell has gone aside, what is around it.
     pub(crate) fn seen_at(&self, x_m: f64) -> f64 {
-        self.at(x_m, self.angle_rad)
+        let seen = self.bend.seen_rad(x_m, self.angle_rad, self.radius_m);
+        seen.map_or(self.ambient_degc, |angle_rad| self.at(x_m, angle_rad))
+    }
+
+    /// What a look from there sees now that meets the shell at `straight_m` while that is straight, °C.
+    pub(crate) fn seen_from(&self, from: Standpoint, straight_m: f64) -> f64 {
+        self.seen_at(self.bend.met_m(from, straight_m, self.angle_rad, self.radius_m))
     }
 
     /// The surface as a table: position along it from left to right, m, and angle from top to bottom, °, each value in
@@ -146,6 +157,24 @@ mod tests {
         assert!((field.at(10.0, opposite) - (200.0 + 5.0 * 3.5)).abs() < 1e-9);
         assert_eq!([field.at(0.0, opposite), field.at(60.0, opposite)], [200.0, 315.0]);
         assert_eq!([field.at(-0.1, 0.0), field.at(60.1, 0.0)], [20.0, 20.0]);
+    }
+
+    #[test]
+    fn on_a_bent_shell_a_spot_is_seen_where_the_closed_form_has_it() {
+        let mut field = field();
+        field.bend = Bend { off_m: 0.3, at_m: 22.0, width_m: 1e9, at_rad: 1.0 };
+        let from = Standpoint { beside_m: 30.0, distance_m: 30.0 };
+        // the angle at which the middle of the spot is seen: φ - asin(0.3 sin(1 - φ)/2) = 130°
+        let mut facing = 130_f64.to_radians();
+        for _ in 0..50 {
+            facing = 130_f64.to_radians() + (0.3 * (1.0 - facing).sin() / 2.0).asin();
+        }
+        field.angle_rad = facing;
+        let nearer = 0.3 * (1.0 - facing).cos() + (4.0 - (0.3 * (1.0 - facing).sin()).powi(2)).sqrt() - 2.0;
+        let straight_m = 30.0 - 8.0 * 30.0 / (30.0 - nearer);
+        let seen = field.seen_from(from, straight_m);
+        assert!((seen - field.at(22.0, 130_f64.to_radians())).abs() < 1e-6, "{seen}");
+        assert!((straight_m - 22.0).abs() > 0.02 && (facing - 130_f64.to_radians()).abs() > 0.1);
     }
 
     #[test]

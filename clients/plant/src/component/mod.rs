@@ -5,6 +5,7 @@
 //! | [`kind`] | what a kind of component is, as plain data |
 //! | `declare` | parameters, signals and failures, stated once as structs and enums |
 //! | `behaviour` | what every component is: a state and two halves of a turn |
+//! | `draught` | gas that is drawn through a kiln, and what a blockage leaves of it |
 //! | `dynamics` | lags, friction, sub-steps |
 //! | `fluid` | flow of air and oil through orifices |
 //! | `port_valves` | valves through which oil leaves a cylinder |
@@ -23,6 +24,7 @@
 pub(crate) mod behaviour;
 pub(crate) mod commanded;
 pub(crate) mod declare;
+pub(crate) mod draught;
 pub(crate) mod dynamics;
 pub(crate) mod fluid;
 pub mod instance;

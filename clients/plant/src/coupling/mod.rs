@@ -13,7 +13,7 @@
 //! | `meet` | counts pairs of bodies in contact |
 //! | `collect` | takes bodies out of the world |
 //! | `place` | puts bodies into the world |
-//! | `surface` | heats the surface of a body, or looks at its temperature |
+//! | `surface` | heats or bends the surface of a body, or looks at its temperature |
 //!
 //! # Invariants
 //! - A component names its coupling as a type. It gets that coupling's sight and gives its effect;
@@ -55,7 +55,7 @@ pub(crate) use meet::Meet;
 pub(crate) use motion::{Motion, Moving};
 pub(crate) use place::{Place, Put};
 pub(crate) use ray::{Hit, Ray};
-pub(crate) use surface::{Heats, SeesHeat};
+pub(crate) use surface::{Bends, Heats, SeesHeat};
 pub(crate) use touch::{Contact, Touch};
 
 /// A key that binds a component.

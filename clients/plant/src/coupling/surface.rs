@@ -1,8 +1,9 @@
-//! The temperature of a body's surface: one component gives it, others look at it.
+//! The surface of a body: one component gives its temperature, another says how it is bent, others look at it.
 
 use onescan_server::client::ClientFault;
 
-use super::{BindingKey, Names, Tie, Unbound, needed, wanted, without_effect};
+use super::{BindingKey, Names, Tie, Unbound, needed, optional, wanted, without_effect};
+use crate::bend::Bend;
 use crate::model::Bound;
 use crate::model::Mechanics;
 use crate::temperature_field::TemperatureField;
@@ -12,6 +13,11 @@ use crate::world::coordinate::Measured;
 /// Gives the temperature of a body's surface.
 pub(crate) struct Heats {
     body: usize,
+}
+
+/// Says how a body's surface is bent, if it names a body.
+pub(crate) struct Bends {
+    body: Option<usize>,
 }
 
 /// Sees the temperature of a body's surface; of a body that nothing heats, that of a room.
@@ -45,6 +51,39 @@ impl Tie for Heats {
         world: &mut World,
     ) -> Result<(), ClientFault> {
         world.heat(self.body, &field);
+        Ok(())
+    }
+
+    fn memory(&self) {}
+
+    fn restore(&mut self, (): ()) {}
+
+    fn in_words(bound: &Bound, scene: &Mechanics) -> String {
+        in_words(bound, scene)
+    }
+}
+
+impl Tie for Bends {
+    const NAME: &'static str = "bent surface";
+    const KEYS: &'static [BindingKey] = &[optional(
+        "body",
+        Names::Body,
+        "body whose surface is bent; if absent, nobody who looks at a surface sees the bend",
+    )];
+    type Seen = ();
+    type Effect = Bend;
+    type Memory = ();
+
+    fn bind(bound: &Bound, _: &Mechanics, _: &mut World) -> Result<Self, Unbound> {
+        Ok(Self { body: bound.body })
+    }
+
+    fn see(&self, _: Measured<'_>, _: &World) {}
+
+    fn apply(&mut self, bend: Bend, _: Measured<'_>, _: f64, world: &mut World) -> Result<(), ClientFault> {
+        if let Some(body) = self.body {
+            world.bend(body, bend);
+        }
         Ok(())
     }
 

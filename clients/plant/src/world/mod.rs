@@ -42,6 +42,7 @@ pub(crate) use self::nearby::Sought;
 use self::reach::Reach;
 use self::sleeping::Sleeper;
 use self::solid::{attach, insert_body, leave_alone};
+use crate::bend::Bend;
 use crate::effort::Drives;
 use crate::layout_mismatch::LayoutMismatch;
 use crate::model::{Joint, JointKind, Mechanics};
@@ -87,6 +88,8 @@ pub(crate) struct World {
     /// Surfaces that are heated, by the index of their body. What heats them says so in every turn, before others look,
     /// so this is not a state of its own.
     heated: Vec<(usize, TemperatureField)>,
+    /// Surfaces that are bent, in the same way.
+    bent: Vec<(usize, Bend)>,
     reach: Reach,
     /// None before a sensor looks for many bodies.
     nearby: Option<Nearby>,
@@ -134,6 +137,7 @@ impl World {
             articulation: Articulation::empty(),
             belts: Vec::new(),
             heated: Vec::new(),
+            bent: Vec::new(),
             substeps: scene.substeps,
             extent_m: scene.extent_m,
         };
@@ -219,12 +223,22 @@ impl World {
         }
     }
 
-    /// The temperatures of the surface of a body; those of a room where nothing heats it.
+    /// The surface of a body is bent so from now on.
+    pub(crate) fn bend(&mut self, body: usize, bend: Bend) {
+        match self.bent.iter_mut().find(|(bent, _)| *bent == body) {
+            Some((_, before)) => *before = bend,
+            None => self.bent.push((body, bend)),
+        }
+    }
+
+    /// The surface of a body with its bend, if it has one; as warm as a room where nothing heats it.
     pub(crate) fn heat_of(&self, body: usize) -> TemperatureField {
-        self.heated
-            .iter()
-            .find(|(heated, _)| *heated == body)
-            .map_or_else(TemperatureField::default, |(_, field)| *field)
+        let heated = self.heated.iter().find(|(heated, _)| *heated == body);
+        let mut field = heated.map_or_else(TemperatureField::default, |(_, field)| *field);
+        if let Some((_, bend)) = self.bent.iter().find(|(bent, _)| *bent == body) {
+            field.bend = *bend;
+        }
+        field
     }
 
     /// Surfaces that are heated, each with the index of its body.

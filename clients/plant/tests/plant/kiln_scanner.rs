@@ -6,18 +6,18 @@ use onescan_plant::scanner::protocol::{ACK, NAK, STX, SYN, command};
 use onescan_plant::scanner::temperature_degc;
 use onescan_server::client::Client;
 use onescan_server::signal::{ClientName, Port as Signal, SignalType};
-use onescan_server::time::VirtualTime;
+use onescan_server::time::{TimeSpan, VirtualTime};
 use onescan_stream::connection::{Cuts, Link, Role};
 use onescan_stream::serial::Rate;
 use onescan_stream::{Form, Port};
 
-/// A turn of plant and host, ns.
+/// A turn of plant and host, ns, unless a test tries others.
 const STEP_NS: u64 = 2_000_000;
 /// Lines of a revolution in these tests.
 const LINES: usize = 90;
 
 /// The kiln with a hot spot of +60 °C at 22 m and 130°, and a scanner with these settings.
-fn scene(scanner: &str) -> String {
+fn scene(kiln: &str, scanner: &str) -> String {
     format!(
         r#"
         version = 1
@@ -29,10 +29,13 @@ fn scene(scanner: &str) -> String {
         [[component]]
         name = "kiln"
         kind = "kiln_shell"
+        body = "shell"
+        {kiln}
         ring_start_deg = 0.0
         shell_start_deg = 0.0
         speed_turns_h_signal = "Speed"
         shell_rad_signal = "Angle"
+        run_out_m_signal = "Run_out"
 
         [[component]]
         name = "heat"
@@ -60,6 +63,7 @@ struct Rig {
     inputs: Vec<u8>,
     outputs: Vec<u8>,
     now_ns: u64,
+    step_ns: u64,
 }
 
 /// Where a signal lies among the bytes of a port.
@@ -77,9 +81,13 @@ fn place(signals: &[Signal], name: &str) -> std::ops::Range<usize> {
 
 impl Rig {
     fn new(scanner: &str, form: Form) -> Self {
+        Self::with_step(&scene("", scanner), form, STEP_NS)
+    }
+
+    fn with_step(scene: &str, form: Form, step_ns: u64) -> Self {
         let name = ClientName::new("plant").expect("whole");
-        let step = "2ms".parse().expect("whole");
-        let mut plant = Plant::parse(&scene(scanner), "kiln.toml", name, step).expect("whole");
+        let step = TimeSpan::from_nanos(step_ns).expect("not zero");
+        let mut plant = Plant::parse(scene, "kiln.toml", name, step).expect("whole");
         let size = |signals: &[Signal]| signals.iter().map(|signal| signal.ty.size()).sum();
         let request = plant.join();
         let (inputs, mut outputs) = (vec![0; size(&request.reads)], vec![0; size(&request.writes)]);
@@ -90,7 +98,7 @@ impl Rig {
             window
         };
         let host = Port::new(form, [window(&request.writes, "From"), window(&request.reads, "To")], 1);
-        Self { plant, host, inputs, outputs, now_ns: 0 }
+        Self { plant, host, inputs, outputs, now_ns: 0, step_ns }
     }
 
     fn serial(scanner: &str) -> Self {
@@ -106,9 +114,15 @@ impl Rig {
         self.inputs[speed].copy_from_slice(&turns_h.to_le_bytes());
     }
 
+    /// A value that the plant has written.
+    fn value(&self, name: &str) -> f64 {
+        let place = place(&self.plant.join().writes, name);
+        f64::from_le_bytes(self.outputs[place].try_into().expect("an LREAL"))
+    }
+
     /// One turn of both, which see each other's lines of the turn before.
     fn step(&mut self, act: impl FnOnce(&mut Port)) {
-        self.now_ns += STEP_NS;
+        self.now_ns += self.step_ns;
         let request = self.plant.join();
         let (from, to) = (place(&request.writes, "From"), place(&request.reads, "To"));
         let seen = self.outputs[from].to_vec();
@@ -137,6 +151,32 @@ impl Rig {
             }
         }
         answered
+    }
+
+    /// A line of so many bytes, and what these signals were as it was taken; the kiln goes on for a while after it.
+    fn line_with<const N: usize>(&mut self, bytes: usize, signals: [&str; N]) -> (Vec<u8>, [f64; N]) {
+        let taken = |rig: &Self| {
+            let place = place(&rig.plant.join().writes, "Lines");
+            i32::from_le_bytes(rig.outputs[place].try_into().expect("a DINT"))
+        };
+        if self.host.link() != Link::Open {
+            self.step(Port::connect);
+            while self.host.link() != Link::Open {
+                self.step(|_| ());
+            }
+        }
+        let before = taken(self);
+        self.step(|host| assert!(host.send(&[STX])));
+        let (mut line, mut seen) = (Vec::new(), None);
+        while line.len() < bytes {
+            self.step(|host| line.extend(std::iter::from_fn(|| host.receive())));
+            if taken(self) > before && seen.is_none() {
+                seen = Some(signals.map(|name| self.value(name)));
+            }
+            assert!(self.now_ns < 600_000_000_000, "no line comes");
+        }
+        (0..250_000_000 / self.step_ns).for_each(|_| self.step(|_| ()));
+        (line, seen.expect("a line was taken"))
     }
 
     /// A revolution, line by line; the kiln stands while a line is asked for, so that all links see it at the same angles.
@@ -245,4 +285,37 @@ fn a_scanner_goes_on_from_its_state_in_the_middle_of_a_line() {
     let line = asked(false);
     assert_eq!(line.len(), 258);
     assert_eq!(line, asked(true));
+}
+
+/// The outlet of a shell whose axis is off by 30 cm all along, towards 70 degrees, seen from 34 m beside its middle: by how
+/// much it is nearer, and which point of 1,024 is the last that sees it.
+fn outlet(angle_rad: f64) -> (f64, usize) {
+    let behind = 70_f64.to_radians() - angle_rad;
+    let nearer_m = 0.3 * behind.cos() + (4.0 - (0.3 * behind.sin()).powi(2)).sqrt() - 2.0;
+    // point i looks at -45° + 90° (i + ½)/1024
+    let end_deg = (30.0 / (34.0 - nearer_m)).atan().to_degrees();
+    (nearer_m, ((end_deg + 45.0) / 90.0 * 1024.0 - 0.5).floor() as usize)
+}
+
+#[test]
+fn the_outlet_of_a_bent_shell_is_where_the_closed_form_says_at_1_ms_and_at_10_ms() {
+    let bent = "bend_m = 0.1\nbent_more_m = 0.2\nbend_at_m = 60.0\nbend_at_deg = 70.0\nbend_width_m = 300.0";
+    let far = "link = \"tcp\"\npoint_mode = 5\ndistance_m = 34.0\nlines_signal = \"Lines\"";
+    let failing = "[[failure]]\ncomponent = \"kiln\"\nmode = \"bent\"\n";
+    for step_ns in [1_000_000, 10_000_000] {
+        let scene = format!("{}\n{failing}", scene(bent, far));
+        let mut rig = Rig::with_step(&scene, Form::Connection(Role::Connects, Cuts::Nowhere), step_ns);
+        rig.turn_kiln(250.0);
+        let mut ends = std::collections::BTreeSet::new();
+        for _ in 0..60 {
+            let (line, [angle_rad, run_out_m]) = rig.line_with(1026, ["Angle", "Run_out"]);
+            let (nearer_m, last) = outlet(angle_rad);
+            assert!((run_out_m - nearer_m).abs() < 1e-9, "{step_ns}: {run_out_m} {nearer_m}");
+            let end = line[1..=1024].iter().rposition(|byte| temperature_degc(*byte, 0, 500) > 100.0);
+            assert_eq!(end, Some(last), "{step_ns} at {angle_rad}");
+            ends.insert(last);
+        }
+        // 30 cm to and fro are three points each way
+        assert!(ends.len() >= 5, "{ends:?}");
+    }
 }

@@ -4,7 +4,7 @@
 //! For each of 24 zones, per m² of shell:
 //! - the gas is hottest at the flame, and its heat passes a film, the coating and the brick:
 //!   `q_in = (T_gas − T)/(1/h_in + d_c/k_c + d_b/k_b)`, with `T_gas(x) = T_e + b·(T_f − T_e)·exp(−(x−x_f)²/2w²)` where `T_e` is
-//!   at the ends and `b` what the burner gives;
+//!   at the ends and `b` what the burner gives; gas goes from 0 m, where the hood is, to the fan behind the other end;
 //! - the shell loses it by convection and radiation: `q_out = h_out·(T − T_a) + ε·σ·(T⁴ − T_a⁴)`, temperatures in K there;
 //! - `C·dT/dt = q_in − q_out`. A step is `T + f·(e^{Jh} − 1)/J` with `f` the right-hand side and `J` its slope, which is exact
 //!   where that is a straight line, and for long steps becomes Newton's on the steady state: stable however long;
@@ -12,16 +12,20 @@
 //!
 //! A brick that is lost leaves a spot, which comes and goes by a lag. All of that is on the shell and turns with it.
 //!
+//! A blockage closes a part `β` of the cross section. What then flows, draws and where the heat is: [`Draught`].
+//!
 //! # Source
 //! Closed form: heat balance of a wall in layers, law of Stefan and Boltzmann. Faults of the process: the thesis on the
-//! shell scanner *Jacket*, 2009.
+//! shell scanner *Jacket*, 2009, ch. 2.2.
 
 use std::f64::consts::PI;
 
 use serde::{Deserialize, Serialize};
 
+use crate::bend::Bend;
 use crate::component::behaviour::{Component, Start, Turn};
-use crate::component::declare::{failures, own_types, parameters, signals};
+use crate::component::declare::{Failed, failures, own_types, parameters, signals};
+use crate::component::draught::Draught;
 use crate::component::dynamics::lag;
 use crate::coupling::Heats;
 use crate::temperature_field::{SPOTS, Spot, TemperatureField, ZONES};
@@ -30,6 +34,9 @@ use crate::temperature_field::{SPOTS, Spot, TemperatureField, ZONES};
 const SIGMA: f64 = 5.670_374_419e-8;
 /// 0 °C in K.
 const ZERO_K: f64 = 273.15;
+/// Parts of the shell that a monitoring system has an alarm for, and zones in each.
+const PARTS: usize = 8;
+const ZONES_PER_PART: usize = ZONES / PARTS;
 
 parameters! {
     /// Kiln, lining and surroundings.
@@ -88,6 +95,16 @@ parameters! {
         lost_at_deg: f64 = 250.0 => -360.0, 360.0;
         /// a lost brick: time constant with which its spot comes and goes
         lost_s: f64 = 7200.0 => 0.0, 1e9;
+        /// draught: what the fan draws with, at the end to which gas goes
+        draught_pa: f64 = 200.0 => 0.0, 1e5;
+        /// draught: part of it that an open kiln has at the hood
+        hood_pct: f64 = 10.0 => 0.0, 100.0;
+        /// draught: part of it that an open kiln loses as the velocity head of its cross section
+        head_pct: f64 = 5.0 => 0.0, 100.0;
+        /// a blockage: where it is along the kiln
+        blocked_at_m: f64 = 30.0 => 0.0, 300.0;
+        /// a blockage: part of the cross section that it closes
+        blocked_pct: f64 = 90.0 => 0.0, 99.9;
         /// heat transfer from the shell to the air
         outside_w_m2_k: f64 = 15.0 => 0.1, 1e4;
         /// emissivity of the shell
@@ -128,6 +145,28 @@ signals! {
         brick_least_m: f64,
         /// heat that the shell loses
         loss_w: f64,
+        /// gas that flows, of what flows through an open kiln
+        flow_pct: f64,
+        /// suction at the hood
+        hood_pa: f64,
+        /// suction that is lost across a blockage
+        across_pa: f64,
+        /// hottest point of the first eighth of the shell, spots included
+        zone_1_degc: f64,
+        /// hottest point of the second eighth
+        zone_2_degc: f64,
+        /// hottest point of the third eighth
+        zone_3_degc: f64,
+        /// hottest point of the fourth eighth
+        zone_4_degc: f64,
+        /// hottest point of the fifth eighth
+        zone_5_degc: f64,
+        /// hottest point of the sixth eighth
+        zone_6_degc: f64,
+        /// hottest point of the seventh eighth
+        zone_7_degc: f64,
+        /// hottest point of the last eighth
+        zone_8_degc: f64,
     }
 }
 
@@ -142,6 +181,8 @@ failures! {
         CoatingFalls = "coating_falls",
         /// the burner is out
         BurnerOut = "burner_out",
+        /// a lump blocks the gas: the draught falls, it becomes hotter before and colder behind
+        Blocked = "blocked",
     }
 }
 
@@ -217,18 +258,49 @@ impl KilnHeat {
         state.coating_m + state.ring_m * libm::exp(-0.5 * aside * aside)
     }
 
-    fn wall(&self, state: &State, burner: f64, zone: usize) -> Wall {
+    /// The gas in the middle of each zone, °C.
+    fn gas_degc(&self, burner: f64, draught: Draught) -> [f64; ZONES] {
         let p = &self.p;
-        let aside = (self.middle_m(zone) - p.flame_at_m) / p.flame_width_m;
-        let hotter = burner * (p.flame_degc - p.ends_degc) * libm::exp(-0.5 * aside * aside);
+        let excess_k = std::array::from_fn(|zone| {
+            let aside = (self.middle_m(zone) - p.flame_at_m) / p.flame_width_m;
+            burner * (p.flame_degc - p.ends_degc) * libm::exp(-0.5 * aside * aside)
+        });
+        let behind = (0..ZONES).take_while(|zone| self.middle_m(*zone) < p.blocked_at_m).count();
+        draught.carries(&excess_k, behind).map(|hotter_k| p.ends_degc + hotter_k)
+    }
+
+    fn draught(&self, failed: Failed) -> Draught {
+        if failed.has(Failure::Blocked) {
+            Draught::blocked(self.p.blocked_pct / 100.0, self.p.head_pct / 100.0)
+        } else {
+            Draught::OPEN
+        }
+    }
+
+    fn wall(&self, state: &State, gas_degc: f64, zone: usize) -> Wall {
+        let p = &self.p;
         let layers = 1.0 / p.inside_w_m2_k + self.coating_at(state, zone) / p.coating_w_m_k + state.brick_m / p.brick_w_m_k;
         Wall {
-            gas_degc: p.ends_degc + hotter,
+            gas_degc,
             inside_w_k: 1.0 / layers,
             outside_w_k: p.outside_w_m2_k,
             radiation_w_k4: p.emissivity_pct / 100.0 * SIGMA,
             ambient_degc: state.ambient_degc,
         }
+    }
+
+    /// The hottest point of each part of the shell, among the middles of zones and spots.
+    fn parts_degc(&self, state: &State) -> [f64; PARTS] {
+        let field = self.effect(state);
+        let zones = |part: usize| &field.zones_degc[part * ZONES_PER_PART..(part + 1) * ZONES_PER_PART];
+        let mut parts = std::array::from_fn(|part| zones(part).iter().copied().fold(f64::NEG_INFINITY, f64::max));
+        for spot in field.spots.iter().filter(|spot| spot.more_k > 0.0) {
+            let part = spot.at_m / field.length_m * PARTS as f64;
+            if let Some(hottest) = parts.get_mut(part as usize) {
+                *hottest = hottest.max(field.at(spot.at_m, spot.at_rad));
+            }
+        }
+        parts
     }
 
     fn spots(&self, state: &State) -> [Spot; SPOTS] {
@@ -250,9 +322,11 @@ impl Component for KilnHeat {
     const FORMULA: &'static [&'static str] = &[
         "C dT/dt = (T_gas - T)/(1/h_in + d_c/k_c + d_b/k_b) - h_out (T - T_a) - ε σ (T⁴ - T_a⁴)",
         "T_gas(x) = T_e + b (T_f - T_e) exp(-(x - x_f)²/2w²)",
+        "blocked: f = (1 + ζ (1/(1 - β)² - 1))^-½, hood h p f², across p (1 - f²)",
+        "T_gas - T_e behind it f times, before it 1 + (1 - f) E_behind/E_before times as much",
         "spots A exp(-(x - x_i)²/2σ_x² - R²(φ - φ_i)²/2σ_a²)",
     ];
-    const SOURCE: &'static str = "closed form; faults of the process: Jacket, 2009";
+    const SOURCE: &'static str = "closed form; faults of the process: Jacket, 2009, ch. 2.2";
     const INITIAL: &'static [&'static str] = &["start_degc", "coating_start_m", "ring_m"];
     own_types!(moves Heats);
 
@@ -272,8 +346,8 @@ impl Component for KilnHeat {
             angle_rad: 0.0,
         };
         if self.p.start_degc < -ZERO_K {
-            state.zones_degc =
-                std::array::from_fn(|zone| self.wall(&state, unset.burner_pct / 100.0, zone).steady_degc());
+            let gas_degc = self.gas_degc(unset.burner_pct / 100.0, Draught::OPEN);
+            state.zones_degc = std::array::from_fn(|zone| self.wall(&state, gas_degc[zone], zone).steady_degc());
         }
         state
     }
@@ -286,8 +360,9 @@ impl Component for KilnHeat {
         let lost_k = if turn.failed.has(Failure::BrickLost) { p.lost_more_degc } else { 0.0 };
         state.ambient_degc = inputs.ambient_degc.clamp(-ZERO_K, 1000.0);
         state.angle_rad = inputs.angle_rad;
+        let gas_degc = self.gas_degc(burner, self.draught(turn.failed));
         for zone in 0..ZONES {
-            let wall = self.wall(state, burner, zone);
+            let wall = self.wall(state, gas_degc[zone], zone);
             state.zones_degc[zone] = wall.after(state.zones_degc[zone], p.heat_j_m2_k, dt_s);
         }
         state.coating_m = lag(state.coating_m, coating_m, p.coating_s, dt_s);
@@ -307,16 +382,20 @@ impl Component for KilnHeat {
             radius_m: self.p.shell_m / 2.0,
             ambient_degc: state.ambient_degc,
             angle_rad: state.angle_rad,
+            bend: Bend::default(),
         }
     }
 
-    fn sense(&self, state: &mut State, _: &Inputs, _: &Turn) -> Outputs {
+    fn sense(&self, state: &mut State, _: &Inputs, turn: &Turn) -> Outputs {
         let first = (0, state.zones_degc[0]);
         let zones = || state.zones_degc.iter().copied().enumerate();
         let (hottest, hottest_degc) = zones().fold(first, |most, zone| if zone.1 > most.1 { zone } else { most });
         let (_, coldest_degc) = zones().fold(first, |least, zone| if zone.1 < least.1 { zone } else { least });
         let area_m2 = PI * self.p.shell_m * self.p.length_m / ZONES as f64;
         let loss = |(zone, degc): (usize, f64)| area_m2 * self.wall(state, 0.0, zone).loss_w(degc);
+        let draught = self.draught(turn.failed);
+        let [zone_1_degc, zone_2_degc, zone_3_degc, zone_4_degc, zone_5_degc, zone_6_degc, zone_7_degc, zone_8_degc] =
+            self.parts_degc(state);
         Outputs {
             hottest_degc,
             hottest_m: self.middle_m(hottest),
@@ -325,109 +404,20 @@ impl Component for KilnHeat {
             coating_most_m: (0..ZONES).map(|zone| self.coating_at(state, zone)).fold(0.0, f64::max),
             brick_least_m: state.brick_m,
             loss_w: zones().map(loss).sum(),
+            flow_pct: 100.0 * draught.flow(),
+            hood_pa: draught.left_of(self.p.hood_pct / 100.0 * self.p.draught_pa),
+            across_pa: self.p.draught_pa - draught.left_of(self.p.draught_pa),
+            zone_1_degc,
+            zone_2_degc,
+            zone_3_degc,
+            zone_4_degc,
+            zone_5_degc,
+            zone_6_degc,
+            zone_7_degc,
+            zone_8_degc,
         }
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::component::tests::Rig;
-
-    const ON: Inputs = Inputs { burner_pct: 100.0, ambient_degc: 20.0, angle_rad: 0.0 };
-    const DAY_S: f64 = 86400.0;
-
-    fn rig(p: Parameters) -> Rig<KilnHeat> {
-        Rig::new(KilnHeat::new(p))
-    }
-
-    /// A kiln that is the same all along, whose brick lets through just what a shell of 300 °C loses.
-    fn by_hand() -> Parameters {
-        let kelvin = |degc: f64| degc + 273.15;
-        let loss = 15.0 * 280.0 + 0.85 * 5.670_374_419e-8 * (kelvin(300.0).powi(4) - kelvin(20.0).powi(4));
-        let brick_m = (((1000.0 - 300.0) / loss) - 1.0 / 150.0) * 3.0;
-        let p = Parameters::default();
-        Parameters { ends_degc: 1000.0, flame_degc: 1000.0, coating_m: 0.0, coating_start_m: 0.0, brick_m, ..p }
-    }
-
-    #[test]
-    fn the_steady_state_is_the_closed_form_whatever_the_step() {
-        for (dt_s, turns) in [(10.0, 50_000), (3600.0, 200), (30.0 * DAY_S, 12)] {
-            for start_degc in [-300.0, 20.0, 900.0] {
-                let mut rig = rig(Parameters { start_degc, ..by_hand() });
-                let out = rig.run(ON, dt_s, turns);
-                assert!((out.hottest_degc - 300.0).abs() < 1e-6, "{dt_s} {start_degc} {out:?}");
-                assert!((out.coldest_degc - 300.0).abs() < 1e-6, "{dt_s} {start_degc} {out:?}");
-            }
-        }
-        // 4 m by 60 m of shell, each m² as computed
-        let out = rig(by_hand()).run(ON, 1.0, 1);
-        assert!((out.loss_w / (PI * 240.0) - (1000.0 - 300.0) / (by_hand().brick_m / 3.0 + 1.0 / 150.0)).abs() < 1e-6);
-    }
-
-    #[test]
-    fn without_radiation_a_step_of_any_length_is_exact() {
-        let p = Parameters { emissivity_pct: 0.0, start_degc: 20.0, ..by_hand() };
-        let (g, h) = (1.0 / (p.brick_m / 3.0 + 1.0 / 150.0), 15.0);
-        let (end, tau) = ((g * 1000.0 + h * 20.0) / (g + h), p.heat_j_m2_k / (g + h));
-        for (dt_s, turns) in [(1.0, 7200), (7200.0, 1)] {
-            let out = rig(p.clone()).run(ON, dt_s, turns);
-            let exact = end + (20.0 - end) * libm::exp(-7200.0 / tau);
-            assert!((out.hottest_degc - exact).abs() < 1e-7, "{dt_s}: {} {exact}", out.hottest_degc);
-        }
-    }
-
-    #[test]
-    fn half_the_step_leaves_a_quarter_of_the_error() {
-        let after = |turns: u32| {
-            let mut rig = rig(Parameters { start_degc: 20.0, ..Parameters::default() });
-            rig.run(ON, 14_400.0 / f64::from(turns), turns).hottest_degc
-        };
-        let exact = after(50_000);
-        let errors = [8, 16, 32].map(|turns| (after(turns) - exact).abs());
-        assert!(errors[0] / errors[1] > 3.5 && errors[1] / errors[2] > 3.5, "{errors:?}");
-    }
-
-    #[test]
-    fn a_flame_makes_its_place_hottest_and_a_ring_makes_its_place_cold() {
-        let mut kiln = rig(Parameters::default());
-        let out = kiln.run(ON, 60.0, 1);
-        assert!((out.hottest_m - 15.0).abs() < 2.0 && (250.0..400.0).contains(&out.hottest_degc), "{out:?}");
-        let field = kiln.component.effect(&kiln.state);
-        let mut ringed = rig(Parameters::default()).failing(Failure::RingGrowing);
-        let out = ringed.run(ON, 3600.0, 5 * 24);
-        // five days at 1 µm/s; the middles of the nearest zones are 1.25 m aside
-        let thickest = 0.1 + 0.432 * libm::exp(-0.5 * (1.25_f64 / 1.5).powi(2));
-        assert!((out.coating_most_m - thickest).abs() < 1e-9, "{out:?}");
-        let colder = field.at(40.0, 0.0) - ringed.component.effect(&ringed.state).at(40.0, 0.0);
-        assert!(colder > 40.0, "{colder}");
-    }
-
-    #[test]
-    fn a_lost_brick_grows_a_spot_by_its_lag_and_repair_lets_it_go() {
-        let mut rig = rig(Parameters::default()).failing(Failure::BrickLost);
-        let out = rig.run(ON, 60.0, 120);
-        assert!((out.lost_degc - 150.0 * (1.0 - libm::exp(-1.0))).abs() < 1e-9, "{out:?}");
-        let field = rig.component.effect(&rig.state);
-        let angle = 250_f64.to_radians();
-        assert!((field.at(18.0, angle) - field.at(18.0, angle + PI) - out.lost_degc).abs() < 1e-9);
-    }
-
-    #[test]
-    fn months_wear_the_brick_and_warm_the_shell() {
-        let mut rig = rig(Parameters { wear_m_s: 2e-9, ..Parameters::default() });
-        let new = rig.run(ON, 60.0, 1).hottest_degc;
-        let worn = rig.run(ON, 3600.0, 24 * 365);
-        assert!((worn.brick_least_m - (0.2 - 2e-9 * (365.0 * DAY_S + 60.0))).abs() < 1e-9, "{worn:?}");
-        assert!(worn.hottest_degc > new + 20.0, "{new} {worn:?}");
-    }
-
-    #[test]
-    fn each_other_failure_has_its_effect() {
-        let whole = rig(Parameters::default()).run(ON, 3600.0, 48).hottest_degc;
-        let out = rig(Parameters::default()).failing(Failure::BurnerOut).run(ON, 3600.0, 48);
-        assert!(out.hottest_degc < whole - 50.0, "{whole} {out:?}");
-        let bare = rig(Parameters::default()).failing(Failure::CoatingFalls).run(ON, 3600.0, 480);
-        assert!(bare.coating_most_m < 1e-3 && bare.hottest_degc > whole + 20.0, "{whole} {bare:?}");
-    }
-}
+mod tests;

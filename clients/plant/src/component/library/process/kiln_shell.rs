@@ -5,19 +5,25 @@
 //! - in each of its turns the shell of diameter `D` is left behind by `πδ` along its circumference;
 //! - so `T_shell/T_ring = 1 + δ/D`.
 //!
+//! A shell that is bent runs out: its axis is off by `e(x) = a·exp(−(x−x_b)²/2w²)` towards the angle `φ_b` of its own, so that
+//! where `φ` passes who looks at it, the surface at the bend is nearer by `r = e·cos ψ + √(R² − e²·sin²ψ) − R`, `ψ = φ_b − φ`
+//! ([`Bend`]). The run-out does not act on creep or cams: rings and piers hold the shell as if it were straight.
+//!
 //! A switch sees its cam while the angle of ring or shell is less than the cam's width, so for `T·width/360°` of each turn.
 //! Angles are kept within a turn, with whole turns beside them: after months a turn is as fine as at the start.
 //!
 //! # Source
 //! Closed form; drive by friction, two inductive switches, their quotient as the slip: the thesis on the shell scanner
-//! *Jacket*, 2009, ch. 14.
+//! *Jacket*, 2009, ch. 14; faults of the shell: ch. 2.2.
 
 use std::f64::consts::PI;
 
 use serde::{Deserialize, Serialize};
 
+use crate::bend::Bend;
 use crate::component::behaviour::{Component, Start, Turn};
 use crate::component::declare::{failures, own_types, parameters, signals};
+use crate::coupling::Bends;
 
 /// Seconds of an hour.
 const HOUR_S: f64 = 3600.0;
@@ -38,6 +44,16 @@ parameters! {
         ring_start_deg: f64 = 300.0 => 0.0, 360.0;
         /// how far the cam of the shell is behind its switch at the start
         shell_start_deg: f64 = 300.0 => 0.0, 360.0;
+        /// a bent shell: how far its axis is off where that is most
+        bend_m: f64 = 0.0 => 0.0, 1.0;
+        /// a bent shell: where that is along the kiln
+        bend_at_m: f64 = 30.0 => 0.0, 300.0;
+        /// a bent shell: towards which angle of the shell
+        bend_at_deg: f64 = 0.0 => -360.0, 360.0;
+        /// a bent shell: standard deviation along the kiln
+        bend_width_m: f64 = 15.0 => 0.1, 300.0;
+        /// a shell that has been bent: by how much its axis is further off
+        bent_more_m: f64 = 0.1 => 0.0, 1.0;
     }
 }
 
@@ -64,6 +80,8 @@ signals! {
         shell_turns: f64,
         /// by how much the shell has crept back, along its circumference
         creep_m: f64,
+        /// by how much the surface is nearer to who looks at it, at the bend
+        run_out_m: f64,
     }
 }
 
@@ -76,6 +94,8 @@ failures! {
         RingSwitchDead = "ring_switch_dead",
         /// the switch at the shell is dead
         ShellSwitchDead = "shell_switch_dead",
+        /// the shell has been bent: it runs out
+        Bent = "bent",
     }
 }
 
@@ -120,6 +140,8 @@ pub(crate) struct State {
     shell: Angle,
     /// Turns by which the shell is behind the ring.
     behind: f64,
+    /// How far the axis of the shell is off, m.
+    off_m: f64,
 }
 
 /// A kiln by its parameters.
@@ -127,14 +149,26 @@ pub(crate) struct KilnShell {
     p: Parameters,
 }
 
+impl KilnShell {
+    fn bend(&self, off_m: f64) -> Bend {
+        let p = &self.p;
+        Bend { off_m, at_m: p.bend_at_m, width_m: p.bend_width_m, at_rad: p.bend_at_deg.to_radians() }
+    }
+}
+
 impl Component for KilnShell {
     const NAME: &'static str = "kiln_shell";
-    const SUMMARY: &'static str = "rotary kiln: shell in its riding ring, with creep, and a switch at each";
-    const FORMULA: &'static [&'static str] =
-        &["creep πδ a turn of the shell", "T_shell/T_ring = 1 + δ/D", "switch on for T·width/360°"];
-    const SOURCE: &'static str = "closed form; Jacket, 2009, ch. 14";
+    const SUMMARY: &'static str = "rotary kiln: shell in its riding ring, with creep and run-out, and a switch at each";
+    const FORMULA: &'static [&'static str] = &[
+        "creep πδ a turn of the shell",
+        "T_shell/T_ring = 1 + δ/D",
+        "switch on for T·width/360°",
+        "bent: axis off by e(x) = a exp(-(x - x_b)²/2w²) towards φ_b",
+        "nearer by r = e cos ψ + (R² - e² sin²ψ)^½ - R, ψ = φ_b - φ",
+    ];
+    const SOURCE: &'static str = "closed form; Jacket, 2009, ch. 14, faults ch. 2.2";
     const INITIAL: &'static [&'static str] = &["ring_start_deg", "shell_start_deg"];
-    own_types!();
+    own_types!(moves Bends);
 
     fn new(p: Parameters) -> Self {
         Self { p }
@@ -145,6 +179,7 @@ impl Component for KilnShell {
             ring: Angle::from_degrees(self.p.ring_start_deg),
             shell: Angle::from_degrees(self.p.shell_start_deg),
             behind: 0.0,
+            off_m: self.p.bend_m,
         }
     }
 
@@ -155,17 +190,25 @@ impl Component for KilnShell {
         state.ring.advance(ring);
         state.shell.advance(shell);
         state.behind += ring - shell;
+        let more_m = if turn.failed.has(Failure::Bent) { self.p.bent_more_m } else { 0.0 };
+        state.off_m = self.p.bend_m + more_m;
+    }
+
+    fn effect(&self, state: &State) -> Bend {
+        self.bend(state.off_m)
     }
 
     fn sense(&self, state: &mut State, _: &Inputs, turn: &Turn) -> Outputs {
         let sees = |angle: &Angle, cam_deg: f64, dead| angle.is_within(cam_deg) && !turn.failed.has(dead);
+        let shell_rad = 2.0 * PI * state.shell.part;
         Outputs {
             ring_switch: sees(&state.ring, self.p.ring_cam_deg, Failure::RingSwitchDead),
             shell_switch: sees(&state.shell, self.p.shell_cam_deg, Failure::ShellSwitchDead),
-            shell_rad: 2.0 * PI * state.shell.part,
+            shell_rad,
             ring_turns: state.ring.turns() - Angle::from_degrees(self.p.ring_start_deg).part,
             shell_turns: state.shell.turns() - Angle::from_degrees(self.p.shell_start_deg).part,
             creep_m: PI * self.p.shell_m * state.behind,
+            run_out_m: self.bend(state.off_m).nearer_m(self.p.bend_at_m, shell_rad, self.p.shell_m / 2.0),
         }
     }
 }
@@ -224,6 +267,21 @@ mod tests {
         assert!(out.shell_turns == 0.0 && (out.ring_turns - 10.0).abs() < 1e-9, "{out:?}");
         let mut dead = rig().failing(Failure::ShellSwitchDead);
         assert!((0..2000).all(|_| !dead.run(MINUTE, 0.1, 1).shell_switch));
+    }
+
+    #[test]
+    fn a_bent_shell_runs_out_by_the_closed_form_whatever_the_step() {
+        let p = Parameters { bend_m: 0.05, bend_at_deg: 40.0, shell_start_deg: 0.0, ..Parameters::default() };
+        for (dt_s, turns) in [(0.001, 23_000), (0.01, 2_300)] {
+            let mut rig = Rig::new(KilnShell::new(p.clone())).failing(Failure::Bent);
+            let out = rig.run(MINUTE, dt_s, turns);
+            // 23 s of the 60.24 s of a turn; 5 cm and the 10 cm of the failure
+            let (behind, off) = (40_f64.to_radians() - 2.0 * PI * 23.0 / 60.24, 0.15);
+            let nearer = off * behind.cos() + (4.0 - (off * behind.sin()).powi(2)).sqrt() - 2.0;
+            assert!((out.run_out_m - nearer).abs() < 1e-9, "{dt_s}: {out:?} {nearer}");
+            assert_eq!(rig.component.effect(&rig.state).off_m, 0.15);
+        }
+        assert_eq!(rig().run(MINUTE, 0.01, 1234).run_out_m, 0.0, "a straight one does not");
     }
 
     #[test]

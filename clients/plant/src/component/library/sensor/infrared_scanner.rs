@@ -2,6 +2,8 @@
 //!
 //! # Equations
 //! - point `i` of `n` looks at `α_i = −45° + 90°·(i + ½)/n`, and sees `x = x_0 + d·tan α_i`, `x_0` the middle of its field;
+//! - where the shell is bent, that point meets it at `x = x_0 + (d − r)·tan α_i` and at the angle `φ − asin(e·sin ψ/R)`: the
+//!   surface moves to the scanner and away from it, and aside, as the shell turns (see [`Bend`](crate::bend::Bend));
 //! - `D = 255·(T − T_min)/(T_max − T_min)`, to the nearest whole number from 0 to 255;
 //! - a line begins with SYN, then its points and the internal temperature: `n + 2` bytes, no check sum;
 //! - a scanner that is set to another emissivity than the surface's shows what Wien's law says at 3.9 µm.
@@ -16,6 +18,7 @@ use std::num::NonZeroU32;
 
 use serde::{Deserialize, Serialize};
 
+use crate::bend::Standpoint;
 use crate::component::behaviour::{Component, Start, Talk, Turn};
 use crate::component::declare::{Line, choice, failures, own_types, parameters, signals};
 use crate::coupling::SeesHeat;
@@ -140,13 +143,14 @@ impl InfraredScanner {
         let knocked = if turn.failed.has(Failure::OffSquare) { p.knocked_deg } else { 0.0 };
         let optics =
             Optics { middle_m: p.middle_m, distance_m: p.distance_m, off_square_deg: p.off_square_deg + knocked };
+        let from = Standpoint { beside_m: p.middle_m, distance_m: p.distance_m };
         let clear = if turn.failed.has(Failure::Dirty) { p.dirty_pct / 100.0 } else { 1.0 };
         let (emissivity, set) = (p.emissivity_pct / 100.0 * clear, f64::from(settings.emissivity_pct) / 100.0);
         let points = settings.points();
         let mut line = Vec::with_capacity(settings.line_bytes());
         line.push(SYN);
         line.extend((0..points).map(|index| {
-            let degc = optics.place_m(index, points).map_or(field.ambient_degc, |x_m| field.seen_at(x_m));
+            let degc = optics.place_m(index, points).map_or(field.ambient_degc, |x_m| field.seen_from(from, x_m));
             quantised(shown_degc(degc, emissivity, set), settings.lower_degc, settings.upper_degc)
         }));
         line.push(quantised(self.inside_degc(field), 0, 255));
@@ -214,7 +218,7 @@ impl Component for InfraredScanner {
     const NAME: &'static str = "infrared_scanner";
     const SUMMARY: &'static str = "infrared line scanner: temperatures along a shell, as bytes on request";
     const FORMULA: &'static [&'static str] = &[
-        "x = x_0 + d tan(-45° + 90° (i + ½)/n)",
+        "x = x_0 + (d - r) tan(-45° + 90° (i + ½)/n), r by which a bent shell is nearer there",
         "D = 255 (T - T_min)/(T_max - T_min), rounded",
         "line: SYN, n points, internal temperature",
     ];

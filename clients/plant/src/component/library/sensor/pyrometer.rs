@@ -1,7 +1,8 @@
 //! A pyrometer: the temperature of a surface that turns past it, at one place.
 //!
 //! # Equations
-//! - `τ dx/dt = T(x_0, φ) − x`, exact over a period, with `φ` the angle of the shell that passes;
+//! - `τ dx/dt = T(x_0, φ) − x`, exact over a period, with `φ` the angle of the shell that passes, a bend
+//!   included;
 //! - set to another emissivity than the surface's it shows what Wien's law says at 3.9 µm: `1/T' = 1/T − λ/c₂·ln(ε/ε_set)`.
 //!
 //! # Source
