@@ -33,6 +33,12 @@ pub struct ReportFile {
     /// What is listed, with each occurrence.
     #[serde(default)]
     pub alarm: Vec<AlarmFile>,
+    /// Of which signals the lowest, mean and highest values are kept, window by window.
+    #[serde(default)]
+    pub history: Vec<HistoryFile>,
+    /// For how long which signals have which values.
+    #[serde(default)]
+    pub histogram: Vec<HistogramFile>,
 }
 
 /// Something that is counted: `when` or `counter`.
@@ -125,6 +131,55 @@ pub struct AlarmFile {
     #[serde(default, deserialize_with = "from_optional_text")]
     #[schemars(with = "Option<Time>")]
     pub off_delay: Option<TimeSpan>,
+}
+
+/// The lowest, mean and highest values of signals in equal windows of virtual time.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct HistoryFile {
+    /// Its name in the report; unique among histories.
+    #[schemars(with = "String")]
+    pub name: Spanned<String>,
+    /// Signals that are numbers; a range as in `"Zone[1..8]"` stands for all of its names.
+    #[schemars(with = "Vec<String>")]
+    pub signals: Vec<Spanned<String>>,
+    /// The unit of the report, which theirs are carried to; each keeps its own if absent.
+    #[schemars(with = "Option<String>")]
+    pub unit: Option<Spanned<String>>,
+    /// Width of the windows, as in `"24h"`; one that suits the run if absent.
+    #[serde(default, deserialize_with = "from_optional_text")]
+    #[schemars(with = "Option<Time>")]
+    pub every: Option<TimeSpan>,
+}
+
+/// For how long signals have which values.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct HistogramFile {
+    /// Its name in the report; unique among histograms.
+    #[schemars(with = "String")]
+    pub name: Spanned<String>,
+    /// Signals that are numbers; a range as in `"Zone[1..8]"` stands for all of its names.
+    #[schemars(with = "Vec<String>")]
+    pub signals: Vec<Spanned<String>>,
+    /// The unit of the edges and of the report, which theirs are carried to; each keeps its own if absent.
+    #[schemars(with = "Option<String>")]
+    pub unit: Option<Spanned<String>>,
+    /// Where the first bin begins.
+    #[schemars(with = "f64")]
+    pub from: Spanned<f64>,
+    /// Where the last bin ends.
+    #[schemars(with = "f64")]
+    pub to: Spanned<f64>,
+    /// How many bins there are, 1 to 1000.
+    #[serde(default = "bins")]
+    #[schemars(with = "u32")]
+    pub bins: Spanned<u32>,
+}
+
+/// As many bins as a picture shows well.
+fn bins() -> Spanned<u32> {
+    Spanned::new(0..0, 24)
 }
 
 /// How urgent an alarm is (ISA-18.2): how soon somebody has to do something.

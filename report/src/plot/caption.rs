@@ -58,7 +58,7 @@ pub(super) fn of_plane(up: &str, along: &str, run_labels: &[String], enlarged: O
 }
 
 /// A unit and a power of ten in parentheses, if there is one of them.
-fn in_unit(unit: Option<&str>, exponent: i32) -> String {
+pub(super) fn in_unit(unit: Option<&str>, exponent: i32) -> String {
     match (unit, exponent) {
         (None, 0) => String::new(),
         (Some(unit), 0) => format!(" ({unit})"),

@@ -23,7 +23,8 @@
 //! | `figure` | all of these as one picture |
 //! | `plane` | two signals against each other |
 //! | `bars` | parts of a whole |
-//! | `histogram` | how many times of which length |
+//! | `histogram` | how many times of which length; how much of the time which values |
+//! | `history` | the lowest, mean and highest values in windows of time |
 //! | `chart` | the same as data, for charts in a browser |
 //! | `value_map` | a table of values over two axes, as colours |
 //!
@@ -57,6 +58,7 @@ mod caption;
 mod chart;
 mod figure;
 mod histogram;
+mod history;
 mod layout;
 pub mod lettering;
 mod mark;
@@ -73,7 +75,8 @@ mod trace;
 pub mod value_map;
 
 pub use bars::{Bar, Bars};
-pub use histogram::Histogram;
+pub use histogram::{Histogram, ValueHistogram};
+pub use history::{History, Past};
 pub use part::{NothingThere, Part};
 pub use value_map::{MapAxis, ValueMap};
 

@@ -55,7 +55,11 @@ impl ValueRange {
         if is_two_valued(panel) {
             return Self { low: -0.2, high: 1.2 };
         }
-        let Some(Self { low, high }) = finite_range(panel) else { return Self { low: 0.0, high: 1.0 } };
+        finite_range(panel).map_or(Self { low: 0.0, high: 1.0 }, |Self { low, high }| Self::around(low, high))
+    }
+
+    /// From `low` to `high`, both finite, with some room around them.
+    pub(super) fn around(low: f64, high: f64) -> Self {
         let half_span = high / 2.0 - low / 2.0;
         let magnitude = low.abs().max(high.abs());
         if half_span > magnitude * NOISE {

@@ -83,12 +83,22 @@ enum Measure {
     Derived,
 }
 
+impl KnownSignal {
+    /// The unit in which formulas and reports have its values; times are seconds.
+    pub(crate) fn unit_of_value(&self) -> Option<&str> {
+        if self.is_time() { Some("s") } else { self.unit.as_deref() }
+    }
+
+    fn is_time(&self) -> bool {
+        use SignalType as E;
+        matches!(self.ty, E::TIME | E::LTIME | E::TOD | E::LTOD)
+    }
+}
+
 impl Measure {
     fn of_signal(signal: &KnownSignal) -> Self {
-        use SignalType as E;
-        let time = matches!(signal.ty, E::TIME | E::LTIME | E::TOD | E::LTOD);
         match &signal.unit {
-            _ if time => Unit::find("s").map_or(Self::Derived, Self::Unit),
+            _ if signal.is_time() => Unit::find("s").map_or(Self::Derived, Self::Unit),
             Some(name) => Unit::find(name).map_or_else(|| Self::Named(name.clone()), Self::Unit),
             None => Self::Plain,
         }

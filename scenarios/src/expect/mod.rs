@@ -67,4 +67,5 @@ pub use present::Present;
 pub use reaction::Reaction;
 pub use sample::TraceEnd;
 pub use truth::Margin;
+pub(crate) use unit::Carrying;
 pub use verdict::{Outcome, Verdict};

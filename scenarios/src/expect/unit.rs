@@ -1,5 +1,7 @@
 //! Units of measurement, and numbers carried from one to another.
 
+use onescan_server::signal::did_you_mean;
+
 /// What a unit measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Quantity {
@@ -117,6 +119,29 @@ impl Unit {
     }
 }
 
+/// How values are carried from one unit to another.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Carrying {
+    /// Times the first, by the second.
+    By((f64, f64)),
+    /// They measure different quantities, or one of them is known to its signal only.
+    Never,
+    /// The unit to carry to is not known; one that is written much alike.
+    Unknown(Option<String>),
+}
+
+impl Carrying {
+    /// From the unit of a signal to the one that is wanted. A unit that only its signal knows is carried to itself.
+    pub(crate) fn between(own: &str, wanted: &str) -> Self {
+        match (Unit::find(own), Unit::find(wanted)) {
+            _ if own == wanted => Self::By((1.0, 1.0)),
+            (_, None) => Self::Unknown(did_you_mean(wanted, Unit::names())),
+            (Some(own), Some(wanted)) => own.factor_to(wanted).map_or(Self::Never, Self::By),
+            (None, Some(_)) => Self::Never,
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -138,6 +163,17 @@ mod tests {
     fn quantities_do_not_mix() {
         assert_eq!(Unit::find("bar").unwrap().factor_to(Unit::find("mm").unwrap()), None);
         assert_eq!(Unit::find("K").unwrap().factor_to(Unit::find("degC").unwrap()), None);
+    }
+
+    #[test]
+    fn a_unit_is_carried_to_itself_and_to_those_of_its_quantity() {
+        assert_eq!(Carrying::between("mm", "m"), Carrying::By((1.0, 1e3)));
+        assert_eq!(Carrying::between("pieces", "pieces"), Carrying::By((1.0, 1.0)));
+        assert_eq!(
+            [Carrying::between("K", "°C"), Carrying::between("pieces", "m")],
+            [Carrying::Never, Carrying::Never]
+        );
+        assert!(matches!(Carrying::between("bar", "mbarr"), Carrying::Unknown(Some(help)) if help.contains("mbar")));
     }
 
     #[test]

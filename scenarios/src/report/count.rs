@@ -4,7 +4,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::edge::Edge;
-use super::throughput::{Throughput, Windows};
+use super::throughput::Throughput;
+use super::windows::Windows;
 use crate::expect::Present;
 use crate::report_file::Quality;
 
@@ -51,11 +52,11 @@ pub(super) struct Count {
     edge: Edge,
     before: Option<i128>,
     total: u64,
-    windows: Windows,
+    windows: Windows<u64>,
 }
 
 impl Count {
-    pub(super) fn new(counted: Counted, windows: Windows) -> Self {
+    pub(super) fn new(counted: Counted, windows: Windows<u64>) -> Self {
         Self { counted, edge: Edge::default(), before: None, total: 0, windows }
     }
 
@@ -73,7 +74,9 @@ impl Count {
         };
         if more > 0 {
             self.total = self.total.saturating_add(more);
-            self.windows.add(t_ns, more);
+            if let Some(counted) = self.windows.at(t_ns) {
+                *counted = counted.saturating_add(more);
+            }
         }
     }
 
@@ -84,7 +87,7 @@ impl Count {
             quality: self.counted.quality,
             count: self.total,
             per_hour: (span_ns > 0).then(|| self.total as f64 * HOUR_NS / span_ns as f64),
-            throughput: self.windows.until(end_ns),
+            throughput: Throughput::until(&self.windows, end_ns),
         }
     }
 }

@@ -8,6 +8,9 @@ use super::annunciator::Alarm;
 use super::count::{Counted, What};
 use super::cycle::Timed;
 use super::down_time::{Cause, Down, UNKNOWN};
+use super::history::Past;
+use super::look::Looker;
+use super::spread::Spread;
 use crate::error::Wrong;
 use crate::expect::{KnownSignal, Present};
 use crate::expectations::place_within;
@@ -25,6 +28,8 @@ pub struct Measures {
     pub(super) cycles: Vec<Timed>,
     pub(super) down: Option<Down>,
     pub(super) alarms: Vec<Alarm>,
+    pub(super) histories: Vec<Past>,
+    pub(super) spreads: Vec<Spread>,
 }
 
 impl Measures {
@@ -59,26 +64,34 @@ impl<'a> Binder<'a> {
     }
 
     fn measures(mut self, step: TimeSpan, report: &Spanned<ReportFile>) -> Result<Measures, Wrong> {
-        let ReportFile { window, ideal_cycle, count, cycle, down_time, alarm } = report.get_ref();
-        if count.is_empty() && cycle.is_empty() && down_time.is_none() && alarm.is_empty() {
-            let help = "give it a `[[report.count]]`, `[[report.cycle]]`, `[report.down_time]` or `[[report.alarm]]`";
+        let ReportFile { window, ideal_cycle, count, cycle, down_time, alarm, history, histogram } = report.get_ref();
+        let has_measure = !count.is_empty() || !cycle.is_empty() || down_time.is_some() || !alarm.is_empty();
+        if !has_measure && history.is_empty() && histogram.is_empty() {
+            let help = "give it a `[[report.count]]`, `[[report.cycle]]`, `[report.down_time]`, `[[report.alarm]]`, \
+                        `[[report.history]]` or `[[report.histogram]]`";
             let message = "the report has nothing to report".to_owned();
             return Err(Wrong { message, place: report.span(), help: Some(help.to_owned()) });
         }
         unique("counts", count.iter().map(|entry| &entry.name))?;
         unique("cycles", cycle.iter().map(|entry| &entry.name))?;
         unique("alarms", alarm.iter().map(|entry| &entry.name))?;
+        unique("histories", history.iter().map(|entry| &entry.name))?;
+        unique("histograms", histogram.iter().map(|entry| &entry.name))?;
         let counts = count.iter().map(|entry| self.count(entry)).collect::<Result<_, _>>()?;
         let cycles = cycle.iter().map(|entry| self.cycle(entry)).collect::<Result<_, _>>()?;
         let down = down_time.as_ref().map(|entry| self.down(entry)).transpose()?;
         let alarms = alarm.iter().map(|entry| self.alarm(entry)).collect::<Result<_, _>>()?;
+        let mut looker = Looker::new(&self.known, &mut self.columns);
+        let histories = history.iter().map(|entry| looker.history(entry)).collect::<Result<_, _>>()?;
+        let spreads = histogram.iter().map(|entry| looker.histogram(entry)).collect::<Result<_, _>>()?;
         let signals = self.columns.iter().filter_map(|name| {
             let known = self.known.iter().find(|known| known.name == *name)?;
             // Columns are names of the file's own signals.
             Some((SignalName::new(name.as_str()).ok()?, known.ty))
         });
         let signals = signals.collect();
-        Ok(Measures { step, window: *window, ideal_cycle: *ideal_cycle, signals, counts, cycles, down, alarms })
+        let (window, ideal_cycle) = (*window, *ideal_cycle);
+        Ok(Measures { step, window, ideal_cycle, signals, counts, cycles, down, alarms, histories, spreads })
     }
 
     fn count(&mut self, entry: &CountFile) -> Result<Counted, Wrong> {

@@ -4,10 +4,12 @@ use super::alarm::Alarms;
 use super::count::Count;
 use super::cycle::Cycles;
 use super::down_time::DownTime;
+use super::history::History;
 use super::measures::Measures;
 use super::numbers::Numbers;
 use super::result::{Outcome, Report};
-use super::throughput::Windows;
+use super::spread::Spreading;
+use super::windows::Windows;
 
 /// Measures a run as it goes. What it keeps does not grow with the run.
 #[derive(Clone, Debug)]
@@ -20,6 +22,8 @@ pub struct Meter {
     cycles: Vec<Cycles>,
     down: Option<DownTime>,
     alarms: Alarms,
+    histories: Vec<History>,
+    spreads: Vec<Spreading>,
 }
 
 impl Meter {
@@ -32,6 +36,8 @@ impl Meter {
             cycles: measures.cycles.iter().map(|timed| Cycles::new(timed.clone(), measures.step)).collect(),
             down: measures.down.clone().map(DownTime::new),
             alarms: Alarms::new(&measures.alarms),
+            histories: Vec::new(),
+            spreads: measures.spreads.iter().map(|spread| Spreading::new(spread.clone())).collect(),
             measures: measures.clone(),
         }
     }
@@ -46,6 +52,8 @@ impl Meter {
             let windows = Windows::new(begin_ns, self.measures.window, self.measures.step);
             let count = |counted: &super::count::Counted| Count::new(counted.clone(), windows.clone());
             self.counts = self.measures.counts.iter().map(count).collect();
+            let history = |past: &super::history::Past| History::new(past.clone(), begin_ns, self.measures.step);
+            self.histories = self.measures.histories.iter().map(history).collect();
         }
         // Most images show nothing new, and all measures are of what changes.
         if self.numbers.take(bytes) || is_first {
@@ -56,7 +64,7 @@ impl Meter {
     }
 
     fn measure(&mut self, t_ns: u64) {
-        let Self { numbers, counts, cycles, down, alarms, .. } = self;
+        let Self { numbers, counts, cycles, down, alarms, histories, spreads, .. } = self;
         let values = numbers.values();
         let whole = |column: usize| numbers.whole(column);
         for count in counts {
@@ -69,6 +77,12 @@ impl Meter {
             down.push(t_ns, values);
         }
         alarms.push(t_ns, values);
+        for history in histories {
+            history.push(t_ns, values);
+        }
+        for spread in spreads {
+            spread.push(t_ns, values);
+        }
     }
 
     /// What there is to report; nothing of a run without an image.
@@ -79,6 +93,8 @@ impl Meter {
             cycles: self.cycles.iter().map(Cycles::report).collect(),
             down_time: self.down.as_ref().map(|down| down.until(span_ns)),
             alarms: self.alarms.until(span_ns.1),
+            histories: self.histories.iter().map(|history| history.until(span_ns.1)).collect(),
+            spreads: self.spreads.iter().map(|spread| spread.until(span_ns.1)).collect(),
         };
         Some(Report::new(span_ns, outcome, self.measures.ideal_cycle))
     }

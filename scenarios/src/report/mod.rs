@@ -7,11 +7,14 @@
 //! |---|---|
 //! | [`edge`] | rising edges |
 //! | [`spell`] | times during which something holds |
-//! | [`throughput`] | how many in equal windows of time |
+//! | [`windows`] | equal windows of time, which widen as a run goes on |
+//! | [`throughput`] | how many in each of them |
+//! | [`held`] | values that hold from image to image |
 //! | [`distribution`] | times by their length: mean, quantiles, histogram |
-//! | [`count`], [`cycle`], [`down_time`], [`alarm`] | the measures, each with what it reports |
+//! | [`count`], [`cycle`], [`down_time`], [`alarm`], [`history`], [`spread`] | the measures, each with what it reports |
 //! | [`annunciator`] | alarms as they come and go, with their delays |
 //! | [`numbers`] | the signals as numbers |
+//! | [`look`] | which signals histories and histograms look at, in which unit |
 //! | [`measures`] | what a scenario asks for, bound to its signals |
 //! | [`result`] | the report |
 //! | [`meter`] | all measures of a run, image by image |
@@ -32,6 +35,9 @@ mod cycle;
 mod distribution;
 mod down_time;
 mod edge;
+mod held;
+mod history;
+mod look;
 mod measures;
 mod meter;
 mod numbers;
@@ -39,7 +45,9 @@ mod numbers;
 mod offline;
 mod result;
 mod spell;
+mod spread;
 mod throughput;
+mod windows;
 
 pub use alarm::{AlarmReport, AlarmTotal, Occurrence};
 pub use annunciator::{Alarm, Passage};
@@ -48,9 +56,11 @@ pub use count::CountReport;
 pub use cycle::CycleReport;
 pub use distribution::{Histogram, Times};
 pub use down_time::{CauseReport, DownTimeReport};
+pub use history::{HistoryReport, SignalHistory};
 pub use measures::Measures;
 pub use meter::Meter;
 pub use result::{OeeReport, QualityReport, Report};
+pub use spread::{SignalSpread, SpreadReport};
 pub use throughput::Throughput;
 
 pub use crate::report_file::{Priority, Quality};

@@ -53,6 +53,20 @@ const MEASURES: &str = r#"
     name = "then C, as planned"
     when = "C"
     planned = true
+    [[report.history]]
+    name = "X and N"
+    signals = ["X", "N"]
+    every = "70ms"
+    [[report.history]]
+    name = "X in cm"
+    signals = ["X"]
+    unit = "cm"
+    [[report.histogram]]
+    name = "X and N"
+    signals = ["X", "N"]
+    from = -0.5
+    to = 100
+    bins = 7
     [[report.alarm]]
     name = "B"
     when = "B"
@@ -292,6 +306,39 @@ fn check_alarms(run: &Run<'_>, report: &Report) {
     assert_eq!(alarms.last, others[others.len().saturating_sub(50)..]);
 }
 
+/// A value holds from its image to the next: the last one has not held yet.
+fn check_values(run: &Run<'_>, report: &Report) {
+    let near = |a: Option<f64>, b: Option<f64>| match (a, b) {
+        (Some(a), Some(b)) => (a - b).abs() <= 1e-9 * b.abs().max(1.0),
+        (a, b) => a == b,
+    };
+    let of: [fn(&Image) -> f64; 2] = [|image| image.4, |image| f64::from(image.3)];
+    let held = &run.images[..run.images.len() - 1];
+    let [both, carried] = &report.histories[..] else { panic!("two histories") };
+    assert_eq!((both.signals.len(), carried.signals[0].unit.as_deref()), (2, Some("cm")));
+    for (signal, value) in both.signals.iter().zip(of) {
+        assert_eq!((both.window_ns, signal.mean.len()), (70_000_000, held.len().div_ceil(7)), "{}", signal.signal);
+        for (window, images) in held.chunks(7).enumerate() {
+            let values: Vec<f64> = images.iter().map(value).collect();
+            assert_eq!(signal.min[window], values.iter().copied().reduce(f64::min));
+            assert_eq!(signal.max[window], values.iter().copied().reduce(f64::max));
+            assert!(near(signal.mean[window], Some(values.iter().sum::<f64>() / values.len() as f64)));
+        }
+    }
+    let most = |values: &[Option<f64>]| values.iter().flatten().copied().reduce(f64::max);
+    assert!(near(most(&carried.signals[0].max), most(&both.signals[0].max).map(|most| 100.0 * most)));
+    for (signal, value) in report.histograms[0].signals.iter().zip(of) {
+        let within = |low: f64, high: f64| held.iter().filter(|image| (low..high).contains(&value(image))).count();
+        for (bin, time_ns) in signal.time_ns.iter().enumerate() {
+            let edge = |bin: usize| -0.5 + 100.5 * bin as f64 / 7.0;
+            let upper = if bin == 6 { f64::next_up(100.0) } else { edge(bin + 1) };
+            assert_eq!(*time_ns, within(edge(bin), upper) as u64 * STEP_NS, "bin {bin} of {}", signal.signal);
+        }
+        assert_eq!(signal.below_ns, within(f64::NEG_INFINITY, -0.5) as u64 * STEP_NS);
+        assert_eq!(signal.total_ns(), run.end_ns() - run.t_ns(0));
+    }
+}
+
 fn check(first_step: u64, images: &[Image]) {
     let report = metered(&measures(MEASURES).expect("measures"), first_step, images);
     let run = Run { first_step, images };
@@ -300,6 +347,7 @@ fn check(first_step: u64, images: &[Image]) {
     check_cycles(&run, &report);
     check_down_time(&run, &report);
     check_alarms(&run, &report);
+    check_values(&run, &report);
     let (good, reject) = (report.counts[0].count, report.counts[1].count);
     let quality = report.quality.as_ref().expect("both are counted");
     assert_eq!((quality.good, quality.reject), (good, reject));
@@ -412,6 +460,8 @@ fn many_alarms_are_listed_from_both_ends() {
 fn what_is_wrong_has_its_place_and_a_hint() {
     let count = |entry: &str| format!("[[report.count]]\nname = \"pieces\"\n{entry}\n");
     let cause = |name: &str| format!("[[report.down_time.cause]]\nname = \"{name}\"\nwhen = \"A\"\n");
+    let history = |entry: &str| format!("[[report.history]]\nname = \"past\"\n{entry}\n");
+    let histogram = |entry: &str| format!("[[report.histogram]]\nname = \"spread\"\nsignals = [\"X\"]\n{entry}\n");
     let wrong = [
         "[report]\n".to_owned(),
         "[report.down_time]\n".to_owned(),
@@ -427,6 +477,21 @@ fn what_is_wrong_has_its_place_and_a_hint() {
         count("when = \"A\"") + &count("when = \"B\""),
         cause("stop") + &cause("stop"),
         cause("unknown cause"),
+        history("signals = []"),
+        history("signals = [\"Y\"]"),
+        history("signals = [\"X\", \"X\"]"),
+        history("signals = [\"X[1..]\"]"),
+        history("signals = [\"X\"]\nunit = \"bar\""),
+        history("signals = [\"X\"]\nunit = \"mmm\""),
+        history("signals = [\"N\"]\nunit = \"mm\""),
+        history("signals = [\"X\"]\nevery = \"0s\""),
+        history("signals = [\"X\"]") + &history("signals = [\"N\"]"),
+        histogram("from = 1.0"),
+        histogram("from = 1.0\nto = 1.0"),
+        histogram("from = nan\nto = 1.0"),
+        histogram("from = -1.7e308\nto = 1.7e308"),
+        histogram("from = 0\nto = 1\nbins = 0"),
+        histogram("from = 0\nto = 1\nbins = 1001"),
     ];
     let reported: Vec<String> = wrong
         .iter()

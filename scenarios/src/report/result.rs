@@ -8,6 +8,8 @@ use super::alarm::AlarmReport;
 use super::count::CountReport;
 use super::cycle::CycleReport;
 use super::down_time::{DownTimeReport, part};
+use super::history::HistoryReport;
+use super::spread::SpreadReport;
 use crate::report_file::Quality;
 
 /// What a run produced, and what held it up. Its JSON form is a contract: fields are added, never changed.
@@ -35,6 +37,12 @@ pub struct Report {
     /// Alarms; absent unless the scenario has some.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub alarms: Option<AlarmReport>,
+    /// Histories of signals, in the order of the scenario.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub histories: Vec<HistoryReport>,
+    /// Histograms of signals, in the order of the scenario.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub histograms: Vec<SpreadReport>,
 }
 
 /// Good and rejected pieces.
@@ -68,11 +76,13 @@ pub(super) struct Outcome {
     pub(super) cycles: Vec<CycleReport>,
     pub(super) down_time: Option<DownTimeReport>,
     pub(super) alarms: Option<AlarmReport>,
+    pub(super) histories: Vec<HistoryReport>,
+    pub(super) spreads: Vec<SpreadReport>,
 }
 
 impl Report {
     pub(super) fn new((from_ns, to_ns): (u64, u64), outcome: Outcome, ideal_cycle: Option<TimeSpan>) -> Self {
-        let Outcome { counts, cycles, down_time, alarms } = outcome;
+        let Outcome { counts, cycles, down_time, alarms, histories, spreads } = outcome;
         let (good, reject) = (sum(&counts, Quality::Good), sum(&counts, Quality::Reject));
         let quality = good.zip(reject).map(|(good, reject)| QualityReport {
             good,
@@ -84,7 +94,7 @@ impl Report {
             (Some(ideal), Some(down), Some(made)) => effectiveness(ideal, down, made),
             _ => None,
         };
-        Self { from_ns, to_ns, counts, quality, cycles, down_time, oee, alarms }
+        Self { from_ns, to_ns, counts, quality, cycles, down_time, oee, alarms, histories, histograms: spreads }
     }
 }
 

@@ -154,7 +154,7 @@ impl Recorded {
             title: format!("{}: {}", self.recording, self.name()),
             steps: Some(self.steps),
             virtual_time: VirtualTime::from_nanos(self.report.to_ns).to_string(),
-            tables: tables::of(&self.report).into_iter().chain(tables::occurrences(&self.report)).collect(),
+            tables: tables::for_pages(&self.report),
             pictures: pictures::of(&self.report),
             ..Section::default()
         }

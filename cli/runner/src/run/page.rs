@@ -78,11 +78,7 @@ fn section(report: &RunReport, events: Vec<Event>, mut drawn: Vec<Picture>) -> S
         facts: statistics(report.steps.0, report.step.as_nanos(), report.virtual_time.as_nanos(), digest.as_ref()),
         lines: report.error.iter().cloned().collect(),
         expectations: report.expectations.iter().map(shown).collect(),
-        tables: report
-            .report
-            .iter()
-            .flat_map(|report| tables::of(report).into_iter().chain(tables::occurrences(report)))
-            .collect(),
+        tables: report.report.iter().flat_map(tables::for_pages).collect(),
         events: timeline(events, violations),
         pictures: drawn,
     }

@@ -85,6 +85,11 @@ impl Observer for Metering {
         Ok(())
     }
 
+    /// All that it measures begins and ends where a value changes, or by a delay that is reckoned from there.
+    fn wants_idle_steps(&self) -> bool {
+        false
+    }
+
     fn end(&mut self, _session: &Session) -> Result<(), RecordError> {
         Ok(())
     }

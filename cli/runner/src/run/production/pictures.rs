@@ -1,8 +1,12 @@
-//! A report as pictures: throughput over time, histograms of cycle times, down time by cause.
+//! A report as pictures: throughput over time, histograms of cycle times, down time by cause, histories and histograms of
+//! signals.
 
 use onescan_report::page::Picture;
-use onescan_report::plot::{Bar, Bars, Histogram, Panel, Plot, Shape, Trajectory};
-use onescan_scenario::report::{CauseReport, CountReport, CycleReport, DownTimeReport, Report};
+use onescan_report::plot::{Bar, Bars, Histogram, History, Panel, Past, Plot, Shape, Trajectory, ValueHistogram};
+use onescan_scenario::report::{
+    CauseReport, CountReport, CycleReport, DownTimeReport, HistoryReport, Report, SignalHistory, SignalSpread,
+    SpreadReport,
+};
 
 use super::tables::{per_cent, seconds};
 
@@ -14,7 +18,11 @@ pub(crate) fn of(report: &Report) -> Vec<Picture> {
     let histograms = report.cycles.iter().filter_map(histogram);
     let histograms = histograms.map(|histogram| Picture::still("cycle times", histogram.to_svg()));
     let down = report.down_time.as_ref().map(|down| Picture::still("down time", bars(down).to_svg()));
-    throughput.into_iter().chain(histograms).chain(down).collect()
+    let histories = report.histories.iter().map(|past| history(past, report.from_ns, report.to_ns));
+    let histories = histories.map(|history| Picture::still("history", history.to_svg()));
+    let spreads = report.histograms.iter().flat_map(|all| all.signals.iter().map(move |one| spread(all, one)));
+    let spreads = spreads.map(|spread| Picture::still("histogram", spread.to_svg()));
+    throughput.into_iter().chain(histograms).chain(down).chain(histories).chain(spreads).collect()
 }
 
 /// A panel a count; nothing if nothing was counted at any time.
@@ -79,4 +87,35 @@ fn bars(down: &DownTimeReport) -> Bars {
     };
     let title = format!("down {} of {}", seconds(down.down_ns), seconds(down.down_ns.saturating_add(down.run_ns)));
     Bars { title, bars: causes.into_iter().map(bar).collect() }
+}
+
+fn history(history: &HistoryReport, from_ns: u64, to_ns: u64) -> History {
+    let past = |SignalHistory { signal, unit, min, mean, max }: &SignalHistory| {
+        let values = min.iter().zip(mean).zip(max);
+        let windows = values.map(|((min, mean), max)| Some([(*min)?, (*mean)?, (*max)?])).collect();
+        Past { signal: signal.clone(), unit: unit.clone(), windows }
+    };
+    History {
+        title: history.name.clone(),
+        from_ns,
+        to_ns,
+        window_ns: history.window_ns,
+        signals: history.signals.iter().map(past).collect(),
+    }
+}
+
+fn spread(all: &SpreadReport, one: &SignalSpread) -> ValueHistogram {
+    let total_ns = one.total_ns().max(1) as f64;
+    let share = |time_ns: u64| time_ns as f64 / total_ns;
+    let outside = [(one.below_ns, "below"), (one.above_ns, "above"), (one.not_finite_ns, "not a number")];
+    let outside = outside.into_iter().filter(|(time_ns, _)| *time_ns > 0);
+    let outside: Vec<String> = outside.map(|(time_ns, word)| format!("{} {word}", per_cent(share(time_ns)))).collect();
+    ValueHistogram {
+        title: format!("{}: {}", all.name, one.signal),
+        remark: outside.join(", "),
+        unit: one.unit.clone(),
+        from: all.from,
+        to: all.to,
+        shares: one.time_ns.iter().map(|time_ns| share(*time_ns)).collect(),
+    }
 }

@@ -1,5 +1,7 @@
 //! A report as tables, for terminals and pages.
 
+mod values;
+
 use std::io::{self, Write};
 
 use onescan_report::Table;
@@ -12,15 +14,20 @@ use onescan_server::time::VirtualTime;
 /// Writes the report for people.
 pub(crate) fn write(report: &Report, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "  report of {} to {}", at(report.from_ns), at(report.to_ns))?;
-    for table in of(report) {
+    for table in of(report).into_iter().chain(values::short(report)) {
         writeln!(out)?;
         table.write(out)?;
     }
     Ok(())
 }
 
+/// The same for pages, with all that is shown only to who asks for it.
+pub(crate) fn for_pages(report: &Report) -> Vec<Table> {
+    of(report).into_iter().chain(occurrences(report)).chain(values::whole(report)).collect()
+}
+
 /// What there is of counts, cycles, down time and alarms, in this order.
-pub(crate) fn of(report: &Report) -> Vec<Table> {
+fn of(report: &Report) -> Vec<Table> {
     let counts = (!report.counts.is_empty()).then(|| counts(report));
     let cycles = (!report.cycles.is_empty()).then(|| cycles(&report.cycles));
     let down_time = report.down_time.as_ref().map(|down| down_time(down, report.oee.as_ref()));
@@ -127,7 +134,7 @@ fn alarms(alarms: &AlarmReport) -> Table {
 }
 
 /// Each occurrence of an alarm, as far as it is listed; for pages.
-pub(crate) fn occurrences(report: &Report) -> Option<Table> {
+fn occurrences(report: &Report) -> Option<Table> {
     let alarms = report.alarms.as_ref().filter(|alarms| !alarms.first.is_empty())?;
     let row = |occurrence: &Occurrence| {
         let to = occurrence.to_ns.map(at).unwrap_or_default();
@@ -144,7 +151,7 @@ pub(crate) fn occurrences(report: &Report) -> Option<Table> {
     })
 }
 
-fn at(t_ns: u64) -> String {
+pub(super) fn at(t_ns: u64) -> String {
     VirtualTime::from_nanos(t_ns).to_string()
 }
 
