@@ -73,6 +73,7 @@ mod reports;
 mod review;
 mod robot_cell;
 mod rotary_kiln;
+mod rotary_kiln_months;
 mod rotary_kiln_scanner;
 mod rotary_kiln_server;
 mod rotary_kiln_thesis;
