@@ -65,6 +65,12 @@ pub trait Carrier: Send {
     /// The client cannot do it.
     fn operate(&mut self, operation: &ClientOperation) -> Result<(), OperationRefused>;
 
+    /// Whether the client can begin again. One that runs elsewhere takes part by a protocol that has it do so.
+    ///
+    /// # Errors
+    /// Why it cannot.
+    fn can_reset(&self) -> Result<(), OperationRefused>;
+
     /// Adds to `view` those parts of what can be seen of the client, without asking anybody elsewhere.
     fn show(&self, parts: Parts, view: &mut ClientView);
 
@@ -159,6 +165,10 @@ impl Carrier for InProcess {
 
     fn operate(&mut self, operation: &ClientOperation) -> Result<(), OperationRefused> {
         self.client.operate(operation)
+    }
+
+    fn can_reset(&self) -> Result<(), OperationRefused> {
+        self.client.can_reset()
     }
 
     fn show(&self, parts: Parts, view: &mut ClientView) {

@@ -97,6 +97,14 @@ pub trait Client: Send {
         Err(OperationRefused::Unsupported)
     }
 
+    /// Whether [`setup`](Self::setup) would make a new client of it, as a reset of the session needs. Asked before one.
+    ///
+    /// # Errors
+    /// Its program goes on whatever the session does: why, and what to do instead.
+    fn can_reset(&self) -> Result<(), OperationRefused> {
+        Ok(())
+    }
+
     /// Adds to `view` those parts of what can be seen of the client beside its signals. Called between two turns,
     /// only when somebody looks.
     fn show(&self, parts: Parts, view: &mut ClientView) {

@@ -364,6 +364,9 @@ pub enum OperationError {
     FaultType { signal: SignalName, ty: SignalType, fault: SignalFault },
     #[error("client `{client}`: {source}")]
     Client { client: ClientName, source: OperationRefused },
+    /// A client that does not begin again; then nobody does.
+    #[error("the session is not reset, because of client `{client}`: {source}")]
+    NoReset { client: ClientName, source: OperationRefused },
 }
 
 /// Who asked for an operation.

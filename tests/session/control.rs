@@ -2,17 +2,18 @@
 
 use std::time::Duration;
 
+use onescan_server::client::{Client, ClientFault, JoinRequest, OperationRefused, Wake};
 use onescan_server::end::SessionEnd;
 use onescan_server::lockstep::Outcome;
 use onescan_server::mailbox::Mailbox;
-use onescan_server::operation::Control;
+use onescan_server::operation::{Control, Operation};
 use onescan_server::plan::Coupling;
-use onescan_server::time::StepCount;
+use onescan_server::time::{StepCount, VirtualTime};
 use onescan_server::transport::tcp::Lobby;
 use onescan_server::transport::tcp::operator::operate;
 use onescan_tests::at_ms;
 use onescan_tests::run::{PATIENCE, boxed, in_process, loopback, run};
-use onescan_tests::toy::{ring, ring_plan};
+use onescan_tests::toy::{Mixer, ring, ring_plan};
 
 fn undisturbed() -> Outcome {
     run(in_process(ring_plan(&Coupling::Parallel), boxed(ring())), at_ms(500))
@@ -92,6 +93,57 @@ fn after_a_reset_the_session_is_a_new_one() {
         ask(Some(Control::Resume));
     });
     assert_eq!(outcome, undisturbed());
+}
+
+/// A client whose program nobody can start again.
+struct GoesOn(Mixer);
+
+impl Client for GoesOn {
+    fn join(&self) -> JoinRequest {
+        self.0.join()
+    }
+
+    fn setup(&mut self, outputs: &mut [u8]) -> Result<(), ClientFault> {
+        self.0.setup(outputs)
+    }
+
+    fn turn(&mut self, t_v: VirtualTime, inputs: &[u8], outputs: &mut [u8]) -> Result<Wake, ClientFault> {
+        self.0.turn(t_v, inputs, outputs)
+    }
+
+    fn can_reset(&self) -> Result<(), OperationRefused> {
+        Err(OperationRefused::Because("its program goes on".to_owned()))
+    }
+}
+
+/// The session is not reset then, and goes on as if nobody had asked.
+#[test]
+fn a_session_is_reset_with_all_of_its_clients_or_not_at_all() {
+    let mailbox = Mailbox::new();
+    mailbox.control(Control::Pause);
+    let lobby = Lobby::open(loopback(), &ring_plan(&Coupling::Parallel), mailbox.clone()).expect("a free port");
+    let address = lobby.address();
+    let session = std::thread::spawn(move || {
+        let mut clients = boxed(ring());
+        let last = ring().pop().expect("three");
+        clients.pop();
+        clients.push(Box::new(GoesOn(last)));
+        let mut lockstep = in_process(ring_plan(&Coupling::Parallel), clients);
+        lockstep.set_mailbox(mailbox);
+        let outcome = run(lockstep, at_ms(500));
+        drop(lobby);
+        outcome
+    });
+    let ask = |control: Control| operate(address, Operation::from(control), PATIENCE);
+    for _ in 0..3 {
+        ask(Control::Step).expect("a step");
+    }
+    let refused = ask(Control::Reset).expect_err("one goes on").to_string();
+    let said = "the session is not reset, because of client `gamma`: its program goes on";
+    assert!(refused.contains(said), "{refused}");
+    assert_eq!(ask(Control::Pause).expect("a status").steps, StepCount(3));
+    ask(Control::Resume).expect("it goes on");
+    assert_eq!(session.join().expect("no panic"), undisturbed());
 }
 
 #[test]

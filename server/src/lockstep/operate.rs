@@ -87,12 +87,25 @@ impl Lockstep {
     fn operate(&mut self, operation: Operation, author: Author) -> Result<Result<(), OperationError>, RecordError> {
         let done = match operation.for_client() {
             Some((name, asked)) => self.operate_client(name, &asked),
-            None => self.session.operate(&operation),
+            None => self.may_reset(&operation).and_then(|()| self.session.operate(&operation)),
         };
         if done.is_ok() {
             self.notify_operated(operation, author)?;
         }
         Ok(done)
+    }
+
+    /// A session is reset with all of its clients, or not at all: a machine that is rewound alone is another one than its
+    /// program believes.
+    fn may_reset(&self, operation: &Operation) -> Result<(), OperationError> {
+        if *operation != Operation::Reset {
+            return Ok(());
+        }
+        // slots and names lie in the order of the ids
+        self.slots.iter().zip(self.session.plan().clients()).try_for_each(|(slot, name)| {
+            let refused = |source| OperationError::NoReset { client: name.clone(), source };
+            slot.carrier.can_reset().map_err(refused)
+        })
     }
 
     pub(super) fn notify_operated(&mut self, operation: Operation, author: Author) -> Result<(), RecordError> {

@@ -163,6 +163,10 @@ impl Client for Watched {
         self.client.operate(operation)
     }
 
+    fn can_reset(&self) -> Result<(), OperationRefused> {
+        self.client.can_reset()
+    }
+
     fn show(&self, parts: Parts, view: &mut ClientView) {
         self.client.show(parts, view);
     }

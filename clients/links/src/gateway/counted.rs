@@ -7,7 +7,7 @@ use onescan_base::notice::NOTICE;
 use std::num::NonZeroU32;
 use std::time::{Duration, Instant};
 
-use onescan_server::client::{Client, ClientFault, JoinRequest, Wake};
+use onescan_server::client::{Client, ClientFault, JoinRequest, OperationRefused, Wake};
 use onescan_server::time::VirtualTime;
 
 use super::client::{GARBLED_MAX, Patience};
@@ -132,6 +132,14 @@ impl Client for CountedGateway {
         self.step(t_v).map_err(|fault| ClientFault::new(fault.to_string()))?;
         outputs.copy_from_slice(&self.from_plc[self.exchange.outputs()]);
         Ok(Wake::NextPeriod)
+    }
+
+    fn can_reset(&self) -> Result<(), OperationRefused> {
+        Err(OperationRefused::Because(
+            "its blocks are counted (`handshake = \"frames\"`), so that nobody here can start its program again, and the machine \
+             would be rewound alone; end the session, start the PLC cold, and run it again"
+                .to_owned(),
+        ))
     }
 }
 

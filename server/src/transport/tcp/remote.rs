@@ -79,6 +79,10 @@ impl Carrier for Remote {
     }
 
     /// The protocol carries signals and states only.
+    fn can_reset(&self) -> Result<(), OperationRefused> {
+        Ok(())
+    }
+
     fn show(&self, _parts: Parts, _view: &mut ClientView) {}
 
     fn save(&mut self) -> Result<Vec<u8>, StateError> {
