@@ -107,6 +107,30 @@ fn a_scene_is_drawn_from_all_sides() {
     assert!(said.code == Some(2) && said.err.contains("--svg"), "a side without a picture: {said:?}");
 }
 
+/// A scenario's figures are drawn as its page shows them at the start: where looks put them, without those that looks hide. The
+/// floor lies behind all that stands on it; the scene alone has no figures.
+#[test]
+fn a_scenario_is_drawn_with_its_figures_as_they_are_at_the_start() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("machine.svg");
+    let drawn = |name: &str, path: &str| {
+        let said = typed(&scenario(name), &["describe", path, "--svg", &file.to_string_lossy(), "--view", "front"]);
+        assert!(said.code == Some(0) && said.err.is_empty(), "{said:?}");
+        std::fs::read_to_string(&file).expect("a picture")
+    };
+    let line = drawn("peeling-line", ".");
+    for name in ["deck", "log[0]", "log[2]", "walker[3]", "gantry"] {
+        assert!(line.contains(&format!("<title>{name}</title>")), "{name} is not there");
+    }
+    assert!(!line.contains("<title>block_on_loader</title>"), "no block is there yet");
+    assert!(line.contains("figure, or in its own colour"));
+    assert!(line.find("<title>hall</title>") < line.find("<title>deck_leg[0]</title>"), "the floor comes first");
+    assert_eq!(drawn("peeling-line", "."), line, "the same bytes again");
+    assert!(!drawn("peeling-line", "plant.toml").contains("<title>deck</title>"));
+    let furnace = drawn("arc-furnace", ".");
+    assert!(furnace.contains("<title>electrode[3]</title>") && furnace.contains("<title>roof</title>"));
+}
+
 #[test]
 fn values_with_names_stand_at_the_axis() {
     let folder = copied_shear();

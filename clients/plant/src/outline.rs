@@ -15,6 +15,8 @@ const TRIANGLES_MAX: usize = 2000;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outline<'s> {
     pub body: &'s str,
+    /// The shape that is attached to the body; nothing for the body's own.
+    pub attached: Option<&'s str>,
     pub kind: BodyKind,
     pub surface: Surface,
 }
@@ -35,15 +37,17 @@ pub enum Surface {
 impl Mechanics {
     /// The forms of all bodies and of what is attached to them, in the scene's order.
     pub fn outlines(&self) -> impl Iterator<Item = Outline<'_>> {
-        let bodies =
-            self.bodies.iter().filter_map(|body| Some((body, body.shape.as_ref()?, body.position_m, body.rpy_deg)));
-        let attached = self
-            .shapes
+        let own = self
+            .bodies
             .iter()
-            .filter_map(|shape| Some((self.bodies.get(shape.body)?, &shape.shape, shape.position_m, shape.rpy_deg)));
-        bodies.chain(attached).flat_map(|(body, shape, position_m, rpy_deg)| {
-            let pose = from_rpy_deg(position_m, rpy_deg);
-            surfaces(shape, pose).into_iter().map(|surface| Outline { body: &body.name, kind: body.kind, surface })
+            .filter_map(|body| Some((body, None, body.shape.as_ref()?, from_rpy_deg(body.position_m, body.rpy_deg))));
+        let attached = self.shapes.iter().filter_map(|shape| {
+            let body = self.bodies.get(shape.body)?;
+            Some((body, Some(&*shape.name), &shape.shape, from_rpy_deg(shape.position_m, shape.rpy_deg)))
+        });
+        own.chain(attached).flat_map(|(body, attached, shape, pose)| {
+            let outline = move |surface| Outline { body: &body.name, attached, kind: body.kind, surface };
+            surfaces(shape, pose).into_iter().map(outline)
         })
     }
 }

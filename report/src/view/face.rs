@@ -170,6 +170,7 @@ mod tests {
         Solid {
             name: format!("{z}"),
             kind: 0,
+            paint: crate::view::Paint::default(),
             backdrop: false,
             surface: Surface::Faces { faces: vec![face], edged: true },
         }

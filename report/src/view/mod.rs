@@ -28,9 +28,20 @@ pub struct Solid {
     pub name: String,
     /// Which of the kinds in the legend it is.
     pub kind: usize,
+    /// How it is painted, beside its kind.
+    pub paint: Paint,
     /// Whether it is but the ground on which the others are: drawn behind them all, as far as the picture reaches.
     pub backdrop: bool,
     pub surface: Surface,
+}
+
+/// How a form is painted.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Paint {
+    /// Red, green and blue, 0 to 255; those of its kind without one.
+    pub colour: Option<[f64; 3]>,
+    /// How much one sees through it, 0 to 1.
+    pub transparent: f64,
 }
 
 /// A surface, in world coordinates, m.

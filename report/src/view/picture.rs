@@ -8,7 +8,7 @@ use super::side::{Side, dot};
 use crate::number::short;
 use crate::plot::lettering::{NAME_PX, TITLE_PX, shortened, width_px};
 use crate::plot::palette::{ALARM, AXIS, FAINT_INK, INK};
-use crate::plot::svg::Document;
+use crate::plot::svg::{Attribute, Document};
 
 const WIDTH_PX: f64 = 880.0;
 /// The room of the scene, from the smallest to the largest height.
@@ -21,7 +21,7 @@ const SCALE_PART: f64 = 0.2;
 
 /// Red, green and blue of each kind; more kinds begin again.
 const KINDS: [[f64; 3]; 4] =
-    [[176.0, 184.0, 193.0], [240.0, 180.0, 80.0], [110.0, 170.0, 220.0], [120.0, 200.0, 160.0]];
+    [[176.0, 184.0, 193.0], [240.0, 180.0, 80.0], [110.0, 170.0, 220.0], [160.0, 166.0, 171.0]];
 
 /// The scene seen from a side, as an SVG document.
 pub fn picture(stage: &Stage, side: Side) -> String {
@@ -107,10 +107,13 @@ fn draw_faces(document: &mut Document, seen: &[Seen<'_>], frame: &Frame) {
     for group in seen.chunk_by(|a, b| std::ptr::eq(a.solid, b.solid) && a.light == b.light) {
         let Some(first) = group.first() else { continue };
         let colour = colour(first);
-        document.open(
-            "g",
-            &[("fill", &colour), ("stroke", &colour), ("stroke-width", &"1"), ("stroke-linejoin", &"round")],
-        );
+        let opacity = 1.0 - first.solid.paint.transparent;
+        let mut attributes: Vec<Attribute<'_>> =
+            vec![("fill", &colour), ("stroke", &colour), ("stroke-width", &"1"), ("stroke-linejoin", &"round")];
+        if opacity < 1.0 {
+            attributes.push(("opacity", &opacity));
+        }
+        document.open("g", &attributes);
         document.text("title", &[], &first.solid.name);
         let mut surface = String::new();
         let mut edges = String::new();
@@ -132,11 +135,12 @@ fn draw_faces(document: &mut Document, seen: &[Seen<'_>], frame: &Frame) {
 }
 
 fn colour(seen: &Seen<'_>) -> String {
-    shade(seen.solid.kind, seen.light)
+    let kind = KINDS[seen.solid.kind % KINDS.len()];
+    shade(seen.solid.paint.colour.unwrap_or(kind), seen.light)
 }
 
-fn shade(kind: usize, light: f64) -> String {
-    let [red, green, blue] = KINDS[kind % KINDS.len()].map(|part| (part * light).clamp(0.0, 255.0).round() as u8);
+fn shade(colour: [f64; 3], light: f64) -> String {
+    let [red, green, blue] = colour.map(|part| (part * light).clamp(0.0, 255.0).round() as u8);
     format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
@@ -163,7 +167,7 @@ fn draw_foot(document: &mut Document, stage: &Stage, frame: &Frame, height: i64)
     document.text("text", &[("x", &x), ("y", &baseline_px), ("fill", &FAINT_INK)], &label);
     x += width_px(&label, NAME_PX) + 40;
     for (kind, name) in stage.kinds.iter().enumerate() {
-        let (top_px, fill) = (baseline_px - 10, shade(kind, 0.95));
+        let (top_px, fill) = (baseline_px - 10, shade(KINDS[kind % KINDS.len()], 0.95));
         document.empty("rect", &[("x", &x), ("y", &top_px), ("width", &12), ("height", &12), ("fill", &fill)]);
         document.text("text", &[("x", &(x + 18)), ("y", &baseline_px), ("fill", &INK)], name);
         x += 18 + width_px(name, NAME_PX) + 24;
@@ -190,7 +194,7 @@ fn round_down(length: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Ray, Solid, Surface};
+    use super::super::{Paint, Ray, Solid, Surface};
     use super::*;
 
     fn stage() -> Stage {
@@ -200,6 +204,7 @@ mod tests {
             Solid {
                 name: name.to_owned(),
                 kind,
+                paint: Paint::default(),
                 backdrop: false,
                 surface: Surface::Faces { faces: vec![corners.to_vec()], edged: true },
             }
@@ -207,6 +212,7 @@ mod tests {
         let ball = Solid {
             name: "ball & <chain>".to_owned(),
             kind: 1,
+            paint: Paint::default(),
             backdrop: false,
             surface: Surface::Convex(vec![[3.0, 0.0, 0.0], [4.0, 0.0, 0.0], [3.5, 0.0, 1.0]]),
         };

@@ -3,6 +3,7 @@
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+use onescan_base::notice::NOTICE;
 use onescan_base::regular::Within;
 use onescan_plant::component::open_inputs;
 use onescan_plant::scene::model::{Body, BodyKind, Component, JointKind, Mass, Moved, Scene, Sensing, Shape, Wire};
@@ -20,6 +21,7 @@ use serde::Serialize;
 use super::error::PlantError;
 use onescan_runner::error::Usage;
 use onescan_runner::format::Format;
+use onescan_runner::run::values_at_start;
 use onescan_runner::scene_drawing as drawing;
 
 use super::attached::{coupled, fitted};
@@ -64,7 +66,7 @@ const USUAL_PERIOD: TimeSpan = TimeSpan::from_millis(10).expect("not zero");
 /// `out`.
 pub fn write(config: &DescribeConfig, out: &mut dyn Write) -> Result<(), PlantError> {
     let DescribeConfig { path, format, svg, side, .. } = config;
-    let (scenes, within) = scenes(path)?;
+    let Found { scenario, scenes, within } = found(path)?;
     if let (Some(_), [_, (other, _), ..]) = (svg, &scenes[..]) {
         let help = format!("give the scene to draw, as `onescan describe {} --svg FILE`", other.display());
         return Err(Usage::new(format!("{} has several scenes", path.display()), Some(help)).into());
@@ -75,7 +77,12 @@ pub fn write(config: &DescribeConfig, out: &mut dyn Write) -> Result<(), PlantEr
         }
         let scene = read(path, &within)?;
         if let Some(svg) = svg {
-            write_whole(svg, drawing::svg(&scene, &path.display().to_string(), *side).as_bytes())?;
+            let title = path.display().to_string();
+            let picture = match &scenario {
+                Some(scenario) => drawing::svg_of(scenario, at_start(scenario).as_deref(), (&scene, &title), *side)?,
+                None => drawing::svg(&scene, &title, *side),
+            };
+            write_whole(svg, picture.as_bytes())?;
         }
         match format {
             Format::Json => {
@@ -97,11 +104,35 @@ pub fn write(config: &DescribeConfig, out: &mut dyn Write) -> Result<(), PlantEr
     Ok(())
 }
 
-/// The scene files behind a path, each with the period of its plant's turns, and what they may read.
-fn scenes(path: &Path) -> Result<(Vec<(PathBuf, TimeSpan)>, Within), PlantError> {
+/// The values by which looks are drawn; nothing where there are none, or where a client cannot begin here, which is said.
+fn at_start(scenario: &Scenario) -> Option<Vec<f64>> {
+    if scenario.looks().looks.is_empty() {
+        return None;
+    }
+    match values_at_start(scenario) {
+        Ok(values) => Some(values),
+        Err(error) => {
+            tracing::warn!(target: NOTICE, "figures are drawn as without values of signals: {error}");
+            None
+        }
+    }
+}
+
+/// What is behind a path.
+struct Found {
+    /// The scenario, if the path is one.
+    scenario: Option<Scenario>,
+    /// The scene files, each with the period of its plant's turns.
+    scenes: Vec<(PathBuf, TimeSpan)>,
+    /// What they may read.
+    within: Within,
+}
+
+fn found(path: &Path) -> Result<Found, PlantError> {
     if !path.is_dir() {
         let folder = path.parent().unwrap_or_else(|| Path::new(""));
-        return Ok((vec![(path.to_owned(), USUAL_PERIOD)], granted().within(folder)));
+        let scenes = vec![(path.to_owned(), USUAL_PERIOD)];
+        return Ok(Found { scenario: None, scenes, within: granted().within(folder) });
     }
     let scenario = Scenario::load(path)?;
     let scenes = scenario.file().clients.values().filter_map(|client| match client.get_ref() {
@@ -114,7 +145,8 @@ fn scenes(path: &Path) -> Result<(Vec<(PathBuf, TimeSpan)>, Within), PlantError>
     if scenes.is_empty() {
         return Err(Usage::new(format!("no client of {} has a scene", path.display()), None).into());
     }
-    Ok((scenes, granted().within(scenario.folder())))
+    let within = granted().within(scenario.folder());
+    Ok(Found { scenario: Some(scenario), scenes, within })
 }
 
 fn read(path: &Path, within: &Within) -> Result<Scene, PlantError> {

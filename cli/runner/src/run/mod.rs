@@ -21,6 +21,7 @@
 //! | [`recorded`] | a run's recording |
 //! | `record_lock` | one records into a folder at a time |
 //! | `in_process` | a session of which all clients are here |
+//! | `at_start` | values of signals with which it begins |
 //! | `judged` | the same, judged step by step |
 //! | `search` | why a search through many runs came to nothing |
 //! | [`rerun`] | a recorded run once more |
@@ -35,6 +36,7 @@
 //! | [`session_log`] | which client a session waited for |
 
 pub(crate) mod alarms;
+mod at_start;
 mod check;
 pub mod chosen;
 pub mod config;
@@ -83,6 +85,7 @@ use onescan_server::lockstep::Lockstep;
 use onescan_server::observer::Observer;
 use onescan_server::time::VirtualTime;
 
+pub use at_start::values_at_start;
 use config::{Drawing, WatchOn};
 pub use config::{ForkRequest, RunConfig, Transport};
 pub use error::RunError;
