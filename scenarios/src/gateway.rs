@@ -162,6 +162,11 @@ impl Scenario {
         matches!(client, Some(ClientFile::Gateway { .. })) || self.gateways.contains_key(name)
     }
 
+    /// Whether `name` is a real PLC that cannot be asked to start cold: it does so by itself, or somebody does it.
+    pub fn starts_by_hand(&self, name: &ClientName) -> bool {
+        self.is_real_plc(name) && self.declared(name).words() == Words::Handshake
+    }
+
     /// The client that exchanges values with a PLC that free-wheels, if a real one stands in for `name`.
     ///
     /// # Errors

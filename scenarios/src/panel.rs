@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use onescan_links::gateway::HandshakeKind;
 use onescan_server::signal::{SignalName, SignalType, did_you_mean};
 use toml::Spanned;
 
@@ -40,6 +41,7 @@ pub(crate) fn check(file: &ScenarioFile) -> Result<(), Wrong> {
         }
         for (index, element) in panel.element.iter().enumerate() {
             check_place(panel, element, &panel.element[..index])?;
+            check_action(file, element.get_ref())?;
             check_binding(file, element)?;
             check_looks(element)?;
         }
@@ -87,6 +89,34 @@ fn check_place(
     Ok(())
 }
 
+/// A session is reset by a button that is let go by itself, and only where everybody in it can begin again.
+fn check_action(file: &ScenarioFile, element: &ElementFile) -> Result<(), Wrong> {
+    let Some(action) = &element.action else { return Ok(()) };
+    if element.kind != ElementKind::Button {
+        return Err(at(action, "only a button has an `action`".to_owned(), Some("it acts once for each press")));
+    }
+    for (key, is_there) in [("failure", element.failure.is_some()), ("disturbance", element.disturbance.is_some())] {
+        if is_there {
+            let help = "a reset ends failures and disturbances; give the button a `signal`, or the action alone";
+            return Err(at(action, format!("an element has an `action` or a `{key}`, not both"), Some(help)));
+        }
+    }
+    if element.latching {
+        return Err(at(action, "a button with an `action` is not `latching`".to_owned(), Some("it acts once")));
+    }
+    let counted = |client: &ClientFile| matches!(client, ClientFile::Gateway { gateway, .. } if gateway.handshake == HandshakeKind::Frames);
+    match file.clients.iter().find(|(_, client)| counted(client.get_ref())) {
+        None => Ok(()),
+        Some((name, _)) => {
+            let message =
+                format!("the session cannot be reset: nobody here can start the program of client `{name}` again");
+            let help =
+                "a PLC with `handshake = \"frames\"` goes by its own clock; one that runs the instrumented program can";
+            Err(at(action, message, Some(help)))
+        }
+    }
+}
+
 /// The signals are there, have a type that goes with the element, and are not written by a machine.
 fn check_binding(file: &ScenarioFile, element: &Spanned<ElementFile>) -> Result<(), Wrong> {
     let inner = element.get_ref();
@@ -98,6 +128,7 @@ fn check_binding(file: &ScenarioFile, element: &Spanned<ElementFile>) -> Result<
     }
     match (inner.kind, &inner.signal, &inner.signal_y) {
         (ElementKind::Alarms, None, None) => return Ok(()),
+        (ElementKind::Button, None, None) if inner.action.is_some() => return Ok(()),
         (kind, _, Some(signal)) if kind != ElementKind::Joystick => {
             return Err(at(signal, "only a joystick has two signals".to_owned(), None));
         }
@@ -278,6 +309,8 @@ name = "desk"
             element("emergency-stop", "signal = \"Start\"\nat = [5, 1]"),
             element("alarms", "at = [0, 2]\nspan = [6, 3]"),
             element("alarms", "signal = \"Start\"\nat = [0, 5]"),
+            element("button", "action = \"reset\"\nlabel = \"Begin again\"\nat = [1, 5]"),
+            element("button", "action = \"reset\"\nsignal = \"Start\"\npart = \"lid\"\nat = [2, 5]"),
         ];
         assert_eq!(reported(&elements.concat()), Ok(()));
     }
@@ -293,6 +326,39 @@ name = "desk"
             message.starts_with("only a button, a switch and an emergency stop") && place == "\"lid\"",
             "{message}"
         );
+    }
+
+    #[test]
+    fn a_session_is_reset_by_a_plain_button() {
+        let wrong = |kind: &str, more: &str| {
+            reported(&element(kind, &format!("action = \"reset\"\nat = [0, 0]\n{more}"))).expect_err("wrong")
+        };
+        for (kind, more, message) in [
+            ("switch", "signal = \"Start\"", "only a button has an `action`"),
+            ("lamp", "signal = \"Start\"", "only a button has an `action`"),
+            ("button", "failure = \"wall.leak\"", "an `action` or a `failure`, not both"),
+            (
+                "button",
+                "disturbance = { signal = \"Speed\", kind = \"stuck\" }",
+                "an `action` or a `disturbance`, not both",
+            ),
+            ("button", "latching = true", "is not `latching`"),
+        ] {
+            let (said, place) = wrong(kind, more);
+            assert!(said.contains(message) && place == "\"reset\"", "{said} at {place}");
+        }
+        assert_eq!(wrong("button", "signal = \"Seen\"").1, "\"Seen\"", "its signal is one that people write");
+        let real =
+            "[clients.real]\nkind = \"gateway\"\ngateway = { url = \"tcp://127.0.0.1:1\", handshake = \"frames\" }\n";
+        let text = format!(
+            "{}{}",
+            HEAD.replace("[[panel]]", &format!("{real}[[panel]]")),
+            element("button", "action = \"reset\"\nat = [0, 0]")
+        );
+        let mut file: ScenarioFile = toml::from_str(&text).expect("a scenario");
+        crate::structure::expand(&mut file).expect("signals");
+        let found = check(&file).expect_err("its program goes on");
+        assert!(found.message.contains("client `real`") && &text[found.place.clone()] == "\"reset\"", "{found:?}");
     }
 
     #[test]

@@ -89,9 +89,20 @@ pub struct ElementFile {
     /// Whether a button stays where it is put.
     #[serde(default)]
     pub latching: bool,
+    /// What a press of a button does to the session; with a `signal`, it presses that, too.
+    #[schemars(with = "Option<KeyAction>")]
+    pub action: Option<Spanned<KeyAction>>,
     /// The part of the machine on which it lies, too: a body, a figure or a component. A click on that presses it.
     #[schemars(with = "Option<String>")]
     pub part: Option<Spanned<String>>,
+}
+
+/// What a key does to the session.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum KeyAction {
+    /// Machine and programs begin again together, at virtual time 0. The button's signal is pressed in the session that begins.
+    Reset,
 }
 
 /// A mode of failure of a component, as `component.mode`.

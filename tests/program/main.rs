@@ -47,6 +47,7 @@ mod openplc;
 mod operator;
 mod output;
 mod own_kinds;
+mod panel_reset;
 mod papers;
 mod parameters;
 mod peeling_line;

@@ -80,6 +80,8 @@ export class Page {
   private seen: string | null = null;
   private readonly views = new Map<string, HTMLButtonElement>();
   private last: Picture | null = null;
+  /** The time of the last picture of the live edge. */
+  private edge_ns = 0;
   private wasPast = false;
 
   constructor(private readonly session: Session) {
@@ -118,6 +120,7 @@ export class Page {
         take: (name, take) => this.ask({ type: "seat", panel: name, take }),
         fail: (component, failure, active) => this.ask({ type: "fail", component, failure, active }),
         disturb: (disturbance, active) => this.ask({ type: "disturb", disturbance, active }),
+        reset: (name) => this.ask({ type: "reset", panel: name }),
         acknowledge: () => this.acknowledge(session.alarms.map((_, alarm) => alarm)),
       }),
     }));
@@ -332,8 +335,16 @@ export class Page {
     this.table.focus();
   }
 
+  /** The session has begun again, or goes on from an earlier moment: what was after that has not happened. */
+  private rewind(picture: Picture): void {
+    const isBack = !picture.isPast && picture.t_ns < this.edge_ns;
+    if (!picture.isPast) this.edge_ns = picture.t_ns;
+    if (isBack && this.session.live) this.trends.rewind(picture.t_ns, this.values);
+  }
+
   private show(picture: Picture): void {
     const isFirst = this.last === null;
+    this.rewind(picture);
     if (picture.isPast !== this.wasPast || (this.last !== null && picture.t_ns < this.last.t_ns)) this.machine.jump();
     this.wasPast = picture.isPast;
     this.last = picture;

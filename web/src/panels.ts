@@ -18,6 +18,8 @@ export interface PanelActions {
   readonly fail: (component: string, failure: string, active: boolean) => void;
   /** Puts a fault on the way of signals, or takes it away. */
   readonly disturb: (disturbance: number, active: boolean) => void;
+  /** Lets machine and programs begin again, by a key of this panel. */
+  readonly reset: (panel: string) => void;
   /** All alarms have been seen. */
   readonly acknowledge: () => void;
 }
@@ -39,6 +41,8 @@ export class PanelView {
   private readonly failures = new Map<string, Show[]>();
   private readonly disturbances = new Map<number, Show[]>();
   private readonly inputs: (HTMLButtonElement | HTMLInputElement | HTMLSelectElement)[] = [];
+  /** Inputs that never work on this page, and why. */
+  private readonly barred = new Map<HTMLElement, string>();
   /** What is done as soon as this viewer sits here. */
   private waiting: (() => void)[] = [];
   private isPast = false;
@@ -165,8 +169,9 @@ export class PanelView {
     this.why.hidden = this.why.textContent === "";
     this.root.classList.toggle("resting", this.isPast);
     for (const input of this.inputs) {
-      input.disabled = isDead;
-      input.title = why;
+      const own_reason = this.barred.get(input);
+      input.disabled = isDead || own_reason !== undefined;
+      input.title = isDead ? why : own_reason ?? why;
     }
   }
 
@@ -284,13 +289,31 @@ export class PanelView {
   /** Makes a key of an element that is down while somebody presses it, by mouse, touch, keyboard or voice. */
   private hold_down(key: HTMLButtonElement, element: PanelElement): Press {
     let give = (_value: number): void => {};
-    const held = new Press((value) => give(value), (deed, ms) => void window.setTimeout(deed, ms), () => this.isHeld);
+    // What comes behind a reset is pressed in the session that begins.
+    const down = (value: number): void => {
+      if (value !== 0) this.act(element);
+      give(value);
+    };
+    const held = new Press(down, (deed, ms) => void window.setTimeout(deed, ms), () => this.isHeld);
     give = this.wire(element, (value) => {
       key.setAttribute("aria-pressed", String(value !== 0));
       held.seen(value !== 0);
+    if (element.action === "reset" && this.session.training !== null) {
+      this.barred.set(key, say("A lesson is not reset: Repeat on the trainer's page begins it again."));
+    }
     });
     const press = (down: boolean): void => {
       if (!key.disabled || !down) held.press(down);
+  /** What a press of this element does to the session, before it presses the signal. */
+  private act(element: PanelElement): void {
+    switch (element.action) {
+      case null:
+        return;
+      case "reset":
+        return this.seated(() => this.actions.reset(this.panel.name));
+    }
+  }
+
     };
     key.addEventListener("pointerdown", (event) => {
       key.setPointerCapture(event.pointerId);

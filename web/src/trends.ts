@@ -74,6 +74,16 @@ export class TrendsView {
     this.history(signal).push(t_ns / 1e9, value);
   }
 
+  /** Forgets what was after this time; signals that have not changed since go on from the values that they have. */
+  rewind(t_ns: number, values: ReadonlyMap<number, number>): void {
+    for (const [signal, history] of this.histories) {
+      const value = values.get(signal);
+      if (value !== undefined) history.push(t_ns / 1e9, value);
+    }
+    this.marks = this.marks.filter((mark) => mark.t_ns <= t_ns);
+    this.isStale = true;
+  }
+
   /** Adds a value of the past. */
   insert(signal: number, t_ns: number, value: number): void {
     this.history(signal).insert(t_ns / 1e9, value);

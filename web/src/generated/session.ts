@@ -43,6 +43,8 @@ export type Ask =
   | { readonly type: "write"; readonly signal: number; readonly value: number }
   /** Holds virtual time, lets it go on, makes one step; or ends the session. */
   | { readonly type: "operate"; readonly operation: Verb }
+  /** Resets the session at the next step boundary, by a key of this panel. */
+  | { readonly type: "reset"; readonly panel: string }
   /** Takes or leaves a seat. */
   | { readonly type: "seat"; readonly panel: string; readonly take: boolean }
   /** Fails a component, or repairs it. */
@@ -372,6 +374,13 @@ export function readLesson(field: Field): Lesson {
     asked: list(text)(field.at("asked", [])),
     mistakes: list(readForgiven)(field.at("mistakes", [])),
     starts: list(text)(field.at("starts", [])),
+/** What a key does to the session. */
+export type KeyAction = "reset";
+
+export function readKeyAction(field: Field): KeyAction {
+  return one_of("reset")(field);
+}
+
   };
 }
 
@@ -652,6 +661,8 @@ export function readPanelElement(field: Field): PanelElement {
     label: text(field.at("label")),
     at: tuple(whole, whole)(field.at("at")),
     bodies: list(whole)(field.at("bodies", [])),
+  /** What a press does to the session, before it presses the signal. */
+  readonly action: KeyAction | null;
     choices: list(readChoice)(field.at("choices", [])),
     colour: nullable(text)(field.at("colour")),
     components: list(text)(field.at("components", [])),
@@ -676,6 +687,7 @@ export function readPanelPage(field: Field): PanelPage {
   return { signal: text(field.at("signal")), value: whole(field.at("value")) };
 }
 
+    action: nullable(readKeyAction)(field.at("action")),
 /** A parameter of a component, as it is shown. */
 export interface Parameter {
   readonly name: string;

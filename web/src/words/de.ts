@@ -118,6 +118,8 @@ export const de = {
   "Another viewer has the seat {seat}: you can operate when it is free.": "Der Platz {seat} ist besetzt: Sie können bedienen, sobald er frei ist.",
   "Nobody has the seat {seat}: the first press takes it.": "Der Platz {seat} ist frei: Der erste Druck nimmt ihn.",
   "This scenario has no panel. Add [[panel]] to it.": "Dieses Szenario hat kein Pult. Fügen Sie ihm [[panel]] hinzu.",
+  "A lesson is not reset: Repeat on the trainer's page begins it again.":
+    "Eine Lektion wird nicht zurückgesetzt: „Wiederholen“ auf der Seite des Trainers beginnt sie von vorn.",
   on: "ein",
   off: "aus",
   ready: "bereit",

@@ -2,7 +2,7 @@
 
 use onescan_server::layout::ImageLayout;
 use onescan_server::operation::{Operation, SignalFault};
-use onescan_server::signal::{SignalDecl, SignalId, SignalName, SignalType};
+use onescan_server::signal::{ClientName, SignalDecl, SignalId, SignalName, SignalType};
 use onescan_server::time::VirtualTime;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -25,6 +25,8 @@ pub(super) enum Ask {
     Write { signal: usize, value: f64 },
     /// Holds virtual time, lets it go on, makes one step; or ends the session.
     Operate { operation: Verb },
+    /// Resets the session at the next step boundary, by a key of this panel.
+    Reset { panel: String },
     /// Takes or leaves a seat.
     Seat { panel: String, take: bool },
     /// Fails a component, or repairs it.
@@ -94,11 +96,17 @@ pub(super) fn signals(places: &[usize], layout: &ImageLayout) -> Result<Vec<Sign
     places.iter().map(|place| all.get(*place).copied().ok_or(Refused::NoSignal(*place))).collect()
 }
 
+/// People write this signal.
+pub(super) fn writer(declared: &SignalDecl, known: &Known) -> Result<(), Refused> {
+    match declared.writer.as_ref().filter(|writer| !known.operators.contains(*writer)) {
+        Some(writer) => Err(Refused::Writer { signal: declared.name.to_string(), writer: writer.to_string() }),
+        None => Ok(()),
+    }
+}
+
 /// A signal takes a value.
 pub(super) fn write(declared: &SignalDecl, value: f64, known: &Known) -> Result<Operation, Refused> {
-    if let Some(writer) = declared.writer.as_ref().filter(|writer| !known.operators.contains(*writer)) {
-        return Err(Refused::Writer { signal: declared.name.to_string(), writer: writer.to_string() });
-    }
+    writer(declared, known)?;
     let wrong = || Refused::Value { signal: declared.name.to_string(), ty: declared.ty, value: value.to_string() };
     let text = match declared.ty {
         SignalType::BOOL if value == 0.0 || value == 1.0 => if value == 1.0 { "TRUE" } else { "FALSE" }.to_owned(),
@@ -108,6 +116,15 @@ pub(super) fn write(declared: &SignalDecl, value: f64, known: &Known) -> Result<
     };
     declared.ty.parse_text(&text).map_err(|_| wrong())?;
     Ok(Operation::Write { signal: declared.name.clone(), value: text })
+}
+
+/// What whoever resets a session has to know of PLCs that the link cannot start; nothing if there are none.
+pub(super) fn start_by_hand(plcs: &[ClientName]) -> Option<String> {
+    let names: Vec<String> = plcs.iter().map(|name| format!("`{name}`")).collect();
+    (!names.is_empty()).then(|| {
+        let names = names.join(", ");
+        format!("the session begins again when the PLC of client {names} has: start it cold now, if it does not start itself")
+    })
 }
 
 /// A signal is forced, or released without a value. Whether the text is a value of its type, the session says.

@@ -59,4 +59,10 @@ pub(super) enum Refused {
     Taken(String),
     #[error("`{0}` is written from the seat of a panel that has it: take that seat first")]
     NoSeat(String),
+    #[error("panel `{0}` has no key that resets the session")]
+    NoReset(String),
+    #[error("a lesson is not reset: `Repeat` on the trainer's page begins it again")]
+    InLesson,
+    #[error("a session is reset from the seat of the panel that has the key: take that seat first")]
+    NotSeated,
 }

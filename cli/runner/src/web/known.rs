@@ -34,6 +34,10 @@ pub(super) struct Known {
     pub(super) looks: Judge,
     /// The panels, each with the signals that it writes.
     pub(super) panels: BTreeMap<String, BTreeSet<String>>,
+    /// Those of them with a key that resets the session, each with the signals of such keys.
+    pub(super) resetting: BTreeMap<String, BTreeSet<String>>,
+    /// PLCs that somebody may have to start by hand when the session begins again.
+    pub(super) by_hand: Vec<ClientName>,
     /// What lies behind them.
     pub(super) pictures: Vec<PanelPicture>,
     /// The PLCs, as they are looked into.

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::ops::RangeFrom;
 
 use onescan_scenario::file::ClientFile;
-use onescan_scenario::panel_file::{ElementFile, ElementKind, PanelFile, Seat};
+use onescan_scenario::panel_file::{ElementFile, ElementKind, KeyAction, PanelFile, Seat};
 use onescan_scenario::panel_picture::PanelPicture;
 use onescan_scenario::visible::{OnMachine, Visible};
 use onescan_scenario::{Scenario, ScenarioError};
@@ -60,6 +60,9 @@ struct Element {
     span: [u32; 2],
     #[serde(skip_serializing_if = "Option::is_none")]
     mode: Option<ButtonMode>,
+    /// What a press does to the session, before it presses the signal.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    action: Option<KeyAction>,
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "f64", default = "least")]
     min: Option<f64>,
@@ -116,6 +119,13 @@ impl Panel {
     /// Whether it is a trainer's.
     pub(super) fn is_trainers(&self) -> bool {
         self.seat == Seat::Trainer
+    }
+
+    /// The signals of its keys that reset the session, of which some have none; nothing without such a key.
+    pub(super) fn resets(&self) -> Option<BTreeSet<String>> {
+        let mut keys = self.elements.iter().filter(|element| element.action == Some(KeyAction::Reset)).peekable();
+        keys.peek()?;
+        Some(keys.filter_map(|element| element.signal.clone()).collect())
     }
 
     /// The signals that people write with it.
@@ -195,6 +205,7 @@ fn laid_out(file: &ElementFile, scenario: &Scenario, disturbances: &mut RangeFro
         at: file.at,
         span: file.span,
         mode: file.latching.then_some(ButtonMode::Toggle),
+        action: file.action.as_ref().map(|action| *action.get_ref()),
         min: file.min,
         max: file.max,
         colour: file.colour.clone(),
@@ -260,6 +271,7 @@ fn bare(kind: ElementKind, at: [u32; 2], span: [u32; 2]) -> Element {
         at,
         span,
         mode: None,
+        action: None,
         min: None,
         max: None,
         colour: None,

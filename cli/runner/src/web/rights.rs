@@ -3,7 +3,7 @@
 //! A message that is added does not compile before its right is named here, and a right not before somebody has it.
 
 use super::Session;
-use super::ask::{Ask, Verb};
+use super::ask::{self, Ask, Verb};
 use super::entry::Rank;
 use super::error::Refused;
 use super::seats::Viewer;
@@ -24,6 +24,8 @@ pub(super) enum Right<'a> {
     Sit(&'a str),
     /// Write the signal of this number, as the panels do.
     Write(usize),
+    /// Reset the session from the seat of this panel, which has a key for it.
+    Reset(&'a str),
     /// Act past the panels: on virtual time, failures, forced values.
     Control,
     /// Decide how a lesson continues.
@@ -47,6 +49,7 @@ impl Ask {
             Self::Acknowledge { .. } | Self::Shelve { .. } => Right::Attend,
             Self::Seat { panel, .. } => Right::Sit(panel),
             Self::Write { signal, .. } => Right::Write(*signal),
+            Self::Reset { panel } => Right::Reset(panel),
             Self::Operate { operation: Verb::Hold | Verb::Go | Verb::Step }
             | Self::Fail { .. }
             | Self::Disturb { .. }
@@ -75,6 +78,7 @@ pub(super) fn check(right: Right<'_>, session: &Session, (viewer, rank): (Viewer
         Right::Train => is_live(session).and_then(|()| may_train(session)),
         Right::Present(view) => {
             let whose = (viewer, role(session));
+        Right::Reset(panel) => is_live(session).and_then(|()| may_reset(panel, session, viewer)),
             is_live(session).and_then(|()| session.called.may_call(view, whose, &session.seats))
         }
     }
@@ -128,3 +132,17 @@ fn may_write(signal: usize, session: &Session, viewer: Viewer) -> Result<(), Ref
     let declared = session.declared(signal)?;
     session.seats.may_write(viewer, declared.name.as_str())
 }
+/// A lesson begins again at its start, which is not where its session does, and its attempts are counted.
+fn may_reset(panel: &str, session: &Session, viewer: Viewer) -> Result<(), Refused> {
+    let keys = session.known.resetting.get(panel).filter(|_| !session.known.hidden.contains(panel));
+    let keys = keys.ok_or_else(|| Refused::NoReset(panel.to_owned()))?;
+    if session.training.is_some() {
+        return Err(Refused::InLesson);
+    }
+    // A key is pressed whole or not at all.
+    let pressed = session.plan.signals().iter().filter(|declared| keys.contains(declared.name.as_str()));
+    pressed.map(|declared| ask::writer(declared, &session.known)).collect::<Result<(), Refused>>()?;
+    let panel = std::iter::once(panel.to_owned()).collect();
+    session.seats.sits_at_one_of(&panel, viewer).then_some(()).ok_or(Refused::NotSeated)
+}
+

@@ -147,6 +147,8 @@ pub(super) fn of(scenario: &Scenario, training: Option<&Training>) -> Result<(St
     known.pictures = pictures;
     known.panels = panels.iter().map(|panel| (panel.name.clone(), panel.written())).collect();
     known.trainers = panels.iter().filter(|panel| panel.is_trainers()).map(|panel| panel.name.clone()).collect();
+    known.resetting = panels.iter().filter_map(|panel| Some((panel.name.clone(), panel.resets()?))).collect();
+    known.by_hand = scenario.plan().clients().iter().filter(|name| scenario.starts_by_hand(name)).cloned().collect();
     let (plcs, looked_into) = Online::of(scenario)?;
     known.online = looked_into;
     known.maps.clone_from(&file.map);

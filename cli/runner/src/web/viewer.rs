@@ -441,6 +441,13 @@ fn perform(
         Ask::Disturb { disturbance, active } => {
             Next::Operations(ask::disturb(disturbance, active, known, &session.failing.now())?)
         }
+        Ask::Reset { .. } => {
+            if let Some(message) = ask::start_by_hand(&known.by_hand) {
+                // a viewer that has left hears nothing
+                outcomes.send(Response::Error { message }).ok();
+            }
+            one(Operation::Reset)
+        }
         Ask::Train(asked) => {
             let training = session.training.as_ref().ok_or(Refused::NoLesson)?;
             training.turns.push(ask::turn(asked, training)?);

@@ -24,7 +24,10 @@ kind = "operator"
 
 [[panel]]
 name = "operator"
-element = [{ kind = "button", signal = "Start", part = "pusher", at = [0, 0] }]
+element = [
+    { kind = "button", signal = "Start", part = "pusher", at = [0, 0] },
+    { kind = "button", label = "Reset", action = "reset", at = [1, 0] },
+]
 
 [[panel]]
 name = "trainer"
@@ -94,7 +97,7 @@ const EVERYBODY: [Who; 11] = [
 
 /// Every message, some of them more than once where it depends on what is in it who may send it. `START` stands for
 /// the number of the operator's signal, `PUSH` for that of a PLC's.
-const EVERY: [&str; 30] = [
+const EVERY: [&str; 32] = [
     r#"{"type":"subscribe","signals":[START]}"#,
     r#"{"type":"watch","variables":[0]}"#,
     r#"{"type":"draw","drawing":null,"instance":0}"#,
@@ -108,6 +111,8 @@ const EVERY: [&str; 30] = [
     r#"{"type":"write","signal":START,"value":1}"#,
     r#"{"type":"write","signal":PUSH,"value":1}"#,
     r#"{"type":"write","signal":99,"value":1}"#,
+    r#"{"type":"reset","panel":"operator"}"#,
+    r#"{"type":"reset","panel":"trainer"}"#,
     r#"{"type":"operate","operation":"hold"}"#,
     r#"{"type":"operate","operation":"go"}"#,
     r#"{"type":"operate","operation":"step"}"#,
@@ -128,7 +133,7 @@ const EVERY: [&str; 30] = [
 ];
 
 /// The place of each kind of message; one that is added does not compile before it has one.
-const KINDS: usize = 18;
+const KINDS: usize = 19;
 fn kind(ask: &Ask) -> usize {
     match ask {
         Ask::Subscribe { .. } => 0,
@@ -149,6 +154,7 @@ fn kind(ask: &Ask) -> usize {
         Ask::Fork { .. } => 15,
         Ask::Acknowledge { .. } => 16,
         Ask::Shelve { .. } => 17,
+        Ask::Reset { .. } => 18,
     }
 }
 
@@ -267,6 +273,8 @@ fn everybody_may_do_what_is_theirs() {
     write,signal:START,value:1                 LooksOnly  NoSeat     yes        NoSeat     yes        NoSeat     NoSeat     NoSeat     LooksOnly  Recorded   LooksOnly
     write,signal:PUSH,value:1                  LooksOnly  NoSeat     NoSeat     NoSeat     NoSeat     NoSeat     NoSeat     NoSeat     LooksOnly  Recorded   LooksOnly
     write,signal:99,value:1                    LooksOnly  NoSignal   NoSignal   NoSignal   NoSignal   NoSignal   NoSignal   NoSignal   LooksOnly  Recorded   LooksOnly
+    reset,panel:operator                       LooksOnly  NotSeated  yes        NotSeated  InLesson   InLesson   InLesson   InLesson   LooksOnly  Recorded   LooksOnly
+    reset,panel:trainer                        LooksOnly  NoReset    NoReset    NoReset    NoReset    NoReset    NoReset    NoReset    LooksOnly  Recorded   LooksOnly
     operate,operation:hold                     LooksOnly  yes        yes        yes        Trainee    Trainee    yes        yes        LooksOnly  Recorded   LooksOnly
     operate,operation:go                       LooksOnly  yes        yes        yes        Trainee    Trainee    yes        yes        LooksOnly  Recorded   LooksOnly
     operate,operation:step                     LooksOnly  yes        yes        yes        Trainee    Trainee    yes        yes        LooksOnly  Recorded   LooksOnly
