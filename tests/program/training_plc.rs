@@ -2,15 +2,18 @@
 //! begins.
 
 use std::fs;
+use std::net::TcpStream;
 use std::path::Path;
 
 use serde_json::{Value, json};
 use tempfile::TempDir;
+use tungstenite::{Message, WebSocket};
 
 use crate::plc::Plc;
 use crate::sitter::Sitter;
 use crate::training::{Lesson, SECOND_NS, record_of};
 use crate::typed::{Said, copied, edit, scenario, typed, utf8};
+use crate::web::{ask, view};
 
 /// The regulation of the furnace's electrodes in a process of its own, and how it is reached.
 fn process(folder: &Path, scheme: &str) -> (Plc, String) {
@@ -45,6 +48,15 @@ waive = ["a heat takes an hour"]
 name = "water leak"
 fault = { component = "wall", mode = "leak", from = "1s" }
 act = "not Automatic"
+
+[[start]]
+name = "later"
+at = "200s"
+
+[[lesson]]
+name = "later"
+start = "later"
+lasts = "60s"
 
 [[lesson]]
 name = "otherwise"
@@ -127,6 +139,75 @@ fn a_trainer_repeats_and_goes_back_with_a_real_plc() {
     for (again, before) in again["attempts"].as_array().expect("attempts").iter().zip(attempts) {
         assert_eq!(compared.map(|key| &again[key]), compared.map(|key| &before[key]));
     }
+}
+
+/// A viewer, and what it was told last of the session and of a PLC that is on its way.
+struct Reader {
+    viewer: WebSocket<TcpStream>,
+    state: Value,
+    drive: Value,
+    drives: usize,
+    refused: Value,
+}
+
+impl Reader {
+    fn of(page: &str) -> Self {
+        Self { viewer: view(page), state: Value::Null, drive: Value::Null, drives: 0, refused: Value::Null }
+    }
+
+    fn until(&mut self, is_so: impl Fn(&Self) -> bool) {
+        while !is_so(self) {
+            let Message::Text(text) = self.viewer.read().expect("a message") else { continue };
+            let told: Value = serde_json::from_str(&text).expect("JSON");
+            match told["type"].as_str() {
+                Some("status") => self.state = told["state"].clone(),
+                Some("drive") => (self.drive, self.drives) = (told["now"].clone(), self.drives + 1),
+                Some("error") => self.refused = told["message"].clone(),
+                _ => {}
+            }
+        }
+    }
+}
+
+/// While a PLC is on its way, both pages say which one, where it goes and how far it is; what would act on the next attempt is
+/// refused, also what the trainer asks.
+#[test]
+fn pages_say_how_far_a_plc_is() {
+    const THERE_NS: u64 = 200 * SECOND_NS;
+    let folder = with_a_short_lesson();
+    let (_plc, gateway) = process(folder.path(), "tcp://");
+    let words = ["later", "--gateway", &gateway, "--record", "session", "--pace", "4"];
+    let lesson = Lesson::begin_in(folder.path(), &words);
+    for _ in 0..2 {
+        let mut readers = lesson.pages.each_ref().map(|page| Reader::of(page));
+        for reader in &mut readers {
+            reader.until(|reader| reader.drives >= 3 && reader.drive["at_ns"].as_u64() > Some(0));
+            let named = (&reader.drive["plcs"], &reader.drive["start"], &reader.drive["to_ns"], &reader.state);
+            assert_eq!(named, (&json!(["process"]), &json!("later"), &json!(THERE_NS), &json!("driven")));
+            assert!(reader.drive["at_ns"].as_u64() <= Some(THERE_NS), "{}", reader.drive);
+        }
+        let [_, trainer] = &mut readers;
+        for what in [
+            json!({"type": "operate", "operation": "hold"}),
+            json!({"type": "train", "turn": "repeat"}),
+            json!({"type": "fail", "component": "wall", "failure": "leak", "active": true}),
+        ] {
+            trainer.refused = Value::Null;
+            ask(&mut trainer.viewer, &what);
+            trainer.until(|trainer| !trainer.refused.is_null());
+            let message = trainer.refused.as_str().expect("words");
+            assert!(message.contains("the PLC is being driven"), "{what}: {message}");
+        }
+        trainer.until(|trainer| trainer.drive.is_null() && trainer.state == "run");
+        ask(&mut trainer.viewer, &json!({"type": "train", "turn": "repeat"}));
+    }
+    let mut trainer = Sitter::at(&lesson.pages[1], "malfunctions", &["Page"]);
+    trainer.until(|trainer| trainer.status["state"] == "run" && trainer.t_ns > THERE_NS);
+    trainer.ask(&json!({"type": "operate", "operation": "stop"}));
+    let held = lesson.record();
+    let attempts = held["attempts"].as_array().expect("attempts");
+    assert_eq!(attempts.len(), 3, "{held}");
+    assert!(attempts.iter().all(|attempt| attempt["begin_digest"] == attempts[0]["begin_digest"]), "{held}");
 }
 
 /// What a lesson is refused for with a real PLC, each in words: nobody there, blocks that are counted, a start that sets one

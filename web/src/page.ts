@@ -37,7 +37,7 @@ const ALARMS_EACH_NS = 250e6;
 const BAR_PX = 4;
 const LANES_AT_FIRST = 3;
 
-const STATES: Readonly<Record<"run" | "hold" | "end" | "recorded", Text>> = { run: "running", hold: "held", end: "over", recorded: "recorded" };
+const STATES: Readonly<Record<"run" | "hold" | "end" | "recorded" | "driven", Text>> = { run: "running", hold: "held", end: "over", recorded: "recorded", driven: "the PLC is driven" };
 
 export class Page {
   private readonly values = new Map<number, number>();
@@ -411,6 +411,8 @@ export class Page {
         this.isOver = message.result !== null;
         if (message.result !== null) this.tabs?.open("Panels");
         return this.lesson?.show(message);
+      case "drive":
+        return this.drive(this.lesson?.show_drive(message.now) ?? null);
       case "verdict":
         return this.judge(message.name, message.verdict, message.robustness, message.t_ns);
       case "looks":
@@ -430,6 +432,16 @@ export class Page {
       case "error":
         return this.notice(message.message);
     }
+  }
+
+  /** A real PLC is on its way to where the lesson begins: nothing is operated, for this reason. */
+  private drive(why: string | null): void {
+    for (const key of frame("controls").querySelectorAll<HTMLButtonElement>("button")) {
+      key.dataset["title"] ??= key.title;
+      [key.disabled, key.title] = [why !== null, why ?? key.dataset["title"]];
+    }
+    for (const one of this.panels) one.view.rest_because(why);
+    if (why !== null) this.tabs?.open("Panels");
   }
 
   /** The session has come to its end, or not yet. */

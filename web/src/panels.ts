@@ -47,6 +47,8 @@ export class PanelView {
   private waiting: (() => void)[] = [];
   private isPast = false;
   private isHeld = false;
+  /** Why the whole panel rests beside the past, if so. */
+  private resting: string | null = null;
   private readonly why = make("p", { class: "why" });
   /** The keys that lie on the machine. */
   private readonly on_machine: { readonly element: PanelElement; readonly key: Key }[] = [];
@@ -147,6 +149,13 @@ export class PanelView {
     this.say_why();
   }
 
+  /** Nothing is operated for this reason, until there is none. */
+  rest_because(why: string | null): void {
+    if (this.resting === why) return;
+    this.resting = why;
+    this.say_why();
+  }
+
   /** Who sits here: inputs work for the one who does, and the first press takes a seat that is free. */
   sit(seat: SeatState): void {
     this.seat = seat;
@@ -163,11 +172,12 @@ export class PanelView {
 
   /** Says why nothing can be pressed, or what a press does first. */
   private say_why(): void {
-    const why = why_not(say_word(this.panel.seat), this.seat, this.isPast);
-    const isDead = this.isPast || this.seat === "taken";
+    const isResting = this.isPast || this.resting !== null;
+    const why = this.resting ?? why_not(say_word(this.panel.seat), this.seat, this.isPast);
+    const isDead = isResting || this.seat === "taken";
     this.why.textContent = this.inputs.length === 0 ? "" : why;
     this.why.hidden = this.why.textContent === "";
-    this.root.classList.toggle("resting", this.isPast);
+    this.root.classList.toggle("resting", isResting);
     for (const input of this.inputs) {
       const own_reason = this.barred.get(input);
       input.disabled = isDead || own_reason !== undefined;
@@ -177,7 +187,7 @@ export class PanelView {
 
   /** Does it from the seat, which is taken if it is free. */
   private seated(deed: () => void): void {
-    if (this.isPast) return;
+    if (this.isPast || this.resting !== null) return;
     if (this.seat === "mine") deed();
     else if (this.seat === "free") {
       this.waiting.push(deed);
@@ -283,7 +293,20 @@ export class PanelView {
   private fill_button(cell: HTMLElement, element: PanelElement): void {
     const key = make("button", { type: "button", class: "push", "aria-pressed": "false" }, ...broken(element.label));
     this.hold_down(key, element);
+    if (element.action === "reset" && this.session.training !== null) {
+      this.barred.set(key, say("A lesson is not reset: Repeat on the trainer's page begins it again."));
+    }
     cell.append(key);
+  }
+
+  /** What a press of this element does to the session, before it presses the signal. */
+  private act(element: PanelElement): void {
+    switch (element.action) {
+      case null:
+        return;
+      case "reset":
+        return this.seated(() => this.actions.reset(this.panel.name));
+    }
   }
 
   /** Makes a key of an element that is down while somebody presses it, by mouse, touch, keyboard or voice. */
@@ -298,22 +321,9 @@ export class PanelView {
     give = this.wire(element, (value) => {
       key.setAttribute("aria-pressed", String(value !== 0));
       held.seen(value !== 0);
-    if (element.action === "reset" && this.session.training !== null) {
-      this.barred.set(key, say("A lesson is not reset: Repeat on the trainer's page begins it again."));
-    }
     });
     const press = (down: boolean): void => {
       if (!key.disabled || !down) held.press(down);
-  /** What a press of this element does to the session, before it presses the signal. */
-  private act(element: PanelElement): void {
-    switch (element.action) {
-      case null:
-        return;
-      case "reset":
-        return this.seated(() => this.actions.reset(this.panel.name));
-    }
-  }
-
     };
     key.addEventListener("pointerdown", (event) => {
       key.setPointerCapture(event.pointerId);

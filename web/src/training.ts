@@ -10,6 +10,7 @@ import type { Lesson, LessonResult, Timing, View } from "./session";
 /** How far back a trainer goes with one key, s. */
 const BACK_S = [10, 30, 120];
 type Attempt = Extract<Message, { readonly type: "lesson" }>;
+type Drive = NonNullable<Extract<Message, { readonly type: "drive" }>["now"]>;
 
 const NS = 1e9;
 /** When little time is left. */
@@ -19,15 +20,40 @@ export class TrainingView {
   readonly root: HTMLElement;
   private readonly left = make("output", { class: "lesson-left" }, "–");
   private readonly result = make("div", { class: "lesson-result", role: "status" });
+  private readonly drive_text = make("p", {});
+  private readonly drive_bar = make("progress", { max: "1" });
+  private readonly drive = make("div", { class: "lesson-drive" }, this.drive_text, this.drive_bar);
+  private desk: HTMLElement | null = null;
   private ends_ns: number | null = null;
 
   constructor(lesson: Lesson, private readonly views: readonly View[], now_ns: () => number, ask: (ask: Ask) => void) {
     const about = make("p", {}, own(lesson.about ?? ""));
     const heading = make("h3", {}, say("Lesson {name}", { name: own(lesson.lesson) }));
     const head = make("div", { class: "lesson-head" }, heading, make("span", {}, say("Time left"), " ", this.left));
-    this.root = make("section", { class: "lesson", "aria-label": say("Lesson") }, head, about, ...this.asked(lesson), this.result);
+    this.root = make("section", { class: "lesson", "aria-label": say("Lesson") }, head, this.drive, about, ...this.asked(lesson), this.result);
     this.result.hidden = true;
-    if (lesson.role === "trainer") this.root.append(this.controls(lesson, now_ns, ask));
+    this.drive.hidden = true;
+    if (lesson.role !== "trainer") return;
+    this.desk = this.controls(lesson, now_ns, ask);
+    this.root.append(this.desk);
+  }
+
+  /** How far a real PLC is on its way to where the lesson begins; why nothing is operated meanwhile. */
+  show_drive(now: Drive | null): string | null {
+    this.drive.hidden = now === null;
+    const why = now === null ? null : say("The PLC is being driven to where the lesson begins: nothing can be operated until it is there.");
+    for (const input of this.desk?.querySelectorAll<HTMLButtonElement | HTMLSelectElement>("button, select") ?? []) {
+      input.dataset["title"] ??= input.title;
+      [input.disabled, input.title] = [why !== null, why ?? input.dataset["title"]];
+    }
+    if (now === null) return why;
+    const share = now.to_ns === 0 ? 1 : now.at_ns / now.to_ns;
+    const [plcs, start, at, to] = [now.plcs.join(", "), own(now.start), minutes(now.at_ns), minutes(now.to_ns)];
+    this.drive_text.textContent = say("PLC {plcs} is being driven from its cold start by way of {start} to {to}: it is at {at}, {share} %.", { plcs, start, to, at, share: Math.floor(100 * share) });
+    this.drive_bar.value = share;
+    this.drive_bar.setAttribute("aria-label", say("How far the PLC is"));
+    this.left.textContent = "–";
+    return why;
   }
 
   /** What has to be so to pass. */
@@ -39,7 +65,7 @@ export class TrainingView {
 
   /** Virtual time goes on. */
   at(t_ns: number): void {
-    if (this.ends_ns === null) return;
+    if (this.ends_ns === null || !this.drive.hidden) return;
     this.left.textContent = minutes(this.ends_ns - t_ns);
     this.left.classList.toggle("short", this.ends_ns - t_ns < SHORT_NS);
   }

@@ -261,6 +261,27 @@ export function readDrawingWire(field: Field): DrawingWire {
   };
 }
 
+/** Real PLCs on their way to where an attempt begins. */
+export interface Drive {
+  /** Their clients. */
+  readonly plcs: readonly string[];
+  /** The prepared state from which the attempt begins. */
+  readonly start: string;
+  /** How far they are, in virtual time from their cold start. */
+  readonly at_ns: number;
+  /** Where the attempt begins. */
+  readonly to_ns: number;
+}
+
+export function readDrive(field: Field): Drive {
+  return {
+    plcs: list(text)(field.at("plcs")),
+    start: text(field.at("start")),
+    at_ns: whole(field.at("at_ns")),
+    to_ns: whole(field.at("to_ns")),
+  };
+}
+
 /** A joint that a component drives. */
 export interface DrivenJoint {
   /** Whether it turns; it slides if not. */
@@ -353,6 +374,13 @@ export function readKept(field: Field): Kept {
   };
 }
 
+/** What a key does to the session. */
+export type KeyAction = "reset";
+
+export function readKeyAction(field: Field): KeyAction {
+  return one_of("reset")(field);
+}
+
 /** The lesson that a session is, on the page of one of its two people. */
 export interface Lesson {
   readonly role: Role;
@@ -374,13 +402,6 @@ export function readLesson(field: Field): Lesson {
     asked: list(text)(field.at("asked", [])),
     mistakes: list(readForgiven)(field.at("mistakes", [])),
     starts: list(text)(field.at("starts", [])),
-/** What a key does to the session. */
-export type KeyAction = "reset";
-
-export function readKeyAction(field: Field): KeyAction {
-  return one_of("reset")(field);
-}
-
   };
 }
 
@@ -514,6 +535,8 @@ export type Message =
   | { readonly type: "alarms"; readonly all: boolean; readonly changes: readonly AlarmChange[] }
   /** How the attempt at a lesson goes: `result` comes when it is over. */
   | { readonly type: "lesson"; readonly number: number; readonly ends_ns: number; readonly result: LessonResult | null }
+  /** How far real PLCs are on their way to where an attempt at a lesson begins; null when they are there. Nobody operates anything meanwhile. */
+  | { readonly type: "drive"; readonly now: Drive | null }
   /** Marked in the trends, and listed below the alarms. */
   | { readonly type: "event"; readonly t_ns: number; readonly kind: string; readonly text: string }
   /** Shown to the viewer. */
@@ -579,6 +602,8 @@ export function readMessage(field: Field): Message {
         ends_ns: whole(field.at("ends_ns")),
         result: nullable(readLessonResult)(field.at("result")),
       };
+    case "drive":
+      return { type, now: nullable(readDrive)(field.at("now")) };
     case "event":
       return { type, t_ns: whole(field.at("t_ns")), kind: text(field.at("kind")), text: text(field.at("text")) };
     case "error":
@@ -636,6 +661,8 @@ export interface PanelElement {
   readonly label: string;
   /** Column and row, from 0. */
   readonly at: readonly [number, number];
+  /** What a press does to the session, before it presses the signal. */
+  readonly action: KeyAction | null;
   /** The bodies on which it lies, too: a click on one presses it. */
   readonly bodies: readonly number[];
   readonly choices: readonly Choice[];
@@ -660,9 +687,8 @@ export function readPanelElement(field: Field): PanelElement {
     kind: readElementKind(field.at("kind")),
     label: text(field.at("label")),
     at: tuple(whole, whole)(field.at("at")),
+    action: nullable(readKeyAction)(field.at("action")),
     bodies: list(whole)(field.at("bodies", [])),
-  /** What a press does to the session, before it presses the signal. */
-  readonly action: KeyAction | null;
     choices: list(readChoice)(field.at("choices", [])),
     colour: nullable(text)(field.at("colour")),
     components: list(text)(field.at("components", [])),
@@ -687,7 +713,6 @@ export function readPanelPage(field: Field): PanelPage {
   return { signal: text(field.at("signal")), value: whole(field.at("value")) };
 }
 
-    action: nullable(readKeyAction)(field.at("action")),
 /** A parameter of a component, as it is shown. */
 export interface Parameter {
   readonly name: string;
@@ -818,10 +843,10 @@ export function readSession(field: Field): Session {
 }
 
 /** How a session is. */
-export type SessionState = "run" | "hold" | "end" | "recorded";
+export type SessionState = "run" | "hold" | "end" | "recorded" | "driven";
 
 export function readSessionState(field: Field): SessionState {
-  return one_of("run", "hold", "end", "recorded")(field);
+  return one_of("run", "hold", "end", "recorded", "driven")(field);
 }
 
 /** The shape of a body; a cylinder and a capsule lie along z. */

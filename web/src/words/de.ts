@@ -29,6 +29,7 @@ export const de = {
   running: "läuft",
   held: "hält",
   over: "zu Ende",
+  "the PLC is driven": "die SPS wird gefahren",
   recorded: "Aufzeichnung",
   "as fast as it can": "so schnell es geht",
   Hold: "Halt",
@@ -117,9 +118,9 @@ export const de = {
   "This is the past: go back to now to operate the machine.": "Das ist die Vergangenheit: Gehen Sie zurück zum Jetzt, um die Maschine zu bedienen.",
   "Another viewer has the seat {seat}: you can operate when it is free.": "Der Platz {seat} ist besetzt: Sie können bedienen, sobald er frei ist.",
   "Nobody has the seat {seat}: the first press takes it.": "Der Platz {seat} ist frei: Der erste Druck nimmt ihn.",
-  "This scenario has no panel. Add [[panel]] to it.": "Dieses Szenario hat kein Pult. Fügen Sie ihm [[panel]] hinzu.",
   "A lesson is not reset: Repeat on the trainer's page begins it again.":
     "Eine Lektion wird nicht zurückgesetzt: „Wiederholen“ auf der Seite des Trainers beginnt sie von vorn.",
+  "This scenario has no panel. Add [[panel]] to it.": "Dieses Szenario hat kein Pult. Fügen Sie ihm [[panel]] hinzu.",
   on: "ein",
   off: "aus",
   ready: "bereit",
@@ -182,6 +183,11 @@ export const de = {
   "brought to its end": "zu Ende gebracht",
   "time {time}": "Zeit {time}",
   Repeat: "Wiederholen",
+  "The PLC is being driven to where the lesson begins: nothing can be operated until it is there.":
+    "Die SPS wird dorthin gefahren, wo die Lektion beginnt: Bis sie dort ist, lässt sich nichts bedienen.",
+  "PLC {plcs} is being driven from its cold start by way of {start} to {to}: it is at {at}, {share} %.":
+    "Die SPS {plcs} wird von ihrem Kaltstart über {start} bis {to} gefahren: Sie ist bei {at}, {share} %.",
+  "How far the PLC is": "Wie weit die SPS ist",
   Jump: "Springen",
   "Back {seconds} s": "{seconds} s zurück",
   "Prepared state": "Vorbereiteter Zustand",

@@ -10,7 +10,7 @@ use onescan_scenario::expect::TraceEnd;
 use onescan_scenario::{Mode, Scenario};
 use onescan_server::digest::Digest;
 use onescan_server::end::SessionEnd;
-use onescan_server::lockstep::{Outcome, Reached};
+use onescan_server::lockstep::{Lockstep, Outcome, Reached};
 use onescan_server::mailbox::Mailbox;
 use onescan_server::operation::{Control, OperatorInput};
 use onescan_server::pacing::Pace;
@@ -23,12 +23,13 @@ use super::examination::Examiner;
 use super::moments::{Moment, Moments};
 use super::real_plc::RealPlcs;
 use super::score::Score;
+use super::starts::STEPS_AT_A_TIME;
 use crate::error::Usage;
 use crate::run::alarms;
 use crate::run::config::{RecordRequest, Subject};
 use crate::run::in_process::with_clients;
 use crate::run::recorded::Recorded;
-use crate::web::{AlarmLog, Failing, LessonBoard};
+use crate::web::{AlarmLog, Driving, Failing, LessonBoard};
 
 /// A lesson needs its clients here: the states of others cannot be kept.
 pub(super) fn elsewhere(name: &ClientName, member: &Member) -> Usage {
@@ -65,6 +66,8 @@ pub(super) struct Course<'a> {
     pub(super) inputs: Vec<OperatorInput>,
     /// Where virtual time is held, before anybody does anything new.
     pub(super) hold_at: Option<VirtualTime>,
+    /// Real PLCs, until they are where virtual time is held.
+    pub(super) driving: Option<Driving>,
     /// The recording: its folder, its number, the scenario's path.
     pub(super) record: Option<(&'a Path, u32, &'a Path)>,
 }
@@ -82,7 +85,7 @@ pub(super) struct Ended {
 /// # Errors
 /// The session cannot be formed or go on, or its recording cannot be written.
 pub(super) fn drive(course: Course<'_>, stage: &Stage, moments: &mut Moments) -> Result<Ended, TrainError> {
-    let Course { scenario, real, from, start, inputs, hold_at, record } = course;
+    let Course { scenario, real, from, start, inputs, hold_at, driving, record } = course;
     let mut lockstep = with_clients(scenario, scenario.until(), [], |name| real.client(name), elsewhere)?;
     lockstep.set_settings(scenario.session_settings());
     lockstep.set_published(stage.published.clone());
@@ -104,10 +107,11 @@ pub(super) fn drive(course: Course<'_>, stage: &Stage, moments: &mut Moments) ->
     let failed = |source| StartError::Checkpoint { name: start.to_owned(), source };
     lockstep.resume(&from.checkpoint).map_err(failed)?;
     if let Some(hold_at) = hold_at
-        && lockstep.run_to(hold_at)? == Reached::Boundary
+        && repeat_to(&mut lockstep, hold_at, driving.as_ref())? == Reached::Boundary
     {
         stage.mailbox.control(Control::Pause);
     }
+    drop(driving);
     lockstep.set_pace(stage.pace);
     let step = scenario.plan().step();
     loop {
@@ -132,6 +136,21 @@ pub(super) fn drive(course: Course<'_>, stage: &Stage, moments: &mut Moments) ->
     let score = examination.borrow().clone().finish(scenario, end);
     let inputs = heard.take();
     Ok(Ended { outcome, began: from.checkpoint.digest(), score, inputs })
+}
+
+/// Repeats what operators did up to `t_v`, and says how far a real PLC is on its way there.
+fn repeat_to(lockstep: &mut Lockstep, t_v: VirtualTime, driving: Option<&Driving>) -> Result<Reached, TrainError> {
+    let Some(driving) = driving else { return Ok(lockstep.run_to(t_v)?) };
+    let span = lockstep.session().step().times(STEPS_AT_A_TIME);
+    loop {
+        let now = lockstep.session().t_v();
+        driving.reach(now);
+        let next = span.and_then(|span| now.checked_add(span)).map_or(t_v, |next| next.min(t_v));
+        let reached = lockstep.run_to(next)?;
+        if reached == Reached::End || next == t_v {
+            return Ok(reached);
+        }
+    }
 }
 
 fn recorded(scenario: &Scenario, folder: &Path, number: u32, path: &Path) -> Result<(Recorded, Recorder), TrainError> {

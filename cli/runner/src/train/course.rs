@@ -26,7 +26,9 @@ use super::starts::{Starts, driven};
 use crate::error::Usage;
 use crate::interrupt::Interrupt;
 use crate::run::operator_inputs;
-use crate::web::{self, AlarmLog, AtWork, Failing, Forgiven, LessonBoard, Page, Role, Training, Turn, TurnQueue};
+use crate::web::{
+    self, AlarmLog, AtWork, Driving, Failing, Forgiven, LessonBoard, Page, Role, Training, Turn, TurnQueue,
+};
 use onescan_base::notice::NOTICE;
 
 /// A lesson, and all that is needed to hold it.
@@ -74,6 +76,8 @@ struct Next {
     moments: Moments,
     inputs: Vec<OperatorInput>,
     fork: Option<Fork>,
+    /// Real PLCs, until they are there.
+    driving: Option<Driving>,
 }
 
 impl Classroom<'_> {
@@ -137,7 +141,8 @@ impl Classroom<'_> {
         Ok(self.book.start(name).ok_or_else(missing)?)
     }
 
-    fn prepare(&self, name: &str) -> Result<Prepared, TrainError> {
+    /// The scenario with the lesson, as it is from the start `name` on.
+    fn applied(&self, name: &str) -> Result<Scenario, TrainError> {
         let start = self.start(name)?;
         let scenario = self.book.applied(self.scenario, self.lesson, start)?;
         for client in self.real.names() {
@@ -150,10 +155,30 @@ impl Classroom<'_> {
                 return Err(Usage::new(message, Some(help)).into());
             }
         }
-        let checkpoint = if self.real.is_empty() {
-            Starts::new(self.scenario, self.book, self.config.starts.as_deref()).prepare(start, self.interrupt)?
-        } else {
-            driven(&self.book.prepared(self.scenario, start)?, start, self.real, self.interrupt)?
+        Ok(scenario)
+    }
+
+    /// Real PLCs set out to `to`, by way of the start `name`; nothing without any.
+    fn set_out(&self, name: &str, to: Option<VirtualTime>, board: &LessonBoard) -> Result<Option<Driving>, TrainError> {
+        if self.real.is_empty() {
+            return Ok(None);
+        }
+        let at = self.start(name)?.at;
+        let plcs = self.real.names().map(ToString::to_string).collect();
+        Ok(Some(board.drive(plcs, name, to.map_or(at, |to| to.max(at)))))
+    }
+
+    /// The start `name`; real PLCs are `driving` there.
+    fn prepare(&self, name: &str, driving: Option<&Driving>) -> Result<Prepared, TrainError> {
+        let (start, scenario) = (self.start(name)?, self.applied(name)?);
+        let checkpoint = match driving {
+            None => {
+                Starts::new(self.scenario, self.book, self.config.starts.as_deref()).prepare(start, self.interrupt)?
+            }
+            Some(driving) => {
+                let whole = self.book.prepared(self.scenario, start)?;
+                driven(&whole, start, (self.real, driving), self.interrupt)?
+            }
         };
         Ok(Prepared { scenario, checkpoint })
     }
@@ -173,8 +198,9 @@ impl Classroom<'_> {
 
     /// One attempt in which nobody takes part.
     fn repeated(&self, start: &str, inputs: Vec<OperatorInput>, number: u32) -> Result<AttemptRecord, TrainError> {
-        let prepared = self.prepare(start)?;
         let stage = self.stage(Pace::Max, Mailbox::new());
+        let driving = self.set_out(start, None, &stage.board)?;
+        let prepared = self.prepare(start, driving.as_ref())?;
         let next = Next { inputs, ..self.begins(start, &prepared) };
         let (record, _, _) = self.attempt(next, &prepared.scenario, &stage, number)?;
         Ok(record)
@@ -194,10 +220,11 @@ impl Classroom<'_> {
         stage: &Stage,
         number: u32,
     ) -> Result<(AttemptRecord, Moments, Vec<OperatorInput>), TrainError> {
-        let Next { start, moment, mut moments, inputs, fork } = next;
+        let Next { start, moment, mut moments, inputs, fork, driving } = next;
         let record = self.config.record.as_deref().map(|folder| (folder, number, self.config.scenario.as_path()));
         let hold_at = fork.map(|fork| VirtualTime::from_nanos(fork.t_v_ns));
-        let course = Course { scenario, real: self.real, from: moment, start: &start, inputs, hold_at, record };
+        let course =
+            Course { scenario, real: self.real, from: moment, start: &start, inputs, hold_at, driving, record };
         stage.board.begin(number, scenario.until().as_nanos());
         let Ended { outcome, began, score, inputs } = drive(course, stage, &mut moments)?;
         stage.board.end(report::result(&score));
@@ -225,11 +252,22 @@ impl Classroom<'_> {
         let mailbox = self.interrupt.mailbox();
         let stage = Stage { keeps: self.real.is_empty(), ..self.stage(served.pace, mailbox.clone()) };
         let turns = TurnQueue::new(mailbox);
-        let at = Rc::new(self.prepare(&self.lesson.start)?);
-        // Until there is a page, a signal ends the program at once: a start may take long to be made.
+        let driving = self.set_out(&self.lesson.start, None, &stage.board)?;
+        // Pages say how far a real PLC is. Without one they come with the start; until then a signal ends the program at once,
+        // since a start may take long to be made.
+        let early = driving.as_ref().map(|_| {
+            self.interrupt.watch();
+            self.pages(served, &self.applied(&self.lesson.start)?, &stage, &turns)
+        });
+        let early = early.transpose()?;
+        let at = Rc::new(self.prepare(&self.lesson.start, driving.as_ref())?);
+        drop(driving);
         self.interrupt.watch();
         let prepared = BTreeMap::from([(self.lesson.start.clone(), Rc::clone(&at))]);
-        let _pages = self.pages(served, &at.scenario, &stage, &turns)?;
+        let _pages = match early {
+            Some(pages) => pages,
+            None => self.pages(served, &at.scenario, &stage, &turns)?,
+        };
         let mut next = self.begins(&self.lesson.start, &at);
         let mut way = Way { at, prepared, line: Vec::new() };
         let mut attempts: Vec<AttemptRecord> = Vec::new();
@@ -242,7 +280,7 @@ impl Classroom<'_> {
             way.line.extend(heard);
             attempts.push(record);
             let Some(turn) = turns.take().filter(|_| !self.interrupt.is_raised()) else { return Ok((attempts, None)) };
-            next = match self.next(turn, start, number, moments, &mut way) {
+            next = match self.next(turn, (start, number), moments, &mut way, &stage.board) {
                 Ok(next) => next,
                 Err(_) if self.interrupt.is_raised() => return Ok((attempts, None)),
                 // A real PLC may be lost between two attempts: those that were held have their record.
@@ -256,23 +294,24 @@ impl Classroom<'_> {
     fn next(
         &self,
         turn: Turn,
-        start: String,
-        number: u32,
+        (start, number): (String, u32),
         mut moments: Moments,
         way: &mut Way,
+        board: &LessonBoard,
     ) -> Result<Next, TrainError> {
         match turn {
             Turn::Repeat => {
-                way.at = self.again(&start, way)?;
+                way.at = self.again(&start, way, self.set_out(&start, None, board)?.as_ref())?;
                 Ok(self.begins(&start, &way.at))
             }
             Turn::Jump(name) => {
-                way.at = self.again(&name, way)?;
+                way.at = self.again(&name, way, self.set_out(&name, None, board)?.as_ref())?;
                 Ok(self.begins(&name, &way.at))
             }
             Turn::Back(t_v) => {
-                if !self.real.is_empty() {
-                    way.at = self.again(&start, way)?;
+                let driving = self.set_out(&start, Some(t_v), board)?;
+                if driving.is_some() {
+                    way.at = self.again(&start, way, driving.as_ref())?;
                     moments = Moments::since(self.first_moment(&way.at));
                 }
                 let moment = moments.back_to(t_v);
@@ -280,18 +319,18 @@ impl Classroom<'_> {
                 let inputs = way.line.iter().filter(|input| input.step >= moment.steps() && input.t_v < t_v);
                 let inputs = inputs.cloned().collect();
                 let fork = Fork { attempt: number, step: moment.steps().0, t_v_ns: t_v.as_nanos() };
-                Ok(Next { start, moment, moments, inputs, fork: Some(fork) })
+                Ok(Next { start, moment, moments, inputs, fork: Some(fork), driving })
             }
         }
     }
 
     /// The start `name`: as it was prepared before, or prepared now, as it always is with real PLCs.
-    fn again(&self, name: &str, way: &mut Way) -> Result<Rc<Prepared>, TrainError> {
+    fn again(&self, name: &str, way: &mut Way, driving: Option<&Driving>) -> Result<Rc<Prepared>, TrainError> {
         let before = way.prepared.get(name);
-        if let Some(known) = before.filter(|_| self.real.is_empty()) {
+        if let Some(known) = before.filter(|_| driving.is_none()) {
             return Ok(Rc::clone(known));
         }
-        let made = Rc::new(self.prepare(name)?);
+        let made = Rc::new(self.prepare(name, driving)?);
         if before.is_some_and(|before| before.checkpoint.digest() != made.checkpoint.digest()) {
             tracing::warn!(
                 target: NOTICE,
@@ -306,7 +345,7 @@ impl Classroom<'_> {
     fn begins(&self, start: &str, prepared: &Prepared) -> Next {
         let moment = self.first_moment(prepared);
         let moments = Moments::since(moment.clone());
-        Next { start: start.to_owned(), moment, moments, inputs: Vec::new(), fork: None }
+        Next { start: start.to_owned(), moment, moments, inputs: Vec::new(), fork: None, driving: None }
     }
 
     /// The trainee's page and the trainer's.

@@ -10,6 +10,7 @@ use onescan_scenario::lesson::{Book, Start};
 use onescan_server::checkpoint::Checkpoint;
 use onescan_server::end::SessionEnd;
 use onescan_server::lockstep::Reached;
+use onescan_server::signal::ClientName;
 use onescan_server::time::VirtualTime;
 
 use super::attempt::elsewhere;
@@ -18,6 +19,7 @@ use super::real_plc::RealPlcs;
 use crate::error::Unreadable;
 use crate::interrupt::Interrupt;
 use crate::run::in_process::with_clients;
+use crate::web::Driving;
 
 /// Where prepared states are kept, unless somebody says otherwise: below the user's cache, else below the temporary folder.
 pub(crate) fn usual_folder() -> PathBuf {
@@ -27,8 +29,8 @@ pub(crate) fn usual_folder() -> PathBuf {
     cache.join("onescan").join("starts")
 }
 
-/// Steps after which it is looked whether somebody wants the program to end.
-const STEPS_AT_A_TIME: u64 = 64;
+/// Steps after which it is looked whether somebody wants the program to end, and said how far it is.
+pub(super) const STEPS_AT_A_TIME: u64 = 64;
 
 /// The prepared states of a scenario.
 pub(super) struct Starts<'a> {
@@ -52,7 +54,7 @@ impl<'a> Starts<'a> {
         if let Some(kept) = kept(&path) {
             return Ok(kept);
         }
-        let checkpoint = make(&scenario, start, &RealPlcs::default(), interrupt)?;
+        let checkpoint = make(&scenario, start, None, interrupt)?;
         let failed = |source| StartError::Checkpoint { name: start.name.clone(), source };
         let bytes = checkpoint.to_bytes().map_err(failed)?;
         // Without a file the state is made again next time: that costs time and nothing else.
@@ -96,19 +98,25 @@ fn kept(path: &Path) -> Option<Checkpoint> {
 pub(super) fn driven(
     scenario: &Scenario,
     start: &Start,
-    real: &RealPlcs,
+    (real, driving): (&RealPlcs, &Driving),
     interrupt: &Interrupt,
 ) -> Result<Checkpoint, TrainError> {
     for name in real.names() {
         tracing::info!(target: NOTICE, "client `{name}`: driven to `{}`, t_v = {}, from its cold start", start.name, start.at);
     }
-    make(scenario, start, real, interrupt)
+    make(scenario, start, Some((real, driving)), interrupt)
 }
 
 /// Runs up to the state, unless the program is asked to end.
-fn make(scenario: &Scenario, start: &Start, real: &RealPlcs, interrupt: &Interrupt) -> Result<Checkpoint, TrainError> {
+fn make(
+    scenario: &Scenario,
+    start: &Start,
+    driven: Option<(&RealPlcs, &Driving)>,
+    interrupt: &Interrupt,
+) -> Result<Checkpoint, TrainError> {
     let until = start.at + scenario.plan().step();
-    let mut lockstep = with_clients(scenario, until, [], |name| real.client(name), elsewhere)?;
+    let here = |name: &ClientName| driven.and_then(|(real, _)| real.client(name));
+    let mut lockstep = with_clients(scenario, until, [], here, elsewhere)?;
     lockstep.set_settings(scenario.session_settings());
     let mut at = VirtualTime::ZERO;
     loop {
@@ -122,6 +130,9 @@ fn make(scenario: &Scenario, start: &Start, real: &RealPlcs, interrupt: &Interru
                 return Err(StartError::Failed { name: start.name.clone(), failure: failure.clone() }.into());
             }
             return Err(StartError::Ended { name: start.name.clone(), ended: lockstep.session().t_v() }.into());
+        }
+        if let Some((_, driving)) = driven {
+            driving.reach(at);
         }
         if at == start.at {
             break;

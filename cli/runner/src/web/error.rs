@@ -29,6 +29,8 @@ pub(super) enum Refused {
     Trainee,
     #[error("this session is not a lesson")]
     NoLesson,
+    #[error("the PLC is being driven to where the lesson begins: nothing can be operated until it is there")]
+    Driven,
     #[error("there is no start `{0}`")]
     NoStart(String),
     #[error("there is no panel `{0}`")]
@@ -57,12 +59,12 @@ pub(super) enum Refused {
     Trainers(String),
     #[error("somebody else has the seat of panel `{0}`")]
     Taken(String),
-    #[error("`{0}` is written from the seat of a panel that has it: take that seat first")]
-    NoSeat(String),
     #[error("panel `{0}` has no key that resets the session")]
     NoReset(String),
     #[error("a lesson is not reset: `Repeat` on the trainer's page begins it again")]
     InLesson,
     #[error("a session is reset from the seat of the panel that has the key: take that seat first")]
     NotSeated,
+    #[error("`{0}` is written from the seat of a panel that has it: take that seat first")]
+    NoSeat(String),
 }

@@ -2,6 +2,7 @@
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use onescan_server::time::VirtualTime;
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -76,35 +77,113 @@ pub(crate) struct Cost {
     pub(crate) unit: Option<String>,
 }
 
+/// Real PLCs on their way to where an attempt begins.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+pub(crate) struct Drive {
+    /// Their clients.
+    pub(crate) plcs: Vec<String>,
+    /// The prepared state from which the attempt begins.
+    pub(crate) start: String,
+    /// How far they are, in virtual time from their cold start.
+    pub(crate) at_ns: u64,
+    /// Where the attempt begins.
+    pub(crate) to_ns: u64,
+}
+
+#[derive(Debug, Default)]
+struct Noted {
+    attempt: Option<Attempt>,
+    drive: Option<Drive>,
+}
+
 /// Where it is noted how a lesson goes; clones share it.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct LessonBoard(Arc<Mutex<Option<Attempt>>>);
+pub(crate) struct LessonBoard(Arc<Mutex<Noted>>);
 
 impl LessonBoard {
     /// A thread that panicked under the lock has left a whole value.
-    fn lock(&self) -> MutexGuard<'_, Option<Attempt>> {
+    fn lock(&self) -> MutexGuard<'_, Noted> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Notes that the attempt of this number begins, whose time is up at `ends_ns`.
     pub(crate) fn begin(&self, number: u32, ends_ns: u64) {
-        *self.lock() = Some(Attempt { number, ends_ns, result: None });
+        self.lock().attempt = Some(Attempt { number, ends_ns, result: None });
     }
 
     /// Notes what came of the attempt that was begun last.
     pub(crate) fn end(&self, result: LessonResult) {
-        if let Some(attempt) = &mut *self.lock() {
+        if let Some(attempt) = &mut self.lock().attempt {
             attempt.result = Some(result);
         }
     }
 
-    /// How it goes, if that is new to a viewer.
+    /// Notes that real PLCs set out to where an attempt begins, until what it gives is dropped.
+    pub(crate) fn drive(&self, plcs: Vec<String>, start: &str, to: VirtualTime) -> Driving {
+        self.lock().drive = Some(Drive { plcs, start: start.to_owned(), at_ns: 0, to_ns: to.as_nanos() });
+        Driving(self.clone())
+    }
+
+    /// Whether real PLCs are on their way, so that nobody operates anything.
+    pub(super) fn is_driving(&self) -> bool {
+        self.lock().drive.is_some()
+    }
+
+    /// How the attempt goes, if that is new to a viewer.
     pub(super) fn news(&self, reported: &mut Option<Attempt>) -> Option<Attempt> {
-        let now = self.lock().clone();
-        if now == *reported {
+        let noted = self.lock();
+        if noted.attempt == *reported {
             return None;
         }
-        reported.clone_from(&now);
-        now
+        reported.clone_from(&noted.attempt);
+        noted.attempt.clone()
+    }
+
+    /// How far real PLCs are on their way, if that is new to a viewer; nothing in it if none is.
+    pub(super) fn drive_news(&self, reported: &mut Option<Drive>) -> Option<Option<Drive>> {
+        let noted = self.lock();
+        if noted.drive == *reported {
+            return None;
+        }
+        reported.clone_from(&noted.drive);
+        Some(noted.drive.clone())
+    }
+}
+
+/// Real PLCs are on their way for as long as this is kept.
+#[derive(Debug)]
+pub(crate) struct Driving(LessonBoard);
+
+impl Driving {
+    /// They have come as far as this.
+    pub(crate) fn reach(&self, t_v: VirtualTime) {
+        if let Some(drive) = &mut self.0.lock().drive {
+            drive.at_ns = t_v.as_nanos();
+        }
+    }
+}
+
+impl Drop for Driving {
+    fn drop(&mut self) {
+        self.0.lock().drive = None;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_viewer_hears_how_far_a_plc_is() {
+        let (board, mut reported) = (LessonBoard::default(), None);
+        assert_eq!((board.drive_news(&mut reported), board.is_driving()), (None, false));
+        let driving = board.drive(vec!["plc".to_owned()], "melting", VirtualTime::from_nanos(9));
+        let far = |at_ns| Drive { plcs: vec!["plc".to_owned()], start: "melting".to_owned(), at_ns, to_ns: 9 };
+        assert_eq!((board.drive_news(&mut reported), board.is_driving()), (Some(Some(far(0))), true));
+        assert_eq!(board.drive_news(&mut reported), None);
+        driving.reach(VirtualTime::from_nanos(4));
+        assert_eq!(board.drive_news(&mut reported), Some(Some(far(4))));
+        drop(driving);
+        assert_eq!((board.drive_news(&mut reported), board.is_driving()), (Some(None), false));
     }
 }

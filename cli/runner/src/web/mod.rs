@@ -98,7 +98,7 @@ use entry::Entry;
 use error::Refused;
 use frames::Frames;
 use known::Known;
-pub(crate) use lesson::{Cost as LessonCost, Kept, LessonBoard, LessonResult, Met, Slip, Timing};
+pub(crate) use lesson::{Cost as LessonCost, Driving, Kept, LessonBoard, LessonResult, Met, Slip, Timing};
 use listener::{LimitedListener, Visitor};
 use looks::Called;
 use routes::router;
@@ -279,6 +279,11 @@ impl Session {
     /// True for a session that has come to its end, though its page may stay. After an attempt at a lesson the next one comes.
     fn is_complete(&self) -> bool {
         self.training.is_none() && self.published.latest().end.is_some()
+    }
+
+    /// True while real PLCs are driven to where an attempt at a lesson begins.
+    fn is_driven(&self) -> bool {
+        self.training.as_ref().is_some_and(|training| training.board.is_driving())
     }
 
     /// True for what is only looked at, and closed by who has seen enough: a recording, or what has come to its end.

@@ -9,7 +9,7 @@ use serde::Serialize;
 use tokio::time::timeout;
 
 use super::alarms::Change;
-use super::lesson::Attempt;
+use super::lesson::{Attempt, Drive};
 use super::maps::Cells;
 use super::online::Seen;
 use super::seats::SeatView;
@@ -81,6 +81,9 @@ pub(super) enum Response {
         #[serde(flatten)]
         attempt: Attempt,
     },
+    /// How far real PLCs are on their way to where an attempt at a lesson begins; null when they are there. Nobody operates
+    /// anything meanwhile.
+    Drive { now: Option<Drive> },
     /// Marked in the trends, and listed below the alarms.
     Event { t_ns: u64, kind: &'static str, text: String },
     /// Shown to the viewer.
@@ -95,6 +98,8 @@ pub(super) enum SessionState {
     Hold,
     End,
     Recorded,
+    /// Real PLCs are driven to where an attempt at a lesson begins.
+    Driven,
 }
 
 /// The viewer is gone, or does not read.

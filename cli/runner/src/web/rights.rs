@@ -67,6 +67,9 @@ pub(super) fn check(right: Right<'_>, session: &Session, (viewer, rank): (Viewer
     if right != Right::Look && rank < Rank::Operates {
         return Err(Refused::LooksOnly);
     }
+    if session.is_driven() && acts_on_session(right) {
+        return Err(Refused::Driven);
+    }
     match right {
         Right::Look => Ok(()),
         Right::Attend => is_live(session),
@@ -75,12 +78,21 @@ pub(super) fn check(right: Right<'_>, session: &Session, (viewer, rank): (Viewer
         Right::Stop | Right::Control => is_live(session).and_then(|()| is_not_trainee(session)),
         Right::Sit(panel) => may_sit(panel, session, rank),
         Right::Write(signal) => is_live(session).and_then(|()| may_write(signal, session, viewer)),
+        Right::Reset(panel) => is_live(session).and_then(|()| may_reset(panel, session, viewer)),
         Right::Train => is_live(session).and_then(|()| may_train(session)),
         Right::Present(view) => {
             let whose = (viewer, role(session));
-        Right::Reset(panel) => is_live(session).and_then(|()| may_reset(panel, session, viewer)),
             is_live(session).and_then(|()| session.called.may_call(view, whose, &session.seats))
         }
+    }
+}
+
+/// Whether it changes the session that is under way: while real PLCs are driven to where the next one begins there is none, and
+/// it would take what is asked then.
+fn acts_on_session(right: Right<'_>) -> bool {
+    match right {
+        Right::Look | Right::Fork | Right::Stop | Right::Sit(_) | Right::Present(_) => false,
+        Right::Attend | Right::Write(_) | Right::Reset(_) | Right::Control | Right::Train => true,
     }
 }
 
@@ -128,10 +140,6 @@ fn may_sit(panel: &str, session: &Session, rank: Rank) -> Result<(), Refused> {
     Ok(())
 }
 
-fn may_write(signal: usize, session: &Session, viewer: Viewer) -> Result<(), Refused> {
-    let declared = session.declared(signal)?;
-    session.seats.may_write(viewer, declared.name.as_str())
-}
 /// A lesson begins again at its start, which is not where its session does, and its attempts are counted.
 fn may_reset(panel: &str, session: &Session, viewer: Viewer) -> Result<(), Refused> {
     let keys = session.known.resetting.get(panel).filter(|_| !session.known.hidden.contains(panel));
@@ -146,3 +154,7 @@ fn may_reset(panel: &str, session: &Session, viewer: Viewer) -> Result<(), Refus
     session.seats.sits_at_one_of(&panel, viewer).then_some(()).ok_or(Refused::NotSeated)
 }
 
+fn may_write(signal: usize, session: &Session, viewer: Viewer) -> Result<(), Refused> {
+    let declared = session.declared(signal)?;
+    session.seats.may_write(viewer, declared.name.as_str())
+}

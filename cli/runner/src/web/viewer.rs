@@ -18,7 +18,7 @@ use super::alarms::{Fate, Read};
 use super::ask::{self, Ask, Verb};
 use super::entry::Rank;
 use super::error::Refused;
-use super::lesson::Attempt;
+use super::lesson::{Attempt, Drive};
 use super::maps::{Mapped, New};
 use super::online::Watching;
 use super::picture::{FLAGS, PAST, Shown};
@@ -79,6 +79,8 @@ struct Subscription {
     rung: Read,
     /// How the lesson went when it was reported last.
     attempt: Option<Attempt>,
+    /// How far real PLCs were then.
+    drive: Option<Drive>,
 }
 
 /// A drawing with its instance, and the values of its states.
@@ -103,6 +105,7 @@ impl Subscription {
             states: None,
             rung: Read::default(),
             attempt: None,
+            drive: None,
         }
     }
 
@@ -158,7 +161,8 @@ async fn converse(socket: &mut WebSocket, session: &Session, who: (Viewer, Rank)
                     notify_status(socket, &view, session, who.0, &mut subscription).await?;
                 }
                 // a view of a restarted session has a smaller time, and a revision of its own all the same
-                if subscription.seen != Some(view.revision) && !subscription.playhead.is_past() {
+                let is_nothing = view.revision == 0 && session.is_driven();
+                if subscription.seen != Some(view.revision) && !subscription.playhead.is_past() && !is_nothing {
                     subscription.seen = Some(view.revision);
                     picture(socket, &view, session, &mut subscription).await?;
                 }
@@ -228,6 +232,9 @@ async fn notify_alarms(socket: &mut WebSocket, session: &Session, subscription: 
     if let Some(attempt) = board.and_then(|board| board.news(&mut subscription.attempt)) {
         notify(socket, &Response::Lesson { attempt }).await?;
     }
+    if let Some(now) = board.and_then(|board| board.drive_news(&mut subscription.drive)) {
+        notify(socket, &Response::Drive { now }).await?;
+    }
     Ok(())
 }
 
@@ -296,6 +303,7 @@ async fn notify_status(
 fn describe_status(view: &SessionView, session: &Session, viewer: Viewer, subscription: &Subscription) -> String {
     let state = match (&view.end, view.is_held) {
         _ if session.recorded_to.is_some() => SessionState::Recorded,
+        _ if session.is_driven() => SessionState::Driven,
         (Some(_), _) => SessionState::End,
         (None, true) => SessionState::Hold,
         (None, false) => SessionState::Run,
@@ -433,6 +441,13 @@ fn perform(
             Next::Nothing
         }
         Ask::Write { signal, value } => one(ask::write(session.declared(signal)?, value, known)?),
+        Ask::Reset { .. } => {
+            if let Some(message) = ask::start_by_hand(&known.by_hand) {
+                // a viewer that has left hears nothing
+                outcomes.send(Response::Error { message }).ok();
+            }
+            one(Operation::Reset)
+        }
         Ask::Variable { variable, action, value } => {
             one(known.online.operation(variable, action, value).ok_or(Refused::NoVariable(variable))?)
         }
@@ -440,13 +455,6 @@ fn perform(
         Ask::Fail { component, failure, active } => one(ask::fail(component, failure, active, known)?),
         Ask::Disturb { disturbance, active } => {
             Next::Operations(ask::disturb(disturbance, active, known, &session.failing.now())?)
-        }
-        Ask::Reset { .. } => {
-            if let Some(message) = ask::start_by_hand(&known.by_hand) {
-                // a viewer that has left hears nothing
-                outcomes.send(Response::Error { message }).ok();
-            }
-            one(Operation::Reset)
         }
         Ask::Train(asked) => {
             let training = session.training.as_ref().ok_or(Refused::NoLesson)?;
