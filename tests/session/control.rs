@@ -134,7 +134,7 @@ fn a_session_is_reset_with_all_of_its_clients_or_not_at_all() {
         drop(lobby);
         outcome
     });
-    let ask = |control: Control| operate(address, Operation::from(control), PATIENCE);
+    let ask = |control: Control| operate(address, Some(Operation::from(control)), PATIENCE);
     for _ in 0..3 {
         ask(Control::Step).expect("a step");
     }

@@ -95,7 +95,7 @@ impl Lockstep {
         Ok(done)
     }
 
-    /// A session is reset with all of its clients, or not at all: a machine that is rewound alone is another one than its
+    /// A session is reset with all of its clients, or not at all: a machine that begins again alone is another one than its
     /// program believes.
     fn may_reset(&self, operation: &Operation) -> Result<(), OperationError> {
         if *operation != Operation::Reset {

@@ -14,6 +14,9 @@ use onescan_server::time::VirtualTime;
 use super::error::TrainError;
 use crate::error::Usage;
 
+/// Steps after which it is looked whether somebody wants the program to end, and said how far a real PLC is.
+pub(super) const STEPS_AT_A_TIME: u64 = 64;
+
 /// The real PLCs of a session of training.
 #[derive(Default)]
 pub(super) struct RealPlcs(Vec<(ClientName, RealPlc)>);

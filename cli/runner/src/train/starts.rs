@@ -15,7 +15,7 @@ use onescan_server::time::VirtualTime;
 
 use super::attempt::elsewhere;
 use super::error::{StartError, TrainError};
-use super::real_plc::RealPlcs;
+use super::real_plc::{RealPlcs, STEPS_AT_A_TIME};
 use crate::error::Unreadable;
 use crate::interrupt::Interrupt;
 use crate::run::in_process::with_clients;
@@ -28,9 +28,6 @@ pub(crate) fn usual_folder() -> PathBuf {
     let cache = cache.filter(|path| path.is_absolute()).or_else(home).unwrap_or_else(std::env::temp_dir);
     cache.join("onescan").join("starts")
 }
-
-/// Steps after which it is looked whether somebody wants the program to end, and said how far it is.
-pub(super) const STEPS_AT_A_TIME: u64 = 64;
 
 /// The prepared states of a scenario.
 pub(super) struct Starts<'a> {

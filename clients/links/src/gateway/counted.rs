@@ -137,7 +137,7 @@ impl Client for CountedGateway {
     fn can_reset(&self) -> Result<(), OperationRefused> {
         Err(OperationRefused::Because(
             "its blocks are counted (`handshake = \"frames\"`), so that nobody here can start its program again, and the machine \
-             would be rewound alone; end the session, start the PLC cold, and run it again"
+             would begin again alone; end the session, start the PLC cold, and run it again"
                 .to_owned(),
         ))
     }
