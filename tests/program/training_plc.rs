@@ -104,6 +104,34 @@ fn a_shipped_lesson_over_s7_is_that_with_the_soft_plc() {
     assert_eq!(again["attempts"], soft["attempts"]);
 }
 
+/// Both PLCs of a plant are processes of their own in one lesson: a leak in the furnace that nobody sees, and the joystick of the
+/// line, whose expert passes.
+#[test]
+fn both_plcs_of_a_plant_are_real_in_a_lesson() {
+    let (furnace, line) = (with_a_short_lesson(), copied("peeling-line"));
+    fs::write(furnace.path().join("nothing.jsonl"), "").expect("writable");
+    let lessons = [
+        (furnace.path(), ["process", "functions"], "short", "nothing.jsonl", 1),
+        (line.path(), ["charger", "lathe"], "joystick", "experts/joystick.jsonl", 0),
+    ];
+    for (folder, plcs, lesson, operator, code) in lessons {
+        let words = [lesson, "--replay-operator", operator];
+        let soft = record_of(&train(folder, &words));
+        let mut real =
+            plcs.map(|plc| Plc::start(folder, &["--client", plc, "--cycle", "max", "--s7", "127.0.0.1:0"]));
+        let gateways = [0, 1].map(|which| real[which].gateway_of(plcs[which], "s7://"));
+        let links = gateways.iter().flat_map(|gateway| ["--gateway", gateway]).collect::<Vec<_>>();
+        let said = train(folder, &[&words[..], &links].concat());
+        assert_eq!(said.code, Some(code), "{said:?}");
+        for (plc, process) in plcs.iter().zip(&mut real) {
+            assert!(said.err.contains(&format!("client `{plc}`: driven to ")), "{said:?}");
+            assert!(process.say("status").starts_with("RUN, start 1, "), "{plc} was driven once");
+        }
+        let real = record_of(&said);
+        assert_eq!((&real["attempts"], &real["expert"]), (&soft["attempts"], &soft["expert"]), "{lesson}");
+    }
+}
+
 /// The trainer repeats and goes back: each time the PLC is started and driven there, and what is recorded is repeated with the
 /// soft PLC to the digests.
 #[test]
