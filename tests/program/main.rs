@@ -2,6 +2,7 @@
 
 mod access;
 mod arc_furnace;
+mod cad;
 mod campaign_work;
 mod campaigns;
 mod cases;
