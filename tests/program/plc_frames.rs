@@ -441,6 +441,34 @@ fn a_peer_drives_the_whole_line() {
     assert_eq!(verdicts.len(), 4, "{said:?}");
 }
 
+/// The simulator pushes by its own clock, asked or not, and whoever watches the live link gets a frame for each of its steps.
+/// How old what is known gets is the machine's business.
+#[test]
+fn the_live_link_is_watched() {
+    let ports = [free(), free()];
+    let [charger, lathe] = [("charger", 0), ("lathe", 1)].map(|(plc, at)| format!("{plc}=tcp-listen://{}", ports[at]));
+    let words = ["run", "link-live.toml", "--mode", "freewheel", "--format", "json", "--until", "1s"];
+    let run = begun(
+        &scenario("peeling-line"),
+        &[&words[..], &["--gateway", charger.as_str(), "--gateway", lathe.as_str()]].concat(),
+    );
+    let mut python = Command::new("python3");
+    python.arg("-B").arg(scenario("peeling-line").join("link/live.py")).arg("--ports");
+    let peer =
+        Said::from(python.args(ports.map(|port| port.port().to_string())).output().expect("Python is on the machine"));
+    let said = Said::from(run.wait_with_output().expect("it ends"));
+    assert_eq!((said.code, peer.code), (Some(0), Some(0)), "{said:?} {peer:?}");
+    let report: serde_json::Value = serde_json::from_str(said.out.trim()).expect("a report");
+    let steps = report["steps"].as_u64().expect("steps");
+    for plc in ["charger", "lathe"] {
+        let row: Vec<&str> =
+            peer.out.lines().find(|line| line.starts_with(plc)).expect("a row").split_whitespace().collect();
+        let frames: u64 = row[1].parse().expect("a number");
+        // The last ones may be under way when the run ends.
+        assert!(frames.abs_diff(steps) <= 2, "{steps} steps: {peer:?}");
+    }
+}
+
 /// The codec against `struct`: no difference in 10,000 frames of each kind, there and back.
 #[test]
 fn the_frames_are_those_of_the_standard_library_of_python() {

@@ -117,8 +117,7 @@ fn both_plcs_of_a_plant_are_real_in_a_lesson() {
     for (folder, plcs, lesson, operator, code) in lessons {
         let words = [lesson, "--replay-operator", operator];
         let soft = record_of(&train(folder, &words));
-        let mut real =
-            plcs.map(|plc| Plc::start(folder, &["--client", plc, "--cycle", "max", "--s7", "127.0.0.1:0"]));
+        let mut real = plcs.map(|plc| Plc::start(folder, &["--client", plc, "--cycle", "max", "--s7", "127.0.0.1:0"]));
         let gateways = [0, 1].map(|which| real[which].gateway_of(plcs[which], "s7://"));
         let links = gateways.iter().flat_map(|gateway| ["--gateway", gateway]).collect::<Vec<_>>();
         let said = train(folder, &[&words[..], &links].concat());
