@@ -72,7 +72,7 @@ fn meshed(python: &Path, folder: &Path, off_mm: f64, off_rad: f64) -> ([f64; 2],
 /// Chords that are off by s from their circle take 4/3 s/r of its area, and twice that of its moment of inertia.
 #[test]
 fn a_part_in_step_has_the_mass_and_the_inertia_of_its_closed_form() {
-    let python = match venv::tried("cascadio", &["cascadio"]) {
+    let python = match venv::tried("cascadio", &["cascadio", "numpy"]) {
         Ok(python) => python,
         Err(why) => {
             eprintln!("skipped: cascadio cannot be installed: {why}");
