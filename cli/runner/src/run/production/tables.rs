@@ -94,7 +94,9 @@ fn down_time(down: &DownTimeReport, oee: Option<&OeeReport>) -> Table {
         ]
     });
     let mut remarks = vec![format!("run time {}, down time {}", seconds(down.run_ns), seconds(down.down_ns))];
-    remarks.extend(down.availability.map(|availability| format!("availability {}", per_cent(availability))));
+    let is_planned = down.causes.iter().any(|cause| cause.planned && cause.total_ns > 0);
+    let but = if is_planned { ": planned down time does not count" } else { "" };
+    remarks.extend(down.availability.map(|availability| format!("availability {}{but}", per_cent(availability))));
     if let (Some(mtbf_ns), Some(mttr_ns)) = (down.mtbf_ns, down.mttr_ns) {
         let (count, s) = (down.failures, if down.failures == 1 { "" } else { "s" });
         let (between, repair) = (seconds(mtbf_ns), seconds(mttr_ns));
