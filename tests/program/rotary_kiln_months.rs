@@ -58,7 +58,7 @@ fn a_page_draws_histories_and_histograms_and_a_recording_gives_the_same() {
 
 /// A bent shell moves where the shell ends in the scanner's lines and makes no zone hot; a hot spot does the reverse.
 #[test]
-fn the_plc_tells_a_bent_shell_from_a_hot_spot() {
+fn the_plc_distinguishes_a_bent_shell_from_a_hot_spot() {
     for case in ["default", "bent-shell", "both"] {
         kiln(&["run", "bent.toml", "--case", case]);
     }

@@ -45,8 +45,9 @@ pub struct ValueHistogram {
     pub remark: String,
     /// The unit of the values, if they have one.
     pub unit: Option<String>,
-    /// Where the first bin begins, and the last one ends.
+    /// Where the first bin begins, in that unit.
     pub from: f64,
+    /// Where the last bin ends, in that unit.
     pub to: f64,
     /// What part of the time belongs to each bin, 0 to 1.
     pub shares: Vec<f64>,

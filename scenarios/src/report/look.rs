@@ -48,7 +48,8 @@ impl<'a> Looker<'a> {
         let (low, high) = (*from.get_ref(), *to.get_ref());
         // the width, too, is a number
         if low >= high || !(high - low).is_finite() {
-            return Err(wrong(format!("bins go from {low} up to `to`, which is {high}"), to.span()));
+            let message = format!("`to` is {high:?}; it is more than `from`, {low:?}, by a finite number");
+            return Err(wrong(message, to.span()));
         }
         let count = *bins.get_ref();
         if !(1..=BINS_MAX).contains(&count) {

@@ -12,18 +12,25 @@ const DAY_NS: u64 = 24 * HOUR_NS;
 /// A terminal shows so many windows at both ends of a long history.
 const SHOWN_AT_EACH_END: usize = 16;
 
+/// How much of a history is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Extent {
+    Whole,
+    Ends,
+}
+
 /// All of histories and histograms, for pages: shown to who asks for it.
 pub(super) fn whole(report: &Report) -> Vec<Table> {
-    tables(report, usize::MAX).into_iter().map(|table| Table { is_folded: true, ..table }).collect()
+    tables(report, Extent::Whole).into_iter().map(|table| Table { is_folded: true, ..table }).collect()
 }
 
 /// The same for terminals, where the middle of long histories is left out.
 pub(super) fn short(report: &Report) -> Vec<Table> {
-    tables(report, SHOWN_AT_EACH_END)
+    tables(report, Extent::Ends)
 }
 
-fn tables(report: &Report, at_each_end: usize) -> Vec<Table> {
-    let histories = report.histories.iter().map(|history| of_history(history, report.from_ns, at_each_end));
+fn tables(report: &Report, extent: Extent) -> Vec<Table> {
+    let histories = report.histories.iter().map(|history| of_history(history, report.from_ns, extent));
     histories.chain(report.histograms.iter().map(of_spread)).collect()
 }
 
@@ -32,15 +39,18 @@ fn head(signal: &str, unit: Option<&String>) -> String {
     unit.map_or_else(|| signal.to_owned(), |unit| format!("{signal} ({unit})"))
 }
 
-fn of_history(history: &HistoryReport, from_ns: u64, at_each_end: usize) -> Table {
+fn of_history(history: &HistoryReport, from_ns: u64, extent: Extent) -> Table {
     let windows = history.signals.iter().map(|signal| signal.mean.len()).max().unwrap_or(0);
     let row = |window: usize| {
         let begin_ns = from_ns.saturating_add((window as u64).saturating_mul(history.window_ns));
         let values = history.signals.iter().map(|signal| values(signal, window));
         std::iter::once(begin(begin_ns, history.window_ns)).chain(values).collect::<Vec<String>>()
     };
-    let left_out = windows.saturating_sub(at_each_end.saturating_mul(2));
-    let first = if left_out > 0 { at_each_end } else { windows };
+    let left_out = match extent {
+        Extent::Whole => 0,
+        Extent::Ends => windows.saturating_sub(2 * SHOWN_AT_EACH_END),
+    };
+    let first = if left_out > 0 { SHOWN_AT_EACH_END } else { windows };
     let gap = (left_out > 0).then(|| vec![format!("... {left_out} are left out ...")]);
     Table {
         title: "history",
