@@ -161,7 +161,8 @@ async fn converse(socket: &mut WebSocket, session: &Session, who: (Viewer, Rank)
                     notify_status(socket, &view, session, who.0, &mut subscription).await?;
                 }
                 // a view of a restarted session has a smaller time, and a revision of its own all the same
-                let is_nothing = view.revision == 0 && session.is_driven();
+                // Before the first attempt at a lesson there is nothing to be seen.
+                let is_nothing = view.revision == 0 && session.training.is_some();
                 if subscription.seen != Some(view.revision) && !subscription.playhead.is_past() && !is_nothing {
                     subscription.seen = Some(view.revision);
                     picture(socket, &view, session, &mut subscription).await?;
