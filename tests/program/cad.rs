@@ -1,4 +1,4 @@
-//! Parts from CAD: a STEP file by a converter from PyPI, as docs/plant.md shows it, in a scene.
+//! Parts from CAD: a STEP file by a converter in Python, as docs/plant.md shows it, in a scene.
 
 use std::f64::consts::PI;
 use std::path::Path;
