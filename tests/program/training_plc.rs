@@ -230,9 +230,9 @@ fn pages_say_how_far_a_plc_is() {
         // Who leaves at once may not have been heard.
         trainer.until(|trainer| !trainer.drive.is_null());
     }
-    let mut trainer = Sitter::at(&lesson.pages[1], "malfunctions", &["Page"]);
-    trainer.until(|trainer| trainer.status["state"] == "run");
-    trainer.ask(&json!({"type": "operate", "operation": "stop"}));
+    let mut trainer = Reader::of(&lesson.pages[1]);
+    trainer.until(|trainer| trainer.drive.is_null() && trainer.state == "run");
+    ask(&mut trainer.viewer, &json!({"type": "operate", "operation": "stop"}));
     let held = lesson.record();
     let attempts = held["attempts"].as_array().expect("attempts");
     assert_eq!(attempts.len(), 3, "{held}");

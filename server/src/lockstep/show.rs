@@ -34,6 +34,8 @@ impl Shown {
     }
 
     pub(super) fn set_published(&mut self, published: Published) {
+        // Whoever looks knows a view by its revision, also one of another session that was published there before.
+        self.revision = self.revision.max(published.latest().revision);
         self.published = published;
     }
 
