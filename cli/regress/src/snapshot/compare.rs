@@ -211,7 +211,7 @@ mod tests {
     fn the_first_and_the_furthest_difference_are_reported() {
         let (one, other) = (snapshot(&[0.0, 1.0, 2.0, 3.0], 1), snapshot(&[0.0, 1.5, 2.0, 5.0], 2));
         assert_eq!(reported(&one, &one, None), [""; 0]);
-        let all = "x (m) at 0.010 s: expected 1.0, found 1.5; 2 of 4 instants differ, most at 0.030 s, by 2";
+        let all = "x (m) at 0.010 s: expected 1, found 1.5; 2 of 4 instants differ, most at 0.030 s, by 2";
         assert_eq!(reported(&one, &other, None), [all]);
         let some = "x (m) at 0.030 s: expected 3.0, found 5.0";
         assert_eq!(reported(&one, &other, Some(0.5)), [some]);
