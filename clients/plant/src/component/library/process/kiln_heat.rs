@@ -361,8 +361,8 @@ impl Component for KilnHeat {
         state.ambient_degc = inputs.ambient_degc.clamp(-ZERO_K, 1000.0);
         state.angle_rad = inputs.angle_rad;
         let gas_degc = self.gas_degc(burner, self.draught(turn.failed));
-        for zone in 0..ZONES {
-            let wall = self.wall(state, gas_degc[zone], zone);
+        for (zone, gas_degc) in gas_degc.into_iter().enumerate() {
+            let wall = self.wall(state, gas_degc, zone);
             state.zones_degc[zone] = wall.after(state.zones_degc[zone], p.heat_j_m2_k, dt_s);
         }
         state.coating_m = lag(state.coating_m, coating_m, p.coating_s, dt_s);
