@@ -131,7 +131,9 @@ impl<C: Content> Windows<C> {
         self.width_ns = self.width_ns.saturating_mul(times);
         let together = |windows: &[C]| {
             let mut sum = C::default();
-            windows.iter().for_each(|window| sum.add(window));
+            for window in windows {
+                sum.add(window);
+            }
             sum
         };
         self.contents = self.contents.chunks(times as usize).map(together).collect();

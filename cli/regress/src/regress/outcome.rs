@@ -322,9 +322,10 @@ fn merged(
         Policy::Check => Status::Changed,
     };
     let mut outcome = with(status);
-    outcome.notes.push(merge.note(taken));
-    if let Some(side) = merge.nearest(taken) {
-        outcome.differences = compare(side, taken, &unit.choice.tolerances);
+    let tolerances = &unit.choice.tolerances;
+    outcome.notes.push(merge.note(taken, tolerances));
+    if let Some(side) = merge.nearest(taken, tolerances) {
+        outcome.differences = compare(side, taken, tolerances);
     }
     Ok(outcome)
 }

@@ -180,12 +180,14 @@ fn waiting(config: &ReviewConfig) -> Result<Vec<Waiting>, ReviewError> {
     for folder in &Found::behind(&config.paths)?.scenarios {
         for place in pending(folder)? {
             let Some(new) = place.read_pending()? else { continue };
+            let tolerances = tolerances(&place);
             let (old, note) = match place.read_merged()? {
                 Reviewed::Nothing => (None, None),
                 Reviewed::One(old) => (Some(old), None),
-                Reviewed::Undecided(merge) => (merge.nearest(&new).cloned(), Some(merge.note(&new))),
+                Reviewed::Undecided(merge) => {
+                    (merge.nearest(&new, &tolerances).cloned(), Some(merge.note(&new, &tolerances)))
+                }
             };
-            let tolerances = tolerances(&place);
             let differences = old.as_ref().map(|old| compare(old, &new, &tolerances)).unwrap_or_default();
             all.push(Waiting { place, old, new, note, differences });
         }

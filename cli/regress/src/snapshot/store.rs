@@ -1,14 +1,15 @@
 //! The files of a scenario's snapshots: reviewed ones, and pending ones beside them.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use onescan_base::regular::{Limit, NotWithin, Within};
 use onescan_report::{FileError, file};
 use onescan_scenario::permission::granted;
 
-use super::Snapshot;
 use super::conflict::{self, Conflict};
 use super::error::StoreError;
+use super::{Snapshot, compare};
 use onescan_runner::error::{Unreadable, Usage};
 
 /// The folder beside `scenario.toml`.
@@ -46,18 +47,18 @@ pub struct Merge {
 }
 
 impl Merge {
-    /// The side to compare a run with: the one that is equal to it, else the first that is a snapshot.
-    pub fn nearest(&self, run: &Snapshot) -> Option<&Snapshot> {
-        let equal = self.sides.iter().flatten().find(|side| *side == run);
+    /// The side to compare a run with: the one that it is equal to, else the first that is a snapshot.
+    pub fn nearest(&self, run: &Snapshot, tolerances: &BTreeMap<String, f64>) -> Option<&Snapshot> {
+        let equal = self.sides.iter().flatten().find(|side| compare(side, run, tolerances).is_empty());
         equal.or_else(|| self.sides.iter().flatten().next())
     }
 
     /// Where it is, and whose run it is, in words.
-    pub fn note(&self, run: &Snapshot) -> String {
-        let named = self.names.iter().zip(&self.sides);
-        let equal: Vec<&str> =
-            named.filter(|(_, side)| side.as_ref() == Some(run)).map(|(name, _)| name.as_str()).collect();
-        let whose = match equal[..] {
+    pub fn note(&self, run: &Snapshot, tolerances: &BTreeMap<String, f64>) -> String {
+        let is_equal =
+            |side: &Option<Snapshot>| side.as_ref().is_some_and(|side| compare(side, run, tolerances).is_empty());
+        let equal = self.names.iter().zip(&self.sides).filter(|(_, side)| is_equal(side)).map(|(name, _)| name);
+        let whose = match equal.collect::<Vec<_>>()[..] {
             [] => "this run is that of neither side".to_owned(),
             [one] => format!("this run is that of `{one}`"),
             [..] => "this run is that of both sides".to_owned(),

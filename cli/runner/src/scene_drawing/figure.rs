@@ -148,8 +148,13 @@ mod tests {
         all.flatten().collect()
     }
 
-    fn less([a, b, c]: [f64; 3], [x, y, z]: [f64; 3]) -> [f64; 3] {
-        [a - x, b - y, c - z]
+    fn less(one: [f64; 3], other: [f64; 3]) -> [f64; 3] {
+        std::array::from_fn(|axis| one[axis] - other[axis])
+    }
+
+    fn cross(one: [f64; 3], other: [f64; 3]) -> [f64; 3] {
+        let minor = |row: usize, column: usize| one[row] * other[column] - one[column] * other[row];
+        [minor(1, 2), minor(2, 0), minor(0, 1)]
     }
 
     #[test]
@@ -158,8 +163,7 @@ mod tests {
         let cone = FigureForm::Round { radius_m: 0.5, top_radius_m: 0.0, length_m: 2.0, is_open: false };
         for form in [FigureForm::Box { size_m: [1.0, 2.0, 3.0] }, cone] {
             for face in faces(form, &style).iter().filter(|face| face[0] != face[1]) {
-                let [[a, b, c], [x, y, z]] = [less(face[1], face[0]), less(face[2], face[1])];
-                let normal = [b * z - c * y, c * x - a * z, a * y - b * x];
+                let normal = cross(less(face[1], face[0]), less(face[2], face[1]));
                 let out = less(face[0], [1.0, 2.0, 3.0]);
                 let along: f64 = normal.iter().zip(out).map(|(n, o)| n * o).sum();
                 assert!(along > 0.0 || normal.iter().all(|part| part.abs() < 1e-12), "{form:?} {face:?}");

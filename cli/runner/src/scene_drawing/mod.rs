@@ -71,7 +71,8 @@ fn lay_ground(solids: &mut [Solid], figures: usize) {
         .zip(&boxes)
         .map(|(solid, of)| (solid.kind == figures && is_flat(of)).then_some(of[2][1]))
         .collect();
-    let lowest = boxes.iter().zip(&tops).filter(|(_, top)| top.is_none()).map(|(of, _)| (of[2][0] + of[2][1]) / 2.0);
+    let lowest =
+        boxes.iter().zip(&tops).filter(|(_, top)| top.is_none()).map(|(of, _)| f64::midpoint(of[2][0], of[2][1]));
     let lowest = lowest.fold(f64::INFINITY, f64::min);
     for (solid, top) in solids.iter_mut().zip(tops) {
         solid.backdrop |= top.is_some_and(|top| top - SUNK_M <= lowest && lowest.is_finite());

@@ -139,14 +139,12 @@ impl LessonBoard {
         noted.attempt.clone()
     }
 
-    /// How far real PLCs are on their way, if that is new to a viewer; nothing in it if none is.
-    pub(super) fn drive_news(&self, reported: &mut Option<Drive>) -> Option<Option<Drive>> {
+    /// Brings what a viewer knows of real PLCs on their way up to date; true if that was new.
+    pub(super) fn drive_news(&self, reported: &mut Option<Drive>) -> bool {
         let noted = self.lock();
-        if noted.drive == *reported {
-            return None;
-        }
+        let is_new = noted.drive != *reported;
         reported.clone_from(&noted.drive);
-        Some(noted.drive.clone())
+        is_new
     }
 }
 
@@ -176,14 +174,15 @@ mod tests {
     #[test]
     fn a_viewer_hears_how_far_a_plc_is() {
         let (board, mut reported) = (LessonBoard::default(), None);
-        assert_eq!((board.drive_news(&mut reported), board.is_driving()), (None, false));
+        assert_eq!((board.drive_news(&mut reported), board.is_driving()), (false, false));
         let driving = board.drive(vec!["plc".to_owned()], "melting", VirtualTime::from_nanos(9));
         let far = |at_ns| Drive { plcs: vec!["plc".to_owned()], start: "melting".to_owned(), at_ns, to_ns: 9 };
-        assert_eq!((board.drive_news(&mut reported), board.is_driving()), (Some(Some(far(0))), true));
-        assert_eq!(board.drive_news(&mut reported), None);
+        assert_eq!((board.drive_news(&mut reported), board.is_driving()), (true, true));
+        assert_eq!((board.drive_news(&mut reported), &reported), (false, &Some(far(0))));
         driving.reach(VirtualTime::from_nanos(4));
-        assert_eq!(board.drive_news(&mut reported), Some(Some(far(4))));
+        assert_eq!((board.drive_news(&mut reported), &reported), (true, &Some(far(4))));
         drop(driving);
-        assert_eq!((board.drive_news(&mut reported), board.is_driving()), (Some(None), false));
+        assert_eq!((board.drive_news(&mut reported), board.is_driving()), (true, false));
+        assert_eq!(reported, None);
     }
 }

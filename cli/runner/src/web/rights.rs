@@ -148,8 +148,8 @@ fn may_reset(panel: &str, session: &Session, viewer: Viewer) -> Result<(), Refus
         return Err(Refused::InLesson);
     }
     // A key is pressed whole or not at all.
-    let pressed = session.plan.signals().iter().filter(|declared| keys.contains(declared.name.as_str()));
-    pressed.map(|declared| ask::writer(declared, &session.known)).collect::<Result<(), Refused>>()?;
+    let mut pressed = session.plan.signals().iter().filter(|declared| keys.contains(declared.name.as_str()));
+    pressed.try_for_each(|declared| ask::writer(declared, &session.known))?;
     let panel = std::iter::once(panel.to_owned()).collect();
     session.seats.sits_at_one_of(&panel, viewer).then_some(()).ok_or(Refused::NotSeated)
 }

@@ -233,8 +233,8 @@ async fn notify_alarms(socket: &mut WebSocket, session: &Session, subscription: 
     if let Some(attempt) = board.and_then(|board| board.news(&mut subscription.attempt)) {
         notify(socket, &Response::Lesson { attempt }).await?;
     }
-    if let Some(now) = board.and_then(|board| board.drive_news(&mut subscription.drive)) {
-        notify(socket, &Response::Drive { now }).await?;
+    if board.is_some_and(|board| board.drive_news(&mut subscription.drive)) {
+        notify(socket, &Response::Drive { now: subscription.drive.clone() }).await?;
     }
     Ok(())
 }
