@@ -81,14 +81,18 @@ fn write_table(rows: &[Vec<String>], text: &mut String) {
         let mut line = "  ".to_owned();
         let mut column_start = 2;
         for (column, width) in before {
+            let own_start = column_start;
             column_start += width + GAP;
-            line.push_str(cell(*column));
             if cell(*column).chars().count() > *width {
-                writeln!(text, "{line}").expect("a string takes all");
-                line.clear();
+                // What follows begins on the next line.
+                for part in broken(cell(*column), WIDTH.saturating_sub(own_start).max(COLUMN_MAX)) {
+                    writeln!(text, "{line}{part}").expect("a string takes all");
+                    line = " ".repeat(own_start);
+                }
+                line = " ".repeat(column_start);
+            } else {
+                write!(line, "{:<1$}", cell(*column), width + GAP).expect("a string takes all");
             }
-            let missing = column_start - line.chars().count();
-            write!(line, "{:missing$}", "").expect("a string takes all");
         }
         let mut parts = broken(cell(*last), room).into_iter();
         line.push_str(&parts.next().unwrap_or_default());
