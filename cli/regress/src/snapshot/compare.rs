@@ -213,7 +213,7 @@ mod tests {
         assert_eq!(reported(&one, &one, None), [""; 0]);
         let all = "x (m) at 0.010 s: expected 1, found 1.5; 2 of 4 instants differ, most at 0.030 s, by 2";
         assert_eq!(reported(&one, &other, None), [all]);
-        let some = "x (m) at 0.030 s: expected 3.0, found 5.0";
+        let some = "x (m) at 0.030 s: expected 3, found 5";
         assert_eq!(reported(&one, &other, Some(0.5)), [some]);
         assert_eq!(reported(&one, &other, Some(2.0)), [""; 0]);
     }
