@@ -77,8 +77,8 @@ fn with_a_key(folder: &Path) {
     std::fs::write(&path, text + KEY).expect("writable");
 }
 
-/// A real PLC starts cold with the machine, and the digest is that of a session that was never reset. Whoever resets is told
-/// of a PLC that the link cannot start.
+/// A real PLC starts cold with the machine, and the digest is that of a session that was never reset. Who resets gets a
+/// message about a PLC that the link cannot start.
 #[test]
 fn a_real_plc_begins_again_with_the_machine() {
     for is_asked in [true, false] {

@@ -168,7 +168,7 @@ fn a_trainer_repeats_and_goes_back_with_a_real_plc() {
     }
 }
 
-/// A viewer, and what it was told last of the session and of a PLC that is on its way.
+/// A viewer, and what it last received of the session and of a PLC that is on its way.
 struct Reader {
     viewer: WebSocket<TcpStream>,
     state: Value,
@@ -185,11 +185,12 @@ impl Reader {
     fn until(&mut self, is_so: impl Fn(&Self) -> bool) {
         while !is_so(self) {
             let Message::Text(text) = self.viewer.read().expect("a message") else { continue };
-            let told: Value = serde_json::from_str(&text).expect("JSON");
-            match told["type"].as_str() {
-                Some("status") => self.state = told["state"].clone(),
-                Some("drive") => (self.drive, self.drives) = (told["now"].clone(), self.drives + 1),
-                Some("error") => self.refused = told["message"].clone(),
+            let message: Value = serde_json::from_str(&text).expect("JSON");
+            match message["type"].as_str() {
+                Some("status") => self.state = message["state"].clone(),
+                Some("drive") => (self.drive, self.drives) = (message["now"].clone(), self.drives + 1),
+                Some("error") => self.refused = message["message"].clone(),
+                // Signals, alarms and the rest are none of this test's.
                 _ => {}
             }
         }

@@ -57,8 +57,12 @@ pub(crate) fn confine(command: &mut Command, named: &[String]) {
 
 /// The program of this name in the folders of `PATH`, or the file itself where the name has a folder.
 pub(crate) fn on_path(name: &OsStr) -> Option<PathBuf> {
-    let folders = std::env::var_os("PATH")?;
-    found_in(name, &folders)
+    found_in(name, &folders())
+}
+
+/// The folders of `PATH`. Where it is not set there are none, and only a name with a folder finds its program.
+pub(crate) fn folders() -> OsString {
+    std::env::var_os("PATH").unwrap_or_default()
 }
 
 /// As [`on_path`], in these folders.

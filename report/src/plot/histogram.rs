@@ -39,7 +39,7 @@ pub struct Histogram {
 /// How much of the time a signal had which values, in bins of equal width.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ValueHistogram {
-    /// The signal.
+    /// The signal's name, which stands above the bars.
     pub title: String,
     /// What there is to say beside the title, as what is outside of the bins.
     pub remark: String,

@@ -20,7 +20,7 @@ pub(super) struct Past {
 /// The history of signals. Its JSON form is a contract: fields are added, never changed.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct HistoryReport {
-    /// Its name.
+    /// Its name in the scenario, unique among histories.
     pub name: String,
     /// Width of a window in nanoseconds of virtual time. The last one ends with the run.
     pub window_ns: u64,

@@ -85,25 +85,26 @@ fn write_table(rows: &[Vec<String>], text: &mut String) {
             column_start += width + GAP;
             if cell(*column).chars().count() > *width {
                 // What follows begins on the next line.
-                for part in broken(cell(*column), WIDTH.saturating_sub(own_start).max(COLUMN_MAX)) {
-                    writeln!(text, "{line}{part}").expect("a string takes all");
-                    line = " ".repeat(own_start);
-                }
+                write_hanging(&line, cell(*column), WIDTH.saturating_sub(own_start).max(COLUMN_MAX), text);
                 line = " ".repeat(column_start);
             } else {
                 write!(line, "{:<1$}", cell(*column), width + GAP).expect("a string takes all");
             }
         }
-        let mut parts = broken(cell(*last), room).into_iter();
-        line.push_str(&parts.next().unwrap_or_default());
-        writeln!(text, "{}", line.trim_end()).expect("a string takes all");
-        for part in parts {
-            writeln!(text, "{:start$}{part}", "").expect("a string takes all");
-        }
+        write_hanging(&line, cell(*last), room, text);
     }
 }
 
-/// Broken at blanks into lines of so many letters.
+/// A cell behind what stands before it in its row; its further lines begin beneath its first one.
+fn write_hanging(before: &str, cell: &str, room: usize, text: &mut String) {
+    let indent = before.chars().count();
+    for (number, part) in broken(cell, room).iter().enumerate() {
+        let line = if number == 0 { format!("{before}{part}") } else { format!("{:indent$}{part}", "") };
+        writeln!(text, "{}", line.trim_end()).expect("a string takes all");
+    }
+}
+
+/// Broken at blanks into lines of so many letters; one line at least.
 fn broken(text: &str, room: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
@@ -114,6 +115,9 @@ fn broken(text: &str, room: usize) -> Vec<String> {
             }
             _ => lines.push(word.to_owned()),
         }
+    }
+    if lines.is_empty() {
+        lines.push(String::new());
     }
     lines
 }

@@ -25,10 +25,10 @@ pub struct Place {
     pub case: String,
 }
 
-/// What was reviewed.
+/// What the file of reviewed snapshots holds for a case.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Reviewed {
-    /// There is no snapshot.
+    /// The file is not there: the case was never reviewed.
     Nothing,
     One(Snapshot),
     /// Two branches changed it, and whoever merged them left that to the review.

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-/// How it is.
+/// Whether commands can use it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum State {
@@ -19,7 +19,7 @@ pub enum State {
 pub struct Finding {
     /// What was looked at, in a word or two.
     pub subject: &'static str,
-    /// How it is.
+    /// Whether commands can use it; `Wrong` ends the command with code 3.
     pub state: State,
     /// What was found: a path, a number, why it does not work.
     pub found: String,

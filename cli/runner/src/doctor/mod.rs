@@ -58,9 +58,9 @@ fn examined(build: Build) -> Vec<Finding> {
 }
 
 fn page() -> Finding {
-    match Page::size() {
-        0 => Finding::missing("page", "not in this program", Page::is_absent().unwrap_or("build it with its page")),
-        bytes => Finding::ok("page", format!("in this program, {} kB", bytes / 1000)),
+    match Page::is_absent() {
+        Some(how) => Finding::missing("page", "not in this program", how),
+        None => Finding::ok("page", format!("in this program, {} kB", Page::size() / 1000)),
     }
 }
 

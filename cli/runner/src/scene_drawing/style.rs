@@ -127,6 +127,7 @@ impl<'s> Styles<'s> {
             values?.get(place).copied()
         };
         let judged: Option<Vec<f64>> = looks.signals.iter().map(|name| value(name.as_str())).collect();
+        // Without a value of each signal no condition can be judged, and looks without one count all the same.
         let active = judged.map(|judged| looks.active(&judged)).unwrap_or_default();
         let names: Vec<&String> = visible.bodies.iter().chain(looks.figures.iter().map(|one| &one.name)).collect();
         let mut by_name: BTreeMap<String, Vec<(&LookFile, Option<f64>)>> = BTreeMap::new();

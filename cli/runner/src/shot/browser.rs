@@ -87,8 +87,7 @@ impl Browser {
 
 /// The one that `CHROMIUM` names, or the first that is found; nothing where there is none.
 pub(crate) fn program() -> Option<PathBuf> {
-    let path = std::env::var_os("PATH").unwrap_or_default();
-    found(std::env::var_os(VARIABLE).as_deref(), &path)
+    found(std::env::var_os(VARIABLE).as_deref(), &environment::folders())
 }
 
 /// The browser that is named, or the first of [`NAMES`] in the folders of `path`.

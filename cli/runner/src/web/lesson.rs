@@ -80,7 +80,7 @@ pub(crate) struct Cost {
 /// Real PLCs on their way to where an attempt begins.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub(crate) struct Drive {
-    /// Their clients.
+    /// Names of the clients that they stand in for, at least one.
     pub(crate) plcs: Vec<String>,
     /// The prepared state from which the attempt begins.
     pub(crate) start: String,
