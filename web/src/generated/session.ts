@@ -263,7 +263,7 @@ export function readDrawingWire(field: Field): DrawingWire {
 
 /** Real PLCs on their way to where an attempt begins. */
 export interface Drive {
-  /** Their clients. */
+  /** Names of the clients that they stand in for, at least one. */
   readonly plcs: readonly string[];
   /** The prepared state from which the attempt begins. */
   readonly start: string;
