@@ -87,7 +87,7 @@ pub struct ScenarioFile {
     /// What a plot shows.
     #[serde(default)]
     pub plot: PlotFile,
-    /// Tables of values that `onescan run --map` draws when a run is over.
+    /// Tables of values that `onescan run --maps` draws when a run is over.
     #[serde(default)]
     pub map: Vec<MapFile>,
     /// What people see and operate on the page.
@@ -296,6 +296,12 @@ pub struct ExpectFile {
     pub formula: Spanned<String>,
     /// What it means, for readers.
     pub about: Option<String>,
+    /// Of a task that is graded: the marks of a program that meets it in every case in which it is judged.
+    #[serde(default)]
+    pub marks: u32,
+    /// Of a task that is graded: its violation is one of safety, which the report shows first.
+    #[serde(default)]
+    pub safety: bool,
 }
 
 /// The OPC-like link between free-wheeling clients (`[SDSP]` sec. II-C and III).

@@ -62,7 +62,7 @@ form!(
         "type": "string",
         "anyOf": [
             { "enum": ElementaryType::ALL.iter().map(|ty| ty.name()).collect::<Vec<_>>() },
-            { "pattern": r"^(W?STRING(\[ *[0-9]{1,5} *\])?|L?TIME_OF_DAY|L?DATE_AND_TIME)$" },
+            { "pattern": r"^((W?STRING|BYTES)(\[ *[0-9]{1,5} *\])?|L?TIME_OF_DAY|L?DATE_AND_TIME)$" },
         ],
     })
 );

@@ -8,7 +8,7 @@ use toml::Spanned;
 
 use crate::form::Name;
 
-/// A table of values over two axes, drawn by `onescan run --map`: the surface of a body of a plant, or an array of a
+/// A table of values over two axes, drawn by `onescan run --maps`: the surface of a body of a plant, or an array of a
 /// soft PLC.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

@@ -16,6 +16,7 @@ mod coverage;
 mod dask;
 mod diff;
 mod digests;
+mod documents;
 mod doors;
 mod drawn;
 mod edit;

@@ -81,7 +81,7 @@ fn a_sensor_is_added_by_what_the_program_says() {
     let text = std::fs::read_to_string(file("scenario.toml")).unwrap();
     std::fs::write(file("scenario.toml"), text.replace("[signals]\n", &format!("[signals]\n{}\n", line.trim())))
         .unwrap();
-    let said = typed(folder.path(), &["run", "my-cell", "--signal", "Box_At_End", "--plot", "end.svg"]);
+    let said = typed(folder.path(), &["run", "my-cell", "--signals", "Box_At_End", "--plot", "end.svg"]);
     assert_eq!((said.code, said.err.as_str()), (Some(0), ""), "{said:?}");
 }
 

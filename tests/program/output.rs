@@ -70,7 +70,7 @@ fn a_path_that_cannot_be_is_wrong_input_before_anything_runs() {
         ),
         (&["run", "--html", "plc"], "plc: this is a folder, name a file in it"),
         (&["run", "--coverage", "file/x.xml"], "file/x.xml: `file` is not a folder"),
-        (&["run", "--map", "file/maps"], "file/maps: `file` is not a folder"),
+        (&["run", "--maps", "file/maps"], "file/maps: `file` is not a folder"),
         (&["test", "--junit", "no/junit.xml"], "no/junit.xml: `no` is not there"),
         (&["compare", "--plot", "no/plot.svg"], "no/plot.svg: `no` is not there"),
         (&["campaign", "--html", "no/page.html"], "no/page.html: `no` is not there"),

@@ -137,7 +137,7 @@ fn values_with_names_stand_at_the_axis() {
     let plot = folder.path().join("plot.svg");
     let said = typed(
         &scenario("filling-machine"),
-        &["run", ".", "--until", "5s", "--plot", &plot.to_string_lossy(), "--signal", "MachineStep"],
+        &["run", ".", "--until", "5s", "--plot", &plot.to_string_lossy(), "--signals", "MachineStep"],
     );
     assert_eq!(said.code, Some(0), "{said:?}");
     assert!(std::fs::read_to_string(&plot).expect("a plot").contains(">1 Motor_Setup</text>"));

@@ -57,7 +57,7 @@ fn a_map_has_the_shell_as_a_picture_and_as_text() {
     let folder = tempfile::tempdir().expect("a folder");
     let maps = folder.path().join("maps");
     let target = maps.to_str().expect("UTF-8");
-    let said = typed(&scenario("rotary-kiln"), &["run", "month.toml", "--until", "2h", "--map", target]);
+    let said = typed(&scenario("rotary-kiln"), &["run", "month.toml", "--until", "2h", "--maps", target]);
     assert_eq!(said.code, Some(0), "{said:?}");
     let svg = std::fs::read_to_string(maps.join("month.svg")).expect("a picture");
     assert!(svg.contains("The shell after a month") && svg.contains("angle (°)"), "{svg}");
@@ -89,9 +89,9 @@ fn a_page_shows_the_maps_of_a_run() {
 #[test]
 fn a_scenario_without_maps_says_so() {
     let folder = tempfile::tempdir().expect("a folder");
-    let said = typed(&scenario("rotary-kiln"), &["run", ".", "--map", folder.path().to_str().expect("UTF-8")]);
+    let said = typed(&scenario("rotary-kiln"), &["run", ".", "--maps", folder.path().to_str().expect("UTF-8")]);
     assert_eq!(said.code, Some(2), "{said:?}");
-    assert!(said.err.contains("--map: there is nothing to be drawn"), "{said:?}");
+    assert!(said.err.contains("--maps: there is nothing to be drawn"), "{said:?}");
 }
 
 /// What a run of the scanner says, with variables of the PLC at the end.

@@ -102,7 +102,7 @@ fn a_scanner_of_another_make_in_a_process_of_its_own_gives_the_same_matrix_and_t
     for (file, link) in [("serial.toml", "serial"), ("tcp.toml", "tcp")] {
         let run = |folder: &Path| {
             let maps = folder.join("maps");
-            let words = ["run", file, "--case", "fast", "--until", "33s", "--format", "json", "--map"];
+            let words = ["run", file, "--case", "fast", "--until", "33s", "--format", "json", "--maps"];
             let output = onescan(folder).args(words).arg(&maps).env("PYTHONPATH", package()).output().expect("it runs");
             assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
             let report: Value = serde_json::from_slice(&output.stdout).expect("a report");
@@ -150,7 +150,7 @@ fn between((places, rows): &(Vec<f64>, Vec<Vec<f64>>), at_m: f64, at_deg: f64) -
 #[test]
 fn two_scanners_have_the_shell_as_it_is() {
     let folder = tempfile::tempdir().expect("a folder");
-    let words = ["run", "scanners.toml", "--until", "132s", "--map", folder.path().to_str().expect("UTF-8")];
+    let words = ["run", "scanners.toml", "--until", "132s", "--maps", folder.path().to_str().expect("UTF-8")];
     let said = typed(&scenario("rotary-kiln"), &words);
     assert_eq!(said.code, Some(0), "{said:?}");
     let machine = map(&folder.path().join("machine.csv"));

@@ -11,7 +11,7 @@ use crate::web::{Served, ask, received};
 
 const UNTIL: &str = "70s";
 
-/// The values of a map as `run --map` writes it.
+/// The values of a map as `run --maps` writes it.
 fn written(folder: &Path, name: &str) -> Vec<Vec<f64>> {
     let text = fs::read_to_string(folder.join(format!("{name}.csv"))).expect("a map");
     let number = |cell: &str| cell.parse().expect("a number");
@@ -28,7 +28,7 @@ fn map_of(bytes: &[u8]) -> Option<(usize, usize, usize, Vec<f32>)> {
 #[test]
 fn the_last_map_on_the_page_is_that_of_the_run() {
     let folder = tempfile::tempdir().expect("a folder");
-    let words = ["run", "serial.toml", "--format", "json", "--until", UNTIL, "--map", utf8(folder.path())];
+    let words = ["run", "serial.toml", "--format", "json", "--until", UNTIL, "--maps", utf8(folder.path())];
     let plain = typed(&scenario("rotary-kiln"), &words);
     let plain: Value = serde_json::from_str(&plain.out).expect("a report");
 

@@ -14,7 +14,7 @@ const room = await mkdtemp(join(tmpdir(), "maps-"));
 
 /** The maps of a run that ends at a time, row by row without the places of rows and columns. */
 async function written(t_ns) {
-  const done = spawnSync(program, ["run", kiln, "--until", `${t_ns}ns`, "--map", room], { encoding: "utf8" });
+  const done = spawnSync(program, ["run", kiln, "--until", `${t_ns}ns`, "--maps", room], { encoding: "utf8" });
   // expectations that need more time than that are open, or not met
   assert.ok(done.status === 0 || done.status === 1, done.stderr);
   const rows = async (name) => (await readFile(join(room, `${name}.csv`), "utf8")).trim().split("\n").slice(1).map((line) => line.split(",").slice(1).map(Number));

@@ -81,6 +81,13 @@ impl FromStr for SignalPattern {
     }
 }
 
+/// The pattern that matches this name alone: a name has neither star nor question mark.
+impl From<&SignalName> for SignalPattern {
+    fn from(name: &SignalName) -> Self {
+        Self(name.as_str().to_owned())
+    }
+}
+
 impl fmt::Display for SignalPattern {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.0)

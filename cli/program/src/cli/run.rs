@@ -19,7 +19,7 @@ use onescan_server::time::{TimeSpan, VirtualTime};
 use super::error::CommandError;
 use super::opcua::AccessArgs;
 use super::outputs;
-use super::value::{FORKS, FormatArg, client_name, part, plane, signal_name};
+use super::value::{FORKS, FormatArg, client_name, part, plane};
 use onescan_regress::check::collect::Reading;
 use onescan_regress::check::stubs;
 use onescan_runner::access::admission::Admission;
@@ -101,9 +101,10 @@ pub struct RunArgs {
     /// Draw chosen signals of all runs into this SVG file
     #[arg(help_heading = DRAWINGS, long, value_name = "FILE")]
     pub plot: Option<PathBuf>,
-    /// A signal to draw; may be given several times [default: the scenario's choice]
-    #[arg(help_heading = DRAWINGS, long = "signal", value_name = "NAME", requires = "plot", value_parser = signal_name)]
-    pub signals: Vec<SignalName>,
+    /// Draw these signals only: a name, or a pattern with `*` and `?`; may be given several times [default: the
+    /// scenario's choice]
+    #[arg(help_heading = DRAWINGS, long, alias = "signal", value_name = "PATTERN", requires = "plot")]
+    pub signals: Vec<SignalPattern>,
     /// Draw each run in panels of its own, one run beneath the other
     #[arg(help_heading = DRAWINGS, long, requires = "plot", conflicts_with = "xy")]
     pub apart: bool,
@@ -124,8 +125,8 @@ pub struct RunArgs {
     pub html: Option<PathBuf>,
     /// Draw the scenario's maps as they are at the end into this folder: each as a picture `NAME.svg` and as text `NAME.csv`;
     /// of several runs, those of the last one
-    #[arg(help_heading = DRAWINGS, long, value_name = "DIR")]
-    pub map: Option<PathBuf>,
+    #[arg(help_heading = DRAWINGS, long, alias = "map", value_name = "DIR")]
+    pub maps: Option<PathBuf>,
     /// Write the files that the programs of the soft PLCs have at the end into this folder, each in one of its PLC's name; of several
     /// runs, those of the last one
     #[arg(help_heading = DRAWINGS, long, value_name = "DIR")]
@@ -310,7 +311,7 @@ pub fn run(args: RunArgs) -> Result<ExitCode, CommandError> {
         stubs::deny(std::slice::from_ref(&args.scenario), Reading::default())?;
     }
     outputs::files([&args.plot, &args.coverage, &args.html, &args.save])?;
-    outputs::folders([&args.record, &args.map, &args.files])?;
+    outputs::folders([&args.record, &args.maps, &args.files])?;
     let interrupt = Interrupt::new();
     interrupt.on_signals();
     let verdict = execute(&config(args)?, &interrupt, &mut std::io::stdout().lock())?;
@@ -397,7 +398,7 @@ fn config(args: RunArgs) -> Result<RunConfig, CommandError> {
             record,
             coverage: args.coverage.map(|path| CoverageRequest::new(path, args.coverage_format.map(Into::into))),
             html: args.html,
-            maps: args.map,
+            maps: args.maps,
             files: args.files,
         },
     })

@@ -115,12 +115,16 @@ fn human(listed: &Listed, out: &mut dyn Write) -> io::Result<()> {
 
 /// What a command needs so that the scenario may read sources that stay where they are, outside of its folder.
 pub(super) fn allowance(list: &IoList) -> String {
+    let from = Path::new(&list.from);
+    // one word for a whole project, whose folders have their sources each
+    let project = if from.is_dir() { Some(from) } else { from.parent() };
     let files = list.sources.iter().flat_map(|sources| &sources.files);
-    let folders: BTreeSet<String> = files
+    let folders: BTreeSet<&Path> = files
         .filter_map(|file| file.parent())
-        .map(|folder| if folder == Path::new("") { ".".to_owned() } else { folder.display().to_string() })
+        .map(|folder| project.filter(|project| folder.starts_with(project)).unwrap_or(folder))
         .collect();
-    folders.iter().map(|folder| format!(" --allow-path {folder}")).collect()
+    let written = |folder: &Path| if folder == Path::new("") { ".".to_owned() } else { folder.display().to_string() };
+    folders.into_iter().map(|folder| format!(" --allow-path {}", written(folder))).collect()
 }
 
 fn section(title: &str, lines: &[String], out: &mut dyn Write) -> io::Result<()> {

@@ -5,6 +5,7 @@ use std::io::Write;
 use std::path::Path;
 use std::rc::Rc;
 
+use onescan_server::signal::pattern::SignalPattern;
 use onescan_report::OutputError;
 use onescan_scenario::Scenario;
 use onescan_scenario::case::{Catalogue, DEFAULT};
@@ -45,7 +46,8 @@ fn case(config: &WorkerConfig, folder: &Path) -> Result<Worked, TestError> {
     let taker = Taker::new(&scenario, choice.clone(), Rc::clone(&snapshot));
     let mut run = RunConfig::headless(folder.to_owned(), config.case.clone());
     if config.draw {
-        run.picture = Picture { drawing: Drawing::Kept, signals: choice.signals, ..Picture::default() };
+        let signals = choice.signals.iter().map(SignalPattern::from).collect();
+        run.picture = Picture { drawing: Drawing::Kept, signals, ..Picture::default() };
     }
     let (report, plot) = watched(&run, &scenario, &Interrupt::new(), vec![Box::new(taker)])?;
     let mut ran = Ran::of(config.case.as_deref().unwrap_or(DEFAULT), &report, scenario.file().step.as_nanos());

@@ -7,6 +7,7 @@ use onescan_report::OutputError;
 use onescan_report::file;
 use onescan_report::plot::Plot;
 use onescan_scenario::{Mode, Scenario};
+use onescan_server::signal::pattern::SignalPattern;
 use onescan_server::signal::{SignalName, SignalType};
 use serde::Serialize;
 
@@ -118,7 +119,7 @@ pub fn compare(config: &CompareConfig, interrupt: &Interrupt, out: &mut dyn Writ
         let run = RunConfig {
             mode,
             seed: config.run.seed.filter(|_| mode != Mode::Lockstep),
-            picture: Picture { drawing: Drawing::Kept, signals: names.clone(), ..config.run.picture.clone() },
+            picture: Picture { drawing: Drawing::Kept, signals: names.iter().map(SignalPattern::from).collect(), ..config.run.picture.clone() },
             ..config.run.clone()
         };
         run.check(&scenario)?;

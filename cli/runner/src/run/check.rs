@@ -17,13 +17,15 @@ use crate::error::Usage;
 impl RunConfig {
     /// Refuses options that contradict each other or the scenario, before anything has begun.
     pub(crate) fn check(&self, scenario: &Scenario) -> Result<(), RunError> {
-        for signal in self.picture.signals.iter().chain(self.picture.plane.iter().flatten()) {
+        for signal in self.picture.plane.iter().flatten() {
             if !scenario.file().signals.contains_key(signal) {
                 let known = scenario.file().signals.keys().map(SignalName::as_str);
                 let help = did_you_mean(signal.as_str(), known);
                 return Err(Usage::new(format!("the scenario has no signal `{signal}`"), help).into());
             }
         }
+        choose(&self.picture.signals, scenario.file().signals.keys())
+            .map_err(|unmatched| Usage::new(format!("--signals: {unmatched}"), None))?;
         self.check_enlarged(scenario)?;
         if let Some(record) = &self.reports.record {
             choose(&record.choice.signals, scenario.file().signals.keys())
@@ -39,7 +41,7 @@ impl RunConfig {
             ("--coverage", self.reports.coverage.is_some()),
             ("--watch", !self.watch.variables.is_empty()),
             ("--accept-code", self.course.accept_code),
-            ("--map", self.reports.maps.is_some()),
+            ("--maps", self.reports.maps.is_some()),
         ];
         if let Some((option, _)) = inside.iter().find(|(_, given)| *given && self.reach.transport == Transport::Tcp) {
             let help = "what a client in another process does is not seen here".to_owned();
@@ -47,7 +49,7 @@ impl RunConfig {
         }
         if self.reports.maps.is_some() && (scenario.file().map.is_empty() || self.mode != Mode::Lockstep) {
             let help = "a scenario says with [[map]] what is drawn; it is drawn of runs in lockstep".to_owned();
-            return Err(Usage::new("--map: there is nothing to be drawn", Some(help)).into());
+            return Err(Usage::new("--maps: there is nothing to be drawn", Some(help)).into());
         }
         self.check_opcua(scenario)?;
         match self.mode {

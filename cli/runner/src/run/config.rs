@@ -13,6 +13,7 @@ use onescan_report::plot::Part;
 use onescan_scenario::watch::WatchRequest;
 use onescan_scenario::{Mode, Scenario};
 use onescan_server::pacing::Pace;
+use onescan_server::signal::pattern::SignalPattern;
 use onescan_server::signal::{ClientName, SignalName};
 use onescan_server::time::VirtualTime;
 use onescan_server::timeline::When;
@@ -165,8 +166,8 @@ pub struct SaveRequest {
 pub struct Picture {
     /// Whether there is a plot, and where it goes.
     pub drawing: Drawing,
-    /// The signals of the plot; the scenario's choice if empty.
-    pub signals: Vec<SignalName>,
+    /// The signals of the plot, those of the first pattern first; the scenario's choice if empty.
+    pub signals: Vec<SignalPattern>,
     /// Two signals to be drawn against each other in the plot, across and up, in place of all over time.
     pub plane: Option<[SignalName; 2]>,
     /// A part of the plot to be drawn enlarged beside the whole.
@@ -304,12 +305,19 @@ impl Reach {
 impl Picture {
     /// The signals of the plot with their panels' order.
     pub fn plotted(&self, scenario: &Scenario) -> Vec<SignalName> {
+        let all = || scenario.file().signals.keys().cloned();
         if !self.signals.is_empty() {
-            return self.signals.clone();
+            let mut names: Vec<SignalName> = Vec::new();
+            for pattern in &self.signals {
+                let matched = |name: &SignalName| pattern.matches(name.as_str()) && !names.contains(name);
+                let more: Vec<SignalName> = all().filter(matched).collect();
+                names.extend(more);
+            }
+            return names;
         }
         let chosen: Vec<SignalName> =
             scenario.file().plot.signals.iter().map(|signal| signal.get_ref().clone()).collect();
-        if chosen.is_empty() { scenario.file().signals.keys().cloned().collect() } else { chosen }
+        if chosen.is_empty() { all().collect() } else { chosen }
     }
 
     /// The signals that are sampled: those of the plot and of its plane.

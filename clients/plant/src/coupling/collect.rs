@@ -54,6 +54,6 @@ impl Tie for Collect {
 
     fn in_words(bound: &Bound, scene: &Mechanics) -> String {
         let name = bound.body.map(|body| &scene.bodies[body].name);
-        name.map_or_else(String::new, |name| format!("body {name} takes {} others", bound.targets.len()))
+        name.map_or_else(String::new, |name| format!("body {name} takes {}", others(bound)))
     }
 }

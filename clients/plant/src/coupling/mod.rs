@@ -58,6 +58,14 @@ pub(crate) use ray::{Hit, Ray};
 pub(crate) use surface::{Bends, Heats, SeesHeat};
 pub(crate) use touch::{Contact, Touch};
 
+/// The bodies that a component meets, in words.
+fn others(bound: &Bound) -> String {
+    match bound.targets.len() {
+        1 => "1 other".to_owned(),
+        count => format!("{count} others"),
+    }
+}
+
 /// A key that binds a component.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BindingKey {

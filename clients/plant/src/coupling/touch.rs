@@ -44,7 +44,7 @@ impl Touched {
 pub(super) fn in_words(bound: &Bound, scene: &Mechanics) -> String {
     let body = bound.body.map(|body| &scene.bodies[body].name);
     let name = bound.shape.map(|shape| &scene.shapes[shape].name).or(body);
-    name.map_or_else(String::new, |name| format!("{name} and {} others", bound.targets.len()))
+    name.map_or_else(String::new, |name| format!("{name} and {}", others(bound)))
 }
 
 macro_rules! senses {
