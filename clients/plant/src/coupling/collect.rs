@@ -2,7 +2,7 @@
 
 use onescan_server::client::ClientFault;
 
-use super::{BindingKey, Names, Targets, Tie, Unbound, Which, needed, optional, sought, target, wanted};
+use super::{BindingKey, Names, Targets, Tie, Unbound, Which, needed, optional, others, sought, target, wanted};
 use crate::model::Bound;
 use crate::model::Mechanics;
 use crate::world::coordinate::Measured;
