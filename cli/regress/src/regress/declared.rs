@@ -34,6 +34,9 @@ pub(super) struct Test {
     pub(super) manager: Option<Manager>,
 }
 
+/// True if a test run uses a file, whatever the tasks of its project run.
+pub(super) type IsUsed = bool;
+
 /// What `{attribute 'test'}` says of a test.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Manager {
@@ -56,21 +59,24 @@ impl Test {
 }
 
 /// The tests that a file declares: units whose names begin so or that have the attribute. Suites of `TcUnit`, and what
-/// runs them, are not tests by themselves.
-pub(super) fn tests(input: &Input, sources: &Sources) -> Vec<Test> {
+/// runs them, are not tests by themselves; the file that has a program which runs them is used, too.
+pub(super) fn tests(input: &Input, sources: &Sources) -> (Vec<Test>, IsUsed) {
     let file = input.file();
     let unit = parse_in(file.dialect(), FileId(0), file.text()).unit;
     let pous = unit.declarations.iter().filter_map(|declaration| match declaration {
         Declaration::Pou(pou) => Some(pou),
         _ => None,
     });
+    let runs_suites = pous.clone().any(|pou| pou.kind == PouKind::Program && sources.is_runner(&pou.name.text));
     let is_own = |pou: &&Pou| match pou.kind {
         PouKind::Program => !sources.is_runner(&pou.name.text),
         PouKind::FunctionBlock => !sources.is_suite(&pou.name.text),
         _ => false,
     };
     let tokens = tokenize_in(file.dialect(), file.text());
-    pous.filter(is_own).filter_map(|pou| test(input, &tokens, pou)).collect()
+    let tests: Vec<Test> = pous.filter(is_own).filter_map(|pou| test(input, &tokens, pou)).collect();
+    let is_used = runs_suites || !tests.is_empty();
+    (tests, is_used)
 }
 
 fn test(input: &Input, tokens: &[Token], pou: &Pou) -> Option<Test> {

@@ -34,11 +34,17 @@ const DONE: &str = "Done";
 /// The sources cannot be read, do not compile, or have no test.
 pub fn run(config: &WorkerConfig) -> Result<Worked, TestError> {
     let programs = collect::programs(&config.sources, config.reading())?;
-    let mut inputs: Vec<Input> = programs.into_iter().flat_map(|program| program.inputs).collect();
+    let inputs: Vec<Input> = programs.into_iter().flat_map(|program| program.inputs).collect();
     let sources = Sources::of(&inputs);
-    let tests: Vec<Test> = inputs.iter().flat_map(|input| declared::tests(input, &sources)).collect();
-    inputs.extend(declared::harness(&tests));
-    let plain = Application::builder().memory_limit(config.memory_limit.unwrap_or_default()).inputs(inputs);
+    let mut tests: Vec<Test> = Vec::new();
+    let mut used: Vec<Input> = Vec::new();
+    for input in inputs {
+        let (own, is_used) = declared::tests(&input, &sources);
+        tests.extend(own);
+        used.push(input.used(is_used));
+    }
+    used.extend(declared::harness(&tests).map(|harness| harness.used(true)));
+    let plain = Application::builder().memory_limit(config.memory_limit.unwrap_or_default()).inputs(used);
     let compiled = if config.cover { plain.covered().build() } else { plain.build() };
     let application = compiled.map_err(|error| match error {
         BuildError::Sources(findings) => TestError::Sources(Box::new(SourcesReport { findings })),

@@ -88,7 +88,7 @@ impl Plain {
             Err(damaged) => return self.damaged(name, text, &damaged),
         };
         self.given.push(given);
-        self.findings.extend(plain.add_to(&mut self.sources));
+        self.findings.extend(plain.add_to(&mut self.sources).1);
         self.kinds.push(kind);
     }
 

@@ -85,6 +85,8 @@ pub struct Parsed {
     pub sources: SourceMap,
     pub units: Vec<(FileId, CompilationUnit)>,
     pub library: BTreeSet<FileId>,
+    /// The files whose declarations are used whatever the tasks run.
+    used: BTreeSet<FileId>,
     findings: Vec<Diagnostic>,
 }
 
@@ -93,9 +95,14 @@ impl Parsed {
     pub fn new(inputs: impl IntoIterator<Item = Input>) -> Self {
         let mut sources = SourceMap::default();
         let mut findings = Vec::new();
-        let mut library = BTreeSet::new();
+        let (mut library, mut used) = (BTreeSet::new(), BTreeSet::new());
         for input in inputs {
-            findings.extend(input.add_to(&mut sources));
+            let is_used = input.is_used();
+            let (file, found) = input.add_to(&mut sources);
+            findings.extend(found);
+            if is_used {
+                used.insert(file);
+            }
         }
         let needed = library::for_program(sources.iter().map(|(_, file)| file));
         for file in needed {
@@ -108,12 +115,12 @@ impl Parsed {
             units.push((id, parsed.unit));
         }
         join_configurations(&mut units, &sources);
-        Self { sources, units, library, findings }
+        Self { sources, units, library, used, findings }
     }
 
     /// Checks what there is; what no task uses is left out if it has errors, and then the rest is checked once more.
     fn checked(self, constants: &Constants, limit: MemoryLimit) -> Front {
-        let Self { sources, mut units, library, findings: mut of_text } = self;
+        let Self { sources, mut units, library, used, findings: mut of_text } = self;
         let mut unused: Option<Unused> = None;
         loop {
             let trees: Vec<_> = units.iter().chain(&constants.units).map(|(id, unit)| (*id, unit)).collect();
@@ -121,7 +128,7 @@ impl Parsed {
             let mut findings = of_text.clone();
             findings.extend(constants.findings.iter().cloned().chain(found));
             if findings.iter().any(|found| found.severity == Severity::Error) {
-                let unused = unused.get_or_insert_with(|| Unused::of(&units, &library, &sources));
+                let unused = unused.get_or_insert_with(|| Unused::of(&units, &library, &used, &sources));
                 if unused.leave_out(&mut units, &mut of_text, &findings) {
                     continue;
                 }

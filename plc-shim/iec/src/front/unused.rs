@@ -3,7 +3,7 @@
 //! Their build checks what is used and nothing else, so that a project may hold units that nobody can compile. Such a
 //! unit is left out if it has errors; each is one warning then. What is sound stays, used or not.
 //!
-//! Used is what the tasks and global variables name, and what that names in turn. A name that means something else keeps
+//! Used is what the tasks and global variables name, what a caller says that it uses, as tests, and what these name in turn. A name that means something else keeps
 //! a unit that could be left out, which does no harm.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -24,15 +24,25 @@ pub(super) struct Unused {
 }
 
 impl Unused {
-    /// What is not used of all files but those of `library`; nothing is unused where there are no tasks.
-    pub(super) fn of(units: &[(FileId, CompilationUnit)], library: &BTreeSet<FileId>, sources: &SourceMap) -> Self {
+    /// What is not used of all files but those of `library`; nothing is unused where there are no tasks. All that a file of
+    /// `used` declares is used.
+    pub(super) fn of(
+        units: &[(FileId, CompilationUnit)],
+        library: &BTreeSet<FileId>,
+        used: &BTreeSet<FileId>,
+        sources: &SourceMap,
+    ) -> Self {
         let own = || units.iter().filter(|(file, _)| !library.contains(file));
         let has_tasks =
             own().any(|(_, unit)| unit.dialect.has(Feature::UnusedUnits) && unit.declarations.iter().any(has_programs));
         if !has_tasks {
             return Self { declared: Vec::new(), warnings: Vec::new() };
         }
-        let parts = own().flat_map(|(file, unit)| parts_of(*file, unit, sources)).collect::<Vec<Part>>();
+        let parts = own().flat_map(|(file, unit)| {
+            let is_used = used.contains(file);
+            parts_of(*file, unit, sources).into_iter().map(move |part| Part { is_root: part.is_root || is_used, ..part })
+        });
+        let parts = parts.collect::<Vec<Part>>();
         Self { declared: unreached(&parts, sources), warnings: Vec::new() }
     }
 
@@ -252,6 +262,20 @@ mod tests {
         }
         // Without tasks nobody knows what is used.
         assert_eq!(said(&format!("PROGRAM Main END_PROGRAM {left}")), ["N0101 `nowhere` is not declared"]);
+    }
+
+    #[test]
+    fn what_a_caller_uses_has_its_errors() {
+        let block = "FUNCTION_BLOCK TEST_Main VAR d : Draft; END_VAR END_FUNCTION_BLOCK";
+        let draft = "FUNCTION_BLOCK Draft VAR x : INT; END_VAR x := nowhere; END_FUNCTION_BLOCK";
+        let files = [("a.exp", format!("PROGRAM Main END_PROGRAM {draft} {PLAN}")), ("b.exp", block.to_owned())];
+        let input = |(name, text): &(&str, String)| Input::from_text(name, SourceKind::Text, text);
+        let codes = |is_used: bool| {
+            let files = files.iter().map(|file| Input::used(input(file), is_used && file.0 == "b.exp"));
+            let front = Front::new(files);
+            front.findings.iter().map(|found| found.code.text()).collect::<Vec<_>>()
+        };
+        assert_eq!((codes(true), codes(false)), (vec!["N0101"], vec!["W0731", "W0731"]));
     }
 
     #[test]

@@ -63,6 +63,8 @@ pub struct Input {
     encoding: Option<Encoding>,
     diagnostics: Vec<Diagnostic>,
     owner: Owner,
+    /// True if what it declares is used, whether a task says so or not.
+    is_used: bool,
 }
 
 /// Whose file it is.
@@ -103,6 +105,11 @@ impl Input {
         Self::taken(None, name, kind, text.into())
     }
 
+    /// A file of the program itself.
+    fn of_program(file: SourceFile, diagnostics: Vec<Diagnostic>) -> Self {
+        Self { file, encoding: None, diagnostics, owner: Owner::Program, is_used: false }
+    }
+
     fn taken(namespace: Option<&str>, name: &str, kind: SourceKind, text: Arc<str>) -> Self {
         let read = match kind {
             SourceKind::Text => {
@@ -111,7 +118,7 @@ impl Input {
                 }
                 let (dialect, word_size, diagnostics) = dialect_of(name, &text);
                 let file = SourceFile::new(name, text).in_dialect(dialect).for_words(word_size);
-                return Self { file, encoding: None, diagnostics, owner: Owner::Program };
+                return Self::of_program(file, diagnostics);
             }
             SourceKind::TwinCat => twincat::extract(&text, namespace),
             SourceKind::PlcOpen => plcopen::extract(&text),
@@ -119,7 +126,7 @@ impl Input {
         let taken = read.unwrap_or_else(|error| Taken::malformed(&error));
         let (extracted, origin) = taken.extract.finish(text);
         let file = SourceFile::extracted(name, extracted, origin).in_dialect(taken.dialect);
-        Self { file, encoding: None, diagnostics: taken.diagnostics, owner: Owner::Program }
+        Self::of_program(file, taken.diagnostics)
     }
 
     fn holding_no_program(name: &str, text: &Arc<str>, foreign: Foreign) -> Self {
@@ -132,7 +139,7 @@ impl Input {
         }
         let (extracted, origin) = taken.extract.finish(text.clone());
         let file = SourceFile::extracted(name, extracted, origin).in_dialect(Dialect::of_file(name));
-        Self { file, encoding: None, diagnostics: taken.diagnostics, owner: Owner::Program }
+        Self::of_program(file, taken.diagnostics)
     }
 
     /// A project that lists files that are not there: each is reported at its place. What is missed of them is an error
@@ -145,18 +152,13 @@ impl Input {
             taken.warn(file.place.clone(), Code::MissingFile, &message, Some(help));
         }
         let (extracted, origin) = taken.extract.finish(listing.text.clone());
-        Self {
-            file: SourceFile::extracted(name, extracted, origin),
-            encoding: None,
-            diagnostics: taken.diagnostics,
-            owner: Owner::Program,
-        }
+        Self::of_program(SourceFile::extracted(name, extracted, origin), taken.diagnostics)
     }
 
     /// A file of which nothing is read.
     pub fn unreadable(name: &str, code: Code, message: impl Into<String>) -> Self {
         let found = Diagnostic::error(code, Span::new(UNNUMBERED, 0, 0), message);
-        Self { file: SourceFile::new(name, ""), encoding: None, diagnostics: vec![found], owner: Owner::Program }
+        Self::of_program(SourceFile::new(name, ""), vec![found])
     }
 
     /// The same file, read as `dialect` whatever its name says.
@@ -209,14 +211,25 @@ impl Input {
         Self { file: self.file.with_replaced(range, text), ..self.clone() }
     }
 
-    /// Adds the file to `sources`, and gives what is wrong with it.
-    pub fn add_to(self, sources: &mut SourceMap) -> Vec<Diagnostic> {
+    /// The same, of which a caller uses all, as tests that no task runs: its errors are never left out.
+    #[must_use]
+    pub fn used(self, is_used: bool) -> Self {
+        Self { is_used, ..self }
+    }
+
+    /// See [`used`](Self::used).
+    pub fn is_used(&self) -> bool {
+        self.is_used
+    }
+
+    /// Adds the file to `sources`; gives its number there, and what is wrong with it.
+    pub fn add_to(self, sources: &mut SourceMap) -> (FileId, Vec<Diagnostic>) {
         let mut diagnostics = self.diagnostics;
         let id = sources.add(self.file);
         for found in &mut diagnostics {
             found.span.file = id;
         }
-        diagnostics
+        (id, diagnostics)
     }
 }
 
