@@ -10,8 +10,9 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue, Deserializer};
 
 use crate::error::ScenarioError;
-use crate::file::{FILE_NAME, VERSION};
+use crate::file::VERSION;
 use crate::merge::{self, Tree};
+use crate::missing;
 use crate::permission;
 use crate::texts::Texts;
 
@@ -53,10 +54,12 @@ pub(crate) fn read(path: &Path) -> Result<Chain, ScenarioError> {
     permission::granted().check(folder, path)?;
     let text = regular::read_text(path).map_err(|source| ScenarioError::Unreadable {
         path: path.to_owned(),
-        help: (source.kind() == std::io::ErrorKind::NotFound)
-            .then(|| format!("a scenario is a folder with a `{FILE_NAME}`; give the folder")),
+        help: (source.kind() == std::io::ErrorKind::NotFound).then(|| missing::help_for_scenario(path)),
         source,
     })?;
+    if let Some(help) = missing::help_for_source(path) {
+        return Err(ScenarioError::Other { path: path.to_owned(), help });
+    }
     let mut texts = Texts::of(path.to_owned(), text);
     let (mut folders, mut seen) = (vec![PathBuf::new()], vec![identity(path)]);
     let mut start = 0;

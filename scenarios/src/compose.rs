@@ -1,7 +1,6 @@
 //! A scenario's clients: its files read, checked and made to run.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 use std::sync::Arc;
 
 use miette::{NamedSource, SourceSpan};
@@ -199,11 +198,7 @@ impl Scenario {
             None => SourceKind::Text,
         };
         permission::granted().check(self.folder(), &path)?;
-        let bytes = regular::read(&path, Limit::TEXT).map_err(|source| ScenarioError::Unreadable {
-            path,
-            source,
-            help: None,
-        })?;
+        let bytes = regular::read(&path, Limit::TEXT).map_err(|why| self.unreadable(name, source, why))?;
         let input = Input::read(source, kind, &bytes).read_as(dialect, self.word_size(name));
         let input = self.with_texts_of_case(name, own, input)?;
         Ok(match self.mistake() {
@@ -219,7 +214,8 @@ impl Scenario {
     pub fn scene_of(&self, name: &ClientName, file: &str) -> Result<Scene, ScenarioError> {
         let path = self.folder().join(file);
         permission::granted().check(self.folder(), &path)?;
-        let (text, named) = (read(&path)?, path.display().to_string());
+        let text = regular::read_text(&path).map_err(|why| self.unreadable(name, file, why))?;
+        let named = path.display().to_string();
         let error = |error: &SceneError| ScenarioError::from(Box::new(report(error, &named, &text)));
         let (overrides, within) = (self.overrides(name), permission::granted().within(self.folder()));
         let scene = match Scene::parse_with(&text, &named, &overrides, &within) {
@@ -446,10 +442,6 @@ fn task(file: &TaskFile) -> Task {
         priority: file.priority,
         programs: file.programs.clone(),
     }
-}
-
-fn read(path: &Path) -> Result<String, ScenarioError> {
-    regular::read_text(path).map_err(|source| ScenarioError::Unreadable { path: path.to_owned(), source, help: None })
 }
 
 /// A scene's faults, the first in front.

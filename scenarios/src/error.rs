@@ -23,6 +23,14 @@ pub enum ScenarioError {
         #[help]
         help: Option<String>,
     },
+    /// A file that is something else.
+    #[error("{} is not a scenario", path.display())]
+    #[diagnostic(code(scenario::other))]
+    Other {
+        path: PathBuf,
+        #[help]
+        help: String,
+    },
     /// A file that the scenario may not read.
     #[error("{} is outside of the scenario's folder{}", path.display(), leads(path, real))]
     #[diagnostic(

@@ -19,6 +19,7 @@
 //! | [`permission`] | which files it may read, and whether it may start programs |
 //! | `texts`, `merge`, `base` | places in several files; a file that takes in another; `base` of `scenario.toml` |
 //! | [`load`], `files` | `scenario.toml` read and checked; all files that it is made of |
+//! | `missing` | what may have been meant by a file or folder that is not there |
 //! | `whole` | a scenario as one file, with everything that it takes in |
 //! | `arrays` | signals written as arrays and patterns |
 //! | [`expectations`], [`start`] | what it expects of every run; what must hold before virtual time runs |
@@ -74,6 +75,7 @@ pub mod look_file;
 mod map;
 pub mod map_file;
 mod merge;
+mod missing;
 pub mod mistake;
 mod mistaken;
 pub mod mode;

@@ -25,6 +25,7 @@ pub use super::file::FILE_NAME;
 use super::file::{ClientFile, CouplingFile, ScenarioFile, VERSION};
 use super::look::Looks;
 use super::map;
+use super::missing;
 use super::mistake::Mistake;
 use super::report::Measures;
 use super::start::{self, StartLogic};
@@ -93,6 +94,11 @@ pub struct Scenario {
     compilations: Compilations,
     /// What is wrong on purpose with the program of one of them.
     mistake: Option<Arc<Mistake>>,
+}
+
+/// True if a path is that of a scenario: a folder with a `scenario.toml`, or a file in TOML.
+pub fn is_scenario(path: &Path) -> bool {
+    path.join(FILE_NAME).is_file() || path.is_file() && path.extension().is_some_and(|extension| extension == "toml")
 }
 
 impl Scenario {
@@ -380,6 +386,22 @@ impl Scenario {
     pub fn wrong_client(&self, name: &ClientName, message: String, help: Option<String>) -> ScenarioError {
         let place = self.file.clients.get(name).map(toml::Spanned::span);
         self.chain.texts().wrong(message, place, help)
+    }
+
+    /// A file that client `name` names and that cannot be read; one that is missing, where it is named.
+    pub(crate) fn unreadable(&self, name: &ClientName, file: &str, source: std::io::Error) -> ScenarioError {
+        let path = self.folder().join(file);
+        if source.kind() != std::io::ErrorKind::NotFound {
+            return ScenarioError::Unreadable { path, source, help: None };
+        }
+        let client = self.file.clients.get(name).map(toml::Spanned::span);
+        let texts = self.chain.texts();
+        let place = client.map(|client| {
+            let quoted = format!("\"{file}\"");
+            let from = texts.text().get(client.start..).and_then(|text| text.find(&quoted));
+            from.map_or(client.clone(), |from| client.start + from..client.start + from + quoted.len())
+        });
+        texts.wrong(format!("there is no {}", path.display()), place, missing::help_for_file(self.folder(), file))
     }
 
     /// Why the soft PLC `name` cannot be set up, at its entry if that is wrong.

@@ -25,7 +25,7 @@ use onescan_iec_project::instrument::{self, Inputs, InstrumentError as Refusal, 
 use onescan_report::file::write_all_whole;
 use onescan_scenario::Scenario;
 use onescan_scenario::gateway::Agreement;
-use onescan_scenario::load::FILE_NAME;
+use onescan_scenario::load;
 use onescan_server::signal::ClientName;
 
 pub use error::InstrumentError;
@@ -186,8 +186,7 @@ fn agreed(config: &InstrumentConfig, program: &Program) -> Result<Option<Agreeme
 /// The scenario, if that is what is instrumented.
 fn scenario(config: &InstrumentConfig) -> Result<Option<Scenario>, InstrumentError> {
     let path = &config.project;
-    let is_scenario = path.join(FILE_NAME).is_file() || path.file_name().is_some_and(|name| name == FILE_NAME);
-    Ok(if is_scenario { Some(Scenario::load(path)?) } else { None })
+    Ok(if load::is_scenario(path) { Some(Scenario::load(path)?) } else { None })
 }
 
 fn tasks(config: &InstrumentConfig, plan: Option<TaskPlan>) -> Option<Vec<Task>> {

@@ -9,7 +9,7 @@ use onescan_plant::component::open_inputs;
 use onescan_plant::scene::model::{Body, BodyKind, Component, JointKind, Mass, Moved, Scene, Sensing, Shape, Wire};
 use onescan_plant::{Dynamics, Excess, Loop, Overlap};
 use onescan_report::OutputError;
-use onescan_report::file::write_whole;
+use onescan_report::file::write_output;
 use onescan_report::view::Side;
 use onescan_scenario::compose::report;
 use onescan_scenario::file::ClientFile;
@@ -82,7 +82,7 @@ pub fn write(config: &DescribeConfig, out: &mut dyn Write) -> Result<(), PlantEr
                 Some(scenario) => drawing::svg_of(scenario, at_start(scenario).as_deref(), (&scene, &title), *side)?,
                 None => drawing::svg(&scene, &title, *side),
             };
-            write_whole(svg, picture.as_bytes())?;
+            write_output(svg, picture.as_bytes())?;
         }
         match format {
             Format::Json => {
@@ -128,8 +128,16 @@ struct Found {
     within: Within,
 }
 
+/// True for a file that is a scenario and not a scene: it has clients, or takes them from another.
+fn is_scenario_file(path: &Path) -> bool {
+    // What cannot be read is reported as a scene.
+    let folder = path.parent().unwrap_or_else(|| Path::new(""));
+    let keys = granted().within(folder).read_text(path).ok().and_then(|text| text.parse::<toml::Table>().ok());
+    keys.is_some_and(|keys| ["base", "clients"].iter().any(|key| keys.contains_key(*key)))
+}
+
 fn found(path: &Path) -> Result<Found, PlantError> {
-    if !path.is_dir() {
+    if !path.is_dir() && !is_scenario_file(path) {
         let folder = path.parent().unwrap_or_else(|| Path::new(""));
         let scenes = vec![(path.to_owned(), USUAL_PERIOD)];
         return Ok(Found { scenario: None, scenes, within: granted().within(folder) });

@@ -12,7 +12,7 @@ use onescan_iec::input::project;
 use onescan_iec::{Code, Dialect, Input, MemoryLimit, TaskPlan, WordSize};
 use onescan_iec_project::instrument;
 use onescan_scenario::Scenario;
-use onescan_scenario::load::FILE_NAME;
+use onescan_scenario::load;
 use onescan_scenario::permission::granted;
 use onescan_server::signal::ClientName;
 
@@ -66,10 +66,10 @@ pub fn collect(paths: &[PathBuf], reading: Reading) -> Result<Collected, CheckEr
     let mut programs = Vec::new();
     let mut files = Files { dialect, word_size, ..Files::default() };
     for path in paths {
-        if path.is_dir() && !path.join(FILE_NAME).is_file() {
-            files.folder(path)?;
-        } else if path.is_dir() || path.file_name().is_some_and(|name| name == FILE_NAME) {
+        if load::is_scenario(path) {
             programs.extend(scenario(path, reading)?);
+        } else if path.is_dir() {
+            files.folder(path)?;
         } else {
             files.named(path)?;
         }

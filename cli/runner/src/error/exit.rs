@@ -129,9 +129,12 @@ impl Exit for ScenarioError {
         match self {
             Self::Link { .. } | Self::Memory { .. } => ExitCode::Fault,
             Self::Unreadable { source, .. } => of_reading(source),
-            Self::Outside { .. } | Self::Wrong { .. } | Self::UnknownCase { .. } | Self::Scene(_) | Self::Plc(_) => {
-                ExitCode::WrongInput
-            }
+            Self::Outside { .. }
+            | Self::Other { .. }
+            | Self::Wrong { .. }
+            | Self::UnknownCase { .. }
+            | Self::Scene(_)
+            | Self::Plc(_) => ExitCode::WrongInput,
         }
     }
 }
