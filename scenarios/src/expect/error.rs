@@ -36,6 +36,9 @@ pub enum FormulaErrorKind {
         expected: &'static str,
         found: String,
     },
+    /// A name where the language goes on.
+    #[error("`{0}` is not a word of expectations")]
+    UnknownWord(String),
     /// Formulas within formulas without end.
     #[error("formulas are nested deeper than {0}")]
     TooDeep(usize),

@@ -12,6 +12,8 @@
 
 use std::ops::Range;
 
+use onescan_base::did_you_mean;
+
 use super::error::{FormulaError, FormulaErrorKind};
 use super::formula::{Arithmetic, Comparison, Edge, Formula, Term, TermKind, Window};
 use super::token::{Keyword, Token, TokenKind, tokens};
@@ -34,9 +36,12 @@ pub(super) fn parse(text: &str) -> Parsed<Formula<Written>> {
     let formula = parser.formula()?;
     match parser.peek().kind {
         TokenKind::End => Ok(formula),
-        _ => Err(parser.expected("an operator or the end")),
+        _ => Err(parser.misspelt().unwrap_or_else(|| parser.expected("an operator or the end"))),
     }
 }
+
+/// Letters of a word that may be a misspelt one of the language: shorter ones are names and units.
+const MISSPELT_MIN: usize = 4;
 
 struct Parser {
     /// The last one is the end, which is never passed.
@@ -91,6 +96,16 @@ impl Parser {
             TokenKind::End => "the end".to_owned(),
         };
         FormulaError::new(FormulaErrorKind::Expected { expected, found }, token.place.clone())
+    }
+
+    /// The word before what does not go on, if it is nearly one of the language: it was read as a signal.
+    fn misspelt(&self) -> Option<FormulaError> {
+        let before = self.tokens.get(self.at.checked_sub(1)?)?;
+        let TokenKind::Name(name) = &before.kind else { return None };
+        let words = Keyword::ALL.iter().map(|keyword| keyword.text());
+        let help = did_you_mean(name, words).filter(|_| name.chars().count() >= MISSPELT_MIN)?;
+        let kind = FormulaErrorKind::UnknownWord(name.clone());
+        Some(FormulaError::new(kind, before.place.clone()).with_help(help))
     }
 
     /// Counts every level of nesting, whatever makes it.
@@ -444,6 +459,9 @@ mod tests {
         };
         assert_eq!(wrong("always"), "6..6 expected a signal, a number or a formula, found the end");
         assert_eq!(wrong("within x"), "7..8 expected a time, as in `200ms`, found `x`");
+        assert_eq!(wrong("eventualy b > 3"), "0..9 `eventualy` is not a word of expectations");
+        assert_eq!(wrong("a implies alway (b)"), "10..15 `alway` is not a word of expectations");
+        assert_eq!(parse("eventualy b").unwrap_err().help.as_deref(), Some("did you mean `eventually`?"));
         assert_eq!(wrong("a b"), "2..3 expected an operator or the end, found `b`");
         assert_eq!(wrong("once[2s,1s] a"), "4..11 the window ends before it begins");
         assert_eq!(wrong("1 + 2"), "5..5 expected a comparison, found the end");
