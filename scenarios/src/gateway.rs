@@ -5,7 +5,7 @@ use std::path::Path;
 
 use onescan_base::regular;
 use onescan_iec::input::kind::{FileKind, SourceKind};
-use onescan_iec::{Dialect, Input, Task, TaskPlan, TimeSpan};
+use onescan_iec::{Diagnostics, Dialect, Input, Task, TaskPlan, TimeSpan};
 use onescan_iec_project::instrument::{
     Address as DirectAddress, Exchanged, File, InstrumentError, Options, Project, Target, Way, instrument,
 };
@@ -39,6 +39,8 @@ pub struct Instrumented {
     /// Signals and synchronisation words.
     pub exchange: Exchange,
     pub settings: Settings,
+    /// What could not be replaced.
+    pub warnings: Diagnostics,
 }
 
 /// What the gateway of a PLC and the program in that PLC must agree on.
@@ -420,7 +422,14 @@ impl Scenario {
         };
         let settings = gateway.clone().unwrap_or_default();
         let exchange = self.exchange(name, &settings, settings.words(), &own)?;
-        Ok(Instrumented { application, plan, bindings: named_as(bindings, &own), exchange, settings })
+        Ok(Instrumented {
+            application,
+            plan,
+            bindings: named_as(bindings, &own),
+            exchange,
+            settings,
+            warnings: project.warnings,
+        })
     }
 
     /// The instrumented sources of PLC `name`, compiled.

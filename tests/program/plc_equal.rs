@@ -75,6 +75,12 @@ fn the_shear_over_ads() {
     every_run_is_that_in_one_process("shear", &SHEAR, "ads://");
 }
 
+/// A group of six axes on an instrumented PLC ([SDSP] sec. V-C).
+#[test]
+fn the_robot_cell_over_raw_tcp() {
+    every_run_is_that_in_one_process("robot-cell", &ROBOT, "tcp://");
+}
+
 #[test]
 fn the_gantry_robot_over_raw_tcp() {
     every_run_is_that_in_one_process("gantry-robot", &ROBOT, "tcp://");

@@ -13,6 +13,7 @@ use std::io::Write;
 use std::sync::Arc;
 use std::time::Duration;
 
+use onescan_iec::Diagnostics;
 use onescan_iec_run::SoftPlc;
 use onescan_links::gateway::modbus::RegisterMap;
 use onescan_links::gateway::tcp::Layouts;
@@ -35,6 +36,22 @@ use crate::error::{ListenError, ThreadError, Usage};
 use crate::error::ExitCode;
 use crate::interrupt::Interrupt;
 
+/// Lines about what goes by the PLC's own clock that are shown.
+const WARNED: usize = 5;
+
+/// Warns of what of a program in lockstep goes by the PLC's own clock all the same: its runs are not those of the soft PLC.
+fn warn_of_clocks(warnings: &Diagnostics) {
+    let text = warnings.to_string();
+    let is_of_clocks = |line: &&str| ["[I1001]", "[I1002]"].iter().any(|code| line.contains(code));
+    let lines: Vec<&str> = text.lines().filter(is_of_clocks).collect();
+    for line in lines.iter().take(WARNED) {
+        tracing::warn!("{line}");
+    }
+    if let Some(more @ 1..) = lines.len().checked_sub(WARNED) {
+        tracing::warn!("{more} more go by the PLC's own clock: `onescan instrument` lists them");
+    }
+}
+
 /// Runs the PLC until it is asked to quit.
 ///
 /// # Errors
@@ -50,6 +67,9 @@ pub fn run(config: &PlcConfig, interrupt: &Interrupt, out: &mut dyn Write) -> Re
             Some(help.into()),
         )
         .into());
+    }
+    if config.mode == Mode::Lockstep {
+        warn_of_clocks(&program.warnings);
     }
     let wrong = |text: String| PlcError::Scenario(scenario.wrong_client(&name, text, None));
     let plc = SoftPlc::new(&program.application, &program.plan).map_err(|error| scenario.not_set_up(&name, &error))?;

@@ -286,7 +286,7 @@ fn attach(plain: &Plain, options: &Options) -> Result<Attached, InstrumentError>
     forms.extend((!survey.charts.is_empty()).then(clock::on_delay));
     forms.sort_by_key(|form| form.name);
     forms.dedup();
-    let mut sources = Sources::new(options, &tasks, &forms, &motion.blocks, &survey.charts, exchange);
+    let mut sources = Sources::new(options, &tasks, &forms, &motion, &survey.charts, exchange);
     sources.add(&survey.inputs.additions(&plain.sources));
     if plain.is_one_xml() {
         let files = vec![plain.edited_xml(&survey, &motion, &tasks, &sources)?];

@@ -2,6 +2,9 @@
 //!
 //! A block of the shim holds one of the PLC's own, to which it hands everything on while not simulated: the inputs
 //! and outputs that the project uses, so that a vendor's block need have no others.
+//!
+//! Coordinated motion (`iec/motion/group`) keeps its names: vendors' groups are other types, so that there is no block to
+//! hand anything on to. While not simulated a group refuses to be enabled.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::OnceLock;
@@ -22,6 +25,8 @@ pub(super) enum Role {
     Axis,
     /// A type that stays the PLC's own: its values are the same.
     Vocabulary,
+    /// A block or type of coordinated motion, which the shim has by the same name.
+    Group,
     /// A block or type that the shim does not have; why.
     Foreign(&'static str),
 }
@@ -48,8 +53,8 @@ pub(super) fn role(key: &str) -> Option<Role> {
     if library.types.contains_key(key) || VENDORS_TYPES.contains(&key) {
         return Some(Role::Vocabulary);
     }
-    if groups().contains(key) {
-        return Some(Role::Foreign("groups of axes move on virtual time in the soft PLC only"));
+    if is_of_groups(key) {
+        return Some(Role::Group);
     }
     if key.starts_with("AXIS_REF_") {
         return Some(Role::Foreign("an axis of a device tree is not in the text"));
@@ -58,21 +63,16 @@ pub(super) fn role(key: &str) -> Option<Role> {
     is_motion.then_some(Role::Foreign("it moves its axis by the PLC's own clock"))
 }
 
-/// The blocks and types of coordinated motion, in capitals.
-fn groups() -> &'static BTreeSet<String> {
-    static GROUPS: OnceLock<BTreeSet<String>> = OnceLock::new();
-    GROUPS.get_or_init(|| {
-        let declarations = library::GROUPS.iter().flat_map(|(_, text)| parse(FileId(0), text).unit.declarations);
-        let name = |declaration: Declaration| match declaration {
-            Declaration::Pou(pou) => Some(pou.name.key()),
-            Declaration::Type(named) => Some(named.name.key()),
-            Declaration::Globals(_)
-            | Declaration::Configuration(_)
-            | Declaration::Namespace(_)
-            | Declaration::Using(_) => None,
-        };
-        declarations.filter_map(name).filter(|key| !key.starts_with("ONESCAN_")).collect()
-    })
+/// Coordinated motion: its types, and its units by name in capitals.
+fn groups() -> &'static Library {
+    static GROUPS: OnceLock<Library> = OnceLock::new();
+    GROUPS.get_or_init(|| Library::of(&library::GROUPS))
+}
+
+/// True for a name, in capitals, that a project may use of coordinated motion.
+fn is_of_groups(key: &str) -> bool {
+    let groups = groups();
+    !key.starts_with("ONESCAN_") && (groups.blocks.contains_key(key) || groups.types.contains_key(key))
 }
 
 /// Vendors' names of PLCopen's enumerations.
@@ -126,9 +126,9 @@ pub(super) struct Part {
     pub(super) is_type: bool,
 }
 
-/// The shim's motion control for what a project uses, each block by its name in capitals.
-pub(super) fn parts(target: Target, used: &BTreeMap<String, Use>) -> Vec<Part> {
-    if used.is_empty() {
+/// The shim's motion control for what a project uses: each block by its name in capitals, and whether it has groups of axes.
+pub(super) fn parts(target: Target, used: &BTreeMap<String, Use>, has_groups: bool) -> Vec<Part> {
+    if used.is_empty() && !has_groups {
         return Vec::new();
     }
     if target == Target::Scl {
@@ -148,11 +148,37 @@ pub(super) fn parts(target: Target, used: &BTreeMap<String, Use>) -> Vec<Part> {
     let blocks = used.iter().filter_map(|(key, uses)| Some((library.blocks.get(key)?, Some(uses))));
     // Where the PLC has no such block there is none to hand anything on to.
     let blocks = blocks.map(|(unit, uses)| (unit, uses.filter(|_| target.has_motion())));
-    let common = library.needed_by(used).into_iter().map(|unit| (unit, None));
+    let groups = has_groups.then(|| group_parts(target)).unwrap_or_default();
+    let of_groups = if has_groups { groups_texts() } else { Vec::new() };
+    let common = library.needed_by(used, of_groups).into_iter().map(|unit| (unit, None));
     let units = common.chain(blocks).map(|(part, uses)| {
         let text = uses.map_or_else(|| part.text.to_owned(), |uses| part.handing_on(uses));
         let text = format!("{}{}\n", part.about, template::fill_with(&text, &name));
         Part { name: name(&part.pou.name.text).unwrap_or_default(), text, is_type: false }
+    });
+    let (group_types, group_units): (Vec<Part>, Vec<Part>) = groups.into_iter().partition(|part| part.is_type);
+    types.chain(group_types).chain(units).chain(group_units).collect()
+}
+
+/// The texts of coordinated motion.
+fn groups_texts() -> Vec<&'static str> {
+    library::GROUPS.iter().map(|(_, text)| *text).collect()
+}
+
+/// Coordinated motion as it is, on the shim's axes.
+fn group_parts(target: Target) -> Vec<Part> {
+    let groups = groups();
+    let name = |written: &str| renamed(target, written);
+    let types = groups.types.values().map(|part| {
+        let text = format!("TYPE\n    {}\nEND_TYPE\n", template::fill_with(&part.text, &name));
+        Part { name: name(&part.name).unwrap_or_else(|| part.name.clone()), text, is_type: true }
+    });
+    let units = groups.common.iter().chain(groups.blocks.values()).map(|unit| {
+        let is_gate = unit.pou.name.text == "MC_GroupEnable" && target.has_motion();
+        let text = if is_gate { unit.refusing_unless_simulated() } else { unit.text.to_owned() };
+        let text = format!("{}{}\n", unit.about, template::fill_with(&text, &name));
+        let own = &unit.pou.name.text;
+        Part { name: name(own).unwrap_or_else(|| own.clone()), text, is_type: false }
     });
     types.chain(units).collect()
 }
@@ -192,16 +218,25 @@ fn renamed(target: Target, written: &str) -> Option<String> {
     if let Some(rest) = written.strip_prefix("ONESCAN_") {
         return Some(format!("SDSP_{rest}"));
     }
+    if matches!(target, Target::Codesys | Target::TwinCat)
+        && let Some((_, own)) = POINTERS.iter().find(|(standard, _)| *standard == written)
+    {
+        return Some((*own).to_owned());
+    }
     if let Some(own) = written.strip_prefix("Own_") {
         return Some(own.to_owned());
     }
     let key = written.to_ascii_uppercase();
-    if Library::get().values.contains(written) || written == "AXIS_REF" || Library::get().blocks.contains_key(&key) {
+    let is_value = Library::get().values.contains(written) || groups().values.contains(written);
+    if is_value || written == "AXIS_REF" || Library::get().blocks.contains_key(&key) {
         return Some(format!("SDSP_{written}"));
     }
     let vendors: &[(&str, &str)] = if target == Target::TwinCat { &TWINCAT } else { &[] };
     vendors.iter().find(|(name, _)| *name == written).map(|(_, new)| (*new).to_owned())
 }
+
+/// References of the standard as CODESYS and TwinCAT have them.
+const POINTERS: [(&str, &str); 3] = [("REF_TO", "POINTER TO"), ("REF", "ADR"), ("NULL", "0")];
 
 /// PLCopen's names in `Tc2_MC2`.
 const TWINCAT: [(&str, &str); 12] = [
@@ -246,14 +281,16 @@ struct Type {
 impl Library {
     fn get() -> &'static Self {
         static LIBRARY: OnceLock<Library> = OnceLock::new();
-        LIBRARY.get_or_init(|| {
-            let mut library =
-                Self { blocks: BTreeMap::new(), common: Vec::new(), types: BTreeMap::new(), values: BTreeSet::new() };
-            for (_, text) in library::MOTION {
-                library.add(text, parse(FileId(0), text).unit);
-            }
-            library
-        })
+        LIBRARY.get_or_init(|| Self::of(&library::MOTION))
+    }
+
+    fn of(files: &[(&str, &'static str)]) -> Self {
+        let mut library =
+            Self { blocks: BTreeMap::new(), common: Vec::new(), types: BTreeMap::new(), values: BTreeSet::new() };
+        for (_, text) in files {
+            library.add(text, parse(FileId(0), text).unit);
+        }
+        library
     }
 
     fn add(&mut self, file: &'static str, unit: CompilationUnit) {
@@ -283,9 +320,9 @@ impl Library {
         }
     }
 
-    /// What these blocks have in common with others, and what that needs, in the library's order.
-    fn needed_by(&self, used: &BTreeMap<String, Use>) -> Vec<&Unit> {
-        let mut texts: Vec<&str> = used.keys().filter_map(|key| Some(self.blocks.get(key)?.text)).collect();
+    /// What these blocks and `texts` have in common with others, and what that needs, in the library's order.
+    fn needed_by(&self, used: &BTreeMap<String, Use>, mut texts: Vec<&'static str>) -> Vec<&Unit> {
+        texts.extend(used.keys().filter_map(|key| Some(self.blocks.get(key)?.text)));
         let mut needed = vec![false; self.common.len()];
         while let Some(text) = texts.pop() {
             for (unit, needed) in self.common.iter().zip(&mut needed) {
@@ -314,6 +351,15 @@ impl Unit {
         let first = pou.body.first().map_or(end, |statement| statement.span.start as usize);
         let line = file.get(..first).and_then(|before| before.rfind('\n')).map_or(first, |at| at + 1);
         Self { about, text: file.get(start..end).unwrap_or(""), body: line.saturating_sub(start), pou }
+    }
+
+    /// The block's text, which gives an error while not simulated: there is nothing that would move the PLC's own axes.
+    fn refusing_unless_simulated(&self) -> String {
+        let (declared, body) = self.text.split_at_checked(self.body).unwrap_or((self.text, ""));
+        format!(
+            "{declared}VAR_EXTERNAL SDSP_Simulated : BOOL; END_VAR\n    IF NOT SDSP_Simulated THEN\n        Done := FALSE;\n        \
+             Error := Execute;\n        ErrorID := SEL(Execute, 16#00, 16#30);\n        RETURN;\n    END_IF;\n{body}"
+        )
     }
 
     /// The block's text, with the part that hands all on to the PLC's own block.
@@ -355,7 +401,7 @@ mod tests {
             assert_eq!(role(key), wanted, "{key}");
         }
         for key in ["MC_GROUPENABLE", "MC_MOVELINEARABSOLUTE", "AXES_GROUP_REF", "MC_KIN_REF", "MC_TRANSITION_MODE"] {
-            assert!(matches!(role(key), Some(Role::Foreign(why)) if why.starts_with("groups of axes")), "{key}");
+            assert_eq!(role(key), Some(Role::Group), "{key}");
         }
         for key in ["MC_CAMIN", "MC_CAM_REF", "MC_TOUCHPROBE", "SMC_FOLLOWPOSITION", "AXIS_REF_SM3"] {
             assert!(matches!(role(key), Some(Role::Foreign(_))), "{key}");
@@ -369,7 +415,7 @@ mod tests {
     #[test]
     fn all_of_it_has_a_form_in_scl() {
         let used = Library::get().blocks.keys().map(|key| (key.clone(), Use::default())).collect();
-        let text: String = parts(Target::Scl, &used).into_iter().map(|part| part.text).collect();
+        let text: String = parts(Target::Scl, &used, false).into_iter().map(|part| part.text).collect();
         for unit in Library::get().blocks.values() {
             assert!(
                 text.contains(&format!("FUNCTION_BLOCK \"SDSP_{}\"", unit.pou.name.text)),
@@ -383,7 +429,7 @@ mod tests {
     #[test]
     fn a_block_hands_on_what_the_project_uses() {
         let uses = Use { inputs: ["ENABLE".to_owned()].into(), outputs: ["STATUS".to_owned()].into() };
-        let parts = parts(Target::Iec, &[("MC_POWER".to_owned(), uses)].into());
+        let parts = parts(Target::Iec, &[("MC_POWER".to_owned(), uses)].into(), false);
         let power = parts.iter().find(|part| part.name == "SDSP_MC_Power").map(|part| part.text.as_str());
         insta::assert_snapshot!(power.unwrap_or("none"));
         assert!(parts.iter().all(|part| !part.text.contains("ONESCAN_") && !part.name.is_empty()));

@@ -22,6 +22,8 @@ pub(super) struct Motion {
     pub(super) renames: Vec<(Ident, String)>,
     /// The blocks, by name in capitals.
     pub(super) blocks: BTreeMap<String, Use>,
+    /// True if axes move in groups.
+    pub(super) has_groups: bool,
     /// What stands against it, and what is left therefore.
     pub(super) findings: Vec<Diagnostic>,
 }
@@ -44,8 +46,12 @@ pub(super) fn motion(target: Target, units: &[(FileId, &CompilationUnit)], names
         let why = match role {
             Role::Foreign(why) => Some(*why),
             Role::Block if is_foreign => Some("its axes are technology objects in TIA Portal"),
+            Role::Group if target == Target::Scl => Some("groups of axes have no form in SCL"),
+            Role::Group if matches!(target, Target::OpenPlc | Target::Beremiz) => {
+                Some("groups of axes need references, which MatIEC does not have")
+            }
             Role::Block => motion::differs(target, &name.key()),
-            Role::Axis | Role::Vocabulary => None,
+            Role::Axis | Role::Vocabulary | Role::Group => None,
         };
         if let Some(why) = why {
             reader.problem(name.span, format!("`{}` is not replaced: {why}", name.text));
@@ -57,7 +63,8 @@ pub(super) fn motion(target: Target, units: &[(FileId, &CompilationUnit)], names
         // What a technology object is called with is not PLCopen's to judge.
         return Motion { findings: reader.findings, ..Motion::default() };
     }
-    if reader.blocks.is_empty() && reader.findings.is_empty() {
+    reader.has_groups = names.iter().any(|(_, role)| *role == Role::Group);
+    if reader.blocks.is_empty() && !reader.has_groups && reader.findings.is_empty() {
         return Motion::default();
     }
     let declarations = || units.iter().flat_map(|(_, unit)| &unit.declarations);
@@ -79,6 +86,7 @@ enum Kind {
 struct Reader {
     /// True if the PLC has an axis of its own beside that of the shim.
     has_own_axis: bool,
+    has_groups: bool,
     globals: BTreeMap<String, Kind>,
     locals: BTreeMap<String, Kind>,
     blocks: BTreeMap<String, Use>,
@@ -96,7 +104,7 @@ impl Reader {
         let names = names.iter().filter(|(_, role)| replaced(role)).map(|(name, _)| name);
         if self.findings.is_empty() {
             let renames = names.map(|name| (name.clone(), motion::new_name(&name.key()))).collect();
-            return Motion { renames, blocks: self.blocks, findings: Vec::new() };
+            return Motion { renames, blocks: self.blocks, has_groups: self.has_groups, findings: Vec::new() };
         }
         for name in names {
             let known = self.findings.iter().any(|found| found.span == name.span);

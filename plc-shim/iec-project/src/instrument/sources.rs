@@ -1,11 +1,11 @@
 //! The forms in which a project takes the shim's own sources.
 
-use std::collections::BTreeMap;
 
 use super::Options;
 use super::clock::Form;
 use super::marks;
-use super::motion::{self, Part, Use};
+use super::motion::{self, Part};
+use super::motion_use::Motion;
 use super::real_inputs::Additions;
 use super::target::{Source, Target};
 use super::tasks::TaskTable;
@@ -56,7 +56,7 @@ impl Sources {
         options: &Options,
         tasks: &TaskTable<'_>,
         forms: &[&Form],
-        blocks: &BTreeMap<String, Use>,
+        motion: &Motion,
         charts: &[&Pou],
         exchange: Option<String>,
     ) -> Self {
@@ -99,7 +99,7 @@ impl Sources {
             exchange,
             scheduler: filled(scheduler),
             forms: units,
-            motion: motion::parts(target, blocks),
+            motion: motion::parts(target, &motion.blocks, motion.has_groups),
         }
     }
 
