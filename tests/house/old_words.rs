@@ -11,7 +11,6 @@ const LIST: &str = "tests/house/old_words.txt";
 const ALLOWED: &[(&str, &str, &str)] = &[
     ("spots", "clients/plant/src", "hot spots of a kiln's shell, and the spots that a scanner sees"),
     ("spots", "scenarios/src/map_file.rs", "the spots that a scanner sees"),
-    ("spots", "docs/papers.md", "hot spots of a kiln's shell"),
     ("told", "scenarios/src/case/campaign_file.rs", "the key's name before `detected`, read with a warning"),
     ("told", "scenarios/src/case/catalogue.rs", "the key's name before `detected`, read with a warning"),
 ];
