@@ -5,6 +5,7 @@
 //! | module | subject |
 //! |---|---|
 //! | [`verdict`], [`severity`] | words that several reports share |
+//! | [`colour`] | words in colour on a terminal |
 //! | [`number`] | numbers for people |
 //! | [`table`] | tables, for terminals and pages |
 //! | [`plot`] | trajectories as SVG |
@@ -16,8 +17,10 @@
 //! | [`output`] | standard output |
 //!
 //! Invariants. Knows no command, no scenario and no session: it owns the data that it draws. What it makes
-//! is a pure function of these data, with no clock, no locale and no fonts of the machine.
+//! is a pure function of these data, with no clock, no locale and no fonts of the machine; whether words are coloured, the
+//! program says once.
 
+pub mod colour;
 pub mod file;
 pub mod junit;
 pub mod number;

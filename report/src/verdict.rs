@@ -1,5 +1,6 @@
 //! What a run says to an expectation, in a word.
 
+use crate::colour::{Colour, Coloured};
 use serde::{Deserialize, Serialize};
 
 /// Whether an expectation was met.
@@ -22,5 +23,15 @@ impl Verdict {
             Self::Open => "open",
             Self::Violated => "violated",
         }
+    }
+
+    /// The same for a terminal.
+    pub fn coloured(self) -> Coloured<'static> {
+        let colour = match self {
+            Self::Met => Colour::Good,
+            Self::Open => Colour::Notable,
+            Self::Violated => Colour::Bad,
+        };
+        colour.of(self.word())
     }
 }

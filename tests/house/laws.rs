@@ -41,7 +41,7 @@ const DEPENDS_ON: &[(&str, &[&str])] = &[
             "onescan-stream",
         ],
     ),
-    ("report", &[]),
+    ("report", &["onescan-base"]),
     ("web", &[]),
     (
         "cli/runner",

@@ -23,7 +23,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use onescan_report::OutputError;
-use onescan_report::file::write_whole;
+use onescan_report::file::write_output;
 use onescan_scenario::Scenario;
 use serde::Serialize;
 
@@ -79,5 +79,5 @@ pub fn write(config: &WiringConfig, out: &mut dyn Write) -> Result<bool, WiringE
 }
 
 fn draw(map: &Map, title: &str, path: &Path) -> Result<(), WiringError> {
-    Ok(write_whole(path, drawing::svg(map, title).as_bytes())?)
+    Ok(write_output(path, drawing::svg(map, title).as_bytes())?)
 }

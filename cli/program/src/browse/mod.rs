@@ -15,7 +15,7 @@ use onescan_base::foreign::one_line;
 use onescan_links::gateway::Settings;
 use onescan_links::gateway::link::Found;
 use onescan_report::OutputError;
-use onescan_report::file::write_whole;
+use onescan_report::file::write_output;
 use onescan_scenario::Scenario;
 use onescan_server::signal::ClientName;
 use serde::Serialize;
@@ -75,7 +75,7 @@ pub fn run(config: &BrowseConfig, out: &mut dyn Write) -> Result<(), BrowseError
         }
         None => everything(&config.url, &found),
     };
-    Ok(write_whole(path, fragment.to_string().as_bytes())?)
+    Ok(write_output(path, fragment.to_string().as_bytes())?)
 }
 
 /// The link that the scenario declares.

@@ -58,7 +58,7 @@ pub mod value;
 use std::io::Write;
 
 use onescan_base::foreign::for_terminal;
-use onescan_report::OutputError;
+use onescan_report::{OutputError, colour};
 
 pub use error::CommandError;
 
@@ -69,6 +69,7 @@ use onescan_runner::interrupt;
 pub fn main() -> std::process::ExitCode {
     let args = args::parsed();
     logging::start(args.verbose);
+    colour::show(is_coloured());
     onescan_scenario::permission::grant(args.permission());
     #[cfg(feature = "opcua")]
     onescan_opc_ua::install();
@@ -88,6 +89,13 @@ pub fn main() -> std::process::ExitCode {
     };
     // One that was asked to end has not come to its end, whatever there is of it.
     std::process::ExitCode::from(interrupt::exit_code().unwrap_or(code as u8))
+}
+
+/// True if standard output is a terminal that shows colours, and nobody asked for none (<https://no-color.org>).
+fn is_coloured() -> bool {
+    let asked_for_none = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
+    let is_dumb = std::env::var_os("TERM").is_some_and(|terminal| terminal == "dumb");
+    std::io::IsTerminal::is_terminal(&std::io::stdout()) && !asked_for_none && !is_dumb
 }
 
 /// Errors go to standard error, with the place in the source where there is one.

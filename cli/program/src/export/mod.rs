@@ -39,8 +39,11 @@ pub fn export(config: &ExportConfig) -> Result<(), ExportError> {
         let message = format!("{} has no step {span}", recording.folder().display());
         return Err(Usage::new(message, None).into());
     };
-    let file = file::begin_whole(&config.output)?;
+    let output = file::followed(&config.output);
+    let file = file::begin_whole(&output)?;
     let out = file.reopen().map_err(RecordingError::Output)?;
     recording.export(config.format, &config.signals, steps, out)?;
-    Ok(file::end_whole(file, &config.output)?)
+    file::end_whole(file, &output)?;
+    file::wrote(&config.output);
+    Ok(())
 }

@@ -1,7 +1,7 @@
 //! What was changed, for people and machines.
 
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use onescan_iec::Diagnostics;
 use onescan_iec_project::instrument::{File, Project, diff};
@@ -9,6 +9,7 @@ use onescan_report::OutputError;
 use serde::Serialize;
 
 use super::error::InstrumentError;
+use super::project::relative;
 use super::{Destination, Diff, Direction, InstrumentConfig};
 use onescan_regress::check::json::Line;
 use onescan_regress::check::passed_over::PassedOver;
@@ -126,7 +127,7 @@ fn write_human(
                 writeln!(out, "{:<8} {}", change(file), path.with_file_name(name).display())?;
             }
             Some(_) if is_one && file.text.is_some() => {}
-            _ => writeln!(out, "{:<8} {}", change(file), file_name(file))?,
+            _ => writeln!(out, "{:<8} {}", change(file), written_to(config, file).display())?,
         }
     }
     if let Some(Mapped { path, .. }) = mapping {
@@ -154,6 +155,14 @@ fn write_human(
 
 fn file_name(file: &File) -> &str {
     &file.name
+}
+
+/// Where a file of the result is.
+fn written_to(config: &InstrumentConfig, file: &File) -> PathBuf {
+    match (&config.destination, relative(file, &config.project)) {
+        (Destination::Folder(folder), Ok(within)) if file.text.is_some() => folder.join(within),
+        _ => PathBuf::from(file_name(file)),
+    }
 }
 
 fn change(file: &File) -> &'static str {

@@ -14,7 +14,7 @@ use std::path::PathBuf;
 
 use onescan_links::gateway::listing::Listing;
 use onescan_report::OutputError;
-use onescan_report::file::write_whole;
+use onescan_report::file::write_output;
 use onescan_scenario::Scenario;
 use onescan_server::signal::ClientName;
 
@@ -59,7 +59,7 @@ pub fn run(config: &MapConfig, out: &mut dyn Write) -> Result<(), MapError> {
     .and_then(|()| out.flush())
     .map_err(OutputError)?;
     match &config.output {
-        Some(path) => Ok(write_whole(path, Fragment::of(&name, &agreed, &listing).to_string().as_bytes())?),
+        Some(path) => Ok(write_output(path, Fragment::of(&name, &agreed, &listing).to_string().as_bytes())?),
         None => Ok(()),
     }
 }

@@ -6,7 +6,7 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use onescan_report::OutputError;
-use onescan_report::file::write_whole;
+use onescan_report::file::write_output;
 use onescan_server::nusmv::{self, Size};
 use onescan_server::state::ServerState;
 
@@ -28,7 +28,7 @@ pub struct ModelConfig {
 pub fn write(config: &ModelConfig, out: &mut dyn Write) -> Result<(), ModelError> {
     let text = config.nusmv.map_or_else(table, nusmv::model);
     match &config.output {
-        Some(path) => write_whole(path, text.as_bytes())?,
+        Some(path) => write_output(path, text.as_bytes())?,
         None => out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(OutputError)?,
     }
     Ok(())

@@ -125,16 +125,16 @@ fn write_reports(
         request.write_report(coverage)?;
     }
     if let Some(path) = &config.junit {
-        file::write_whole(path, junit::text(report).as_bytes())?;
+        file::write_output(path, junit::text(report).as_bytes())?;
     }
     if let Some(path) = &config.sarif {
-        file::write_whole(path, sarif::text(report).as_bytes())?;
+        file::write_output(path, sarif::text(report).as_bytes())?;
     }
     if let Some(path) = &config.job_summary {
         github::append(path, report)?;
     }
     if let Some(path) = &config.html {
-        file::write_whole(path, page::of_tests(report, coverage).to_html().as_bytes())?;
+        file::write_output(path, page::of_tests(report, coverage).to_html().as_bytes())?;
     }
     Ok(())
 }

@@ -10,6 +10,7 @@ use super::config::{Policy, TestConfig, TestFormat};
 use super::outcome::{Cause, Outcome, Report, Status};
 use super::plan::shown;
 use super::ran::{FailedAssert, Shown};
+use onescan_report::colour::Colour;
 use onescan_report::number::counted;
 use onescan_runner::run::coverage::share;
 
@@ -86,6 +87,7 @@ pub fn slowest(report: &Report) -> Vec<String> {
 fn write_outcome(outcome: &Outcome, width: usize, out: &mut dyn Write) -> io::Result<()> {
     let Outcome { name, status, steps, virtual_time_ns, step_ns, .. } = outcome;
     let word = if status.is_bad() { status.word().to_uppercase() } else { status.word().to_owned() };
+    let word = colour(*status).of(&word);
     if did_not_run(outcome) {
         writeln!(out, "  {word:<8} {name}")?;
         return write_details(outcome, out);
@@ -104,6 +106,15 @@ fn write_outcome(outcome: &Outcome, width: usize, out: &mut dyn Write) -> io::Re
     }
     writeln!(out)?;
     write_details(outcome, out)
+}
+
+/// What a status says at a glance.
+fn colour(status: Status) -> Colour {
+    match status {
+        _ if status.is_bad() => Colour::Bad,
+        Status::Passed | Status::Blessed => Colour::Good,
+        _ => Colour::Notable,
+    }
 }
 
 /// True for a test of which there is nothing to count.

@@ -93,7 +93,7 @@ impl Waiting {
 pub fn review(config: &ReviewConfig, out: &mut dyn Write) -> Result<ExitCode, ReviewError> {
     let waiting = waiting(config)?;
     if let Some(path) = &config.html {
-        file::write_whole(path, page::of(&waiting).as_bytes())?;
+        file::write_output(path, page::of(&waiting).as_bytes())?;
     }
     if waiting.is_empty() {
         writeln!(out, "no snapshot waits for a review").map_err(OutputError)?;

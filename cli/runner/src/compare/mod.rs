@@ -3,6 +3,7 @@
 use std::io::Write;
 use std::path::PathBuf;
 
+use onescan_base::notice::NOTICE;
 use onescan_report::OutputError;
 use onescan_report::file;
 use onescan_report::plot::Plot;
@@ -100,6 +101,20 @@ struct Run {
     steps_per_s: f64,
 }
 
+/// Says how long runs in real time take: in a pipe nothing else is heard of them until they are over.
+fn say_how_long(config: &CompareConfig, scenario: &Scenario) {
+    if config.run.seed.is_some() {
+        return;
+    }
+    let in_real_time = WAYS.iter().filter(|way| way.mode != Mode::Lockstep).count() as u64 * u64::from(config.run.runs);
+    let span_s = config.run.subject.end(scenario).as_nanos() / 1_000_000_000;
+    tracing::info!(
+        target: NOTICE,
+        "{in_real_time} runs of {span_s} s in real time: {} s in all; with `--seed 1` their clocks are computed",
+        in_real_time * span_s
+    );
+}
+
 /// Runs the scenario in every mode and writes the table to `out`.
 ///
 /// # Errors
@@ -107,6 +122,7 @@ struct Run {
 pub fn compare(config: &CompareConfig, interrupt: &Interrupt, out: &mut dyn Write) -> Result<Vec<Row>, RunError> {
     let plain = Scenario::load_case(&config.run.subject.scenario, config.run.subject.case.as_deref())?;
     notices::warn(&plain)?;
+    say_how_long(config, &plain);
     let counted = config.count.as_ref().map(|name| counted(&plain, name)).transpose()?;
     let scenario = &plain;
     let names: Vec<SignalName> = scenario.file().signals.keys().cloned().collect();
@@ -119,7 +135,11 @@ pub fn compare(config: &CompareConfig, interrupt: &Interrupt, out: &mut dyn Writ
         let run = RunConfig {
             mode,
             seed: config.run.seed.filter(|_| mode != Mode::Lockstep),
-            picture: Picture { drawing: Drawing::Kept, signals: names.iter().map(SignalPattern::from).collect(), ..config.run.picture.clone() },
+            picture: Picture {
+                drawing: Drawing::Kept,
+                signals: names.iter().map(SignalPattern::from).collect(),
+                ..config.run.picture.clone()
+            },
             ..config.run.clone()
         };
         run.check(&scenario)?;
@@ -155,7 +175,7 @@ pub fn compare(config: &CompareConfig, interrupt: &Interrupt, out: &mut dyn Writ
     let mut not_there = None;
     if let Some(path) = &config.plot {
         let (svg, nothing) = drawn(&plot(&config.run.picture, scenario, &all), &config.run.picture);
-        file::write_whole(path, svg.as_bytes())?;
+        file::write_output(path, svg.as_bytes())?;
         not_there = nothing;
     }
     write(&rows, config.format, out).map_err(OutputError)?;

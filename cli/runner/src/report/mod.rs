@@ -63,7 +63,7 @@ pub fn report(config: &ReportConfig, out: &mut dyn Write) -> Result<(), ReportEr
         all.push(recorded);
     }
     if let Some(path) = &config.html {
-        file::write_whole(path, page(&all).to_html().as_bytes())?;
+        file::write_output(path, page(&all).to_html().as_bytes())?;
     }
     Ok(())
 }

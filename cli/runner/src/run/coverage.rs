@@ -45,7 +45,7 @@ impl CoverageRequest {
             CoverageFormat::Lcov => coverage.to_lcov(),
             CoverageFormat::Cobertura => coverage.to_cobertura().map_err(OutputError)?,
         };
-        Ok(file::write_whole(&self.path, text.as_bytes())?)
+        Ok(file::write_output(&self.path, text.as_bytes())?)
     }
 }
 

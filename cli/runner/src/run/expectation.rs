@@ -77,10 +77,11 @@ impl ExpectationReport {
 
     pub(super) fn write(&self, out: &mut dyn Write) -> std::io::Result<()> {
         write!(out, "  expectation `{}` ", self.name)?;
+        write!(out, "{}", self.verdict.coloured())?;
         match (self.verdict, self.at) {
-            (Verdict::Violated, Some(at)) => write!(out, "violated at {at}")?,
-            (Verdict::Open, _) => write!(out, "open at the end of the run")?,
-            (verdict, _) => write!(out, "{}", verdict.word())?,
+            (Verdict::Violated, Some(at)) => write!(out, " at {at}")?,
+            (Verdict::Open, _) => write!(out, " at the end of the run")?,
+            _ => {}
         }
         for (index, SignalValue { signal, value }) in self.values.iter().enumerate() {
             write!(out, "{} {signal} = {value}", if index == 0 { ":" } else { "," })?;

@@ -439,5 +439,5 @@ fn save(lockstep: &mut Lockstep, request: &SaveRequest, keeper: &mut Option<Keep
         return Err(RunError::SaveTooLate(lockstep.session().t_v()));
     }
     let bytes = lockstep.checkpoint().and_then(|checkpoint| checkpoint.to_bytes()).map_err(RunError::Save)?;
-    Ok(file::write_whole(&request.path, &bytes)?)
+    Ok(file::write_output(&request.path, &bytes)?)
 }

@@ -161,18 +161,23 @@ pub fn execute(config: &RunConfig, interrupt: &Interrupt, out: &mut dyn Write) -
     }
     if let Drawing::File(path) = &config.picture.drawing {
         let (svg, not_there) = sampler::picture(&scenario, config.mode, &config.picture, &samples, &reports);
-        file::write_whole(path, svg.as_bytes())?;
+        file::write_output(path, svg.as_bytes())?;
         unsaved = unsaved.or(not_there.map(Into::into));
     }
     if let Some(folder) = &config.reports.maps {
         maps::write(&scenario, &last.tables, folder)?;
+        file::wrote(folder);
     }
     if let Some(folder) = &config.reports.files {
         plc_files::write(&scenario, &last.memories, folder)?;
+        file::wrote(folder);
     }
     if let Some(path) = &config.reports.html {
         let plot = sampler::plot(&scenario, config.mode, &config.picture, &samples, &reports);
-        file::write_whole(path, page_of(&scenario, &reports, &plot, &last.tables).as_bytes())?;
+        file::write_output(path, page_of(&scenario, &reports, &plot, &last.tables).as_bytes())?;
+    }
+    if let Some(request) = &config.reports.record {
+        file::wrote(&request.folder);
     }
     let verdict = Verdict::of(config.mode, &reports);
     verdict.write(config.reports.format, &reports, out).and_then(|()| out.flush()).map_err(OutputError)?;

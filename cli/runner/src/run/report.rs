@@ -142,6 +142,15 @@ impl RunReport {
         self.expectations.iter().any(ExpectationReport::is_violated)
     }
 
+    /// True if it came to the same end by the same way, with nothing else to say: equal runs are reported once.
+    fn is_as(&self, before: &Self) -> bool {
+        let has_more = !self.latency.is_empty() || self.watched.is_some() || self.error.is_some();
+        !has_more
+            && (self.status, &self.digest, self.steps) == (before.status, &before.digest, before.steps)
+            && self.digest.is_some()
+            && (&self.expectations, &self.report) == (&before.expectations, &before.report)
+    }
+
     /// Writes what came of this run, which is one of so many; `before` is the last of them.
     pub(super) fn write(
         &self,
@@ -161,6 +170,10 @@ impl RunReport {
                     if runs == 1 { format!("{}{case}", self.scenario) } else { format!("run {}/{runs}", self.run) };
                 let digest = self.digest.map_or_else(|| "none".to_owned(), |digest| digest.to_string());
                 let (steps, t_v, wall) = (self.steps, self.virtual_time, self.wall_time_s);
+                if let Some(before) = before.filter(|before| self.is_as(before)) {
+                    writeln!(out, "{name}: the same as run {}, in {wall:.3} s", before.run)?;
+                    return out.flush();
+                }
                 writeln!(out, "{name}: {}, {steps} steps, {t_v} virtual in {wall:.3} s", self.status.word())?;
                 writeln!(out, "  digest {digest}")?;
                 if let Some(error) = &self.error {
@@ -175,7 +188,6 @@ impl RunReport {
                 }
                 match (&self.report, before) {
                     (None, _) => {}
-                    // Equal runs say the same, and once is enough.
                     (now, Some(before)) if *now == before.report => writeln!(out, "  report as in run {}", before.run)?,
                     (Some(report), _) => tables::write(report, out)?,
                 }

@@ -58,7 +58,7 @@ pub fn run(config: &ShotConfig, out: &mut dyn Write) -> Result<ExitCode, ShotErr
     };
     let page = Page::serve(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)), &Admission::ThisMachine, source)?;
     let picture = browser.draw(&format!("{}?{query}", page.url()), &drawn, PATIENCE)?;
-    file::write_whole(&config.out, &picture)?;
+    file::write_whole(&file::followed(&config.out), &picture)?;
     writeln!(out, "{}", config.out.display()).map_err(OutputError)?;
     Ok(ExitCode::Ok)
 }

@@ -75,7 +75,7 @@ pub fn run(config: &TrainConfig, interrupt: &Interrupt, out: &mut dyn Write) -> 
         record.write(folder)?;
     }
     if let Some(path) = &config.html {
-        file::write_whole(path, report::page(&record, lesson).to_html().as_bytes())?;
+        file::write_output(path, report::page(&record, lesson).to_html().as_bytes())?;
     }
     match config.format {
         Format::Json => {

@@ -111,10 +111,10 @@ fn report(reports: &Reports, tables: &[Table], out: &mut dyn Write) -> Result<Ex
     }
     .map_err(OutputError)?;
     if let Some(path) = &reports.html {
-        file::write_whole(path, reports::page(tables).to_html().as_bytes())?;
+        file::write_output(path, reports::page(tables).to_html().as_bytes())?;
     }
     if let Some(path) = &reports.junit {
-        file::write_whole(path, reports::junit(tables).as_bytes())?;
+        file::write_output(path, reports::junit(tables).as_bytes())?;
     }
     let is_passed = tables.iter().all(Table::is_passed);
     Ok(if is_passed { ExitCode::Ok } else { ExitCode::Unmet })

@@ -57,7 +57,7 @@ pub fn run(config: &ExploreConfig, out: &mut dyn Write) -> Result<ExitCode, Sear
         ExploreReport { config, scenario: &scenario, tolerances: &tolerances, found: &found, written: &written };
     report.write(out).map_err(OutputError)?;
     if let Some(path) = &config.cases {
-        file::write_whole(path, report.cases().as_bytes())?;
+        file::write_output(path, report.cases().as_bytes())?;
     }
     Ok(if found.findings.is_empty() { ExitCode::Ok } else { ExitCode::Unmet })
 }

@@ -72,10 +72,10 @@ fn kept(config: &FalsifyConfig, space: &Space<'_>, found: &Found) -> Result<Opti
     let text = space.text(Some(&format!("inputs with which {what}")), &found.best.point);
     let whole = picture::whole(&space.applied(&text)?, space.until)?;
     if let Some(path) = &config.cases {
-        file::write_whole(path, format!("version = 1\n\n{text}").as_bytes())?;
+        file::write_output(path, format!("version = 1\n\n{text}").as_bytes())?;
     }
     if let Some(path) = &config.plot {
-        file::write_whole(path, whole.plot.to_svg().as_bytes())?;
+        file::write_output(path, whole.plot.to_svg().as_bytes())?;
     }
     Ok(Some(Case { text, digest: whole.digest.map(|digest| digest.to_string()) }))
 }

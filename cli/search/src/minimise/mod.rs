@@ -68,7 +68,7 @@ pub fn run(config: &MinimiseConfig, out: &mut dyn Write) -> Result<ExitCode, Sea
     let case = minimised.case(config, until, &trials)?;
     report::write(config, &scenario, &minimised, &case, &trials, out).map_err(OutputError)?;
     if let Some(path) = &config.cases {
-        file::write_whole(path, format!("version = 1\n\n{}", case.text).as_bytes())?;
+        file::write_output(path, format!("version = 1\n\n{}", case.text).as_bytes())?;
     }
     Ok(ExitCode::Ok)
 }

@@ -59,7 +59,7 @@ pub fn run(config: &MutateConfig, out: &mut dyn Write) -> Result<ExitCode, Searc
         mistakes.into_iter().zip(verdicts).map(|(mistake, verdict)| Judged { mistake, verdict }).collect();
     let tally = Tally::of(&judged);
     if let Some(path) = &config.written {
-        file::write_whole(path, survivors(&scenario, &catalogue, &judged)?.as_bytes())?;
+        file::write_output(path, survivors(&scenario, &catalogue, &judged)?.as_bytes())?;
     }
     report::write(config, &scenario, &judged, &tally, out).map_err(OutputError)?;
     let enough = config.at_least.is_none_or(|wanted| tally.all().score_pct() >= f64::from(wanted));
