@@ -74,6 +74,27 @@ fn the_way_goes_through_variables_timers_and_constants() {
     }
 }
 
+/// A number that lies last in memory, and of which only the lowest byte ever changes.
+#[test]
+fn the_way_goes_through_a_number_at_the_end_of_memory() {
+    let folder = copied_shear();
+    let program = [
+        ("    Dwell : TON;  ", "    Dwell : TON := (PT := T#100ms); Phase : INT;  "),
+        ("Dwell(IN := Level AND NOT ixDown, PT := Rest);", "Dwell(IN := Level AND Phase <> 2);"),
+        ("        ixDown := TRUE;", "        Phase := 2;"),
+        ("        ixDown := FALSE;", "        Phase := 1;"),
+        ("    ixUp := NOT ixDown;", "    ixDown := Phase = 2; ixUp := NOT ixDown;"),
+    ];
+    for (from, to) in program {
+        edit(folder.path(), "plc/shear.st", from, to);
+    }
+    let said = typed(folder.path(), &["test", ".", "--bless"]);
+    assert!(matches!(said.code, Some(0 | 1)), "{said:?}");
+    reviewed(folder.path());
+    edit(folder.path(), "plc/shear.st", "(PT := T#100ms)", "(PT := T#110ms)");
+    assert_eq!(place(folder.path()).as_deref(), Some("plc/shear.st:22"));
+}
+
 #[test]
 fn the_way_goes_through_blocks_and_arrays() {
     let folder = copied("gantry-robot");

@@ -38,6 +38,8 @@ impl Flow {
     pub(super) fn new(client: ClientName, applications: [Application; 2], inputs: &[Range<usize>]) -> Self {
         let leaves = Leaves::of(&applications);
         let inputs = inputs.iter().flat_map(|range| leaves.within(0, range.clone())).collect();
+        // Of a value only the bytes that change are heard of, and what nothing was heard of is zero: all of it is there.
+        let memories = [0, 1].map(|side| vec![0; leaves.end(side)]);
         Self {
             client,
             statements: Statements::of(&applications),
@@ -45,7 +47,7 @@ impl Flow {
             applications,
             leaves,
             inputs,
-            memories: [Vec::new(), Vec::new()],
+            memories,
             origins: BTreeMap::new(),
             t_v: VirtualTime::ZERO,
         }

@@ -170,6 +170,11 @@ impl Leaves {
         Self { list, places }
     }
 
+    /// The first byte behind all of them.
+    pub(super) fn end(&self, side: usize) -> usize {
+        self.places[side].last().map_or(0, |(_, _, greatest, _)| *greatest)
+    }
+
     /// The parts of memory that they lie in.
     pub(super) fn parts(&self, side: usize) -> Vec<Part> {
         self.list.iter().map(|leaf| part(&leaf.variables[side])).collect()
