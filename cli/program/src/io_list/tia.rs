@@ -35,6 +35,10 @@ impl Tag<'_> {
             collected.leave_out(name, "it is a direct access to the periphery", line);
             return Ok(());
         }
+        if let Some(bit) = no_such_bit(&address) {
+            collected.leave_out(name, format!("{address} has no bit {bit}: a byte has bits 0 to 7"), line);
+            return Ok(());
+        }
         let (ty, address, comment) = (name_of(ty), Some(address.as_str()), Some(comment));
         collected.take(&Entry { name, ty, direction, address, comment, line }, &Nothing)
     }
@@ -57,6 +61,12 @@ fn place(address: &str) -> Option<(Direction, String)> {
     is_number.then(|| (direction, format!("%{area}{rest}")))
 }
 
+/// The bit of an address, if no byte has it.
+fn no_such_bit(address: &str) -> Option<&str> {
+    let (_, bit) = address.split_once('.')?;
+    (!matches!(bit, "0" | "1" | "2" | "3" | "4" | "5" | "6" | "7")).then_some(bit)
+}
+
 /// The standard's name of a type of Siemens'.
 fn name_of(ty: &str) -> &str {
     match ty.trim().to_ascii_uppercase().as_str() {
@@ -70,6 +80,12 @@ fn name_of(ty: &str) -> &str {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_byte_has_eight_bits() {
+        assert_eq!([no_such_bit("%I0.7"), no_such_bit("%IW64")], [None, None]);
+        assert_eq!([no_such_bit("%I0.8"), no_such_bit("%Q1.x")], [Some("8"), Some("x")]);
+    }
 
     #[test]
     fn addresses_are_inputs_or_outputs() {

@@ -40,7 +40,9 @@ impl Unused {
         }
         let parts = own().flat_map(|(file, unit)| {
             let is_used = used.contains(file);
-            parts_of(*file, unit, sources).into_iter().map(move |part| Part { is_root: part.is_root || is_used, ..part })
+            parts_of(*file, unit, sources)
+                .into_iter()
+                .map(move |part| Part { is_root: part.is_root || is_used, ..part })
         });
         let parts = parts.collect::<Vec<Part>>();
         Self { declared: unreached(&parts, sources), warnings: Vec::new() }
@@ -269,7 +271,7 @@ mod tests {
         let block = "FUNCTION_BLOCK TEST_Main VAR d : Draft; END_VAR END_FUNCTION_BLOCK";
         let draft = "FUNCTION_BLOCK Draft VAR x : INT; END_VAR x := nowhere; END_FUNCTION_BLOCK";
         let files = [("a.exp", format!("PROGRAM Main END_PROGRAM {draft} {PLAN}")), ("b.exp", block.to_owned())];
-        let input = |(name, text): &(&str, String)| Input::from_text(name, SourceKind::Text, text);
+        let input = |(name, text): &(&str, String)| Input::from_text(name, SourceKind::Text, text.as_str());
         let codes = |is_used: bool| {
             let files = files.iter().map(|file| Input::used(input(file), is_used && file.0 == "b.exp"));
             let front = Front::new(files);

@@ -36,6 +36,7 @@ pub(super) fn extract(file: &str) -> Result<Taken, XmlError> {
     let configurations: Vec<&Element> = configurations.into_iter().flat_map(Element::elements).collect();
     writer.leave_out_devices(&configurations);
     writer.vendor_objects(&root);
+    writer.applications(&root, &configurations);
     for configuration in configurations.into_iter().filter(|each| !writer.is_left_out(each)).collect::<Vec<_>>() {
         writer.configuration(configuration);
     }

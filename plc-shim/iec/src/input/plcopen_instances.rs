@@ -4,6 +4,7 @@ use onescan_base::duration::XmlDuration;
 use onescan_xml::{Attribute, Element};
 
 use super::plcopen::Writer;
+use super::plcopen_addition::additions;
 use crate::diagnostic::Code;
 use crate::dialect::Dialect;
 
@@ -51,6 +52,21 @@ impl Writer<'_> {
             }
         }
         self.write("END_CONFIGURATION\n", &element.close);
+    }
+
+    /// The tasks of an application that CODESYS exports by itself: they stand in `addData`, and no configuration has any.
+    pub(super) fn applications(&mut self, root: &Element, configurations: &[&Element]) {
+        if configurations.iter().any(|each| runs(each)) {
+            return;
+        }
+        let mut all = additions(root, "application").flat_map(|held| {
+            let itself = (held.name == "resource").then_some(held);
+            itself.into_iter().chain(resources(held))
+        });
+        let Some(first) = all.find(|resource| has_programs(resource)) else { return };
+        self.write("CONFIGURATION Device\n", &first.open);
+        self.resource(first);
+        self.write("END_CONFIGURATION\n", &first.close);
     }
 
     fn globals_of_resource(&mut self, resource: &Element) {
@@ -159,8 +175,11 @@ fn resources(configuration: &Element) -> impl Iterator<Item = &Element> {
 
 /// True for a configuration with tasks or programs.
 fn runs(configuration: &Element) -> bool {
-    let runs = |inner: &Element| matches!(inner.name.as_str(), "task" | "pouInstance");
-    resources(configuration).any(|resource| resource.elements().any(runs))
+    resources(configuration).any(has_programs)
+}
+
+fn has_programs(resource: &Element) -> bool {
+    resource.elements().any(|inner| matches!(inner.name.as_str(), "task" | "pouInstance"))
 }
 
 /// What an element is called in program text.
@@ -236,5 +255,20 @@ mod tests {
             </configuration></configurations></instances></project>"#;
         let input = Input::from_text("app.xml", SourceKind::PlcOpen, project);
         assert!(input.file().text().contains("PROGRAM PLC_PRG WITH Main : PLC_PRG;"), "{}", input.file().text());
+    }
+
+    #[test]
+    fn tasks_of_an_application_that_stands_alone_are_read() {
+        let project = r#"<project><types><dataTypes/><pous/></types><instances><configurations/></instances><addData>
+            <data name="http://www.3s-software.com/plcopenxml/application" handleUnknown="implementation">
+            <resource name="Application"><task name="Main" interval="PT0.02S" priority="1">
+            <pouInstance name="PLC_PRG" typeName=""/></task><addData>
+            <data name="http://www.3s-software.com/plcopenxml/pou" handleUnknown="implementation">
+            <pou name="PLC_PRG" pouType="program"><body><ST><p>;</p></ST></body></pou></data></addData></resource></data>
+            </addData></project>"#;
+        let input = Input::from_text("app.xml", SourceKind::PlcOpen, project);
+        let text = input.file().text();
+        assert!(text.contains("TASK Main (INTERVAL := T#20000000ns, PRIORITY := 1);"), "{text}");
+        assert!(text.contains("PROGRAM PLC_PRG WITH Main : PLC_PRG;"), "{text}");
     }
 }
