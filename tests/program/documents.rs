@@ -44,7 +44,8 @@ const READ: &[&str] = &[
 ];
 
 /// Options with which a command talks to another program.
-const TO_OTHERS: &[&str] = &["--gateway", "--operator", "--opcua", "--opcua-client", "--ads", "--listen", "--web", "--pace"];
+const TO_OTHERS: &[&str] =
+    &["--gateway", "--operator", "--opcua", "--opcua-client", "--ads", "--listen", "--web", "--pace"];
 
 /// A command as a document shows it.
 struct Shown {
@@ -245,7 +246,8 @@ fn each_command_of_a_document_is_understood() {
 #[test]
 fn each_placeholder_is_explained() {
     let index = std::fs::read_to_string(repository().join("docs/README.md")).expect("the index");
-    let capitals = PLACEHOLDERS.iter().map(|(name, _)| *name).filter(|name| name.starts_with(|c: char| c.is_ascii_uppercase()));
+    let capitals =
+        PLACEHOLDERS.iter().map(|(name, _)| *name).filter(|name| name.starts_with(|c: char| c.is_ascii_uppercase()));
     for name in capitals {
         assert!(index.contains(&format!("`{name}`")), "{name}");
     }

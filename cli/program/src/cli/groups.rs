@@ -72,7 +72,7 @@ const GROUPS: &[Group] = &[
     (
         "This program",
         &[
-            ("help", "help on a command, or on exit-codes, environment, files"),
+            ("help", "help on a command, or on exit-codes, verdicts, …"),
             ("doctor", "report what this program and this machine have"),
             ("completions", "print what your shell needs to complete commands"),
             ("man", "write the manual pages"),

@@ -17,7 +17,7 @@ use onescan_runner::error::{ExitCode, Usage};
 /// Options of `help`.
 #[derive(Debug, ClapArgs)]
 pub struct HelpArgs {
-    /// A command, or a topic: `exit-codes`, `environment`, `files`
+    /// A command, or a topic: `exit-codes`, `verdicts`, `environment`, `files`
     #[arg(value_name = "COMMAND|TOPIC")]
     pub about: Option<String>,
 }

@@ -23,7 +23,7 @@ use onescan_runner::error::Usage;
 pub struct CheckArgs {
     /// Source files (`.st .iec .exp .scl .TcPOU .TcDUT .TcGVL .TcIO .plcproj .xml`), folders with such
     /// files, or scenarios; files and folders are checked together, as one program
-    #[arg(required = true, value_name = "FILE|FOLDER|SCENARIO")]
+    #[arg(default_value = ".", value_name = "FILE|FOLDER|SCENARIO")]
     pub paths: Vec<PathBuf>,
     /// Read all files in this dialect: iec2, iec3, codesys, twincat, siemens-scl or matiec [default: what a file's
     /// name or PLCopen XML says, as in `.scl`, else iec3]

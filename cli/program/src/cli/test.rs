@@ -115,7 +115,8 @@ impl From<TestFormatArg> for TestFormat {
     }
 }
 
-/// A bar where somebody sees it, lines where a CI server takes them down: all set `CI`.
+/// A bar where somebody sees it, lines where a CI server takes them down, all of which set `CI`; else a line when long nothing was
+/// said.
 fn progress(format: TestFormat) -> Progress {
     if format == TestFormat::Json {
         Progress::None
@@ -124,7 +125,7 @@ fn progress(format: TestFormat) -> Progress {
     } else if format == TestFormat::Github || std::env::var_os("CI").is_some() {
         Progress::Lines
     } else {
-        Progress::None
+        Progress::Sparse
     }
 }
 

@@ -31,6 +31,20 @@ pub(super) const TOPICS: &[Topic] = &[
         ],
     },
     Topic {
+        name: "verdicts",
+        title: "Verdicts",
+        entries: &[
+            ("met", "the run showed what was expected, and nothing that comes later can change it"),
+            ("open", "the run ended before it could be decided"),
+            ("violated", "the run did not show it; the first time at which that is certain stands beside it"),
+            (
+                "margin",
+                "how far the run was from another verdict at its tightest, in the unit of the signals: 0 is met, exactly \
+                   at the limit, and less than 0 is violated by so much",
+            ),
+        ],
+    },
+    Topic {
         name: "environment",
         title: "Environment",
         entries: &[

@@ -8,7 +8,7 @@ use onescan_report::file::{Write as Output, write_all_whole};
 use super::listed::{Listed, report};
 use super::names::Taken;
 use super::signal::{Plc, Signal};
-use super::{NewError, name_of, text};
+use super::{IGNORED, NewError, name_of, text};
 use crate::io_list::{self, IoList, Wanted};
 use onescan_runner::error::Unreadable;
 use onescan_runner::format::Format;
@@ -39,6 +39,7 @@ pub fn write(config: &FromListConfig, out: &mut dyn Write) -> Result<(), NewErro
     let mut files = vec![
         ("scenario.toml", text::scenario(&name, &list, &signals, &plc)),
         ("README.md", text::readme(&name, &list, &plc)),
+        (IGNORED.0, IGNORED.1.to_owned()),
     ];
     if matches!(plc, Plc::StandIn { .. }) {
         files.push(("plc/main.st", text::stand_in(&name, &variables)));

@@ -54,6 +54,12 @@ impl Template {
     }
 }
 
+/// What git leaves out of a scenario's repository.
+const IGNORED: (&str, &str) = (
+    ".gitignore",
+    "# What waits for `onescan review`; what was reviewed, snapshots/*.traj, belongs into the repository.\n*.traj.new\n",
+);
+
 /// Writes a scenario into a folder that must not be there.
 ///
 /// # Errors
@@ -62,12 +68,11 @@ pub fn write(folder: &Path, template: Template, out: &mut dyn Write) -> Result<(
     let name = name_of(folder)?;
     let place = folder.display().to_string();
     let filled = |text: &str| text.replace("{name}", &name);
-    let written = template
-        .files()
-        .iter()
-        .map(|(file, text)| Output { path: folder.join(file), bytes: Some(filled(text).into_bytes()) });
+    let files = || template.files().iter().copied().chain([IGNORED]);
+    let written =
+        files().map(|(file, text)| Output { path: folder.join(file), bytes: Some(filled(text).into_bytes()) });
     write_all_whole(&written.collect::<Vec<_>>())?;
-    for (file, _) in template.files() {
+    for (file, _) in files() {
         writeln!(out, "{}", folder.join(file).display()).map_err(OutputError)?;
     }
     if template == Template::Python {

@@ -43,6 +43,8 @@ pub enum Progress {
     Bar,
     /// A line a test, and one now and then while none ends: CI servers stop jobs that say nothing.
     Lines,
+    /// A line now and then, with how far it has come: for who reads a pipe.
+    Sparse,
 }
 
 /// All options of a test run.

@@ -33,12 +33,13 @@ impl Live {
 
 /// Does `work` over `count` units, and says meanwhile what `progress` asks for.
 pub(super) fn during<T>(progress: Progress, count: usize, work: impl FnOnce(&Live) -> T) -> T {
-    if progress != Progress::Lines {
+    if !matches!(progress, Progress::Lines | Progress::Sparse) {
         return work(&Live(None));
     }
+    let each = progress == Progress::Lines;
     std::thread::scope(|scope| {
         let (sender, receiver) = channel();
-        let live = match threads::start_in(scope, "lines", move || write(&receiver, count)) {
+        let live = match threads::start_in(scope, "lines", move || write(&receiver, count, each)) {
             Ok(_) => Live(Some(sender)),
             Err(error) => {
                 say(&format!("no line per test: {error}"));
@@ -49,19 +50,24 @@ pub(super) fn during<T>(progress: Progress, count: usize, work: impl FnOnce(&Liv
     })
 }
 
-/// A line for each name that comes in, and one if none does for long.
-fn write(receiver: &Receiver<String>, count: usize) {
+/// A line for each name that comes in, or only where nothing has been said for long.
+fn write(receiver: &Receiver<String>, count: usize, each: bool) {
     let started = Instant::now();
-    let mut done = 0;
+    let (mut done, mut last_said) = (0, started);
     loop {
-        let said = match receiver.recv_timeout(SILENCE_MAX) {
+        let patience = SILENCE_MAX.saturating_sub(last_said.elapsed());
+        let said = match receiver.recv_timeout(patience) {
             Ok(name) => {
                 done += 1;
+                if !each && last_said.elapsed() < SILENCE_MAX {
+                    continue;
+                }
                 name
             }
             Err(RecvTimeoutError::Timeout) => "...".to_owned(),
             Err(RecvTimeoutError::Disconnected) => return,
         };
+        last_said = Instant::now();
         let seconds = started.elapsed().as_secs_f64();
         say(&format!("{done:>4} / {count}  {seconds:>6.1} s  {said}"));
     }

@@ -5,10 +5,10 @@ use std::io::Write;
 use std::path::Path;
 use std::rc::Rc;
 
-use onescan_server::signal::pattern::SignalPattern;
 use onescan_report::OutputError;
 use onescan_scenario::Scenario;
 use onescan_scenario::case::{Catalogue, DEFAULT};
+use onescan_server::signal::pattern::SignalPattern;
 
 use super::TestError;
 use super::config::WorkerConfig;

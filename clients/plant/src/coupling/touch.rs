@@ -2,7 +2,9 @@
 
 use onescan_server::client::ClientFault;
 
-use super::{BindingKey, Names, Targets, Tie, Unbound, Which, needed, optional, others, sought, wanted, without_effect};
+use super::{
+    BindingKey, Names, Targets, Tie, Unbound, Which, needed, optional, others, sought, wanted, without_effect,
+};
 use crate::model::Bound;
 use crate::model::Mechanics;
 use crate::world::coordinate::Measured;
