@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use onescan_base::did_you_mean;
+use onescan_base::{did_you_mean, nearest};
 
 use crate::file::FILE_NAME;
 
@@ -24,14 +24,14 @@ pub(crate) fn help_for_scenario(path: &Path) -> String {
     if names_folder && is_own_name(here, &wanted) {
         return format!("you are in `{wanted}`: leave the name out");
     }
-    let found = scenarios_in(here);
-    let wanted = if folder == Path::new("") { wanted } else { folder.join(wanted).display().to_string() };
-    let general = || format!("a scenario is a folder with a `{FILE_NAME}`; give the folder");
-    match did_you_mean(&wanted, found.iter().map(String::as_str)) {
-        Some(nearest) => nearest,
-        None if found.is_empty() => general(),
-        None => format!("{}; {}", general(), listed("here are", &found)),
+    let found = names_in(here, |path| path.join(FILE_NAME).is_file());
+    let shown = |name: &str| folder.join(name).display().to_string();
+    if let Some(name) = nearest(&wanted, found.iter().map(String::as_str)) {
+        return format!("did you mean `{}`?", shown(name));
     }
+    let general = format!("a scenario is a folder with a `{FILE_NAME}`; give the folder");
+    let found: Vec<String> = found.iter().map(|name| shown(name)).collect();
+    if found.is_empty() { general } else { format!("{general}; {}", listed("here are", &found)) }
 }
 
 /// What to do with a file that is read as a scenario and is something else; nothing for one that may be a scenario.
@@ -59,12 +59,6 @@ pub(crate) fn help_for_file(folder: &Path, name: &str) -> Option<String> {
 fn is_own_name(folder: &Path, wanted: &str) -> bool {
     let is_called = |path: PathBuf| path.file_name().is_some_and(|name| name.to_string_lossy() == wanted);
     folder.join(FILE_NAME).is_file() && std::path::absolute(folder).is_ok_and(is_called)
-}
-
-fn scenarios_in(folder: &Path) -> Vec<String> {
-    let is_scenario = |path: &Path| path.join(FILE_NAME).is_file();
-    let place = if folder == Path::new(".") { Path::new("") } else { folder };
-    names_in(folder, is_scenario).into_iter().map(|name| place.join(name).display().to_string()).collect()
 }
 
 /// The names of what is in a folder, in order; none of what begins with a dot. A folder that cannot be read gives no hint.

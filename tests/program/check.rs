@@ -285,7 +285,7 @@ fn files_that_are_not_sources_are_reported() {
         (&["missing.txt"], "missing.txt: "),
         (&["notes.txt"], "notes.txt is of no kind that is read"),
         (&["empty"], "there are no PLC sources here"),
-        (&[], "<FILE|FOLDER|SCENARIO>"),
+        (&[], "there are no PLC sources here"),
     ];
     for (words, message) in cases {
         let said = checked(folder.path(), words);

@@ -6,7 +6,7 @@ use std::fs::File;
 use std::io::pipe;
 use std::process::Stdio;
 
-use crate::typed::{Said, copied_shear, onescan, scenario};
+use crate::typed::{Said, WROTE, copied_shear, onescan, scenario, typed};
 
 #[test]
 fn a_reader_that_has_left_is_not_a_failure() {
@@ -80,4 +80,44 @@ fn a_path_that_cannot_be_is_wrong_input_before_anything_runs() {
         assert_eq!((said.code, said.out.as_str()), (Some(2), ""), "{words:?}: {said:?}");
         assert!(said.err.contains(message), "{words:?}: {said:?}");
     }
+}
+
+/// Each file that was asked for is named when it is there, in the order in which they are written.
+#[test]
+fn what_was_written_is_said() {
+    let folder = copied_shear();
+    let written = |words: &[&str]| -> Vec<String> {
+        let output = onescan(folder.path()).args(words).output().expect("the program starts");
+        let err = String::from_utf8(output.stderr).expect("text");
+        err.lines().filter_map(|line| line.strip_prefix(WROTE)).map(str::to_owned).collect()
+    };
+    let run = ["run", "--until", "100ms", "--plot", "run.svg", "--html", "run.html", "--record", "out", "--coverage", "c.xml"];
+    assert_eq!(written(&run), ["c.xml", "run.svg", "run.html", "out"]);
+    assert_eq!(written(&["export", "out/run-1", "-o", "out.csv"]), ["out.csv"]);
+    assert_eq!(written(&["describe", "plant.toml", "--svg", "plant.svg"]), ["plant.svg"]);
+    assert_eq!(written(&["wiring", "--svg", "wiring.svg"]), ["wiring.svg"]);
+    assert_eq!(written(&["run", "--until", "100ms"]), Vec::<String>::new());
+    for name in ["c.xml", "run.svg", "run.html", "out", "out.csv", "plant.svg", "wiring.svg"] {
+        assert!(folder.path().join(name).exists(), "{name}");
+    }
+}
+
+/// A device, a pipe and a link stay what they are.
+#[cfg(unix)]
+#[test]
+fn what_is_not_a_file_takes_the_bytes() {
+    use std::os::unix::fs::FileTypeExt as _;
+    let folder = copied_shear();
+    let link = folder.path().join("link.svg");
+    std::fs::write(folder.path().join("real.svg"), "").expect("written");
+    std::os::unix::fs::symlink("real.svg", &link).expect("a link");
+    let said = typed(folder.path(), &["run", "--until", "100ms", "--plot", "link.svg", "--html", "/dev/null"]);
+    assert!(matches!(said.code, Some(0 | 1)), "{said:?}");
+    assert!(link.symlink_metadata().expect("there").is_symlink());
+    assert!(std::fs::read_to_string(folder.path().join("real.svg")).expect("a picture").contains("<svg"));
+    assert!(std::fs::metadata("/dev/null").expect("there").file_type().is_char_device());
+    let said = typed(folder.path(), &["run", "--until", "100ms", "--plot", "/dev/full"]);
+    assert_eq!((said.code, said.err.contains("/dev/full")), (Some(3), true), "{said:?}");
+    let said = typed(folder.path(), &["run", "--until", "100ms", "--plot", "-"]);
+    assert_eq!((said.code, said.err.contains("/dev/stdout")), (Some(2), true), "{said:?}");
 }

@@ -34,13 +34,18 @@ pub(crate) struct Said {
 
 impl From<Output> for Said {
     fn from(output: Output) -> Self {
+        let err = String::from_utf8(output.stderr).expect("text");
         Self {
             out: String::from_utf8(output.stdout).expect("text"),
-            err: String::from_utf8(output.stderr).expect("text"),
+            // That a file was written is said for each of them, and looked at in `output.rs`.
+            err: err.split_inclusive('\n').filter(|line| !line.starts_with(WROTE)).collect(),
             code: output.status.code(),
         }
     }
 }
+
+/// How a line begins that says what was written.
+pub(crate) const WROTE: &str = " INFO wrote ";
 
 /// Types a command in `folder` and waits for its end.
 pub(crate) fn typed(folder: &Path, words: &[&str]) -> Said {

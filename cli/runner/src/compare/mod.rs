@@ -101,6 +101,9 @@ struct Run {
     steps_per_s: f64,
 }
 
+/// Nobody wonders about runs that are shorter than this in all, s.
+const WORTH_A_WORD_S: u64 = 10;
+
 /// Says how long runs in real time take: in a pipe nothing else is heard of them until they are over.
 fn say_how_long(config: &CompareConfig, scenario: &Scenario) {
     if config.run.seed.is_some() {
@@ -108,6 +111,9 @@ fn say_how_long(config: &CompareConfig, scenario: &Scenario) {
     }
     let in_real_time = WAYS.iter().filter(|way| way.mode != Mode::Lockstep).count() as u64 * u64::from(config.run.runs);
     let span_s = config.run.subject.end(scenario).as_nanos() / 1_000_000_000;
+    if in_real_time * span_s < WORTH_A_WORD_S {
+        return;
+    }
     tracing::info!(
         target: NOTICE,
         "{in_real_time} runs of {span_s} s in real time: {} s in all; with `--seed 1` their clocks are computed",
