@@ -306,7 +306,7 @@ pub struct Memory {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pose {
     pub body: std::sync::Arc<str>,
-    /// Its origin in world coordinates, m.
+    /// Its origin in world coordinates, m; not a number while it is out of the world.
     pub position_m: [f64; 3],
     /// x, y, z, w of a quaternion of length 1.
     pub rotation_xyzw: [f64; 4],

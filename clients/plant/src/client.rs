@@ -236,10 +236,12 @@ impl Client for Plant {
 
     fn show(&self, parts: Parts, view: &mut ClientView) {
         if parts.poses {
-            view.poses.extend(self.poses().zip(&self.names).map(|(pose, name)| Pose {
+            let seen = self.machine().into_iter().flat_map(Machine::seen);
+            view.poses.extend(seen.zip(&self.names).map(|(placement, name)| Pose {
                 body: Arc::clone(name),
-                position_m: pose.position_m,
-                rotation_xyzw: pose.rotation_xyzw,
+                // What is out of the world is nowhere.
+                position_m: placement.map_or([f64::NAN; 3], |placement| placement.position_m),
+                rotation_xyzw: placement.map_or([0.0, 0.0, 0.0, 1.0], |placement| placement.rotation_xyzw),
             }));
         }
         if parts.tables {

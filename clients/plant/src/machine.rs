@@ -129,6 +129,11 @@ impl Machine {
         })
     }
 
+    /// The same; nothing of a body that is out of the world.
+    pub(super) fn seen(&self) -> impl Iterator<Item = Option<Placement>> {
+        self.placements().zip(self.world.bodies()).map(|(placement, body)| body.is_enabled().then_some(placement))
+    }
+
     /// The temperatures of heated surfaces, each with the index of its body.
     pub(super) fn heated(&self) -> impl Iterator<Item = (usize, &TemperatureField)> {
         self.world.heated()

@@ -23,6 +23,12 @@ impl Scene {
         });
         axes.chain(components)
     }
+
+    /// The bodies that are out of the world at the start, by their places: workpieces that wait for their source.
+    pub fn waiting(&self) -> impl Iterator<Item = usize> + '_ {
+        let waits = self.components.iter().filter(|component| component.kind.coupling.targets_wait());
+        waits.flat_map(|component| component.bound.targets.iter().copied())
+    }
 }
 
 impl World {
@@ -33,9 +39,8 @@ impl World {
         for joint in scene.driven_joints() {
             Motor::bind(joint, None, scene, &mut world);
         }
-        let waits = scene.components.iter().filter(|component| component.kind.coupling.targets_wait());
-        for body in waits.flat_map(|component| &component.bound.targets) {
-            world.leave_out(*body);
+        for body in scene.waiting() {
+            world.leave_out(body);
         }
         world.find_mechanisms();
         world

@@ -150,6 +150,9 @@ pub(super) fn of_component(kind: &Kind) -> Vec<Field> {
     let words = vec!["LREAL".to_owned(), "REAL".to_owned()];
     let about = "type of its signals that are numbers".to_owned();
     fields.push(Field { key: "signal_type".to_owned(), ..plain(about, Form::Choice { words }, Part::Parameter) });
+    let about = "where pictures show it, if nothing that it is bound to says so".to_owned();
+    let shown = plain(about, Form::Numbers { count: 3 }, Part::Parameter);
+    fields.push(Field { key: "shown_at_m".to_owned(), unit: Some("m"), ..shown });
     named(fields)
 }
 

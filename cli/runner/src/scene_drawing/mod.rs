@@ -9,6 +9,8 @@
 mod figure;
 mod style;
 
+use std::collections::BTreeSet;
+
 use onescan_plant::scene::model::{BodyKind, Scene, Sensing};
 use onescan_plant::{self as plant, Outline};
 use onescan_report::view::{Paint, Ray, Side, Solid, Stage, Surface, picture};
@@ -100,7 +102,9 @@ fn called(outline: &Outline<'_>) -> String {
 
 fn stage(scene: &Scene, title: &str, is_hidden: impl Fn(&Outline<'_>) -> bool) -> Stage {
     let room_m = extents(scene.outlines().filter(|outline| outline.kind != BodyKind::Fixed))[0];
-    let seen = scene.outlines().filter(|outline| !is_hidden(outline));
+    let waiting: BTreeSet<&str> =
+        scene.waiting().filter_map(|body| scene.bodies.get(body)).map(|body| body.name.as_str()).collect();
+    let seen = scene.outlines().filter(|outline| !is_hidden(outline) && !waiting.contains(outline.body));
     let solids = seen.map(|outline| solid(outline, room_m)).collect();
     let rays = scene.sensors.iter().filter_map(|sensor| match &sensor.sensing {
         Sensing::Proximity { point_m, direction, range_m, .. } => {
@@ -109,7 +113,13 @@ fn stage(scene: &Scene, title: &str, is_hidden: impl Fn(&Outline<'_>) -> bool) -
         }
         Sensing::EndPosition { .. } => None,
     });
-    Stage { title: title.to_owned(), kinds: KINDS.map(str::to_owned).to_vec(), solids, rays: rays.collect() }
+    // Who counts the bodies of the picture finds as many as there are.
+    let title = match waiting.len() {
+        0 => title.to_owned(),
+        1 => format!("{title}; a body waits out of the world"),
+        count => format!("{title}; {count} bodies wait out of the world"),
+    };
+    Stage { title, kinds: KINDS.map(str::to_owned).to_vec(), solids, rays: rays.collect() }
 }
 
 /// How far the forms reach along the world's axes, the longest first; 0 if there are none.
@@ -148,4 +158,20 @@ pub fn of_scenario(scenario: &Scenario, side: Side) -> Vec<String> {
         (!scene.bodies.is_empty()).then(|| svg(&scene, &format!("{name} as it is set up"), side))
     });
     drawn.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CELL: &str = include_str!("../../../../scenarios/templates/cell/plant.toml");
+
+    #[test]
+    fn what_waits_for_its_source_is_not_drawn() {
+        let scene = Scene::parse(CELL, "plant.toml").expect("a scene");
+        let stage = stage(&scene, "a cell", |_| false);
+        let names: BTreeSet<&str> = stage.solids.iter().map(|solid| solid.name.as_str()).collect();
+        assert_eq!(names, ["belt", "chute", "infeed", "pusher"].into_iter().collect());
+        assert_eq!(stage.title, "a cell; 4 bodies wait out of the world");
+    }
 }

@@ -28,6 +28,9 @@ pub struct Component {
     /// Bytes in the windows of the signals that are lines.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub window: Option<u16>,
+    /// Where pictures show it, m, in world coordinates, if nothing that it is bound to says so. The plant does not depend on it.
+    #[serde(skip)]
+    pub shown_at_m: Option<[f64; 3]>,
     /// How and when it fails.
     pub failures: Vec<FailureSwitch>,
 }

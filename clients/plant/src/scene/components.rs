@@ -60,6 +60,7 @@ pub(super) fn check(
             outputs: outputs(one, types, signals, faults),
             number: types.number,
             window: types.window,
+            shown_at_m: shown_at(&one.keys, faults),
             failures: Vec::new(),
         });
     }
@@ -86,7 +87,7 @@ fn settled(one: &Known<'_>, settings: &[Setting], faults: &mut Faults<'_>) -> Or
 /// Keys that the kind has not.
 fn refuse_unknown_keys(one: &Known<'_>, faults: &mut Faults<'_>) {
     let Known { keys, kind } = one;
-    let mut right: Vec<String> = ["name", "kind", "signal_type"].map(str::to_owned).to_vec();
+    let mut right: Vec<String> = ["name", "kind", "signal_type", SHOWN_AT].map(str::to_owned).to_vec();
     right.extend(kind.coupling.keys().iter().map(|binding| binding.key.to_owned()));
     right.extend(kind.parameters.iter().map(|parameter| parameter.key.to_string()));
     right.extend(kind.inputs.iter().flat_map(|input| [format!("{}_signal", input.key), format!("{}_from", input.key)]));
@@ -157,6 +158,18 @@ fn number_type(keys: &Keys<'_>, faults: &mut Faults<'_>) -> NumberType {
             NumberType::default()
         }
     }
+}
+
+/// The key that says where pictures show a component.
+pub(super) const SHOWN_AT: &str = "shown_at_m";
+
+fn shown_at(keys: &Keys<'_>, faults: &mut Faults<'_>) -> Option<[f64; 3]> {
+    let at = keys.triple(SHOWN_AT, faults)?;
+    let is_somewhere = at.get_ref().iter().all(|part| part.is_finite());
+    if !is_somewhere {
+        faults.add(at.span(), SceneFaultKind::Text { key: SHOWN_AT.to_owned(), wanted: "three finite numbers" });
+    }
+    is_somewhere.then_some(*at.get_ref())
 }
 
 /// What a component says of the types of its signals.

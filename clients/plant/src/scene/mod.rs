@@ -103,6 +103,7 @@
 //! | `INPUT_from` | `"component.output"`: another component's output for an input |
 //! | `INPUT` | a constant for an input, its preset if nothing is written |
 //! | `signal_type` | `LREAL` or `REAL`, of all its number signals; `LREAL` if absent |
+//! | `shown_at_m` | where pictures show it, if nothing that it is bound to says so |
 //!
 //! | `[[failure]]` | meaning |
 //! |---|---|

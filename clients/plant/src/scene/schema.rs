@@ -6,7 +6,7 @@ use schemars::generate::SchemaSettings;
 use serde_json::{Map, Value, json};
 
 use super::VERSION;
-use super::components::{WINDOW, has_lines};
+use super::components::{SHOWN_AT, WINDOW, has_lines};
 use super::format::SceneFile;
 use super::own::Header;
 use crate::component::kind::{Form, Frames, Kind, Parameter, Setting, Signal, Values, unit};
@@ -34,7 +34,7 @@ fn own_component() -> Value {
         "type": "object",
         "description": "of a kind of the user's own, in a folder of `libraries`",
         "required": ["name", "kind"],
-        "properties": { "name": text(), "kind": kind, "signal_type": { "enum": ["REAL", "LREAL"] } },
+        "properties": { "name": text(), "kind": kind, "signal_type": { "enum": ["REAL", "LREAL"] }, SHOWN_AT: shown_at() },
     })
 }
 
@@ -84,12 +84,22 @@ fn text() -> Value {
     json!({ "type": TEXT })
 }
 
+/// A point of the world.
+fn point() -> Value {
+    json!({ "type": "array", "items": { "type": NUMBER }, "minItems": 3, "maxItems": 3 })
+}
+
+fn shown_at() -> Value {
+    described(point(), "where pictures show it, if nothing that it is bound to says so")
+}
+
 /// The table of a component of a kind.
 fn component(kind: &Kind) -> Value {
     let mut properties = Map::new();
     properties.insert("name".to_owned(), text());
     properties.insert("kind".to_owned(), json!({ "const": kind.name, "description": kind.summary }));
     properties.insert("signal_type".to_owned(), json!({ "enum": ["REAL", "LREAL"] }));
+    properties.insert(SHOWN_AT.to_owned(), shown_at());
     for (key, signals) in kind.frames.by_key().into_iter().filter(|(_, signals)| !signals.is_empty()) {
         let members: Vec<_> = signals.iter().map(|signal| Frames::member(signal)).collect();
         let description = format!("a structure of signals with the members {}", members.join(", "));
@@ -99,9 +109,7 @@ fn component(kind: &Kind) -> Value {
     for BindingKey { key, about, names, needed } in kind.coupling.keys() {
         let ty = match names {
             Names::Bodies { .. } => json!({ "type": "array", "items": { "type": TEXT } }),
-            Names::Point | Names::Direction => {
-                json!({ "type": "array", "items": { "type": NUMBER }, "minItems": 3, "maxItems": 3 })
-            }
+            Names::Point | Names::Direction => point(),
             Names::DrivenJoint(_)
             | Names::MeasuredJoint
             | Names::Belt

@@ -1,5 +1,7 @@
 //! Components that handle bodies: sources, belts, barriers, arms, sinks.
 
+use onescan_server::client::{Client, ClientView, Parts};
+
 use crate::bench::Bench;
 
 /// Boxes come from a source onto a belt, pass a barrier, and leave through a sink at its end.
@@ -211,4 +213,27 @@ fn handling_goes_on_to_the_bit_from_a_saved_state() {
         }
         assert!(first.plant.save().expect("a state") == second.plant.save().expect("a state"));
     }
+}
+
+/// Who looks does not see what waits for its source, nor what a sink has taken.
+#[test]
+fn what_is_out_of_the_world_is_nowhere() {
+    let mut bench = Bench::new(LINE);
+    let there = |bench: &Bench| {
+        let mut view = ClientView::default();
+        bench.plant.show(Parts::POSES, &mut view);
+        view.poses.iter().filter(|pose| pose.body.starts_with("box") && pose.position_m[0].is_finite()).count()
+    };
+    assert_eq!(there(&bench), 0);
+    bench.command("CONVEYOR_SPEED", 2_i32);
+    bench.command("Feed", true);
+    for _ in 0..100 {
+        bench.turn();
+    }
+    assert_eq!(there(&bench), 1);
+    bench.command("Feed", false);
+    for _ in 0..4000 {
+        bench.turn();
+    }
+    assert_eq!((there(&bench), bench.read::<i32>("Out")), (0, 1));
 }

@@ -9,6 +9,7 @@ use super::{Kinds, Own, text_of};
 use crate::coupling::Names;
 use crate::pose::{from_rpy_deg, to_rpy_deg, turned_tensor};
 use crate::scene::arrays::numbers;
+use crate::scene::components::SHOWN_AT;
 use crate::scene::error::SceneFaultKind;
 use crate::scene::faults::Faults;
 use crate::scene::format::{ComponentTable, SceneFile, Triple};
@@ -217,6 +218,9 @@ impl Place {
                 (Names::Direction, Some(direction)) => set(component, binding.key, self.turned(direction), &kind),
                 _ => {}
             }
+        }
+        if let Some(at) = component.get(SHOWN_AT).and_then(|value| numbers(value.get_ref())) {
+            set(component, SHOWN_AT, self.moved(at), &kind);
         }
     }
 }
