@@ -128,6 +128,10 @@ fn a_picture_without_a_browser_says_how_to_get_one() {
     );
     let (code, said) = shot(&[".", "--view", "fromt", "-o", "nothing.png"], None);
     assert!(code == Some(2) && said.contains("no view `fromt`") && said.contains("front"), "{said}");
+    let (code, said) = shot(&[".", "--film", "--until", "10ms", "-o", "nothing.webp"], None);
+    assert!(code == Some(2) && said.contains("has no second picture") && said.contains("later `--until`"), "{said}");
+    let (code, said) = shot(&[".", "--film", "-o", "nothing.webp"], None);
+    assert!(code == Some(2) && said.contains("--until"), "{said}");
     let (code, said) = shot(&[".", "--size", "1280", "-o", "nothing.png"], None);
     assert!(code == Some(2) && said.contains("1280x720"), "{said}");
 }

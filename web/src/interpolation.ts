@@ -44,11 +44,14 @@ const GAP_MS = 500;
 export class Tracks {
   private readonly tracks = new Map<number, Track>();
 
+  /** `isExact` for pictures that are looked at one by one: nothing is on its way there. */
+  constructor(private readonly isExact = false) {}
+
   /** Notes a pose that arrived at `now_ms` on the browser's clock. */
   arrive(pose: Pose, now_ms: number): void {
     const last = this.tracks.get(pose.body);
     const place = pose.place;
-    if (last === undefined || last.to === null || place === null || isJump(last.to, place) || now_ms - last.to_ms > GAP_MS) {
+    if (this.isExact || last === undefined || last.to === null || place === null || isJump(last.to, place) || now_ms - last.to_ms > GAP_MS) {
       this.tracks.set(pose.body, { from: place, to: place, from_ms: now_ms, to_ms: now_ms });
       return;
     }

@@ -1,6 +1,6 @@
 //! A client that repeats what another once did: outputs recorded turn by turn.
 
-use onescan_server::client::{Client, ClientFault, JoinRequest, StateError, Wake};
+use onescan_server::client::{Client, ClientFault, ClientView, JoinRequest, Parts, Pose, StateError, Wake};
 use onescan_server::time::VirtualTime;
 
 /// Gives recorded outputs, whatever it reads.
@@ -8,6 +8,8 @@ pub struct Replay {
     request: JoinRequest,
     /// The initial outputs, then those of each turn.
     recorded: Vec<Vec<u8>>,
+    /// Where bodies were with the initial outputs, then after each turn; empty if nobody noted it.
+    seen: Vec<Vec<Pose>>,
     next: usize,
 }
 
@@ -15,7 +17,13 @@ impl Replay {
     /// A client that joins as `request` and gives `recorded`: the initial outputs first, then those
     /// of each turn. After the last it keeps them.
     pub fn new(request: JoinRequest, recorded: Vec<Vec<u8>>) -> Self {
-        Self { request, recorded, next: 0 }
+        Self { request, recorded, seen: Vec::new(), next: 0 }
+    }
+
+    /// The same that shows where bodies were: with the initial outputs first, then after each turn.
+    #[must_use]
+    pub fn showing(self, seen: Vec<Vec<Pose>>) -> Self {
+        Self { seen, ..self }
     }
 
     fn give(&mut self, outputs: &mut [u8]) -> Result<(), ClientFault> {
@@ -46,6 +54,13 @@ impl Client for Replay {
 
     fn turn(&mut self, _t_v: VirtualTime, _inputs: &[u8], outputs: &mut [u8]) -> Result<Wake, ClientFault> {
         self.give(outputs).map(|()| Wake::NextPeriod)
+    }
+
+    fn show(&self, parts: Parts, view: &mut ClientView) {
+        let seen = self.next.checked_sub(1).and_then(|last| self.seen.get(last));
+        if let Some(poses) = seen.filter(|_| parts.poses) {
+            view.poses.extend(poses.iter().cloned());
+        }
     }
 
     fn save(&self) -> Result<Vec<u8>, StateError> {

@@ -9,7 +9,7 @@ use onescan_server::time::VirtualTime;
 use super::error::CommandError;
 use super::value::client_name;
 use onescan_runner::error::ExitCode;
-use onescan_runner::shot::{self, ShotConfig, Size, Theme};
+use onescan_runner::shot::{self, Film, ShotConfig, Size, Theme};
 
 /// Options of `shot`.
 #[derive(Debug, ClapArgs)]
@@ -29,7 +29,7 @@ pub struct ShotArgs {
     /// The `[[view]]` that it is drawn from [default: all of the machine]
     #[arg(long, value_name = "NAME")]
     pub view: Option<String>,
-    /// The picture, a PNG
+    /// The picture, a PNG; or the film, an animated WebP
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
     /// Its size in pixels
@@ -38,6 +38,29 @@ pub struct ShotArgs {
     /// Its colours
     #[arg(long, value_enum, default_value_t)]
     pub theme: ThemeArg,
+    /// A film from `--at` to `--until` in place of a picture
+    #[arg(long, requires = "until")]
+    pub film: bool,
+    /// The virtual time at which the film ends
+    #[arg(long, value_name = "TIME", requires = "film")]
+    pub until: Option<VirtualTime>,
+    /// Pictures a second of the film
+    #[arg(long, default_value_t = 10, value_name = "N", requires = "film", value_parser = clap::value_parser!(u8).range(1..=50))]
+    pub rate: u8,
+    /// Seconds of virtual time in a second of the film
+    #[arg(long, default_value_t = 1.0, value_name = "FACTOR", requires = "film", value_parser = speed)]
+    pub speed: f64,
+    /// How well the film's pictures are kept: from 0, small, to 100
+    #[arg(long, default_value_t = 60, value_name = "N", requires = "film", value_parser = clap::value_parser!(u8).range(0..=100))]
+    pub quality: u8,
+    /// Draw a run without lockstep, on clocks that are computed from this seed (`docs/freewheel.md`)
+    #[arg(long, value_name = "SEED")]
+    pub freewheel: Option<u64>,
+}
+
+fn speed(text: &str) -> Result<f64, String> {
+    let speed = text.parse().ok().filter(|speed: &f64| (1e-4..=1e4).contains(speed));
+    speed.ok_or_else(|| format!("`{text}` is not a factor from 0.0001 to 10000"))
 }
 
 /// Colours of a picture.
@@ -55,11 +78,14 @@ pub enum ThemeArg {
 /// # Errors
 /// See [`CommandError`].
 pub fn shot(args: ShotArgs) -> Result<ExitCode, CommandError> {
-    let ShotArgs { scenario, case, operators, at, view, output, size, theme } = args;
+    let ShotArgs { scenario, case, operators, at, view, output, size, theme, .. } = args;
+    let ShotArgs { film, until, rate, speed, quality, freewheel, .. } = args;
+    let film = until.filter(|_| film).map(|until| Film { until, rate, speed, quality });
     let theme = match theme {
         ThemeArg::Light => Theme::Light,
         ThemeArg::Dark => Theme::Dark,
     };
-    let config = ShotConfig { scenario, case, operated: operators, at, view, out: output, size, theme };
+    let config =
+        ShotConfig { scenario, case, operated: operators, at, view, out: output, size, theme, film, freewheel };
     Ok(shot::run(&config, &mut std::io::stdout().lock())?)
 }

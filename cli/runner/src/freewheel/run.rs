@@ -8,7 +8,7 @@ use std::time::Duration;
 use onescan_base::threads;
 use onescan_operator::replay::Replay;
 use onescan_scenario::file::FreewheelFile;
-use onescan_server::client::{Client, ClientFault, JoinRequest};
+use onescan_server::client::{Client, ClientFault, JoinRequest, Pose};
 use onescan_server::end::{Failure, FailureCause, SessionEnd};
 use onescan_server::formation::{Formation, FormationError};
 use onescan_server::lockstep::Lockstep;
@@ -28,9 +28,23 @@ pub use super::wheel::Clock;
 
 /// A client and the clock it keeps.
 pub struct Freewheeler {
-    pub client: Box<dyn Client>,
+    client: Box<dyn Client>,
     /// How it keeps its cycle.
-    pub clock: Clock,
+    clock: Clock,
+    /// Whether it is noted where its bodies are.
+    is_seen: bool,
+}
+
+impl Freewheeler {
+    pub fn new(client: Box<dyn Client>, clock: Clock) -> Self {
+        Self { client, clock, is_seen: false }
+    }
+
+    /// The same, of which it is noted after each cycle where its bodies are, for pictures.
+    #[must_use]
+    pub fn seen(self) -> Self {
+        Self { is_seen: true, ..self }
+    }
 }
 
 /// What free-wheeling left: a session that replays it, cycle by cycle, so that it is digested,
@@ -59,7 +73,7 @@ pub fn run(
     stop: &AtomicBool,
 ) -> Result<Trace, FormationError> {
     let requests: Vec<JoinRequest> = clients.iter().map(|client| client.client.join()).collect();
-    replayed(plan, requests.iter().map(|request| (request.clone(), Vec::new())))?;
+    replayed(plan, requests.iter().map(|request| (request.clone(), Vec::new(), Vec::new())))?;
     let (mut wheels, links) = connect(clients, &requests, link, timeline);
     let mut failed = None;
     for (wheel, request) in wheels.iter_mut().zip(&requests) {
@@ -75,7 +89,7 @@ pub fn run(
     }
     let reached = wheels.iter().map(|wheel| wheel.reached).min().unwrap_or_default();
     let errors_ns = wheels.iter_mut().flat_map(|wheel| std::mem::take(&mut wheel.errors_ns)).collect();
-    let recorded = requests.into_iter().zip(wheels.into_iter().map(|wheel| wheel.recorded));
+    let recorded = requests.into_iter().zip(wheels).map(|(request, wheel)| (request, wheel.recorded, wheel.seen));
     Ok(Trace { replay: replayed(plan, recorded)?, reached, failed, errors_ns })
 }
 
@@ -164,6 +178,8 @@ fn connect(
             outputs: Arc::new(Items::new(&PortLayout::new(request.writes.clone()))),
             own: Vec::new(),
             recorded: Vec::new(),
+            is_seen: client.is_seen,
+            seen: Vec::new(),
             reached: VirtualTime::ZERO,
             errors_ns: Vec::new(),
             plc_clock: Arc::clone(&plc_clock),
@@ -198,11 +214,11 @@ fn routes(request: &JoinRequest, readers: &BTreeMap<&SignalName, Vec<(Arc<Items>
 
 fn replayed(
     plan: &SessionPlan,
-    clients: impl Iterator<Item = (JoinRequest, Vec<Vec<u8>>)>,
+    clients: impl Iterator<Item = (JoinRequest, Vec<Vec<u8>>, Vec<Vec<Pose>>)>,
 ) -> Result<Lockstep, FormationError> {
     let mut formation = Formation::new(plan.clone());
-    for (request, recorded) in clients {
-        formation.join(Box::new(Replay::new(request, recorded)))?;
+    for (request, recorded, seen) in clients {
+        formation.join(Box::new(Replay::new(request, recorded).showing(seen)))?;
     }
     formation.start()
 }

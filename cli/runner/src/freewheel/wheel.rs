@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use onescan_server::client::{Client, ClientFault};
+use onescan_server::client::{Client, ClientFault, ClientView, Parts, Pose};
 use onescan_server::time::{TimeSpan, VirtualTime};
 
 use super::item::Items;
@@ -43,6 +43,10 @@ pub(super) struct Wheel {
     pub(super) own: Vec<u8>,
     /// Outputs after setup and after each cycle, as others see them.
     pub(super) recorded: Vec<Vec<u8>>,
+    /// Whether it is noted where its bodies are.
+    pub(super) is_seen: bool,
+    /// Where they are after setup and after each cycle, if that is noted.
+    pub(super) seen: Vec<Vec<Pose>>,
     /// How far its own clock has come.
     pub(super) reached: VirtualTime,
     /// How far it was behind the PLC at each communication, ns, if it follows one.
@@ -72,7 +76,18 @@ impl Wheel {
         let seen = self.timeline.seen(&outputs);
         self.outputs.copy_from(&seen);
         (self.own, self.recorded) = (outputs, vec![seen]);
+        self.look();
         Ok(())
+    }
+
+    /// Notes where its bodies are, if that is asked for.
+    fn look(&mut self) {
+        if !self.is_seen {
+            return;
+        }
+        let mut view = ClientView::default();
+        self.client.show(Parts::POSES, &mut view);
+        self.seen.push(view.poses);
     }
 
     /// A cycle that has not begun: what goes in and comes out.
@@ -91,6 +106,7 @@ impl Wheel {
         let seen = self.timeline.seen(outputs);
         self.outputs.copy_from(&seen);
         self.recorded.push(seen);
+        self.look();
         self.reached = *t;
         if self.clock == Clock::Grid {
             self.plc_clock.store(t.as_nanos(), Ordering::Relaxed);

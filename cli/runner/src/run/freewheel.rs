@@ -28,25 +28,9 @@ pub(super) fn run(
     interrupt: &Interrupt,
     watch: impl FnOnce(&mut Lockstep),
 ) -> Result<(Outcome, Vec<i64>), RunError> {
-    let mut clients = Vec::new();
-    for name in scenario.plan().clients() {
-        if let Some(client) = scenario.free_gateway(name) {
-            clients.push(Freewheeler { client: client?, clock: Clock::Grid });
-            continue;
-        }
-        match scenario.member(name)? {
-            Member::Plant(client) => clients.push(Freewheeler { client, clock: plant_clock(config.mode, scenario) }),
-            Member::Plc(client) => clients.push(Freewheeler { client, clock: Clock::Grid }),
-            Member::Gateway(_) | Member::External(_) | Member::Seated { .. } => {
-                return Err(Usage::new(format!("client `{name}` can only take part in lockstep"), None).into());
-            }
-        }
-    }
+    let clients = clients(config.mode, scenario)?;
     interrupt.watch();
-    let clocks = config.seed.map(|seed| Clocks {
-        model: scenario.file().freewheel.model,
-        seed: seed_for(seed, "run", &number.to_string()),
-    });
+    let clocks = config.seed.map(|seed| clocks(scenario, seed, number));
     let Trace { mut replay, reached, failed, errors_ns } =
         spin(config, scenario, (number, clocks), interrupt, clients)?;
     replay.set_until(Some(reached));
@@ -58,6 +42,33 @@ pub(super) fn run(
         None => outcome,
     };
     Ok((outcome, errors_ns))
+}
+
+/// The clients of a scenario, each with the clock that it keeps.
+///
+/// # Errors
+/// A client that cannot be made, or that can only take part in lockstep.
+pub(crate) fn clients(mode: Mode, scenario: &Scenario) -> Result<Vec<Freewheeler>, RunError> {
+    let mut clients = Vec::new();
+    for name in scenario.plan().clients() {
+        if let Some(client) = scenario.free_gateway(name) {
+            clients.push(Freewheeler::new(client?, Clock::Grid));
+            continue;
+        }
+        match scenario.member(name)? {
+            Member::Plant(client) => clients.push(Freewheeler::new(client, plant_clock(mode, scenario))),
+            Member::Plc(client) => clients.push(Freewheeler::new(client, Clock::Grid)),
+            Member::Gateway(_) | Member::External(_) | Member::Seated { .. } => {
+                return Err(Usage::new(format!("client `{name}` can only take part in lockstep"), None).into());
+            }
+        }
+    }
+    Ok(clients)
+}
+
+/// The clocks of the run of this number, computed from a seed.
+pub(crate) fn clocks(scenario: &Scenario, seed: u64, number: u32) -> Clocks {
+    Clocks { model: scenario.file().freewheel.model, seed: seed_for(seed, "run", &number.to_string()) }
 }
 
 /// How a plant keeps its cycle.

@@ -41,8 +41,8 @@ impl Browser {
         program().map(|program| Self { program }).ok_or_else(|| ShotError::NoBrowser { named: named() })
     }
 
-    /// Opens a page that sends a picture.
-    pub(super) fn draw(&self, url: &str, drawn: &Receiver<Drawn>, patience: Duration) -> Result<Vec<u8>, ShotError> {
+    /// Opens a page that sends pictures.
+    pub(super) fn open(&self, url: &str) -> Result<Window, ShotError> {
         let wrong = |source| ShotError::Browser { program: self.program.display().to_string(), source };
         let profile = tempfile::tempdir().map_err(wrong)?;
         let mut command = Command::new(&self.program);
@@ -63,7 +63,23 @@ impl Browser {
         let mut folder = OsString::from("--user-data-dir=");
         folder.push(profile.path());
         command.arg(folder).arg(url).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
-        let mut running = Running(command.spawn().map_err(wrong)?);
+        let running = Running(command.spawn().map_err(wrong)?);
+        Ok(Window { running, program: self.program.display().to_string(), _profile: profile })
+    }
+}
+
+/// A page that is open, and sends pictures.
+pub(super) struct Window {
+    // Before the folder that the browser writes to.
+    running: Running,
+    program: String,
+    _profile: tempfile::TempDir,
+}
+
+impl Window {
+    /// The next picture.
+    pub(super) fn next(&mut self, drawn: &Receiver<Drawn>, patience: Duration) -> Result<Vec<u8>, ShotError> {
+        let wrong = |source| ShotError::Browser { program: self.program.clone(), source };
         let until = Instant::now() + patience;
         loop {
             match drawn.recv_timeout(LOOK) {
@@ -73,8 +89,8 @@ impl Browser {
                     return Err(ShotError::Page("the page is not served".to_owned()));
                 }
                 Err(RecvTimeoutError::Timeout) => {
-                    if let Some(status) = running.0.try_wait().map_err(wrong)? {
-                        return Err(ShotError::Gone { program: self.program.display().to_string(), status });
+                    if let Some(status) = self.running.0.try_wait().map_err(wrong)? {
+                        return Err(ShotError::Gone { program: self.program.clone(), status });
                     }
                     if Instant::now() > until {
                         return Err(ShotError::Late(patience));

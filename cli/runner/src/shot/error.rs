@@ -8,6 +8,7 @@ use miette::Diagnostic;
 use onescan_server::time::VirtualTime;
 use thiserror::Error;
 
+use super::webp::NoFilm;
 use crate::error::{Exit, ExitCode};
 use crate::run::RunError;
 
@@ -43,6 +44,9 @@ pub enum ShotError {
     /// The browser takes too long.
     #[error("there is no picture after {} s", .0.as_secs())]
     Late(Duration),
+    /// What the page has drawn is not a film.
+    #[error(transparent)]
+    Film(NoFilm),
     /// The page says why.
     #[error("the page does not draw: {0}")]
     Page(String),
@@ -62,9 +66,12 @@ impl Exit for ShotError {
         match self {
             Self::Run(error) => error.exit_code(),
             Self::NoBrowser { .. } => ExitCode::WrongInput,
-            Self::Ended { .. } | Self::Browser { .. } | Self::Gone { .. } | Self::Late(_) | Self::Page(_) => {
-                ExitCode::Fault
-            }
+            Self::Ended { .. }
+            | Self::Browser { .. }
+            | Self::Gone { .. }
+            | Self::Late(_)
+            | Self::Film(_)
+            | Self::Page(_) => ExitCode::Fault,
         }
     }
 }

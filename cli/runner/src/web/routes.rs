@@ -124,7 +124,7 @@ async fn behind_panel(State(session): State<Arc<Session>>, Path(number): Path<St
     }
 }
 
-/// A picture that the page has drawn: a PNG, or a text that says why there is none.
+/// A picture that the page has drawn: a PNG or, for a film, a WebP; or a text that says why there is none.
 async fn picture(State(session): State<Arc<Session>>, headers: HeaderMap, body: Body) -> Response {
     // Before anything of it is read.
     let Some(pictures) = &session.pictures else {
@@ -133,7 +133,8 @@ async fn picture(State(session): State<Arc<Session>>, headers: HeaderMap, body: 
     let Ok(body) = axum::body::to_bytes(body, PICTURE_MAX).await else {
         return (StatusCode::PAYLOAD_TOO_LARGE, "a picture is smaller\n").into_response();
     };
-    let is_picture = headers.get(header::CONTENT_TYPE).is_some_and(|media| media == "image/png");
+    let media = headers.get(header::CONTENT_TYPE);
+    let is_picture = media.is_some_and(|media| media == "image/png" || media == "image/webp");
     let drawn = if is_picture { Ok(body.to_vec()) } else { Err(String::from_utf8_lossy(&body).into_owned()) };
     match pictures.send(drawn) {
         Ok(()) => StatusCode::NO_CONTENT.into_response(),
