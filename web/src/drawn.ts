@@ -14,6 +14,8 @@ import { is_open } from "./shapes";
 export interface Glow {
   readonly colour: Color;
   readonly strength: number;
+  /** How much of the body's own colour is lost beside it, 0 to 1. */
+  readonly dims?: number;
 }
 
 export interface Drawn {
@@ -60,7 +62,7 @@ export class Single implements Drawn {
 
   paint(colour: Color, glow: Glow | null, transparent: number): void {
     const material = this.mesh.material;
-    material.color.copy(colour);
+    material.color.copy(colour).lerp(BLACK, glow?.dims ?? 0);
     material.emissive.copy(glow?.colour ?? BLACK);
     material.emissiveIntensity = glow?.strength ?? 1;
     if (material.transparent !== transparent > 0) {

@@ -1,16 +1,15 @@
-// What components look like on the bodies that they belong to: rollers of conveyors, beams of light barriers, barrels and rods of
-// cylinders, motors, grippers. They are drawn only; where a scenario draws its machine by figures of its own, there are none.
+// What components look like: on the bodies that they belong to, rollers of conveyors, beams of light barriers, barrels and rods of
+// cylinders, motors, grippers; and what stands by itself, as tanks and lamps. They are drawn only. A component whose bodies a
+// scenario draws by figures of its own, or never shows, has none.
 
-import { BoxGeometry, BufferGeometry, Color, ConeGeometry, CylinderGeometry, Group, Mesh, MeshBasicMaterial, MeshLambertMaterial, Quaternion, Vector3, type Object3D } from "three";
+import { Box3, BoxGeometry, Color, ConeGeometry, CylinderGeometry, Group, Mesh, MeshBasicMaterial, Quaternion, Vector3, type Object3D } from "three";
+import { DARK_STEEL, HOUSING, PAINT, STEEL, UP, bar, parameter, solid } from "./fitted";
+import type { Room } from "./framing";
 import type { Component, Session, Vec3 } from "./session";
+import { standing } from "./standing";
 
-const STEEL = "#b9c0c5";
-const DARK_STEEL = "#5f686e";
-const PAINT = "#2f6f9f";
-const HOUSING = "#e0a21a";
 const BEAM = new Color("#ff4a2e");
 const BEAM_CUT = new Color("#ffd23c");
-const UP = new Vector3(0, 0, 1);
 
 /** A body that components belong to, as it is drawn. */
 export interface Carrier {
@@ -27,13 +26,6 @@ interface Fitting {
   readonly show: (value: (signal: number) => number, step_s: number) => void;
 }
 
-/** A number among the parameters of a component, in its base unit. */
-export function parameter(component: Component, name: string): number | null {
-  const found = component.parameters.find((one) => one.name === name);
-  const value = found === undefined ? Number.NaN : Number.parseFloat(found.value);
-  return Number.isFinite(value) ? value : null;
-}
-
 /** Where the shaft ends of a belt are: the middles of its ends along the way it runs, and how wide it is across. */
 export function ends_of(low: Vec3, high: Vec3, way: Vec3): { readonly ends: readonly [Vec3, Vec3]; readonly across: number; readonly radius: number } {
   const along = Math.abs(way[0]) >= Math.abs(way[1]) ? 0 : 1;
@@ -44,26 +36,35 @@ export function ends_of(low: Vec3, high: Vec3, way: Vec3): { readonly ends: read
   return { ends: [end(low[along] as number), end(high[along] as number)], across: (high[other] as number) - (low[other] as number), radius };
 }
 
-function solid(geometry: BufferGeometry, colour: string): Mesh {
-  const mesh = new Mesh(geometry, new MeshLambertMaterial({ color: colour }));
-  mesh.castShadow = true;
-  mesh.receiveShadow = true;
-  return mesh;
+/** The bodies that a component is on, moves or stands on. */
+function bodies_of({ body, place }: Component): readonly string[] {
+  return [body, place?.moves ?? null, place?.joint?.parent ?? null].flatMap((one) => one ?? []);
 }
 
-/** A cylinder from one point to another. */
-function bar(from: Vector3, to: Vector3, radius: number, colour: string): Mesh {
-  const way = to.clone().sub(from);
-  const mesh = solid(new CylinderGeometry(radius, radius, Math.max(1e-4, way.length()), 20).rotateX(Math.PI / 2), colour);
-  mesh.position.copy(from).addScaledVector(way, 0.5);
-  mesh.quaternion.setFromUnitVectors(UP, way.normalize());
-  return mesh;
+/** The bodies that a scenario draws by figures of its own, or never shows. */
+export function drawn_otherwise(session: Session): ReadonlySet<string> {
+  const found = new Set<string>();
+  session.bodies.forEach((body) => {
+    let at = body.kind === "figure" ? body.on : null;
+    // A figure may be on a figure.
+    while (at !== null) {
+      const under = session.bodies[at];
+      if (under !== undefined && under.kind !== "figure") found.add(under.name);
+      at = under?.kind === "figure" ? under.on : null;
+    }
+  });
+  for (const look of session.looks) {
+    const isNever = look.when === null && (look.hidden || (look.transparent ?? 0) >= 1);
+    for (const body of isNever ? look.bodies : []) found.add(session.bodies[body]?.name ?? "");
+  }
+  return found;
 }
 
 /** What components look like on top of the bodies of a machine. */
 export class Fittings {
   private readonly all: Fitting[] = [];
   private readonly values = new Map<number, number>();
+  private readonly standing: { readonly name: string; readonly node: Object3D }[] = [];
 
   /** `carrier` gives a body as it is drawn by its name; nothing of one that is not, or not by itself. */
   constructor(
@@ -72,8 +73,16 @@ export class Fittings {
     private readonly carrier: (body: string) => Carrier | null,
     private readonly run: (body: string, way_m: number) => void,
   ) {
-    if (session.bodies.some((body) => body.kind === "figure")) return;
-    for (const component of session.components) this.fit(component);
+    const own = drawn_otherwise(session);
+    for (const component of session.components) if (!bodies_of(component).some((body) => own.has(body))) this.fit(component);
+  }
+
+  /** Where the components are that stand by themselves, by their names. */
+  rooms(): readonly (Room & { readonly name: string })[] {
+    return this.standing.map(({ name, node }) => {
+      const { min, max } = new Box3().setFromObject(node);
+      return { name, low: min.toArray(), high: max.toArray() };
+    });
   }
 
   /** The signals that fittings follow. */
@@ -105,6 +114,30 @@ export class Fittings {
     else if (component.kind === "pneumatic_cylinder" || component.kind === "hydraulic_cylinder") this.cylinder(component);
     else if (component.kind === "vacuum_cup" || component.kind === "gripper") this.hand(component);
     else if (place.joint?.turns === true) this.motor(component);
+    else if (place.joint === null && place.moves === null) this.stand(component);
+  }
+
+  /** What stands by itself, where the scene shows it. */
+  private stand(component: Component): void {
+    const { place } = component;
+    if (place?.point_m == null) return;
+    const made = standing(component, this.session.components);
+    if (made === null) return;
+    made.node.position.set(...place.point_m);
+    // A switch or a window looks along its ray.
+    if (place.direction !== null) made.node.quaternion.setFromUnitVectors(UP, new Vector3(...place.direction));
+    made.node.userData["component"] = component.name;
+    this.put(made.node, component.body);
+    if (place.direction === null) this.standing.push({ name: component.name, node: made.node });
+    const pins = new Map(made.follows.flatMap((key): [string, number][] => {
+      const signal = this.pin(component, key);
+      return signal === null ? [] : [[key, signal]];
+    }));
+    const known = (key: string): number | null => {
+      const signal = pins.get(key);
+      return signal === undefined ? null : this.values.get(signal) ?? null;
+    };
+    this.all.push({ signals: [...pins.values()], show: () => made.show(known) });
   }
 
   /** Rollers at the ends of the belt and rails along it; its surface runs. */

@@ -8,10 +8,12 @@ import { Crowd, Single, type Drawn, type Glow, type Member } from "./drawn";
 import { show_edges } from "./edges";
 import { Eye, type Seen, type Sight } from "./eye";
 import { Fittings, type Carrier } from "./fittings";
-import { framed, together } from "./framing";
+import { corners, framed, together } from "./framing";
 import { Tracks } from "./interpolation";
+import { glow_of, temperatures } from "./heat";
 import { Light } from "./light";
 import { Looks, type Style } from "./looks";
+import { belts, material_of, type Material } from "./materials";
 import type { Pose } from "./picture";
 import type { Body, Session, View } from "./session";
 import { Sharpness } from "./sharpness";
@@ -50,7 +52,7 @@ export class MachineView {
   private readonly scene = new Scene();
   private readonly eye: Eye;
   private readonly parts: (Part | null)[];
-  private readonly tracks = new Tracks();
+  private readonly tracks: Tracks;
   private readonly section = new Plane(new Vector3(0, -1, 0), 0);
   private followed: number | null = null;
   private chosen: number | null = null;
@@ -60,6 +62,10 @@ export class MachineView {
   private readonly looks: Looks;
   private readonly fittings: Fittings;
   private readonly bodies: readonly Body[];
+  private readonly belts: ReadonlySet<string>;
+  /** The bodies whose temperatures are known, by the signals that say them; what they are now, °C. */
+  private readonly heats = new Map<number, number>();
+  private readonly degc = new Map<number, number>();
   /** The bodies of components. */
   private readonly fitted: ReadonlySet<string>;
   /** Whether bodies are where the session has them; before, they are where the scene puts them. */
@@ -73,18 +79,21 @@ export class MachineView {
   private isAtRest = false;
   /** Pictures drawn since the page was opened. */
   drawn = 0;
+  /** Pictures that were given away. */
+  private pictures = 0;
 
-  /** Draws into `place`; `choose` is called with the number of the body that is clicked, or with nothing. */
+  /** Draws into `place`; `choose` is called with the number of the body that is clicked, or the component that stands there. */
   constructor(
     private readonly place: HTMLElement,
     session: Session,
-    choose: (body: number | null) => void,
-    isForPicture = false,
+    choose: (body: number | null, component: string | null) => void,
+    private readonly isForPicture = false,
     /** How much of the place something covers from above, CSS pixels. */
     covered_px: () => number = () => 0,
     /** Called with whether the machine is drawn without shadows and edges. */
     private readonly graded: (isPlain: boolean) => void = () => {},
   ) {
+    this.tracks = new Tracks(isForPicture);
     // Smooth edges cost four samples a pixel where there is no graphics card.
     this.renderer = new WebGLRenderer({ antialias: isForPicture || session.bodies.length <= SMOOTH_BODIES, powerPreference: "low-power" });
     this.renderer.domElement.setAttribute("aria-label", say("Machine in 3D; drag to turn, wheel to zoom, arrow keys to pan"));
@@ -97,7 +106,12 @@ export class MachineView {
     this.looks = new Looks(session);
     this.bodies = session.bodies;
     this.fitted = new Set(session.components.flatMap(({ body }) => (body === null ? [] : [body])));
+    this.belts = belts(session);
     this.parts = this.parts_of(session.bodies);
+    for (const [name, signal] of temperatures(session)) {
+      const body = this.number_of(name);
+      if (body >= 0) this.heats.set(body, signal);
+    }
     this.fittings = new Fittings(session, this.scene, (body) => this.carrier(body), (body, way_m) => this.parts[this.number_of(body)]?.drawn.run(way_m));
     this.advance(0);
     this.t_ns = null;
@@ -110,6 +124,22 @@ export class MachineView {
     }).observe(place);
     this.fit();
     if (!isForPicture) this.renderer.setAnimationLoop(() => this.draw());
+  }
+
+  /** Whether there is nothing to draw: neither a body, nor a component that stands somewhere. */
+  get is_empty(): boolean {
+    return this.parts.every((part) => part === null) && this.fittings.rooms().length === 0;
+  }
+
+  /** Whether a body is in the world, as far as is known. */
+  is_there(body: number): boolean {
+    return this.tracks.exact(body) !== null;
+  }
+
+  /** What a body is made of, if anybody can tell. */
+  material(body: number): Material | null {
+    const of = this.bodies[body];
+    return of === undefined ? null : material_of(of, this.belts);
   }
 
   /** Takes the poses of a picture that has just arrived. */
@@ -140,12 +170,19 @@ export class MachineView {
 
   /** The signals that looks follow. */
   signals(): readonly number[] {
-    return [...this.looks.signals(), ...this.fittings.signals()];
+    return [...this.looks.signals(), ...this.fittings.signals(), ...this.heats.values()];
   }
 
   value(signal: number, value: number): void {
     this.looks.value(signal, value);
     this.fittings.value(signal, value);
+    for (const [body, of] of this.heats) {
+      const part = this.parts[body];
+      if (of !== signal || !part) continue;
+      this.degc.set(body, value);
+      this.paint_one(part, body);
+      this.isStale = true;
+    }
   }
 
   /** Lets looks go on to the time of a picture. */
@@ -244,15 +281,22 @@ export class MachineView {
     return this.eye.sight();
   }
 
-  /** The machine as it is now, a PNG. */
-  async picture(width: number, height: number): Promise<Blob> {
-    this.renderer.setPixelRatio(1);
-    this.renderer.setSize(width, height);
-    this.eye.fit(width, height);
+  /** The machine as it is now, a picture of this type. */
+  async picture(width: number, height: number, type = "image/png", quality?: number): Promise<Blob> {
+    const canvas = this.renderer.domElement;
+    // Pictures of a film have one size, and the eye stays where it is.
+    if (canvas.width !== width || canvas.height !== height || this.pictures === 0) {
+      this.renderer.setPixelRatio(1);
+      this.renderer.setSize(width, height);
+      this.eye.fit(width, height);
+    }
+    this.pictures += 1;
+    // Also one in which nothing has moved is drawn: what was drawn before is gone.
+    this.isStale = true;
     this.draw();
     // What is drawn is kept until the task is over.
     return new Promise((done, failed) => {
-      this.renderer.domElement.toBlob((blob) => (blob === null ? failed(new Error("nothing was drawn")) : done(blob)), "image/png");
+      this.renderer.domElement.toBlob((blob) => (blob === null ? failed(new Error("nothing was drawn")) : done(blob)), type, quality);
     });
   }
 
@@ -275,6 +319,7 @@ export class MachineView {
       const works = this.moves(part.body) || this.fitted.has(part.body.name);
       return [{ name: part.body.name, room, points, works }];
     });
+    for (const { name, low, high } of this.fittings.rooms()) all.push({ name, room: { low, high }, points: corners({ low, high }), works: true });
     const machine = new Set(framed(all.map(({ room, works }) => ({ ...room, works }))));
     return all.map((one, index) => ({ ...one, isFramed: machine.has(index) }));
   }
@@ -346,7 +391,7 @@ export class MachineView {
       const drawn = many >= CROWD_BODIES
         ? this.member(body, key, geometry, many, crowds)
         : new Single(body, geometry, this.frame_of(body, parts), parents.has(index) || this.looks.bends(index));
-      const colour = new Color(body.colour ?? BY_KIND[body.kind] ?? "#a0a6ab");
+      const colour = new Color(body.colour ?? material_of(body, this.belts)?.colour ?? BY_KIND[body.kind] ?? "#a0a6ab");
       const part = { body, drawn, colour, style: null, ran_m: 0, isHiddenByHand: false };
       parts.push(part);
       drawn.paint(colour, null, body.transparent);
@@ -372,38 +417,42 @@ export class MachineView {
   }
 
   /** A body of `keys` is pressed by a click, which the pointer says before. */
-  private listen(choose: (body: number | null) => void, keys: ReadonlySet<number>): void {
+  private listen(choose: (body: number | null, component: string | null) => void, keys: ReadonlySet<number>): void {
     const canvas = this.renderer.domElement;
     let down = { x: 0, y: 0 };
     canvas.addEventListener("pointerdown", (event) => (down = { x: event.clientX, y: event.clientY }));
     canvas.addEventListener("pointerup", (event) => {
       // A drag turns the view and chooses nothing.
-      if (Math.hypot(event.clientX - down.x, event.clientY - down.y) < 4) choose(this.under(event));
+      if (Math.hypot(event.clientX - down.x, event.clientY - down.y) >= 4) return;
+      const { body, component } = this.under(event);
+      choose(body, component);
     });
     if (keys.size === 0) return;
     let looked_ms = 0;
     canvas.addEventListener("pointermove", (event) => {
       if (event.buttons !== 0 || event.timeStamp - looked_ms < LOOKS_MS) return;
       looked_ms = event.timeStamp;
-      const body = this.under(event);
+      const { body } = this.under(event);
       canvas.style.cursor = body !== null && keys.has(body) ? "pointer" : "";
     });
   }
 
-  private under(event: PointerEvent): number | null {
+  /** The body under the pointer, or the component that stands there by itself. */
+  private under(event: PointerEvent): { readonly body: number | null; readonly component: string | null } {
     const box = this.renderer.domElement.getBoundingClientRect();
     const at = new Vector2(((event.clientX - box.left) / box.width) * 2 - 1, 1 - ((event.clientY - box.top) / box.height) * 2);
     const ray = new Raycaster();
     ray.setFromCamera(at, this.eye.camera);
     const hit = ray.intersectObjects(this.scene.children, true).find((one) => one.object.visible && one.object.name !== "grid");
-    if (hit === undefined) return null;
     // What is fitted to a body stands for it.
-    for (let object: Object3D | null = hit.object; object !== null; object = object.parent) {
+    for (let object: Object3D | null = hit?.object ?? null; object !== null; object = object.parent) {
       const at = object;
-      const body = this.parts.findIndex((part) => part?.drawn.is(at, hit.instanceId ?? -1) ?? false);
-      if (body >= 0) return body;
+      const body = this.parts.findIndex((part) => part?.drawn.is(at, hit?.instanceId ?? -1) ?? false);
+      if (body >= 0) return { body, component: null };
+      const component: unknown = at.userData["component"];
+      if (typeof component === "string") return { body: null, component };
     }
-    return null;
+    return { body: null, component: null };
   }
 
   private fit(): void {
@@ -429,7 +478,7 @@ export class MachineView {
   private paint_one(part: Part, body: number): void {
     const glow: Glow | null = body === this.chosen
       ? { colour: CHOSEN, strength: 0.55 }
-      : this.lit.has(body) ? { colour: SEES, strength: 0.8 } : null;
+      : this.lit.has(body) ? { colour: SEES, strength: 0.8 } : glow_of(this.degc.get(body) ?? Number.NaN);
     part.drawn.paint(part.style?.colour ?? part.colour, glow, part.style?.transparent ?? part.body.transparent);
     part.drawn.show(this.isVisible(part, body));
   }
@@ -457,7 +506,8 @@ export class MachineView {
     this.isStale = false;
     this.renderer.render(this.scene, this.eye.camera);
     this.drawn += 1;
-    if (now_ms <= this.moving_until_ms && this.sharpness.drawn(now_ms)) this.fit();
+    // A picture that is asked for is drawn as well as can be, however many are.
+    if (!this.isForPicture && now_ms <= this.moving_until_ms && this.sharpness.drawn(now_ms)) this.fit();
     // Another size empties the picture.
     if (this.isStale) this.renderer.render(this.scene, this.eye.camera);
     this.isStale = false;

@@ -81,8 +81,8 @@ export class Schematic {
   readonly root = make("div", { class: "schematic" });
   private readonly shows = new Map<number, Show[]>();
 
-  /** `press` is called with the name of a component on which keys lie. */
-  constructor(private readonly session: Session, private readonly press: (component: string) => void) {
+  /** `choose` is called with the name of a component that is clicked: its keys are pressed, or its sheet is opened. */
+  constructor(private readonly session: Session, private readonly choose: (component: string) => void) {
     const all = strips(session);
     for (const form of ["axis", "tank", "other"] as const) {
       const rows = all.filter((one) => one.form === form).map((one) => this.row(one));
@@ -106,19 +106,11 @@ export class Schematic {
   private row(one: Strip): HTMLElement {
     const { component } = one;
     const about = component.parameters.map(({ name, value, unit }) => `${name} ${value}${unit === null ? "" : ` ${unit}`}`).join(", ");
-    const name = make(this.is_key(component.name) ? "button" : "span", { class: "strip-name", title: `${component.kind}: ${about}` }, ...broken(component.name));
-    if (name instanceof HTMLButtonElement) {
-      name.type = "button";
-      name.addEventListener("click", () => this.press(component.name));
-    }
+    const name = make("button", { type: "button", class: "strip-name", title: `${component.kind}: ${about}` }, ...broken(component.name));
+    name.addEventListener("click", () => this.choose(component.name));
     const states = make("span", { class: "strip-states" }, ...one.states.map((signal) => this.state(signal)));
     const inside = one.place === null ? [this.readings(one)] : [this.way(one, one.place), this.reading(one.place, one.target)];
     return make("div", { class: "strip" }, name, ...inside, states);
-  }
-
-  /** Whether a key of a panel lies on a component. */
-  private is_key(component: string): boolean {
-    return this.session.panels.some((panel) => panel.elements.some((one) => one.components.includes(component)));
   }
 
   private about(signal: number): Signal {

@@ -133,6 +133,7 @@ fn drawn(figure: &Figure, on: Option<usize>) -> Body {
         on,
         colour: figure.colour.clone(),
         transparent: figure.transparent,
+        density_kg_m3: None,
     }
 }
 

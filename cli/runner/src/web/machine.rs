@@ -1,7 +1,7 @@
 //! The machine: the bodies and components of a scene, as the page draws and lists them.
 
 use onescan_plant::component::kind::{self, unit};
-use onescan_plant::scene::model::{BodyKind, Bound, Component, Driven, Joint, JointKind, Wire};
+use onescan_plant::scene::model::{BodyKind, Bound, Component, Driven, Joint, JointKind, Mass, Wire};
 use onescan_plant::{Form, Frame, Geometry, Scene};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -27,6 +27,9 @@ pub struct Body {
     #[serde(skip_serializing_if = "is_zero")]
     #[schemars(default)]
     pub(super) transparent: f64,
+    /// What it is made of, as its density says; nothing of one that no force moves.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) density_kg_m3: Option<f64>,
 }
 
 /// The shape of a body; a cylinder and a capsule lie along z.
@@ -137,6 +140,21 @@ struct Parameter {
     name: String,
     value: String,
     unit: Option<&'static str>,
+    /// As a scene has it, with its unit; a change names it so.
+    #[schemars(default)]
+    key: String,
+    /// The type of its values: `LREAL`, `DINT`, `BOOL`; empty for one of `words`.
+    #[serde(rename = "type")]
+    #[schemars(default)]
+    ty: String,
+    /// What it may be, if it is one of some words.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schemars(default)]
+    words: Vec<&'static str>,
+    /// Whether a component only begins with it, so that it does not change while the plant runs.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    #[schemars(default)]
+    fixed: bool,
 }
 
 /// A mode in which a component can fail.
@@ -161,6 +179,7 @@ pub(super) fn add_bodies(scene: &Scene, bodies: &mut Vec<Body>, stage: &mut Stag
             stage.follow(form.body, number, form.within);
         }
         let place = form.within.seen_from(frames[form.index]);
+        let density_kg_m3 = scene.bodies.get(form.index).and_then(|body| density_kg_m3(body, &form.geometry));
         let Form { body, attached, kind, geometry, .. } = form;
         bodies.push(Body {
             name: attached.map_or_else(|| body.to_owned(), |shape| format!("{body}/{shape}")),
@@ -175,7 +194,43 @@ pub(super) fn add_bodies(scene: &Scene, bodies: &mut Vec<Body>, stage: &mut Stag
             on: None,
             colour: None,
             transparent: 0.0,
+            density_kg_m3,
         });
+    }
+}
+
+/// The density of a body that forces move; nothing where its volume is not known.
+fn density_kg_m3(body: &onescan_plant::scene::model::Body, geometry: &Geometry) -> Option<f64> {
+    if body.kind != BodyKind::Dynamic {
+        return None;
+    }
+    let kg = match body.mass {
+        Mass::Density { kg_m3 } => return Some(kg_m3),
+        Mass::Total { kg } | Mass::Stated { kg, .. } => kg,
+    };
+    let volume_m3 = volume_m3(geometry);
+    (volume_m3 > 0.0).then(|| kg / volume_m3)
+}
+
+/// The volume of a form, m³; that of a mesh if it is closed.
+fn volume_m3(geometry: &Geometry) -> f64 {
+    use std::f64::consts::PI;
+    let ball = |radius_m: f64| 4.0 / 3.0 * PI * radius_m * radius_m * radius_m;
+    let barrel = |radius_m: f64, length_m: f64| PI * radius_m * radius_m * length_m;
+    match geometry {
+        Geometry::Nothing => 0.0,
+        Geometry::Box { size_m } => size_m.iter().product(),
+        Geometry::Sphere { radius_m } => ball(*radius_m),
+        Geometry::Cylinder { radius_m, length_m } => barrel(*radius_m, *length_m),
+        Geometry::Capsule { radius_m, length_m } => barrel(*radius_m, *length_m) + ball(*radius_m),
+        Geometry::Mesh { corners_m, triangles } => {
+            let corner = |index: u32| corners_m.get(index as usize).copied().unwrap_or_default();
+            let sixfold = |[a, b, c]: [[f64; 3]; 3]| {
+                let minor = |row: usize, column: usize| b[row] * c[column] - b[column] * c[row];
+                a[0] * minor(1, 2) + a[1] * minor(2, 0) + a[2] * minor(0, 1)
+            };
+            (triangles.iter().map(|of| sixfold(of.map(corner))).sum::<f64>() / 6.0).abs()
+        }
     }
 }
 
@@ -202,7 +257,14 @@ pub(super) fn part(component: &Component, scene: &Scene) -> Part {
     let given: Vec<String> = component.outputs.iter().flatten().map(ToString::to_string).collect();
     let parameter = |(parameter, setting): (&kind::Parameter, &kind::Setting)| {
         let (name, unit) = unit(&parameter.key);
-        Parameter { name: name.to_owned(), value: setting.to_string(), unit }
+        let (ty, words) = match parameter.form {
+            kind::Form::Number { .. } => ("LREAL", Vec::new()),
+            kind::Form::Count { .. } => ("DINT", Vec::new()),
+            kind::Form::Flag => ("BOOL", Vec::new()),
+            kind::Form::Choice(words) => ("", words.to_vec()),
+        };
+        let (key, value, ty) = (parameter.key.to_string(), setting.to_string(), ty.to_owned());
+        Parameter { name: name.to_owned(), value, unit, key, ty, words, fixed: parameter.initial }
     };
     Part {
         name: component.name.clone(),
@@ -240,6 +302,8 @@ fn place(component: &Component, scene: &Scene) -> Option<Place> {
         }
         None => (None, None),
     };
+    // A tank or a lamp acts on no body, and is where the scene shows it.
+    let point_m = point_m.or(component.shown_at_m);
     let is_somewhere = point_m.is_some() || direction.is_some() || moves.is_some();
     is_somewhere.then_some(Place { point_m, direction, moves, joint })
 }
@@ -261,4 +325,52 @@ fn senses(component: &Component) -> Option<String> {
     const SEES: &[&str] = &["detected", "contact", "pulse", "present", "in_range"];
     let mut outputs = component.kind.outputs.iter().zip(&component.outputs);
     outputs.find(|(output, _)| SEES.contains(&&*output.key))?.1.as_ref().map(ToString::to_string)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CELL: &str = include_str!("../../../../scenarios/templates/cell/plant.toml");
+    const LAMP: &str = "
+[[component]]
+name = \"ready\"
+kind = \"lamp\"
+shown_at_m = [1.0, 2.0, 0.5]
+";
+
+    fn scene(more: &str) -> Scene {
+        Scene::parse(&format!("{CELL}{more}"), "plant.toml").expect("a scene")
+    }
+
+    #[test]
+    fn a_density_is_that_of_mass_and_volume() {
+        let bodies = bodies_of(&scene(""));
+        let density = |name: &str| bodies.iter().find(|body| body.name == name).and_then(|body| body.density_kg_m3);
+        // 0.5 kg in a litre, and 2 kg in 0.256 of one
+        assert!(density("box[0]").is_some_and(|kg_m3| (kg_m3 - 500.0).abs() < 1e-9), "{:?}", density("box[0]"));
+        assert!(density("pusher").is_some_and(|kg_m3| (kg_m3 - 7812.5).abs() < 1e-9), "{:?}", density("pusher"));
+        assert_eq!((density("belt"), density("chute")), (None, None), "no force moves them");
+    }
+
+    #[test]
+    fn a_closed_mesh_has_its_volume() {
+        let corners_m = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 3.0]];
+        let triangles = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+        assert!((volume_m3(&Geometry::Mesh { corners_m, triangles }) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_acts_on_no_body_is_where_the_scene_shows_it() {
+        let scene = scene(LAMP);
+        let place = |name: &str| {
+            let component = scene.components.iter().find(|one| one.name == name).expect("it is there");
+            part(component, &scene).place.and_then(|place| place.point_m)
+        };
+        assert_eq!(place("ready"), Some([1.0, 2.0, 0.5]));
+        assert_eq!(place("barrier"), Some([0.36, -0.145, 0.09]), "a beam is where it begins");
+        let parameters = part(&scene.components[0], &scene).parameters;
+        let speed = parameters.iter().find(|parameter| parameter.key == "speed_m_s").expect("a belt has one");
+        assert_eq!((speed.name.as_str(), speed.ty.as_str(), speed.fixed), ("speed", "LREAL", false));
+    }
 }
