@@ -35,6 +35,7 @@ mod gantry_robot;
 mod github;
 mod help;
 mod instrument;
+mod kept;
 mod large;
 mod load;
 mod long;

@@ -86,7 +86,7 @@ export function picture(step, { packages, first, values, isPast, isHeld }) {
 export async function serve({ packages = 8, more = {} } = {}) {
   const session = structure(packages, more);
   const asked = [];
-  const state = { step: 0, isHeld: false, seat: false, start: 0, setpoint: 0.5, forced: new Map() };
+  const state = { step: 0, isHeld: false, seat: false, start: 0, setpoint: 0.5, forced: new Map(), changed: new Map() };
   // What each viewer looks at.
   const viewers = new Map();
   const http = createServer(async (request, answer) => {
@@ -100,12 +100,16 @@ export async function serve({ packages = 8, more = {} } = {}) {
   const say = (what) => sockets.clients.forEach((one) => one.send(what));
   const status = () => viewers.forEach(({ shown }, socket) => socket.send(JSON.stringify({
     type: "status", state: state.isHeld ? "hold" : "run", digest: null, pace: "1", seat: { desk: state.seat ? "mine" : "free" },
-    shown_ns: shown === null ? null : shown * STEP_NS, past_ns: [0, state.step * STEP_NS], forced: [...state.forced.keys()],
+    shown_ns: shown === null ? null : shown * STEP_NS, past_ns: [0, state.step * STEP_NS], forced: [...state.forced.keys()], changed: Object.fromEntries(state.changed),
   })));
+  /** The values of all signals at a step. */
+  const at = (step) => {
+    const eye = Number(Array.from({ length: packages }, (_, index) => place(index, step, packages)[0]).some((x) => Math.abs(x - 0.8) < 0.1));
+    return [state.start, 1, eye, 0.5 + 0.05 * Math.sin(step / 30), Math.floor(step / 76), state.setpoint];
+  };
   const show = ({ shown, subscribed }, socket) => {
     const step = shown ?? state.step;
-    const eye = Number(Array.from({ length: packages }, (_, index) => place(index, step, packages)[0]).some((x) => Math.abs(x - 0.8) < 0.1));
-    const all = [state.start, 1, eye, 0.5 + 0.05 * Math.sin(step / 30), Math.floor(step / 76), state.setpoint];
+    const all = at(step);
     const values = subscribed.map((signal) => [signal, state.forced.get(signal) ?? all[signal]]);
     const many = session.bodies.length === 0 ? 0 : packages;
     socket.send(picture(step, { packages: many, first: session.bodies.length - many, values, isPast: shown !== null, isHeld: state.isHeld }));
@@ -129,6 +133,13 @@ export async function serve({ packages = 8, more = {} } = {}) {
     force: (ask) => (ask.value === null ? state.forced.delete(ask.signal) : state.forced.set(ask.signal, ask.value === "TRUE" ? 1 : Number(ask.value))),
     acknowledge: (ask) => ask.alarms.forEach((alarm) => ring({ alarm, fate: "acknowledged" })),
     shelve: (ask) => ring({ alarm: ask.alarm, fate: ask.for_s === null ? "unshelved" : "shelved", until_ns: ask.for_s === null ? null : state.step * STEP_NS + ask.for_s * 1e9 }),
+    // Each step, for there are few.
+    trace: ({ signals, from_ns, until_ns }, _, socket) => {
+      const steps = Array.from({ length: (until_ns - from_ns) / STEP_NS + 1 }, (_, index) => from_ns / STEP_NS + index);
+      const values = signals.map((signal) => steps.map((step) => [step * STEP_NS, at(step)[signal]]));
+      socket.send(JSON.stringify({ type: "trace", from_ns, until_ns, values }));
+    },
+    parameter: ({ component, parameter, value }) => (value === null ? state.changed.delete(`${component}.${parameter}`) : state.changed.set(`${component}.${parameter}`, value)),
     watch: () => {},
     fail: () => {},
     fork: (ask) => say(JSON.stringify({ type: "forked", t_ns: ask.t_ns, url: "http://127.0.0.1:9/" })),
@@ -137,7 +148,7 @@ export async function serve({ packages = 8, more = {} } = {}) {
     socket.on("message", (data) => {
       const ask = JSON.parse(String(data));
       asked.push(ask);
-      handle[ask.type](ask, viewer);
+      handle[ask.type](ask, viewer, socket);
       status();
       show(viewer, socket);
     });

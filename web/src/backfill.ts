@@ -1,25 +1,27 @@
 // What trends show of the time before the page was opened: asked of the past that the session keeps, by a viewer of its own,
-// so that what this page shows stays as it is. The session runs it again beside itself.
+// so that what this page shows stays as it is. The session runs it again beside itself, and gives of each part of the time the
+// least and the greatest values, so that a pulse of a single step is there.
 
 import { ProtocolError } from "./field";
 import { decodeMessage, type Ask } from "./message";
-import { decodePicture } from "./picture";
 import type { Session } from "./session";
 
-/** So many moments of the past are asked for. */
-const MOMENTS = 240;
+/** The past is asked for in so many spans, each with so many parts. */
+const SPANS = 12;
+const PARTS = 40;
 /** The session runs at most so many steps again. */
 const STEPS_MOST = 6_000;
 /** The machine is to be seen first, ms. */
 const LATER_MS = 400;
 
-/** The moments that are asked for, in rising order, ns: whole steps, evenly from the beginning of what is wanted. */
-export function moments(past_ns: readonly [number, number], step_ns: number): readonly number[] {
+/** The spans that are asked for, in rising order, ns: whole steps, evenly from the beginning of what is wanted. */
+export function spans(past_ns: readonly [number, number], step_ns: number): readonly (readonly [number, number])[] {
   const last = Math.floor(past_ns[1] / step_ns);
   const first = Math.max(Math.ceil(past_ns[0] / step_ns), last - STEPS_MOST);
-  const stride = Math.max(1, Math.ceil((last - first) / MOMENTS));
-  const count = Math.floor((last - first) / stride) + 1;
-  return Array.from({ length: Math.max(0, count) }, (_, at) => (first + at * stride) * step_ns);
+  const stride = Math.max(1, Math.ceil((last - first) / SPANS));
+  const all: (readonly [number, number])[] = [];
+  for (let from = first; from < last; from += stride) all.push([from * step_ns, Math.min(last, from + stride) * step_ns]);
+  return all;
 }
 
 export class Backfill {
@@ -48,35 +50,34 @@ export class Backfill {
     this.wanted.clear();
     for (const signal of signals) this.asked.add(signal);
     const socket = new WebSocket(this.url);
-    socket.binaryType = "arraybuffer";
     this.socket = socket;
     const say = (ask: Ask): void => socket.send(JSON.stringify(ask));
-    let way: readonly number[] | null = null;
+    let way: readonly (readonly [number, number])[] | null = null;
     let next = 0;
     const on = (): void => {
-      const t_ns = way?.[next];
-      if (t_ns === undefined) return socket.close();
+      const span = way?.[next];
+      if (span === undefined) return socket.close();
       next += 1;
-      say({ type: "show", t_ns });
+      say({ type: "trace", signals, from_ns: span[0], until_ns: span[1], parts: PARTS });
     };
     const read = (data: unknown): void => {
-      if (typeof data === "string") {
-        const message = decodeMessage(data);
-        // Where no past is kept, there is nothing to fill.
-        if (message.type === "error") return socket.close();
-        if (message.type !== "status" || way !== null) return;
+      // Pictures of the live edge are the page's own.
+      if (typeof data !== "string") return;
+      const message = decodeMessage(data);
+      // Where no past is kept, there is nothing to fill.
+      if (message.type === "error") return socket.close();
+      if (message.type === "status" && way === null) {
         if (message.past_ns === null) return socket.close();
-        way = moments(message.past_ns, this.session.step_ns);
+        way = spans(message.past_ns, this.session.step_ns);
         return on();
       }
-      if (!(data instanceof ArrayBuffer)) return;
-      const picture = decodePicture(data, this.session.signals.length, this.session.bodies.length);
-      const asked_ns = way?.[next - 1];
-      if (!picture.isPast || asked_ns === undefined) return;
-      for (const [signal, value] of picture.values) this.put(signal, picture.t_ns, value);
-      if (picture.t_ns >= asked_ns) on();
+      if (message.type !== "trace") return;
+      message.values.forEach((points, at) => {
+        const signal = signals[at];
+        if (signal !== undefined) for (const [t_ns, value] of points) this.put(signal, t_ns, value);
+      });
+      on();
     };
-    socket.addEventListener("open", () => say({ type: "subscribe", signals }));
     socket.addEventListener("message", (event: MessageEvent<unknown>) => {
       try {
         read(event.data);

@@ -1,4 +1,4 @@
-// What is there to do when the run is over and its page stays: look back, run again, go on, close.
+// What is there to do when the run is over and its page stays: look back, run again, go on, keep what was done as a case, close.
 
 import { button, make } from "./dom";
 import { seconds } from "./format";
@@ -15,12 +15,14 @@ export class Ending {
   private readonly onward: HTMLElement;
   private past_ns: readonly [number, number] | null = null;
 
-  constructor(private readonly ask: (ask: Ask) => void) {
+  /** `keep` opens what makes a case of the run; nothing where there can be none. */
+  constructor(private readonly ask: (ask: Ask) => void, keep: (() => void) | null) {
     const further = make("select", { "aria-label": say("How far it goes on") },
       ...FURTHER_S.map((span_s) => make("option", { value: String(span_s) }, seconds(span_s * NS_PER_S))));
     this.onward = make("span", {},
       button(say("Run again"), () => this.fork(null), say("Starts another session from the beginning")), " ",
-      button(say("Go on for"), () => this.fork(Number(further.value)), say("Starts another session from the end")), " ", further, " ");
+      button(say("Go on for"), () => this.fork(Number(further.value)), say("Starts another session from the end")), " ", further, " ",
+      ...(keep === null ? [] : [button(say("Save as a case"), keep, say("Makes a case of what operators did, which you can run and test again")), " "]));
     const close = button(say("Close"), () => this.ask({ type: "operate", operation: "stop" }), say("Ends the page, with the report of the run"));
     this.root = make("div", { id: "ending", role: "status", hidden: true }, this.text, " ", this.onward, close);
   }

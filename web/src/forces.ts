@@ -1,6 +1,6 @@
 // What is forced: one list of all of it, and the page's own dialogue for a value, typed by its type. The page goes on meanwhile.
 
-import { say } from "./say";
+import { own, say } from "./say";
 import { broken, button, make } from "./dom";
 import { is_whole, neutral } from "./format";
 
@@ -17,6 +17,8 @@ export interface Target {
   readonly release: () => void;
   /** Writes it once, where that can be done. */
   readonly write?: (value: string) => void;
+  /** It is changed, and not forced: a parameter of a component, which is one of these words if there are some. */
+  readonly change?: { readonly words: readonly string[] };
 }
 
 /** How a value is entered. */
@@ -66,31 +68,44 @@ export class ForceDialog {
       deed(text.trim());
       this.dialog.close();
     };
-    const title = make("h2", { id: "force-title" }, `${target.write === undefined ? say("Force") : say("Write or force")} `, ...broken(target.name));
-    const about = make("p", {}, target.type, ", ", say("now"), " ", now, target.isForced ? `, ${say("forced")}` : "");
-    const release = button(say("Release"), () => {
+    const verb = target.change !== undefined ? say("Change") : target.write === undefined ? say("Force") : say("Write or force");
+    const title = make("h2", { id: "force-title" }, `${verb} `, ...broken(target.name));
+    const held = target.change === undefined ? say("forced") : say("changed");
+    const about = make("p", {}, ...(target.type === "" ? [] : [target.type, ", "]), say("now"), " ", now, target.isForced ? `, ${held}` : "");
+    const release = button(target.change === undefined ? say("Release") : say("As in the scene"), () => {
       target.release();
       this.dialog.close();
-    }, say("Lets the value go on by itself"));
+    }, target.change === undefined ? say("Lets the value go on by itself") : say("Gives it the value that the scene has"));
     release.hidden = !target.isForced;
     this.dialog.replaceChildren(title, about, this.entry(target, enter), fault,
       make("div", { class: "toolbar" }, release, button(say("Cancel"), () => this.dialog.close())));
     this.dialog.showModal();
+    // One types at once: the present value is chosen, so that it is typed over.
+    const field = this.dialog.querySelector("input");
+    if (field !== null && target.change !== undefined) field.value = target.value().split(" ")[0] ?? "";
+    field?.select();
     this.ticker = window.setInterval(() => (now.textContent = target.value()), 100);
   }
 
   private entry(target: Target, enter: (deed: (value: string) => void, text: string) => void): HTMLElement {
     const deeds = (value: () => string): readonly HTMLElement[] => [
       ...(target.write === undefined ? [] : [button(say("Write once"), () => enter(target.write as (value: string) => void, value()))]),
-      button(say("Force"), () => enter(target.force, value()), say("Holds {name} until it is released", { name: target.name })),
+      target.change === undefined
+        ? button(say("Force"), () => enter(target.force, value()), say("Holds {name} until it is released", { name: target.name }))
+        : button(say("Change"), () => enter(target.force, value()), say("Gives {name} this value from the next step on", { name: target.name })),
     ];
+    const words = target.change?.words ?? [];
+    if (words.length > 0) {
+      const list = make("select", { "aria-label": say("Value of {name}", { name: target.name }) }, ...words.map((word) => make("option", {}, word)));
+      return make("div", { class: "toolbar" }, list, ...deeds(() => list.value));
+    }
     switch (entry_of(target.type, target.names)) {
       case "two":
         return make("div", { class: "two" }, ...["FALSE", "TRUE"].map((text) => make("div", {},
-          button(text, () => enter(target.force, text), say("Forces {name} to {text}", { name: target.name, text })),
+          button(text, () => enter(target.force, text), target.change === undefined ? say("Forces {name} to {text}", { name: target.name, text }) : say("Gives {name} this value from the next step on", { name: target.name })),
           ...(target.write === undefined ? [] : [button(say("Write {text} once", { text }), () => enter(target.write as (value: string) => void, text))]))));
       case "list": {
-        const list = make("select", { "aria-label": say("Value of {name}", { name: target.name }) }, ...[...target.names].map(([value, name]) => make("option", { value: String(value) }, name)));
+        const list = make("select", { "aria-label": say("Value of {name}", { name: target.name }) }, ...[...target.names].map(([value, name]) => make("option", { value: String(value) }, own(name))));
         return make("div", { class: "toolbar" }, list, ...deeds(() => list.value));
       }
       case "number":

@@ -19,6 +19,7 @@ import type { Ask, Message } from "./message";
 import type { Picture } from "./picture";
 import type { AlarmChange, Session } from "./session";
 import { Ending } from "./ending";
+import { CaseDialog } from "./kept";
 import { MachineView } from "./scene";
 import { Schematic } from "./schematic";
 import { Sheets } from "./sheets";
@@ -70,7 +71,8 @@ export class Page {
   /** What is drawn where there are no bodies. */
   private readonly schematic: Schematic | null;
   private readonly timeline: Timeline;
-  private readonly ending = new Ending((ask) => this.ask(ask));
+  private readonly ending: Ending;
+  private readonly kept = new CaseDialog((ask) => this.ask(ask));
   private readonly link: Link | null = null;
   private readonly sensors: readonly { signal: number; body: number }[];
   private readonly verdicts = new Map<string, HTMLElement>();
@@ -105,11 +107,11 @@ export class Page {
     const covered_px = (): number => bar.offsetTop + bar.offsetHeight + BAR_PX;
     const plain = make("span", { class: "plain", role: "status", title: say("The graphics of this computer are slow: what moves is drawn without shadows and edges") });
     this.plain = plain;
-    this.machine = new MachineView(frame("canvas"), session, (body) => this.choose(body), false, covered_px, (isPlain) => {
+    this.machine = new MachineView(frame("canvas"), session, (body, component) => this.choose(body, component), false, covered_px, (isPlain) => {
       plain.textContent = isPlain ? say("Plain picture: slow graphics") : "";
       plain.hidden = !isPlain;
     });
-    this.schematic = session.bodies.some((body) => body.shape.kind !== "none") ? null : new Schematic(session, (component) => this.press(this.panels.flatMap(({ view }) => view.keys_on_component(component))));
+    this.schematic = this.machine.is_empty ? new Schematic(session, (component) => this.choose(null, component)) : null;
     if (this.schematic !== null) frame("canvas").replaceWith(this.schematic.root);
     this.forces = new Forces(this.mayForce);
     frame("controls").after(this.forces.key);
@@ -124,7 +126,7 @@ export class Page {
         acknowledge: () => this.acknowledge(session.alarms.map((_, alarm) => alarm)),
       }),
     }));
-    this.part = new PartSheet(session, this.values, this.machine, (ask) => this.ask(ask), again, (body) => this.keys_on(body), (key) => this.press([key]));
+    this.part = new PartSheet(session, this.values, this.machine, (ask) => this.ask(ask), again, (body) => this.keys_on(body), (key) => this.press([key]), (target) => this.dialog.ask(target));
     const readout = make("span", { id: "readout", role: "status" });
     this.backfill = new Backfill(live_address(), session, (signal, t_ns, value) => this.trends.insert(signal, t_ns, value));
     this.trends = new TrendsView(frame("lanes"), readout, session, { changed: again, choose: () => this.choose_signals() });
@@ -136,6 +138,7 @@ export class Page {
     this.drawings = new Drawings(session, (ask) => void this.link?.ask(ask));
     this.maps = new Maps(session);
     this.timeline = new Timeline(frame("timeline"), session, (ask) => this.ask(ask));
+    this.ending = new Ending((ask) => this.ask(ask), session.training === null ? () => this.kept.open() : null);
     frame("notice").after(this.ending.root);
     this.sensors = session.components.flatMap((one) => {
       const signal = session.signals.findIndex((candidate) => candidate.name === one.senses);
@@ -144,6 +147,8 @@ export class Page {
     });
     const sheets = new Sheets((name) => {
       this.sheet = name;
+      // What has left the world meanwhile is said to be away.
+      if (name === "Part") this.part.show_presence();
       again();
     });
     this.link = new Link(live_address(), session, {
@@ -253,11 +258,12 @@ export class Page {
   }
 
   /** A click on a part presses what lies on it; it opens the sheet of any other. */
-  private choose(body: number | null): void {
-    const keys = body === null ? [] : this.keys_on(body);
-    this.part.open(body);
+  private choose(body: number | null, component: string | null): void {
+    const keys = body !== null ? this.keys_on(body) : component === null ? [] : this.panels.flatMap(({ view }) => view.keys_on_component(component));
+    if (component === null) this.part.open(body);
+    else this.part.open_component(component);
     this.press(keys);
-    if (body !== null && keys.length === 0) this.tabs?.open("Part");
+    if ((body !== null || component !== null) && keys.length === 0) this.tabs?.open("Part");
     this.subscribe();
   }
 
@@ -382,7 +388,7 @@ export class Page {
     document.body.classList.toggle("past", isPast);
     frame("past").hidden = !isPast;
     if (isPast) frame("past-time").textContent = seconds(picture.t_ns);
-    for (const one of this.panels) one.view.rest(isPast || this.isComplete);
+    for (const one of this.panels) one.view.rest(isPast, this.isComplete);
   }
 
   private handle(message: Message): void {
@@ -399,12 +405,13 @@ export class Page {
           one.view.show_forced(message.forced);
         }
         this.table.show_forced(message.forced);
+        this.part.show_changed(message.changed);
         this.note_forced(message.forced);
         return this.timeline.reach(message.past_ns, message.shown_ns);
       case "event":
         if (message.kind === "end") this.isOver = true;
-        this.list_news(`${seconds(message.t_ns)} ${message.text}`);
-        return this.trends.mark({ t_ns: message.t_ns, text: message.text });
+        this.list_news(`${seconds(message.t_ns)} ${say_word(message.text)}`);
+        return this.trends.mark({ t_ns: message.t_ns, text: say_word(message.text) });
       case "alarms":
         return this.ring(message.all, message.changes);
       case "lesson":
@@ -429,8 +436,13 @@ export class Page {
         return this.source.show();
       case "forked":
         return this.timeline.forked(message.t_ns, message.url);
+      case "case":
+        return this.kept.show(message);
+      // Asked for by viewers that fill trends.
+      case "trace":
+        return;
       case "error":
-        return this.notice(message.message);
+        return this.kept.fail(message.message) ? undefined : this.notice(message.message);
     }
   }
 
@@ -452,7 +464,7 @@ export class Page {
     if (this.session.training !== null) return;
     this.isComplete = true;
     for (const one of frame("controls").querySelectorAll<HTMLButtonElement>("button")) one.disabled = true;
-    for (const one of this.panels) one.view.rest(true);
+    for (const one of this.panels) one.view.rest(false, true);
     this.ending.show(this.last === null || this.last.isPast ? past_ns?.[1] ?? 0 : this.last.t_ns, past_ns);
   }
 

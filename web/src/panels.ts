@@ -46,6 +46,7 @@ export class PanelView {
   /** What is done as soon as this viewer sits here. */
   private waiting: (() => void)[] = [];
   private isPast = false;
+  private isOver = false;
   private isHeld = false;
   /** Why the whole panel rests beside the past, if so. */
   private resting: string | null = null;
@@ -142,10 +143,10 @@ export class PanelView {
     this.isHeld = isHeld;
   }
 
-  /** Whether the past is shown: then nothing is operated. */
-  rest(isPast: boolean): void {
-    if (this.isPast === isPast) return;
-    this.isPast = isPast;
+  /** Whether the past is shown, or the run is over: then nothing is operated. */
+  rest(isPast: boolean, isOver: boolean): void {
+    if (this.isPast === isPast && this.isOver === isOver) return;
+    [this.isPast, this.isOver] = [isPast, isOver];
     this.say_why();
   }
 
@@ -172,8 +173,8 @@ export class PanelView {
 
   /** Says why nothing can be pressed, or what a press does first. */
   private say_why(): void {
-    const isResting = this.isPast || this.resting !== null;
-    const why = this.resting ?? why_not(say_word(this.panel.seat), this.seat, this.isPast);
+    const isResting = this.isPast || this.isOver || this.resting !== null;
+    const why = this.resting ?? why_not(say_word(this.panel.seat), this.seat, this.isPast, this.isOver);
     const isDead = isResting || this.seat === "taken";
     this.why.textContent = this.inputs.length === 0 ? "" : why;
     this.why.hidden = this.why.textContent === "";
@@ -187,7 +188,7 @@ export class PanelView {
 
   /** Does it from the seat, which is taken if it is free. */
   private seated(deed: () => void): void {
-    if (this.isPast || this.resting !== null) return;
+    if (this.isPast || this.isOver || this.resting !== null) return;
     if (this.seat === "mine") deed();
     else if (this.seat === "free") {
       this.waiting.push(deed);
@@ -473,7 +474,8 @@ export class PanelView {
 }
 
 /** Why nothing can be pressed at a panel, or what the first press does; nothing where all is well. */
-export function why_not(seat: string, state: SeatState, isPast: boolean): string {
+export function why_not(seat: string, state: SeatState, isPast: boolean, isOver = false): string {
+  if (isOver) return say("The run is over: nothing is operated any more. Run it again, or go on from a moment of it.");
   if (isPast) return say("This is the past: go back to now to operate the machine.");
   if (state === "taken") return say("Another viewer has the seat {seat}: you can operate when it is free.", { seat });
   return state === "free" ? say("Nobody has the seat {seat}: the first press takes it.", { seat }) : "";

@@ -72,4 +72,6 @@ test("a panel says why nothing can be pressed", () => {
   assert.match(why_not("operator", "free", false), /first press takes it/);
   assert.match(why_not("operator", "taken", false), /Another viewer/);
   assert.match(why_not("operator", "mine", true), /past/);
+  // After the end there is no now to go back to.
+  assert.match(why_not("operator", "mine", true, true), /^The run is over/);
 });

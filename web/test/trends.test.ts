@@ -1,16 +1,16 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { moments } from "../src/backfill";
+import { spans } from "../src/backfill";
 import { fitted } from "../src/lane";
 import { span_s } from "../src/trends";
 
-test("the past is asked for at whole steps, at most some hundred times, and not further back than can be run again", () => {
-  assert.deepEqual(moments([0, 50], 10), [0, 10, 20, 30, 40, 50]);
-  const long = moments([0, 3600e9], 10_000_000);
-  assert.ok(long.length <= 242, `${long.length}`);
-  assert.equal(long[0], (360_000 - 6_000) * 10_000_000);
-  assert.ok(long.every((t_ns, at) => t_ns % 10_000_000 === 0 && (at === 0 || t_ns > (long[at - 1] as number))));
-  assert.deepEqual(moments([7, 7], 10), []);
+test("the past is asked for at whole steps, in a few spans without a gap, and not further back than can be run again", () => {
+  assert.deepEqual(spans([0, 50], 10), [[0, 10], [10, 20], [20, 30], [30, 40], [40, 50]]);
+  const long = spans([0, 3600e9], 10_000_000);
+  assert.ok(long.length <= 12, `${long.length}`);
+  assert.deepEqual([long[0]?.[0], long.at(-1)?.[1]], [(360_000 - 6_000) * 10_000_000, 3600e9]);
+  assert.ok(long.every(([from], at) => at === 0 || from === long[at - 1]?.[1]));
+  assert.deepEqual(spans([7, 7], 10), []);
 });
 
 test("trends show the last seconds, and the moment of the past within what surrounds it", () => {

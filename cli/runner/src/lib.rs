@@ -11,6 +11,7 @@
 //! | [`report`] | what a recorded run produced |
 //! | [`shot`] | the machine at one time, as a picture |
 //! | [`run`] | runs of a scenario: in lockstep or not, recorded, reported |
+//! | [`operated`] | what operators did, as entries of a case |
 //! | [`freewheel`] | running without lockstep, to show what goes wrong then |
 //! | [`value_map`] | a map of the scenario, of what clients show |
 //! | [`scene_drawing`] | a scene as a picture |
@@ -34,6 +35,7 @@ pub mod error;
 pub mod format;
 pub mod freewheel;
 pub mod interrupt;
+pub mod operated;
 pub mod past;
 pub mod plc;
 pub mod report;

@@ -25,6 +25,8 @@ export interface Body {
   readonly shape: Shape;
   readonly position_m: readonly [number, number, number];
   readonly colour: string | null;
+  /** What it is made of, as its density says; nothing of one that no force moves. */
+  readonly density_kg_m3: number | null;
   /** The body in whose frame it is; its place is in the world's without one. */
   readonly on: number | null;
   /** x, y, z, w. */
@@ -40,6 +42,7 @@ export function readBody(field: Field): Body {
     shape: readShape(field.at("shape")),
     position_m: tuple(number, number, number)(field.at("position_m")),
     colour: nullable(text)(field.at("colour")),
+    density_kg_m3: nullable(number)(field.at("density_kg_m3")),
     on: nullable(whole)(field.at("on")),
     rotation: tuple(number, number, number, number)(field.at("rotation", [0.0,0.0,0.0,1.0])),
     transparent: number(field.at("transparent", 0)),

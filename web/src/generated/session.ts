@@ -71,6 +71,12 @@ export type Ask =
   | { readonly type: "acknowledge"; readonly alarms: readonly number[] }
   /** Puts an alarm aside for so long in virtual time, for all viewers; takes it back without a time. */
   | { readonly type: "shelve"; readonly alarm: number; readonly for_s?: number | null }
+  /** A parameter of a component takes another value; that of the scene again without one. */
+  | { readonly type: "parameter"; readonly component: string; readonly parameter: string; readonly value?: string | null }
+  /** What operators have done so far, as a case of this name; `save` writes it into the scenario's file of cases. */
+  | { readonly type: "case"; readonly name: string; readonly save: boolean }
+  /** What signals did in a span of the past, in so many parts: of each the first, the least, the greatest and the last value. */
+  | { readonly type: "trace"; readonly signals: readonly number[]; readonly from_ns: number; readonly until_ns: number; readonly parts: number }
   /** Shows this viewer the live edge again. */
   | { readonly type: "live" }
   /** Starts a session from a moment of the past, beside this one; it ends as this one does, or at `until_ns`. */
@@ -93,6 +99,8 @@ export interface Body {
   readonly shape: Shape;
   readonly position_m: readonly [number, number, number];
   readonly colour: string | null;
+  /** What it is made of, as its density says; nothing of one that no force moves. */
+  readonly density_kg_m3: number | null;
   /** The body in whose frame it is; its place is in the world's without one. */
   readonly on: number | null;
   /** x, y, z, w. */
@@ -108,6 +116,7 @@ export function readBody(field: Field): Body {
     shape: readShape(field.at("shape")),
     position_m: tuple(number, number, number)(field.at("position_m")),
     colour: nullable(text)(field.at("colour")),
+    density_kg_m3: nullable(number)(field.at("density_kg_m3")),
     on: nullable(whole)(field.at("on")),
     rotation: tuple(number, number, number, number)(field.at("rotation", [0.0,0.0,0.0,1.0])),
     transparent: number(field.at("transparent", 0)),
@@ -516,7 +525,7 @@ export function readMapInfo(field: Field): MapInfo {
 /** A text for a viewer, as JSON. */
 export type Message =
   /** How the session is. `seat` is as this viewer sees it; `failed` are the failures at work, as `component.mode`; `forced` and `disturbed` are the numbers of the signals that are forced and of the faults on the way of signals that are at work; `shown_ns` is null at the live edge, `past_ns` where no past is kept. */
-  | { readonly type: "status"; readonly state: SessionState; readonly digest: string | null; readonly disturbed: ReadonlySet<number>; readonly failed: ReadonlySet<string>; readonly forced: ReadonlySet<number>; readonly pace: string; readonly past_ns: readonly [number, number] | null; readonly seat: ReadonlyMap<string, SeatState>; readonly shown_ns: number | null }
+  | { readonly type: "status"; readonly state: SessionState; readonly changed: ReadonlyMap<string, string>; readonly digest: string | null; readonly disturbed: ReadonlySet<number>; readonly failed: ReadonlySet<string>; readonly forced: ReadonlySet<number>; readonly pace: string; readonly past_ns: readonly [number, number] | null; readonly seat: ReadonlyMap<string, SeatState>; readonly shown_ns: number | null }
   /** The places of the looks whose condition holds. */
   | { readonly type: "looks"; readonly active: readonly number[] }
   /** The values of the states of a drawing, in their order; null where there is none. */
@@ -531,6 +540,10 @@ export type Message =
   | { readonly type: "verdict"; readonly name: string; readonly verdict: string; readonly t_ns: number; readonly robustness: number | null }
   /** Where the page is of a session that goes on from a moment of the past. */
   | { readonly type: "forked"; readonly t_ns: number; readonly url: string }
+  /** What signals did in a span of the past, by their order in the question: times in ns with values, each until the next. */
+  | { readonly type: "trace"; readonly from_ns: number; readonly until_ns: number; readonly values: readonly (readonly (readonly [number, number])[])[] }
+  /** What operators have done, as a case: its text, and the file that it belongs into. `may_save` says whether this session writes it there, `saved` that it has. */
+  | { readonly type: "case"; readonly name: string; readonly text: string; readonly path: string; readonly saved: boolean; readonly may_save: boolean }
   /** Changes of alarms, in the order of virtual time; `all` says that none came before these. */
   | { readonly type: "alarms"; readonly all: boolean; readonly changes: readonly AlarmChange[] }
   /** How the attempt at a lesson goes: `result` comes when it is over. */
@@ -549,6 +562,7 @@ export function readMessage(field: Field): Message {
       return {
         type,
         state: readSessionState(field.at("state")),
+        changed: map(text)(field.at("changed", {})),
         digest: nullable(text)(field.at("digest")),
         disturbed: set(whole)(field.at("disturbed", [])),
         failed: set(text)(field.at("failed", [])),
@@ -593,6 +607,10 @@ export function readMessage(field: Field): Message {
       };
     case "forked":
       return { type, t_ns: whole(field.at("t_ns")), url: matching(/^https?:\/\/[^\s"'<>]+$/)(field.at("url")) };
+    case "trace":
+      return { type, from_ns: whole(field.at("from_ns")), until_ns: whole(field.at("until_ns")), values: list(list(tuple(number, number)))(field.at("values")) };
+    case "case":
+      return { type, name: text(field.at("name")), text: text(field.at("text")), path: text(field.at("path")), saved: flag(field.at("saved")), may_save: flag(field.at("may_save")) };
     case "alarms":
       return { type, all: flag(field.at("all")), changes: list(readAlarmChange)(field.at("changes")) };
     case "lesson":
@@ -717,14 +735,26 @@ export function readPanelPage(field: Field): PanelPage {
 export interface Parameter {
   readonly name: string;
   readonly value: string;
+  /** Whether a component only begins with it, so that it does not change while the plant runs. */
+  readonly fixed: boolean;
+  /** As a scene has it, with its unit; a change names it so. */
+  readonly key: string;
+  /** The type of its values: `LREAL`, `DINT`, `BOOL`; empty for one of `words`. */
+  readonly type: string;
   readonly unit: string | null;
+  /** What it may be, if it is one of some words. */
+  readonly words: readonly string[];
 }
 
 export function readParameter(field: Field): Parameter {
   return {
     name: text(field.at("name")),
     value: text(field.at("value")),
+    fixed: flag(field.at("fixed", false)),
+    key: text(field.at("key", "")),
+    type: text(field.at("type", "")),
     unit: nullable(text)(field.at("unit")),
+    words: list(text)(field.at("words", [])),
   };
 }
 

@@ -172,6 +172,9 @@ pub struct RunArgs {
     /// How many sessions may go on from moments of this one at a time, each in a process of its own
     #[arg(help_heading = PAGE, long, default_value_t = FORKS, requires = "web", value_name = "COUNT")]
     pub forks: u32,
+    /// Let operators save what they did on the page as a case, in the scenario's file of cases
+    #[arg(help_heading = PAGE, long, requires = "web")]
+    pub save_cases: bool,
     /// Let people stand in for this client: its signals are operated, on the page, by `onescan control` or over OPC UA; may be
     /// given several times
     #[arg(help_heading = CLIENTS, long = "operator", value_name = "CLIENT", value_parser = client_name)]
@@ -372,6 +375,7 @@ fn config(args: RunArgs) -> Result<RunConfig, CommandError> {
                 .then(|| if on_terminal() { Stay::UntilInterrupted } else { Stay::ForViewers }),
             past: args.past_memory,
             forks: args.forks,
+            saves_cases: args.save_cases,
             ads: args.ads,
             opcua: args.opcua,
             access,

@@ -5,12 +5,14 @@
 //! | [`store`] | what is kept, within a budget of memory |
 //! | [`keep`] | a running session leaves its past there |
 //! | [`rewind`] | a moment of it again, on a thread of its own |
+//! | [`trace`] | what signals did in a span of it, in few points |
 //!
 //! Nothing of this reaches the session that runs: a checkpoint changes nothing in it, and what is re-run is another session.
 
 pub(crate) mod keep;
 pub(crate) mod rewind;
 pub(crate) mod store;
+pub(crate) mod trace;
 
 use std::fmt;
 use std::str::FromStr;
@@ -18,6 +20,7 @@ use std::str::FromStr;
 pub(crate) use keep::Keeper;
 pub(crate) use rewind::{Form, Moment, PastReader, Rewinder};
 pub(crate) use store::Kept;
+pub(crate) use trace::{Points, Span};
 
 /// How much memory the past of a session may take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

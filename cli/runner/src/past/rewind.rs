@@ -12,10 +12,12 @@ use onescan_server::checkpoint::Checkpoint;
 use onescan_server::client::Parts;
 use onescan_server::lockstep::{Lockstep, Reached};
 use onescan_server::published::{SessionView, Wants};
+use onescan_server::signal::SignalId;
 use onescan_server::time::VirtualTime;
 use tokio::sync::{oneshot, watch};
 
 use super::store::{Kept, Way};
+use super::trace::{Points, Span, Tracing};
 
 /// Forms another session of the scenario, about to begin. It has no end, and says in words why it cannot be.
 pub(crate) type Form = Box<dyn Fn() -> Result<Lockstep, String> + Send>;
@@ -36,6 +38,8 @@ pub(crate) enum Moment {
 enum Wanted {
     /// To see a moment.
     Show(VirtualTime, watch::Sender<Moment>),
+    /// What signals did in a span.
+    Trace(Span, oneshot::Sender<Result<Vec<Points>, String>>),
     /// A checkpoint to go on from.
     Save(VirtualTime, oneshot::Sender<Result<Vec<u8>, String>>),
     /// Nothing any more: what was re-run is given away.
@@ -175,6 +179,13 @@ impl PastReader {
         answer
     }
 
+    /// What signals did in a span. What was asked for before counts no more.
+    pub(crate) fn trace(&self, span: Span) -> oneshot::Receiver<Result<Vec<Points>, String>> {
+        let (reply, answer) = oneshot::channel();
+        self.queue.want(self.who, Wanted::Trace(span, reply));
+        answer
+    }
+
     /// The next moment that is seen.
     pub(crate) async fn next(&mut self) -> Moment {
         match self.seen.changed().await {
@@ -218,6 +229,12 @@ impl Worker {
                     };
                     sees.send_replace(moment);
                 }
+                Wanted::Trace(span, reply) => {
+                    let traced = self.trace(who, &span);
+                    if reply.send(traced).is_err() {
+                        tracing::debug!("somebody left before it got the part of the past that it wanted");
+                    }
+                }
                 Wanted::Save(t_v, reply) => {
                     let saved = self.checkpoint(who, t_v);
                     self.runs.remove(&who);
@@ -232,7 +249,7 @@ impl Worker {
 
     /// The session at `t_v`; nothing if something else is wanted meanwhile.
     fn view(&mut self, who: u64, t_v: VirtualTime) -> Result<Option<Arc<SessionView>>, String> {
-        let (queue, run) = (Arc::clone(&self.queue), self.near(who, t_v)?);
+        let (queue, run) = (Arc::clone(&self.queue), self.near(who, t_v, t_v)?);
         let published = run.lockstep.published();
         let step = run.lockstep.session().step();
         // the checkpoint may be of this very moment
@@ -249,21 +266,49 @@ impl Worker {
 
     fn checkpoint(&mut self, who: u64, t_v: VirtualTime) -> Result<Vec<u8>, String> {
         let queue = Arc::clone(&self.queue);
-        let run = self.near(who, t_v)?;
+        let run = self.near(who, t_v, t_v)?;
         if !run.go_to(t_v, || queue.lock().closed)? {
             return Err("the session is over".to_owned());
         }
         run.lockstep.checkpoint().and_then(|checkpoint| checkpoint.to_bytes()).map_err(|error| error.to_string())
     }
 
-    /// A session before `t_v`, from where it is not far: that of the last look, or one from a checkpoint.
-    fn near(&mut self, who: u64, t_v: VirtualTime) -> Result<&mut Run, String> {
+    /// What signals did in a span, at each of its steps.
+    fn trace(&mut self, who: u64, span: &Span) -> Result<Vec<Points>, String> {
+        let queue = Arc::clone(&self.queue);
+        let outdated = || "something else is wanted".to_owned();
+        let later = |t_v: VirtualTime| t_v.checked_add(span.step).unwrap_or(VirtualTime::MAX);
+        // The span before may have ended where this one begins.
+        let run = self.near(who, span.from, later(span.from))?;
+        if !run.go_to(span.from, || queue.is_outdated(who))? {
+            return Err(outdated());
+        }
+        let mut tracing = Tracing::new(span);
+        loop {
+            let session = run.lockstep.session();
+            let (layout, t_v) = (session.layout(), session.t_v());
+            let number = |signal: &SignalId| layout.ty(*signal).as_f64(layout.bytes(*signal, session.image()));
+            tracing.take(t_v, span.signals.iter().map(|signal| number(signal).unwrap_or(f64::NAN)));
+            if t_v >= span.until {
+                return Ok(tracing.finish());
+            }
+            if run.lockstep.run_to(later(t_v)).map_err(|error| error.to_string())? == Reached::End {
+                return Ok(tracing.finish());
+            }
+            if queue.is_outdated(who) {
+                return Err(outdated());
+            }
+        }
+    }
+
+    /// A session at or before `t_v`, and before `bound`, from where it is not far: that of the last look, or one from a checkpoint.
+    fn near(&mut self, who: u64, t_v: VirtualTime, bound: VirtualTime) -> Result<&mut Run, String> {
         let gone = || format!("{t_v} is not kept: it lies before the past that is");
         let way = self.kept.lock().way_to(t_v).ok_or_else(gone)?;
         let goes_on = |run: &Run| {
             let at = run.lockstep.session().t_v();
             // what is shown is what was published last, so a moment is not shown twice by going nowhere
-            run.life == way.life && way.from.t_v <= at && at < t_v && run.lockstep.session().end().is_none()
+            run.life == way.life && way.from.t_v <= at && at < bound && run.lockstep.session().end().is_none()
         };
         if !self.runs.get(&who).is_some_and(goes_on) {
             // the memory of the one before is given back first

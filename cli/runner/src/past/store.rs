@@ -118,6 +118,11 @@ impl Store {
         self.inputs.range(first..).map(|(input, _)| input.clone()).collect()
     }
 
+    /// All that operators did since the session began; nothing where its beginning is not kept.
+    pub(crate) fn inputs(&self) -> Option<Vec<OperatorInput>> {
+        (self.first() == Some(VirtualTime::ZERO)).then(|| self.inputs_from(StepCount(0)))
+    }
+
     fn bytes(&self) -> usize {
         self.marks_bytes + self.inputs_bytes
     }
@@ -226,7 +231,9 @@ mod tests {
         // of another life
         store.keep(1, mark(30, 10));
         assert_eq!(steps(&store), [0, 10, 20]);
+        assert_eq!(store.inputs().map(|inputs| inputs.len()), Some(3));
         store.begin(1);
+        assert_eq!(store.inputs(), None, "it has no beginning yet");
         assert_eq!((store.first(), store.inputs_from(StepCount(0))), (None, Vec::new()));
     }
 

@@ -103,6 +103,8 @@ pub struct Doors {
     pub past: Budget,
     /// How many sessions may go on from moments of that past at a time.
     pub forks: u32,
+    /// Whether operators may write what they did into the scenario's file of cases.
+    pub saves_cases: bool,
     /// Where variables of the soft PLCs are served over ADS.
     pub ads: Option<SocketAddr>,
     /// Where the session is served over OPC UA.

@@ -29,6 +29,7 @@ use super::config::{Reach, RunConfig, SaveRequest, Transport};
 use super::error::RunError;
 use super::fork::{self, Joined, Taken};
 use super::forked::{self, ForkSettings, PAGE_AT};
+use super::kept_case;
 use super::processes::{Passed, Processes};
 use super::progress::Progress;
 use super::seats::{OpcUaSeats, Seats};
@@ -38,7 +39,7 @@ use crate::access::admission::{GuardedListener, Shown, from_here};
 use crate::error::{ListenError, Unreadable, Usage};
 use crate::interrupt::Interrupt;
 use crate::past::{Keeper, Kept, Rewinder};
-use crate::web::{self, Page, VerdictBoard, WebError};
+use crate::web::{self, KeepCase, Page, VerdictBoard, WebError};
 use onescan_base::notice::NOTICE;
 
 /// What came of a session that was driven to its end.
@@ -183,13 +184,13 @@ fn not_started(logic: &start::StartLogic) -> Usage {
     Usage::new(message, Some(help.to_owned()))
 }
 
-/// Lets the session leave its past; gives who shows it, or why nobody can.
+/// Lets the session leave its past; gives who shows it and who makes a case of it, or why nobody can.
 fn past_of(
     config: &RunConfig,
     scenario: &Scenario,
     lockstep: &mut Lockstep,
     keeper: &mut Option<Keeper>,
-) -> Result<Result<Rewinder, String>, RunError> {
+) -> Result<Result<(Rewinder, KeepCase), String>, RunError> {
     if config.doors.past.bytes == 0 {
         return Ok(Err("`--past-memory 0` keeps none".to_owned()));
     }
@@ -197,12 +198,13 @@ fn past_of(
         return Ok(Err(why));
     }
     let kept = Kept::within(config.doors.past.bytes);
+    let keep_case = kept_case::keeper(config, kept.clone());
     let started = Keeper::new(kept.clone())
         .and_then(|keeper| Ok((keeper, Rewinder::new(kept, forked::former(scenario))?)))
         .map_err(WebError::Thread)?;
     lockstep.observe(started.0.observer());
     *keeper = Some(started.0);
-    Ok(Ok(started.1))
+    Ok(Ok((started.1, keep_case)))
 }
 
 /// Serves variables of the soft PLCs over ADS, for as long as it is kept.
@@ -232,7 +234,7 @@ fn serve_page(
     scenario: &Scenario,
     lockstep: &mut Lockstep,
     interrupt: &Interrupt,
-    (past, verdict_board): (Result<Rewinder, String>, VerdictBoard),
+    (past, verdict_board): (Result<(Rewinder, KeepCase), String>, VerdictBoard),
 ) -> Result<Page, RunError> {
     let pace = match config.course.pace {
         Pace::Max => "max".to_owned(),
@@ -244,10 +246,15 @@ fn serve_page(
     alarms::note(&alarm_log, scenario, lockstep);
     let (published, mailbox) = (lockstep.published(), interrupt.mailbox());
     let launch = forked::launcher(ForkSettings::of(config));
+    let (past, keep_case) = match past {
+        Ok((past, keep_case)) => (Ok(past), Ok(keep_case)),
+        Err(why) => (Err(why.clone()), Err(why)),
+    };
     let source = web::Source {
         failing,
         past,
         launch,
+        keep_case,
         verdict_board,
         alarm_log,
         ..web::Source::new(scenario, published, mailbox, pace)

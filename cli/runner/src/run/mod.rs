@@ -11,6 +11,7 @@
 //! | [`processes`] | clients as processes of their own |
 //! | [`guard`] | who ends these if this process cannot |
 //! | `fork` | checkpoints from which other cases fork |
+//! | `kept_case` | what operators did in a run, as a case |
 //! | [`freewheel`] | one run without lockstep |
 //! | [`progress`] | a bar on a terminal |
 //! | `chosen` | signals chosen by name, as numbers |
@@ -45,10 +46,11 @@ mod error;
 pub mod expectation;
 pub mod fork;
 pub(crate) mod forked;
-mod freewheel;
+pub(crate) mod freewheel;
 pub mod guard;
 pub(crate) mod in_process;
 pub mod judged;
+mod kept_case;
 mod lockstep;
 pub mod maps;
 pub(crate) mod notices;

@@ -54,6 +54,12 @@ pub(super) enum Ask {
     Acknowledge { alarms: Vec<usize> },
     /// Puts an alarm aside for so long in virtual time, for all viewers; takes it back without a time.
     Shelve { alarm: usize, for_s: Option<f64> },
+    /// A parameter of a component takes another value; that of the scene again without one.
+    Parameter { component: String, parameter: String, value: Option<String> },
+    /// What operators have done so far, as a case of this name; `save` writes it into the scenario's file of cases.
+    Case { name: String, save: bool },
+    /// What signals did in a span of the past, in so many parts: of each the first, the least, the greatest and the last value.
+    Trace { signals: Vec<usize>, from_ns: f64, until_ns: f64, parts: u32 },
     /// Shows this viewer the live edge again.
     Live,
     /// Starts a session from a moment of the past, beside this one; it ends as this one does, or at `until_ns`.
@@ -140,6 +146,20 @@ pub(super) fn force(declared: &SignalDecl, value: Option<String>) -> Operation {
 pub(super) fn fail(component: String, mode: String, active: bool, known: &Known) -> Result<Operation, Refused> {
     let client = known.plants.get(&component).ok_or_else(|| Refused::NoComponent(component.clone()))?.clone();
     Ok(if active { Operation::Fail { client, component, mode } } else { Operation::Repair { client, component, mode } })
+}
+
+/// A parameter takes another value, or the scene's again. Whether the component has it and takes that, the plant says.
+pub(super) fn parameter(
+    component: String,
+    parameter: String,
+    value: Option<String>,
+    known: &Known,
+) -> Result<Operation, Refused> {
+    let client = known.plants.get(&component).ok_or_else(|| Refused::NoComponent(component.clone()))?.clone();
+    Ok(match value {
+        Some(value) => Operation::ChangeParameter { client, component, parameter, value },
+        None => Operation::RestoreParameter { client, component, parameter },
+    })
 }
 
 /// A fault on the way of signals begins, or ends where it is at work.

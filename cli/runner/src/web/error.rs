@@ -47,6 +47,10 @@ pub(super) enum Refused {
     Past(String),
     #[error("{t_ns} ns is not a moment of the past, which ends at {end}")]
     NoMoment { t_ns: String, end: VirtualTime },
+    #[error("what was done here does not become a case: {0}")]
+    NoCase(String),
+    #[error("a trace has 1 to {parts_max} parts and at most {steps_max} steps of the past, not {asked}")]
+    NoTrace { asked: String, parts_max: u32, steps_max: u64 },
     #[error("a recording is looked at: nobody operates it; `Go on from here` makes a session of it")]
     Recorded,
     #[error("a session that goes on from {t_v} cannot end at {until_ns} ns")]

@@ -84,6 +84,8 @@ use onescan_server::signal::SignalDecl;
 use onescan_server::time::VirtualTime;
 use onescan_server::transport::runtime;
 use onescan_server::transport::tcp::House;
+use schemars::JsonSchema;
+use serde::Serialize;
 use thiserror::Error;
 use tokio::sync::Notify;
 
@@ -139,6 +141,8 @@ pub(crate) struct Source<'s> {
     pub(crate) past: Result<Rewinder, String>,
     /// Who lets sessions go on from there.
     pub(crate) launch: Launch,
+    /// Who makes a case of it; or why nobody does.
+    pub(crate) keep_case: Result<KeepCase, String>,
     /// Where it is seen what becomes of expectations.
     pub(crate) verdict_board: VerdictBoard,
     /// Where it is seen how alarms come and go.
@@ -160,6 +164,7 @@ impl<'s> Source<'s> {
             pictures: None,
             past: Err("it keeps none".to_owned()),
             launch: Arc::new(|_, _| Err("it keeps no past".to_owned())),
+            keep_case: Err("it is not a run whose operators' inputs are kept".to_owned()),
             verdict_board: VerdictBoard::default(),
             alarm_log: AlarmLog::default(),
             recorded_to: None,
@@ -173,6 +178,30 @@ pub(crate) type Launch = Arc<dyn Fn(&[u8], Option<VirtualTime>) -> Result<String
 
 /// A picture that the page has drawn, a PNG, or why it has not.
 pub(crate) type Drawn = Result<Vec<u8>, String>;
+
+/// A case that is wanted of what operators have done.
+#[derive(Clone, Debug)]
+pub(crate) struct CaseWanted {
+    pub(crate) name: String,
+    /// When its run is complete: as far as the session has come.
+    pub(crate) until: VirtualTime,
+    /// Whether it is to be written.
+    pub(crate) save: bool,
+}
+
+/// What operators have done, as a case.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub(crate) struct KeptCase {
+    pub(crate) name: String,
+    pub(crate) text: String,
+    /// The file of cases.
+    pub(crate) path: String,
+    pub(crate) saved: bool,
+    pub(crate) may_save: bool,
+}
+
+/// Makes a case of what operators have done, or says in words why not.
+pub(crate) type KeepCase = Arc<dyn Fn(&CaseWanted) -> Result<KeptCase, String> + Send + Sync>;
 
 /// A session, as all viewers share it.
 struct Session {
@@ -194,6 +223,7 @@ struct Session {
     scheme: &'static str,
     past: Result<Rewinder, String>,
     launch: Launch,
+    keep_case: Result<KeepCase, String>,
     verdict_board: VerdictBoard,
     alarm_log: AlarmLog,
     /// The names of the expectations.
@@ -249,6 +279,7 @@ impl Session {
             pictures: source.pictures,
             past: source.past,
             launch: source.launch,
+            keep_case: source.keep_case,
             verdict_board: source.verdict_board,
             alarm_log: source.alarm_log,
             expected: source.scenario.expectations().named.iter().map(|(name, _)| name.clone()).collect(),

@@ -1,6 +1,6 @@
 //! What the server sends to a viewer as text, and how long it waits for one: `web/PROTOCOL.md`.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
 
 use axum::extract::ws::{Message, WebSocket};
@@ -8,12 +8,14 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use tokio::time::timeout;
 
+use super::KeptCase;
 use super::alarms::Change;
 use super::lesson::{Attempt, Drive};
 use super::maps::Cells;
 use super::online::Seen;
 use super::seats::SeatView;
 use super::verdicts::Standing;
+use crate::past::Points;
 
 /// How long one message may take to a viewer that does not read before it is left.
 const PATIENCE: Duration = Duration::from_secs(20);
@@ -25,7 +27,7 @@ const PATIENCE: Duration = Duration::from_secs(20);
 pub(super) enum Response {
     /// How the session is. `seat` is as this viewer sees it; `failed` are the failures at work, as `component.mode`; `forced` and
     /// `disturbed` are the numbers of the signals that are forced and of the faults on the way of signals that are at work;
-    /// `shown_ns` is null at the live edge, `past_ns` where no past is kept.
+    /// `changed` are the parameters of components that were changed, as `component.key`, with their values; `shown_ns` is null at the live edge, `past_ns` where no past is kept.
     Status {
         state: SessionState,
         digest: Option<String>,
@@ -42,6 +44,9 @@ pub(super) enum Response {
         #[serde(skip_serializing_if = "BTreeSet::is_empty")]
         #[schemars(default)]
         disturbed: BTreeSet<usize>,
+        #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+        #[schemars(default)]
+        changed: BTreeMap<String, String>,
         shown_ns: Option<u64>,
         past_ns: Option<[u64; 2]>,
     },
@@ -73,6 +78,14 @@ pub(super) enum Response {
         /// It becomes a link, so nothing else than a page's address is one.
         #[schemars(regex(pattern = r#"^https?://[^\s"'<>]+$"#))]
         url: String,
+    },
+    /// What signals did in a span of the past, by their order in the question: times in ns with values, each until the next.
+    Trace { from_ns: u64, until_ns: u64, values: Vec<Points> },
+    /// What operators have done, as a case: its text, and the file that it belongs into. `may_save` says whether this session
+    /// writes it there, `saved` that it has.
+    Case {
+        #[serde(flatten)]
+        kept: KeptCase,
     },
     /// Changes of alarms, in the order of virtual time; `all` says that none came before these.
     Alarms { all: bool, changes: Vec<Change> },

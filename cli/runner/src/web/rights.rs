@@ -16,6 +16,8 @@ pub(super) enum Right<'a> {
     Look,
     /// Start another session from a moment of this one.
     Fork,
+    /// Make a case of what was done.
+    Keep,
     /// End the session, or close a recording.
     Stop,
     /// Acknowledge alarms, or put them aside.
@@ -43,8 +45,10 @@ impl Ask {
             | Self::Draw { .. }
             | Self::Maps { .. }
             | Self::Show { .. }
+            | Self::Trace { .. }
             | Self::Live => Right::Look,
             Self::Fork { .. } => Right::Fork,
+            Self::Case { .. } => Right::Keep,
             Self::Operate { operation: Verb::Stop } => Right::Stop,
             Self::Acknowledge { .. } | Self::Shelve { .. } => Right::Attend,
             Self::Seat { panel, .. } => Right::Sit(panel),
@@ -53,6 +57,7 @@ impl Ask {
             Self::Operate { operation: Verb::Hold | Verb::Go | Verb::Step }
             | Self::Fail { .. }
             | Self::Disturb { .. }
+            | Self::Parameter { .. }
             | Self::Variable { .. }
             | Self::Force { .. } => Right::Control,
             Self::Train(_) => Right::Train,
@@ -73,7 +78,7 @@ pub(super) fn check(right: Right<'_>, session: &Session, (viewer, rank): (Viewer
     match right {
         Right::Look => Ok(()),
         Right::Attend => is_live(session),
-        Right::Fork => is_not_trainee(session),
+        Right::Fork | Right::Keep => is_not_trainee(session),
         Right::Stop if session.is_looked_back_at() => Ok(()),
         Right::Stop | Right::Control => is_live(session).and_then(|()| is_not_trainee(session)),
         Right::Sit(panel) => may_sit(panel, session, rank),
@@ -91,7 +96,7 @@ pub(super) fn check(right: Right<'_>, session: &Session, (viewer, rank): (Viewer
 /// it would take what is asked then.
 fn acts_on_session(right: Right<'_>) -> bool {
     match right {
-        Right::Look | Right::Fork | Right::Stop | Right::Sit(_) | Right::Present(_) => false,
+        Right::Look | Right::Fork | Right::Keep | Right::Stop | Right::Sit(_) | Right::Present(_) => false,
         Right::Attend | Right::Write(_) | Right::Reset(_) | Right::Control | Right::Train => true,
     }
 }

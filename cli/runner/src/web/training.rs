@@ -112,12 +112,19 @@ pub(crate) struct AtWork {
     failed: BTreeSet<String>,
     /// Signals with the fault on their way.
     disturbed: BTreeMap<SignalName, SignalFault>,
+    /// Parameters that were changed, as `component.key`, with their values.
+    changed: BTreeMap<String, String>,
 }
 
 impl AtWork {
     /// The failures, as `component.mode`.
     pub(super) fn failed(&self) -> &BTreeSet<String> {
         &self.failed
+    }
+
+    /// The parameters that were changed, as `component.key`, with their values.
+    pub(super) fn changed(&self) -> &BTreeMap<String, String> {
+        &self.changed
     }
 
     /// Whether a signal has this fault.
@@ -139,7 +146,13 @@ impl AtWork {
             Operation::Mend { signal } => {
                 self.disturbed.remove(signal);
             }
-            // Nothing else fails or disturbs.
+            Operation::ChangeParameter { component, parameter, value, .. } => {
+                self.changed.insert(format!("{component}.{parameter}"), value.clone());
+            }
+            Operation::RestoreParameter { component, parameter, .. } => {
+                self.changed.remove(&format!("{component}.{parameter}"));
+            }
+            // Nothing else fails, disturbs or changes what a machine is.
             _ => {}
         }
     }

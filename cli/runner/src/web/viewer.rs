@@ -8,6 +8,7 @@ use std::sync::atomic::Ordering;
 use axum::body::Bytes;
 use axum::extract::ws::{Message, WebSocket};
 use onescan_server::client::Parts;
+use onescan_server::end::SessionEnd;
 use onescan_server::mailbox::{Request, Wish};
 use onescan_server::operation::{Operation, OperationError};
 use onescan_server::published::{SessionView, Wants};
@@ -30,6 +31,7 @@ use super::verdicts::Reported;
 use super::{News, Session, rights};
 use crate::past::Moment;
 
+mod beside;
 #[cfg(test)]
 mod tests;
 
@@ -282,7 +284,16 @@ async fn part(
         notify_clients(socket, view, session, subscription).await?;
     }
     let Some(end) = &view.end else { return Ok(()) };
-    notify(socket, &Response::Event { t_ns: view.t_v.as_nanos(), kind: "end", text: end.to_string() }).await
+    notify(socket, &Response::Event { t_ns: view.t_v.as_nanos(), kind: "end", text: ended(end) }).await
+}
+
+/// How the session ended, in words beside the time at which it did.
+fn ended(end: &SessionEnd) -> String {
+    match end {
+        SessionEnd::Completed { .. } => "complete".to_owned(),
+        SessionEnd::Stopped { .. } => "stopped".to_owned(),
+        SessionEnd::Failed(failure) => format!("client `{}` failed: {}", failure.client, failure.cause),
+    }
 }
 
 async fn notify_status(
@@ -313,11 +324,11 @@ fn describe_status(view: &SessionView, session: &Session, viewer: Viewer, subscr
     let is_secret = rights::is_trainee(session);
     let at_work = if is_secret { AtWork::default() } else { session.failing.now() };
     let disturbed = session.known.disturbed(&at_work);
-    let failed = at_work.failed().clone();
+    let (failed, changed) = (at_work.failed().clone(), at_work.changed().clone());
     let forced = if is_secret { BTreeSet::new() } else { view.forced.iter().map(|signal| signal.index()).collect() };
     let (pace, seat) = (session.pace.clone(), session.seats.seen_by(viewer));
     let (shown_ns, past_ns) = (subscription.playhead.shown_ns(), subscription.past_ns);
-    let status = Response::Status { state, digest, pace, seat, failed, forced, disturbed, shown_ns, past_ns };
+    let status = Response::Status { state, digest, pace, seat, failed, forced, disturbed, changed, shown_ns, past_ns };
     serde_json::to_string(&status).unwrap_or_else(|error| error.to_string())
 }
 
@@ -429,7 +440,16 @@ fn perform(
             if has_turned { Next::Picture } else { Next::Nothing }
         }
         Ask::Fork { t_ns, until_ns } => {
-            fork((t_ns, until_ns), session, &subscription.playhead, outcomes)?;
+            beside::fork((t_ns, until_ns), session, &subscription.playhead, outcomes)?;
+            Next::Nothing
+        }
+        Ask::Trace { signals, from_ns, until_ns, parts } => {
+            let span = (ask::signals(&signals, &session.layout)?, [from_ns, until_ns], parts);
+            beside::trace(span, session, &subscription.playhead, outcomes)?;
+            Next::Nothing
+        }
+        Ask::Case { name, save } => {
+            beside::keep(name, save, session, outcomes)?;
             Next::Nothing
         }
         Ask::Operate { operation: Verb::Stop } if session.is_looked_back_at() => {
@@ -454,6 +474,7 @@ fn perform(
         }
         Ask::Force { signal, value } => one(ask::force(session.declared(signal)?, value)),
         Ask::Fail { component, failure, active } => one(ask::fail(component, failure, active, known)?),
+        Ask::Parameter { component, parameter, value } => one(ask::parameter(component, parameter, value, known)?),
         Ask::Disturb { disturbance, active } => {
             Next::Operations(ask::disturb(disturbance, active, known, &session.failing.now())?)
         }
@@ -479,36 +500,6 @@ fn perform(
             Next::Nothing
         }
     })
-}
-
-/// Starts a session from a moment of the past, beside this one, and reports its address to the viewer.
-fn fork(
-    (t_ns, until_ns): (f64, Option<f64>),
-    session: &Session,
-    playhead: &Playhead,
-    outcomes: &mpsc::UnboundedSender<Response>,
-) -> Result<(), Refused> {
-    let t_v = playhead::moment(t_ns, session)?;
-    let until = until_ns.map(|until_ns| playhead::end(until_ns, t_v)).transpose()?;
-    let saved = playhead.past_reader(session)?.save(t_v);
-    let (outcomes, launch) = (outcomes.clone(), Arc::clone(&session.launch));
-    tokio::spawn(async move {
-        let saved: Result<Vec<u8>, String> = saved.await.unwrap_or_else(|_| Err("the session is over".to_owned()));
-        let forked = match saved {
-            // it takes as long as the other session takes to begin
-            Ok(bytes) => {
-                tokio::task::spawn_blocking(move || launch(&bytes, until)).await.unwrap_or_else(|e| Err(e.to_string()))
-            }
-            Err(why) => Err(why),
-        };
-        let response = match forked {
-            Ok(url) => Response::Forked { t_ns: t_v.as_nanos(), url },
-            Err(why) => Response::Error { message: format!("no session goes on from {t_v}: {why}") },
-        };
-        // a viewer that has left hears nothing
-        outcomes.send(response).ok();
-    });
-    Ok(())
 }
 
 /// Leaves operations in the session's mailbox, which takes them at one boundary; reports those that fail once it has.

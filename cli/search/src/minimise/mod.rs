@@ -4,7 +4,6 @@
 //! | module | subject |
 //! |---|---|
 //! | [`config`] | what is asked for |
-//! | `operator` | what operators did, as entries |
 //! | `target` | what fails, so that nothing else is taken for it |
 //! | `trial` | a set of entries tried, forked from trials before it |
 //! | `fewest` | which entries are needed |
@@ -16,7 +15,6 @@
 
 pub mod config;
 mod fewest;
-mod operator;
 mod report;
 mod smallest;
 mod target;
@@ -33,6 +31,7 @@ use report::Minimised;
 use trial::Trials;
 
 use onescan_runner::error::ExitCode;
+use onescan_runner::operated;
 use onescan_runner::run::{SearchError, operator_inputs};
 
 /// Looks for the least that still fails, and writes it to `out`.
@@ -46,7 +45,7 @@ pub fn run(config: &MinimiseConfig, out: &mut dyn Write) -> Result<ExitCode, Sea
     }
     let (mut whole, mut written) = scenario.case_in_pieces(config.case.as_deref())?;
     if let Some(path) = &config.replay_operator {
-        written.entries.extend(operator::entries(&operator_inputs(path)?, &scenario)?);
+        written.entries.extend(operated::entries(&operator_inputs(path)?, &scenario)?);
         whole = scenario.with_last_of(&written.to_toml("operated", &written.entries))?;
     }
     let until = config.until.unwrap_or(whole.until());

@@ -97,7 +97,7 @@ const EVERYBODY: [Who; 11] = [
 
 /// Every message, some of them more than once where it depends on what is in it who may send it. `START` stands for
 /// the number of the operator's signal, `PUSH` for that of a PLC's.
-const EVERY: [&str; 32] = [
+const EVERY: [&str; 35] = [
     r#"{"type":"subscribe","signals":[START]}"#,
     r#"{"type":"watch","variables":[0]}"#,
     r#"{"type":"draw","drawing":null,"instance":0}"#,
@@ -130,10 +130,13 @@ const EVERY: [&str; 32] = [
     r#"{"type":"shelve","alarm":0,"for_s":0}"#,
     r#"{"type":"view","view":"front"}"#,
     r#"{"type":"view","view":"nowhere"}"#,
+    r#"{"type":"parameter","component":"cylinder","parameter":"stroke_m","value":"0.3"}"#,
+    r#"{"type":"case","name":"mine","save":false}"#,
+    r#"{"type":"trace","signals":[START],"from_ns":0,"until_ns":0,"parts":1}"#,
 ];
 
 /// The place of each kind of message; one that is added does not compile before it has one.
-const KINDS: usize = 19;
+const KINDS: usize = 22;
 fn kind(ask: &Ask) -> usize {
     match ask {
         Ask::Subscribe { .. } => 0,
@@ -155,6 +158,9 @@ fn kind(ask: &Ask) -> usize {
         Ask::Acknowledge { .. } => 16,
         Ask::Shelve { .. } => 17,
         Ask::Reset { .. } => 18,
+        Ask::Parameter { .. } => 19,
+        Ask::Case { .. } => 20,
+        Ask::Trace { .. } => 21,
     }
 }
 
@@ -292,5 +298,8 @@ fn everybody_may_do_what_is_theirs() {
     shelve,alarm:0,for_s:0                     LooksOnly  NoShelf    NoShelf    NoShelf    NoShelf    NoShelf    NoShelf    NoShelf    LooksOnly  Recorded   LooksOnly
     view,view:front                            LooksOnly  NoTrainer  NoTrainer  yes        Trainee    Trainee    yes        yes        LooksOnly  Recorded   LooksOnly
     view,view:nowhere                          LooksOnly  NoView     NoView     NoView     NoView     NoView     NoView     NoView     LooksOnly  Recorded   LooksOnly
+    parameter,component:cylinder,parameter:str LooksOnly  yes        yes        yes        Trainee    Trainee    yes        yes        LooksOnly  Recorded   LooksOnly
+    case,name:mine,save:false                  LooksOnly  NoCase     NoCase     NoCase     Trainee    Trainee    NoCase     NoCase     LooksOnly  NoCase     LooksOnly
+    trace,signals:[START],from_ns:0,until_ns:0 Past       Past       Past       Past       Past       Past       Past       Past       Past       Past       Past
     ");
 }

@@ -10,13 +10,13 @@ use onescan_server::signal::{SignalName, SignalType};
 use onescan_server::time::VirtualTime;
 use toml::{Table, Value};
 
-use onescan_runner::error::Usage;
+use crate::error::Usage;
 
 /// Entries that do what the inputs did since the last restart. Who holds virtual time does nothing to the machine.
 ///
 /// # Errors
 /// Something was done that no entry of a case says.
-pub(super) fn entries(inputs: &[OperatorInput], scenario: &Scenario) -> Result<Vec<Entry>, Usage> {
+pub fn entries(inputs: &[OperatorInput], scenario: &Scenario) -> Result<Vec<Entry>, Usage> {
     let restarts = inputs.iter().map(|input| input.resets).max().unwrap_or(0);
     let mut script = Script { scenario, entries: Vec::new(), open: BTreeMap::new() };
     for input in inputs.iter().filter(|input| input.resets == restarts) {
@@ -119,7 +119,7 @@ impl Script<'_> {
     fn ty(&self, signal: &SignalName) -> Result<SignalType, Usage> {
         let declared = self.scenario.file().signals.get(signal);
         declared.map(|signal| signal.get_ref().ty).ok_or_else(|| {
-            let help = "minimise what was recorded of this scenario".to_owned();
+            let help = "take what was recorded of this scenario".to_owned();
             Usage::new(format!("an operator wrote `{signal}`, which the scenario does not have"), Some(help))
         })
     }
