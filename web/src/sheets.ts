@@ -4,7 +4,7 @@ import { frame, make } from "./dom";
 import { say, type Text } from "./say";
 
 export class Sheets {
-  private readonly all: { name: string; tab: HTMLButtonElement; sheet: HTMLElement }[] = [];
+  private readonly all: { name: string; tab: HTMLButtonElement; heading: HTMLElement; sheet: HTMLElement }[] = [];
 
   constructor(private readonly opened: (name: string) => void) {
     frame("tabs").addEventListener("keydown", (event) => {
@@ -25,8 +25,10 @@ export class Sheets {
     sheet.setAttribute("role", "tabpanel");
     sheet.setAttribute("aria-labelledby", tab.id);
     frame("tabs").append(tab);
-    frame("sheets").append(sheet);
-    this.all.push({ name, tab, sheet });
+    // Who goes from heading to heading finds the sheet that is open, and what is in it one level below.
+    const heading = make("h2", { class: "visually-hidden" }, say(name));
+    frame("sheets").append(heading, sheet);
+    this.all.push({ name, tab, heading, sheet });
     this.open(this.all[0]?.name ?? name);
   }
 
@@ -35,7 +37,7 @@ export class Sheets {
       const isOpen = one.name === name;
       one.tab.setAttribute("aria-selected", String(isOpen));
       one.tab.tabIndex = isOpen ? 0 : -1;
-      one.sheet.hidden = !isOpen;
+      one.sheet.hidden = one.heading.hidden = !isOpen;
     }
     this.opened(name);
   }

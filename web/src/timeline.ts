@@ -9,6 +9,8 @@ import type { Session } from "./session";
 
 /** How often a recording that plays asks for its next moment. */
 const PLAY_MS = 50;
+/** For so long a moment that was asked for may be on its way, ms. */
+const WAY_MS = 1_000;
 
 export class Timeline {
   private readonly slider = make("input", { type: "range", min: "0", max: "0", step: "1", "aria-label": say("Time that is shown") });
@@ -21,13 +23,17 @@ export class Timeline {
   private playing: number | null = null;
   /** The step that was asked for; its picture may be on its way. */
   private asked: number | null = null;
+  private asked_ms = 0;
 
   constructor(
     place: HTMLElement,
     private readonly session: Session,
     private readonly ask: (ask: Ask) => void,
   ) {
-    this.live = button(say("Live"), () => this.ask({ type: "live" }), say("Back to the live edge"));
+    this.live = button(say("Live"), () => {
+      this.asked = null;
+      this.ask({ type: "live" });
+    }, say("Back to the live edge"));
     this.play = button(say("Play"), () => this.toggle(), say("Play from here in real time"));
     this.fork = button(say("Go on from here"), () => {
       if (this.shown_ns !== null) this.ask({ type: "fork", t_ns: this.shown_ns });
@@ -52,7 +58,8 @@ export class Timeline {
       this.slider.min = String(Math.ceil(past_ns[0] / this.session.step_ns));
       this.slider.max = String(Math.floor(past_ns[1] / this.session.step_ns));
     }
-    if (shown_ns === null) this.slider.value = this.slider.max;
+    // What was asked for may be on its way, and the session not know of it yet.
+    if (shown_ns === null && !this.isOnItsWay) this.slider.value = this.slider.max;
     this.output.textContent = shown_ns === null ? say("live") : seconds(shown_ns);
     this.slider.setAttribute("aria-valuetext", this.output.textContent);
   }
@@ -63,7 +70,7 @@ export class Timeline {
       if (this.asked !== null && picture.step >= this.asked) this.asked = null;
       return;
     }
-    if (this.shown_ns !== null) return;
+    if (this.shown_ns !== null || this.isOnItsWay) return;
     if (!this.slider.disabled) this.slider.max = String(picture.step);
     this.slider.value = this.slider.max;
   }
@@ -78,8 +85,13 @@ export class Timeline {
     this.link.hidden = false;
   }
 
+  /** Whether a moment was asked for just now: the session may not know of it yet. */
+  private get isOnItsWay(): boolean {
+    return this.asked !== null && performance.now() - this.asked_ms < WAY_MS;
+  }
+
   private show(step: number): void {
-    this.asked = step;
+    [this.asked, this.asked_ms] = [step, performance.now()];
     this.ask({ type: "show", t_ns: step * this.session.step_ns });
   }
 

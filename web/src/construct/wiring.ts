@@ -88,7 +88,9 @@ export class WiringView {
     for (const dot of row.dots) {
       const side = dot.column === 0 ? -1 : 1;
       const what = row.signal === null ? say("connected to nothing") : (dot.gives ? say("writes {signal}", { signal: row.signal }) : say("reads {signal}", { signal: row.signal }));
-      group.append(this.dot(dot, x_of(dot.column), y, side, `${dot.label === "" ? say("an end") : dot.label}, ${dot.type}, ${what}`));
+      // It begins with what is written there, for those who speak to it.
+      const type = dot.isOpen ? ` : ${dot.type}` : `, ${dot.type}`;
+      group.append(this.dot(dot, x_of(dot.column), y, side, `${dot.label === "" ? say("an end") : written(dot.label)}${type}, ${what}`));
     }
     return group;
   }
@@ -102,7 +104,7 @@ export class WiringView {
     if (side !== 0 && dot.label !== "") {
       const kind = dot.isOpen ? ` : ${dot.type}` : "";
       const text = draw("text", { class: "at", x: x + 14 * side, y: y + 4, "text-anchor": side < 0 ? "end" : "start" }, `${short(dot.label)}${kind}`);
-      text.append(draw("title", {}, dot.label));
+      if (short(dot.label) !== dot.label) text.append(draw("title", {}, dot.label));
       group.append(text);
     }
     group.addEventListener("pointerdown", (event) => this.begin(event, name, x, y));
@@ -207,6 +209,11 @@ function named(dot: Dot): string {
 
 function short(label: string): string {
   return label.length <= 26 ? label : `…${label.slice(-25)}`;
+}
+
+/** A label as it is heard: what is written of it, and all of it where that is not the same. */
+function written(label: string): string {
+  return short(label) === label ? label : `${short(label)}: ${label}`;
 }
 
 function x_of(column: number): number {
