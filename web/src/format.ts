@@ -1,6 +1,6 @@
 // Values as they are read: with the digits that one can distinguish, which do not jump while the value moves.
 
-import { language, say } from "./say";
+import { language, own, say } from "./say";
 import type { Signal } from "./session";
 
 /** What stands between the whole part of a number and the rest. */
@@ -108,8 +108,10 @@ export function is_whole(type: string): boolean {
 /** A value of a signal with its name, if the signal names its values, and its unit. */
 export function shown(signal: Signal, value: number | undefined): string {
   if (value === undefined) return "–";
-  if (signal.type === "BOOL") return signal.names.get(value === 0 ? 0 : 1) ?? (value === 0 ? "FALSE" : "TRUE");
-  return signal.names.get(value) ?? in_form(value, form_of(signal, value));
+  const name = signal.names.get(signal.type !== "BOOL" ? value : value === 0 ? 0 : 1);
+  if (name !== undefined) return own(name);
+  if (signal.type === "BOOL") return value === 0 ? "FALSE" : "TRUE";
+  return in_form(value, form_of(signal, value));
 }
 
 /** A value in full, for those who must know all of it. */

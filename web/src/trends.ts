@@ -1,6 +1,6 @@
 // Trends: signals over virtual time, two cursors and their difference, events and verdicts, the moment that is shown.
 
-import { say } from "./say";
+import { own, say } from "./say";
 import uPlot from "uplot";
 import { broken, button, make } from "./dom";
 import { form_for, form_of, in_form, is_whole, local, seconds_of, shown } from "./format";
@@ -173,7 +173,7 @@ export class TrendsView {
   private options(about: Signal, lane: number): uPlot.Options {
     const isBool = about.type === "BOOL";
     const write = (value: number): string => {
-      if (about.names.size > 0) return about.names.get(value) ?? "";
+      if (about.names.size > 0) return own(about.names.get(value) ?? "");
       // An axis has the prefix of what is read beside it, and as many places as its marks need.
       const form = form_of(about, 0);
       return local(String(Number((value / form.by).toPrecision(4))));
