@@ -17,7 +17,7 @@ async function look_at(name) {
     for (const [width, height] of SIZES) {
       const page = await browser.newPage({ viewport: { width, height }, colorScheme: "light" });
       const errors = [];
-      page.on("pageerror", (error) => errors.push(String(error)));
+      page.on("pageerror", (error) => errors.push(String(error.stack ?? error)));
       await page.goto(urls[0]);
       await page.waitForFunction(() => window.onescan?.drawn() > 0 && window.onescan.picture().step > 5);
       for (const theme of ["light", "dark"]) {

@@ -27,6 +27,9 @@ const WIDE = 0.8;
 /** A floor does not lie above others by more than this share of the height of all. */
 const LOW = 0.05;
 
+/** The least and the greatest of many: more than a call can have as its arguments. */
+const least = (all: readonly number[]): number => all.reduce((found, one) => Math.min(found, one), Infinity);
+const greatest = (all: readonly number[]): number => all.reduce((found, one) => Math.max(found, one), -Infinity);
 const size = ({ low, high }: Room): Vec3 => [high[0] - low[0], high[1] - low[1], high[2] - low[2]];
 const dot = (a: Vec3, b: Vec3): number => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 
@@ -35,8 +38,8 @@ export function together(rooms: readonly Room[]): Room | null {
   const side = (of: (axis: number) => number): Vec3 => [of(0), of(1), of(2)];
   if (rooms.length === 0) return null;
   return {
-    low: side((axis) => Math.min(...rooms.map((one) => one.low[axis] as number))),
-    high: side((axis) => Math.max(...rooms.map((one) => one.high[axis] as number))),
+    low: side((axis) => least(rooms.map((one) => one.low[axis] as number))),
+    high: side((axis) => greatest(rooms.map((one) => one.high[axis] as number))),
   };
 }
 
@@ -74,14 +77,14 @@ export function camera_for(points: readonly Vec3[], gaze: Gaze, half_height: num
   const depths = points.map((point) => dot(point, gaze.ahead));
   const along = (axis: Vec3, half: number): { low: number; high: number; back: number; half: number } => {
     const offsets = points.map((point) => dot(point, axis));
-    const low = Math.max(...offsets.map((offset, at) => offset - half * (depths[at] as number)));
-    const high = Math.min(...offsets.map((offset, at) => offset + half * (depths[at] as number)));
+    const low = greatest(offsets.map((offset, at) => offset - half * (depths[at] as number)));
+    const high = least(offsets.map((offset, at) => offset + half * (depths[at] as number)));
     return { low, high, half, back: (high - low) / (2 * half) };
   };
   const sideways = along(gaze.right, half_height * aspect * share);
   const upwards = along(gaze.up, half_height * share);
   // A flat machine seen from its edge would be at no distance at all.
-  const depth = Math.min(sideways.back, upwards.back, Math.min(...depths) - 1e-3);
+  const depth = Math.min(sideways.back, upwards.back, least(depths) - 1e-3);
   const x = (sideways.low + sideways.high) / 2;
   const y = (upwards.low + upwards.high) / 2;
   const at = (axis: number): number => x * (gaze.right[axis] as number) + y * (gaze.up[axis] as number) + depth * (gaze.ahead[axis] as number);

@@ -107,6 +107,9 @@ export function level(value: number, [low, high]: readonly [number, number], col
   return Math.min(colours - 1, Math.max(0, Math.floor(part * colours)));
 }
 
+/** Beyond this, marks of an axis are closer than numbers can tell them apart. */
+const COUNTED_MOST = 1e12;
+
 /** Round values within a range, as many as asked for or fewer. */
 export function ticks([low, high]: readonly [number, number], most: number): readonly number[] {
   const rough = (high - low) / most;
@@ -114,6 +117,8 @@ export function ticks([low, high]: readonly [number, number], most: number): rea
   const power = 10 ** Math.floor(Math.log10(rough));
   const step = [1, 2, 5, 10].map((factor) => factor * power).find((one) => one >= rough * (1 - 1e-9)) ?? 10 * power;
   const first = Math.ceil(low / step - 1e-9);
+  // Values that differ in their last digits only: there are no round ones between them, and counting would not get on.
+  if (Math.abs(first) > COUNTED_MOST) return [];
   const marks: number[] = [];
   for (let index = first; index * step <= high + step * 1e-9; index += 1) marks.push(Number((index * step).toPrecision(12)));
   return marks;

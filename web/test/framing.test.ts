@@ -56,3 +56,8 @@ test("the room of nothing is nothing", () => {
   const one: Room = box([1, 2, 3], [2, 2, 2]);
   assert.deepEqual(together([one]), { low: [0, 1, 2], high: [2, 3, 4] });
 });
+
+test("many bodies are framed, more than a call has arguments", () => {
+  const rooms = Array.from({ length: 300_000 }, (_, index): Room => ({ low: [index, 0, 0], high: [index + 1, 1, 1] }));
+  assert.deepEqual(together(rooms), { low: [0, 0, 0], high: [300_000, 1, 1] });
+});

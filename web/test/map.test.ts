@@ -47,6 +47,8 @@ test("axes are marked at round values", () => {
   assert.deepEqual(ticks([-0.05, 0.21], 5), [0, 0.1, 0.2]);
   assert.deepEqual(ticks([17, 380], 5), [100, 200, 300]);
   assert.deepEqual(ticks([1, 1], 5), []);
+  // Equal but for the last digit: counting from one to the next would never end.
+  assert.deepEqual(ticks([20, 20.000000000000004], 5), []);
 });
 
 test("a place is described with its unit", () => {
