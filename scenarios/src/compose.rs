@@ -181,6 +181,9 @@ impl Scenario {
         sources: &[String],
         dialect: Option<Dialect>,
     ) -> Result<Vec<Input>, ScenarioError> {
+        if let Some(program) = self.programs.of(name) {
+            return Ok(program.iter().map(|input| input.clone().read_as(dialect, self.word_size(name))).collect());
+        }
         sources.iter().map(|source| self.source(name, source, dialect)).collect()
     }
 

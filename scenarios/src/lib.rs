@@ -28,6 +28,7 @@
 //! | [`lesson`] | `lessons.toml`: what operators are trained in |
 //! | [`schema`] | the JSON schemas of both files |
 //! | [`compose`] | a scenario's plan and its clients |
+//! | `program` | other programs in the place of those that it names |
 //! | [`mistake`] | a small mistake in the program of a soft PLC |
 //! | `mistaken` | the scenario with it |
 //! | `mutants` | its cases, with the mutants that campaigns try |
@@ -44,7 +45,8 @@
 //! | [`expect`] | what a run must show: signal temporal logic |
 //! | [`report`] | what a run produced, and what held it up |
 //! | [`mode`] | in lockstep or not |
-//! | [`template`] | scenarios to begin with, as texts |
+//! | [`template`], [`task`] | scenarios to begin with, and machines to learn on, as texts |
+//! | [`handed_out`] | which files of a task are for those who solve it |
 //! | [`error`] | what can be wrong with it, and where |
 //!
 //! Invariants. This is the only crate that reads scenario files. It starts no process, runs no session
@@ -67,6 +69,7 @@ pub mod file;
 mod files;
 mod form;
 pub mod gateway;
+pub mod handed_out;
 mod keys;
 pub mod lesson;
 pub mod load;
@@ -87,12 +90,14 @@ pub mod panel_picture;
 pub mod permission;
 mod ports;
 pub mod ports_file;
+mod program;
 mod refusal;
 pub mod report;
 pub mod report_file;
 pub mod schema;
 pub mod start;
 mod structure;
+pub mod task;
 pub mod template;
 mod texts;
 mod timed;

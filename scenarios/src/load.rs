@@ -27,6 +27,7 @@ use super::look::Looks;
 use super::map;
 use super::missing;
 use super::mistake::Mistake;
+use super::program::Programs;
 use super::report::Measures;
 use super::start::{self, StartLogic};
 use super::timing::Timing;
@@ -91,9 +92,11 @@ pub struct Scenario {
     /// What may be varied.
     varied: Varied,
     /// Its soft PLCs, as far as they have been compiled.
-    compilations: Compilations,
+    pub(crate) compilations: Compilations,
     /// What is wrong on purpose with the program of one of them.
     mistake: Option<Arc<Mistake>>,
+    /// Programs in the place of those that its file names.
+    pub(crate) programs: Programs,
 }
 
 /// True if a path is that of a scenario: a folder with a `scenario.toml`, or a file in TOML.
@@ -176,6 +179,7 @@ impl Scenario {
             varied,
             compilations: Compilations::default(),
             mistake: None,
+            programs: Programs::default(),
         };
         scenario.panel_disturbances()?;
         scenario.checked()?.pictured()

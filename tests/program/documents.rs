@@ -39,7 +39,7 @@ const FORMATS: &[&str] = &["trajectory", "state", "signals"];
 /// Commands that ask another program, serve until they are ended, or take minutes: each has tests of its own, here its
 /// words are looked at.
 const READ: &[&str] = &[
-    "bisect", "browse", "campaign", "control", "edit", "explore", "falsify", "join", "minimise", "mutate", "plc",
+    "bisect", "browse", "campaign", "control", "edit", "explore", "falsify", "grade", "join", "minimise", "mutate", "plc",
     "review", "shot", "test", "train", "view",
 ];
 

@@ -33,6 +33,7 @@ mod formats;
 mod freewheel;
 mod gantry_robot;
 mod github;
+mod grade;
 mod help;
 mod instrument;
 mod kept;

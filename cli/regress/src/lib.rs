@@ -6,6 +6,7 @@
 //! | [`bisect`] | the commit since which a run is another |
 //! | [`diff`] | where two recordings or snapshots part, and why |
 //! | [`regress`] | all cases run, compared with reviewed snapshots, reported |
+//! | [`grade`] | programs that were handed in for a task, marked |
 //! | [`check`] | PLC sources checked without being run |
 //! | [`why`] | the way from a signal back to the statement in which two runs part |
 //! | [`repository`] | what a scenario was at other commits |
@@ -14,6 +15,7 @@
 pub mod bisect;
 pub mod check;
 pub mod diff;
+pub mod grade;
 pub mod regress;
 pub mod repository;
 pub mod review;

@@ -13,6 +13,8 @@ pub mod section;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use sha2::{Digest as _, Sha256};
 
+use crate::table::Table;
+
 pub use coverage::CoveredFile;
 pub use section::{Event, Mood, Picture, Section, Shown};
 
@@ -32,6 +34,8 @@ pub struct Page {
     /// How long it all took; empty if that is not known.
     pub wall: String,
     pub sections: Vec<Section>,
+    /// What stands first, a row for each section, in place of their results and steps.
+    pub contents: Option<Table>,
     /// Files of the PLC's code; none where nothing was noted.
     pub coverage: Vec<CoveredFile>,
     /// What draws charts in place of pictures that have the data for it; without it, the pictures stay.
@@ -49,7 +53,7 @@ pub struct ChartScript {
 impl Page {
     /// The page as HTML.
     pub fn to_html(&self) -> String {
-        let Self { title, totals, summary, wall, sections, coverage, charts } = self;
+        let Self { title, totals, summary, wall, sections, contents: own, coverage, charts } = self;
         let has_data = sections.iter().flat_map(|section| &section.pictures).any(|picture| picture.chart.is_some());
         let charts = charts.filter(|_| has_data);
         let script = charts.map(|charts| printable(charts.script));
@@ -79,7 +83,11 @@ impl Page {
                         p class="made" { (made) }
                     } (LINE)
                     main { (LINE)
-                        @if sections.len() > 1 { (contents(sections)) (LINE) }
+                        @if let Some(table) = own {
+                            (own_contents(table, sections)) (LINE)
+                        } @else if sections.len() > 1 {
+                            (contents(sections)) (LINE)
+                        }
                         @for (index, section) in sections.iter().enumerate() { (section.markup(index)) (LINE) }
                         @if !coverage.is_empty() { (coverage::markup(coverage)) (LINE) }
                     } (LINE)
@@ -130,6 +138,26 @@ fn contents(sections: &[Section]) -> Markup {
                     td class=(section.mood.class()) { (section.status) }
                     td { (section.virtual_time) }
                     td { @if let Some(steps) = section.steps { (steps) } }
+                } (LINE)
+            }
+        }
+    }
+}
+
+/// A table with a row for each section.
+fn own_contents(table: &Table, sections: &[Section]) -> Markup {
+    html! {
+        table class="contents" {
+            thead { tr { th { (table.title) } @for head in &table.head { th { (&**head) } } } } (LINE)
+            @for (index, (row, section)) in table.rows.iter().zip(sections).enumerate() {
+                tr class=(section.mood.of()) {
+                    @for (column, cell) in row.iter().enumerate() {
+                        @match column {
+                            0 => td { a href=(format!("#t{index}")) { (cell) } },
+                            1 => td class=(section.mood.class()) { (cell) },
+                            _ => td { (cell) },
+                        }
+                    }
                 } (LINE)
             }
         }

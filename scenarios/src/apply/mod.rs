@@ -31,6 +31,7 @@ use crate::case::file::CaseFile;
 use crate::case::written::Written;
 use crate::case::{Applied, Case, Catalogue, FILE_NAME, Injection, Setting};
 use crate::error::{ScenarioError, wrong};
+use crate::expectations::Owner;
 use crate::file::ClientFile;
 use crate::load::Scenario;
 
@@ -145,12 +146,13 @@ impl Scenario {
             let help = did_you_mean(waived.get_ref(), names);
             let before = expectations.named.len();
             expectations.named.retain(|(name, _)| name != waived.get_ref());
+            expectations.worth.remove(waived.get_ref());
             if expectations.named.len() == before {
                 let message = format!("the scenario has no expectation `{}`", waived.get_ref());
                 return Err(catalogue.wrong(message, Some(waived.span()), help));
             }
         }
-        let added = expectations.add(self.file(), &entry.expect, &catalogue.source().1);
+        let added = expectations.add(self.file(), (&entry.expect, Owner::Case), &catalogue.source().1);
         added.map_err(|found| catalogue.wrong(found.message, Some(found.place), found.help))?;
         self.set_expectations(expectations);
         Ok(())

@@ -15,11 +15,12 @@ use super::doctor::DoctorArgs;
 use super::error::CommandError;
 use super::explore::ExploreArgs;
 use super::falsify::FalsifyArgs;
+use super::grade::{GradeArgs, GradeWorkerArgs};
 use super::manual::{CompletionsArgs, HelpArgs, ManArgs};
 use super::minimise::MinimiseArgs;
 use super::model::ModelArgs;
 use super::mutate::MutateArgs;
-use super::plant::{ComponentsArgs, DescribeArgs, EditArgs, NewArgs, ShowArgs, WiringArgs};
+use super::plant::{ComponentsArgs, DescribeArgs, EditArgs, NewArgs, ShowArgs, TemplatesArgs, WiringArgs};
 use super::plc::{BrowseArgs, MapArgs, PlcArgs};
 use super::recording::{BisectArgs, DiffArgs, ExportArgs, ReportArgs, ViewArgs};
 use super::run::RunArgs;
@@ -29,7 +30,7 @@ use super::source::{CheckArgs, ExplainArgs, InstrumentArgs};
 use super::test::{ReviewArgs, TestArgs, WorkerArgs};
 use super::train::TrainArgs;
 use super::{
-    access, campaign, compare, doctor, explore, falsify, groups, manual, minimise, model, mutate, plant, plc,
+    access, campaign, compare, doctor, explore, falsify, grade, groups, manual, minimise, model, mutate, plant, plc,
     recording, run, session, shot, source, test, train,
 };
 use onescan_runner::error::ExitCode;
@@ -144,6 +145,11 @@ pub enum Command {
     /// One test, for `test`
     #[command(hide = true)]
     TestWorker(WorkerArgs),
+    /// Mark programs that were handed in for a task: each runs in every case, in a process with limits
+    Grade(Box<GradeArgs>),
+    /// One submission, for `grade`
+    #[command(hide = true)]
+    GradeWorker(GradeWorkerArgs),
     /// Ends the processes of a session that cannot do so itself
     #[command(hide = true)]
     Guard,
@@ -189,8 +195,10 @@ pub enum Command {
     Show(ShowArgs),
     /// Wire a scenario and build its machine in a browser of this machine; both are written into its files
     Edit(EditArgs),
-    /// Write a scenario that runs at once, to begin with: a small one, or one made of an I/O list
+    /// Write a scenario that runs at once, to begin with: a small one, a task to learn on, or one made of an I/O list
     New(NewArgs),
+    /// List what `new` writes: small scenarios to begin with, and tasks to learn on
+    Templates(TemplatesArgs),
     /// Show the states by which a session runs, or write them as a model for the model checker NuSMV
     Model(ModelArgs),
     /// Explain a code of `check`, with an example that is wrong and one that is right
@@ -205,11 +213,11 @@ pub enum Command {
     Man(ManArgs),
 }
 
-/// Does what was typed.
+/// Does what was typed; `verbose` is how often somebody asked for more to be said.
 ///
 /// # Errors
 /// See [`CommandError`].
-pub fn dispatch(command: Command) -> Result<ExitCode, CommandError> {
+pub fn dispatch(command: Command, verbose: u8) -> Result<ExitCode, CommandError> {
     match command {
         Command::Run(args) => run::run(*args),
         Command::Compare(args) => compare::compare(args),
@@ -224,6 +232,8 @@ pub fn dispatch(command: Command) -> Result<ExitCode, CommandError> {
         Command::CampaignWorker(args) => campaign::work(args),
         Command::Review(args) => test::review(args),
         Command::TestWorker(args) => test::work(args),
+        Command::Grade(args) => grade::grade(*args, verbose),
+        Command::GradeWorker(args) => grade::work(args),
         Command::Guard => Ok(session::guard()),
         Command::Join(args) => session::join(&args),
         Command::Control(args) => session::control(&args),
@@ -245,6 +255,7 @@ pub fn dispatch(command: Command) -> Result<ExitCode, CommandError> {
         Command::Show(args) => plant::show(args),
         Command::Edit(args) => plant::edit(args),
         Command::New(args) => plant::new(args),
+        Command::Templates(args) => plant::templates(&args),
         Command::Model(args) => model::model(args),
         Command::Explain(args) => source::explain(&args),
         Command::Doctor(args) => doctor::doctor(&args),

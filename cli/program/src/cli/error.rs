@@ -15,6 +15,7 @@ use onescan_edit::wiring::WiringError;
 use onescan_regress::bisect::BisectError;
 use onescan_regress::check::CheckError;
 use onescan_regress::diff::DiffError;
+use onescan_regress::grade::GradeError;
 use onescan_regress::regress::TestError;
 use onescan_regress::review::ReviewError;
 use onescan_runner::access::AccessError;
@@ -37,6 +38,9 @@ sum_of_errors! {
         /// `test` came to nothing.
         #[diagnostic(transparent)]
         Test(TestError),
+        /// `grade` came to nothing.
+        #[diagnostic(transparent)]
+        Grade(GradeError),
         /// `campaign` came to nothing.
         #[diagnostic(transparent)]
         Campaign(CampaignError),

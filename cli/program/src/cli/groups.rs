@@ -10,6 +10,7 @@ const GROUPS: &[Group] = &[
         "Begin",
         &[
             ("new", "write a scenario that runs at once, or one made of an I/O list"),
+            ("templates", "list what `new` writes: beginnings, and tasks to learn on"),
             ("check", "check PLC sources without running them"),
             ("explain", "explain a code of `check`, with examples"),
             ("run", "run a scenario and print the digest of its trajectories"),
@@ -21,6 +22,7 @@ const GROUPS: &[Group] = &[
             ("test", "run scenarios, cases, test programs; compare with snapshots"),
             ("review", "look at new and changed snapshots; accept or reject"),
             ("bisect", "find the commit and statement that changed a scenario"),
+            ("grade", "mark programs that were handed in for a task"),
             ("mutate", "make small mistakes in the PLC's program: are they noticed?"),
         ],
     ),

@@ -12,6 +12,7 @@
 //! | [`minimise`] | the least of a case that still fails |
 //! | [`train`] | lessons |
 //! | [`test`] | all scenarios, and test programs |
+//! | [`grade`] | programs that were handed in |
 //! | [`session`] | a session that another process serves |
 //! | [`recording`] | what was recorded |
 //! | [`source`] | PLC sources |
@@ -34,6 +35,7 @@ pub mod doctor;
 mod error;
 pub mod explore;
 pub mod falsify;
+pub mod grade;
 mod groups;
 mod log_writer;
 mod logging;
@@ -75,7 +77,7 @@ pub fn main() -> std::process::ExitCode {
     onescan_opc_ua::install();
     render_errors_in_one_piece();
     // What is still buffered must not be lost in silence when the process ends.
-    let done = args::dispatch(args.command)
+    let done = args::dispatch(args.command, args.verbose)
         .and_then(|code| std::io::stdout().flush().map(|()| code).map_err(|source| OutputError(source).into()));
     let code = match done {
         Ok(code) => code,

@@ -1,9 +1,10 @@
-//! With scenes and scenarios: `onescan components`, `describe`, `wiring`, `show`, `edit` and `new`.
+//! With scenes and scenarios: `onescan components`, `describe`, `wiring`, `show`, `edit`, `new` and `templates`.
 
 use std::net::SocketAddr;
 use std::path::PathBuf;
 
 use clap::{Args as ClapArgs, ValueEnum};
+use onescan_report::OutputError;
 use onescan_report::view::Side;
 
 use super::error::CommandError;
@@ -184,9 +185,12 @@ pub struct NewArgs {
     /// What to begin with
     #[arg(long, value_enum, default_value_t)]
     pub template: TemplateArg,
+    /// A task to learn on, without its solutions: one that `onescan templates` lists, or a folder
+    #[arg(long, value_name = "NAME|FOLDER", conflicts_with = "template")]
+    pub task: Option<String>,
     /// Make it of an I/O list: a TwinCAT project, an ENI, a tag table of TIA Portal, an I/O mapping of CODESYS,
     /// PLC sources (PLCopen XML too), or a PLC that can be browsed
-    #[arg(long, value_name = "FILE|FOLDER|URL", conflicts_with = "template")]
+    #[arg(long, value_name = "FILE|FOLDER|URL", conflicts_with_all = ["template", "task"])]
     pub from: Option<String>,
     /// What wrote the list [default: what its name and text say]
     #[arg(long = "as", value_name = "KIND", value_enum, requires = "from")]
@@ -272,6 +276,32 @@ pub fn new(args: NewArgs) -> Result<ExitCode, CommandError> {
         new::from_list::write(&config, &mut out)?;
         return Ok(ExitCode::Ok);
     }
+    if let Some(task) = args.task {
+        new::task::write(&args.folder, &task, &mut out)?;
+        return Ok(ExitCode::Ok);
+    }
     new::write(&args.folder, args.template.into(), &mut out)?;
+    Ok(ExitCode::Ok)
+}
+
+/// Options of `templates`.
+#[derive(Debug, ClapArgs)]
+pub struct TemplatesArgs {
+    /// For people, or JSON for machines
+    #[arg(long, value_enum, default_value_t)]
+    pub format: FormatArg,
+}
+
+/// Lists what `new` writes.
+///
+/// # Errors
+/// See [`CommandError`].
+pub fn templates(args: &TemplatesArgs) -> Result<ExitCode, CommandError> {
+    let of = |arg: &TemplateArg| {
+        let value = arg.to_possible_value()?;
+        Some((value.get_name().to_owned(), value.get_help().map(ToString::to_string).unwrap_or_default()))
+    };
+    let templates: Vec<(String, String)> = TemplateArg::value_variants().iter().filter_map(of).collect();
+    new::task::list(&templates, args.format.into(), &mut std::io::stdout().lock()).map_err(OutputError)?;
     Ok(ExitCode::Ok)
 }

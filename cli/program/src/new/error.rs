@@ -3,7 +3,8 @@
 use onescan_report::{FileError, OutputError};
 
 use crate::io_list::ListError;
-use onescan_runner::error::{Usage, sum_of_errors};
+use onescan_runner::error::{Unreadable, Usage, sum_of_errors};
+use onescan_scenario::ScenarioError;
 
 sum_of_errors! {
     /// Why there is no new scenario.
@@ -14,6 +15,11 @@ sum_of_errors! {
         /// The I/O list cannot be read.
         #[diagnostic(transparent)]
         List(ListError),
+        /// The task is wrong.
+        #[diagnostic(transparent)]
+        Scenario(ScenarioError),
+        /// A file of the task cannot be read.
+        Unreadable(Unreadable),
         /// A file cannot be written.
         File(FileError),
         /// The report cannot be written.

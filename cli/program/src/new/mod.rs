@@ -7,12 +7,14 @@
 //! | [`signal`] | what a list becomes: signals, and who runs as the PLC |
 //! | `text` | the files of such a scenario |
 //! | [`listed`] | what was taken over and what was not |
+//! | [`task`] | a task to learn on, without its solutions |
 
 mod error;
 pub mod from_list;
 pub mod listed;
 mod names;
 pub mod signal;
+pub mod task;
 mod text;
 
 use std::io::Write;

@@ -79,7 +79,10 @@ fn cause(unit: &CaseUnit, outcome: &Outcome, references: &mut References) -> Res
         why = why::explain(sides.each_ref(), &signals, end)?;
     }
     let Some(why) = why else { return Ok(None) };
-    let (lines, root) = lines(&why, &commit);
+    let Lines { mut lines, root, more } = Lines::of(&why, &Runs::since(&commit));
+    if more > 0 {
+        lines.push(format!("  ... and {more} more: see `onescan diff`"));
+    }
     let folder = shown(unit.place.folder());
     let place = why.root().and_then(|root| root.at[1].as_ref().or(root.at[0].as_ref()));
     let place = place.map(|place| SourcePlace { file: within(&folder, &place.file), line: place.line, column: 1 });
@@ -99,26 +102,32 @@ fn asked(outcome: &Outcome) -> (Vec<SignalName>, Option<VirtualTime>) {
 }
 
 /// The way back in short: where the runs part, in so many lines, then how it comes to the signal.
-fn lines(why: &Why, commit: &str) -> (Vec<String>, usize) {
-    let runs = Runs::since(commit);
-    let mut lines = Vec::new();
-    if let Some(root) = why.root() {
-        lines.push(format!("the PLC parts from {commit} here:"));
-        lines
-            .extend(root.at.iter().zip(&runs.names).filter_map(|(place, name)| Some(statement(name, place.as_ref()?))));
-        lines.push(format!("  {}", reason(root, &runs)));
+pub(crate) struct Lines {
+    pub(crate) lines: Vec<String>,
+    /// So many of them are of the statement in which the runs part.
+    pub(crate) root: usize,
+    /// So many more links there are.
+    pub(crate) more: usize,
+}
+
+impl Lines {
+    pub(crate) fn of(why: &Why, runs: &Runs) -> Self {
+        let mut lines = Vec::new();
+        if let Some(root) = why.root() {
+            lines.push(format!("the PLC parts from {} here:", runs.names[0]));
+            let places = root.at.iter().zip(&runs.names);
+            lines.extend(places.filter_map(|(place, name)| Some(statement(name, place.as_ref()?))));
+            lines.push(format!("  {}", reason(root, runs)));
+        }
+        let root = lines.len();
+        let rest = why.links.iter().rev().skip(1);
+        lines.extend(rest.clone().take(STEPS).map(|record| {
+            let place = record.at[1].as_ref().or(record.at[0].as_ref());
+            let at = place.map(|place| format!(", {}:{}", place.file, place.line)).unwrap_or_default();
+            format!("  {}{at}", why::report::subject(record, runs))
+        }));
+        Self { lines, root, more: rest.count().saturating_sub(STEPS) }
     }
-    let root = lines.len();
-    let rest = why.links.iter().rev().skip(1);
-    lines.extend(rest.clone().take(STEPS).map(|record| {
-        let place = record.at[1].as_ref().or(record.at[0].as_ref());
-        let at = place.map(|place| format!(", {}:{}", place.file, place.line)).unwrap_or_default();
-        format!("  {}{at}", why::report::subject(record, &runs))
-    }));
-    if let Some(more @ 1..) = rest.count().checked_sub(STEPS) {
-        lines.push(format!("  ... and {more} more: see `onescan diff`"));
-    }
-    (lines, root)
 }
 
 fn statement(name: &str, Place { file, line, unit, text }: &Place) -> String {

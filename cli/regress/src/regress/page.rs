@@ -23,6 +23,7 @@ pub fn of_tests(report: &Report, coverage: &Coverage) -> Page {
         sections: report.outcomes.iter().map(section).collect(),
         coverage: covered(coverage),
         charts: charts(),
+        ..Page::default()
     }
 }
 

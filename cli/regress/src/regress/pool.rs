@@ -13,7 +13,7 @@ use serde::de::DeserializeOwned;
 use super::Selection;
 use super::config::{Progress, TestConfig};
 use super::error::TestError;
-use super::limited::Limited;
+use super::limited::{Limited, Limits, Said};
 use super::live::{self, Live};
 use super::plan::Unit;
 use super::ran::Worked;
@@ -99,21 +99,29 @@ pub fn answer<T: DeserializeOwned>(
     command: &mut Command,
     timeout: TimeSpan,
 ) -> Result<Result<T, (String, i32)>, SpawnError> {
-    let spawn = |source| SpawnError { client: "test".to_owned(), command: "onescan".to_owned(), source };
-    let limit = Duration::from_nanos(timeout.as_nanos());
-    let Some(output) = Limited::start(command).map_err(spawn)?.output(limit).map_err(spawn)? else {
+    let output = said(command, Limits::of_time(Duration::from_nanos(timeout.as_nanos())))?;
+    let Some(status) = output.status else {
         let error = format!("not done within {timeout}, which is the limit: it was ended (see `--timeout`)");
         return Ok(Err((error, ExitCode::Fault as i32)));
     };
     let said = || String::from_utf8_lossy(&output.stderr).trim_end().to_owned();
-    Ok(match (output.status.code(), serde_json::from_slice::<T>(&output.stdout)) {
+    Ok(match (status.code(), serde_json::from_slice::<T>(&output.stdout)) {
         (Some(0), Ok(answer)) => Ok(answer),
         (Some(code), _) if code != 0 => Err((said(), code)),
         _ => {
-            let error = format!("the process of the test ended with {}: {}", output.status, said());
+            let error = format!("the process of the test ended with {status}: {}", said());
             Err((error, ExitCode::Fault as i32))
         }
     })
+}
+
+/// What a process says within its limits, and how it ends.
+///
+/// # Errors
+/// It cannot be started.
+pub fn said(command: &mut Command, limits: Limits) -> Result<Said, SpawnError> {
+    let spawn = |source| SpawnError { client: "test".to_owned(), command: "onescan".to_owned(), source };
+    Limited::start(command, limits).and_then(Limited::output).map_err(spawn)
 }
 
 /// This program, to be started once more for a piece of work, with what scenarios may do.

@@ -120,7 +120,7 @@ impl From<Row> for Covered {
 
 impl Covered {
     /// Coverage as it is handed over.
-    pub(super) fn all(coverage: &Coverage) -> Vec<Self> {
+    pub(crate) fn all(coverage: &Coverage) -> Vec<Self> {
         coverage.rows().into_iter().map(Self::from).collect()
     }
 
