@@ -117,7 +117,7 @@ impl Graded {
         };
         let (mut found, mut is_done) = (Vec::new(), false);
         // The last line of a process that was ended may be a part of one.
-        let lines = said.stdout.split_inclusive(|byte| *byte == b'\n').filter_map(|line| serde_json::from_slice(line).ok());
+        let lines = said.stdout.split_inclusive(|byte| *byte == b'\n').filter_map(|line| serde_json::from_slice::<Line>(line).ok());
         for line in lines {
             match line {
                 Line::Read(read) => this.read = Some(read),

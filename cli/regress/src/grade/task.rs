@@ -136,6 +136,7 @@ impl Task {
         let entry = case.name.split(',').next().unwrap_or(&case.name).to_owned();
         let mut judged = Vec::new();
         for (name, _) in &applied.expectations().named {
+            // Each has one.
             let worth = applied.expectations().worth.get(name).cloned().unwrap_or_default();
             let of = case.entry.filter(|_| worth.owner == Owner::Case).map(|entry| (catalogue, entry));
             let is_hidden = of.is_some() && catalogue > 0;

@@ -99,7 +99,13 @@ fn run(task: &Task, scenario: &Scenario, case: &TaskCase) -> Ran {
     };
     let config = RunConfig::headless(task.scenario.path().to_owned(), Some(case.name.clone()));
     match watched(&config, &applied, &Interrupt::new(), Vec::new()) {
-        Ok((report, _)) => Ran::of(&case.name, &report, applied.file().step.as_nanos()),
+        Ok((report, _)) => sayable(Ran::of(&case.name, &report, applied.file().step.as_nanos())),
         Err(error) => failed(text_of(&error)),
     }
+}
+
+/// The same without values that JSON has no word for: a program may well make a NaN.
+fn sayable(mut ran: Ran) -> Ran {
+    ran.expectations.iter_mut().for_each(|shown| shown.values.retain(|(_, value)| value.is_finite()));
+    ran
 }
