@@ -3,6 +3,8 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use onescan_base::notice::NOTICE;
+use onescan_base::regular;
 use onescan_iec::input::kind::FileKind;
 use onescan_scenario::case::OWN_ENDING;
 use onescan_scenario::load::FILE_NAME;
@@ -17,6 +19,8 @@ pub struct Found {
     pub scenarios: Vec<PathBuf>,
     /// PLC sources, which are one program together.
     pub sources: Vec<PathBuf>,
+    /// Folders of tasks that were found in a folder: their programs are yet to be written, and their solutions are scenarios.
+    pub tasks: Vec<PathBuf>,
 }
 
 impl Found {
@@ -34,6 +38,14 @@ impl Found {
         let mut once = |path: &PathBuf| seen.insert(path.canonicalize().unwrap_or_else(|_| path.clone()));
         found.scenarios.retain(&mut once);
         found.sources.retain(&mut once);
+        if let [first, others @ ..] = &found.tasks[..] {
+            let more = if others.is_empty() { String::new() } else { format!(" and {} more", others.len()) };
+            tracing::info!(
+                target: NOTICE,
+                "{}{more}: a task's program is yet to be written; its solutions are tested, `onescan grade` marks others",
+                first.display()
+            );
+        }
         Ok(found)
     }
 
@@ -41,8 +53,8 @@ impl Found {
         let meta = std::fs::metadata(path).map_err(Unreadable::at(path))?;
         if meta.is_dir() {
             let before = self.scenarios.len();
-            gather(path, &mut self.scenarios)?;
-            if self.scenarios.len() == before {
+            gather(path, self)?;
+            if self.scenarios.len() == before && self.tasks.is_empty() {
                 self.sources.push(path.to_owned());
             }
         } else if path.file_name().is_some_and(|name| name == FILE_NAME) {
@@ -64,10 +76,15 @@ impl Found {
 const PASSED_OVER: [&str; 3] = ["target", "node_modules", "templates"];
 
 /// All scenarios in a folder and below it, without hidden folders.
-fn gather(folder: &Path, found: &mut Vec<PathBuf>) -> Result<(), TestError> {
+fn gather(folder: &Path, found: &mut Found) -> Result<(), TestError> {
     if folder.join(FILE_NAME).is_file() {
-        found.push(folder.to_owned());
-        found.extend(with_own_cases(folder)?);
+        if is_task(folder) {
+            found.tasks.push(folder.to_owned());
+            found.scenarios.extend(solutions(folder)?);
+        } else {
+            found.scenarios.push(folder.to_owned());
+            found.scenarios.extend(with_own_cases(folder)?);
+        }
         return Ok(());
     }
     let failed = Unreadable::at(folder);
@@ -82,6 +99,35 @@ fn gather(folder: &Path, found: &mut Vec<PathBuf>) -> Result<(), TestError> {
     }
     inner.sort();
     inner.iter().try_for_each(|folder| gather(folder, found))
+}
+
+/// True for a scenario whose expectations have marks: a task, which `onescan grade` judges.
+fn is_task(folder: &Path) -> bool {
+    let has_marks = |file: &str| {
+        // What cannot be read is reported as a scenario.
+        let text = regular::read_text(&folder.join(file)).ok();
+        text.is_some_and(|text| text.lines().any(|line| is_key(line, "marks")))
+    };
+    has_marks(FILE_NAME) || has_marks("cases.toml")
+}
+
+fn is_key(line: &str, key: &str) -> bool {
+    line.trim_start().strip_prefix(key).is_some_and(|rest| rest.trim_start().starts_with('='))
+}
+
+/// The scenarios of a task's folder that take in the task itself, by name: its solutions.
+fn solutions(folder: &Path) -> Result<Vec<PathBuf>, TestError> {
+    let failed = Unreadable::at(folder);
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(&failed)? {
+        let path = entry.map_err(&failed)?.path();
+        let is_other = path.extension().is_some_and(|ending| ending == "toml") && !path.ends_with(FILE_NAME);
+        if is_other && regular::read_text(&path).is_ok_and(|text| text.lines().any(|line| is_key(line, "base"))) {
+            found.push(path);
+        }
+    }
+    found.sort();
+    Ok(found)
 }
 
 /// The scenarios of other names in a folder that have cases of their own, by name.
