@@ -3,6 +3,7 @@
 use onescan_report::{FileError, OutputError};
 
 use crate::io_list::ListError;
+use crate::plant::PlantError;
 use onescan_runner::error::{Unreadable, Usage, sum_of_errors};
 use onescan_scenario::ScenarioError;
 
@@ -18,6 +19,9 @@ sum_of_errors! {
         /// The task is wrong.
         #[diagnostic(transparent)]
         Scenario(ScenarioError),
+        /// The machine of the task cannot be drawn.
+        #[diagnostic(transparent)]
+        Plant(PlantError),
         /// A file of the task cannot be read.
         Unreadable(Unreadable),
         /// A file cannot be written.

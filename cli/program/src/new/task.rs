@@ -7,6 +7,7 @@ use onescan_base::regular::{self, Limit};
 use onescan_report::OutputError;
 use onescan_report::file::{Write as Output, write_all_whole};
 use onescan_report::table;
+use onescan_report::view::Side;
 use onescan_scenario::Scenario;
 use onescan_scenario::file::ClientFile;
 use onescan_scenario::handed_out::is_handed_out;
@@ -16,8 +17,12 @@ use onescan_server::signal::did_you_mean;
 use serde_json::json;
 
 use super::{NewError, name_of};
+use crate::plant::describe::{self, DescribeConfig};
 use onescan_runner::error::{Unreadable, Usage};
 use onescan_runner::format::Format;
+
+/// The drawing of the machine that a sheet shows.
+const DRAWING: &str = "machine.svg";
 
 /// Writes a task into a folder that must not be there, and says what comes next.
 ///
@@ -33,6 +38,11 @@ pub fn write(folder: &Path, task: &str, out: &mut dyn Write) -> Result<(), NewEr
     write_all_whole(&files.iter().map(output).collect::<Vec<_>>())?;
     for (file, _) in &files {
         writeln!(out, "{}", folder.join(file).display()).map_err(OutputError)?;
+    }
+    let drawing = folder.join(DRAWING);
+    if !drawing.exists() {
+        let (path, svg, side) = (folder.to_owned(), Some(drawing), Side::default());
+        describe::write(&DescribeConfig { path, format: Format::Human, svg, side, dynamics: false }, &mut io::sink())?;
     }
     Ok(next(folder, &Scenario::load(folder)?, out).map_err(OutputError)?)
 }

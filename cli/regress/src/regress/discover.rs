@@ -7,6 +7,7 @@ use onescan_base::notice::NOTICE;
 use onescan_base::regular;
 use onescan_iec::input::kind::FileKind;
 use onescan_scenario::case::OWN_ENDING;
+use onescan_scenario::handed_out::is_solution;
 use onescan_scenario::load::FILE_NAME;
 
 use super::error::TestError;
@@ -115,16 +116,13 @@ fn is_key(line: &str, key: &str) -> bool {
     line.trim_start().strip_prefix(key).is_some_and(|rest| rest.trim_start().starts_with('='))
 }
 
-/// The scenarios of a task's folder that take in the task itself, by name: its solutions.
+/// The scenarios of a task's folder with its solutions, by name.
 fn solutions(folder: &Path) -> Result<Vec<PathBuf>, TestError> {
     let failed = Unreadable::at(folder);
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(&failed)? {
-        let path = entry.map_err(&failed)?.path();
-        let is_other = path.extension().is_some_and(|ending| ending == "toml") && !path.ends_with(FILE_NAME);
-        if is_other && regular::read_text(&path).is_ok_and(|text| text.lines().any(|line| is_key(line, "base"))) {
-            found.push(path);
-        }
+        let name = entry.map_err(&failed)?.file_name();
+        found.extend(is_solution(&name.to_string_lossy()).then(|| folder.join(name)));
     }
     found.sort();
     Ok(found)
