@@ -30,7 +30,9 @@ mod tests {
 
     #[test]
     fn solutions_stay_with_the_teacher() {
-        for file in ["scenario.toml", "cases.toml", "README.md", "skeleton/main.st", "components/lift.st", "machine.svg"] {
+        for file in
+            ["scenario.toml", "cases.toml", "README.md", "skeleton/main.st", "components/lift.st", "machine.svg"]
+        {
             assert!(is_handed_out(Path::new(file)), "{file}");
         }
         for file in [
@@ -49,6 +51,8 @@ mod tests {
     #[test]
     fn the_cases_of_a_solution_are_not_one() {
         assert!(is_solution("solution-st.toml"));
-        assert!(!is_solution("solution-st.cases.toml") && !is_solution("scenario.toml") && !is_solution("solution-st.md"));
+        assert!(
+            !is_solution("solution-st.cases.toml") && !is_solution("scenario.toml") && !is_solution("solution-st.md")
+        );
     }
 }

@@ -120,10 +120,19 @@ fn full_marks_none_and_what_lies_between() {
     let folder = folder.path();
     write(folder, "class/anna/main.st", RIGHT);
     write(folder, "class/ben.st", &with("Belt_On := waiting AND Cylinder_In AND NOT Push;", "Belt_On := TRUE;"));
-    write(folder, "class/carl.st", &with("    IF waiting", "    Push := TRUE; Belt_On := TRUE; RETURN;\n    IF waiting"));
+    write(
+        folder,
+        "class/carl.st",
+        &with("    IF waiting", "    Push := TRUE; Belt_On := TRUE; RETURN;\n    IF waiting"),
+    );
     write(folder, "class/dora.st", &with("NOT Push;", "NOT Pusch;"));
-    write(folder, "class/emil/skeleton/main.st", &std::fs::read_to_string(folder.join("belt/skeleton/main.st")).unwrap());
-    let said = typed(folder, &["grade", "belt", "class/anna", "class/ben.st", "class/carl.st", "class/dora.st", "class/emil"]);
+    write(
+        folder,
+        "class/emil/skeleton/main.st",
+        &std::fs::read_to_string(folder.join("belt/skeleton/main.st")).unwrap(),
+    );
+    let said =
+        typed(folder, &["grade", "belt", "class/anna", "class/ben.st", "class/carl.st", "class/dora.st", "class/emil"]);
     assert_eq!((said.code, said.err.as_str()), (Some(0), ""), "{said:?}");
     insta::assert_snapshot!("class", said.out);
     for name in ["ben.st", "dora.st"] {
@@ -157,7 +166,10 @@ fn the_statement_that_is_wrong_is_named() {
         assert!(all[0]["marks"].as_u64().unwrap() < 100, "{is}: {}", all[0]);
         let places = |of: &Value| -> Vec<Value> {
             let expectations = of["expectations"].as_array().unwrap().iter();
-            expectations.flat_map(|one| one["missed"].as_array().unwrap().clone()).map(|one| one["place"].clone()).collect()
+            expectations
+                .flat_map(|one| one["missed"].as_array().unwrap().clone())
+                .map(|one| one["place"].clone())
+                .collect()
         };
         let found = places(&all[0]);
         assert!(found.iter().any(|place| place["line"] == line), "{is}: {line} {found:?}");
@@ -179,7 +191,8 @@ fn hidden_cases_and_tags_change_what_is_marked() {
     let (all, statement, _) = graded(folder, &["--hidden", "belt/solutions/hidden.toml"]);
     assert_eq!((statement["of"].as_u64(), statement["cases"].as_u64()), (Some(110), Some(3)));
     assert_eq!(marks(&all)[0].1, 110, "{}", all[0]);
-    let hidden: Vec<&Value> = all[0]["expectations"].as_array().unwrap().iter().filter(|one| one["hidden"] == true).collect();
+    let hidden: Vec<&Value> =
+        all[0]["expectations"].as_array().unwrap().iter().filter(|one| one["hidden"] == true).collect();
     assert_eq!((hidden.len(), &hidden[0]["case"]), (1, &Value::from("jam")));
     let (_, of_folder, _) = graded(folder, &["--hidden", "belt/solutions"]);
     assert_eq!(of_folder["of"], 110);
@@ -196,9 +209,15 @@ fn hidden_cases_and_tags_change_what_is_marked() {
     }
     let said = typed(folder, &["grade", "belt", "class/nobody"]);
     assert_eq!(said.code, Some(2), "{said:?}");
-    let pass = |percent: &str| typed(folder, &["grade", "belt", "class/anna.st", "belt/skeleton/main.st", "--pass", percent]).code;
+    let pass = |percent: &str| {
+        typed(folder, &["grade", "belt", "class/anna.st", "belt/skeleton/main.st", "--pass", percent]).code
+    };
     assert_eq!([pass("30"), pass("31")], [Some(0), Some(1)]);
-    write(folder, "belt/cases.toml", &CASES.replace("tags =", "code = [{ source = \"skeleton/main.st\", by = \"x.st\" }]\ntags ="));
+    write(
+        folder,
+        "belt/cases.toml",
+        &CASES.replace("tags =", "code = [{ source = \"skeleton/main.st\", by = \"x.st\" }]\ntags ="),
+    );
     let said = typed(folder, &["grade", "belt", "class/anna.st"]);
     assert!(said.code == Some(2) && said.err.contains("has a program of its own"), "{said:?}");
     write(folder, "belt/cases.toml", "version = 1\n");
@@ -220,7 +239,11 @@ fn a_hostile_submission_loses_nobody_elses_marks() {
     write(folder, "class/divided.st", &own("Pushed := Pushed / (Pushed - Pushed);"));
     // Below what ends a scan, at each scan.
     let slow = "FOR i := 0 TO 3000000 DO j := j + i; END_FOR;";
-    write(folder, "class/slow.st", &own(slow).replace("waiting : BOOL := TRUE;", "waiting : BOOL := TRUE; i, j : DINT;"));
+    write(
+        folder,
+        "class/slow.st",
+        &own(slow).replace("waiting : BOOL := TRUE;", "waiting : BOOL := TRUE; i, j : DINT;"),
+    );
     let large = "waiting : BOOL := TRUE; a : ARRAY[0..250_000_000] OF LREAL;";
     write(folder, "class/large.st", &RIGHT.replace("waiting : BOOL := TRUE;", large));
     let line = "    Pushed := Pushed + 0;\n";
@@ -235,10 +258,16 @@ fn a_hostile_submission_loses_nobody_elses_marks() {
     }
     let (all, _, said) = graded(folder, &["--time-limit", "20s", "--memory-limit", "512"]);
     assert_eq!(said.code, Some(0), "{said:?}");
-    let of = |name: &str| all.iter().find(|one| one["submission"] == name).unwrap_or_else(|| panic!("{name}: {said:?}"));
+    let of =
+        |name: &str| all.iter().find(|one| one["submission"] == name).unwrap_or_else(|| panic!("{name}: {said:?}"));
     assert_eq!(of("anna"), &before[0]);
-    let error = |name: &str| of(name)["cases"][0]["error"].as_str().unwrap_or_else(|| panic!("{}", of(name))).to_owned();
-    assert!(error("endless").contains("endless") && error("endless").contains("class/endless.st:12"), "{}", error("endless"));
+    let error =
+        |name: &str| of(name)["cases"][0]["error"].as_str().unwrap_or_else(|| panic!("{}", of(name))).to_owned();
+    assert!(
+        error("endless").contains("endless") && error("endless").contains("class/endless.st:12"),
+        "{}",
+        error("endless")
+    );
     assert!(error("divided").contains("class/divided.st:12"), "{}", error("divided"));
     assert_eq!(of("slow")["status"], "stopped", "{}", of("slow"));
     assert!(of("slow")["why"].as_str().unwrap().contains("within 20 s"));
@@ -258,7 +287,9 @@ fn a_hostile_submission_loses_nobody_elses_marks() {
 /// A scenario that names a source outside of its folder, and a program to start.
 fn outside(folder: &Path) -> String {
     let text = std::fs::read_to_string(folder.join("belt/scenario.toml")).unwrap();
-    let text = text.replace("skeleton/main.st", "../../secret.st").replace("scene = \"plant.toml\"", "command = [\"touch\", \"started\"]");
+    let text = text
+        .replace("skeleton/main.st", "../../secret.st")
+        .replace("scene = \"plant.toml\"", "command = [\"touch\", \"started\"]");
     text.replace("kind = \"plant\"", "kind = \"external\"")
 }
 
@@ -296,8 +327,16 @@ fn pairs_are_listed() {
     let folder = task("5s");
     let folder = folder.path();
     write(folder, "class/anna.st", RIGHT);
-    write(folder, "class/ben.st", &RIGHT.replace("waiting", "idle").replace("(* for a box *)", "").replace("    ", "\t"));
-    write(folder, "class/carl.st", &with("waiting AND Box_There AND Cylinder_In", "Box_There AND Cylinder_In AND waiting"));
+    write(
+        folder,
+        "class/ben.st",
+        &RIGHT.replace("waiting", "idle").replace("(* for a box *)", "").replace("    ", "\t"),
+    );
+    write(
+        folder,
+        "class/carl.st",
+        &with("waiting AND Box_There AND Cylinder_In", "Box_There AND Cylinder_In AND waiting"),
+    );
     let skeleton = std::fs::read_to_string(folder.join("belt/skeleton/main.st")).unwrap();
     write(folder, "class/dora.st", &skeleton);
     write(folder, "class/emil.st", &skeleton);
@@ -317,22 +356,37 @@ fn reports_are_written_and_do_not_depend_on_the_number_at_a_time() {
     write(folder, "class/anna.st", RIGHT);
     write(folder, "class/=ben.st", &with("NOT Push;", "TRUE;"));
     write(folder, "class/carl.st", &with("NOT Push;", "NOT Pusch;"));
-    write(folder, "class/dora.st", &with("    IF waiting", "    Pushed := Pushed / (Pushed - Pushed);\n    IF waiting"));
+    write(
+        folder,
+        "class/dora.st",
+        &with("    IF waiting", "    Pushed := Pushed / (Pushed - Pushed);\n    IF waiting"),
+    );
     let reported = |jobs: &str| {
-        let words = ["grade", "belt", "class/*", "-v", "--jobs", jobs, "--html", "a.html", "--csv", "a.csv", "--junit", "a.xml"];
+        let words = [
+            "grade", "belt", "class/*", "-v", "--jobs", jobs, "--html", "a.html", "--csv", "a.csv", "--junit", "a.xml",
+        ];
         let said = Said::from(onescan(folder).args(words).env("ONESCAN_LOG", "error").output().unwrap());
         assert_eq!((said.code, said.err.as_str()), (Some(0), ""), "{said:?}");
-        let [html, csv, junit] = ["a.html", "a.csv", "a.xml"].map(|file| std::fs::read_to_string(folder.join(file)).unwrap());
+        let [html, csv, junit] =
+            ["a.html", "a.csv", "a.xml"].map(|file| std::fs::read_to_string(folder.join(file)).unwrap());
         (said.out, html, csv, junit)
     };
     let (out, html, csv, junit) = reported("1");
     let (other, other_html, other_csv, _) = reported("4");
     assert_eq!((&out, &html, &csv), (&other, &other_html, &other_csv));
     insta::assert_snapshot!("csv", csv.replace('\r', ""));
-    assert!(html.contains("<a href=\"#t0\">") && html.contains("violation of safety") && html.contains("SAFETY"), "{html}");
+    assert!(
+        html.contains("<a href=\"#t0\">") && html.contains("violation of safety") && html.contains("SAFETY"),
+        "{html}"
+    );
     let suites = ["=ben", "anna", "carl", "dora"].map(|name| format!("<testsuite name=\"{name}\""));
     assert!(suites.iter().all(|suite| junit.contains(suite)), "{junit}");
-    assert!(junit.contains("type=\"safety\"") && junit.contains("type=\"refused\"") && junit.contains("file=\"class/carl.st\""), "{junit}");
+    assert!(
+        junit.contains("type=\"safety\"")
+            && junit.contains("type=\"refused\"")
+            && junit.contains("file=\"class/carl.st\""),
+        "{junit}"
+    );
 }
 
 /// A class of a hundred: each is graded, and has what it has alone.

@@ -44,7 +44,10 @@ fn what_an_operator_did_is_a_case_with_the_digest_of_the_session() {
     assert_eq!(std::fs::read_to_string(&path).expect("a file"), before, "nothing is written yet");
     keep(&mut viewer, "sensor-lost", false);
     let message = received(&mut viewer, "error")["message"].clone();
-    assert!(message.as_str().is_some_and(|message| message.contains("two cases are called `sensor-lost`")), "{message}");
+    assert!(
+        message.as_str().is_some_and(|message| message.contains("two cases are called `sensor-lost`")),
+        "{message}"
+    );
 
     keep(&mut viewer, "by-hand", true);
     assert_eq!(received(&mut viewer, "case")["saved"], true);

@@ -91,7 +91,19 @@ fn what_was_written_is_said() {
         let err = String::from_utf8(output.stderr).expect("text");
         err.lines().filter_map(|line| line.strip_prefix(WROTE)).map(str::to_owned).collect()
     };
-    let run = ["run", "--until", "100ms", "--plot", "run.svg", "--html", "run.html", "--record", "out", "--coverage", "c.xml"];
+    let run = [
+        "run",
+        "--until",
+        "100ms",
+        "--plot",
+        "run.svg",
+        "--html",
+        "run.html",
+        "--record",
+        "out",
+        "--coverage",
+        "c.xml",
+    ];
     assert_eq!(written(&run), ["c.xml", "run.svg", "run.html", "out"]);
     assert_eq!(written(&["export", "out/run-1", "-o", "out.csv"]), ["out.csv"]);
     assert_eq!(written(&["describe", "plant.toml", "--svg", "plant.svg"]), ["plant.svg"]);

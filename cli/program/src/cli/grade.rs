@@ -17,8 +17,10 @@ use onescan_runner::format::Format;
 
 /// Options of `grade`.
 #[derive(Debug, ClapArgs)]
-#[command(after_help = "Exit codes: 0 all were graded, whatever their marks; 1 one has fewer than `--pass`; 2 the task is wrong,\n\
-    or a submission is not there; 3 a process of a submission failed by this program's fault.")]
+#[command(
+    after_help = "Exit codes: 0 all were graded, whatever their marks; 1 one has fewer than `--pass`; 2 the task is wrong,\n\
+    or a submission is not there; 3 a process of a submission failed by this program's fault."
+)]
 pub struct GradeArgs {
     /// The task: a folder with a scenario.toml whose expectations have `marks`
     pub task: PathBuf,

@@ -66,7 +66,8 @@ fn of_folder(task: &str) -> Result<Vec<(PathBuf, Vec<u8>)>, NewError> {
     let folder = Path::new(task);
     if !folder.join(FILE_NAME).is_file() {
         let help = did_you_mean(task, Task::all().iter().map(|task| task.name));
-        let help = help.unwrap_or_else(|| format!("`onescan templates` lists them; a folder with a {FILE_NAME} is one, too"));
+        let help =
+            help.unwrap_or_else(|| format!("`onescan templates` lists them; a folder with a {FILE_NAME} is one, too"));
         return Err(Usage::new(format!("there is no task `{task}`"), Some(help)).into());
     }
     let mut files = Vec::new();

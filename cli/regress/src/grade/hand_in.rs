@@ -20,7 +20,8 @@ const ENTRIES_MAX: usize = 2_000;
 pub(super) fn read(client: &ClientName, path: &Path) -> Result<Vec<Input>, String> {
     within_limits(path)?;
     let collected = collect(&[path.to_owned()], Reading::default()).map_err(|error| text_of(&error))?;
-    let own = |program: Program| (program.client.is_none() || program.client.as_ref() == Some(client)).then_some(program);
+    let own =
+        |program: Program| (program.client.is_none() || program.client.as_ref() == Some(client)).then_some(program);
     let found = collected.programs.into_iter().find_map(own);
     found.map(|program| program.inputs).ok_or_else(|| format!("its {FILE_NAME} has no soft PLC `{client}`"))
 }

@@ -79,8 +79,6 @@ fn of_case(name: &str, is_hidden: bool, ran: Option<&Ran>) -> Value {
 }
 
 fn remarks(Remarks { shown, all }: &Remarks) -> Value {
-    let one = |Remark { code, place, text }: &Remark| {
-        json!({ "code": code, "file": place.file, "line": place.line, "column": place.column, "message": text })
-    };
+    let one = |Remark { code, place, text }: &Remark| json!({ "code": code, "file": place.file, "line": place.line, "column": place.column, "message": text });
     json!({ "all": all, "shown": shown.iter().map(one).collect::<Vec<_>>() })
 }

@@ -117,7 +117,10 @@ impl Graded {
         };
         let (mut found, mut is_done) = (Vec::new(), false);
         // The last line of a process that was ended may be a part of one.
-        let lines = said.stdout.split_inclusive(|byte| *byte == b'\n').filter_map(|line| serde_json::from_slice::<Line>(line).ok());
+        let lines = said
+            .stdout
+            .split_inclusive(|byte| *byte == b'\n')
+            .filter_map(|line| serde_json::from_slice::<Line>(line).ok());
         for line in lines {
             match line {
                 Line::Read(read) => this.read = Some(read),
@@ -167,10 +170,9 @@ impl Graded {
         let Some(ran) = self.ran.get(case).and_then(Option::as_ref) else { return Some(How::NotRun) };
         let shown = ran.expectations.get(column);
         match shown.filter(|shown| shown.is_violated()) {
-            Some(shown) => Some(How::Violated {
-                at_ns: shown.at_ns.unwrap_or(ran.virtual_time_ns),
-                values: shown.values.clone(),
-            }),
+            Some(shown) => {
+                Some(How::Violated { at_ns: shown.at_ns.unwrap_or(ran.virtual_time_ns), values: shown.values.clone() })
+            }
             None if shown.is_none() || ran.status != RunStatus::Completed => Some(How::Ended),
             None => None,
         }
@@ -231,7 +233,10 @@ mod tests {
 
     #[test]
     fn percents_are_whole_tenths() {
-        assert_eq!([(0, 7), (1, 3), (2, 3), (7, 7)].map(|(given, all)| percent(given, all)), ["0.0", "33.3", "66.6", "100.0"]);
+        assert_eq!(
+            [(0, 7), (1, 3), (2, 3), (7, 7)].map(|(given, all)| percent(given, all)),
+            ["0.0", "33.3", "66.6", "100.0"]
+        );
         assert_eq!(percent(0, 0), "0.0");
     }
 }

@@ -126,9 +126,8 @@ fn write_reports(config: &GradeConfig, task: &Task, all: &[Graded], wall_time: D
 
 /// 3 if a process failed that should not have, 1 if somebody has fewer marks than are asked for, else 0.
 fn exit_code(config: &GradeConfig, task: &Task, all: &[Graded]) -> ExitCode {
-    let has_too_few = |graded: &Graded, pct: u8| {
-        u64::from(graded.given()) * 100 < u64::from(pct) * u64::from(task.marks())
-    };
+    let has_too_few =
+        |graded: &Graded, pct: u8| u64::from(graded.given()) * 100 < u64::from(pct) * u64::from(task.marks());
     if all.iter().any(|graded| matches!(graded.standing, Standing::Broken(_))) {
         ExitCode::Fault
     } else if config.pass_pct.is_some_and(|pct| all.iter().any(|graded| has_too_few(graded, pct))) {

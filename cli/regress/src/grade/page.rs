@@ -40,7 +40,14 @@ fn section(task: &Task, graded: &Graded) -> Section {
     if !graded.alike.is_empty() {
         lines.push(format!("equal in structure and in every run to {}", graded.alike.join(", ")));
     }
-    Section { title: graded.submission.name.clone(), status: standing(task, graded), mood, lines, tables, ..Section::default() }
+    Section {
+        title: graded.submission.name.clone(),
+        status: standing(task, graded),
+        mood,
+        lines,
+        tables,
+        ..Section::default()
+    }
 }
 
 /// What each expectation gave.
@@ -82,7 +89,9 @@ fn runs(task: &Task, graded: &Graded) -> Option<Table> {
 fn executed(graded: &Graded) -> Option<Table> {
     let files = covered(&graded.coverage);
     let missed = |lines: &[u32]| lines.iter().map(u32::to_string).collect::<Vec<_>>().join(" ");
-    let rows = files.iter().map(|file| vec![file.file.clone(), file.lines.clone(), file.branches.clone(), missed(&file.missed)]);
+    let rows = files
+        .iter()
+        .map(|file| vec![file.file.clone(), file.lines.clone(), file.branches.clone(), missed(&file.missed)]);
     (!files.is_empty()).then(|| Table {
         title: "file",
         head: ["lines executed", "branches", "lines never executed"].map(Cow::Borrowed).to_vec(),

@@ -85,7 +85,9 @@ mod tests {
     fn names_comments_and_blanks_do_not_count() {
         let renamed = "program Main\nvar x, y : bool; end_var // there\n  X := not Y;\nend_program";
         assert_eq!(of(&program(ONE)), of(&program(renamed)));
-        for other in [ONE.replace("NOT b", "b"), ONE.replace("NOT b", "NOT a"), ONE.replace(":= NOT", ":= TRUE AND NOT")] {
+        for other in
+            [ONE.replace("NOT b", "b"), ONE.replace("NOT b", "NOT a"), ONE.replace(":= NOT", ":= TRUE AND NOT")]
+        {
             assert_ne!(of(&program(ONE)), of(&program(&other)), "{other}");
         }
     }

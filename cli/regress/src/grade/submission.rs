@@ -36,7 +36,9 @@ pub(super) fn meant(paths: &[PathBuf]) -> Result<Vec<Submission>, GradeError> {
         }
     }
     if submissions.is_empty() {
-        return Err(Usage::new("there is no submission", Some("name folders or files, as in `class/*`".to_owned())).into());
+        return Err(
+            Usage::new("there is no submission", Some("name folders or files, as in `class/*`".to_owned())).into()
+        );
     }
     let names: Vec<String> = submissions.iter().map(|one| one.name.clone()).collect();
     for submission in &mut submissions {
@@ -78,7 +80,8 @@ mod tests {
     #[test]
     fn each_is_called_by_its_folder_or_file() {
         let place = tempfile::tempdir().unwrap();
-        for file in ["class/ben/main.st", "class/anna/main.st", "class/carl.st", "class/.git/config", "class/notes.txt"] {
+        for file in ["class/ben/main.st", "class/anna/main.st", "class/carl.st", "class/.git/config", "class/notes.txt"]
+        {
             let path = place.path().join(file);
             std::fs::create_dir_all(path.parent().unwrap()).unwrap();
             std::fs::write(path, "").unwrap();

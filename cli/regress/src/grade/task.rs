@@ -156,7 +156,8 @@ impl Task {
 fn client(scenario: &Scenario, wanted: Option<&ClientName>) -> Result<ClientName, Usage> {
     for (name, client) in &scenario.file().clients {
         if let ClientFile::External { .. } | ClientFile::OpcUa { .. } | ClientFile::Gateway { .. } = client.get_ref() {
-            let help = "a task has plants, operators and soft PLCs only, so that every machine gives equal marks".to_owned();
+            let help =
+                "a task has plants, operators and soft PLCs only, so that every machine gives equal marks".to_owned();
             return Err(Usage::new(format!("client `{name}` of the task is not in this program"), Some(help)));
         }
     }

@@ -1,6 +1,5 @@
 //! The forms in which a project takes the shim's own sources.
 
-
 use super::Options;
 use super::clock::Form;
 use super::marks;
