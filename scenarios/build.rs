@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::{env, fs};
 
 /// Kinds of file that are in the program: what a task needs to run, its sheet and its drawings, which are texts.
-const TEXTS: [&str; 6] = ["csv", "md", "st", "svg", "toml", "xml"];
+const TEXTS: [&str; 7] = ["csv", "md", "st", "svg", "toml", "urdf", "xml"];
 /// The drawing of the machine, which the program makes anew: it is longer than all other files together.
 const DRAWING: &str = "machine.svg";
 

@@ -71,7 +71,7 @@ fn task(until: &str) -> tempfile::TempDir {
         text = text.replace(&format!("name = \"{name}"), &format!("{keys}\nname = \"{name}"));
     }
     // A task is handed out with a program that does nothing.
-    let empty = RIGHT.split_once("VAR\n").unwrap().0.to_owned() + "    ;\nEND_PROGRAM\n";
+    let empty = RIGHT.split_once("\nVAR\n").unwrap().0.to_owned() + "    ;\nEND_PROGRAM\n";
     let variant = "version = 1\nbase = \"scenario.toml\"\n[clients.plc]\nsources = [\"solutions/main.st\"]\n";
     for (name, text) in [
         ("belt/scenario.toml", text.replace("plc/main.st", "skeleton/main.st")),
