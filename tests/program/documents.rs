@@ -47,8 +47,17 @@ const READ: &[&str] = &[
 const TO_OTHERS: &[&str] =
     &["--gateway", "--operator", "--opcua", "--opcua-client", "--ads", "--listen", "--web", "--pace"];
 
-/// What commands would have made that are not run here: a recording of somebody at the page, a case that was copied.
-const MADE_BEFORE: &[&str] = &["out/heat/run-1", "out/shift", "sessions/ann", "mutant-7"];
+/// What commands would have made that are not run here, as a recording of somebody at the page or a case that was copied; and
+/// scenarios that wait for PLCs.
+const MADE_BEFORE: &[&str] = &[
+    "out/heat/run-1",
+    "out/shift",
+    "sessions/ann",
+    "mutant-7",
+    "operated",
+    "scenarios/peeling-line/frames.toml",
+    "scenarios/peeling-line/link-live.toml",
+];
 
 /// A command as a document shows it.
 struct Shown {

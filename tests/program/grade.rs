@@ -49,6 +49,7 @@ const HIDDEN: &str = "\
 version = 1
 [[case]]
 name = \"jam\"
+until = \"30s\"
 [[case.fault]]
 component = \"cylinder\"
 mode = \"jammed\"
