@@ -524,7 +524,7 @@ export function readMapInfo(field: Field): MapInfo {
 
 /** A text for a viewer, as JSON. */
 export type Message =
-  /** How the session is. `seat` is as this viewer sees it; `failed` are the failures at work, as `component.mode`; `forced` and `disturbed` are the numbers of the signals that are forced and of the faults on the way of signals that are at work; `shown_ns` is null at the live edge, `past_ns` where no past is kept. */
+  /** How the session is. `seat` is as this viewer sees it; `failed` are the failures at work, as `component.mode`; `forced` and `disturbed` are the numbers of the signals that are forced and of the faults on the way of signals that are at work; `changed` are the parameters of components that were changed, as `component.key`, with their values; `shown_ns` is null at the live edge, `past_ns` where no past is kept. */
   | { readonly type: "status"; readonly state: SessionState; readonly changed: ReadonlyMap<string, string>; readonly digest: string | null; readonly disturbed: ReadonlySet<number>; readonly failed: ReadonlySet<string>; readonly forced: ReadonlySet<number>; readonly pace: string; readonly past_ns: readonly [number, number] | null; readonly seat: ReadonlyMap<string, SeatState>; readonly shown_ns: number | null }
   /** The places of the looks whose condition holds. */
   | { readonly type: "looks"; readonly active: readonly number[] }
@@ -608,9 +608,21 @@ export function readMessage(field: Field): Message {
     case "forked":
       return { type, t_ns: whole(field.at("t_ns")), url: matching(/^https?:\/\/[^\s"'<>]+$/)(field.at("url")) };
     case "trace":
-      return { type, from_ns: whole(field.at("from_ns")), until_ns: whole(field.at("until_ns")), values: list(list(tuple(number, number)))(field.at("values")) };
+      return {
+        type,
+        from_ns: whole(field.at("from_ns")),
+        until_ns: whole(field.at("until_ns")),
+        values: list(list(tuple(number, number)))(field.at("values")),
+      };
     case "case":
-      return { type, name: text(field.at("name")), text: text(field.at("text")), path: text(field.at("path")), saved: flag(field.at("saved")), may_save: flag(field.at("may_save")) };
+      return {
+        type,
+        name: text(field.at("name")),
+        text: text(field.at("text")),
+        path: text(field.at("path")),
+        saved: flag(field.at("saved")),
+        may_save: flag(field.at("may_save")),
+      };
     case "alarms":
       return { type, all: flag(field.at("all")), changes: list(readAlarmChange)(field.at("changes")) };
     case "lesson":
