@@ -21,7 +21,8 @@ pub fn is_handed_out(file: &Path) -> bool {
 
 /// True for a scenario with a solution: `solution-st.toml`, and not the cases of one.
 pub fn is_solution(name: &str) -> bool {
-    name.starts_with(SOLUTION) && name.ends_with(".toml") && !name.ends_with(".cases.toml")
+    let stem = name.strip_prefix(SOLUTION).and_then(|rest| rest.strip_suffix(".toml"));
+    stem.is_some_and(|stem| stem.strip_suffix(".cases").is_none())
 }
 
 #[cfg(test)]

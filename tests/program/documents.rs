@@ -209,12 +209,12 @@ fn is_understood(shown: &Shown) {
 
 /// Long runs end early: what is looked at is that the command can be typed.
 fn shortened(words: &mut Vec<String>) {
-    let at_its_time = words.iter().any(|word| word == "--save-at" || word == "--resume");
+    let at_its_time = words.iter().any(|word| ["--save-at", "--resume", "--maps"].contains(&word.as_str()));
     if !["run", "compare"].contains(&words[1].as_str()) || at_its_time {
         return;
     }
     match words.iter().position(|word| word == "--until") {
-        Some(at) => words[at + 1] = "50ms".to_owned(),
+        Some(at) => "50ms".clone_into(&mut words[at + 1]),
         None => words.extend(["--until".to_owned(), "50ms".to_owned()]),
     }
     // the part that is enlarged comes later

@@ -1,5 +1,6 @@
 //! `onescan grade`: programs that were handed in are marked, each by itself, and a hostile one harms nobody else.
 
+use std::fmt::Write as _;
 use std::path::Path;
 
 use serde_json::Value;
@@ -312,9 +313,9 @@ fn memory_is_limited() {
 fn bomb() -> String {
     let mut types = String::from("TYPE T0 : STRUCT a : INT := 1; b : STRING[200] := 'x'; END_STRUCT;\n");
     for level in 1..=3 {
-        types += &format!("T{level} : STRUCT ");
+        write!(types, "T{level} : STRUCT ").unwrap();
         for member in 0..60 {
-            types += &format!("m{member} : T{}; ", level - 1);
+            write!(types, "m{member} : T{}; ", level - 1).unwrap();
         }
         types += "END_STRUCT;\n";
     }
@@ -376,10 +377,7 @@ fn reports_are_written_and_do_not_depend_on_the_number_at_a_time() {
     let (other, other_html, other_csv, _) = reported("4");
     assert_eq!((&out, &html, &csv), (&other, &other_html, &other_csv));
     insta::assert_snapshot!("csv", csv.replace('\r', ""));
-    assert!(
-        html.contains("<a href=\"#t0\">") && html.contains("violation of safety") && html.contains("safety"),
-        "{html}"
-    );
+    assert!(html.contains("<a href=\"#t0\">") && html.contains(">safety<"), "{html}");
     let suites = ["=ben", "anna", "carl", "dora"].map(|name| format!("<testsuite name=\"{name}\""));
     assert!(suites.iter().all(|suite| junit.contains(suite)), "{junit}");
     assert!(

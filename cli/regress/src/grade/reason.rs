@@ -135,7 +135,7 @@ impl<'a> Reasons<'a> {
         let place = why.root().and_then(|root| root.at[1].as_ref());
         let place = place.map(|place| SourcePlace { file: place.file.clone(), line: place.line, column: 1 });
         let shown = cause::Lines::of(&why, &Runs::named(["the solution", "the submission"]));
-        let lines = shown.lines.iter().map(|line| one_line(line).into_owned()).collect();
+        let lines = shown.shown.iter().map(|line| one_line(line).into_owned()).collect();
         Some(Found { case: number, item: first.item, place, lines })
     }
 }

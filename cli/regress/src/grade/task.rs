@@ -186,7 +186,7 @@ fn files_of(paths: &[PathBuf]) -> Result<Vec<PathBuf>, GradeError> {
             files.push(path.clone());
             continue;
         }
-        let found = files_in(path, |name| name.ends_with(".toml"))?;
+        let found = files_in(path, |name| Path::new(name).extension().is_some_and(|ending| ending == "toml"))?;
         if found.is_empty() {
             let help = Some("hidden cases are files `*.toml` in the form of cases.toml".to_owned());
             return Err(Usage::new(format!("there are no cases in {}", path.display()), help).into());

@@ -79,7 +79,7 @@ fn cause(unit: &CaseUnit, outcome: &Outcome, references: &mut References) -> Res
         why = why::explain(sides.each_ref(), &signals, end)?;
     }
     let Some(why) = why else { return Ok(None) };
-    let Lines { mut lines, root, more } = Lines::of(&why, &Runs::since(&commit));
+    let Lines { shown: mut lines, root, more } = Lines::of(&why, &Runs::since(&commit));
     if more > 0 {
         lines.push(format!("  ... and {more} more: see `onescan diff`"));
     }
@@ -103,7 +103,7 @@ fn asked(outcome: &Outcome) -> (Vec<SignalName>, Option<VirtualTime>) {
 
 /// The way back in short: where the runs part, in so many lines, then how it comes to the signal.
 pub(crate) struct Lines {
-    pub(crate) lines: Vec<String>,
+    pub(crate) shown: Vec<String>,
     /// So many of them are of the statement in which the runs part.
     pub(crate) root: usize,
     /// So many more links there are.
@@ -126,7 +126,7 @@ impl Lines {
             let at = place.map(|place| format!(", {}:{}", place.file, place.line)).unwrap_or_default();
             format!("  {}{at}", why::report::subject(record, runs))
         }));
-        Self { lines, root, more: rest.count().saturating_sub(STEPS) }
+        Self { shown: lines, root, more: rest.count().saturating_sub(STEPS) }
     }
 }
 

@@ -33,15 +33,15 @@ pub(super) fn film(pictures: &[Vec<u8>], size: Size, shown_ms: u32) -> Result<Ve
     for (number, picture) in pictures.iter().enumerate() {
         let data = data_of(picture).ok_or(NoFilm::Picture(number))?;
         is_transparent |= data.iter().any(|(name, _)| *name == b"ALPH");
-        frames.extend(chunk(b"ANMF", &frame(&data, size, shown_ms))?);
+        frames.extend(chunk(*b"ANMF", &frame(&data, size, shown_ms))?);
     }
     let flags = ANIMATED | if is_transparent { TRANSPARENT } else { 0 };
     let mut head = vec![flags, 0, 0, 0];
     head.extend(sides(size));
     let mut body = WEBP.to_vec();
-    body.extend(chunk(b"VP8X", &head)?);
+    body.extend(chunk(*b"VP8X", &head)?);
     // Behind all pictures nothing, and again and again.
-    body.extend(chunk(b"ANIM", &[0xff, 0xff, 0xff, 0xff, 0, 0])?);
+    body.extend(chunk(*b"ANIM", &[0xff, 0xff, 0xff, 0xff, 0, 0])?);
     body.extend(frames);
     let mut whole = RIFF.to_vec();
     whole.extend(u32::try_from(body.len()).map_err(|_| NoFilm::Long)?.to_le_bytes());
@@ -69,7 +69,7 @@ fn sides(Size { width, height }: Size) -> Vec<u8> {
     [width, height].iter().flat_map(|side| side.saturating_sub(1).to_le_bytes()[..3].to_vec()).collect()
 }
 
-fn chunk(name: &[u8; 4], content: &[u8]) -> Result<Vec<u8>, NoFilm> {
+fn chunk(name: [u8; 4], content: &[u8]) -> Result<Vec<u8>, NoFilm> {
     let length = u32::try_from(content.len()).map_err(|_| NoFilm::Long)?;
     let mut chunk = name.to_vec();
     chunk.extend(length.to_le_bytes());
@@ -105,7 +105,7 @@ mod tests {
     const SIZE: Size = Size { width: 640, height: 360 };
 
     fn picture(data: &[u8]) -> Vec<u8> {
-        let chunk = chunk(b"VP8 ", data).expect("short");
+        let chunk = chunk(*b"VP8 ", data).expect("short");
         [RIFF, &(chunk.len() as u32 + 4).to_le_bytes(), WEBP, &chunk].concat()
     }
 

@@ -148,8 +148,7 @@ pub(super) fn parts(target: Target, used: &BTreeMap<String, Use>, has_groups: bo
     let blocks = used.iter().filter_map(|(key, uses)| Some((library.blocks.get(key)?, Some(uses))));
     // Where the PLC has no such block there is none to hand anything on to.
     let blocks = blocks.map(|(unit, uses)| (unit, uses.filter(|_| target.has_motion())));
-    let groups = has_groups.then(|| group_parts(target)).unwrap_or_default();
-    let of_groups = if has_groups { groups_texts() } else { Vec::new() };
+    let (groups, of_groups) = if has_groups { (group_parts(target), groups_texts()) } else { (Vec::new(), Vec::new()) };
     let common = library.needed_by(used, of_groups).into_iter().map(|unit| (unit, None));
     let units = common.chain(blocks).map(|(part, uses)| {
         let text = uses.map_or_else(|| part.text.to_owned(), |uses| part.handing_on(uses));

@@ -167,11 +167,15 @@ pub(crate) fn state(plc: &SoftPlc) -> Vec<(String, Vec<u8>)> {
         path.contains("SDSP_") || matches!(last, Some("SFC_Begun" | "both"))
     };
     let own = variables.filter(|variable| variable.ty.is_some() && !idle(&variable.path));
-    own.map(|variable| {
-        let range = variable.offset as usize..(variable.offset + variable.size) as usize;
-        (variable.path, plc.memory()[range].to_vec())
-    })
-    .collect()
+    let mut state: Vec<_> = own
+        .map(|variable| {
+            let range = variable.offset as usize..(variable.offset + variable.size) as usize;
+            (variable.path, plc.memory()[range].to_vec())
+        })
+        .collect();
+    // A port has its programs in the order of its tasks.
+    state.sort();
+    state
 }
 
 /// Writes inputs by path.

@@ -177,8 +177,6 @@ fn motion_control_that_cannot_be_replaced_is_reported() {
         ("IF X.NcToPlc.Error THEN ; END_IF;", ""),
         ("cam(Axis := X);", "cam : MC_CamIn; t : MC_CAM_REF;"),
         ("", "Y : AXIS_REF_SM3;"),
-        ("", "g : AXES_GROUP_REF;"),
-        ("", "line : MC_MoveLinearAbsolute;"),
         ("IF on.Fault THEN ; END_IF;", ""),
     ] {
         let text = format!(
@@ -188,6 +186,16 @@ fn motion_control_that_cannot_be_replaced_is_reported() {
         let reported = project.warnings.to_string();
         assert!(reported.contains("I1002") && reported.contains("`MC_Power` is left"), "{statement}: {reported}");
         assert!(!project.files.iter().any(|file| file.text.as_deref().is_some_and(|text| text.contains("SDSP_MC_"))));
+    }
+    for declaration in ["g : AXES_GROUP_REF;", "g : AXES_GROUP_REF; line : MC_MoveLinearAbsolute;"] {
+        let text = format!(
+            "PROGRAM P VAR X : AXIS_REF; on : MC_Power; {declaration} END_VAR on(Axis := X, Enable := TRUE); END_PROGRAM"
+        );
+        let project = round_trip(&inputs(&[("p.st", SourceKind::Text, &text)]), &Options::default());
+        assert!(project.warnings.is_empty(), "{}", project.warnings);
+        let has =
+            |word: &str| project.files.iter().any(|file| file.text.as_deref().is_some_and(|text| text.contains(word)));
+        assert!(has("FUNCTION_BLOCK MC_MoveLinearAbsolute") && has("FUNCTION_BLOCK SDSP_MC_Power"), "{declaration}");
     }
     let derived =
         "FUNCTION_BLOCK Mine EXTENDS MC_Power END_FUNCTION_BLOCK PROGRAM P VAR m : Mine; END_VAR ; END_PROGRAM";
