@@ -28,7 +28,7 @@
 //! | [`lesson`] | `lessons.toml`: what operators are trained in |
 //! | [`schema`] | the JSON schemas of both files |
 //! | [`compose`] | a scenario's plan and its clients |
-//! | `program` | other programs in the place of those that it names |
+//! | `programs`, `program` | other programs in the place of those that it names; the scenario with them |
 //! | [`mistake`] | a small mistake in the program of a soft PLC |
 //! | `mistaken` | the scenario with it |
 //! | `mutants` | its cases, with the mutants that campaigns try |
@@ -91,6 +91,7 @@ pub mod permission;
 mod ports;
 pub mod ports_file;
 mod program;
+mod programs;
 mod refusal;
 pub mod report;
 pub mod report_file;

@@ -27,7 +27,7 @@ use super::look::Looks;
 use super::map;
 use super::missing;
 use super::mistake::Mistake;
-use super::program::Programs;
+use super::programs::Programs;
 use super::report::Measures;
 use super::start::{self, StartLogic};
 use super::timing::Timing;

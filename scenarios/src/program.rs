@@ -1,8 +1,5 @@
 //! The programs of soft PLCs: those that the file names, or others in their place.
 
-use std::collections::BTreeMap;
-use std::sync::Arc;
-
 use onescan_iec::Input;
 use onescan_server::signal::ClientName;
 
@@ -11,22 +8,11 @@ use super::error::ScenarioError;
 use super::file::ClientFile;
 use super::load::Scenario;
 
-/// Programs in the place of those that a scenario's file names, by client.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Programs(BTreeMap<ClientName, Arc<[Input]>>);
-
-impl Programs {
-    /// The program in the place of that of `name`, if there is one.
-    pub(crate) fn of(&self, name: &ClientName) -> Option<&[Input]> {
-        self.0.get(name).map(|program| &**program)
-    }
-}
-
 impl Scenario {
     /// The scenario with another program in the soft PLC `name`. Its file says all else of that PLC: dialect, tasks, memory.
     #[must_use]
     pub fn with_program(mut self, name: &ClientName, program: Vec<Input>) -> Self {
-        self.programs.0.insert(name.clone(), program.into());
+        self.programs.put(name.clone(), program);
         // What was compiled of the other program is not this one.
         self.compilations = Compilations::default();
         self

@@ -209,8 +209,8 @@ fn ended(said: &Said, limits: Limits, memory_mib: u32) -> Standing {
         let seconds = limits.time.as_secs_f64();
         return Standing::Stopped(format!("it was not done within {seconds} s, which is the limit (`--time-limit`)"));
     }
-    if said.stdout.len() as u64 >= limits.output_max {
-        return Standing::Stopped(format!("it has more to say than {} bytes, which is the limit", limits.output_max));
+    if let Some(bytes_max) = limits.output_max.filter(|bytes_max| said.stdout.len() as u64 >= *bytes_max) {
+        return Standing::Stopped(format!("it has more to say than {bytes_max} bytes, which is the limit"));
     }
     if words.contains(OUT_OF_MEMORY) {
         let why = format!("it needs more memory than {memory_mib} MiB, which is the limit (`--memory-limit`)");

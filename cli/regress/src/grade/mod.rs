@@ -86,7 +86,7 @@ pub fn grade(config: &GradeConfig, out: &mut dyn Write) -> Result<ExitCode, Grad
 /// Grades one in its process.
 fn one(config: &GradeConfig, task: &Task, submission: Submission) -> Result<Graded, SpawnError> {
     let started = Instant::now();
-    let limits = Limits { time: Duration::from_nanos(config.time_limit.as_nanos()), output_max: OUTPUT_MAX };
+    let limits = Limits { time: Duration::from_nanos(config.time_limit.as_nanos()), output_max: Some(OUTPUT_MAX) };
     let said = said(&mut command(config, task, &submission)?, limits)?;
     let graded = Graded::of(task, submission, &said, (limits, config.memory_limit_mib.get()));
     Ok(Graded { wall_time: started.elapsed(), ..graded })

@@ -19,14 +19,14 @@ pub struct Limits {
     /// How long it may take.
     pub time: Duration,
     /// How many bytes it may write to its standard output, and to its standard error; what is more is not read, and a
-    /// process that goes on writing fails.
-    pub output_max: u64,
+    /// process that goes on writing fails. Nothing for as many as there are.
+    pub output_max: Option<u64>,
 }
 
 impl Limits {
     /// A limit of time alone.
     pub fn of_time(time: Duration) -> Self {
-        Self { time, output_max: u64::MAX }
+        Self { time, output_max: None }
     }
 }
 
@@ -101,13 +101,16 @@ impl Limited {
 }
 
 /// All that comes, up to so many bytes, when it has come.
-fn taken(pipe: Option<impl Read + Send + 'static>, bytes_max: u64) -> io::Result<Receiver<Vec<u8>>> {
+fn taken(pipe: Option<impl Read + Send + 'static>, bytes_max: Option<u64>) -> io::Result<Receiver<Vec<u8>>> {
     let (done, all) = channel();
-    if let Some(pipe) = pipe {
+    if let Some(mut pipe) = pipe {
         threads::start("output", move || {
             let mut bytes = Vec::new();
             // What came before a pipe broke is what there is; that there is not all of it, the report shows, which is JSON.
-            let _ = pipe.take(bytes_max).read_to_end(&mut bytes);
+            let _ = match bytes_max {
+                Some(bytes_max) => pipe.take(bytes_max).read_to_end(&mut bytes),
+                None => pipe.read_to_end(&mut bytes),
+            };
             // Nobody waits for it any more if the time was over.
             let _ = done.send(bytes);
         })?;
@@ -133,34 +136,34 @@ pub fn end_with_parent() -> Result<(), ThreadError> {
 mod tests {
     use super::*;
 
-    fn shell(script: &str, time: Duration, output_max: u64) -> Said {
+    fn shell(script: &str, time: Duration, output_max: Option<u64>) -> Said {
         let started = Limited::start(Command::new("sh").args(["-c", script]), Limits { time, output_max });
         started.expect("a shell").output().expect("it can be waited for")
     }
 
     #[test]
     fn what_is_done_in_time_is_heard() {
-        let said = shell("echo a; echo b >&2; exit 3", Duration::from_mins(1), u64::MAX);
+        let said = shell("echo a; echo b >&2; exit 3", Duration::from_mins(1), None);
         assert_eq!((said.stdout, said.stderr), (b"a\n".to_vec(), b"b\n".to_vec()));
         assert_eq!(said.status.and_then(|status| status.code()), Some(3));
     }
 
     #[test]
     fn what_is_not_is_ended_and_what_it_had_said_is_heard() {
-        assert!(shell("exec sleep 300", Duration::from_millis(1), u64::MAX).status.is_none());
-        let said = shell("echo a; exec sleep 300", Duration::from_millis(500), u64::MAX);
+        assert!(shell("exec sleep 300", Duration::from_millis(1), None).status.is_none());
+        let said = shell("echo a; exec sleep 300", Duration::from_millis(500), None);
         assert_eq!((said.status, said.stdout), (None, b"a\n".to_vec()));
     }
 
     #[test]
     fn what_closes_its_output_and_goes_on_is_ended() {
-        let said = shell("exec >&- 2>&-; exec sleep 300", Duration::from_millis(200), u64::MAX);
+        let said = shell("exec >&- 2>&-; exec sleep 300", Duration::from_millis(200), None);
         assert!(said.status.is_none());
     }
 
     #[test]
     fn what_writes_without_end_is_not_read_to_it() {
-        let said = shell("exec yes", Duration::from_mins(1), 1000);
+        let said = shell("exec yes", Duration::from_mins(1), Some(1000));
         assert_eq!(said.stdout.len(), 1000);
         assert!(said.status.is_some_and(|status| !status.success()));
     }

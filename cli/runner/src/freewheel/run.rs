@@ -36,6 +36,7 @@ pub struct Freewheeler {
 }
 
 impl Freewheeler {
+    /// A client that runs by `clock` alone.
     pub fn new(client: Box<dyn Client>, clock: Clock) -> Self {
         Self { client, clock, is_seen: false }
     }

@@ -11,6 +11,7 @@ use super::bindings::Lookup;
 use super::component_keys::Keys;
 use super::error::{SceneFaultKind, Thing};
 use super::faults::Faults;
+use super::format::SHOWN_AT;
 use super::model::{Bound, Component, Wire};
 use super::names::Names;
 use super::own::Kinds;
@@ -159,9 +160,6 @@ fn number_type(keys: &Keys<'_>, faults: &mut Faults<'_>) -> NumberType {
         }
     }
 }
-
-/// The key that says where pictures show a component.
-pub(super) const SHOWN_AT: &str = "shown_at_m";
 
 fn shown_at(keys: &Keys<'_>, faults: &mut Faults<'_>) -> Option<[f64; 3]> {
     let at = keys.triple(SHOWN_AT, faults)?;

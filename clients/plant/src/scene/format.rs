@@ -12,6 +12,9 @@ use serde::Deserialize;
 /// Three components, of which each has its place.
 pub(super) type Triple = Placed<[f64; 3]>;
 
+/// The key that says where pictures show a component.
+pub(super) const SHOWN_AT: &str = "shown_at_m";
+
 /// A whole scene file.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

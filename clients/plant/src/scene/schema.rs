@@ -6,7 +6,8 @@ use schemars::generate::SchemaSettings;
 use serde_json::{Map, Value, json};
 
 use super::VERSION;
-use super::components::{SHOWN_AT, WINDOW, has_lines};
+use super::components::{WINDOW, has_lines};
+use super::format::SHOWN_AT;
 use super::format::SceneFile;
 use super::own::Header;
 use crate::component::kind::{Form, Frames, Kind, Parameter, Setting, Signal, Values, unit};
