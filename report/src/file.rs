@@ -1,6 +1,6 @@
 //! Files that appear whole or not at all.
 
-use std::io::{Read as _, Seek as _, Write as _};
+use std::io::{Seek as _, Write as _};
 use std::path::{Path, PathBuf};
 
 use onescan_base::notice::NOTICE;
@@ -165,13 +165,8 @@ fn persist(file: tempfile::NamedTempFile, path: &Path) -> Result<(), FileError> 
 fn pour(mut file: tempfile::NamedTempFile, path: &Path) -> std::io::Result<()> {
     file.rewind()?;
     let mut stream = std::fs::OpenOptions::new().write(true).open(path)?;
-    let mut part = vec![0; 64 << 10];
-    loop {
-        match file.read(&mut part)? {
-            0 => return stream.flush(),
-            count => stream.write_all(&part[..count])?,
-        }
-    }
+    std::io::copy(&mut file, &mut stream)?;
+    stream.flush()
 }
 
 /// A temporary file is its owner's alone; a result is for everybody.

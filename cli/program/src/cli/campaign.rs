@@ -8,7 +8,7 @@ use onescan_server::time::TimeSpan;
 
 use super::error::CommandError;
 use super::outputs;
-use super::value::FormatArg;
+use super::value::{FormatArg, jobs_or_cores};
 use onescan_runner::error::ExitCode;
 use onescan_runner::format::Format;
 use onescan_search::campaign::config::{
@@ -132,7 +132,7 @@ impl CampaignArgs {
         let reports: Reports = self.reports.into();
         CampaignConfig {
             chosen: self.chosen.into(),
-            jobs: self.jobs.unwrap_or_else(|| std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN)),
+            jobs: jobs_or_cores(self.jobs),
             timeout: self.timeout,
             keep: self.keep,
             partition: self.partition,

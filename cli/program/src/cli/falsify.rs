@@ -8,7 +8,7 @@ use onescan_server::time::VirtualTime;
 
 use super::error::CommandError;
 use super::outputs;
-use super::value::FormatArg;
+use super::value::{FormatArg, jobs_or_cores};
 use onescan_runner::error::ExitCode;
 use onescan_search::falsify::config::{Objective, OptimiserKind};
 use onescan_search::falsify::{self, FalsifyConfig};
@@ -104,7 +104,7 @@ pub fn falsify(args: FalsifyArgs) -> Result<ExitCode, CommandError> {
         },
         seed: args.seed,
         runs_max: args.runs,
-        jobs: args.jobs.unwrap_or_else(|| std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN)),
+        jobs: jobs_or_cores(args.jobs),
         points: args.points,
         cases: args.cases,
         plot: args.plot,

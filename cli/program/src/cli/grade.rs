@@ -9,7 +9,7 @@ use onescan_server::time::TimeSpan;
 
 use super::error::CommandError;
 use super::outputs;
-use super::value::{FormatArg, client_name};
+use super::value::{FormatArg, client_name, jobs_or_cores};
 use onescan_regress::grade::{self, Detail, GradeConfig, TaskConfig, WorkConfig};
 use onescan_regress::regress::Selection;
 use onescan_runner::error::ExitCode;
@@ -82,7 +82,7 @@ impl GradeArgs {
                 selection: Selection { tags: self.tags, skipped_tags: self.skipped_tags, ..Selection::default() },
             },
             submissions: self.submissions,
-            jobs: self.jobs.unwrap_or_else(|| std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN)),
+            jobs: jobs_or_cores(self.jobs),
             time_limit: self.time_limit,
             memory_limit_mib: self.memory_limit,
             pass_pct: self.pass_pct,

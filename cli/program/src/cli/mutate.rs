@@ -9,7 +9,7 @@ use onescan_server::signal::ClientName;
 
 use super::error::CommandError;
 use super::outputs;
-use super::value::{FormatArg, client_name};
+use super::value::{FormatArg, client_name, jobs_or_cores};
 use onescan_runner::error::ExitCode;
 use onescan_search::mutate::{self, MutateConfig};
 
@@ -49,7 +49,7 @@ pub struct MutateArgs {
 pub fn mutate(args: MutateArgs) -> Result<ExitCode, CommandError> {
     outputs::files([&args.written])?;
     let MutateArgs { scenario, client, cases, kinds, at_least, written, jobs, format } = args;
-    let jobs = jobs.unwrap_or_else(|| std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN));
+    let jobs = jobs_or_cores(jobs);
     let format = format.into();
     let progress = format == onescan_runner::format::Format::Human;
     let config = MutateConfig { scenario, client, cases, kinds, at_least, written, jobs, progress, format };

@@ -10,6 +10,7 @@ use onescan_server::time::{TimeSpan, VirtualTime};
 use super::error::CommandError;
 use super::outputs;
 use super::run::CoverageArg;
+use super::value::jobs_or_cores;
 use onescan_regress::check::collect::Reading;
 use onescan_regress::regress::config::WorkerConfig;
 use onescan_regress::regress::{Policy, Progress, Selection, TestConfig, TestFormat};
@@ -131,13 +132,12 @@ fn progress(format: TestFormat) -> Progress {
 
 impl TestArgs {
     fn config(self) -> TestConfig {
-        let one = NonZeroUsize::MIN;
         let format: TestFormat = self.format.into();
         TestConfig {
             paths: self.paths,
             selection: Selection { filters: self.filters, tags: self.tags, skipped_tags: self.skipped_tags },
             timeout: self.timeout,
-            jobs: self.jobs.unwrap_or_else(|| std::thread::available_parallelism().unwrap_or(one)),
+            jobs: jobs_or_cores(self.jobs),
             policy: match (self.bless, self.check) {
                 (true, _) => Policy::Bless,
                 (_, true) => Policy::Check,

@@ -1,5 +1,7 @@
 //! What a typed word means, for options of several commands.
 
+use std::num::NonZeroUsize;
+
 use clap::ValueEnum;
 use onescan_report::plot::Part;
 use onescan_server::signal::{ClientName, SignalName};
@@ -27,6 +29,11 @@ impl From<FormatArg> for Format {
             FormatArg::Json => Self::Json,
         }
     }
+}
+
+/// How many are at work at a time: as many as were asked for, else one for each core that can be had.
+pub fn jobs_or_cores(asked: Option<NonZeroUsize>) -> NonZeroUsize {
+    asked.unwrap_or_else(|| std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN))
 }
 
 /// A signal, as in `axis.x`.

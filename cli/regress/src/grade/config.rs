@@ -27,7 +27,7 @@ pub struct TaskConfig {
 /// How much is said of each submission.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Detail {
-    /// A line.
+    /// One line with the marks.
     #[default]
     Line,
     /// All that was missed, and why.

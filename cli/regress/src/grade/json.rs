@@ -11,7 +11,7 @@ use super::task::{Item, Task};
 use crate::regress::plan::shown;
 use crate::regress::ran::Ran;
 
-/// Writes the report.
+/// An object a line: each submission, then all of them together.
 ///
 /// # Errors
 /// Those of `out`.

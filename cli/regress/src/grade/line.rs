@@ -10,12 +10,12 @@ use crate::regress::ran::{Covered, Ran};
 /// Findings that are said of a submission; nobody reads more.
 const REMARKS_MAX: usize = 50;
 
-/// One line.
+/// What a line says, in the order in which they come.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) enum Line {
-    /// It compiles.
+    /// The sources compile, and the cases come next.
     Read(Read),
-    /// There is no program to run.
+    /// Nothing can be run, and no line follows.
     Refused(Refused),
     /// A case was run, by its number.
     Ran(usize, Box<Ran>),
@@ -23,7 +23,7 @@ pub(super) enum Line {
     Found(Found),
     /// What was executed in all cases.
     Covered(Vec<Covered>),
-    /// That was all.
+    /// The last line: without it the process was ended before its time.
     Done,
 }
 
@@ -34,11 +34,11 @@ pub(super) struct Read {
     pub(super) structure: String,
     /// True if it is like the task's own, which is to be completed.
     pub(super) is_as_handed_out: bool,
-    /// Warnings.
+    /// What the compiler warns of, which costs no marks.
     pub(super) warnings: Remarks,
 }
 
-/// Why there is no program to run.
+/// Why nothing can be run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Refused {
     pub(super) why: String,
@@ -46,7 +46,7 @@ pub(super) struct Refused {
     pub(super) errors: Remarks,
 }
 
-/// Findings in sources.
+/// What the compiler found, at most [`REMARKS_MAX`] of it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Remarks {
     /// The first of them.

@@ -96,6 +96,11 @@ pub(super) enum How {
 }
 
 impl Marked {
+    /// True if `item`, which this is the mark of, is an expectation of safety and violated.
+    pub(super) fn endangers(&self, item: &Item) -> bool {
+        item.worth.is_safety && self.is_violated()
+    }
+
     /// True if a case shows the contrary.
     pub(super) fn is_violated(&self) -> bool {
         self.missed.iter().any(|missed| matches!(missed.how, How::Violated { .. }))
@@ -186,7 +191,7 @@ impl Graded {
     /// How many expectations of safety are violated.
     pub(super) fn safety_violations(&self, task: &Task) -> usize {
         let pairs = task.items.iter().zip(&self.marked);
-        pairs.filter(|(item, marked)| item.worth.is_safety && marked.is_violated()).count()
+        pairs.filter(|(item, marked)| marked.endangers(item)).count()
     }
 
     /// The digests of all cases, if every one has come to its end.

@@ -8,7 +8,7 @@ use onescan_report::page::{Mood, Page, Section};
 use onescan_runner::run::page::covered;
 
 use super::marks::{Graded, How, Marked};
-use super::summary::{HEAD, alike_lines, cells, headline, how, missed, standing};
+use super::summary::{HEAD, alike_line, alike_lines, cells, headline, how, missed, standing};
 use super::task::{Item, Task};
 
 /// The page.
@@ -37,9 +37,7 @@ fn section(task: &Task, graded: &Graded) -> Section {
     tables.extend(executed(graded));
     tables.extend(style(graded));
     let mut lines = missed(task, graded);
-    if !graded.alike.is_empty() {
-        lines.push(format!("equal in structure and in every run to {}", graded.alike.join(", ")));
-    }
+    lines.extend(alike_line(graded));
     Section {
         title: graded.submission.name.clone(),
         status: standing(task, graded),

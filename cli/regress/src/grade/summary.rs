@@ -91,6 +91,12 @@ pub(super) fn alike_lines(all: &[Graded]) -> Vec<String> {
     alike::groups(all).into_iter().map(line).collect()
 }
 
+/// Which others a submission is equal to, if there are any.
+pub(super) fn alike_line(graded: &Graded) -> Option<String> {
+    let others = (!graded.alike.is_empty()).then(|| graded.alike.join(", "))?;
+    Some(format!("equal in structure and in every run to {others}"))
+}
+
 /// The marks of a submission in words.
 pub(super) fn standing(task: &Task, graded: &Graded) -> String {
     let (given, all) = (graded.given(), task.marks());
@@ -112,9 +118,7 @@ pub(super) fn details(task: &Task, graded: &Graded) -> Vec<String> {
             lines.extend(read.warnings.lines(REMARKS_SHOWN).into_iter().map(|line| format!("  {line}")));
         }
     }
-    if !graded.alike.is_empty() {
-        lines.push(format!("equal in structure and in every run to {}", graded.alike.join(", ")));
-    }
+    lines.extend(alike_line(graded));
     lines
 }
 
@@ -138,16 +142,12 @@ pub(super) fn missed(task: &Task, graded: &Graded) -> Vec<String> {
 fn ordered<'g>(task: &'g Task, graded: &'g Graded) -> Vec<(&'g Item, &'g Marked)> {
     let pairs = task.items.iter().zip(&graded.marked).filter(|(_, marked)| !marked.missed.is_empty());
     let mut pairs: Vec<_> = pairs.collect();
-    pairs.sort_by_key(|(item, marked)| !is_safety_violation(item, marked));
+    pairs.sort_by_key(|(item, marked)| !marked.endangers(item));
     pairs
 }
 
 fn is_met(graded: &Graded, marked: &Marked) -> bool {
     marked.missed.is_empty() && !matches!(graded.standing, Standing::Refused(_) | Standing::Broken(_))
-}
-
-fn is_safety_violation(item: &Item, marked: &Marked) -> bool {
-    item.worth.is_safety && marked.is_violated()
 }
 
 fn of_marks(item: &Item, marked: &Marked) -> String {
@@ -156,7 +156,7 @@ fn of_marks(item: &Item, marked: &Marked) -> String {
 
 /// An expectation that is missed, with when and by which statements.
 pub(super) fn of_item(task: &Task, item: &Item, marked: &Marked) -> Vec<String> {
-    let word = if is_safety_violation(item, marked) { "SAFETY" } else { "missed" };
+    let word = if marked.endangers(item) { "SAFETY" } else { "missed" };
     let about = item.worth.about.as_ref().map(|about| format!(" ({about})")).unwrap_or_default();
     let mut lines = vec![format!("{word}  {}{about}: {}", item.title(), of_marks(item, marked))];
     // Violations before cases that were not run to their end, which say nothing of it.
