@@ -27,11 +27,7 @@ async function take_a_lesson() {
   const { child, said, over, urls } = await begin(program, words, ["trainee's page", "trainer's page"]);
   try {
     const { page, errors } = await open(browser, urls[0]);
-    const trainer = await open(browser, urls[1]);
     without_mouse(page);
-    assert.deepEqual(await found_by_axe(page, axe.source), [], "the trainee's page");
-    assert.deepEqual(await found_by_axe(trainer.page, axe.source), [], "the trainer's page");
-    assert.deepEqual(await small_targets(page), []);
     const pulpit = panel(page, "pulpit");
     await press_key(page, pulpit.getByRole("button", { name: "Take seat" }));
     await pulpit.getByRole("button", { name: "Leave seat" }).waitFor();
@@ -44,11 +40,12 @@ async function take_a_lesson() {
       await page.keyboard.up("Space");
       await until(page, [signal, "=", 0]);
     };
+    const acknowledge = pulpit.getByRole("button", { name: "Acknowledge", exact: true });
     const automatic = pulpit.getByRole("switch", { name: /^Automatic/ });
+    // The hand is on the key: the first alarm is to be acknowledged within 20 s of the machine, and Tab takes its time here.
+    await go_to(page, acknowledge);
     await rings("water of the walls");
-    await press_key(page, page.getByRole("region", { name: "Most urgent alarm" }).getByRole("button", { name: "Acknowledge" }));
-    await page.waitForFunction(() => window.onescan.alarms().every((one) => one.isSeen));
-    await until(page, ["Acknowledge", "=", 0]);
+    await hold("Acknowledge", "Acknowledge");
     await press_key(page, automatic, "Space");
     await until(page, ["Automatic", "=", 0]);
     await shoot(page, "keyboard-lesson");
@@ -56,18 +53,28 @@ async function take_a_lesson() {
     await hold("Acknowledge", "Acknowledge");
     await rings(null);
     await press_key(page, automatic, "Space");
+    // All is well for half a minute: time for what is no part of the lesson.
+    assert.deepEqual(await found_by_axe(page, axe.source), [], "the trainee's page");
+    const trainer = await open(browser, urls[1]);
+    assert.deepEqual(await found_by_axe(trainer.page, axe.source), [], "the trainer's page");
+    // Nobody looks at it any more, and a second machine drawn without a graphics card makes a trainee late.
+    await trainer.page.close();
+    assert.deepEqual(trainer.errors, []);
+    assert.deepEqual(await small_targets(page), []);
     await rings("pressure in the vessel");
-    await hold("Acknowledge", "Acknowledge");
+    await press_key(page, page.getByRole("region", { name: "Most urgent alarm" }).getByRole("button", { name: "Acknowledge" }));
+    await page.waitForFunction(() => window.onescan.alarms().every((one) => one.isSeen));
+    await until(page, ["Acknowledge", "=", 0]);
     await until(page, ["Vessel_pressure", "<", 10]);
     await hold("Acknowledge", "Acknowledge");
     await rings(null);
     await until(page, ["Electrode_broken[1]", "=", 1]);
     await hold("New electrode", "Join_electrode");
     const code = await over;
-    await page.getByRole("heading", { name: "Passed", exact: true }).waitFor();
     assert.equal(code, 0, `${said.out}${said.err}`);
+    await page.getByRole("heading", { name: "Passed", exact: true }).waitFor();
     assert.deepEqual(await found_by_axe(page, axe.source), [], "the trainee's page with its result");
-    assert.deepEqual([...errors, ...trainer.errors], []);
+    assert.deepEqual(errors, []);
     console.log("a lesson with three malfunctions: passed by the keyboard alone");
   } finally {
     child.kill();
@@ -117,7 +124,7 @@ async function fork_the_past() {
 }
 
 try {
-  if (process.env.ONLY !== "lesson") await fork_the_past();
+  await fork_the_past();
   await take_a_lesson();
 } finally {
   await browser.close();

@@ -8,19 +8,30 @@ const STOPS_MOST = 400;
 /** Whether an element, or what is in it, has the focus. */
 const has_focus = (locator) => locator.evaluate((element) => element === document.activeElement);
 
+/** Which way an element lies from the focus, the shorter one through the whole page: `Tab`, `Shift+Tab`, or null if it has the focus. */
+const way_to = (locator) => locator.evaluate((element) => {
+  const stops = [...document.querySelectorAll("button, a[href], select, input, summary, textarea, [tabindex]")];
+  const [at, wanted] = [stops.indexOf(document.activeElement), stops.indexOf(element)];
+  if (element === document.activeElement) return null;
+  const forward = (wanted - at + stops.length) % stops.length;
+  return at >= 0 && forward > stops.length / 2 ? "Shift+Tab" : "Tab";
+});
+
 /** Goes to an element by Tab alone, and checks that one sees where one is. */
 export async function go_to(page, locator) {
   await locator.waitFor();
+  const key = await way_to(locator);
   for (let stop = 0; stop < STOPS_MOST; stop += 1) {
-    if (await has_focus(locator)) {
-      const ring = await locator.evaluate((element) => {
-        const { outlineStyle, outlineWidth, boxShadow } = getComputedStyle(element);
-        return (outlineStyle !== "none" && outlineWidth !== "0px") || boxShadow !== "none";
-      });
-      assert.ok(ring, `nothing shows that ${locator} has the focus`);
+    const seen = await locator.evaluate((element) => {
+      if (element !== document.activeElement) return null;
+      const { outlineStyle, outlineWidth, boxShadow } = getComputedStyle(element);
+      return (outlineStyle !== "none" && outlineWidth !== "0px") || boxShadow !== "none";
+    });
+    if (seen !== null) {
+      assert.ok(seen, `nothing shows that ${locator} has the focus`);
       return;
     }
-    await page.keyboard.press("Tab");
+    await page.keyboard.press(key);
   }
   assert.fail(`${locator} is not reached by Tab`);
 }
