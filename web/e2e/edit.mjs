@@ -70,7 +70,7 @@ async function shoot(page, name) {
   if (folder !== null) await page.screenshot({ path: `${folder}/${name}.png` });
 }
 
-const tip = (page, label) => page.getByRole("button", { name: new RegExp(`^${label.replaceAll(".", "\\.")},`) });
+const tip = (page, label) => page.getByRole("button", { name: new RegExp(`^${label.replaceAll(".", "\\.")}(,| :)`) });
 
 /** Draws from one end to another. */
 async function draw(page, from, to) {
