@@ -311,6 +311,15 @@ fn files_are_read_in_one_way() {
     assert!(found.is_empty(), "\n{found}");
 }
 
+/// What strangers can cause as often as they like is reported from one place, which counts how often.
+#[test]
+fn what_happens_to_listeners_is_reported_in_one_place() {
+    for message in ["cannot accept a connection", "all places are taken"] {
+        let found: Vec<String> = sources().filter(|(_, text)| text.contains(message)).map(|(file, _)| file).collect();
+        assert_eq!(found, ["server/src/transport/accept.rs"], "`{message}`");
+    }
+}
+
 /// The largest number of a width, which stands for "none" or "no limit" where an `Option` would say it.
 #[test]
 fn numbers_do_not_stand_for_something_else() {

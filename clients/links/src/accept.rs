@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 
 use onescan_base::repeated::Repeated;
 use onescan_base::threads;
-use onescan_server::transport::accept::refused;
+use onescan_server::transport::accept::{not_taken, refused};
 use onescan_server::transport::connection_limit::{ConnectionLimit, Limits, Place};
 
 /// How often a thread that waits looks whether all is over.
@@ -26,7 +26,6 @@ const WRITE_TIMEOUT: Duration = Duration::from_secs(3);
 /// A client that says nothing for so long is left; one that comes back is let in again.
 pub(crate) const IDLE_TIMEOUT: Duration = Duration::from_mins(10);
 
-static NOT_TAKEN: Repeated = Repeated::new();
 static NO_THREAD: Repeated = Repeated::new();
 
 /// The other side of a connection.
@@ -132,9 +131,7 @@ pub(crate) fn accept(listener: &TcpListener, terms: Terms, is_over: impl Fn() ->
             },
             Err(error) if error.kind() == io::ErrorKind::WouldBlock => std::thread::sleep(GLANCE / 10),
             Err(error) => {
-                if let Some(times) = NOT_TAKEN.again() {
-                    tracing::warn!("cannot accept a connection to {}: {error}{times}", terms.what);
-                }
+                not_taken(terms.what, &error);
                 std::thread::sleep(GLANCE);
             }
         }

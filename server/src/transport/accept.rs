@@ -30,9 +30,7 @@ pub async fn next(listener: &TcpListener, what: &str) -> (TcpStream, SocketAddr)
         match listener.accept().await {
             Ok(came) => return came,
             Err(error) => {
-                if let Some(times) = NOT_TAKEN.again() {
-                    tracing::warn!("cannot accept a connection to {what}: {error}{times}");
-                }
+                not_taken(what, &error);
                 tokio::time::sleep(PAUSE).await;
             }
         }
@@ -57,6 +55,14 @@ pub async fn admitted(listener: &TcpListener, limit: &ConnectionLimit, what: &st
             Some((place, leaving)) => return Admitted { stream, from, place, leaving },
             None => refused(what, from),
         }
+    }
+}
+
+/// Reports, not too often, that a connection could not be taken, as where there are no descriptors. All listeners of the
+/// process are counted together: what the system has no more of, none of them has.
+pub fn not_taken(what: &str, error: &io::Error) {
+    if let Some(times) = NOT_TAKEN.again() {
+        tracing::warn!("cannot accept a connection to {what}: {error}{times}");
     }
 }
 

@@ -4,9 +4,8 @@ use std::future::{Ready, ready};
 use std::net::SocketAddr;
 use std::sync::Arc;
 
-use onescan_base::repeated::Repeated;
 use onescan_base::threads;
-use onescan_server::transport::accept::{Guarded, Pass, refused};
+use onescan_server::transport::accept::{Guarded, Pass, not_taken, refused};
 use onescan_server::transport::connection_limit::ConnectionLimit;
 use onescan_server::transport::runtime;
 use tokio::net::{TcpListener, TcpStream};
@@ -21,8 +20,6 @@ use crate::gateway::modbus::RegisterMap;
 use crate::gateway::modbus::map::{Entry, Span, Table};
 use crate::gateway::modbus::registers;
 use crate::listener::bind;
-
-static INTERRUPTED: Repeated = Repeated::new();
 
 /// Serves the PLC's registers at `address`; gives the address that it got. The server ends with the controller.
 ///
@@ -44,9 +41,7 @@ async fn listen(listener: &std::net::TcpListener, bank: &Arc<Bank>) {
         match serve_until_over(listener, bank, &limit).await {
             Ok(()) => return,
             Err(error) => {
-                if let Some(times) = INTERRUPTED.again() {
-                    tracing::warn!("cannot accept a connection to Modbus: {error}{times}");
-                }
+                not_taken("Modbus", &error);
                 tokio::time::sleep(GLANCE).await;
             }
         }
