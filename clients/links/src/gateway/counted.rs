@@ -67,9 +67,11 @@ impl CountedGateway {
     }
 
     /// One block out and some in. After a lost connection the block goes out again, and those that came before are not
-    /// counted.
+    /// counted. Whoever connects in the PLC's place and sends no block is left for the next one, for as long as a lost PLC is
+    /// waited for.
     fn step(&mut self, t_v: VirtualTime) -> Result<(), GatewayFault> {
         let mut garbled = 0;
+        let strangers_until = Instant::now() + self.patience.grant + self.patience.reconnect;
         loop {
             let fault = match self.exchange_blocks(t_v) {
                 Err(GatewayFault::Link(fault)) => fault,
@@ -78,7 +80,8 @@ impl CountedGateway {
             if fault.is_garbled() {
                 garbled += 1;
             }
-            if garbled >= GARBLED_MAX || !(fault.is_transient() || fault.is_garbled()) {
+            let is_over = self.link.is_a_strangers() && Instant::now() > strangers_until;
+            if garbled >= GARBLED_MAX || !(fault.is_transient() || fault.is_garbled()) || is_over {
                 return Err(fault.into());
             }
             tracing::info!(target: NOTICE, "{fault}, during {}; connecting again", what(t_v));
@@ -97,6 +100,9 @@ impl CountedGateway {
         for _ in 0..self.per_step.get() {
             while !self.link.next_block(GLANCE, &mut self.from_plc)? {
                 if Instant::now() > deadline {
+                    if self.link.is_a_strangers() {
+                        return Err(self.link.no_block(after).into());
+                    }
                     let what = what(t_v);
                     return Err(match self.link.broken_off() {
                         Some(partial) => GatewayFault::BrokenOff { what, after, partial },
@@ -150,5 +156,91 @@ impl Drop for CountedGateway {
         if steps > 0 {
             tracing::info!(target: NOTICE, "client `{name}`, blocks counted: {steps} steps, {used} blocks used, {replaced} replaced by newer ones, {reconnected} connections lost; no lockstep");
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+    use std::io::{Read as _, Write as _};
+    use std::net::{SocketAddr, TcpStream};
+
+    use onescan_server::signal::{ClientName, Port, SignalName, SignalType};
+    use onescan_server::time::TimeSpan;
+
+    use super::*;
+    use crate::gateway::exchange::{Feed, Words};
+    use crate::gateway::tcp::{Declaration, Layouts};
+
+    const SOON: Duration = Duration::from_millis(50);
+    const LATER: Duration = Duration::from_mins(1);
+
+    /// A gateway to a PLC with a block of eight bytes each way that connects to `address`.
+    fn gateway(address: SocketAddr, patience: Patience) -> CountedGateway {
+        let port = |name: &str| Port { name: SignalName::new(name).unwrap(), ty: SignalType::LINT };
+        let feed = |name: &str| Feed::whole(&port(name), None);
+        let exchange = Exchange::new(&[feed("a")], &[feed("b")], Words::Absent, &BTreeMap::new());
+        let layouts = Layouts::new(&Declaration::default(), &exchange).unwrap();
+        let (name, period) = (ClientName::new("plc").unwrap(), TimeSpan::from_millis(10).unwrap());
+        let request = JoinRequest { name, period, reads: vec![port("a")], writes: vec![port("b")] };
+        let link = TcpLink::listening(address, layouts, LATER);
+        CountedGateway::new(request, exchange, (link, NonZeroU32::MIN), patience)
+    }
+
+    fn free() -> SocketAddr {
+        std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap()
+    }
+
+    fn connects(address: SocketAddr) -> TcpStream {
+        loop {
+            if let Ok(stream) = TcpStream::connect(address) {
+                return stream;
+            }
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    }
+
+    /// A PLC that waits for the first block cannot be told from somebody else before it answers.
+    #[test]
+    fn who_connects_first_and_answers_nothing_gives_way_to_the_plc() {
+        let address = free();
+        let peers = std::thread::spawn(move || {
+            let mut stranger = connects(address);
+            let mut seen = Vec::new();
+            // It may be reset.
+            let _ = stranger.read_to_end(&mut seen);
+            let (mut plc, mut block) = (connects(address), [0; 8]);
+            plc.read_exact(&mut block).unwrap();
+            plc.write_all(&[7; 8]).unwrap();
+            (seen.len(), plc)
+        });
+        let mut gateway = gateway(address, Patience { grant: SOON, reconnect: LATER, ..Patience::default() });
+        gateway.connect().unwrap();
+        let mut outputs = [0; 8];
+        gateway.turn(VirtualTime::from_nanos(10_000_000), &[1; 8], &mut outputs).unwrap();
+        assert_eq!(outputs, [7; 8]);
+        assert_eq!(peers.join().unwrap().0, 8, "the block was taken for the PLC's");
+    }
+
+    /// Strangers one after another do not make a session wait for ever.
+    #[test]
+    fn strangers_that_come_again_and_again_end_the_wait() {
+        let address = free();
+        let stop = std::sync::Arc::new(std::sync::atomic::AtomicBool::new(false));
+        let over = std::sync::Arc::clone(&stop);
+        let strangers = std::thread::spawn(move || {
+            while !over.load(std::sync::atomic::Ordering::Acquire) {
+                if let Ok(mut stranger) = TcpStream::connect(address) {
+                    let _ = stranger.read_to_end(&mut Vec::new());
+                }
+            }
+        });
+        let mut gateway = gateway(address, Patience { grant: SOON, reconnect: SOON * 20, ..Patience::default() });
+        while gateway.connect().is_err() {}
+        let fault = gateway.turn(VirtualTime::from_nanos(10_000_000), &[1; 8], &mut [0; 8]).unwrap_err().to_string();
+        assert!(fault.contains("there came no block"), "{fault}");
+        stop.store(true, std::sync::atomic::Ordering::Release);
+        drop(gateway);
+        strangers.join().unwrap();
     }
 }

@@ -80,6 +80,11 @@ impl BlockCodec {
         Ok(newest)
     }
 
+    /// True if a whole block waits to be read.
+    pub fn has_block(&self) -> bool {
+        self.buffer.len() >= self.whole()
+    }
+
     /// The block that has begun and is not whole, if there is one.
     pub fn partial(&self) -> Option<Partial> {
         let (got, whole) = (self.buffer.len(), self.whole());

@@ -2,7 +2,7 @@
 
 use std::io::{ErrorKind, Read, Write};
 use std::net::{SocketAddr, TcpStream};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use super::codec::{BlockCodec, StreamFault};
 use super::layout::Layouts;
@@ -35,7 +35,7 @@ pub struct TcpLink {
     patience: Option<Duration>,
     /// True if nothing came when it was last waited for.
     is_silent: bool,
-    /// True once something has come over this connection.
+    /// True once a whole block has come over this connection.
     has_spoken: bool,
     /// True if the PLC is to speak first, so that one which says nothing is none.
     must_speak: bool,
@@ -70,10 +70,46 @@ impl TcpLink {
         }
     }
 
-    /// The same for a PLC that sends its block by itself: whoever connects in its place and says nothing for as long as a
+    /// The same for a PLC that sends its block by itself: whoever connects in its place and sends no block for as long as a
     /// connection may take is left, and the next one is let in.
     pub fn expecting_blocks(self) -> Self {
         Self { must_speak: matches!(self.way, Way::FromPlc(..)), ..self }
+    }
+
+    /// True where anybody may have connected in the PLC's place, and has sent no block.
+    pub fn is_a_strangers(&self) -> bool {
+        matches!(self.way, Way::FromPlc(..)) && !self.has_spoken
+    }
+
+    /// A whole block has come: whoever connected is the PLC.
+    fn hear(&mut self) {
+        if !std::mem::replace(&mut self.has_spoken, true) {
+            self.way.heard();
+        }
+    }
+
+    /// Waits for the first block of the PLC, which is left for whoever reads it.
+    fn wait_for_block(&mut self) -> Result<(), LinkFault> {
+        let deadline = Instant::now() + self.timeout;
+        while !self.codec.has_block() {
+            let left = deadline.saturating_duration_since(Instant::now());
+            // A socket takes no time-out of 0.
+            if left.is_zero() || !self.receive(left.max(Duration::from_millis(1)))? {
+                self.stream = None;
+                return Err(self.no_block(self.timeout));
+            }
+        }
+        self.hear();
+        Ok(())
+    }
+
+    /// Whoever connected has sent no block within this time, and is left.
+    pub fn no_block(&self, within: Duration) -> LinkFault {
+        let sent = match self.codec.partial() {
+            Some(partial) => format!("{partial}: is the layout the same on both sides?"),
+            None => "no block".to_owned(),
+        };
+        LinkFault::Lost(format!("who connected is let go; within {within:?} there came {sent}"))
     }
 
     /// The next block, in the order in which they come; false if none comes for as long as `patience`.
@@ -83,6 +119,7 @@ impl TcpLink {
     pub fn next_block(&mut self, patience: Duration, from_plc: &mut [u8]) -> Result<bool, LinkFault> {
         loop {
             if let Some(block) = self.codec.next_block().map_err(link_fault)? {
+                self.hear();
                 self.layouts.from_plc.decode(&block, from_plc);
                 return Ok(true);
             }
@@ -102,7 +139,10 @@ impl TcpLink {
         let mut count = 0;
         let all = loop {
             match self.codec.next_block() {
-                Ok(Some(_)) => count += 1,
+                Ok(Some(_)) => {
+                    self.hear();
+                    count += 1;
+                }
                 Ok(None) => match self.receive_now() {
                     Ok(true) => {}
                     Ok(false) => break Ok(count),
@@ -137,9 +177,6 @@ impl TcpLink {
                 Ok(count) => {
                     self.codec.take(&self.buffer[..count]);
                     self.is_silent = false;
-                    if !std::mem::replace(&mut self.has_spoken, true) {
-                        self.way.heard();
-                    }
                     return Ok(true);
                 }
                 Err(error) if error.kind() == ErrorKind::Interrupted => {}
@@ -166,7 +203,7 @@ fn link_fault(fault: StreamFault) -> LinkFault {
 }
 
 impl Way {
-    /// Something has come from the PLC.
+    /// A block has come from the PLC.
     fn heard(&self) {
         if let Self::FromPlc(_, Some(plc_listener)) = self {
             plc_listener.heard();
@@ -206,12 +243,7 @@ impl Link for TcpLink {
         self.codec.clear();
         (self.patience, self.is_silent, self.has_spoken) = (None, false, false);
         self.stream = Some(self.way.connect(self.timeout)?);
-        if self.must_speak && !self.receive(self.timeout)? {
-            self.stream = None;
-            let reason = format!("who connected said nothing in {:?}; the next one is let in", self.timeout);
-            return Err(LinkFault::Lost(reason));
-        }
-        Ok(())
+        if self.must_speak { self.wait_for_block() } else { Ok(()) }
     }
 
     fn write(&mut self, to_plc: &[u8]) -> Result<(), LinkFault> {
@@ -227,6 +259,7 @@ impl Link for TcpLink {
     fn read(&mut self, patience: Duration, from_plc: &mut [u8]) -> Result<bool, LinkFault> {
         loop {
             if let Some(block) = self.codec.newest().map_err(link_fault)? {
+                self.hear();
                 self.layouts.from_plc.decode(&block, from_plc);
                 return Ok(true);
             }
@@ -285,6 +318,34 @@ mod tests {
         drop(plc);
         let closed = "closed after 5 of the 8 bytes of a block: is the layout the same on both sides?";
         assert_eq!(link.read(LATER, &mut packed), Err(LinkFault::Lost(closed.to_owned())));
+    }
+
+    /// Who sends something that is not a block is not the PLC, and does not keep it out.
+    #[test]
+    fn half_a_block_is_nobodys() {
+        let (link, mut stranger) = connected();
+        let mut link = TcpLink { timeout: SOON, ..link.expecting_blocks() };
+        let Way::FromPlc(_, Some(plc_listener)) = &link.way else { panic!("it listens") };
+        let address = plc_listener.address();
+        let mut again = TcpStream::connect(address).unwrap();
+        again.write_all(&[0; 5]).unwrap();
+        let fault = loop {
+            match link.connect() {
+                Err(LinkFault::NobodyCame { .. }) => {}
+                Err(fault) => break fault.to_string(),
+                Ok(()) => panic!("it has sent no block"),
+            }
+        };
+        assert!(fault.contains("5 of the 8 bytes of a block: is the layout"), "{fault}");
+        assert_eq!(stranger.read(&mut [0]).unwrap_or(0), 0, "it is closed");
+        let mut plc = TcpStream::connect(address).unwrap();
+        plc.write_all(&[7; 8]).unwrap();
+        link.timeout = LATER;
+        while link.connect().is_err() {}
+        let mut packed = [0; 8];
+        assert_eq!((link.read(LATER, &mut packed), packed), (Ok(true), [7; 8]), "its first block is read");
+        let mut late = TcpStream::connect(address).unwrap();
+        assert_eq!(late.read(&mut [0]).unwrap_or(0), 0, "the PLC is there");
     }
 
     #[test]

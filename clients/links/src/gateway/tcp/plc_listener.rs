@@ -1,9 +1,9 @@
-//! Where a PLC connects that is the TCP client: one at a time. Until it has sent something it may be anybody, and gives way to
+//! Where a PLC connects that is the TCP client: one at a time. Until it has sent a block it may be anybody, and gives way to
 //! one who comes.
 
 use onescan_base::notice::NOTICE;
-use onescan_base::repeated::Repeated;
 use onescan_base::threads;
+use onescan_server::transport::accept::not_taken;
 use std::collections::BTreeSet;
 use std::net::{IpAddr, Shutdown, SocketAddr, TcpListener, TcpStream};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -28,8 +28,6 @@ struct Shared {
     came: Condvar,
 }
 
-static NOT_TAKEN: Repeated = Repeated::new();
-
 #[derive(Default)]
 struct State {
     /// Has connected and is not served yet.
@@ -42,7 +40,7 @@ struct State {
 /// Whose connection is served, or waits for it.
 struct Inside {
     peer: SocketAddr,
-    /// The connection, to close it; nothing once it has sent something.
+    /// The connection, to close it; nothing once it has sent a block.
     silent: Option<TcpStream>,
 }
 
@@ -79,7 +77,7 @@ impl PlcListener {
         waited.unwrap_or_else(PoisonError::into_inner).0.waiting.take()
     }
 
-    /// Something has come over the connection that [`PlcListener::enter`] gave: it keeps its place until it is over.
+    /// A block has come over the connection that [`PlcListener::enter`] gave: it keeps its place until it is over.
     pub fn heard(&self) {
         if let Some(inside) = &mut self.shared.lock().inside {
             inside.silent = None;
@@ -109,9 +107,7 @@ fn attend(listener: &TcpListener, address: SocketAddr, shared: &Shared) {
             Ok((stream, peer)) => admit(stream, peer, address, shared),
             Err(error) if error.kind() == std::io::ErrorKind::WouldBlock => std::thread::sleep(GLANCE),
             Err(error) => {
-                if let Some(times) = NOT_TAKEN.again() {
-                    tracing::warn!("cannot accept a connection at tcp-listen://{address}: {error}{times}");
-                }
+                not_taken(&format!("tcp-listen://{address}"), &error);
                 std::thread::sleep(GLANCE);
             }
         }
