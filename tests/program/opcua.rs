@@ -152,6 +152,26 @@ fn a_client_that_fails_is_reported_by_name() {
     assert!(said.err.contains("client `plc` did not join within 0.1 s"), "{said:?}");
 }
 
+/// A client that has taken all sessions dies: they are free again after what the server said, and the next client takes part.
+#[test]
+fn the_sessions_of_a_dead_client_are_free_again() {
+    let words = ["--until", "100ms", "--opcua-client", "plc", "--join-timeout", "5min"];
+    let server = Server::start(&scenario("shear"), &words);
+    assert_eq!(ended(begun("flood.py", &[&server.url])).trim(), "512 15000.0");
+    let mut refused = 0;
+    loop {
+        let said = Said::from(begun("participant.py", &[&server.url, "plc", "call"]).wait_with_output().unwrap());
+        if said.code == Some(0) {
+            break;
+        }
+        refused += 1;
+        assert!(said.err.contains("BadTooManySessions") && refused < 100, "{said:?}");
+    }
+    assert!(refused > 0, "none was free at first");
+    let said = server.end();
+    assert_eq!(said.code, Some(0), "{said:?}");
+}
+
 /// Pause, single steps, a force, a reset and the end by an operator with an OPC UA client: recorded, and repeated to
 /// the same digest.
 #[test]

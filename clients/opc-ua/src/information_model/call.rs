@@ -19,8 +19,9 @@ use super::value;
 /// How long a method waits for the step boundary at which it takes effect.
 const BOUNDARY_TIMEOUT: Duration = Duration::from_secs(3);
 
-/// Longest wait that a client may ask for.
-const PATIENCE_MAX: Duration = Duration::from_mins(1);
+/// Longest wait that a client may ask for: a session ends in which nothing is asked for longer, and a client that calls one
+/// method after the other asks for nothing meanwhile.
+const PATIENCE_MAX: Duration = Duration::from_secs(5);
 
 /// Does what a method of the session asks for, and waits for the step boundary at which it is done. Before the
 /// session has begun, or if no boundary comes in time, it is noted only.

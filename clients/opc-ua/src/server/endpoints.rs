@@ -5,6 +5,7 @@ use std::net::{Ipv4Addr, SocketAddr};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::thread::JoinHandle;
+use std::time::Duration;
 
 use opcua::crypto::SecurityPolicy;
 use opcua::server::node_manager::NodeManagerBuilder;
@@ -22,9 +23,13 @@ use onescan_links::opcua::{Access, Refusals, ServeError};
 /// Shortest publishing interval, and how often subscriptions are looked at.
 const SUBSCRIPTIONS_MS: u64 = 1;
 
-/// Sessions at a time. One whose connection is gone stays for a minute, as OPC UA has it, so that there must be many more of
-/// them than connections.
+/// Sessions at a time. One whose connection is gone stays for [`SESSION_TIMEOUT`], as OPC UA has it, so that there must be
+/// many more of them than connections.
 const SESSIONS_MAX: usize = 512;
+
+/// How long a session lasts in which nothing is asked for, so also that of a client that is dead; clients are told so when they
+/// ask for more. Most stacks ask for the server's state every 5 s, none less often than every 10 s.
+const SESSION_TIMEOUT: Duration = Duration::from_secs(15);
 
 /// A server that runs until this is dropped.
 pub struct Running {
@@ -118,6 +123,7 @@ fn builder(address: SocketAddr, name: &str, access: &Access, refusals: &Refusals
         .pki_dir(pki.path())
         .trust_client_certs(access.trust_clients)
         .max_sessions(SESSIONS_MAX)
+        .max_session_timeout_ms(SESSION_TIMEOUT.as_millis() as u64)
         .subscription_poll_interval_ms(SUBSCRIPTIONS_MS);
     let limits = &mut builder.limits_mut().subscriptions;
     limits.min_publishing_interval_ms = SUBSCRIPTIONS_MS as f64;
