@@ -1,6 +1,10 @@
 //! Sessions of many signals and many clients. That they come to their end within the time of a test is what is shown: what
 //! grows with the square of the number did not (30,000 signals took more than seven minutes to their first step).
 
+use std::time::{Duration, Instant};
+
+use onescan_iec::Input;
+use onescan_iec::input::kind::SourceKind;
 use onescan_tests::large;
 
 use crate::typed::typed;
@@ -61,4 +65,65 @@ fn the_errors_of_ten_thousand_statements() {
     let said = typed(folder.path(), &["run", "."]);
     assert_eq!(said.code, Some(2));
     assert!(said.err.contains("more errors are not shown: `onescan check` lists them"), "{}", said.err.len());
+}
+
+/// `count` lines, each of its number.
+fn lines(count: usize, line: impl Fn(usize) -> String) -> String {
+    (0..count).map(line).collect()
+}
+
+/// A program with so many variables, by how they are declared.
+fn programs(count: usize) -> Vec<(&'static str, String)> {
+    let next = |number: usize| (number * 7 + 1) % count;
+    let counts = |number| format!("v{number} := v{} + 1;\n", next(number));
+    let declared = |ty: &str| lines(count, |number| format!("v{number} : {ty};\n"));
+    let program = |head: &str, body: String| format!("{head}END_VAR\n{body}END_PROGRAM\n");
+    let inner = |kind: &str, ty: &str| format!("PROGRAM Main\n{kind}\n{}", declared(ty));
+    let global = |kind: &str| format!("{kind}\n{}END_VAR\nPROGRAM Main\nVAR x : INT;\n", declared("INT"));
+    let located = lines(count, |number| format!("v{number} AT %QX{}.{} : BOOL;\n", number / 8, number % 8));
+    let members = lines(count, |number| format!("v{number} : INT := {};\n", number % 100));
+    let structure = format!("TYPE S : STRUCT\n{members}END_STRUCT; END_TYPE\nPROGRAM Main\nVAR s : S;\n");
+    vec![
+        ("local", program(&inner("VAR", "INT"), lines(count, counts))),
+        ("outputs", program(&inner("VAR_OUTPUT", "INT"), lines(count, counts))),
+        ("global", program(&global("VAR_GLOBAL"), lines(count, counts))),
+        (
+            "located",
+            program(
+                &format!("PROGRAM Main\nVAR\n{located}"),
+                lines(count, |number| format!("v{number} := NOT v{};\n", next(number))),
+            ),
+        ),
+        ("members", program(&structure, lines(count, |number| format!("s.v{number} := s.v{} + 1;\n", next(number))))),
+        (
+            "instances",
+            program(
+                &inner("VAR", "TON"),
+                lines(count, |number| format!("v{number}(IN := v{}.Q, PT := T#1s);\n", next(number))),
+            ),
+        ),
+    ]
+}
+
+/// The shortest of some times that a check took: what else the machine did is in the longer ones.
+fn checked(text: &str) -> Duration {
+    let one = |_| {
+        let input = Input::from_text("main.st", SourceKind::Text, text);
+        let began = Instant::now();
+        let found = onescan_iec::inspect([input], None);
+        assert!(!found.has_errors(), "{found}");
+        began.elapsed()
+    };
+    (0..3).map(one).min().expect("three times")
+}
+
+/// Eight times as many variables take about eight times as long to check, and not sixty-four times: nobody goes through all of
+/// them for each. Both are measured in this run, on this machine.
+#[test]
+fn the_check_grows_with_the_number_of_variables() {
+    for ((kind, few), (_, many)) in programs(2_000).into_iter().zip(programs(16_000)) {
+        let (few, many) = (checked(&few), checked(&many));
+        let ratio = many.as_secs_f64() / few.as_secs_f64();
+        assert!(ratio < 24.0, "{kind}: {few:?} and {many:?}, {ratio:.1} times as long");
+    }
 }

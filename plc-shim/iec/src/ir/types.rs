@@ -130,6 +130,8 @@ struct Entry {
     size: u32,
     align: u32,
     image: Arc<[u8]>,
+    /// Of a structure: which of its members has a name, in capitals.
+    members: BTreeMap<String, usize>,
 }
 
 /// All types of an application.
@@ -155,14 +157,16 @@ impl TypeTable {
     /// The elementary types.
     #[expect(clippy::new_without_default, reason = "a table without types of its own is nobody's default")]
     pub fn new() -> Self {
+        let members = BTreeMap::new;
         let entry = |ty: ElementaryType| Entry {
             ty: Type::Elementary(ty),
             size: ty.size(),
             align: ty.size(),
             image: vec![0; ty.size() as usize].into(),
+            members: members(),
         };
         let mut entries: Vec<_> = ElementaryType::ALL.iter().map(|ty| entry(*ty)).collect();
-        entries.push(Entry { ty: Type::Nothing, size: 0, align: 1, image: Arc::from([]) });
+        entries.push(Entry { ty: Type::Nothing, size: 0, align: 1, image: Arc::from([]), members: members() });
         entries.push(Entry { ty: Type::Null, ..entry(REFERENCE) });
         Self {
             entries,
@@ -197,7 +201,7 @@ impl TypeTable {
     }
 
     fn add(&mut self, ty: Type, size: u32, align: u32, image: Arc<[u8]>) -> TypeId {
-        self.entries.push(Entry { ty, size, align, image });
+        self.entries.push(Entry { ty, size, align, image, members: BTreeMap::new() });
         TypeId(self.entries.len() as u32 - 1)
     }
 
@@ -338,6 +342,9 @@ impl TypeTable {
     /// Gives a structure that was only named its members, its alignment and its initial image.
     pub fn complete_structure(&mut self, id: TypeId, members: Vec<Field>, align: u32, image: Arc<[u8]>) {
         if let Some(entry) = self.entries.get_mut(id.0 as usize) {
+            for (at, field) in members.iter().enumerate() {
+                entry.members.entry(field.name.to_ascii_uppercase()).or_insert(at);
+            }
             if let Type::Struct { fields, .. } = &mut entry.ty {
                 *fields = members;
             }
@@ -382,6 +389,12 @@ impl TypeTable {
             entry.align = align;
             entry.image = image;
         }
+    }
+
+    /// The member of a structure that is called so; names are compared without regard to case.
+    pub fn field(&self, id: TypeId, name: &str) -> Option<&Field> {
+        let Entry { ty: Type::Struct { fields, .. }, members, .. } = self.entry(id) else { return None };
+        fields.get(*members.get(&name.to_ascii_uppercase())?)
     }
 
     /// The type's name as a user would write it.

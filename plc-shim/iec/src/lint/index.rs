@@ -4,12 +4,15 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::front::Front;
 use crate::syntax::ast::{
-    Configuration, Connection, Declaration, Expr, ExprKind, Ident, Pou, PouKind, Section, SectionKind, TemplateUse,
-    TypeSpec, TypeSpecKind, Variable,
+    Configuration, Connection, Declaration, Expr, ExprKind, Field, Ident, Pou, PouKind, Section, SectionKind,
+    TemplateUse, TypeSpec, TypeSpecKind, Variable,
 };
 use crate::syntax::walk::root;
 
-/// Declarations by the key of their name.
+/// What a unit declares, with its sections, by the keys of their names; of two of one name the first.
+type Variables<'a> = BTreeMap<String, (&'a Section, &'a Variable)>;
+
+/// Declarations by the key of their name: each is looked for as often as it is used, so that nobody goes through all of them.
 pub(super) struct Index<'a> {
     own: Vec<&'a Pou>,
     members: Vec<&'a Pou>,
@@ -19,6 +22,12 @@ pub(super) struct Index<'a> {
     library: BTreeSet<String>,
     types: BTreeMap<String, &'a TypeSpec>,
     globals: Vec<&'a Section>,
+    /// Global variables by the keys of their names; of two of one name the first.
+    global_names: BTreeMap<String, &'a Variable>,
+    /// The variables of the user's units and members.
+    variables: BTreeMap<usize, Variables<'a>>,
+    /// The members of the structures that have names.
+    fields: BTreeMap<usize, BTreeMap<String, &'a TypeSpec>>,
     configurations: Vec<&'a Configuration>,
     /// Names that some unit has for a `VAR_IN_OUT`.
     in_outs: BTreeSet<String>,
@@ -38,6 +47,9 @@ impl<'a> Index<'a> {
             library: BTreeSet::new(),
             types: BTreeMap::new(),
             globals: Vec::new(),
+            global_names: BTreeMap::new(),
+            variables: BTreeMap::new(),
+            fields: BTreeMap::new(),
             configurations: Vec::new(),
             in_outs: BTreeSet::new(),
             namespaces: BTreeSet::new(),
@@ -48,6 +60,14 @@ impl<'a> Index<'a> {
             for declaration in &unit.declarations {
                 index.add(declaration, library);
             }
+        }
+        for variable in index.globals.iter().copied().flat_map(|section| &section.variables) {
+            for name in &variable.names {
+                index.global_names.entry(name.key()).or_insert(variable);
+            }
+        }
+        for pou in index.own.iter().chain(&index.members) {
+            index.variables.insert(place_of(*pou), variables_by_name(pou));
         }
         index
     }
@@ -77,6 +97,13 @@ impl<'a> Index<'a> {
             }
             Declaration::Type(named) => {
                 self.types.insert(named.name.key(), &named.spec);
+                if let Some(fields) = fields_of(&named.spec) {
+                    let mut by_name = BTreeMap::new();
+                    for field in fields {
+                        by_name.entry(field.name.key()).or_insert(&field.spec);
+                    }
+                    self.fields.insert(place_of(&named.spec), by_name);
+                }
             }
             // What a vendor's library declares is there for whoever wants it.
             Declaration::Globals(_) if library => {}
@@ -181,8 +208,25 @@ impl<'a> Index<'a> {
     }
 
     pub(super) fn global(&self, key: &str) -> Option<&'a Variable> {
-        let all = self.globals.iter().flat_map(|section| &section.variables);
-        all.into_iter().find(|variable| variable.names.iter().any(|name| name.has_key(key)))
+        self.global_names.get(key).copied()
+    }
+
+    /// The declaration of a name in a unit, with its section.
+    pub(super) fn declared(&self, pou: &'a Pou, key: &str) -> Option<(&'a Section, &'a Variable)> {
+        match self.variables.get(&place_of(pou)) {
+            Some(variables) => variables.get(key).copied(),
+            // A block of a library has a few variables.
+            None => variables_by_name(pou).remove(key),
+        }
+    }
+
+    /// The type of a member of a structure.
+    pub(super) fn field(&self, structure: &'a TypeSpec, key: &str) -> Option<&'a TypeSpec> {
+        match self.fields.get(&place_of(structure)) {
+            Some(fields) => fields.get(key).copied(),
+            // One without a name is declared where it is used.
+            None => fields_of(structure)?.iter().find(|field| field.name.has_key(key)).map(|field| &field.spec),
+        }
     }
 
     /// True for a place that begins with the name of a namespace.
@@ -248,9 +292,30 @@ pub(super) fn variables(pou: &Pou, kind: SectionKind) -> impl Iterator<Item = &V
     pou.sections.iter().filter(move |section| section.kind == kind).flat_map(|section| &section.variables)
 }
 
-/// The declaration of a name in a unit, with its section.
-pub(super) fn declared<'a>(pou: &'a Pou, key: &str) -> Option<(&'a Section, &'a Variable)> {
-    let all = pou.sections.iter().flat_map(|section| section.variables.iter().map(move |variable| (section, variable)));
-    let mut all = all.into_iter();
-    all.find(|(_, variable)| variable.names.iter().any(|name| name.has_key(key)))
+/// Where a node of the tree lies, which distinguishes it from all others: they may have equal names. Nothing is done in this
+/// order.
+fn place_of<T>(node: &T) -> usize {
+    std::ptr::from_ref(node).addr()
+}
+
+fn variables_by_name(pou: &Pou) -> Variables<'_> {
+    let mut found = Variables::new();
+    for section in &pou.sections {
+        for variable in &section.variables {
+            for name in &variable.names {
+                found.entry(name.key()).or_insert((section, variable));
+            }
+        }
+    }
+    found
+}
+
+/// The members of a structure or union.
+fn fields_of(spec: &TypeSpec) -> Option<&[Field]> {
+    match &spec.kind {
+        TypeSpecKind::Struct(fields) | TypeSpecKind::Overlapping(fields) | TypeSpecKind::Union(fields) => {
+            Some(fields.as_slice())
+        }
+        _ => None,
+    }
 }

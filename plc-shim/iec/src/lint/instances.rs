@@ -2,7 +2,7 @@
 //! misses edges and stops counting time.
 
 use super::Unit;
-use super::index::{Index, declared};
+use super::index::Index;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::ast::{Call, Expr, ExprKind, Pou, SectionKind};
 use crate::syntax::walk::{self, Visitor, root};
@@ -60,7 +60,7 @@ impl Visitor for Branches<'_, '_> {
             return;
         }
         let Some(name) = root(&call.callee) else { return };
-        let variable = declared(self.pou, &name.key()).map(|(_, variable)| variable);
+        let variable = self.index.declared(self.pou, &name.key()).map(|(_, variable)| variable);
         let Some(variable) = variable.or_else(|| self.index.global(&name.key())) else { return };
         let Some(block) = self.index.block(&variable.spec) else { return };
         if self.index.needs_every_scan(block) {

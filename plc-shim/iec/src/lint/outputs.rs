@@ -1,5 +1,7 @@
 //! W0701: an output that nothing writes keeps its first value, and the machine stands still.
 
+use std::collections::BTreeSet;
+
 use super::Unit;
 use super::index::Index;
 use super::usage::Usage;
@@ -25,7 +27,7 @@ fn writes_outputs(units: &[Unit<'_>]) -> bool {
 pub(super) fn lint(unit: &Unit<'_>, units: &[Unit<'_>], findings: &mut Vec<Diagnostic>) {
     // It may be written through a view.
     let declared = unit.pou.sections.iter().flat_map(|section| &section.variables);
-    let viewed: Vec<String> = declared.filter_map(Variable::viewed).map(Ident::key).collect();
+    let viewed: BTreeSet<String> = declared.filter_map(Variable::viewed).map(Ident::key).collect();
     for section in &unit.pou.sections {
         let is_output = |variable: &Variable| match section.kind {
             _ if variable.viewed().is_some() => false,

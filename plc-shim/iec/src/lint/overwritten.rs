@@ -1,5 +1,6 @@
 //! W0725: a variable is assigned to, and assigned to again before anything reads it. W0728: one is assigned to itself.
 
+use std::cell::LazyCell;
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::bodies::{Bodies, Body};
@@ -58,13 +59,15 @@ fn twice(body: Body<'_>, bodies: &Bodies<'_>, findings: &mut Vec<Diagnostic>) {
     let is_written = |each: &&Statement| each.span.file == begin.file && each.span.start >= begin.start;
     let list: Vec<&Statement> = body.checked.body.iter().filter(is_written).collect();
     let index = Index::of(&body.checked.body, &list, bodies);
+    let outputs = LazyCell::new(|| outputs_of(body));
     for (at, first) in list.iter().enumerate() {
         let Some((place, value)) = assigned(first) else { continue };
         let Some((again, next)) = index.overwriting(place, at, &list) else { continue };
         // A value for all cases, before what computes it.
         let is_default = bodies.constant(value).is_some() && bodies.constant(next).is_none();
         if !is_default {
-            report(body, (place, again), bodies, findings);
+            let is_output = |name: &str| outputs.contains(&name.to_ascii_uppercase());
+            report(is_output, (place, again), bodies, findings);
         }
     }
 }
@@ -210,9 +213,14 @@ impl Visitor for Opaque<'_> {
     }
 }
 
-fn report(body: Body<'_>, (first, again): (&Place, &Place), bodies: &Bodies<'_>, findings: &mut Vec<Diagnostic>) {
+fn report(
+    is_output: impl Fn(&str) -> bool,
+    (first, again): (&Place, &Place),
+    bodies: &Bodies<'_>,
+    findings: &mut Vec<Diagnostic>,
+) {
     let name = bodies.text(again.span);
-    let is_output = matches!(first.storage, Storage::Located(_)) || is_output(body, name);
+    let is_output = matches!(first.storage, Storage::Located(_)) || is_output(name);
     let what = if is_output { "output " } else { "" };
     let message = format!("{what}`{name}` is assigned to twice, and nothing reads the first value");
     let is_bool = bodies.types().elementary(first.ty) == Some(ElementaryType::Bool);
@@ -227,8 +235,9 @@ fn report(body: Body<'_>, (first, again): (&Place, &Place), bodies: &Bodies<'_>,
     findings.push(found);
 }
 
-fn is_output(body: Body<'_>, name: &str) -> bool {
+/// The names of a unit's outputs, in capitals.
+fn outputs_of(body: Body<'_>) -> BTreeSet<String> {
     let outputs = body.pou.sections.iter().filter(|section| section.kind == SectionKind::Output);
-    let mut names = outputs.flat_map(|section| &section.variables).flat_map(|each: &Variable| &each.names);
-    names.any(|each| each.text.eq_ignore_ascii_case(name))
+    let names = outputs.flat_map(|section| &section.variables).flat_map(|each: &Variable| &each.names);
+    names.map(|each| each.text.to_ascii_uppercase()).collect()
 }

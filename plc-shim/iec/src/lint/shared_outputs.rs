@@ -1,11 +1,13 @@
 //! W0726: two variables lie at one output, and both are written; or two programs write one output in each call.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use super::Unit;
 use super::bodies::{Bodies, Body};
 use super::index::Index;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::dialect::AddressUnit;
-use crate::ir::{Place, Statement, StatementKind, Storage};
+use crate::ir::{ElementaryType, Location, Place, Statement, StatementKind, Storage};
 use crate::syntax::SourceMap;
 use crate::syntax::Span;
 use crate::syntax::ast::{Ident, PouKind, SectionKind, Variable};
@@ -46,12 +48,27 @@ impl At {
         };
         Some(Self::Bits(u64::from(byte) * 8 + u64::from(bit.unwrap_or(0)), u64::from(width.bits().max(1))))
     }
+}
 
-    fn overlaps(&self, other: &Self) -> bool {
-        match (self, other) {
-            (Self::Bits(one, count), Self::Bits(two, others)) => *one < two + others && *two < one + count,
-            _ => self == other,
-        }
+/// Who takes which bit of the outputs first, by their numbers.
+#[derive(Default)]
+struct Taken {
+    bits: BTreeMap<u64, usize>,
+    named: BTreeMap<String, usize>,
+}
+
+impl Taken {
+    /// Takes what an address takes, and gives the first who has some of it already.
+    fn take(&mut self, at: &At, number: usize) -> Option<usize> {
+        let before = match at {
+            // The widest address has 64 bits.
+            At::Bits(from, count) => {
+                let taken = (*from..from.saturating_add(*count)).map(|bit| *self.bits.entry(bit).or_insert(number));
+                taken.min()
+            }
+            At::Named(name) => Some(*self.named.entry(name.clone()).or_insert(number)),
+        };
+        before.filter(|before| *before < number)
     }
 }
 
@@ -71,9 +88,9 @@ pub(super) fn lint(units: &[Unit<'_>], index: &Index<'_>, sources: &SourceMap, f
             }
         }
     }
-    for (count, other) in written.iter().enumerate() {
-        let mut before = written.iter().take(count);
-        let Some(first) = before.find(|first| first.at.overlaps(&other.at)) else { continue };
+    let mut taken = Taken::default();
+    for (number, other) in written.iter().enumerate() {
+        let Some(first) = taken.take(&other.at, number).and_then(|before| written.get(before)) else { continue };
         let (one, two, address) = (&first.name.text, &other.name.text, other.address);
         let message = if first.at == other.at {
             format!("`{two}` lies at {address} as `{one}` does, and both are written: the last one wins")
@@ -103,29 +120,33 @@ fn located<'a>(
 
 /// Outputs that one program writes in each call, and another one as well.
 pub(super) fn lint_programs(bodies: &Bodies<'_>, findings: &mut Vec<Diagnostic>) {
-    let mut writers: Vec<(&Place, Body<'_>)> = Vec::new();
+    let mut writers: BTreeMap<Output, (&Place, Body<'_>)> = BTreeMap::new();
+    // Two names of one output, and two tasks, have been reported.
+    let mut known: BTreeSet<(Span, Span)> = BTreeSet::new();
+    let is_of_two = |found: &&Diagnostic| matches!(found.code, Code::OutputWithTwoNames | Code::WrittenByTwoTasks);
+    for found in findings.iter().filter(is_of_two) {
+        let labels = || found.labels.iter().map(|label| label.span);
+        known.extend(labels().flat_map(|one| labels().map(move |other| (one, other))));
+    }
     for body in bodies.iter().filter(|body| body.pou.kind == PouKind::Program && body.pou.chart.is_empty()) {
-        for place in body.checked.body.iter().filter_map(written_always) {
-            match writers.iter().find(|(first, _)| is_same_output(first, place)) {
-                None => writers.push((place, body)),
-                Some((first, other)) if other.pou.name.key() != body.pou.name.key() => {
-                    report(bodies, (first, *other), (place, body), findings);
-                }
-                Some(_) => {}
+        for (output, place) in body.checked.body.iter().filter_map(written_always) {
+            let (first, other) = *writers.entry(output).or_insert((place, body));
+            if other.pou.name.key() != body.pou.name.key() && !known.contains(&(first.span, place.span)) {
+                report(bodies, (first, other), (place, body), findings);
             }
         }
     }
 }
 
-/// A part of the output area that a statement writes, whatever else there is.
-fn written_always(statement: &Statement) -> Option<&Place> {
-    let StatementKind::Assign(place, _) = &statement.kind else { return None };
-    let is_output = matches!(place.storage, Storage::Located(location) if location.area == Area::Output);
-    (is_output && place.steps.is_empty()).then_some(place)
-}
+/// Offset and bit of a place in the output area, and the lowest bit and the type of what of it is meant.
+type Output = (u32, Option<u8>, Option<(u32, ElementaryType)>);
 
-fn is_same_output(one: &Place, other: &Place) -> bool {
-    one.storage == other.storage && one.part == other.part
+/// A part of the output area that a statement writes, whatever else there is.
+fn written_always(statement: &Statement) -> Option<(Output, &Place)> {
+    let StatementKind::Assign(place, _) = &statement.kind else { return None };
+    let Storage::Located(Location { area: Area::Output, offset, bit }) = place.storage else { return None };
+    let part = place.part.map(|part| (part.shift, part.whole));
+    place.steps.is_empty().then_some(((offset, bit, part), place))
 }
 
 fn report(
@@ -134,15 +155,6 @@ fn report(
     (again, other): (&Place, Body<'_>),
     findings: &mut Vec<Diagnostic>,
 ) {
-    // Two names of one output, and two tasks, have been reported.
-    let is_known = |found: &Diagnostic| {
-        matches!(found.code, Code::OutputWithTwoNames | Code::WrittenByTwoTasks)
-            && found.labels.iter().any(|label| label.span == first.span)
-            && found.labels.iter().any(|label| label.span == again.span)
-    };
-    if findings.iter().any(is_known) {
-        return;
-    }
     let (name, one, other) = (bodies.text(again.span), &one.pou.name.text, &other.pou.name.text);
     let message = format!("output `{name}` is written by each call of `{other}` and of `{one}`: the last one wins");
     let found = Diagnostic::warning(Code::OutputWithTwoNames, again.span, message)

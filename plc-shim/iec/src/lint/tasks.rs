@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::Unit;
-use super::index::{Index, declared};
+use super::index::Index;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::Span;
 use crate::syntax::ast::{Ident, Pou, PouKind, SectionKind};
@@ -58,7 +58,7 @@ fn reached<'a>(start: &str, units: &BTreeMap<String, &'a Unit<'a>>, index: &Inde
     while let Some(unit) = open.pop().and_then(|key| units.get(&key)) {
         found.push(*unit);
         for (name, _) in unit.usage.iter().filter(|(_, uses)| uses.is_called) {
-            let variable = declared(unit.pou, name).map(|(_, variable)| variable).or_else(|| index.global(name));
+            let variable = index.declared(unit.pou, name).map(|(_, variable)| variable).or_else(|| index.global(name));
             let callee = variable.and_then(|variable| index.block(&variable.spec)).or_else(|| index.unit(name));
             if let Some(key) = callee.map(|pou| pou.name.key()).filter(|key| units.contains_key(key))
                 && seen.insert(key.clone())
@@ -72,7 +72,7 @@ fn reached<'a>(start: &str, units: &BTreeMap<String, &'a Unit<'a>>, index: &Inde
 
 fn global_writes<'a>(unit: &'a Unit<'_>, index: &Index<'_>) -> impl Iterator<Item = (&'a str, Span)> {
     unit.usage.iter().filter_map(|(name, uses)| {
-        let is_global = match declared(unit.pou, name) {
+        let is_global = match index.declared(unit.pou, name) {
             Some((section, _)) => section.kind == SectionKind::External,
             None => unit.pou.name.key() != name && index.global(name).is_some(),
         };

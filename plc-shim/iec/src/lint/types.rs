@@ -1,6 +1,6 @@
 //! The type of an expression, as far as a warning needs it: is it a real number?
 
-use super::index::{Index, declared};
+use super::index::Index;
 use crate::ir::ElementaryType;
 use crate::syntax::ast::{Call, Expr, ExprKind, Literal, Pou, SectionKind, TypeSpec, TypeSpecKind, TypedValue};
 
@@ -66,7 +66,7 @@ fn spec_of<'a>(expr: &Expr, pou: &'a Pou, index: &Index<'a>) -> Option<&'a TypeS
     match &expr.kind {
         ExprKind::Name(name) => {
             let key = name.key();
-            if let Some((_, variable)) = declared(pou, &key) {
+            if let Some((_, variable)) = index.declared(pou, &key) {
                 return Some(&variable.spec);
             }
             match pou.result.as_ref().filter(|_| pou.name.key() == key) {
@@ -84,13 +84,11 @@ fn spec_of<'a>(expr: &Expr, pou: &'a Pou, index: &Index<'a>) -> Option<&'a TypeS
             _ => None,
         },
         ExprKind::Member(inner, member) => {
-            let spec = index.resolved(spec_of(inner, pou, index)?);
-            if let TypeSpecKind::Struct(fields) | TypeSpecKind::Overlapping(fields) | TypeSpecKind::Union(fields) =
-                &spec.kind
-            {
-                return fields.iter().find(|field| field.name.key() == member.key()).map(|field| &field.spec);
+            let (spec, key) = (index.resolved(spec_of(inner, pou, index)?), member.key());
+            if matches!(spec.kind, TypeSpecKind::Struct(_) | TypeSpecKind::Overlapping(_) | TypeSpecKind::Union(_)) {
+                return index.field(spec, &key);
             }
-            let (section, variable) = declared(index.block(spec)?, &member.key())?;
+            let (section, variable) = index.declared(index.block(spec)?, &key)?;
             (section.kind != SectionKind::Temp).then_some(&variable.spec)
         }
         _ => None,

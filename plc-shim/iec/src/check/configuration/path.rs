@@ -3,7 +3,7 @@
 use super::Configurer;
 use crate::check::body::Body;
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
-use crate::ir::{Storage, Target, Type, Variable};
+use crate::ir::{Field, Storage, Target, Type, Variable};
 use crate::syntax::Span;
 use crate::syntax::ast::{Expr, ExprKind, Ident};
 use crate::syntax::direct_address::{Area, DirectAddress};
@@ -167,22 +167,26 @@ impl Configurer<'_, '_> {
         })
     }
 
+    fn step_to_field(&mut self, at: Target, field: &Field, name: &Ident) -> Option<Target> {
+        if field.bit.is_some() {
+            let message = format!("`{}` is one bit of a byte of its structure", field.name);
+            let found = Diagnostic::error(Code::UnsuitableConnection, name.span, message);
+            self.declarations.report(found.with_help("connect a variable of its own"));
+            return None;
+        }
+        let path = format!("{}.{}", at.path, field.name);
+        let open = field.open.or(at.open);
+        Some(Target { path, inside: at.inside + field.offset, ty: field.ty, open, ..at })
+    }
+
     fn step_to_member(&mut self, at: Target, name: &Ident) -> Option<Target> {
+        if let Some(field) = self.declarations.types().field(at.ty, &name.text).cloned() {
+            return self.step_to_field(at, &field, name);
+        }
         match self.declarations.types().get(at.ty).clone() {
             Type::Struct { fields, .. } => {
                 let names: Vec<&str> = fields.iter().map(|field| field.name.as_str()).collect();
-                let Some(field) = fields.iter().find(|field| field.name.eq_ignore_ascii_case(&name.text)) else {
-                    return self.no_member(&at, name, &names);
-                };
-                if field.bit.is_some() {
-                    let message = format!("`{}` is one bit of a byte of its structure", field.name);
-                    let found = Diagnostic::error(Code::UnsuitableConnection, name.span, message);
-                    self.declarations.report(found.with_help("connect a variable of its own"));
-                    return None;
-                }
-                let path = format!("{}.{}", at.path, field.name);
-                let open = field.open.or(at.open);
-                Some(Target { path, inside: at.inside + field.offset, ty: field.ty, open, ..at })
+                self.no_member(&at, name, &names)
             }
             Type::FunctionBlock { pou, .. } => {
                 let scope = self.declarations.interface(pou, name.span)?;

@@ -1,5 +1,6 @@
 //! Initial values to bytes (2nd ed. 2.4.3.2), and to what a start must do where bytes do not do.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use super::Written;
@@ -70,7 +71,7 @@ impl<'a> Written<'_, 'a> {
                 elements.iter().try_for_each(|each| self.fill_element(first, &dimensions, each, making))
             }
             (InitialiserKind::Struct(members), Type::Struct { fields, .. }) => {
-                self.fill_members(spot, &fields, members, making)
+                self.fill_members(spot, &Fields::of(fields), members, making)
             }
             (InitialiserKind::Struct(members), Type::FunctionBlock { pou, .. }) => {
                 self.fill_instance(spot, pou, members, (initial.span, making))
@@ -377,10 +378,10 @@ impl<'a> Written<'_, 'a> {
             }
             _ => None,
         });
-        let fields: Vec<Field> = fields.collect();
+        let fields = Fields::of(fields.collect());
         let overwritten = self.declarations().has_hook(pou, Occasion::Start);
         for member in members {
-            let is_field = fields.iter().any(|field| field.name.eq_ignore_ascii_case(&member.name.text));
+            let is_field = fields.find(&member.name.text).is_some();
             let setter = self.declarations().find_member(pou, Role::Setter, &member.name.text);
             if let (false, Some(_), InitialiserKind::Value(value)) = (is_field, setter, &member.value.kind) {
                 let kind = StartKind::Property(pou, &member.name, value);
@@ -402,7 +403,7 @@ impl<'a> Written<'_, 'a> {
     fn fill_members(
         &mut self,
         spot: Spot,
-        fields: &[Field],
+        fields: &Fields,
         members: &'a [StructureInit],
         making: &mut Making<'a>,
     ) -> Option<()> {
@@ -412,13 +413,12 @@ impl<'a> Written<'_, 'a> {
     fn fill_member(
         &mut self,
         spot: Spot,
-        fields: &[Field],
+        fields: &Fields,
         member: &'a StructureInit,
         making: &mut Making<'a>,
     ) -> Option<Spot> {
         let name = &member.name.text;
-        let field = fields.iter().find(|field| field.name.eq_ignore_ascii_case(name));
-        let Some(field) = field else {
+        let Some(field) = fields.find(name) else {
             let unknown = match self.declarations().types().get(spot.ty) {
                 Type::FunctionBlock { pou, .. } => self.declarations().may_inherit(*pou),
                 _ => self.declarations().is_unmade(spot.ty),
@@ -427,7 +427,7 @@ impl<'a> Written<'_, 'a> {
                 return None;
             }
             let message = format!("{} has no member `{name}`", self.body.type_name(spot.ty));
-            let help = did_you_mean(name, fields.iter().map(|field| field.name.as_str()));
+            let help = did_you_mean(name, fields.all.iter().map(|field| field.name.as_str()));
             let found = Diagnostic::error(Code::UnknownMember, member.name.span, message);
             self.report(found.with_optional_help(help));
             return None;
@@ -435,5 +435,26 @@ impl<'a> Written<'_, 'a> {
         let inner = Spot { ty: field.ty, offset: spot.offset + field.offset, bit: field.bit };
         self.fill(inner, &member.value, making)?;
         Some(inner)
+    }
+}
+
+/// Members to be given values, each found by its name without looking at all of them.
+struct Fields {
+    all: Vec<Field>,
+    /// Which of them has a name, in capitals.
+    by_name: BTreeMap<String, usize>,
+}
+
+impl Fields {
+    fn of(all: Vec<Field>) -> Self {
+        let mut by_name = BTreeMap::new();
+        for (at, field) in all.iter().enumerate() {
+            by_name.entry(field.name.to_ascii_uppercase()).or_insert(at);
+        }
+        Self { all, by_name }
+    }
+
+    fn find(&self, name: &str) -> Option<&Field> {
+        self.all.get(*self.by_name.get(&name.to_ascii_uppercase())?)
     }
 }

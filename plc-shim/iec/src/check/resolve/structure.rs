@@ -1,6 +1,6 @@
 //! Structures: members one behind the other, or where their addresses say (3rd ed. 6.4.4.6, Table 11).
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -38,6 +38,8 @@ impl Placing {
 /// A structure while its members are placed.
 struct Making<'a> {
     fields: Vec<Field>,
+    /// Their names in capitals.
+    names: BTreeSet<String>,
     image: Vec<u8>,
     starts: Vec<Start<'a>>,
     taken: Taken,
@@ -79,18 +81,22 @@ impl<'a> Written<'_, 'a> {
         let mut making = self.extended(extends)?;
         let mut sound = true;
         for member in members {
-            if making.fields.iter().any(|other| other.name.eq_ignore_ascii_case(&member.name.text)) {
+            if making.names.contains(&member.name.text.to_ascii_uppercase()) {
                 self.declarations_mut().report_duplicate(&member.name, None);
                 continue;
             }
-            // The members behind a wrong one are looked at, too.
+            // The members so far are around the next one; they are not copied for each.
             let around = reserved.filter(|_| member.initial.is_some()).map(|ty| {
                 let place = Place::whole(Storage::Instance(0), ty, span);
-                Surrounding { place, declared: making.fields.clone() }
+                Surrounding { place, declared: std::mem::take(&mut making.fields) }
             });
             let outer = self.body.surround(around);
+            // The members behind a wrong one are looked at, too.
             sound &= self.member(&mut making, member, (placing, span)).is_some();
-            self.body.surround(outer);
+            if let Some(Surrounding { declared, .. }) = self.body.surround(outer) {
+                let added = std::mem::replace(&mut making.fields, declared);
+                making.fields.extend(added);
+            }
         }
         if !sound {
             return None;
@@ -143,7 +149,8 @@ impl<'a> Written<'_, 'a> {
         if !image.is_empty() {
             taken.add(0..8 * image.len() as u64);
         }
-        Some(Making { fields, image, starts, taken, last_bit: None, base: extended })
+        let names = fields.iter().map(|field: &Field| field.name.to_ascii_uppercase()).collect();
+        Some(Making { fields, names, image, starts, taken, last_bit: None, base: extended })
     }
 
     /// Adds a member where its address says, else behind all that there are.
@@ -196,6 +203,7 @@ impl<'a> Written<'_, 'a> {
             }
             making.starts.extend(moved(&resolved.starts, offset));
         }
+        making.names.insert(member.name.text.to_ascii_uppercase());
         making.fields.push(Field {
             name: member.name.text.clone(),
             ty: resolved.ty,

@@ -360,19 +360,29 @@ impl Body<'_, '_> {
         Some(Diagnostic::error(Code::NotAVariable, name.span, message).with_help(help))
     }
 
+    /// A member of a structure, which may have thousands: none of them is copied.
+    fn field(&mut self, base: Located, name: &Ident, span: Span) -> Option<Located> {
+        if self.declarations.is_unmade(base.place.ty) {
+            return None;
+        }
+        if let Some(field) = self.declarations.types().field(base.place.ty, &name.text) {
+            let place = base.place.member(field.offset, field.ty);
+            let place = Place { span, part: field.bit.map(Part::bit), ..place };
+            return Some(Located { place, access: base.access });
+        }
+        let known: Vec<String> = match self.declarations.types().get(base.place.ty) {
+            Type::Struct { fields, .. } => fields.iter().map(|field| field.name.clone()).collect(),
+            _ => Vec::new(),
+        };
+        let known: Vec<&str> = known.iter().map(String::as_str).collect();
+        self.report_unknown_member(base.place.ty, name, &known)
+    }
+
     fn member(&mut self, base: Located, name: &Ident, span: Span) -> Option<Located> {
+        if matches!(self.declarations.types().get(base.place.ty), Type::Struct { .. }) {
+            return self.field(base, name, span);
+        }
         match self.declarations.types().get(base.place.ty).clone() {
-            Type::Struct { .. } if self.declarations.is_unmade(base.place.ty) => None,
-            Type::Struct { fields, .. } => {
-                let field = fields.iter().find(|field| field.name.eq_ignore_ascii_case(&name.text));
-                let Some(field) = field else {
-                    let names: Vec<_> = fields.iter().map(|field| field.name.as_str()).collect();
-                    return self.report_unknown_member(base.place.ty, name, &names);
-                };
-                let place = base.place.member(field.offset, field.ty);
-                let place = Place { span, part: field.bit.map(Part::bit), ..place };
-                Some(Located { place, access: base.access })
-            }
             Type::FunctionBlock { pou, .. } => self.instance_member(base, pou, name, span),
             Type::Elementary(_) if self.is_constant(name) => self.named_bit(base, name, span),
             Type::Interface { pou, .. } if self.declarations.may_inherit(pou) => None,
