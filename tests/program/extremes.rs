@@ -8,10 +8,12 @@ use std::path::{Path, PathBuf};
 
 use onescan_base::{TimeSpan, VirtualTime};
 use onescan_plant::Plant;
+use onescan_runner::run::production::{pictures, tables};
 use onescan_runner::run::rerun::rerun;
 use onescan_scenario::Scenario;
 use onescan_scenario::case::Catalogue;
 use onescan_scenario::lesson::Book;
+use onescan_scenario::report::Report;
 use onescan_server::client::Client;
 use onescan_server::signal::{ClientName, Port};
 use serde_json::Value as Json;
@@ -79,6 +81,15 @@ fn ends(schema: &Json) -> Vec<Value> {
     found
 }
 
+/// The same for a key that may be anything, by what it is in the file.
+fn ends_like(about: &Json, value: Option<&Value>) -> Vec<Value> {
+    match value {
+        Some(Value::Integer(_)) if *about == Json::Bool(true) => [i64::MIN, i64::MAX].map(Value::Integer).to_vec(),
+        Some(Value::Float(_)) if *about == Json::Bool(true) => [-f64::MAX, f64::MAX, 5e-324].map(Value::Float).to_vec(),
+        _ => ends(about),
+    }
+}
+
 /// All numbers that the schema knows along the file, each key of the schema once.
 fn numbers(schema: &Json, value: &Value, way: &Way, seen: &mut BTreeSet<String>, found: &mut Vec<Number>, name: &str) {
     let below = |step: Step| [&way[..], &[step]].concat();
@@ -88,7 +99,7 @@ fn numbers(schema: &Json, value: &Value, way: &Way, seen: &mut BTreeSet<String>,
                 let kind = table.get("kind").and_then(Value::as_str).unwrap_or_default();
                 for (key, about) in one["properties"].as_object().into_iter().flatten() {
                     let name = format!("{name}.{kind}.{key}");
-                    let ends = ends(about);
+                    let ends = ends_like(about, table.get(key));
                     if !ends.is_empty() && seen.insert(name.clone()) {
                         found.push(Number { way: below(Step::Key(key.clone())), ends });
                     }
@@ -143,25 +154,53 @@ fn changed(file: &Value, way: &[Step], end: &Value) -> Value {
 fn tried(kind: &str, path: &Path, seen: &mut BTreeSet<String>, run: &dyn Fn()) -> (usize, Vec<String>) {
     let text = std::fs::read_to_string(path).expect("a file");
     let Ok(file) = toml::from_str::<Value>(&text) else { return (0, Vec::new()) };
+    let write = |file: &Value| {
+        std::fs::write(path, toml::to_string(file).expect("TOML")).expect("a file");
+        run();
+    };
+    let tried = all_tried((kind, &schema_of(kind)), &file, seen, &write);
+    std::fs::write(path, text).expect("a file");
+    tried
+}
+
+/// The same for a file as a value, and what is done with each that is made of it.
+fn all_tried(
+    (kind, schema): (&str, &Json),
+    file: &Value,
+    seen: &mut BTreeSet<String>,
+    run: &dyn Fn(&Value),
+) -> (usize, Vec<String>) {
     let (mut found, mut bad) = (Vec::new(), Vec::new());
-    numbers(&schema(kind), &file, &Way::new(), seen, &mut found, kind);
+    numbers(schema, file, &Way::new(), seen, &mut found, kind);
     let mut count = 0;
     for Number { way, ends } in &found {
         for end in ends {
             count += 1;
-            let name = format!("{}: {way:?} = {end}", path.display());
-            std::fs::write(path, toml::to_string(&changed(&file, way, end)).expect("TOML")).expect("a file");
+            let name = format!("{kind}: {way:?} = {end}");
             // What ends the whole process is found by the last line.
             if std::env::var_os("ONESCAN_EXTREMES").is_some() {
                 eprintln!("{name}");
             }
-            if catch_unwind(AssertUnwindSafe(run)).is_err() {
+            let file = changed(file, way, end);
+            if catch_unwind(AssertUnwindSafe(|| run(&file))).is_err() {
                 bad.push(name);
             }
         }
     }
-    std::fs::write(path, text).expect("a file");
     (count, bad)
+}
+
+/// The schema of a kind of file. That of kinds of component leaves their parts to that of plants.
+fn schema_of(kind: &str) -> Json {
+    let mut of_kind = schema(kind);
+    if kind == "kinds" {
+        let plant = schema("plant");
+        for part in ["body", "shape", "urdf", "joint", "fitting", "coupling", "component"] {
+            assert!(of_kind["properties"][part].is_object() && plant["properties"][part].is_object(), "{part}");
+            of_kind["properties"][part] = plant["properties"][part].clone();
+        }
+    }
+    of_kind
 }
 
 /// Three turns of a plant, if it is one.
@@ -279,4 +318,82 @@ fn no_number_of_a_scenario_is_beyond_a_session() {
         }
     }
     assert_none_panicked(tries, 80, &bad);
+}
+
+/// The kind of component of the manual, and the scene with it.
+#[test]
+fn no_number_of_a_kind_of_component_is_beyond_the_plant() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/kinds.md");
+    let page = std::fs::read_to_string(docs).expect("a manual");
+    let block = |what: &str| {
+        let mut blocks = page.split("```toml\n").skip(1).filter_map(|block| block.split("```").next());
+        blocks.find(|block| block.contains(what)).expect("the manual shows it")
+    };
+    let (scene, kind) = (folder.path().join("plant.toml"), folder.path().join("components/press.toml"));
+    std::fs::create_dir(folder.path().join("components")).expect("a folder");
+    std::fs::write(&kind, block("summary = \"press")).expect("a file");
+    std::fs::write(&scene, block("kind = \"press\"").replace(", \"../shared/components\"", "")).expect("a file");
+    let oven = page.split("```st\n").skip(1).filter_map(|block| block.split("```").next()).next().expect("an oven");
+    std::fs::write(folder.path().join("components/oven.st"), oven).expect("a file");
+    let name = ClientName::new("plant").expect("a name");
+    Plant::load(&scene, name, TimeSpan::nanos::<10_000_000>()).expect("the manual is right");
+    let mut seen = BTreeSet::new();
+    let (mut tries, mut bad) = tried("kinds", &kind, &mut seen, &|| moves(&scene));
+    for key in ["parameter[].least", "parameter[].most", "parameter[].preset", "body[].dynamic.mass_kg"] {
+        assert!(seen.iter().any(|name| name.replace("..", ".").ends_with(key)), "{key} is not in {seen:?}");
+    }
+    // What a component of the kind is given, against its bounds.
+    let (more, found) = tried("plant", &scene, &mut seen, &|| moves(&scene));
+    tries += more;
+    bad.extend(found);
+    assert_none_panicked(tries, 40, &bad);
+}
+
+/// A report with one of everything.
+fn whole_report() -> serde_json::Value {
+    let occurrence = serde_json::json!({ "name": "hot", "from_ns": 5, "to_ns": 9, "duration_ns": 4 });
+    serde_json::json!({
+        "from_ns": 0, "to_ns": 1_000_000_000,
+        "counts": [{ "name": "filled", "count": 7, "per_hour": 25_200.0, "quality": "good",
+            "throughput": { "window_ns": 500_000_000, "counts": [3, 4] } }],
+        "quality": { "good": 7, "reject": 1, "ratio": 0.875 },
+        "cycles": [{ "name": "cycle", "count": 6, "abandoned": 1,
+            "times": { "mean_ns": 100, "sigma_ns": 7, "median_ns": 99, "p95_ns": 110, "min_ns": 90, "max_ns": 120,
+                "resolution_ns": 1 },
+            "histogram": { "from_ns": 90, "bin_ns": 10, "counts": [2, 3, 1], "shorter": 1, "longer": 1 } }],
+        "down_time": { "run_ns": 900, "down_ns": 100, "planned_ns": 40, "availability": 0.9, "failures": 2, "mtbf_ns": 450,
+            "mttr_ns": 30, "causes": [{ "name": "jam", "planned": false, "count": 2, "total_ns": 60, "longest_ns": 40,
+                "share": 0.06 }] },
+        "oee": { "availability": 0.9, "performance": 0.8, "quality": 0.875, "oee": 0.63 },
+        "alarms": { "totals": [{ "name": "hot", "count": 1, "total_ns": 4, "longest_ns": 4, "active": false }],
+            "first": [occurrence], "left_out": 1, "last": [occurrence] },
+        "histories": [{ "name": "zones", "window_ns": 500_000_000,
+            "signals": [{ "signal": "T", "unit": "degC", "min": [1.0, 2.0], "mean": [2.0, 3.0], "max": [3.0, 4.0] }] }],
+        "histograms": [{ "name": "zones", "from": 0.0, "to": 10.0,
+            "signals": [{ "signal": "T", "unit": "degC", "time_ns": [5, 6], "below_ns": 1, "above_ns": 1,
+                "not_finite_ns": 1 }] }],
+    })
+}
+
+/// Every number of the report as a run of any length could have it, in tables and pictures.
+#[test]
+fn no_number_of_a_report_is_beyond_its_tables_and_pictures() {
+    let file = Value::try_from(whole_report()).expect("no key is null");
+    let shown = |file: &Value| {
+        let json = serde_json::to_value(file).expect("JSON");
+        let report: Report = serde_json::from_value(json).unwrap_or_else(|error| panic!("{error}: {file}"));
+        let mut text = Vec::new();
+        tables::write(&report, &mut text).expect("a list takes all");
+        assert!(text.len() + pictures::of(&report).len() < 1 << 20, "it has a bound");
+        drop(tables::for_pages(&report));
+    };
+    shown(&file);
+    let schema = schema("report");
+    let mut seen = BTreeSet::new();
+    let (tries, bad) = all_tried(("report", &schema), &file, &mut seen, &shown);
+    let of_type = |ty: &str| schema.to_string().matches(&format!("\"type\":\"{ty}\"")).count();
+    let known = of_type("integer") + of_type("number");
+    assert_eq!(seen.len(), known, "each number of the schema is in the report of this test: {seen:?}");
+    assert_none_panicked(tries, 2 * known, &bad);
 }

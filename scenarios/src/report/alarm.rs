@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::annunciator::{Alarm, Annunciator, Passage};
 use super::spell::Spells;
@@ -12,7 +12,7 @@ use super::spell::Spells;
 const LISTED_MAX: usize = 50;
 
 /// All alarms. Its JSON form is a contract: fields are added, never changed.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct AlarmReport {
     /// Each alarm, in the order of the scenario.
     pub totals: Vec<AlarmTotal>,
@@ -25,7 +25,7 @@ pub struct AlarmReport {
 }
 
 /// How often and how long an alarm was active.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct AlarmTotal {
     /// Its text.
     pub name: String,
@@ -40,7 +40,7 @@ pub struct AlarmTotal {
 }
 
 /// One occurrence of an alarm.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Occurrence {
     /// Its text.
     pub name: String,

@@ -1,7 +1,7 @@
 //! Counts: how often a condition became true, or by how much a counter grew.
 
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::edge::Edge;
 use super::throughput::Throughput;
@@ -29,7 +29,7 @@ pub(super) enum What {
 }
 
 /// What was counted. Its JSON form is a contract: fields are added, never changed.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CountReport {
     /// Its name.
     pub name: String,

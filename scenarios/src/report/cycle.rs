@@ -2,7 +2,7 @@
 
 use onescan_server::time::TimeSpan;
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::distribution::{Distribution, Histogram, Times};
 use super::edge::Edge;
@@ -19,7 +19,7 @@ pub(super) struct Timed {
 }
 
 /// Cycle times. Its JSON form is a contract: fields are added, never changed.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct CycleReport {
     /// Its name.
     pub name: String,

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use onescan_server::time::TimeSpan;
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// So many different lengths are distinguished.
 const LENGTHS_MAX: usize = 4096;
@@ -15,7 +15,7 @@ const LENGTHS_MAX: usize = 4096;
 const BINS: u64 = 24;
 
 /// How long something took, in nanoseconds of virtual time.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Times {
     /// The arithmetic mean.
     pub mean_ns: u64,
@@ -35,7 +35,7 @@ pub struct Times {
 }
 
 /// How many times of which length.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Histogram {
     /// Where the first bin begins, in nanoseconds of virtual time.
     pub from_ns: u64,

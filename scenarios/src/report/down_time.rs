@@ -4,7 +4,7 @@
 //! each uninterrupted stretch of down time that was not planned is one failure, whatever its causes.
 
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::spell::Spells;
 use crate::expect::Present;
@@ -30,7 +30,7 @@ pub(super) struct Cause {
 }
 
 /// Run time and down time, in nanoseconds of virtual time. Its JSON form is a contract: fields are added, never changed.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct DownTimeReport {
     /// How long the machine was not down.
     pub run_ns: u64,
@@ -54,7 +54,7 @@ pub struct DownTimeReport {
 }
 
 /// Down time by one cause.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CauseReport {
     /// Its name.
     pub name: String,

@@ -1,7 +1,7 @@
 //! Histories: the lowest, the mean and the highest value of signals in each of equal windows of virtual time.
 
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use onescan_server::time::TimeSpan;
 
@@ -18,7 +18,7 @@ pub(super) struct Past {
 }
 
 /// The history of signals. Its JSON form is a contract: fields are added, never changed.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct HistoryReport {
     /// Its name in the scenario, unique among histories.
     pub name: String,
@@ -30,7 +30,7 @@ pub struct HistoryReport {
 
 /// The history of one signal: a value a window, from the beginning of the report on. A window in which the signal was
 /// never a finite number has none.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SignalHistory {
     /// The signal.
     pub signal: String,

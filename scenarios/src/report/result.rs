@@ -2,7 +2,7 @@
 
 use onescan_server::time::TimeSpan;
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::alarm::AlarmReport;
 use super::count::CountReport;
@@ -13,20 +13,20 @@ use super::spread::SpreadReport;
 use crate::report_file::Quality;
 
 /// What a run produced, and what held it up. Its JSON form is a contract: fields are added, never changed.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Report {
     /// Virtual time of the first image that it knows, in nanoseconds: 0, or that of the checkpoint from which the run went on.
     pub from_ns: u64,
     /// Virtual time of the last one, in nanoseconds.
     pub to_ns: u64,
     /// Counts, in the order of the scenario.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub counts: Vec<CountReport>,
     /// How much of it was good; absent unless the scenario counts both.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub quality: Option<QualityReport>,
     /// Cycle times, in the order of the scenario.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub cycles: Vec<CycleReport>,
     /// Down time by cause; absent unless the scenario says when the machine is down.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -38,15 +38,15 @@ pub struct Report {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub alarms: Option<AlarmReport>,
     /// Histories of signals, in the order of the scenario.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub histories: Vec<HistoryReport>,
     /// Histograms of signals, in the order of the scenario.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub histograms: Vec<SpreadReport>,
 }
 
 /// Good and rejected pieces.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct QualityReport {
     /// All counts that are good.
     pub good: u64,
@@ -58,7 +58,7 @@ pub struct QualityReport {
 }
 
 /// Overall equipment effectiveness and its factors (ISO 22400-2), each from 0 to 1.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct OeeReport {
     /// Run time as a part of all time that was not planned to be down.
     pub availability: f64,

@@ -1,7 +1,7 @@
 //! Histograms of signals: for how long their values were in which bin.
 
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::held::{Held, Seen};
 
@@ -43,7 +43,7 @@ enum Place {
 }
 
 /// The histograms of signals. Its JSON form is a contract: fields are added, never changed.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SpreadReport {
     /// Its name.
     pub name: String,
@@ -56,7 +56,7 @@ pub struct SpreadReport {
 }
 
 /// For how long a signal was in which bin, in nanoseconds of virtual time.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct SignalSpread {
     /// The signal.
     pub signal: String,

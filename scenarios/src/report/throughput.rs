@@ -1,12 +1,12 @@
 //! Throughput: how many in each of equal windows of virtual time.
 
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::windows::Windows;
 
 /// How many in each of equal windows.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Throughput {
     /// Width of a window in nanoseconds of virtual time. The last one ends with the run.
     pub window_ns: u64,

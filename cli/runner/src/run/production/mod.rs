@@ -6,8 +6,8 @@
 //! | [`tables`] | the report as tables, for terminals and pages |
 //! | [`pictures`] | the report as pictures |
 
-pub(crate) mod pictures;
-pub(crate) mod tables;
+pub mod pictures;
+pub mod tables;
 
 use std::cell::RefCell;
 use std::rc::Rc;

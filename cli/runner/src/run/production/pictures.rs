@@ -13,7 +13,7 @@ use super::tables::{per_cent, seconds};
 const HOUR_NS: f64 = 3.6e12;
 
 /// What there is to draw of a report.
-pub(crate) fn of(report: &Report) -> Vec<Picture> {
+pub fn of(report: &Report) -> Vec<Picture> {
     let throughput = throughput(report).map(|plot| Picture::of_plot("throughput", &plot));
     let histograms = report.cycles.iter().filter_map(histogram);
     let histograms = histograms.map(|histogram| Picture::still("cycle times", histogram.to_svg()));

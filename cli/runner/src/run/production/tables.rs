@@ -12,7 +12,10 @@ use onescan_scenario::report::{
 use onescan_server::time::VirtualTime;
 
 /// Writes the report for people.
-pub(crate) fn write(report: &Report, out: &mut dyn Write) -> io::Result<()> {
+///
+/// # Errors
+/// Those of `out`.
+pub fn write(report: &Report, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "  report of {} to {}", at(report.from_ns), at(report.to_ns))?;
     for table in of(report).into_iter().chain(values::short(report)) {
         writeln!(out)?;
@@ -22,7 +25,7 @@ pub(crate) fn write(report: &Report, out: &mut dyn Write) -> io::Result<()> {
 }
 
 /// The same for pages, with all that is shown only to who asks for it.
-pub(crate) fn for_pages(report: &Report) -> Vec<Table> {
+pub fn for_pages(report: &Report) -> Vec<Table> {
     of(report).into_iter().chain(occurrences(report)).chain(values::whole(report)).collect()
 }
 
