@@ -5,7 +5,7 @@ use std::process::Command;
 
 use onescan_recording::Recording;
 
-use crate::typed::{begun, copied_shear, edit, run_shear, scenario, typed};
+use crate::typed::{Said, begun, copied_shear, edit, run_shear, scenario, typed};
 use crate::venv::python;
 
 /// All files below a folder by their relative path.
@@ -214,4 +214,61 @@ fn one_run_records_into_a_folder_at_a_time() {
     assert!(!out.join("run-1/.recording.lock").exists());
     let after = typed(&scenario("shear"), &["run", ".", "--until", "100ms", "--record", place, "--overwrite"]);
     assert_eq!(after.code, Some(0), "{after:?}");
+}
+
+/// A run of a virtual hour that records into `out`, once it has some steps on the disk.
+fn recording(out: &Path, more: &[&str]) -> std::process::Child {
+    let words = ["run", ".", "--until", "1h", "--pace", "1", "--record", out.to_str().unwrap()];
+    let mut run = begun(&scenario("shear"), &[&words[..], more].concat());
+    let parts = || std::fs::read_dir(out.join("run-1/trajectory")).into_iter().flatten().flatten();
+    let is_part = |entry: std::fs::DirEntry| entry.file_name().to_string_lossy().starts_with("part-");
+    while !(out.join("run-1/recording.json").exists() && parts().any(is_part)) {
+        assert!(run.try_wait().unwrap().is_none(), "{:?}", Said::from(run.wait_with_output().unwrap()));
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    run
+}
+
+fn killed(mut run: std::process::Child) {
+    run.kill().expect("it runs");
+    run.wait().expect("it ends");
+}
+
+/// What is not whole is not taken for a whole run, and a recording that it was to replace is still there.
+#[test]
+fn a_recording_that_is_cut_short_says_so_and_replaces_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let place = out.to_str().unwrap();
+    let csv = folder.path().join("x.csv");
+    let export = |of: &str| {
+        let said = typed(folder.path(), &["export", of, "-o", csv.to_str().unwrap()]);
+        assert_eq!(said.code, Some(0), "{said:?}");
+        said.err
+    };
+    let run = recording(&out, &[]);
+    assert!(export(place).contains("is being recorded: it holds steps 0 to "));
+    killed(run);
+    assert!(export(place).contains("is cut short, its run has not come to its end: it holds steps 0 to "));
+    // One that is cut short is replaced by a whole one, and leaves nothing of its own.
+    let whole = ["run", ".", "--until", "200ms", "--record", place, "--record-also", "csv", "--overwrite"];
+    assert_eq!(typed(&scenario("shear"), &whole).code, Some(0));
+    assert_eq!(export(place), "");
+    let report = std::fs::read(out.join("run-1/run.json")).unwrap();
+    // A session that does not begin costs nothing.
+    let none = ["run", ".", "--record", place, "--overwrite", "--transport", "tcp", "--join-timeout", "1ms"];
+    let said = typed(&scenario("shear"), &none);
+    assert_eq!(said.code, Some(3), "{said:?}");
+    assert_eq!((std::fs::read(out.join("run-1/run.json")).unwrap(), export(place)), (report.clone(), String::new()));
+    // Twice cut short: the whole one is kept both times.
+    for _ in 0..2 {
+        killed(recording(&out, &["--overwrite"]));
+        assert!(export(place).contains("what it was to replace is in "));
+        assert!(!out.join("run-1/trajectory.csv").exists(), "nothing of the other is mixed in");
+        assert_eq!(std::fs::read(out.join("run-1/.earlier/run.json")).unwrap(), report);
+        assert_eq!(export(out.join("run-1/.earlier").to_str().unwrap()), "");
+    }
+    assert_eq!(typed(&scenario("shear"), &[&whole[..6], &["--overwrite"]].concat()).code, Some(0));
+    assert_eq!((export(place), out.join("run-1/.earlier").exists()), (String::new(), false));
+    assert!(!out.join("run-1/trajectory.csv").exists(), "this run wrote none");
 }

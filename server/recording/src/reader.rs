@@ -17,7 +17,7 @@ use onescan_server::time::{StepCount, VirtualTime};
 
 use crate::block::Block;
 use crate::column::Column;
-use crate::event::{self, Event};
+use crate::event::{self, Event, EventKind};
 use crate::header::{FORMAT, Header};
 use crate::parquet::read::Part;
 use crate::parquet::{ParquetFile, TRAJECTORY, parts};
@@ -164,6 +164,16 @@ impl Recording {
     pub fn events(&self) -> Result<Vec<Event>, RecordingError> {
         let path = self.folder.join(EVENTS);
         event::read(&path).map_err(|source| RecordingError::Damaged { path, source })
+    }
+
+    /// Whether its run came to an end, of whatever kind. One without events, of which somebody kept the trajectory alone, counts
+    /// as whole.
+    pub fn is_whole(&self) -> bool {
+        if !self.folder.join(EVENTS).exists() {
+            return true;
+        }
+        let is_end = |event: &Event| matches!(event.what, EventKind::Ended { .. });
+        self.events().is_ok_and(|events| events.iter().any(is_end))
     }
 
     /// What operators did, to be replayed.

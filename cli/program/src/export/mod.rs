@@ -12,6 +12,7 @@ use onescan_server::time::VirtualTime;
 pub use error::ExportError;
 
 use onescan_runner::error::Usage;
+use onescan_runner::run::cut_short;
 
 /// What is exported, and where to.
 #[derive(Clone, Debug)]
@@ -33,6 +34,7 @@ pub struct ExportConfig {
 /// cannot be written.
 pub fn export(config: &ExportConfig) -> Result<(), ExportError> {
     let recording = Recording::open(&config.recording)?;
+    cut_short::report(&recording);
     let [from, to] = config.times;
     let Some(steps) = recording.steps_between(from, to)? else {
         let span = if to == VirtualTime::MAX { format!("from {from} on") } else { format!("from {from} to {to}") };

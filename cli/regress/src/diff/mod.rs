@@ -32,6 +32,7 @@ pub use error::DiffError;
 use onescan_runner::error::ExitCode;
 use onescan_runner::error::Usage;
 use onescan_runner::format::Format;
+use onescan_runner::run::cut_short;
 
 use first::{Comparison, Divergence};
 use report::Report;
@@ -92,6 +93,7 @@ fn snapshots(config: &DiffConfig, out: &mut dyn Write) -> Result<ExitCode, DiffE
 /// A recording that cannot be read, a signal that neither has.
 pub fn compare(a: &Path, b: &Path, since: VirtualTime, signals: &[SignalPattern]) -> Result<Report, DiffError> {
     let recordings = [Recording::open(a)?, Recording::open(b)?];
+    recordings.iter().for_each(cut_short::report);
     let comparison = Comparison::new(&recordings, since, signals)?;
     let divergence = comparison.first()?;
     let causes = match &divergence {

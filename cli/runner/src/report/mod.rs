@@ -20,6 +20,7 @@ pub use error::ReportError;
 
 use crate::error::Usage;
 use crate::format::Format;
+use crate::run::cut_short;
 use crate::run::production::{pictures, tables};
 use crate::web::charts;
 
@@ -70,6 +71,7 @@ pub fn report(config: &ReportConfig, out: &mut dyn Write) -> Result<(), ReportEr
 
 fn recorded(folder: &Path, asked: Option<&Scenario>) -> Result<Recorded, ReportError> {
     let recording = Recording::open(folder)?;
+    cut_short::report(&recording);
     let own = if asked.is_none() { Some(own_scenario(&recording)?) } else { None };
     let scenario = asked.or(own.as_ref());
     let Some(measures) = scenario.and_then(Scenario::measures) else {

@@ -26,6 +26,7 @@ use onescan_server::transport::tcp::Lobby;
 use super::alarms;
 use super::chosen::Chosen;
 use super::config::{Reach, RunConfig, SaveRequest, Transport};
+use super::cut_short;
 use super::error::RunError;
 use super::fork::{self, Joined, Taken};
 use super::forked::{self, ForkSettings, PAGE_AT};
@@ -405,7 +406,9 @@ fn wait_for_clients(
 /// The recording or the file cannot be read.
 pub fn operator_inputs(path: &std::path::Path) -> Result<Vec<OperatorInput>, RunError> {
     if path.is_dir() {
-        return Ok(Recording::open(path)?.operator_inputs()?);
+        let recording = Recording::open(path)?;
+        cut_short::report(&recording);
+        return Ok(recording.operator_inputs()?);
     }
     let events = event::read(path).map_err(Unreadable::at(path))?;
     Ok(event::operator_inputs(&events))

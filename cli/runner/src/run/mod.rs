@@ -21,6 +21,8 @@
 //! | `plc_files` | files of PLCs as they are at the end |
 //! | [`recorded`] | a run's recording |
 //! | `record_lock` | one records into a folder at a time |
+//! | `earlier` | a recording that another one replaces |
+//! | [`cut_short`] | recordings that do not hold all of their run |
 //! | `in_process` | a session of which all clients are here |
 //! | `at_start` | values of signals with which it begins |
 //! | `judged` | the same, judged step by step |
@@ -42,6 +44,8 @@ mod check;
 pub mod chosen;
 pub mod config;
 pub mod coverage;
+pub mod cut_short;
+mod earlier;
 mod error;
 pub mod expectation;
 pub mod fork;
@@ -264,7 +268,10 @@ pub fn one_run(
     let published = RefCell::new(None);
     let verdict_board = VerdictBoard::default();
     let watch = |lockstep: &mut Lockstep| {
-        published.replace(Some(lockstep.published()));
+        // Where nobody looks at it, the last view is not made.
+        if config.reports.want_the_end() {
+            published.replace(Some(lockstep.published()));
+        }
         for observer in observers {
             lockstep.observe(observer);
         }
@@ -303,10 +310,10 @@ pub fn one_run(
     report.expectations = expectation::reports(scenario, judge.replace(expectation::judge(scenario)), end);
     report.report = metered.report();
     report.watched = WatchReport::take(&config.watch, scenario);
-    if let Some(recorded) = &recorded {
+    if let Some(recorded) = recorded {
         recorded.end(&report)?;
     }
-    let last = published.take().filter(|_| config.reports.want_the_end()).map(|published| published.latest());
+    let last = published.take().map(|published| published.latest());
     // Where nobody asked for it, nothing is made of it.
     let last = last.map(|view| view.clients.clone()).unwrap_or_default();
     Ok(Ran {

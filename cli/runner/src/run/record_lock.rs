@@ -46,6 +46,13 @@ impl RecordLock {
     }
 }
 
+/// Whether somebody records into a folder just now.
+pub(super) fn is_held(folder: &Path) -> bool {
+    let file = File::options().read(true).write(true).open(folder.join(NAME));
+    // It ends with the file, at once.
+    file.is_ok_and(|file| matches!(file.try_lock(), Err(TryLockError::WouldBlock)))
+}
+
 impl Drop for RecordLock {
     fn drop(&mut self) {
         // One that is left over locks nobody out.
@@ -81,12 +88,14 @@ mod tests {
     fn one_records_at_a_time_and_leaves_no_lock() {
         let folder = tempfile::tempdir().unwrap();
         let first = RecordLock::of(folder.path()).unwrap();
+        assert!(is_held(folder.path()));
         let refused = RecordLock::of(folder.path()).unwrap_err();
         assert!(refused.to_string().contains("another run records into"), "{refused}");
         drop(first);
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
         // The file that a killed run has left locks nobody out.
         std::fs::write(folder.path().join(NAME), "").unwrap();
+        assert!(!is_held(folder.path()));
         drop(RecordLock::of(folder.path()).unwrap());
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::{Component, Path, PathBuf};
 
-use onescan_base::regular::{self, Limit};
+use onescan_base::regular::Limit;
 use onescan_recording::event::{self, Event, EventKind};
 use onescan_recording::recorder::{EVENTS, HEADER};
 use onescan_recording::{Provenance, Recorder, Recording, SourceFile};
@@ -14,17 +14,17 @@ use onescan_server::signal::ClientName;
 use onescan_server::time::VirtualTime;
 
 use super::config::{RecordRequest, Subject};
+use super::earlier::{Earlier, REPORT, SCENARIO};
 use super::error::RunError;
 use super::record_lock::RecordLock;
 use super::report::RunReport;
 use crate::error::Usage;
 
-/// Name of the folder with the scenario's files.
-const SCENARIO: &str = "scenario";
-
 /// The recording of one run.
 pub(crate) struct Recorded {
     folder: PathBuf,
+    /// What it replaces; before the lock, which is kept until that has come back.
+    earlier: Earlier,
     _lock: RecordLock,
 }
 
@@ -42,7 +42,8 @@ impl Recorded {
         // Another run may have recorded here since it was looked at.
         refuse_to_overwrite_run(request, number)?;
         // What an earlier run left here would be taken for this one's.
-        remove(&folder.join("run.json"))?;
+        let earlier = Earlier::set_aside(&folder)?;
+        remove(&folder.join(REPORT))?;
         let (own_folder, files) = copy_scenario(scenario, &folder.join(SCENARIO))?;
         let provenance = Provenance {
             onescan: env!("CARGO_PKG_VERSION").to_owned(),
@@ -57,7 +58,7 @@ impl Recorded {
             files,
         };
         let recorder = Recorder::new(&folder, provenance, request.choice.clone());
-        Ok((Self { folder, _lock: lock }, recorder))
+        Ok((Self { folder, earlier, _lock: lock }, recorder))
     }
 
     /// What there is of a recording that was cut off, in words.
@@ -70,7 +71,7 @@ impl Recorded {
     }
 
     /// Adds what came of the run.
-    pub(super) fn end(&self, report: &RunReport) -> Result<(), RunError> {
+    pub(super) fn end(mut self, report: &RunReport) -> Result<(), RunError> {
         let violated = |expectation: &super::expectation::ExpectationReport| {
             let t_v: VirtualTime = expectation.at?;
             let what = EventKind::Violated { expectation: expectation.name.clone() };
@@ -80,7 +81,8 @@ impl Recorded {
         event::append(&self.folder.join(EVENTS), &events)?;
         let mut text = serde_json::to_vec_pretty(report).map_err(|e| OutputError(e.into()))?;
         text.push(b'\n');
-        Ok(file::write_whole(&self.folder.join("run.json"), &text)?)
+        file::write_whole(&self.folder.join(REPORT), &text)?;
+        Ok(self.earlier.discard()?)
     }
 }
 
@@ -119,12 +121,8 @@ fn copy_scenario(scenario: &Scenario, target: &Path) -> Result<(String, Vec<Sour
     let mut copied = Vec::new();
     for file in files {
         let path = scenario.folder().join(&file);
-        permission::granted().check(scenario.folder(), &path)?;
-        let bytes = regular::read(&path, Limit::DATA).map_err(|source| ScenarioError::Unreadable {
-            path,
-            source,
-            help: None,
-        })?;
+        let bytes = permission::granted().read(scenario.folder(), &path, Limit::DATA)?;
+        let bytes = bytes.map_err(|source| ScenarioError::Unreadable { path, source, help: None })?;
         match within(&own_folder, &file) {
             Some(place) => {
                 let to = target.join(&place);

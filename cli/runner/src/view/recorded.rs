@@ -13,7 +13,7 @@ use onescan_server::time::VirtualTime;
 use super::ViewError;
 use crate::error::Usage;
 use crate::past::{Kept, store::Mark};
-use crate::run::forked;
+use crate::run::{cut_short, forked};
 
 /// A recording that can be run again.
 pub(super) struct Recorded {
@@ -33,6 +33,7 @@ impl Recorded {
     /// It is damaged, or cannot be run again; which client of it cannot is said by name.
     pub(super) fn open(folder: &Path) -> Result<Self, ViewError> {
         let recording = Recording::open(folder)?;
+        cut_short::report(&recording);
         let refuse = |why: String| Usage::new(format!("{} cannot be shown: {why}", folder.display()), None);
         let header = recording.header();
         if Mode::named(&header.provenance.mode) != Some(Mode::Lockstep) {
