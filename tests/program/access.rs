@@ -70,6 +70,40 @@ fn tokens_are_made_listed_and_revoked() {
     }
 }
 
+/// Certificates are revoked by their file or by their fingerprint, and a session does not begin with a list that it cannot read.
+#[test]
+fn certificates_are_revoked_and_listed() {
+    let (place, _) = access(&[], &[]);
+    let folder = place.path().to_str().unwrap();
+    let certificate = |words: &[&str]| typed(place.path(), &[&["certificate"], words, &["--access", folder]].concat());
+    // Any certificate will do: that of the session itself names nobody.
+    let said = certificate(&["revoke", "server.pem"]);
+    assert!(said.code == Some(0) && said.out.starts_with("revoked the certificate: "), "{said:?}");
+    let fingerprint = said.out.trim().rsplit(' ').next().unwrap().to_owned();
+    assert_eq!((fingerprint.len(), fingerprint.matches(':').count()), (95, 31), "{fingerprint}");
+    for again in ["server.pem", fingerprint.as_str(), &fingerprint.replace(':', "").to_lowercase()] {
+        let said = certificate(&["revoke", again]);
+        assert!(said.code == Some(0) && said.out.contains("was revoked on 20"), "{said:?}");
+    }
+    let other = "00:".repeat(31) + "ff";
+    assert_eq!(certificate(&["revoke", &other]).code, Some(0));
+    let listed: serde_json::Value = serde_json::from_str(&certificate(&["revoked", "--format", "json"]).out).unwrap();
+    assert_eq!(listed.as_array().map(Vec::len), Some(2), "{listed}");
+    assert_eq!(listed[0]["sha256"], fingerprint);
+    assert!(certificate(&["revoked"]).out.contains(&fingerprint));
+    for (wrong, why) in [("missing.pem", "missing.pem"), ("tokens.toml", "there is no certificate in it")] {
+        std::fs::write(place.path().join("tokens.toml"), "").unwrap();
+        let said = certificate(&["revoke", wrong]);
+        assert!(said.code == Some(2) && flat(&said.err).contains(why), "{said:?}");
+    }
+    std::fs::copy(place.path().join("ca.pem"), place.path().join("clients-ca.pem")).unwrap();
+    let words = ["run", ".", "--until", "20ms", "--listen", "127.0.0.1:0", "--access", folder];
+    assert_eq!(typed(&scenario("shear"), &words).code, Some(0));
+    std::fs::write(place.path().join("revoked.toml"), "[[certificate]]\nsha256 = \"x\"\nrevoked = \"y\"\n").unwrap();
+    let said = typed(&scenario("shear"), &words);
+    assert!(said.code == Some(2) && flat(&said.err).contains("a fingerprint is 32 bytes"), "{said:?}");
+}
+
 #[test]
 fn nobody_listens_to_the_world_by_accident() {
     let shear = scenario("shear");

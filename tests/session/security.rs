@@ -6,16 +6,16 @@ use std::thread::JoinHandle;
 
 use onescan_runner::access::certificate;
 use onescan_runner::access::folder::{AUTHORITY, CLIENTS, Folder};
-use onescan_server::access::{Day, Pass, Register, Role, Token};
+use onescan_server::access::{Day, Fingerprint, Pass, Register, RevocationList, Revoked, Role, Token};
 use onescan_server::formation::Formation;
 use onescan_server::lockstep::{Lockstep, Outcome};
-use onescan_server::mailbox::Mailbox;
+use onescan_server::mailbox::{Mailbox, Wish};
 use onescan_server::operation::{Control, Operation};
 use onescan_server::plan::Coupling;
-use onescan_server::transport::tcp::operator::operate;
+use onescan_server::transport::tcp::operator::{OperatorConnection, operate};
 use onescan_server::transport::tcp::participant::take_part;
 use onescan_server::transport::tcp::{Entrance, House, Lobby};
-use onescan_server::transport::tls::Trust;
+use onescan_server::transport::tls::{Trust, first_certificate};
 use onescan_tests::at_ms;
 use onescan_tests::run::{Fate, PATIENCE, boxed, in_process, loopback, run};
 use onescan_tests::toy::{RING, ring, ring_plan};
@@ -68,7 +68,7 @@ impl Secured {
         let (place, trust) = certified();
         let tokens = tokens();
         let identity = Folder(place.path()).identity().expect("it can be used");
-        let house = House { register: Some(tokens.register.clone()), identity };
+        let house = House { register: Some(tokens.register.clone()), identity, revocations: None };
         let (plan, mailbox) = (ring_plan(&Coupling::Parallel), Mailbox::new());
         let lobby = Lobby::open_house(loopback(), &plan, mailbox.clone(), house).expect("a free port");
         let address = lobby.address();
@@ -187,7 +187,7 @@ fn tls_where_there_is_none_is_refused() {
 #[test]
 fn a_token_is_good_for_its_own_client_only() {
     let tokens = tokens();
-    let house = House { register: Some(tokens.register), identity: None };
+    let house = House { register: Some(tokens.register), ..House::default() };
     let plan = ring_plan(&Coupling::Parallel);
     let lobby = Lobby::open_house(loopback(), &plan, Mailbox::new(), house).expect("a free port");
     let with = |token: &Token| HELLO.replace("\"agent\"", &format!("\"token\":\"{}\",\"agent\"", token.reveal()));
@@ -240,7 +240,8 @@ fn certificates_let_in_as_tokens_do() {
     let (ours, theirs) = (Authority::new(), Authority::new());
     std::fs::write(folder.file(CLIENTS), &ours.pem).expect("a file");
     let server = std::fs::read(folder.file(AUTHORITY)).expect("written");
-    let house = House { register: Some(tokens().register), identity: folder.identity().expect("it can be used") };
+    let identity = folder.identity().expect("it can be used");
+    let house = House { register: Some(tokens().register), identity, revocations: None };
     let (plan, mailbox) = (ring_plan(&Coupling::Parallel), Mailbox::new());
     let lobby = Lobby::open_house(loopback(), &plan, mailbox.clone(), house).expect("a free port");
     let with = |(certificate, key): (String, String)| Entrance {
@@ -282,4 +283,66 @@ fn certificates_let_in_as_tokens_do() {
         assert_eq!(thread.join().expect("no panic").expect("it has taken part"), outcome.end);
     }
     assert_eq!(outcome, undisturbed());
+}
+
+/// A session that certificates let in, whose list of revoked ones this is.
+fn revocable(list: &std::sync::Arc<std::sync::Mutex<Revoked>>) -> RevocationList {
+    let list = std::sync::Arc::clone(list);
+    RevocationList::new(move || Ok(list.lock().expect("no panic").clone()))
+}
+
+fn fingerprint(pem: &str) -> Fingerprint {
+    Fingerprint::of(&first_certificate(pem.as_bytes()).expect("a certificate"))
+}
+
+/// A revoked certificate is refused at its next handshake, an operator that is in is sent away, and the session of a client that
+/// takes part ends.
+#[test]
+fn a_revoked_certificate_is_good_for_nothing_more() {
+    let (place, _) = certified();
+    let (folder, ours) = (Folder(place.path()), Authority::new());
+    std::fs::write(folder.file(CLIENTS), &ours.pem).expect("a file");
+    let server = std::fs::read(folder.file(AUTHORITY)).expect("written");
+    let list = std::sync::Arc::new(std::sync::Mutex::new(Revoked::new()));
+    let identity = folder.identity().expect("it can be used");
+    let house = House { register: None, identity, revocations: Some(revocable(&list)) };
+    let (plan, mailbox) = (ring_plan(&Coupling::Parallel), Mailbox::new());
+    let lobby = Lobby::open_house(loopback(), &plan, mailbox.clone(), house).expect("a free port");
+    let with = |(certificate, key): &(String, String)| Entrance {
+        address: lobby.address(),
+        token: None,
+        trust: Some(Trust::showing(&server, certificate.as_bytes(), key.as_bytes()).expect("they go together")),
+    };
+    let (anna, wall) = (ours.gives("anna", Some("operator"), 2090), ours.gives("wall", Some("viewer"), 2090));
+    let revoke = |certificate: &str| drop(list.lock().expect("no panic").insert(fingerprint(certificate)));
+
+    let members: Vec<_> = RING.iter().map(|(name, _)| ours.gives(name, None, 2090)).collect();
+    let threads: Vec<_> = boxed(ring())
+        .into_iter()
+        .zip(&members)
+        .map(|(mut client, member)| {
+            let entrance = with(member);
+            std::thread::spawn(move || take_part(client.as_mut(), entrance))
+        })
+        .collect();
+    let mut formation = Formation::new(plan);
+    formation.set_mailbox(mailbox.clone());
+    formation.admit_from(&lobby, PATIENCE, PATIENCE, &mut |_| true).expect("all come");
+    let mut lockstep = formation.start().expect("all have joined");
+    lockstep.set_mailbox(mailbox);
+
+    let mut inside = OperatorConnection::open(with(&wall)).expect("not revoked yet");
+    revoke(&anna.0);
+    let refused = asked(with(&anna));
+    assert!(refused.contains("this certificate has been revoked"), "{refused}");
+    revoke(&wall.0);
+    let sent_away = inside.ask(Wish::Look(Vec::new()), PATIENCE).expect_err("it is in no more").to_string();
+    assert!(sent_away.contains("this certificate has been revoked"), "{sent_away}");
+
+    revoke(&members[0].0);
+    let outcome = lockstep.run().expect("nothing is recorded");
+    assert!(outcome.end.to_string().contains(&format!("client `{}` failed", RING[0].0)), "{:?}", outcome.end);
+    for thread in threads {
+        drop(thread.join().expect("no panic"));
+    }
 }

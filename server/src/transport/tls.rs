@@ -105,6 +105,15 @@ fn verifier(authorities: &[u8]) -> Result<Arc<dyn ClientCertVerifier>, Certifica
     builder.allow_unauthenticated().build().map_err(unusable)
 }
 
+/// The first certificate of a file in PEM, as DER.
+///
+/// # Errors
+/// There is none.
+pub fn first_certificate(pem: &[u8]) -> Result<Vec<u8>, CertificateFault> {
+    let first = certificates_of(pem)?.into_iter().next().ok_or(CertificateFault::NoCertificate)?;
+    Ok(first.to_vec())
+}
+
 fn certificates_of(pem: &[u8]) -> Result<Vec<CertificateDer<'static>>, CertificateFault> {
     let found: Result<Vec<_>, _> = CertificateDer::pem_slice_iter(pem).collect();
     found.ok().filter(|found| !found.is_empty()).ok_or(CertificateFault::NoCertificate)

@@ -12,7 +12,7 @@ use super::value::FormatArg;
 use onescan_runner::access::entrance::{TlsFiles, entrance};
 use onescan_runner::access::folder::Folder;
 use onescan_runner::access::tokens::Lifetime;
-use onescan_runner::access::{certificate, tokens};
+use onescan_runner::access::{certificate, revoked, tokens};
 use onescan_runner::error::ExitCode;
 
 /// What a command shows to a session.
@@ -157,14 +157,38 @@ pub enum CertificateWish {
         #[arg(long, default_value_t = 365, value_name = "N")]
         days: u32,
     },
+    /// Revoke the certificate of a client or operator: sessions let it in no more, and end its connections if they run
+    Revoke {
+        /// Its file, as PEM; or its fingerprint, as `openssl x509 -noout -fingerprint -sha256` prints it
+        #[arg(value_name = "FILE|FINGERPRINT")]
+        certificate: String,
+        /// The folder of those who are let in
+        #[arg(long, value_name = "DIR")]
+        access: PathBuf,
+    },
+    /// List the certificates that have been revoked: names, days, fingerprints
+    Revoked {
+        /// The folder of those who are let in
+        #[arg(long, value_name = "DIR")]
+        access: PathBuf,
+        /// For people, or JSON for machines
+        #[arg(long, value_enum, default_value_t)]
+        format: FormatArg,
+    },
 }
 
-/// Makes a certificate.
+/// Makes or revokes a certificate, or lists those that have been revoked.
 ///
 /// # Errors
 /// See [`CommandError`].
 pub fn certificate(args: CertificateArgs) -> Result<ExitCode, CommandError> {
-    let CertificateWish::New { access, hosts, days } = args.wish;
-    certificate::new(Folder(&access), &hosts, tokens::today(), days)?;
+    let mut out = std::io::stdout().lock();
+    match args.wish {
+        CertificateWish::New { access, hosts, days } => {
+            certificate::new(Folder(&access), &hosts, tokens::today(), days)?;
+        }
+        CertificateWish::Revoke { certificate, access } => revoked::revoke(Folder(&access), &certificate, &mut out)?,
+        CertificateWish::Revoked { access, format } => revoked::list(Folder(&access), format.into(), &mut out)?,
+    }
     Ok(ExitCode::Ok)
 }

@@ -159,7 +159,7 @@ pub enum Command {
     Control(ControlArgs),
     /// Make, list and revoke the tokens with which others take part in sessions over a network (`run --access`)
     Token(TokenArgs),
-    /// Make the certificate of sessions over a network
+    /// Make the certificate of sessions over a network; revoke those of clients
     Certificate(CertificateArgs),
     /// Write a recording's trajectory as CSV, Parquet or MCAP
     Export(ExportArgs),

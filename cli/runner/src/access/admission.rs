@@ -9,6 +9,7 @@ use onescan_server::transport::tcp::House;
 
 use super::AccessError;
 use super::folder::{AUTHORITY, Folder};
+use super::revoked;
 
 /// Who is let in.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -52,12 +53,12 @@ impl GuardedListener {
             Admission::Anybody => return Ok(Self::default()),
             Admission::Holders(folder) => Folder(folder),
         };
-        let (register, identity) = (folder.register()?, folder.identity()?);
+        let (register, identity, revocations) = (folder.register()?, folder.identity()?, revoked::of_session(folder)?);
         if !is_local && identity.is_none() {
             return Err(AccessError::OpenToAll { address, missing: "there is no certificate: tokens could be read" });
         }
         let authority = if identity.is_some() { Some(absolute(&folder.file(AUTHORITY))?) } else { None };
-        Ok(Self { house: House { register: Some(register), identity }, authority })
+        Ok(Self { house: House { register: Some(register), identity, revocations }, authority })
     }
 
     /// What the program of client `name` shows: a token that is good for this session only.

@@ -27,6 +27,10 @@ pub enum AccessError {
     #[error("{}: {}", path.display(), one_line(why))]
     #[diagnostic(help("make it with `onescan token new`"))]
     Malformed { path: PathBuf, why: String },
+    /// The file of revoked certificates is none. What cannot be read could let a revoked one in.
+    #[error("{}: {}", path.display(), one_line(why))]
+    #[diagnostic(help("write it with `onescan certificate revoke`"))]
+    NotRevocations { path: PathBuf, why: String },
     /// Tokens do not go together.
     #[error(transparent)]
     Register(#[from] RegisterError),
@@ -67,6 +71,7 @@ impl Exit for AccessError {
             Self::Unreadable(error) => error.exit_code(),
             Self::Token(BadToken::NoRandomness(_)) | Self::Making(_) => ExitCode::Fault,
             Self::Malformed { .. }
+            | Self::NotRevocations { .. }
             | Self::Register(_)
             | Self::Token(_)
             | Self::NoSuchToken { .. }

@@ -24,6 +24,9 @@ pub const AUTHORITY: &str = "ca.pem";
 /// The authorities of certificates that let in, too; nobody's certificate does without this file.
 pub const CLIENTS: &str = "clients-ca.pem";
 
+/// Certificates of clients and operators that are no longer good.
+pub const REVOKED: &str = "revoked.toml";
+
 /// A folder of those who are let in.
 #[derive(Clone, Copy, Debug)]
 pub struct Folder<'f>(pub &'f Path);
@@ -115,7 +118,7 @@ impl Folder<'_> {
     }
 }
 
-fn read_if_there(path: &Path) -> Result<Option<Vec<u8>>, AccessError> {
+pub(super) fn read_if_there(path: &Path) -> Result<Option<Vec<u8>>, AccessError> {
     match regular::read(path, Limit::TEXT) {
         Ok(bytes) => Ok(Some(bytes)),
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),

@@ -419,7 +419,7 @@ impl Page {
         shared: Option<(Arc<Seats>, Arc<Called>)>,
     ) -> Result<Self, WebError> {
         of_this_machine(address, admission)?;
-        let House { register, identity } = match admission {
+        let House { register, identity, .. } = match admission {
             Admission::Holders(_) => GuardedListener::open(admission, address)?.into_house(),
             Admission::ThisMachine | Admission::Anybody => House::default(),
         };

@@ -15,6 +15,7 @@ use tokio_rustls::server::TlsStream;
 use tokio_util::codec::Encoder;
 use tokio_util::either::Either;
 
+use super::holders::REVOKED;
 use super::host::Host;
 use super::order::{Application, Order};
 use super::socket::Socket;
@@ -106,14 +107,16 @@ pub(super) async fn newcomer(
 
 /// Passes on to the acceptor whose certificate was shown, if one was.
 fn introduce(secured: &TlsStream<TcpStream>, visitor: Visitor, host: &Host) {
-    let shown = secured.get_ref().1.peer_certificates().and_then(<[_]>::first);
-    match shown.map(|certificate| Holder::of_certificate(certificate)) {
-        None => {}
-        Some(Ok(holder)) => host.act(|acceptor, _| {
+    let Some(shown) = secured.get_ref().1.peer_certificates().and_then(<[_]>::first) else { return };
+    match Holder::of_certificate(shown) {
+        Ok(holder) if !host.holders.come(visitor, &holder, shown) => {
+            host.act(|acceptor, now| acceptor.refused(visitor, REVOKED, now));
+        }
+        Ok(holder) => host.act(|acceptor, _| {
             acceptor.certified(visitor, holder);
             Vec::new()
         }),
-        Some(Err(why)) => {
+        Err(why) => {
             host.act(|acceptor, now| {
                 acceptor.refused(visitor, &format!("this certificate lets nobody in: {why}"), now)
             });

@@ -9,6 +9,7 @@ use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 use tokio::time::Instant;
 use tokio_rustls::TlsAcceptor;
 
+use super::holders::{Holders, REVOKED};
 use super::order::{Application, Order};
 use super::socket::Socket;
 use crate::access::Day;
@@ -25,6 +26,8 @@ pub(super) struct Host {
     pending_clients: Sender<Application>,
     pub(super) mailbox: Mailbox,
     pub(super) tls_acceptor: Option<TlsAcceptor>,
+    /// Who has come in with a certificate.
+    pub(super) holders: Holders,
 }
 
 impl Host {
@@ -33,10 +36,17 @@ impl Host {
         terms: Terms,
         pending_clients: Sender<Application>,
         mailbox: Mailbox,
-        tls_acceptor: Option<TlsAcceptor>,
+        (tls_acceptor, holders): (Option<TlsAcceptor>, Holders),
     ) -> Self {
         let (acceptor, lines) = (Mutex::new(Acceptor::new(terms)), Mutex::default());
-        Self { acceptor, lines, opened: Instant::now(), pending_clients, mailbox, tls_acceptor }
+        Self { acceptor, lines, opened: Instant::now(), pending_clients, mailbox, tls_acceptor, holders }
+    }
+
+    /// Sends away those whose certificate has been revoked since they came, and ends the connections of those who take part.
+    pub(super) fn end_revoked(&self) {
+        for visitor in self.holders.end_revoked() {
+            self.act(|acceptor, now| acceptor.refused(visitor, REVOKED, now));
+        }
     }
 
     /// Where the orders for a connection go from here on.
@@ -88,6 +98,7 @@ impl Host {
     /// The connection is no longer attended to.
     pub(super) fn leave(&self, visitor: Visitor) {
         self.lines().remove(&visitor);
+        self.holders.leave(visitor);
     }
 
     /// A client waits for the session's thread to decide.
@@ -100,6 +111,8 @@ impl Host {
     /// The connection of a client that has got its seat; nothing if it is gone, or has been sent away meanwhile.
     pub(super) fn hand_over(&self, visitor: Visitor) -> Option<Socket> {
         let (sender, receiver) = channel();
+        // Before the order, with which the connection leaves the lobby.
+        let shown = self.holders.seating(visitor);
         {
             let mut acceptor = self.acceptor();
             if !acceptor.seated(visitor) {
@@ -109,6 +122,8 @@ impl Host {
         }
         // Without the locks, which the lobby's one thread needs to get to the order.
         // The task of a connection that has gone drops the sender.
-        receiver.recv().ok()?.ok()
+        let socket = receiver.recv().ok()?.ok()?;
+        self.holders.seat(shown, socket.tcp());
+        Some(socket)
     }
 }

@@ -9,14 +9,16 @@ use std::time::Duration;
 use onescan_base::threads;
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::Notify;
+use tokio::time::MissedTickBehavior;
 use tokio_rustls::TlsAcceptor;
 use tokio_util::task::TaskTracker;
 
+use super::holders::Holders;
 use super::host::Host;
 use super::order::Application;
 use super::pending::TcpPendingClient;
 use super::{AGENT, attend};
-use crate::access::Register;
+use crate::access::{Register, RevocationList};
 use crate::carrier::{ClientListener, PendingClient};
 use crate::lobby::acceptor::CLOSE_TIMEOUT;
 use crate::lobby::{Acceptor, Terms, Visitor};
@@ -26,6 +28,9 @@ use crate::transport::tls::Identity;
 use crate::transport::{accept, runtime};
 use crate::wire::{FRAME_BYTES_MAX, ServerMessage, VERSIONS};
 
+/// How often it is looked whether certificates have been revoked.
+const LOOK: Duration = Duration::from_secs(1);
+
 /// What a session asks of those who come.
 #[derive(Clone, Debug, Default)]
 pub struct House {
@@ -33,6 +38,8 @@ pub struct House {
     pub register: Option<Register>,
     /// The session's certificate; plain text without.
     pub identity: Option<Identity>,
+    /// Certificates of those who come that have been revoked; none without.
+    pub revocations: Option<RevocationList>,
 }
 
 /// A listener with a thread of its own; closed when dropped.
@@ -71,7 +78,8 @@ impl Lobby {
         let (pending_clients, receiver) = channel();
         let runtime = runtime::of_this_thread()?;
         let tls_acceptor = house.identity.map(|identity| TlsAcceptor::from(identity.0));
-        let host = Arc::new(Host::new(terms(plan, house.register)?, pending_clients, mailbox, tls_acceptor));
+        let holders = Holders::new(house.revocations);
+        let host = Arc::new(Host::new(terms(plan, house.register)?, pending_clients, mailbox, (tls_acceptor, holders)));
         let close = Arc::new(Notify::new());
         let (hosting, closing) = (Arc::clone(&host), Arc::clone(&close));
         let thread =
@@ -128,11 +136,16 @@ async fn receive_connections(listener: std::net::TcpListener, host: Arc<Host>, c
         Err(error) => return tracing::error!(%error, "the lobby cannot listen"),
     };
     let tasks = TaskTracker::new();
-    for number in 0.. {
+    let mut look = tokio::time::interval(LOOK);
+    look.set_missed_tick_behavior(MissedTickBehavior::Delay);
+    let mut number = 0;
+    loop {
         tokio::select! {
             () = closing.notified() => return part_from_all(&host, &tasks).await,
+            _ = look.tick(), if host.holders.are_revocable() => host.end_revoked(),
             (stream, peer) = accept::next(&listener, "the session") => {
                 come(Visitor(number), stream, peer, &host, &tasks);
+                number += 1;
             }
         }
     }

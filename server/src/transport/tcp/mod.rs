@@ -5,6 +5,7 @@
 //! | [`lobby`] | the listener; a thread of its own, asynchronous |
 //! | `order`, `host` | what is to be done with its connections; what they share |
 //! | `attend` | one of them |
+//! | `holders` | who came with a certificate, and what becomes of them when it is revoked |
 //! | `pending` | a client that waits for a seat, seen from the session's thread |
 //! | `error` | why nobody could take part |
 //! | [`entrance`] | where a session is, and what it takes to be let in |
@@ -21,6 +22,7 @@
 mod attend;
 pub mod entrance;
 mod error;
+mod holders;
 mod host;
 pub mod lobby;
 pub mod operator;
