@@ -146,6 +146,11 @@ impl Published {
             || (self.inner.wanted.load(Ordering::Acquire) && self.inner.wanted.swap(false, Ordering::AcqRel))
     }
 
+    /// True if somebody beside the session can look at its views, now or later.
+    pub(crate) fn has_readers(&self) -> bool {
+        Arc::strong_count(&self.inner) > 1
+    }
+
     /// True if somebody wants a view of every step.
     pub(crate) fn is_followed(&self) -> bool {
         self.inner.followers.load(Ordering::Acquire) > 0

@@ -64,10 +64,15 @@ impl Place {
         match (self.bit, self.text, bytes, value) {
             (Some(bit), _, [byte, ..], [value, ..]) => *value = byte >> bit & 1,
             (_, Some(text), bytes, value) => text.take(bytes, value),
+            // What is long has seldom changed, and to look takes less than to copy.
+            (_, None, bytes, value) if value.len() >= LONG && *value == *bytes => {}
             (_, None, bytes, value) => value.copy_from_slice(bytes),
         }
     }
 }
+
+/// A value of so many bytes is compared before it is copied.
+const LONG: usize = 4 * 1024;
 
 /// All signals of a PLC.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -64,16 +64,22 @@ impl HashStream {
             // A full subtree is closed only when more follows: the last one of a stream is part of
             // the root, which is hashed in another way.
             let (now, later) = bytes.split_at(room);
-            self.pending.extend_from_slice(now);
+            if self.pending.is_empty() {
+                // A whole subtree is hashed where it lies: a large image is not copied.
+                self.tail.update(now);
+            } else {
+                self.pending.extend_from_slice(now);
+                self.settle();
+            }
             self.close_subtree();
             bytes = later;
         }
     }
 
+    /// Closes a full subtree, whose bytes have all been hashed.
     #[cold]
     fn close_subtree(&mut self) {
-        debug_assert_eq!(self.pending.len(), SUBTREE_BYTES, "only a full subtree is closed");
-        self.settle();
+        debug_assert_eq!(self.tail.count(), SUBTREE_BYTES as u64, "only a full subtree is closed");
         let mut right = self.tail.finalize_non_root();
         self.subtrees += 1;
         // Each trailing zero of the new count is a carry: two subtrees of one size become one.
@@ -173,9 +179,14 @@ mod tests {
         for whole in 0..6 {
             for more in [0, 1, 1023, 1024, 1025, SUBTREE_BYTES - 1] {
                 let bytes = text(whole * SUBTREE_BYTES + more);
-                let mut stream = HashStream::new();
-                stream.take(&bytes);
-                assert_eq!(stream.value(), *blake3::hash(&bytes).as_bytes(), "{whole} subtrees and {more} bytes");
+                // Whole subtrees are hashed where they lie, also behind a part of one.
+                for first in [0, 77, SUBTREE_BYTES] {
+                    let (first, rest) = bytes.split_at(first.min(bytes.len()));
+                    let mut stream = HashStream::new();
+                    stream.take(first);
+                    stream.take(rest);
+                    assert_eq!(stream.value(), *blake3::hash(&bytes).as_bytes(), "{whole} subtrees and {more} bytes");
+                }
             }
         }
     }

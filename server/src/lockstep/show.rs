@@ -82,9 +82,11 @@ impl Lockstep {
         }
     }
 
-    /// Publishes the last view of the session, whether or not somebody wants it.
+    /// Publishes the last view of the session to all who may look at it, now or later. Where nobody can, no image is copied.
     pub(super) fn publish_end(&mut self, end: &SessionEnd) {
-        self.publish_view(Some(end));
+        if self.shown.published.has_readers() {
+            self.publish_view(Some(end));
+        }
     }
 
     #[cold]

@@ -1,6 +1,8 @@
 //! The session's own part of a checkpoint.
 
-use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::Session;
 use crate::signal_overlay::SignalOverlay;
@@ -13,10 +15,26 @@ pub struct SessionState {
     steps: StepCount,
     t_v: VirtualTime,
     wakes: Vec<VirtualTime>,
-    image: Vec<u8>,
+    image: Bytes,
     /// What the writers last wrote, which a force or a fault may hide in `image`.
-    staged: Vec<u8>,
+    staged: Bytes,
     signal_overlay: SignalOverlay,
+}
+
+/// The bytes of an image, which may be kept once where two are the same: a search keeps many checkpoints of a session.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Bytes(Arc<[u8]>);
+
+impl Serialize for Bytes {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.0.serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for Bytes {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Vec::<u8>::deserialize(deserializer).map(|bytes| Self(bytes.into()))
+    }
 }
 
 impl SessionState {
@@ -34,12 +52,18 @@ impl SessionState {
 impl Session {
     /// The session's own part of a checkpoint; `None` where none can be taken: off a boundary, ended.
     pub fn save(&self) -> Option<SessionState> {
-        (self.cycle.is_at_boundary() && self.end.is_none()).then(|| SessionState {
+        if !self.cycle.is_at_boundary() || self.end.is_some() {
+            return None;
+        }
+        let image = Bytes(self.image.committed().into());
+        // Nothing lies over them, as a rule.
+        let staged = if *image.0 == *self.image.staged() { image.clone() } else { Bytes(self.image.staged().into()) };
+        Some(SessionState {
             steps: self.cycle.steps(),
             t_v: self.cycle.t_v(),
             wakes: self.clients().map(|client| self.cycle.wake(client)).collect(),
-            image: self.image.committed().to_vec(),
-            staged: self.image.staged().to_vec(),
+            image,
+            staged,
             signal_overlay: self.image.signal_overlay().clone(),
         })
     }
@@ -48,8 +72,8 @@ impl Session {
     /// False if `state` cannot be of this session; nothing has changed then.
     pub fn restore(&mut self, state: &SessionState) -> bool {
         let fits = state.wakes.len() == self.members.len()
-            && state.image.len() == self.layout.size()
-            && state.staged.len() == self.layout.size()
+            && state.image.0.len() == self.layout.size()
+            && state.staged.0.len() == self.layout.size()
             && state.signal_overlay.fits(&self.layout)
             && state.t_v.is_multiple_of(self.plan.step())
             && state.wakes.iter().all(|wake| wake.is_multiple_of(self.plan.step()) && *wake > state.t_v)
@@ -57,7 +81,7 @@ impl Session {
             && self.members.iter().all(Option::is_some);
         if fits {
             self.cycle.resume_at(state.steps, state.t_v, &state.wakes);
-            self.image.load(&state.image, &state.staged, state.signal_overlay.clone());
+            self.image.load(&state.image.0, &state.staged.0, state.signal_overlay.clone());
         }
         fits
     }

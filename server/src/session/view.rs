@@ -6,7 +6,6 @@ use super::{Mode, Session};
 use crate::client::ClientId;
 use crate::cycle::Cycle;
 use crate::end::SessionEnd;
-use crate::image::Commit;
 use crate::join::Membership;
 use crate::layout::ImageLayout;
 use crate::operation::OperationError;
@@ -84,9 +83,7 @@ impl Session {
 
     /// The values that the next step would commit if all clients slept.
     pub fn coming(&self) -> Vec<u8> {
-        let mut coming = self.image.clone();
-        coming.commit(Commit::EndsStep);
-        coming.committed().to_vec()
+        self.image.coming()
     }
 
     /// How the session is.
