@@ -18,7 +18,8 @@
 //! | [`foreign`] | text from outside, made fit to be shown |
 //!
 //! Invariants: plain data and pure functions, except in [`regular`], which reads files, and [`threads`]. No clock, no random number,
-//! no iteration in hash order, and no dependency except serde, thiserror and strsim.
+//! no iteration in hash order, and no dependency except serde, thiserror and strsim, and on
+//! Linux rustix, which opens what [`regular`] has found.
 
 pub mod array;
 pub mod byte_line;

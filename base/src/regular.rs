@@ -35,7 +35,11 @@ impl Limit {
 pub fn open(path: &Path) -> Result<File> {
     // A pipe without a writer would not open; so its kind is looked at before, and once more behind a swap.
     regular(&std::fs::metadata(path)?)?;
-    let file = File::open(path)?;
+    checked(File::open(path)?)
+}
+
+/// An open file, if it is a regular one.
+fn checked(file: File) -> Result<File> {
     regular(&file.metadata()?)?;
     Ok(file)
 }
@@ -50,12 +54,41 @@ fn regular(found: &std::fs::Metadata) -> Result<()> {
     Ok(())
 }
 
+/// Opens a regular file where it was found, at a path without links: one that has come onto the way since then is refused, so
+/// that nothing that is swapped between the look and the open leads elsewhere.
+#[cfg(target_os = "linux")]
+fn open_found(real: &Path) -> Result<File> {
+    use rustix::fs::{CWD, Mode, OFlags, ResolveFlags, openat2};
+    use rustix::io::Errno;
+
+    // A pipe without a writer would not open otherwise; for a file it means nothing.
+    let flags = OFlags::RDONLY | OFlags::CLOEXEC | OFlags::NOCTTY | OFlags::NONBLOCK;
+    match openat2(CWD, real, flags, Mode::empty(), ResolveFlags::NO_SYMLINKS) {
+        Ok(opened) => checked(File::from(opened)),
+        Err(Errno::LOOP) => {
+            Err(Error::new(ErrorKind::PermissionDenied, "it was swapped for a link while it was looked for"))
+        }
+        // A kernel before 5.6, or a sandbox that knows no such call.
+        Err(Errno::NOSYS | Errno::PERM | Errno::INVAL) => open(real),
+        Err(error) => Err(error.into()),
+    }
+}
+
+/// The same without that promise: see `docs/decisions/019-what-is-found-is-what-is-opened.md`.
+#[cfg(not(target_os = "linux"))]
+fn open_found(real: &Path) -> Result<File> {
+    open(real)
+}
+
 /// All that is in a file.
 ///
 /// # Errors
 /// As [`open`], or it is larger than `limit`.
 pub fn read(path: &Path, limit: Limit) -> Result<Vec<u8>> {
-    let file = open(path)?;
+    read_open(open(path)?, limit)
+}
+
+fn read_open(file: File, limit: Limit) -> Result<Vec<u8>> {
     let size = file.metadata()?.len();
     if size > limit.bytes() {
         return Err(limit.exceeded());
@@ -71,8 +104,11 @@ pub fn read(path: &Path, limit: Limit) -> Result<Vec<u8>> {
 /// # Errors
 /// As [`read`] with [`Limit::TEXT`], or it is not UTF-8.
 pub fn read_text(path: &Path) -> Result<String> {
-    String::from_utf8(read(path, Limit::TEXT)?)
-        .map_err(|_| Error::new(ErrorKind::InvalidData, "stream did not contain valid UTF-8"))
+    text(read(path, Limit::TEXT)?)
+}
+
+fn text(bytes: Vec<u8>) -> Result<String> {
+    String::from_utf8(bytes).map_err(|_| Error::new(ErrorKind::InvalidData, "stream did not contain valid UTF-8"))
 }
 
 /// The folders and files that may be read, wherever links lead: what is found elsewhere is not opened.
@@ -106,12 +142,14 @@ impl Within {
         if places.iter().any(holds) { Ok(real) } else { Err(NotWithin::Elsewhere(real)) }
     }
 
-    /// As [`read`].
+    /// As [`read`]. What was found to lie within is what is read: a link that is put there meanwhile is refused (on Linux).
     ///
     /// # Errors
     /// As [`read`], or the file lies elsewhere.
     pub fn read(&self, path: &Path, limit: Limit) -> Result<Vec<u8>> {
-        read(&self.find(path)?, limit)
+        let real = self.find(path)?;
+        let file = if self.places.is_some() { open_found(&real)? } else { open(&real)? };
+        read_open(file, limit)
     }
 
     /// As [`read_text`].
@@ -119,7 +157,7 @@ impl Within {
     /// # Errors
     /// As [`read_text`], or the file lies elsewhere.
     pub fn read_text(&self, path: &Path) -> Result<String> {
-        read_text(&self.find(path)?)
+        text(self.read(path, Limit::TEXT)?)
     }
 }
 
@@ -170,5 +208,38 @@ mod tests {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("Cargo.toml");
         let error = read(&path, Limit { mib: 0 }).unwrap_err();
         assert_eq!(error.kind(), ErrorKind::FileTooLarge);
+    }
+
+    /// What somebody may do between the look and the open. A plain open would read the other file both times.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn what_is_swapped_for_a_link_is_not_read() {
+        use std::os::unix::fs::symlink;
+
+        let place = std::env::temp_dir().join(format!("onescan-below-{}", std::process::id()));
+        let (own, other) = (place.join("own"), place.join("other"));
+        for folder in [&own, &other] {
+            std::fs::create_dir_all(folder.join("plc")).unwrap();
+            std::fs::write(folder.join("plc/a.st"), folder.file_name().unwrap().to_str().unwrap()).unwrap();
+        }
+        let bounds = Within::places(vec![own.clone()]);
+        let found = bounds.find(&own.join("plc/a.st")).unwrap();
+        assert_eq!(bounds.read_text(&own.join("plc/a.st")).unwrap(), "own");
+        assert!(open_found(&found).is_ok());
+        // The folder, and then the file.
+        std::fs::rename(own.join("plc"), own.join("was")).unwrap();
+        symlink(other.join("plc"), own.join("plc")).unwrap();
+        let swapped = |what: &str| {
+            assert_eq!(std::fs::read_to_string(&found).unwrap(), "other", "{what}: the window");
+            let refused = open_found(&found).unwrap_err().to_string();
+            assert_eq!(refused, "it was swapped for a link while it was looked for", "{what}");
+            assert!(bounds.read(&own.join("plc/a.st"), Limit::TEXT).is_err(), "{what}: a new look finds it elsewhere");
+        };
+        swapped("the folder");
+        std::fs::remove_file(own.join("plc")).unwrap();
+        std::fs::create_dir(own.join("plc")).unwrap();
+        symlink(other.join("plc/a.st"), own.join("plc/a.st")).unwrap();
+        swapped("the file");
+        std::fs::remove_dir_all(place).unwrap();
     }
 }

@@ -3,7 +3,6 @@
 use std::ops::Range;
 use std::path::{Component, Path, PathBuf};
 
-use onescan_base::regular;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use toml::Spanned;
@@ -51,8 +50,7 @@ pub(crate) struct Chain {
 /// A file that cannot be read or is not TOML, bases that lead in a circle.
 pub(crate) fn read(path: &Path) -> Result<Chain, ScenarioError> {
     let folder = path.parent().unwrap_or(Path::new(""));
-    permission::granted().check(folder, path)?;
-    let text = regular::read_text(path).map_err(|source| ScenarioError::Unreadable {
+    let text = permission::granted().read_text(folder, path)?.map_err(|source| ScenarioError::Unreadable {
         path: path.to_owned(),
         help: (source.kind() == std::io::ErrorKind::NotFound).then(|| missing::help_for_scenario(path)),
         source,
@@ -66,9 +64,8 @@ pub(crate) fn read(path: &Path) -> Result<Chain, ScenarioError> {
     while let Some(base) = base_of(&texts, start)? {
         let within = normal(&folders.last().map_or_else(PathBuf::new, |within| within.join(base.get_ref())));
         let file = folder.join(&within);
-        permission::granted().check(folder, &file)?;
+        let read = permission::granted().read_text(folder, &file)?;
         let wrong = |message: String| texts.wrong(message, Some(base.span()), None);
-        let read = regular::read_text(&file);
         let text = read.map_err(|why| wrong(format!("cannot read the base `{}`: {why}", base.get_ref())))?;
         if seen.contains(&identity(&file)) {
             return Err(wrong(format!("the base `{}` takes in this file: they lead in a circle", base.get_ref())));

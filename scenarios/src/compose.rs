@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use miette::{NamedSource, SourceSpan};
-use onescan_base::regular::{self, Limit};
+use onescan_base::regular::Limit;
 use onescan_iec::input::kind::{FileKind, SourceKind};
 use onescan_iec::{Dialect, Input, MemoryLimit, Task, TaskPlan, WordSize};
 use onescan_iec_run::{Application, Builder};
@@ -200,8 +200,8 @@ impl Scenario {
             }
             None => SourceKind::Text,
         };
-        permission::granted().check(self.folder(), &path)?;
-        let bytes = regular::read(&path, Limit::TEXT).map_err(|why| self.unreadable(name, source, why))?;
+        let bytes = permission::granted().read(self.folder(), &path, Limit::TEXT)?;
+        let bytes = bytes.map_err(|why| self.unreadable(name, source, why))?;
         let input = Input::read(source, kind, &bytes).read_as(dialect, self.word_size(name));
         let input = self.with_texts_of_case(name, own, input)?;
         Ok(match self.mistake() {
@@ -216,8 +216,8 @@ impl Scenario {
     /// A file that cannot be read or is not a scene; a value that the scene cannot have.
     pub fn scene_of(&self, name: &ClientName, file: &str) -> Result<Scene, ScenarioError> {
         let path = self.folder().join(file);
-        permission::granted().check(self.folder(), &path)?;
-        let text = regular::read_text(&path).map_err(|why| self.unreadable(name, file, why))?;
+        let text = permission::granted().read_text(self.folder(), &path)?;
+        let text = text.map_err(|why| self.unreadable(name, file, why))?;
         let named = path.display().to_string();
         let error = |error: &SceneError| ScenarioError::from(Box::new(report(error, &named, &text)));
         let (overrides, within) = (self.overrides(name), permission::granted().within(self.folder()));

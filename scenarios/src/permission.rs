@@ -3,10 +3,11 @@
 //! This is for the whole process, like the user it runs as: whoever starts it decides once, before the first scenario is
 //! read, and nothing in a scenario can change it.
 
+use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use onescan_base::regular::{NotWithin, Within};
+use onescan_base::regular::{Limit, NotWithin, Within};
 
 use super::error::ScenarioError;
 
@@ -63,6 +64,24 @@ impl Permission {
             Ok(_) | Err(NotWithin::Missing(_)) => Ok(()),
             Err(NotWithin::Elsewhere(real)) => Err(ScenarioError::Outside { path: path.to_owned(), real }),
         }
+    }
+
+    /// What is in a file that a scenario of `folder` may read; the file that is looked at is the one that is read.
+    ///
+    /// # Errors
+    /// It lies elsewhere; within it that it cannot be read.
+    pub fn read(&self, folder: &Path, path: &Path, limit: Limit) -> Result<io::Result<Vec<u8>>, ScenarioError> {
+        self.check(folder, path)?;
+        Ok(self.within(folder).read(path, limit))
+    }
+
+    /// The same for a file of text.
+    ///
+    /// # Errors
+    /// As [`Permission::read`].
+    pub fn read_text(&self, folder: &Path, path: &Path) -> Result<io::Result<String>, ScenarioError> {
+        self.check(folder, path)?;
+        Ok(self.within(folder).read_text(path))
     }
 
     /// What a scenario of `folder` may read, for those who read for it.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use onescan_base::regular::{self, Limit};
+use onescan_base::regular::Limit;
 use onescan_server::signal::{ClientName, SignalName, SignalType, did_you_mean};
 use onescan_server::time::TimeSpan;
 use onescan_soft_plc::SoftPlcClient;
@@ -148,8 +148,8 @@ impl Scenario {
                 let message = format!("`{}` has a name that no program can write", path.display());
                 return Err(self.wrong_client(name, message, None));
             };
-            permission::granted().check(self.folder(), &path)?;
-            found.push((file, regular::read(&path, Limit::TEXT).map_err(|error| unreadable(&path, error))?));
+            let bytes = permission::granted().read(self.folder(), &path, Limit::TEXT)?;
+            found.push((file, bytes.map_err(|error| unreadable(&path, error))?));
         }
         // the order of a folder is the machine's
         found.sort();

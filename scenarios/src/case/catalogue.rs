@@ -5,7 +5,6 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use onescan_base::regular;
 use onescan_server::signal::did_you_mean;
 use serde::Deserialize;
 use toml::de::{DeTable, DeValue, Deserializer};
@@ -71,8 +70,7 @@ impl Catalogue {
     /// The same with the mutants that `mutants` makes.
     pub(crate) fn load_with(scenario: &Path, mutants: &Mutants<'_>) -> Result<Self, ScenarioError> {
         let path = super::beside(scenario)?;
-        permission::granted().check(path.parent().unwrap_or(Path::new("")), &path)?;
-        match regular::read_text(&path) {
+        match permission::granted().read_text(path.parent().unwrap_or(Path::new("")), &path)? {
             Ok(text) => Self::parse_with(path, text, mutants),
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
                 Ok(Self { texts: Texts::of(path, String::new()), cases: vec![default_case()], ..Self::default() })

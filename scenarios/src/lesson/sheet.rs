@@ -3,7 +3,6 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use onescan_base::regular;
 use toml::Spanned;
 
 use super::file::{LessonFile, LessonsFile, VERSION};
@@ -42,8 +41,7 @@ impl Sheet {
     }
 
     fn read(folder: &Path, path: PathBuf) -> Result<Self, ScenarioError> {
-        permission::granted().check(folder, &path)?;
-        let text = regular::read_text(&path).map_err(|source| unreadable(&path, source))?;
+        let text = permission::granted().read_text(folder, &path)?.map_err(|source| unreadable(&path, source))?;
         let file: LessonsFile = toml::from_str(&text)
             .map_err(|error| wrong(&path, &text, error.message().trim().to_owned(), error.span(), None))?;
         if file.version != VERSION {

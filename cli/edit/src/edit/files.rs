@@ -54,8 +54,7 @@ impl Files {
         let mut texts = Texts { scenario, ..Texts::default() };
         for scene in scenes_of(&texts.scenario) {
             let path = self.folder().join(&scene);
-            granted().check(self.folder(), &path)?;
-            let text = regular::read_text(&path).map_err(Unreadable::at(&path))?;
+            let text = granted().read_text(self.folder(), &path)?.map_err(Unreadable::at(&path))?;
             texts.scenes.insert(scene, text);
         }
         Ok(texts)
