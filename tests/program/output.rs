@@ -6,7 +6,7 @@ use std::fs::File;
 use std::io::pipe;
 use std::process::Stdio;
 
-use crate::typed::{Said, WROTE, copied_shear, onescan, scenario, typed};
+use crate::typed::{Said, WROTE, begun, copied_shear, onescan, scenario, typed};
 
 #[test]
 fn a_reader_that_has_left_is_not_a_failure() {
@@ -17,6 +17,66 @@ fn a_reader_that_has_left_is_not_a_failure() {
         let said = Said::from(output);
         assert_eq!((said.code, said.err.as_str()), (Some(0), ""), "{words:?}");
     }
+}
+
+/// Whoever reads the first lines only, or none, does not make a verdict a better one.
+#[test]
+fn a_verdict_stays_what_it_is_when_the_reader_has_left() {
+    let folder = copied_shear();
+    let code = |words: &[&str]| {
+        let (reader, writer) = pipe().expect("a pipe");
+        drop(reader);
+        let output = onescan(folder.path()).args(words).stdout(writer).output().expect("the program starts");
+        Said::from(output).code
+    };
+    let path = folder.path().join("scenario.toml");
+    let violated = "\n[[expect]]\nname = \"no strokes\"\nformula = \"always (Strokes < 0)\"\n";
+    std::fs::write(&path, std::fs::read_to_string(&path).expect("a file") + violated).expect("a file");
+    for words in [&["test", "."][..], &["test", ".", "--format", "json"], &["run", "."]] {
+        assert_eq!((typed(folder.path(), words).code, code(words)), (Some(1), Some(1)), "{words:?}");
+    }
+    std::fs::write(folder.path().join("wrong.st"), "PROGRAM Main\nx := 1;\nEND_PROGRAM\n").expect("a file");
+    for words in [&["check", "wrong.st"][..], &["test", "wrong.st"]] {
+        let read = typed(folder.path(), words).code;
+        assert_ne!(read, Some(0), "{words:?}");
+        assert_eq!(code(words), read, "{words:?}");
+    }
+}
+
+/// A signal ends what has no end of its own to report: one line says how far it has got.
+#[cfg(unix)]
+#[test]
+fn who_is_interrupted_says_how_far_it_has_got() {
+    let interrupted = |words: &[&str], until: &dyn Fn(&mut dyn std::io::Read)| {
+        let mut child = begun(&scenario("shear"), words);
+        let mut err = child.stderr.take().expect("piped");
+        until(&mut err);
+        let id = child.id().to_string();
+        assert!(std::process::Command::new("kill").args(["-INT", &id]).status().expect("kill").success());
+        let mut said = String::new();
+        std::io::Read::read_to_string(&mut err, &mut said).expect("text");
+        (child.wait().expect("it ends").code(), said)
+    };
+    let line = |err: &mut dyn std::io::Read| {
+        let mut byte = [0];
+        while err.read(&mut byte).expect("text") == 1 && byte[0] != b'\n' {}
+    };
+    let (code, said) = interrupted(&["edit", "."], &line);
+    assert_eq!((code, said.as_str()), (Some(130), "stopped after 0 changes in its files\n"));
+    let soon = |_: &mut dyn std::io::Read| std::thread::sleep(std::time::Duration::from_secs(1));
+    // It may not have come to its first run.
+    let (code, said) =
+        interrupted(&["explore", "race.toml", "--until", "10min", "--all", "--bound", "3", "--no-merge"], &soon);
+    assert!(code == Some(130) && said.contains("stopped after ") && said.contains(" run"), "{code:?} {said}");
+    let folder = tempfile::tempdir().expect("a folder");
+    let endless =
+        "PROGRAM TEST_long\nVAR n : DINT; END_VAR\nVAR_OUTPUT Done : BOOL; END_VAR\nn := n + 1;\nEND_PROGRAM\n";
+    let path = folder.path().join("long.st");
+    std::fs::write(&path, endless).expect("a file");
+    let words = ["test", path.to_str().expect("UTF-8"), "--scan", "1us", "--until", "100h"];
+    let (code, said) = interrupted(&words, &soon);
+    assert_eq!(code, Some(130), "{said}");
+    assert!(said.lines().last().is_some_and(|line| line == "stopped after 0 of 1 test"), "{said}");
 }
 
 #[cfg(target_os = "linux")]

@@ -12,8 +12,12 @@ use onescan_server::operation::Control;
 /// A second signal before this is an echo of the first: some programs signal a process and its group.
 const IMPATIENCE: Duration = Duration::from_secs(1);
 
+/// The number of the signal for a terminal that is gone.
+const HANG_UP: i32 = 1;
 /// The number of Ctrl-C's signal.
 const INTERRUPT: i32 = 2;
+/// The number of the polite request to end.
+const TERMINATE: i32 = 15;
 
 /// The first signal that has asked this process to end; 0 while none has.
 static SIGNAL: AtomicI32 = AtomicI32::new(0);
@@ -67,7 +71,7 @@ impl Interrupt {
                 Some(_) => {}
             }
         };
-        if let Err(error) = on_each(handler) {
+        if let Err(error) = on_each(&[HANG_UP, INTERRUPT, TERMINATE], handler) {
             tracing::warn!(%error, "Ctrl-C will end the program without a report");
         }
     }
@@ -93,20 +97,32 @@ impl Interrupt {
     }
 }
 
-/// Calls `handler` with the number of each signal that asks to end, in a thread of its own.
+/// From now on the first signal that asks to end does so at once, after `last_word`. A process that ignores the end of its
+/// terminal, as with `nohup`, goes on doing so.
+pub(super) fn end_on_signals(last_word: impl Fn() + Send + 'static) {
+    let handler = move |signal: i32| {
+        last_word();
+        std::process::exit(128 + signal);
+    };
+    if let Err(error) = on_each(&[INTERRUPT, TERMINATE], handler) {
+        tracing::debug!(%error, "a signal ends the program without a word");
+    }
+}
+
+/// Calls `handler` with the number of each of these signals, in a thread of its own.
 #[cfg(unix)]
-fn on_each(mut handler: impl FnMut(i32) + Send + 'static) -> std::io::Result<()> {
+fn on_each(signals: &[i32], mut handler: impl FnMut(i32) + Send + 'static) -> std::io::Result<()> {
     use onescan_base::threads;
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 
-    debug_assert_eq!(SIGINT, INTERRUPT, "as POSIX has it");
-    let mut signals = signal_hook::iterator::Signals::new([SIGHUP, SIGINT, SIGTERM])?;
+    debug_assert_eq!([SIGHUP, SIGINT, SIGTERM], [HANG_UP, INTERRUPT, TERMINATE], "as POSIX has it");
+    let mut signals = signal_hook::iterator::Signals::new(signals)?;
     let watch = move || signals.forever().for_each(&mut handler);
     threads::start("signals", watch).map(drop)
 }
 
 /// There all are as Ctrl-C.
 #[cfg(windows)]
-fn on_each(mut handler: impl FnMut(i32) + Send + 'static) -> std::io::Result<()> {
+fn on_each(_signals: &[i32], mut handler: impl FnMut(i32) + Send + 'static) -> std::io::Result<()> {
     ctrlc::set_handler(move || handler(INTERRUPT)).map_err(std::io::Error::other)
 }

@@ -21,7 +21,9 @@
 //! | [`session`] | part in a session that another process serves |
 //! | [`plc`] | a soft PLC as a process of its own |
 //! | `environment` | what programs that are not ours see of the environment |
+//! | [`how_far`] | how far a command has got that a signal ends |
 //! | [`interrupt`] | Ctrl-C |
+//! | [`job`] | on Windows, what is started ends with this process |
 //! | [`format`] | for whom the output is |
 //! | [`error`] | errors of several commands, and exit codes |
 //!
@@ -34,7 +36,9 @@ mod environment;
 pub mod error;
 pub mod format;
 pub mod freewheel;
+pub mod how_far;
 pub mod interrupt;
+pub mod job;
 pub mod operated;
 pub mod past;
 pub mod plc;

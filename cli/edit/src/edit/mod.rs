@@ -45,6 +45,7 @@ pub use error::EditorError;
 
 use files::Files;
 use onescan_runner::access::admission::Admission;
+use onescan_runner::how_far::HowFar;
 use onescan_runner::web;
 use server::Editor;
 
@@ -55,6 +56,8 @@ pub struct EditConfig {
     pub scenario: PathBuf,
     /// Where the page is served; an address of this machine.
     pub address: SocketAddr,
+    /// Counts the changes that are written, for one whom a signal interrupts.
+    pub how_far: HowFar,
 }
 
 /// Serves the editor until the program is ended, and says where it is.
@@ -63,7 +66,7 @@ pub struct EditConfig {
 /// Files that cannot be read; an address that cannot be listened on, or that others reach.
 pub fn serve(config: &EditConfig) -> Result<(), EditorError> {
     web::of_this_machine(config.address, &Admission::ThisMachine)?;
-    let editor = Editor::open(Files::of(&config.scenario)?, config.address)?;
+    let editor = Editor::open(Files::of(&config.scenario)?, config.address, config.how_far.clone())?;
     match web::Page::is_absent() {
         None => tracing::info!(target: NOTICE, "the editor is at {}", editor.url()),
         Some(how) => tracing::warn!(target: NOTICE, "no page at {}: {how}", editor.url()),

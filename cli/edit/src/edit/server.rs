@@ -19,6 +19,7 @@ use super::join::{self, Tip};
 use super::state::{self, State};
 use super::workspace::Workspace;
 use onescan_runner::error::ListenError;
+use onescan_runner::how_far::HowFar;
 use onescan_runner::web::listener::LimitedListener;
 use onescan_runner::web::{asset, guarded_here};
 
@@ -30,6 +31,8 @@ struct EditSession {
     files: Files,
     workspace: Workspace,
     state: State,
+    /// Changes that were written.
+    how_far: HowFar,
 }
 
 /// What a page wants.
@@ -100,10 +103,10 @@ impl From<Unwritten> for Refused {
 }
 
 impl EditSession {
-    fn open(files: Files) -> Result<Self, EditorError> {
+    fn open(files: Files, how_far: HowFar) -> Result<Self, EditorError> {
         let workspace = Workspace::new(files.read()?, 0);
         let state = state::of(&files, &workspace);
-        Ok(Self { files, workspace, state })
+        Ok(Self { files, workspace, state, how_far })
     }
 
     /// Does what is wanted, or nothing.
@@ -146,6 +149,7 @@ impl EditSession {
             }
         }
         self.files.write(self.workspace.texts(), workspace.texts())?;
+        self.how_far.one_more();
         self.take(workspace);
         Ok(())
     }
@@ -175,9 +179,9 @@ pub(super) struct Editor {
 
 impl Editor {
     /// Opens the files and the address.
-    pub(super) fn open(files: Files, address: SocketAddr) -> Result<Self, EditorError> {
+    pub(super) fn open(files: Files, address: SocketAddr, how_far: HowFar) -> Result<Self, EditorError> {
         let listen = ListenError::on(address);
-        let held: Held = Arc::new(Mutex::new(EditSession::open(files)?));
+        let held: Held = Arc::new(Mutex::new(EditSession::open(files, how_far)?));
         let listener = TcpListener::bind(address).map_err(&listen)?;
         listener.set_nonblocking(true).map_err(&listen)?;
         let address = listener.local_addr().map_err(&listen)?;

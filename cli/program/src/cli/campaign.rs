@@ -9,6 +9,7 @@ use onescan_server::time::TimeSpan;
 use super::error::CommandError;
 use super::outputs;
 use super::value::{FormatArg, jobs_or_cores};
+use super::verdict_output::VerdictOutput;
 use onescan_runner::error::ExitCode;
 use onescan_runner::format::Format;
 use onescan_search::campaign::config::{
@@ -148,7 +149,7 @@ impl CampaignArgs {
 /// See [`CommandError`].
 pub fn campaign(mut args: CampaignArgs) -> Result<ExitCode, CommandError> {
     outputs::files([&args.reports.html, &args.reports.junit])?;
-    let out = &mut std::io::stdout().lock();
+    let out = &mut VerdictOutput::lock();
     Ok(match args.command.take() {
         None => onescan_search::campaign::run(&args.config(), out)?,
         Some(CampaignCommand::Merge(MergeArgs { scenario, folders, campaign, reports })) => {

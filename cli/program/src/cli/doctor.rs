@@ -6,6 +6,7 @@ use onescan_runner::error::ExitCode;
 
 use super::error::CommandError;
 use super::value::FormatArg;
+use super::verdict_output::VerdictOutput;
 
 /// Options of `doctor`.
 #[derive(Debug, ClapArgs)]
@@ -21,5 +22,5 @@ pub struct DoctorArgs {
 /// The report cannot be written.
 pub fn doctor(args: &DoctorArgs) -> Result<ExitCode, CommandError> {
     let build = Build { version: env!("CARGO_PKG_VERSION"), has_opcua: cfg!(feature = "opcua") };
-    Ok(doctor::run(build, args.format.into(), &mut std::io::stdout().lock())?)
+    Ok(doctor::run(build, args.format.into(), &mut VerdictOutput::lock())?)
 }

@@ -9,7 +9,9 @@ use onescan_server::time::VirtualTime;
 use super::error::CommandError;
 use super::outputs;
 use super::value::FormatArg;
+use super::verdict_output::VerdictOutput;
 use onescan_runner::error::ExitCode;
+use onescan_runner::how_far::{HowFar, Total};
 use onescan_search::explore::{self, ExploreConfig};
 
 /// Options of `explore`.
@@ -73,6 +75,8 @@ pub fn explore(args: ExploreArgs) -> Result<ExitCode, CommandError> {
         most,
         cases,
         format: format.into(),
+        how_far: HowFar::of(["run", "runs"], Total::Most),
     };
-    Ok(explore::run(&config, &mut std::io::stdout().lock())?)
+    config.how_far.on_signals();
+    Ok(explore::run(&config, &mut VerdictOutput::lock())?)
 }

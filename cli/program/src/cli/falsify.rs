@@ -9,6 +9,7 @@ use onescan_server::time::VirtualTime;
 use super::error::CommandError;
 use super::outputs;
 use super::value::{FormatArg, jobs_or_cores};
+use super::verdict_output::VerdictOutput;
 use onescan_runner::error::ExitCode;
 use onescan_search::falsify::config::{Objective, OptimiserKind};
 use onescan_search::falsify::{self, FalsifyConfig};
@@ -110,5 +111,5 @@ pub fn falsify(args: FalsifyArgs) -> Result<ExitCode, CommandError> {
         plot: args.plot,
         format: args.format.into(),
     };
-    Ok(falsify::run(&config, std::io::stdin().lock(), &mut std::io::stdout().lock())?)
+    Ok(falsify::run(&config, std::io::stdin().lock(), &mut VerdictOutput::lock())?)
 }

@@ -10,6 +10,7 @@ use onescan_server::time::VirtualTime;
 use super::error::CommandError;
 use super::outputs;
 use super::value::{FormatArg, client_name};
+use super::verdict_output::VerdictOutput;
 use onescan_runner::error::ExitCode;
 use onescan_search::minimise::{self, MinimiseConfig};
 
@@ -67,5 +68,5 @@ pub fn minimise(args: MinimiseArgs) -> Result<ExitCode, CommandError> {
         cases,
         format: format.into(),
     };
-    Ok(minimise::run(&config, &mut std::io::stdout().lock())?)
+    Ok(minimise::run(&config, &mut VerdictOutput::lock())?)
 }

@@ -25,6 +25,7 @@
 //! | [`manual`] | help, completions, manual pages |
 //! | `groups`, `topics` | the commands by what they are for; what holds for all of them |
 //! | `outputs` | what is to be written, looked at before |
+//! | `verdict_output` | standard output of a command whose exit code is a verdict |
 //! | [`value`] | words that several commands know |
 
 pub mod access;
@@ -56,6 +57,7 @@ pub mod test;
 mod topics;
 pub mod train;
 pub mod value;
+mod verdict_output;
 
 use std::io::Write;
 
@@ -72,13 +74,12 @@ pub fn main() -> std::process::ExitCode {
     let args = args::parsed();
     logging::start(args.verbose);
     colour::show(is_coloured());
+    onescan_runner::job::hold_what_is_started();
     onescan_scenario::permission::grant(args.permission());
     #[cfg(feature = "opcua")]
     onescan_opc_ua::install();
     render_errors_in_one_piece();
-    // What is still buffered must not be lost in silence when the process ends.
-    let done = args::dispatch(args.command, args.verbose)
-        .and_then(|code| std::io::stdout().flush().map(|()| code).map_err(|source| OutputError(source).into()));
+    let done = args::dispatch(args.command, args.verbose).and_then(flushed);
     let code = match done {
         Ok(code) => code,
         Err(error) => {
@@ -98,6 +99,14 @@ fn is_coloured() -> bool {
     let asked_for_none = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
     let is_dumb = std::env::var_os("TERM").is_some_and(|terminal| terminal == "dumb");
     std::io::IsTerminal::is_terminal(&std::io::stdout()) && !asked_for_none && !is_dumb
+}
+
+/// What is still buffered must not be lost in silence when the process ends. A reader that has left changes nothing.
+fn flushed(code: ExitCode) -> Result<ExitCode, CommandError> {
+    match std::io::stdout().flush().map_err(OutputError) {
+        Err(error) if !error.is_closed_pipe() => Err(error.into()),
+        _ => Ok(code),
+    }
 }
 
 /// Errors go to standard error, with the place in the source where there is one.

@@ -10,6 +10,7 @@ use onescan_server::signal::ClientName;
 use super::error::CommandError;
 use super::outputs;
 use super::value::{FormatArg, client_name, jobs_or_cores};
+use super::verdict_output::VerdictOutput;
 use onescan_runner::error::ExitCode;
 use onescan_search::mutate::{self, MutateConfig};
 
@@ -53,5 +54,5 @@ pub fn mutate(args: MutateArgs) -> Result<ExitCode, CommandError> {
     let format = format.into();
     let progress = format == onescan_runner::format::Format::Human;
     let config = MutateConfig { scenario, client, cases, kinds, at_least, written, jobs, progress, format };
-    Ok(mutate::run(&config, &mut std::io::stdout().lock())?)
+    Ok(mutate::run(&config, &mut VerdictOutput::lock())?)
 }

@@ -9,6 +9,7 @@ use onescan_report::view::Side;
 
 use super::error::CommandError;
 use super::value::FormatArg;
+use super::verdict_output::VerdictOutput;
 use crate::io_list::{ListKind, Wanted};
 use crate::new::from_list::FromListConfig;
 use crate::new::{self, Template};
@@ -19,6 +20,7 @@ use crate::show::{self, ShowConfig};
 use onescan_edit::edit::{self, EditConfig};
 use onescan_edit::wiring::{self, WiringConfig};
 use onescan_runner::error::ExitCode;
+use onescan_runner::how_far::{HowFar, Total};
 
 /// Options of `components`.
 #[derive(Debug, ClapArgs)]
@@ -131,7 +133,7 @@ pub struct WiringArgs {
 /// See [`CommandError`].
 pub fn wiring(args: WiringArgs) -> Result<ExitCode, CommandError> {
     let config = WiringConfig { scenario: args.scenario, format: args.format.into(), svg: args.svg };
-    let sound = wiring::write(&config, &mut std::io::stdout().lock())?;
+    let sound = wiring::write(&config, &mut VerdictOutput::lock())?;
     Ok(if sound { ExitCode::Ok } else { ExitCode::WrongInput })
 }
 
@@ -173,7 +175,9 @@ pub struct EditArgs {
 /// See [`CommandError`].
 pub fn edit(args: EditArgs) -> Result<ExitCode, CommandError> {
     let address = args.web.unwrap_or_else(|| SocketAddr::from(([127, 0, 0, 1], 0)));
-    edit::serve(&EditConfig { scenario: args.scenario, address })?;
+    let how_far = HowFar::of(["change in its files", "changes in its files"], Total::Exact);
+    how_far.on_signals();
+    edit::serve(&EditConfig { scenario: args.scenario, address, how_far })?;
     Ok(ExitCode::Ok)
 }
 

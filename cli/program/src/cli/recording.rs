@@ -11,6 +11,7 @@ use onescan_server::time::VirtualTime;
 use super::error::CommandError;
 use super::outputs;
 use super::value::{FORKS, FormatArg};
+use super::verdict_output::VerdictOutput;
 use crate::export::ExportConfig;
 use onescan_regress::bisect::BisectConfig;
 use onescan_regress::diff::DiffConfig;
@@ -101,7 +102,7 @@ pub struct DiffArgs {
 pub fn diff(args: DiffArgs) -> Result<ExitCode, CommandError> {
     let DiffArgs { a, b, since, signals, format } = args;
     let config = DiffConfig { recordings: [a, b], since, signals, format: format.into() };
-    Ok(onescan_regress::diff::diff(&config, &mut std::io::stdout().lock())?)
+    Ok(onescan_regress::diff::diff(&config, &mut VerdictOutput::lock())?)
 }
 
 /// Options of `report`.
@@ -194,10 +195,5 @@ pub fn bisect(args: BisectArgs) -> Result<ExitCode, CommandError> {
     interrupt.on_signals();
     let BisectArgs { scenario, good, bad, until, format } = args;
     let config = BisectConfig { scenario, good, bad, until, format: format.into() };
-    Ok(onescan_regress::bisect::bisect(
-        &config,
-        &interrupt,
-        &mut std::io::stdout().lock(),
-        &mut std::io::stderr().lock(),
-    )?)
+    Ok(onescan_regress::bisect::bisect(&config, &interrupt, &mut VerdictOutput::lock(), &mut std::io::stderr().lock())?)
 }

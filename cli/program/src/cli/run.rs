@@ -20,6 +20,7 @@ use super::error::CommandError;
 use super::opcua::AccessArgs;
 use super::outputs;
 use super::value::{FORKS, FormatArg, client_name, part, plane};
+use super::verdict_output::VerdictOutput;
 use onescan_regress::check::collect::Reading;
 use onescan_regress::check::stubs;
 use onescan_runner::access::admission::Admission;
@@ -317,7 +318,7 @@ pub fn run(args: RunArgs) -> Result<ExitCode, CommandError> {
     outputs::folders([&args.record, &args.maps, &args.files])?;
     let interrupt = Interrupt::new();
     interrupt.on_signals();
-    let verdict = execute(&config(args)?, &interrupt, &mut std::io::stdout().lock())?;
+    let verdict = execute(&config(args)?, &interrupt, &mut VerdictOutput::lock())?;
     Ok(verdict.exit_code())
 }
 

@@ -11,6 +11,7 @@ use onescan_server::time::TimeSpan;
 
 use super::error::CommandError;
 use super::value::{FormatArg, client_name};
+use super::verdict_output::VerdictOutput;
 use crate::instrument::{Destination, Diff, Direction, InstrumentConfig};
 use onescan_regress::check::collect::logix;
 use onescan_regress::check::stubs::{self, StubsConfig};
@@ -93,7 +94,7 @@ pub fn check(args: CheckArgs) -> Result<ExitCode, CommandError> {
     let CheckArgs { paths, dialect, word_size, memory_limit, libraries, format, .. } = args;
     let format = format.into();
     let config = CheckConfig { paths, dialect, word_size, memory_limit, libraries, format, warnings, stubs };
-    Ok(check::check(&config, &mut std::io::stdout().lock())?)
+    Ok(check::check(&config, &mut VerdictOutput::lock())?)
 }
 
 /// Options of `explain`.
@@ -239,7 +240,7 @@ pub fn instrument(args: InstrumentArgs) -> Result<ExitCode, CommandError> {
         format: args.format.into(),
         warnings: if args.deny_warnings { Warnings::Denied } else { Warnings::Allowed },
     };
-    Ok(crate::instrument::instrument(&config, &mut std::io::stdout().lock(), &mut std::io::stderr().lock())?)
+    Ok(crate::instrument::instrument(&config, &mut VerdictOutput::lock(), &mut std::io::stderr().lock())?)
 }
 
 fn plc_task(text: &str) -> Result<Task, String> {

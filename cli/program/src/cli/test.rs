@@ -11,11 +11,13 @@ use super::error::CommandError;
 use super::outputs;
 use super::run::CoverageArg;
 use super::value::jobs_or_cores;
+use super::verdict_output::VerdictOutput;
 use onescan_regress::check::collect::Reading;
 use onescan_regress::regress::config::WorkerConfig;
 use onescan_regress::regress::{Policy, Progress, Selection, TestConfig, TestFormat};
 use onescan_regress::review::{Choice, ReviewConfig};
 use onescan_runner::error::ExitCode;
+use onescan_runner::how_far::{HowFar, Total};
 use onescan_runner::run::coverage::CoverageRequest;
 
 /// Options of `test`.
@@ -131,7 +133,7 @@ fn progress(format: TestFormat) -> Progress {
 }
 
 impl TestArgs {
-    fn config(self) -> TestConfig {
+    fn config(self, how_far: HowFar) -> TestConfig {
         let format: TestFormat = self.format.into();
         TestConfig {
             paths: self.paths,
@@ -144,6 +146,7 @@ impl TestArgs {
                 _ => Policy::Pending,
             },
             progress: progress(format),
+            how_far,
             job_summary: std::env::var_os("GITHUB_STEP_SUMMARY")
                 .filter(|_| format == TestFormat::Github)
                 .map(PathBuf::from),
@@ -272,7 +275,9 @@ pub fn test(args: TestArgs) -> Result<ExitCode, CommandError> {
         let reading = Reading { dialect: args.dialect, libraries: &args.libraries, ..Reading::default() };
         onescan_regress::regress::deny_stubs(&args.paths, reading)?;
     }
-    Ok(onescan_regress::regress::test(&args.config(), &mut std::io::stdout().lock())?)
+    let how_far = HowFar::of(["test", "tests"], Total::Exact);
+    how_far.on_signals();
+    Ok(onescan_regress::regress::test(&args.config(how_far), &mut VerdictOutput::lock())?)
 }
 
 /// Decides on snapshots.

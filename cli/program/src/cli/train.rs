@@ -11,6 +11,7 @@ use super::error::CommandError;
 use super::outputs;
 use super::run::{gateway, pace};
 use super::value::FormatArg;
+use super::verdict_output::VerdictOutput;
 use onescan_runner::access::admission::Admission;
 use onescan_runner::error::ExitCode;
 use onescan_runner::interrupt::Interrupt;
@@ -77,7 +78,7 @@ pub struct TrainArgs {
 pub fn train(args: TrainArgs) -> Result<ExitCode, CommandError> {
     outputs::files([&args.html])?;
     outputs::folders([&args.record])?;
-    let mut out = std::io::stdout().lock();
+    let mut out = VerdictOutput::lock();
     if let Some(folder) = &args.table {
         return Ok(train::table(&args.scenario, folder, args.format.into(), &mut out)?);
     }

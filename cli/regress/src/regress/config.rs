@@ -8,6 +8,7 @@ use onescan_server::time::{TimeSpan, VirtualTime};
 
 use super::selection::Selection;
 use crate::check::collect::Reading;
+use onescan_runner::how_far::HowFar;
 use onescan_runner::run::coverage::CoverageRequest;
 
 /// What becomes of snapshots that are new or have changed.
@@ -85,6 +86,8 @@ pub struct TestConfig {
     pub job_summary: Option<PathBuf>,
     /// What is said on standard error meanwhile.
     pub progress: Progress,
+    /// Counts what is done, for one whom a signal interrupts.
+    pub how_far: HowFar,
 }
 
 impl TestConfig {

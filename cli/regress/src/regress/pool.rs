@@ -26,10 +26,12 @@ use onescan_runner::error::SpawnError;
 /// A process cannot be started.
 pub fn work(config: &TestConfig, units: &[Unit]) -> Result<Vec<Worked>, TestError> {
     let bar = bar(config.progress == Progress::Bar, units.len(), "tests");
+    config.how_far.set_total(units.len() as u64);
     let work = |live: &Live| {
         let done = spread(config.jobs, units.len(), &bar, |index| {
             let worked = timed(config, &units[index]);
             live.ended(&units[index]);
+            config.how_far.one_more();
             worked
         });
         done.into_iter().collect()

@@ -2,8 +2,8 @@
 //!
 //! The guard is this program once more, with a pipe to the server as its input. It gets the groups of processes that
 //! are to end with the server. When the pipe closes before the guard was dismissed, the server is dead, and the guard
-//! kills them. Only a process that leaves its group on purpose escapes. Outside of Unix there are no groups, and
-//! the guard knows the clients' own processes only through the server's connection, which closes.
+//! kills them. Only a process that leaves its group on purpose escapes. Outside of Unix there are no groups: on Windows a job
+//! holds all that is started ([`crate::job`]), elsewhere the server's connection closes, and clients leave by themselves.
 
 use std::io::{BufRead, Write};
 use std::process::{Child, ChildStdin, Command, Stdio};

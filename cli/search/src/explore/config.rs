@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use onescan_server::time::VirtualTime;
 
 use onescan_runner::format::Format;
+use onescan_runner::how_far::HowFar;
 
 /// All options of an exploration.
 #[derive(Clone, Debug)]
@@ -34,4 +35,6 @@ pub struct ExploreConfig {
     pub cases: Option<PathBuf>,
     /// For whom the output is.
     pub format: Format,
+    /// Counts the runs, for one whom a signal interrupts.
+    pub how_far: HowFar,
 }

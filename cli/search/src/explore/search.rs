@@ -95,7 +95,7 @@ pub(super) fn search(
         findings: Vec::new(),
         schedules: 0,
         joined: 0,
-        runs: Budget::new(config.runs_max),
+        runs: Budget::counted(config.runs_max, config.how_far.clone()),
         places: BTreeMap::new(),
         exhausted: None,
         sampled: 0,
