@@ -126,7 +126,7 @@ fn a_change_that_alters_nothing_is_not_a_difference() {
     let said = typed(folder.path(), &["diff", "a", "b"]);
     assert_eq!(
         (said.code, said.out.lines().last()),
-        (Some(0), Some("no difference, by the digests of 300 steps")),
+        (Some(0), Some("no difference, by the digests of steps 0 to 300")),
         "{said:?}"
     );
     let said = typed(folder.path(), &["diff", "a", "b", "--from", "1s", "--signals", "Strokes"]);

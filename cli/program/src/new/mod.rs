@@ -80,8 +80,7 @@ pub fn write(folder: &Path, template: Template, out: &mut dyn Write) -> Result<(
         writeln!(out, "{}", folder.join(file).display()).map_err(OutputError)?;
     }
     if template == Template::Python {
-        let package =
-            "pip install onescan   # plant.py needs its package onescan_client, if you have not installed it so";
+        let package = "pip install onescan   # brings onescan_client, which plant.py needs";
         writeln!(out, "\nnext: {package}").map_err(OutputError)?;
         return Ok(writeln!(out, "      onescan run {place}").map_err(OutputError)?);
     }

@@ -38,8 +38,8 @@ pub enum Basis {
 /// What was compared, for people.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Compared {
-    /// The digests of so many steps: all signals, recorded or not.
-    Digests { steps: u64 },
+    /// The digests of these steps: all signals, recorded or not.
+    Digests { from: u64, to: u64 },
     /// The values of so many signals.
     Values { signals: u64 },
 }
@@ -47,7 +47,7 @@ pub enum Compared {
 impl fmt::Display for Compared {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Digests { steps } => write!(f, "the digests of {}", counted(*steps, "step")),
+            Self::Digests { from, to } => write!(f, "the digests of steps {from} to {to}"),
             Self::Values { signals } => write!(f, "the values of {}", counted(*signals, "signal")),
         }
     }
@@ -149,7 +149,7 @@ impl<'r> Comparison<'r> {
         match self.basis {
             Basis::Digests => {
                 let [a, b] = [self.steps(0), self.steps(1)];
-                Compared::Digests { steps: (*a.end().min(b.end()) + 1).saturating_sub(*a.start()) }
+                Compared::Digests { from: *a.start(), to: *a.end().min(b.end()) }
             }
             Basis::Values => Compared::Values { signals: self.signals.len() as u64 },
         }
