@@ -7,6 +7,7 @@
 //! | [`verdict`], [`severity`] | words that several reports share |
 //! | [`colour`] | words in colour on a terminal |
 //! | [`number`] | numbers for people |
+//! | [`lines`] | text in lines that a terminal shows |
 //! | [`table`] | tables, for terminals and pages |
 //! | [`plot`] | trajectories as SVG |
 //! | [`view`] | a scene from one of its sides as SVG |
@@ -18,11 +19,12 @@
 //!
 //! Invariants. Knows no command, no scenario and no session: it owns the data that it draws. What it makes
 //! is a pure function of these data, with no clock, no locale and no fonts of the machine; whether words are coloured, the
-//! program says once.
+//! program says once, by what [`colour::suits`] finds of a terminal.
 
 pub mod colour;
 pub mod file;
 pub mod junit;
+pub mod lines;
 pub mod number;
 pub mod output;
 pub mod page;

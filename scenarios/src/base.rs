@@ -13,6 +13,7 @@ use crate::file::VERSION;
 use crate::merge::{self, Tree};
 use crate::missing;
 use crate::permission;
+use crate::places;
 use crate::texts::Texts;
 
 /// The keys of a scenario that say what it takes in. They are gone once that is done.
@@ -91,7 +92,17 @@ fn base_of(texts: &Texts, start: usize) -> Result<Option<Spanned<String>>, Scena
 }
 
 fn wrong_form(texts: &Texts, error: &toml::de::Error, start: usize) -> ScenarioError {
-    texts.wrong(error.message().trim().to_owned(), error.span().map(|place| shifted(place, start)), None)
+    let message = error.message().trim();
+    let message = twice(texts, message, error.span(), start).unwrap_or_else(|| message.to_owned());
+    texts.wrong(message, error.span().map(|place| shifted(place, start)), None)
+}
+
+/// What there is to say of a key that stands twice: its name, and where it stands first.
+fn twice(texts: &Texts, message: &str, second: Option<Range<usize>>, start: usize) -> Option<String> {
+    let second = second.filter(|_| message == "duplicate key")?;
+    let text = texts.text().get(start..)?;
+    let first = places::first_of(text, &second)?;
+    Some(format!("`{}` is written twice; first at {}", text.get(second)?.trim(), texts.line_and_column(start + first)))
 }
 
 fn shifted(place: Range<usize>, by: usize) -> Range<usize> {

@@ -23,6 +23,7 @@ use super::error::{PlcReport, ScenarioError, SceneReport};
 use super::file::{ClientFile, TaskFile};
 use super::load::Scenario;
 use super::permission;
+use super::places::OfTask;
 use super::watch::Watched;
 
 /// A client of a scenario.
@@ -416,7 +417,7 @@ impl Scenario {
         };
         let plan = self.task_plan(name, application, tasks)?;
         self.fits_step(name, &plan)?;
-        application.check_plan(&plan).map_err(|error| self.wrong_client(name, error.to_string(), None))
+        application.check_plan(&plan).map_err(|error| self.not_set_up(name, &error))
     }
 
     /// A task can be due at the steps of the session only.
@@ -428,7 +429,8 @@ impl Scenario {
         };
         let message =
             format!("task `{task}` has an interval of {span}, which is not a multiple of the session's step {step}");
-        Err(self.wrong_client(name, message, Some("change the interval, or make the step a divisor of it".to_owned())))
+        let help = Some("change the interval, or make the step a divisor of it".to_owned());
+        Err(self.wrong_task(name, OfTask { task, key: "interval", program: None }, message, help))
     }
 }
 

@@ -20,6 +20,7 @@
 //! | `texts`, `merge`, `base` | places in several files; a file that takes in another; `base` of `scenario.toml` |
 //! | [`load`], `files` | `scenario.toml` read and checked; all files that it is made of |
 //! | `missing` | what may have been meant by a file or folder that is not there |
+//! | `places` | where in the text something stands whose place is lost when it is read |
 //! | `whole` | a scenario as one file, with everything that it takes in |
 //! | `arrays` | signals written as arrays and patterns |
 //! | [`expectations`], [`start`] | what it expects of every run; what must hold before virtual time runs |
@@ -88,6 +89,7 @@ mod panel;
 pub mod panel_file;
 pub mod panel_picture;
 pub mod permission;
+mod places;
 mod ports;
 pub mod ports_file;
 mod program;

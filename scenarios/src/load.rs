@@ -27,6 +27,7 @@ use super::look::Looks;
 use super::map;
 use super::missing;
 use super::mistake::Mistake;
+use super::places::{self, OfTask};
 use super::programs::Programs;
 use super::report::Measures;
 use super::start::{self, StartLogic};
@@ -413,7 +414,37 @@ impl Scenario {
         let message = error.to_string();
         match error {
             RunError::Memory(_) => ScenarioError::Memory { client: name.clone(), message },
-            _ => self.wrong_client(name, message, None),
+            RunError::UnknownProgram { task, program, .. }
+            | RunError::RunsAtStart { task, program }
+            | RunError::ProgramTwice { task, program } => {
+                self.wrong_task(name, OfTask { task, key: "programs", program: Some(program) }, message, None)
+            }
+            RunError::Trigger { task, .. } => {
+                self.wrong_task(name, OfTask { task, key: "single", program: None }, message, None)
+            }
+            RunError::NeverDue(task) | RunError::DuplicateTask(task) => {
+                self.wrong_task(name, OfTask { task, key: "name", program: None }, message, None)
+            }
+            RunError::NoTasks | RunError::Module(_) => self.wrong_client(name, message, None),
+        }
+    }
+
+    /// An error at a task of client `name`; at the client where the task is not written there.
+    pub(crate) fn wrong_task(
+        &self,
+        name: &ClientName,
+        of: OfTask<'_>,
+        message: String,
+        help: Option<String>,
+    ) -> ScenarioError {
+        // The files were read before, so that they are TOML.
+        let root = match self.chain.tree() {
+            Ok(root) => root,
+            Err(error) => return error,
+        };
+        match places::of_task(root.get_ref(), name, of) {
+            Some(place) => self.chain.texts().wrong(message, Some(place), help),
+            None => self.wrong_client(name, message, help),
         }
     }
 
@@ -427,7 +458,7 @@ impl Scenario {
     ) -> Option<ScenarioError> {
         if let Some(link) = self.links.get(name) {
             let root = DeTable::parse(&link.text).ok()?;
-            let place = place_of_mapping(root.get_ref(), name, key)?;
+            let place = places::of_mapping(root.get_ref(), name, key)?;
             Some(wrong(&link.path, &link.text, message.to_owned(), Some(place), help.cloned()))
         } else {
             // The files were read before, so that they are TOML.
@@ -435,7 +466,7 @@ impl Scenario {
                 Ok(root) => root,
                 Err(error) => return Some(error),
             };
-            let place = place_of_mapping(root.get_ref(), name, key)?;
+            let place = places::of_mapping(root.get_ref(), name, key)?;
             Some(self.chain.texts().wrong(message.to_owned(), Some(place), help.cloned()))
         }
     }
@@ -458,16 +489,6 @@ pub(crate) struct LinkSource {
     pub(crate) settings: Settings,
     pub(crate) path: PathBuf,
     pub(crate) text: String,
-}
-
-/// The line of `key` in the mapping of client `name`.
-fn place_of_mapping(root: &DeTable<'_>, name: &ClientName, key: &str) -> Option<Range<usize>> {
-    // The entries of a client's table lose their places when they are read because its kind is one of its keys.
-    let mut table = root;
-    for step in ["clients", name.as_str(), "gateway", "map"] {
-        table = table.get(step)?.get_ref().as_table()?;
-    }
-    table.get_key_value(key).map(|(known, value)| known.span().start..value.span().end)
 }
 
 /// The name of the folder of a `scenario.toml`; any other file has its own.

@@ -163,6 +163,16 @@ fn an_unknown_case_is_reported_with_the_nearest() {
     insta::assert_snapshot!(said.err.replace(&own, "shear"));
 }
 
+/// Names in a list of cases can be copied: none goes over the end of a line.
+#[test]
+fn names_of_cases_are_never_broken() {
+    let said = typed(&crate::typed::scenario("shear"), &["minimise", ".", "--case", "NAME"]);
+    assert_eq!(said.code, Some(2), "{said:?}");
+    for name in ["on-the-limit-2,", "slow-sampling,", "sensor-jitter,seed=2,", "flipped-bits\n"] {
+        assert!(said.err.contains(name), "{name}: {said:?}");
+    }
+}
+
 #[test]
 fn a_component_fails_for_a_while() {
     let folder = tempfile::tempdir().expect("a folder");

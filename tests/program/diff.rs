@@ -98,7 +98,7 @@ fn snapshots_are_compared() {
         (&860_000_000.into(), &"Actuator_1_Down".into())
     );
     assert_eq!(json(&["--signals", "Strokes"])["equal"], true);
-    let since = json(&["--since", "1s", "--signals", "Position_1"]);
+    let since = json(&["--from", "1s", "--signals", "Position_1"]);
     assert!(since["t_v_ns"].as_u64().is_none_or(|at| at >= 1_000_000_000), "{since}");
     let said = typed(folder.path(), &["diff", old, old]);
     assert_eq!((said.code, said.out.lines().last()), (Some(0), Some("no difference")));
@@ -124,7 +124,13 @@ fn a_decision_that_is_new_does_not_count() {
 fn a_change_that_alters_nothing_is_not_a_difference() {
     let folder = recorded(["3s", "3s"], |folder| edit(folder, "plc/shear.st", BEFORE, AFTER));
     let said = typed(folder.path(), &["diff", "a", "b"]);
-    assert_eq!((said.code, said.out.lines().last()), (Some(0), Some("no difference")), "{said:?}");
+    assert_eq!(
+        (said.code, said.out.lines().last()),
+        (Some(0), Some("no difference, by the digests of steps 0 to 300")),
+        "{said:?}"
+    );
+    let said = typed(folder.path(), &["diff", "a", "b", "--from", "1s", "--signals", "Strokes"]);
+    assert_eq!(said.out.lines().last(), Some("no difference, by the values of 1 signal"), "{said:?}");
 }
 
 #[test]

@@ -48,6 +48,9 @@ error_snapshot!(signal_that_no_program_writes, "scenario.toml", "Strokes = {", "
 error_snapshot!(time_without_unit, "scenario.toml", "step = \"10ms\"", "step = \"10\"");
 error_snapshot!(missing_source, "scenario.toml", "plc/alignment.st", "plc/alignement.st");
 error_snapshot!(error_in_the_plc_source, "plc/alignment.st", "a.Q AND b.Q", "a.Q AND bb.Q");
+error_snapshot!(interval_that_is_no_multiple, "scenario.toml", "interval = \"10ms\"", "interval = \"15ms\"");
+error_snapshot!(statement_without_an_end, "plc/shear.st", "END_IF;", "");
+error_snapshot!(signal_declared_twice, "scenario.toml", "Sensor_2 = {", "Sensor_1 = {");
 error_snapshot!(misspelt_joint_in_the_scene, "plant.toml", "joint = \"guide_1\"", "joint = \"gudie_1\"");
 error_snapshot!(misspelt_signal_in_the_scene, "plant.toml", "signal = \"Sensor_1\"", "signal = \"Senosr_1\"");
 

@@ -433,7 +433,7 @@ fn a_task_is_handed_out_without_its_solutions() {
     let said = typed(folder, &["grade", "belt", "mine"]);
     assert!(said.code == Some(0) && !said.out.contains("compile"), "{said:?}");
     let said = typed(folder, &["new", "other", "--task", "lifft"]);
-    assert!(said.code == Some(2) && said.err.contains("there is no task `lifft`"), "{said:?}");
+    assert!(said.code == Some(2) && said.err.contains("onescan has no task `lifft`"), "{said:?}");
 }
 
 #[test]

@@ -30,6 +30,27 @@ fn every_template_runs_green_at_once() {
     }
 }
 
+/// Where Python does not find its package, the plant says what to type.
+#[test]
+fn a_plant_in_python_says_what_it_needs() {
+    let folder = tempfile::tempdir().unwrap();
+    let said = typed(folder.path(), &["new", "my-plant", "--template", "python"]);
+    assert!(
+        said.out.ends_with("      onescan run my-plant\n") && said.out.contains("next: pip install onescan"),
+        "{said:?}"
+    );
+    let missing = "raise ModuleNotFoundError(name='onescan_client')\n";
+    std::fs::write(folder.path().join("onescan_client.py"), missing).unwrap();
+    let mut run = onescan(folder.path());
+    run.args(["run", "my-plant", "--until", "1s"]).env("PYTHONPATH", folder.path());
+    let said: Said = run.output().expect("the program starts").into();
+    assert_eq!(said.code, Some(3), "{said:?}");
+    assert!(
+        said.err.contains("onescan_client: type `pip install onescan`") && !said.err.contains("Traceback"),
+        "{said:?}"
+    );
+}
+
 #[test]
 fn it_says_what_it_wrote_and_what_comes_next() {
     let folder = tempfile::tempdir().unwrap();
@@ -150,7 +171,8 @@ fn the_files_made_of_a_list_are_as_they_are() {
     let folder = tempfile::tempdir().unwrap();
     typed(folder.path(), &["new", "press", "--from", &list("press.tsproj")]);
     let read = |file: &str| std::fs::read_to_string(folder.path().join("press").join(file)).unwrap();
-    let files = ["scenario.toml", "plc/main.st", "README.md"].map(|file| format!("==== {file}\n{}", read(file)));
+    let files =
+        ["scenario.toml", "plant.toml", "plc/main.st", "README.md"].map(|file| format!("==== {file}\n{}", read(file)));
     insta::assert_snapshot!("new_from_list_files", files.concat());
     let said = typed(folder.path(), &["check", "press", "--deny-warnings"]);
     assert_eq!(said.code, Some(0), "{said:?}");
@@ -199,12 +221,14 @@ fn what_is_not_a_list_is_named_and_nothing_is_written() {
     write("picture.png", "png");
     write("book.xlsx", "no book");
     write("wrong.st", "PROGRAM P x := 1; END_PROGRAM");
+    write("devices.csv", "#Device;Channel;Type;Variable;Address\nEL1008;Channel 1;BOOL;Start;%IX0.0\n");
     let mut all = String::new();
     for words in [
         &["new", "n", "--from", "missing.tsproj"][..],
         &["new", "n", "--from", "cut.tsproj"],
         &["new", "n", "--from", "none.tsproj"],
         &["new", "n", "--from", "picture.png"],
+        &["new", "n", "--from", "devices.csv"],
         &["new", "n", "--from", "book.xlsx"],
         &["new", "n", "--from", "wrong.st"],
         &["new", "n", "--from", "none.tsproj", "--plc", "Press"],

@@ -79,6 +79,23 @@ fn a_scene_is_described_as_a_tree() {
     assert_eq!(scene["components"][0]["kind"], "pneumatic_cylinder");
 }
 
+/// Twenty packages that are alike are one line; the last one differs, and stands alone.
+#[test]
+fn bodies_of_an_array_that_are_alike_are_one_line() {
+    let said = typed(&scenario("filling-machine"), &["describe", "."]);
+    assert!(said.out.contains("\n  package[0..19]: dynamic, box") && !said.out.contains("package[1]: "), "{said:?}");
+    let folder = tempfile::tempdir().expect("a folder");
+    let body = |name: &str, side: u32| {
+        format!("[[body]]\nname = \"{name}\"\nkind = \"fixed\"\nshape = \"box\"\nsize_m = [{side}, 1, 1]\n")
+    };
+    let scene = ["version = 1\n".to_owned(), body("a[0..2]", 1), body("a[3]", 2), body("b[0]", 2)].concat();
+    std::fs::write(folder.path().join("cell.toml"), scene).expect("written");
+    let said = typed(folder.path(), &["describe", "cell.toml"]);
+    let about = |side: u32| format!("fixed, box {side} x 1 x 1 m");
+    let bodies = format!("  a[0..2]: {}\n  a[3]: {}\n  b[0]: {}\n", about(1), about(2), about(2));
+    assert!(said.out.contains(&bodies), "{said:?}");
+}
+
 #[test]
 fn a_scenario_is_described_by_its_scenes() {
     let shear = scenario("shear");

@@ -124,6 +124,9 @@ fn lessons_are_listed_and_checked() {
         listed.out.contains("three-malfunctions") && listed.out.contains("start `flat bath` at 2880.000 s"),
         "{listed:?}"
     );
+    assert!(listed.out.contains(", 1 malfunction, at most") && !listed.out.contains(" 1 malfunctions"), "{listed:?}");
+    let widest = listed.out.lines().map(|line| line.chars().count()).max();
+    assert!(widest.is_some_and(|width| width <= 80), "{listed:?}");
     let unknown = typed(&scenario("arc-furnace"), &["train", ".", "three-malfunction"]);
     assert!(unknown.code == Some(2) && unknown.err.contains("did you mean"), "{unknown:?}");
     for (from, to, reported) in [

@@ -76,6 +76,14 @@ fn tested(folder: &Path, words: &[&str]) -> Said {
     typed(folder, &[&["test"], words].concat())
 }
 
+/// A pattern that a shell left as it is, because nothing matches it, is named as one.
+#[test]
+fn a_pattern_without_files_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let said = typed(folder.path(), &["test", "plc/*.st"]);
+    assert!(said.code == Some(2) && said.err.contains("no file here matches this pattern"), "{said:?}");
+}
+
 #[test]
 fn tests_that_hold_are_green() {
     let folder = sources(&[("units.st", UNITS), ("tests.st", TESTS)]);

@@ -179,10 +179,15 @@ fn expectations(all: &[Shown]) -> Markup {
     }
 }
 
+/// A column whose cells say what they are has no heading; an empty one is read out as one.
+fn heading(head: &str) -> Markup {
+    html! { @if head.is_empty() { td {} } @else { th { (head) } } }
+}
+
 fn table_markup(table: &Table) -> Markup {
     let cells = html! {
         table {
-            thead { tr { th { (table.title) } @for head in &table.head { th { (&**head) } } } } (LINE)
+            thead { tr { th { (table.title) } @for head in &table.head { (heading(head)) } } } (LINE)
             @for row in &table.rows { tr { @for cell in row { td { (cell) } } } (LINE) }
         }
     };

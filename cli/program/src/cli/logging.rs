@@ -23,7 +23,7 @@ pub(super) fn start(verbose: u8) {
                 Err(_) => Box::new(std::io::stderr()),
             }
         })
-        .with_ansi(std::io::IsTerminal::is_terminal(&std::io::stderr()))
+        .with_ansi(onescan_report::colour::suits(&std::io::stderr()))
         .without_time()
         .with_target(verbose > 1);
     tracing_subscriber::registry().with(lines.with_filter(targets)).init();

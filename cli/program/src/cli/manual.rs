@@ -7,8 +7,8 @@ use clap::builder::StyledStr;
 use clap::{Args as ClapArgs, Command, ValueEnum};
 use clap_complete::Shell;
 use clap_mangen::Man;
-use onescan_report::OutputError;
 use onescan_report::file::{Write, write_all_whole};
+use onescan_report::{OutputError, colour};
 
 use super::error::CommandError;
 use super::topics::{TOPICS, Topic};
@@ -126,8 +126,7 @@ fn page(command: Command, topics: &[Topic]) -> Result<Vec<u8>, OutputError> {
 
 /// As the terminal takes it: in colours, or without.
 fn print(help: &StyledStr) -> Result<ExitCode, CommandError> {
-    let is_coloured = std::io::IsTerminal::is_terminal(&std::io::stdout()) && std::env::var_os("NO_COLOR").is_none();
-    let text = if is_coloured { help.ansi().to_string() } else { help.to_string() };
+    let text = if colour::suits(&std::io::stdout()) { help.ansi().to_string() } else { help.to_string() };
     write(text.as_bytes())
 }
 

@@ -63,6 +63,7 @@ use std::io::Write;
 
 use onescan_base::foreign::for_terminal;
 use onescan_report::{OutputError, colour};
+use textwrap::{WordSeparator, WordSplitter};
 
 pub use error::CommandError;
 
@@ -73,7 +74,7 @@ use onescan_runner::interrupt;
 pub fn main() -> std::process::ExitCode {
     let args = args::parsed();
     logging::start(args.verbose);
-    colour::show(is_coloured());
+    colour::show(colour::suits(&std::io::stdout()));
     onescan_runner::job::hold_what_is_started();
     onescan_scenario::permission::grant(args.permission());
     #[cfg(feature = "opcua")]
@@ -94,13 +95,6 @@ pub fn main() -> std::process::ExitCode {
     std::process::ExitCode::from(interrupt::exit_code().unwrap_or(code as u8))
 }
 
-/// True if standard output is a terminal that shows colours, and nobody asked for none (<https://no-color.org>).
-fn is_coloured() -> bool {
-    let asked_for_none = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
-    let is_dumb = std::env::var_os("TERM").is_some_and(|terminal| terminal == "dumb");
-    std::io::IsTerminal::is_terminal(&std::io::stdout()) && !asked_for_none && !is_dumb
-}
-
 /// What is still buffered must not be lost in silence when the process ends. A reader that has left changes nothing.
 fn flushed(code: ExitCode) -> Result<ExitCode, CommandError> {
     match std::io::stdout().flush().map_err(OutputError) {
@@ -118,6 +112,15 @@ fn report(error: CommandError) {
 /// Messages of this program hold their causes, so that they read well anywhere; a list of causes
 /// behind them would say all of it again.
 fn render_errors_in_one_piece() {
+    // Names are there to be copied: lines end at blanks, and not at a hyphen or within a name.
+    let handler = || {
+        miette::MietteHandlerOpts::new()
+            .without_cause_chain()
+            .break_words(false)
+            .word_separator(WordSeparator::AsciiSpace)
+            .word_splitter(WordSplitter::NoHyphenation)
+            .build()
+    };
     // Only a second call fails, and this is the only one.
-    let _ = miette::set_hook(Box::new(|_| Box::new(miette::MietteHandlerOpts::new().without_cause_chain().build())));
+    let _ = miette::set_hook(Box::new(move |_| Box::new(handler())));
 }

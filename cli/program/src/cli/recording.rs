@@ -85,7 +85,7 @@ pub struct DiffArgs {
     /// Another
     pub b: PathBuf,
     /// What was before this virtual time does not count; then signals are compared, not digests
-    #[arg(long, default_value = "0s", value_name = "TIME")]
+    #[arg(long = "from", alias = "since", default_value = "0s", value_name = "TIME")]
     pub since: VirtualTime,
     /// Compare these signals only: a name, or a pattern with `*` and `?`; may be given several times
     #[arg(long, value_name = "PATTERN")]

@@ -45,6 +45,7 @@ const CHECKPOINTS: &str = "Checkpoints";
 
 /// Options of `run`.
 #[derive(Debug, ClapArgs)]
+#[command(after_help = "`onescan help verdicts` says what met, open, violated and a margin are.")]
 #[expect(clippy::struct_excessive_bools, reason = "switches, as they are typed")]
 pub struct RunArgs {
     /// The scenario: a folder with a `scenario.toml`

@@ -44,7 +44,8 @@ pub fn read(url: &str) -> Result<IoList, ListError> {
     }
     if points.is_empty() {
         let title = ListKind::Server.title();
-        return Err(ListError::Empty { file: url.to_owned(), title, left_out: left_out.len() });
+        let help = super::error::help_for_empty(ListKind::Server);
+        return Err(ListError::Empty { file: url.to_owned(), title, left_out: left_out.len(), help });
     }
     let link = Some(ListLink::Server { url: url.to_owned(), system_words });
     Ok(IoList { kind: ListKind::Server, from: url.to_owned(), points, left_out, link, cycle: None, sources: None })

@@ -5,6 +5,7 @@ use onescan_iec::input::encoding::EncodingError;
 use onescan_links::gateway::SettingsFault;
 use thiserror::Error;
 
+use super::ListKind;
 use onescan_regress::check::CheckError;
 use onescan_runner::error::{Exit, ExitCode, Unreadable, Usage};
 
@@ -57,15 +58,27 @@ pub enum ListError {
         help: Option<String>,
     },
     /// There is nothing in it that could be a signal.
-    #[error("{file}: there are no inputs and outputs in this {title}{}", left(*.left_out))]
-    #[diagnostic(help("inputs and outputs are what is linked or has an address in %I or %Q"))]
+    #[error("{file}, read as {title}, has no inputs and outputs{}", left(*.left_out))]
     Empty {
         file: String,
         /// What it was read as.
         title: &'static str,
         /// How many entries cannot be signals.
         left_out: usize,
+        #[help]
+        help: &'static str,
     },
+}
+
+/// What to do with a list that has no inputs and outputs.
+pub(super) fn help_for_empty(kind: ListKind) -> &'static str {
+    match kind {
+        ListKind::TwinCat => {
+            "inputs and outputs are what is linked or has an address in %I or %Q; a project without any needs no scenario: \
+             `onescan test NAME.plcproj` runs its tests, `onescan check NAME.plcproj` checks it"
+        }
+        _ => "inputs and outputs are what is linked or has an address in %I or %Q",
+    }
 }
 
 fn left(count: usize) -> String {

@@ -139,8 +139,8 @@ pub fn read(wanted: &Wanted) -> Result<IoList, ListError> {
     let mut list = if path.is_dir() { sources::read(&path)? } else { of_file(&path, wanted)? };
     list.from = path.display().to_string();
     if list.points.is_empty() {
-        let (title, left_out) = (list.kind.title(), list.left_out.len());
-        return Err(ListError::Empty { file: list.from, title, left_out });
+        let (title, left_out, help) = (list.kind.title(), list.left_out.len(), error::help_for_empty(list.kind));
+        return Err(ListError::Empty { file: list.from, title, left_out, help });
     }
     Ok(list)
 }
@@ -222,7 +222,9 @@ fn guess(path: &Path, bytes: &[u8]) -> Result<ListKind, ListError> {
                 "lists are read from TwinCAT (.tsproj, .xti, .tmc, ENI .xml), TIA Portal (.xlsx, .xml, .sdf, .csv), \
                         CODESYS (.csv, PLCopen .xml), PLC sources and opc.tcp:// URLs; `--as` names the kind"
                     .to_owned();
-            return Err(Usage::new(format!("{} is no I/O list that is known", path.display()), Some(help)).into());
+            return Err(
+                Usage::new(format!("{} is not an I/O list that onescan reads", path.display()), Some(help)).into()
+            );
         }
     })
 }

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use onescan_base::foreign::one_line;
+
 use super::collect::Collected;
 use super::error::ListError;
 use super::flatten::elementary;
@@ -27,6 +29,7 @@ pub fn read(path: &Path, bytes: &[u8]) -> Result<IoList, ListError> {
             if headings.is_some_and(|headings| headings.is_some()) {
                 continue;
             }
+            refuse_without_headings(path, &record)?;
         }
         let tag = match headings.flatten() {
             Some(headings) => headings.tag(&fields),
@@ -35,6 +38,23 @@ pub fn read(path: &Path, bytes: &[u8]) -> Result<IoList, ListError> {
         Tag { line: Some(line), ..tag }.into_list(&mut collected)?;
     }
     Ok(collected.list(ListKind::TiaText))
+}
+
+/// A CSV of TIA Portal has headings; one without is somebody else's, whatever its fields look like. Other texts have none.
+fn refuse_without_headings(path: &Path, first: &csv::StringRecord) -> Result<(), ListError> {
+    if path.extension().is_none_or(|extension| !extension.eq_ignore_ascii_case("csv")) {
+        return Ok(());
+    }
+    let first: Vec<&str> = first.iter().collect();
+    Err(ListError::Other {
+        file: path.display().to_string(),
+        what: format!("its first line is `{}`, which has not the headings of a tag table", one_line(&first.join(";"))),
+        help: Some(
+            "TIA Portal writes `Name`, `Data Type` and `Logical Address`; of CODESYS, onescan reads what `Export mappings \
+             to CSV` in the context menu of a device writes"
+                .to_owned(),
+        ),
+    })
 }
 
 /// The records of a text with separated fields, each with its line.

@@ -8,7 +8,7 @@ use onescan_report::file::{Write as Output, write_all_whole};
 use super::listed::{Listed, report};
 use super::names::Taken;
 use super::signal::{Plc, Signal};
-use super::{IGNORED, NewError, name_of, text};
+use super::{IGNORED, NewError, name_of, proposal, text};
 use crate::io_list::{self, IoList, Wanted};
 use onescan_runner::error::Unreadable;
 use onescan_runner::format::Format;
@@ -36,11 +36,15 @@ pub fn write(config: &FromListConfig, out: &mut dyn Write) -> Result<(), NewErro
     let mut variables = Taken::default();
     let variables: Vec<_> = signals.iter().map(|signal| (signal, variables.variable(&signal.name))).collect();
     let plc = plc(&config.folder, &list, &variables)?;
+    let proposals = proposal::of(&signals);
     let mut files = vec![
         ("scenario.toml", text::scenario(&name, &list, &signals, &plc)),
-        ("README.md", text::readme(&name, &list, &plc)),
+        ("README.md", text::readme(&name, &list, &plc, proposals.len())),
         (IGNORED.0, IGNORED.1.to_owned()),
     ];
+    if !proposals.is_empty() {
+        files.push(("plant.toml", proposal::scene(&name, &proposals)));
+    }
     if matches!(plc, Plc::StandIn { .. }) {
         files.push(("plc/main.st", text::stand_in(&name, &variables)));
     }
@@ -50,7 +54,9 @@ pub fn write(config: &FromListConfig, out: &mut dyn Write) -> Result<(), NewErro
         .collect();
     write_all_whole(&written)?;
     let files: Vec<_> = files.iter().map(|(file, _)| config.folder.join(file).display().to_string()).collect();
-    Ok(report(&Listed { folder: &config.folder, files: &files, list: &list, signals: &signals }, config.format, out)?)
+    let listed =
+        Listed { folder: &config.folder, files: &files, list: &list, signals: &signals, proposals: &proposals };
+    Ok(report(&listed, config.format, out)?)
 }
 
 fn plc(folder: &Path, list: &IoList, variables: &[(&Signal, String)]) -> Result<Plc, NewError> {

@@ -5,8 +5,10 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use onescan_report::OutputError;
+use onescan_report::number::counted;
 use serde::Serialize;
 
+use super::proposal::Proposal;
 use super::signal::Signal;
 use crate::io_list::{Direction, IoList, ListKind};
 use onescan_runner::format::Format;
@@ -20,6 +22,8 @@ pub struct Listed<'a> {
     pub list: &'a IoList,
     /// The signals made of it.
     pub signals: &'a [Signal],
+    /// What may stand behind them.
+    pub proposals: &'a [Proposal<'a>],
 }
 
 /// The report for machines.
@@ -46,6 +50,9 @@ struct JsonSignal<'a> {
     direction: Direction,
     #[serde(skip_serializing_if = "Option::is_none")]
     address: Option<&'a str>,
+    /// The kind of component that is proposed for it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    component: Option<&'static str>,
     file: &'a str,
     line: Option<u32>,
 }
@@ -98,6 +105,10 @@ fn human(listed: &Listed, out: &mut dyn Write) -> io::Result<()> {
             listed.types(Some(direction)).into_iter().map(|(ty, count)| format!("{count} {ty}")).collect();
         let types = if types.is_empty() { String::new() } else { format!(": {}", types.join(", ")) };
         writeln!(out, "  {} written by the {writer}{types}", listed.count(direction))?;
+    }
+    if !listed.proposals.is_empty() {
+        let proposed = counted(listed.proposals.len() as u64, "component");
+        writeln!(out, "  {proposed} proposed in plant.toml, by the names of signals")?;
     }
     if list.kind == ListKind::Server {
         writeln!(out, "  what may be written was taken for an input of the PLC; look through it")?;
@@ -153,6 +164,7 @@ fn json(listed: &Listed, out: &mut dyn Write) -> io::Result<()> {
         ty: point.ty.to_string(),
         direction: point.direction,
         address: point.address.as_deref(),
+        component: listed.proposals.iter().find(|proposal| proposal.signal() == name).map(Proposal::kind),
         file: &point.at.file,
         line: point.at.line,
     });

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`from_list`] | a scenario made of an I/O list |
 //! | `names` | names that signals and variables can have |
+//! | `proposal` | components that signals may stand for |
 //! | [`signal`] | what a list becomes: signals, and who runs as the PLC |
 //! | `text` | the files of such a scenario |
 //! | [`listed`] | what was taken over and what was not |
@@ -13,6 +14,7 @@ mod error;
 pub mod from_list;
 pub mod listed;
 mod names;
+mod proposal;
 pub mod signal;
 pub mod task;
 mod text;
@@ -78,8 +80,9 @@ pub fn write(folder: &Path, template: Template, out: &mut dyn Write) -> Result<(
         writeln!(out, "{}", folder.join(file).display()).map_err(OutputError)?;
     }
     if template == Template::Python {
-        let package = "plant.py needs Python's package onescan_client: `pip install onescan` brings it";
-        writeln!(out, "\n{package}").map_err(OutputError)?;
+        let package = "pip install onescan   # brings onescan_client, which plant.py needs";
+        writeln!(out, "\nnext: {package}").map_err(OutputError)?;
+        return Ok(writeln!(out, "      onescan run {place}").map_err(OutputError)?);
     }
     Ok(writeln!(out, "\nnext: onescan run {place}").map_err(OutputError)?)
 }

@@ -27,7 +27,7 @@ const DRAWING: &str = "machine.svg";
 /// Writes a task into a folder that must not be there, and says what comes next.
 ///
 /// # Errors
-/// There is no such task, the folder is there, or it cannot be written.
+/// The program has not such a task and it is not a folder with one, the folder is there, or it cannot be written.
 pub fn write(folder: &Path, task: &str, out: &mut dyn Write) -> Result<(), NewError> {
     name_of(folder)?;
     let files = match Task::named(task) {
@@ -66,9 +66,10 @@ fn of_folder(task: &str) -> Result<Vec<(PathBuf, Vec<u8>)>, NewError> {
     let folder = Path::new(task);
     if !folder.join(FILE_NAME).is_file() {
         let help = did_you_mean(task, Task::all().iter().map(|task| task.name));
-        let help =
-            help.unwrap_or_else(|| format!("`onescan templates` lists them; a folder with a {FILE_NAME} is one, too"));
-        return Err(Usage::new(format!("there is no task `{task}`"), Some(help)).into());
+        let help = help.unwrap_or_else(|| {
+            format!("`onescan templates` lists its tasks; for one of your own, name a folder with a {FILE_NAME}")
+        });
+        return Err(Usage::new(format!("onescan has no task `{task}`"), Some(help)).into());
     }
     let mut files = Vec::new();
     gather(folder, Path::new(""), &mut files)?;

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use onescan_base::SignalType;
 use onescan_iec_run::literal;
+use onescan_report::number::counted;
 use onescan_server::time::TimeSpan;
 use serde_json::Value;
 
@@ -18,6 +19,9 @@ const ABOUT_CHARACTERS_MAX: usize = 160;
 
 /// How many signals a plot shows to begin with.
 const PLOTTED: usize = 8;
+
+/// How many signals a panel shows that is written out.
+const ON_PANEL: usize = 48;
 
 const CYCLE: TimeSpan = TimeSpan::millis::<10>();
 
@@ -95,11 +99,48 @@ kind = \"operator\"
 ";
     text += &client(plc, &step);
     text += &gateway(list, signals);
+    text += &panel(signals);
     if signals.len() > PLOTTED {
         let first: Vec<_> = signals.iter().take(PLOTTED).map(|signal| quoted(&signal.name)).collect();
         let _ = write!(text, "\n# What `--plot` draws.\n[plot]\nsignals = [{}]\n", first.join(", "));
     }
     text
+}
+
+/// A panel of all signals, so that the page shows what the PLC does; of many there is the usual one, of what the plant writes.
+fn panel(signals: &[Signal]) -> String {
+    const COLUMNS: usize = 6;
+    const SPAN: usize = 2;
+    let element = |signal: &Signal| {
+        let ty = signal.point.ty;
+        let is_number = ty.as_f64(&vec![0; ty.size()]).is_some();
+        match (signal.point.direction, ty == SignalType::BOOL) {
+            (Direction::Input, true) => Some("kind = \"switch\""),
+            (Direction::Output, true) => Some("kind = \"lamp\""),
+            (Direction::Input, false) => is_number.then_some("kind = \"slider\", max = 100"),
+            (Direction::Output, false) => is_number.then_some("kind = \"number\""),
+        }
+    };
+    let mut shown: Vec<(&Signal, &str)> =
+        signals.iter().filter_map(|signal| Some((signal, element(signal)?))).collect();
+    // What people operate first; each in the list's order.
+    shown.sort_by_key(|(signal, _)| signal.point.direction);
+    if shown.is_empty() || shown.len() > ON_PANEL {
+        return String::new();
+    }
+    let mut text = "
+# What `run --web` shows. With a scene, switches and sliders of what the plant writes become lamps and numbers.
+[[panel]]
+name = \"inputs and outputs\"
+element = [
+"
+    .to_owned();
+    for (number, (signal, kind)) in shown.iter().enumerate() {
+        let [column, row] = [number % (COLUMNS / SPAN) * SPAN, number / (COLUMNS / SPAN)];
+        let name = quoted(&signal.name);
+        let _ = writeln!(text, "    {{ {kind}, signal = {name}, at = [{column}, {row}], span = [{SPAN}, 1] }},");
+    }
+    text + "]\n"
 }
 
 fn client(plc: &Plc, step: &str) -> String {
@@ -194,10 +235,19 @@ fn at_rest(ty: SignalType) -> String {
 }
 
 /// `README.md`.
-pub(super) fn readme(name: &str, list: &IoList, plc: &Plc) -> String {
+pub(super) fn readme(name: &str, list: &IoList, plc: &Plc, proposed: usize) -> String {
     let main = match plc {
         Plc::StandIn { .. } => "| `plc/main.st` | a stand-in for the PLC: inputs and outputs, no program |\n",
         Plc::Sources { .. } => "",
+    };
+    let (scene, plant) = if proposed == 0 {
+        (String::new(), "1. Write the plant as a scene, `plant.toml`, and name it in `[clients.plant]`;")
+    } else {
+        let row = format!(
+            "| `plant.toml` | {}, by the names of signals, as comments |\n",
+            counted(proposed as u64, "component")
+        );
+        (row, "1. Take from `plant.toml` what is right, add bodies and joints, and name it in `[clients.plant]`;")
     };
     let sources = match plc {
         Plc::StandIn { .. } => {
@@ -214,17 +264,18 @@ Made of {from} ({title}).
 | file | what it is |
 |---|---|
 | `scenario.toml` | the session: the signals of the list, the clients |
-{main}
+{scene}{main}
 ```sh
 onescan run {name}{allowance}       # run it: all inputs of the PLC are 0 and FALSE
+onescan run {name}{allowance} --web # operate it: a page with all signals
 onescan wiring {name}{allowance}    # show which signal connects what
 onescan check {name}{allowance}     # check the PLC's sources
 ```
 
 What to do next:
 
-1. Write the plant as a scene, `plant.toml`, and name it in `[clients.plant]`; or let `[clients.plant]` be a program of
-   your own, `kind = \"external\"`.
+{plant}
+   or let `[clients.plant]` be a program of your own, `kind = \"external\"`.
 {sources}3. Say in `[[expect]]` what every run must show.
 ",
         from = file_name(list),

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use onescan_base::notice::NOTICE;
 use onescan_base::regular::Within;
 use onescan_plant::component::open_inputs;
-use onescan_plant::scene::model::{Body, BodyKind, Component, JointKind, Mass, Moved, Scene, Sensing, Shape, Wire};
+use onescan_plant::scene::model::{Component, JointKind, Moved, Scene, Sensing, Wire};
 use onescan_plant::{Dynamics, Excess, Loop, Overlap};
 use onescan_report::OutputError;
 use onescan_report::file::write_output;
@@ -24,6 +24,7 @@ use onescan_runner::format::Format;
 use onescan_runner::run::values_at_start;
 use onescan_runner::scene_drawing as drawing;
 
+use super::alike;
 use super::attached::{coupled, fitted};
 
 /// What to make of a scene.
@@ -172,9 +173,11 @@ fn tree(scene: &Scene, period: TimeSpan, out: &mut dyn Write) -> io::Result<()> 
     writeln!(out, "  ground")?;
     hanging(scene, None, 2, out)?;
     let free = |index: &usize| !scene.joints.iter().any(|joint| joint.child == *index);
-    for index in (0..scene.bodies.len()).filter(free) {
-        writeln!(out, "  {}", body(&scene.bodies[index]))?;
-        hanging(scene, Some(index), 2, out)?;
+    let free: Vec<usize> = (0..scene.bodies.len()).filter(free).collect();
+    for alike in free.chunk_by(|one, next| alike::follows(scene, *one, *next)) {
+        writeln!(out, "  {}", alike::bodies(scene, alike))?;
+        // Bodies that carry others stand alone.
+        hanging(scene, alike.first().copied(), 2, out)?;
     }
     section(out, "fittings", scene.fittings.iter().map(|fitting| fitted(fitting, scene)))?;
     section(out, "couplings", scene.couplings.iter().map(|coupling| coupled(coupling, scene)))?;
@@ -244,7 +247,7 @@ fn hanging(scene: &Scene, parent: Option<usize>, depth: usize, out: &mut dyn Wri
         let child = &scene.bodies[joint.child];
         let kind = format!("{:?}", joint.kind).to_lowercase();
         let first = scene.joints.iter().position(|other| other.child == joint.child) == Some(index);
-        let shown = if first { body(child) } else { format!("{} (above or below)", child.name) };
+        let shown = if first { alike::body(child) } else { format!("{} (above or below)", child.name) };
         writeln!(out, "{:width$}{} ({kind}): {shown}", "", joint.name, width = 2 * depth)?;
         // a tree of joints is no deeper than there are bodies
         if first && depth <= scene.bodies.len() + 1 {
@@ -252,31 +255,6 @@ fn hanging(scene: &Scene, parent: Option<usize>, depth: usize, out: &mut dyn Wri
         }
     }
     Ok(())
-}
-
-fn body(body: &Body) -> String {
-    let kind = match body.kind {
-        BodyKind::Fixed => "fixed",
-        BodyKind::Dynamic => "dynamic",
-        BodyKind::Kinematic => "kinematic",
-    };
-    let shape = match &body.shape {
-        None => String::new(),
-        Some(Shape::Box { size_m: [x, y, z] }) => format!(", box {x} x {y} x {z} m"),
-        Some(Shape::Sphere { radius_m }) => format!(", sphere of radius {radius_m} m"),
-        Some(Shape::Cylinder { radius_m, length_m }) => format!(", cylinder of radius {radius_m} m, {length_m} m long"),
-        Some(Shape::Capsule { radius_m, length_m }) => format!(", capsule of radius {radius_m} m, {length_m} m long"),
-        Some(Shape::Hull { file, corners_m }) => format!(", hull of {file} with {} corners", corners_m.len()),
-        Some(Shape::Surface { file, triangles, .. }) => {
-            format!(", surface of {file} with {} triangles", triangles.len())
-        }
-    };
-    let mass = match (body.kind, body.mass) {
-        (BodyKind::Dynamic, Mass::Total { kg } | Mass::Stated { kg, .. }) => format!(", {kg} kg"),
-        (BodyKind::Dynamic, Mass::Density { kg_m3 }) => format!(", {kg_m3} kg/m³"),
-        _ => String::new(),
-    };
-    format!("{}: {kind}{shape}{mass}", body.name)
 }
 
 /// A component: what it is bound to, what of it is not preset, its wires, and its inputs without one.

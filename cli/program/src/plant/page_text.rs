@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-/// Columns of a terminal.
-const WIDTH: usize = 80;
+use onescan_report::lines::{WIDTH, broken};
+
 /// Between two columns of a table.
 const GAP: usize = 2;
 /// A column before the last is not wider than this: what follows a wider cell begins on the next line.
@@ -102,24 +102,6 @@ fn write_hanging(before: &str, cell: &str, room: usize, text: &mut String) {
         let line = if number == 0 { format!("{before}{part}") } else { format!("{:indent$}{part}", "") };
         writeln!(text, "{}", line.trim_end()).expect("a string takes all");
     }
-}
-
-/// Broken at blanks into lines of so many letters; one line at least.
-fn broken(text: &str, room: usize) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for word in text.split_whitespace() {
-        match lines.last_mut() {
-            Some(line) if line.chars().count() + 1 + word.chars().count() <= room => {
-                line.push(' ');
-                line.push_str(word);
-            }
-            _ => lines.push(word.to_owned()),
-        }
-    }
-    if lines.is_empty() {
-        lines.push(String::new());
-    }
-    lines
 }
 
 #[cfg(test)]

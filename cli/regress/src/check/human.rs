@@ -6,6 +6,7 @@ use std::io::{self, Write};
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme};
 use onescan_iec::diagnostic::counted;
 use onescan_iec::{Finding, Severity};
+use onescan_report::colour;
 
 use super::report::Report;
 
@@ -99,9 +100,8 @@ fn concerned(report: &Report) -> String {
 
 /// Colours and drawing as the terminal has them.
 fn handler() -> GraphicalReportHandler {
-    let terminal = io::IsTerminal::is_terminal(&io::stdout());
-    let colours = terminal && std::env::var_os("NO_COLOR").is_none();
-    let theme = if colours { GraphicalTheme::unicode() } else { GraphicalTheme::unicode_nocolor() };
+    let theme =
+        if colour::suits(&io::stdout()) { GraphicalTheme::unicode() } else { GraphicalTheme::unicode_nocolor() };
     GraphicalReportHandler::new_themed(theme).with_links(false).with_width(100)
 }
 

@@ -1,14 +1,16 @@
 //! The first step at which two recordings differ.
 //!
 //! Digests are chained: once two runs differ they differ for ever. So the first step is found by
-//! halves. Runs of other steps or signals have other digests throughout, and with `--since` the
+//! halves. Runs of other steps or signals have other digests throughout, and with `--from` the
 //! digests have parted already: then the signals that both have are compared at the times that both
 //! have.
 
+use std::fmt;
 use std::ops::RangeInclusive;
 
 use onescan_recording::header::HeaderSignal;
 use onescan_recording::{Column, Recording, RecordingError, Row, Rows};
+use onescan_report::number::counted;
 use onescan_server::signal::pattern::{SignalPattern, choose};
 use onescan_server::signal::{ClientName, SignalName, SignalType};
 use onescan_server::time::VirtualTime;
@@ -31,6 +33,24 @@ pub enum Basis {
     Digests,
     /// The signals that both have, at the times that both have.
     Values,
+}
+
+/// What was compared, for people.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Compared {
+    /// The digests of these steps: all signals, recorded or not.
+    Digests { from: u64, to: u64 },
+    /// The values of so many signals.
+    Values { signals: u64 },
+}
+
+impl fmt::Display for Compared {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Digests { from, to } => write!(f, "the digests of steps {from} to {to}"),
+            Self::Values { signals } => write!(f, "the values of {}", counted(*signals, "signal")),
+        }
+    }
 }
 
 /// A signal that differs, as text.
@@ -121,6 +141,17 @@ impl<'r> Comparison<'r> {
         match found {
             Some(found) => Ok(Some(found)),
             None => self.by_length(),
+        }
+    }
+
+    /// What is compared.
+    pub fn compared(&self) -> Compared {
+        match self.basis {
+            Basis::Digests => {
+                let [a, b] = [self.steps(0), self.steps(1)];
+                Compared::Digests { from: *a.start(), to: *a.end().min(b.end()) }
+            }
+            Basis::Values => Compared::Values { signals: self.signals.len() as u64 },
         }
     }
 

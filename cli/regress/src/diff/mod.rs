@@ -96,6 +96,7 @@ pub fn compare(a: &Path, b: &Path, since: VirtualTime, signals: &[SignalPattern]
     recordings.iter().for_each(cut_short::report);
     let comparison = Comparison::new(&recordings, since, signals)?;
     let divergence = comparison.first()?;
+    let compared = comparison.compared();
     let causes = match &divergence {
         Some(Divergence { differences, at, ended, .. }) => {
             cause::causes(&recordings, differences, (*at, ended.is_some()))
@@ -110,7 +111,7 @@ pub fn compare(a: &Path, b: &Path, since: VirtualTime, signals: &[SignalPattern]
     let files = sources::differing(&recordings);
     let ended = divergence.as_ref().and_then(|found| found.ended);
     let failure = ended.map(|ended| failure_of(&recordings[ended])).transpose()?.flatten();
-    Ok(Report { recordings, divergence, failure, causes, around, files })
+    Ok(Report { recordings, compared, divergence, failure, causes, around, files })
 }
 
 /// How a client of a recorded run failed, if one did.

@@ -10,7 +10,7 @@ use onescan_soft_plc::Written;
 use serde_json::{Value, json};
 
 use super::cause::{Cause, Causes};
-use super::first::{Around, Basis, Divergence};
+use super::first::{Around, Basis, Compared, Divergence};
 use super::parting::Parting;
 use super::sources::FileDifference;
 use crate::why;
@@ -29,6 +29,8 @@ pub(super) const NAMES: [&str; 2] = ["A", "B"];
 #[derive(Debug)]
 pub struct Report {
     pub recordings: [Recording; 2],
+    /// What was compared.
+    pub compared: Compared,
     /// Where they part; nothing if they are equal.
     pub divergence: Option<Divergence>,
     /// How a client failed in the run that ends before the other.
@@ -66,7 +68,7 @@ impl Report {
     /// `out` takes no more.
     pub fn write_findings(&self, out: &mut dyn Write) -> io::Result<()> {
         let Some(found) = &self.divergence else {
-            return writeln!(out, "no difference");
+            return writeln!(out, "no difference, by {}", self.compared);
         };
         write_place(found, out)?;
         if let Some(failure) = &self.failure {

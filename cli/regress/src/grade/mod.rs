@@ -43,7 +43,7 @@ use std::io::Write;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-use onescan_report::file::write_whole;
+use onescan_report::file::write_output;
 use onescan_report::{FileError, OutputError};
 use onescan_runner::error::{ExitCode, SpawnError};
 use onescan_runner::format::Format;
@@ -113,13 +113,13 @@ fn command(config: &GradeConfig, task: &Task, submission: &Submission) -> Result
 
 fn write_reports(config: &GradeConfig, task: &Task, all: &[Graded], wall_time: Duration) -> Result<(), FileError> {
     if let Some(path) = &config.html {
-        write_whole(path, page::of_class(task, all).to_html().as_bytes())?;
+        write_output(path, page::of_class(task, all).to_html().as_bytes())?;
     }
     if let Some(path) = &config.junit {
-        write_whole(path, junit::text(task, all, wall_time).as_bytes())?;
+        write_output(path, junit::text(task, all, wall_time).as_bytes())?;
     }
     if let Some(path) = &config.csv {
-        write_whole(path, spreadsheet::csv(task, all).as_bytes())?;
+        write_output(path, spreadsheet::csv(task, all).as_bytes())?;
     }
     Ok(())
 }

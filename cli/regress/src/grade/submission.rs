@@ -36,9 +36,9 @@ pub(super) fn meant(paths: &[PathBuf]) -> Result<Vec<Submission>, GradeError> {
         }
     }
     if submissions.is_empty() {
-        return Err(
-            Usage::new("there is no submission", Some("name folders or files, as in `class/*`".to_owned())).into()
-        );
+        let named = paths.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(", ");
+        let help = "name the folders or PLC sources that were handed in, as in `class/*`".to_owned();
+        return Err(Usage::new(format!("{named} holds no submission"), Some(help)).into());
     }
     let names: Vec<String> = submissions.iter().map(|one| one.name.clone()).collect();
     for submission in &mut submissions {
@@ -94,5 +94,8 @@ mod tests {
         let both = meant(&both).unwrap();
         assert!(both[0].name.ends_with("main.st") && both[0].name != both[1].name, "{both:?}");
         assert!(meant(&[place.path().join("nobody")]).is_err());
+        std::fs::create_dir(place.path().join("empty")).unwrap();
+        let none = meant(&[place.path().join("empty/*")]).unwrap_err();
+        assert!(none.to_string().ends_with("empty/* holds no submission"), "{none}");
     }
 }

@@ -75,7 +75,7 @@ fn write(receiver: &Receiver<String>, count: usize, each: bool) {
 
 /// How long it took, where time is shown.
 pub(super) fn end(progress: Progress, report: &Report) {
-    if progress == Progress::Bar {
+    if matches!(progress, Progress::Bar | Progress::Lines) {
         for line in slowest(report) {
             say(&line);
         }

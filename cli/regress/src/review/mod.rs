@@ -19,8 +19,7 @@ use std::io::{IsTerminal, Write};
 use std::path::PathBuf;
 
 use console::Term;
-use onescan_report::OutputError;
-use onescan_report::file;
+use onescan_report::{OutputError, colour, file};
 use onescan_scenario::Scenario;
 use onescan_scenario::case::Catalogue;
 
@@ -100,7 +99,7 @@ pub fn review(config: &ReviewConfig, out: &mut dyn Write) -> Result<ExitCode, Re
         return Ok(ExitCode::Ok);
     }
     let on_terminal = std::io::stdout().is_terminal();
-    let colours = on_terminal && std::env::var_os("NO_COLOR").is_none();
+    let colours = colour::suits(&std::io::stdout());
     let asks = config.choice == Choice::Ask && on_terminal && std::io::stdin().is_terminal();
     let decisions = match config.choice {
         Choice::AcceptAll => vec![Decision::Accept; waiting.len()],

@@ -24,10 +24,12 @@ use crate::web::{CaseWanted, KeepCase, KeptCase};
 /// What stands before the first case of a scenario that had none: itself, which is a case no longer by itself.
 const PLAIN: &str = "[[case]]\nname = \"default\"\n";
 
-/// Why there is no case.
+/// Why what operators did does not become a case, and what to do.
 #[derive(Debug, Error)]
 enum NoCase {
-    #[error("the beginning of the session is not kept any more, or it went on from a checkpoint")]
+    #[error(
+        "the session no longer keeps its beginning, or it went on from a checkpoint: run it from its beginning, with more `--past-memory`"
+    )]
     NoBeginning,
     #[error("the run does not let cases be written: begin it with `--save-cases`")]
     Forbidden,
@@ -106,7 +108,7 @@ fn text(
     Ok(written.to_toml(&wanted.name, &written.entries))
 }
 
-/// The file of cases as it is; nothing if there is none.
+/// The file of cases as it is; nothing if the scenario has none.
 fn written_before(path: &Path) -> Result<Option<String>, NoCase> {
     match regular::read_text(path) {
         Ok(text) => Ok(Some(text)),

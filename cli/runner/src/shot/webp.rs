@@ -32,8 +32,8 @@ pub(super) fn film(pictures: &[Vec<u8>], size: Size, shown_ms: u32) -> Result<Ve
     let mut is_transparent = false;
     for (number, picture) in pictures.iter().enumerate() {
         let data = data_of(picture).ok_or(NoFilm::Picture(number))?;
-        is_transparent |= data.iter().any(|(name, _)| *name == b"ALPH");
-        frames.extend(chunk(*b"ANMF", &frame(&data, size, shown_ms))?);
+        is_transparent |= data.iter().any(|(name, _)| name == b"ALPH");
+        frames.extend(chunk(*b"ANMF", &frame(&data, size, shown_ms)?)?);
     }
     let flags = ANIMATED | if is_transparent { TRANSPARENT } else { 0 };
     let mut head = vec![flags, 0, 0, 0];
@@ -50,18 +50,15 @@ pub(super) fn film(pictures: &[Vec<u8>], size: Size, shown_ms: u32) -> Result<Ve
 }
 
 /// A picture of a film: where it is, how large, how long, and its data.
-fn frame(data: &[(&[u8], &[u8])], size: Size, shown_ms: u32) -> Vec<u8> {
+fn frame(data: &[([u8; 4], &[u8])], size: Size, shown_ms: u32) -> Result<Vec<u8>, NoFilm> {
     let mut frame = vec![0; 6];
     frame.extend(sides(size));
     frame.extend(&shown_ms.to_le_bytes()[..3]);
     frame.push(REPLACES);
     for (name, content) in data {
-        frame.extend(*name);
-        frame.extend((content.len() as u32).to_le_bytes());
-        frame.extend(*content);
-        frame.extend(std::iter::repeat_n(0, content.len() % 2));
+        frame.extend(chunk(*name, content)?);
     }
-    frame
+    Ok(frame)
 }
 
 /// The sides of a picture, each less one, in 24 bits.
@@ -79,7 +76,7 @@ fn chunk(name: [u8; 4], content: &[u8]) -> Result<Vec<u8>, NoFilm> {
 }
 
 /// The chunks of a picture that are its own data; nothing of what is not a WebP.
-fn data_of(picture: &[u8]) -> Option<Vec<(&[u8], &[u8])>> {
+fn data_of(picture: &[u8]) -> Option<Vec<([u8; 4], &[u8])>> {
     let head = picture.get(..12)?;
     if !head.starts_with(RIFF) || !head.ends_with(WEBP) {
         return None;
@@ -91,7 +88,7 @@ fn data_of(picture: &[u8]) -> Option<Vec<(&[u8], &[u8])>> {
         let length = u32::from_le_bytes(*length) as usize;
         let content = behind.get(..length)?;
         if DATA.contains(&name) {
-            data.push((&name[..], content));
+            data.push((*name, content));
         }
         rest = behind.get(length + length % 2..).unwrap_or_default();
     }

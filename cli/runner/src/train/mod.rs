@@ -31,6 +31,8 @@ mod table;
 use std::io::Write;
 use std::path::Path;
 
+use onescan_report::lines::{WIDTH, broken};
+use onescan_report::number::counted;
 use onescan_report::{OutputError, file};
 use onescan_scenario::Scenario;
 use onescan_scenario::lesson::Book;
@@ -115,23 +117,17 @@ fn list(book: &Book, format: Format, out: &mut dyn Write) -> std::io::Result<()>
         return Ok(());
     }
     for lesson in book.lessons() {
-        writeln!(out, "{}: {}", lesson.name, lesson.about.as_deref().unwrap_or("a lesson"))?;
-        writeln!(
-            out,
-            "  from `{}`, {} malfunctions, at most {}",
-            lesson.start,
-            lesson.malfunctions.len(),
-            lesson.lasts
-        )?;
+        writeln!(out, "{}", lesson.name)?;
+        for line in broken(lesson.about.as_deref().unwrap_or("a lesson"), WIDTH - 2) {
+            writeln!(out, "  {line}")?;
+        }
+        let malfunctions = counted(lesson.malfunctions.len() as u64, "malfunction");
+        writeln!(out, "  from `{}`, {malfunctions}, at most {}", lesson.start, lesson.lasts)?;
     }
     for start in book.starts() {
-        writeln!(
-            out,
-            "start `{}` at {}: {}",
-            start.name,
-            start.at,
-            start.about.as_deref().unwrap_or("a prepared state")
-        )?;
+        let about = start.about.as_deref().unwrap_or("a prepared state");
+        let lines = broken(&format!("start `{}` at {}: {about}", start.name, start.at), WIDTH - 2);
+        writeln!(out, "{}", lines.join("\n  "))?;
     }
     Ok(())
 }

@@ -435,13 +435,26 @@ impl<'a> Cursor<'a> {
 
     /// Reports that `wanted` should stand here, unless this place has been reported already.
     pub(super) fn unexpected(&mut self, wanted: &str) {
+        self.report_missing(wanted, None);
+    }
+
+    /// The same for the end of the statement that begins at `opened`, which is shown, too.
+    pub(super) fn unexpected_end(&mut self, end: Keyword, opened: Span) {
+        self.report_missing(&format!("`{}`", end.text()), Some(opened));
+    }
+
+    fn report_missing(&mut self, wanted: &str, opened: Option<Span>) {
         let found =
             if self.peek().is_some() { format!("`{}`", self.next_text()) } else { "the end of the file".to_owned() };
         let span = self.span();
         let repeated = self.diagnostics.last().is_some_and(|last| last.span == span);
         if !repeated {
             let message = format!("{wanted} expected, found {found}");
-            self.report_syntax(Diagnostic::error(Code::UnexpectedToken, span, message));
+            let mut missing = Diagnostic::error(Code::UnexpectedToken, span, message);
+            if let Some(opened) = opened {
+                missing = missing.with_label(opened, "begins here");
+            }
+            self.report_syntax(missing);
         }
     }
 

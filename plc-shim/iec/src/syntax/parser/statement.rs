@@ -168,6 +168,7 @@ impl Cursor<'_> {
     }
 
     fn if_statement(&mut self) -> StatementKind {
+        let opened = self.span();
         let mut branches = Vec::new();
         let mut otherwise = Vec::new();
         loop {
@@ -188,7 +189,7 @@ impl Cursor<'_> {
         }
         match nests {
             Some(place) if !self.at_keyword(Keyword::EndIf) => self.report_else_if(place),
-            _ => self.expect_end(Keyword::EndIf),
+            _ => self.expect_end(Keyword::EndIf, opened),
         }
         StatementKind::If(IfStatement { branches, otherwise })
     }
@@ -214,13 +215,15 @@ impl Cursor<'_> {
         condition
     }
 
-    fn expect_end(&mut self, end: Keyword) {
+    /// The end of the statement that began at `opened`.
+    fn expect_end(&mut self, end: Keyword, opened: Span) {
         if !self.take_keyword(end) && !self.pass_foreign_end(end) {
-            self.unexpected(&format!("`{}`", end.text()));
+            self.unexpected_end(end, opened);
         }
     }
 
     fn case_statement(&mut self) -> StatementKind {
+        let opened = self.span();
         self.advance();
         let selector = self.condition(Keyword::Of);
         let mut branches = Vec::new();
@@ -240,7 +243,7 @@ impl Cursor<'_> {
         } else {
             Vec::new()
         };
-        self.expect_end(Keyword::EndCase);
+        self.expect_end(Keyword::EndCase, opened);
         StatementKind::Case(CaseStatement { selector, branches, otherwise })
     }
 
@@ -308,6 +311,7 @@ impl Cursor<'_> {
     }
 
     fn for_statement(&mut self) -> StatementKind {
+        let opened = self.span();
         self.advance();
         if self.peek() != Some(TokenKind::Identifier) {
             self.unexpected("the control variable's name");
@@ -333,7 +337,7 @@ impl Cursor<'_> {
             (self.condition(Keyword::Do), None)
         };
         let body = self.inner_statements();
-        self.expect_end(Keyword::EndFor);
+        self.expect_end(Keyword::EndFor, opened);
         StatementKind::For(Box::new(ForStatement { variable, from, to, by, body }))
     }
 
@@ -366,10 +370,11 @@ impl Cursor<'_> {
     }
 
     fn while_statement(&mut self) -> StatementKind {
+        let opened = self.span();
         self.advance();
         let condition = self.condition(Keyword::Do);
         let body = self.inner_statements();
-        self.expect_end(Keyword::EndWhile);
+        self.expect_end(Keyword::EndWhile, opened);
         StatementKind::While(WhileStatement { condition, body })
     }
 
