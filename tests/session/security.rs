@@ -314,7 +314,9 @@ fn a_revoked_certificate_is_good_for_nothing_more() {
         trust: Some(Trust::showing(&server, certificate.as_bytes(), key.as_bytes()).expect("they go together")),
     };
     let (anna, wall) = (ours.gives("anna", Some("operator"), 2090), ours.gives("wall", Some("viewer"), 2090));
-    let revoke = |certificate: &str| drop(list.lock().expect("no panic").insert(fingerprint(certificate)));
+    let revoke = |certificate: &str| {
+        list.lock().expect("no panic").insert(fingerprint(certificate));
+    };
 
     let members: Vec<_> = RING.iter().map(|(name, _)| ours.gives(name, None, 2090)).collect();
     let threads: Vec<_> = boxed(ring())

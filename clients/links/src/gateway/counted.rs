@@ -200,7 +200,7 @@ mod tests {
         }
     }
 
-    /// A PLC that waits for the first block cannot be told from somebody else before it answers.
+    /// A PLC that waits for the first block cannot be distinguished from somebody else before it answers.
     #[test]
     fn who_connects_first_and_answers_nothing_gives_way_to_the_plc() {
         let address = free();

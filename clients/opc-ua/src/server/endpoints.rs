@@ -27,7 +27,7 @@ const SUBSCRIPTIONS_MS: u64 = 1;
 /// many more of them than connections.
 const SESSIONS_MAX: usize = 512;
 
-/// How long a session lasts in which nothing is asked for, so also that of a client that is dead; clients are told so when they
+/// How long a session lasts in which nothing is asked for, so also that of a client that is dead; clients hear this value when they
 /// ask for more. Most stacks ask for the server's state every 5 s, none less often than every 10 s.
 const SESSION_TIMEOUT: Duration = Duration::from_secs(15);
 

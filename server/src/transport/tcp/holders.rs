@@ -88,7 +88,7 @@ impl Holders {
     }
 
     /// What a client has shown that is about to leave the lobby for its seat.
-    pub(super) fn seating(&self, visitor: Visitor) -> Option<Shown> {
+    pub(super) fn shown_by(&self, visitor: Visitor) -> Option<Shown> {
         self.lock().visitors.get(&visitor).cloned()
     }
 

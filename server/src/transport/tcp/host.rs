@@ -112,7 +112,7 @@ impl Host {
     pub(super) fn hand_over(&self, visitor: Visitor) -> Option<Socket> {
         let (sender, receiver) = channel();
         // Before the order, with which the connection leaves the lobby.
-        let shown = self.holders.seating(visitor);
+        let shown = self.holders.shown_by(visitor);
         {
             let mut acceptor = self.acceptor();
             if !acceptor.seated(visitor) {
