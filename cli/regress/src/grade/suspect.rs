@@ -174,8 +174,8 @@ mod tests {
             }
             coverage
         };
-        for (lines, misses) in [(&[1, 3][..], true), (&[1, 3], true), (&[1, 2], false), (&[1, 2, 3], false)] {
-            spectrum.add(&of(lines), misses);
+        for (lines, misses) in [(vec![1, 3], true), (vec![1, 3], true), (vec![1, 2], false), (vec![1, 2, 3], false)] {
+            spectrum.add(&of(&lines), misses);
         }
         spectrum
     }
@@ -212,6 +212,6 @@ mod tests {
         let mut coverage = Coverage::default();
         coverage.add(&Row { file: "main.st".to_owned(), line: 1, of: Counted::Line, count: 1 });
         spectrum.add(&coverage, true);
-        assert_eq!(Evidence::default().suspects(&spectrum), []);
+        assert!(Evidence::default().suspects(&spectrum).is_empty());
     }
 }
