@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use serde_json::{Value, json};
 
 use super::alike;
-use super::line::{Remark, Remarks};
+use super::line::{Remark, Remarks, Suspect};
 use super::marks::{Graded, How, Marked, Missed, Standing};
 use super::task::{Item, Task};
 use crate::regress::plan::shown;
@@ -44,6 +44,7 @@ fn submission(task: &Task, graded: &Graded) -> Value {
             .collect::<Vec<_>>(),
         "cases": task.cases.iter().zip(&graded.ran)
             .map(|(case, ran)| of_case(&case.name, case.is_hidden, ran.as_ref())).collect::<Vec<_>>(),
+        "suspects": graded.suspects.iter().map(suspect).collect::<Vec<_>>(),
         "errors": errors.map(remarks),
         "warnings": read.map(|read| remarks(&read.warnings)),
         "executed_lines": lines,
@@ -68,6 +69,10 @@ fn missed(task: &Task, Missed { case, how, place, statements }: &Missed) -> Valu
     };
     json!({ "case": task.cases[*case].name, "how": word, "at_ns": at_ns, "values": values, "place": place,
         "statements": statements })
+}
+
+fn suspect(Suspect { file, line, why }: &Suspect) -> Value {
+    json!({ "file": file, "line": line, "why": why })
 }
 
 fn of_case(name: &str, is_hidden: bool, ran: Option<&Ran>) -> Value {

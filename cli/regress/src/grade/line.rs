@@ -21,6 +21,8 @@ pub(super) enum Line {
     Ran(usize, Box<Ran>),
     /// The statements that have to do with an expectation that was violated.
     Found(Found),
+    /// The lines to be looked at first.
+    Suspects(Vec<Suspect>),
     /// What was executed in all cases.
     Covered(Vec<Covered>),
     /// The last line: without it the process was ended before its time.
@@ -74,6 +76,15 @@ pub(super) struct Found {
     pub(super) place: Option<SourcePlace>,
     /// In words, a line each.
     pub(super) lines: Vec<String>,
+}
+
+/// A line of the submission that may well be the mistake.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Suspect {
+    pub(super) file: String,
+    pub(super) line: u32,
+    /// What is known against it, in words.
+    pub(super) why: String,
 }
 
 impl Remarks {

@@ -8,7 +8,7 @@ use onescan_runner::run::RunStatus;
 use onescan_server::client::SourcePlace;
 
 use super::limit::OUT_OF_MEMORY;
-use super::line::{Line, Read, Refused};
+use super::line::{Line, Read, Refused, Suspect};
 use super::submission::Submission;
 use super::task::{Item, Task};
 use crate::regress::limited::{Limits, Said};
@@ -24,6 +24,8 @@ pub(super) struct Graded {
     pub(super) ran: Vec<Option<Ran>>,
     /// What came of each expectation, in their order.
     pub(super) marked: Vec<Marked>,
+    /// The lines that are to be looked at first.
+    pub(super) suspects: Vec<Suspect>,
     pub(super) coverage: Coverage,
     /// Names of submissions that are equal to it.
     pub(super) alike: Vec<String>,
@@ -116,6 +118,7 @@ impl Graded {
             read: None,
             ran: vec![None; task.cases.len()],
             marked: Vec::new(),
+            suspects: Vec::new(),
             coverage: Coverage::default(),
             alike: Vec::new(),
             wall_time: Duration::ZERO,
@@ -136,6 +139,7 @@ impl Graded {
                     }
                 }
                 Line::Found(one) => found.push(one),
+                Line::Suspects(suspects) => this.suspects = suspects,
                 Line::Covered(rows) => rows.iter().for_each(|row| this.coverage.add(&row.row(""))),
                 Line::Done => is_done = true,
             }

@@ -12,6 +12,7 @@
 //! | `hand_in` | its sources, within limits |
 //! | `structure` | what a program is like, names and layout aside |
 //! | `reason` | which statements have to do with what is missed |
+//! | `suspect` | which lines are to be looked at first |
 //! | `line` | what the process says |
 //! | `marks` | the marks, from what was said |
 //! | `alike` | submissions that are equal |
@@ -36,6 +37,7 @@ mod spreadsheet;
 mod structure;
 mod submission;
 mod summary;
+mod suspect;
 mod task;
 pub mod worker;
 

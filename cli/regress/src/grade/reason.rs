@@ -14,14 +14,16 @@ use onescan_server::client::SourcePlace;
 use onescan_server::signal::{ClientName, SignalName};
 use onescan_server::time::VirtualTime;
 use onescan_soft_plc::Written;
+use similar::{Algorithm, DiffOp, capture_diff_slices};
 
-use super::line::Found;
+use super::line::{Found, Suspect};
 use super::structure;
+use super::suspect::{At, Evidence, Parting, Spectrum};
 use super::task::Task;
 use crate::regress::cause;
 use crate::regress::ran::{Ran, Shown};
 use crate::why::report::Runs;
-use crate::why::{self, Side};
+use crate::why::{self, Place, Side};
 
 /// Cases of a submission that are held against a solution: what breaks more breaks them for the same reason as a rule.
 const COMPARED_MAX: usize = 2;
@@ -39,6 +41,7 @@ pub(super) struct Reasons<'a> {
     solution: Option<Scenario>,
     compared: usize,
     traced: usize,
+    evidence: Evidence,
 }
 
 /// An expectation that a case violates, by its number, and when.
@@ -50,7 +53,13 @@ struct Violated<'a> {
 
 impl<'a> Reasons<'a> {
     pub(super) fn new(task: &'a Task, scenario: &'a Scenario) -> Self {
-        Self { task, scenario, solution: solution(task, scenario), compared: 0, traced: 0 }
+        let (solution, evidence) = (solution(task, scenario), Evidence::default());
+        Self { task, scenario, solution, compared: 0, traced: 0, evidence }
+    }
+
+    /// The lines to be looked at first, by all that has been found.
+    pub(super) fn suspects(&self, spectrum: &Spectrum) -> Vec<Suspect> {
+        self.evidence.suspects(spectrum)
     }
 
     /// The reasons of what a case violates, in the order of time.
@@ -83,7 +92,7 @@ impl<'a> Reasons<'a> {
 
     /// The statements that wrote the signals of expectations last before each was violated: the case is run once more, up
     /// to the last of them.
-    fn written(&self, number: usize, applied: &Scenario, violated: &[Violated<'_>]) -> Vec<Found> {
+    fn written(&mut self, number: usize, applied: &Scenario, violated: &[Violated<'_>]) -> Vec<Found> {
         let mut traced = applied.clone();
         let sink = traced.trace(self.own_signals());
         let elsewhere = |name: &ClientName, _: &Member| Usage::new(format!("`{name}` is not in this process"), None);
@@ -99,6 +108,13 @@ impl<'a> Reasons<'a> {
             let names = shown.values.iter().filter_map(|(name, _)| SignalName::new(name.clone()).ok());
             let writers = names.filter_map(|name| sink.writers.get_key_value(&name));
             let writers: Vec<(&SignalName, &Written)> = writers.collect();
+            for (signal, written) in &writers {
+                let site = &written.site.at;
+                self.evidence.wrote((site.file.clone(), site.line), signal.as_str());
+                if let Some(way) = written.within.first() {
+                    self.evidence.wrote((way.file.clone(), way.line), signal.as_str());
+                }
+            }
             let place = writers.first().map(|(_, written)| place(written));
             let lines = writers.iter().map(|(signal, written)| line(signal, written)).collect();
             if place.is_some() {
@@ -113,6 +129,25 @@ impl<'a> Reasons<'a> {
         let signals = self.scenario.plan().signals().iter();
         let own = signals.filter(|signal| signal.writer.as_ref() == Some(&self.task.client));
         own.map(|signal| signal.name.clone()).collect()
+    }
+
+    /// The line of the submission at which a statement of the solution is missing; nothing if their sources are laid out
+    /// otherwise than as text.
+    fn missing_at(&self, Place { file, line, text, .. }: &Place) -> Option<At> {
+        let programs =
+            [self.solution.as_ref()?, self.scenario].map(|scenario| scenario.program(&self.task.client).ok());
+        let [Some(theirs), Some(ours)] = &programs else { return None };
+        let theirs = theirs.iter().find(|input| input.file().name() == file).map(lines_of)?;
+        let at = (*line as usize).checked_sub(1)?;
+        // Of a drawing, lines are those of its elements, and not of a text.
+        if !theirs.get(at)?.contains(text.split_whitespace().next()?) {
+            return None;
+        }
+        // With several files, it is missing in the one that is most like the solution's.
+        let alike = |input: &&Input| lines_of(input).iter().filter(|line| theirs.contains(line)).count();
+        let own = ours.iter().max_by_key(alike)?;
+        let line = line_for(at, &theirs, &lines_of(own))?;
+        Some((own.file().name().to_owned(), u32::try_from(line).ok()? + 1))
     }
 
     /// Where the run parts from the solution's, for the first thing that is violated.
@@ -130,14 +165,34 @@ impl<'a> Reasons<'a> {
         let signals: Vec<SignalName> = names.collect();
         let end = VirtualTime::from_nanos(ran.virtual_time_ns);
         let until = first.at.min(end);
-        let asked = |until| why::explain(sides.each_ref(), &signals, until).ok().flatten();
-        let why = asked(until).or_else(|| if until < end { asked(end) } else { None })?;
-        let place = why.root().and_then(|root| root.at[1].as_ref());
-        let place = place.map(|place| SourcePlace { file: place.file.clone(), line: place.line, column: 1 });
+        let why = why::explain_violation(sides.each_ref(), &signals, until, end).ok().flatten()?;
+        let parted = why.root().and_then(|root| match &root.at {
+            [_, Some(own)] => Some(((own.file.clone(), own.line), Parting::Statement)),
+            [Some(of_solution), None] => Some((self.missing_at(of_solution)?, Parting::Missing)),
+            [None, None] => None,
+        });
+        let place = parted.as_ref().map(|((file, line), _)| SourcePlace { file: file.clone(), line: *line, column: 1 });
+        if let Some((at, how)) = parted {
+            self.evidence.parted(at, how);
+        }
         let shown = cause::Lines::of(&why, &Runs::named(["the solution", "the submission"]));
         let lines = shown.shown.iter().map(|line| one_line(line).into_owned()).collect();
         Some(Found { case: number, item: first.item, place, lines })
     }
+}
+
+/// The line of one text at which a line of another, counted from 0, would stand, by what stands around it.
+fn line_for(at: usize, theirs: &[&str], ours: &[&str]) -> Option<usize> {
+    let operations = capture_diff_slices(Algorithm::Myers, theirs, ours);
+    let around = operations.iter().find(|operation| operation.old_range().contains(&at))?;
+    let (old, new) = (around.old_range(), around.new_range());
+    let within = if let DiffOp::Delete { .. } = around { 0 } else { at - old.start };
+    Some((new.start + within.min(new.len().saturating_sub(1))).min(ours.len().checked_sub(1)?))
+}
+
+/// The lines of a source without their indents.
+fn lines_of(input: &Input) -> Vec<&str> {
+    input.file().text().lines().map(str::trim).collect()
 }
 
 /// The task with the solution that the program is most like; nothing if it is like none.
@@ -162,4 +217,18 @@ fn line(signal: &SignalName, written: &Written) -> String {
     let (file, at) = (&site.at.file, site.at.line);
     let text = format!("{signal} was written at {} by {file}:{at}: {}{within}", written.t_v, site.statement);
     one_line(&text).into_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_statement_is_missing_where_its_neighbours_stand() {
+        let solution = ["a;", "b;", "c;", "d;"];
+        assert_eq!(line_for(1, &solution, &["(* mine *)", "a;", "c;", "d;"]), Some(2));
+        assert_eq!(line_for(3, &solution, &["a;", "b;", "c;"]), Some(2), "the last line there is");
+        assert_eq!(line_for(1, &solution, &["a;", "x;", "c;", "d;"]), Some(1));
+        assert_eq!((line_for(9, &solution, &solution), line_for(0, &solution, &[])), (None, None));
+    }
 }

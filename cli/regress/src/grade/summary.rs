@@ -11,6 +11,7 @@ use onescan_server::time::VirtualTime;
 
 use super::alike;
 use super::config::Detail;
+use super::line::Suspect;
 use super::marks::{Graded, How, Marked, Missed, Standing, percent};
 use super::task::{Item, Task};
 
@@ -122,7 +123,7 @@ pub(super) fn details(task: &Task, graded: &Graded) -> Vec<String> {
     lines
 }
 
-/// What went wrong: why it could not be graded, faults, then what is missed.
+/// What went wrong: why it could not be graded, faults, what is missed, and which lines are to be looked at for it.
 pub(super) fn missed(task: &Task, graded: &Graded) -> Vec<String> {
     let mut lines = Vec::new();
     if let Standing::Refused(refused) = &graded.standing {
@@ -135,6 +136,8 @@ pub(super) fn missed(task: &Task, graded: &Graded) -> Vec<String> {
     for (item, marked) in ordered(task, graded) {
         lines.extend(of_item(task, item, marked));
     }
+    let look = |Suspect { file, line, why }: &Suspect| format!("look at {file}:{line}: {why}");
+    lines.extend(graded.suspects.iter().map(look));
     lines
 }
 

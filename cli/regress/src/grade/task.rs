@@ -133,11 +133,11 @@ impl Task {
     fn take(&mut self, catalogue: usize, case: Case) -> Result<(), GradeError> {
         let applied = self.scenario.clone().with_case(&self.catalogues[catalogue], &case)?;
         // The values of a matrix stand behind the name of their entry.
-        let entry = case.name.split(',').next().unwrap_or(&case.name).to_owned();
+        let entry = case.name.split_once(',').map_or(case.name.as_str(), |(entry, _)| entry).to_owned();
         let mut judged = Vec::new();
         for (name, _) in &applied.expectations().named {
-            // Each has one.
-            let worth = applied.expectations().worth.get(name).cloned().unwrap_or_default();
+            let worth = applied.expectations().worth.get(name).cloned();
+            let worth = worth.ok_or_else(|| without_worth(name, &case.name))?;
             let of = case.entry.filter(|_| worth.owner == Owner::Case).map(|entry| (catalogue, entry));
             let is_hidden = of.is_some() && catalogue > 0;
             let item = Item { name: name.clone(), case: of.map(|_| entry.clone()), is_hidden, worth, of };
@@ -150,6 +150,12 @@ impl Task {
         self.cases.push(TaskCase { name: case.name.clone(), is_hidden: catalogue > 0, judged, catalogue, case });
         Ok(())
     }
+}
+
+/// Each expectation that is read has its worth, be it of no marks; one without would be graded by a guess.
+fn without_worth(name: &str, case: &str) -> Usage {
+    let help = "this is a fault of onescan, which reads marks with each expectation: please report it".to_owned();
+    Usage::new(format!("nothing says what the expectation `{name}` of case `{case}` is worth"), Some(help))
 }
 
 /// The soft PLC whose program is handed in.

@@ -4,7 +4,7 @@ use std::io::Write;
 use std::sync::PoisonError;
 
 use onescan_iec::{Input, Severity};
-use onescan_iec_run::{Application, BuildError};
+use onescan_iec_run::{Application, BuildError, Coverage};
 use onescan_report::OutputError;
 use onescan_runner::interrupt::Interrupt;
 use onescan_runner::run::{RunConfig, RunStatus, watched};
@@ -14,10 +14,11 @@ use super::config::WorkConfig;
 use super::error::GradeError;
 use super::line::{Line, Read, Refused, Remarks, text_of};
 use super::reason::Reasons;
+use super::suspect::Spectrum;
 use super::task::{Task, TaskCase};
 use super::{hand_in, limit, structure};
 use crate::regress::limited::end_with_parent;
-use crate::regress::ran::{Covered, Ran};
+use crate::regress::ran::{Covered, Ran, Shown};
 
 /// Grades a submission and writes what comes of it to `out`.
 ///
@@ -34,20 +35,24 @@ pub fn work(config: &WorkConfig, out: &mut dyn Write) -> Result<(), GradeError> 
         Err(refused) => return said.line(&Line::Refused(refused)),
     };
     said.line(&Line::Read(read))?;
-    let mut all = Vec::new();
+    let (mut all, mut covered, mut spectrum) = (Vec::new(), Coverage::default(), Spectrum::default());
     for (number, case) in task.cases.iter().enumerate() {
-        let ran = run(&task, &scenario, case);
+        let (ran, executed) = run(&task, &scenario, case);
+        if let Some(executed) = executed {
+            covered.merge(&executed);
+            spectrum.add(&executed, misses_something(&ran));
+        }
         said.line(&Line::Ran(number, Box::new(ran.clone())))?;
         all.push(ran);
     }
-    let covered = scenario.coverage().map(|sink| Covered::all(&sink.lock().unwrap_or_else(PoisonError::into_inner)));
-    said.line(&Line::Covered(covered.unwrap_or_default()))?;
+    said.line(&Line::Covered(Covered::all(&covered)))?;
     let mut reasons = Reasons::new(&task, &scenario);
     for (number, ran) in all.iter().enumerate() {
         for found in reasons.of_case(number, ran) {
             said.line(&Line::Found(found))?;
         }
     }
+    said.line(&Line::Suspects(reasons.suspects(&spectrum)))?;
     said.line(&Line::Done)
 }
 
@@ -79,9 +84,11 @@ fn compiled(task: &Task, program: Vec<Input>) -> Result<(Scenario, Read), Refuse
 /// The warnings of a program that compiles.
 fn inspected(task: &Task, scenario: &Scenario) -> Result<Remarks, Refused> {
     let inputs = scenario.program(&task.client).map_err(|error| Refused::because(&text_of(&error)))?;
-    let plc = scenario.plcs().find(|plc| *plc.name == task.client);
-    let (plan, memory) = plc.map(|plc| (plc.plan, plc.memory_limit)).unwrap_or_default();
-    match Application::builder().inputs(inputs).memory_limit(memory).inspected(plan).build() {
+    let Some(plc) = scenario.plcs().find(|plc| *plc.name == task.client) else {
+        let file = scenario.path().display();
+        return Err(Refused::because(&format!("{file}: the task has no soft PLC `{}`", task.client)));
+    };
+    match Application::builder().inputs(inputs).memory_limit(plc.memory_limit).inspected(plc.plan).build() {
         Ok(application) => Ok(Remarks::of(application.warnings().findings().iter())),
         Err(BuildError::Sources(found)) => {
             let errors = found.findings().iter().filter(|finding| finding.diagnostic().severity == Severity::Error);
@@ -91,17 +98,28 @@ fn inspected(task: &Task, scenario: &Scenario) -> Result<Remarks, Refused> {
     }
 }
 
-fn run(task: &Task, scenario: &Scenario, case: &TaskCase) -> Ran {
+/// Runs a case, and says what the program executed in it; nothing if it was not run.
+fn run(task: &Task, scenario: &Scenario, case: &TaskCase) -> (Ran, Option<Coverage>) {
     let failed = |error: String| Ran { error: Some(error), ..Ran::new(case.name.clone(), RunStatus::Failed) };
     let applied = match task.applied(scenario, case) {
         Ok(applied) => applied,
-        Err(error) => return failed(text_of(&error)),
+        Err(error) => return (failed(text_of(&error)), None),
     };
+    // What this case executes, and not what those before it did.
+    let mut applied = applied.unobserved();
+    applied.cover();
     let config = RunConfig::headless(task.scenario.path().to_owned(), Some(case.name.clone()));
-    match watched(&config, &applied, &Interrupt::new(), Vec::new()) {
+    let ran = match watched(&config, &applied, &Interrupt::new(), Vec::new()) {
         Ok((report, _)) => sayable(Ran::of(&case.name, &report, applied.file().step.as_nanos())),
         Err(error) => failed(text_of(&error)),
-    }
+    };
+    let executed = applied.coverage().map(|sink| sink.lock().unwrap_or_else(PoisonError::into_inner).clone());
+    (ran, executed)
+}
+
+/// True if a case does not show all that it was to show.
+fn misses_something(ran: &Ran) -> bool {
+    ran.status != RunStatus::Completed || ran.expectations.iter().any(Shown::is_violated)
 }
 
 /// The same without values that JSON has no word for: a program may well make a NaN.

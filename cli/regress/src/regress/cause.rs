@@ -73,12 +73,7 @@ fn cause(unit: &CaseUnit, outcome: &Outcome, references: &mut References) -> Res
     // A PLC that stops has gone another way in the step that it does not end.
     let end = VirtualTime::from_nanos(outcome.virtual_time_ns) + scenario.plan().step();
     let until = first.unwrap_or(end);
-    let mut why = why::explain(sides.each_ref(), &signals, until)?;
-    if why.is_none() && until < end {
-        // An expectation is violated at the instant that it speaks of, which may lie before the first value that differs.
-        why = why::explain(sides.each_ref(), &signals, end)?;
-    }
-    let Some(why) = why else { return Ok(None) };
+    let Some(why) = why::explain_violation(sides.each_ref(), &signals, until, end)? else { return Ok(None) };
     let Lines { shown: mut lines, root, more } = Lines::of(&why, &Runs::since(&commit));
     if more > 0 {
         lines.push(format!("  ... and {more} more: see `onescan diff`"));

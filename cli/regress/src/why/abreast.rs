@@ -1,6 +1,7 @@
 //! Two runs side by side, scan by scan, without keeping either.
 
 use std::collections::{BTreeMap, VecDeque};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, sync_channel};
 use std::{io, thread};
 
@@ -12,7 +13,7 @@ use onescan_server::signal::ClientName;
 use onescan_server::time::VirtualTime;
 use onescan_soft_plc::journal::{Journalling, Part, Scan, Seen, Wanted};
 
-use onescan_runner::run::rerun::rerun;
+use onescan_runner::run::rerun::rerun_while;
 
 /// Scans that a run may be ahead of who looks at it.
 const AHEAD: usize = 64;
@@ -101,16 +102,20 @@ fn abreast(
     wanted: [Wanted; 2],
     mut look: impl FnMut([Option<Scan>; 2]) -> bool,
 ) -> io::Result<()> {
+    // Who has seen enough does not wait for the end of either run.
+    let is_enough = &AtomicBool::new(false);
     thread::scope(|scope| {
+        let _ended = Raised(is_enough);
         let [first, second] = wanted;
         let listen_to = |side: &Side<'_>, wanted| {
             let (scans, listening) = sync_channel(AHEAD);
             let mut scenario = side.scenario.clone();
             scenario.journal(Journalling { wanted, scans });
             let inputs = side.inputs.clone();
+            let is_wanted = move || !is_enough.load(Ordering::Relaxed);
             threads::start_in(scope, "run", move || {
                 // What it did up to its end is what counts here; the run itself has been judged already.
-                if let Err(error) = rerun(&scenario, until, inputs) {
+                if let Err(error) = rerun_while(&scenario, until, inputs, is_wanted) {
                     tracing::debug!(%error, "a run that is looked at ends");
                 }
             })?;
@@ -134,6 +139,16 @@ fn abreast(
         }
         Ok(())
     })
+}
+
+/// Raises a flag as it goes, whichever way that is.
+struct Raised<'f>(&'f AtomicBool);
+
+impl Drop for Raised<'_> {
+    fn drop(&mut self) {
+        // `Relaxed` is enough: it says nothing of other memory, and a step more does no harm.
+        self.0.store(true, Ordering::Relaxed);
+    }
 }
 
 /// Takes the next scan of the run of which fewer wait, and gives those of its PLC; nothing once both have ended.

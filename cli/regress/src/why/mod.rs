@@ -90,6 +90,11 @@ pub fn explain(
             (name.clone(), Flow::new(name.clone(), both.applications.clone(), &inputs))
         })
         .collect();
+    let is_written = |signal: &SignalName| {
+        plcs.values().any(|both| both.bindings.outputs.iter().any(|bound| bound.port.name == *signal))
+    };
+    // Where no PLC writes what is asked for, the first output that differs is the answer.
+    let is_any = !signals.iter().any(is_written);
     let mut records = Vec::new();
     let mut found: Option<(SignalName, usize)> = None;
     let looked = abreast::acts(sides, from, until, |pair| {
@@ -107,7 +112,7 @@ pub fn explain(
         let differing: Vec<_> = differing.collect();
         let asked = differing.iter().find(|(signal, _)| signals.contains(signal));
         found = asked.cloned().or_else(|| found.take()).or_else(|| differing.first().cloned());
-        asked.is_none()
+        asked.is_none() && !(is_any && found.is_some())
     });
     if let Err(error) = looked {
         not_looked_for(&error);
@@ -119,6 +124,23 @@ pub fn explain(
         None => (None, 0),
     };
     Ok(Some(Why { signal, links: way_back(&records, record) }))
+}
+
+/// As [`explain`] up to `until`, an expectation's violation; and where nothing differs up to there, up to `end`. An expectation
+/// is violated at the instant that it speaks of, which may lie before the first value that differs.
+///
+/// # Errors
+/// As those of [`explain`].
+pub fn explain_violation(
+    sides: [&Side<'_>; 2],
+    signals: &[SignalName],
+    until: VirtualTime,
+    end: VirtualTime,
+) -> Result<Option<Why>, ScenarioError> {
+    match explain(sides, signals, until)? {
+        None if until < end => explain(sides, signals, end),
+        why => Ok(why),
+    }
 }
 
 /// What differs is known without the reason for it.

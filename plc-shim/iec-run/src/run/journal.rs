@@ -63,6 +63,8 @@ pub struct Statement {
 pub(in crate::run) struct Journal {
     acts: Vec<Act>,
     last: Vec<u8>,
+    /// Bytes of memory that are in use; what the module has behind them, up to the end of its page, is nobody's.
+    used: usize,
 }
 
 /// Most acts that are kept of a scan: a program may run in a loop for as long as its budget lasts.
@@ -72,9 +74,10 @@ pub const ACTS_MAX: usize = 1_000_000;
 const BLOCK: usize = 1024;
 
 impl Journal {
-    /// A scan begins; what changed since the last one was written from outside.
+    /// A scan begins with this memory in use; what changed since the last one was written from outside.
     pub(super) fn begin(&mut self, memory: &[u8]) {
         self.acts.clear();
+        self.used = memory.len();
         self.wrote(None, memory, Vec::new);
     }
 
@@ -106,6 +109,8 @@ impl Journal {
 
     /// Notes what has changed in `memory` since it was last looked at, as written by `statement`.
     pub(super) fn wrote(&mut self, statement: Option<u32>, memory: &[u8], frames: impl FnOnce() -> Frames) {
+        // Looked at twice a statement: a page has 64 KiB, and a program a few of them.
+        let memory = memory.get(..self.used).unwrap_or(memory);
         let changes = changes(&self.last, memory);
         if changes.is_empty() {
             return;
@@ -177,6 +182,18 @@ impl Application {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The rest of the last page is not looked at.
+    #[test]
+    fn memory_that_nobody_uses_is_left_aside() {
+        let mut journal = Journal::default();
+        let mut page = vec![0; 8];
+        journal.begin(&page[..4]);
+        (page[3], page[6]) = (1, 1);
+        journal.wrote(None, &page, Vec::new);
+        let changes = vec![(3, vec![1])];
+        assert_eq!(journal.acts(), [Act::Wrote(Wrote { statement: None, frames: Vec::new(), changes })]);
+    }
 
     #[test]
     fn changes_are_found_across_blocks() {

@@ -130,7 +130,7 @@ impl Machine {
     /// A scan begins.
     pub(super) fn begin_trace(&mut self) {
         if let Some(mut trace) = self.store.data_mut().trace.take() {
-            trace.begin_scan(self.memory.data(&self.store));
+            trace.begin_scan(&self.memory.data(&self.store)[..self.size]);
             self.store.data_mut().trace = Some(trace);
         }
     }
@@ -138,7 +138,7 @@ impl Machine {
     /// A scan is over.
     pub(super) fn end_trace(&mut self) {
         if let Some(mut trace) = self.store.data_mut().trace.take() {
-            trace.end_scan(self.memory.data(&self.store));
+            trace.end_scan(&self.memory.data(&self.store)[..self.size]);
             self.store.data_mut().trace = Some(trace);
         }
     }
