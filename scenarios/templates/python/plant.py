@@ -1,8 +1,5 @@
 """A tank in 20 lines: a valve fills it, and it leaks."""
-try:
-    from onescan_client import Input, Output, Simulation
-except ModuleNotFoundError as missing:
-    raise SystemExit(f"plant.py needs the package {missing.name}: type `pip install onescan`") from None
+from onescan_client import Input, Output, Simulation
 
 
 class Tank(Simulation):

@@ -119,6 +119,14 @@ pub(crate) const SCRIPTS: &[Script] = &[
         not_on_windows: Some("it expects the environment of Python in `bin`"),
     },
     Script {
+        name: "learn",
+        file: "tests/learn",
+        language: Language::Python,
+        about: "wrong programs for the machines to learn on, graded: does each report name the line of the mistake?",
+        time: "4 s per program",
+        not_on_windows: None,
+    },
+    Script {
         name: "robots",
         file: "tests/robots/compare",
         language: Language::Python,

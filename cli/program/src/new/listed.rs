@@ -1,6 +1,6 @@
 //! What was taken over from an I/O list, and what was not.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::path::Path;
 
@@ -10,6 +10,7 @@ use serde::Serialize;
 
 use super::proposal::Proposal;
 use super::signal::Signal;
+use super::text::allowance;
 use crate::io_list::{Direction, IoList, ListKind};
 use onescan_runner::format::Format;
 
@@ -122,20 +123,6 @@ fn human(listed: &Listed, out: &mut dyn Write) -> io::Result<()> {
     });
     section("left out", &left_out.collect::<Vec<_>>(), out)?;
     writeln!(out, "\nnext: onescan run {}{}", listed.folder.display(), allowance(list))
-}
-
-/// What a command needs so that the scenario may read sources that stay where they are, outside of its folder.
-pub(super) fn allowance(list: &IoList) -> String {
-    let from = Path::new(&list.from);
-    // one word for a whole project, whose folders have their sources each
-    let project = if from.is_dir() { Some(from) } else { from.parent() };
-    let files = list.sources.iter().flat_map(|sources| &sources.files);
-    let folders: BTreeSet<&Path> = files
-        .filter_map(|file| file.parent())
-        .map(|folder| project.filter(|project| folder.starts_with(project)).unwrap_or(folder))
-        .collect();
-    let written = |folder: &Path| if folder == Path::new("") { ".".to_owned() } else { folder.display().to_string() };
-    folders.into_iter().map(|folder| format!(" --allow-path {}", written(folder))).collect()
 }
 
 fn section(title: &str, lines: &[String], out: &mut dyn Write) -> io::Result<()> {

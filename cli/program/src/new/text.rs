@@ -1,6 +1,8 @@
 //! The files of a scenario that is made of an I/O list.
 
+use std::collections::BTreeSet;
 use std::fmt::Write;
+use std::path::Path;
 
 use onescan_base::SignalType;
 use onescan_iec_run::literal;
@@ -8,7 +10,6 @@ use onescan_report::number::counted;
 use onescan_server::time::TimeSpan;
 use serde_json::Value;
 
-use super::listed::allowance;
 use super::signal::{Plc, Signal};
 use crate::io_list::{Direction, IoList, ListLink};
 use crate::map::Fragment;
@@ -282,4 +283,18 @@ What to do next:
         title = list.kind.title(),
         allowance = allowance(list),
     )
+}
+
+/// What a command needs so that the scenario may read sources that stay where they are, outside of its folder.
+pub(super) fn allowance(list: &IoList) -> String {
+    let from = Path::new(&list.from);
+    // one word for a whole project, whose folders have their sources each
+    let project = if from.is_dir() { Some(from) } else { from.parent() };
+    let files = list.sources.iter().flat_map(|sources| &sources.files);
+    let folders: BTreeSet<&Path> = files
+        .filter_map(|file| file.parent())
+        .map(|folder| project.filter(|project| folder.starts_with(project)).unwrap_or(folder))
+        .collect();
+    let written = |folder: &Path| if folder == Path::new("") { ".".to_owned() } else { folder.display().to_string() };
+    folders.into_iter().map(|folder| format!(" --allow-path {}", written(folder))).collect()
 }

@@ -55,7 +55,7 @@ impl Spectrum {
         let base = squared_ochiai(self.missing, self.missing, self.others);
         for ((at, outcome), row) in &self.rows {
             let absent = Executed { others: self.others - row.others, missing: self.missing - row.missing };
-            // What no case executes tells the cases from each other as little as what all do.
+            // What no case executes distinguishes them as little as what all execute.
             let ways = [("executed", *row), ("not executed", absent)];
             for (word, Executed { others, missing }) in ways {
                 let how_much = squared_ochiai(missing, self.missing, others);
