@@ -21,6 +21,7 @@ const PLACEHOLDERS: &[(&str, &str)] = &[
     ("FOLDER", "my-cell"),
     ("KIND", "light_barrier"),
     ("LIST", "list.csv"),
+    ("MACHINE", "tank-level"),
     ("MODE", "halt"),
     ("NAME", "matiec"),
     ("PROJECT", "Plc.plcproj"),

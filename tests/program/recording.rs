@@ -5,6 +5,7 @@ use std::process::Command;
 
 use onescan_recording::Recording;
 
+use crate::access::flat;
 use crate::typed::{Said, begun, copied_shear, edit, run_shear, scenario, typed};
 use crate::venv::python;
 
@@ -244,7 +245,7 @@ fn a_recording_that_is_cut_short_says_so_and_replaces_nothing() {
     let export = |of: &str| {
         let said = typed(folder.path(), &["export", of, "-o", csv.to_str().unwrap()]);
         assert_eq!(said.code, Some(0), "{said:?}");
-        said.err
+        flat(&said.err)
     };
     let run = recording(&out, &[]);
     assert!(export(place).contains("is being recorded: it holds steps 0 to "));

@@ -169,7 +169,7 @@ fn what_was_at_work_is_at_work_again() {
 fn lessons_in_a_folder_are_checked_at_their_places() {
     let listed = typed(&scenario("arc-furnace"), &["train", "."]);
     assert!(
-        listed.code == Some(0) && listed.out.contains("\nblind: ") && listed.out.contains("\nlink-lost: "),
+        listed.code == Some(0) && listed.out.contains("\nblind\n") && listed.out.contains("\nlink-lost\n"),
         "{listed:?}"
     );
     for (file, from, to, reported) in [

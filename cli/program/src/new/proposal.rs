@@ -150,7 +150,7 @@ fn rule_for(signal: &Signal) -> Option<&'static Rule> {
         words.iter().any(|own| if is_short { own == word } else { own.contains(*word) })
     };
     let fits = |rule: &&Rule| {
-        rule.direction == point.direction && rule.value == value && rule.words.iter().any(|word| names(&word))
+        rule.direction == point.direction && rule.value == value && rule.words.iter().any(|word| names(word))
     };
     RULES.iter().find(fits)
 }
@@ -202,6 +202,7 @@ mod tests {
     use onescan_plant::Scene;
 
     use super::*;
+    use crate::io_list::Direction::{Input, Output};
     use crate::io_list::{IoPoint, Place};
 
     fn signal(name: &str, direction: Direction, ty: &str) -> Signal {
@@ -214,7 +215,6 @@ mod tests {
     #[test]
     fn names_suggest_components() {
         let kind = |name: &str, direction, ty| rule_for(&signal(name, direction, ty)).map(|rule| rule.kind);
-        use Direction::{Input, Output};
         assert_eq!(kind("LS_1", Input, "BOOL"), Some("light_barrier"));
         assert_eq!(kind("B2_Lichtschranke", Input, "BOOL"), Some("light_barrier"));
         assert_eq!(kind("xStartButton", Input, "BOOL"), Some("push_button"));
