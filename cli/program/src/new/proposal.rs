@@ -149,9 +149,7 @@ fn rule_for(signal: &Signal) -> Option<&'static Rule> {
         let is_short = word.chars().count() <= SHORT;
         words.iter().any(|own| if is_short { own == word } else { own.contains(*word) })
     };
-    let fits = |rule: &&Rule| {
-        rule.direction == point.direction && rule.value == value && rule.words.iter().any(|word| names(word))
-    };
+    let fits = |rule: &&Rule| rule.direction == point.direction && rule.value == value && rule.words.iter().any(&names);
     RULES.iter().find(fits)
 }
 
