@@ -334,7 +334,7 @@ fn no_number_of_a_kind_of_component_is_beyond_the_plant() {
     std::fs::create_dir(folder.path().join("components")).expect("a folder");
     std::fs::write(&kind, block("summary = \"press")).expect("a file");
     std::fs::write(&scene, block("kind = \"press\"").replace(", \"../shared/components\"", "")).expect("a file");
-    let oven = page.split("```st\n").skip(1).filter_map(|block| block.split("```").next()).next().expect("an oven");
+    let oven = page.split("```st\n").skip(1).find_map(|block| block.split("```").next()).expect("an oven");
     std::fs::write(folder.path().join("components/oven.st"), oven).expect("a file");
     let name = ClientName::new("plant").expect("a name");
     Plant::load(&scene, name, TimeSpan::nanos::<10_000_000>()).expect("the manual is right");

@@ -220,10 +220,13 @@ fn one_run_records_into_a_folder_at_a_time() {
 /// A run of a virtual hour that records into `out`, once it has some steps on the disk.
 fn recording(out: &Path, more: &[&str]) -> std::process::Child {
     let words = ["run", ".", "--until", "1h", "--pace", "1", "--record", out.to_str().unwrap()];
+    let described = || std::fs::metadata(out.join("run-1/recording.json")).and_then(|file| file.modified()).ok();
+    // A recording that is replaced has the same files.
+    let earlier = described();
     let mut run = begun(&scenario("shear"), &[&words[..], more].concat());
     let parts = || std::fs::read_dir(out.join("run-1/trajectory")).into_iter().flatten().flatten();
     let is_part = |entry: std::fs::DirEntry| entry.file_name().to_string_lossy().starts_with("part-");
-    while !(out.join("run-1/recording.json").exists() && parts().any(is_part)) {
+    while !(described().is_some() && described() != earlier && parts().any(is_part)) {
         assert!(run.try_wait().unwrap().is_none(), "{:?}", Said::from(run.wait_with_output().unwrap()));
         std::thread::sleep(std::time::Duration::from_millis(20));
     }
@@ -257,7 +260,7 @@ fn a_recording_that_is_cut_short_says_so_and_replaces_nothing() {
     assert_eq!(export(place), "");
     let report = std::fs::read(out.join("run-1/run.json")).unwrap();
     // A session that does not begin costs nothing.
-    let none = ["run", ".", "--record", place, "--overwrite", "--transport", "tcp", "--join-timeout", "1ms"];
+    let none = ["run", ".", "--record", place, "--overwrite", "--opcua-client", "plc", "--join-timeout", "100ms"];
     let said = typed(&scenario("shear"), &none);
     assert_eq!(said.code, Some(3), "{said:?}");
     assert_eq!((std::fs::read(out.join("run-1/run.json")).unwrap(), export(place)), (report.clone(), String::new()));

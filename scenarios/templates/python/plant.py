@@ -1,5 +1,8 @@
 """A tank in 20 lines: a valve fills it, and it leaks."""
-from onescan_client import Input, Output, Simulation
+try:
+    from onescan_client import Input, Output, Simulation
+except ModuleNotFoundError as missing:
+    raise SystemExit(f"plant.py needs the package {missing.name}: type `pip install onescan`") from None
 
 
 class Tank(Simulation):
