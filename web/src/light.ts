@@ -58,11 +58,12 @@ export class Light {
     this.ground.visible = isCast;
   }
 
-  /** A dark room has more light from all sides: what turns away from the sun is not lost in it. */
+  /** A dark room has more light from all sides and less from above: what turns away is not lost in it, and a white floor does not glare. */
   theme(background: Color): void {
     const isDark = background.getHSL({ h: 0, s: 0, l: 0 }).l < 0.4;
-    this.sky.intensity = isDark ? 1.6 : 1.1;
-    this.all.intensity = isDark ? 0.7 : 0.25;
+    this.sun.intensity = isDark ? 1.2 : 1.9;
+    this.sky.intensity = isDark ? 1.2 : 1.1;
+    this.all.intensity = isDark ? 0.6 : 0.25;
     this.ground.material.opacity = isDark ? 0.5 : 0.28;
   }
 }

@@ -1,6 +1,7 @@
 //! One submission, in a process of its own: it compiles the program, runs every case, and says what it finds as it goes.
 
 use std::io::Write;
+use std::path::Path;
 use std::sync::PoisonError;
 
 use onescan_iec::{Input, Severity};
@@ -30,7 +31,8 @@ pub fn work(config: &WorkConfig, out: &mut dyn Write) -> Result<(), GradeError> 
     let task = Task::open(&config.task)?;
     let mut said = Said(out);
     let read = hand_in::read(&task.client, &config.submission).map_err(|why| Refused::because(&why));
-    let (scenario, read) = match read.and_then(|program| compiled(&task, program)) {
+    let is_own = lies_in(&config.submission, task.scenario.folder());
+    let (scenario, read) = match read.and_then(|program| compiled(&task, program, is_own)) {
         Ok(compiled) => compiled,
         Err(refused) => return said.line(&Line::Refused(refused)),
     };
@@ -67,11 +69,17 @@ impl Said<'_> {
     }
 }
 
+/// True if a submission is a file of the task, in whose folder somebody wrote it.
+fn lies_in(submission: &Path, folder: &Path) -> bool {
+    matches!((submission.canonicalize(), folder.canonicalize()), (Ok(one), Ok(other)) if one.starts_with(other))
+}
+
 /// The task with a program, which notes what is executed, and what there is to say of the program.
-fn compiled(task: &Task, program: Vec<Input>) -> Result<(Scenario, Read), Refused> {
+fn compiled(task: &Task, program: Vec<Input>, is_own: bool) -> Result<(Scenario, Read), Refused> {
     let structure = structure::of(&program);
-    // A task may come without a program to complete: then nobody hands it in again.
-    let own = task.scenario.program(&task.client).ok().map(|own| structure::of(&own));
+    // A task may come without a program to complete: then nobody hands it in again. The task's own file is always equal to itself.
+    let handed_out = if is_own { None } else { task.scenario.program(&task.client).ok() };
+    let own = handed_out.map(|own| structure::of(&own));
     let mut scenario = task.scenario.clone().with_program(&task.client, program);
     let warnings = inspected(task, &scenario)?;
     scenario.cover();
