@@ -29,10 +29,10 @@ fn what_is_over_is_looked_back_at_and_gone_on_from() {
     let served = Served::begin("shear", &["--until", "1s", "--pace", "max", "--await-viewer", "--stay"]);
     let mut viewer = served.view();
     let mut end = status(&mut viewer, "end");
-    while end["past_ns"].is_null() {
+    // The past is run again behind the session: statuses before it has all of it show how far it is.
+    while end["past_ns"] != json!([0, 1_000_000_000]) {
         end = status(&mut viewer, "end");
     }
-    assert_eq!(end["past_ns"], json!([0, 1_000_000_000]));
     assert_eq!(end["digest"], digest("1s"));
 
     ask(&mut viewer, &json!({"type": "show", "t_ns": 500_000_000}));
