@@ -71,7 +71,7 @@ impl Said<'_> {
 
 /// True if a submission is a file of the task, in whose folder somebody wrote it.
 fn lies_in(submission: &Path, folder: &Path) -> bool {
-    matches!((submission.canonicalize(), folder.canonicalize()), (Ok(one), Ok(other)) if one.starts_with(other))
+    matches!((submission.canonicalize(), folder.canonicalize()), (Ok(one), Ok(other)) if one.starts_with(&other))
 }
 
 /// The task with a program, which notes what is executed, and what there is to say of the program.
