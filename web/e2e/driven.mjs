@@ -14,7 +14,7 @@ const furnace = join(scenarios, "arc-furnace");
 const room = await mkdtemp(join(tmpdir(), "driven-"));
 const browser = await browse();
 
-const plc = spawn(program, ["plc", furnace, "--client", "process", "--cycle", "max", "--s7", "127.0.0.1:0"], { stdio: ["pipe", "pipe", "ignore"] });
+const plc = spawn(program, ["plc", furnace, "--client", "process", "--cycle", "2ms", "--s7", "127.0.0.1:0"], { stdio: ["pipe", "pipe", "ignore"] });
 const gateway = await new Promise((found, lost) => {
   let said = "";
   plc.stdout.on("data", (data) => {
@@ -43,7 +43,7 @@ const share = (page) => page.locator(".lesson-drive progress").evaluate((bar) =>
 /** While the PLC is on its way: what both read, and that nothing can be pressed. */
 async function is_driven(trainee, trainer) {
   await trainee.page.getByText(/^PLC process is being driven from its cold start by way of melting to 13:00: it is at [0-9:]+, [0-9]+ %\.$/).waitFor();
-  await trainer.page.getByText(/^Die SPS process wird von ihrem Kaltstart über melting bis 13:00 gefahren: Sie ist bei [0-9:]+, [0-9]+ %\.$/).waitFor();
+  await trainer.page.getByText(/^Die SPS process wird von ihrem Kaltstart über Schmelzen bis 13:00 gefahren: Sie ist bei [0-9:]+, [0-9]+ %\.$/).waitFor();
   await trainee.page.getByText("the PLC is driven", { exact: true }).waitFor();
   const key = panel(trainee.page, "pulpit").getByRole("switch", { name: /^Automatic/ });
   await key.and(trainee.page.locator(":disabled")).waitFor();
