@@ -48,7 +48,7 @@ fn refuse_without_headings(path: &Path, first: &csv::StringRecord) -> Result<(),
     let first: Vec<&str> = first.iter().collect();
     Err(ListError::Other {
         file: path.display().to_string(),
-        what: format!("its first line is `{}`, which has not the headings of a tag table", one_line(&first.join(";"))),
+        what: format!("its first line is `{}`, which does not have the headings of a tag table", one_line(&first.join(";"))),
         help: Some(
             "TIA Portal writes `Name`, `Data Type` and `Logical Address`; of CODESYS, onescan reads what `Export mappings \
              to CSV` in the context menu of a device writes"

@@ -144,7 +144,7 @@ impl<'r> Comparison<'r> {
         }
     }
 
-    /// What is compared.
+    /// What an answer of "no difference" rests on.
     pub fn compared(&self) -> Compared {
         match self.basis {
             Basis::Digests => {

@@ -29,7 +29,7 @@ pub(super) const NAMES: [&str; 2] = ["A", "B"];
 #[derive(Debug)]
 pub struct Report {
     pub recordings: [Recording; 2],
-    /// What was compared.
+    /// What "no difference" rests on.
     pub compared: Compared,
     /// Where they part; nothing if they are equal.
     pub divergence: Option<Divergence>,

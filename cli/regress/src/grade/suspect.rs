@@ -85,7 +85,7 @@ fn squared_ochiai(hits: usize, all: usize, others: usize) -> f64 {
 /// What a run parts from the solution's by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Parting {
-    /// The statement there.
+    /// The submission executes this one where the solution executes another.
     Statement,
     /// One of the solution that is missing there.
     Missing,
