@@ -3,7 +3,7 @@
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 
-use crate::typed::{Said, begun, copied_shear, digests, edit, onescan, run_shear, scenario, typed};
+use crate::typed::{Said, begun, copied_shear, digests, edit, flat, onescan, run_shear, scenario, typed};
 
 /// Where a session says that it listens.
 pub(crate) fn listening_at(said: &mut impl BufRead) -> String {
@@ -33,11 +33,6 @@ pub(crate) fn access(hosts: &[&str], tokens: &[(&str, &str)]) -> (tempfile::Temp
     });
     let made = made.collect();
     (place, made)
-}
-
-/// What was said, without the ends of lines that the width of a terminal makes.
-pub(crate) fn flat(text: &str) -> String {
-    text.replace('│', " ").split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 #[test]

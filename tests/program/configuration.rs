@@ -56,8 +56,7 @@ fn said_of(tasks: &str, configuration: &str) -> String {
 
 /// Asserts what an error says, wherever its lines are broken.
 fn assert_reported(said: &str, wanted: &str) {
-    let words: Vec<&str> = said.split_whitespace().filter(|word| *word != "│").collect();
-    assert!(words.join(" ").contains(wanted), "{said}");
+    assert!(crate::typed::flat(said).contains(wanted), "{said}");
 }
 
 #[test]

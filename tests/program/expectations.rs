@@ -195,7 +195,7 @@ fn an_expectation_that_keeps_every_step_of_a_long_run_is_refused() {
     edit(shear.path(), "scenario.toml", add, &formula("always (Sensor_1 implies eventually Sensor_2)"));
     assert_eq!(typed(shear.path(), &["run", ".", "--until", "100ms"]).code, Some(0));
     let said = typed(shear.path(), &["run", ".", "--until", "6h"]);
-    let text = crate::access::flat(&said.err);
+    let text = crate::typed::flat(&said.err);
     assert_eq!(said.code, Some(2), "{said:?}");
     assert!(text.contains("expectation `new` keeps every step until the end of the run, which has 2160000"), "{text}");
     assert!(text.contains("`always (a implies within 10s b)`"), "{text}");

@@ -4,7 +4,7 @@
 use std::fs::write;
 use std::path::{Path, PathBuf};
 
-use crate::access::flat;
+use crate::typed::flat;
 use crate::typed::{Said, typed};
 
 const SECRET: &str = "s3cret";

@@ -57,8 +57,7 @@ fn every_case_goes_on_from_the_checkpoint_of_the_scenario_as_it_is() {
             assert_eq!(saved.len(), 1, "{said:?}");
             let (resumed, said) = run(&path, &["--case", &case.name, "--resume", file]);
             // messages are broken at the width of a terminal
-            let words: Vec<&str> = said.err.split_whitespace().filter(|word| *word != "│").collect();
-            let reported = words.join(" ");
+            let reported = crate::typed::flat(&said.err);
             if at == VirtualTime::ZERO && reported.contains("before the checkpoint at 0.000 s") {
                 // What happens in the set-up has no boundary before it.
                 refused += 1;

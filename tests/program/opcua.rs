@@ -263,7 +263,7 @@ fn who_was_refused_is_named_when_nobody_has_joined() {
     let mut rest = String::new();
     said.read_to_string(&mut rest).expect("text");
     // A long message is broken into lines.
-    let reported = rest.replace('│', " ").split_whitespace().collect::<Vec<_>>().join(" ");
+    let reported = crate::typed::flat(&rest);
     assert!(
         reported.contains("did not join within 40 s; somebody tried and was refused: user `panel` over OPC UA"),
         "{rest}"

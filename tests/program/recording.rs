@@ -5,7 +5,7 @@ use std::process::Command;
 
 use onescan_recording::Recording;
 
-use crate::access::flat;
+use crate::typed::flat;
 use crate::typed::{Said, begun, copied_shear, edit, run_shear, scenario, typed};
 use crate::venv::python;
 

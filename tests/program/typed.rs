@@ -166,3 +166,8 @@ pub(crate) fn git(folder: &Path, words: &[&str]) {
         .expect("git is on the machine");
     assert!(output.status.success(), "{words:?} {}", String::from_utf8_lossy(&output.stderr));
 }
+
+/// What was said, without the ends of lines that the width of a terminal makes.
+pub(crate) fn flat(text: &str) -> String {
+    text.replace('│', " ").split_whitespace().collect::<Vec<_>>().join(" ")
+}

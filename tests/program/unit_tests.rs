@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::access::flat;
+use crate::typed::flat;
 use crate::typed::{Said, typed};
 
 const UNITS: &str = "

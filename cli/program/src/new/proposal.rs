@@ -15,16 +15,19 @@ const PROPOSED_MAX: usize = 200;
 /// A word of so many letters counts only where it stands by itself, as `LS` in `LS_1`.
 const SHORT: usize = 4;
 
+/// Words that stand in the program.
+type Words = &'static [&'static str];
+
 /// A kind of component for the signals that name one of some words.
 #[derive(Debug)]
 struct Rule {
     direction: Direction,
     value: Value,
     /// In small letters, in English and German.
-    words: &'static [&'static str],
+    words: Words,
     kind: &'static str,
     /// What it is bound to; words in capitals are to be replaced.
-    bound: &'static [&'static str],
+    bound: Words,
     /// The key that names the signal.
     key: &'static str,
 }
@@ -42,30 +45,15 @@ const JOINT: &[&str] = &["joint = \"JOINT\""];
 const BELT: &[&str] = &["belt = \"BELT\"", "direction = [1, 0, 0]"];
 const BODY: &[&str] = &["body = \"BODY\""];
 
-const fn sensor(
-    words: &'static [&'static str],
-    kind: &'static str,
-    bound: &'static [&'static str],
-    key: &'static str,
-) -> Rule {
+const fn sensor(words: Words, kind: &'static str, bound: Words, key: &'static str) -> Rule {
     Rule { direction: Direction::Input, value: Value::Bool, words, kind, bound, key }
 }
 
-const fn gauge(
-    words: &'static [&'static str],
-    kind: &'static str,
-    bound: &'static [&'static str],
-    key: &'static str,
-) -> Rule {
+const fn gauge(words: Words, kind: &'static str, bound: Words, key: &'static str) -> Rule {
     Rule { value: Value::Number, ..sensor(words, kind, bound, key) }
 }
 
-const fn drive(
-    words: &'static [&'static str],
-    kind: &'static str,
-    bound: &'static [&'static str],
-    key: &'static str,
-) -> Rule {
+const fn drive(words: Words, kind: &'static str, bound: Words, key: &'static str) -> Rule {
     Rule { direction: Direction::Output, ..sensor(words, kind, bound, key) }
 }
 
@@ -143,7 +131,7 @@ fn rule_for(signal: &Signal) -> Option<&'static Rule> {
         SignalType::Elementary(ty) if ty.is_number() => Value::Number,
         _ => return None,
     };
-    let text = format!("{} {}", point.name, point.comment.as_deref().unwrap_or_default());
+    let text = format!("{} {}", point.name, point.comment.as_deref().unwrap_or(""));
     let words = words(&text);
     let names = |word: &&str| {
         let is_short = word.chars().count() <= SHORT;

@@ -1,9 +1,9 @@
 //! One submission, in a process of its own: it compiles the program, runs every case, and says what it finds as it goes.
 
 use std::io::Write;
-use std::path::Path;
 use std::sync::PoisonError;
 
+use onescan_base::regular::Within;
 use onescan_iec::{Input, Severity};
 use onescan_iec_run::{Application, BuildError, Coverage};
 use onescan_report::OutputError;
@@ -31,7 +31,8 @@ pub fn work(config: &WorkConfig, out: &mut dyn Write) -> Result<(), GradeError> 
     let task = Task::open(&config.task)?;
     let mut said = Said(out);
     let read = hand_in::read(&task.client, &config.submission).map_err(|why| Refused::because(&why));
-    let is_own = lies_in(&config.submission, task.scenario.folder());
+    // Somebody may write the program in the task's own folder.
+    let is_own = Within::places(vec![task.scenario.folder().to_owned()]).find(&config.submission).is_ok();
     let (scenario, read) = match read.and_then(|program| compiled(&task, program, is_own)) {
         Ok(compiled) => compiled,
         Err(refused) => return said.line(&Line::Refused(refused)),
@@ -67,11 +68,6 @@ impl Said<'_> {
         serde_json::to_writer(&mut *self.0, line).map_err(|error| OutputError(error.into()))?;
         Ok(writeln!(self.0).and_then(|()| self.0.flush()).map_err(OutputError)?)
     }
-}
-
-/// True if a submission is a file of the task, in whose folder somebody wrote it.
-fn lies_in(submission: &Path, folder: &Path) -> bool {
-    matches!((submission.canonicalize(), folder.canonicalize()), (Ok(one), Ok(other)) if one.starts_with(&other))
 }
 
 /// The task with a program, which notes what is executed, and what there is to say of the program.
