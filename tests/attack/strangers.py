@@ -60,9 +60,9 @@ class Stranger:
 class Storm:
     """All of them."""
 
-    def __init__(self, door, draw, count, seconds, limit, crowd):
-        self.door, self.draw, self.limit = door, draw, limit
-        self.seconds, self.crowd = seconds, crowd
+    def __init__(self, door, draw, count, seconds, kinds, limit):
+        self.door, self.draw, self.seconds, self.limit = door, draw, seconds, limit
+        self.kinds, self.quiet = kinds, [kind for kind in kinds if not KINDS[kind][1]] or QUIET
         self.poll, self.here = select.epoll(), {}
         self.due, self.number, self.speaking = [], 0, 0
         self.told = collections.Counter()
@@ -102,10 +102,10 @@ class Storm:
         return dict(self.told)
 
     def open(self, now):
-        kind = self.draw.choice(list(KINDS))
+        kind = self.draw.choice(self.kinds)
         source = self.draw.choice(ADDRESSES)
-        if KINDS[kind][1] and not self.crowd and self.limit is not None and self.speaking >= self.limit:
-            kind = self.draw.choice(QUIET)
+        if KINDS[kind][1] and self.limit is not None and self.speaking >= self.limit:
+            kind = self.draw.choice(self.quiet)
         sock = socket.socket()
         sock.setblocking(False)
         # The port is chosen by both ends, so that there are enough.
