@@ -1,4 +1,4 @@
-"""Sessions that are attacked: which programs are started for a door, what they say, and what they take of the system."""
+"""Sessions that are attacked: which programs are started for a listener, what they say, and what they take of the system."""
 
 import json
 import pathlib
@@ -7,7 +7,8 @@ import signal
 import subprocess
 import time
 
-import doors
+import listeners as near
+import plc_listeners as plcs
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SHEAR = ROOT / "scenarios" / "shear"
@@ -26,10 +27,11 @@ from_plc = ["SDSP_Joined: UDINT", "SDSP_Done: UDINT", "SDSP_Answer: INT", "SDSP_
 structures.Sensors = ["Sensor_1: BOOL", "Sensor_2: BOOL"]
 """
 PLC = ["plc-opcua", "plc-s7", "plc-modbus", "plc-ads", "plc-tcp"]
-# The door of each listener.
-LISTENERS = {"sessions": doors.Lobby, "page": doors.Page, "edit": doors.Editor, "view": doors.Page, "run-opcua": doors.OpcUa,
-             "plc-opcua": doors.OpcUa, "plc-s7": doors.S7, "plc-modbus": doors.Modbus, "plc-ads": doors.Ads,
-             "plc-tcp": doors.RawTcp, "run-ads": doors.SessionAds, "tcp-listen": doors.TcpListen}
+# Those that strangers come to.
+LISTENERS = {"sessions": near.Lobby, "page": near.Page, "edit": near.Editor, "view": near.Page, "sessions-tls": near.SecuredLobby,
+             "page-tls": near.SecuredPage, "run-opcua": plcs.OpcUa, "plc-opcua": plcs.OpcUa, "plc-s7": plcs.S7,
+             "plc-modbus": plcs.Modbus, "plc-ads": plcs.Ads, "plc-tcp": plcs.RawTcp, "run-ads": plcs.SessionAds,
+             "tcp-listen": plcs.TcpListen}
 
 
 def scenario(folder):
@@ -115,11 +117,11 @@ def count(folder):
 
 
 class Session:
-    """The programs of one door: the run, where there is one, and what else it needs."""
+    """The programs of one listener: the run, where there is one, and what else it needs."""
 
     def __init__(self, program, listener, folder, shear, reference, until_s):
         self.listener, self.folder, self.programs, self.ends = listener, folder, [], []
-        self.record, self.program = None, program
+        self.record, self.program, self.shown = None, program, []
         if listener == "edit":
             edit = self.start([program, "edit", shear, "--web", HERE], "edit", "signal")
             self.address = edit.said(r"editor is at http://([^/]+)/")
@@ -143,15 +145,20 @@ class Session:
         elif listener == "tcp-listen":
             run += ["--gateway", f"plc=tcp-listen://{HERE}"]
         else:
-            run += {"sessions": [], "page": [f"--web={HERE}"], "run-opcua": ["--opcua", HERE], "run-ads": ["--ads", HERE]}[listener]
+            if listener.endswith("-tls"):
+                run += ["--access", self.access(LISTENERS[listener])]
+            run += {"page": [f"--web={HERE}"], "page-tls": [f"--web={HERE}"], "run-opcua": ["--opcua", HERE],
+                    "run-ads": ["--ads", HERE]}.get(listener, [])
         session = self.start(run, "run", "wait")
-        # Addresses of the scenario's own links are no listeners.
+        # Addresses of the scenario's own links are no near.
         if listener == "tcp-listen":
             self.address = session.said(r"listening on tcp-listen://(\S+) for")
             self.start([program, "plc", shear, "--tcp-connect", self.address], "plc", "quit")
         self.operator = session.said(r"listening at (\S+) for operators")
-        own = {"page": r"session is at http://([^/]+)/", "run-opcua": r"session at opc.tcp://([^/]+)/",
-               "run-ads": r"serving ads://(\S+)", "sessions": r"listening at (\S+) for operators"}
+        operators = r"listening at (\S+) for operators"
+        own = {"sessions": operators, "sessions-tls": operators, "page": r"session is at http://([^/]+)/",
+               "page-tls": r"session is at https://([^/]+)/", "run-opcua": r"session at opc.tcp://([^/]+)/",
+               "run-ads": r"serving ads://(\S+)"}
         if listener in own:
             self.address = session.said(own[listener])
         until = time.monotonic() + STARTED_S
@@ -160,8 +167,19 @@ class Session:
                 raise RuntimeError(f"the session does not begin: {session.err.read_text(errors='replace')[-300:]}")
             time.sleep(0.05)
 
+    def access(self, kind):
+        """A folder with a certificate and an operator's token, which the client shows."""
+        folder = self.folder / "access"
+        subprocess.run([self.program, "certificate", "new", "--access", folder], check=True, capture_output=True)
+        words = [self.program, "token", "new", "anna", "--role", "operator", "--access", folder]
+        said = subprocess.run(words, check=True, capture_output=True, text=True).stdout
+        kind.authority, kind.token = folder / "ca.pem", re.search(r"onescan_\w+", said)[0]
+        self.shown = ["--tls-ca", kind.authority, "--token", kind.token]
+        return folder
+
     def goes(self):
-        said = subprocess.run([self.program, "control", self.operator, "status", "--format", "json"], capture_output=True, text=True)
+        words = [self.program, "control", self.operator, "status", "--format", "json", *self.shown]
+        said = subprocess.run(words, capture_output=True, text=True)
         return said.returncode == 0 and json.loads(said.stdout.splitlines()[-1]).get("steps", 0) > 0
 
     def start(self, words, name, ends):

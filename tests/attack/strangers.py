@@ -1,4 +1,4 @@
-"""Strangers at a door: thousands of connections from many addresses, all in one process, as a seed draws them."""
+"""Strangers at a listener: thousands of connections from many addresses, all in one process, as a seed draws them."""
 
 import collections
 import errno
@@ -9,7 +9,7 @@ import socket
 import struct
 import time
 
-from doors import HTTP, TLS
+from listeners import HTTP, TLS
 
 ADDRESSES = [f"127.0.0.{last}" for last in range(1, 41)]
 # In a burst at most, and how long one takes.
@@ -19,32 +19,32 @@ LEFT = 8
 PIECE = 65536
 
 
-def drip(door, draw):
+def drip(listener, draw):
     """The longest half, a byte a second."""
-    for byte in max(door.halves, key=len):
+    for byte in max(listener.halves, key=len):
         yield 1.0, bytes([byte])
 
 
-def hasty(door, draw, pause_s=0.5):
-    received = yield 0.0, door.hello
+def hasty(listener, draw, pause_s=0.5):
+    received = yield 0.0, listener.hello
     while True:
-        received = yield pause_s, door.request(received or b"") * 5
+        received = yield pause_s, listener.request(received or b"") * 5
 
 
 # What each says, as pauses and bytes; whether it speaks as a client does; whether it reads what it is told.
 KINDS = {
-    "silent": (lambda door, draw: iter(()), False, True),
-    "half": (lambda door, draw: iter([(0.0, draw.choice(door.halves))]), False, True),
-    "garbage": (lambda door, draw: iter([(0.0, door.stray(draw.randbytes(draw.randrange(1, 2000))))]), False, True),
+    "silent": (lambda listener, draw: iter(()), False, True),
+    "half": (lambda listener, draw: iter([(0.0, draw.choice(listener.halves))]), False, True),
+    "garbage": (lambda listener, draw: iter([(0.0, listener.stray(draw.randbytes(draw.randrange(1, 2000))))]), False, True),
     "drip": (drip, False, True),
     "reset": (None, False, True),
-    "speaks": (lambda door, draw: iter([(0.0, door.hello)]), True, True),
+    "speaks": (lambda listener, draw: iter([(0.0, listener.hello)]), True, True),
     "hasty": (hasty, True, True),
-    "deaf": (lambda door, draw: hasty(door, draw, 0.05), True, False),
-    "endless": (lambda door, draw: iter([(0.0, draw.choice(door.endless))]), False, True),
-    "late": (lambda door, draw: iter([(0.0, door.hello), (0.1, draw.choice(door.endless_after_hello))]), True, True),
-    "tls": (lambda door, draw: iter([(0.0, door.stray(TLS))]), False, True),
-    "http": (lambda door, draw: iter([(0.0, door.stray(HTTP))]), False, True),
+    "deaf": (lambda listener, draw: hasty(listener, draw, 0.05), True, False),
+    "endless": (lambda listener, draw: iter([(0.0, draw.choice(listener.endless))]), False, True),
+    "late": (lambda listener, draw: iter([(0.0, listener.hello), (0.1, draw.choice(listener.endless_after_hello))]), True, True),
+    "tls": (lambda listener, draw: iter([(0.0, listener.stray(TLS))]), False, True),
+    "http": (lambda listener, draw: iter([(0.0, listener.stray(HTTP))]), False, True),
 }
 QUIET = [kind for kind, (_, speaks, _) in KINDS.items() if not speaks]
 
@@ -60,12 +60,12 @@ class Stranger:
 class Storm:
     """All of them."""
 
-    def __init__(self, door, draw, count, seconds, kinds, limit):
-        self.door, self.draw, self.seconds, self.limit = door, draw, seconds, limit
+    def __init__(self, listener, draw, count, seconds, kinds, limit):
+        self.listener, self.draw, self.seconds, self.limit = listener, draw, seconds, limit
         self.kinds, self.quiet = kinds, [kind for kind in kinds if not KINDS[kind][1]] or QUIET
         self.poll, self.here = select.epoll(), {}
         self.due, self.number, self.speaking = [], 0, 0
-        self.told = collections.Counter()
+        self.counts = collections.Counter()
         for when in self.moments(count):
             self.at(when, None)
 
@@ -89,7 +89,7 @@ class Storm:
             while self.due and self.due[0][0] <= now:
                 when, _, what = heapq.heappop(self.due)
                 if what is None:
-                    self.told["late_ms_max"] = max(self.told["late_ms_max"], int((now - when) * 1000))
+                    self.counts["late_ms_max"] = max(self.counts["late_ms_max"], int((now - when) * 1000))
                     self.open(now)
                 else:
                     what(now)
@@ -99,7 +99,7 @@ class Storm:
                     self.act(stranger, events, time.monotonic() - began)
         for stranger in list(self.here.values()):
             self.close(stranger)
-        return dict(self.told)
+        return dict(self.counts)
 
     def open(self, now):
         kind = self.draw.choice(self.kinds)
@@ -112,13 +112,13 @@ class Storm:
         sock.setsockopt(socket.IPPROTO_IP, getattr(socket, "IP_BIND_ADDRESS_NO_PORT", 24), 1)
         sock.bind((source, 0))
         stranger = Stranger(sock, kind)
-        self.told["opened"] += 1
-        if sock.connect_ex(self.door.address) not in (0, errno.EINPROGRESS):
-            self.told["not_connected"] += 1
+        self.counts["opened"] += 1
+        if sock.connect_ex(self.listener.address) not in (0, errno.EINPROGRESS):
+            self.counts["not_connected"] += 1
             return sock.close()
         self.here[sock.fileno()] = stranger
         self.speaking += stranger.speaks
-        self.told["held_max"] = max(self.told["held_max"], len(self.here))
+        self.counts["held_max"] = max(self.counts["held_max"], len(self.here))
         self.poll.register(sock.fileno(), select.EPOLLOUT)
 
     def act(self, stranger, events, now):
@@ -130,7 +130,7 @@ class Storm:
                 return
             if events & (select.EPOLLIN | select.EPOLLHUP | select.EPOLLERR):
                 if not (came := stranger.sock.recv(PIECE)):
-                    self.told["sent_away"] += 1
+                    self.counts["sent_away"] += 1
                     return self.close(stranger)
                 stranger.received = (stranger.received + came)[:4096]
             if events & select.EPOLLOUT:
@@ -138,16 +138,16 @@ class Storm:
         except BlockingIOError:
             pass
         except OSError:
-            self.told["sent_away" if stranger.is_connected else "not_connected"] += 1
+            self.counts["sent_away" if stranger.is_connected else "not_connected"] += 1
             self.close(stranger)
 
     def connected(self, stranger, now):
         stranger.is_connected = True
-        self.told["connected"] += 1
+        self.counts["connected"] += 1
         begin = KINDS[stranger.kind][0]
         if begin is None:
             return self.close(stranger, reset=True)
-        stranger.steps = begin(self.door, self.draw)
+        stranger.steps = begin(self.listener, self.draw)
         self.watch(stranger)
         self.step(stranger, now)
 
@@ -173,7 +173,7 @@ class Storm:
             except BlockingIOError:
                 pass
             except OSError:
-                self.told["sent_away"] += 1
+                self.counts["sent_away"] += 1
                 return self.close(stranger)
             self.step(stranger, then)
 
