@@ -1,10 +1,13 @@
 """Sessions that are attacked: which programs are started for a listener, what they say, and what they take of the system."""
 
+import collections
 import json
+import os
 import pathlib
 import re
 import signal
 import subprocess
+import threading
 import time
 
 import listeners as near
@@ -49,10 +52,20 @@ def scenario(folder):
 class Program:
     """One program, and what it says."""
 
-    def __init__(self, words, folder, name):
-        self.out, self.err = folder / f"{name}.out", folder / f"{name}.err"
+    def __init__(self, words, folder, name, unread):
+        self.out, self.err, self.is_read = folder / f"{name}.out", folder / f"{name}.err", True
+        words = [str(word) for word in words]
         with open(self.out, "wb") as out, open(self.err, "wb") as err:
-            self.process = subprocess.Popen([str(word) for word in words], stdin=subprocess.PIPE, stdout=out, stderr=err)
+            to = subprocess.PIPE if unread else err
+            self.process = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=out, stderr=to)
+        if unread:
+            threading.Thread(target=self.read, daemon=True).start()
+
+    def read(self):
+        """Reads the log until somebody says that nobody does."""
+        with open(self.err, "wb", 0) as err:
+            while self.is_read and (piece := os.read(self.process.stderr.fileno(), 4096)):
+                err.write(piece)
 
     def said(self, pattern):
         """What it says in this form, waited for."""
@@ -78,7 +91,7 @@ class Program:
         return family
 
     def descriptors(self):
-        return sum(count(pathlib.Path(f"/proc/{pid}/fd")) for pid in self.family())
+        return collections.Counter(kind for pid in self.family() for kind in kinds(pid))
 
     def peak_mib(self):
         """The sum of the peaks of the family, which is not less than its peak."""
@@ -95,7 +108,8 @@ class Program:
         """Ends it as a user does; gives its exit code."""
         try:
             if how == "quit":
-                self.process.communicate(b"quit\n", timeout=20)
+                self.process.stdin.write(b"quit\n")
+                self.process.stdin.flush()
             elif how == "signal":
                 self.process.send_signal(signal.SIGTERM)
             self.process.wait(timeout=20)
@@ -109,19 +123,23 @@ class Program:
             self.process.wait()
 
 
-def count(folder):
-    try:
-        return sum(1 for _ in folder.iterdir())
-    except OSError:
-        return 0
+def kinds(pid):
+    """What its descriptors are; the recording's own files come and go."""
+    for descriptor in pathlib.Path(f"/proc/{pid}/fd").glob("*"):
+        try:
+            at = os.readlink(descriptor)
+        except OSError:
+            continue
+        if "/record/" not in at:
+            yield re.sub(r"\d+", "", at)
 
 
 class Session:
     """The programs of one listener: the run, where there is one, and what else it needs."""
 
-    def __init__(self, program, listener, folder, shear, reference, until_s):
+    def __init__(self, program, listener, folder, shear, reference, until_s, unread=False):
         self.listener, self.folder, self.programs, self.ends = listener, folder, [], []
-        self.record, self.program, self.shown = None, program, []
+        self.record, self.program, self.shown, self.unread = None, program, [], unread
         if listener == "edit":
             edit = self.start([program, "edit", shear, "--web", HERE], "edit", "signal")
             self.address = edit.said(r"editor is at http://([^/]+)/")
@@ -130,6 +148,8 @@ class Session:
             self.address = view.said(r"recording is at http://([^/]+)/")
         else:
             self.begin(program, listener, shear, until_s)
+        for started in self.programs:
+            started.is_read = False
 
     def begin(self, program, listener, shear, until_s):
         """A run with its PLC, until its steps go."""
@@ -183,7 +203,7 @@ class Session:
         return said.returncode == 0 and json.loads(said.stdout.splitlines()[-1]).get("steps", 0) > 0
 
     def start(self, words, name, ends):
-        started = Program(words, self.folder, name)
+        started = Program(words, self.folder, name, self.unread)
         self.programs.append(started)
         self.ends.append(ends)
         return started
