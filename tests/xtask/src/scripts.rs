@@ -79,6 +79,14 @@ pub(crate) const SCRIPTS: &[Script] = &[
         not_on_windows: Some("it looks for processes in /proc"),
     },
     Script {
+        name: "attack",
+        file: "tests/attack/run",
+        language: Language::Python,
+        about: "thousands of strangers at each listener: digests, memory, answers, descriptors, the log",
+        time: "15 min, by `--seconds`",
+        not_on_windows: Some("it looks at processes in /proc"),
+    },
+    Script {
         name: "long",
         file: "tests/long",
         language: Language::Python,
