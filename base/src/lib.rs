@@ -12,21 +12,25 @@
 //! | [`array`] | names with a range, as in `arm[0..9].hold` |
 //! | [`nearest`] | the name that was probably meant |
 //! | [`regular`] | files that are read: regular ones, up to a limit |
+//! | [`disk`] | files that are written, so that a disk that refuses can be tried |
+//! | [`lines`] | files of lines that grow at their end |
 //! | [`notice`] | the target of log events that are for the user |
 //! | [`repeated`] | events that others cause as often as they like, reported a few times |
 //! | [`threads`] | threads, which a system may refuse |
 //! | [`foreign`] | text from outside, made fit to be shown |
 //!
-//! Invariants: plain data and pure functions, except in [`regular`], which reads files, and [`threads`]. No clock, no random number,
+//! Invariants: plain data and pure functions, except in [`regular`], [`disk`] and [`lines`], which read and write files, and [`threads`]. No clock, no random number,
 //! no iteration in hash order, and no dependency except serde, thiserror and strsim, and on
 //! Linux rustix, which opens what [`regular`] has found.
 
 pub mod array;
 pub mod byte_line;
+pub mod disk;
 pub mod duration;
 pub mod elementary;
 pub mod field;
 pub mod foreign;
+pub mod lines;
 pub mod nearest;
 pub mod notice;
 pub mod regular;

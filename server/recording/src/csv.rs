@@ -1,8 +1,9 @@
 //! Trajectories as CSV: a row a step, a column a signal, `t_v_ns` in the first.
 
-use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::sync::Arc;
+
+use onescan_base::disk::DiskFile;
 
 use super::block::Block;
 use super::column::Column;
@@ -19,9 +20,9 @@ pub(crate) struct CsvSink<W: Write> {
     next_step: u64,
 }
 
-impl CsvSink<BufWriter<File>> {
+impl CsvSink<BufWriter<Box<dyn DiskFile>>> {
     pub(super) fn create(shape: &Shape) -> io::Result<Self> {
-        Self::new(BufWriter::new(File::create(shape.folder.join(CSV))?), shape.columns.clone())
+        Self::new(BufWriter::new(shape.disk.create(&shape.folder.join(CSV))?), shape.columns.clone())
     }
 }
 

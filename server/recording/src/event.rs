@@ -1,10 +1,10 @@
 //! What happened in a session beside its steps: `events.jsonl`, a JSON object a line.
 
-use std::fs::{File, OpenOptions};
-use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
 
-use onescan_base::regular;
+use onescan_base::disk::Disk;
+use onescan_base::lines::{self, Lines};
+use onescan_base::regular::{self, Limit};
 use serde::{Deserialize, Serialize};
 
 use onescan_server::end::{Failure, SessionEnd};
@@ -55,20 +55,27 @@ pub enum EventKind {
 /// The events as they are written.
 #[derive(Debug)]
 pub(super) struct EventLog {
-    file: File,
+    lines: Lines,
     path: String,
 }
 
 impl EventLog {
-    pub(super) fn create(path: &Path) -> Result<Self, RecordError> {
-        let error = |source| RecordError { path: path.display().to_string(), source };
-        Ok(Self { file: File::create(path).map_err(error)?, path: path.display().to_string() })
+    pub(super) fn create(disk: &dyn Disk, path: &Path) -> Result<Self, RecordError> {
+        Self::of(path, Lines::create(disk, path))
     }
 
-    /// Each line is written in one piece, so that a kill leaves whole lines.
+    fn of(path: &Path, lines: std::io::Result<Lines>) -> Result<Self, RecordError> {
+        let path = path.display().to_string();
+        match lines {
+            Ok(lines) => Ok(Self { lines, path }),
+            Err(source) => Err(RecordError { path, source }),
+        }
+    }
+
     pub(super) fn push(&mut self, event: &Event) -> Result<(), RecordError> {
-        let error = |source| RecordError { path: self.path.clone(), source };
-        self.file.write_all(&line(event).map_err(error)?).map_err(error)
+        let line = serde_json::to_vec(event).map_err(std::io::Error::from);
+        let pushed = line.and_then(|line| self.lines.push(&line));
+        pushed.map_err(|source| RecordError { path: self.path.clone(), source })
     }
 
     pub(super) fn end(&mut self, end: &SessionEnd, step: StepCount, t_v: VirtualTime) -> Result<(), RecordError> {
@@ -84,40 +91,28 @@ impl EventLog {
     }
 }
 
-fn line(event: &Event) -> std::io::Result<Vec<u8>> {
-    let mut line = serde_json::to_vec(event)?;
-    line.push(b'\n');
-    Ok(line)
-}
-
 /// Adds what only became known after the session was over.
 ///
 /// # Errors
 /// The file cannot be written.
-pub fn append(path: &Path, events: &[Event]) -> Result<(), RecordError> {
-    let error = |source| RecordError { path: path.display().to_string(), source };
-    let mut file = OpenOptions::new().append(true).open(path).map_err(error)?;
-    for event in events {
-        file.write_all(&line(event).map_err(error)?).map_err(error)?;
-    }
-    Ok(())
+pub fn append(disk: &dyn Disk, path: &Path, events: &[Event]) -> Result<(), RecordError> {
+    let mut log = EventLog::of(path, Lines::append_to(disk, path))?;
+    events.iter().try_for_each(|event| log.push(event))
 }
 
-/// All whole events of a file; a last line that was cut off is left out.
+/// All whole events of a file. A line that was cut off, by a kill or a disk without room, is left out.
 ///
 /// # Errors
-/// The file cannot be read, or a line before the last is not an event.
+/// The file cannot be read, or a line is not an event.
 pub fn read(path: &Path) -> std::io::Result<Vec<Event>> {
+    let bytes = regular::read(path, Limit::DATA)?;
     let mut events = Vec::new();
-    let mut reader = BufReader::new(regular::open(path)?);
-    let mut line = String::new();
-    while reader.read_line(&mut line)? > 0 {
-        if !line.ends_with('\n') {
-            break;
+    for (place, line) in lines::whole(&bytes) {
+        match serde_json::from_slice(line) {
+            Ok(event) => events.push(event),
+            Err(cut) if cut.is_eof() => {}
+            Err(wrong) => return Err(std::io::Error::other(format!("line {}: {wrong}", place + 1))),
         }
-        let wrong = |error| std::io::Error::other(format!("line {}: {error}", events.len() + 1));
-        events.push(serde_json::from_str(&line).map_err(wrong)?);
-        line.clear();
     }
     Ok(events)
 }

@@ -3,6 +3,7 @@
 //! | module | subject |
 //! |---|---|
 //! | [`recorder`] | the folder of a recording, and the observer that fills it |
+//! | [`place`] | the folder while it is made, and what lies there already |
 //! | [`header`] | what was run |
 //! | [`event`] | what happened beside the steps |
 //! | `column`, `block` | the signals recorded; runs of steps |
@@ -23,6 +24,7 @@ pub mod flush_policy;
 pub mod header;
 pub mod mcap;
 pub mod parquet;
+pub mod place;
 pub mod reader;
 pub mod recorder;
 pub(crate) mod sink;
@@ -31,5 +33,6 @@ pub use column::Column;
 pub use event::{Event, EventKind};
 pub use flush_policy::FlushPolicy;
 pub use header::{Header, Provenance, SourceFile};
+pub use place::Place;
 pub use reader::{ExportFormat, Recording, RecordingError, Row, Rows};
 pub use recorder::{Choice, Recorder};

@@ -16,6 +16,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use onescan_base::disk::{Disk, SystemDisk, write_whole};
 use onescan_server::digest::TrajectoryDigest;
 use onescan_server::observer::{Observer, RecordError};
 use onescan_server::operation::{Author, OperatorInput};
@@ -31,7 +32,7 @@ use super::flush_policy::FlushPolicy;
 use super::header::{Header, Provenance};
 use super::mcap::McapSink;
 use super::parquet::ParquetSink;
-use super::sink::{Encoder, Shape, Sink, failed};
+use super::sink::{Encoder, Shape, Sink, Where, failed};
 
 /// Name of the header's file.
 pub const HEADER: &str = "recording.json";
@@ -57,6 +58,8 @@ pub struct Recorder {
     /// The block that grows.
     block: Arc<Mutex<Block>>,
     flush_policy: FlushPolicy,
+    disk: Arc<dyn Disk>,
+    encodes: Where,
     schedule: Schedule,
     /// The last step that was seen.
     last: (StepCount, VirtualTime),
@@ -73,6 +76,8 @@ impl Recorder {
             events: None,
             block: Arc::default(),
             flush_policy: FlushPolicy::default(),
+            disk: Arc::new(SystemDisk),
+            encodes: Where::InThread,
             schedule: Schedule::new(1, 1),
             last: (StepCount::default(), VirtualTime::ZERO),
         }
@@ -85,9 +90,12 @@ impl Recorder {
         self
     }
 
-    fn block(&self) -> MutexGuard<'_, Block> {
-        // A thread that ended in the middle has its own error, which is reported.
-        self.block.lock().unwrap_or_else(PoisonError::into_inner)
+    /// The same, on another disk than the system's, and without a thread of its own: so each call of the disk has its place in
+    /// one order.
+    #[must_use]
+    pub fn simulated(mut self, disk: Arc<dyn Disk>) -> Self {
+        (self.disk, self.encodes) = (disk, Where::Here);
+        self
     }
 
     fn start(&mut self, session: &Session, digest: &TrajectoryDigest) -> std::io::Result<()> {
@@ -95,7 +103,7 @@ impl Recorder {
         let header = Header::new(session, &self.provenance, &columns);
         let mut text = serde_json::to_vec_pretty(&header)?;
         text.push(b'\n');
-        std::fs::write(self.folder.join(HEADER), text)?;
+        write_whole(self.disk.as_ref(), &self.folder.join(HEADER), &text)?;
         self.schedule = Schedule::new(session.step().as_nanos(), session.image().len());
         let rows = self.schedule.block_rows() as usize;
         // One of its own for each start: the thread of the trajectory before may still look at its block.
@@ -103,13 +111,14 @@ impl Recorder {
         block.reserve(rows, session.image().len());
         self.block = Arc::new(Mutex::new(block));
         let first = (session.cycle().steps().0, digest.clone());
-        self.encoder = Some(Encoder::start(self.sinks(columns)?, first, Arc::clone(&self.block), self.flush_policy)?);
+        let growing = Arc::clone(&self.block);
+        self.encoder = Some(Encoder::start(self.encodes, self.sinks(columns)?, first, growing, self.flush_policy)?);
         Ok(())
     }
 
     fn sinks(&self, columns: Vec<Column>) -> std::io::Result<Vec<Box<dyn Sink>>> {
         let columns: Arc<[Column]> = columns.into();
-        let shape = Shape { columns, folder: self.folder.clone() };
+        let shape = Shape { columns, folder: self.folder.clone(), disk: Arc::clone(&self.disk) };
         let mut sinks: Vec<Box<dyn Sink>> = vec![Box::new(ParquetSink::create(&shape)?)];
         if self.choice.csv {
             sinks.push(Box::new(CsvSink::create(&shape)?));
@@ -121,18 +130,18 @@ impl Recorder {
     }
 
     fn row(&mut self, session: &Session) -> Result<(), RecordError> {
-        let Some(encoder) = &self.encoder else { return Ok(()) };
+        let Some(encoder) = &mut self.encoder else { return Ok(()) };
         self.last = (session.cycle().steps(), session.t_v());
         let (is_full, part) = self.schedule.row();
         // The lock is given back before the exchange, which may wait for the encoder: that takes the lock to write early.
         let full = {
-            let mut block = self.block();
+            let mut block = locked(&self.block);
             block.push(session);
             block.ends_part = part;
             is_full.then(|| std::mem::take(&mut *block))
         };
         let mut done = match full {
-            Some(full) => encoder.exchange(full).map(|empty| *self.block() = empty),
+            Some(full) => encoder.exchange(full).map(|empty| *locked(&self.block) = empty),
             None => Some(()),
         };
         if let FlushPolicy::Steps(steps) = self.flush_policy
@@ -143,9 +152,9 @@ impl Recorder {
         if done.is_some() { Ok(()) } else { self.finish() }
     }
 
-    /// Waits for the thread, and reports why it ended if it did so early.
+    /// Waits until all is encoded, and reports why that ended early if it did.
     fn finish(&mut self) -> Result<(), RecordError> {
-        let block = std::mem::take(&mut *self.block());
+        let block = std::mem::take(&mut *locked(&self.block));
         let last = (block.rows() > 0).then_some(block);
         match self.encoder.take() {
             Some(encoder) => encoder.finish(last).map_err(failed(&self.folder)),
@@ -154,12 +163,17 @@ impl Recorder {
     }
 }
 
+/// A thread that ended in the middle has its own error, which is reported.
+fn locked(block: &Mutex<Block>) -> MutexGuard<'_, Block> {
+    block.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 impl Observer for Recorder {
     fn begin(&mut self, session: &Session, digest: &TrajectoryDigest) -> Result<(), RecordError> {
         // After a reset the trajectory restarts; the log of events goes on.
         self.finish()?;
         if self.events.is_none() {
-            self.events = Some(EventLog::create(&self.folder.join(EVENTS))?);
+            self.events = Some(EventLog::create(self.disk.as_ref(), &self.folder.join(EVENTS))?);
         }
         self.start(session, digest).map_err(failed(&self.folder))?;
         if let Some(events) = &mut self.events {

@@ -1,6 +1,6 @@
-//! The thread that encodes, and what it writes to.
+//! The thread that encodes, and what it writes to. In a simulation the session's own thread encodes.
 //!
-//! Blocks go to it and come back empty. There are [`BLOCKS`] of them: when all are on their way the
+//! Blocks go to the thread and come back empty. There are [`BLOCKS`] of them: when all are on their way the
 //! session waits, so nothing is lost and memory has a bound.
 
 use std::io;
@@ -9,6 +9,7 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
+use onescan_base::disk::Disk;
 use onescan_base::threads;
 use onescan_server::digest::TrajectoryDigest;
 use onescan_server::observer::RecordError;
@@ -39,6 +40,7 @@ pub(crate) trait Sink: Send {
 pub(super) struct Shape {
     pub(super) columns: Arc<[Column]>,
     pub(super) folder: PathBuf,
+    pub(super) disk: Arc<dyn Disk>,
 }
 
 /// What goes to the thread.
@@ -49,24 +51,82 @@ enum Message {
     Write,
 }
 
+/// Who encodes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Where {
+    InThread,
+    Here,
+}
+
+/// What encodes the blocks of a session.
+#[derive(Debug)]
+pub(super) enum Encoder {
+    Thread(EncodingThread),
+    Here {
+        encoding: Box<Encoding>,
+        /// Why it has ended early, if it has.
+        failed: Option<io::Error>,
+    },
+}
+
+impl Encoder {
+    /// Begins. `digest` is that of the first row, the step `first_step`, which the session has taken in already; `growing` is the
+    /// block that the session fills.
+    pub(super) fn start(
+        encodes: Where,
+        sinks: Vec<Box<dyn Sink>>,
+        (first_step, digest): (u64, TrajectoryDigest),
+        growing: Arc<Mutex<Block>>,
+        flush_policy: FlushPolicy,
+    ) -> io::Result<Self> {
+        let (early, flush_timer) = (Early::default(), FlushTimer::new(flush_policy));
+        let encoding = Encoding { sinks, digest, known: 1, next_step: first_step, growing, early, flush_timer };
+        match encodes {
+            Where::InThread => EncodingThread::start(encoding).map(Self::Thread),
+            Where::Here => Ok(Self::Here { encoding: Box::new(encoding), failed: None }),
+        }
+    }
+
+    /// Gives a block away and gets an empty one, waiting for it if need be; nothing if encoding has failed.
+    pub(super) fn exchange(&mut self, block: Block) -> Option<Block> {
+        match self {
+            Self::Thread(thread) => thread.exchange(block),
+            Self::Here { encoding, failed } => encoding.full(block).map_err(|error| *failed = Some(error)).ok(),
+        }
+    }
+
+    /// Waits until what the growing block has is written; nothing if encoding has failed.
+    pub(super) fn write(&mut self) -> Option<()> {
+        match self {
+            Self::Thread(thread) => thread.write(),
+            Self::Here { encoding, failed } => encoding.write().map_err(|error| *failed = Some(error)).ok(),
+        }
+    }
+
+    /// Waits until everything is written.
+    pub(super) fn finish(self, last: Option<Block>) -> io::Result<()> {
+        match self {
+            Self::Thread(thread) => thread.finish(last),
+            Self::Here { failed: Some(error), .. } => Err(error),
+            Self::Here { mut encoding, failed: None } => {
+                last.map_or(Ok(()), |block| encoding.full(block).map(drop))?;
+                encoding.end()
+            }
+        }
+    }
+}
+
 /// The thread, and the channels to and from it.
 #[derive(Debug)]
-pub(super) struct Encoder {
+pub(super) struct EncodingThread {
     to_encode: SyncSender<Message>,
     emptied: Receiver<Block>,
     written: Receiver<()>,
     thread: JoinHandle<io::Result<()>>,
 }
 
-impl Encoder {
-    /// Starts the thread. `digest` is that of the first row, the step `first_step`, which the session has taken in already; `growing` is the block
-    /// that the session fills.
-    pub(super) fn start(
-        sinks: Vec<Box<dyn Sink>>,
-        (first_step, digest): (u64, TrajectoryDigest),
-        growing: Arc<Mutex<Block>>,
-        flush_policy: FlushPolicy,
-    ) -> io::Result<Self> {
+impl EncodingThread {
+    fn start(mut encoding: Encoding) -> io::Result<Self> {
         let (to_encode, messages) = sync_channel(BLOCKS);
         let (back, emptied) = sync_channel::<Block>(BLOCKS);
         let (done, written) = sync_channel(1);
@@ -75,8 +135,6 @@ impl Encoder {
             // The channel has room for all of them, and its receiver is here.
             back.send(Block::default()).map_err(io::Error::other)?;
         }
-        let (early, flush_timer) = (Early::default(), FlushTimer::new(flush_policy));
-        let mut encoding = Encoding { sinks, digest, known: 1, next_step: first_step, growing, early, flush_timer };
         let encode = move || {
             while let Ok(message) = encoding.flush_timer.next(&messages) {
                 match message {
@@ -96,27 +154,23 @@ impl Encoder {
                     None => encoding.write()?,
                 }
             }
-            encoding.sinks.iter_mut().try_for_each(|sink| sink.end())
+            encoding.end()
         };
         let thread = threads::start("recorder", encode)?;
         Ok(Self { to_encode, emptied, written, thread })
     }
 
-    /// Gives a block away and gets an empty one, waiting for it if need be; nothing if the thread
-    /// has failed.
-    pub(super) fn exchange(&self, block: Block) -> Option<Block> {
+    fn exchange(&self, block: Block) -> Option<Block> {
         self.to_encode.send(Message::Block(block)).ok()?;
         self.emptied.recv().ok()
     }
 
-    /// Waits until what the growing block has is written; nothing if the thread has failed.
-    pub(super) fn write(&self) -> Option<()> {
+    fn write(&self) -> Option<()> {
         self.to_encode.send(Message::Write).ok()?;
         self.written.recv().ok()
     }
 
-    /// Waits until everything is written.
-    pub(super) fn finish(self, last: Option<Block>) -> io::Result<()> {
+    fn finish(self, last: Option<Block>) -> io::Result<()> {
         // If it is not taken the thread has failed, which its own result reports below.
         let _taken = last.map_or(Ok(()), |block| self.to_encode.send(Message::Block(block)));
         // The thread ends when nobody can send any more.
@@ -125,8 +179,8 @@ impl Encoder {
     }
 }
 
-/// What the thread does.
-struct Encoding {
+/// What is done with the blocks.
+pub(super) struct Encoding {
     sinks: Vec<Box<dyn Sink>>,
     /// The digest before the growing block.
     digest: TrajectoryDigest,
@@ -166,6 +220,17 @@ impl Encoding {
         let sinks = &mut self.sinks;
         let mut write = |rows: &Block| sinks.iter_mut().try_for_each(|sink| sink.early(rows));
         self.early.write(growing, (&self.digest, self.known), &mut write)
+    }
+
+    /// Everything has come.
+    fn end(&mut self) -> io::Result<()> {
+        self.sinks.iter_mut().try_for_each(|sink| sink.end())
+    }
+}
+
+impl std::fmt::Debug for Encoding {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Encoding").field("next_step", &self.next_step).finish_non_exhaustive()
     }
 }
 

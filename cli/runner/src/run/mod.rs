@@ -21,7 +21,6 @@
 //! | `plc_files` | files of PLCs as they are at the end |
 //! | [`recorded`] | a run's recording |
 //! | `record_lock` | one records into a folder at a time |
-//! | `earlier` | a recording that another one replaces |
 //! | [`cut_short`] | recordings that do not hold all of their run |
 //! | `in_process` | a session of which all clients are here |
 //! | `at_start` | values of signals with which it begins |
@@ -45,7 +44,6 @@ pub mod chosen;
 pub mod config;
 pub mod coverage;
 pub mod cut_short;
-mod earlier;
 mod error;
 pub mod expectation;
 pub mod fork;

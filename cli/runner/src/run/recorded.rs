@@ -1,20 +1,21 @@
 //! A run's recording: the scenario's own files beside what the server records.
 
 use std::path::{Component, Path, PathBuf};
+use std::sync::Arc;
 
+use onescan_base::disk::SystemDisk;
 use onescan_base::regular::Limit;
-use onescan_recording::event::{self, Event, EventKind};
-use onescan_recording::recorder::{EVENTS, HEADER};
-use onescan_recording::{Provenance, Recorder, Recording, SourceFile};
-use onescan_report::OutputError;
-use onescan_report::{FileError, file};
+use onescan_recording::event::{Event, EventKind};
+use onescan_recording::place::SCENARIO;
+use onescan_recording::recorder::HEADER;
+use onescan_recording::{Place, Provenance, Recorder, Recording, SourceFile};
+use onescan_report::{OutputError, file};
 use onescan_scenario::load::FILE_NAME;
 use onescan_scenario::{Mode, Scenario, ScenarioError, permission};
 use onescan_server::signal::ClientName;
 use onescan_server::time::VirtualTime;
 
 use super::config::{RecordRequest, Subject};
-use super::earlier::{Earlier, REPORT, SCENARIO};
 use super::error::RunError;
 use super::record_lock::RecordLock;
 use super::report::RunReport;
@@ -23,8 +24,8 @@ use crate::error::Usage;
 /// The recording of one run.
 pub(crate) struct Recorded {
     folder: PathBuf,
-    /// What it replaces; before the lock, which is kept until that has come back.
-    earlier: Earlier,
+    /// Before the lock, which is kept until what it replaces has come back.
+    place: Place,
     _lock: RecordLock,
 }
 
@@ -42,8 +43,7 @@ impl Recorded {
         // Another run may have recorded here since it was looked at.
         refuse_to_overwrite_run(request, number)?;
         // What an earlier run left here would be taken for this one's.
-        let earlier = Earlier::set_aside(&folder)?;
-        remove(&folder.join(REPORT))?;
+        let place = Place::begin(Arc::new(SystemDisk), &folder)?;
         let (own_folder, files) = copy_scenario(scenario, &folder.join(SCENARIO))?;
         let provenance = Provenance {
             onescan: env!("CARGO_PKG_VERSION").to_owned(),
@@ -58,7 +58,7 @@ impl Recorded {
             files,
         };
         let recorder = Recorder::new(&folder, provenance, request.choice.clone());
-        Ok((Self { folder, earlier, _lock: lock }, recorder))
+        Ok((Self { folder, place, _lock: lock }, recorder))
     }
 
     /// What there is of a recording that was cut off, in words.
@@ -71,18 +71,16 @@ impl Recorded {
     }
 
     /// Adds what came of the run.
-    pub(super) fn end(mut self, report: &RunReport) -> Result<(), RunError> {
+    pub(super) fn end(self, report: &RunReport) -> Result<(), RunError> {
         let violated = |expectation: &super::expectation::ExpectationReport| {
             let t_v: VirtualTime = expectation.at?;
             let what = EventKind::Violated { expectation: expectation.name.clone() };
             Some(Event { step: report.step_at(t_v), t_v, what })
         };
         let events: Vec<Event> = report.expectations.iter().filter_map(violated).collect();
-        event::append(&self.folder.join(EVENTS), &events)?;
         let mut text = serde_json::to_vec_pretty(report).map_err(|e| OutputError(e.into()))?;
         text.push(b'\n');
-        file::write_whole(&self.folder.join(REPORT), &text)?;
-        Ok(self.earlier.discard()?)
+        Ok(self.place.end(&events, &text)?)
     }
 }
 
@@ -102,15 +100,6 @@ fn refuse_to_overwrite_run(request: &RecordRequest, number: u32) -> Result<(), U
     }
     let help = "record into another folder, or replace what is there with `--overwrite`".to_owned();
     Err(Usage::new(format!("{} holds an earlier recording", folder.display()), Some(help)))
-}
-
-fn remove(path: &Path) -> Result<(), RunError> {
-    match std::fs::remove_file(path) {
-        Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
-            Err(FileError { path: path.to_owned(), source }.into())
-        }
-        _ => Ok(()),
-    }
 }
 
 /// Copies the scenario's files so that it can be run from the copy. Says where its own folder is

@@ -1,11 +1,14 @@
 //! A journal of runs that are done, so that a search continues after whatever ended it.
 //!
-//! Each line is an object of JSON. It counts once its end is written: a process that is killed leaves half of one at most.
+//! Each line is an object of JSON. It counts once its end is written: a process that is killed, or whose disk is full, leaves half
+//! of one at most, which readers leave out.
 
-use std::fs::{File, OpenOptions};
-use std::io::Write;
+use std::fs::OpenOptions;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
+use onescan_base::disk::SystemDisk;
+use onescan_base::lines::{self, Lines};
 use onescan_base::regular::{self, Limit};
 use onescan_report::FileError;
 use serde::Serialize;
@@ -29,7 +32,8 @@ sum_of_errors! {
 /// A journal, locked as long as it is open.
 pub(crate) struct Journal {
     path: PathBuf,
-    file: File,
+    /// The lock is the file's, and ends with it.
+    lines: Mutex<Lines>,
 }
 
 impl Journal {
@@ -44,10 +48,10 @@ impl Journal {
             let message = format!("{}: another process works on it ({error})", path.display());
             return Err(Usage::new(message, Some("wait for it, or use another folder".to_owned())).into());
         }
-        let (lines, whole_bytes) = whole_lines(&path, search)?;
-        // Half a line is what a process left that was killed while it wrote.
+        let (done, whole_bytes) = whole_lines(&path, search)?;
+        // Half a line at the end is what a process left that was killed while it wrote.
         file.set_len(whole_bytes).map_err(unusable(&path))?;
-        Ok((Self { path, file }, lines))
+        Ok((Self { path, lines: Mutex::new(Lines::of(Box::new(file))) }, done))
     }
 
     pub(crate) fn path(&self) -> &Path {
@@ -59,7 +63,9 @@ impl Journal {
     /// # Errors
     /// The journal cannot be written.
     pub(crate) fn append(&self, line: &impl Serialize) -> Result<(), JournalError> {
-        write_line(&self.file, &self.path, line)
+        // A thread that panicked here left a whole value.
+        let mut lines = self.lines.lock().unwrap_or_else(PoisonError::into_inner);
+        push(&mut lines, &self.path, line)
     }
 }
 
@@ -68,8 +74,7 @@ impl Journal {
 /// # Errors
 /// The journal cannot be written.
 pub(crate) fn append(path: &Path, line: &impl Serialize) -> Result<(), JournalError> {
-    let file = OpenOptions::new().append(true).open(path).map_err(unusable(path))?;
-    write_line(&file, path, line)
+    push(&mut Lines::append_to(&SystemDisk, path).map_err(unusable(path))?, path, line)
 }
 
 /// What stands in the journal of a search with which nobody works any more.
@@ -80,11 +85,9 @@ pub(crate) fn read<L: DeserializeOwned>(path: &Path, search: &str) -> Result<Vec
     Ok(whole_lines(path, search)?.0)
 }
 
-/// Several processes write at a time: each line is one call at the end of the file, so that none is torn.
-fn write_line(mut file: &File, path: &Path, line: &impl Serialize) -> Result<(), JournalError> {
-    let mut text = serde_json::to_vec(line).map_err(|error| unusable(path)(error.into()))?;
-    text.push(b'\n');
-    Ok(file.write_all(&text).map_err(unusable(path))?)
+fn push(lines: &mut Lines, path: &Path, line: &impl Serialize) -> Result<(), JournalError> {
+    let text = serde_json::to_vec(line).map_err(|error| unusable(path)(error.into()))?;
+    Ok(lines.push(&text).map_err(unusable(path))?)
 }
 
 fn unusable(path: &Path) -> impl FnOnce(std::io::Error) -> FileError + use<> {
@@ -92,20 +95,24 @@ fn unusable(path: &Path) -> impl FnOnce(std::io::Error) -> FileError + use<> {
     move |source| FileError { path, source }
 }
 
-/// The whole lines of a journal, and how many bytes they are.
+/// The whole lines of a journal, and the bytes up to the end of the last.
 fn whole_lines<L: DeserializeOwned>(path: &Path, search: &str) -> Result<(Vec<L>, u64), JournalError> {
     let bytes = regular::read(path, Limit::DATA).map_err(Unreadable::at(path))?;
-    let whole = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |last| last + 1);
-    let mut lines = Vec::new();
-    for (index, line) in bytes[..whole].split_inclusive(|byte| *byte == b'\n').enumerate() {
-        let wrong = |error| {
-            tracing::debug!(%error, "not a line of a journal");
-            let message = format!("{}:{}: not a line of a {search}'s journal", path.display(), index + 1);
-            Usage::new(message, Some("remove the folder to begin again".to_owned()))
-        };
-        lines.push(serde_json::from_slice(line).map_err(wrong)?);
+    let mut done = Vec::new();
+    for (place, line) in lines::whole(&bytes) {
+        match serde_json::from_slice(line) {
+            Ok(line) => done.push(line),
+            // What a full disk took of a line: that run counts as not done.
+            Err(cut) if cut.is_eof() => {}
+            Err(error) => {
+                tracing::debug!(%error, "not a line of a journal");
+                let message = format!("{}:{}: not a line of a {search}'s journal", path.display(), place + 1);
+                return Err(Usage::new(message, Some("remove the folder to begin again".to_owned())).into());
+            }
+        }
     }
-    Ok((lines, whole as u64))
+    let whole = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |last| last + 1);
+    Ok((done, whole as u64))
 }
 
 #[cfg(test)]
@@ -123,7 +130,7 @@ mod tests {
         let busy = Journal::open::<u32>(path.clone(), "search").map(drop).unwrap_err().to_string();
         assert!(busy.contains("another process works on it"), "{busy}");
         drop(journal);
-        std::fs::write(&path, "1\n2\n3").unwrap();
+        std::fs::write(&path, "1\n2\n\"thr").unwrap();
         let (journal, lines) = Journal::open::<u32>(path.clone(), "search").unwrap();
         journal.append(&4).unwrap();
         assert_eq!((lines, read::<u32>(&path, "search").unwrap()), (vec![1, 2], vec![1, 2, 4]));

@@ -7,12 +7,12 @@
 mod descriptor;
 
 use std::collections::BTreeMap;
-use std::fs::File;
 use std::io::{self, BufWriter, Seek, Write};
 use std::sync::Arc;
 
 use mcap::records::MessageHeader;
 use mcap::{Compression, McapError, WriteOptions, Writer};
+use onescan_base::disk::DiskFile;
 
 use super::block::Block;
 use super::column::Column;
@@ -40,9 +40,9 @@ pub(crate) struct McapSink<W: Write + Seek> {
     message: Vec<u8>,
 }
 
-impl McapSink<BufWriter<File>> {
+impl McapSink<BufWriter<Box<dyn DiskFile>>> {
     pub(super) fn create(shape: &Shape) -> io::Result<Self> {
-        Self::new(BufWriter::new(File::create(shape.folder.join(MCAP))?), shape.columns.clone())
+        Self::new(BufWriter::new(shape.disk.create(&shape.folder.join(MCAP))?), shape.columns.clone())
     }
 }
 

@@ -21,11 +21,11 @@ pub(crate) mod schema;
 mod transpose;
 
 use std::collections::BTreeSet;
-use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use onescan_base::disk::{Disk, DiskFile, growing};
 use parquet::basic::Encoding;
 use parquet::file::metadata::KeyValue;
 use parquet::file::properties::{EnabledStatistics, WriterProperties, WriterVersion};
@@ -140,7 +140,8 @@ impl<W: Write + Send> Sink for ParquetFile<W> {
 pub(super) struct ParquetSink {
     folder: PathBuf,
     signals: Arc<[Column]>,
-    part: Option<ParquetFile<BufWriter<File>>>,
+    disk: Arc<dyn Disk>,
+    part: Option<ParquetFile<BufWriter<Box<dyn DiskFile>>>>,
     number: u64,
     /// Files with what has come of the part in progress; the part takes their place.
     early: Vec<PathBuf>,
@@ -149,27 +150,33 @@ pub(super) struct ParquetSink {
 impl ParquetSink {
     /// Empties the folder of parts and restarts.
     pub(super) fn create(shape: &Shape) -> io::Result<Self> {
-        let folder = shape.folder.join(TRAJECTORY);
-        std::fs::create_dir_all(&folder)?;
+        let (folder, disk) = (shape.folder.join(TRAJECTORY), Arc::clone(&shape.disk));
+        disk.create_folder(&folder)?;
+        let mut left: Vec<PathBuf> = Vec::new();
         for entry in std::fs::read_dir(&folder)? {
             let entry = entry?;
             if entry.file_name().to_string_lossy().trim_start_matches('.').starts_with("part-") {
-                std::fs::remove_file(entry.path())?;
+                left.push(entry.path());
             }
         }
-        Ok(Self { folder, signals: shape.columns.clone(), part: None, number: 0, early: Vec::new() })
+        // The last first: what a kill leaves of them has its beginning.
+        left.sort();
+        left.iter().rev().try_for_each(|part| disk.remove_file(part))?;
+        Ok(Self { folder, signals: shape.columns.clone(), disk, part: None, number: 0, early: Vec::new() })
     }
 
-    fn partial(&self) -> PathBuf {
-        self.folder.join(format!(".{}.partial", part_name(self.number)))
+    fn part_path(&self) -> PathBuf {
+        self.folder.join(part_name(self.number))
     }
 
     fn end_part(&mut self) -> io::Result<()> {
         let Some(mut part) = self.part.take() else { return Ok(()) };
         part.finish()?;
         // The part takes its name before the early files go: between the two, a kill leaves each step at least once.
-        std::fs::rename(self.partial(), self.folder.join(part_name(self.number)))?;
-        self.early.drain(..).try_for_each(std::fs::remove_file)
+        drop(part);
+        let path = self.part_path();
+        self.disk.rename(&growing(&path), &path)?;
+        self.early.drain(..).try_for_each(|early| self.disk.remove_file(&early))
     }
 }
 
@@ -177,7 +184,7 @@ impl Sink for ParquetSink {
     fn block(&mut self, block: &Block) -> io::Result<()> {
         if self.part.is_none() {
             self.number += 1;
-            let file = BufWriter::new(File::create(self.partial())?);
+            let file = BufWriter::new(self.disk.create(&growing(&self.part_path()))?);
             self.part = Some(ParquetFile::new(file, self.signals.clone(), block.first_step)?);
         }
         if let Some(part) = &mut self.part {
@@ -188,13 +195,14 @@ impl Sink for ParquetSink {
 
     fn early(&mut self, rows: &Block) -> io::Result<()> {
         let number = if self.part.is_some() { self.number } else { self.number + 1 };
-        let name = early_name(number, self.early.len() + 1);
-        let (growing, whole) = (self.folder.join(format!(".{name}.partial")), self.folder.join(name));
-        let file = BufWriter::new(File::create(&growing)?);
+        let whole = self.folder.join(early_name(number, self.early.len() + 1));
+        let growing = growing(&whole);
+        let file = BufWriter::new(self.disk.create(&growing)?);
         let mut early = ParquetFile::new(file, self.signals.clone(), rows.first_step)?;
         early.rows(rows)?;
         early.finish()?;
-        std::fs::rename(growing, &whole)?;
+        drop(early);
+        self.disk.rename(&growing, &whole)?;
         self.early.push(whole);
         Ok(())
     }
@@ -207,7 +215,13 @@ impl Sink for ParquetSink {
 /// The parts in `folder` in their order, and behind them what there is of one that never became whole.
 pub(crate) fn parts(folder: &Path) -> io::Result<Vec<PathBuf>> {
     let mut parts = Vec::new();
-    for entry in std::fs::read_dir(folder)? {
+    let entries = match std::fs::read_dir(folder) {
+        Ok(entries) => entries,
+        // A kill may have come before it was made.
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(parts),
+        Err(error) => return Err(error),
+    };
+    for entry in entries {
         let path = entry?.path();
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         if name.starts_with("part-") && path.extension().is_some_and(|extension| extension == "parquet") {
