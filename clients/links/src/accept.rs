@@ -13,18 +13,13 @@ use std::time::{Duration, Instant};
 use onescan_base::repeated::Repeated;
 use onescan_base::threads;
 use onescan_server::transport::accept::{not_taken, refused};
-use onescan_server::transport::connection_limit::{ConnectionLimit, Limits, Place};
+use onescan_server::transport::connection_limit::{ConnectionLimit, Place};
+use onescan_server::transport::listeners::{IDLE_TIMEOUT, ListenerRules};
 
 /// How often a thread that waits looks whether all is over.
 pub(crate) const GLANCE: Duration = Duration::from_millis(100);
-/// Connections of a server at a time.
-pub(crate) const LIMITS: Limits = Limits { all: 64, of_address: 32, staying: 48 };
-/// How long a connection may take for its first request.
-pub(crate) const FIRST_REQUEST: Duration = Duration::from_secs(30);
 /// A client that does not take what is sent to it for so long is left.
 const WRITE_TIMEOUT: Duration = Duration::from_secs(3);
-/// A client that says nothing for so long is left; one that comes back is let in again.
-pub(crate) const IDLE_TIMEOUT: Duration = Duration::from_mins(10);
 
 static NO_THREAD: Repeated = Repeated::new();
 
@@ -102,43 +97,36 @@ impl Drop for Peer {
     }
 }
 
-/// What a server allows those who come.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Terms {
-    /// What they come to, for messages.
-    pub what: &'static str,
-    pub limits: Limits,
-    /// How long one may take for its first request.
-    pub first_request: Duration,
-}
-
-impl Terms {
-    /// Those of a server that answers requests: [`LIMITS`] and [`FIRST_REQUEST`].
-    pub(crate) const fn of(what: &'static str) -> Self {
-        Self { what, limits: LIMITS, first_request: FIRST_REQUEST }
-    }
-}
-
 /// Hands each connection to `attend`, until `is_over`.
-pub(crate) fn accept(listener: &TcpListener, terms: Terms, is_over: impl Fn() -> bool, mut attend: impl FnMut(Peer)) {
-    let limit = ConnectionLimit::new(terms.limits);
+pub(crate) fn accept(
+    listener: &TcpListener,
+    rules: ListenerRules,
+    is_over: impl Fn() -> bool,
+    mut attend: impl FnMut(Peer),
+) {
+    let limit = ConnectionLimit::new(rules.limits);
     while !is_over() {
         match listener.accept() {
-            Ok((stream, address)) => match admitted(stream, address, &limit, terms) {
+            Ok((stream, address)) => match admitted(stream, address, &limit, rules) {
                 Ok(Some(peer)) => attend(peer),
-                Ok(None) => refused(terms.what, address),
+                Ok(None) => refused(rules.what, address),
                 Err(error) => tracing::debug!(%address, %error, "a client has gone before it was served"),
             },
             Err(error) if error.kind() == io::ErrorKind::WouldBlock => std::thread::sleep(GLANCE / 10),
             Err(error) => {
-                not_taken(terms.what, &error);
+                not_taken(rules.what, &error);
                 std::thread::sleep(GLANCE);
             }
         }
     }
 }
 
-fn admitted(stream: TcpStream, address: SocketAddr, limit: &ConnectionLimit, terms: Terms) -> io::Result<Option<Peer>> {
+fn admitted(
+    stream: TcpStream,
+    address: SocketAddr,
+    limit: &ConnectionLimit,
+    rules: ListenerRules,
+) -> io::Result<Option<Peer>> {
     prepare(&stream)?;
     let stream = Arc::new(stream);
     let leaving = Arc::clone(&stream);
@@ -146,7 +134,7 @@ fn admitted(stream: TcpStream, address: SocketAddr, limit: &ConnectionLimit, ter
         // It may be gone already.
         let _ = leaving.shutdown(Shutdown::Both);
     });
-    let deadline = Some(Instant::now() + terms.first_request);
+    let deadline = Some(Instant::now() + rules.proof);
     Ok(place.map(|place| Peer { stream, address, place: Some(place), deadline }))
 }
 
@@ -154,20 +142,20 @@ fn admitted(stream: TcpStream, address: SocketAddr, limit: &ConnectionLimit, ter
 /// let go.
 pub(crate) fn serve_each<Server: Send + Sync + 'static>(
     listener: &TcpListener,
-    terms: Terms,
+    rules: ListenerRules,
     server: &Arc<Server>,
     is_over: impl Fn() -> bool,
     serve: fn(&Server, &mut Peer) -> io::Result<()>,
 ) {
-    accept(listener, terms, is_over, |mut peer| {
+    accept(listener, rules, is_over, |mut peer| {
         let server = Arc::clone(server);
-        let served = threads::start(terms.what, move || {
+        let served = threads::start(rules.what, move || {
             if let Err(error) = serve(&server, &mut peer) {
                 tracing::debug!(peer = %peer.address, %error, "a client has gone");
             }
         });
         if let Err(error) = served {
-            not_served(terms.what, &error);
+            not_served(rules.what, &error);
         }
     });
 }
@@ -191,13 +179,16 @@ fn prepare(stream: &TcpStream) -> io::Result<()> {
 mod tests {
     use std::sync::atomic::{AtomicBool, Ordering};
 
+    use onescan_server::transport::connection_limit::Limits;
+
     use super::*;
     use crate::listener::bind;
 
-    const TERMS: Terms = Terms {
+    const DOOR: ListenerRules = ListenerRules {
         what: "a test",
         limits: Limits { all: 3, of_address: 3, staying: 2 },
-        first_request: Duration::from_millis(200),
+        proof: Duration::from_millis(200),
+        idle: None,
     };
 
     /// A server that gives every byte back, until it is dropped.
@@ -215,7 +206,7 @@ mod tests {
                 let server = Arc::new(());
                 serve_each(
                     &listener,
-                    TERMS,
+                    DOOR,
                     &server,
                     || seen.load(Ordering::Acquire),
                     |(), peer| {

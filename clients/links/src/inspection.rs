@@ -15,9 +15,9 @@ use onescan_iec_run::Variable;
 use onescan_server::client::Parts;
 use onescan_server::published::{Published, SessionView};
 use onescan_server::signal::{ClientName, SignalType};
-use onescan_server::transport::connection_limit::Limits;
+use onescan_server::transport::listeners::INSPECTION;
 
-use crate::accept::{FIRST_REQUEST, Peer, Terms, serve_each};
+use crate::accept::{Peer, serve_each};
 use crate::gateway::ads::command::{self, SUM_MAX};
 use crate::gateway::ads::frame::{Bytes, Frame, Kind, MAX_DATA};
 use crate::gateway::ads::symbol::{Form, READ_ONLY, Symbol};
@@ -35,9 +35,6 @@ const DEVICE: &[u8; 20] = b"\x01\x00\x00\x00onescan\0\0\0\0\0\0\0\0\0";
 const NOT_READY: u32 = 0x707;
 /// Handles of one client at most.
 const HANDLES_MAX: usize = 10_000;
-/// Connections at a time: each has a thread.
-const TERMS: Terms =
-    Terms { what: "ADS", limits: Limits { all: 24, of_address: 16, staying: 16 }, first_request: FIRST_REQUEST };
 /// How often somebody who waits looks.
 const GLANCE: Duration = Duration::from_millis(1);
 /// So many looks are taken for the next step boundary; then the view that there is must do.
@@ -69,7 +66,9 @@ impl Inspection {
         let (listener, address) = bind(address)?;
         let over = Arc::new(AtomicBool::new(false));
         let device = Arc::new(Device { published, plcs, over: Arc::clone(&over) });
-        threads::start("readers", move || serve_each(&listener, TERMS, &device, || device.is_over(), Device::attend))?;
+        threads::start("readers", move || {
+            serve_each(&listener, INSPECTION, &device, || device.is_over(), Device::attend);
+        })?;
         Ok(Self { address, over })
     }
 

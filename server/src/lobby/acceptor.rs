@@ -7,6 +7,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use onescan_base::foreign::one_line;
+use onescan_base::repeated::Repeated;
 
 use super::places::Places;
 use super::visitor::{Connection, Said, Stage};
@@ -27,6 +28,8 @@ pub const HANDSHAKE_TIMEOUT: Duration = Duration::from_secs(5);
 pub const CLOSE_TIMEOUT: Duration = Duration::from_secs(1);
 /// How long an operator may be silent.
 const OPERATOR_PATIENCE: Duration = Duration::from_hours(24);
+
+static SENT_AWAY: Repeated = Repeated::new();
 
 /// The refusal of whoever comes when the session has begun.
 pub const BEGUN: &str = "the session has begun: nobody can join any more";
@@ -115,6 +118,16 @@ impl Acceptor {
         self.places.taken()
     }
 
+    /// How many connections neither take part, nor operate, nor leave.
+    pub fn guests(&self) -> usize {
+        self.connections.values().filter(|connection| connection.is_guest()).count()
+    }
+
+    /// Bytes of a connection that have come and have not been understood yet.
+    pub fn held_bytes(&self, visitor: Visitor) -> usize {
+        self.connections.get(&visitor).map_or(0, Connection::held_bytes)
+    }
+
     /// True if the connection is known here.
     pub fn knows(&self, visitor: Visitor) -> bool {
         self.connections.contains_key(&visitor)
@@ -134,9 +147,7 @@ impl Acceptor {
     pub fn opened(&mut self, visitor: Visitor, address: IpAddr, now: Now) -> Vec<Action> {
         let mut actions = Vec::new();
         self.connections.insert(visitor, Connection::new(address, now.at + HANDSHAKE_TIMEOUT));
-        let before_session =
-            |connection: &&Connection| matches!(connection.stage, Stage::Greeting | Stage::Applying | Stage::Waiting);
-        if self.connections.values().filter(before_session).count() > GUESTS_MAX {
+        if self.guests() > GUESTS_MAX {
             let slowest = self.slowest();
             self.refuse(slowest, "too many connections are waiting in the lobby", now, &mut actions);
         }
@@ -213,6 +224,9 @@ impl Acceptor {
         if let Err(why) = self.let_in(visitor, protocol, role, &agent, token.as_deref(), now) {
             return self.refuse(visitor, &why, now, actions);
         }
+        if role == Role::Operator && !self.give_place(visitor, now, actions) {
+            return self.refuse(visitor, "too many operators are connected", now, actions);
+        }
         let Some(connection) = self.connections.get_mut(&visitor) else { return };
         connection.set_limit((HANDSHAKE_FRAME_BYTES_MAX + 2 * self.terms.welcome_bytes).min(FRAME_BYTES_MAX));
         (connection.stage, connection.until) = match role {
@@ -245,10 +259,24 @@ impl Acceptor {
             (None, None) => None,
         };
         connection.holder = holder.transpose().map_err(|refusal| refusal.to_string())?;
-        if role == Role::Operator && !self.places.take(connection.address) {
-            return Err("too many operators are connected".to_owned());
-        }
         Ok(())
+    }
+
+    /// Gives an operator a place. Where there is none, one of the same address that has never asked gives way, the first that came.
+    fn give_place(&mut self, visitor: Visitor, now: Now, actions: &mut Vec<Action>) -> bool {
+        let Some(address) = self.connections.get(&visitor).map(|connection| connection.address) else { return false };
+        if self.places.take(address) {
+            return true;
+        }
+        let idle = |connection: &Connection| {
+            connection.address == address && connection.stage == Stage::Operating && !connection.has_asked
+        };
+        let Some(first) = self.connections.iter().find(|(_, connection)| idle(connection)).map(|(idle, _)| *idle)
+        else {
+            return false;
+        };
+        self.refuse(first, "another operator has come, and this one has asked nothing", now, actions);
+        self.places.take(address)
     }
 
     fn apply(&mut self, visitor: Visitor, message: ClientMessage, now: Now, actions: &mut Vec<Action>) {
@@ -288,7 +316,7 @@ impl Acceptor {
             let refusal = TokenRefusal::LooksOnly { proof: holder.proof, name: holder.name.clone() };
             return self.refuse(visitor, &refusal.to_string(), now, actions);
         }
-        (connection.stage, connection.until) = (Stage::Asking, None);
+        (connection.stage, connection.until, connection.has_asked) = (Stage::Asking, None, true);
         actions.push(Action::Ask(visitor, wish));
     }
 
@@ -405,7 +433,12 @@ impl Acceptor {
     fn refuse(&mut self, visitor: Visitor, why: &str, now: Now, actions: &mut Vec<Action>) {
         debug_assert!(self.knows(visitor), "only who is there can be sent away");
         let message = one_line(why).into_owned();
-        tracing::warn!(?visitor, why = %message, "sent away");
+        // Each of them hears why; the log does not grow with those who come.
+        if let Some(times) = SENT_AWAY.again() {
+            tracing::warn!(?visitor, why = %message, "sent away{times}");
+        } else {
+            tracing::debug!(?visitor, why = %message, "sent away");
+        }
         actions.push(Action::Send(visitor, Arc::new(ServerMessage::Refused { message })));
         self.part(visitor, now, actions);
     }

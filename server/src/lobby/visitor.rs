@@ -33,6 +33,8 @@ pub(super) struct Connection {
     pub(super) until: Option<Duration>,
     /// Whose certificate it showed, or, from `hello` on, whose token where tokens are asked for.
     pub(super) holder: Option<Holder>,
+    /// An operator that has asked for something.
+    pub(super) has_asked: bool,
     limit: usize,
     incoming: BytesMut,
 }
@@ -50,12 +52,12 @@ pub(super) enum Said {
 impl Connection {
     pub(super) fn new(address: IpAddr, until: Duration) -> Self {
         let (limit, incoming) = (HANDSHAKE_FRAME_BYTES_MAX, BytesMut::new());
-        Self { address, stage: Stage::Greeting, until: Some(until), holder: None, limit, incoming }
+        Self { address, stage: Stage::Greeting, until: Some(until), holder: None, has_asked: false, limit, incoming }
     }
 
     /// What distinguishes this connection from others that are as far.
     pub(super) fn key(&self) -> impl std::hash::Hash + Eq + use<'_> {
-        (self.address, &self.stage, self.until, &self.holder, self.limit, &self.incoming)
+        (self.address, &self.stage, self.until, &self.holder, self.has_asked, self.limit, &self.incoming)
     }
 
     /// From here on frames may be so long.
@@ -66,6 +68,16 @@ impl Connection {
     /// Takes bytes in. No more are kept than a frame may have, and what comes with its last piece.
     pub(super) fn take_in(&mut self, bytes: &[u8]) {
         self.incoming.extend_from_slice(bytes);
+    }
+
+    /// True until it takes part, operates or leaves.
+    pub(super) fn is_guest(&self) -> bool {
+        matches!(self.stage, Stage::Greeting | Stage::Applying | Stage::Waiting)
+    }
+
+    /// Bytes that have come and have not been understood yet.
+    pub(super) fn held_bytes(&self) -> usize {
+        self.incoming.len()
     }
 
     /// True if it has said something that has not been looked at.

@@ -24,8 +24,24 @@ const PAUSE: Duration = Duration::from_millis(100);
 static NOT_TAKEN: Repeated = Repeated::new();
 static REFUSED: Repeated = Repeated::new();
 
+/// Where connections come from: a socket, or a network on virtual time.
+pub trait Incoming {
+    type Stream;
+
+    /// The next connection.
+    fn accept(&self) -> impl Future<Output = io::Result<(Self::Stream, SocketAddr)>> + Send;
+}
+
+impl Incoming for TcpListener {
+    type Stream = TcpStream;
+
+    fn accept(&self) -> impl Future<Output = io::Result<(TcpStream, SocketAddr)>> + Send {
+        Self::accept(self)
+    }
+}
+
 /// The next connection.
-pub async fn next(listener: &TcpListener, what: &str) -> (TcpStream, SocketAddr) {
+pub async fn next<From: Incoming>(listener: &From, what: &str) -> (From::Stream, SocketAddr) {
     loop {
         match listener.accept().await {
             Ok(came) => return came,
@@ -39,8 +55,8 @@ pub async fn next(listener: &TcpListener, what: &str) -> (TcpStream, SocketAddr)
 
 /// A connection that has a place.
 #[derive(Debug)]
-pub struct Admitted {
-    pub stream: TcpStream,
+pub struct Admitted<Stream = TcpStream> {
+    pub stream: Stream,
     pub from: SocketAddr,
     pub place: Place,
     /// The word that it must leave.
@@ -48,7 +64,7 @@ pub struct Admitted {
 }
 
 /// The next connection for which there is room.
-pub async fn admitted(listener: &TcpListener, limit: &ConnectionLimit, what: &str) -> Admitted {
+pub async fn admitted<From: Incoming>(listener: &From, limit: &ConnectionLimit, what: &str) -> Admitted<From::Stream> {
     loop {
         let (stream, from) = next(listener, what).await;
         match limit.admit_task(from.ip()) {
@@ -97,6 +113,8 @@ pub struct Guarded<S> {
     /// Says that it must leave; nothing once it has been said.
     leaving: Option<oneshot::Receiver<()>>,
     patience: Duration,
+    /// How long one that stays may be without an answer; as long as it likes without.
+    idle: Option<Duration>,
     over: Pin<Box<Sleep>>,
 }
 
@@ -105,7 +123,15 @@ impl<S> Guarded<S> {
     /// reading.
     pub fn new(stream: S, place: Place, leaving: oneshot::Receiver<()>, patience: Duration) -> Self {
         let pass = Pass(Arc::new((place, AtomicBool::new(false))));
-        Self { stream, pass, leaving: Some(leaving), patience, over: Box::pin(tokio::time::sleep(patience)) }
+        let over = Box::pin(tokio::time::sleep(patience));
+        Self { stream, pass, leaving: Some(leaving), patience, idle: None, over }
+    }
+
+    /// The same for a connection that is left, too, once it stays and has been without an answer for `idle`.
+    #[must_use]
+    pub fn idle_for(mut self, idle: Option<Duration>) -> Self {
+        self.idle = idle;
+        self
     }
 
     /// Its right to stay.
@@ -113,12 +139,18 @@ impl<S> Guarded<S> {
         self.pass.clone()
     }
 
+    fn stays(&self) -> bool {
+        self.pass.0.1.load(Ordering::Acquire)
+    }
+
     /// Whether the connection may go on.
     fn check(&mut self, context: &mut Context<'_>) -> io::Result<()> {
-        if self.pass.0.1.load(Ordering::Acquire) {
+        let stays = self.stays();
+        if stays && self.idle.is_none() {
             return Ok(());
         }
         let must_leave = match &mut self.leaving {
+            _ if stays => false,
             Some(leaving) => Pin::new(leaving).poll(context).is_ready(),
             None => true,
         };
@@ -146,7 +178,8 @@ impl<S: AsyncWrite + Unpin> AsyncWrite for Guarded<S> {
     fn poll_write(mut self: Pin<&mut Self>, context: &mut Context<'_>, bytes: &[u8]) -> Poll<io::Result<usize>> {
         self.check(context)?;
         let written = ready!(Pin::new(&mut self.stream).poll_write(context, bytes))?;
-        let until = Instant::now() + self.patience;
+        let patience = self.idle.filter(|_| self.stays()).unwrap_or(self.patience);
+        let until = Instant::now() + patience;
         self.over.as_mut().reset(until);
         Poll::Ready(Ok(written))
     }

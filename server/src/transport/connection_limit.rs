@@ -21,6 +21,13 @@ pub struct Limits {
     pub staying: usize,
 }
 
+impl Limits {
+    /// Of those that stay, how many may be of one address: its others have room beside them.
+    fn staying_of_address(self) -> usize {
+        (self.of_address * 3 / 4).max(1)
+    }
+}
+
 /// The connections of a listener. Clones are of the same listener.
 #[derive(Clone)]
 pub struct ConnectionLimit(Arc<Mutex<Present>>);
@@ -119,8 +126,13 @@ impl Place {
     #[must_use]
     pub fn stay(&self) -> bool {
         let mut present = self.limit.lock();
-        let is_full =
-            present.connections.values().filter(|connection| connection.stays).count() >= present.limits.staying;
+        let Some(address) = present.connections.get(&self.number).map(|connection| connection.address) else {
+            return false;
+        };
+        let staying = present.connections.values().filter(|connection| connection.stays);
+        let (all, of_same) =
+            staying.fold((0, 0), |(all, same), other| (all + 1, same + usize::from(other.address == address)));
+        let is_full = all >= present.limits.staying || of_same >= present.limits.staying_of_address();
         match present.connections.get_mut(&self.number) {
             Some(connection) => {
                 connection.stays |= !is_full;

@@ -2,6 +2,7 @@
 
 use std::net::{SocketAddr, TcpListener};
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 use axum::Router;
 use axum::extract::{DefaultBodyLimit, Request, State as Shared};
@@ -26,6 +27,9 @@ use onescan_runner::web::{asset, guarded_here};
 /// The longest request, bytes.
 const REQUEST_MAX: usize = 64 * 1024;
 
+/// How much time looking at the files may take at once; behind it, half of the time is left for answers.
+const LOOKING_MAX: Duration = Duration::from_millis(500);
+
 /// The files, and what is known of them.
 struct EditSession {
     files: Files,
@@ -33,6 +37,8 @@ struct EditSession {
     state: State,
     /// Changes that were written.
     how_far: HowFar,
+    /// When somebody looked at the files last, and how much of the time went into looking lately.
+    looked: (Instant, Duration),
 }
 
 /// What a page wants.
@@ -106,7 +112,19 @@ impl EditSession {
     fn open(files: Files, how_far: HowFar) -> Result<Self, EditorError> {
         let workspace = Workspace::new(files.read()?, 0);
         let state = state::of(&files, &workspace);
-        Ok(Self { files, workspace, state, how_far })
+        Ok(Self { files, workspace, state, how_far, looked: (Instant::now(), Duration::ZERO) })
+    }
+
+    /// Looks at files, scenes and programs, which may have changed since; not where so many ask that nothing else would be done.
+    fn look_again(&mut self) {
+        let (at, spent) = self.looked;
+        let begun = Instant::now();
+        let spent = spent.saturating_sub((begun - at) / 2);
+        if spent >= LOOKING_MAX {
+            return;
+        }
+        self.take(self.workspace.clone());
+        self.looked = (Instant::now(), spent + begun.elapsed());
     }
 
     /// Does what is wanted, or nothing.
@@ -221,9 +239,7 @@ fn answer(status: StatusCode, body: &impl Serialize) -> Response {
 
 async fn look(Shared(held): Shared<Held>) -> Response {
     let mut edit_session = held.lock().unwrap_or_else(PoisonError::into_inner);
-    // files, scenes and programs may have changed since
-    let workspace = edit_session.workspace.clone();
-    edit_session.take(workspace);
+    edit_session.look_again();
     answer(StatusCode::OK, &edit_session.state)
 }
 

@@ -1,7 +1,7 @@
 //! Where connections to a page come in: how many there are, how long one may say nothing, and TLS where there is a
 //! certificate.
 //!
-//! A browser's connections come and go with its requests; each has [`PATIENCE`] from one answer to the next. Only a viewer's
+//! A browser's connections come and go with its requests; each has the time of a [`ListenerRules`] from one answer to the next. Only a viewer's
 //! connection stays. So whoever connects and says nothing, or half a request, or does not read, is gone after a while, and
 //! gives way before to one who comes ([`ConnectionLimit`]). Descriptors are left for the session's own files.
 
@@ -14,7 +14,8 @@ use std::time::Duration;
 use axum::extract::connect_info::Connected;
 use axum::serve::{IncomingStream, Listener};
 use onescan_server::transport::accept::{self, Admitted, Guarded, Pass};
-use onescan_server::transport::connection_limit::{ConnectionLimit, Limits};
+use onescan_server::transport::connection_limit::ConnectionLimit;
+use onescan_server::transport::listeners::{self, ListenerRules};
 use onescan_server::transport::tls::Identity;
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::net::{TcpListener, TcpStream};
@@ -24,12 +25,6 @@ use tokio_rustls::server::TlsStream;
 
 /// How long a handshake may take.
 const HANDSHAKE: Duration = Duration::from_secs(5);
-/// How long a connection may be without an answer, or a part of one: idle, with half a request, or not reading.
-const PATIENCE: Duration = Duration::from_secs(30);
-/// Connections at a time, if there are descriptors enough.
-const CONNECTIONS_MAX: usize = 256;
-/// Connections that there is always room for, however few descriptors there are.
-const CONNECTIONS_MIN: usize = 8;
 
 /// A listener of which connections come into a page.
 pub struct LimitedListener {
@@ -46,19 +41,12 @@ impl LimitedListener {
         let address = listener.local_addr()?;
         let (send, connections) = mpsc::channel(1);
         let acceptor = identity.map(|identity| TlsAcceptor::from(identity.server_config()));
-        tokio::spawn(take(listener, ConnectionLimit::new(limits()), acceptor, send));
+        tokio::spawn(take(listener, listeners::page(descriptors()), acceptor, send));
         Ok(Self { address, connections })
     }
 }
 
-/// A quarter of the descriptors that this process may have.
-fn limits() -> Limits {
-    let quarter = descriptors().map_or(CONNECTIONS_MAX, |descriptors| descriptors / 4);
-    let all = quarter.clamp(CONNECTIONS_MIN, CONNECTIONS_MAX);
-    Limits { all, of_address: all / 2, staying: all / 2 }
-}
-
-/// How many this process may have; nothing if that is not limited.
+/// How many descriptors this process may have; nothing if that is not limited.
 #[cfg(unix)]
 pub(crate) fn descriptors() -> Option<usize> {
     let limit = rustix::process::getrlimit(rustix::process::Resource::Nofile).current;
@@ -72,15 +60,16 @@ pub(crate) fn descriptors() -> Option<usize> {
 
 async fn take(
     listener: TcpListener,
-    limit: ConnectionLimit,
+    rules: ListenerRules,
     acceptor: Option<TlsAcceptor>,
     connections: mpsc::Sender<(Guarded<Stream>, SocketAddr)>,
 ) {
+    let limit = ConnectionLimit::new(rules.limits);
     while !connections.is_closed() {
-        let admitted = accept::admitted(&listener, &limit, "the page").await;
+        let admitted = accept::admitted(&listener, &limit, rules.what).await;
         let (acceptor, connections, from) = (acceptor.clone(), connections.clone(), admitted.from);
         tokio::spawn(async move {
-            if let Some(guarded) = received(admitted, acceptor).await {
+            if let Some(guarded) = received(admitted, acceptor, rules.proof).await {
                 // the page may be over
                 drop(connections.send((guarded, from)).await);
             }
@@ -89,7 +78,7 @@ async fn take(
 }
 
 /// A connection that has come, if it has not gone or had to leave before its handshake was over.
-async fn received(admitted: Admitted, acceptor: Option<TlsAcceptor>) -> Option<Guarded<Stream>> {
+async fn received(admitted: Admitted, acceptor: Option<TlsAcceptor>, patience: Duration) -> Option<Guarded<Stream>> {
     let Admitted { stream, from, place, mut leaving } = admitted;
     let stream = match acceptor {
         None => Stream::Plain(stream),
@@ -108,7 +97,7 @@ async fn received(admitted: Admitted, acceptor: Option<TlsAcceptor>) -> Option<G
             },
         },
     };
-    Some(Guarded::new(stream, place, leaving, PATIENCE))
+    Some(Guarded::new(stream, place, leaving, patience))
 }
 
 impl Listener for LimitedListener {

@@ -7,9 +7,10 @@ use std::net::SocketAddr;
 use std::sync::Arc;
 
 use onescan_base::threads;
+use onescan_server::transport::listeners;
 
 use super::controller::{Controller, Snapshot};
-use crate::accept::{Peer, Terms, serve_each};
+use crate::accept::{Peer, serve_each};
 use crate::gateway::ads::Options;
 use crate::gateway::ads::command::{self, SUM_MAX};
 use crate::gateway::ads::frame::{Bytes, Frame, Kind, MAX_DATA};
@@ -33,7 +34,7 @@ pub fn serve(address: SocketAddr, controller: &Arc<Controller>, options: &Option
     let (listener, address) = bind(address)?;
     let device = Arc::new(Device::new(Arc::clone(controller), options));
     threads::start("ADS", move || {
-        serve_each(&listener, Terms::of("ADS"), &device, || device.controller.is_over(), Device::attend);
+        serve_each(&listener, listeners::ADS, &device, || device.controller.is_over(), Device::attend);
     })?;
     Ok(address)
 }

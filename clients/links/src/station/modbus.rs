@@ -7,6 +7,7 @@ use std::sync::Arc;
 use onescan_base::threads;
 use onescan_server::transport::accept::{Guarded, Pass, not_taken, refused};
 use onescan_server::transport::connection_limit::ConnectionLimit;
+use onescan_server::transport::listeners::MODBUS;
 use onescan_server::transport::runtime;
 use tokio::net::{TcpListener, TcpStream};
 use tokio_modbus::prelude::{ExceptionCode, Request, Response};
@@ -14,7 +15,7 @@ use tokio_modbus::server::Service;
 use tokio_modbus::server::tcp::Server;
 
 use super::controller::Controller;
-use crate::accept::{FIRST_REQUEST, GLANCE, LIMITS};
+use crate::accept::GLANCE;
 use crate::gateway::exchange::Direction;
 use crate::gateway::modbus::RegisterMap;
 use crate::gateway::modbus::map::{Entry, Span, Table};
@@ -36,12 +37,12 @@ pub fn serve(address: SocketAddr, controller: &Arc<Controller>, map: RegisterMap
 /// Serves until the controller ends. The library's server ends when it cannot take a connection, as where there are no
 /// descriptors; then it is started again.
 async fn listen(listener: &std::net::TcpListener, bank: &Arc<Bank>) {
-    let limit = ConnectionLimit::new(LIMITS);
+    let limit = ConnectionLimit::new(MODBUS.limits);
     while !bank.controller.is_over() {
         match serve_until_over(listener, bank, &limit).await {
             Ok(()) => return,
             Err(error) => {
-                not_taken("Modbus", &error);
+                not_taken(MODBUS.what, &error);
                 tokio::time::sleep(GLANCE).await;
             }
         }
@@ -75,10 +76,10 @@ fn admitted(
     // It only costs time where it cannot be set.
     let _ = stream.set_nodelay(true);
     let Some((place, leaving)) = limit.admit_task(from.ip()) else {
-        refused("Modbus", from);
+        refused(MODBUS.what, from);
         return None;
     };
-    let guarded = Guarded::new(stream, place, leaving, FIRST_REQUEST);
+    let guarded = Guarded::new(stream, place, leaving, MODBUS.proof).idle_for(MODBUS.idle);
     Some((Registers { bank: Arc::clone(bank), pass: guarded.pass() }, guarded))
 }
 

@@ -7,9 +7,10 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use onescan_base::threads;
+use onescan_server::transport::listeners;
 
 use super::controller::Controller;
-use crate::accept::{Peer, Terms, serve_each};
+use crate::accept::{Peer, serve_each};
 use crate::gateway::exchange::Direction;
 use crate::gateway::s7::Options;
 use crate::gateway::s7::iso::{self, Incoming, Message};
@@ -34,7 +35,7 @@ pub fn serve(
     let (listener, address) = bind(address)?;
     let cpu = Arc::new(Cpu { controller: Arc::clone(controller), options, layouts });
     threads::start("S7", move || {
-        serve_each(&listener, Terms::of("S7"), &cpu, || cpu.controller.is_over(), Cpu::attend);
+        serve_each(&listener, listeners::S7, &cpu, || cpu.controller.is_over(), Cpu::attend);
     })?;
     Ok(address)
 }

@@ -14,20 +14,16 @@ use std::time::{Duration, Instant};
 
 use onescan_base::repeated::Repeated;
 use onescan_base::threads;
-use onescan_server::transport::connection_limit::Limits;
+use onescan_server::transport::listeners::RAW_TCP;
 
 use super::controller::Controller;
-use crate::accept::{GLANCE, IDLE_TIMEOUT, Peer, Terms, accept, not_served};
+use crate::accept::{GLANCE, Peer, accept, not_served};
 use crate::gateway::exchange::Direction;
 use crate::gateway::tcp::{BlockCodec, Layouts};
 use crate::listener::bind;
 
 /// How long a gateway may take to accept a connection.
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(3);
-/// Connections have two threads each. A gateway connects long before its session begins and it has a block to send, so it has
-/// as much time for the first as for any other.
-const TERMS: Terms =
-    Terms { what: "raw TCP", limits: Limits { all: 16, of_address: 8, staying: 8 }, first_request: IDLE_TIMEOUT };
 
 static GARBLED: Repeated = Repeated::new();
 
@@ -109,11 +105,11 @@ fn visit(address: SocketAddr, server: &Arc<Server>) -> std::io::Result<()> {
 fn serve_each(listener: &TcpListener, server: &Arc<Server>) {
     accept(
         listener,
-        TERMS,
+        RAW_TCP,
         || server.controller.is_over(),
         |peer| {
             if let Err(error) = attend(peer, server) {
-                not_served(TERMS.what, &error);
+                not_served(RAW_TCP.what, &error);
             }
         },
     );

@@ -12,19 +12,16 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use onescan_server::transport::accept::{self, Admitted};
-use onescan_server::transport::connection_limit::{ConnectionLimit, Limits, Place};
+use onescan_server::transport::connection_limit::{ConnectionLimit, Place};
+use onescan_server::transport::listeners::OPC_UA;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::tcp::{OwnedReadHalf, OwnedWriteHalf};
 use tokio::net::{TcpListener, TcpStream};
 
 /// The longest HELLO: 32 bytes and a URL of 4096 (OPC 10000-6 7.1.2.3).
 const LONGEST_HELLO: u32 = 8192;
-/// How long a HELLO may take to come.
-const HELLO_TIMEOUT: Duration = Duration::from_secs(5);
 /// So much is handed on at a time.
 const PIECE: usize = 64 * 1024;
-/// Connections at a time.
-const LIMITS: Limits = Limits { all: 64, of_address: 32, staying: 48 };
 
 /// The secure channels whose connections are there.
 #[derive(Clone, Debug, Default)]
@@ -43,9 +40,9 @@ impl Channels {
 
 /// Lets connections in until the server ends.
 pub(super) async fn let_in(outside: TcpListener, server: SocketAddr, channels: Channels) {
-    let limit = ConnectionLimit::new(LIMITS);
+    let limit = ConnectionLimit::new(OPC_UA.limits);
     loop {
-        let Admitted { stream, from, place, leaving } = accept::admitted(&outside, &limit, "OPC UA").await;
+        let Admitted { stream, from, place, leaving } = accept::admitted(&outside, &limit, OPC_UA.what).await;
         let channels = channels.clone();
         tokio::spawn(async move {
             let ended = tokio::select! {
@@ -63,7 +60,7 @@ pub(super) async fn let_in(outside: TcpListener, server: SocketAddr, channels: C
 async fn hand_on(mut stream: TcpStream, server: SocketAddr, channels: &Channels, place: &Place) -> io::Result<()> {
     stream.set_nodelay(true)?;
     let late = |_| io::Error::new(io::ErrorKind::TimedOut, "no HELLO of OPC UA came");
-    let hello = tokio::time::timeout(HELLO_TIMEOUT, hello(&mut stream)).await.map_err(late)??;
+    let hello = tokio::time::timeout(OPC_UA.proof, hello(&mut stream)).await.map_err(late)??;
     let mut inside = TcpStream::connect(server).await?;
     inside.set_nodelay(true)?;
     inside.write_all(&hello).await?;
@@ -72,7 +69,7 @@ async fn hand_on(mut stream: TcpStream, server: SocketAddr, channels: &Channels,
     let mut seen = Seen { channels, place, channel: None };
     // Whoever closes first ends both ways.
     tokio::select! {
-        ended = pump(from_client, to_server) => ended,
+        ended = requests(from_client, to_server) => ended,
         ended = answers(from_server, to_client, &mut seen) => ended,
     }
 }
@@ -86,6 +83,20 @@ async fn hello(stream: &mut TcpStream) -> io::Result<[u8; 8]> {
         return Err(io::Error::new(io::ErrorKind::InvalidData, "no HELLO of OPC UA"));
     }
     Ok(head)
+}
+
+/// Hands on what a client sends until there is no more, or nothing comes for too long.
+async fn requests(mut from: OwnedReadHalf, mut to: OwnedWriteHalf) -> io::Result<()> {
+    let mut piece = vec![0; PIECE];
+    loop {
+        let late = |_| io::Error::new(io::ErrorKind::TimedOut, "no request came for too long");
+        let patience = OPC_UA.idle.unwrap_or(Duration::MAX);
+        let count = tokio::time::timeout(patience, from.read(&mut piece)).await.map_err(late)??;
+        if count == 0 {
+            return Ok(());
+        }
+        to.write_all(&piece[..count]).await?;
+    }
 }
 
 /// Hands on what comes until there is no more.

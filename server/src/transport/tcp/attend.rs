@@ -4,6 +4,7 @@ use std::net::SocketAddr;
 use std::sync::Arc;
 
 use bytes::BytesMut;
+use onescan_base::repeated::Repeated;
 use rustls::StreamOwned;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
@@ -32,6 +33,8 @@ use crate::wire::{FRAME_BYTES_MAX, FrameCodec, FrameRef, ServerMessage};
 const READ_BYTES: usize = 16 * 1024;
 /// The type of the record with which TLS begins.
 const TLS_HANDSHAKE: u8 = 0x16;
+
+static NO_TLS: Repeated = Repeated::new();
 
 /// The answer of the session to an operator.
 type Answer = oneshot::Receiver<Result<Status, OperationError>>;
@@ -93,16 +96,23 @@ pub(super) async fn newcomer(
                 Connection(Either::Right(secured))
             }
             Ok(Err(error)) => {
-                tracing::warn!(%peer, why = %reason(&error), "no TLS came about: sent away");
+                no_tls(peer, &reason(&error));
                 return go(visitor, &host);
             }
             Err(_) => {
-                tracing::warn!(%peer, "no TLS came about: it is silent");
+                no_tls(peer, "it is silent");
                 return go(visitor, &host);
             }
         },
     };
     attend(connection, peer, visitor, orders, host).await;
+}
+
+/// Reports, not too often, that somebody did not come as far as TLS.
+fn no_tls(peer: SocketAddr, why: &str) {
+    if let Some(times) = NO_TLS.again() {
+        tracing::warn!(%peer, why, "no TLS came about: sent away{times}");
+    }
 }
 
 /// Passes on to the acceptor whose certificate was shown, if one was.

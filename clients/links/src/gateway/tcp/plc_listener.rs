@@ -2,10 +2,12 @@
 //! one who comes.
 
 use onescan_base::notice::NOTICE;
+use onescan_base::repeated::Repeated;
 use onescan_base::threads;
 use onescan_server::transport::accept::not_taken;
-use std::collections::BTreeSet;
-use std::net::{IpAddr, Shutdown, SocketAddr, TcpListener, TcpStream};
+use onescan_server::transport::connection_limit::{ConnectionLimit, Place};
+use onescan_server::transport::listeners;
+use std::net::{Shutdown, SocketAddr, TcpListener, TcpStream};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
@@ -13,8 +15,6 @@ use crate::listener::bind;
 
 /// How often the thread that accepts looks whether somebody has come.
 const GLANCE: Duration = Duration::from_millis(10);
-/// Strangers that are reported, by address: no more, however many come.
-const STRANGERS_MAX: usize = 16;
 
 /// A listener, and the connection of the PLC.
 pub struct PlcListener {
@@ -22,8 +22,8 @@ pub struct PlcListener {
     shared: Arc<Shared>,
 }
 
-#[derive(Default)]
 struct Shared {
+    limit: ConnectionLimit,
     state: Mutex<State>,
     came: Condvar,
 }
@@ -33,15 +33,15 @@ struct State {
     /// Has connected and is not served yet.
     waiting: Option<TcpStream>,
     inside: Option<Inside>,
-    strangers: BTreeSet<IpAddr>,
+    strangers: Repeated,
     is_closed: bool,
 }
 
 /// Whose connection is served, or waits for it.
 struct Inside {
     peer: SocketAddr,
-    /// The connection, to close it; nothing once it has sent a block.
-    silent: Option<TcpStream>,
+    /// It stays once it has sent a block.
+    place: Place,
 }
 
 impl Shared {
@@ -58,7 +58,8 @@ impl PlcListener {
     /// It cannot be listened on, or there is no thread.
     pub fn open(address: SocketAddr) -> std::io::Result<Self> {
         let (listener, address) = bind(address)?;
-        let shared = Arc::new(Shared::default());
+        let limit = ConnectionLimit::new(listeners::PLC);
+        let shared = Arc::new(Shared { limit, state: Mutex::default(), came: Condvar::new() });
         let doorkeeper = Arc::clone(&shared);
         threads::start("tcp-listen", move || attend(&listener, address, &doorkeeper))?;
         tracing::info!(target: NOTICE, "listening on tcp-listen://{address} for the PLC");
@@ -79,8 +80,10 @@ impl PlcListener {
 
     /// A block has come over the connection that [`PlcListener::enter`] gave: it keeps its place until it is over.
     pub fn heard(&self) {
-        if let Some(inside) = &mut self.shared.lock().inside {
-            inside.silent = None;
+        if let Some(inside) = &self.shared.lock().inside
+            && !inside.place.stay()
+        {
+            tracing::debug!(peer = %inside.peer, "a block came from somebody who had given way already");
         }
     }
 
@@ -115,29 +118,28 @@ fn attend(listener: &TcpListener, address: SocketAddr, shared: &Shared) {
 }
 
 fn admit(stream: TcpStream, peer: SocketAddr, address: SocketAddr, shared: &Shared) {
-    let mut state = shared.lock();
-    match &state.inside {
-        Some(Inside { peer: plc, silent: None }) => {
-            // The connection is closed when it is dropped.
-            let plc = *plc;
-            if state.strangers.len() < STRANGERS_MAX && state.strangers.insert(peer.ip()) {
-                tracing::info!(target: NOTICE, "a second connection to tcp-listen://{address}, from {peer}, is closed: the PLC is connected from {plc}");
-            }
-            return;
-        }
-        Some(Inside { silent: Some(silent), .. }) => {
-            // It may be gone already.
-            let _ = silent.shutdown(Shutdown::Both);
-        }
-        None => {}
-    }
     let Ok(silent) = stream.try_clone() else {
         tracing::debug!(%peer, "a connection at tcp-listen://{address} is closed: there is no descriptor for it");
         return;
     };
-    tracing::info!(%peer, "a PLC has connected");
-    (state.waiting, state.inside) = (Some(stream), Some(Inside { peer, silent: Some(silent) }));
-    shared.came.notify_all();
+    let mut state = shared.lock();
+    let place = shared.limit.admit(peer.ip(), move || {
+        // It may be gone already.
+        let _ = silent.shutdown(Shutdown::Both);
+    });
+    if let Some(place) = place {
+        tracing::info!(%peer, "a PLC has connected");
+        (state.waiting, state.inside) = (Some(stream), Some(Inside { peer, place }));
+        shared.came.notify_all();
+        return;
+    }
+    // The connection is closed when it is dropped.
+    let plc = state.inside.as_ref().map(|inside| inside.peer);
+    if let Some(plc) = plc
+        && let Some(times) = state.strangers.again()
+    {
+        tracing::info!(target: NOTICE, "a second connection to tcp-listen://{address}, from {peer}, is closed: the PLC is connected from {plc}{times}");
+    }
 }
 
 #[cfg(test)]
