@@ -105,7 +105,7 @@ pub fn mutants(file: &SourceFile) -> Vec<Mutant> {
     if parsed.diagnostics.iter().any(|found| found.severity == onescan_iec::Severity::Error) {
         return Vec::new();
     }
-    let mut finder = Finder { file, found: Vec::new(), line: 1 };
+    let mut finder = Finder { file, found: Vec::new(), line: 1, later: Vec::new() };
     for declaration in &parsed.unit.declarations {
         finder.declaration(declaration);
     }
@@ -128,6 +128,8 @@ struct Finder<'a> {
     found: Vec<Mutant>,
     /// Of the statement at which it is.
     line: u32,
+    /// Conditions that stand behind statements of their own: of ELSIF and UNTIL.
+    later: Vec<Span>,
 }
 
 impl Finder<'_> {
@@ -240,17 +242,25 @@ impl walk::Visitor for Finder<'_> {
             | StatementKind::SetReset(..)
             | StatementKind::Call(Call { .. }) => self.add(MutantKind::Statement, statement.span, ""),
             StatementKind::If(IfStatement { branches, .. }) => {
+                self.later.extend(branches.iter().skip(1).map(|branch| branch.condition.span));
                 for branch in branches {
                     self.negated(&branch.condition);
                 }
+                self.at(statement.span);
             }
             StatementKind::While(each) => self.negated(&each.condition),
-            StatementKind::Repeat(each) => self.negated(&each.until),
+            StatementKind::Repeat(each) => {
+                self.later.push(each.until.span);
+                self.negated(&each.until);
+            }
             _ => {}
         }
     }
 
     fn expression(&mut self, expr: &Expr) {
+        if self.later.contains(&expr.span) {
+            self.at(expr.span);
+        }
         match &expr.kind {
             ExprKind::Literal(literal) => self.literal(literal, expr.span),
             ExprKind::Unary(UnaryOp::Not | UnaryOp::Negate, operand) => {
@@ -319,6 +329,8 @@ END_VAR
     delay(IN := on AND NOT off, PT := T#1.5s);
     IF (limit + 1) <= 4 (* <= *) OR off THEN
         on := TRUE;
+    ELSIF limit > 9 THEN
+        off := TRUE;
     END_IF;
     limit := limit * 2 - 1;
 END_PROGRAM
