@@ -123,6 +123,7 @@ const DEPENDS_ON: &[(&str, &[&str])] = &[
             "onescan-xml",
         ],
     ),
+    ("tests/simulation", &["onescan-base", "onescan-recording", "onescan-server"]),
     (
         "tests",
         &[
@@ -140,6 +141,7 @@ const DEPENDS_ON: &[(&str, &[&str])] = &[
             "onescan-runner",
             "onescan-scenario",
             "onescan-server",
+            "onescan-simulation",
             "onescan-soft-plc",
             "onescan-stream",
         ],
@@ -161,10 +163,12 @@ const CLOCKS: &[(&str, &str)] = &[
     ("clients/links/src/station", "a PLC on a clock of its own"),
     ("clients/opc-ua/src/information_model/board.rs", "time stamps of OPC UA"),
     ("clients/opc-ua/src/server/authenticator.rs", "the day on which a token ends"),
+    ("cli/edit/src/edit/server.rs", "how much of the time goes into looking at files"),
     ("cli/regress/src/grade/mod.rs", "how long a submission took, for CI servers"),
     ("cli/regress/src/regress", "how long a test took and may take"),
     ("cli/runner/src", "how long a command took; sessions on a free-wheeling clock"),
     ("tests/fuzzing/src", "how long inputs are looked for"),
+    ("tests/simulation/src/histories.rs", "how long histories take, for whoever runs them"),
 ];
 
 /// Maps without an order, and random numbers: names that no source needs.
@@ -189,7 +193,7 @@ const READS: &[(&str, &str)] = &[
 const THREADS: &[(&str, &str)] = &[
     ("base/src/threads.rs", "it is this one"),
     ("tests/fuzzing/src", "a tool of the repository"),
-    ("tests/src", "sessions of the tests"),
+    ("tests/simulation/src", "sessions and histories of the tests"),
 ];
 
 /// Where the largest number of a width stands, as a number.

@@ -131,9 +131,9 @@ fn silent_operators_take_nobodys_place() {
     let address = lobby.address();
     let hello = HELLO.replace("\"client\"", "\"operator\"");
     let silent: Vec<_> = (0..16).map(|_| until(address, &frame(&hello), "welcome")).collect();
+    // Who has asked nothing gives way to an operator of the same address.
     for _ in 0..64 {
-        let said = send(address, &frame(&hello));
-        assert!(said.contains("too many operators are connected"), "{said}");
+        drop(until(address, &frame(&hello), "welcome"));
     }
     let threads = ring_takes_part(address);
     formation.admit_from(&lobby, PATIENCE, PATIENCE, &mut |_| true).expect("all come");

@@ -127,6 +127,14 @@ pub(crate) const SCRIPTS: &[Script] = &[
         not_on_windows: Some("it expects the environment of Python in `bin`"),
     },
     Script {
+        name: "simulation-mutants",
+        file: "tests/simulation/mutants",
+        language: Language::Python,
+        about: "small mistakes in lobby, listeners and recordings: do the histories of `tests/simulation` notice them?",
+        time: "15 min",
+        not_on_windows: None,
+    },
+    Script {
         name: "learn",
         file: "tests/learn",
         language: Language::Python,

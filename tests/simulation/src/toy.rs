@@ -1,5 +1,6 @@
 //! A client whose every turn depends on all it ever saw: any difference between two runs shows.
 
+use onescan_base::signal_type::STRING_CAPACITY_MAX;
 use onescan_server::client::{Client, ClientFault, JoinRequest, StateError, Wake};
 use onescan_server::plan::{Coupling, SessionPlan};
 use onescan_server::signal::{ClientName, PortLayout, SignalType, Slot};
@@ -81,4 +82,51 @@ pub fn ring_plan(coupling: &Coupling<ClientName>) -> SessionPlan {
 pub fn ring() -> Vec<Mixer> {
     let others = |own: &str| RING.map(|(name, _)| name).into_iter().filter(|name| *name != own).collect::<Vec<_>>();
     RING.iter().map(|(name, ms)| Mixer::new(name, crate::span_ms(*ms), &others(name))).collect()
+}
+
+/// A client that writes long texts, which change with every step.
+pub struct Wide {
+    request: JoinRequest,
+}
+
+impl Wide {
+    /// One that writes so many signals of the longest texts, and takes a turn every `step_ms`.
+    pub fn new(signals: usize, step_ms: u64) -> Self {
+        let ty = SignalType::string(STRING_CAPACITY_MAX).expect("the longest");
+        let writes = (0..signals).map(|number| port(&format!("wide.text{number:02}"), ty)).collect();
+        Self {
+            request: JoinRequest { name: client("wide"), period: crate::span_ms(step_ms), reads: Vec::new(), writes },
+        }
+    }
+
+    /// The plan of a session of it alone.
+    pub fn plan(&self) -> SessionPlan {
+        let signals: Vec<_> = self.request.writes.iter().map(|port| (port.name.as_str(), port.ty, "wide")).collect();
+        plan(self.request.period, &Coupling::Parallel, &signals, &["wide"])
+    }
+
+    fn write(&self, t_v: VirtualTime, outputs: &mut [u8]) {
+        let stamp = t_v.as_nanos().to_string();
+        let length = outputs.len() / self.request.writes.len();
+        for text in outputs.chunks_exact_mut(length) {
+            text[..stamp.len()].copy_from_slice(stamp.as_bytes());
+        }
+    }
+}
+
+impl Client for Wide {
+    fn join(&self) -> JoinRequest {
+        self.request.clone()
+    }
+
+    fn setup(&mut self, outputs: &mut [u8]) -> Result<(), ClientFault> {
+        outputs.fill(0);
+        self.write(VirtualTime::ZERO, outputs);
+        Ok(())
+    }
+
+    fn turn(&mut self, t_v: VirtualTime, _inputs: &[u8], outputs: &mut [u8]) -> Result<Wake, ClientFault> {
+        self.write(t_v, outputs);
+        Ok(Wake::NextPeriod)
+    }
 }

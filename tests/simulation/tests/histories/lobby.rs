@@ -1,8 +1,6 @@
 //! Histories of a lobby by a seed: a network with many around it, on virtual time. Messages come in pieces of any length
 //! and with any delay, in their order on one connection and in any order between connections; connections break; some are
 //! silent, some say half a message, some flood.
-//!
-//! `ONESCAN_LOBBY_HISTORIES` says how many; a history that fails names its seed, and `ONESCAN_LOBBY_SEED` repeats it alone.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};
@@ -12,42 +10,17 @@ use std::time::Duration;
 
 use onescan_server::access::Register;
 use onescan_server::lobby::{Verdict, Visitor};
+use onescan_simulation::chance::Chance;
+use onescan_simulation::hall::{Hall, Tokens, frame, hello, join, request};
+use onescan_simulation::histories::{Kind, try_all};
 
-use super::hall::{Hall, Tokens, frame, hello, join, request};
-use crate::stamped::report;
-
-const HISTORIES: u64 = 3_000;
+const KIND: Kind = Kind { name: "lobby", few: 3_000, share: 55 };
 /// How long the session waits for its clients.
 const PATIENCE: Duration = Duration::from_secs(30);
 /// How often the session's thread looks up.
 const LOOK_UP: Duration = Duration::from_millis(50);
 /// Most clients of a session.
 const CLIENTS_MAX: usize = 4;
-
-/// Numbers by a seed: splitmix64.
-struct Chance(u64);
-
-impl Chance {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut mixed = self.0;
-        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        mixed ^ (mixed >> 31)
-    }
-
-    fn below(&mut self, bound: u64) -> u64 {
-        self.next() % bound
-    }
-
-    fn one_in(&mut self, n: u64) -> bool {
-        self.below(n) == 0
-    }
-
-    fn within_ms(&mut self, ms: u64) -> Duration {
-        Duration::from_micros(self.below(ms * 1_000))
-    }
-}
 
 /// Who is behind a connection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -76,10 +49,25 @@ enum Manner {
     Idle,
     /// Says everything at once and does not wait for answers.
     Hasty,
+    /// The words of a client with its token and, in the same piece, more than it may say.
+    Eager,
+    /// An operator with a viewer's token, or a frame that is larger than any.
+    Looker,
+    Huge,
 }
 
-const MANNERS: [Manner; 7] =
-    [Manner::Silent, Manner::Half, Manner::Garbage, Manner::Pretender, Manner::Hesitant, Manner::Idle, Manner::Hasty];
+const MANNERS: [Manner; 10] = [
+    Manner::Silent,
+    Manner::Half,
+    Manner::Garbage,
+    Manner::Pretender,
+    Manner::Hesitant,
+    Manner::Idle,
+    Manner::Hasty,
+    Manner::Eager,
+    Manner::Looker,
+    Manner::Huge,
+];
 
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Event {
@@ -102,6 +90,10 @@ struct History<'t> {
     /// The client that never comes, if one does not.
     absent: Option<usize>,
     people: Vec<Who>,
+    /// From how many addresses strangers come.
+    addresses: u8,
+    /// When each connection was opened.
+    opened: BTreeMap<Visitor, Duration>,
     behind: BTreeMap<Visitor, usize>,
     /// When the last bytes of a connection come: its own stay in their order.
     last: BTreeMap<Visitor, Duration>,
@@ -113,17 +105,24 @@ struct History<'t> {
 
 impl<'t> History<'t> {
     fn new(seed: u64, tokens: &'t Tokens, registers: &[Arc<Register>]) -> Self {
-        let mut chance = Chance(seed);
+        let mut chance = Chance::new(seed);
         let clients = 1 + chance.below(CLIENTS_MAX as u64) as usize;
         let asks_tokens = chance.one_in(2);
         let hall = Hall::new(clients, asks_tokens.then(|| &registers[0]));
         let absent = chance.one_in(8).then(|| chance.below(clients as u64) as usize);
         let mut people: Vec<Who> = (0..clients).map(Who::Client).collect();
         people.extend((0..chance.below(4)).map(|_| Who::Operator));
-        let strangers = if chance.one_in(16) { chance.below(200) } else { chance.below(12) };
-        let manner = chance.one_in(3).then(|| MANNERS[chance.below(7) as usize]);
+        let is_crowd = chance.one_in(16);
+        let strangers = if is_crowd { 60 + chance.below(140) } else { chance.below(12) };
+        // Half of the crowds have come for the places of operators.
+        let manner = match chance.below(6) {
+            0 | 1 => Some(MANNERS[chance.below(10) as usize]),
+            2 | 3 if is_crowd => Some(if chance.one_in(2) { Manner::Idle } else { Manner::Hasty }),
+            _ => None,
+        };
+        let addresses = 1 + chance.below(6) as u8;
         for _ in 0..strangers {
-            let own = MANNERS[chance.below(7) as usize];
+            let own = MANNERS[chance.below(10) as usize];
             people.push(Who::Stranger(manner.unwrap_or(own)));
         }
         let (events, last, behind) = (BinaryHeap::new(), BTreeMap::new(), BTreeMap::new());
@@ -135,6 +134,8 @@ impl<'t> History<'t> {
             clients,
             absent,
             people,
+            addresses,
+            opened: BTreeMap::new(),
             behind,
             last,
             events,
@@ -185,23 +186,27 @@ impl<'t> History<'t> {
         let visitor = Visitor(self.visitors);
         self.visitors += 1;
         self.behind.insert(visitor, index);
+        self.opened.insert(visitor, self.hall.now);
         let who = self.people[index];
-        let address = IpAddr::from([10, 0, 0, if matches!(who, Who::Stranger(_)) { 9 } else { 1 }]);
+        // A crowd has a few addresses.
+        let from = if matches!(who, Who::Stranger(_)) { 9 + index as u8 % self.addresses } else { 1 };
+        let address = IpAddr::from([10, 0, 0, from]);
         let is_let_in = match who {
-            Who::Client(_) | Who::Operator => true,
+            Who::Client(_) | Who::Operator | Who::Stranger(Manner::Looker) => true,
             Who::Stranger(manner) => !self.asks_tokens && matches!(manner, Manner::Idle | Manner::Hasty),
         };
         self.hall.open(visitor, address, is_let_in);
-        let role = match who {
-            Who::Operator | Who::Stranger(Manner::Idle | Manner::Hasty) => "operator",
-            _ => "client",
-        };
+        let operates = matches!(who, Who::Operator | Who::Stranger(Manner::Idle | Manner::Hasty | Manner::Looker));
+        let role = if operates { "operator" } else { "client" };
+        if operates {
+            self.hall.operators.insert(visitor, address);
+        }
         let greeting = hello(role, self.token(who));
         match who {
             Who::Stranger(Manner::Silent) => {}
             Who::Stranger(Manner::Half) => self.send(visitor, &greeting[..greeting.len() / 2]),
             Who::Stranger(Manner::Garbage) => {
-                let garbage: Vec<u8> = (0..64).map(|_| self.chance.next() as u8).collect();
+                let garbage: Vec<u8> = (0..64).map(|_| self.chance.number() as u8).collect();
                 self.send(visitor, &garbage);
             }
             Who::Stranger(Manner::Pretender) => {
@@ -213,6 +218,25 @@ impl<'t> History<'t> {
                 // Where nobody asks for tokens, whoever has a client's name and ports is that client.
                 let number = if self.asks_tokens { 0 } else { CLIENTS_MAX };
                 self.send(visitor, &[hello("client", stolen), join(&request(number))].concat());
+            }
+            Who::Stranger(Manner::Eager) => {
+                let token = self.asks_tokens.then(|| self.tokens.clients[0].as_str());
+                let all = [hello("client", token), join(&request(0)), frame(r#"{"status":{}}"#)].concat();
+                self.at(self.hall.now, Event::Bytes(visitor, all));
+            }
+            Who::Stranger(Manner::Looker) => {
+                let token = self.asks_tokens.then(|| {
+                    self.hall.lookers.insert(visitor);
+                    self.tokens.viewer.as_str()
+                });
+                self.send(visitor, &[hello("operator", token), frame(r#"{"control":"pause"}"#)].concat());
+            }
+            Who::Stranger(Manner::Huge) => {
+                self.hall.huge.insert(visitor);
+                let head = [&8_000_000_u32.to_le_bytes()[..], b"J{"].concat();
+                let token = self.asks_tokens.then(|| self.tokens.clients[0].as_str());
+                let all = if self.chance.one_in(2) { head } else { [hello("client", token), head].concat() };
+                self.at(self.hall.now, Event::Bytes(visitor, all));
             }
             Who::Stranger(Manner::Hasty) => {
                 let wishes = frame(r#"{"status":{}}"#).repeat(3);
@@ -309,6 +333,10 @@ impl<'t> History<'t> {
                 Event::Bytes(visitor, bytes) => {
                     if self.hall.lines.get(&visitor).is_some_and(|line| !line.hung_up && !line.closed) {
                         self.hall.bytes(visitor, &bytes);
+                        let line = &self.hall.lines[&visitor];
+                        if self.hall.huge.contains(&visitor) && !line.is_settled() {
+                            return Err("a frame that is larger than any is waited for".to_owned());
+                        }
                     }
                 }
                 Event::Looks(visitor) => self.looks(visitor),
@@ -323,16 +351,47 @@ impl<'t> History<'t> {
         self.judge()
     }
 
+    /// Operators have their place if there is one, and an answer to each of their questions, however they are asked.
+    fn operators_are_served(&self) -> Result<(), String> {
+        for (visitor, index) in &self.behind {
+            let (line, who) = (&self.hall.lines[visitor], self.people[*index]);
+            let (opened, last) = (self.opened[visitor], self.last.get(visitor).copied().unwrap_or_default());
+            // Whoever is slow, and whoever comes when all places are taken, may be sent away.
+            let is_slow = last > opened + Duration::from_secs(1) || last > self.hall.now;
+            if who == Who::Operator && line.heard.starts_with('r') && !is_slow && self.hall.operators_most < 64 {
+                return Err("an operator is sent away, and there is room".to_owned());
+            }
+            let waits = self.hall.wishes.contains(visitor);
+            if who == Who::Stranger(Manner::Hasty)
+                && line.heard.starts_with('w')
+                && !line.is_settled()
+                && !is_slow
+                && !waits
+            {
+                let answers = line.heard.matches('s').count();
+                if answers != 3 {
+                    return Err(format!("an operator has asked three times, and has {answers} answers"));
+                }
+            }
+        }
+        Ok(())
+    }
+
     fn judge(mut self) -> Result<u64, String> {
         let Some((when, verdict)) = self.verdict.take() else { return Err("the session is stuck".to_owned()) };
         match (&verdict, self.absent) {
             (Verdict::Complete, None) => {}
-            (Verdict::TooLate { .. }, Some(_)) if when < PATIENCE + 2 * LOOK_UP => {}
+            (Verdict::TooLate { sent_away }, Some(_)) if when < PATIENCE + 2 * LOOK_UP => {
+                if sent_away.is_some() != self.hall.was_sent_away {
+                    return Err(format!("{sent_away:?} is said of those who were sent away"));
+                }
+            }
             _ => return Err(format!("{verdict:?} after {when:?}, absent: {:?}", self.absent)),
         }
         if verdict == Verdict::Complete && self.hall.seats.len() != self.clients {
             return Err("a seat is lost".to_owned());
         }
+        self.operators_are_served()?;
         self.hall.close();
         self.hall.pass(self.hall.now + Duration::from_secs(1));
         match (self.hall.broken, self.hall.acceptor.connections()) {
@@ -343,25 +402,10 @@ impl<'t> History<'t> {
     }
 }
 
-fn setting(name: &str) -> Option<u64> {
-    std::env::var(name).ok().map(|text| text.parse().expect("a number"))
-}
-
 #[test]
-fn histories_by_a_seed_end_as_they_must() {
+fn a_lobby_lets_in_whom_it_must() {
     let tokens = Tokens::new(CLIENTS_MAX);
     // The names of the smaller sessions are among those of the largest.
     let registers = [Arc::new(tokens.register.clone())];
-    let seeds = match setting("ONESCAN_LOBBY_SEED") {
-        Some(seed) => seed..seed + 1,
-        None => 0..setting("ONESCAN_LOBBY_HISTORIES").unwrap_or(HISTORIES),
-    };
-    let (mut connections, count) = (0, seeds.end - seeds.start);
-    for seed in seeds {
-        match History::new(seed, &tokens, &registers).run() {
-            Ok(came) => connections += came,
-            Err(wrong) => panic!("history {seed}: {wrong}; repeat it with ONESCAN_LOBBY_SEED={seed}"),
-        }
-    }
-    report(format_args!("lobby: {count} histories with {connections} connections"));
+    try_all(KIND, |seed| History::new(seed, &tokens, &registers).run());
 }

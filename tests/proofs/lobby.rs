@@ -1,4 +1,5 @@
-//! Every order of what a few may do.
+//! The lobby: who comes, who may stay, and for how long, in every order of what a few may do: two clients, an operator and
+//! strangers say a message in pieces, are silent, hang up, come again. `tests/simulation` has histories of many.
 
 use std::hash::{Hash, Hasher};
 use std::net::IpAddr;
@@ -7,9 +8,9 @@ use std::time::Duration;
 
 use onescan_server::access::Register;
 use onescan_server::lobby::Visitor;
+use onescan_simulation::hall::{Hall, Tokens, frame, hello, join, request};
 use stateright::{Checker, Model, Property};
 
-use super::hall::{Hall, Tokens, hello, join, request};
 use crate::stamped::report;
 
 /// How often somebody comes: the second time it neither hangs up nor is late.
@@ -111,7 +112,7 @@ impl Lobby {
                 vec![hello("client", Some(&self.tokens.clients[*number])), join(&request(*number))]
             }
             Actor::Operator => {
-                vec![hello("operator", Some(&self.tokens.operator)), super::hall::frame(r#"{"status":{}}"#)]
+                vec![hello("operator", Some(&self.tokens.operator)), frame(r#"{"status":{}}"#)]
             }
             Actor::Stranger => vec![hello("client", Some(&self.tokens.operator)), join(&request(0))],
         };
@@ -186,7 +187,11 @@ impl Model for Lobby {
             Event::Comes(index) => {
                 state.ways[index] = Way { tries: state.ways[index].tries + 1, said: 0 };
                 let is_let_in = self.actors[index] != Actor::Stranger;
-                state.hall.open(visitor(index, &state.ways[index]), IpAddr::from([127, 0, 0, 1]), is_let_in);
+                let (visitor, address) = (visitor(index, &state.ways[index]), IpAddr::from([127, 0, 0, 1]));
+                if self.actors[index] == Actor::Operator {
+                    state.hall.operators.insert(visitor, address);
+                }
+                state.hall.open(visitor, address, is_let_in);
             }
             Event::Says(index) => {
                 let pieces = self.pieces(&self.actors[index]);

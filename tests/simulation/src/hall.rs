@@ -10,52 +10,66 @@ use onescan_server::access::{Day, Pass, Register, Role, Token};
 use onescan_server::client::{ClientId, JoinRequest};
 use onescan_server::end::FailureCause;
 use onescan_server::lobby::{Acceptor, Action, Now, Registration, Terms, Visitor};
+use onescan_server::mailbox::Wish;
 use onescan_server::plan::{Coupling, SessionPlan};
 use onescan_server::signal::SignalType;
 use onescan_server::wire::{ServerMessage, VERSIONS};
-use onescan_tests::{client, plan, port, span_ms};
+
+use crate::{client, plan, port, span_ms};
 
 /// What the other side of a connection has seen of it.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
-pub(super) struct Line {
+pub struct Line {
     /// What the server has said, by kind: `w`elcome, `j`oined, `r`efused, `s`tatus.
-    pub(super) heard: String,
+    pub heard: String,
     /// The server says no more.
-    pub(super) parted: bool,
+    pub parted: bool,
     /// The server has closed it.
-    pub(super) closed: bool,
+    pub closed: bool,
     /// The other side has closed it.
-    pub(super) hung_up: bool,
+    pub hung_up: bool,
 }
 
 impl Line {
     /// True if the other side need not wait for anything any more.
-    pub(super) fn is_settled(&self) -> bool {
+    pub fn is_settled(&self) -> bool {
         self.parted || self.closed || self.hung_up
     }
 }
 
 /// Everything that the lobby is, without its sockets, its clock and its threads.
 #[derive(Clone, Debug)]
-pub(super) struct Hall {
-    pub(super) acceptor: Acceptor,
-    pub(super) registration: Registration,
-    pub(super) now: Duration,
-    pub(super) lines: BTreeMap<Visitor, Line>,
+pub struct Hall {
+    pub acceptor: Acceptor,
+    pub registration: Registration,
+    pub now: Duration,
+    pub lines: BTreeMap<Visitor, Line>,
     /// Connections behind which are those who may get in.
-    pub(super) let_in: BTreeSet<Visitor>,
+    pub let_in: BTreeSet<Visitor>,
     /// What waits for the session's thread.
-    pub(super) applications: VecDeque<(Visitor, JoinRequest)>,
-    pub(super) wishes: VecDeque<Visitor>,
+    pub applications: VecDeque<(Visitor, JoinRequest)>,
+    pub wishes: VecDeque<Visitor>,
     /// Who has which seat.
-    pub(super) seats: BTreeMap<usize, Visitor>,
-    pub(super) is_begun: bool,
+    pub seats: BTreeMap<usize, Visitor>,
+    pub is_begun: bool,
+    /// Connections that say `hello` as operators, and where they are from.
+    pub operators: BTreeMap<Visitor, IpAddr>,
+    /// Those of them that may look and do nothing.
+    pub lookers: BTreeSet<Visitor>,
+    /// Those who begin a frame that is larger than any.
+    pub huge: BTreeSet<Visitor>,
+    /// How many operators there were at most.
+    pub operators_most: usize,
+    /// The session is over.
+    pub is_closing: bool,
+    /// Somebody was refused a seat, or has left it.
+    pub was_sent_away: bool,
     /// What must not be.
-    pub(super) broken: Option<&'static str>,
+    pub broken: Option<&'static str>,
 }
 
 /// A plan of so many clients, each of which writes a signal.
-pub(super) fn plan_of(clients: usize) -> SessionPlan {
+pub fn plan_of(clients: usize) -> SessionPlan {
     let names: Vec<String> = (0..clients).map(|number| format!("c{number}")).collect();
     let signals: Vec<String> = names.iter().map(|name| format!("{name}.out")).collect();
     let declared: Vec<_> =
@@ -65,22 +79,24 @@ pub(super) fn plan_of(clients: usize) -> SessionPlan {
 }
 
 /// The `join` of a client of that plan.
-pub(super) fn request(number: usize) -> JoinRequest {
+pub fn request(number: usize) -> JoinRequest {
     let (name, signal) = (format!("c{number}"), format!("c{number}.out"));
     let writes = vec![port(&signal, SignalType::BYTE)];
     JoinRequest { name: client(&name), period: span_ms(10), reads: Vec::new(), writes }
 }
 
 /// Tokens: one for each client, one for operators, and one of a client that is too old.
-pub(super) struct Tokens {
-    pub(super) register: Register,
-    pub(super) clients: Vec<String>,
-    pub(super) operator: String,
-    pub(super) expired: String,
+pub struct Tokens {
+    pub register: Register,
+    pub clients: Vec<String>,
+    pub operator: String,
+    pub viewer: String,
+    pub expired: String,
 }
 
 impl Tokens {
-    pub(super) fn new(clients: usize) -> Self {
+    /// Tokens for so many clients, called `c0` and so on.
+    pub fn new(clients: usize) -> Self {
         let mut register = Register::default();
         let mut made = |name: &str, role: Role, expires: Option<Day>| {
             let token = Token::generate().expect("random numbers");
@@ -94,18 +110,20 @@ impl Tokens {
         });
         let clients = clients.collect();
         let operator = made("operator", Role::Operator, None);
+        let viewer = made("viewer", Role::Viewer, None);
         let expired = made("expired", Role::Client(client("c0")), Some(Day::EPOCH));
-        Self { register, clients, operator, expired }
+        Self { register, clients, operator, viewer, expired }
     }
 }
 
 /// The day of all that is explored.
-pub(super) fn today() -> Day {
+pub fn today() -> Day {
     Day::EPOCH.later(1)
 }
 
 impl Hall {
-    pub(super) fn new(clients: usize, register: Option<&Arc<Register>>) -> Self {
+    /// Nobody is there yet. A register where tokens are asked for.
+    pub fn new(clients: usize, register: Option<&Arc<Register>>) -> Self {
         let plan = plan_of(clients);
         let welcome = ServerMessage::Welcome {
             protocol: VERSIONS.max,
@@ -125,6 +143,12 @@ impl Hall {
             wishes: VecDeque::new(),
             seats: BTreeMap::new(),
             is_begun: false,
+            operators: BTreeMap::new(),
+            lookers: BTreeSet::new(),
+            huge: BTreeSet::new(),
+            operators_most: 0,
+            is_closing: false,
+            was_sent_away: false,
             broken: None,
         }
     }
@@ -133,7 +157,8 @@ impl Hall {
         Now { at: self.now, today: today() }
     }
 
-    pub(super) fn open(&mut self, visitor: Visitor, address: IpAddr, is_let_in: bool) {
+    /// Somebody connects; `is_let_in` if it may take part or operate.
+    pub fn open(&mut self, visitor: Visitor, address: IpAddr, is_let_in: bool) {
         self.lines.insert(visitor, Line::default());
         if is_let_in {
             self.let_in.insert(visitor);
@@ -142,22 +167,25 @@ impl Hall {
         self.act(actions);
     }
 
-    pub(super) fn bytes(&mut self, visitor: Visitor, bytes: &[u8]) {
+    /// Bytes come over a connection.
+    pub fn bytes(&mut self, visitor: Visitor, bytes: &[u8]) {
         let actions = self.acceptor.received(visitor, bytes, self.moment());
         self.act(actions);
     }
 
     /// The other side closes, in order or by a reset.
-    pub(super) fn hang_up(&mut self, visitor: Visitor) {
+    pub fn hang_up(&mut self, visitor: Visitor) {
         if let Some(line) = self.lines.get_mut(&visitor) {
             line.hung_up = true;
         }
         // One that waits for an answer may still hear it; if it is a seat, it is found out that it has gone.
-        self.acceptor.hung_up(visitor);
+        if self.acceptor.hung_up(visitor) != self.acceptor.knows(visitor) {
+            self.broken = Some("one that has hung up is kept, or one that waits is forgotten");
+        }
     }
 
     /// Time passes, to the next deadline of the acceptor at most.
-    pub(super) fn pass(&mut self, to: Duration) {
+    pub fn pass(&mut self, to: Duration) {
         self.now = to;
         let actions = self.acceptor.clock(self.moment());
         self.act(actions);
@@ -167,13 +195,14 @@ impl Hall {
     }
 
     /// The session's thread looks at the next application.
-    pub(super) fn decide(&mut self) {
+    pub fn decide(&mut self) {
         let Some((visitor, request)) = self.applications.pop_front() else { return };
         if self.registration.is_taken(&request) {
             self.notice_gone();
         }
         match self.registration.apply(&request, "somewhere") {
             Err(refusal) => {
+                self.was_sent_away = true;
                 let actions = self.acceptor.refused(visitor, &refusal.to_string(), self.moment());
                 self.act(actions);
             }
@@ -182,17 +211,19 @@ impl Hall {
                 self.hear(visitor, 'j');
             }
             Ok(id) => {
+                self.was_sent_away = true;
                 self.registration.left(id, &FailureCause::Disconnected);
             }
         }
     }
 
     /// The session's thread finds out which clients have gone since they joined.
-    pub(super) fn notice_gone(&mut self) {
+    pub fn notice_gone(&mut self) {
         let gone = |visitor: &Visitor| self.lines.get(visitor).is_none_or(|line| line.hung_up);
         let left: Vec<usize> = self.seats.iter().filter(|(_, visitor)| gone(visitor)).map(|(seat, _)| *seat).collect();
         for seat in left {
             self.seats.remove(&seat);
+            self.was_sent_away = true;
             if !self.registration.left(ClientId::from_index(seat), &FailureCause::Disconnected) {
                 self.broken = Some("a seat is not free again");
             }
@@ -200,7 +231,7 @@ impl Hall {
     }
 
     /// The session answers what operators have asked.
-    pub(super) fn answer(&mut self) {
+    pub fn answer(&mut self) {
         let status = self.registration.session().status();
         while let Some(visitor) = self.wishes.pop_front() {
             let actions = self.acceptor.answered(visitor, Some(Ok(status.clone())), self.moment());
@@ -209,7 +240,7 @@ impl Hall {
     }
 
     /// The session begins.
-    pub(super) fn begin(&mut self) {
+    pub fn begin(&mut self) {
         self.is_begun = true;
         while let Some((visitor, _)) = self.applications.pop_front() {
             let actions = self.acceptor.refused(visitor, "the session has begun", self.moment());
@@ -220,7 +251,8 @@ impl Hall {
     }
 
     /// The session is over.
-    pub(super) fn close(&mut self) {
+    pub fn close(&mut self) {
+        self.is_closing = true;
         let actions = self.acceptor.closing(self.moment());
         self.act(actions);
         while let Some(visitor) = self.wishes.pop_front() {
@@ -234,9 +266,17 @@ impl Hall {
             match action {
                 Action::Send(visitor, message) => self.hear(visitor, kind(&message)),
                 Action::Apply(visitor, request) => self.applications.push_back((visitor, request)),
-                Action::Ask(visitor, _) => self.wishes.push_back(visitor),
+                Action::Ask(visitor, wish) => {
+                    if self.lookers.contains(&visitor) && matches!(wish, Wish::Do(_)) {
+                        self.broken = Some("a viewer operates");
+                    }
+                    self.wishes.push_back(visitor);
+                }
                 Action::Part(visitor) => {
                     self.line(visitor).parted = true;
+                    if !self.is_closing && !self.line(visitor).heard.ends_with('r') {
+                        self.broken = Some("somebody is sent away without a word");
+                    }
                     if self.line(visitor).hung_up {
                         self.acceptor.gone(visitor);
                     }
@@ -263,7 +303,7 @@ impl Hall {
     }
 
     /// What must hold at any time.
-    pub(super) fn check(&mut self) {
+    pub fn check(&mut self) {
         let session = self.registration.session();
         for seat in 0..session.plan().clients().len() {
             if session.member(ClientId::from_index(seat)).is_some() != self.seats.contains_key(&seat) {
@@ -275,6 +315,31 @@ impl Hall {
         let forgotten = |(visitor, line): &(&Visitor, &Line)| !known(visitor) && !line.closed && !line.hung_up;
         if self.lines.iter().any(|each| forgotten(&each)) {
             self.broken = Some("a connection is forgotten: neither answered nor closed");
+        }
+        self.check_limits();
+    }
+
+    /// What `docs/security.md` says of sessions, written once more.
+    fn check_limits(&mut self) {
+        if self.acceptor.guests() > 64 {
+            self.broken = Some("more than 64 wait to take part");
+        }
+        let is_in = |visitor: &Visitor| {
+            let line = &self.lines[visitor];
+            line.heard.starts_with('w') && !line.parted && !line.closed && self.acceptor.knows(*visitor)
+        };
+        let mut of_address: BTreeMap<IpAddr, usize> = BTreeMap::new();
+        for (_, address) in self.operators.iter().filter(|(visitor, _)| is_in(visitor)) {
+            *of_address.entry(*address).or_default() += 1;
+        }
+        let all: usize = of_address.values().sum();
+        self.operators_most = self.operators_most.max(all);
+        if all != self.acceptor.operators() || all > 64 || of_address.values().any(|count| *count > 16) {
+            self.broken = Some("places of operators are lost, or there are too many of them");
+        }
+        let says_no_more = self.lines.iter().filter(|(_, line)| line.parted);
+        if says_no_more.into_iter().any(|(visitor, _)| self.acceptor.held_bytes(*visitor) > 0) {
+            self.broken = Some("bytes of one that leaves are kept");
         }
     }
 }
@@ -290,7 +355,7 @@ fn kind(message: &ServerMessage) -> char {
 }
 
 /// A frame with a message of these words.
-pub(super) fn frame(json: &str) -> Vec<u8> {
+pub fn frame(json: &str) -> Vec<u8> {
     let mut bytes = (json.len() as u32 + 1).to_le_bytes().to_vec();
     bytes.push(b'J');
     bytes.extend_from_slice(json.as_bytes());
@@ -298,12 +363,12 @@ pub(super) fn frame(json: &str) -> Vec<u8> {
 }
 
 /// `hello` as `role`, with a token if there is one.
-pub(super) fn hello(role: &str, token: Option<&str>) -> Vec<u8> {
+pub fn hello(role: &str, token: Option<&str>) -> Vec<u8> {
     let token = token.map(|token| format!(r#","token":"{token}""#)).unwrap_or_default();
     frame(&format!(r#"{{"hello":{{"protocol":{{"min":1,"max":1}},"role":"{role}","agent":"a"{token}}}}}"#))
 }
 
 /// `join` as a client.
-pub(super) fn join(request: &JoinRequest) -> Vec<u8> {
+pub fn join(request: &JoinRequest) -> Vec<u8> {
     frame(&format!(r#"{{"join":{}}}"#, serde_json::to_string(request).expect("its own words")))
 }
