@@ -356,8 +356,8 @@ impl<'t> History<'t> {
         for (visitor, index) in &self.behind {
             let (line, who) = (&self.hall.lines[visitor], self.people[*index]);
             let (opened, last) = (self.opened[visitor], self.last.get(visitor).copied().unwrap_or_default());
-            // Whoever is slow, and whoever comes when all places are taken, may be sent away.
-            let is_slow = last > opened + Duration::from_secs(1) || last > self.hall.now;
+            // Whoever is slow, and whoever comes when all places are taken, may be sent away; the last bytes may be on their way.
+            let is_slow = last > opened + Duration::from_secs(1) || last >= self.hall.now;
             if who == Who::Operator && line.heard.starts_with('r') && !is_slow && self.hall.operators_most < 64 {
                 return Err("an operator is sent away, and there is room".to_owned());
             }
