@@ -354,8 +354,8 @@ fn strings_are_made_while_a_program_runs() {
 fn an_enumeration_begins_with_a_value_of_its_own() {
     gives(
         "TYPE {attribute 'qualified_only'} Valve : (Shut := 3, Open := 4) USINT := Open; END_TYPE
-         TYPE ListenerRules : (Open, Closed) := Closed; END_TYPE
-         PROGRAM P VAR v : Valve; d : ListenerRules; r : DINT; END_VAR r := v * 10 + d; END_PROGRAM",
+         TYPE Door : (Open, Closed) := Closed; END_TYPE
+         PROGRAM P VAR v : Valve; d : Door; r : DINT; END_VAR r := v * 10 + d; END_PROGRAM",
         41,
     );
 }

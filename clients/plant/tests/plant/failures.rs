@@ -37,7 +37,7 @@ name = "door"
 kind = "pneumatic_cylinder"
 stroke_m = 0.3
 extend_signal = "Open"
-position_m_signal = "ListenerRules"
+position_m_signal = "Door"
 extended_signal = "Opened"
 [[component]]
 name = "eye"

@@ -46,7 +46,7 @@ name = "door"
 kind = "pneumatic_cylinder"
 stroke_m = 0.3
 extend_signal = "Open"
-position_m_signal = "ListenerRules"
+position_m_signal = "Door"
 [[component]]
 name = "bolt"
 kind = "pneumatic_cylinder"

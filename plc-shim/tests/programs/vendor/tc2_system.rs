@@ -45,13 +45,13 @@ fn messages_are_counted_and_the_last_ones_are_kept() {
     hold(
         Dialect::TwinCat,
         "a, b, c : DINT; text : T_MaxString;",
-        "a := ADSLOGSTR(ADSLOG_MSGTYPE_HINT OR ADSLOG_MSGTYPE_LOG, 'ListenerRules %s is open', 'A');
+        "a := ADSLOGSTR(ADSLOG_MSGTYPE_HINT OR ADSLOG_MSGTYPE_LOG, 'Door %s is open', 'A');
          text := OnescanAdsLog.text;
          b := ADSLOGLREAL(ADSLOG_MSGTYPE_WARN, 'value %f', 1.5);
          c := ADSLOGDINT(msgCtrlMask := ADSLOG_MSGTYPE_ERROR, msgFmtStr := '%d parts', dintArg := -3);",
         &[
             "a = 0 AND b = 0 AND c = 0",
-            "text = 'ListenerRules A is open'",
+            "text = 'Door A is open'",
             "OnescanAdsLog.text = '-3 parts'",
             "OnescanAdsLog.count = 3",
             "OnescanAdsLog.texts[0] = text AND OnescanAdsLog.texts[2] = OnescanAdsLog.text",
