@@ -32,13 +32,15 @@ pub(crate) struct Peer {
     place: Option<Place>,
     /// When its time for a first request is over; nothing once it has sent one.
     deadline: Option<Instant>,
+    /// How long it may be silent after that; as long as it likes without.
+    idle: Option<Duration>,
 }
 
 impl Peer {
     /// One that this side has connected to, at `address`.
     pub(crate) fn connected(stream: TcpStream, address: SocketAddr) -> io::Result<Self> {
         prepare(&stream)?;
-        Ok(Self { stream: Arc::new(stream), address, place: None, deadline: None })
+        Ok(Self { stream: Arc::new(stream), address, place: None, deadline: None, idle: Some(IDLE_TIMEOUT) })
     }
 
     /// Address and port of the other side.
@@ -60,7 +62,7 @@ impl Peer {
             return Err(io::Error::other("there are too many clients"));
         }
         if self.deadline.take().is_some() {
-            self.stream.set_read_timeout(Some(IDLE_TIMEOUT))?;
+            self.stream.set_read_timeout(self.idle)?;
         }
         Ok(())
     }
@@ -135,7 +137,7 @@ fn admitted(
         let _ = leaving.shutdown(Shutdown::Both);
     });
     let deadline = Some(Instant::now() + rules.proof);
-    Ok(place.map(|place| Peer { stream, address, place: Some(place), deadline }))
+    Ok(place.map(|place| Peer { stream, address, place: Some(place), deadline, idle: rules.idle }))
 }
 
 /// Serves each connection by `serve` in a thread of its own, until `is_over`. One that goes, or says what nobody answers, is

@@ -15,6 +15,7 @@
 //!
 //! What is changed is text: all else of the file stays byte for byte. Of drawn programs it is the text that they were read as.
 
+use std::collections::BTreeSet;
 use std::fmt;
 use std::ops::Range;
 use std::str::FromStr;
@@ -105,7 +106,7 @@ pub fn mutants(file: &SourceFile) -> Vec<Mutant> {
     if parsed.diagnostics.iter().any(|found| found.severity == onescan_iec::Severity::Error) {
         return Vec::new();
     }
-    let mut finder = Finder { file, found: Vec::new(), line: 1, later: Vec::new() };
+    let mut finder = Finder { file, found: Vec::new(), line: 1, later: BTreeSet::new() };
     for declaration in &parsed.unit.declarations {
         finder.declaration(declaration);
     }
@@ -128,8 +129,8 @@ struct Finder<'a> {
     found: Vec<Mutant>,
     /// Of the statement at which it is.
     line: u32,
-    /// Conditions that stand behind statements of their own: of ELSIF and UNTIL.
-    later: Vec<Span>,
+    /// Where conditions begin that stand behind statements of their own: of ELSIF and UNTIL.
+    later: BTreeSet<u32>,
 }
 
 impl Finder<'_> {
@@ -242,7 +243,7 @@ impl walk::Visitor for Finder<'_> {
             | StatementKind::SetReset(..)
             | StatementKind::Call(Call { .. }) => self.add(MutantKind::Statement, statement.span, ""),
             StatementKind::If(IfStatement { branches, .. }) => {
-                self.later.extend(branches.iter().skip(1).map(|branch| branch.condition.span));
+                self.later.extend(branches.iter().skip(1).map(|branch| branch.condition.span.start));
                 for branch in branches {
                     self.negated(&branch.condition);
                 }
@@ -250,7 +251,7 @@ impl walk::Visitor for Finder<'_> {
             }
             StatementKind::While(each) => self.negated(&each.condition),
             StatementKind::Repeat(each) => {
-                self.later.push(each.until.span);
+                self.later.insert(each.until.span.start);
                 self.negated(&each.until);
             }
             _ => {}
@@ -258,7 +259,7 @@ impl walk::Visitor for Finder<'_> {
     }
 
     fn expression(&mut self, expr: &Expr) {
-        if self.later.contains(&expr.span) {
+        if self.later.contains(&expr.span.start) {
             self.at(expr.span);
         }
         match &expr.kind {

@@ -95,7 +95,7 @@ impl EventLog {
 ///
 /// # Errors
 /// The file cannot be written.
-pub fn append(disk: &dyn Disk, path: &Path, events: &[Event]) -> Result<(), RecordError> {
+pub(crate) fn append(disk: &dyn Disk, path: &Path, events: &[Event]) -> Result<(), RecordError> {
     let mut log = EventLog::of(path, Lines::append_to(disk, path))?;
     events.iter().try_for_each(|event| log.push(event))
 }

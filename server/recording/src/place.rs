@@ -12,7 +12,10 @@ use onescan_base::disk::{Disk, growing, write_whole};
 use onescan_base::notice::NOTICE;
 use onescan_server::observer::RecordError;
 
+use crate::csv::CSV;
 use crate::event::{self, Event};
+use crate::mcap::MCAP;
+use crate::parquet::TRAJECTORY;
 use crate::recorder::{EVENTS, HEADER};
 use crate::sink::failed;
 
@@ -27,7 +30,7 @@ const ASIDE: &str = ".earlier";
 const ON_ITS_WAY: &str = ".earlier.partial";
 
 /// What a recording consists of. What else lies in its folder is the user's, and stays there.
-const PARTS: [&str; 7] = [HEADER, SCENARIO, "trajectory", "trajectory.csv", "trajectory.mcap", EVENTS, REPORT];
+const PARTS: [&str; 7] = [HEADER, SCENARIO, TRAJECTORY, CSV, MCAP, EVENTS, REPORT];
 
 /// The folder of a recording that is being made.
 #[derive(Debug)]

@@ -21,6 +21,7 @@ use crate::event::{self, Event, EventKind};
 use crate::header::{FORMAT, Header};
 use crate::parquet::read::Part;
 use crate::parquet::{ParquetFile, TRAJECTORY, parts};
+use crate::place::SCENARIO;
 use crate::recorder::{EVENTS, HEADER};
 use crate::sink::Sink;
 use crate::{csv, mcap};
@@ -154,7 +155,7 @@ impl Recording {
 
     /// Where the scenario is that was run.
     pub fn scenario(&self) -> PathBuf {
-        self.folder.join("scenario").join(&self.header.provenance.folder)
+        self.folder.join(SCENARIO).join(&self.header.provenance.folder)
     }
 
     /// What happened beside the steps.

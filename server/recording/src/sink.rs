@@ -51,7 +51,7 @@ enum Message {
     Write,
 }
 
-/// Who encodes.
+/// On which thread blocks are encoded: only on the session's own do all calls of the disk have one order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Where {
     InThread,

@@ -69,7 +69,7 @@ async fn hand_on(mut stream: TcpStream, server: SocketAddr, channels: &Channels,
     let mut seen = Seen { channels, place, channel: None };
     // Whoever closes first ends both ways.
     tokio::select! {
-        ended = requests(from_client, to_server) => ended,
+        ended = pump(from_client, to_server, OPC_UA.idle) => ended,
         ended = answers(from_server, to_client, &mut seen) => ended,
     }
 }
@@ -85,25 +85,15 @@ async fn hello(stream: &mut TcpStream) -> io::Result<[u8; 8]> {
     Ok(head)
 }
 
-/// Hands on what a client sends until there is no more, or nothing comes for too long.
-async fn requests(mut from: OwnedReadHalf, mut to: OwnedWriteHalf) -> io::Result<()> {
+/// Hands on what comes until one side ends, or nothing has come for `idle`.
+async fn pump(mut from: OwnedReadHalf, mut to: OwnedWriteHalf, idle: Option<Duration>) -> io::Result<()> {
     let mut piece = vec![0; PIECE];
     loop {
         let late = |_| io::Error::new(io::ErrorKind::TimedOut, "no request came for too long");
-        let patience = OPC_UA.idle.unwrap_or(Duration::MAX);
-        let count = tokio::time::timeout(patience, from.read(&mut piece)).await.map_err(late)??;
-        if count == 0 {
-            return Ok(());
-        }
-        to.write_all(&piece[..count]).await?;
-    }
-}
-
-/// Hands on what comes until there is no more.
-async fn pump(mut from: OwnedReadHalf, mut to: OwnedWriteHalf) -> io::Result<()> {
-    let mut piece = vec![0; PIECE];
-    loop {
-        let count = from.read(&mut piece).await?;
+        let count = match idle {
+            Some(idle) => tokio::time::timeout(idle, from.read(&mut piece)).await.map_err(late)??,
+            None => from.read(&mut piece).await?,
+        };
         if count == 0 {
             return Ok(());
         }
@@ -127,7 +117,7 @@ async fn answers(mut from: OwnedReadHalf, mut to: OwnedWriteHalf, seen: &mut See
             return Ok(());
         }
     }
-    pump(from, to).await
+    pump(from, to, None).await
 }
 
 /// The channel of a connection, which is closed with it.
