@@ -17,6 +17,13 @@ use onescan_server::wire::{ServerMessage, VERSIONS};
 
 use crate::{client, plan, port, span_ms};
 
+/// What the session's `welcome` is said to have.
+pub const WELCOME_BYTES: usize = 1 << 10;
+/// How many may wait to take part, as `docs/security.md` has it.
+const GUESTS_MAX: usize = 64;
+/// How many may read their last message at a time.
+const LEAVING_MAX: usize = 128;
+
 /// What the other side of a connection has seen of it.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Line {
@@ -58,6 +65,10 @@ pub struct Hall {
     pub lookers: BTreeSet<Visitor>,
     /// Those who begin a frame that is larger than any.
     pub huge: BTreeSet<Visitor>,
+    /// Those who begin as TLS does, or nearly, and whether it is TLS.
+    pub tls: BTreeMap<Visitor, bool>,
+    /// Those who have heard that they speak TLS.
+    pub named_tls: BTreeSet<Visitor>,
     /// How many operators there were at most.
     pub operators_most: usize,
     /// The session is over.
@@ -132,7 +143,7 @@ impl Hall {
             frame_bytes_max: 1 << 26,
             signals: plan.signals().to_vec(),
         };
-        let terms = Terms { welcome: Arc::new(welcome), welcome_bytes: 1 << 10, register: register.cloned() };
+        let terms = Terms { welcome: Arc::new(welcome), welcome_bytes: WELCOME_BYTES, register: register.cloned() };
         Self {
             acceptor: Acceptor::new(terms),
             registration: Registration::new(plan),
@@ -146,6 +157,8 @@ impl Hall {
             operators: BTreeMap::new(),
             lookers: BTreeSet::new(),
             huge: BTreeSet::new(),
+            tls: BTreeMap::new(),
+            named_tls: BTreeSet::new(),
             operators_most: 0,
             is_closing: false,
             was_sent_away: false,
@@ -163,7 +176,11 @@ impl Hall {
         if is_let_in {
             self.let_in.insert(visitor);
         }
+        let before = self.acceptor.guests();
         let actions = self.acceptor.opened(visitor, address, self.moment());
+        if before < GUESTS_MAX && !actions.is_empty() {
+            self.broken = Some("somebody is sent away for one who comes, and there is room");
+        }
         self.act(actions);
     }
 
@@ -264,7 +281,12 @@ impl Hall {
     fn act(&mut self, actions: Vec<Action>) {
         for action in actions {
             match action {
-                Action::Send(visitor, message) => self.hear(visitor, kind(&message)),
+                Action::Send(visitor, message) => {
+                    if matches!(&*message, ServerMessage::Refused { message } if message.contains("TLS")) {
+                        self.named_tls.insert(visitor);
+                    }
+                    self.hear(visitor, kind(&message));
+                }
                 Action::Apply(visitor, request) => self.applications.push_back((visitor, request)),
                 Action::Ask(visitor, wish) => {
                     if self.lookers.contains(&visitor) && matches!(wish, Wish::Do(_)) {
@@ -321,8 +343,13 @@ impl Hall {
 
     /// What `docs/security.md` says of sessions, written once more.
     fn check_limits(&mut self) {
-        if self.acceptor.guests() > 64 {
+        if self.acceptor.guests() > GUESTS_MAX {
             self.broken = Some("more than 64 wait to take part");
+        }
+        let leaves =
+            |(visitor, line): &(&Visitor, &Line)| line.parted && !line.closed && self.acceptor.knows(**visitor);
+        if self.lines.iter().filter(leaves).count() > LEAVING_MAX {
+            self.broken = Some("more than 128 are given the time to read why they must go");
         }
         let is_in = |visitor: &Visitor| {
             let line = &self.lines[visitor];

@@ -158,6 +158,8 @@ async fn serve(mut guarded: Guarded<DuplexStream>, seen: Shared) {
             break;
         }
     }
+    // Whoever asks a connection that has ended hears again that it has: libraries do ask.
+    let _ = guarded.read(&mut byte).await;
     // It may be gone already.
     let _ = guarded.shutdown().await;
     if stays {
@@ -183,7 +185,8 @@ impl Crowd {
 }
 
 /// What a stranger does with its connection until `until`.
-async fn strange(mut stream: DuplexStream, manner: Manner, until: Instant, patience: Duration) {
+async fn strange(mut stream: DuplexStream, manner: Manner, until: Instant, seen: Shared) {
+    let patience = seen.borrow().rules.proof;
     match manner {
         Manner::Gone => {}
         Manner::Brief => {
@@ -198,7 +201,16 @@ async fn strange(mut stream: DuplexStream, manner: Manner, until: Instant, patie
             }
         }
         Manner::Deaf => {
-            while Instant::now() < until && matches!(timeout(2 * patience, stream.write_all(b"g")).await, Ok(Ok(()))) {}
+            while Instant::now() < until {
+                match timeout(2 * patience, stream.write_all(b"g")).await {
+                    Ok(Ok(())) => {}
+                    Ok(Err(_)) => break,
+                    Err(_) => {
+                        seen.borrow_mut().breaks("one that does not read its answers keeps its place".to_owned());
+                        break;
+                    }
+                }
+            }
         }
         Manner::Staying => {
             if stream.write_all(b"v").await.is_ok() {
@@ -283,7 +295,7 @@ async fn crowded(mut chance: Chance, rules: ListenerRules) -> Result<u64, String
             behaving.push(spawn_local(behave(waiting, (b'g', b'a'), (AFTER_AN_ERROR, Duration::ZERO))));
         }
         if let Some(stream) = crowd.connect(from).await {
-            spawn_local(strange(stream, manner, until, rules.proof));
+            spawn_local(strange(stream, manner, until, Rc::clone(&seen)));
         }
     }
     for due in clients {

@@ -11,7 +11,7 @@ use std::time::Duration;
 use onescan_server::access::Register;
 use onescan_server::lobby::{Verdict, Visitor};
 use onescan_simulation::chance::Chance;
-use onescan_simulation::hall::{Hall, Tokens, frame, hello, join, request};
+use onescan_simulation::hall::{Hall, Tokens, WELCOME_BYTES, frame, hello, join, request};
 use onescan_simulation::histories::{Kind, try_all};
 
 const KIND: Kind = Kind { name: "lobby", few: 3_000, share: 55 };
@@ -19,6 +19,9 @@ const KIND: Kind = Kind { name: "lobby", few: 3_000, share: 55 };
 const PATIENCE: Duration = Duration::from_secs(30);
 /// How often the session's thread looks up.
 const LOOK_UP: Duration = Duration::from_millis(50);
+/// Within which all come; where strangers come all at once, these within this.
+const ARRIVALS: Duration = Duration::from_secs(10);
+const BURST: Duration = Duration::from_millis(300);
 /// Most clients of a session.
 const CLIENTS_MAX: usize = 4;
 
@@ -90,6 +93,8 @@ struct History<'t> {
     /// The client that never comes, if one does not.
     absent: Option<usize>,
     people: Vec<Who>,
+    /// Until when strangers come all at once, if they do.
+    burst: Option<Duration>,
     /// From how many addresses strangers come.
     addresses: u8,
     /// When each connection was opened.
@@ -113,7 +118,8 @@ impl<'t> History<'t> {
         let mut people: Vec<Who> = (0..clients).map(Who::Client).collect();
         people.extend((0..chance.below(4)).map(|_| Who::Operator));
         let is_crowd = chance.one_in(16);
-        let strangers = if is_crowd { 60 + chance.below(140) } else { chance.below(12) };
+        let burst = (is_crowd && chance.one_in(4)).then_some(BURST);
+        let strangers = if is_crowd { 60 + chance.below(200) } else { chance.below(12) };
         // Half of the crowds have come for the places of operators.
         let manner = match chance.below(6) {
             0 | 1 => Some(MANNERS[chance.below(10) as usize]),
@@ -134,6 +140,7 @@ impl<'t> History<'t> {
             clients,
             absent,
             people,
+            burst,
             addresses,
             opened: BTreeMap::new(),
             behind,
@@ -144,8 +151,10 @@ impl<'t> History<'t> {
             verdict: None,
         };
         for index in 0..history.people.len() {
-            if history.people[index] != Who::Client(absent.unwrap_or(usize::MAX)) {
-                let at = history.chance.within_ms(10_000);
+            let who = history.people[index];
+            if who != Who::Client(absent.unwrap_or(usize::MAX)) {
+                let within = history.burst.filter(|_| matches!(who, Who::Stranger(_))).unwrap_or(ARRIVALS);
+                let at = history.chance.within_ms(within.as_millis() as u64);
                 history.at(at, Event::Comes(index));
             }
         }
@@ -205,6 +214,13 @@ impl<'t> History<'t> {
         match who {
             Who::Stranger(Manner::Silent) => {}
             Who::Stranger(Manner::Half) => self.send(visitor, &greeting[..greeting.len() / 2]),
+            Who::Stranger(Manner::Garbage) if self.chance.one_in(3) => {
+                let (content, version) = (0x14 + self.chance.below(4) as u8, self.chance.below(9) as u8);
+                let major = if self.chance.one_in(8) { 6 } else { 3 };
+                self.hall.tls.insert(visitor, content == 0x16 && major == 3 && (1..=4).contains(&version));
+                let hello = [&[content, major, version], &[0; 61][..]].concat();
+                self.at(self.hall.now, Event::Bytes(visitor, hello));
+            }
             Who::Stranger(Manner::Garbage) => {
                 let garbage: Vec<u8> = (0..64).map(|_| self.chance.number() as u8).collect();
                 self.send(visitor, &garbage);
@@ -331,9 +347,14 @@ impl<'t> History<'t> {
             match event {
                 Event::Comes(index) => self.comes(index),
                 Event::Bytes(visitor, bytes) => {
-                    if self.hall.lines.get(&visitor).is_some_and(|line| !line.hung_up && !line.closed) {
+                    if let Some(before) = self.hall.lines.get(&visitor).filter(|line| !line.hung_up && !line.closed) {
+                        let was_settled = before.is_settled();
                         self.hall.bytes(visitor, &bytes);
                         let line = &self.hall.lines[&visitor];
+                        let (is_tls, named) = (self.hall.tls.get(&visitor), self.hall.named_tls.contains(&visitor));
+                        if is_tls.is_some_and(|is_tls| *is_tls != named) && !was_settled {
+                            return Err(format!("{:?} hears that it speaks TLS: {named}", &bytes[..3]));
+                        }
                         if self.hall.huge.contains(&visitor) && !line.is_settled() {
                             return Err("a frame that is larger than any is waited for".to_owned());
                         }
@@ -358,7 +379,13 @@ impl<'t> History<'t> {
             let (opened, last) = (self.opened[visitor], self.last.get(visitor).copied().unwrap_or_default());
             // Whoever is slow, and whoever comes when all places are taken, may be sent away; the last bytes may be on their way.
             let is_slow = last > opened + Duration::from_secs(1) || last >= self.hall.now;
-            if who == Who::Operator && line.heard.starts_with('r') && !is_slow && self.hall.operators_most < 64 {
+            let is_in_burst = self.burst.is_some_and(|until| opened < until);
+            if who == Who::Operator
+                && line.heard.starts_with('r')
+                && !is_slow
+                && !is_in_burst
+                && self.hall.operators_most < 64
+            {
                 return Err("an operator is sent away, and there is room".to_owned());
             }
             let waits = self.hall.wishes.contains(visitor);
@@ -391,6 +418,9 @@ impl<'t> History<'t> {
         if verdict == Verdict::Complete && self.hall.seats.len() != self.clients {
             return Err("a seat is lost".to_owned());
         }
+        if self.hall.registration.verdict(PATIENCE, PATIENCE) == Verdict::Waiting {
+            return Err("it is waited for longer than there is patience".to_owned());
+        }
         self.operators_are_served()?;
         self.hall.close();
         self.hall.pass(self.hall.now + Duration::from_secs(1));
@@ -399,6 +429,23 @@ impl<'t> History<'t> {
             (None, 0) => Ok(self.visitors),
             (None, left) => Err(format!("{left} connections are left when all is over")),
         }
+    }
+}
+
+/// A `join` may have 1 MiB and twice what `welcome` has: whoever is told of many signals has as many to name.
+#[test]
+fn a_join_may_be_as_long_as_the_session_needs_and_no_longer() {
+    const LONGEST: usize = (1 << 20) + 2 * WELCOME_BYTES;
+    for (length, heard) in [(LONGEST, "w"), (LONGEST + 1, "wr")] {
+        let (mut hall, visitor) = (Hall::new(1, None), Visitor(0));
+        hall.open(visitor, IpAddr::from([10, 0, 0, 1]), true);
+        hall.bytes(visitor, &hello("client", None));
+        let mut words = join(&request(0)).split_off(5);
+        // Blanks between words say nothing; a frame has its type before them.
+        words.resize(length - 1, b' ');
+        hall.bytes(visitor, &frame(std::str::from_utf8(&words).expect("text")));
+        assert_eq!((hall.lines[&visitor].heard.as_str(), hall.broken), (heard, None), "{length} bytes");
+        assert_eq!(hall.applications.len(), usize::from(length == LONGEST));
     }
 }
 

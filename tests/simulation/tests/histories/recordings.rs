@@ -141,13 +141,18 @@ impl Draw {
             6 => Some(Fault::Full),
             _ => None,
         };
+        // What is kept of large images for an early write is seen after a kill alone.
+        let (kind, flushes) = match width {
+            Width::Wide => (Some(Fault::Kill).filter(|_| !chance.one_in(4)), true),
+            Width::Narrow => (kind, chance.one_in(2)),
+        };
         let at = chance.below(if steps > 60 { 200 } else { 60 });
         Self {
             number,
             width,
             steps,
             reset: chance.one_in(4).then(|| chance.below(steps)),
-            flush: chance.one_in(2).then(|| 1 + chance.below(40)),
+            flush: flushes.then(|| 1 + chance.below(if width == Width::Wide { 56 } else { 40 })),
             choice: Choice { signals: Vec::new(), csv: chance.one_in(3), mcap: chance.one_in(5) },
             violated: chance.below(4),
             fails: width == Width::Narrow && chance.one_in(8),
@@ -439,6 +444,10 @@ fn cut(draw: &Draw, folder: &Path, disk: &FaultyDisk, progress: &Progress) -> Re
             disk.calls()
         ));
     }
+    // The first step is written at once.
+    if disk.is_killed() && is_given_up(draw, step) && last > Some(0) {
+        return Err(format!("it has {last:?}, where no more than 32 MiB are kept to be written early"));
+    }
     // The step in hand may be there, and what was there before a reset.
     if let Some(last) = last
         && draw.reset.is_none()
@@ -464,6 +473,13 @@ fn promised(draw: &Draw, step: u64) -> Option<u64> {
     let is_kept = draw.width == Width::Narrow || step < 32;
     let flushed = draw.flush.filter(|_| is_kept).map(|steps| step / steps * steps);
     in_parts.max(flushed)
+}
+
+/// Whether more has come of the first part before the first early write than is kept for it: a row has 0.9 MB, and five blocks are
+/// full.
+fn is_given_up(draw: &Draw, step: u64) -> bool {
+    let is_late = draw.flush.is_some_and(|steps| steps > 46);
+    draw.width == Width::Wide && is_late && draw.reset.is_none() && step + 1 < PARTS[0]
 }
 
 #[test]
