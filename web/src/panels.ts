@@ -31,6 +31,11 @@ export interface Key {
   readonly press: () => string | null;
 }
 
+/** Row by row, as a narrow screen has them one after the other, and as the tabulator goes. */
+function in_reading_order(elements: readonly PanelElement[]): readonly PanelElement[] {
+  return [...elements].sort((one, other) => one.at[1] - other.at[1] || one.at[0] - other.at[0]);
+}
+
 /** Shows the value of a signal that has changed. */
 type Show = (value: number) => void;
 
@@ -67,8 +72,9 @@ export class PanelView {
     private readonly actions: PanelActions,
   ) {
     this.seat_button = button(say("Take seat"), () => actions.take(panel.name, this.seat !== "mine"), say("Who has the seat operates this panel; others look on"));
-    const grid = make("div", { class: "panel-grid" }, ...panel.elements.map((element) => this.place(element)));
-    grid.style.gridTemplateColumns = `repeat(${panel.columns}, minmax(0, 1fr))`;
+    const grid = make("div", { class: "panel-grid" }, ...in_reading_order(panel.elements).map((element) => this.place(element)));
+    grid.style.setProperty("--columns", String(panel.columns));
+    if (panel.columns > 4) grid.classList.add("broad");
     if (panel.picture !== null) {
       grid.classList.add("pictured");
       grid.style.gridTemplateRows = `repeat(${panel.rows}, minmax(44px, auto))`;
@@ -199,8 +205,10 @@ export class PanelView {
   private place(raw: PanelElement): HTMLElement {
     const element = { ...raw, label: own(raw.label), choices: raw.choices.map((one) => ({ ...one, label: own(one.label) })) };
     const cell = make("div", { class: `element ${element.kind}`, "data-forced": say("forced") });
-    cell.style.gridColumn = `${element.at[0] + 1} / span ${element.span[0]}`;
-    cell.style.gridRow = `${element.at[1] + 1} / span ${element.span[1]}`;
+    cell.style.setProperty("--column", `${element.at[0] + 1} / span ${element.span[0]}`);
+    cell.style.setProperty("--row", `${element.at[1] + 1} / span ${element.span[1]}`);
+    cell.style.setProperty("--columns-of-three", String(Math.min(3, element.span[0])));
+    cell.style.setProperty("--rows", String(element.span[1]));
     if (element.colour !== null) cell.style.setProperty("--own", element.colour);
     this.fill(cell, element);
     this.lay_on_machine(cell, element);
