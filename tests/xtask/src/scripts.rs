@@ -135,6 +135,14 @@ pub(crate) const SCRIPTS: &[Script] = &[
         not_on_windows: None,
     },
     Script {
+        name: "matiec",
+        file: "tests/matiec",
+        language: Language::Python,
+        about: "the machines to learn on behind MatIEC's program: the soft PLC's digests (needs MatIEC and gcc)",
+        time: "10 min",
+        not_on_windows: Some("it needs MatIEC and gcc"),
+    },
+    Script {
         name: "learn",
         file: "tests/learn",
         language: Language::Python,

@@ -48,6 +48,12 @@ pub fn unit(pou: &Pou, visitor: &mut impl Visitor) {
     statements(&pou.body, visitor);
 }
 
+/// The same, and its actions and methods, which are parts of it.
+pub fn with_members(pou: &Pou, visitor: &mut impl Visitor) {
+    unit(pou, visitor);
+    pou.object.members.iter().for_each(|member| unit(&member.pou, visitor));
+}
+
 fn branch(list: &[Statement], visitor: &mut impl Visitor) {
     visitor.enter();
     statements(list, visitor);

@@ -16,8 +16,7 @@ const FUNCTIONS: [&str; 2] = ["SDSP_NANOSECONDS", "SDSP_DURATION"];
 pub(super) fn lower(page: &Page<'_>, edits: &mut Edits) -> Vec<Finding> {
     let mut writer = Writer { page, edits, dialect: page.file.dialect() };
     for pou in page.pous().filter(|pou| !FUNCTIONS.contains(&pou.name.key().as_str())) {
-        walk::unit(pou, &mut writer);
-        pou.object.members.iter().for_each(|member| walk::unit(&member.pou, &mut writer));
+        walk::with_members(pou, &mut writer);
     }
     Vec::new()
 }

@@ -15,8 +15,9 @@ const NOTHING: &str = " WHILE FALSE DO EXIT; END_WHILE;";
 pub(super) fn fill(page: &Page<'_>, edits: &mut Edits) -> Vec<Finding> {
     for pou in page.pous() {
         let mut writer = Writer { page, edits };
-        walk::unit(pou, &mut writer);
+        walk::with_members(pou, &mut writer);
         writer.list(&pou.body, None);
+        pou.object.members.iter().for_each(|member| writer.list(&member.pou.body, None));
     }
     Vec::new()
 }

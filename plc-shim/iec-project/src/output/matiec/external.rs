@@ -22,9 +22,7 @@ pub(super) fn declare(page: &Page<'_>, edits: &mut Edits) -> Vec<Finding> {
             .map(onescan_iec::syntax::ast::Ident::key)
             .collect();
         let mut used = Used::default();
-        walk::unit(pou, &mut used);
-        let members = pou.object.members.iter().map(|member| &member.pou);
-        members.for_each(|member| walk::unit(member, &mut used));
+        walk::with_members(pou, &mut used);
         let mut text = String::new();
         for key in used.names.into_keys() {
             let Some(global) = page.names.globals.get(&key) else { continue };

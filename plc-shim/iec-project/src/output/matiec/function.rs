@@ -22,8 +22,7 @@ pub(super) fn lower(page: &Page<'_>, edits: &mut Edits) -> Vec<Finding> {
         }
         let mut reader =
             Reader { page, edits, is_function: pou.kind == PouKind::Function, types: BTreeSet::new(), findings };
-        walk::unit(pou, &mut reader);
-        pou.object.members.iter().for_each(|member| walk::unit(&member.pou, &mut reader));
+        walk::with_members(pou, &mut reader);
         let declared: String =
             reader.types.iter().map(|ty| format!("\nVAR {} : {ty}; END_VAR\n", unread(ty))).collect();
         findings = reader.findings;

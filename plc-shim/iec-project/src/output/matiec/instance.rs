@@ -68,7 +68,7 @@ pub(super) fn unroll(page: &Page<'_>, edits: &mut Edits) -> Vec<Finding> {
             }
         };
         let mut loops = Loops { found: Vec::new() };
-        walk::unit(pou, &mut loops);
+        walk::with_members(pou, &mut loops);
         let chosen: Vec<_> =
             loops.found.into_iter().map(|(span, each)| (span, choices(&each, &arrays), each)).collect();
         let chosen: Vec<_> = chosen.into_iter().filter(|(_, choices, _)| !choices.is_empty()).collect();
@@ -180,7 +180,7 @@ pub(super) fn name(page: &Page<'_>, edits: &mut Edits) -> Vec<Finding> {
             edits.replace(name.span.start..variable.spec.span.end, all.join("; "));
         }
         let mut indices = Indices { arrays: &arrays, found: Vec::new() };
-        walk::unit(pou, &mut indices);
+        walk::with_members(pou, &mut indices);
         for (whole, base, index) in indices.found {
             let value = page.names.integer_with(&index, &scope.constants);
             let bounds = arrays.get(&base.to_ascii_uppercase());

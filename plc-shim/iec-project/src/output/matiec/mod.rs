@@ -10,6 +10,7 @@
 //! | [`instance`] | arrays of function blocks, loops over them | one instance each, the loop's rounds one by one |
 //! | [`repeat`] | FOR, which MatIEC passes over where its first value is its last | WHILE |
 //! | [`empty`] | branches without statements | a loop that never runs |
+//! | [`begin`] | transitions in the first call of a chart | a condition that is FALSE then |
 //! | [`start`] | initial values of arrays of structures | assignments in the first scan |
 //! | [`reserved`] | variables with names that MatIEC keeps for itself | the same by other names |
 //! | [`through`] | global variables that a function uses | parameters of it |
@@ -21,6 +22,7 @@
 //! Each step reads the text that the step before has written, so that none has to know of another.
 
 mod assemble;
+mod begin;
 mod comment;
 mod convert;
 mod empty;
@@ -152,6 +154,7 @@ pub(crate) fn lowered(text: &str, dialect: Dialect) -> Result<Lowered, Vec<Unsai
     }
     text.step(empty::fill)?;
     text.step(start::lower)?;
+    text.step(begin::hold)?;
     for _ in 0..ROUNDS {
         if !text.step(through::hand)? {
             break;

@@ -69,8 +69,7 @@ impl Refused {
         for section in statics {
             self.add(section.span, "VAR_STAT", "declare a global variable");
         }
-        walk::unit(pou, self);
-        pou.object.members.iter().for_each(|member| walk::unit(&member.pou, self));
+        walk::with_members(pou, self);
     }
 
     fn configuration(&mut self, configuration: &Configuration) {

@@ -15,7 +15,7 @@ pub(super) fn lower(page: &Page<'_>, edits: &mut Edits) -> Vec<Finding> {
     let mut findings = Vec::new();
     for pou in page.pous() {
         let mut loops = Loops { found: Vec::new() };
-        walk::unit(pou, &mut loops);
+        walk::with_members(pou, &mut loops);
         let inner: Vec<_> = loops
             .found
             .iter()

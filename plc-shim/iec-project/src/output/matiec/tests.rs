@@ -54,6 +54,29 @@ fn arrays_of_blocks_become_instances_and_loops_over_them_their_rounds() {
 }
 
 #[test]
+fn what_an_action_does_is_lowered_like_the_body() {
+    let text = words(&low("FUNCTION_BLOCK B VAR_INPUT x : BOOL; END_VAR ; END_FUNCTION_BLOCK\n\
+                           PROGRAM P\nVAR b : ARRAY [1..2] OF B; a : BOOL; i : INT; n : INT; END_VAR\n\
+                           INITIAL_STEP S: Work(N); END_STEP\n\
+                           ACTION Work:\nFOR i := 1 TO 2 DO b[i](x := a); END_FOR;\n\
+                           FOR i := 9 TO 1 BY -2 DO n := n + 1; END_FOR;\nIF a THEN END_IF;\nEND_ACTION\nEND_PROGRAM\n"));
+    assert!(text.contains("i := 1; b_1(x := a); i := 2; b_2(x := a); i := 3;"), "{text}");
+    assert!(text.contains("i := 9; WHILE i >= 1 DO n := n + 1; i := i - 2; END_WHILE;"), "{text}");
+    assert!(text.contains("IF a THEN WHILE FALSE DO EXIT; END_WHILE; END_IF;"), "{text}");
+}
+
+#[test]
+fn no_transition_is_tested_in_the_first_call_of_a_chart() {
+    let text = words(&low("PROGRAM P\nVAR a : BOOL; END_VAR\nINITIAL_STEP S: Work(N); END_STEP\nSTEP T: END_STEP\n\
+                           TRANSITION FROM S TO T := NOT a OR a; END_TRANSITION\nACTION Work:\na := TRUE;\nEND_ACTION\nEND_PROGRAM\n"));
+    assert!(text.contains("VAR SDSP_Begun : BOOL; END_VAR INITIAL_STEP S:"), "{text}");
+    assert!(text.contains(":= SDSP_Begun AND (NOT a OR a); END_TRANSITION"), "{text}");
+    let last = "END_ACTION INITIAL_STEP SDSP_First: SDSP_Begin(N); END_STEP \
+                ACTION SDSP_Begin: SDSP_Begun := TRUE; END_ACTION END_PROGRAM";
+    assert!(text.ends_with(last), "{text}");
+}
+
+#[test]
 fn loops_run_also_where_the_first_value_is_the_last() {
     let text = words(&low("PROGRAM P\nVAR i : INT; j : INT; n : INT; END_VAR\n\
                            FOR i := 1 TO 1 DO FOR j := 9 TO 1 BY -2 DO n := n + 1; END_FOR; END_FOR;\n\

@@ -104,8 +104,7 @@ struct Calls(Vec<Call>);
 impl Calls {
     fn of(pou: &Pou) -> Vec<Call> {
         let mut calls = Self(Vec::new());
-        walk::unit(pou, &mut calls);
-        pou.object.members.iter().for_each(|member| walk::unit(&member.pou, &mut calls));
+        walk::with_members(pou, &mut calls);
         calls.0
     }
 }

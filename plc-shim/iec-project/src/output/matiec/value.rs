@@ -25,10 +25,7 @@ pub(super) fn lower(page: &Page<'_>, edits: &mut Edits) -> Vec<Finding> {
             Declaration::Pou(pou) => {
                 writer.scope = Some(Scope::of(pou));
                 pou.result.iter().for_each(|result| writer.spec(result));
-                walk::unit(pou, &mut writer);
-                for member in pou.object.members.iter().map(|member| &member.pou) {
-                    walk::unit(member, &mut writer);
-                }
+                walk::with_members(pou, &mut writer);
                 writer.scope = None;
             }
             _ => {}
