@@ -10,7 +10,7 @@
 //! | [`instance`] | arrays of function blocks, loops over them | one instance each, the loop's rounds one by one |
 //! | [`repeat`] | FOR, which MatIEC passes over where its first value is its last | WHILE |
 //! | [`empty`] | branches without statements | a loop that never runs |
-//! | [`begin`] | transitions in the first call of a chart | a condition that is FALSE then |
+//! | [`evolution`] | transitions in the first call of a chart, several that leave one step | conditions that are FALSE then |
 //! | [`start`] | initial values of arrays of structures | assignments in the first scan |
 //! | [`reserved`] | variables with names that MatIEC keeps for itself | the same by other names |
 //! | [`through`] | global variables that a function uses | parameters of it |
@@ -22,10 +22,10 @@
 //! Each step reads the text that the step before has written, so that none has to know of another.
 
 mod assemble;
-mod begin;
 mod comment;
 mod convert;
 mod empty;
+mod evolution;
 mod external;
 mod function;
 mod instance;
@@ -154,7 +154,7 @@ pub(crate) fn lowered(text: &str, dialect: Dialect) -> Result<Lowered, Vec<Unsai
     }
     text.step(empty::fill)?;
     text.step(start::lower)?;
-    text.step(begin::hold)?;
+    text.step(evolution::lower)?;
     for _ in 0..ROUNDS {
         if !text.step(through::hand)? {
             break;

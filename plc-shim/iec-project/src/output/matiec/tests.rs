@@ -66,7 +66,7 @@ fn what_an_action_does_is_lowered_like_the_body() {
 }
 
 #[test]
-fn no_transition_is_tested_in_the_first_call_of_a_chart() {
+fn a_chart_goes_on_as_the_standard_has_it() {
     let text = words(&low("PROGRAM P\nVAR a : BOOL; END_VAR\nINITIAL_STEP S: Work(N); END_STEP\nSTEP T: END_STEP\n\
                            TRANSITION FROM S TO T := NOT a OR a; END_TRANSITION\nACTION Work:\na := TRUE;\nEND_ACTION\nEND_PROGRAM\n"));
     assert!(text.contains("VAR SDSP_Begun : BOOL; END_VAR INITIAL_STEP S:"), "{text}");
@@ -74,6 +74,15 @@ fn no_transition_is_tested_in_the_first_call_of_a_chart() {
     let last = "END_ACTION INITIAL_STEP SDSP_First: SDSP_Begin(N); END_STEP \
                 ACTION SDSP_Begin: SDSP_Begun := TRUE; END_ACTION END_PROGRAM";
     assert!(text.ends_with(last), "{text}");
+    let text = words(&low(
+        "PROGRAM P\nVAR a : BOOL; b : BOOL; c : BOOL; END_VAR\nINITIAL_STEP S: END_STEP\nSTEP T: END_STEP\n\
+                           TRANSITION FROM S TO T := a; END_TRANSITION\nTRANSITION FROM S TO S := b; END_TRANSITION\n\
+                           TRANSITION (PRIORITY := 1) FROM (S, T) TO S := c; END_TRANSITION\nEND_PROGRAM\n",
+    ));
+    let both = "AND NOT (S.X AND T.X AND (c))";
+    assert!(text.contains(&format!(":= SDSP_Begun AND (a) {both}; END_TRANSITION")), "{text}");
+    assert!(text.contains(&format!(":= SDSP_Begun AND (b) {both} AND NOT (a); END_TRANSITION")), "{text}");
+    assert!(text.contains(":= SDSP_Begun AND (c); END_TRANSITION"), "{text}");
 }
 
 #[test]
