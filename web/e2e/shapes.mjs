@@ -21,6 +21,12 @@ const STANDING = [
   component("start", "push_button", [1.2, -0.7, 0.9], [["make", "Start"]]),
   component("stop_all", "emergency_stop", [1.45, -0.7, 0.9], [["hit", "Start"]]),
   component("oven", "heater", [2.9, -0.4, 0.6], [["temperature_degc", "Setpoint"]]),
+  component("tower", "stack_light", [1.9, 0.5, 1.1], [["red", "Start"], ["green", "Belt_On"]]),
+  component("mode", "key_switch", [1.7, -0.7, 0.9], [["at_1", "Belt_On"]]),
+  component("hands", "two_hand_station", [0.6, -0.9, 0.9], [["left", "Start"], ["valid", "Belt_On"]]),
+  component("codes", "barcode_reader", [0.2, 0.4, 1.2], [["good", "Eye"]]),
+  component("tags", "rfid_head", [-0.3, 0.4, 1.0], [["present", "Eye"]]),
+  component("weight", "weighing_cell", [-1.2, -0.7, 0.9], [["stable", "Belt_On"]]),
   component("oil", "hydraulic_unit", [-2.2, 0.9, 0], [["pump", "Belt_On"]]),
 ];
 // A glowing block: the stand-in's set point is its temperature.

@@ -1,4 +1,4 @@
-// What components look like: on the bodies that they belong to, rollers of conveyors, beams of light barriers, barrels and rods of
+// What components look like: on the bodies that they belong to, rollers of conveyors, beams of light barriers and curtains, barrels and rods of
 // cylinders, motors, grippers; and what stands by itself, as tanks and lamps. They are drawn only. A component whose bodies a
 // scenario draws by figures of its own, or never shows, has none.
 
@@ -34,6 +34,12 @@ export function ends_of(low: Vec3, high: Vec3, way: Vec3): { readonly ends: read
   const middle: [number, number, number] = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2];
   const end = (at: number): Vec3 => along === 0 ? [at, middle[1], middle[2]] : [middle[0], at, middle[2]];
   return { ends: [end(low[along] as number), end(high[along] as number)], across: (high[other] as number) - (low[other] as number), radius };
+}
+
+/** Along which the beams of a curtain lie beside each other where its scene does not say: upwards, or along x. */
+export function along_of(way: Vector3): Vector3 {
+  const along = UP.clone().addScaledVector(way, -way.z);
+  return along.lengthSq() < 1e-12 ? new Vector3(1, 0, 0) : along.normalize();
 }
 
 /** The bodies that a component is on, moves or stands on. */
@@ -111,6 +117,7 @@ export class Fittings {
     if (place === null) return;
     if (component.kind === "conveyor") this.conveyor(component);
     else if (component.kind === "light_barrier" || component.kind === "laser_distance") this.beam(component);
+    else if (component.kind === "light_curtain") this.curtain(component);
     else if (component.kind === "pneumatic_cylinder" || component.kind === "hydraulic_cylinder") this.cylinder(component);
     else if (component.kind === "vacuum_cup" || component.kind === "gripper") this.hand(component);
     else if (place.joint?.turns === true) this.motor(component);
@@ -211,6 +218,35 @@ export class Fittings {
     const sees = this.pin(component, "sees");
     if (sees === null) return;
     this.all.push({ signals: [sees], show: (value) => void light.color.copy(value(sees) === 0 ? BEAM : BEAM_CUT) });
+  }
+
+  /** Two posts and the beams between them, which are another while one of them is dark. */
+  private curtain(component: Component): void {
+    const { place } = component;
+    if (place?.point_m == null || place.direction === null) return;
+    const { range, pitch, count } = { range: parameter(component, "range") ?? 1, pitch: parameter(component, "pitch") ?? 0.02, count: parameter(component, "beams") ?? 16 };
+    const [from, way] = [new Vector3(...place.point_m), new Vector3(...place.direction)];
+    const along = place.along == null ? along_of(way) : new Vector3(...place.along);
+    const size = Math.min(0.06, Math.max(0.01, pitch * 1.5));
+    const group = new Group();
+    const light = new MeshBasicMaterial({ color: BEAM, transparent: true, opacity: 0.55 });
+    const middle = from.clone().addScaledVector(along, (pitch * (count - 1)) / 2);
+    for (const [at, side] of [[0, -1], [range, 1]] as const) {
+      const post = solid(new BoxGeometry(size, size, pitch * count + size), HOUSING);
+      post.position.copy(middle).addScaledVector(way, at + side * size * 0.5);
+      post.quaternion.setFromUnitVectors(UP, along);
+      group.add(post);
+    }
+    for (let beam = 0; beam < count; beam += 1) {
+      const ray = new Mesh(new CylinderGeometry(size * 0.06, size * 0.06, range, 6).rotateX(Math.PI / 2), light);
+      ray.position.copy(from).addScaledVector(along, beam * pitch).addScaledVector(way, range / 2);
+      ray.quaternion.setFromUnitVectors(UP, way);
+      group.add(ray);
+    }
+    this.put(group, component.body);
+    const free = this.pin(component, "ossd_1") ?? this.pin(component, "ossd_2");
+    if (free === null) return;
+    this.all.push({ signals: [free], show: (value) => void light.color.copy(value(free) === 0 ? BEAM_CUT : BEAM) });
   }
 
   /** A barrel where the joint's parent is, and a rod from it to what it moves. */

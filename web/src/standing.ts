@@ -1,5 +1,5 @@
 // What components look like that stand by themselves: tanks with their level, lamps, push buttons, emergency stops, heaters,
-// hydraulic units, switches that look along a ray. Each stands on its own origin, with z upwards or along its ray.
+// hydraulic units, switches that look along a ray, stack lights, key switches, two-hand stations, readers, heads, scales. Each stands on its own origin, with z upwards or along its ray.
 
 import { BoxGeometry, CircleGeometry, Color, CylinderGeometry, DoubleSide, Group, Mesh, MeshLambertMaterial, SphereGeometry, Vector3, type BufferGeometry } from "three";
 import { DARK_STEEL, HOUSING, PAINT, STEEL, bar, parameter, solid } from "./fitted";
@@ -42,6 +42,18 @@ export function standing(component: Component, all: readonly Component[]): Stand
       return tank(component);
     case "lamp":
       return lamp(component, all);
+    case "stack_light":
+      return stack();
+    case "key_switch":
+      return key();
+    case "two_hand_station":
+      return hands();
+    case "barcode_reader":
+      return reader();
+    case "rfid_head":
+      return head();
+    case "weighing_cell":
+      return scale();
     case "push_button":
       return button(component);
     case "emergency_stop":
@@ -132,6 +144,92 @@ function lamp(component: Component, all: readonly Component[]): Standing {
   };
   show(0);
   return { node, follows: ["brightness", "lit", "on"], show: (value) => show(Math.min(1, Math.max(0, value("brightness") ?? value("lit") ?? value("on") ?? 0))) };
+}
+
+/** The tiers of a stack light from the bottom up, by the keys of what is seen of them. */
+const TIERS = [["white", "#e9edf0"], ["blue", "#2f7fd8"], ["green", "#2fae4d"], ["amber", "#f0a818"], ["red", RED]] as const;
+
+/** Five tiers on a pole, and a buzzer on top, which is lighter while it sounds. */
+function stack(): Standing {
+  const [radius, height] = LAMP_M;
+  const node = new Group().add(bar(at(0, 0, -POLE_M), at(0, 0, 0), radius * 0.3, STEEL), placed(upright(radius * 1.3, 0.012), DARK_STEEL, at(0, 0, -POLE_M)));
+  const tiers = TIERS.map(([key, colour], tier) => {
+    const lens = placed(upright(radius, height * 0.85), colour, at(0, 0, height * (tier + 0.5)));
+    const [off, on] = [lens.material.color.clone().lerp(new Color("#30363a"), 0.55), lens.material.color.clone()];
+    node.add(lens, placed(upright(radius * 1.08, height * 0.1), DARK_STEEL, at(0, 0, height * tier)));
+    return { key, lens, off, on };
+  });
+  const buzzer = placed(upright(radius * 1.08, height * 0.4), DARK_STEEL, at(0, 0, height * (TIERS.length + 0.2)));
+  node.add(buzzer);
+  const show = (value: (key: string) => number | null): void => {
+    for (const { key, lens, off, on } of tiers) {
+      const isLit = (value(`${key}_lit`) ?? value(key) ?? 0) !== 0;
+      lens.material.color.copy(isLit ? on : off);
+      lens.material.emissive.copy(isLit ? on : BLACK);
+      lens.material.emissiveIntensity = 0.9;
+    }
+    buzzer.material.color.set((value("sounding") ?? value("buzzer") ?? 0) === 0 ? DARK_STEEL : HOUSING);
+  };
+  show(() => null);
+  return { node, follows: [...TIERS.flatMap(([key]) => [`${key}_lit`, key]), "sounding", "buzzer"], show };
+}
+
+/** A box with a lock, whose key stands in its position. */
+function key(): Standing {
+  const node = new Group().add(placed(new BoxGeometry(0.08, 0.08, 0.05), "#8b949a", at(0, 0, 0.025)), placed(upright(0.03, 0.008), STEEL, at(0, 0, 0.054)));
+  const bow = placed(new BoxGeometry(0.008, 0.045, 0.03), DARK_STEEL, at(0, 0, 0.072));
+  node.add(bow);
+  return {
+    node, follows: ["position", "at_0", "at_1", "at_2"],
+    show: (value) => {
+      const contact = [0, 1, 2].find((one) => (value(`at_${one}`) ?? 0) !== 0);
+      bow.rotation.z = -(Math.PI / 4) * (contact ?? value("position") ?? 0);
+    },
+  };
+}
+
+/** A box with two buttons, each in a collar. */
+function hands(): Standing {
+  const node = new Group().add(placed(new BoxGeometry(0.5, 0.14, 0.1), YELLOW, at(0, 0, 0.05)));
+  const caps = [["left", -0.19], ["right", 0.19]] as const;
+  const shown = caps.map(([side, x]) => {
+    const cap = placed(upright(0.035, 0.03), "#30363a", at(x, 0, 0.115));
+    node.add(cap, placed(upright(0.05, 0.02), DARK_STEEL, at(x, 0, 0.1)));
+    return { side, cap };
+  });
+  return {
+    node, follows: ["left_make", "right_make", "left", "right"],
+    show: (value) => {
+      for (const { side, cap } of shown) cap.position.z = (value(`${side}_make`) ?? value(side) ?? 0) === 0 ? 0.115 : 0.105;
+    },
+  };
+}
+
+/** A housing with a light, which has one of two colours by what a signal says, or none. */
+function housing(node: Group, spot: Vector3, follows: readonly string[], colour: (value: (key: string) => number) => string | null): Standing {
+  const light = placed(upright(0.008, 0.006), "#3d4449", spot);
+  node.add(light);
+  return { node, follows, show: (value) => void light.material.color.set(colour((key) => value(key) ?? 0) ?? "#3d4449") };
+}
+
+/** A housing with a red window. */
+function reader(): Standing {
+  const node = new Group().add(placed(new BoxGeometry(0.07, 0.06, 0.09), HOUSING, at(0, 0, 0)), placed(new BoxGeometry(0.05, 0.045, 0.004), "#7a1518", at(0, 0, -0.046)));
+  return housing(node, at(0, 0, 0.047), ["good", "no_read"], (value) => value("good") !== 0 ? "#2fae4d" : value("no_read") !== 0 ? RED : null);
+}
+
+/** A flat housing with its aerial in front. */
+function head(): Standing {
+  const node = new Group().add(placed(new BoxGeometry(0.09, 0.09, 0.035), DARK_STEEL, at(0, 0, 0)), placed(new BoxGeometry(0.08, 0.08, 0.006), "#2f6f9f", at(0, 0, -0.02)));
+  return housing(node, at(0.03, 0.03, 0.02), ["present", "error"], (value) => value("error") !== 0 ? RED : value("present") !== 0 ? "#2fae4d" : null);
+}
+
+/** The indicator of a scale on a stand. */
+function scale(): Standing {
+  const node = new Group().add(
+    bar(at(0, 0, -POLE_M), at(0, 0, 0), 0.012, STEEL), placed(upright(0.05, 0.012), DARK_STEEL, at(0, 0, -POLE_M)),
+    placed(new BoxGeometry(0.2, 0.05, 0.13), "#8b949a", at(0, 0, 0.065)), placed(new BoxGeometry(0.15, 0.004, 0.05), "#1f3a2a", at(0, -0.027, 0.085)));
+  return housing(node, at(0.085, 0, 0.133), ["stable", "overload"], (value) => value("overload") !== 0 ? RED : value("stable") !== 0 ? "#2fae4d" : null);
 }
 
 /** A box with a cap that goes in. */

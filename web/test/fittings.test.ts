@@ -1,7 +1,8 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { parameter } from "../src/fitted";
-import { drawn_otherwise, ends_of } from "../src/fittings";
+import { Vector3 } from "three";
+import { along_of, drawn_otherwise, ends_of } from "../src/fittings";
 import { glow_of, temperatures } from "../src/heat";
 import { material_of } from "../src/materials";
 import { lamp_colour, standing } from "../src/standing";
@@ -44,8 +45,26 @@ test("the level of a tank is that of its signal", () => {
   assert.equal(liquid.scale.z, 1, "no more than full");
 });
 
+const PARTS = ["stack_light", "key_switch", "two_hand_station", "barcode_reader", "rfid_head", "weighing_cell"];
+
+test("the beams of a curtain lie upwards, across their way", () => {
+  const along = (way: [number, number, number]): number[] => along_of(new Vector3(...way)).toArray();
+  assert.deepEqual([along([0, 1, 0]), along([0, 0, 1])], [[0, 0, 1], [1, 0, 0]]);
+  const tilted = along([0.6, 0, 0.8]);
+  assert.ok(Math.abs((tilted[0] ?? 0) + 0.8) < 1e-12 && Math.abs((tilted[2] ?? 0) - 0.6) < 1e-12, String(tilted));
+});
+
+test("a part shows what its signals say, and begins dark", () => {
+  for (const kind of PARTS) {
+    const part = standing(component(kind, []), []);
+    assert.ok(part !== null && part.follows.length > 0, kind);
+    part.show(() => null);
+    part.show(() => 1);
+  }
+});
+
 test("each kind that stands by itself has a shape, and no other", () => {
-  for (const kind of ["tank", "lamp", "push_button", "emergency_stop", "heater", "hydraulic_unit", "inductive_sensor"]) {
+  for (const kind of ["tank", "lamp", "push_button", "emergency_stop", "heater", "hydraulic_unit", "inductive_sensor", ...PARTS]) {
     assert.ok(standing(component(kind, []), []) !== null, kind);
   }
   assert.equal(standing(component("gate", []), []), null);

@@ -463,6 +463,9 @@ pub enum NumberType {
 pub struct Bound {
     /// What it drives; nothing else in the scene does.
     pub drives: Option<Driven>,
+    /// Indices of the joints that it drives beside, in the order of its keys.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub beside: Vec<usize>,
     /// Index of the joint that it measures.
     pub measures: Option<usize>,
     /// Index of the body that carries it, is touched or gives the place; none for the ground.
@@ -473,8 +476,18 @@ pub struct Bound {
     pub point_m: Option<[f64; 3]>,
     /// Unit vector along which it points or runs.
     pub direction: Option<[f64; 3]>,
+    /// Unit vector across `direction`, along which one of its beams is beside the other.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub along: Option<[f64; 3]>,
     /// Indices of the bodies that it sees, holds or places.
     pub targets: Vec<usize>,
+}
+
+impl Bound {
+    /// All that it drives.
+    pub fn driven(&self) -> impl Iterator<Item = Driven> + '_ {
+        self.drives.into_iter().chain(self.beside.iter().copied().map(Driven::Joint))
+    }
 }
 
 /// What one axis or component alone drives.

@@ -17,9 +17,10 @@ impl Scene {
             Moved::Joint(joint) => Some(joint),
             Moved::Belt { .. } => None,
         });
-        let components = self.components.iter().filter_map(|component| match component.bound.drives {
-            Some(Driven::Joint(joint)) => Some(joint),
-            Some(Driven::Belt(_)) | None => None,
+        let components = self.components.iter().flat_map(|component| component.bound.driven());
+        let components = components.filter_map(|driven| match driven {
+            Driven::Joint(joint) => Some(joint),
+            Driven::Belt(_) => None,
         });
         axes.chain(components)
     }

@@ -772,6 +772,8 @@ export function readParameter(field: Field): Parameter {
 
 /** Where a component is in the scene's pose, in the world, as far as it is anywhere. */
 export interface Place {
+  /** Unit vector along which one of its beams is beside the other. */
+  readonly along: readonly [number, number, number] | null;
   /** Unit vector along which it points or runs. */
   readonly direction: readonly [number, number, number] | null;
   /** The joint that it drives. */
@@ -784,6 +786,7 @@ export interface Place {
 
 export function readPlace(field: Field): Place {
   return {
+    along: nullable(tuple(number, number, number))(field.at("along")),
     direction: nullable(tuple(number, number, number))(field.at("direction")),
     joint: nullable(readDrivenJoint)(field.at("joint")),
     moves: nullable(text)(field.at("moves")),

@@ -176,10 +176,12 @@ fn signal(key: &str, about: &str, part: Part) -> Field {
 
 fn binding(BindingKey { key, about, names, needed }: &BindingKey) -> Field {
     let form = match names {
-        Names::DrivenJoint(_) | Names::MeasuredJoint => Form::Text { names: Some(Sort::Joint) },
+        Names::DrivenJoint(_) | Names::DrivenBeside(_) | Names::MeasuredJoint => {
+            Form::Text { names: Some(Sort::Joint) }
+        }
         Names::Belt | Names::Carrier | Names::Body | Names::TouchedBody => Form::Text { names: Some(Sort::Body) },
         Names::ShapeOfBody => Form::Text { names: Some(Sort::Shape) },
-        Names::Direction | Names::Point => Form::Numbers { count: 3 },
+        Names::Direction | Names::Along | Names::Point => Form::Numbers { count: 3 },
         Names::Bodies { .. } => Form::Texts { names: Some(Sort::Body) },
     };
     let field = plain((*about).to_owned(), form, Part::Binding);

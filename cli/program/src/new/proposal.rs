@@ -60,17 +60,23 @@ const fn drive(words: Words, kind: &'static str, bound: Words, key: &'static str
 /// The first that fits counts.
 const RULES: &[Rule] = &[
     sensor(&["emergency", "estop", "notaus", "nothalt"], "emergency_stop", ALONE, "channel_a_signal"),
+    sensor(&["curtain", "ossd", "lichtvorhang", "lichtgitter"], "light_curtain", RAY, "ossd_1_signal"),
+    sensor(&["twohand", "zweihand"], "two_hand_station", ALONE, "valid_signal"),
+    sensor(&["keyswitch", "schlüssel", "schluessel"], "key_switch", ALONE, "at_1_signal"),
     sensor(&["barrier", "ls", "lb", "photo", "beam", "lichtschranke"], "light_barrier", RAY, "detected_signal"),
     sensor(&["extended", "ausgefahren"], "pneumatic_cylinder", ALONE, "extended_signal"),
     sensor(&["retracted", "eingefahren"], "pneumatic_cylinder", ALONE, "retracted_signal"),
     sensor(&["limit", "guard", "door", "gate", "endschalter", "schutzt"], "limit_switch", JOINT, "contact_signal"),
     sensor(&["prox", "inductive", "ini", "bero", "sensor", "induktiv"], "inductive_sensor", RAY, "detected_signal"),
     sensor(&["start", "stop", "reset", "button", "key", "taster", "quit"], "push_button", ALONE, "make_signal"),
+    gauge(&["weight", "scale", "gewicht", "waage"], "weighing_cell", BODY, "gross_kg_signal"),
     gauge(&["level", "niveau", "stand", "füllstand", "fuellstand"], "tank", ALONE, "level_m_signal"),
     gauge(&["temp", "temperat"], "temperature_sensor", ALONE, "measured_degc_signal"),
     gauge(&["pressure", "druck"], "pressure_sensor", ALONE, "measured_bar_signal"),
     gauge(&["distance", "abstand"], "laser_distance", RAY, "distance_m_signal"),
     gauge(&["position", "pos", "encoder", "geber"], "axis_encoder", JOINT, "position_signal"),
+    drive(&["stacklight", "stack", "ampel", "signalsäule", "signalsaeule"], "stack_light", ALONE, "red_signal"),
+    drive(&["stopper"], "stopper", ALONE, "lower_signal"),
     drive(&["lamp", "light", "led", "leuchte"], "lamp", ALONE, "on_signal"),
     drive(&["conveyor", "belt", "band", "förder", "foerder"], "conveyor", BELT, "run_signal"),
     drive(&["grip", "gripper", "greifer"], "gripper", BODY, "close_signal"),
@@ -205,6 +211,12 @@ mod tests {
         assert_eq!(kind("B2_Lichtschranke", Input, "BOOL"), Some("light_barrier"));
         assert_eq!(kind("xStartButton", Input, "BOOL"), Some("push_button"));
         assert_eq!(kind("Emergency_Stop", Input, "BOOL"), Some("emergency_stop"));
+        assert_eq!(kind("B5_Lichtvorhang", Input, "BOOL"), Some("light_curtain"));
+        assert_eq!(kind("Zweihand_OK", Input, "BOOL"), Some("two_hand_station"));
+        assert_eq!(kind("S3_Schluessel", Input, "BOOL"), Some("key_switch"));
+        assert_eq!(kind("Waage_1", Input, "REAL"), Some("weighing_cell"));
+        assert_eq!(kind("H1_Ampel", Output, "BOOL"), Some("stack_light"));
+        assert_eq!(kind("Stopper_1_Senken", Output, "BOOL"), Some("stopper"));
         assert_eq!(kind("Tank_Level", Input, "INT"), Some("tank"));
         assert_eq!(kind("MotorM1", Output, "BOOL"), Some("asynchronous_motor"));
         assert_eq!(kind("BeltRun", Output, "BOOL"), Some("conveyor"));

@@ -109,6 +109,9 @@ struct Place {
     /// Unit vector along which it points or runs.
     #[serde(skip_serializing_if = "Option::is_none")]
     direction: Option<[f64; 3]>,
+    /// Unit vector along which one of its beams is beside the other.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    along: Option<[f64; 3]>,
     /// The body that it moves: a belt, or what a joint lets move.
     #[serde(skip_serializing_if = "Option::is_none")]
     moves: Option<String>,
@@ -292,7 +295,7 @@ fn pins(component: &Component) -> Vec<[String; 2]> {
 
 /// Where it is; nothing of a component that is nowhere.
 fn place(component: &Component, scene: &Scene) -> Option<Place> {
-    let Bound { drives, point_m, direction, .. } = component.bound;
+    let Bound { drives, point_m, direction, along, .. } = component.bound;
     let body = |index: usize| scene.bodies.get(index).map(|body| body.name.clone());
     let (moves, joint) = match drives {
         Some(Driven::Belt(belt)) => (body(belt), None),
@@ -305,7 +308,7 @@ fn place(component: &Component, scene: &Scene) -> Option<Place> {
     // A tank or a lamp acts on no body, and is where the scene shows it.
     let point_m = point_m.or(component.shown_at_m);
     let is_somewhere = point_m.is_some() || direction.is_some() || moves.is_some();
-    is_somewhere.then_some(Place { point_m, direction, moves, joint })
+    is_somewhere.then_some(Place { point_m, direction, along, moves, joint })
 }
 
 /// A joint as a drive's shape needs it; nothing of one that neither slides nor turns about one axis.

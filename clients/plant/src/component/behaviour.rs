@@ -61,6 +61,9 @@ pub(crate) trait Component: Sized + Send + 'static {
         true
     }
 
+    /// Tells its tie what follows from its parameters: at the set-up, and whenever they change.
+    fn arrange(&self, _tie: &mut Self::Tie) {}
+
     /// Its state at the set-up.
     fn initial(&self, start: &Start<SeenBy<Self>>) -> Self::State;
 
@@ -235,7 +238,8 @@ pub(super) fn run<C: Component>(
     scene: &Mechanics,
     world: &mut World,
 ) -> Result<Box<dyn Running>, Unbound> {
-    let tie = C::Tie::bind(bound, scene, world)?;
+    let mut tie = C::Tie::bind(bound, scene, world)?;
+    component.arrange(&mut tie);
     let state = component.initial(&Start { seen: tie.at_start(), seed });
     if let (Some(stops), Some(driven)) = (component.stops(), tie.driven()) {
         world.restrict(driven.joint, stops);
@@ -304,6 +308,7 @@ impl<C: Component> Running for Runner<C> {
 
     fn tune(&mut self, settings: &[Setting]) -> Result<(), Compiled> {
         self.component = C::new(C::Parameters::read(settings));
+        self.component.arrange(&mut self.tie);
         Ok(())
     }
 

@@ -5,7 +5,7 @@ use super::declare::{Failed, FailureSet, ParameterSet, SignalSet, Value};
 use super::kind::{Form, Setting, Values, unit};
 use super::library::{ENTRIES, kinds};
 use super::origin::Origin;
-use crate::coupling::{Coordinate, Grasp, Hit, InField, Load, Moving, Targets};
+use crate::coupling::{Carried, Coordinate, Grasp, Hit, InField, InTags, Interrupted, Load, Moving, Pressing, Targets};
 use crate::effort::Motion;
 use crate::temperature_field::TemperatureField;
 use onescan_server::random::Random;
@@ -101,6 +101,36 @@ impl Sight for Coordinate {
 impl Sight for Option<Coordinate> {
     fn in_weather(random: &mut Random) -> Self {
         Some(Coordinate::in_weather(random))
+    }
+}
+
+impl Sight for Option<Carried> {
+    fn in_weather(random: &mut Random) -> Self {
+        Some(Carried { position: random.normal(), force_n: 1e4 * random.normal() })
+    }
+}
+
+impl Sight for Option<[Carried; 3]> {
+    fn in_weather(random: &mut Random) -> Self {
+        Some([(); 3].map(|()| Carried { position: random.normal(), force_n: 1e4 * random.normal() }))
+    }
+}
+
+impl Sight for Interrupted {
+    fn in_weather(random: &mut Random) -> Self {
+        Self(if random.uniform() < 0.5 { 0 } else { random.bits() })
+    }
+}
+
+impl Sight for Pressing {
+    fn in_weather(random: &mut Random) -> Self {
+        Self { kg: 50.0 * random.uniform() }
+    }
+}
+
+impl Sight for InTags {
+    fn in_weather(random: &mut Random) -> Self {
+        Self { targets: Targets::in_weather(random), data: random.bits() as i32 }
     }
 }
 

@@ -74,7 +74,7 @@ impl Moves {
     }
 }
 
-fn drives_in_words(bound: &Bound, scene: &Mechanics) -> String {
+pub(super) fn drives_in_words(bound: &Bound, scene: &Mechanics) -> String {
     match bound.drives {
         Some(Driven::Joint(joint)) => format!("drives joint {}", scene.joints[joint].name),
         Some(Driven::Belt(_)) | None => String::new(),

@@ -5,10 +5,14 @@
 //! |---|---|
 //! | `joint` | moves a joint, or measures it |
 //! | `belt` | runs the surface of a body |
+//! | `path` | moves joints along paths, and sees the force that this takes |
 //! | `ray` | meets bodies along a line |
+//! | `curtain` | meets bodies along lines beside each other |
 //! | `touch` | is touched by bodies |
 //! | `hold` | is touched by bodies, and holds one as long as its force suffices |
 //! | `field` | is a field that bodies are in |
+//! | `tag` | reads and writes the tags of bodies in its field |
+//! | `press` | is pressed on by bodies |
 //! | `motion` | sees how a body moves |
 //! | `meet` | counts pairs of bodies in contact |
 //! | `collect` | takes bodies out of the world |
@@ -36,26 +40,34 @@ use super::world::{Sought, Surface, World};
 
 mod belt;
 mod collect;
+mod curtain;
 mod field;
 mod hold;
 mod joint;
 mod meet;
 mod motion;
+mod path;
 mod place;
+mod press;
 mod ray;
 mod surface;
+mod tag;
 mod touch;
 
 pub(crate) use belt::{Belt, Run};
 pub(crate) use collect::{Collect, Remove};
+pub(crate) use curtain::{Beams, Curtain, Interrupted};
 pub(crate) use field::{Field, InField};
 pub(crate) use hold::{Grasp, Hold, Holds, Load};
 pub(crate) use joint::{Coordinate, Follow, Indexes, Measures, Slides, Turns};
 pub(crate) use meet::Meet;
 pub(crate) use motion::{Motion, Moving};
+pub(crate) use path::{Carried, Lifts, Stores};
 pub(crate) use place::{Place, Put};
+pub(crate) use press::{Pressing, Weighs};
 pub(crate) use ray::{Hit, Ray};
 pub(crate) use surface::{Bends, Heats, SeesHeat};
+pub(crate) use tag::{InTags, Tags, WriteTag};
 pub(crate) use touch::{Contact, Touch};
 
 /// The bodies that a component meets, in words.
@@ -84,6 +96,8 @@ pub struct BindingKey {
 pub enum Names {
     /// A joint of one kind, which nothing else drives.
     DrivenJoint(JointKind),
+    /// One more joint of one kind, which nothing else drives.
+    DrivenBeside(JointKind),
     /// A joint that has a coordinate.
     MeasuredJoint,
     /// A kinematic body, which nothing else drives.
@@ -98,6 +112,8 @@ pub enum Names {
     ShapeOfBody,
     /// Three numbers, not all 0.
     Direction,
+    /// Three numbers, of which the part across the `direction` before it counts and is not 0.
+    Along,
     /// Three numbers, m.
     Point,
     /// Bodies other than the `body` beside the key.

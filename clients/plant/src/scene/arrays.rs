@@ -236,7 +236,7 @@ impl Table for ComponentTable {
                     placed((&mut point, &mut None), (turn_about.as_ref(), step.as_ref()), (k, n), faults);
                     put(self, binding.key, point);
                 }
-                Names::Direction if turn_about.is_some() && k > 0 => {
+                Names::Direction | Names::Along if turn_about.is_some() && k > 0 => {
                     let turned = written.map(|written| turned(&written, k, n));
                     put(self, binding.key, turned);
                 }

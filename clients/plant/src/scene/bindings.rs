@@ -15,6 +15,13 @@ use super::text;
 use crate::coupling::{BindingKey, Coupling, Names as Named, Which};
 use crate::model::{BodyKind, JointKind};
 
+/// What of a direction is across another one.
+fn across(along: [f64; 3], direction: Option<[f64; 3]>) -> [f64; 3] {
+    let Some(direction) = direction else { return along };
+    let part: f64 = along.iter().zip(&direction).map(|(one, other)| one * other).sum();
+    [0, 1, 2].map(|axis| along[axis] - part * direction[axis])
+}
+
 /// What of the scene has its place already.
 pub(super) struct Lookup<'s> {
     pub(super) file: &'s SceneFile,
@@ -73,6 +80,11 @@ impl Lookup<'_> {
             Named::DrivenJoint(kind) => {
                 bound.drives = Some(self.driven_joint(key, *kind, keys, others, faults)?);
             }
+            Named::DrivenBeside(kind) => {
+                let driven = self.driven_joint(key, *kind, keys, others, faults)?;
+                let joint = self.beside(driven, &bound, key, keys, faults)?;
+                bound.beside.push(joint);
+            }
             Named::MeasuredJoint => bound.measures = Some(self.measured_joint(key, keys, faults)?),
             Named::Belt => bound.drives = Some(self.belt(key, keys, others, faults)?),
             Named::Carrier => bound.body = self.carrier(key, keys, faults)?,
@@ -82,6 +94,11 @@ impl Lookup<'_> {
             Named::Direction => {
                 let direction = keys.triple(key, faults)?;
                 bound.direction = Some(faults.direction(key, &direction)?);
+            }
+            Named::Along => {
+                let along = keys.triple(key, faults)?;
+                let across = Placed::new(along.span(), across(*along.get_ref(), bound.direction));
+                bound.along = Some(faults.direction(key, &across)?);
             }
             Named::Point => {
                 let point = keys.triple(key, faults)?;
@@ -112,6 +129,26 @@ impl Lookup<'_> {
             return None;
         }
         self.alone(Driven::Joint(joint), &name, others, faults)
+    }
+
+    /// A joint that a component drives beside others of its own.
+    fn beside(
+        &self,
+        driven: Driven,
+        own: &Bound,
+        key: &'static str,
+        keys: &Keys<'_>,
+        faults: &mut Faults<'_>,
+    ) -> Option<usize> {
+        let Driven::Joint(joint) = driven else { return None };
+        if own.driven().all(|known| known != driven) {
+            return Some(joint);
+        }
+        let name = text(&self.file.joint[joint].get_ref().name).to_owned();
+        let span = keys.get(key).map_or_else(|| keys.kind.span(), Placed::span);
+        let first = format!("{}, by another of its keys", keys.whose());
+        faults.add(span, SceneFaultKind::DrivenTwice { thing: Thing::Joint, name, first });
+        None
     }
 
     fn measured_joint(&self, key: &'static str, keys: &Keys<'_>, faults: &mut Faults<'_>) -> Option<usize> {
@@ -166,7 +203,7 @@ impl Lookup<'_> {
             Moved::Belt { body, .. } => Driven::Belt(body),
         };
         let axis = self.axes.iter().find(|axis| by_axis(axis.moved) == wanted);
-        let component = components.iter().find(|(_, known)| known.drives == Some(wanted));
+        let component = components.iter().find(|(_, known)| known.driven().any(|driven| driven == wanted));
         let leader = match wanted {
             Driven::Joint(joint) => self.file.joint[joint].get_ref().follows.as_ref(),
             Driven::Belt(_) => None,

@@ -110,8 +110,9 @@ fn component(kind: &Kind) -> Value {
     for BindingKey { key, about, names, needed } in kind.coupling.keys() {
         let ty = match names {
             Names::Bodies { .. } => json!({ "type": "array", "items": { "type": TEXT } }),
-            Names::Point | Names::Direction => point(),
+            Names::Point | Names::Direction | Names::Along => point(),
             Names::DrivenJoint(_)
+            | Names::DrivenBeside(_)
             | Names::MeasuredJoint
             | Names::Belt
             | Names::Carrier

@@ -5,6 +5,8 @@
 //! | `solid` | the bodies of a scene and their shapes, as the engine has them |
 //! | `principal` | the principal moments of a tensor of inertia |
 //! | `reach` | which bodies are too far away to be looked at |
+//! | `pressing` | what presses on a surface |
+//! | `tag` | the memory of a body's radio tag |
 //! | `nearby` | which of many bodies a sensor has to look at |
 //! | `sleeping` | bodies at rest on what carries them, which cost nothing |
 //! | `turning` | friction with what turns |
@@ -23,10 +25,12 @@ pub(crate) mod coordinate;
 mod energy;
 mod mechanism;
 mod nearby;
+mod pressing;
 mod principal;
 mod reach;
 mod sleeping;
 pub(crate) mod solid;
+mod tag;
 mod turning;
 mod turns;
 

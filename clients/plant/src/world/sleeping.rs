@@ -5,7 +5,7 @@
 //! straight on, and the solver has nothing to do for them. It is dynamic again in the step in which its carrier runs
 //! otherwise, in which it would leave the carrier's face, and before anything else that moves or stands can meet it.
 //!
-//! All that is remembered is in the engine's bodies: their kind, and the note that each may bear. So it is in every saved
+//! All that is remembered is in the engine's bodies: their kind, and the note that each may bear, below its tag. So it is in every saved
 //! state, and a session that is restored goes on to the bit.
 
 use rapier3d::parry::bounding_volume::{Aabb, BoundingVolume};
@@ -13,6 +13,7 @@ use rapier3d::prelude::*;
 
 use super::World;
 use super::nearby::{Nearby, own_box};
+use super::tag;
 
 /// For so many steps on end a body must have been at rest.
 const STEADY_STEPS: u32 = 10;
@@ -45,6 +46,11 @@ impl Rest {
     fn of(body: &RigidBody) -> Option<Self> {
         let [steps, generation, index] = [0, 32, 64].map(|bits| (body.user_data >> bits) as u32);
         (steps > 0).then(|| Self { carrier: RigidBodyHandle::from_raw_parts(index, generation), steps })
+    }
+
+    /// Gives a body its note, and leaves it its tag.
+    fn bear(rest: Option<Self>, body: &mut RigidBody) {
+        body.user_data = body.user_data & tag::BITS | Self::note(rest);
     }
 
     fn note(rest: Option<Self>) -> u128 {
@@ -126,7 +132,7 @@ impl World {
     pub(super) fn awaken(&mut self, handle: RigidBodyHandle) {
         // Only bodies that may sleep ever bear a note.
         if let Some(body) = self.physics.bodies.get_mut(handle).filter(|body| Rest::of(body).is_some()) {
-            body.user_data = Rest::note(None);
+            Rest::bear(None, body);
             body.set_body_type(RigidBodyType::Dynamic, true);
         }
     }
@@ -154,7 +160,7 @@ impl World {
             let Some(body) = self.physics.bodies.get_mut(handle).filter(|_| before.is_some() || rest.is_some()) else {
                 continue;
             };
-            body.user_data = Rest::note(rest);
+            Rest::bear(rest, body);
             if let Some(velocity) = velocity {
                 body.set_body_type(RigidBodyType::KinematicVelocityBased, true);
                 body.set_linvel(velocity, true);

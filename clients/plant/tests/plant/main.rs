@@ -4,6 +4,7 @@ mod arm;
 mod arrays;
 mod belt;
 mod bench;
+mod cell_parts;
 mod components;
 mod constants;
 mod contacts;

@@ -108,6 +108,9 @@ library! {
         vacuum_cup::VacuumCup,
         turntable::Turntable,
         spindle::Spindle,
+        stopper::Stopper,
+        lift_table::LiftTable,
+        rack_feeder::RackFeeder,
     }
     sensor {
         light_barrier::LightBarrier,
@@ -129,6 +132,10 @@ library! {
         pose_sensor::PoseSensor,
         inclinometer::Inclinometer,
         accelerometer::Accelerometer,
+        light_curtain::LightCurtain,
+        barcode_reader::BarcodeReader,
+        rfid_head::RfidHead,
+        weighing_cell::WeighingCell,
     }
     process {
         tank::Tank,
@@ -150,6 +157,9 @@ library! {
         push_button::PushButton,
         emergency_stop::EmergencyStop,
         lamp::Lamp,
+        stack_light::StackLight,
+        key_switch::KeySwitch,
+        two_hand_station::TwoHandStation,
     }
     logic {
         input_controller::InputController,

@@ -215,7 +215,9 @@ impl Place {
             let written = component.get(binding.key).and_then(|value| numbers(value.get_ref()));
             match (binding.names, written) {
                 (Names::Point, Some(at)) => set(component, binding.key, self.moved(at), &kind),
-                (Names::Direction, Some(direction)) => set(component, binding.key, self.turned(direction), &kind),
+                (Names::Direction | Names::Along, Some(direction)) => {
+                    set(component, binding.key, self.turned(direction), &kind);
+                }
                 _ => {}
             }
         }
