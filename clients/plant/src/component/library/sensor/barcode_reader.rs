@@ -122,7 +122,8 @@ impl Component for BarcodeReader {
 
     fn sense(&self, state: &mut State, inputs: &Inputs, turn: &Turn<Targets>) -> Outputs {
         let seen = turn.seen.first.filter(|_| !turn.failed.has(Failure::Dirty));
-        let rising = inputs.trigger && !std::mem::replace(&mut state.triggered, inputs.trigger);
+        let triggered = std::mem::replace(&mut state.triggered, inputs.trigger);
+        let rising = inputs.trigger && !triggered;
         let before = std::mem::replace(&mut state.first, seen);
         let looks = if self.p.continuous { seen.is_some() && seen != before } else { rising };
         state.pending_s += turn.dt_s;
