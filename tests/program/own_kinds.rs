@@ -48,6 +48,14 @@ fn the_manuals_example_runs() {
 }
 
 #[test]
+fn a_recording_runs_alone_with_the_kinds_of_its_scene() {
+    let folder = from_the_manual();
+    let (whole, _) = run(folder.path(), &["--record", "r"]);
+    let copy = folder.path().join("r/run-1/scenario");
+    assert_eq!(run(&copy, &[]).0, whole);
+}
+
+#[test]
 fn kinds_of_a_folder_are_listed() {
     let folder = from_the_manual();
     let listed = typed(folder.path(), &["components", "--library", "components"]);

@@ -39,7 +39,15 @@ impl Folder {
         let path = faults.beside(text(named));
         let found = faults.within().find(&path).map_err(std::io::Error::from);
         match found.and_then(|path| Self::list(&path, text(named))) {
-            Ok(folder) => Some(folder),
+            Ok(mut folder) => {
+                // As the scene's other files are named: what copies these has the kinds, too.
+                for kind in &mut folder.files {
+                    if let Some(own) = kind.path.file_name().map(|name| path.join(name)) {
+                        kind.path = own;
+                    }
+                }
+                Some(folder)
+            }
             Err(error) => {
                 let cause = format!("cannot be read: {error}");
                 faults.add(named.span(), SceneFaultKind::Kinds { folder: text(named).to_owned(), cause });
