@@ -66,6 +66,19 @@ failures! {
     }
 }
 
+/// What a look saw: the first target, unless it was missed.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Look {
+    place: Option<u32>,
+}
+
+/// What it answers to a look.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) enum Answer {
+    Code(i32),
+    Nothing,
+}
+
 /// What it remembers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct State {
@@ -73,9 +86,9 @@ pub(crate) struct State {
     /// The first in its field.
     first: Option<u32>,
     /// What it saw when it looked, if it has not answered yet.
-    looked: Option<Option<u32>>,
+    looked: Option<Look>,
     pending_s: f64,
-    answer: Option<Option<i32>>,
+    answer: Option<Answer>,
     reads: i32,
     no_reads: i32,
     random: Random,
@@ -130,19 +143,22 @@ impl Component for BarcodeReader {
         if looks {
             // drawn for every look, so that what is seen does not move the stream
             let missed = state.random.uniform() <= 0.01 * self.p.error_pct;
-            (state.looked, state.pending_s, state.answer) = (Some(seen.filter(|_| !missed)), 0.0, None);
+            (state.looked, state.pending_s, state.answer) = (Some(Look { place: seen.filter(|_| !missed) }), 0.0, None);
         }
         // a rounding less than the latency is not a reason to wait for another period
         let due = state.pending_s >= self.p.latency_s * (1.0 - 1e-12) && !turn.failed.has(Failure::Hung);
-        if let Some(looked) = state.looked.filter(|_| due) {
-            let counted = if looked.is_some() { &mut state.reads } else { &mut state.no_reads };
+        if let Some(Look { place }) = state.looked.take_if(|_| due) {
+            let counted = if place.is_some() { &mut state.reads } else { &mut state.no_reads };
             *counted = counted.saturating_add(1);
-            (state.answer, state.looked) = (Some(looked.map(|place| self.code(place))), None);
+            state.answer = Some(place.map_or(Answer::Nothing, |place| Answer::Code(self.code(place))));
         }
-        let code = state.answer.flatten();
+        let code = match state.answer {
+            Some(Answer::Code(code)) => Some(code),
+            Some(Answer::Nothing) | None => None,
+        };
         Outputs {
             good: code.is_some(),
-            no_read: state.answer == Some(None),
+            no_read: state.answer == Some(Answer::Nothing),
             code: code.unwrap_or(0),
             reads: state.reads,
             no_reads: state.no_reads,
