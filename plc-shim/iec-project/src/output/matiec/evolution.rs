@@ -28,7 +28,10 @@ pub(super) fn lower(page: &Page<'_>, edits: &mut Edits) -> Vec<Finding> {
             }
         }
         // Those with a priority go first.
-        order.sort_by_key(|tested| tested.transition.priority.map_or(u64::MAX, |priority| priority.rank.into()));
+        order.sort_by_key(|tested| {
+            let rank = tested.transition.priority.map(|priority| priority.rank);
+            (rank.is_none(), rank)
+        });
         for (place, tested) in order.iter().enumerate() {
             let (span, others) = (tested.condition.span, blocked(page, &order[..place], tested));
             if others.len() > MOST {
