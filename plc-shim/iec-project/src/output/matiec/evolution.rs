@@ -68,13 +68,16 @@ fn blocked(page: &Page<'_>, before: &[Tested<'_>], tested: &Tested<'_>) -> Strin
     let mut text = String::new();
     for (place, other) in before.iter().enumerate() {
         let (theirs, condition) = (other.steps(), page.text(other.condition.span));
-        if theirs == steps {
+        let part = if theirs == steps {
             // Where one before that one fires, none behind it does: its condition alone is enough.
-            text += &format!(" AND NOT ({condition})");
+            format!(" AND NOT ({condition})")
         } else if theirs.iter().any(|step| steps.contains(step)) {
             let active: String = other.transition.from.iter().map(|step| format!("{}.X AND ", step.text)).collect();
-            text += &format!(" AND NOT ({active}({condition}){})", blocked(page, &before[..place], other));
-        }
+            format!(" AND NOT ({active}({condition}){})", blocked(page, &before[..place], other))
+        } else {
+            continue;
+        };
+        text += &part;
         if text.len() > MOST {
             break;
         }
