@@ -287,7 +287,12 @@ impl Hall {
                     }
                     self.hear(visitor, kind(&message));
                 }
-                Action::Apply(visitor, request) => self.applications.push_back((visitor, request)),
+                Action::Apply(visitor, request) => {
+                    if self.is_begun {
+                        self.broken = Some("somebody applies to a session that has begun");
+                    }
+                    self.applications.push_back((visitor, request));
+                }
                 Action::Ask(visitor, wish) => {
                     if self.lookers.contains(&visitor) && matches!(wish, Wish::Do(_)) {
                         self.broken = Some("a viewer operates");
@@ -303,7 +308,15 @@ impl Hall {
                         self.acceptor.gone(visitor);
                     }
                 }
-                Action::Close(visitor) => self.line(visitor).closed = true,
+                Action::Close(visitor) => {
+                    let leaves = |line: &&Line| line.parted && !line.closed && !line.hung_up;
+                    let leaving = self.lines.values().filter(leaves).count();
+                    let line = self.line(visitor);
+                    line.closed = true;
+                    if !line.parted && !line.hung_up && !self.is_closing && leaving < LEAVING_MAX {
+                        self.broken = Some("somebody is not given the time to read why it must go");
+                    }
+                }
             }
         }
     }

@@ -30,6 +30,8 @@ const SERVED_WITHIN: Duration = Duration::from_secs(1);
 const AFTER_AN_ERROR: Duration = Duration::from_millis(150);
 /// The address of all who mean to stay for ever.
 const STAYING: u8 = 66;
+/// How many that must leave may still be on their way.
+const AT_THE_DOOR: usize = 4;
 /// How long strangers come.
 const CROWD: Duration = Duration::from_mins(1);
 
@@ -98,6 +100,8 @@ struct Seen {
     limit: ConnectionLimit,
     /// Connections that stay.
     staying: usize,
+    /// Those that are served, one that must leave until it is looked at.
+    served: usize,
     broken: Option<String>,
     begun: Instant,
     /// Of what was seen when.
@@ -114,6 +118,9 @@ impl Seen {
         let moment = (self.begun.elapsed().as_micros() as u64, count as u64, self.staying as u64);
         for number in [moment.0, moment.1, moment.2] {
             self.trace.update(&number.to_le_bytes());
+        }
+        if self.served > all + AT_THE_DOOR {
+            self.breaks(format!("{} connections are served", self.served));
         }
         if count > all || self.staying > staying {
             self.breaks(format!("{count} connections are there, and {} of them stay", self.staying));
@@ -143,6 +150,7 @@ async fn listen(network: Network, seen: Shared) {
 async fn serve(mut guarded: Guarded<DuplexStream>, seen: Shared) {
     let (pass, mut stays) = (guarded.pass(), false);
     let mut byte = [0];
+    seen.borrow_mut().served += 1;
     while matches!(guarded.read(&mut byte).await, Ok(1)) {
         let answer = match byte {
             [b'v'] if pass.stay() => {
@@ -162,9 +170,9 @@ async fn serve(mut guarded: Guarded<DuplexStream>, seen: Shared) {
     let _ = guarded.read(&mut byte).await;
     // It may be gone already.
     let _ = guarded.shutdown().await;
-    if stays {
-        seen.borrow_mut().staying -= 1;
-    }
+    let mut seen = seen.borrow_mut();
+    seen.served -= 1;
+    seen.staying -= usize::from(stays);
 }
 
 /// One crowd at one listener.
@@ -258,6 +266,7 @@ async fn crowded(mut chance: Chance, rules: ListenerRules) -> Result<u64, String
         rules,
         limit: limit.clone(),
         staying: 0,
+        served: 0,
         begun: Instant::now(),
         broken: None,
         trace: blake3::Hasher::new(),

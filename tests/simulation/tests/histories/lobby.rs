@@ -449,6 +449,20 @@ fn a_join_may_be_as_long_as_the_session_needs_and_no_longer() {
     }
 }
 
+/// An operator that waits for an answer may send what it asks next, up to the length of a frame.
+#[test]
+fn an_operator_of_the_lobby_may_ask_ahead_and_not_without_end() {
+    const LONGEST: usize = (1 << 20) + 2 * WELCOME_BYTES;
+    for (length, heard) in [(LONGEST, "w"), (LONGEST + 1, "wr")] {
+        let (mut hall, visitor) = (Hall::new(1, None), Visitor(0));
+        hall.open(visitor, IpAddr::from([10, 0, 0, 1]), true);
+        hall.bytes(visitor, &hello("operator", None));
+        hall.bytes(visitor, &frame(r#"{"status":{}}"#));
+        hall.bytes(visitor, &vec![b' '; length]);
+        assert_eq!((hall.lines[&visitor].heard.as_str(), hall.broken), (heard, None), "{length} bytes");
+    }
+}
+
 #[test]
 fn a_lobby_lets_in_whom_it_must() {
     let tokens = Tokens::new(CLIENTS_MAX);
