@@ -174,7 +174,7 @@ async function see_the_library() {
   await page.waitForTimeout(200);
   await shoot(page, "edit-library-dark");
   await page.getByLabel("Filter what can be placed").fill("beam");
-  assert.deepEqual(await page.locator(".ware span").allTextContents(), ["light barrier", "laser distance"]);
+  assert.deepEqual(await page.locator(".ware span").allTextContents(), ["light barrier", "laser distance", "light curtain"]);
   await page.getByLabel("Filter what can be placed").fill("");
   // A finding stands where it is: at the thing in the list and in its form.
   await page.getByRole("button", { name: /^barrier/ }).click();

@@ -21,6 +21,9 @@ use crate::plant::describe::{self, DescribeConfig};
 use onescan_runner::error::{Unreadable, Usage};
 use onescan_runner::format::Format;
 
+/// The sheet of a task, and where those of the program are at home.
+const SHEET: &str = "README.md";
+const TASKS: &str = "scenarios/learn";
 /// The drawing of the machine that a sheet shows.
 const DRAWING: &str = "machine.svg";
 
@@ -30,10 +33,14 @@ const DRAWING: &str = "machine.svg";
 /// The program has not such a task and it is not a folder with one, the folder is there, or it cannot be written.
 pub fn write(folder: &Path, task: &str, out: &mut dyn Write) -> Result<(), NewError> {
     name_of(folder)?;
-    let files = match Task::named(task) {
-        Some(task) => task.files.iter().map(|(file, text)| (PathBuf::from(file), text.as_bytes().to_vec())).collect(),
-        None => of_folder(task)?,
+    let (mut files, place) = match Task::named(task) {
+        Some(task) => {
+            let files = task.files.iter().map(|(file, text)| (PathBuf::from(file), text.as_bytes().to_vec()));
+            (files.collect(), format!("{TASKS}/{}", task.name))
+        }
+        None => (of_folder(task)?, task.trim_end_matches(['/', '\\']).to_owned()),
     };
+    name_in_sheet(&mut files, &place, folder);
     let output = |(file, bytes): &(PathBuf, Vec<u8>)| Output { path: folder.join(file), bytes: Some(bytes.clone()) };
     write_all_whole(&files.iter().map(output).collect::<Vec<_>>())?;
     for (file, _) in &files {
@@ -47,6 +54,15 @@ pub fn write(folder: &Path, task: &str, out: &mut dyn Write) -> Result<(), NewEr
     Ok(next(folder, &Scenario::load(folder)?, out).map_err(OutputError)?)
 }
 
+/// Lets the commands of the sheet name the folder that it is in now.
+fn name_in_sheet(files: &mut [(PathBuf, Vec<u8>)], place: &str, folder: &Path) {
+    for (_, bytes) in files.iter_mut().filter(|(file, _)| file == Path::new(SHEET)) {
+        if let Ok(text) = std::str::from_utf8(bytes) {
+            *bytes = text.replace(place, &folder.display().to_string()).into_bytes();
+        }
+    }
+}
+
 /// The next three steps: what is wanted, what is there, what it is worth.
 fn next(folder: &Path, scenario: &Scenario, out: &mut dyn Write) -> io::Result<()> {
     let place = folder.display();
@@ -55,7 +71,7 @@ fn next(folder: &Path, scenario: &Scenario, out: &mut dyn Write) -> io::Result<(
         _ => None,
     });
     let program = sources.map_or_else(|| place.to_string(), |source| folder.join(source).display().to_string());
-    let sheet = folder.join("README.md");
+    let sheet = folder.join(SHEET);
     writeln!(out, "\nnext: read {}, and write {program}", sheet.display())?;
     writeln!(out, "      onescan run {place} --web 127.0.0.1:8080")?;
     writeln!(out, "      onescan grade {place} {program}")
