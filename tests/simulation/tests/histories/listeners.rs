@@ -444,6 +444,11 @@ fn whoever_must_leave_is_asked_once() {
                 if there.iter().filter(|(_, of, ..)| *of == address).count() > limits.of_address {
                     return Err("an address has more than its share".to_owned());
                 }
+                // Three quarters of an address' places, and one at least, may be taken for good.
+                let stay = there.iter().filter(|(_, of, _, stays)| *of == address && *stays).count();
+                if stay > (limits.of_address * 3 / 4).max(1) {
+                    return Err(format!("{stay} of one address stay"));
+                }
             }
         }
         Ok(limit.count() as u64)

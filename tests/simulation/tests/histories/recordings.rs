@@ -482,6 +482,48 @@ fn is_given_up(draw: &Draw, step: u64) -> bool {
     draw.width == Width::Wide && is_late && draw.reset.is_none() && step + 1 < PARTS[0]
 }
 
+/// Looks at what is on the disk once a step has been taken.
+#[derive(Clone, Debug)]
+struct Look {
+    folder: PathBuf,
+    at: u64,
+    last: Arc<std::sync::Mutex<Option<u64>>>,
+}
+
+impl Observer for Look {
+    fn begin(&mut self, _session: &Session, _digest: &TrajectoryDigest) -> Result<(), RecordError> {
+        Ok(())
+    }
+
+    fn step(&mut self, session: &Session, _digest: &TrajectoryDigest) -> Result<(), RecordError> {
+        if session.cycle().steps().0 == self.at {
+            let recording = Recording::open(&self.folder).expect("it can be opened at any moment");
+            *self.last.lock().expect("one thread") = recording.steps().map(|steps| *steps.end());
+        }
+        Ok(())
+    }
+
+    fn end(&mut self, _session: &Session) -> Result<(), RecordError> {
+        Ok(())
+    }
+}
+
+/// Nine rows are a block; four blocks are kept to be written early, and of five nothing is before the part is full.
+#[test]
+fn what_was_too_much_to_keep_comes_with_its_part() {
+    for (flush, last) in [(36, 36), (45, 0)] {
+        let room = Room::new();
+        let mut lockstep = session(Width::Wide, None);
+        let recorder = Recorder::new(room.folder(), provenance(), Choice::default()).writing(FlushPolicy::Steps(flush));
+        lockstep.observe(Box::new(recorder.simulated(Arc::new(SystemDisk))));
+        let look = Look { folder: room.folder().to_owned(), at: flush + 1, last: Arc::default() };
+        lockstep.observe(Box::new(look.clone()));
+        lockstep.set_until(Some(at_ms(STEP_MS * WIDE_STEPS_MAX)));
+        lockstep.run().expect("nothing disturbs it");
+        assert_eq!(*look.last.lock().expect("one thread"), Some(last), "written early every {flush} steps");
+    }
+}
+
 #[test]
 fn what_was_whole_stays_whole() {
     try_all(KIND, history);
