@@ -313,7 +313,9 @@ impl Hall {
                     let leaving = self.lines.values().filter(leaves).count();
                     let line = self.line(visitor);
                     line.closed = true;
-                    if !line.parted && !line.hung_up && !self.is_closing && leaving < LEAVING_MAX {
+                    // An operator that has asked nothing for a day is not refused: it is closed.
+                    let was_refused = line.heard.ends_with('r') && !line.parted && !line.hung_up;
+                    if was_refused && !self.is_closing && leaving < LEAVING_MAX {
                         self.broken = Some("somebody is not given the time to read why it must go");
                     }
                 }
