@@ -432,6 +432,10 @@ fn a_task_is_handed_out_without_its_solutions() {
     write(folder, "mine/skeleton/other.st", RIGHT);
     let said = typed(folder, &["grade", "belt", "mine"]);
     assert!(said.code == Some(0) && !said.out.contains("compile"), "{said:?}");
+    // The sheet's commands name the folder that it is in.
+    assert_eq!(typed(folder, &["new", "first", "--task", "lift"]).code, Some(0));
+    let sheet = std::fs::read_to_string(folder.join("first/README.md")).expect("a sheet");
+    assert!(sheet.contains("onescan check first ") && !sheet.contains("scenarios/learn"), "{sheet}");
     let said = typed(folder, &["new", "other", "--task", "lifft"]);
     assert!(said.code == Some(2) && said.err.contains("onescan has no task `lifft`"), "{said:?}");
 }

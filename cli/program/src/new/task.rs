@@ -33,14 +33,10 @@ const DRAWING: &str = "machine.svg";
 /// The program has not such a task and it is not a folder with one, the folder is there, or it cannot be written.
 pub fn write(folder: &Path, task: &str, out: &mut dyn Write) -> Result<(), NewError> {
     name_of(folder)?;
-    let (mut files, place) = match Task::named(task) {
-        Some(task) => {
-            let files = task.files.iter().map(|(file, text)| (PathBuf::from(file), text.as_bytes().to_vec()));
-            (files.collect(), format!("{TASKS}/{}", task.name))
-        }
-        None => (of_folder(task)?, task.trim_end_matches(['/', '\\']).to_owned()),
+    let files = match Task::named(task) {
+        Some(task) => of_program(task, folder),
+        None => of_folder(task)?,
     };
-    name_in_sheet(&mut files, &place, folder);
     let output = |(file, bytes): &(PathBuf, Vec<u8>)| Output { path: folder.join(file), bytes: Some(bytes.clone()) };
     write_all_whole(&files.iter().map(output).collect::<Vec<_>>())?;
     for (file, _) in &files {
@@ -54,13 +50,11 @@ pub fn write(folder: &Path, task: &str, out: &mut dyn Write) -> Result<(), NewEr
     Ok(next(folder, &Scenario::load(folder)?, out).map_err(OutputError)?)
 }
 
-/// Lets the commands of the sheet name the folder that it is in now.
-fn name_in_sheet(files: &mut [(PathBuf, Vec<u8>)], place: &str, folder: &Path) {
-    for (_, bytes) in files.iter_mut().filter(|(file, _)| file == Path::new(SHEET)) {
-        if let Ok(text) = std::str::from_utf8(bytes) {
-            *bytes = text.replace(place, &folder.display().to_string()).into_bytes();
-        }
-    }
+/// The files of one of the program's tasks. The commands of its sheet name the folder that it is in now.
+fn of_program(task: &Task, folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+    let (home, place) = (format!("{TASKS}/{}", task.name), folder.display().to_string());
+    let written = |file: &str, text: &str| if file == SHEET { text.replace(&home, &place) } else { text.to_owned() };
+    task.files.iter().map(|(file, text)| (PathBuf::from(file), written(file, text).into_bytes())).collect()
 }
 
 /// The next three steps: what is wanted, what is there, what it is worth.

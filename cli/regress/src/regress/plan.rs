@@ -104,10 +104,9 @@ pub fn units(config: &TestConfig) -> Result<Vec<Unit>, TestError> {
     match (units.is_empty(), left_out) {
         (false, _) => Ok(units),
         (true, 0) => {
-            let help = "a scenario is a folder with a `scenario.toml`; what is to be learnt on is for `onescan grade`; test programs are in PLC \
-                        sources"
-                .to_owned();
-            Err(Usage::new("there is nothing to test here", Some(help)).into())
+            let help = "a scenario is a folder with a `scenario.toml`, and a program for a task is marked with `onescan grade`; \
+                        test programs are in PLC sources";
+            Err(Usage::new("there is nothing to test here", Some(help.to_owned())).into())
         }
         (true, _) => Err(none_chosen(&format!("none of {left_out} cases")).into()),
     }
