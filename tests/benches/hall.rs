@@ -9,11 +9,10 @@ use std::time::Instant;
 
 use onescan_plant::Plant;
 use onescan_scenario::Scenario;
-use onescan_scenario::compose::Member;
 use onescan_server::client::Client;
-use onescan_server::formation::Formation;
 use onescan_server::signal::PortLayout;
 use onescan_server::time::VirtualTime;
+use onescan_tests::bench::session_of;
 use onescan_tests::{client, span_ms};
 
 const STEP_MS: u64 = 10;
@@ -87,15 +86,7 @@ fn hall_s(sleeping: bool) -> f64 {
 fn filling_hour_s() -> f64 {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/filling-machine");
     let scenario = Scenario::load(&folder).expect("a scenario");
-    let mut formation = Formation::new(scenario.plan().clone());
-    for name in scenario.plan().clients() {
-        match scenario.member(name).expect("it compiles") {
-            Member::Plc(client) | Member::Plant(client) => formation.join(client).expect("a place"),
-            _ => panic!("the filling machine has a plant and a soft PLC"),
-        };
-    }
-    let mut lockstep = formation.start().expect("all have joined");
-    lockstep.set_until(Some(VirtualTime::from_nanos(FILLING_S * 1_000_000_000)));
+    let mut lockstep = session_of(&scenario, FILLING_S);
     let started = Instant::now();
     lockstep.run().expect("nothing is recorded");
     started.elapsed().as_secs_f64() * 3600.0 / FILLING_S as f64

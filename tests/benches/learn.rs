@@ -7,35 +7,15 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use onescan_scenario::Scenario;
-use onescan_scenario::compose::Member;
-use onescan_server::formation::Formation;
-use onescan_server::lockstep::Lockstep;
-use onescan_server::time::VirtualTime;
-use onescan_server::timeline::Timeline;
+use onescan_tests::bench::session_of;
 
 const STEP_MS: u64 = 10;
 const RUN_S: u64 = 120;
 const RUNS: usize = 5;
 
-fn session(scenario: &Scenario) -> Lockstep {
-    let mut formation = Formation::new(scenario.plan().clone());
-    for name in scenario.plan().clients() {
-        match scenario.member(name).expect("it compiles") {
-            Member::Plc(client) | Member::Plant(client) => formation.join(client).expect("a place"),
-            _ => panic!("a machine to learn on is in this process"),
-        };
-    }
-    let mut lockstep = formation.start().expect("all have joined");
-    lockstep.set_until(Some(VirtualTime::from_nanos(RUN_S * 1_000_000_000)));
-    let timeline =
-        Timeline::new(scenario.timeline().to_vec(), lockstep.session()).expect("inputs of signals that are there");
-    lockstep.set_timeline(timeline);
-    lockstep
-}
-
 /// Microseconds of a step.
 fn step_us(scenario: &Scenario) -> f64 {
-    let mut lockstep = session(scenario);
+    let mut lockstep = session_of(scenario, RUN_S);
     let started = Instant::now();
     lockstep.run().expect("nothing is recorded");
     started.elapsed().as_secs_f64() * 1e6 * STEP_MS as f64 / (RUN_S * 1000) as f64

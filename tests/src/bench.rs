@@ -5,12 +5,36 @@ use std::collections::BTreeMap;
 use std::sync::Mutex;
 use std::time::Duration;
 
+use onescan_scenario::Scenario;
+use onescan_scenario::compose::Member;
 use onescan_server::client::{Client, ClientFault, JoinRequest, Wake};
+use onescan_server::formation::Formation;
+use onescan_server::lockstep::Lockstep;
 use onescan_server::plan::{Coupling, SessionPlan};
 use onescan_server::signal::{ClientName, SignalType};
 use onescan_server::time::{TimeSpan, VirtualTime};
+use onescan_server::timeline::Timeline;
 
 use crate::{client, plan, port, span_ms};
+
+/// A session of a scenario with all of its clients in this process, and what its case does, for so long.
+///
+/// # Panics
+/// The scenario does not compile, or has a client elsewhere.
+pub fn session_of(scenario: &Scenario, until_s: u64) -> Lockstep {
+    let mut formation = Formation::new(scenario.plan().clone());
+    for name in scenario.plan().clients() {
+        match scenario.member(name).expect("it compiles") {
+            Member::Plc(client) | Member::Plant(client) => formation.join(client).expect("a place"),
+            _ => panic!("`{name}` is not a client of this process"),
+        };
+    }
+    let mut lockstep = formation.start().expect("all have joined");
+    lockstep.set_until(Some(VirtualTime::from_nanos(until_s * 1_000_000_000)));
+    let timeline = Timeline::new(scenario.timeline().to_vec(), lockstep.session());
+    lockstep.set_timeline(timeline.expect("inputs of signals that are there"));
+    lockstep
+}
 
 /// Carries bytes from its inputs to its outputs, as cheaply as can be.
 pub struct Carrier {

@@ -499,6 +499,16 @@ pub enum Driven {
     Belt(usize),
 }
 
+impl Driven {
+    /// The joint, if it is one.
+    pub fn joint(self) -> Option<usize> {
+        match self {
+            Self::Joint(joint) => Some(joint),
+            Self::Belt(_) => None,
+        }
+    }
+}
+
 /// What happens to a signal between the plant and the session.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Condition {

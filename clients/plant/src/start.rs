@@ -18,11 +18,7 @@ impl Scene {
             Moved::Belt { .. } => None,
         });
         let components = self.components.iter().flat_map(|component| component.bound.driven());
-        let components = components.filter_map(|driven| match driven {
-            Driven::Joint(joint) => Some(joint),
-            Driven::Belt(_) => None,
-        });
-        axes.chain(components)
+        axes.chain(components.filter_map(Driven::joint))
     }
 
     /// The bodies that are out of the world at the start, by their places: workpieces that wait for their source.

@@ -26,6 +26,17 @@ pub(crate) fn ramp(value: f64, wanted: f64, rate_1_s: f64, dt_s: f64) -> f64 {
     value + (wanted - value).clamp(-step, step)
 }
 
+/// Whether a time has passed: a rounding less than it is not a reason to wait for another period.
+pub(crate) fn is_over(since_s: f64, time_s: f64) -> bool {
+    since_s >= time_s * (1.0 - 1e-12)
+}
+
+/// Which commands have risen since the last period, which `before` keeps.
+pub(crate) fn rising<const N: usize>(before: &mut [bool; N], now: [bool; N]) -> [bool; N] {
+    let before = std::mem::replace(before, now);
+    std::array::from_fn(|command| now[command] && !before[command])
+}
+
 /// Switches after a condition has lasted for a time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct OnDelay {
@@ -36,13 +47,12 @@ impl OnDelay {
     /// True if `condition` has held for `delay_s` by the end of this period.
     pub(crate) fn holds(&mut self, condition: bool, delay_s: f64, dt_s: f64) -> bool {
         self.lasted_s = if condition { self.lasted_s + dt_s } else { 0.0 };
-        // a rounding less than the delay is not a reason to wait for another period
-        condition && self.lasted_s >= delay_s * (1.0 - 1e-12)
+        condition && is_over(self.lasted_s, delay_s)
     }
 
     /// True if `condition`, which holds for this period or not, has held for `delay_s` as it begins.
     pub(crate) fn has_held(&mut self, condition: bool, delay_s: f64, dt_s: f64) -> bool {
-        let over = condition && self.lasted_s >= delay_s * (1.0 - 1e-12);
+        let over = condition && is_over(self.lasted_s, delay_s);
         self.lasted_s = if condition { self.lasted_s + dt_s } else { 0.0 };
         over
     }

@@ -109,11 +109,7 @@ impl Tie for Stores {
     type Memory = ();
 
     fn bind(bound: &Bound, scene: &Mechanics, world: &mut World) -> Result<Self, Unbound> {
-        let joint = |driven: Driven| match driven {
-            Driven::Joint(joint) => Some(joint),
-            Driven::Belt(_) => None,
-        };
-        let mut joints = bound.driven().filter_map(joint);
+        let mut joints = bound.driven().filter_map(Driven::joint);
         let mut next = || wanted(joints.next(), "three joints");
         let [travel, lift, fork] = [next()?, next()?, next()?];
         Ok(Self([travel, lift, fork].map(|joint| Guide::bind(joint, scene, world))))
@@ -136,11 +132,8 @@ impl Tie for Stores {
     fn restore(&mut self, (): ()) {}
 
     fn in_words(bound: &Bound, scene: &Mechanics) -> String {
-        let joint = |driven: Driven| match driven {
-            Driven::Joint(joint) => Some(scene.joints[joint].name.as_str()),
-            Driven::Belt(_) => None,
-        };
-        let names: Vec<&str> = bound.driven().filter_map(joint).collect();
+        let joints = bound.driven().filter_map(Driven::joint);
+        let names: Vec<&str> = joints.map(|joint| scene.joints[joint].name.as_str()).collect();
         if names.is_empty() { String::new() } else { format!("drives joints {}", names.join(", ")) }
     }
 }

@@ -3,8 +3,8 @@
 use onescan_server::client::ClientFault;
 use rapier3d::prelude::RigidBodyHandle;
 
-use super::touch::{in_words, keys};
-use super::{BindingKey, Tie, Unbound, Which, handles, wanted, without_effect};
+use super::touch::{in_words, keys, surface};
+use super::{BindingKey, Tie, Unbound, Which, handles, without_effect};
 use crate::model::Bound;
 use crate::model::Mechanics;
 use crate::world::coordinate::Measured;
@@ -31,8 +31,7 @@ impl Tie for Weighs {
     without_effect!();
 
     fn bind(bound: &Bound, _: &Mechanics, world: &mut World) -> Result<Self, Unbound> {
-        let body = world.handle(Some(wanted(bound.body, "body")?));
-        let surface = world.surface(body, bound.shape.map(|shape| world.shape(shape)));
+        let surface = surface(bound, world)?;
         let mut targets = handles(world, &bound.targets);
         targets.sort_unstable_by_key(|target| target.0);
         targets.dedup();

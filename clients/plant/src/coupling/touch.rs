@@ -25,6 +25,12 @@ pub(super) const fn keys(named: Which) -> [BindingKey; 3] {
 const DYNAMIC: [BindingKey; 3] = keys(Which::Dynamic);
 const ANY: [BindingKey; 3] = keys(Which::Any);
 
+/// The body that a component names, or the one of its shapes.
+pub(super) fn surface(bound: &Bound, world: &mut World) -> Result<Surface, Unbound> {
+    let body = world.handle(Some(wanted(bound.body, "body")?));
+    Ok(world.surface(body, bound.shape.map(|shape| world.shape(shape))))
+}
+
 /// What is touched, and by what.
 pub(super) struct Touched {
     pub(super) surface: Surface,
@@ -33,9 +39,7 @@ pub(super) struct Touched {
 
 impl Touched {
     pub(super) fn bind(bound: &Bound, world: &mut World) -> Result<Self, Unbound> {
-        let body = world.handle(Some(wanted(bound.body, "body")?));
-        let surface = world.surface(body, bound.shape.map(|shape| world.shape(shape)));
-        Ok(Self { surface, targets: sought(world, &bound.targets) })
+        Ok(Self { surface: surface(bound, world)?, targets: sought(world, &bound.targets) })
     }
 
     pub(super) fn see(&self, world: &World) -> Targets {

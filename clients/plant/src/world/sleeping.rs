@@ -5,8 +5,8 @@
 //! straight on, and the solver has nothing to do for them. It is dynamic again in the step in which its carrier runs
 //! otherwise, in which it would leave the carrier's face, and before anything else that moves or stands can meet it.
 //!
-//! All that is remembered is in the engine's bodies: their kind, and the note that each may bear, below its tag. So it is in every saved
-//! state, and a session that is restored goes on to the bit.
+//! All that is remembered is in the engine's bodies: their kind, and the note that each may bear, below its tag. So it is
+//! in every saved state, and a session that is restored goes on to the bit.
 
 use rapier3d::parry::bounding_volume::{Aabb, BoundingVolume};
 use rapier3d::prelude::*;

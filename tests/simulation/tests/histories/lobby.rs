@@ -432,7 +432,7 @@ impl<'t> History<'t> {
     }
 }
 
-/// A `join` may have 1 MiB and twice what `welcome` has: whoever is told of many signals has as many to name.
+/// A `join` may have 1 MiB plus twice the length of `welcome`: a client may name every signal that the server has listed.
 #[test]
 fn a_join_may_be_as_long_as_the_session_needs_and_no_longer() {
     const LONGEST: usize = (1 << 20) + 2 * WELCOME_BYTES;

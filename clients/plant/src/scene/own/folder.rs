@@ -1,6 +1,6 @@
 //! A folder of kinds: which files are in it.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use onescan_iec::input::kind::{FileKind, SourceKind};
 
@@ -38,16 +38,8 @@ impl Folder {
     pub(super) fn read(named: &Placed<String>, faults: &mut Faults<'_>) -> Option<Self> {
         let path = faults.beside(text(named));
         let found = faults.within().find(&path).map_err(std::io::Error::from);
-        match found.and_then(|path| Self::list(&path, text(named))) {
-            Ok(mut folder) => {
-                // As the scene's other files are named: what copies these has the kinds, too.
-                for kind in &mut folder.files {
-                    if let Some(own) = kind.path.file_name().map(|name| path.join(name)) {
-                        kind.path = own;
-                    }
-                }
-                Some(folder)
-            }
+        match found.and_then(|found| Self::list(&found, &path, text(named))) {
+            Ok(folder) => Some(folder),
             Err(error) => {
                 let cause = format!("cannot be read: {error}");
                 faults.add(named.span(), SceneFaultKind::Kinds { folder: text(named).to_owned(), cause });
@@ -56,11 +48,12 @@ impl Folder {
         }
     }
 
-    /// What is in a folder, in the order of the names.
-    pub(super) fn list(path: &std::path::Path, named: &str) -> std::io::Result<Self> {
+    /// What is in a folder, in the order of the names. Its files are below `path`, as the scene's other files are named: what
+    /// copies these has the kinds, too.
+    pub(super) fn list(found: &Path, path: &Path, named: &str) -> std::io::Result<Self> {
         let mut files = Vec::new();
-        for entry in std::fs::read_dir(path)? {
-            let path = entry?.path();
+        for entry in std::fs::read_dir(found)? {
+            let path = path.join(entry?.file_name());
             let form = match path.extension().and_then(|extension| extension.to_str()) {
                 Some("toml") => Form::Assembly,
                 _ => match FileKind::of(&path) {

@@ -91,7 +91,7 @@ impl OwnKind {
 /// The folder cannot be read.
 pub fn read(folder: &Path, within: &Within) -> std::io::Result<Listing> {
     let named = folder.display().to_string();
-    let found = Folder::list(folder, &named)?;
+    let found = Folder::list(folder, folder, &named)?;
     let names: Vec<String> = found.names().map(str::to_owned).collect();
     let mut faults = Faults::new("", &named, within);
     let mut kinds = Kinds { folders: vec![found], own: BTreeMap::new(), files: Vec::new() };

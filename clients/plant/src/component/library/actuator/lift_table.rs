@@ -53,7 +53,7 @@ parameters! {
 }
 
 signals! {
-    /// The valves.
+    /// Coils of the valve; without one the check valve holds it.
     Inputs {
         /// rises
         up: bool,
@@ -63,7 +63,7 @@ signals! {
 }
 
 signals! {
-    /// What it gives.
+    /// Height above the feet, end switches, relief valve.
     Outputs {
         /// height of the platform above the feet of the arms
         height_m: f64,
@@ -77,7 +77,7 @@ signals! {
 }
 
 failures! {
-    /// How it fails.
+    /// Faults of the oil, the scissors and the relief valve.
     Failure {
         /// it leaks, and sinks by `leak_m_s`
         Leak = "leak",

@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::component::behaviour::{Component, Start, Turn};
 use crate::component::declare::{failures, own_types, parameters, signals};
+use crate::component::dynamics::{is_over, rising};
 use crate::component::profile::{Limits, Profile};
 use crate::coupling::{Carried, Follow, Stores};
 use crate::setpoint::Setpoint;
@@ -100,7 +101,7 @@ signals! {
 }
 
 failures! {
-    /// How it fails.
+    /// What holds an axis, or hides where it is.
     Failure {
         /// the travel cannot move
         TravelBlocked = "travel_blocked",
@@ -124,7 +125,7 @@ pub(crate) struct Run {
     since_s: f64,
 }
 
-/// One axis.
+/// One axis: what it was ordered, and its way in the period that begins, m.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Axis {
     /// Where the machine wants it.
@@ -154,8 +155,7 @@ impl Axis {
             run.since_s += dt_s;
             let point = run.profile.at(run.since_s);
             self.set = Setpoint { position: run.start_m + point.way, velocity: point.velocity };
-            // a rounding less than its time is not a reason to go on for another period
-            if run.since_s >= run.profile.duration_s() * (1.0 - 1e-12) {
+            if is_over(run.since_s, run.profile.duration_s()) {
                 let end_m = run.start_m + run.profile.at(f64::INFINITY).way;
                 (self.set, self.run) = (Setpoint { position: end_m, velocity: 0.0 }, None);
             }
@@ -165,7 +165,7 @@ impl Axis {
     }
 }
 
-/// What it remembers.
+/// Axes, the order and its target in m, and an error, which stands until `quit`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct State {
     axes: [Axis; 3],
@@ -175,6 +175,13 @@ pub(crate) struct State {
     error: bool,
     /// `execute` and `quit` of the last period.
     before: [bool; 2],
+}
+
+impl State {
+    /// Whether travel and lift have ended what they were ordered to.
+    fn stands(&self) -> bool {
+        [TRAVEL, LIFT].iter().all(|axis| self.axes[*axis].run.is_none())
+    }
 }
 
 /// A rack feeder, by its parameters.
@@ -198,13 +205,11 @@ impl RackFeeder {
 
     /// What the inputs make of what it is doing. Errors come before all commands.
     fn decide(&self, state: &mut State, inputs: &Inputs, lost: bool) {
-        let now = [inputs.execute, inputs.quit];
-        let [execute, quit] = [0, 1].map(|command| now[command] && !state.before[command]);
-        state.before = now;
+        let [execute, quit] = rising(&mut state.before, [inputs.execute, inputs.quit]);
         state.error &= !quit;
         let off_m = |axis: usize| (state.axes[axis].set.position - state.real_m[axis]).abs();
         let behind = [TRAVEL, LIFT, FORK].into_iter().any(|axis| off_m(axis) > self.p.following_max_m);
-        let stands = state.axes[TRAVEL].run.is_none() && state.axes[LIFT].run.is_none();
+        let stands = state.stands();
         if execute && !state.error && stands {
             state.target_m = self.place_m(inputs).filter(|_| self.fork_is_at(state, 0.0));
             state.error = state.target_m.is_none();
@@ -275,9 +280,8 @@ impl Component for RackFeeder {
         let near = |[column_m, row_m]: [f64; 2]| {
             (x_m - column_m).abs() <= self.p.window_m && (y_m - row_m).abs() <= self.p.window_m
         };
-        let stands = state.axes[TRAVEL].run.is_none() && state.axes[LIFT].run.is_none();
         Outputs {
-            in_position: stands && !state.error && state.target_m.is_some_and(near),
+            in_position: state.stands() && !state.error && state.target_m.is_some_and(near),
             busy,
             error: state.error,
             fork_centred: self.fork_is_at(state, 0.0),

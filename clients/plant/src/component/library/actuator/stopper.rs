@@ -69,7 +69,7 @@ signals! {
 }
 
 failures! {
-    /// How it fails.
+    /// Faults of the pin, its drive and its switches.
     Failure {
         /// the pin does not move
         Stuck = "stuck",
@@ -84,7 +84,7 @@ failures! {
     }
 }
 
-/// What it remembers.
+/// The pin at both ends of the period, from 0 to `stroke_m`, and its speed between them.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct State {
     /// Where the period began.

@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::component::behaviour::{Component, Start, Turn};
 use crate::component::declare::{choice, failures, own_types, parameters, signals};
+use crate::component::dynamics::is_over;
 
 choice! {
     /// What it computes.
@@ -144,8 +145,7 @@ impl Component for Gate {
     fn sense(&self, state: &mut State, inputs: &Inputs, turn: &Turn) -> Outputs {
         let since_s = state.since_s.map_or(0.0, |since_s| since_s + turn.dt_s);
         state.since_s = self.result(inputs).then_some(since_s);
-        // a rounding less than the delay is not a reason to wait
-        let due = state.since_s.is_some_and(|since_s| since_s >= self.p.delay_s * (1.0 - 1e-12));
+        let due = state.since_s.is_some_and(|since_s| is_over(since_s, self.p.delay_s));
         let out = (due || turn.failed.has(Failure::Welded)) && !turn.failed.has(Failure::Open);
         Outputs { out }
     }

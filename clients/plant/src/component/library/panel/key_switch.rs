@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::component::behaviour::{Component, Start, Turn};
 use crate::component::declare::{choice, failures, own_types, parameters, signals};
+use crate::component::dynamics::is_over;
 
 choice! {
     /// Where the key comes out.
@@ -116,8 +117,7 @@ impl Component for KeySwitch {
         } else {
             state.since_s = state.since_s.map(|since_s| since_s + turn.dt_s);
         }
-        // a rounding less than the gap is not a reason to wait for another period
-        let open = state.since_s.is_some_and(|since_s| since_s < self.p.gap_s * (1.0 - 1e-12));
+        let open = state.since_s.is_some_and(|since_s| !is_over(since_s, self.p.gap_s));
         let at = |position: i32| state.position == position && !open && !turn.failed.has(Failure::Broken);
         Outputs { at_0: at(0), at_1: at(1), at_2: at(2), key_in: state.key }
     }

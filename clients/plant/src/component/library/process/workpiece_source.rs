@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::component::behaviour::{Component, Start, Turn};
 use crate::component::declare::{failures, own_types, parameters, signals};
+use crate::component::dynamics::is_over;
 use crate::coupling::{Place, Put, Targets};
 
 parameters! {
@@ -85,11 +86,11 @@ impl Component for WorkpieceSource {
     fn drive(&self, state: &mut State, inputs: &Inputs, turn: &Turn<Targets>) {
         let before = std::mem::replace(&mut state.released, inputs.release);
         let asked = inputs.release && !before;
-        // time runs while it is enabled; a rounding less than the interval is not a reason to wait
+        // time runs while it is enabled
         let since_s = state.since_s.map(|since_s| since_s + turn.dt_s);
         let half = turn.failed.has(Failure::Doubled);
         let interval_s = if half { 0.5 * self.p.interval_s } else { self.p.interval_s };
-        let due = inputs.enable && since_s.is_none_or(|since_s| since_s >= interval_s * (1.0 - 1e-12));
+        let due = inputs.enable && since_s.is_none_or(|since_s| is_over(since_s, interval_s));
         state.since_s = if inputs.enable { since_s.or(Some(0.0)) } else { None };
         state.placing = None;
         if (due || asked) && !turn.failed.has(Failure::Empty) && turn.seen.first.is_some() {

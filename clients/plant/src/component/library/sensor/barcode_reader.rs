@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::component::behaviour::{Component, Start, Turn};
 use crate::component::declare::{failures, own_types, parameters, signals};
+use crate::component::dynamics::is_over;
 use crate::coupling::{Contact, Targets};
 use onescan_server::random::Random;
 
@@ -145,8 +146,7 @@ impl Component for BarcodeReader {
             let missed = state.random.uniform() <= 0.01 * self.p.error_pct;
             (state.looked, state.pending_s, state.answer) = (Some(Look { place: seen.filter(|_| !missed) }), 0.0, None);
         }
-        // a rounding less than the latency is not a reason to wait for another period
-        let due = state.pending_s >= self.p.latency_s * (1.0 - 1e-12) && !turn.failed.has(Failure::Hung);
+        let due = is_over(state.pending_s, self.p.latency_s) && !turn.failed.has(Failure::Hung);
         if let Some(Look { place }) = state.looked.take_if(|_| due) {
             let counted = if place.is_some() { &mut state.reads } else { &mut state.no_reads };
             *counted = counted.saturating_add(1);

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::component::behaviour::{Component, Start, Turn};
 use crate::component::declare::{failures, own_types, parameters, signals};
-use crate::component::dynamics::quantised;
+use crate::component::dynamics::{is_over, quantised};
 use crate::coupling::{Field, InField};
 use onescan_server::random::Random;
 
@@ -128,17 +128,15 @@ impl Component for Camera {
     }
 
     fn sense(&self, state: &mut State, inputs: &Inputs, turn: &Turn<InField>) -> Outputs {
-        // a rounding less than the time is not a reason to wait for another period
-        let over = |since_s: f64, time_s: f64| since_s >= time_s * (1.0 - 1e-12);
         state.since_s = state.since_s.map(|since_s| since_s + turn.dt_s);
-        let frame_over = state.since_s.is_none_or(|since_s| over(since_s, self.p.frame_s));
+        let frame_over = state.since_s.is_none_or(|since_s| is_over(since_s, self.p.frame_s));
         let hung = turn.failed.has(Failure::Hung);
         let show = |state: &mut State| {
             if let Some(picture) = state.taken.take() {
                 (state.reported, state.pictures) = (picture, state.pictures.saturating_add(1));
             }
         };
-        if frame_over || state.since_s.is_some_and(|since_s| over(since_s, self.p.latency_s)) {
+        if frame_over || state.since_s.is_some_and(|since_s| is_over(since_s, self.p.latency_s)) {
             show(state);
         }
         if frame_over && inputs.enable && !hung {

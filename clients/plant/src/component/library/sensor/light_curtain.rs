@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::component::behaviour::{Component, Conflict, Start, Turn};
 use crate::component::declare::{failures, own_types, parameters, signals};
-use crate::component::dynamics::OnDelay;
+use crate::component::dynamics::{OnDelay, is_over};
 use crate::coupling::{Beams, Curtain, Interrupted};
 
 parameters! {
@@ -134,8 +134,7 @@ impl Component for LightCurtain {
         let dark = if turn.failed.has(Failure::Dirty) { first(self.p.beams) } else { turn.seen.0 };
         let dark = if turn.failed.has(Failure::Dazzled) { 0 } else { dark & self.watched };
         state.muting_s = inputs.mute.then(|| state.muting_s.map_or(0.0, |muting_s| muting_s + turn.dt_s));
-        // a rounding less than the time is not a reason to be muted for another period
-        let muted = state.muting_s.is_some_and(|muting_s| muting_s < self.p.muting_max_s * (1.0 - 1e-12));
+        let muted = state.muting_s.is_some_and(|muting_s| !is_over(muting_s, self.p.muting_max_s));
         let free = dark == 0 || muted;
         let delay_s = if free { self.p.free_s } else { self.p.response_s };
         if state.change.holds(free != state.on, delay_s, turn.dt_s) {

@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::component::behaviour::{Component, Start, Turn};
 use crate::component::declare::{failures, own_types, parameters, signals};
+use crate::component::dynamics::is_over;
 use crate::coupling::{Targets, Touch};
 use onescan_server::random::Random;
 
@@ -100,8 +101,7 @@ impl Component for LineScanner {
             (state.exposed, state.pending_s, state.answer) = (Some(count), 0.0, None);
             state.pictures = state.pictures.saturating_add(1);
         }
-        // a rounding less than the latency is not a reason to wait for another period
-        let due = state.pending_s >= self.p.latency_s * (1.0 - 1e-12) && !turn.failed.has(Failure::Hung);
+        let due = is_over(state.pending_s, self.p.latency_s) && !turn.failed.has(Failure::Hung);
         if let Some(count) = state.exposed.filter(|_| due) {
             let drawn = state.random.as_mut().map_or(1.0, Random::uniform);
             let wrong = drawn <= 0.01 * self.p.error_pct;

@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::component::behaviour::{Component, Start, Turn};
 use crate::component::declare::{failures, own_types, parameters, signals};
+use crate::component::dynamics::{is_over, rising};
 use crate::coupling::{InTags, Tags, WriteTag};
 
 parameters! {
@@ -118,9 +119,7 @@ impl Component for RfidHead {
 
     fn drive(&self, state: &mut State, inputs: &Inputs, turn: &Turn<InTags>) {
         state.written = None;
-        let now = [inputs.read, inputs.write];
-        let [read, write] = [0, 1].map(|command| now[command] && !state.before[command]);
-        state.before = now;
+        let [read, write] = rising(&mut state.before, [inputs.read, inputs.write]);
         let seen = first(turn);
         if state.access.is_none() && (read || write) {
             state.ended = None;
@@ -136,8 +135,7 @@ impl Component for RfidHead {
         let Access { place, data, since_s } = *access;
         if seen != Some(place) {
             state.end(false);
-        } else if since_s >= self.p.cycle_s * (1.0 - 1e-12) {
-            // a rounding less than the time is not a reason to wait for another period
+        } else if is_over(since_s, self.p.cycle_s) {
             let succeeds = !turn.failed.has(Failure::Collision);
             if succeeds {
                 state.written = data.map(|data| (place, data));
