@@ -476,10 +476,10 @@ fn promised(draw: &Draw, step: u64) -> Option<u64> {
 }
 
 /// Whether more has come of the first part before the first early write than is kept for it: a row has 0.9 MB, and five blocks are
-/// full.
+/// full. Behind the last step all of it is written.
 fn is_given_up(draw: &Draw, step: u64) -> bool {
     let is_late = draw.flush.is_some_and(|steps| steps > 46);
-    draw.width == Width::Wide && is_late && draw.reset.is_none() && step + 1 < PARTS[0]
+    draw.width == Width::Wide && is_late && draw.reset.is_none() && step < draw.steps && step + 1 < PARTS[0]
 }
 
 /// Looks at what is on the disk once a step has been taken.
