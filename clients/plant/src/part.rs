@@ -86,13 +86,8 @@ impl ValueSlot {
 
 /// Where an input comes from.
 enum Feed {
-    /// A constant of the scene, or the kind's preset.
-    Unchanging,
     Port(ValueSlot),
-    Output {
-        part: usize,
-        output: usize,
-    },
+    Output { part: usize, output: usize },
 }
 
 /// Where the signals of a port lie in the plant's inputs and outputs; nowhere, if it is not connected.
@@ -121,8 +116,10 @@ enum Switch {
 /// A component at work.
 pub(super) struct Part {
     running: Box<dyn Running>,
-    feeds: Vec<Feed>,
-    outputs: Vec<Option<ValueSlot>>,
+    /// By their places among the inputs; constants and presets are not fed.
+    feeds: Vec<(usize, Feed)>,
+    /// Those that are signals, by their places among the outputs.
+    outputs: Vec<(usize, ValueSlot)>,
     switches: Vec<(usize, Switch)>,
     ports: Vec<Port>,
     /// Where the lines of each port lie.
@@ -172,21 +169,23 @@ impl Part {
         let kind = &described.kind;
         let mut feeds = Vec::new();
         let mut taken = kind.unconnected();
-        for ((wire, input), value) in described.inputs.iter().zip(&kind.inputs).zip(&mut taken) {
-            feeds.push(match wire {
-                Wire::Open => Feed::Unchanging,
-                Wire::Constant(setting) => {
-                    *value = Value::of(*setting).unwrap_or(*value);
-                    Feed::Unchanging
+        for (index, (wire, input)) in described.inputs.iter().zip(&kind.inputs).enumerate() {
+            match wire {
+                Wire::Open => {}
+                Wire::Constant(setting) => taken[index] = Value::of(*setting).unwrap_or(taken[index]),
+                Wire::Signal(name) => {
+                    feeds.push((index, Feed::Port(ValueSlot::find(reads, name, input.values, described.number)?)));
                 }
-                Wire::Signal(name) => Feed::Port(ValueSlot::find(reads, name, input.values, described.number)?),
-                Wire::Output { component, output } => Feed::Output { part: *component, output: *output },
-            });
+                Wire::Output { component, output } => {
+                    feeds.push((index, Feed::Output { part: *component, output: *output }));
+                }
+            }
         }
         let mut outputs = Vec::new();
-        for (name, output) in described.outputs.iter().zip(&kind.outputs) {
-            let slot = |name: &SignalName| ValueSlot::find(writes, name, output.values, described.number);
-            outputs.push(name.as_ref().map(slot).transpose()?);
+        for (index, (name, output)) in described.outputs.iter().zip(&kind.outputs).enumerate() {
+            if let Some(name) = name {
+                outputs.push((index, ValueSlot::find(writes, name, output.values, described.number)?));
+            }
         }
         let seed = seed_for(seed, "component", &described.name);
         let making = Making { seed, bound: &described.bound, scene, period };
@@ -242,11 +241,10 @@ impl Part {
         self.take(described, moment, others)?;
         self.talk(moment, world, outputs);
         self.running.sense(&self.taken, &self.surroundings(moment), world, &mut self.given);
-        for (slot, value) in self.outputs.iter().zip(&self.given) {
+        for (index, slot) in &self.outputs {
+            let value = self.given[*index];
             // a component gives the values that its kind states, by the same macro
-            if let Some(slot) = slot
-                && !slot.set(outputs, *value)
-            {
+            if !slot.set(outputs, value) {
                 let name = &described.name;
                 return Err(ClientFault::new(format!(
                     "component `{name}` gives {value:?} where another type is wanted"
@@ -390,23 +388,22 @@ impl Part {
     }
 
     fn take(&mut self, described: &Component, moment: &Moment<'_>, others: &[Vec<Value>]) -> Result<(), ClientFault> {
-        for (index, feed) in self.feeds.iter().enumerate() {
+        for (index, feed) in &self.feeds {
             let value = match feed {
-                Feed::Unchanging => continue,
                 Feed::Port(slot) => slot.get(moment.inputs),
                 Feed::Output { part, output } => others[*part][*output],
             };
             if let Value::Number(number) = value
                 && !number.is_finite()
             {
-                let name = match &described.inputs[index] {
+                let name = match &described.inputs[*index] {
                     Wire::Signal(name) => name.as_str(),
                     Wire::Open | Wire::Constant(_) | Wire::Output { .. } => "a wire",
                 };
                 let reported = format!("component `{}` gets {number} from {name}, which is not finite", described.name);
                 return Err(ClientFault::new(reported));
             }
-            self.taken[index] = value;
+            self.taken[*index] = value;
         }
         Ok(())
     }

@@ -99,9 +99,9 @@ impl Guided {
         }
     }
 
-    /// Puts its bodies exactly where they were to come.
+    /// Puts its bodies exactly where they were to come, where [`lead`](Self::lead) has placed them.
     pub(crate) fn put(&mut self, bodies: &mut RigidBodySet) {
-        self.mechanism.put(bodies);
+        self.mechanism.put_as_placed(bodies);
     }
 }
 

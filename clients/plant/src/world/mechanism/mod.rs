@@ -281,6 +281,11 @@ impl Mechanism {
     /// Puts its bodies where its coordinates say.
     pub(crate) fn put(&mut self, bodies: &mut RigidBodySet) {
         self.equations.place(&self.tree, &self.now.q);
+        self.put_as_placed(bodies);
+    }
+
+    /// The same once all is placed by these coordinates.
+    fn put_as_placed(&mut self, bodies: &mut RigidBodySet) {
         self.equations.moves(&self.tree, &self.now.v);
         for (index, member) in self.tree.members.iter().enumerate().filter(|(_, member)| !member.is_part) {
             let Some(body) = member.body.and_then(|handle| bodies.get_mut(handle)) else { continue };
