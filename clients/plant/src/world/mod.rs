@@ -99,6 +99,8 @@ pub(crate) struct World {
     nearby: Option<Nearby>,
     /// Bodies that may sleep; none in a scene without `sleeping`.
     sleepers: Vec<Sleeper>,
+    /// All that is not fixed, in such a scene.
+    movers: Vec<RigidBodyHandle>,
     /// Bodies that may not.
     watched: Vec<RigidBodyHandle>,
     substeps: u32,
@@ -129,6 +131,7 @@ impl World {
             reach: Reach::of(&physics),
             nearby: None,
             sleepers: Vec::new(),
+            movers: Vec::new(),
             watched: Vec::new(),
             physics,
             ground,
@@ -342,7 +345,8 @@ impl World {
 
     /// False only if a body cannot touch anything in a ball.
     fn is_near_ball(&self, ball: &BoundingSphere, handle: RigidBodyHandle) -> bool {
-        self.reach.meets_ball(handle, self.body(handle).translation(), ball.center, ball.radius)
+        let body = self.body(handle);
+        body.is_enabled() && self.reach.meets_ball(handle, body.translation(), ball.center, ball.radius)
     }
 
     /// True if a surface touches a body or is in it, whether they collide or not.

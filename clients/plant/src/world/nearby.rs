@@ -11,40 +11,112 @@ use super::World;
 const MARGIN_M: f64 = 1e-3;
 /// How far a body may move before its box is drawn again.
 const SKIN_M: f64 = 0.02;
-/// From so many bodies on, a search in the tree is faster than a look at each.
+/// From so many bodies on, a search in a tree is faster than a look at each.
 const MANY: usize = 64;
 
 /// The boxes of all bodies that have a shape.
 pub(super) struct Nearby {
+    /// A leaf of the tree is a place in here.
+    bodies: Vec<Boxed>,
+    /// None of few bodies: each is looked at.
+    tree: Option<Tree>,
+}
+
+/// A body and the box around it.
+struct Boxed {
+    handle: RigidBodyHandle,
+    /// As the body sees it.
+    local: Aabb,
+    /// Fixed bodies stay where they are: only dynamic ones are ever put somewhere.
+    is_fixed: bool,
+    /// Where the body was when its box was drawn, and that box.
+    drawn: Option<(Pose, Aabb)>,
+}
+
+impl Boxed {
+    /// Draws the box of a body again if it is somewhere else.
+    fn follow(&mut self, physics: &PhysicsWorld) -> Option<Aabb> {
+        if self.is_fixed && self.drawn.is_some() {
+            return None;
+        }
+        let pose = *physics.bodies[self.handle].position();
+        if self.drawn.is_some_and(|(before, _)| before == pose) {
+            return None;
+        }
+        let here = self.local.transform_by(&pose).loosened(MARGIN_M);
+        self.drawn = Some((pose, here));
+        Some(here)
+    }
+}
+
+#[derive(Default)]
+struct Tree {
     tree: Bvh,
     workspace: BvhWorkspace,
-    /// Each with its box as the body sees it; a leaf of the tree is a place in here.
-    bodies: Vec<(RigidBodyHandle, Aabb)>,
+}
+
+impl Tree {
+    fn draw(&mut self, here: Aabb, leaf: u32) {
+        self.tree.insert_or_update_partially(here, leaf, SKIN_M);
+    }
+
+    fn tidy(&mut self) {
+        self.tree.refit(&mut self.workspace);
+        self.tree.optimize_incremental(&mut self.workspace);
+    }
 }
 
 impl Nearby {
     pub(super) fn of(physics: &PhysicsWorld) -> Self {
-        let boxed = |(handle, body)| own_box(body, &physics.colliders).map(|own| (handle, own));
-        let bodies = physics.bodies.iter().filter_map(boxed).collect();
-        let mut nearby = Self { tree: Bvh::new(), workspace: BvhWorkspace::default(), bodies };
+        let boxed = |(handle, body): (_, &RigidBody)| {
+            let local = own_box(body, &physics.colliders)?;
+            Some(Boxed { handle, local, is_fixed: body.is_fixed(), drawn: None })
+        };
+        let bodies: Vec<_> = physics.bodies.iter().filter_map(boxed).collect();
+        let tree = (bodies.len() >= MANY).then(Tree::default);
+        let mut nearby = Self { bodies, tree };
         nearby.follow(physics);
         nearby
     }
 
     /// Bodies whose boxes meet another one, in no order.
     pub(super) fn bodies_in<'a>(&'a self, around: &'a Aabb) -> impl Iterator<Item = RigidBodyHandle> + 'a {
-        let leaves = self.tree.intersect_aabb(around);
-        leaves.filter_map(|leaf| self.bodies.get(leaf as usize)).map(|(handle, _)| *handle)
+        let leaves = self.tree.as_ref().map(|tree| tree.tree.intersect_aabb(around));
+        let in_tree = leaves.into_iter().flatten().filter_map(|leaf| self.bodies.get(leaf as usize));
+        let few = if self.tree.is_none() { self.bodies.as_slice() } else { &[] };
+        // The tree knows boxes as they were drawn at some time; who is there must not hang on that.
+        let is_there = |boxed: &&Boxed| boxed.drawn.is_some_and(|(_, here)| here.intersects(around));
+        in_tree.chain(few).filter(is_there).map(|boxed| boxed.handle)
     }
 
     /// Draws the boxes of bodies that have moved.
     fn follow(&mut self, physics: &PhysicsWorld) {
-        for (leaf, (handle, local)) in (0_u32..).zip(&self.bodies) {
-            let here = local.transform_by(physics.bodies[*handle].position()).loosened(MARGIN_M);
-            self.tree.insert_or_update_partially(here, leaf, SKIN_M);
+        let mut moved = false;
+        for (leaf, boxed) in (0_u32..).zip(&mut self.bodies) {
+            let Some(here) = boxed.follow(physics) else { continue };
+            if let Some(tree) = &mut self.tree {
+                tree.draw(here, leaf);
+                moved = true;
+            }
         }
-        self.tree.refit(&mut self.workspace);
-        self.tree.optimize_incremental(&mut self.workspace);
+        if let Some(tree) = self.tree.as_mut().filter(|_| moved) {
+            tree.tidy();
+        }
+    }
+
+    /// Gives it a tree, however few the bodies are.
+    fn grow_tree(&mut self) {
+        let bodies = &self.bodies;
+        self.tree.get_or_insert_with(|| {
+            let mut tree = Tree::default();
+            for (leaf, boxed) in (0_u32..).zip(bodies) {
+                if let Some((_, here)) = boxed.drawn {
+                    tree.draw(here, leaf);
+                }
+            }
+            tree.tidy();
+            tree
+        });
     }
 }
 
@@ -107,7 +179,7 @@ impl Sought {
 
 /// Bodies that a sensor looks for, and the tree in which it searches.
 struct Search<'w> {
-    nearby: &'w Nearby,
+    tree: &'w Bvh,
     by_leaf: &'w [Option<(u32, RigidBodyHandle)>],
 }
 
@@ -126,11 +198,12 @@ impl World {
 
     fn seek_in_tree(&mut self, handles: Vec<RigidBodyHandle>) -> Sought {
         let nearby = self.nearby.get_or_insert_with(|| Nearby::of(&self.physics));
+        nearby.grow_tree();
         let mut by_leaf = vec![None; nearby.bodies.len()];
         for (place, handle) in (0_u32..).zip(&handles) {
             // The bodies are in the order of their handles, as the engine gives them.
-            let leaf =
-                nearby.bodies.binary_search_by_key(&handle.into_raw_parts().0, |(body, _)| body.into_raw_parts().0);
+            let number = |handle: RigidBodyHandle| handle.into_raw_parts().0;
+            let leaf = nearby.bodies.binary_search_by_key(&number(*handle), |boxed| number(boxed.handle));
             let Ok(leaf) = leaf else { continue };
             if by_leaf[leaf].replace((place, *handle)).is_some() {
                 // One that is named twice counts twice, which a leaf cannot tell.
@@ -142,7 +215,8 @@ impl World {
 
     /// How to search for bodies of which there are many; none if each is looked at.
     fn search<'w>(&'w self, sought: &'w Sought) -> Option<Search<'w>> {
-        Some(Search { nearby: self.nearby.as_ref()?, by_leaf: sought.by_leaf.as_deref()? })
+        let tree = self.nearby.as_ref()?.tree.as_ref()?;
+        Some(Search { tree: &tree.tree, by_leaf: sought.by_leaf.as_deref()? })
     }
 
     /// Takes notice of where the bodies are now, before sensors look.
@@ -160,7 +234,7 @@ impl World {
         let met = |leaf: u32, _: f64| search.found(leaf).and_then(|(_, handle)| self.ray_distance(ray, handle));
         let path = Path::of(ray);
         let enters_m = |node: &BvhNode, nearest_m: f64| path.enters_m(&node.aabb(), nearest_m);
-        search.nearby.tree.find_best(self.extent_m, enters_m, met).map(|(_, distance_m)| distance_m)
+        search.tree.find_best(self.extent_m, enters_m, met).map(|(_, distance_m)| distance_m)
     }
 
     /// True if a ray meets the shape of one of these bodies within its range.
@@ -169,7 +243,7 @@ impl World {
             return sought.handles.iter().any(|handle| self.ray_meets(ray, range_m, *handle));
         };
         let path = Path::of(ray);
-        let mut leaves = search.nearby.tree.leaves(|node| path.enters_m(&node.aabb(), range_m) <= range_m);
+        let mut leaves = search.tree.leaves(|node| path.enters_m(&node.aabb(), range_m) <= range_m);
         leaves.any(|leaf| search.found(leaf).is_some_and(|(_, handle)| self.ray_meets(ray, range_m, handle)))
     }
 
@@ -186,7 +260,7 @@ impl World {
             return;
         };
         let around = Aabb::from_half_extents(ball.center, Vector::splat(ball.radius));
-        search.nearby.tree.intersect_aabb(&around).filter_map(|leaf| search.found(leaf)).for_each(&mut look_near);
+        search.tree.intersect_aabb(&around).filter_map(|leaf| search.found(leaf)).for_each(&mut look_near);
     }
 }
 
@@ -263,6 +337,31 @@ mod tests {
                     prop_assert_eq!(touching(&world, *handle, &sought), touching(&world, *handle, &plain));
                 }
                 world.take_out(handles[out.index(handles.len())]).expect("it is there");
+            }
+        }
+
+        #[test]
+        fn who_is_near_does_not_hang_on_where_it_was(
+            boxes in proptest::collection::vec((triple(-2.0..2.0), triple(-3.0..3.0)), 4..100_usize),
+            places in proptest::collection::vec(triple(-3.0..3.0), 20),
+        ) {
+            let scene = flying(&boxes);
+            let mut world = World::build(&scene, TimeSpan::from_millis(10).expect("not zero"));
+            world.find_mechanisms();
+            let mut followed = Nearby::of(&world.physics);
+            for _ in 0..10 {
+                world.step(&scene, &mut Nobody).expect("they stay in the world");
+                followed.follow(&world.physics);
+                let fresh = Nearby::of(&world.physics);
+                for place in &places {
+                    let around = Aabb::from_half_extents(Vector::from_array(*place), Vector::splat(0.3));
+                    let found = |nearby: &Nearby| {
+                        let mut found: Vec<_> = nearby.bodies_in(&around).map(RigidBodyHandle::into_raw_parts).collect();
+                        found.sort_unstable();
+                        found
+                    };
+                    prop_assert_eq!(found(&followed), found(&fresh));
+                }
             }
         }
 

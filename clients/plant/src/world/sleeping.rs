@@ -16,11 +16,9 @@ use super::nearby::{Nearby, own_box};
 use super::tag;
 
 /// For so many steps on end a body must have been at rest.
-const STEADY_STEPS: u32 = 10;
-/// A body that moves no faster over its carrier is at rest.
-const REST_M_S: f64 = 1e-4;
-/// A body that turns no faster is at rest.
-const REST_RAD_S: f64 = 1e-4;
+const STEADY_STEPS: u32 = 3;
+/// A body that moves no faster over its carrier, and of which no point is faster as it turns, is at rest.
+const REST_M_S: f64 = 3e-4;
 /// So near nothing else may be, beside what two bodies go in a step.
 const CLEAR_M: f64 = 5e-3;
 /// A body lies on a face of its carrier if the normal of their contact is so much along the face's own.
@@ -100,6 +98,8 @@ impl World {
         let candidates: Vec<_> = self.bodies.iter().copied().filter(may).collect();
         self.sleepers = candidates.into_iter().filter_map(|handle| self.sleeper(handle)).collect();
         if !self.sleepers.is_empty() {
+            let moves = self.physics.bodies.iter().filter(|(_, body)| !body.is_fixed());
+            self.movers = moves.map(|(handle, _)| handle).collect();
             self.nearby.get_or_insert_with(|| Nearby::of(&self.physics));
         }
     }
@@ -113,7 +113,7 @@ impl World {
 
     /// Wakes those that something could meet in the step that begins, or that could fall.
     pub(super) fn rouse(&mut self) {
-        if self.sleepers.is_empty() {
+        if !self.sleepers.iter().any(|sleeper| sleeps(self.body(sleeper.handle))) {
             return;
         }
         self.look_around();
@@ -139,27 +139,31 @@ impl World {
 
     /// Counts the steps for which bodies have been at rest, and lets those sleep that have been for long enough.
     pub(super) fn settle(&mut self) {
-        if self.sleepers.is_empty() {
-            return;
-        }
-        let fastest_m_s = self.fastest_m_s();
+        // Asked for once somebody is about to fall asleep.
+        let mut fastest_m_s = None;
         for index in 0..self.sleepers.len() {
-            let sleeper = &self.sleepers[index];
-            let body = self.body(sleeper.handle);
+            let body = self.body(self.sleepers[index].handle);
             if sleeps(body) {
                 continue;
             }
             let before = Rest::of(body);
-            let rest = self.carrier(sleeper).map(|carrier| {
+            let rest = self.carrier(&self.sleepers[index]).map(|carrier| {
                 let steps = before.filter(|before| before.carrier == carrier).map_or(0, |before| before.steps);
                 Rest { carrier, steps: (steps + 1).min(STEADY_STEPS) }
             });
-            let ends = rest.filter(|rest| rest.steps == STEADY_STEPS && self.is_clear(sleeper, *rest, fastest_m_s));
-            let velocity = ends.map(|rest| self.body(rest.carrier).linvel());
-            let handle = sleeper.handle;
-            let Some(body) = self.physics.bodies.get_mut(handle).filter(|_| before.is_some() || rest.is_some()) else {
+            if before.is_none() && rest.is_none() {
                 continue;
-            };
+            }
+            let is_steady = rest.filter(|rest| rest.steps == STEADY_STEPS);
+            if is_steady.is_some() && fastest_m_s.is_none() {
+                self.look_around();
+                fastest_m_s = Some(self.fastest_m_s());
+            }
+            let sleeper = &self.sleepers[index];
+            let ends =
+                is_steady.zip(fastest_m_s).filter(|(rest, fastest_m_s)| self.is_clear(sleeper, *rest, *fastest_m_s));
+            let velocity = ends.map(|(rest, _)| self.body(rest.carrier).linvel());
+            let Some(body) = self.physics.bodies.get_mut(self.sleepers[index].handle) else { continue };
             Rest::bear(rest, body);
             if let Some(velocity) = velocity {
                 body.set_body_type(RigidBodyType::KinematicVelocityBased, true);
@@ -172,8 +176,8 @@ impl World {
     /// What a body is at rest on, if it touches nothing else.
     fn carrier(&self, sleeper: &Sleeper) -> Option<RigidBodyHandle> {
         let body = self.body(sleeper.handle);
-        if !body.is_enabled() || body.angvel().length_squared() > REST_RAD_S * REST_RAD_S || self.hangs(sleeper.handle)
-        {
+        let turns_m_s = body.angvel().length() * self.reach.radius_m(sleeper.handle);
+        if !body.is_enabled() || turns_m_s > REST_M_S || self.hangs(sleeper.handle) {
             return None;
         }
         let pairs = self.physics.narrow_phase.contact_pairs_with(sleeper.collider);
@@ -248,9 +252,10 @@ impl World {
     fn fastest_m_s(&self) -> f64 {
         let stays = |handle: RigidBodyHandle, body: &RigidBody| {
             let is_belt = || self.belts.iter().any(|(belt, _)| *belt == handle);
-            body.is_fixed() || sleeps(body) && (Rest::of(body).is_some() || is_belt())
+            sleeps(body) && (Rest::of(body).is_some() || is_belt())
         };
-        let awake = self.physics.bodies.iter().filter(|(handle, body)| body.is_enabled() && !stays(*handle, body));
+        let movers = self.movers.iter().map(|handle| (*handle, self.body(*handle)));
+        let awake = movers.filter(|(handle, body)| body.is_enabled() && !stays(*handle, body));
         let speed = |(handle, body): (RigidBodyHandle, &RigidBody)| {
             let turning_m_s = body.angvel().length() * self.reach.radius_m(handle);
             body.linvel().length() + if turning_m_s.is_finite() { turning_m_s } else { 0.0 }
