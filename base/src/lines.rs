@@ -65,10 +65,12 @@ impl Lines {
     }
 }
 
-/// The lines in `bytes` without their ends, from 0 by their place in the file. Half a line at the end is left out.
+/// The lines in `bytes` without their ends, from 0 by their place in the file. Half a line at the end is left out, and so is one
+/// with nothing in it: a process that looks while another one writes takes that line for half of one.
 pub fn whole(bytes: &[u8]) -> impl Iterator<Item = (usize, &[u8])> {
     let lines = bytes.split_inclusive(|byte| *byte == b'\n').enumerate();
-    lines.filter_map(|(place, line)| Some((place, line.strip_suffix(b"\n")?)))
+    let whole = lines.filter_map(|(place, line)| Some((place, line.strip_suffix(b"\n")?)));
+    whole.filter(|(_, line)| !line.is_empty())
 }
 
 #[cfg(test)]

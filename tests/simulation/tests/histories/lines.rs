@@ -108,3 +108,10 @@ fn judge(bytes: &[u8], fates: &[(String, Fate)]) -> Result<(), String> {
 fn lines_are_whole_or_not_there() {
     try_all(KIND, history);
 }
+
+/// A process that looks while another one writes begins a line of its own, though the other's is whole in the end.
+#[test]
+fn a_line_with_nothing_in_it_is_none() {
+    let lines: Vec<_> = onescan_base::lines::whole(b"one\n\ntwo\nhal").collect();
+    assert_eq!(lines, [(0, &b"one"[..]), (2, b"two")]);
+}
