@@ -1,9 +1,11 @@
 //! Inputs of a PLC that nobody drives: no signal goes to them, and nothing in the program gives them a value.
 
+use std::collections::BTreeSet;
+
 use onescan_base::nearest;
 use onescan_iec::diagnostic::{Code, Diagnostic};
-use onescan_iec_run::{Application, OpenInput, Variable};
-use onescan_server::signal::SignalDecl;
+use onescan_iec_run::{Application, MemorySet, OpenInput, Variable};
+use onescan_server::signal::{SignalDecl, SignalName};
 
 use crate::bind::{Bindings, Bound};
 
@@ -16,10 +18,10 @@ pub fn undriven(
     signals: &[SignalDecl],
     others: &[Variable],
 ) -> Vec<Diagnostic> {
-    let foreign = Foreign::of(bindings, signals);
+    let (foreign, driven) = (Foreign::of(bindings, signals), driven(bindings, others));
     let mut found = Vec::new();
     for mut input in application.open_inputs() {
-        input.parts.retain(|part| !is_driven(part, bindings, others));
+        input.parts.retain(|part| !driven.meets_variable(part));
         if !input.parts.is_empty() {
             found.push(warning(application, &input, &foreign));
         }
@@ -35,10 +37,12 @@ struct Foreign<'a> {
 }
 
 impl<'a> Foreign<'a> {
-    fn of(bindings: &Bindings, signals: &'a [SignalDecl]) -> Self {
-        let is_in = |bound: &[Bound], signal: &SignalDecl| bound.iter().any(|bound| bound.port.name == signal.name);
-        let foreign = signals.iter().filter(|signal| !is_in(&bindings.outputs, signal));
-        let (read, unread): (Vec<&SignalDecl>, _) = foreign.partition(|signal| is_in(&bindings.inputs, signal));
+    fn of(bindings: &'a Bindings, signals: &'a [SignalDecl]) -> Self {
+        let names =
+            |bound: &'a [Bound]| -> BTreeSet<&'a SignalName> { bound.iter().map(|bound| &bound.port.name).collect() };
+        let (outputs, inputs) = (names(&bindings.outputs), names(&bindings.inputs));
+        let foreign = signals.iter().filter(|signal| !outputs.contains(&signal.name));
+        let (read, unread): (Vec<&SignalDecl>, _) = foreign.partition(|signal| inputs.contains(&signal.name));
         let names = |signals: Vec<&'a SignalDecl>| signals.iter().map(|signal| signal.name.as_str()).collect();
         Self { unread: names(unread), read: names(read) }
     }
@@ -48,12 +52,17 @@ impl<'a> Foreign<'a> {
     }
 }
 
-fn is_driven(variable: &Variable, bindings: &Bindings, others: &[Variable]) -> bool {
-    let of_signal = bindings.inputs.iter().any(|bound| {
+/// What signals write, and `others`.
+fn driven(bindings: &Bindings, others: &[Variable]) -> MemorySet {
+    let mut driven = MemorySet::default();
+    for bound in &bindings.inputs {
         let len = bound.port.ty.size();
-        bound.places.iter().any(|place| variable.meets(place.bytes(len), place.bit))
-    });
-    of_signal || others.iter().any(|other| other.overlaps(variable))
+        bound.places.iter().for_each(|place| driven.insert(place.bytes(len), place.bit));
+    }
+    for other in others {
+        driven.insert_variable(other);
+    }
+    driven
 }
 
 fn warning(application: &Application, input: &OpenInput, foreign: &Foreign<'_>) -> Diagnostic {

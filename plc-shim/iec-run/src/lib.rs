@@ -19,8 +19,8 @@ pub mod coverage;
 pub mod run;
 
 pub use application::{
-    Application, BuildError, Builder, CodeDifference, Declaration, OpenInput, Program, Radix, UnknownVariable,
-    Variable, VariableAccess, VariableDifference, WriteError, ZeroTerminated, literal, without_home,
+    Application, BuildError, Builder, CodeDifference, Declaration, MemorySet, OpenInput, Program, Radix,
+    UnknownVariable, Variable, VariableAccess, VariableDifference, WriteError, ZeroTerminated, literal, without_home,
 };
 pub use compile::fault::FaultKind;
 pub use coverage::Coverage;

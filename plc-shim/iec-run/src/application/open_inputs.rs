@@ -1,5 +1,6 @@
 //! The inputs that nothing in the application gives a value: somebody outside has to, or they stay as they are.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use onescan_iec::check::Checked;
@@ -11,6 +12,7 @@ use onescan_iec::syntax::ast::SectionKind;
 use onescan_iec::syntax::direct_address::Area;
 
 use super::inner_inputs::{InnerInputs, is_at_input};
+use super::memory_set::MemorySet;
 use super::variable::{Spot, spot};
 use super::{Application, Variable};
 
@@ -33,15 +35,17 @@ pub struct OpenInput {
 /// Bytes of memory, or one bit of a byte.
 type Bits = (Range<u32>, Option<u8>);
 
-impl Variable {
-    /// True if it has bits in common with `other`.
-    pub fn overlaps(&self, other: &Self) -> bool {
-        self.meets(bits(other).0, other.bit)
+impl MemorySet {
+    /// True if one of its places has bits in common with a variable.
+    pub fn meets_variable(&self, variable: &Variable) -> bool {
+        let (bytes, bit) = bits(variable);
+        self.meets(bytes, bit)
     }
 
-    /// True if it has bits in common with bytes of memory, or with one bit of a byte.
-    pub fn meets(&self, bytes: Range<u32>, bit: Option<u8>) -> bool {
-        overlap(&bits(self), &(bytes, bit))
+    /// Adds all of a variable.
+    pub fn insert_variable(&mut self, variable: &Variable) {
+        let (bytes, bit) = bits(variable);
+        self.insert(bytes, bit);
     }
 }
 
@@ -55,11 +59,12 @@ impl Application {
         for (program, name) in checked.programs.iter().zip(self.entry_names()) {
             let variables = checked.interfaces.get(&program.pou).map_or(&[][..], Vec::as_slice);
             let inputs = variables.iter().filter(|variable| variable.section == SectionKind::Input);
+            let assigned = checked.pous.get(&program.pou).map(|unit| assigned(checked, unit)).unwrap_or_default();
             for variable in inputs.filter(|variable| !matches!(variable.storage, Storage::Located(_))) {
                 let found = spot(checked, name, variable, program.offset);
                 let found = found.and_then(|spot| self.open_input(spot, variable.span, &uses));
-                let assigned = || checked.pous.get(&program.pou).and_then(|unit| assigned(checked, unit, variable));
-                open.extend(found.map(|found| OpenInput { assigned: assigned(), ..found }));
+                let assigned = assigned.get(&variable.storage).copied();
+                open.extend(found.map(|found| OpenInput { assigned, ..found }));
             }
         }
         self.add_located(&uses, &mut open);
@@ -69,14 +74,13 @@ impl Application {
     /// What is read of the input area: by the names of the variables located there, else by the address.
     fn add_located(&self, uses: &Uses, open: &mut Vec<OpenInput>) {
         let checked = &self.inner.checked;
-        let mut named: Vec<Bits> = Vec::new();
+        let mut named = Named::default();
         for (home, base, variable) in self.all_variables().filter(|(.., variable)| is_at_input(variable)) {
             let Some(found) = spot(checked, home, variable, base) else { continue };
             let taken = bits(&self.describe(found.clone()));
             // Who reads what lies in an instance, as behind `AT %I*`, is not looked at.
-            let is_read = !matches!(variable.storage, Storage::Located(_))
-                || uses.read_inputs.iter().any(|(read, _)| overlap(read, &taken));
-            named.push(taken);
+            let is_read = !matches!(variable.storage, Storage::Located(_)) || uses.is_read(&taken);
+            named.add(taken);
             let is_own = match variable.section {
                 SectionKind::External => false,
                 // One of a program's inputs is open as such.
@@ -88,19 +92,18 @@ impl Application {
             }
         }
         self.add_inner(uses, &mut named, open);
-        let mut seen: Vec<&Bits> = Vec::new();
+        let mut seen = BTreeSet::new();
         for (read, span) in &uses.read_inputs {
-            if seen.contains(&read) || named.iter().any(|named| overlap(named, read)) {
+            if !seen.insert(exactly(read)) || named.bits.meets(read.0.clone(), read.1) {
                 continue;
             }
-            seen.push(read);
             let path = self.sources().text(*span);
             open.extend(self.direct(path).and_then(|spot| self.open_input(spot, *span, uses)));
         }
     }
 
     /// The same of what lies inside of instances and structures; at one address once, however many instances name it.
-    fn add_inner(&self, uses: &Uses, named: &mut Vec<Bits>, open: &mut Vec<OpenInput>) {
+    fn add_inner(&self, uses: &Uses, named: &mut Named, open: &mut Vec<OpenInput>) {
         let mut inner = InnerInputs::of(self);
         for (home, base, variable) in self.all_variables().filter(|(.., variable)| is_whole(variable)) {
             if let Some(whole) = spot(&self.inner.checked, home, variable, base) {
@@ -110,11 +113,10 @@ impl Application {
         for (found, declared) in inner.found {
             let taken = bits(&self.describe(found.clone()));
             let is_at_address = found.address.as_deref().is_some_and(|address| !address.contains('*'));
-            let is_read = uses.read_inputs.iter().any(|(read, _)| overlap(read, &taken));
-            if named.contains(&taken) {
+            let is_read = uses.is_read(&taken);
+            if !named.add(taken) {
                 continue;
             }
-            named.push(taken);
             if is_read || !is_at_address {
                 open.extend(self.open_input(found, declared, uses));
             }
@@ -135,17 +137,17 @@ impl Application {
         let variable = self.describe(spot.clone());
         let mut parts: Vec<Variable> = self.leaves_of(spot).collect();
         let part_count = parts.len();
-        parts.retain(|leaf| !uses.written.iter().any(|written| overlap(written, &bits(leaf))));
+        parts.retain(|leaf| !uses.written.meets_variable(leaf));
         (!parts.is_empty()).then_some(OpenInput { variable, span, parts, part_count, assigned: None })
     }
 }
 
-/// Where a unit assigns to its own input first.
-fn assigned(checked: &Checked, unit: &Pou, input: &Declared) -> Option<Span> {
-    let mut first = None;
+/// Where a unit first assigns to what begins in its memory.
+fn assigned(checked: &Checked, unit: &Pou) -> BTreeMap<Storage, Span> {
+    let mut first = BTreeMap::new();
     place_uses(&unit.body, &checked.types, &mut |place, how| {
-        if how == PlaceUse::Write && place.storage == input.storage {
-            first = first.or(Some(place.span));
+        if how == PlaceUse::Write {
+            first.entry(place.storage).or_insert(place.span);
         }
     });
     first
@@ -161,20 +163,33 @@ fn bits(variable: &Variable) -> Bits {
     (variable.offset..variable.offset + variable.size, variable.bit)
 }
 
-fn overlap((one, one_bit): &Bits, (other, other_bit): &Bits) -> bool {
-    let is_same_bit = match (one_bit, other_bit) {
-        (Some(one), Some(other)) => one == other,
-        _ => true,
-    };
-    one.start < other.end && other.start < one.end && is_same_bit
+fn exactly((bytes, bit): &Bits) -> (u32, u32, Option<u8>) {
+    (bytes.start, bytes.end, *bit)
+}
+
+/// Places of the input area that variables name.
+#[derive(Default)]
+struct Named {
+    bits: MemorySet,
+    exactly: BTreeSet<(u32, u32, Option<u8>)>,
+}
+
+impl Named {
+    /// False if the same place has a name already.
+    fn add(&mut self, taken: Bits) -> bool {
+        let is_new = self.exactly.insert(exactly(&taken));
+        self.bits.insert(taken.0, taken.1);
+        is_new
+    }
 }
 
 /// What the application does with memory that those outside may write as well.
 #[derive(Default)]
 struct Uses {
-    written: Vec<Bits>,
+    written: MemorySet,
     /// What is read of the input area, with the place where it is.
     read_inputs: Vec<(Bits, Span)>,
+    read: MemorySet,
 }
 
 impl Uses {
@@ -187,15 +202,20 @@ impl Uses {
         uses
     }
 
+    fn is_read(&self, (bytes, bit): &Bits) -> bool {
+        self.read.meets(bytes.clone(), *bit)
+    }
+
     fn note(&mut self, checked: &Checked, statements: &[Statement]) {
         place_uses(statements, &checked.types, &mut |place, how| {
             let Some(bits) = bits_of(checked, place) else { return };
             let is_input = matches!(place.storage, Storage::Located(Location { area: Area::Input, .. }));
             if is_input && how != PlaceUse::Write {
+                self.read.insert(bits.0.clone(), bits.1);
                 self.read_inputs.push((bits.clone(), place.span));
             }
             if how != PlaceUse::Read {
-                self.written.push(bits);
+                self.written.insert(bits.0, bits.1);
             }
         });
     }

@@ -3,7 +3,7 @@
 use crate::syntax::direct_address::Area;
 
 /// A place in an area. Where the area begins is known once all units have been checked.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Location {
     pub area: Area,
     pub offset: u32,

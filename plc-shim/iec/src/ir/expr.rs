@@ -227,7 +227,7 @@ pub enum Argument {
 }
 
 /// Where a variable begins.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Storage {
     /// At a fixed offset in memory.
     Absolute(u32),
